@@ -31,14 +31,14 @@ inline namespace v0 {
 
 namespace {
 
-/// In so long a score falls silent whose plan failed, as in the player.
+/// Time in which a score whose plan failed falls silent, as in the player.
 constexpr double fade_s = 0.01;
 
 } // namespace
 
 struct renderer::impl {
-    /// Room for what sounds at once, for what begins in the block meanwhile, and of what can fail for what
-    /// comes after it as well.
+    /// Makes a mixer with space for the drives that sound at once, for those that begin in the block
+    /// meanwhile, and for those that come after a stroke that can fail.
     impl(const score& s, format_kind f)
         : source(s),
           ahead(detail::access::of(s).open_continuous > 0 ? synth::frame_at(fade_s, s.rate()) : 0),
@@ -54,7 +54,7 @@ struct renderer::impl {
         return s.guards ? synth::guards_of(*s.guards, s.rate) : synth::guard_settings{};
     }
 
-    /// Hands over what starts before a frame. Returns the frame up to which nothing is missing.
+    /// Hands over the drives that start before a frame. Returns the frame up to which none is missing.
     std::uint64_t feed(std::uint64_t until) noexcept
     {
         for (const synth::drive_event* e = source.peek(); e != nullptr && e->start < until;
@@ -66,8 +66,8 @@ struct renderer::impl {
         return until;
     }
 
-    /// What can be mixed at once, up to a frame: where a plan fails is known a fade before it. Few strokes
-    /// are so crowded that there is no space for that; their fade is shorter.
+    /// Returns the frame up to which the mixer can run now. A failure of a plan is known one fade ahead. If
+    /// strokes are so crowded that there is no space for that, their fade is shorter.
     std::uint64_t prepare(std::uint64_t until) noexcept
     {
         const std::uint64_t at = mix.position();
@@ -88,7 +88,7 @@ struct renderer::impl {
     }
 
     synth::event_source source;
-    std::uint64_t ahead; ///< frames that are looked at before they are mixed
+    std::uint64_t ahead; ///< frames that are read before they are mixed
     bool failed = false;
     synth::mixer mix;
     std::size_t frame_bytes;
@@ -124,7 +124,7 @@ void renderer::process(std::span<std::byte> out)
                     "give space for whole frames");
     std::size_t frames = out.size() / r.frame_bytes;
     std::byte* to = out.data();
-    // Whole blocks of the mixer, several at once: little to keep waiting, little to do between.
+    // Whole blocks of the mixer, several at once: short to wait for, with little work in between.
     constexpr std::uint64_t stride = std::uint64_t{8} * synth::block_frames;
     while (frames > 0) {
         const std::uint64_t at = r.mix.position();

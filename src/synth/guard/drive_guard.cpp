@@ -10,7 +10,7 @@ namespace tactor::synth {
 namespace {
 
 constexpr double fade_s = 0.02;
-constexpr double pause_s = 0.001; // longer than a sine is at zero
+constexpr double pause_s = 0.001; // longer than a sine stays at zero
 constexpr double counted = least_counted_drive * least_counted_drive;
 
 } // namespace
@@ -43,7 +43,7 @@ void drive_guard::add(cell& c, const stretch& s) const noexcept
     c.at(c.count - 1) = s;
 }
 
-// Of a stretch that is left in part, as much as may have been at its end.
+// Releases old frames. Of a stretch that is left in part, keeps as many frames as may have been at its end.
 void drive_guard::release(cell& c, std::int64_t begin) noexcept
 {
     while (c.count > 0) {
@@ -89,7 +89,7 @@ void drive_guard::close(cell& c, std::int64_t at) noexcept
     c.opens_at = std::max(at + fade_, half_gone(c));
 }
 
-/// First frame whose window holds no more than half of the limit, if nothing more is driven.
+/// Returns the first frame whose window holds at most half of the limit, if nothing more is driven.
 std::int64_t drive_guard::half_gone(const cell& c) const noexcept
 {
     std::int64_t left = limit_ / 2;
@@ -173,17 +173,17 @@ drive_history drive_guard::history(std::uint64_t clock) const
 
 void drive_guard::resume(const drive_history& h) noexcept
 {
-    // A frame that was driven in part counts; what misses a whole number by rounding does not make one more.
+    // A partly driven frame counts, but a rounding error above a whole number does not add a frame.
     const auto up = [this](double s) { return static_cast<std::int64_t>(std::ceil(s * rate_ - 1e-4)); };
     for (std::size_t i = 0; i < std::min(cells_.size(), h.channels.size()); ++i) {
         cell& c = cells_[i];
         for (const drive_history::stretch& s : h.channels[i].stretches)
             add(c, {up(s.begin_s), up(s.end_s), up(s.driven_s)});
         std::int64_t opens = up(h.channels[i].opens_s);
-        // One that was closed for a lower limit than this guard's opens as soon as this one lets it.
+        // A channel closed for a lower limit opens as soon as this guard's limit allows.
         if (const std::int64_t half = half_gone(c); opens > half + fade_)
             opens = half;
-        // What is open by now sounds from silence: it needs no fade.
+        // An open channel starts from silence, so it needs no fade.
         c.opens_at = opens > 0 ? opens : -fade_;
         c.closed_at = std::min(c.opens_at, -fade_);
     }

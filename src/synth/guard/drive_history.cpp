@@ -10,7 +10,7 @@ namespace {
 
 using driven_stretch = drive_history::stretch;
 
-/// Of stretches in order of their begins those that overlap become one.
+/// Joins stretches that overlap, and returns them in order.
 std::vector<driven_stretch> apart(std::vector<driven_stretch> all)
 {
     std::sort(all.begin(), all.end(),

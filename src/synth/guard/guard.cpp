@@ -44,7 +44,7 @@ void check_limits(const drive_limits& l)
 
 std::uint64_t limit_block(double* x, unsigned n, double limit) noexcept
 {
-    // A drive at the limit itself may miss it by an ulp or two of sin(): held, but no event to report.
+    // A drive at the limit may exceed it by an ulp or two of sin(): it is limited, but does not count.
     const double counted = limit * (1.0 + 1e-9);
     std::uint64_t changed = 0;
     for (unsigned i = 0; i < n; ++i)

@@ -13,7 +13,7 @@
 
 namespace tactor::synth {
 
-/// The longest window that drive_limits may have, s.
+/// Longest window that drive_limits may have, s.
 inline constexpr double longest_window_s = detail::bounds_of::drive_s.high;
 
 /// Limits in the mixer's units; as initialised: no limits.
@@ -24,22 +24,23 @@ struct guard_settings {
     unsigned rate = 48000;
 };
 
-/// \throws error (bad_input) for impossible limits.
+/// Checks the limits.
+/// \throws error (bad_input) for impossible ones.
 void check_limits(const drive_limits& l);
-/// Limits at a sample rate. Throws like check_limits.
+/// Converts limits to a sample rate. Throws like check_limits().
 guard_settings guards_of(const drive_limits& l, unsigned rate);
 
-/// Holds n samples within -limit ... limit; what is not a number becomes 0. Returns how many it changed, not
-/// counting an excess of rounding noise.
+/// Limits n samples to -limit ... limit; NaN becomes 0. Returns the number of changed samples, not counting
+/// rounding noise.
 std::uint64_t limit_block(double* x, unsigned n, double limit) noexcept;
 
-/// Returns true where limit_block() cannot change samples of at most `peak`; false for what is not a number.
+/// Returns true if limit_block() cannot change samples of at most `peak`; false for NaN.
 inline bool within_limit(double peak, double limit) noexcept
 {
     return peak <= limit * (1.0 - 1e-12);
 }
 
-/// Returns the limit as given, but nothing outside 0 ... 1.
+/// Returns the limit, clamped to 0 ... 1; NaN becomes 0.
 inline double clean_limit(double l) noexcept
 {
     return l > 0.0 ? std::min(l, 1.0) : 0.0;

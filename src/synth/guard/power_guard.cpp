@@ -11,7 +11,8 @@
 namespace tactor::synth {
 namespace {
 
-// Two of these one after the other: the gain has no corner, and above 1 kHz nothing is left of its changes.
+// Time constant of each of two smoothing stages: the gain has no corner, and its changes have no content
+// above 1 kHz.
 constexpr double smooth_s = 0.002;
 constexpr double release_s = 0.05;
 constexpr double noise = 1e-9;
@@ -19,7 +20,7 @@ constexpr double noise = 1e-9;
 } // namespace
 
 power_guard::power_guard(std::size_t channels, double most, double reach, unsigned rate)
-    // As many full-scale channels as allowed may miss the limit by the noise of rounding.
+    // The allowed number of full-scale channels may exceed the limit by rounding noise.
     : most_(std::isfinite(most) ? most * (1.0 + noise) : std::numeric_limits<double>::infinity()),
       on_(reach > most_),
       decay_(std::exp(-1.0 / (release_s * rate))),
@@ -52,7 +53,7 @@ void power_guard::passed(std::span<const powered_channel> channels, unsigned n) 
     admit(channels, n - 1);
 }
 
-/// What does not sound in a block has nothing to go on from.
+/// Keeps the state of the channels that sound. A channel that is silent in a block starts anew.
 void power_guard::keep(std::span<const powered_channel> channels) noexcept
 {
     std::fill(other_.begin(), other_.end(), 0.0);
@@ -61,8 +62,8 @@ void power_guard::keep(std::span<const powered_channel> channels) noexcept
     let_.swap(other_);
 }
 
-/// The sum is above the headroom. What falls or stays keeps its gain; what rises shares what is left of the
-/// headroom.
+/// Handles a sum above the headroom. Falling and constant channels keep their gain; rising ones share the
+/// rest of the headroom.
 void power_guard::squeeze(std::span<const powered_channel> channels, unsigned frame, double sum,
                           double headroom) noexcept
 {
@@ -88,7 +89,7 @@ std::uint64_t power_guard::apply(std::span<const powered_channel> channels, unsi
             sum[j] += c.envelope[j];
     keep(channels);
     std::uint64_t changed = 0;
-    bool squeezed = true; // in the frame before: let_ is known
+    bool squeezed = true; // in the frame before, so let_ is known
     for (unsigned j = 0; j < n; ++j) {
         step(sum[j]);
         const double headroom = most_ / (gain_ * gain_);

@@ -93,7 +93,7 @@ TACTOR_CLONES void set_line(const double* s, double a, double slope, double k, u
     const double* __restrict in = s;
     double* __restrict out = sum;
     for (int j = static_cast<int>(lo); j < static_cast<int>(hi); ++j)
-        out[j] = 0.0 + (a + slope * (k + j)) * in[j]; // no zero has a sign, as in a sum
+        out[j] = 0.0 + (a + slope * (k + j)) * in[j]; // a zero never has a sign, as in a sum
 }
 
 TACTOR_CLONES void add_line(const double* s, double a, double slope, double k, unsigned lo, unsigned hi,

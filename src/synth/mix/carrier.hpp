@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// The carrier of a voice, window and fade included, shared by the voices that have it in common.
+/// Carrier of a voice, window and fade included, shared by the voices that have it in common.
 #pragma once
 
 #include <array>
@@ -12,14 +12,14 @@
 
 namespace tactor::synth {
 
-/// Keeps the latest block: the events of one burst, and of a whole continuous stroke, ask for the same.
+/// Cache of the latest block: the events of one burst, or of a whole continuous stroke, need the same one.
 class carrier_block {
 public:
-    /// Samples of the n frames (at most block_frames) from frame `at` of the stream on. Valid until the next
-    /// call for the same wave.
+    /// Returns the samples of the n frames (at most block_frames) from frame `at` of the stream on. Valid
+    /// until the next call for the same wave.
     const double* get(const voice& v, const fade* f, std::uint64_t at, unsigned n,
                       wave w = wave::sine) noexcept;
-    /// Whether `s`, which get() gave for the sine, is shaped by neither a window nor a fade.
+    /// Returns true if `s`, which get() returned for the sine, has neither a window nor a fade.
     bool is_plain(const double* s) const noexcept { return s == kept_[0].plain.data(); }
     void forget() noexcept;
 
@@ -51,23 +51,24 @@ private:
     std::array<kept, 2> kept_; ///< by wave
 };
 
-/// sum[j] += amplitude * s[j] for those of n frames from frame `at` of the stream on that are in the stretch.
+/// Computes sum[j] += amplitude * s[j] for those of n frames from frame `at` of the stream on that are in the
+/// stretch.
 void add_stretch(const double* s, const stretch& p, std::uint64_t at, unsigned n, double* sum) noexcept;
 
-/// The same, where nothing is in the sum yet.
+/// Computes the same with an empty sum.
 void set_stretch(const double* s, const stretch& p, std::uint64_t at, unsigned n, double* sum) noexcept;
 
-/// sum[j] = a * s[j] for lo <= j < hi.
+/// Computes sum[j] = a * s[j] for lo <= j < hi.
 void set_constant(const double* s, double a, unsigned lo, unsigned hi, double* sum) noexcept;
 
-/// sum[j] += a * s[j] for lo <= j < hi.
+/// Computes sum[j] += a * s[j] for lo <= j < hi.
 void add_constant(const double* s, double a, unsigned lo, unsigned hi, double* sum) noexcept;
 
-/// sum[j] = (a + slope * (k + j)) * s[j] for lo <= j < hi, a zero without a sign.
+/// Computes sum[j] = (a + slope * (k + j)) * s[j] for lo <= j < hi; a zero has no sign.
 void set_line(const double* s, double a, double slope, double k, unsigned lo, unsigned hi,
               double* sum) noexcept;
 
-/// sum[j] += (a + slope * (k + j)) * s[j] for lo <= j < hi.
+/// Computes sum[j] += (a + slope * (k + j)) * s[j] for lo <= j < hi.
 void add_line(const double* s, double a, double slope, double k, unsigned lo, unsigned hi,
               double* sum) noexcept;
 

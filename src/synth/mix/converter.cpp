@@ -24,7 +24,7 @@ using lane_pointers = std::array<const lane*, abreast>;
 using quad = std::uint32_t __attribute__((vector_size(16)));
 using short_quad = std::uint16_t __attribute__((vector_size(8)));
 
-/// A frame, each sample cut to the element of Row.
+/// Stores a frame, with each sample cut to the element of Row.
 template <class Row>
 void store(quad frame, std::byte* out) noexcept
 {
@@ -61,8 +61,8 @@ void write(const lane_pointers& from, unsigned n, std::byte* out, std::size_t st
         store<Row>(quad{(*from[0])[i], (*from[1])[i], (*from[2])[i], (*from[3])[i]}, out);
 }
 
-/// Writes, for each of n frames, `stride` bytes apart, the low `bytes` (2 or 4) of the lanes' samples, side
-/// by side.
+/// Writes for each of n frames, `stride` bytes apart, the low `bytes` (2 or 4) of the lanes' samples, next to
+/// each other.
 void write_abreast(const lane_pointers& from, std::size_t bytes, unsigned n, std::byte* out,
                    std::size_t stride) noexcept
 {
@@ -109,7 +109,7 @@ void to_bits(format_kind f, const channel_samples& c, unsigned n, lane& v) noexc
     }
 }
 
-/// The low bytes of each of n values to places `stride` apart.
+/// Writes the low bytes of each of n values to places `stride` apart.
 template <std::size_t Bytes>
 void scatter(const lane& v, unsigned n, std::byte* out, std::size_t stride) noexcept
 {
@@ -131,7 +131,7 @@ void scatter(const lane& v, std::size_t bytes, unsigned n, std::byte* out, std::
 
 constexpr lane silent{};
 
-// Its own clones say which one the loader took for all the others.
+// These clones show which version the loader chose for all others.
 #ifdef TACTOR_HAS_CLONES
 __attribute__((target("arch=x86-64-v4"))) const char* taken()
 {
@@ -164,9 +164,9 @@ void interleave(format_kind f, std::span<const channel_samples> sounding, std::s
     if (sounding.size() < channels)
         std::memset(out, 0, n * stride);
     std::array<lane, abreast> lanes;
-    std::size_t written = 0; // channels below are done
+    std::size_t written = 0; // lower channels are done
     while (!sounding.empty()) {
-        // A face's tactors are often neighbours: their samples go out in one store.
+        // A face's tactors are often neighbours: one store writes their samples.
         const std::size_t next = sounding[0].channel;
         const std::size_t first = std::min(next, channels - std::min(channels, abreast));
         const auto end = std::find_if(sounding.begin(), sounding.end(), [first](const channel_samples& c) {

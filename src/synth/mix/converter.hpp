@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// Doubles to the sample formats, four neighbouring channels at a time.
+/// Conversion of doubles to the sample formats, four neighbouring channels at a time.
 #pragma once
 
 #include <cstddef>
@@ -11,22 +11,22 @@
 
 namespace tactor::synth {
 
-/// A channel's part of a block.
+/// Block of one channel.
 struct channel_samples {
     std::uint32_t channel = 0;
-    const double* x = nullptr; ///< must not hold NaN
+    const double* x = nullptr; ///< without NaN
     double gain = 1.0;
 };
 
-/// Writes n (at most block_frames) interleaved frames of `channels` channels: gain * x for a channel that is
-/// in `sounding` (in order of channel), else zero. Integers are the value times 2^(bits - 1), rounded to the
-/// nearest with ties to even, from -2^(bits - 1) to 2^(bits - 1) - 1: readers that divide by 2^(bits - 1), as
-/// libsndfile does, get it back. 1.0 is the one value that does not fit; it becomes the greatest integer.
-/// Float is the nearest float. Never a negative zero.
+/// Writes n (at most block_frames) interleaved frames of `channels` channels: gain * x for a channel in
+/// `sounding` (in order of channel), else zero. Integers are the value times 2^(bits - 1), rounded to the
+/// nearest with ties to even, from -2^(bits - 1) to 2^(bits - 1) - 1. Readers that divide by 2^(bits - 1), as
+/// libsndfile does, get the value back. Only 1.0 does not fit; it becomes the greatest integer. Float is the
+/// nearest float. Never writes a negative zero.
 void interleave(format_kind f, std::span<const channel_samples> sounding, std::size_t channels, unsigned n,
                 std::byte* out) noexcept;
 
-/// Returns which of the loops that clones.hpp compiles runs on this processor: "avx-512", "avx2" or
+/// Returns the version of the loops of clones.hpp that runs on this processor: "avx-512", "avx2" or
 /// "baseline".
 const char* vector_path() noexcept;
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// Scores that are being faded out.
+/// Scores that fade out.
 #pragma once
 
 #include <array>
@@ -24,15 +24,15 @@ public:
     static constexpr std::int32_t none = -1;
 
     bool any() const noexcept { return used_ != 0; }
-    /// Its number, or none.
+    /// Returns the number of a score's fade, or none.
     std::int32_t find(std::uint32_t score) const noexcept;
-    /// A new one's number, or none when all are in use.
+    /// Begins a fade. Returns its number, or none if all are in use.
     std::int32_t begin(std::uint32_t score, std::uint64_t start, std::uint64_t length) noexcept;
     void end(std::int32_t i) noexcept;
     void clear() noexcept;
     const fade& operator[](std::int32_t i) const noexcept { return fades_[static_cast<std::size_t>(i)]; }
     bool any_ended(std::uint64_t by) const noexcept;
-    /// Those that have ended by a frame are free again.
+    /// Frees the fades that have ended by a frame.
     void end_all(std::uint64_t by) noexcept;
 
 private:

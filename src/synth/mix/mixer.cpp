@@ -53,7 +53,7 @@ std::uint64_t mixer::drives_cut() const noexcept
     return impl_->duty.cuts();
 }
 
-// A constant would push a tactor off its place for as long as it lasts.
+// Returns false for a constant on a tactor's channel, which would displace the tactor as long as it lasts.
 bool mixer::impl::plays(const voice& v) const noexcept
 {
     bool only_spare = true;
@@ -98,12 +98,12 @@ bool mixer::fade_out(std::uint32_t score, std::uint32_t fade) noexcept
     return true;
 }
 
-// One look at the voices for all scores that leave, however many: a stop may be that of hundreds.
+// Removes all scores that leave in one pass over the voices: a stop may end hundreds.
 void mixer::impl::let_go() noexcept
 {
     if (leaving.empty())
         return;
-    std::sort(leaving.begin(), leaving.end()); // a cut before a fade of the same score
+    std::sort(leaving.begin(), leaving.end()); // a cut comes before a fade of the same score
     voices.forget_if([this](voice& v) {
         const auto l = std::lower_bound(leaving.begin(), leaving.end(), leaver{v.score, fades::none});
         if (l == leaving.end() || l->score != v.score)

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// The mixer: drives in, interleaved frames out. Used by the offline renderer and by the audio thread.
+/// The mixer: it takes drives and gives interleaved frames. The offline renderer and the audio thread use it.
 #pragma once
 
 #include <cstddef>
@@ -18,56 +18,55 @@
 
 namespace tactor::synth {
 
-/// Sums drives, limits each channel, converts and interleaves. Frames are counted from 0 or from the last
-/// reset(). After construction nothing allocates, throws or blocks; the cost of a block is bounded by the
-/// channels and the drives that sound in it.
+/// Sums drives, limits each channel, converts and interleaves. Frames count from 0 or from the last reset().
+/// After construction nothing allocates, throws or blocks. The cost of a block is bounded by the channels and
+/// the drives that sound in it.
 class mixer {
 public:
-    /// `limits`: greatest absolute value of each channel, linear, 0 ... 1; its size is the channel count.
-    /// `capacity`: drives that may wait or sound at once. A channel whose limit is 0 has no tactor: markers
-    /// sound on it, and nothing else does. Markers sound nowhere else. `guards` limit the power of all
-    /// channels together and the time of each.
+    /// Makes a mixer. `limits`: greatest absolute value of each channel, linear, 0 ... 1; its size is the
+    /// channel count. `capacity`: drives that may wait or sound at once. A channel whose limit is 0 has no
+    /// tactor: markers sound on it, and nothing else does. Markers sound nowhere else. `guards` limit the
+    /// power of all channels together and the time of each.
     mixer(std::span<const double> limits, format_kind format, std::size_t capacity = 8192,
           const guard_settings& guards = {});
     ~mixer();
 
     std::size_t channels() const noexcept;
-    /// Drives that can be added now.
+    /// Returns the number of drives that can be added now.
     std::size_t available() const noexcept;
 
-    /// Adds a drive; they may come in any order. A drive whose start has passed begins at once, in its middle
-    /// (with the right phase). False when there is no space: the drive was not added, try again later.
+    /// Adds a drive. Drives may come in any order. A drive whose start has passed begins at once, in its
+    /// middle (with the right phase). Returns false without adding it if there is no space; try again later.
     bool add(const drive_event& e) noexcept;
 
-    /// Renders the next frames. Same drives, same samples, whatever the block sizes.
+    /// Renders the next frames. Samples depend on the drives only, not on block sizes.
     void process(std::size_t frames, std::byte* out) noexcept;
 
     /// Fades all drives of a score to zero, from the next frame on, in `fade` frames (0: cut), and forgets
-    /// them. Drives of that score that are added while the fade runs are dropped. Once it has ended, the
-    /// mixer does not know of it any more, so the caller must stop adding such drives. False if 256 fades run
+    /// them. Drops drives of that score that are added while the fade runs. Once it has ended, the mixer has
+    /// forgotten the score, so the caller must stop adding such drives. Returns false if 256 fades run
     /// already.
     bool fade_out(std::uint32_t score, std::uint32_t fade) noexcept;
 
-    /// For how long each channel was driven lately, for the next mixer of the same array. Allocates; nobody
+    /// Returns the drive times of each channel, for the next mixer of the same array. Allocates; no thread
     /// may be in process().
     drive_history history() const;
-    /// Goes on from the history of another mixer, at any rate; call drive_history::pass() for the time that
-    /// went by meanwhile. Only before the first process(). Allocates nothing.
+    /// Continues from the history of another mixer, at any rate. Call drive_history::pass() first for the
+    /// time in between. Only before the first process(). Does not allocate.
     void resume(const drive_history& h) noexcept;
 
-    /// Drops everything at once and counts frames from 0: a new epoch. For how long the channels were driven
-    /// before still counts.
+    /// Drops everything at once and counts frames from 0: a new epoch. Drive times still count.
     void reset() noexcept;
 
-    /// Next frame.
+    /// Returns the next frame.
     std::uint64_t position() const noexcept;
-    /// Drives that wait or sound.
+    /// Returns the number of drives that wait or sound.
     std::size_t size() const noexcept;
-    /// Samples that the limiter changed so far.
+    /// Returns the number of samples that the limiter changed so far.
     std::uint64_t limited() const noexcept;
-    /// Frames in which the limit on the summed power acted.
+    /// Returns the number of frames in which the limit on the summed power acted.
     std::uint64_t power_limited() const noexcept;
-    /// How many drives were cut short or silenced because their channel was driven for too long.
+    /// Returns the number of drives cut short or silenced because their channel was driven for too long.
     std::uint64_t drives_cut() const noexcept;
 
 private:
@@ -75,8 +74,8 @@ private:
     std::unique_ptr<impl> impl_;
 };
 
-/// The limits of an array's channels (10^(max_dbfs / 20)) for `channels` channels; channels without a tactor:
-/// 0.
+/// Returns the limits of an array's channels (10^(max_dbfs / 20)) for `channels` channels; 0 for channels
+/// without a tactor.
 std::vector<double> channel_limits(const array& a, unsigned channels);
 
 } // namespace tactor::synth

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Where carriers beat on a channel: the envelope at the crests, for the limit on the power. One that went up
-// and down with the beat would make a gain that is heard. Carriers of one frequency add up with their phases.
+// Envelope at the crests of carriers that beat on a channel, for the limit on the power. An envelope that
+// followed the beat would give an audible gain. Carriers of one frequency add up with their phases.
 #include <algorithm>
 #include <cmath>
 
@@ -36,7 +36,7 @@ void mixer::impl::find_beats(unsigned from, unsigned n) noexcept
     if (carriers.empty())
         return;
     for (const std::uint32_t c : sounding) {
-        strips[c].summed(n); // a lone voice's sine would be lost
+        strips[c].summed(n); // a single voice's sine would be lost
         if (strips[c].beats)
             std::fill(envelopes[c].begin() + from, envelopes[c].begin() + n, 0.0);
     }
@@ -47,7 +47,7 @@ void mixer::impl::find_beats(unsigned from, unsigned n) noexcept
     }
 }
 
-/// The voices on channels that beat, by frequency.
+/// Lists the voices on channels that beat, by frequency.
 void mixer::impl::list_carriers() noexcept
 {
     carriers.clear();

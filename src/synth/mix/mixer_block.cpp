@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// One block: the voices are summed by channel, held within the limits and written.
+// Work on a block: voices are summed by channel, limited and written.
 #include <algorithm>
 
 #include "synth/mix/mixer_impl.hpp"
@@ -28,7 +28,8 @@ void mixer::impl::segment(unsigned n, std::byte* out) noexcept
     write(n, out);
 }
 
-// The carrier lasts until another voice asks for one: behind the last voice, until the block is written.
+// Mixes a voice. Its carrier is valid until another voice requests one: after the last voice, until the block
+// is written.
 void mixer::impl::mix(const voice& v, bool last, unsigned n) noexcept
 {
     const auto from = static_cast<unsigned>(std::max(v.start, position) - position);
@@ -45,7 +46,7 @@ void mixer::impl::mix(const voice& v, bool last, unsigned n) noexcept
         const double peak = d.peak(v.end - v.start);
         strip& t = strips[d.channel];
         if (t.spare && v.cycles_per_frame != 0.0) {
-            limited += to - from; // there is no tactor that it could be meant for
+            limited += to - from; // the channel has no tactor
             continue;
         }
         if (!t.sounding) {
@@ -82,8 +83,8 @@ void mixer::impl::begin_strip(std::uint32_t channel, const voice& v, unsigned fr
     sounding.push_back(channel);
 }
 
-// What of it lies in the block counts as one with its greatest amplitude, from the voice's own start on,
-// though it be silent at first: voices come in order of their start.
+// Mixes a line. Its part in the block counts with its greatest amplitude, from the voice's own start on, even
+// if it is silent at first, because voices come in order of their start.
 void mixer::impl::mix_line(const voice& v, const double* s, unsigned n) noexcept
 {
     strip& t = strips[v.line.channel];
@@ -108,7 +109,7 @@ void mixer::impl::mix_line(const voice& v, const double* s, unsigned n) noexcept
     if (end == 0)
         return;
     if (!meant) {
-        limited += end - first; // there is no tactor that it could be meant for
+        limited += end - first; // the channel has no tactor
         return;
     }
     if (alone) {
@@ -125,7 +126,7 @@ void mixer::impl::limit(unsigned n) noexcept
     for (const std::uint32_t c : sounding) {
         strip& t = strips[c];
         if (t.spare)
-            limit_block(t.summed(n), n, 1.0); // two markers at once are one
+            limit_block(t.summed(n), n, 1.0); // two markers at once are one marker
         else if (!within_limit(t.peak, t.limit))
             limited += limit_block(t.summed(n), n, t.limit);
     }

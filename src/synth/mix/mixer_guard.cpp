@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// What the channels are given together and over time. Both limits look at envelopes: the length of the
-// vector whose one part are the samples and whose other part is the same a quarter of a cycle later. Where
-// carriers beat on a channel, the power counts at the crests: a gain that followed the beat would be heard.
+// Limits on the power of all channels and on the drive time of each. Both use envelopes: the length of the
+// vector of the samples and the same samples a quarter of a cycle later. If carriers beat on a channel, the
+// power counts at the crests: a gain that followed the beat would be audible.
 #include <algorithm>
 
 #include "core/clones.hpp"
@@ -11,7 +11,7 @@ namespace tactor::synth {
 
 namespace {
 
-/// y[j] = x[j]^2 + y[j]^2, at most `most`; not a number: `most`.
+/// Computes y[j] = x[j]^2 + y[j]^2, at most `most`; NaN becomes `most`.
 TACTOR_CLONES void square_envelope(const double* x, double most, unsigned lo, unsigned hi, double* y) noexcept
 {
     const double* __restrict in = x;
@@ -45,7 +45,7 @@ void mixer::impl::guard(unsigned n) noexcept
         guard_power(together, n);
 }
 
-// As little as will do: an envelope takes as long as the samples.
+// Finds the first frame whose envelope is needed, because an envelope takes as long as the samples.
 void mixer::impl::look_from(bool together, unsigned n) noexcept
 {
     for (const std::uint32_t c : sounding) {

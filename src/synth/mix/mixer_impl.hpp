@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// The mixer's inside: what is kept from block to block, and the work on one.
+/// Contents of the mixer: the state between blocks, and the work on one.
 #pragma once
 
 #include <algorithm>
@@ -26,45 +26,45 @@
 
 namespace tactor::synth {
 
-/// One channel in the current block.
+/// A channel in the current block.
 struct strip {
     alignas(64) block sum;
-    const double* lone = nullptr; ///< only one voice so far, with `gain`: its carrier in place of the sum
+    const double* lone = nullptr; ///< only one voice so far: its carrier, with `gain`, in place of the sum
     double gain = 1.0;
     double limit = 0.0;
-    double peak = 0.0;     ///< what the voices could reach together
-    double together = 0.0; ///< what those that last until `until`, a frame of the block, could reach
+    double peak = 0.0;     ///< greatest sum of the voices
+    double together = 0.0; ///< greatest sum of the voices that last until `until`, a frame of the block
     unsigned until = 0;
     unsigned since = 0;           ///< frame of the block at which the first voice begins
-    unsigned look = block_frames; ///< the envelope is needed from this frame of the block on
-    const voice* first = nullptr; ///< only in the block
-    double power = 1.0;           ///< greatest of the voices' timbres
-    bool steady = false;          ///< one voice alone, with a constant envelope
+    unsigned look = block_frames; ///< frame of the block from which the envelope is needed
+    const voice* first = nullptr; ///< valid only in the block
+    double power = 1.0;           ///< greatest power of the voices' timbres
+    bool steady = false;          ///< a single voice with a constant envelope
     bool beats = false;           ///< voices of several carriers
-    bool only_crests = false;     ///< what the beat does between them is not needed
+    bool only_crests = false;     ///< the envelope between the crests is not needed
     bool spare = false;           ///< no tactor: for markers
     bool sounding = false;
 
-    /// A voice of that amplitude from one frame of the block to another. They come in order of their start.
+    /// Adds a voice's amplitude from one frame of the block to another. Voices come in order of their start.
     void reach(unsigned from, unsigned to, double amplitude) noexcept
     {
         together = from < until ? together + amplitude : amplitude;
         until = std::max(until, to);
         peak = std::max(peak, together);
     }
-    /// The most that its squared envelope may be.
+    /// Returns the greatest possible squared envelope.
     double most() const noexcept { return limit * limit * power; }
-    /// Takes a voice that is not the first. Waves that are not sines add up by their amplitudes, unless they
-    /// are the same wave.
+    /// Takes a further voice. Waves other than sines add up by their amplitudes, unless they are the same
+    /// wave.
     void join(const voice& v) noexcept
     {
         steady = false;
         beats = beats || !adds_up(*first, v);
         power = v.sound != nullptr ? std::max(power, v.sound->power) : power;
     }
-    /// Whether the channel counts as not driven in this block, whatever the voices do.
+    /// Returns true if the channel counts as not driven in this block, whatever the voices do.
     bool is_quiet() const noexcept { return std::min(peak, limit) * std::sqrt(power) <= least_counted_drive; }
-    /// The sum; it is computed now if a lone voice stood in for it.
+    /// Returns the sum, computed now if a single voice replaced it.
     double* summed(unsigned n) noexcept
     {
         if (lone != nullptr) {
@@ -75,19 +75,19 @@ struct strip {
     }
 };
 
-/// Keeps a cache line's alignment in a vector, too.
+/// A block that keeps a cache line's alignment in a vector.
 struct alignas(64) aligned_block : block {};
 
-/// Some frames of a channel where carriers beat.
+/// A few frames of a channel on which carriers beat.
 struct crest {
     static constexpr std::size_t frames = 128;
-    alignas(64) std::array<double, frames> x{}; ///< of the carrier at hand, zero between two
+    alignas(64) std::array<double, frames> x{}; ///< of the current carrier; zero between two
     alignas(64) std::array<double, frames> y{};
-    alignas(64) std::array<double, frames> reach{}; ///< of those before it
+    alignas(64) std::array<double, frames> reach{}; ///< of the earlier carriers
     bool touched = false;
 };
 
-/// A score that is to fade or, without a number of a fade, to be cut.
+/// A score that will fade or, without a number of a fade, be cut.
 struct leaver {
     std::uint32_t score = 0;
     std::int32_t fade = fades::none;
@@ -145,7 +145,7 @@ struct mixer::impl {
     void let_go() noexcept;
     void end_fades() noexcept;
 
-    static constexpr std::size_t most_leaving = 1024; ///< that are waited for
+    static constexpr std::size_t most_leaving = 1024; ///< capacity of `leaving`
 
     format_kind format;
     std::size_t frame_bytes = 0;
@@ -153,14 +153,14 @@ struct mixer::impl {
     std::vector<std::uint32_t> sounding;
     schedule voices;
     fades fading;
-    std::vector<leaver> leaving; ///< since the last look at the voices
+    std::vector<leaver> leaving; ///< since the last pass over the voices
     carrier_block carrier;
     power_guard power;
     drive_guard duty;
-    std::vector<aligned_block> envelopes; ///< squared, by channel; none where nobody asks
+    std::vector<aligned_block> envelopes; ///< squared, by channel; empty if not needed
     std::vector<powered_channel> powered;
     std::vector<crest> crests;                              ///< by channel
-    std::vector<std::pair<double, std::uint32_t>> carriers; ///< cycles per frame, place among the active
+    std::vector<std::pair<double, std::uint32_t>> carriers; ///< cycles per frame, index among the active
     std::vector<channel_samples> samples;
     std::uint64_t clock = 0; ///< frames since the construction
     std::uint64_t position = 0;

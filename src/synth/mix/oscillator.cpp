@@ -12,7 +12,7 @@ namespace tactor::synth {
 
 namespace {
 
-/// Spreads the bits of a frequency over `rows`: Knuth's multiplicative hash.
+/// Distributes the bits of a frequency over `rows`: Knuth's multiplicative hash.
 std::size_t row_of(double cycles_per_frame, std::size_t rows) noexcept
 {
     return static_cast<std::size_t>((std::bit_cast<std::uint64_t>(cycles_per_frame) * 0x9E3779B97F4A7C15U) >>
@@ -20,7 +20,8 @@ std::size_t row_of(double cycles_per_frame, std::size_t rows) noexcept
            rows;
 }
 
-/// In whole vectors: where more carriers sound than there are places, each block fills a table for each.
+/// Fills a table in whole vectors. If more carriers sound than there are places, each block fills one for
+/// each.
 TACTOR_CLONES void fill(oscillator_table& t, double cycles_per_frame) noexcept
 {
     double* __restrict sin = t.sin.data();
@@ -40,7 +41,7 @@ TACTOR_CLONES void fill(oscillator_table& t, double cycles_per_frame) noexcept
     }
 }
 
-/// Sines and cosines of the multiples of table_frames in a block; in whole vectors.
+/// Sines and cosines of the multiples of table_frames in a block, in whole vectors.
 struct base_angles {
     static constexpr std::size_t vector = 8;
     static constexpr std::size_t most = (block_frames / table_frames + vector) / vector * vector;
@@ -55,7 +56,7 @@ static_assert(base_angles::most >= block_frames / table_frames + 1);
     base_angles a;
     const auto at = static_cast<double>(first);
     const std::size_t count = (frames + table_frames - 1) / table_frames;
-    // Far beyond what a stroke lasts.
+    // Far longer than any stroke.
     if (!(std::abs((at + 2.0 * block_frames) * cycles_per_frame) < most_turns)) {
         for (std::size_t i = 0; i < count; ++i) {
             const sine_cosine v =

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// Carriers: one exact angle each 64 frames, the rest by angle addition from a table, so no error piles up
+/// Carriers: an exact angle every 64 frames, the rest by angle addition from a table. No error accumulates,
 /// however long the carrier runs.
 #pragma once
 
@@ -13,14 +13,14 @@
 
 namespace tactor::synth {
 
-/// Most frames that are mixed at once. The samples do not depend on where a block begins.
+/// Most frames that are mixed at once. Samples do not depend on the start of a block.
 inline constexpr unsigned block_frames = 512;
 /// Frames from one exact angle to the next.
 inline constexpr unsigned table_frames = 64;
 
 using block = std::array<double, block_frames>;
 
-/// Both together are the envelope: sin^2 + cos^2 = 1 in each frame.
+/// Parts of a carrier. Both give the envelope: sin^2 + cos^2 = 1 in each frame.
 enum class wave : unsigned char { sine, cosine };
 
 /// Sine and cosine of the first frames of one frequency.
@@ -29,13 +29,13 @@ struct oscillator_table {
     alignas(64) std::array<double, table_frames> cos;
 };
 
-/// The tables of the frequencies in use, up to 1024. The bits of a frequency select a few places for it. A
-/// new one takes one of them by chance, not the oldest: if more frequencies come round in turn than there are
-/// places, the oldest is needed next.
+/// Tables of the frequencies in use, up to 1024. The bits of a frequency select a few places. A new frequency
+/// replaces one of them at random, not the oldest: if more frequencies take turns than there are places, the
+/// oldest is needed next.
 class oscillator_tables {
 public:
     oscillator_tables();
-    /// Valid until the next call.
+    /// Returns the table of a frequency, valid until the next call.
     const oscillator_table& get(double cycles_per_frame) noexcept;
 
 private:
@@ -50,14 +50,14 @@ private:
     std::vector<oscillator_table> tables_;
 };
 
-/// The part of a block between two multiples of table_frames in a carrier's own count of frames; `base` is
-/// the frame of the lower multiple. The angle addition starts there, wherever the blocks of the stream lie,
-/// so that a stroke has the same samples wherever it begins.
+/// Part of a block between two multiples of table_frames in a carrier's own frame count. `base` is the frame
+/// of the lower multiple. Angle addition starts there, independent of blocks, so a stroke has the same
+/// samples wherever it begins.
 struct table_part {
     std::int64_t base = 0;
     unsigned lo = 0; ///< in the block
     unsigned hi = 0;
-    unsigned offset = 0; ///< place in the table of lo
+    unsigned offset = 0; ///< index of lo in the table
 };
 
 /// Calls f(table_part) for the parts of frames first + lo ... first + hi - 1.
@@ -73,14 +73,14 @@ void for_each_part(std::int64_t first, unsigned lo, unsigned hi, F f) noexcept
     }
 }
 
-/// out[j] = sin(2 pi f (first + j)) for j < n (at most block_frames), with f = `cycles_per_frame`, whose
-/// table is `t`: an exact angle at each multiple of table_frames, added to those of the table. The cosine
-/// in place of the sine: the same carrier a quarter of a cycle later.
+/// Computes out[j] = sin(2 pi f (first + j)) for j < n (at most block_frames), with f = `cycles_per_frame`
+/// and its table `t`: an exact angle at each multiple of table_frames, added to those of the table. With
+/// wave::cosine: the same carrier a quarter of a cycle later.
 void sine_block(const oscillator_table& t, double cycles_per_frame, std::int64_t first, unsigned n,
                 double* out, wave w = wave::sine) noexcept;
 
-/// out[j] *= offset + scale * cos(2 pi (a + (offset + j - lo) f)) for the part's j: both halves of a raised
-/// cosine; `base` is a's sine and cosine, `t` f's table.
+/// Computes out[j] *= offset + scale * cos(2 pi (a + (offset + j - lo) f)) for the part's j: both halves of a
+/// raised cosine. `base` is a's sine and cosine, `t` f's table.
 void times_cosine(const oscillator_table& t, sine_cosine base, double offset, double scale,
                   const table_part& p, double* out) noexcept;
 

@@ -13,7 +13,7 @@ namespace {
 constexpr std::size_t vector_floats = 16; // of the widest vectors
 constexpr std::size_t most_floats = 2048; // of a row: both rows stay in the fastest cache
 
-/// Looks at so many rows of `length` samples, one below the other.
+/// Widens the ranges by `rows` rows of `length` samples, one below the other.
 TACTOR_CLONES void widen(const float* samples, std::size_t rows, std::size_t length, float* low,
                          float* high) noexcept
 {

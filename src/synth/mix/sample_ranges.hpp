@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// The least and the greatest sample of each channel, found as fast as samples are made.
+/// Least and greatest sample of each channel, found as fast as samples are made.
 #pragma once
 
 #include <cstddef>
@@ -8,7 +8,7 @@
 
 namespace tactor::synth {
 
-/// Over as many interleaved frames as are added.
+/// Ranges over all interleaved frames that are added.
 class sample_ranges {
 public:
     explicit sample_ranges(std::size_t channels);
@@ -19,7 +19,7 @@ public:
         float low = 0.0F;
         float high = 0.0F;
     };
-    /// Of a channel; \pre there was a frame.
+    /// Returns the range of a channel. \pre there was a frame.
     range of(std::size_t channel) const noexcept;
 
     /// Begins anew.
@@ -27,7 +27,7 @@ public:
 
 private:
     std::size_t channels_;
-    std::size_t abreast_; ///< frames that are looked at side by side, in whole vectors
+    std::size_t abreast_; ///< frames that are compared next to each other, in whole vectors
     std::vector<float> low_;
     std::vector<float> high_;
 };

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// Sine and cosine of an angle in cycles, the same bits on every machine: the C library's depend on
-/// its version and on the processor that it finds.
+/// Sine and cosine of an angle in cycles, with equal bits on every machine. The C library's depend on its
+/// version and the processor.
 #pragma once
 
 #include <bit>
@@ -15,7 +15,7 @@ struct sine_cosine {
     double cos = 1.0;
 };
 
-/// Adding it leaves no space for a fraction: 1.5 * 2^52.
+/// 1.5 * 2^52: adding it leaves no space for a fraction.
 inline constexpr double rounds = 6755399441055744.0;
 
 /// Rounds to the nearest integer, half to even, in plain arithmetic; |x| < 2^51.
@@ -24,12 +24,12 @@ inline double nearest(double x) noexcept
     return (x + rounds) - rounds;
 }
 
-/// Turns that sincos_turns() can take: four times as much is below 2^51.
+/// Most turns for sincos_turns(): four times as many are below 2^51.
 inline constexpr double most_turns = 5e14;
 
-/// sin and cos of 2 pi x to about 1e-16, for |x| < most_turns. Taylor series on an eighth of a circle either
-/// side of the nearest quarter: the next terms are under 1e-18. No branches: loops over it become vector
-/// code.
+/// Returns sin and cos of 2 pi x to about 1e-16, for |x| < most_turns. Taylor series on an eighth of a circle
+/// on either side of the nearest quarter; the next terms are under 1e-18. No branches, so loops over it
+/// become vector code.
 inline sine_cosine sincos_turns(double x) noexcept
 {
     const double shifted = 4.0 * x + rounds;
@@ -62,7 +62,7 @@ inline sine_cosine sincos_turns(double x) noexcept
     return {negative(odd ? c : s, quarters >> 1 & 1), negative(odd ? s : c, (quarters + 1) >> 1 & 1)};
 }
 
-/// The same for any x; one that is not finite counts as 0.
+/// Returns the same for any x; an x that is not finite counts as 0.
 inline sine_cosine sincos_cycles(double x) noexcept
 {
     if (!(std::abs(x) < most_turns))

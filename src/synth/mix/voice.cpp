@@ -89,7 +89,7 @@ void schedule::activate(std::uint64_t before) noexcept
 
 void schedule::insert(std::uint32_t slot) noexcept
 {
-    // Nearly always at the end: only a late one has others behind it.
+    // Searches from the end: only a late voice has others after it.
     const voice& v = voices_[slot];
     auto place = active_.end();
     while (place != active_.begin()) {

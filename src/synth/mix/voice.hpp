@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// A drive_event as the mixer keeps it, and the order in which voices wait and sound.
+/// A drive_event in the mixer's form, and the order in which voices wait and sound.
 #pragma once
 
 #include <algorithm>
@@ -23,36 +23,36 @@ struct voice_drive {
     double slope;
     std::uint32_t channel;
 
-    /// Largest in `length` frames.
+    /// Returns the largest amplitude in `length` frames.
     double peak(std::uint64_t length) const noexcept
     {
         return std::max(std::abs(from), std::abs(from + slope * static_cast<double>(length)));
     }
 };
 
-/// Frames are the stream's; `phase`, `stroke_place` and `window_place` are those of frame 0 of the stream,
-/// modulo 2^64, so voices of one carrier have equal ones wherever they start.
+/// A voice of the mixer. Frames are the stream's. `phase`, `stroke_place` and `window_place` are those of
+/// frame 0 of the stream, modulo 2^64, so voices of one carrier have equal ones wherever they start.
 struct voice {
     std::uint64_t start = 0;
     std::uint64_t end = 0;
     std::uint64_t order = 0;
     std::uint64_t phase = 0;
-    std::uint64_t stroke_place = 0; ///< of a timbre
+    std::uint64_t stroke_place = 0; ///< frame of the stroke, for a timbre
     double cycles_per_frame = 0.0;
     std::uint64_t window_place = 0;
     burst_window window = {};
     std::uint32_t score = 0;
     std::int32_t fade = -1;
-    std::uint32_t drives = 0;      ///< of `drive`
-    std::uint32_t points = 0;      ///< of `line`, which is there in place of `drive`; 0: it is not
-    const timbre* sound = nullptr; ///< none: a sine
+    std::uint32_t drives = 0;      ///< number of `drive`
+    std::uint32_t points = 0;      ///< number of points of `line`, which replaces `drive`; 0: no line
+    const timbre* sound = nullptr; ///< null: a sine
     union {
         std::array<voice_drive, drives_per_event> drive{};
         channel_line line;
     };
 };
 
-/// Whether two voices play one frequency at each moment, so that they add up with their phases.
+/// Returns true if two voices have the same frequency at each moment, so that they add up with their phases.
 bool adds_up(const voice& a, const voice& b) noexcept;
 
 /// Calls `visit` for each of the voice's channels.
@@ -71,8 +71,8 @@ struct stretch {
     std::uint64_t end = 0;
     voice_drive drive = {};
 
-    /// Of the n frames from frame `at` on: the first that is in the stretch, and the one after the last. At
-    /// least one must be in it.
+    /// Returns, of the n frames from frame `at` on, the first one in the stretch and the one after the last.
+    /// At least one must be in it.
     std::pair<unsigned, unsigned> within(std::uint64_t at, unsigned n) const noexcept
     {
         return {static_cast<unsigned>(std::max(start, at) - at),
@@ -101,11 +101,11 @@ void each_stretch(const voice& v, std::uint64_t at, unsigned n, Visit visit)
     }
 }
 
-/// The voice of an event. Drives of channels from `channels` on are left out; drives that are not finite are
+/// Makes the voice of an event. Skips drives of channels from `channels` on. Drives that are not finite are
 /// silence.
 voice make_voice(const drive_event& e, std::size_t channels) noexcept;
 
-/// A fixed number of voices: some wait in a heap, the others sound, in the order of (start, arrival) always,
+/// A fixed number of voices. Some wait in a heap; the others sound, always in the order of (start, arrival),
 /// so that sums have the same order whatever the block sizes.
 class schedule {
 public:
@@ -114,20 +114,20 @@ public:
     std::size_t available() const noexcept { return free_.size(); }
     std::size_t size() const noexcept { return voices_.size() - free_.size(); }
 
-    /// There must be space.
+    /// Adds a voice. There must be space.
     void add(voice v) noexcept;
-    /// Lets the voices sound that start before a frame.
+    /// Activates the voices that start before a frame.
     void activate(std::uint64_t before) noexcept;
-    /// Frame at which the next waiting voice starts; the greatest number if none waits.
+    /// Returns the frame at which the next waiting voice starts; the greatest number if none waits.
     std::uint64_t next_start() const noexcept;
 
-    /// Those that sound, in order.
+    /// Returns the voices that sound, in order.
     std::span<const std::uint32_t> active() const noexcept { return active_; }
     voice& operator[](std::uint32_t slot) noexcept { return voices_[slot]; }
 
-    /// Forgets the sounding voices that have ended by a frame.
+    /// Removes the sounding voices that have ended by a frame.
     void retire(std::uint64_t by) noexcept;
-    /// Forgets the voices, waiting or sounding, for which gone(voice&) says so. Linear in the voices.
+    /// Removes the voices, waiting or sounding, for which gone(voice&) returns true. Linear in the voices.
     template <class Gone>
     void forget_if(Gone gone) noexcept;
     void clear() noexcept;

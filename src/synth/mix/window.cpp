@@ -7,7 +7,8 @@ namespace tactor::synth {
 
 namespace {
 
-/// Half a turn each `ramp` frames. k is reduced as an integer, so the angle is exact.
+/// Returns the turns of frame k: half a turn for `ramp` frames. k is reduced as an integer, so the angle is
+/// exact.
 double turns(std::int64_t k, std::uint64_t ramp) noexcept
 {
     const auto period = static_cast<std::int64_t>(2 * ramp);
@@ -34,7 +35,7 @@ struct part {
     bool empty() const noexcept { return lo >= hi; }
 };
 
-/// out[j] *= 0.5 + scale * cos(pi k / ramp) with k = first + j.
+/// Computes out[j] *= 0.5 + scale * cos(pi k / ramp) with k = first + j.
 void half_cosine(oscillator_tables& tables, std::int64_t first, std::uint64_t ramp, double scale, part p,
                  double* out) noexcept
 {
@@ -46,7 +47,8 @@ void half_cosine(oscillator_tables& tables, std::int64_t first, std::uint64_t ra
     });
 }
 
-/// exp(x) for -8 <= x <= 0, the same bits on every machine: Taylor for a 32nd of it, five times squared.
+/// Returns exp(x) for -8 <= x <= 0, with equal bits on every machine: Taylor for a 32nd of it, squared five
+/// times.
 double exponential(double x) noexcept
 {
     const double z = x / 32.0;
@@ -58,11 +60,11 @@ double exponential(double x) noexcept
     return y;
 }
 
-/// An exponential ramp lasts so many time constants, and is stretched to reach its end.
+/// Time constants in an exponential ramp, which is stretched to reach its end.
 constexpr double time_constants = 5.0;
 const double exponential_rest = exponential(-time_constants);
 
-/// Frame k of an attack.
+/// Returns frame k of an attack.
 double rising(std::int64_t k, std::uint32_t frames, envelope_kind shape) noexcept
 {
     const double part = static_cast<double>(k) / frames;
@@ -78,7 +80,8 @@ double rising(std::int64_t k, std::uint32_t frames, envelope_kind shape) noexcep
     return 0.5 - 0.5 * sincos_cycles(turns(k, frames)).cos;
 }
 
-/// `left` frames before the end of a release; an exponential one falls fastest at its beginning, as it rises.
+/// Returns the window `left` frames before the end of a release. An exponential release falls fastest at its
+/// start.
 double falling(std::int64_t left, std::uint32_t frames, envelope_kind shape) noexcept
 {
     return shape == envelope_kind::exponential ? 1.0 - rising(frames - left, frames, shape)

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// Raised cosines: the ramps of a burst and the fade of a score.
+/// Ramps of a burst and fade of a score.
 #pragma once
 
 #include <cstdint>
@@ -11,8 +11,8 @@
 
 namespace tactor::synth {
 
-/// How a burst of `length` frames rises in its first `attack` and falls in its last `release`, which do not
-/// overlap.
+/// Window of a burst of `length` frames: it rises in its first `attack` frames and falls in its last
+/// `release` frames, which do not overlap.
 struct burst_window {
     std::uint64_t length = 0;
     std::uint32_t attack = 0;
@@ -21,25 +21,25 @@ struct burst_window {
     bool operator==(const burst_window&) const = default;
 };
 
-/// The same as the functions below, for a burst_window.
+/// These do the same as the functions below, for a burst_window.
 double window_at(std::int64_t k, const burst_window& w) noexcept;
 bool window_is_flat(std::int64_t from, std::int64_t to, const burst_window& w) noexcept;
 void window_block(oscillator_tables& tables, std::int64_t first, const burst_window& w, unsigned lo,
                   unsigned hi, double* out) noexcept;
 
-/// Frame k of a window of `length` frames: (1 - cos(pi k / ramp)) / 2 for k < ramp,
-/// (1 - cos(pi (length - k) / ramp)) / 2 for the last `ramp`, 1 between, 0 outside. For planning; the mixer
-/// uses window_block.
+/// Returns frame k of a window of `length` frames: (1 - cos(pi k / ramp)) / 2 for k < ramp, (1 - cos(pi
+/// (length - k) / ramp)) / 2 for the last `ramp`, 1 between, 0 outside. For planning; the mixer uses
+/// window_block().
 double window_at(std::int64_t k, std::uint64_t length, std::uint64_t ramp) noexcept;
 
-/// Whether the window is 1 in frames from ... to - 1.
+/// Returns true if the window is 1 in frames from ... to - 1.
 bool window_is_flat(std::int64_t from, std::int64_t to, std::uint64_t length, std::uint64_t ramp) noexcept;
 
-/// out[j] *= w(first + j) for lo <= j < hi.
+/// Computes out[j] *= w(first + j) for lo <= j < hi.
 void window_block(oscillator_tables& tables, std::int64_t first, std::uint64_t length, std::uint64_t ramp,
                   unsigned lo, unsigned hi, double* out) noexcept;
 
-/// out[j] *= (1 + cos(pi k / length)) / 2 with k = first + j for lo <= j < hi; 1 before, 0 after.
+/// Computes out[j] *= (1 + cos(pi k / length)) / 2 with k = first + j for lo <= j < hi; 1 before, 0 after.
 void fade_block(oscillator_tables& tables, std::int64_t first, std::uint64_t length, unsigned lo, unsigned hi,
                 double* out) noexcept;
 

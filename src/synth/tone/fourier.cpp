@@ -20,7 +20,7 @@ complex unit(double turns)
     return {v.cos, v.sin};
 }
 
-// The library's multiplication looks for infinities.
+// Multiplies. The library's multiplication checks for infinities.
 complex times(complex a, complex b)
 {
     return {a.real() * b.real() - a.imag() * b.imag(), a.real() * b.imag() + a.imag() * b.real()};
@@ -39,7 +39,7 @@ void reverse_bits(spectrum& x)
     }
 }
 
-/// exp(sign pi i n^2 / m), with n^2 reduced as an integer.
+/// Returns exp(sign pi i n^2 / m), with n^2 reduced as an integer.
 complex chirp(std::uint64_t n, std::uint64_t m, double sign)
 {
     return unit(sign * static_cast<double>(n * n % (2 * m)) / static_cast<double>(2 * m));
@@ -66,7 +66,7 @@ void fourier_sum(spectrum& x)
     }
 }
 
-// Bluestein 1970: a sum of any length is a convolution, which has a length of a power of 2.
+// Bluestein 1970: a sum of any length is a convolution, whose length may be a power of 2.
 spectrum fourier_coefficients(std::span<const float> x, std::size_t count)
 {
     const std::size_t m = x.size();
@@ -82,7 +82,7 @@ spectrum fourier_coefficients(std::span<const float> x, std::size_t count)
     fourier_sum(b);
     for (std::size_t i = 0; i < n; ++i)
         a[i] = times(a[i], b[i]);
-    // The sum once more gives the convolution backwards.
+    // The same sum gives the convolution backwards.
     fourier_sum(a);
     spectrum c(count);
     const double scale = 1.0 / (static_cast<double>(n) * static_cast<double>(m));

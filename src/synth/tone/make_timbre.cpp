@@ -17,13 +17,13 @@ namespace tactor::synth {
 
 namespace {
 
-/// Strokes of one score mostly sound alike; beyond so many that do not, each has its own.
+/// Most timbres that strokes of one score share. Strokes beyond it have their own.
 constexpr std::size_t most_places = 64;
 
-/// Of a recording at the rate of the stream: 32 MB.
+/// Most frames of a recording at the rate of the stream: 32 MB.
 constexpr double most_loop_frames = 8388608.0;
 
-/// The integral of the frequency from a point to the next, cycles: coefficients of u, u^2, ..., u^6.
+/// Returns the integral of the frequency from a point to the next, cycles: coefficients of u, u^2, ..., u^6.
 std::array<double, 6> integrate(const carrier_point& from, const carrier_point& to)
 {
     const double time_s = to.t_s - from.t_s;
@@ -90,7 +90,7 @@ void check_free_place(const char* what, double hz, double am_hz, unsigned rate)
     }
 }
 
-/// What of a wave is below half the rate, its sidebands included.
+/// Returns the number of a wave's harmonics below half the rate, sidebands included.
 std::size_t harmonics_below(double hz, double am_hz, unsigned rate)
 {
     const double partials = (0.5 * rate - am_hz) / hz;

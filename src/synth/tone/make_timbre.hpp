@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// From what a plan says of its sound to a timbre.
+/// Timbre of a plan.
 #pragma once
 
 #include <memory>
@@ -12,25 +12,26 @@
 
 namespace tactor::synth {
 
-/// The timbre of a plan; null for a sine of one frequency, which needs none.
-/// \throws error (bad_input) for a timbre that cannot be made at that rate.
+/// Returns the timbre of a plan; null for a sine of one frequency, which needs none.
+/// \throws error (bad_input) for a timbre that is not possible at that rate.
 std::shared_ptr<const timbre> make_timbre(const plan& p, unsigned rate);
 
-/// What says the frequency of a plan's carrier, for messages.
+/// Returns the field that sets the frequency of a plan's carrier, for messages.
 const char* carrier_field(const plan& p) noexcept;
 
-/// Whether the carrier crosses zero where its phase says so: bursts between two such places need no ramp.
+/// Returns true if the carrier crosses zero whenever its phase is 0: bursts between two such times need no
+/// ramp.
 bool crosses_zero(const plan& p) noexcept;
 
-/// Timbres of the plans of one score, each once. Not for several threads.
+/// Timbres of the plans of one score, each stored once. One thread.
 class timbre_shelf {
 public:
-    /// Throws like make_timbre().
+    /// Returns the timbre of a plan. Throws like make_timbre().
     std::shared_ptr<const timbre> get(const plan& p, unsigned rate);
 
 private:
     struct place {
-        plan asked; ///< only the parts that are heard count
+        plan asked; ///< only the members that determine the sound count
         std::shared_ptr<const timbre> made;
     };
     std::vector<place> places_;

@@ -83,7 +83,7 @@ void read_loop(const wave_samples& loop, std::int64_t first, unsigned n, double*
     }
 }
 
-/// What makes the envelope of each frame the same.
+/// Computes the second wave, which makes the envelope of all frames equal.
 TACTOR_CLONES void rest_of(double power, unsigned n, double* x) noexcept
 {
     double* __restrict o = x;
@@ -103,20 +103,20 @@ void play(const timbre& t, const double* turns, unsigned n, wave w, double* out)
 
 using course_parts = std::vector<course_part>;
 
-/// The first part that begins after a frame.
+/// Returns the first part that begins after a frame.
 course_parts::const_iterator part_after(const course_parts& course, double frame) noexcept
 {
     return std::upper_bound(course.begin(), course.end(), frame,
                             [](double at, const course_part& p) { return at < p.start; });
 }
 
-/// The part that plays up to the next one; before the first that is the first itself.
+/// Returns the part that plays up to the next one; before the first one, the first.
 const course_part& part_before(const course_parts& course, course_parts::const_iterator next) noexcept
 {
     return next == course.begin() ? *next : *(next - 1);
 }
 
-/// Turns of the carrier at a frame, but for whole ones.
+/// Returns the turns of the carrier at a frame, except for whole ones.
 double turns_at(const course_parts& course, double frame) noexcept
 {
     double turns = 0.0;
@@ -124,7 +124,7 @@ double turns_at(const course_parts& course, double frame) noexcept
     return turns;
 }
 
-/// Each frame by its own place on the carrier alone, so that blocks make no difference.
+/// Computes each frame from its own place on the carrier, so that blocks make no difference.
 void follow(const timbre& t, std::int64_t first, std::int64_t origin, unsigned n, wave w,
             double* out) noexcept
 {
@@ -146,7 +146,7 @@ void follow(const timbre& t, std::int64_t first, std::int64_t origin, unsigned n
         if (next != t.course.end())
             length = static_cast<unsigned>(std::min<double>(length, std::ceil(next->start - at)));
         if (p.rests()) {
-            std::fill_n(out + done, length, 0.0); // a constant would push the tactor off its place
+            std::fill_n(out + done, length, 0.0); // a constant would displace the tactor
         } else {
             turn(p, at, length, turns.data());
             play(t, turns.data(), length, w, out + done);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// The wave of a drive, if it is not one sine. It is made before anything sounds, and then only read: the
-/// audio thread gets a pointer to it, and the side that hands over the drives keeps it until they are over.
+/// Wave of a drive other than a sine. It is made before anything sounds, and then only read. The audio thread
+/// gets a pointer, and the side that hands over the drives keeps it until they are over.
 #pragma once
 
 #include <array>
@@ -17,12 +17,12 @@ namespace tactor::synth {
 /// A stretch of a carrier whose frequency is linear or bent, in frames of the stroke.
 struct course_part {
     double start = 0.0;
-    double cycles = 0.0;           ///< at `start`, less whole ones
-    double cycles_per_frame = 0.0; ///< there
-    double half_slope = 0.0;       ///< half of its change from frame to frame
-    double frames = 0.0;           ///< of a bent one, how long it is; 0: linear
-    /// Cycles of a bent one since its start: a polynomial in u, from 0 at its start to 1 at its end, without
-    /// the constant.
+    double cycles = 0.0;           ///< at `start`, without whole ones
+    double cycles_per_frame = 0.0; ///< at `start`
+    double half_slope = 0.0;       ///< half of the change from frame to frame
+    double frames = 0.0;           ///< length of a bent stretch; 0: linear
+    /// Cycles of a bent stretch since its start: a polynomial in u, from 0 at its start to 1 at its end,
+    /// without the constant.
     std::array<double, 6> bent = {};
     bool rests() const noexcept { return frames == 0.0 && cycles_per_frame == 0.0 && half_slope == 0.0; }
 };
@@ -35,7 +35,7 @@ using wave_samples = std::vector<float>;
 
 struct timbre {
     enum class form_kind : unsigned char {
-        sine,  ///< with a course, or modulated
+        sine,  ///< modulated, or with a varying frequency
         cycle, ///< a table of one cycle
         loop,  ///< samples at the rate of the stream
     };
@@ -43,24 +43,25 @@ struct timbre {
     std::shared_ptr<const wave_samples> samples = {};
     double cycles_per_frame = 0.0;        ///< without a course
     std::vector<course_part> course = {}; ///< in order of start, the first from 0 or before
-    double power = 1.0; ///< twice the mean square where the peak is 1, but at least 1, the square of the peak
+    double power = 1.0; ///< twice the mean square at peak 1, but at least 1, the square of the peak
     double am_cycles_per_frame = 0.0;
     double am_depth = 0.0;
 
     bool is_sine() const noexcept { return form == form_kind::sine; }
-    /// out[j] is the sample of the stroke's frame first + j for j < n, at most block_frames; -1 to 1, without
-    /// the modulation. The carrier's phase is 0 at frame `origin`; a loop has none. With wave::cosine it is
-    /// the sample that makes an envelope of the other: sin^2 + cos^2 = power.
+    /// Computes out[j], the sample of the stroke's frame first + j, for j < n, at most block_frames; -1 to 1,
+    /// without the modulation. The carrier's phase is 0 at frame `origin`; a loop has none. With wave::cosine
+    /// it is the sample that completes the envelope: sin^2 + cos^2 = power.
     void fill(std::int64_t first, std::int64_t origin, unsigned n, double* out, wave w) const noexcept;
 };
 
 /// Points that interpolation needs besides a cycle's own: one before, and two and a last after.
 inline constexpr std::size_t cycle_margin = 4;
 
-/// out[j] = the cycle at place turns[j], any number of turns below 1e15, between four points by Lagrange.
+/// Computes out[j], the cycle at place turns[j], between four points by Lagrange. Any number of turns below
+/// 1e15.
 void read_cycle(const wave_samples& cycle, const double* turns, unsigned n, double* out) noexcept;
 
-/// out[j] *= (1 + depth sin(2 pi f (first + j))) / (1 + depth).
+/// Computes out[j] *= (1 + depth sin(2 pi f (first + j))) / (1 + depth).
 void modulate_block(oscillator_tables& tables, double cycles_per_frame, double depth, std::int64_t first,
                     unsigned n, double* out) noexcept;
 

@@ -16,11 +16,11 @@ namespace tactor::synth {
 
 namespace {
 
-/// Of the highest harmonic: what is read between them misses a wave by -89 dB of that harmonic, far less of
-/// all that are below it.
+/// Points in a period of the highest harmonic. Interpolation between them is off by -89 dB of that harmonic,
+/// and far less for lower ones.
 constexpr std::size_t points_a_period = 32;
 
-/// A peak may lie between two points, or be missed by rounding.
+/// Margin for a peak between two points, and for rounding.
 constexpr double above_peak = 1.0 + 2e-5;
 
 double peak_of(const wave_samples& x)
@@ -36,7 +36,7 @@ void scale(wave_samples& x, double peak)
         v = static_cast<float>(gain * static_cast<double>(v));
 }
 
-/// Between the points, too.
+/// Returns the peak, also between the points.
 double cycle_peak(const wave_samples& cycle)
 {
     constexpr std::size_t between = 8;
@@ -61,7 +61,8 @@ std::size_t points_for(std::size_t harmonics)
     return std::bit_ceil(points_a_period * std::max<std::size_t>(harmonics, 2));
 }
 
-/// Beside a peak of 1 to 2: what is less is the arithmetic's, and would sound as loud as what is asked for.
+/// Least peak after filtering, relative to 1 to 2: less is rounding, and would become as loud as a real
+/// signal.
 constexpr double least_peak = 1e-5;
 
 void require_left(double peak, const recording& r)
@@ -73,8 +74,8 @@ void require_left(double peak, const recording& r)
     }
 }
 
-/// About their mean, and by a power of 2 with a peak of 1 to 2: in whatever unit they are, sums of them are
-/// finite and as exact as they are.
+/// Returns the samples around their mean, scaled by a power of 2 to a peak of 1 to 2. In any unit, sums of
+/// them are then finite and as exact as the samples.
 std::vector<float> unit_samples(const recording& r)
 {
     std::vector<double> x(r.samples.begin(), r.samples.end());
@@ -93,7 +94,7 @@ std::vector<float> unit_samples(const recording& r)
     return samples;
 }
 
-/// The real part of the sum of harmonics, from half a cycle before the beginning on.
+/// Returns the real part of the sum of harmonics, from half a cycle before the start on.
 wave_samples cycle_of(spectrum harmonics)
 {
     const std::size_t points = harmonics.size();
@@ -137,11 +138,11 @@ std::uint64_t next_random(std::uint64_t& state) noexcept
 /// A sinc in a window of Blackman and Harris, as a table: zero beyond `width` samples.
 class kernel {
 public:
-    /// `cutoff`: in cycles a sample of what is read.
+    /// Makes the table. `cutoff`: in cycles per sample of the input.
     explicit kernel(double cutoff) : width_(crossings / (2.0 * cutoff)), table_(size + 2)
     {
         for (std::size_t i = 0; i <= size; ++i) {
-            const double u = static_cast<double>(i) / size; // 0: in the middle, 1: at the end
+            const double u = static_cast<double>(i) / size; // 0: the middle, 1: the end
             const double t = u * crossings;
             const double sinc = i == 0 ? 1.0 : sincos_turns(0.5 * t).sin / (3.14159265358979323846 * t);
             const double a = 0.5 * u;
@@ -161,7 +162,7 @@ public:
 
 private:
     static constexpr double crossings = 160.0;
-    static constexpr std::size_t size = 327680; // 2048 a crossing: off by 1e-7
+    static constexpr std::size_t size = 327680; // 2048 for each crossing: off by 1e-7
     double width_;
     std::vector<double> table_;
 };
@@ -205,7 +206,7 @@ wave_samples shape_cycle(waveform_kind shape, std::size_t harmonics)
 
 wave_samples recorded_cycle(const recording& r, std::size_t harmonics)
 {
-    // The highest of an even number of samples says nothing of its phase.
+    // The highest harmonic of an even number of samples has no phase.
     const std::size_t own = std::max<std::size_t>((r.samples.size() - 1) / 2, 1);
     harmonics = std::min(harmonics, own);
     const spectrum c = fourier_coefficients(unit_samples(r), harmonics + 1);
@@ -225,7 +226,7 @@ wave_samples noise_loop(double low_hz, double high_hz, std::uint64_t seed, unsig
     const auto first = static_cast<std::size_t>(std::ceil(low_hz / line));
     const auto last = std::min(static_cast<std::size_t>(high_hz / line), frames / 2 - 1);
     spectrum x(frames);
-    // Lines of one height and of any phase: by their number they are as good as a Gaussian's.
+    // Lines of equal height and random phase: with so many, they are as good as Gaussian noise.
     for (std::size_t k = first; k <= last; ++k) {
         const sine_cosine v = sincos_turns(static_cast<double>(next_random(seed) >> 11U) * 0x1p-53);
         x[k] = {v.cos, v.sin};
