@@ -76,6 +76,7 @@ INSTEAD = dict.fromkeys(["README.md", *(f"man/guide/{page.name}" for page in GUI
 }
 # Files that a document speaks of and that are in the sources.
 FILES = {
+    "man/guide/study.md": {"felt.toml": "examples/arrays/palm-measured.toml"},
     "man/tactor.1": {"palm.toml": "examples/arrays/palm-measured.toml", "curve.toml": "examples/strokes/curve.toml"},
     "man/tactor.toml.5": {"arrays/palm.toml": "examples/arrays/palm-measured.toml"},
 }
