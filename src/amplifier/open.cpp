@@ -2,7 +2,6 @@
 // Public functions of this folder, except the list of chips.
 #include <tactor/lines.hpp>
 
-#include <array>
 #include <cmath>
 #include <utility>
 

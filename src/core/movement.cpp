@@ -12,7 +12,6 @@
 #include <tactor/error.hpp>
 
 #include "core/access.hpp"
-#include "core/moved.hpp"
 #include "core/path/impl.hpp"
 #include "core/profile.hpp"
 #include "core/refused.hpp"

@@ -7,8 +7,6 @@
 
 #include <fmt/format.h>
 
-#include <tactor/error.hpp>
-
 #include "core/limits.hpp"
 #include "core/profile.hpp"
 #include "core/refused.hpp"

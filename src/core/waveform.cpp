@@ -2,9 +2,7 @@
 #include <tactor/waveform.hpp>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <functional>
 #include <optional>
 
 #include <fmt/format.h>

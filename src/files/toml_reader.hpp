@@ -14,13 +14,11 @@
 
 #include <toml++/toml.h>
 
-#include <tactor/api.hpp>
 #include <tactor/error.hpp>
 #include <tactor/path.hpp>
 
 #include "core/bounds.hpp"
 #include "core/kind_names.hpp"
-#include "core/limits.hpp"
 
 namespace tactor::detail {
 

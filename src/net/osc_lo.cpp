@@ -5,7 +5,6 @@
 #include <limits>
 #include <memory>
 
-#include <fmt/format.h>
 #include <lo/lo_lowlevel.h>
 
 #include <tactor/error.hpp>

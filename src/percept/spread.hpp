@@ -12,7 +12,6 @@
 
 #include <tactor/array.hpp>
 #include <tactor/percept.hpp>
-#include <tactor/phantom.hpp>
 #include <tactor/plan.hpp>
 #include <tactor/stroke.hpp>
 

@@ -2,7 +2,6 @@
 #include "plot/views.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <string>
 #include <vector>
 

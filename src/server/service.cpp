@@ -10,7 +10,6 @@
 
 #include <boost/asio/post.hpp>
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include "server/service_impl.hpp"
 

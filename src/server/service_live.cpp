@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 // begin, to, end.
 #include <algorithm>
-#include <cmath>
 #include <limits>
 
 #include <fmt/format.h>

@@ -2,7 +2,6 @@
 #include "server/stroke_source.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <utility>
 

@@ -2,7 +2,6 @@
 // So many blocks of one stroke on nine channels, and nothing else: for tests/bench/instructions, which counts
 // what they take where no clock means anything.
 //   tactor-count mixer|std_sin BLOCKS
-#include <cstdlib>
 #include <span>
 #include <string>
 

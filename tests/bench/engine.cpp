@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 // What a period costs the audio thread while 64 strokes sound on 64 channels: the mean, and the worst.
 #include <algorithm>
-#include <memory>
 #include <utility>
 #include <vector>
 

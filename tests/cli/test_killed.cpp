@@ -4,13 +4,11 @@
 //   TACTOR_TOOL: the tool; TACTOR_ARRAY: a file of an array with the amplifier's line; TACTOR_LINE: a file
 //   that says '0' or '1'. With TACTOR_FAKE_GPIOD (fake_gpiod.cpp) both are made here.
 #include <array>
-#include <cstdint>
 #include <cstdio>
 #include <cstdlib>
 #include <fstream>
 #include <stdexcept>
 #include <string>
-#include <vector>
 
 #include <doctest/doctest.h>
 #include <fcntl.h>

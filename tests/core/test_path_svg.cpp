@@ -5,8 +5,6 @@
 #include <random>
 #include <string>
 
-#include <fmt/format.h>
-
 #include <tactor/error.hpp>
 #include <tactor/path.hpp>
 #include <tactor/stroke.hpp>

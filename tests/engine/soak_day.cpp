@@ -6,7 +6,6 @@
 #include <cstdint>
 #include <memory>
 #include <random>
-#include <vector>
 
 #include <doctest/doctest.h>
 

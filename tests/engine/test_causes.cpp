@@ -4,7 +4,6 @@
 
 #include <cerrno>
 #include <cstddef>
-#include <exception>
 #include <functional>
 #include <memory>
 #include <span>

@@ -2,7 +2,6 @@
 // What the player says about its stream.
 #include <memory>
 #include <utility>
-#include <vector>
 
 #include <doctest/doctest.h>
 

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
 // Many strokes at once: they play, or they say that they were too many.
-#include <cstddef>
 #include <cstdint>
 #include <map>
 #include <string>

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
 // What was moved from can be destroyed, assigned to and asked: it is what it was, or says what is wrong.
-#include <array>
 #include <cstddef>
 #include <memory>
 #include <string>

@@ -2,7 +2,6 @@
 // The player with its real threads. Time is the fake DAC's; the tests wait for conditions.
 #include <atomic>
 #include <cerrno>
-#include <chrono>
 #include <cmath>
 #include <mutex>
 #include <string>

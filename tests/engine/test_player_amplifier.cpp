@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
 // The player's threads and an amplifier: on a paced null PCM, in real time.
-#include <atomic>
 #include <condition_variable>
 #include <mutex>
 #include <thread>

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Numbers that cannot be: they are errors, or mean something sensible.
 #include <array>
-#include <chrono>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 // When the first sample of a stroke was at the DAC: told of every stroke that sounded.
 #include <cmath>
-#include <vector>
 
 #include <doctest/doctest.h>
 

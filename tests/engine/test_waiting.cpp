@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: MIT
 // Strokes that wait, for the amplifier, for a point, for others: cancel and stop reach them at once.
-#include <memory>
-#include <vector>
 
 #include <doctest/doctest.h>
 

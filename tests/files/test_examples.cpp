@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The example files and those of tactor.toml(5) do what they say.
 #include <doctest/doctest.h>
-#include <fmt/format.h>
 
 #include <filesystem>
 #include <string>

@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <clocale>
-#include <cstdint>
 #include <random>
 #include <string>
 

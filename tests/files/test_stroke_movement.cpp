@@ -2,9 +2,7 @@
 // Keys that say how a stroke of a TOML file moves along its path.
 #include <doctest/doctest.h>
 
-#include <cmath>
 #include <string>
-#include <vector>
 
 #include <fmt/format.h>
 

@@ -8,7 +8,6 @@
 #include <limits>
 #include <numbers>
 #include <random>
-#include <string>
 #include <utility>
 #include <vector>
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 // A continuous stroke that leaves the array is refused, however short the way out and however long the
 // stroke.
-#include <cmath>
 #include <random>
 #include <string>
 #include <vector>

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "rt/triple_buffer.hpp"
 
-#include <atomic>
 #include <cstdint>
 #include <latch>
 #include <thread>

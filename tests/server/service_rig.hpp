@@ -3,9 +3,7 @@
 /// The service with fake DACs in place of a card, and clients that are lists of messages.
 #pragma once
 
-#include <algorithm>
 #include <cstdint>
-#include <deque>
 #include <functional>
 #include <list>
 #include <memory>

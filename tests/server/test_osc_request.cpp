@@ -2,7 +2,6 @@
 // What messages of OSC ask for, and what is wrong with their values.
 #include "server/osc/request.hpp"
 
-#include <cmath>
 #include <limits>
 
 #include <doctest/doctest.h>

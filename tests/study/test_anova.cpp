@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: MIT
 
-#include <cmath>
-
 #include <doctest/doctest.h>
 
 #include "study/statistics/tests.hpp"

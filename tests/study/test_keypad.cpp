@@ -3,7 +3,6 @@
 #include "study/session/keypad.hpp"
 
 #include <map>
-#include <string>
 
 #include <doctest/doctest.h>
 #include <linux/input-event-codes.h>

@@ -3,7 +3,6 @@
 //   build-tests/tests/study/test-study -tc="*lapses*"
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
 #include <vector>
 
 #include <doctest/doctest.h>

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "study/experiment/session_flow.hpp"
 
-#include <algorithm>
 #include <map>
 #include <vector>
 

@@ -3,7 +3,6 @@
 #include "study/session/stage.hpp"
 
 #include <algorithm>
-#include <atomic>
 #include <cstring>
 #include <functional>
 #include <thread>

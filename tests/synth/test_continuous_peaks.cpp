@@ -2,8 +2,6 @@
 // What continuous strokes ask of the tactors is bounded, however long they are.
 #include <algorithm>
 #include <cmath>
-#include <cstddef>
-#include <functional>
 #include <random>
 #include <span>
 #include <string>

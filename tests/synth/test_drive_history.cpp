@@ -2,7 +2,6 @@
 // What was driven, as a value: how two become one, and what is still to come.
 #include <doctest/doctest.h>
 
-#include <cstddef>
 #include <utility>
 #include <vector>
 

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
 // Where the carrier's phase starts: what it does to the spectrum and to the mean, and to the default ramp.
-#include <algorithm>
 #include <cmath>
 #include <complex>
 #include <numeric>

@@ -2,8 +2,6 @@
 // What vibrates has no frequency that it should not have, and keeps within what a sine may do.
 #include <algorithm>
 #include <cmath>
-#include <complex>
-#include <memory>
 #include <string>
 #include <vector>
 

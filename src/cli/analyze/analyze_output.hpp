@@ -4,7 +4,6 @@
 #pragma once
 
 #include <cstdio>
-#include <string>
 #include <string_view>
 
 #include "cli/picture_options.hpp"

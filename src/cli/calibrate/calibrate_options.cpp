@@ -2,7 +2,6 @@
 #include "cli/calibrate/calibrate_options.hpp"
 
 #include <algorithm>
-#include <cctype>
 #include <filesystem>
 #include <functional>
 #include <limits>

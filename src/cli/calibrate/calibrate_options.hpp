@@ -10,7 +10,6 @@
 
 #include "cli/input.hpp"
 #include "cli/session/page_options.hpp"
-#include "session/device.hpp"
 #include "study/calibrate/calibration.hpp"
 #include "study/masking/masking_stream.hpp"
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Whether the actuators can make the bursts that are asked for.
 #include <algorithm>
-#include <cmath>
 #include <map>
 
 #include <fmt/format.h>

@@ -4,9 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <fstream>
-#include <iterator>
 #include <set>
-#include <system_error>
 
 #include <grp.h>
 #include <pwd.h>

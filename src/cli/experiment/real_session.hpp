@@ -4,7 +4,6 @@
 #pragma once
 
 #include <memory>
-#include <string>
 
 #include "cli/experiment/experiment_options.hpp"
 #include "cli/settings.hpp"

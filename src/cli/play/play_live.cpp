@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "cli/play/play_live.hpp"
 
-#include <fmt/format.h>
 #include <unistd.h>
 
 #include "cli/commands.hpp"

@@ -2,7 +2,6 @@
 // tactor serve: other programs draw through it.
 #include <algorithm>
 #include <cerrno>
-#include <cmath>
 #include <cstdio>
 #include <cstring>
 #include <memory>

@@ -5,7 +5,6 @@
 #include <new>
 #include <string_view>
 
-#include <fmt/format.h>
 #include <grp.h>
 #include <sys/resource.h>
 #include <sys/stat.h>

@@ -3,9 +3,6 @@
 /// `play` through a server: what is given on the command line, in the protocol's words.
 #pragma once
 
-#include <optional>
-#include <string>
-
 #include "cli/play/play_options.hpp"
 #include "cli/settings.hpp"
 

@@ -8,8 +8,6 @@
 
 #include <tactor/path.hpp>
 
-#include "core/limits.hpp"
-#include "core/path/number.hpp"
 #include "core/path/shape.hpp"
 
 namespace tactor::detail {

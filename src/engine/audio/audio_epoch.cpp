@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
 // Start, breaks, recovery and end of the stream.
-#include <algorithm>
 #include <cerrno>
 
 #include "engine/audio/audio_loop.hpp"

@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "files/plan/plan_json.hpp"
 
-#include <cmath>
 #include <cstdint>
-#include <vector>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>

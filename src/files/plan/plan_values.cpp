@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "files/plan/plan_values.hpp"
 
-#include <algorithm>
 #include <cstdint>
 #include <utility>
 

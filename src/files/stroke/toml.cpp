@@ -5,7 +5,6 @@
 #include <iterator>
 #include <string_view>
 #include <utility>
-#include <variant>
 #include <vector>
 
 #include <fmt/format.h>

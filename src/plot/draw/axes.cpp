@@ -2,7 +2,6 @@
 #include "plot/draw/axes.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include <fmt/format.h>

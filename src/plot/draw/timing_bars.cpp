@@ -2,7 +2,6 @@
 #include "plot/draw/timing_bars.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 #include <fmt/format.h>
 

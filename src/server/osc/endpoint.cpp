@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "server/osc/endpoint.hpp"
 
-#include <algorithm>
 #include <chrono>
 #include <new>
 #include <utility>

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "sink/alsa/negotiate.hpp"
 
-#include <cerrno>
 #include <memory>
 #include <new>
 #include <optional>

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "study/analysis/analysis.hpp"
 
-#include <algorithm>
-
 #include <fmt/format.h>
 
 #include "core/words.hpp"

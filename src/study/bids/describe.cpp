@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "study/bids/study_folder.hpp"
 
-#include <array>
 #include <string_view>
 
 #include <fmt/format.h>

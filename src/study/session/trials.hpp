@@ -3,7 +3,6 @@
 /// What simulated and real sessions share: lines of trials, and where a session that goes on is.
 #pragma once
 
-#include <string>
 #include <vector>
 
 #include "study/bids/session_store.hpp"

@@ -5,8 +5,6 @@
 
 #include <fmt/format.h>
 
-#include <tactor/error.hpp>
-
 #include "core/refused.hpp"
 #include "synth/mix/mixer.hpp"
 

@@ -2,7 +2,6 @@
 #include "synth/tone/waves.hpp"
 
 #include <algorithm>
-#include <array>
 #include <bit>
 #include <cmath>
 #include <numeric>

@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Outputs and inputs through the kernel.
-#include <cerrno>
-#include <memory>
 #include <string>
-#include <vector>
 
 #include <poll.h>
 #include <sys/wait.h>

@@ -2,7 +2,6 @@
 // How soon the line goes off, and that beats keep it on: real processes, real time and the limits that ship.
 // The line's own records are what is measured.
 #include <csignal>
-#include <memory>
 
 #include <poll.h>
 

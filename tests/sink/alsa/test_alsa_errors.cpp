@@ -1,10 +1,7 @@
 // SPDX-License-Identifier: MIT
 // What is said when a PCM cannot be opened, on a system made of files.
 #include <cerrno>
-#include <chrono>
-#include <cstdlib>
 #include <filesystem>
-#include <fstream>
 #include <string>
 #include <vector>
 

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "sink/wav/wav.hpp"
 
-#include <array>
-
 #include <doctest/doctest.h>
 
 #include <tactor/error.hpp>
