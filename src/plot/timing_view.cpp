@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "plot/views.hpp"
+#include "plot/figure.hpp"
 
 #include <algorithm>
 #include <string>
@@ -9,7 +9,6 @@
 
 #include "core/words.hpp"
 #include "plot/draw/axes.hpp"
-#include "plot/draw/dimensions.hpp"
 #include "plot/draw/notes.hpp"
 #include "plot/draw/stroke_starts.hpp"
 #include "plot/draw/timeline.hpp"

@@ -2,7 +2,7 @@
 #include <tactor/error.hpp>
 #include <tactor/render.hpp>
 
-#include "plot/views.hpp"
+#include "plot/figure.hpp"
 #include "synth/mix/sample_ranges.hpp"
 
 #include <algorithm>

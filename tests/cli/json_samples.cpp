@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-#include "cli/check/check_output.hpp"
+#include "cli/check/finding.hpp"
 #include "cli/devices/devices_text.hpp"
 #include "cli/play/play_report.hpp"
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // What `check` says of arrays, levels and actuators.
-#include "cli/check/check_array.hpp"
+#include "cli/check/finding.hpp"
 #include "session/device.hpp"
 
 #include <algorithm>

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: MIT
 // GPIO lines as `check` sees them, and how findings are printed.
-#include "cli/check/check_lines.hpp"
 
 #include <doctest/doctest.h>
 
-#include "cli/check/check_output.hpp"
+#include "cli/check/finding.hpp"
 
 namespace check_lines_test {
 

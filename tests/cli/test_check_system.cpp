@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // What `check` finds on machines made of files, and how it judges them.
-#include "cli/check/check_system.hpp"
+#include "cli/check/system_facts.hpp"
 
 #include <algorithm>
 

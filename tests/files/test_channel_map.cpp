@@ -8,7 +8,7 @@
 
 #include <tactor/setup.hpp>
 
-#include "files/channel_map.hpp"
+#include "files/setup_text.hpp"
 #include "folder.hpp"
 #include "message_of.hpp"
 

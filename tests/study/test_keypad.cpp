@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Which keys of an input device answer what. A device itself: tests/vm/guest/test_keypad.py.
-#include "study/session/keypad.hpp"
+#include "study/session/key_input.hpp"
 
 #include <map>
 

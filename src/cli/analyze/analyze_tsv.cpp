@@ -3,7 +3,7 @@
 
 #include "cli/analyze/analyze_output.hpp"
 #include "cli/say.hpp"
-#include "study/analysis/cells.hpp"
+#include "study/analysis/analysis.hpp"
 
 namespace tactor::cli {
 namespace {

@@ -16,7 +16,6 @@
 #include "core/words.hpp"
 #include "session/pipes.hpp"
 #include "session/sound_server.hpp"
-#include "study/calibrate/calibration_time.hpp"
 #include "study/calibrate/log.hpp"
 #include "study/calibrate/observer.hpp"
 #include "study/calibrate/person.hpp"

@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "cli/check/check_array.hpp"
+#include "cli/check/finding.hpp"
 #include "core/words.hpp"
 #include "plot/sound_text.hpp"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "cli/check/check_system.hpp"
+#include "cli/check/system_facts.hpp"
 
 #include <algorithm>
 

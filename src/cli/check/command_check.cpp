@@ -7,11 +7,8 @@
 #include <fmt/ranges.h>
 
 #include "cli/check/channel_file.hpp"
-#include "cli/check/check_array.hpp"
-#include "cli/check/check_device.hpp"
-#include "cli/check/check_lines.hpp"
-#include "cli/check/check_output.hpp"
-#include "cli/check/check_system.hpp"
+#include "cli/check/finding.hpp"
+#include "cli/check/system_facts.hpp"
 #include "cli/check/walk_session.hpp"
 #include "cli/commands.hpp"
 #include "cli/say.hpp"

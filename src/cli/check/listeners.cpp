@@ -1,22 +1,25 @@
 // SPDX-License-Identifier: MIT
-#include "cli/check/listeners.hpp"
+// Files under /proc: processes, and where running services of this tool can be reached.
+#include "cli/check/system_facts.hpp"
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <charconv>
 #include <cstdint>
+#include <fstream>
 #include <map>
 #include <optional>
 #include <sstream>
+#include <system_error>
 
 #include <arpa/inet.h>
 #include <netinet/in.h>
 
 #include <fmt/format.h>
 
-#include "cli/check/proc_files.hpp"
-
 namespace tactor::cli {
+
 namespace {
 
 namespace fs = std::filesystem;
@@ -130,6 +133,42 @@ std::vector<listening_service> find_services(const fs::path& root)
         found.push_back(std::move(s));
     }
     return found;
+}
+
+std::vector<fs::path> entries(const fs::path& folder)
+{
+    std::vector<fs::path> all;
+    std::error_code gone;
+    for (fs::directory_iterator i(folder, gone), end; !gone && i != end; i.increment(gone))
+        all.push_back(i->path());
+    std::sort(all.begin(), all.end());
+    return all;
+}
+
+// A process may end meanwhile: what reads stream buffers itself would throw then.
+std::string text_of(const fs::path& file)
+{
+    std::ifstream in(file, std::ios::binary);
+    std::ostringstream text;
+    text << in.rdbuf();
+    std::string s = text.str();
+    while (!s.empty() && (s.back() == '\n' || s.back() == '\0'))
+        s.pop_back();
+    return s;
+}
+
+std::vector<process_folder> processes(const fs::path& root)
+{
+    std::vector<process_folder> all;
+    for (const fs::path& process : entries(root / "proc")) {
+        const std::string name = process.filename().string();
+        int pid = 0;
+        const auto [end, wrong] = std::from_chars(name.data(), name.data() + name.size(), pid);
+        if (wrong == std::errc() && end == name.data() + name.size())
+            all.push_back({pid, process});
+    }
+    std::sort(all.begin(), all.end(), [](const auto& a, const auto& b) { return a.pid < b.pid; });
+    return all;
 }
 
 } // namespace tactor::cli

@@ -14,7 +14,6 @@
 
 #include <fmt/format.h>
 
-#include "cli/check/proc_files.hpp"
 #include "session/own_memory.hpp"
 
 namespace tactor::cli {

@@ -18,7 +18,7 @@
 #include "cli/say.hpp"
 #include "core/kind_names.hpp"
 #include "core/split.hpp"
-#include "files/plan/compare_json.hpp"
+#include "files/plan/plan_json.hpp"
 #include "plot/compare_figure.hpp"
 #include "plot/paint/output.hpp"
 #include "session/pipes.hpp"

@@ -9,10 +9,7 @@
 #include <fmt/format.h>
 
 #include "cli/commands.hpp"
-#include "cli/experiment/dry_run.hpp"
 #include "cli/experiment/experiment_options.hpp"
-#include "cli/experiment/noise_check.hpp"
-#include "cli/experiment/power.hpp"
 #include "cli/experiment/real_session.hpp"
 #include "cli/say.hpp"
 #include "cli/warnings.hpp"

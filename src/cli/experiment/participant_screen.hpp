@@ -3,7 +3,7 @@
 /// The participant's terminal.
 #pragma once
 
-#include "study/session/target_display.hpp"
+#include "study/session/person_session.hpp"
 
 namespace tactor::cli {
 

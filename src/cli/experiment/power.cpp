@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "cli/experiment/power.hpp"
+#include "cli/experiment/experiment_options.hpp"
 
 #include <algorithm>
 #include <charconv>

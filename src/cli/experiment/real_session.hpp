@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// A session with a person: what is refused before anybody sits down, and the devices around it.
+/// A session with a person: what is refused before anybody sits down, the devices around it, and whether the
+/// masking noise hides the array.
 #pragma once
 
 #include <memory>
@@ -29,5 +30,9 @@ std::unique_ptr<study::stage> open_stage(const study::prepared_experiment& p, co
 study::stage::left hold_real_session(const study::prepared_experiment& p, const experiment_options& o,
                                      const settings& s, const study::sound_servers& between,
                                      net::owned_fd listening, study::session_store& store);
+
+/// --check-noise: the definition's noise, and its stimuli under it, by keys. Returns the exit status. \throws
+/// error.
+int check_noise(const study::prepared_experiment& p, const experiment_options& o, const settings& s);
 
 } // namespace tactor::cli

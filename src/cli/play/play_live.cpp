@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "cli/play/play_live.hpp"
+#include "cli/play/play_options.hpp"
 
 #include <unistd.h>
 

@@ -18,7 +18,7 @@
 #include "cli/say.hpp"
 #include "cli/serve/owner.hpp"
 #include "core/words.hpp"
-#include "files/plan/json_values.hpp"
+#include "files/plan/json_value.hpp"
 #include "files/plan/plan_json.hpp"
 #include "options/parse_number.hpp"
 #include "rt/advice.hpp"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "cli/serve/play_remote.hpp"
+#include "cli/play/play_options.hpp"
 
 #include <algorithm>
 #include <chrono>
@@ -20,7 +20,6 @@
 #include "cli/say.hpp"
 #include "cli/serve/rpc_client.hpp"
 #include "cli/serve/server_words.hpp"
-#include "cli/serve/stroke_text.hpp"
 #include "cli/warnings.hpp"
 #include "session/interrupt.hpp"
 #include "session/pipes.hpp"

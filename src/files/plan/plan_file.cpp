@@ -13,7 +13,6 @@
 
 #include "core/words.hpp"
 #include "files/input_files.hpp"
-#include "files/plan/plan_fit.hpp"
 #include "files/plan/plan_values.hpp"
 
 namespace tactor::files {

@@ -16,7 +16,7 @@
 #include "core/path/number.hpp"
 #include "core/suggest.hpp"
 #include "core/words.hpp"
-#include "files/stroke/csv_form.hpp"
+#include "files/stroke/parts.hpp"
 #include "files/text_file.hpp"
 
 namespace tactor {

@@ -5,7 +5,7 @@
 
 #include <fmt/format.h>
 
-#include "plot/draw/dimensions.hpp"
+#include "plot/draw/axes.hpp"
 #include "plot/draw/timeline.hpp"
 
 namespace tactor::plot {

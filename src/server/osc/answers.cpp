@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 
 #include "server/faults.hpp"
-#include "server/osc/senders.hpp"
+#include "server/osc/clients.hpp"
 
 namespace tactor::server {
 namespace {

@@ -6,7 +6,6 @@
 
 #include "core/refused.hpp"
 #include "sink/alsa/configuration.hpp"
-#include "sink/alsa/devices/names.hpp"
 #include "sink/alsa/devices/route.hpp"
 #include "sink/alsa/error_text.hpp"
 #include "sink/alsa/library_messages.hpp"

@@ -12,7 +12,6 @@
 #include "core/refused.hpp"
 #include "core/words.hpp"
 #include "sink/alsa/error_text.hpp"
-#include "sink/alsa/format.hpp"
 #include "sink/alsa/handle.hpp"
 
 namespace tactor::pcm {

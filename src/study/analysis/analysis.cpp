@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include "core/words.hpp"
-#include "study/analysis/cells.hpp"
 
 namespace tactor::study {
 namespace {

@@ -14,7 +14,7 @@
 
 #include "study/bids/study_folder.hpp"
 #include "study/data/columns.hpp"
-#include "study/experiment/run_queue.hpp"
+#include "study/experiment/session_flow.hpp"
 #include "study/experiment/stimuli.hpp"
 
 namespace tactor::study {

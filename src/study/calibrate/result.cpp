@@ -17,7 +17,6 @@
 #include "files/output_file.hpp"
 #include "files/setup_text.hpp"
 #include "study/bids/disk.hpp"
-#include "study/data/kept.hpp"
 #include "study/data/text_table.hpp"
 
 namespace tactor::study {

@@ -7,7 +7,6 @@
 #include <fmt/format.h>
 
 #include "study/analysis/analysis.hpp"
-#include "study/analysis/cells.hpp"
 #include "study/experiment/sequence.hpp"
 #include "study/statistics/tests.hpp"
 

@@ -10,7 +10,7 @@
 #include <tactor/error.hpp>
 
 #include "core/sha256.hpp"
-#include "study/experiment/definition_words.hpp"
+#include "study/experiment/definition.hpp"
 
 namespace tactor::study {
 namespace {

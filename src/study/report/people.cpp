@@ -9,7 +9,6 @@
 #include <fmt/format.h>
 
 #include "core/words.hpp"
-#include "study/report/conduct.hpp"
 #include "study/report/markdown.hpp"
 #include "study/report/sections.hpp"
 

@@ -7,7 +7,6 @@
 
 #include "core/words.hpp"
 #include "study/experiment/sequence.hpp"
-#include "study/report/conduct.hpp"
 #include "study/report/markdown.hpp"
 #include "study/report/sections.hpp"
 

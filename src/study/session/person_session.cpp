@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-#include "files/plan/json_values.hpp"
+#include "files/plan/json_value.hpp"
 #include "session/say.hpp"
 #include "study/bids/acq_time.hpp"
 #include "study/session/session_facts.hpp"

@@ -9,6 +9,9 @@
 #include <string>
 #include <vector>
 
+#include <tactor/array.hpp>
+#include <tactor/render.hpp>
+
 #include "session/environment.hpp"
 #include "study/experiment/definition.hpp"
 #include "study/experiment/sequence.hpp"
@@ -58,5 +61,18 @@ inline constexpr double assumed_threshold_dbfs = -40.0;
 /// cannot be planned
 ///         or played; there are no thresholds and somebody is to feel it.
 prepared_experiment prepare(const session_request& r, session::settings& s);
+
+/// A tactor by itself, at the carrier of the definition's first method. \throws error (bad_input) where its
+/// level is too high, in the definition's words.
+score walk_score(const experiment_definition& d, const array& a, const render_options& o, unsigned tactor);
+
+/// Tries all of them. Throws as above.
+void check_walk(const experiment_definition& d, const array& a, const render_options& o);
+
+/// Each trial that there is, practice too, must sound as planned on an array that has rested.
+/// \throws error (bad_input) with the motion's line for one that a limit would change: it would be void
+///         whenever it comes.
+void check_limits(const experiment_definition& d, const std::vector<run_sequence>& runs,
+                  const stimulus_set& stimuli, const drive_limits& l);
 
 } // namespace tactor::study

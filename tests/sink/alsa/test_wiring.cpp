@@ -17,7 +17,7 @@
 
 #include "folder.hpp"
 #include "has.hpp"
-#include "sink/alsa/devices/wiring.hpp"
+#include "sink/alsa/devices/route.hpp"
 #include "sink/alsa/handle.hpp"
 #include "sink/alsa/negotiate.hpp"
 

@@ -6,12 +6,9 @@
 #include <fmt/format.h>
 
 #include "core/suggest.hpp"
-#include "sink/alsa/devices/names.hpp"
 #include "sink/alsa/devices/plain_name.hpp"
 #include "sink/alsa/devices/route.hpp"
-#include "sink/alsa/devices/wiring.hpp"
 #include "sink/alsa/error_text.hpp"
-#include "sink/alsa/format.hpp"
 #include "sink/alsa/handle.hpp"
 #include "sink/alsa/library_messages.hpp"
 #include "sink/alsa/negotiate.hpp"

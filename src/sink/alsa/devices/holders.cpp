@@ -6,7 +6,6 @@
 #include <sys/stat.h>
 
 #include "sink/alsa/devices/cards.hpp"
-#include "sink/alsa/devices/system_files.hpp"
 
 namespace tactor::pcm {
 namespace {

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: MIT
-#include "sink/alsa/devices/wiring.hpp"
 
 #include <algorithm>
 #include <array>
