@@ -16,10 +16,9 @@ inline namespace v0 {
 
 std::string describe(const low_speed_observer& o)
 {
-    return fmt::format(
-        "the low-speed observer (Goldreich 2007) with sigma {} mm and sigma_v {} mm/s, built for "
-        "taps on the forearm; nobody has fitted it to a palm or to bursts that touch",
-        plain_number(o.sigma_mm), plain_number(o.sigma_v_mm_s));
+    return fmt::format("the low-speed observer (Goldreich 2007) with sigma {} mm and sigma_v {} mm/s, built "
+                       "for taps on the forearm; nobody has fitted it to a palm or to bursts that touch",
+                       plain_number(o.sigma_mm), plain_number(o.sigma_v_mm_s));
 }
 
 std::vector<tap> predict_taps(const array& a, const stroke& s, const plan& p, const low_speed_observer& o)

@@ -108,11 +108,10 @@ std::string spread_note(const spread_choice& c, bool by_taps)
 {
     const std::string sigma =
         by_taps ? fmt::format("sigma from 1/{0} to {0} times as much, ", plain_number(c.sigma_factor)) : "";
-    return fmt::format(
-        "5 to 95 % of {} drawn with seed {}: {}each tactor's threshold give or take {} dB, its place "
-        "within {} mm",
-        counted(c.people, "person", "people"), c.seed, sigma, plain_number(c.threshold_db),
-        plain_number(c.place_mm));
+    return fmt::format("5 to 95 % of {} drawn with seed {}: {}each tactor's threshold give or take {} dB, "
+                       "its place within {} mm",
+                       counted(c.people, "person", "people"), c.seed, sigma, plain_number(c.threshold_db),
+                       plain_number(c.place_mm));
 }
 
 std::vector<drawn_person> draw_people(const spread_choice& c, std::size_t tactors)

@@ -43,15 +43,13 @@ std::string complaint(F f)
 
 TEST_CASE("a busy line is named with who holds it")
 {
-    CHECK(refusal(EBUSY, "gpiomon") ==
-          "palm.toml:12:1: GPIO line 17 of pinctrl-rp1: busy: \"gpiomon\" holds it "
-          "(stop that program, or choose another line)");
+    CHECK(refusal(EBUSY, "gpiomon") == "palm.toml:12:1: GPIO line 17 of pinctrl-rp1: busy: \"gpiomon\" holds "
+                                       "it (stop that program, or choose another line)");
     CHECK(refusal(EBUSY, "tactor") ==
-          "palm.toml:12:1: GPIO line 17 of pinctrl-rp1: busy: another tactor holds it "
-          "(stop that one first)");
-    CHECK(refusal(EBUSY, gpio::nameless_consumer) == "palm.toml:12:1: GPIO line 17 of pinctrl-rp1: busy: the "
-                                                     "kernel holds it (a driver or overlay uses the "
-                                                     "pin; choose another line)");
+          "palm.toml:12:1: GPIO line 17 of pinctrl-rp1: busy: another tactor holds it (stop that one first)");
+    CHECK(refusal(EBUSY, gpio::nameless_consumer) ==
+          "palm.toml:12:1: GPIO line 17 of pinctrl-rp1: busy: the kernel holds it (a driver or overlay uses "
+          "the pin; choose another line)");
     CHECK(refusal(EBUSY, "").find("busy: the kernel holds it") != std::string::npos);
 }
 

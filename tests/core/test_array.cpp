@@ -63,10 +63,9 @@ TEST_CASE("palm-2x4 has two rows of four")
 
 TEST_CASE("an unknown preset lists the presets")
 {
-    CHECK(
-        message_of([] { static_cast<void>(preset_array("palm-4x4")); }) ==
-        "array: there is no preset 'palm-4x4' (did you mean 'palm-2x4'? presets: palm-3x3, palm-2x4; or name "
-        "a file)");
+    CHECK(message_of([] { static_cast<void>(preset_array("palm-4x4")); }) ==
+          "array: there is no preset 'palm-4x4' (did you mean 'palm-2x4'? presets: palm-3x3, palm-2x4; or "
+          "name a file)");
     CHECK(message_of([] { static_cast<void>(preset_array("glove")); }) ==
           "array: there is no preset 'glove' (presets: palm-3x3, palm-2x4; or name a file)");
 }
@@ -161,21 +160,18 @@ TEST_CASE("validate takes the presets and grids of the greatest size")
 TEST_CASE("validate names both tactors, with the lines where it knows them")
 {
     array a = at_places({{0, 0}, {20, 0}, {20 + 0.9e-6, 0}});
-    CHECK(message_of([&] { validate(a); }) ==
-          "array 'test': tactor 2 is at (20.0000009, 0) mm, the place of tactor 1 (give each tactor a place "
-          "of its own)");
+    CHECK(message_of([&] { validate(a); }) == "array 'test': tactor 2 is at (20.0000009, 0) mm, the place of "
+                                              "tactor 1 (give each tactor a place of its own)");
     a.tactors[1].where = {"palm.toml", 5, 1};
     a.tactors[2].where = {"palm.toml", 9, 1};
-    CHECK(
-        message_of([&] { validate(a); }) ==
-        "palm.toml:9:1: tactor 2 is at (20.0000009, 0) mm, the place of tactor 1 (palm.toml:5:1) (give each "
-        "tactor a place of its own)");
+    CHECK(message_of([&] { validate(a); }) ==
+          "palm.toml:9:1: tactor 2 is at (20.0000009, 0) mm, the place of tactor 1 (palm.toml:5:1) (give "
+          "each tactor a place of its own)");
     a.tactors[2].position.x_mm = 20 + 1.1e-6;
     CHECK_NOTHROW(validate(a));
     a.tactors[2].channel = 1;
-    CHECK(message_of([&] { validate(a); }) ==
-          "palm.toml:9:1: tactor 2 is on channel 1, that of tactor 1 (palm.toml:5:1) (give each tactor a "
-          "channel of its own)");
+    CHECK(message_of([&] { validate(a); }) == "palm.toml:9:1: tactor 2 is on channel 1, that of tactor 1 "
+                                              "(palm.toml:5:1) (give each tactor a channel of its own)");
 }
 
 TEST_CASE("validate refuses what no tactor can have")

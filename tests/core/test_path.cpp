@@ -128,9 +128,8 @@ TEST_CASE("equal steps of arc length are chords no longer than the step")
 
 TEST_CASE("all commands of path data, absolute and relative, mean the same")
 {
-    const path a =
-        path::from_svg("M 10 10 L 20 10 H 30 V 20 C 35 20 40 25 40 30 S 45 40 50 40 Q 55 40 60 45 T 70 "
-                       "50 A 10 10 0 0 1 90 50 Z");
+    const path a = path::from_svg("M 10 10 L 20 10 H 30 V 20 C 35 20 40 25 40 30 S 45 40 50 40 Q 55 40 60 45 "
+                                  "T 70 50 A 10 10 0 0 1 90 50 Z");
     const path r =
         path::from_svg("m10 10l10 0h10v10c5 0 10 5 10 10s5 10 10 10q5 0 10 5t10 5a10 10 0 0120 0z");
     CHECK(a.length_mm() == doctest::Approx(r.length_mm()).epsilon(1e-12));

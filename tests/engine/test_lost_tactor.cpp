@@ -51,10 +51,9 @@ TEST_CASE("a tactor that arrives louder is refused, and one that arrives in anot
     CHECK(lost_tactor(line_of_three(), w).empty());
     CHECK(wiring_warnings(line_of_three(), w) ==
           std::vector<std::string>{
-              "tactor 1 of line is on channel 1, which ALSA's configuration plays at -6.02 "
-              "dB with its polarity reversed",
-              "tactor 2 of line is on channel 2, which reaches 2 channels of the device, "
-              "at 0 dB, -20 dB"});
+              "tactor 1 of line is on channel 1, which ALSA's configuration plays at -6.02 dB with its "
+              "polarity reversed",
+              "tactor 2 of line is on channel 2, which reaches 2 channels of the device, at 0 dB, -20 dB"});
     w.gains[1] = {-2.0};
     CHECK(lost_tactor(line_of_three(), w) ==
           "tactor 1 of line is on channel 1, which ALSA's configuration plays at 6.02 dB with its polarity "
@@ -75,11 +74,10 @@ TEST_CASE("there is no player for an array of which a tactor is lost")
         FAIL("it opened");
     } catch (const error& e) {
         CHECK(e.kind() == error_kind::not_available);
-        CHECK(
-            std::string(e.what()) ==
-            "stream on \"t\": tactor 1 of line is on channel 1, which reaches no channel of the device (give "
-            "each channel one of the device's, at 1, where the PCM is defined (ttable, bindings), or play on "
-            "the card itself, hw:CARD=NAME)");
+        CHECK(std::string(e.what()) ==
+              "stream on \"t\": tactor 1 of line is on channel 1, which reaches no channel of the device "
+              "(give each channel one of the device's, at 1, where the PCM is defined (ttable, bindings), or "
+              "play on the card itself, hw:CARD=NAME)");
     }
     array two = line_of_three();
     two.tactors.erase(two.tactors.begin() + 1);
@@ -98,9 +96,8 @@ TEST_CASE("what hides the channels' ways is said in the log, and plays")
             said += text;
     };
     CHECK_NOTHROW(player(open_alsa(o), line_of_three()));
-    CHECK(said ==
-          "PCM \"t\": which of the device's channels its own reach is not known: type route to a channel "
-          "FL is between");
+    CHECK(said == "PCM \"t\": which of the device's channels its own reach is not known: type route to a "
+                  "channel FL is between");
 }
 
 } // namespace lost_tactor_test

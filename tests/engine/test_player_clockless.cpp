@@ -137,9 +137,8 @@ TEST_CASE("a stream with fewer channels than the array is refused, and says whic
         FAIL("it opened");
     } catch (const error& e) {
         CHECK(e.kind() == error_kind::bad_input);
-        CHECK(std::string(e.what()) ==
-              "player: tactor 4 of palm-3x3 is on channel 4, but the stream has 4 channels "
-              "(open it with 9 channels; they count from 0)");
+        CHECK(std::string(e.what()) == "player: tactor 4 of palm-3x3 is on channel 4, but the stream has 4 "
+                                       "channels (open it with 9 channels; they count from 0)");
     }
     CHECK_NOTHROW(player(open_alsa({.pcm = "null", .channels = 9}), palm));
     CHECK_NOTHROW(player(open_alsa({.pcm = "null", .channels = 16}), palm));

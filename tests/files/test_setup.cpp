@@ -148,10 +148,9 @@ TEST_CASE("[output] out of range")
 
 TEST_CASE("fewer channels than the map or the marker needs")
 {
-    CHECK(
-        complaint("[array]\npreset = \"palm-3x3\"\n[output]\nchannels = 8\n") ==
-        "t.toml:4:12: channels is 8, but tactor 8 (t.toml:2:10) is on channel 8 (the array needs 9 channels; "
-        "they count from 0)");
+    CHECK(complaint("[array]\npreset = \"palm-3x3\"\n[output]\nchannels = 8\n") ==
+          "t.toml:4:12: channels is 8, but tactor 8 (t.toml:2:10) is on channel 8 (the array needs 9 "
+          "channels; they count from 0)");
     CHECK(complaint("[array]\npreset = \"palm-3x3\"\n[output]\nchannels = 9\n").empty());
     CHECK(complaint(with("channels = 16", "channels = 15")) ==
           "t.toml:19:11: the marker's channel is 15, but there are 15 channels (t.toml:8:12) (channels count "
@@ -172,8 +171,7 @@ TEST_CASE("GPIO lines: a chip and an offset, or a name, each line once")
           "t.toml:2:29: line has both chip and name (keep one of them)");
     CHECK(line("{ name = \"a\", offset = 2 }") ==
           "t.toml:2:31: line has both name and offset (a name is enough)");
-    CHECK(line("{ offset = 2 }") == "t.toml:2:8: line says nothing of what it "
-                                    "is (add one of: chip, name)");
+    CHECK(line("{ offset = 2 }") == "t.toml:2:8: line says nothing of what it is (add one of: chip, name)");
     CHECK(line("{ chip = \"a\", offset = -2 }") == "t.toml:2:31: offset is -2 (allowed: 0 to 65535)");
     CHECK(line("\"GPIO17\"") ==
           "t.toml:2:8: line is 'GPIO17' (give a table, line = { chip, offset } or { name })");

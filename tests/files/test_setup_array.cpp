@@ -135,8 +135,7 @@ TEST_CASE("an unknown key names the nearest, or lists what is known")
     CHECK(complaint("[aray]\nname = \"x\"\n") ==
           "palm.toml:1:2: unknown key 'aray' in the file (did you mean 'array'?)");
     CHECK(complaint("[array]\ngrid = { rows = 3, colums = 3, pitch_mm = 20 }\n") ==
-          "palm.toml:2:20: unknown key 'colums' in grid (did you mean "
-          "'columns'?)");
+          "palm.toml:2:20: unknown key 'colums' in grid (did you mean 'columns'?)");
     CHECK(complaint("[array]\ngrid = { rows = 3, columns = 3, pitch = 20 }\n")
               .ends_with("(did you mean 'pitch_mm'?)"));
     CHECK(complaint("[array]\nzz = 1\naa = 1\n").starts_with("palm.toml:2:1: unknown key 'zz'"));
@@ -178,8 +177,8 @@ TEST_CASE("wrong types and ranges, at the value")
     for (const actuator_kind k : values_of<actuator_kind>()) {
         const std::string line = fmt::format("actuator = \"{}\"\n", to_string(k));
         if (k == actuator_kind::unknown)
-            CHECK(complaint(one + line) == "palm.toml:4:12: actuator is 'unknown' (known values: piezo, "
-                                           "voice-coil, lra, erm)");
+            CHECK(complaint(one + line) ==
+                  "palm.toml:4:12: actuator is 'unknown' (known values: piezo, voice-coil, lra, erm)");
         else
             CHECK(array_of(one + line).tactors[0].actuator == k);
     }
@@ -239,8 +238,7 @@ TEST_CASE("two tactors on one place or channel, with both lines")
           "channel of its own)");
     CHECK(complaint("[[tactor]]\nx_mm = 0\ny_mm = 0\n[[tactor]]\nx_mm = 5e-7\ny_mm = 0\n") ==
           "palm.toml:4:1: tactor 1 is at (5e-07, 0) mm, the place of tactor 0 (palm.toml:1:1) (give each "
-          "tactor "
-          "a place of its own)");
+          "tactor a place of its own)");
     CHECK(complaint(grid + "[[tactor]]\ntactor = 4\nchannel = 0\n") ==
           "palm.toml:3:1: tactor 4 is on channel 0, that of tactor 0 (palm.toml:2:8) (give each tactor a "
           "channel of its own)");

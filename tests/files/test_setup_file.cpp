@@ -113,11 +113,9 @@ TEST_CASE("the channel count of one file and the map of another")
     const folder f;
     f.write("arm.toml", grid);
     const fs::path c = f.write("c.toml", "[array]\nfile = \"arm.toml\"\n[output]\nchannels = 3\n");
-    CHECK(complaint(c) ==
-          fmt::format(
-              "{}:4:12: channels is 3, but tactor 3 ({}:3:8) is on channel 3 (the array needs 4 channels; "
-              "they count from 0)",
-              c.string(), (f / "arm.toml").string()));
+    CHECK(complaint(c) == fmt::format("{}:4:12: channels is 3, but tactor 3 ({}:3:8) is on channel 3 (the "
+                                      "array needs 4 channels; they count from 0)",
+                                      c.string(), (f / "arm.toml").string()));
 }
 
 TEST_CASE("included files that are missing, wrong, without an array or a circle")

@@ -51,9 +51,8 @@ TEST_CASE("columns come in any order, and intensity may be left out")
 
 TEST_CASE("byte order mark, CRLF, blanks, quotes, comments and empty lines are taken")
 {
-    const stroke s =
-        one("\xEF\xBB\xBF# recorded\r\n\r\n \"t_s\" , x_mm,\ty_mm \r\n# begin\r\n 0 , \"0\" , +10 "
-            "\r\n\r\n  # end\r\n2.0e0,4e1, 30. \r\n");
+    const stroke s = one("\xEF\xBB\xBF# recorded\r\n\r\n \"t_s\" , x_mm,\ty_mm \r\n# begin\r\n 0 , \"0\" , "
+                         "+10 \r\n\r\n  # end\r\n2.0e0,4e1, 30. \r\n");
     CHECK(s.motion.position(1.0) == point{20.0, 20.0});
     CHECK(one("t_s,x_mm,y_mm\n0,0,0\n1,1,1").motion.duration_s() == 1.0);
 }

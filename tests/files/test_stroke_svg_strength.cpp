@@ -31,17 +31,16 @@ const std::string by_opacity = "data-intensity-from=\"opacity\"";
 TEST_CASE("the widest of the lines that ask for it has intensity 1")
 {
     const std::string lines =
-        "<path d=\"M 0 0 H 9\" stroke-width=\"4\"/><path d=\"M 0 0 H 9\" style=\"stroke-width:1\"/>"
-        "<g stroke-width=\"3\"><path d=\"M 0 0 H 9\"/></g><path d=\"M 0 0 H 9\"/>";
+        "<path d=\"M 0 0 H 9\" stroke-width=\"4\"/><path d=\"M 0 0 H 9\" style=\"stroke-width:1\"/><g "
+        "stroke-width=\"3\"><path d=\"M 0 0 H 9\"/></g><path d=\"M 0 0 H 9\"/>";
     CHECK(intensities("", lines) == std::vector<double>{1.0, 1.0, 1.0, 1.0}); // nobody asked
     CHECK(intensities(by_width, lines) == std::vector<double>{1.0, 0.25, 0.75, 0.25});
     // With what the shape says, and as wide as its transform makes it.
-    CHECK(intensities(by_width,
-                      "<path d=\"M 0 0 H 9\" stroke-width=\"4\" data-intensity=\"0.5\"/>"
-                      "<path d=\"M 0 0 H 9\" transform=\"scale(2)\"/>") == std::vector<double>{0.5, 0.5});
+    CHECK(intensities(by_width, "<path d=\"M 0 0 H 9\" stroke-width=\"4\" data-intensity=\"0.5\"/><path "
+                                "d=\"M 0 0 H 9\" transform=\"scale(2)\"/>") == std::vector<double>{0.5, 0.5});
     // One shape does not ask.
-    CHECK(intensities(by_width, "<path d=\"M 0 0 H 9\" stroke-width=\"4\"/>"
-                                "<path d=\"M 0 0 H 9\" stroke-width=\"9\" data-intensity-from=\"none\"/>") ==
+    CHECK(intensities(by_width, "<path d=\"M 0 0 H 9\" stroke-width=\"4\"/><path d=\"M 0 0 H 9\" "
+                                "stroke-width=\"9\" data-intensity-from=\"none\"/>") ==
           std::vector<double>{1.0, 1.0});
     CHECK(intensities(by_width, "<path d=\"M 0 0 H 9 M 0 5 H 9\" stroke-width=\"0\"/>") ==
           std::vector<double>{1.0, 1.0}); // all alike
@@ -49,10 +48,9 @@ TEST_CASE("the widest of the lines that ask for it has intensity 1")
 
 TEST_CASE("opacity is intensity, that of groups multiplied and that of lines inherited")
 {
-    CHECK(intensities(by_opacity, "<g opacity=\"0.5\" stroke-opacity=\"50%\"><path d=\"M 0 0 H 9\"/>"
-                                  "<path d=\"M 0 0 H 9\" opacity=\"0.5\" stroke-opacity=\"1\"/></g>"
-                                  "<path d=\"M 0 0 H 9\" style=\"opacity: 0.125\"/>"
-                                  "<path d=\"M 0 0 H 9\" opacity=\"7\"/>") ==
+    CHECK(intensities(by_opacity, "<g opacity=\"0.5\" stroke-opacity=\"50%\"><path d=\"M 0 0 H 9\"/><path "
+                                  "d=\"M 0 0 H 9\" opacity=\"0.5\" stroke-opacity=\"1\"/></g><path d=\"M 0 0 "
+                                  "H 9\" style=\"opacity: 0.125\"/><path d=\"M 0 0 H 9\" opacity=\"7\"/>") ==
           std::vector<double>{0.25, 0.25, 0.125, 1.0});
 }
 

@@ -151,10 +151,8 @@ TEST_CASE("values out of range, at the value")
     CHECK(complaint(path + "carrier_hz = 0").starts_with("w.toml:3:14: carrier_hz is 0"));
     CHECK(complaint(path + "texture = \"weave\"") ==
           "w.toml:3:11: texture is 'weave' (known values: cycle, time, length)");
-    CHECK(
-        complaint(path + "texture_mm = 20") ==
-        "w.toml:3:14: [stroke] has texture_mm, which nothing uses (add waveform = \"FILE.wav\" and texture = "
-        "\"length\")");
+    CHECK(complaint(path + "texture_mm = 20") == "w.toml:3:14: [stroke] has texture_mm, which nothing uses "
+                                                 "(add waveform = \"FILE.wav\" and texture = \"length\")");
     for (const texture_kind k : values_of<texture_kind>())
         CHECK(complaint(path + fmt::format("texture = \"{}\"", to_string(k))) ==
               "w.toml:3:11: [stroke] has texture, which nothing uses (add waveform = \"FILE.wav\")");
@@ -191,10 +189,9 @@ TEST_CASE("timed points out of order, with the line of the point")
     CHECK(
         complaint("timed = [\n[0, 0, 0],\n[1, 1, 1],\n[1, 2, 2]]") ==
         "w.toml:5:1: the time 1 s does not come after 1 s (put the points in order of time, each time once)");
-    CHECK(
-        complaint("timed = [[0.5, 0, 0], [1, 1, 1]]") ==
-        "w.toml:2:10: the first time is 0.5 s (times count from 0 at the start of the stroke; start_s moves "
-        "all of it)");
+    CHECK(complaint("timed = [[0.5, 0, 0], [1, 1, 1]]") ==
+          "w.toml:2:10: the first time is 0.5 s (times count from 0 at the start of the stroke; start_s "
+          "moves all of it)");
     CHECK(complaint("timed = [\n[0, 0]]") ==
           "w.toml:3:1: a timed point is a list (give [t_s, x_mm, y_mm] or [t_s, x_mm, y_mm, intensity])");
     CHECK(complaint("timed = [[0, 0, 0, -1], [1, 1, 1]]").starts_with("w.toml:2:20: intensity is -1"));

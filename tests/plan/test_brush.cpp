@@ -59,9 +59,8 @@ TEST_CASE("Tactile Brush: the check value of the rendering model, to a microseco
     CHECK(p.dropped.empty());
     CHECK(p.bursts[1].position.x_mm == 15.0);
     REQUIRE(p.warnings.size() == 1);
-    CHECK(p.warnings[0] ==
-          "4 of 5 bursts last longer than 0.160 s (up to 0.594 s), beyond the range for which the "
-          "timing law was fitted");
+    CHECK(p.warnings[0] == "4 of 5 bursts last longer than 0.160 s (up to 0.594 s), beyond the range for "
+                           "which the timing law was fitted");
     check_law(p, {});
 }
 

@@ -92,15 +92,14 @@ TEST_CASE("what leaves the timing law, or the range that it was fitted for, is t
     o.burst_s = 0.05;
     CHECK(make_plan(palm, across(1.0), o).warnings ==
           std::vector<std::string>{
-              "bursts of 0.05 s each 0.07 s leave the timing law, SOA = 0.32 duration + 0.0473 s, by "
-              "which their SOA is 0.0633 s: they may not be felt as one motion"});
+              "bursts of 0.05 s each 0.07 s leave the timing law, SOA = 0.32 duration + 0.0473 s, by which "
+              "their SOA is 0.0633 s: they may not be felt as one motion"});
     o.soa_s = 2.0;
     o.burst_s = 0.161;
     const auto warnings = make_plan(palm, across(1.0), o).warnings;
     REQUIRE(warnings.size() == 2);
-    CHECK(warnings[0] ==
-          "1 of 1 burst lasts longer than 0.160 s (up to 0.161 s), beyond the range for which the "
-          "timing law was fitted");
+    CHECK(warnings[0] == "1 of 1 burst lasts longer than 0.160 s (up to 0.161 s), beyond the range for which "
+                         "the timing law was fitted");
     CHECK(warnings[1].find("by which their SOA is 0.09882 s:") != std::string::npos);
     o.burst_s = 0.160;
     CHECK(make_plan(palm, across(1.0), o).warnings.size() == 1);

@@ -147,9 +147,8 @@ TEST_CASE("a sensation level that is too high says threshold and what is missing
     render_options o;
     o.sl_db = 9.0; // 0.8 of it: 7.06 dB above -6 dBFS
     const std::string text = message([&] { score(a, {{one, {}}}, o); });
-    CHECK(holds(text,
-                "me.toml:9:1: tactor 1 would be driven at 1.062 dBFS, above full scale (0 dBFS): with its "
-                "threshold of -6 dBFS 1.07 dB are missing"));
+    CHECK(holds(text, "me.toml:9:1: tactor 1 would be driven at 1.062 dBFS, above full scale (0 dBFS): with "
+                      "its threshold of -6 dBFS 1.07 dB are missing"));
     CHECK(holds(text, "lower sl_db by 1.07 dB or more"));
     a.tactors[1].max_dbfs = -3.0;
     CHECK(holds(message([&] {

@@ -65,8 +65,7 @@ void print(const study::tactor_threshold& t, double ceiling_dbfs)
     if (missing > 0.0)
         say(stderr,
             "tactor: warning: tactor {}: {} dB above its threshold of {:.2f} dBFS are {:.2f} dB more than it "
-            "may "
-            "have\n",
+            "may have\n",
             t.tactor, paper_sl_db, *t.threshold_dbfs, missing);
 }
 

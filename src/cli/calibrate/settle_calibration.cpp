@@ -106,8 +106,7 @@ void tell_of_power(const study::calibration_settings& c, const array& a, const d
     if (!lower.empty())
         say(stderr,
             "tactor: warning: no level is above {:.4g} dBFS, which power_dbfs in [limits] allows, and "
-            "max_dbfs "
-            "does not, of {} {}\n",
+            "max_dbfs does not, of {} {}\n",
             l.power_dbfs, lower.size() == 1 ? "tactor" : "tactors", fmt::join(lower, ", "));
 }
 

@@ -16,10 +16,9 @@ namespace {
 
 finding told_lost(const alsa_options& device, const std::string& lost)
 {
-    return failure("device",
-                   {error_kind::not_available, fmt::format("PCM \"{}\"", device.pcm), lost,
-                    "give each channel one of the device's, at 1, where the PCM is defined (ttable, "
-                    "bindings), or play on the card itself: -D hw:CARD=NAME"});
+    return failure("device", {error_kind::not_available, fmt::format("PCM \"{}\"", device.pcm), lost,
+                              "give each channel one of the device's, at 1, where the PCM is defined "
+                              "(ttable, bindings), or play on the card itself: -D hw:CARD=NAME"});
 }
 
 finding told_open(const alsa_options& device, const session::stream_options& o, const environment& e,

@@ -87,9 +87,8 @@ finding check_memory(const system_facts& f, const system_needs& n)
 
 finding check_kernel(const system_facts& f)
 {
-    constexpr const char* cure =
-        "boot with preempt=full on the kernel's command line, or a PREEMPT_RT kernel "
-        "(Debian: linux-image-rt)";
+    constexpr const char* cure = "boot with preempt=full on the kernel's command line, or a PREEMPT_RT "
+                                 "kernel (Debian: linux-image-rt)";
     switch (f.preempts) {
     case preemption::realtime:
         return fine("kernel", "PREEMPT_RT");
@@ -128,9 +127,8 @@ std::string names(const std::vector<process_info>& all)
 finding check_servers(const system_facts& f, const system_needs& n)
 {
     constexpr const char* rules =
-        "call the card Tactor in the udev rules (70-tactor.rules), which keep them off "
-        "it; for now: systemctl --user stop pipewire.socket pipewire wireplumber "
-        "pulseaudio.socket pulseaudio";
+        "call the card Tactor in the udev rules (70-tactor.rules), which keep them off it; for now: "
+        "systemctl --user stop pipewire.socket pipewire wireplumber pulseaudio.socket pulseaudio";
     if (!n.card)
         return fine("sound servers", fmt::format("{}; \"{}\" is on no card of this machine",
                                                  f.servers.empty() ? "none" : names(f.servers), n.pcm));
@@ -174,12 +172,12 @@ std::vector<finding> check_services(const system_facts& f)
         else if (at.empty())
             all.push_back(fine("service", who + " serves, and listens nowhere yet"));
         else if (open)
-            all.push_back(
-                warning("service",
-                        fmt::format("{} listens at {}: other machines can connect, and nothing "
-                                    "that is said is encrypted",
-                                    who, fmt::join(at, ", ")),
-                        "let it listen on 127.0.0.1 and come by ssh -L, or keep others off by a firewall"));
+            all.push_back(warning(
+                "service",
+                fmt::format(
+                    "{} listens at {}: other machines can connect, and nothing that is said is encrypted",
+                    who, fmt::join(at, ", ")),
+                "let it listen on 127.0.0.1 and come by ssh -L, or keep others off by a firewall"));
         else
             all.push_back(fine("service", fmt::format("{} listens at {}", who, fmt::join(at, ", "))));
     }
@@ -206,24 +204,22 @@ std::vector<finding> check_release(const system_facts& f, const system_needs& n)
                                      "where player and holder are killed together outside of it",
                                      found, fmt::join(f.off_units, ", ")),
                          "after such an end: tactor off")};
-        return {warning("GPIO release",
-                        found + ": nothing switches the amplifier off when player and holder are killed "
-                                "together",
-                        cure)};
+        return {warning(
+            "GPIO release",
+            found + ": nothing switches the amplifier off when player and holder are killed together", cure)};
     }
     if (f.releases_outputs)
         return {fine("GPIO release", "lines become inputs when their program ends")};
     if (f.raspberry_pi)
         return {warning("GPIO release",
-                        "this kernel does not say whether lines keep their level when their program "
-                        "ends",
+                        "this kernel does not say whether lines keep their level when their program ends",
                         cure)};
     return {fine("GPIO release",
                  "what becomes of a line whose program was killed is up to its chip: it may stay on when "
                  "player and holder are killed together",
-                 f.off_units.empty() ? "a pull-down resistor at the amplifier's enable input; after such an "
-                                       "end: tactor off"
-                                     : "")};
+                 f.off_units.empty()
+                     ? "a pull-down resistor at the amplifier's enable input; after such an end: tactor off"
+                     : "")};
 }
 
 } // namespace

@@ -43,9 +43,8 @@ void check_noise(const study::prepared_experiment& p, const experiment_options& 
         throw error(error_kind::bad_input, "--masker", "the definition has no masking noise",
                     "[masking], or leave it out");
     if (!none && o.masker.empty())
-        say(stderr,
-            "tactor: warning: the definition's masking noise has no device: whoever sits near hears the "
-            "array (--masker PCM)\n");
+        say(stderr, "tactor: warning: the definition's masking noise has no device: whoever sits near hears "
+                    "the array (--masker PCM)\n");
 }
 
 constexpr const char* masker_cure =
@@ -86,9 +85,8 @@ void warn_of_animation(const study::prepared_experiment& p)
 {
     const auto& runs = p.definition.runs;
     if (!can_draw() && std::any_of(runs.begin(), runs.end(), [](const auto& r) { return r.animation; }))
-        say(stderr,
-            "tactor: warning: the target cannot be drawn: standard output is no terminal that can move its "
-            "cursor\n");
+        say(stderr, "tactor: warning: the target cannot be drawn: standard output is no terminal that can "
+                    "move its cursor\n");
 }
 
 class noise_check {

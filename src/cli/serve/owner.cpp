@@ -91,8 +91,7 @@ void provide_descriptors(const server::service_limits& l)
     if (::setrlimit(RLIMIT_NOFILE, &now) != 0 || now.rlim_cur < wanted)
         say(stderr,
             "tactor: warning: too few descriptors: {} may be open, and {} clients need {}: later ones are "
-            "refused "
-            "(raise ulimit -n, or LimitNOFILE= of the unit)\n",
+            "refused (raise ulimit -n, or LimitNOFILE= of the unit)\n",
             now.rlim_cur, l.max_clients, wanted);
 }
 

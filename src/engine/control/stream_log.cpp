@@ -56,9 +56,8 @@ void stream_log::look_at_stream(const stream_status& s)
     }
     const bool given_up = link_.count.realtime_given_up.load(std::memory_order_relaxed);
     if (given_up && !given_up_)
-        add(log_kind::warning,
-            "the audio thread gave up its real-time priority: it had worked for some 0.1 s without "
-            "a pause (longer periods, or fewer strokes at once, need less)");
+        add(log_kind::warning, "the audio thread gave up its real-time priority: it had worked for some 0.1 "
+                               "s without a pause (longer periods, or fewer strokes at once, need less)");
     given_up_ = given_up;
     const bool asleep = s.stage == stream_stage::suspended;
     if (asleep && !asleep_)

@@ -201,10 +201,9 @@ private:
         if (repeated_ == 1)
             warn(first_repeated_, "repeats the time of the line before, which does not count");
         if (repeated_ > 1)
-            warn(first_repeated_,
-                 fmt::format("repeats the time of the line before, as {} lines do in all; the last of "
-                             "equal times counts",
-                             repeated_));
+            warn(first_repeated_, fmt::format("repeats the time of the line before, as {} lines do in all; "
+                                              "the last of equal times counts",
+                                              repeated_));
         return all;
     }
 

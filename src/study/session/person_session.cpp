@@ -52,10 +52,8 @@ person_session::person_session(const prepared_experiment& p, session_store& stor
 
 void person_session::hold()
 {
-    session::say(
-        stderr,
-        "Keys of the experimenter: r repeats the trial, v makes the one before void, p pauses, g goes "
-        "on, q or Ctrl-C stops.\n");
+    session::say(stderr, "Keys of the experimenter: r repeats the trial, v makes the one before void, p "
+                         "pauses, g goes on, q or Ctrl-C stops.\n");
     do {
         for (session_step s = flow_.next(); s.what != step_kind::over; s = flow_.next())
             step(s);
