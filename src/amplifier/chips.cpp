@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
-#include <charconv>
 #include <optional>
 #include <utility>
 
@@ -14,6 +13,7 @@
 #include <sys/sysmacros.h>
 
 #include "amplifier/errors.hpp"
+#include "core/split.hpp"
 #include "rt/system_files.hpp"
 
 namespace tactor::gpio {
@@ -22,12 +22,9 @@ namespace {
 std::optional<unsigned> chip_number(const std::string& name)
 {
     constexpr std::string_view prefix = "gpiochip";
-    unsigned number = 0;
     if (!name.starts_with(prefix))
         return std::nullopt;
-    const char* end = name.data() + name.size();
-    const auto [p, ec] = std::from_chars(name.data() + prefix.size(), end, number);
-    return ec == std::errc{} && p == end ? std::optional(number) : std::nullopt;
+    return detail::number_in<unsigned>(std::string_view(name).substr(prefix.size()));
 }
 
 chip unread(const std::string& path, int code)

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <charconv>
 #include <cstdint>
 #include <fstream>
 #include <map>
@@ -18,21 +17,13 @@
 
 #include <fmt/format.h>
 
+#include "core/split.hpp"
+
 namespace tactor::cli {
 
 namespace {
 
 namespace fs = std::filesystem;
-
-template <class Number>
-std::optional<Number> number(std::string_view text, int base)
-{
-    Number n = 0;
-    const auto [end, wrong] = std::from_chars(text.data(), text.data() + text.size(), n, base);
-    if (wrong != std::errc() || end != text.data() + text.size())
-        return {};
-    return n;
-}
 
 // Endpoints of all sockets that wait for somebody, by inode.
 using by_inode = std::map<std::string, endpoint>;
@@ -65,7 +56,7 @@ void read_unix(const fs::path& file, by_inode& all)
 {
     constexpr unsigned accepts = 0x10000;
     for (const auto& row : rows_of(file))
-        if ((number<unsigned>(row[3], 16).value_or(0) & accepts) != 0 && !row[7].empty())
+        if ((detail::number_in<unsigned>(row[3], 16).value_or(0) & accepts) != 0 && !row[7].empty())
             all[row[6]] = {row[7], false};
 }
 
@@ -85,11 +76,11 @@ endpoint endpoint_of(std::string_view hexadecimal)
     const std::string_view address = hexadecimal.substr(0, colon);
     if (colon == std::string_view::npos || (address.size() != 8 && address.size() != 32))
         return {};
-    const auto port = number<std::uint16_t>(hexadecimal.substr(colon + 1), 16);
+    const auto port = detail::number_in<std::uint16_t>(hexadecimal.substr(colon + 1), 16);
     // Words of 32 bits, each as this machine has them.
     std::array<std::uint32_t, 4> words{};
     for (std::size_t i = 0; i < address.size() / 8; ++i) {
-        const auto word = number<std::uint32_t>(address.substr(8 * i, 8), 16);
+        const auto word = detail::number_in<std::uint32_t>(address.substr(8 * i, 8), 16);
         if (!word)
             return {};
         words[i] = *word;
@@ -160,13 +151,9 @@ std::string text_of(const fs::path& file)
 std::vector<process_folder> processes(const fs::path& root)
 {
     std::vector<process_folder> all;
-    for (const fs::path& process : entries(root / "proc")) {
-        const std::string name = process.filename().string();
-        int pid = 0;
-        const auto [end, wrong] = std::from_chars(name.data(), name.data() + name.size(), pid);
-        if (wrong == std::errc() && end == name.data() + name.size())
-            all.push_back({pid, process});
-    }
+    for (const fs::path& process : entries(root / "proc"))
+        if (const auto pid = detail::number_in<int>(process.filename().string()))
+            all.push_back({*pid, process});
     std::sort(all.begin(), all.end(), [](const auto& a, const auto& b) { return a.pid < b.pid; });
     return all;
 }

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "cli/experiment/experiment_options.hpp"
 
-#include <charconv>
-
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
@@ -10,6 +8,7 @@
 
 #include "cli/session/page_options.hpp"
 #include "cli/settings.hpp"
+#include "core/split.hpp"
 #include "study/bids/study_folder.hpp"
 
 namespace tactor::cli {
@@ -23,12 +22,11 @@ namespace {
 std::uint64_t seed_in(const std::string& text)
 {
     constexpr std::uint64_t most = (std::uint64_t{1} << 53) - 1;
-    std::uint64_t v = 0;
-    const auto [end, failed] = std::from_chars(text.data(), text.data() + text.size(), v);
-    if (failed != std::errc() || end != text.data() + text.size() || v > most)
+    const auto v = detail::number_in<std::uint64_t>(text);
+    if (!v || *v > most)
         refuse_experiment("--seed", fmt::format("\"{}\" is no seed", text),
                           fmt::format("a whole number from 0 to {}", most));
-    return v;
+    return *v;
 }
 
 } // namespace

@@ -2,7 +2,6 @@
 #include "cli/experiment/experiment_options.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <optional>
 #include <string_view>
 #include <vector>
@@ -37,12 +36,11 @@ constexpr std::size_t most_participants = 1000;
 
 std::size_t count_in(const char* option, std::string_view text, std::size_t least, std::size_t most)
 {
-    std::size_t n = 0;
-    const auto [end, failed] = std::from_chars(text.data(), text.data() + text.size(), n);
-    if (failed != std::errc() || end != text.data() + text.size() || n < least || n > most)
+    const auto n = detail::number_in<std::size_t>(text);
+    if (!n || *n < least || *n > most)
         refuse_power(option, fmt::format("\"{}\" is no such number", text),
                      fmt::format("a whole number from {} to {}", least, most));
-    return n;
+    return *n;
 }
 
 std::vector<std::size_t> participants_in(std::string_view text)

@@ -2,7 +2,6 @@
 #include "engine/control/player_impl.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <cstddef>
 #include <iterator>
@@ -70,12 +69,10 @@ public:
     {
         if (at_ == words_.size())
             refuse("a line breaks off");
-        const std::string_view word = words_[at_++];
-        std::int64_t n = 0;
-        const auto [end, failed] = std::from_chars(word.data(), word.data() + word.size(), n);
-        if (failed != std::errc{} || end != word.data() + word.size() || n < -longest_ns || n > longest_ns)
+        const auto n = detail::number_in<std::int64_t>(words_[at_++]);
+        if (!n || *n < -longest_ns || *n > longest_ns)
             refuse("a word is no number");
-        return n;
+        return *n;
     }
     std::string_view word() { return at_ < words_.size() ? words_[at_++] : std::string_view{}; }
     bool over() const noexcept { return at_ == words_.size(); }

@@ -2,7 +2,6 @@
 #include "study/calibrate/observer.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <numbers>
 #include <set>
@@ -29,14 +28,13 @@ constexpr const char* shape = "as seed=1,threshold=-45,spread=2,lapse=0.02";
 
 double number(std::string_view key, std::string_view text, double low, double high)
 {
-    double v = 0.0;
-    const auto [stop, code] = std::from_chars(text.data(), text.data() + text.size(), v);
-    if (code != std::errc() || stop != text.data() + text.size())
+    const auto v = detail::number_in<double>(text);
+    if (!v)
         refuse(fmt::format("{}: \"{}\" is not a number", key, text));
-    if (!(v >= low && v <= high))
+    if (!(*v >= low && *v <= high))
         refuse(fmt::format("{} is {}", key, text),
                fmt::format("{} to {}", plain_number(low), plain_number(high)));
-    return v;
+    return *v;
 }
 
 std::uint64_t whole(std::string_view key, std::string_view text)

@@ -32,9 +32,9 @@ std::vector<listed_device> listed_devices(const fs::path& root, unsigned card_in
         const auto dash = line.find('-');
         const auto colon = line.find(':');
         if (dash == line.npos || colon == line.npos || colon < dash || line.find(": playback") == line.npos ||
-            number<unsigned>(line.substr(0, dash)) != card_index)
+            detail::number_in<unsigned>(line.substr(0, dash)) != card_index)
             continue;
-        const auto d = number<unsigned>(line.substr(dash + 1, colon - dash - 1));
+        const auto d = detail::number_in<unsigned>(line.substr(dash + 1, colon - dash - 1));
         if (d)
             devices.push_back({*d, trimmed(line.substr(colon + 1, line.find(':', colon + 1) - colon - 1))});
     }
@@ -53,7 +53,7 @@ std::vector<card> sound_cards(const system_root& root)
         const auto close = line.find("]:");
         if (open == line.npos || close == line.npos || close < open)
             continue;
-        if (const auto index = number<unsigned>(trimmed(line.substr(0, open))))
+        if (const auto index = detail::number_in<unsigned>(trimmed(line.substr(0, open))))
             cards.push_back({*index, trimmed(line.substr(open + 1, close - open - 1)), long_name(line)});
     }
     return cards;
@@ -93,14 +93,14 @@ std::optional<device_name> named_device(std::string_view pcm)
         rest = rest.substr(0, rest.find(','));
         if (rest.substr(0, 4) == "DEV=")
             rest.remove_prefix(4);
-        n.device = number<unsigned>(rest).value_or(0);
+        n.device = detail::number_in<unsigned>(rest).value_or(0);
     }
     return n;
 }
 
 std::optional<card> find_card(const std::vector<card>& cards, const std::string& id_or_index)
 {
-    const auto index = number<unsigned>(id_or_index);
+    const auto index = detail::number_in<unsigned>(id_or_index);
     const auto found = std::find_if(cards.begin(), cards.end(), [&](const card& c) {
         return c.id == id_or_index || (index && c.index == *index);
     });

@@ -4,12 +4,10 @@
 /// pass a folder with a system made of files.
 #pragma once
 
-#include <charconv>
 #include <filesystem>
 #include <optional>
 #include <string>
 #include <string_view>
-#include <system_error>
 #include <vector>
 
 #include <alsa/asoundlib.h>
@@ -72,17 +70,6 @@ std::vector<process_info> processes(const std::vector<holder>& holders);
 
 /// Fills in the abilities of an open PCM, and the reason why it does not fit.
 void look_at(snd_pcm_t* p, const std::optional<alsa_options>& wanted, pcm_info& into);
-
-/// The whole text as a number.
-template <typename T>
-std::optional<T> number(std::string_view text)
-{
-    T v{};
-    const auto r = std::from_chars(text.data(), text.data() + text.size(), v);
-    if (r.ec != std::errc() || r.ptr != text.data() + text.size())
-        return {};
-    return v;
-}
 
 /// Without blanks at both ends.
 std::string trimmed(std::string_view s);
