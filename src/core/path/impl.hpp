@@ -50,7 +50,7 @@ struct path::impl {
     std::vector<measured_curve> curves;
 
     /// Returns the curve of a segment, or null if it is straight.
-    const measured_curve* curve_of(std::size_t segment) const noexcept;
+    const measured_curve* find_curve(std::size_t segment) const noexcept;
 };
 
 } // namespace v0

@@ -74,7 +74,7 @@ void check_length(const recording& r, unsigned rate)
     const double frames = static_cast<double>(r.samples.size()) * rate / r.rate_hz;
     if (frames > most_loop_frames) {
         throw error(
-            error_kind::bad_input, detail::name_of(r),
+            error_kind::bad_input, detail::recording_name(r),
             fmt::format("it lasts {:.6g} s, which is too long at a rate of {} Hz", frames / rate, rate),
             fmt::format("give at most {:.6g} s", most_loop_frames / rate));
     }

@@ -67,7 +67,7 @@ constexpr double least_peak = 1e-5;
 void require_left(double peak, const recording& r)
 {
     if (!(peak >= least_peak)) {
-        throw error(error_kind::bad_input, detail::name_of(r),
+        throw error(error_kind::bad_input, detail::recording_name(r),
                     "nothing of it is left below half its own rate and the stream's",
                     "give a slower vibration, a lower carrier_hz or a higher rate");
     }
