@@ -27,11 +27,11 @@ TEST_CASE("what is in a folder and in a file; what is not there is empty")
     std::vector<std::string> names = rt::names_in(here.path().string());
     std::sort(names.begin(), names.end());
     CHECK(names == std::vector<std::string>{"a", "b"});
-    CHECK(rt::text_of(file.string()) == text);
+    CHECK(rt::read_file(file.string()) == text);
     CHECK(rt::names_in(here / "none").empty());
     CHECK(rt::names_in(file).empty());
-    CHECK(rt::text_of(here / "none").empty());
-    CHECK(rt::text_of(here.path().string()).empty());
+    CHECK(rt::read_file(here / "none").empty());
+    CHECK(rt::read_file(here.path().string()).empty());
 }
 
 EXHAUSTING_TEST_CASE("without a descriptor nothing is taken for empty")
@@ -46,7 +46,7 @@ EXHAUSTING_TEST_CASE("without a descriptor nothing is taken for empty")
         return 0;
     };
     CHECK(code_of([] { static_cast<void>(rt::names_in("/proc")); }) == EMFILE);
-    CHECK(code_of([] { static_cast<void>(rt::text_of("/proc/self/status")); }) == EMFILE);
+    CHECK(code_of([] { static_cast<void>(rt::read_file("/proc/self/status")); }) == EMFILE);
 }
 
 } // namespace system_files_test

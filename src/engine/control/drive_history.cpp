@@ -40,7 +40,7 @@ constexpr std::int64_t longest_ns = 4'000'000'000'000'000'000;
 /// Returns the identifier of this boot, from which CLOCK_MONOTONIC counts.
 std::string this_boot()
 {
-    const std::string text = rt::text_of("/proc/sys/kernel/random/boot_id");
+    const std::string text = rt::read_file("/proc/sys/kernel/random/boot_id");
     const std::string id = text.substr(0, text.find('\n'));
     return id.empty() ? "unknown" : id;
 }

@@ -89,7 +89,7 @@ error no_plugin(const std::string& name, const std::string& type, const std::str
     std::string hint;
     if (type == "pipewire")
         hint = "install it: sudo apt install pipewire-alsa";
-    else if (among(bundled, type))
+    else if (contains(bundled, type))
         hint = "install it: sudo apt install libasound2-plugins";
     else
         hint =
@@ -107,14 +107,14 @@ error no_jack(const std::string& name, const surroundings& s)
 // Returns true if the route would end in a card, if there were one. An unknown route probably does.
 bool wants_card(const surroundings& s)
 {
-    return s.route.empty() || among(s.route, "hw");
+    return s.route.empty() || contains(s.route, "hw");
 }
 
 error no_pcm(const std::string& name, const std::string& detail, const surroundings& s)
 {
     if (const std::string type = missing_plugin(detail); !type.empty())
         return no_plugin(name, type, detail, s);
-    if (among(s.route, "jack") && detail.empty())
+    if (contains(s.route, "jack") && detail.empty())
         return no_jack(name, s);
     const auto cards = sound_cards(s.root);
     if (const auto d = named_device(name)) {

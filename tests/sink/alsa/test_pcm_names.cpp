@@ -166,11 +166,11 @@ TEST_CASE("a type that nobody knows is not safe, and sound servers are named")
     const configuration route;
     CHECK(pcm::unsafe_type(route("odd")) == "ladspa");
     CHECK(pcm::unsafe_type(route("desk")) == "");
-    CHECK(pcm::server_of(route("desk")) == "PipeWire");
+    CHECK(pcm::find_server(route("desk")) == "PipeWire");
     CHECK(pcm::lasting_type(route("desk")) == "pipewire");
-    CHECK(pcm::server_of(route("palm")) == "");
-    CHECK(pcm::server_of({"plug", "jack"}) == "JACK");
-    CHECK(pcm::server_of({"pulse"}) == "PulseAudio");
+    CHECK(pcm::find_server(route("palm")) == "");
+    CHECK(pcm::find_server({"plug", "jack"}) == "JACK");
+    CHECK(pcm::find_server({"pulse"}) == "PulseAudio");
 }
 
 TEST_CASE("a name that others chose is refused with the reason, before it is opened")

@@ -28,7 +28,7 @@ std::vector<listed_device> listed_devices(const fs::path& root, unsigned card_in
 {
     // Lines read "01-00: ID : NAME : playback 1 : capture 1".
     std::vector<listed_device> devices;
-    for (const std::string& line : lines_of(root / "proc/asound/pcm")) {
+    for (const std::string& line : read_lines(root / "proc/asound/pcm")) {
         const auto dash = line.find('-');
         const auto colon = line.find(':');
         if (dash == line.npos || colon == line.npos || colon < dash || line.find(": playback") == line.npos ||
@@ -48,7 +48,7 @@ std::vector<card> sound_cards(const system_root& root)
     // Lines read " 1 [DAC8x          ]: HifiberryDac8x - snd_rpi_hifiberry_dac8x", each followed by a line
     // with the long name.
     std::vector<card> cards;
-    for (const std::string& line : lines_of(root / "proc/asound/cards")) {
+    for (const std::string& line : read_lines(root / "proc/asound/cards")) {
         const auto open = line.find('[');
         const auto close = line.find("]:");
         if (open == line.npos || close == line.npos || close < open)
@@ -113,9 +113,9 @@ std::string trimmed(std::string_view s)
     return from == s.npos ? "" : std::string(s.substr(from, s.find_last_not_of(" \t\n") + 1 - from));
 }
 
-std::vector<std::string> lines_of(const fs::path& file)
+std::vector<std::string> read_lines(const fs::path& file)
 {
-    const std::string text = rt::text_of(file.string());
+    const std::string text = rt::read_file(file.string());
     std::vector<std::string> lines;
     for (const std::string_view line : tactor::detail::split(text, '\n'))
         lines.emplace_back(line);
@@ -126,7 +126,7 @@ std::vector<std::string> lines_of(const fs::path& file)
 
 std::string field(const fs::path& file, std::string_view key)
 {
-    for (const std::string& line : lines_of(file)) {
+    for (const std::string& line : read_lines(file)) {
         const auto colon = line.find(':');
         if (colon != line.npos && trimmed(line.substr(0, colon)) == key)
             return trimmed(line.substr(colon + 1));

@@ -75,7 +75,7 @@ void look_at(snd_pcm_t* p, const std::optional<alsa_options>& wanted, pcm_info& 
 std::string trimmed(std::string_view s);
 
 /// Empty where the file cannot be read. \throws error (runtime), here and below, without a descriptor.
-std::vector<std::string> lines_of(const std::filesystem::path& file);
+std::vector<std::string> read_lines(const std::filesystem::path& file);
 
 /// The value after "key:" in a file of such lines.
 std::string field(const std::filesystem::path& file, std::string_view key);

@@ -32,9 +32,9 @@ bool meets(const which_device& wanted, unsigned card, unsigned device)
     return wanted.card.value_or(card) == card && wanted.device.value_or(device) == device;
 }
 
-std::string program_of(const fs::path& process)
+std::string program_name(const fs::path& process)
 {
-    const auto lines = lines_of(process / "comm");
+    const auto lines = read_lines(process / "comm");
     return lines.empty() ? "" : trimmed(lines.front());
 }
 
@@ -61,7 +61,7 @@ void add_owners(const fs::path& proc, const fs::path& device, std::map<int, std:
             continue;
         const auto process = detail::number_in<int>(field(proc / std::to_string(*thread) / "status", "Tgid"));
         const int pid = process.value_or(*thread);
-        into[pid] = program_of(proc / std::to_string(pid));
+        into[pid] = program_name(proc / std::to_string(pid));
     }
 }
 
@@ -94,7 +94,7 @@ std::vector<holder> playback_holders(const system_root& root, const which_device
     for (const fs::path& process : entries(root / "proc")) {
         const auto pid = detail::number_in<int>(process.filename().string());
         if (pid && !found.contains(*pid) && holds_playback(process, wanted))
-            found[*pid] = program_of(process);
+            found[*pid] = program_name(process);
     }
     std::vector<holder> holders;
     for (const auto& [pid, program] : found)

@@ -34,7 +34,7 @@ void each_member(snd_config_t* compound, Visit visit)
 inline constexpr int deepest = 8;
 
 template <typename Names>
-bool among(const Names& names, std::string_view type)
+bool contains(const Names& names, std::string_view type)
 {
     return std::find(names.begin(), names.end(), type) != names.end();
 }
@@ -60,7 +60,7 @@ std::string lasting_type(const std::vector<std::string>& route);
 bool writes(const std::vector<std::string>& route);
 
 /// Returns "PipeWire", "PulseAudio" or "JACK" if the route ends in one, else empty.
-std::string server_of(const std::vector<std::string>& route);
+std::string find_server(const std::vector<std::string>& route);
 
 struct known_name {
     std::string name = {};

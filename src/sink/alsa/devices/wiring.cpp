@@ -113,11 +113,11 @@ private:
             return of_multi(definition, channels, depth);
         if (type == "route" || (type == "plug" && member(definition, "ttable") != nullptr))
             return of_table(definition, channels, depth);
-        if (among(binding, type) && member(definition, "bindings") != nullptr)
+        if (contains(binding, type) && member(definition, "bindings") != nullptr)
             return of_bindings(definition, channels, depth);
         if (type == "softvol")
             level_by_ = "type softvol";
-        if (among(straight, type) || among(binding, type))
+        if (contains(straight, type) || contains(binding, type))
             return slave(member(definition, "slave"), channels, depth);
         throw hidden{type.empty() ? "a definition without a type" : fmt::format("type {}", type)};
     }
