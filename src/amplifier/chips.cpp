@@ -41,7 +41,7 @@ chip read_with_group(const std::string& path)
     const int other = not_a_chip(path);
     chip c = other == 0 ? read_chip(path) : unread(path, other);
     if (c.code != 0)
-        c.group = group_of(path);
+        c.group = find_group(path);
     return c;
 }
 
@@ -87,7 +87,7 @@ int not_a_chip(const std::string& path)
     return bus.filename() == "gpio" ? 0 : ENODEV;
 }
 
-std::string group_of(const std::string& path)
+std::string find_group(const std::string& path)
 {
     struct stat status {};
     group entry{};
@@ -132,7 +132,7 @@ located_line locate(const gpio_line_name& wanted)
     return {p.path, p.line.offset};
 }
 
-std::string holder_of(const located_line& l)
+std::string find_holder(const located_line& l)
 {
     const chip c = read_chip(l.path);
     return l.offset < c.info.lines.size() ? c.info.lines[l.offset].consumer : std::string();

@@ -35,8 +35,8 @@ TEST_CASE("chips are listed by number, each once")
 
 TEST_CASE("a file's group has a name, a missing file's is the usual one")
 {
-    CHECK(tactor::gpio::group_of("/dev/null") == "root");
-    CHECK(tactor::gpio::group_of("/nowhere") == "gpio");
+    CHECK(tactor::gpio::find_group("/dev/null") == "root");
+    CHECK(tactor::gpio::find_group("/nowhere") == "gpio");
 }
 
 TEST_CASE("what is no GPIO chip is not opened as one")
