@@ -21,7 +21,7 @@ inline constexpr std::uint32_t voices = 512;
 /// one that are still in the ring are ignored.
 using ticket = std::uint32_t;
 
-constexpr std::uint32_t place_of(ticket t) noexcept
+constexpr std::uint32_t ticket_place(ticket t) noexcept
 {
     return t % voices;
 }

@@ -51,7 +51,7 @@ struct renderer::impl {
 
     static synth::guard_settings guards(const score::impl& s)
     {
-        return s.guards ? synth::guards_of(*s.guards, s.rate) : synth::guard_settings{};
+        return s.guards ? synth::make_guards(*s.guards, s.rate) : synth::guard_settings{};
     }
 
     /// Hands over the drives that start before a frame. Returns the frame up to which none is missing.

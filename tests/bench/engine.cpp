@@ -41,7 +41,7 @@ void periods(benchmark::State& state, algorithm_kind method, double power_dbfs)
     engine::link link;
     engine::feeder feed(link, 24'000);
     engine::loop_options o;
-    o.guards = synth::guards_of({.power_dbfs = power_dbfs}, 48000);
+    o.guards = synth::make_guards({.power_dbfs = power_dbfs}, 48000);
     engine::audio_loop loop(out, link, std::vector<double>(64, 1.0), o);
     loop.start(0);
     stroke_id id = {};

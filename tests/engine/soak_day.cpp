@@ -70,7 +70,7 @@ public:
         for (unsigned i = 0; i < periods_an_hour; ++i)
             half_second(i, random, w);
         counted(w, [&] {
-            live_->voice.ask(engine::live_voice::wish::end);
+            live_->voice.request(engine::live_voice::action::end);
             r_.feed.fire(r_.now);
             for (int i = 0; i < 1000 && r_.ended.size() < r_.last_id - before; ++i)
                 r_.play(period);

@@ -180,9 +180,9 @@ private:
             l.to({static_cast<double>(random_() % 25) - 2.0, static_cast<double>(random_() % 25) - 2.0},
                  static_cast<double>(random_() % 3) / 2.0);
         if (random_() % 3000 == 0)
-            l.voice.ask(engine::live_voice::wish::end);
+            l.voice.request(engine::live_voice::action::end);
         if (random_() % 3000 == 0)
-            l.voice.ask(engine::live_voice::wish::cancel);
+            l.voice.request(engine::live_voice::action::cancel);
         if (random_() % 64 == 0 && l.voice.closed()) {
             live_[i] = live_.back();
             live_.pop_back();

@@ -75,7 +75,7 @@ TEST_CASE("wherever the points jump, the samples do not")
             r.live->to({place(random), place(random)}, static_cast<double>(random() % 2));
             r.play(period);
         }
-        r.live->voice.ask(engine::live_voice::wish::end);
+        r.live->voice.request(engine::live_voice::action::end);
         r.play_out();
         // The carrier's slope and a whole amplitude within a control step.
         const double allowed = live_level * (2 * 3.1416 * 250 / rate + 1.0 / 48);
@@ -108,7 +108,7 @@ TEST_CASE("bursts: each SOA one, at the newest position, as long as the law says
             CHECK(peak(s, at + duration, at + 2880) == 0.0);
         }
     }
-    r.live->voice.ask(engine::live_voice::wish::end);
+    r.live->voice.request(engine::live_voice::action::end);
     r.play_out();
     CHECK(r.report({1})->state == state_kind::finished);
     CHECK(r.report({1})->frames % 2880 == duration);
@@ -257,7 +257,7 @@ TEST_CASE("live strokes that are weak one by one count as what they are together
     limits.max_drive_s = 0.3;
     limits.window_s = 1.0;
     rig_options few;
-    few.loop.guards = synth::guards_of(limits, rate);
+    few.loop.guards = synth::make_guards(limits, rate);
     live_options weak;
     weak.render.level_dbfs = -41.0;
     const auto cuts = [&](unsigned strokes, bool continuous) {

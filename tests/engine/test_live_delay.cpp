@@ -25,9 +25,9 @@ double ahead_s(live_rig& r)
 
 /// Ends it, and plays it out.
 std::optional<stroke_report> report_of(live_rig& r, live_stroke::impl& s,
-                                       engine::live_voice::wish w = engine::live_voice::wish::end)
+                                       engine::live_voice::action w = engine::live_voice::action::end)
 {
-    s.voice.ask(w);
+    s.voice.request(w);
     r.play_out();
     return r.report(s.id);
 }
@@ -97,7 +97,7 @@ TEST_CASE("without a sounding point there is no delay, and a time stamp is of CL
     live_rig r;
     CHECK_THROWS_AS(r.live->to({20.0, 20.0}, 1.0, -1), error);
     r.play(960);
-    const auto silent = report_of(r, *r.live, engine::live_voice::wish::cancel);
+    const auto silent = report_of(r, *r.live, engine::live_voice::action::cancel);
     REQUIRE(silent);
     CHECK_FALSE(silent->delay);
 

@@ -27,7 +27,7 @@ TEST_CASE("end fades out, plays the last point given, and is reported once as fi
     const std::uint64_t base = r.status().written;
     r.play(960);
     r.live->to({40.0, 40.0}, 1.0);
-    r.live->voice.ask(engine::live_voice::wish::end);
+    r.live->voice.request(engine::live_voice::action::end);
     CHECK_FALSE(r.live->to({0.0, 40.0}, 1.0));
     const std::uint64_t end = r.status().written + 96 + 480;
     r.play(9600);
@@ -48,8 +48,8 @@ TEST_CASE("a live stroke without a point: ended it is finished with nothing, and
     auto third = r.add();
     r.play(960);
     CHECK(r.ended.empty());
-    r.live->voice.ask(engine::live_voice::wish::end);
-    other->voice.ask(engine::live_voice::wish::cancel);
+    r.live->voice.request(engine::live_voice::action::end);
+    other->voice.request(engine::live_voice::action::cancel);
     CHECK(r.feed.cancel({3}));
     r.play(960);
     CHECK(r.report({1})->state == state_kind::finished);
@@ -70,7 +70,7 @@ TEST_CASE("cancel fades, in both renderings and both ways")
                 r.play(96);
             }
             if (by_handle)
-                r.live->voice.ask(engine::live_voice::wish::cancel);
+                r.live->voice.request(engine::live_voice::action::cancel);
             else
                 CHECK(r.feed.cancel({1}));
             const std::uint64_t from = r.status().written;
@@ -149,7 +149,7 @@ TEST_CASE("an xrun ends a live stroke that sounds, and leaves one alone that wai
     CHECK(waits->to({40.0, 40.0}, 1.0));
     r.play(960);
     CHECK(r.first_sound(from));
-    waits->voice.ask(engine::live_voice::wish::end);
+    waits->voice.request(engine::live_voice::action::end);
     r.play_out();
     CHECK(r.report({2})->state == state_kind::finished);
 }
@@ -166,7 +166,7 @@ TEST_CASE("more live strokes than can sound at once wait their turn; stop and th
         r.play(960);
         CHECK(r.ended.empty());
         for (int i = 0; i < 10; ++i)
-            all[static_cast<std::size_t>(i)]->voice.ask(engine::live_voice::wish::end);
+            all[static_cast<std::size_t>(i)]->voice.request(engine::live_voice::action::end);
         r.play(9600);
         CHECK(r.ended.size() == 10);
         if (lost)
@@ -288,7 +288,7 @@ COUNTING_TEST_CASE("an hour of a live stroke: no heap in the audio thread, nothi
     }
     CHECK(calls == 0);
     CHECK(held == 0);
-    r.live->voice.ask(engine::live_voice::wish::end);
+    r.live->voice.request(engine::live_voice::action::end);
     r.play_out();
     CHECK(r.report({1})->state == state_kind::finished);
     CHECK(r.report({1})->frames > static_cast<std::uint64_t>(rounds(3600)) * rate);

@@ -125,16 +125,16 @@ TEST_CASE("intensity moves with the place, in bursts of the carrier too")
 TEST_CASE("end waits until the last point is reached, cancel does not, and what stands still does not wait")
 {
     using engine::live_voice;
-    for (const auto how : {live_voice::wish::end, live_voice::wish::cancel}) {
+    for (const auto how : {live_voice::action::end, live_voice::action::cancel}) {
         live_rig r(smoothed());
         r.live->to({10.0, 0.0}, 1.0);
         const std::uint64_t base = r.status().written;
         r.play(960);
         const std::uint64_t came = r.status().written - base;
         r.live->to({40.0, 0.0}, 1.0);
-        r.live->voice.ask(how);
+        r.live->voice.request(how);
         r.play_out();
-        const bool ended = how == live_voice::wish::end;
+        const bool ended = how == live_voice::action::end;
         CHECK(r.report({1})->state == (ended ? state_kind::finished : state_kind::cancelled));
         CHECK(r.report({1})->frames == came + (ended ? window : 0) + 480);
     }
@@ -143,7 +143,7 @@ TEST_CASE("end waits until the last point is reached, cancel does not, and what 
     const std::uint64_t base = still.status().written;
     still.play(960);
     const std::uint64_t came = still.status().written - base;
-    still.live->voice.ask(live_voice::wish::end);
+    still.live->voice.request(live_voice::action::end);
     still.play_out();
     CHECK(still.report({1})->frames == came + 480);
 }

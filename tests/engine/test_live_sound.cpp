@@ -111,7 +111,7 @@ TEST_CASE("the level asked for is the ceiling of a live stroke, and what was abo
                     r.live->to({0.0, 0.0}, intensity);
                 r.play(9600);
                 CHECK(peak(r.channel(0), 0, SIZE_MAX) == doctest::Approx(live_level).epsilon(1e-3));
-                r.live->voice.ask(engine::live_voice::wish::end);
+                r.live->voice.request(engine::live_voice::action::end);
                 r.play_out();
                 CHECK(r.report({1})->state == state_kind::finished);
                 CHECK(r.report({1})->held_points == 3);
@@ -135,7 +135,7 @@ TEST_CASE("a live stroke whose sound is gone with it leaves nothing behind")
         live_rig r(o);
         r.live->to({0.0, 0.0}, 1.0);
         r.play(4800);
-        r.live->voice.ask(engine::live_voice::wish::end);
+        r.live->voice.request(engine::live_voice::action::end);
         r.live.reset();
         r.play_out();
         const std::vector<double> s = r.channel(0);

@@ -105,7 +105,7 @@ TEST_CASE("a muted amplifier is a line")
 TEST_CASE("limits that act are told once a second at most")
 {
     rig_options o;
-    o.loop.guards = synth::guards_of({.power_dbfs = -60.0}, rate);
+    o.loop.guards = synth::make_guards({.power_dbfs = -60.0}, rate);
     logged<rig> r(o, {.power_dbfs = -60.0});
     REQUIRE(r.start().status == io_kind::ok);
     r.submit(tone(2.5));

@@ -156,7 +156,7 @@ TEST_CASE("a live stroke tells when its first point was felt")
     r.play(960);
     CHECK(r.live->to({20.0, 20.0}, 1.0));
     r.play(960);
-    r.live->voice.ask(engine::live_voice::wish::end);
+    r.live->voice.request(engine::live_voice::action::end);
     r.play_out();
     REQUIRE(r.first_sound());
     check_started(r, r.live->id, true_time(r, *r.first_sound() - 1));

@@ -119,8 +119,8 @@ TEST_CASE(
     const auto cancelled = r.add(with_timeout(0.2));
     const auto fed = r.add(with_timeout(0.2));
     r.play(960);
-    ended->voice.ask(engine::live_voice::wish::end);
-    cancelled->voice.ask(engine::live_voice::wish::cancel);
+    ended->voice.request(engine::live_voice::action::end);
+    cancelled->voice.request(engine::live_voice::action::cancel);
     r.play(192);
     CHECK(state_of(r, ended->id) == state_kind::finished);
     CHECK(state_of(r, cancelled->id) == state_kind::cancelled);
@@ -137,7 +137,7 @@ TEST_CASE(
     r.link.amplifier.ready = true;
     r.play(960);
     CHECK(r.first_sound());
-    fed->voice.ask(engine::live_voice::wish::end);
+    fed->voice.request(engine::live_voice::action::end);
     r.play_out();
     CHECK(r.report(fed->id)->state == state_kind::finished);
     CHECK(r.report(before)->state == state_kind::finished);
@@ -152,7 +152,7 @@ TEST_CASE("while the system sleeps a live stroke that waits can be cancelled by 
     r.control();
     REQUIRE(r.status().stage == engine::stream_stage::suspended);
     const stroke_id score = r.submit(tone(0.1));
-    r.live->voice.ask(engine::live_voice::wish::cancel);
+    r.live->voice.request(engine::live_voice::action::cancel);
     CHECK(r.feed.cancel(score));
     r.step();
     r.control();

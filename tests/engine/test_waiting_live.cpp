@@ -85,7 +85,7 @@ TEST_CASE("more than can sound: they wait in order, with their newest point, and
     const auto ended = r.add(short_timeout());
     ended->to({0.0, 0.0}, 1.0);
     ended->to({20.0, 0.0}, 1.0);
-    ended->voice.ask(engine::live_voice::wish::end); // no more points are owed
+    ended->voice.request(engine::live_voice::action::end); // no more points are owed
     const auto last = r.add();
     feed(timeout_frames + 960);
     CHECK(starved(r, silent->id));
@@ -94,7 +94,7 @@ TEST_CASE("more than can sound: they wait in order, with their newest point, and
     CHECK(peak(r.channel(1), 0, SIZE_MAX) == 0.0);
 
     last->to({0.0, 40.0}, 1.0);
-    all[3]->voice.ask(engine::live_voice::wish::end); // one place, for the first that waits
+    all[3]->voice.request(engine::live_voice::action::end); // one place, for the first that waits
     feed(3360);
     REQUIRE(r.report(ended->id));
     CHECK(r.report(ended->id)->state == state_kind::finished);
@@ -113,9 +113,9 @@ TEST_CASE("hundreds at once: each is cancelled by its handle, ended or timed out
     r.play(960);
     for (std::size_t i = 0; i < all.size(); ++i)
         if (i % 3 == 1)
-            all[i]->voice.ask(engine::live_voice::wish::end);
+            all[i]->voice.request(engine::live_voice::action::end);
         else if (i % 3 == 2)
-            all[i]->voice.ask(engine::live_voice::wish::cancel);
+            all[i]->voice.request(engine::live_voice::action::cancel);
     r.play(288);
     CHECK(r.ended.size() == 2 * engine::live_places);
     r.play(timeout_frames);

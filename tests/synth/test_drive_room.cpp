@@ -106,7 +106,7 @@ TEST_CASE("what waited as long as it is told is never changed by the mixer's gua
             return std::uniform_real_distribution<double>(low, high)(random);
         };
         synth::drive_room r(2, {}, rate);
-        synth::mixer m(std::vector<double>(2, 1.0), format_kind::float32, 4096, synth::guards_of({}, rate));
+        synth::mixer m(std::vector<double>(2, 1.0), format_kind::float32, 4096, synth::make_guards({}, rate));
         std::uint64_t waited = 0;
         for (int k = 0; k < 20; ++k) {
             std::vector<burst> bursts;

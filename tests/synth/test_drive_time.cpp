@@ -49,7 +49,7 @@ synth::guard_settings time_of(double max_drive_s, double window_s)
     drive_limits l;
     l.max_drive_s = max_drive_s;
     l.window_s = window_s;
-    return synth::guards_of(l, rate);
+    return synth::make_guards(l, rate);
 }
 
 played play(const std::vector<synth::drive_event>& events, double total_s, const synth::guard_settings& g,
@@ -245,7 +245,7 @@ TEST_CASE("the next mixer counts on, at another rate, and less for the time betw
         drive_limits l;
         l.max_drive_s = 0.5;
         l.window_s = 1.0;
-        synth::mixer m(std::vector<double>(2, 1.0), format_kind::float32, 8, synth::guards_of(l, other));
+        synth::mixer m(std::vector<double>(2, 1.0), format_kind::float32, 8, synth::make_guards(l, other));
         m.resume(h);
         synth::drive_event e = voice(0.0, 1.0, 0.5);
         e.length = other;

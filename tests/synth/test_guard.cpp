@@ -185,7 +185,7 @@ TEST_CASE("an epoch's end does not give a tactor its time back")
     drive_limits l;
     l.max_drive_s = 0.5;
     l.window_s = 1.0;
-    synth::mixer m(std::vector<double>(1, 1.0), format_kind::float32, 8, synth::guards_of(l, rate));
+    synth::mixer m(std::vector<double>(1, 1.0), format_kind::float32, 8, synth::make_guards(l, rate));
     synth::drive_event e;
     e.length = e.window = rate;
     e.cycles_per_frame = 250.0 / rate;
@@ -219,7 +219,7 @@ TEST_CASE("what is not a number reaches no format")
     const double nan = std::numeric_limits<double>::quiet_NaN();
     const double inf = std::numeric_limits<double>::infinity();
     for (const format_kind f : all_formats) {
-        synth::mixer m(std::vector<double>{1.0, 0.5, nan}, f, 64, synth::guards_of({}, 48000));
+        synth::mixer m(std::vector<double>{1.0, 0.5, nan}, f, 64, synth::make_guards({}, 48000));
         for (const double a : {nan, inf, -inf, 1e308, -1e308, 1e200}) {
             for (std::uint32_t c = 0; c < 3; ++c) {
                 synth::drive_event e;

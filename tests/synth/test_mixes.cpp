@@ -174,7 +174,7 @@ std::vector<float> samples_of(const score& s, const render_options& o)
     for (; source.peek() != nullptr; source.pop())
         events.push_back(*source.peek());
     synth::mixer mixer(limits, format_kind::float32, events.size(),
-                       o.limits ? synth::guards_of(*o.limits, s.rate()) : synth::guard_settings{});
+                       o.limits ? synth::make_guards(*o.limits, s.rate()) : synth::guard_settings{});
     for (const synth::drive_event& e : events)
         REQUIRE(mixer.add(e));
     std::vector<float> samples(s.frames() * s.channels());

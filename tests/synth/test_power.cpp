@@ -41,7 +41,7 @@ synth::drive_event voice(double start_s, double length_s, double ramp_s, double 
 
 synth::guard_settings power_of(double dbfs)
 {
-    return synth::guards_of({.power_dbfs = dbfs, .max_drive_s = 3600.0, .window_s = 10.0}, rate);
+    return synth::make_guards({.power_dbfs = dbfs, .max_drive_s = 3600.0, .window_s = 10.0}, rate);
 }
 
 std::vector<signal> mixed(const std::vector<synth::drive_event>& events, unsigned channels,

@@ -40,7 +40,7 @@ public:
     /// There must be a free place.
     void begin_live(const request& r) noexcept;
     /// Ends live strokes whose producer requests it or is silent for too long, and those that last too long.
-    void look_at_wishes() noexcept;
+    void handle_live_requests() noexcept;
     /// Adds the live strokes' drives of the next frames. Called before each mix. `offset` as in begin();
     /// `clock` may be unknown.
     void render_live(std::uint64_t frames, std::uint64_t offset, const clock_line& clock) noexcept;
@@ -110,7 +110,7 @@ private:
     };
 
     entry* find(ticket t) noexcept;
-    void look_at_wishes(entry& e) noexcept;
+    void handle_live_requests(entry& e) noexcept;
     void render_live(entry& e, std::uint64_t frames, std::uint64_t offset, const clock_line& clock) noexcept;
     void close_live(entry& e) noexcept;
     reason_kind why_late() const noexcept;

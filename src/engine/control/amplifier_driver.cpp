@@ -41,7 +41,7 @@ void amplifier_driver::tell() noexcept
     const std::uint64_t events = link_.amplifier.mutes.load(std::memory_order_relaxed) +
                                  link_.count.stalls.load(std::memory_order_relaxed) +
                                  link_.count.off_failures.load(std::memory_order_relaxed);
-    if (std::exchange(told_ready_, ready) != ready || std::exchange(told_events_, events) != events)
+    if (std::exchange(reported_ready_, ready) != ready || std::exchange(reported_events_, events) != events)
         link_.to_control.signal();
 }
 

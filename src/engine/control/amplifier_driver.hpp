@@ -69,8 +69,8 @@ private:
     std::int64_t updated_ns_ = 0;
     std::int64_t beaten_ns_ = 0;
     bool stalled_ = false;
-    bool told_ready_ = false;
-    std::uint64_t told_events_ = 0;
+    bool reported_ready_ = false;
+    std::uint64_t reported_events_ = 0;
 };
 
 /// Thread of an amplifier_driver. The audio thread and time wake it.

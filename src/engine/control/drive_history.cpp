@@ -82,7 +82,7 @@ private:
     std::size_t at_ = 0;
 };
 
-synth::drive_history::channel channel_of(numbers& n)
+synth::drive_history::channel read_channel(numbers& n)
 {
     synth::drive_history::channel c;
     c.opens_s = seconds(n.next());
@@ -193,7 +193,7 @@ drive_history drive_history::restore(std::string_view text)
         if (channel < next || channel >= channels)
             refuse("channels are not in order");
         next = channel + 1;
-        h.channels.channels[static_cast<std::size_t>(channel)] = channel_of(line);
+        h.channels.channels[static_cast<std::size_t>(channel)] = read_channel(line);
     }
     if (!ours || h.taken_ns > rt::monotonic_ns())
         return {};

@@ -93,12 +93,12 @@ public:
 private:
     struct task {
         stroke_id id = {};
-        score music;
+        tactor::score score;
         std::optional<std::int64_t> due_ns{}; ///< requested CLOCK_MONOTONIC
     };
     struct active {
         stroke_id id = {};
-        std::optional<score> music{};
+        std::optional<tactor::score> score{};
         live_voice* voice = nullptr; ///< owned by playing_live_
         std::optional<std::int64_t> due_ns{};
         std::uint64_t at = 0;
@@ -130,7 +130,10 @@ private:
     void look_at_waiting_live(std::uint64_t written);
     void admit_live();
     std::uint32_t take_slot(active a);
-    ticket ticket_of(std::uint32_t place) const noexcept { return place + voices * slots_[place].generation; }
+    ticket current_ticket(std::uint32_t place) const noexcept
+    {
+        return place + voices * slots_[place].generation;
+    }
     bool cancel_waiting(stroke_id id);
     bool waits(stroke_id id) const;
     void begun(active& a, std::uint64_t frame);

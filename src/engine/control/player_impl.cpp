@@ -202,7 +202,7 @@ bool player::impl::take_reports()
         for (auto& first = feed.beginnings(); !first.empty(); first.pop_front()) {
             const std::uint64_t frame = first.front().frame;
             const bool known = clock.valid() && frame >= clock.first;
-            begun.emplace_back(first.front().id, known ? std::optional(clock.time_of(frame)) : std::nullopt);
+            begun.emplace_back(first.front().id, known ? std::optional(clock.time_at(frame)) : std::nullopt);
         }
         std::list<stroke_report>& news_of_strokes = feed.reports();
         for (stroke_report& r : news_of_strokes) {
@@ -214,7 +214,7 @@ bool player::impl::take_reports()
         }
         for (const stroke_report& r : news_of_strokes)
             log.look_at_end(r);
-        untold.splice(untold.end(), news_of_strokes);
+        unreported.splice(unreported.end(), news_of_strokes);
     } catch (const std::bad_alloc&) {
         return false;
     }

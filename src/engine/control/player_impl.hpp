@@ -100,7 +100,7 @@ struct player::impl : std::enable_shared_from_this<player::impl> {
     std::map<stroke_id, kept_report> ended;
     std::map<std::uint64_t, stroke_id> by_end; ///< order of `ended`
     std::uint64_t ends = 0;
-    std::list<stroke_report> untold; ///< not yet passed to the handlers
+    std::list<stroke_report> unreported; ///< not yet passed to the handlers
     std::shared_ptr<const report_handler> handler;
     std::list<std::pair<stroke_id, std::optional<std::int64_t>>> begun; ///< not yet passed to its handler
     std::shared_ptr<const begin_handler> on_begun;
@@ -140,7 +140,7 @@ private:
     void tell(const stroke_report& r);
     void tell_watchers(const stroke_report& r);
     template <typename Call>
-    void call(Call&& told) noexcept;
+    void call(Call&& callee) noexcept;
     void give_up(const char* what) noexcept;
 };
 

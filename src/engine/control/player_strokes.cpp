@@ -87,10 +87,10 @@ bool player::impl::on_end(stroke_id id, report_handler done)
 }
 
 template <typename Call>
-void player::impl::call(Call&& told) noexcept
+void player::impl::call(Call&& callee) noexcept
 {
     try {
-        told();
+        callee();
     } catch (const std::exception& e) {
         give_up(e.what());
     } catch (...) {
@@ -104,9 +104,9 @@ void player::impl::tell()
 {
     tell_beginnings();
     std::unique_lock lock(mutex);
-    while (!untold.empty()) {
+    while (!unreported.empty()) {
         std::list<stroke_report> one;
-        one.splice(one.end(), untold, untold.begin());
+        one.splice(one.end(), unreported, unreported.begin());
         lock.unlock();
         tell(one.front());
         lock.lock();

@@ -31,12 +31,12 @@ void stream_log::look(const stream_status& s, std::int64_t now_ns) noexcept
         look_at_stream(s);
         look_at_amplifier(s);
         // Limits act in each period: one line a second is enough.
-        if (now_ns - limits_told_ns_ < rt::ns_per_s && limits_told_ns_ != 0)
+        if (now_ns - limits_logged_ns_ < rt::ns_per_s && limits_logged_ns_ != 0)
             return;
         const std::size_t before = lines_.size();
         look_at_limits();
         if (lines_.size() != before)
-            limits_told_ns_ = now_ns;
+            limits_logged_ns_ = now_ns;
     } catch (...) { // NOLINT(bugprone-empty-catch): no memory, no line
     }
 }

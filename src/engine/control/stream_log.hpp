@@ -59,7 +59,7 @@ private:
     std::uint64_t cut_ = 0;
     std::uint64_t limited_ = 0;
     std::uint64_t power_limited_ = 0;
-    std::int64_t limits_told_ns_ = 0;
+    std::int64_t limits_logged_ns_ = 0;
     bool over_ = false;
 };
 

@@ -10,7 +10,7 @@
 
 namespace tactor::synth {
 
-guard_settings guards_of(const drive_limits& l, unsigned rate)
+guard_settings make_guards(const drive_limits& l, unsigned rate)
 {
     check_limits(l);
     const auto frames = [rate](double s) { return static_cast<std::uint64_t>(std::llround(s * rate)); };
