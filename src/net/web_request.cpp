@@ -90,7 +90,7 @@ void web_connection::session::answer_request()
 {
     const auto& request = parser.get();
     const std::string said(view(request[http::field::host]));
-    const web_target to = target_of(view(request.target()), said);
+    const web_target to = parse_target(view(request.target()), said);
     const auto origins = request.equal_range(http::field::origin);
     const bool one_host = request.count(http::field::host) == 1;
     bool ours = one_host && host_is_ours(said, local, allowed) && host_is_ours(to.host, local, allowed);
@@ -108,7 +108,7 @@ void web_connection::session::answer_request()
         return upgrade();
     if (to.path == "/rpc")
         return respond({426, "text/plain", "a WebSocket\n", ""});
-    respond(calls.get(to.path, to.host, bearer_of(view(request[http::field::authorization]))));
+    respond(calls.get(to.path, to.host, bearer_token(view(request[http::field::authorization]))));
 }
 
 // Sends the reply and closes. One request for each connection, because a page asks for little.

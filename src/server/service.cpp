@@ -61,20 +61,20 @@ void service::pending::give(std::size_t at, std::string reply, const std::vector
 
 void service::answer::result(reply_json r, const std::vector<std::uint32_t>& strokes) const
 {
-    all->give(at, net::text_of(net::result_reply(all->places[at].id, std::move(r))), strokes);
+    all->give(at, net::json_line(net::result_reply(all->places[at].id, std::move(r))), strokes);
 }
 
 void service::answer::result_text(const std::string& r) const
 {
     all->give(at,
               fmt::format(R"({{"jsonrpc":"2.0","id":{},"result":{}}})",
-                          net::text_of(reply_json(all->places[at].id)), r),
+                          net::json_line(reply_json(all->places[at].id)), r),
               {});
 }
 
 void service::answer::fault(const net::rpc_fault& f) const
 {
-    all->give(at, net::text_of(net::error_reply(all->places[at].id, f)), {});
+    all->give(at, net::json_line(net::error_reply(all->places[at].id, f)), {});
 }
 
 service::service(boost::asio::io_context& io, service_options o, stream_options s)
@@ -148,7 +148,7 @@ service::client* service::find(client_number c)
 
 void service::send(client& c, const reply_json& message)
 {
-    c.link->send(net::text_of(message));
+    c.link->send(net::json_line(message));
 }
 
 // What comes over a network begins with hello: a browser's POST does not.

@@ -21,7 +21,7 @@ bool heard(const char* from, const std::vector<std::string>& prefixes)
     std::vector<address_prefix> peers;
     for (const std::string& p : prefixes)
         peers.push_back(parse_prefix(p, "osc_peers"));
-    return is_heard(boost::asio::ip::make_address(from), peers);
+    return is_accepted(boost::asio::ip::make_address(from), peers);
 }
 
 } // namespace

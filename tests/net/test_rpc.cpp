@@ -157,11 +157,11 @@ TEST_CASE("what an error repeats of a client's text is cut at 80 characters")
         "one of algorithm, phantom, duration, speed, soa, burst, slope, intercept, timing, outside, \"snap\"";
     CHECK(cut_echo(own) == own);
     const rpc_fault f{code_bad_params, "bad-input", x, "no '" + x + "'", "not \"" + x + '"'};
-    CHECK(text_of(error_reply(7, f)).size() < 1000);
-    CHECK(words_of(f) == x80 + ": no '" + x80 + "' (not \"" + x80 + "\")");
+    CHECK(json_line(error_reply(7, f)).size() < 1000);
+    CHECK(fault_text(f) == x80 + ": no '" + x80 + "' (not \"" + x80 + "\")");
     CHECK(code_of(R"({"jsonrpc":"2.0","method":"m","id":")" + x + "\"}") == code_invalid_request);
     CHECK(code_of(R"({"jsonrpc":"2.0","method":"m","id":")" + x.substr(0, 80) + "\"}") == 0);
-    CHECK(text_of(
+    CHECK(json_line(
               error_reply(nullptr,
                           std::get<rpc_refusal>(parse_rpc(std::string(1U << 20, 'x'), {}).parts.front()).why))
               .size() < 1000);
@@ -170,12 +170,12 @@ TEST_CASE("what an error repeats of a client's text is cut at 80 characters")
 TEST_CASE("errors say kind, what, why and hint")
 {
     const reply_json e = error_reply(7, {code_bad_params, "bad-input", "options.soa", "too long", "shorter"});
-    CHECK(text_of(e) ==
+    CHECK(json_line(e) ==
           R"x({"jsonrpc":"2.0","id":7,"error":{"code":-32602,"message":"options.soa: too long (shorter)",)x"
           R"("data":{"kind":"bad-input","what":"options.soa","why":"too long","hint":"shorter"}}})");
-    CHECK(text_of(result_reply(nullptr, reply_json::object())) ==
+    CHECK(json_line(result_reply(nullptr, reply_json::object())) ==
           R"({"jsonrpc":"2.0","id":null,"result":{}})");
-    CHECK(text_of(notification("stroke", {{"stroke", 1}})) ==
+    CHECK(json_line(notification("stroke", {{"stroke", 1}})) ==
           R"({"jsonrpc":"2.0","method":"stroke","params":{"stroke":1}})");
 }
 

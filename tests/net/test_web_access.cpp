@@ -73,7 +73,7 @@ TEST_CASE("pages that may connect")
 TEST_CASE("what a request is for, as a path or as a whole address")
 {
     const auto is = [](std::string_view target, std::string_view host, std::string_view path) {
-        const web_target t = target_of(target, "said:4003");
+        const web_target t = parse_target(target, "said:4003");
         return t.host == host && t.path == path;
     };
     CHECK(is("/rpc", "said:4003", "/rpc"));
@@ -93,11 +93,11 @@ TEST_CASE("what a request is for, as a path or as a whole address")
 
 TEST_CASE("tokens")
 {
-    CHECK(bearer_of("Bearer secret") == "secret");
-    CHECK(bearer_of("bearer secret") == "secret");
-    CHECK(bearer_of("Basic secret").empty());
-    CHECK(bearer_of("Bearer ").empty());
-    CHECK(bearer_of("").empty());
+    CHECK(bearer_token("Bearer secret") == "secret");
+    CHECK(bearer_token("bearer secret") == "secret");
+    CHECK(bearer_token("Basic secret").empty());
+    CHECK(bearer_token("Bearer ").empty());
+    CHECK(bearer_token("").empty());
 }
 
 } // namespace web_access_test

@@ -28,7 +28,7 @@ std::string refusal(const std::string& address, values v)
     try {
         static_cast<void>(read(address, std::move(v)));
     } catch (const fault_error& e) {
-        return net::words_of(e.fault());
+        return net::fault_text(e.fault());
     }
     return {};
 }
