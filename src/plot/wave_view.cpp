@@ -73,7 +73,7 @@ waveform look_at(const score& s, const std::vector<unsigned>& channels, std::siz
         if (at % length != 0 && at != frames)
             continue;
         for (std::size_t c = 0; c < channels.size(); ++c) {
-            const auto [low, high] = ranges.of(channels[c]);
+            const auto [low, high] = ranges.range_at(channels[c]);
             w.by_channel[c][(at - 1) / length] = {low, high};
             w.peaks[c] = std::max({w.peaks[c], std::abs(low), std::abs(high)});
         }

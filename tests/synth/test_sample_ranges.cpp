@@ -34,7 +34,7 @@ TEST_CASE("the least and greatest sample of each channel, however many frames co
                     low = std::min(low, samples[i]);
                     high = std::max(high, samples[i]);
                 }
-                const auto [least, most] = ranges.of(c);
+                const auto [least, most] = ranges.range_at(c);
                 same = same && least == low && most == high;
             }
             CHECK(same);

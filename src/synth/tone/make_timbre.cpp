@@ -36,7 +36,7 @@ std::array<double, 6> integrate(const carrier_point& from, const carrier_point& 
             time_s * -b[3] / 6.0};
 }
 
-std::vector<course_part> course_of(const std::vector<carrier_point>& points, unsigned rate)
+std::vector<course_part> make_course(const std::vector<carrier_point>& points, unsigned rate)
 {
     std::vector<course_part> parts;
     double cycles = 0.0;
@@ -121,7 +121,7 @@ void fill_in(timbre& t, const plan& p, unsigned rate)
             w.kind == waveform_kind::recording ? recorded_cycle(*w.recorded, harmonics)
                                                : shape_cycle(w.kind, std::min(harmonics, most_harmonics)));
     }
-    t.power = power_of(*t.samples);
+    t.power = wave_power(*t.samples);
 }
 
 bool sound_alike(const plan& a, const plan& b)
@@ -140,7 +140,7 @@ std::shared_ptr<const timbre> make_timbre(const plan& p, unsigned rate)
         return nullptr;
     auto t = std::make_shared<timbre>();
     t->cycles_per_frame = p.carrier_hz / rate;
-    t->course = course_of(p.course, rate);
+    t->course = make_course(p.course, rate);
     if (modulated) {
         t->am_cycles_per_frame = p.am.hz / rate;
         t->am_depth = p.am.depth;
