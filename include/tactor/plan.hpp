@@ -162,8 +162,8 @@ private:
     std::shared_ptr<const impl> impl_;
 };
 
-/// Which tactors play, when and how strongly: bursts or a curve. A value: the same input gives the same plan.
-/// A program can compare, store and rebuild it.
+/// Drives of the tactors over time: bursts or a curve. A value: the same input gives the same plan. A program
+/// can compare, store and rebuild it.
 struct plan {
     std::string algorithm = {}; ///< name of the planner: an algorithm_kind or another name
     std::string phantom = {};

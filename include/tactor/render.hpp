@@ -123,9 +123,9 @@ private:
     std::shared_ptr<const impl> impl_;
 };
 
-/// Makes a score stroke by stroke. It never has a whole plan of its own in memory: an hour of park2016 takes
-/// 4 MB instead of 11. One thread at a time. If an add() throws, a part of the stroke may be in the score, so
-/// the builder is no longer usable.
+/// Makes a score stroke by stroke. It never keeps a whole plan in memory: an hour of park2016 takes 4 MB
+/// instead of 11. One thread at a time. If an add() throws, a part of the stroke may be in the score, so the
+/// builder is no longer usable.
 class TACTOR_API score_builder {
 public:
     /// Starts an empty score.
@@ -146,7 +146,7 @@ public:
 
     /// Returns the score of all that was added. Its samples equal those of a score made of the same plans.
     /// The builder becomes empty, even if this throws.
-    /// \throws error (bad_input) for a level above a tactor's limit.
+    /// \throws error (bad_input) for levels that a tactor may not have, as the constructor of score does.
     [[nodiscard]] score take();
 
 private:

@@ -23,7 +23,7 @@ struct outline {
     std::vector<point> vertices;
     std::vector<curve> curves; ///< by ascending segment
 
-    // These skip segments without length.
+    // Add a segment. Skip segments without length.
     void line(point to);
     void bezier(point c1, point c2, point to);
     void quadratic(point c, point to);

@@ -92,7 +92,7 @@ std::vector<double> find_turns(const elliptic& c, axis a)
 }
 
 // Returns the roots of f . s, where f is the first derivative and s the second: a cubic with these Bernstein
-// coefficients. It is monotone between the roots of its own derivative.
+// coefficients. It is monotone between the roots of its derivative.
 std::vector<double> find_speed_turns(const cubic& c)
 {
     const std::array f{c.p[1] - c.p[0], c.p[2] - c.p[1], c.p[3] - c.p[2]};
