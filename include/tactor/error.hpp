@@ -60,7 +60,7 @@ public:
     // Parts of what(), for programs that show them separately. Valid while this error or a copy of it lives.
     [[nodiscard]] std::string_view subject() const noexcept; ///< WHAT
     [[nodiscard]] std::string_view why() const noexcept;     ///< WHY
-    [[nodiscard]] std::string_view hint() const noexcept;    ///< HINT; may be empty
+    [[nodiscard]] std::string_view hint() const noexcept; ///< HINT, options as marks, "{soa_s}"; may be empty
     /// Returns the option or value at fault, under its name in this library or, with a place(), in the file
     /// ("soa_s"). Empty if the error is about none, or about several that do not go together.
     [[nodiscard]] std::string_view field() const noexcept;

@@ -48,7 +48,7 @@ double moving_time_s(const movement& m, double length_mm)
         throw detail::bad_field(
             "rests",
             fmt::format("{:g} s in all leave nothing of the {:g} s of the stroke", rests, *m.duration_s),
-            "the duration is that of all, rests included");
+            "the duration is that of all, with its pauses");
     return *m.duration_s - rests;
 }
 

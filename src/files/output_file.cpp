@@ -104,7 +104,7 @@ void check_replaced(const fs::path& file, bool force,
     if (!is_ours(begin, end))
         throw error(error_kind::bad_input, source_place{file.string()},
                     "there is such a file already, and tactor did not write it",
-                    "choose another name, or replace it with force = true")
+                    "choose another name, or replace it with {force=true}")
             .with_field("force");
 }
 

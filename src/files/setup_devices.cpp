@@ -171,7 +171,7 @@ void read_calibration(const toml_table& root, located_setup& said)
         return;
     if (!said.said.array)
         t->fail("there is no array that it is of",
-                "it stands in an array file, as tactor calibrate writes it");
+                "it stands in an array file, as {command:calibrate} writes it");
     t->only({"participant", "method", "rule", "carrier_hz", "interval_s", "feedback", "masker", "date",
              "seed", "simulated", "tactor"});
     calibration_origin r;

@@ -136,7 +136,8 @@ compensated_places compensate(const layout& l, const low_speed_observer& o, std:
     if (std::any_of(give.begin(), give.end(), [](double g) { return g < least_give; }))
         throw error(error_kind::bad_input, "compensation",
                     "bursts that begin together, or nearly so for this observer, cannot be felt apart",
-                    "a smaller sigma_mm, a larger sigma_v_mm_s or a longer SOA");
+                    "a smaller {sigma_mm}, a larger {sigma_v_mm_s} or a longer SOA")
+            .with_field("compensate");
     r.played = detail::pushed(give, targets);
     if (!std::all_of(r.played.begin(), r.played.end(), [&](point p) { return l.contains(p); }))
         fit(l, give, targets, r);
@@ -153,7 +154,7 @@ compensated_plan make_compensated_plan(const array& a, const layout& l, const st
     if (chosen.algorithm == algorithm_kind::continuous)
         throw detail::bad_field("algorithm",
                                 "continuous has no bursts that could be moved for the low-speed observer",
-                                "algorithm = park2016, or no compensation");
+                                "{algorithm=park2016}, or no compensation");
     compensated_plan r;
     r.plan = make_plan(a, l, s, o);
     r.observer = m;

@@ -242,7 +242,8 @@ std::vector<point> fit_inside(std::span<const double> give, std::span<const poin
                     fmt::format("{} bursts on an array whose edge has {} sides are too many", targets.size(),
                                 sides.size()),
                     fmt::format("at most {} times {}; make the stroke shorter",
-                                most_fit_constraints / sides.size(), sides.size()));
+                                most_fit_constraints / sides.size(), sides.size()))
+            .with_field("compensate");
     // Centred on `inside`, in units of the array's size.
     std::vector<beyond> around = sides;
     double size = 0.0;
@@ -259,7 +260,8 @@ std::vector<point> fit_inside(std::span<const double> give, std::span<const poin
     if (!search.run())
         throw error(error_kind::bad_input, "compensation",
                     "the observer pulls bursts together too strongly for an answer to be found",
-                    "a smaller sigma_mm, a larger sigma_v_mm_s or a longer SOA");
+                    "a smaller {sigma_mm}, a larger {sigma_v_mm_s} or a longer SOA")
+            .with_field("compensate");
     std::vector<point> m = search.played();
     for (point& p : m)
         p = {inside.x_mm + size * p.x_mm, inside.y_mm + size * p.y_mm};

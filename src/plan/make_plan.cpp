@@ -243,7 +243,7 @@ std::shared_ptr<const phantom_model> model_of(const layout& l, const plan_option
     if (o.faces != faces_kind::delaunay)
         throw bad_field("faces",
                         "nearest goes with inverse-distance only, not with a phantom model of your own",
-                        "use faces = delaunay or phantom = inverse-distance");
+                        "use {faces=delaunay} or {phantom=inverse-distance}");
     return o.custom_phantom;
 }
 

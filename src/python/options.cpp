@@ -2,6 +2,7 @@
 #include "python/options.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include <fmt/format.h>
@@ -142,6 +143,36 @@ void take(wishes& w, const std::string& name, py::handle v, std::size_t tactors)
         w.given.set(index(*o));
 }
 
+std::string write_keyword(const option& o, std::string_view value)
+{
+    if (value.empty())
+        return std::string(o.name);
+    if (o.what == options::kind::flag)
+        return fmt::format("{}=True", o.name);
+    const bool is_text = o.what == options::kind::choice || o.what == options::kind::text;
+    return is_text ? fmt::format("{}=\"{}\"", o.name, value) : fmt::format("{}={}", o.name, value);
+}
+
+// Marks and fields of the library that no option stands for.
+constexpr std::array own_words{options::own_word{"command:devices", "tactor.devices()"},
+                               options::own_word{"command:plan", "Plan.write()"},
+                               options::own_word{"array=none", "take plan.array"},
+                               options::own_word{"array=FILE", "Array.from_file(FILE)"},
+                               options::own_word{"array", "Array.preset(\"{}\")"},
+                               options::own_word{"force=true", "force=True"},
+                               options::own_word{"wider=true", "without channels= it"},
+                               options::own_word{"wave", "waveform"},
+                               options::own_word{"scale", "intensity_scale"},
+                               options::own_word{"rests", "pauses"},
+                               options::own_word{"pitch_x_mm", "pitch_mm"},
+                               options::own_word{"pitch_y_mm", "pitch_mm"},
+                               options::own_word{"start_s", "start"},
+                               options::own_word{"timeout_s", "timeout"},
+                               options::own_word{"longest_s", "longest"},
+                               options::own_word{"at_ns", "at_s"}};
+
+constexpr options::spelling by_python{.write = write_keyword, .own = own_words};
+
 // A player has its limits with the stream, a score with the samples.
 void settle_score(wishes& w)
 {
@@ -220,11 +251,6 @@ std::vector<std::string> option_names(const std::string& which)
     return names;
 }
 
-std::string in_python_words(const std::string& text)
-{
-    return options::spell(text, {spell});
-}
-
 py::dict default_values(const setup& says)
 {
     py::dict all;
@@ -240,14 +266,11 @@ py::dict default_values(const setup& says)
     return all;
 }
 
-std::string spell(const option& o, std::string_view value)
+error in_keywords(const error& e)
 {
-    if (value.empty())
-        return std::string(o.name);
-    if (o.what == options::kind::flag)
-        return fmt::format("{}=True", o.name);
-    const bool is_text = o.what == options::kind::choice || o.what == options::kind::text;
-    return is_text ? fmt::format("{}=\"{}\"", o.name, value) : fmt::format("{}={}", o.name, value);
+    const error said = options::spell(e, by_python);
+    const bool in_file = !e.place().file.empty() || e.place().line != 0; // it has its own words
+    return in_file ? said : said.with_field(options::spell_field(e.field(), by_python));
 }
 
 } // namespace tactor::python

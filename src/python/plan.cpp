@@ -211,7 +211,6 @@ void bind_plan(py::module_& m)
 {
     m.def("option_names", &option_names, py::arg("which") = "");
     m.def("check_used", &check_used);
-    m.def("in_python_words", &in_python_words);
     m.def("burst_duration", [](const py::dict& options) {
         wishes w;
         take_options(w, options, 0);

@@ -12,6 +12,7 @@
 #include <fmt/format.h>
 
 #include "core/words.hpp"
+#include "options/check.hpp"
 #include "plan/curve_impl.hpp"
 #include "python/plan_handle.hpp"
 
@@ -181,6 +182,7 @@ private:
 
 void write(const score& s, const std::string& file, const std::string& format)
 {
+    static_cast<void>(options::read_value(*options::find("sample_format"), format));
     const auto f = from_string<format_kind>(format);
     const without_lock free;
     std::uint64_t next = frames_at_once;

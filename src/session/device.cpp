@@ -20,10 +20,10 @@ std::string pcm_name(const settings& s, const output_settings& out)
         try {
             require_device_name(*out.pcm);
         } catch (const error& x) {
-            throw error(
-                x.kind(), out.pcm_at, fmt::format("{}: {}", x.subject(), x.why()),
-                "an array file can only name a device, such as hw:CARD=Tactor; more is taken from -D PCM "
-                "and from your own configuration: tactor.toml(5), SECURITY CONSIDERATIONS");
+            throw error(x.kind(), out.pcm_at, fmt::format("{}: {}", x.subject(), x.why()),
+                        "an array file can only name a device, such as hw:CARD=Tactor; more is taken from "
+                        "{device=PCM} "
+                        "and from your own configuration: tactor.toml(5), SECURITY CONSIDERATIONS");
         }
     }
     return *out.pcm;

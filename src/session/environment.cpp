@@ -142,6 +142,16 @@ array use_array_of(const files::plan_file& f, environment& e)
     return f.tactors;
 }
 
+// Its error lists the presets.
+array named_array(const std::string& name)
+{
+    try {
+        return preset_array(name);
+    } catch (const error& e) {
+        throw e.reworded(e.subject(), e.why(), fmt::format("{}; or name a file", e.hint()));
+    }
+}
+
 array find_array(settings& s, environment& e)
 {
     setup& config = e.config;
@@ -158,7 +168,7 @@ array find_array(settings& s, environment& e)
     }
     std::error_code unknown; // such as for a name that no file can have
     if (!fs::exists(*s.array_name, unknown) && s.array_name->find_first_of("./") == std::string::npos)
-        return preset_array(*s.array_name); // its error lists the presets
+        return named_array(*s.array_name);
     check_readable(*s.array_name);
     const setup file = load_setup(*s.array_name);
     if (!file.array)

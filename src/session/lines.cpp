@@ -45,7 +45,7 @@ lent_lines::lent_lines(const setup& config, bool arm, double trigger_delay_s)
     if (!arm)
         return;
     if (!config.sync || !config.sync->in)
-        throw error(error_kind::bad_input, "--arm", "there is no line to wait for",
+        throw error(error_kind::bad_input, "{arm}", "there is no line to wait for",
                     "say it as in = { ... } under [sync], see tactor.toml(5)");
     trigger_ = open_edges(*config.sync->in, config.sync->edge, config.sync->debounce_s, config.sync->pull);
 }

@@ -77,7 +77,7 @@ std::optional<error> left_on(const player_stats& s)
     return error(error_kind::not_available, "amplifier",
                  fmt::format("its line cannot be switched off, {} failed: it may be on",
                              counted(s.off_failures, "try", "tries")),
-                 "cut the amplifier's supply; then see whether \"tactor off\" works, and what dmesg says");
+                 "cut the amplifier's supply; then see whether \"{command:off}\" works, and what dmesg says");
 }
 
 play_session::play_session(const alsa_options& device, const stream_options& o, const environment& e,

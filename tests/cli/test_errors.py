@@ -108,7 +108,7 @@ class CommandLine(ToolTest):
         self.refused(2, "plot", "start.toml", "-o", "x.svg", says=["tactor: start.toml:6:11: start_s: "])
 
     def test_what_defaults_say_is_refused_at_its_place(self):
-        for text, where in (("soa = 5", "3:7: soa: 5 s is out of bounds"), ("burst = 3", "3:9: burst: duration of a burst: 3 s is longer"),
+        for text, where in (("soa = 5", "3:7: soa: 5 s is out of bounds"), ("burst = 3", "3:9: burst: 3 s is longer"),
                             ("carrier = 30000", "3:11: carrier: 30000 Hz cannot be rendered"),
                             ('waveform = "no.wav"', "3:12: waveform: no.wav: No such file")):
             self.write("d.toml", f'array.preset = "palm-3x3"\n[defaults]\n{text}\n')

@@ -64,10 +64,9 @@ TEST_CASE("palm-2x4 has two rows of four")
 TEST_CASE("an unknown preset lists the presets")
 {
     CHECK(message_of([] { static_cast<void>(preset_array("palm-4x4")); }) ==
-          "array: there is no preset 'palm-4x4' (did you mean 'palm-2x4'? presets: palm-3x3, palm-2x4; or "
-          "name a file)");
+          "array: there is no preset 'palm-4x4' (did you mean 'palm-2x4'? presets: palm-3x3, palm-2x4)");
     CHECK(message_of([] { static_cast<void>(preset_array("glove")); }) ==
-          "array: there is no preset 'glove' (presets: palm-3x3, palm-2x4; or name a file)");
+          "array: there is no preset 'glove' (presets: palm-3x3, palm-2x4)");
 }
 
 TEST_CASE("make_grid refuses what is no grid")

@@ -77,6 +77,21 @@ TEST_CASE("an error is made of what it says, of its field, place and errno")
     CHECK(reworded.with_place({"b.toml", 1, 0}).place().text() == "b.toml:1");
 }
 
+TEST_CASE("marks are fields to the library's own users, and marks in its hint")
+{
+    const error e(error_kind::bad_input, "{timing=fit}", "\"{a}\" is none",
+                  "{fit=true| scales it, }{soa_s}, or ask {command:devices}; [sync] in = { chip }");
+    CHECK(std::string(e.what()) ==
+          "timing = fit: \"{a}\" is none (fit_strokes() scales it, soa_s, or ask tactor "
+          "devices; [sync] in = { chip })");
+    CHECK(e.subject() == "{timing=fit}");
+    CHECK(e.hint().starts_with("{fit=true| scales it, }{soa_s}"));
+    CHECK(std::string(error(error_kind::bad_input, "{a}.toml", "no").what()) == "{a}.toml: no");
+    for (const char* text : {"", "{", "}", "{}", "{ a }", "{1}", "{A}", "{a b}", "{:}", "{command:}", "{=a}"})
+        CHECK(std::string(error(error_kind::bad_input, "a", "b", text).what()).find(text) !=
+              std::string::npos);
+}
+
 TEST_CASE("an error that was moved from, and a copy of one that is gone, say the same")
 {
     std::optional<error> first(error(error_kind::bad_input, "grid", "0 rows", "1 or more"));

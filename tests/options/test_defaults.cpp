@@ -173,8 +173,7 @@ TEST_CASE("values of [defaults] that nothing uses may stand there for other stro
     wishes w;
     w.place = on_plan;
     give(w, *find("noise_seed"), 3.0);
-    CHECK(message_of([&] { settle(w); }) ==
-          "{noise_seed}: nothing here uses it (add {waveform=noise:LO-HI})");
+    CHECK(message_of([&] { settle(w); }) == "noise_seed: nothing here uses it (add waveform = noise:LO-HI)");
 }
 
 TEST_CASE("an error about a value of [defaults] has its place in the file")

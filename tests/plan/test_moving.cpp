@@ -115,7 +115,7 @@ TEST_CASE("what a stroke chooses wins over what is asked of all")
     CHECK(make_plan(palm, s).curve.has_value());
     s.choices.soa_s = 0.02;
     s.choices.algorithm.reset();
-    CHECK(refusal(palm, s, {}).find("duration of a burst: ") == 0);
+    CHECK(refusal(palm, s, {}).find("burst_s: ") == 0);
 }
 
 TEST_CASE("an SOA or a burst that a stroke chooses and cannot have is told with its place")
@@ -135,7 +135,7 @@ TEST_CASE("an SOA or a burst that a stroke chooses and cannot have is told with 
                           "most 0.07 s (use 0.07)",
                           3});
     CHECK(told("[stroke]\npath = \"M 0 10 H 40\"\nburst_s = 0.2\n") ==
-          is{"w.toml:3:11: duration of a burst: 0.2 s is longer than the SOA of 0.07 s, and bursts must not "
+          is{"w.toml:3:11: burst_s: 0.2 s is longer than the SOA of 0.07 s, and bursts must not "
              "overlap (use at most 0.07 s, or a longer SOA)",
              3});
     // The stroke's SOA is what is too short for the duration of all.

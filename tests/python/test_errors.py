@@ -71,11 +71,21 @@ def test_they_are_pickled(kind):
 
 
 def test_each_kind_of_the_library_has_its_class():
-    assert type(_errors.made("bad-input", "soa_s", "no", "timing = fit")) is tactor.InputError
+    assert type(_errors.made("bad-input", "soa", "no", "yes")) is tactor.InputError
     assert type(_errors.made("not-available", "pcm", "no", "")) is tactor.DeviceError
     assert type(_errors.made("runtime", "stream", "no", "")) is tactor.StreamError
-    e = _errors.made("bad-input", "soa_s", "no", "try timing = fit or snap = true")
-    assert (e.what, e.hint) == ("soa", 'try timing="fit" or snap=True')
+
+
+@pytest.mark.parametrize("call,hint", [
+    (lambda a, out: tactor.plan(a, tactor.Stroke.along(out, duration=1)), 'fit=True scales it to the array, outside="clamp" plays'),
+    (lambda a, out: tactor.plan(a, tactor.Stroke.preset("wave-2x4")), 'Array.preset("palm-2x4") is the one it is drawn for, fit=True'),
+    (lambda a, out: tactor.plan(a, tactor.Stroke.along(tactor.Path.svg("M 5 7 H 20"), duration=1), algorithm="tactile-brush"), "snap=True moves it there"),
+    (lambda a, out: tactor.plan(a, tactor.Stroke.along(out, duration=1), faces="nearest", phantom="log"), 'use faces="delaunay" or phantom="inverse-distance"'),
+])
+def test_hints_name_keyword_arguments(palm, call, hint):
+    with pytest.raises(tactor.Error) as e:
+        call(palm, tactor.Path.svg("M 0 10 L 70 33"))
+    assert hint in e.value.hint and "{" not in str(e.value)
 
 
 @pytest.mark.parametrize("call,what", [
@@ -132,6 +142,9 @@ def test_no_words_of_the_tool_are_said(palm, stroke):
     assert "name a file" not in e.value.hint
     with pytest.raises(tactor.InputError) as e:
         tactor.Player("null", palm, config=os.devnull, sample_format="x")
+    assert e.value.what == "sample_format"
+    with pytest.raises(tactor.InputError) as e:
+        tactor.Score(palm, tactor.plan(palm, stroke)).write("x.wav", "x")
     assert e.value.what == "sample_format"
     with pytest.raises(TypeError, match="an Array is wanted"):
         tactor.plan(stroke, stroke)

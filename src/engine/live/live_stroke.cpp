@@ -169,7 +169,7 @@ bool live_stroke::impl::to(point p, double intensity, std::optional<std::int64_t
     const bool inside = faces.contains(p);
     if (!inside && outside == outside_kind::error)
         throw refused("outside", fmt::format("({:.6g}, {:.6g}) is outside the array", p.x_mm, p.y_mm),
-                      "outside = clamp plays the nearest point of the array");
+                      "{outside=clamp} plays the nearest point of the array");
     const bool held = intensity > 1.0 && std::isfinite(intensity);
     const bool limited = write_course(inside ? p : faces.nearest(p), held ? 1.0 : intensity);
     if (!excess.empty()) {

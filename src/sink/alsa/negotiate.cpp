@@ -122,7 +122,7 @@ error refused(snd_pcm_t* p, const hw_params& space, const alsa_options& o)
     return error(error_kind::not_available, fmt::format("PCM \"{}\"", o.pcm),
                  fmt::format("cannot play {}; {}", asked(o), why),
                  fmt::format("it can do {}{}", describe(space),
-                             holds ? "; wider = true leaves the other channels silent" : ""))
+                             holds ? "; {wider=true} leaves the other channels silent" : ""))
         .with_field(has_channels ? "" : "channels");
 }
 

@@ -35,7 +35,7 @@ std::string fewer_bytes(format_kind f, unsigned channels)
 {
     for (const format_kind other : {format_kind::s24_3, format_kind::s16})
         if (bytes_of(other) < bytes_of(f) && channels * bytes_of(other) <= most_frame_bytes)
-            return fmt::format("sample_format = {} holds them", to_string(other));
+            return fmt::format("{{sample_format={}}} holds them", to_string(other));
     return "use fewer";
 }
 

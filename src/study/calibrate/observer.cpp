@@ -18,7 +18,7 @@ namespace tactor::study {
 
 namespace {
 
-constexpr const char* subject = "simulate";
+constexpr const char* subject = "--simulate";
 constexpr const char* shape = "as seed=1,threshold=-45,spread=2,lapse=0.02";
 
 [[noreturn]] void refuse(const std::string& why, std::string_view hint = shape)

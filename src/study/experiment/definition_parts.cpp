@@ -42,7 +42,7 @@ auto at_key(const toml_table& t, std::string_view key, F make)
     try {
         return make();
     } catch (const error& e) {
-        const error said = options::spell_marks(e, {write_key});
+        const error said = options::spell(e, {write_key});
         throw error(e.kind(), t.where(key), fmt::format("{}: {}", said.subject(), said.why()), said.hint())
             .with_field(key);
     }
@@ -81,8 +81,7 @@ const options::option& find_method_option(const toml_table::said_key& k)
 }
 
 constexpr std::array own_words{options::own_word{"level_dbfs", "level.dbfs"},
-                               options::own_word{"sl_db", "level.sl_db"},
-                               options::own_word{"fit_strokes() scales it to the array, ", ""}};
+                               options::own_word{"sl_db", "level.sl_db"}, options::own_word{"fit=true", ""}};
 
 std::string write_choice(const options::option& o, std::string_view value)
 {

@@ -146,14 +146,14 @@ void check(const array& a, std::size_t i, double peak, double factor, const rend
     const std::string driven = fmt::format("would be driven at {:.4g} dBFS, above {}", in_db(peak), limit);
     const char* raise = limited ? ", or raise max_dbfs" : "";
     if (o.sl_db)
-        refuse_tactor(a, i,
+        refuse_tactor(a, i, o,
                       fmt::format("{}: with its threshold of {:.4g} dBFS {:.2f} dB are missing", driven,
                                   threshold_at(a.tactors[i], reference_hz).value_or(0.0) + in_db(factor),
                                   excess_db),
-                      fmt::format("lower sl_db by {:.2f} dB or more{}", excess_db, raise));
+                      fmt::format("lower {{sl_db}} by {:.2f} dB or more{}", excess_db, raise));
     refuse_tactor(
-        a, i, driven,
-        fmt::format("lower level_dbfs or the tactor's gain_db by {:.2f} dB or more{}", excess_db, raise));
+        a, i, o, driven,
+        fmt::format("lower {{level_dbfs}} or the tactor's gain_db by {:.2f} dB or more{}", excess_db, raise));
 }
 
 /// Whatever drove them after all, nobody would feel it at full scale.

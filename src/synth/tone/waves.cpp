@@ -69,7 +69,7 @@ void require_left(double peak, const recording& r)
     if (!(peak >= least_peak)) {
         throw error(error_kind::bad_input, detail::recording_name(r),
                     "nothing of it is left below half its own rate and the stream's",
-                    "give a slower vibration, a lower carrier_hz or a higher rate");
+                    "give a slower vibration, a lower {carrier_hz} or a higher rate");
     }
 }
 

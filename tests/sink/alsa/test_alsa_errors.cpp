@@ -81,7 +81,7 @@ TEST_CASE("a sound server that is not there is named, and what to do without one
     const std::string none = s.says("default", -EHOSTDOWN);
     has(none, "a sound server (PipeWire, PulseAudio), which is not there");
     has(none, "systemctl --user start pipewire-pulse");
-    has(none, "-D hw:CARD=NAME");
+    has(none, "device = hw:CARD=NAME");
     CHECK(none.find("Host is down") == std::string::npos);
     s.two_cards();
     for (const int code : {-EHOSTDOWN, -ECONNREFUSED})
@@ -103,7 +103,7 @@ TEST_CASE("a plugin of ALSA's that is missing is named with its package")
         return text;
     };
     for (const char* type : {"pulse", "jack", "oss", "usb_stream", "a52", "speex", "upmix", "vdownmix"})
-        has(missing(type), "sudo apt install libasound2-plugins; or play on a card: -D hw:CARD=NAME");
+        has(missing(type), "sudo apt install libasound2-plugins; or play on a card: device = hw:CARD=NAME");
     has(s.leads({}, -ENOENT, "Cannot open shared library libasound_module_conf_pulse.so (none)"),
         "sudo apt install libasound2-plugins");
     has(missing("pipewire"), "sudo apt install pipewire-alsa;");
@@ -111,7 +111,7 @@ TEST_CASE("a plugin of ALSA's that is missing is named with its package")
     has(unknown, "is the type pulze in its definition misspelt? Else install what has that file");
     CHECK(unknown.find("apt") == std::string::npos);
     s.two_cards();
-    has(missing("pulse"), "-D hw:CARD=Headphones");
+    has(missing("pulse"), "device = hw:CARD=Headphones");
     try {
         static_cast<void>(open_alsa({.pcm = "t", .channels = 1, .config_text = "pcm.t { type nobodys }"}));
         FAIL("it opened");
@@ -127,7 +127,7 @@ TEST_CASE("JACK without its server is named, whose plugin only says that there i
     const std::string text = s.leads({"plug", "jack"}, -ENOENT);
     has(text, "it leads to JACK, whose server does not run");
     has(text, "jackd");
-    has(text, "-D hw:CARD=NAME");
+    has(text, "device = hw:CARD=NAME");
     CHECK(text.find("there is no sound card") == std::string::npos);
     for (const int code : {-ECONNREFUSED, -EHOSTDOWN})
         has(s.leads({"pipewire"}, code), "a sound server (PipeWire, PulseAudio), which is not there");
