@@ -21,8 +21,8 @@
 #include "files/output_file.hpp"
 #include "files/text_file.hpp"
 #include "rt/clock.hpp"
-#include "session/runtime_folder.hpp"
 #include "session/say.hpp"
+#include "session/variable.hpp"
 
 namespace tactor::session {
 namespace {

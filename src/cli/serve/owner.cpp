@@ -11,7 +11,6 @@
 
 #include "cli/say.hpp"
 #include "files/plan/plan_json.hpp"
-#include "session/runtime_folder.hpp"
 #include "session/variable.hpp"
 
 namespace tactor::cli {
