@@ -82,11 +82,20 @@ service::service(boost::asio::io_context& io, service_options o, stream_options 
       quiet_(io),
       options_(std::move(o)),
       faces_(options_.plans.tactors),
-      stream_(io, std::move(s),
-              {[this](std::uint64_t p, stroke_id id, std::optional<std::int64_t> at) { begun(p, id, at); },
-               [this](std::uint64_t p, const stroke_report& r) { ended(p, r); },
-               [this](stream_state state, const std::string& why) { tell_stream(state, why); }})
+      stream_(io, heard(std::move(s)))
 {
+}
+
+stream_options service::heard(stream_options s)
+{
+    s.begun = [this](std::uint64_t p, stroke_id id, std::optional<std::int64_t> at) { begun(p, id, at); };
+    s.ended = [this](std::uint64_t p, const stroke_report& r) { ended(p, r); };
+    s.changed = [this, owner = std::move(s.changed)](stream_state state, const std::string& why) {
+        if (owner)
+            owner(state, why);
+        tell_stream(state, why);
+    };
+    return s;
 }
 
 service::~service()
@@ -303,7 +312,7 @@ void service::disconnect(client_number number)
 
 void service::tell_stream(stream_state s, const std::string& reason)
 {
-    const reply_json n = net::notification("stream", {{"state", name_of(s)}, {"reason", reason}});
+    const reply_json n = net::notification("stream", {{"state", to_string(s)}, {"reason", reason}});
     for (const auto& [number, c] : clients_)
         if (c->admitted && c->greeted && (c->events.contains("stream") || s == stream_state::closing))
             send(*c, n);

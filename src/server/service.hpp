@@ -171,6 +171,8 @@ private:
     client* find(client_number c);
     std::size_t gone() const; ///< clients that send no more and are owed something
     void send(client& c, const reply_json& message);
+    /// Returns the options of a stream that this hears of.
+    stream_options heard(stream_options s);
     void tell_stream(stream_state s, const std::string& reason);
     void check_told_all(client_number number);
     void give_memory_back_when_quiet();

@@ -8,6 +8,8 @@
 #include <fmt/format.h>
 #include <tactor/tactor.hpp>
 
+#include "session/say.hpp"
+
 namespace tactor::session {
 namespace {
 
@@ -34,6 +36,13 @@ std::string pcm_name(const settings& s, const output_settings& out)
 bool names_device(const settings& s, const environment& e)
 {
     return s.pcm || e.config.output.pcm;
+}
+
+void tell_of_no_device(const settings& s, const environment& e)
+{
+    if (!names_device(s, e))
+        say(stderr, "tactor: no device is configured: playing to \"null\", which nobody feels (-D PCM plays "
+                    "on hardware)\n");
 }
 
 alsa_options device_options(const settings& s, const stream_options& asked, const environment& e,

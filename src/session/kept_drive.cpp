@@ -153,7 +153,7 @@ drive_history kept_drive::until_now()
         look();
         take_up_killed();
     }
-    return own_.with(others_);
+    return own_.with(others_).with(ahead_);
 }
 
 void kept_drive::going(unsigned channels)

@@ -76,8 +76,11 @@ walk_result stumble(bool ask)
     device.channels = 2;
     render_options r;
     r.channels = 2;
-    session::stream_source source{[&](const alsa_options& o) { return pcm::adopt(dac.pcm(), o); }, patient()};
-    source.player.realtime = false;
+    const auto source = [&](session::stream_parts& p) {
+        p.open = [&] { return pcm::adopt(dac.pcm(), device); };
+        p.player = patient(p.player.limits);
+        p.player.realtime = false;
+    };
     const running_clock clock(dac, running_clock::capture_kind::kept, stumble_once(dac));
     walk_options o;
     o.ask = ask;

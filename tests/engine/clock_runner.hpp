@@ -16,9 +16,10 @@ namespace tactor::test {
 
 /// The fake clock stands still while the test thinks, and runs as fast as it can when it runs: neither is a
 /// reason to give up.
-inline player_options patient()
+inline player_options patient(const drive_limits& limits = {})
 {
     player_options o;
+    o.limits = limits;
     o.stall_s = 600.0;
     o.horizon_s = 600.0;
     return o;

@@ -100,8 +100,8 @@ public:
         s.player.limits.window_s = 3600.0;
         s.wished.channels = 9;
         s.wished.rate = 48000;
-        s.retry_s = 0.001;
-        s.proof_s = 0.01;
+        s.times.retry_s = 0.001;
+        s.times.proof_s = 0.01;
         s.open = [this] { return open(); };
         if (change)
             change(o, s);

@@ -130,7 +130,7 @@ TEST_CASE("a stop stops in whatever form it comes, but a button's release does n
 
 TEST_CASE("a live stroke in one packet, before its own number is known to anybody")
 {
-    osc_rig rig([](auto&, auto& s) { s.idle_stop_s = 0.001; });
+    osc_rig rig([](auto&, auto& s) { s.times.idle_stop_s = 0.001; });
     ready(rig);
     rig.sleep_and_plug();
     // The stream has to start first: the points wait.

@@ -4,7 +4,7 @@
 
 #include <doctest/doctest.h>
 
-#include "session/play_session.hpp"
+#include "session/device_stream.hpp"
 
 namespace stats_test {
 

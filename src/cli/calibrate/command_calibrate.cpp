@@ -91,8 +91,7 @@ int ask_person(study::calibration& c, study::calibration_log& log, const setting
     const alsa_options device = session::device_options(s, o, e, render.channels, render.rate);
     const std::string server = session::settle_server(device.pcm);
     study::person who(device, o, e, render, c.settings(), asked.keypads, open_page(asked.page));
-    if (!server.empty())
-        say(stderr, "tactor: warning: {} ({})\n", session::server_note(server), session::server_cure);
+    session::warn_of_server(server);
     if (!asked.masker.empty()) {
         study::masking_options noise = asked.masking;
         noise.seed = fmt::format("{}/calibrate/{}/noise", c.settings().seed, c.settings().participant);

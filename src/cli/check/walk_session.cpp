@@ -175,21 +175,21 @@ piece walk_one(const array& a, unsigned tactor, double carrier_hz)
 }
 
 walk_result walk(const alsa_options& device, const environment& e, const render_options& render,
-                 const walk_options& o, session::stream_source source)
+                 const walk_options& o, const session::stream_source& source)
 {
     if (o.ask)
         session::check_standard_input();
-    session::play_session session(device, o.stream, e, std::move(source));
+    session::play_session session(device, o.stream, e, source);
     walk_result result;
     try {
         result.felt = walker(session, e, render, o).all();
     } catch (const interrupted&) {
         result.signal = session.signal();
     } catch (const error&) {
-        session.end();
+        session.finish().check_amplifier();
         throw;
     }
-    session.end();
+    session.finish().check_amplifier();
     return result;
 }
 

@@ -57,8 +57,7 @@ std::string check_server(const std::string& pcm, const char* cure, const experim
     if (!server.empty() && !o.allow_sound_server)
         throw error(error_kind::bad_input, pcm, session::server_note(server),
                     fmt::format("{}; --allow-sound-server takes it, and writes it down", cure));
-    if (!server.empty())
-        say(stderr, "tactor: warning: {} ({})\n", session::server_note(server), cure);
+    session::warn_of_server(server, cure);
     return server;
 }
 

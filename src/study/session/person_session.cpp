@@ -108,7 +108,7 @@ void person_session::note_stream()
     if (!begun_)
         return;
     ++stream_;
-    const stream_setup& d = stage_.session().setup();
+    const stream_setup& d = stage_.setup();
     json all = store_.facts().contains("streams") ? store_.facts()["streams"] : json::array();
     all.push_back(
         {{"stream", stream_},
@@ -122,8 +122,8 @@ void person_session::note_stream()
          {"format", std::string(to_string(d.format))},
          {"period_frames", d.period_frames},
          {"buffer_frames", d.buffer_frames},
-         {"realtime", stage_.session().stats().realtime},
-         {"locked_memory", stage_.session().locked_memory()}});
+         {"realtime", stage_.stats().realtime},
+         {"locked_memory", stage_.locked_memory()}});
     store_.note("streams", all);
 }
 

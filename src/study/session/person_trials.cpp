@@ -92,7 +92,7 @@ given_stimulus person_session::give(const session_step& s, const planned_trial& 
         g = stage_.give(stimuli, stimulus_lead_s, [&](std::uint64_t) {
             heed();
             if (repeat_ || quit_)
-                stage_.cut();
+                stage_.cancel();
         });
     }
     heed(); // what was pressed too early is no answer
