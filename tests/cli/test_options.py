@@ -80,6 +80,9 @@ class Options(ToolTest):
         page = (ROOT / "man/tactor.1").read_text(encoding="utf-8")
         for name in self.every():
             self.assertRegex(page, rf"(?m)^\.(It|Fl|Op|Pq)?.*\bFl (\w , )?-{name}\b", name)
+            form = self.ok("help", name).stdout.partition("\n")[0].partition(" ")[2]
+            if re.fullmatch(r"[a-z0-9-]+(\|[a-z0-9-]+)+", form):
+                self.assertIn(f"-{name} Cm {form.replace('|', ' | ')}\n", page)
 
     def test_a_client_has_each_or_there_is_a_reason(self):
         schema = json.loads((ROOT / "src/cli/schemas/tactor-protocol-1.schema.json").read_text(encoding="utf-8"))
