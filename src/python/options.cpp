@@ -18,6 +18,7 @@ namespace tactor::python {
 namespace {
 
 using options::option;
+using namespace py::literals;
 
 constexpr std::uint64_t of_python = options::in_plan | options::in_score | options::in_compare;
 // [defaults] speed, which a stroke's own wins over.
@@ -262,6 +263,35 @@ py::dict default_values(const setup& says)
                     all[name] = v;
             },
             d.said);
+    }
+    return all;
+}
+
+py::list option_rows()
+{
+    constexpr std::array places{
+        std::pair{"plan", options::in_plan},       std::pair{"score", options::in_score},
+        std::pair{"compare", options::in_compare}, std::pair{"player", options::in_player},
+        std::pair{"live", options::live},          std::pair{"client", options::by_client}};
+    constexpr std::array kinds{"float", "int", "choice", "bool", "str"};
+    py::list all;
+    for (const option& o : options::all()) {
+        py::list where;
+        for (const auto& [name, place] : places)
+            if ((o.where & place) != 0)
+                where.append(name);
+        const bool is_number = o.what == options::kind::number || o.what == options::kind::whole;
+        std::vector<double> bounds; // none where other values decide
+        if (is_number && o.range.empty())
+            bounds = {o.allowed.low, o.allowed.high};
+        all.append(
+            py::dict("name"_a = o.name, "kind"_a = kinds.at(static_cast<std::size_t>(o.what)),
+                     "may_be_number"_a = o.allowed.high > 0.0, "unit"_a = o.unit,
+                     "choices"_a = o.choices == nullptr ? std::vector<std::string_view>() : o.choices(),
+                     "help"_a = options::spell(o.help, by_python),
+                     "form"_a = o.what == options::kind::text ? o.shown : "",
+                     "range"_a = is_number ? options::spell(range_text(o), by_python) : "",
+                     "bounds"_a = bounds, "places"_a = where));
     }
     return all;
 }

@@ -32,6 +32,9 @@ given_options player_options_in(const py::dict& given);
 /// Names of options: "planning", "sounding", "live", or all that take_options() knows.
 std::vector<std::string> option_names(const std::string& which);
 
+/// The rows of the table, for what is written from them (src/options/write.py).
+py::list option_rows();
+
 /// Values of [defaults] by the names of options. \throws error (bad_input) with the place in the file.
 py::dict default_values(const setup& says);
 

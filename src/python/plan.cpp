@@ -210,6 +210,7 @@ asked_stroke stroke_as_asked(const stroke& s, const layout& faces, const wishes&
 void bind_plan(py::module_& m)
 {
     m.def("option_names", &option_names, py::arg("which") = "");
+    m.def("option_rows", &option_rows);
     m.def("check_used", &check_used);
     m.def("burst_duration", [](const py::dict& options) {
         wishes w;

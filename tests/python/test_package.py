@@ -47,8 +47,8 @@ def test_docstrings_name_the_parameters_that_there_are():
     # numpydoc: a section that is there lists what the signature has, in names that it has.
     wrong = []
     for name, thing in public_things():
-        doc = inspect.getdoc(thing) or ""
         function = thing.__init__ if inspect.isclass(thing) else thing
+        doc = f"{inspect.getdoc(thing)}\n\n{inspect.getdoc(function) or ''}"
         section = re.search(r"^Parameters\n-+\n(.*?)(?=^\w+\n-+\n|\Z)", doc, re.M | re.S)
         if section is None or not inspect.isfunction(function) or name == "Tactor":
             continue
