@@ -8,7 +8,6 @@
 #include <cstdint>
 #include <fstream>
 #include <map>
-#include <optional>
 #include <sstream>
 #include <system_error>
 

@@ -8,6 +8,7 @@
 #include "cli/devices/devices_text.hpp"
 #include "cli/input.hpp"
 #include "cli/say.hpp"
+#include "cli/settings.hpp"
 
 namespace tactor::cli {
 namespace {

@@ -12,6 +12,7 @@
 #include "cli/commands.hpp"
 #include "cli/input.hpp"
 #include "cli/say.hpp"
+#include "cli/settings.hpp"
 #include "cli/warnings.hpp"
 #include "core/words.hpp"
 #include "files/plan/plan_json.hpp"

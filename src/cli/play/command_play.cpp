@@ -12,6 +12,7 @@
 #include "cli/play/play_options.hpp"
 #include "cli/play/play_report.hpp"
 #include "cli/say.hpp"
+#include "cli/settings.hpp"
 #include "cli/warnings.hpp"
 #include "session/play_session.hpp"
 #include "session/threshold_carrier.hpp"

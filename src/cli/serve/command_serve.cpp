@@ -16,6 +16,7 @@
 #include "cli/input.hpp"
 #include "cli/say.hpp"
 #include "cli/serve/owner.hpp"
+#include "cli/settings.hpp"
 #include "core/words.hpp"
 #include "files/plan/json_value.hpp"
 #include "files/plan/plan_json.hpp"
@@ -188,13 +189,10 @@ void add_serve_options(CLI::App& c, serve_options& o)
     c.add_option("--osc", o.osc, "take OSC there, over UDP; port 0 takes a free one")
         ->type_name("[HOST:]PORT");
     c.add_option("--http", o.http, "serve a page to draw on, and WebSockets")->type_name("[HOST:]PORT");
-    c.add_option_function<std::string>(
-         "--idle-stop",
-         [&o](const std::string& t) {
-             o.idle_stop_s = options::parse_number("--idle-stop", t, detail::bounds_of::timeout_s, "s");
-         },
-         "stop the stream after so long without a stroke (default: never)")
-        ->type_name("S");
+    add_text(c, "--idle-stop", "S", "stop the stream after so long without a stroke (default: never)",
+             [&o](const std::string& t) {
+                 o.idle_stop_s = options::parse_number("--idle-stop", t, detail::bounds_of::timeout_s, "s");
+             });
 }
 
 } // namespace
