@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Calls that throw: layouts, phantoms, plans, who feels them; scores and what renders them.
+// Calls that throw: layouts, phantoms, plans, predictions, scores and renderers.
 #include <cstddef>
 #include <memory>
 #include <vector>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Calls that throw: those of a player, of its live strokes, and of what it gives the next one.
+// Calls that throw: a player, its live strokes, and the drive history for the next player.
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -17,14 +17,14 @@
 namespace tactor::test {
 namespace {
 
-// A player with its DAC, which is made first and goes last.
+// A player with its DAC; the DAC is made first and goes last.
 struct running {
     fake_dac dac{};
     running_clock clock{dac};
     player p{pcm::adopt(dac.pcm(), nine()), palm(), patient()};
 };
 
-// What is made anew before each call.
+// Things made anew before each call.
 struct fresh {
     std::unique_ptr<fake_dac> dac = {};
     std::unique_ptr<running_clock> clock = {};

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// For the tests of live strokes.
+/// Support for tests of live strokes.
 #pragma once
 
 #include <algorithm>

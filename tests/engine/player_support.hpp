@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// For the tests of the player.
+/// Support for tests of the player.
 #pragma once
 
 #include <cstddef>
@@ -20,7 +20,7 @@ inline alsa_options nine(format_kind f = format_kind::s32)
     return o;
 }
 
-/// Bytes from ... from + n.
+/// Returns n bytes from `from` on.
 inline std::vector<std::byte> part(const std::vector<std::byte>& all, std::size_t from, std::size_t n)
 {
     REQUIRE(from + n <= all.size());

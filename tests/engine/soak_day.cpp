@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// A day on the virtual clock: what a period costs does not depend on how long the engine has run. Work is
-// counted, not timed, so that the machine's load does not matter.
+// A day on the virtual clock: a period costs the same however long the engine has run. Counts work, not time,
+// so that the machine's load does not matter.
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -26,7 +26,7 @@ constexpr unsigned period = 4000;
 constexpr unsigned periods_an_hour = 3600 * low_rate / period;
 
 struct work {
-    std::uint64_t heap_calls = 0; ///< of both sides
+    std::uint64_t heap_calls = 0; ///< by both sides
     std::uint64_t audio_heap_calls = 0;
     std::int64_t held = 0; ///< bytes
     std::uint64_t most_drives = 0;
@@ -35,7 +35,7 @@ struct work {
     std::uint64_t strokes = 0;
 };
 
-score stroke_of(unsigned bursts)
+score make_stroke(unsigned bursts)
 {
     plan p;
     for (unsigned k = 0; k < bursts; ++k) {
@@ -54,13 +54,13 @@ score stroke_of(unsigned bursts)
 
 class day {
 public:
-    day() : r_(options()), shorter_(stroke_of(5)), longer_(stroke_of(300))
+    day() : r_(options()), shorter_(make_stroke(5)), longer_(make_stroke(300))
     {
         r_.dac.reserve_capture(1 << 12);
         REQUIRE(r_.start().status == io_kind::ok);
     }
 
-    // Each hour is like every other.
+    // Runs an hour that is like every other.
     work hour()
     {
         std::mt19937_64 random(4);
@@ -158,7 +158,7 @@ private:
 
 } // namespace
 
-TEST_CASE("a day: the last hour costs what the second did, and nothing is left behind")
+TEST_CASE("a day: the last hour costs as much as the second, and nothing is left behind")
 {
     day d;
     d.hour();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// A million periods of everything that can go wrong, in any order: what the DAC gets never jumps and never
-// exceeds the limit, and every stroke ends once.
+// A million periods with every fault in any order: the samples at the DAC never jump and never exceed the
+// limit, and every stroke ends once.
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -36,7 +36,7 @@ array row()
     return a;
 }
 
-// Most that a stroke of these tests can change from frame to frame: the carrier's slope, and its whole
+// Greatest change from frame to frame of a stroke of these tests: the carrier's slope, and its whole
 // amplitude within the shortest ramp, a live stroke's control step or a fade.
 double slope(const render_options& o)
 {
@@ -51,7 +51,7 @@ score random_stroke(std::mt19937_64& random, const render_options& o)
     for (unsigned k = 0; k < n; ++k) {
         burst b;
         b.onset_s = 0.05 * k;
-        b.duration_s = 0.008 + 0.06 * uniform(random); // those that overlap are joined
+        b.duration_s = 0.008 + 0.06 * uniform(random); // overlapping ones are joined
         for (unsigned t = 0; t < channels; ++t)
             if (random() % 2 == 0)
                 b.drives.push_back({.tactor = t, .amplitude = uniform(random)});
@@ -71,14 +71,14 @@ struct totals {
     double loudest = 0.0;
 };
 
-// One device from start to its end, by stop or by loss.
+// A device from its start to its end, by stop or by loss.
 class life {
 public:
     life(std::mt19937_64& random, std::uint64_t most_periods)
         : random_(random), most_periods_(most_periods), r_(make())
     {
         levels_.level_dbfs = -20.0;
-        levels_.ramp_s = 0.002; // bursts that overlap and have none are joined with a step
+        levels_.ramp_s = 0.002; // bursts that overlap and have no ramp are joined with a step
         r_.dac.reserve_capture(1 << 12);
     }
 
@@ -129,7 +129,7 @@ private:
         return o;
     }
 
-    // As many strokes as have not ended may sound at once, each with its own slope.
+    // Allows one slope for each stroke that has not ended: all of them may sound at once.
     void set_allowed() { allowed_ = static_cast<double>(r_.last_id - r_.ended.size()) * slope(levels_); }
 
     void producers()
@@ -235,7 +235,7 @@ private:
 } // namespace
 
 TEST_CASE(
-    "a million periods with faults at random: every stroke is accounted for once, no jump, no limit passed")
+    "a million periods with random faults: every stroke ends once, no sample jumps, none passes the limit")
 {
     std::mt19937_64 random(seed);
     totals t;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Who is told that a stroke begins, and when its first sample is at the DAC.
+// Handlers of beginnings: which strokes they get, and the time of the first sample at the DAC.
 #include <map>
 #include <mutex>
 #include <optional>
@@ -21,7 +21,7 @@ namespace begins_test {
 using namespace tactor;
 using namespace tactor::test;
 
-TEST_CASE("each stroke's beginning is told once and before its end, with the time that its report has")
+TEST_CASE("each stroke's beginning is reported once and before its end, with the time that its report has")
 {
     fake_dac dac;
     std::mutex mutex;
@@ -71,7 +71,7 @@ TEST_CASE("a handler of beginnings that throws ends the stream, as others do")
     player p(pcm::adopt(dac.pcm(), nine()), palm(), patient());
     p.on_begin([](stroke_id, std::optional<std::int64_t>) { throw 1; });
     const running_clock clock(dac);
-    // One without an end: another may have finished before the handler is called.
+    // An endless one: another may have finished before the handler is called.
     const live_stroke live = p.begin({.timeout_s = 86400.0});
     auto moved = live;
     REQUIRE(moved.to(20.0, 20.0));

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Samples that cannot be computed in mid-stroke, as where memory is exhausted: a stroke that ends early never
-// counts as finished.
+// Samples that cannot be computed in mid-stroke, as without memory: a stroke that ends early never counts as
+// finished.
 #include <cmath>
 #include <limits>
 #include <memory>
@@ -33,7 +33,7 @@ enum class fault {
     throws_a_number
 };
 
-// One second on tactor 4 that is in order while the score is made, and breaks at a time when `broken` is set.
+// A second on tactor 4 that is right while the score is made, and breaks at a time once `broken` is set.
 score made(const std::shared_ptr<fault>& broken, double from_s)
 {
     plan p;
@@ -100,7 +100,7 @@ constexpr sample samples[] = {
 
 } // namespace
 
-TEST_CASE("a plan that fails in mid-stroke interrupts the stroke with the reason, faded out where it failed")
+TEST_CASE("a plan that fails in mid-stroke interrupts the stroke with the reason, and fades where it failed")
 {
     for (const unsigned period : {32U, 96U, 1024U}) {
         for (const sample& s : samples) {
@@ -123,7 +123,7 @@ TEST_CASE("a plan that fails in mid-stroke interrupts the stroke with the reason
             CHECK(report.why.find("the plan failed at 0.3") == 0);
             CHECK(report.why.find(s.why) != std::string::npos);
             CHECK(report.started_ns.has_value());
-            // Control points up to 0.299 s are in order; it is silent there, and a fade before that.
+            // Control points up to 0.299 s are right; it is silent there, and fades before that.
             const std::uint64_t good = rate * 299 / 1000;
             CHECK(report.frames <= good);
             CHECK(report.frames + period + o.loop.fade_frames >= good);
@@ -137,7 +137,7 @@ TEST_CASE("a plan that fails in mid-stroke interrupts the stroke with the reason
     }
 }
 
-TEST_CASE("a rounding more than the plan promised is no failure")
+TEST_CASE("a plan that exceeds its promise by a rounding does not fail")
 {
     double amplitude = 0.5;
     plan p;
@@ -173,7 +173,7 @@ TEST_CASE("a plan that fails at its first point is interrupted before it sounds"
     CHECK_FALSE(r.first_sound());
 }
 
-TEST_CASE("what fails takes nothing else along")
+TEST_CASE("a stroke that fails leaves the others alone")
 {
     const auto broken = std::make_shared<fault>(fault::none);
     const score music = made(broken, 0.2);
@@ -187,7 +187,7 @@ TEST_CASE("what fails takes nothing else along")
     CHECK(r.report(before)->state == state_kind::finished);
     CHECK(r.report(fails)->state == state_kind::interrupted);
     CHECK(r.report(after)->state == state_kind::finished);
-    // A cancel before it fails is a cancel, and a score that fails keeps no place.
+    // A cancel before the failure counts as a cancel, and a score that fails keeps no place.
     const stroke_id cancelled = r.submit(music);
     r.play(960);
     r.feed.cancel(cancelled);

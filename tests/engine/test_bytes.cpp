@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What reaches the DAC is what the renderer makes, bit for bit.
+// Bytes at the DAC: the renderer's, bit for bit.
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
@@ -40,7 +40,7 @@ private:
     std::minstd_rand random_;
 };
 
-// Sum of two pieces in S32 where neither clips: integers add only when both were exact, so floats are used.
+// Adds a piece to a sum at a place. Floats: integers add only where both are exact.
 void add(std::vector<std::byte>& sum, const std::vector<std::byte>& part, std::size_t at_bytes)
 {
     for (std::size_t i = 0; i + 4 <= part.size() && at_bytes + i + 4 <= sum.size(); i += 4) {
@@ -93,7 +93,7 @@ TEST_CASE("odd periods, one channel more and many buffers give the same bytes")
     }
 }
 
-TEST_CASE("several strokes at once add up, each where it belongs")
+TEST_CASE("strokes that overlap add up, each at its place")
 {
     rig r({.format = format_kind::float32});
     REQUIRE(r.start().status == io_kind::ok);
@@ -154,7 +154,7 @@ TEST_CASE("a stroke submitted for a frame starts at that frame")
     }
 }
 
-TEST_CASE("a frame that is over means now")
+TEST_CASE("a stroke for a frame that is over starts now")
 {
     rig r;
     REQUIRE(r.start().status == io_kind::ok);
@@ -166,13 +166,13 @@ TEST_CASE("a frame that is over means now")
     CHECK(r.captured(next, s.frames()) == rendered(s, format_kind::s32));
 }
 
-TEST_CASE("a tiny ring is back-pressure: nothing is lost")
+TEST_CASE("a tiny ring delays drives and loses none")
 {
     for (const std::size_t ring : {2U, 4U, 7U}) {
         CAPTURE(ring);
         rig r({.ring = ring});
         REQUIRE(r.start().status == io_kind::ok);
-        // One drive a burst and a burst each 70 ms: even one command a period is enough.
+        // A drive a burst and a burst each 70 ms: one command a period is enough.
         const score s = random_score(11, 40);
         const std::uint64_t from = r.status().written;
         const stroke_id id = r.submit(s);
@@ -215,7 +215,7 @@ TEST_CASE("short writes and writes of nothing lose no frame")
     REQUIRE(r.start().status == io_kind::ok);
     const score s = random_score(13, 20);
     const stroke_id id = r.submit(s);
-    // Writes fail so often that the DAC must wait at times; it has no patience, so it plays what is there.
+    // Writes fail so often that the DAC must wait at times; it plays on with the frames it has.
     for (int i = 0; i < 20'000 && r.ended.empty(); ++i) {
         r.dac.advance_queued(24);
         r.step();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What went wrong first is nested in the error that a caller gets.
+// First causes, nested in the error that a caller gets.
 #include <doctest/doctest.h>
 
 #include <cerrno>
@@ -33,7 +33,7 @@ using namespace tactor::test;
 
 namespace {
 
-// The errno of what is nested in what a call throws; 0 where nothing is.
+// Returns the errno of the error nested in what a call throws; 0 for none.
 int system_cause(const std::function<void()>& call)
 {
     try {
@@ -62,7 +62,7 @@ int os_code(const std::function<void()>& call)
     return 0;
 }
 
-// The text of the nested error of ours; "" where nothing is nested.
+// Returns the text of the tactor::error nested in what a call throws; "" for none.
 std::string own_cause(const std::function<void()>& call)
 {
     try {
@@ -77,7 +77,7 @@ std::string own_cause(const std::function<void()>& call)
     return "";
 }
 
-// The first write says this.
+// Returns this result for each write.
 class broken_sink final : public forwarding_sink {
 public:
     broken_sink(std::unique_ptr<sink> s, io_result said) : forwarding_sink(std::move(s)), said_(said) {}
@@ -96,7 +96,7 @@ int cause_of_start(io_result said)
 
 } // namespace
 
-TEST_CASE("what the system refused is nested with its errno")
+TEST_CASE("a refusal of the system is nested with its errno")
 {
     const folder here;
     CHECK(system_cause([&] { static_cast<void>(load_setup(here / "none.toml")); }) == ENOENT);
@@ -113,7 +113,7 @@ TEST_CASE("a stream that does not start has the errno of its device")
     CHECK(cause_of_start({io_kind::failed, 0, 0}) == 0);
 }
 
-TEST_CASE("an error of a file within a file is nested in that of the outer")
+TEST_CASE("the error of a file within a file is nested in that of the outer")
 {
     const folder here;
     const auto outer = here.write("outer.toml", "[array]\nfile = \"none.toml\"\n");
@@ -128,7 +128,7 @@ TEST_CASE("an error of a file within a file is nested in that of the outer")
     CHECK(!geometry.empty());
 }
 
-TEST_CASE("an error without a cause has none")
+TEST_CASE("an error without a cause nests nothing")
 {
     CHECK(own_cause([] { static_cast<void>(preset_stroke("no-such")); }).empty());
     CHECK(system_cause([] { static_cast<void>(preset_stroke("no-such")); }) == 0);

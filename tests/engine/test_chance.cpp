@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Everything that can go wrong, in any order.
+// Faults in any order.
 #include <random>
 
 #include <doctest/doctest.h>
@@ -11,7 +11,7 @@ namespace chance_test {
 using namespace tactor;
 using namespace tactor::test;
 
-TEST_CASE("faults at random: every stroke ends once, nothing is heard twice")
+TEST_CASE("random faults: every stroke ends once")
 {
     std::mt19937_64 random(77);
     for (int round = 0; round < 200; ++round) {

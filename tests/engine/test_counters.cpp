@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What the player says about its stream.
+// Counters of the player about its stream.
 #include <memory>
 #include <utility>
 
@@ -18,7 +18,7 @@ using namespace tactor::test;
 
 namespace {
 
-// Its n-th xrun is n ms long.
+// Reports n ms for its n-th xrun.
 class dry_sink final : public forwarding_sink {
 public:
     using forwarding_sink::forwarding_sink;
@@ -37,7 +37,7 @@ TEST_CASE("the length of each xrun is kept, of many the newest")
     rig r(o);
     REQUIRE(r.start().status == io_kind::ok);
     for (unsigned i = 1; i <= 70; ++i) {
-        r.play(rate); // more than three in a second are the end
+        r.play(rate); // more than three in a second end the stream
         r.dac.advance(1 << 20);
         r.step();
         r.control();
@@ -47,7 +47,7 @@ TEST_CASE("the length of each xrun is kept, of many the newest")
     CHECK_FALSE(r.loop.over());
 }
 
-TEST_CASE("a device that does not stamp its stop still tells how long an xrun was")
+TEST_CASE("a device that does not stamp its stop still gives the length of an xrun")
 {
     rig r;
     REQUIRE(r.start().status == io_kind::ok);
@@ -55,7 +55,7 @@ TEST_CASE("a device that does not stamp its stop still tells how long an xrun wa
     r.dac.advance(1 << 20);
     r.step();
     REQUIRE(r.link.count.xruns == 1);
-    // Virtual frames in real nanoseconds: all that can be said is that it is a length, and no age.
+    // Virtual frames in real nanoseconds: only a bound can be checked.
     CHECK(r.link.count.xrun_ns[0] >= 0);
     CHECK(r.link.count.xrun_ns[0] < 60'000'000'000);
 }

@@ -37,7 +37,7 @@ struct truth {
     }
 };
 
-// Largest error of the line over the next half second from a frame on, ns.
+// Returns the largest error of the line over half a second from a frame on, ns.
 double error_ns(const clock_line& line, const truth& t, std::uint64_t frame)
 {
     double worst = 0.0;
@@ -49,7 +49,7 @@ double error_ns(const clock_line& line, const truth& t, std::uint64_t frame)
 
 } // namespace
 
-TEST_CASE("readings that are off by up to 1 ms, drifts up to 1000 ppm: within the bounds that are stated")
+TEST_CASE("with jitter up to 1 ms and drift up to 1000 ppm, the line stays within its stated bounds")
 {
     std::mt19937_64 random(5);
     std::uniform_real_distribution<double> jitter(-1e6, 1e6);
@@ -77,7 +77,7 @@ TEST_CASE("readings that are off by up to 1 ms, drifts up to 1000 ppm: within th
     }
 }
 
-TEST_CASE("a day of 40 ppm: the error stays, and what is expected of it is true")
+TEST_CASE("over a day at 40 ppm the error stays small, and matches its own estimate")
 {
     std::mt19937_64 random(6);
     std::uniform_real_distribution<double> jitter(-1e6, 1e6);
@@ -100,7 +100,7 @@ TEST_CASE("a day of 40 ppm: the error stays, and what is expected of it is true"
     CHECK(deviation < 2.0 * clock.line().error_ns);
 }
 
-TEST_CASE("a position in whole periods, read at random times, is late by no more than the time between")
+TEST_CASE("a position in whole periods, read at random times, is late by at most the time between readings")
 {
     std::mt19937_64 random(7);
     std::uniform_real_distribution<double> gap(0.1e6, 0.9e6);
@@ -155,7 +155,7 @@ TEST_CASE("each epoch begins without the one before")
     CHECK_FALSE(clock.line().valid());
     clock.begin_epoch(0);
     CHECK_FALSE(clock.line().valid());
-    clock.add(1'000'000, 0); // nothing has moved yet
+    clock.add(1'000'000, 0); // nothing has moved
     CHECK_FALSE(clock.line().valid());
     clock.add(2'000'000, 48);
     CHECK(clock.line().valid());
@@ -172,7 +172,7 @@ TEST_CASE("each epoch begins without the one before")
     CHECK(clock.line().frame_at(501'000'000) == 1096);
 }
 
-TEST_CASE("times and frames beyond all measure stay numbers")
+TEST_CASE("extreme times and frames stay numbers")
 {
     dac_clock clock(48000, 0);
     clock.begin_epoch(0);

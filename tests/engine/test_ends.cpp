@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Each stroke ends once, in the state that is true.
+// Ends of strokes: once each, in the true state.
 #include <algorithm>
 #include <cmath>
 #include <cstring>
@@ -23,7 +23,7 @@ std::int32_t sample(const std::vector<std::byte>& bytes, std::size_t i)
     return v;
 }
 
-// Largest step from frame to frame in channel 0, relative to the peak of a tone of `amplitude`.
+// Returns the largest step from frame to frame in channel 0.
 double largest_step(const std::vector<std::byte>& bytes, unsigned channels)
 {
     double worst = 0.0;
@@ -35,7 +35,7 @@ double largest_step(const std::vector<std::byte>& bytes, unsigned channels)
     return worst / 2147483648.0;
 }
 
-// Only the DAC and the audio thread go on.
+// Runs only the DAC and the audio thread.
 void sleep_of_control(rig& r, int periods)
 {
     for (int i = 0; i < periods; ++i) {
@@ -80,7 +80,7 @@ TEST_CASE("a cancelled stroke fades and is then reported once, with the frames t
     CHECK(r.report(id)->frames == fade_from + 480 - from);
     CHECK_FALSE(r.first_sound(fade_from + 480));
     CHECK(r.first_sound(fade_from + 470));
-    // A 250 Hz sine of -12 dBFS moves by at most 0.0083 a frame; a fade of 10 ms adds next to nothing.
+    // A 250 Hz sine of -12 dBFS moves by at most 0.0083 a frame; a fade of 10 ms adds little.
     const double tone_step = 0.2512 * 2 * 3.14159265 * 250 / rate;
     CHECK(largest_step(r.captured(from, fade_from + 600 - from), 9) < tone_step * 1.1);
     CHECK_FALSE(r.feed.cancel(id));
@@ -153,12 +153,12 @@ TEST_CASE("cancels at random times: each stroke ends once, and the stream goes o
         CHECK(reports[0].state != state_kind::interrupted);
         reported += static_cast<unsigned>(reports[0].state == state_kind::cancelled);
     }
-    // One that was all on its way to the DAC when it was cancelled has finished.
+    // A stroke whose frames were all on their way when it was cancelled has finished.
     CHECK(reported <= cancelled);
     CHECK(r.status().running);
 }
 
-TEST_CASE("stop fades what sounds, waits until it is out, and drops the stream")
+TEST_CASE("stop fades all sound, waits until it is out, and drops the stream")
 {
     for (const bool closing : {false, true}) {
         CAPTURE(closing);
@@ -190,7 +190,7 @@ TEST_CASE("stop fades what sounds, waits until it is out, and drops the stream")
     }
 }
 
-TEST_CASE("stop does not wait for a long buffer: what still sounds after 0.4 s is cut")
+TEST_CASE("stop cuts a long buffer after 0.4 s")
 {
     for (const bool closing : {false, true}) {
         CAPTURE(closing);
@@ -204,7 +204,7 @@ TEST_CASE("stop does not wait for a long buffer: what still sounds after 0.4 s i
         r.link.requests.push({.what = engine::request::kind::stop, .closing = closing});
         r.play(rate / 10 * 4);
         CHECK_FALSE(r.loop.over());
-        // So that it wakes by itself, however long a period is.
+        // Wakes by itself, however long a period is.
         CHECK(r.loop.timeout_ns() <= 20'000'000);
         r.play(960);
         CHECK(r.loop.over());
@@ -240,7 +240,7 @@ TEST_CASE("drives that come too late end the stroke instead of starting in mid-b
     REQUIRE(r.report(id));
     CHECK(r.report(id)->state == state_kind::interrupted);
     CHECK(r.report(id)->why.find("too slow") != std::string::npos);
-    // What sounded is a true beginning of the stroke.
+    // The part that sounded is a true beginning of the stroke.
     const std::uint64_t sure = 2400 - 480;
     const std::vector<std::byte> all = rendered(s, format_kind::s32);
     const std::vector<std::byte> got = r.captured(from, sure);
@@ -256,13 +256,13 @@ TEST_CASE("a cancel ends a stroke whose drives never came, although its time is 
     const stroke_id id = r.submit(s);
     while (r.status().written < s.frames() + 9600)
         sleep_of_control(r, 1);
-    CHECK(r.feed.cancel(id)); // before the control thread hands over what is late
+    CHECK(r.feed.cancel(id)); // before the control thread hands over its late drives
     r.play(4800);
     REQUIRE(r.report(id));
     CHECK(r.report(id)->state == state_kind::cancelled);
 }
 
-TEST_CASE("a continuous stroke whose drives stop coming fades out before the last of them")
+TEST_CASE("a continuous stroke whose drives stop coming fades before the last of them")
 {
     stroke around = preset_stroke("park2016-3");
     around.sound.carrier_hz = 230.0;
@@ -288,13 +288,13 @@ TEST_CASE("a continuous stroke whose drives stop coming fades out before the las
         const std::vector<std::byte> all = rendered(s, format_kind::s32);
         const std::size_t whole = (end - 192) * s.channels() * 4;
         CHECK(std::equal(got.begin(), got.begin() + static_cast<std::ptrdiff_t>(whole), all.begin()));
-        // Its last frames are all but silent.
+        // Its last frames are nearly silent.
         for (std::size_t i = got.size() / 4 - 6 * s.channels(); i < got.size() / 4; ++i)
             CHECK(std::abs(sample(got, i)) < 0.05 * 0.25 * 2147483648.0);
     }
 }
 
-TEST_CASE("the display sees the newest stroke that sounds")
+TEST_CASE("the display shows the newest stroke that sounds")
 {
     rig r;
     REQUIRE(r.start().status == io_kind::ok);
@@ -316,7 +316,7 @@ TEST_CASE("the display sees the newest stroke that sounds")
     CHECK_FALSE(r.status().sounding);
 }
 
-TEST_CASE("the display sees a stroke from its first frame to its last, at the DAC")
+TEST_CASE("the display shows a stroke from its first frame to its last, at the DAC")
 {
     rig r;
     REQUIRE(r.start().status == io_kind::ok);
@@ -329,7 +329,7 @@ TEST_CASE("the display sees a stroke from its first frame to its last, at the DA
     }
 }
 
-TEST_CASE("before its first frame is mixed a stroke is cancelled without a sound, and waits out a mute")
+TEST_CASE("before its first frame is mixed a stroke is cancelled without a sound, and outlasts a mute")
 {
     for (const bool muted : {false, true}) {
         CAPTURE(muted);

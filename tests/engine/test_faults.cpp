@@ -16,7 +16,7 @@ namespace {
 
 enum class seen { nothing, the_start, where_it_was };
 
-// Takes frames as ever, but does not say how far it has got: never, or not any more once it is blind.
+// Takes frames, but gives no position: never, or not once it is blind.
 class blind_sink final : public forwarding_sink {
 public:
     blind_sink(std::unique_ptr<sink> s, seen what, const bool& blind)
@@ -39,7 +39,7 @@ private:
     std::uint64_t last_ = 0;
 };
 
-// The rig's device plays on; how long until the stream is over.
+// Plays until the stream is over; returns how long that took, ns.
 std::int64_t play_until_over(rig& r)
 {
     const std::int64_t begun = r.now;
@@ -48,7 +48,7 @@ std::int64_t play_until_over(rig& r)
     return r.now - begun;
 }
 
-// Plays until the stream is over; how long that took.
+// Steps until the stream is over; returns how long that took, ns.
 std::int64_t run_until_over(rig& r, int steps)
 {
     const std::int64_t begun = r.now;
@@ -72,7 +72,7 @@ TEST_CASE("the stream starts once, after a full buffer of silence")
     CHECK_FALSE(r.first_sound());
 }
 
-TEST_CASE("an xrun interrupts what sounded, and the stream goes on in silence")
+TEST_CASE("an xrun interrupts what sounds, and the stream goes on in silence")
 {
     rig r;
     REQUIRE(r.start().status == io_kind::ok);
@@ -143,7 +143,7 @@ TEST_CASE("a cancelled stroke that an xrun cuts is still cancelled, a finished o
     CHECK(r.report(done)->state == state_kind::finished);
 }
 
-TEST_CASE("three xruns a second are survived, the fourth is the end")
+TEST_CASE("three xruns a second are survived, the fourth ends the stream")
 {
     rig r;
     REQUIRE(r.start().status == io_kind::ok);
@@ -203,7 +203,7 @@ TEST_CASE("an unplugged device ends the stream and every stroke")
     CHECK(r.feed.end().reason == reason_kind::lost);
 }
 
-TEST_CASE("a device that stands still is lost after its time, whether it says ready or not")
+TEST_CASE("a device that stands still is lost after its time, ready or not")
 {
     for (const bool cries : {false, true}) {
         CAPTURE(cries);
@@ -224,7 +224,7 @@ TEST_CASE("a device that stands still is lost after its time, whether it says re
     }
 }
 
-TEST_CASE("a device that takes frames but does not say how far it has got is lost after its time")
+TEST_CASE("a device that takes frames but gives no position is lost after its time")
 {
     for (const seen what : {seen::nothing, seen::the_start, seen::where_it_was}) {
         CAPTURE(static_cast<int>(what));
@@ -250,7 +250,7 @@ TEST_CASE("a device that takes frames but does not say how far it has got is los
     }
 }
 
-TEST_CASE("the time that a start takes is not held against the device")
+TEST_CASE("the duration of a start does not count against the device")
 {
     rig r;
     REQUIRE(r.start().status == io_kind::ok);
@@ -275,7 +275,7 @@ TEST_CASE("stop does not wait for a position that never comes")
     CHECK(r.feed.end().why.empty());
 }
 
-TEST_CASE("descriptors that lie are left out after a while, so that nothing spins")
+TEST_CASE("a device that lies about being ready is polled less often, so that nothing spins")
 {
     rig r;
     REQUIRE(r.start().status == io_kind::ok);
@@ -289,20 +289,20 @@ TEST_CASE("descriptors that lie are left out after a while, so that nothing spin
     CHECK(r.loop.polls_sink());
 }
 
-TEST_CASE("a process that was stopped for a minute does not take its device for dead")
+TEST_CASE("a process that was stopped for a minute does not give up its device")
 {
     rig r;
     REQUIRE(r.start().status == io_kind::ok);
     r.play(4800);
     r.now += 60'000'000'000;
-    for (int i = 0; i < 3; ++i) // the device gets on when it does
+    for (int i = 0; i < 3; ++i) // the device gets on when the process does
         r.step();
     CHECK(r.status().running);
     r.play(4800);
     CHECK(r.status().running);
 }
 
-TEST_CASE("a device that does not prepare or start any more ends the stream")
+TEST_CASE("a device that does not prepare or start again ends the stream")
 {
     for (const bool prepares : {false, true}) {
         rig r;
@@ -324,7 +324,7 @@ TEST_CASE("a device that does not prepare or start any more ends the stream")
     }
 }
 
-TEST_CASE("a device that does not start at first says so")
+TEST_CASE("a device that does not start at first fails the start")
 {
     rig r;
     r.dac.fail_start(-EIO);

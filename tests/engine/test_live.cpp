@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Strokes that are fed point by point, on the virtual clock.
+// Strokes fed point by point, on the virtual clock.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -17,7 +17,7 @@ namespace live_test {
 using namespace tactor;
 using namespace tactor::test;
 
-TEST_CASE("silent until the first point, then a sine at its tactor, from the next period on")
+TEST_CASE("a live stroke is silent until its first point, then a sine at its tactor from the next period on")
 {
     live_rig r;
     r.play(4800);
@@ -41,7 +41,7 @@ TEST_CASE("silent until the first point, then a sine at its tactor, from the nex
         CHECK(peak(r.channel(c), 0, SIZE_MAX) == 0.0);
 }
 
-TEST_CASE("a point is heard within a period and a control step, in every phase and size of period")
+TEST_CASE("a point sounds within a period and a control step, in every phase and size of period")
 {
     for (const unsigned period : {16U, 48U, 96U, 480U, 1024U}) {
         CAPTURE(period);
@@ -65,7 +65,7 @@ TEST_CASE("a point is heard within a period and a control step, in every phase a
     }
 }
 
-TEST_CASE("wherever the points jump, the samples do not")
+TEST_CASE("samples do not jump when points do")
 {
     std::mt19937_64 random(12);
     std::uniform_real_distribution<double> place(0.0, 40.0);
@@ -85,7 +85,7 @@ TEST_CASE("wherever the points jump, the samples do not")
     }
 }
 
-TEST_CASE("bursts: each SOA one, at the newest position, as long as the law says")
+TEST_CASE("a live stroke of bursts plays one each SOA, at the newest position, as long as the law says")
 {
     live_options o = bursts();
     o.plan.soa_s = 0.06;
@@ -114,7 +114,7 @@ TEST_CASE("bursts: each SOA one, at the newest position, as long as the law says
     CHECK(r.report({1})->frames % 2880 == duration);
 }
 
-TEST_CASE("bursts: points that come in time keep a stroke alive, however seldom a burst takes one")
+TEST_CASE("points in time keep a stroke of bursts alive, however seldom a burst takes one")
 {
     live_options o = bursts();
     o.plan.soa_s = 0.6;
@@ -126,18 +126,17 @@ TEST_CASE("bursts: points that come in time keep a stroke alive, however seldom 
         r.play(960);
         REQUIRE_FALSE(r.report({1}));
     }
-    // Silence counts from the burst that took the last one.
+    // The time-out counts from the burst that took the last point.
     r.play(48000);
     r.play(9600);
     REQUIRE(r.report({1}));
     CHECK(r.report({1})->reason == reason_kind::starved);
 }
 
-TEST_CASE(
-    "bursts: those in a row on one tactor are one sine of the stroke; or each begins anew, if asked for")
+TEST_CASE("bursts in a row on one tactor continue the stroke's sine, or each begins anew if asked for")
 {
     for (const phase_kind phase : {phase_kind::stroke, phase_kind::burst}) {
-        // At 255 Hz a burst is 17.85 cycles, which end anywhere: 2 ms of ramp.
+        // At 255 Hz a burst has 17.85 cycles and ends anywhere: 2 ms of ramp.
         for (const double hz : {250.0, 255.0}) {
             live_options o = bursts();
             o.plan.carrier_hz = hz;
@@ -166,7 +165,7 @@ TEST_CASE(
     }
 }
 
-TEST_CASE("outside the array the nearest point plays, and is counted; or it is an error")
+TEST_CASE("outside the array the nearest point plays and is counted, or is an error")
 {
     live_rig r;
     CHECK(r.live->to({-50.0, 0.0}, 1.0));
@@ -198,10 +197,10 @@ TEST_CASE("outside the array the nearest point plays, and is counted; or it is a
     CHECK(field({nan, 0.0}, 1.0) == "x_mm");
     CHECK(field({0.0, nan}, 1.0) == "y_mm");
     CHECK(field({0.0, 0.0}, nan) == "intensity");
-    CHECK(r.live->to({0.0, 0.0}, 1e300)); // sounds as 1
+    CHECK(r.live->to({0.0, 0.0}, 1e300)); // sounds like 1
     CHECK(r.live->limited_points == 0);
     r.play(9600);
-    CHECK(peak(r.channel(0), 0, SIZE_MAX) <= 2.0 * live_level * (1.0 + 1e-6)); // there are two strokes
+    CHECK(peak(r.channel(0), 0, SIZE_MAX) <= 2.0 * live_level * (1.0 + 1e-6)); // of two strokes
 }
 
 TEST_CASE("a point is held at its channel's limit, and counted")
@@ -215,7 +214,7 @@ TEST_CASE("a point is held at its channel's limit, and counted")
     CHECK(s.limited_points == 1);
 }
 
-TEST_CASE("options that cannot be are errors, which name their field")
+TEST_CASE("impossible options of a live stroke are errors that name their field")
 {
     live_rig r;
     const auto refused = [&](const char* field, auto change) {
@@ -251,7 +250,7 @@ TEST_CASE("options that cannot be are errors, which name their field")
     });
 }
 
-TEST_CASE("live strokes that are weak one by one count as what they are together, and so do a plan's")
+TEST_CASE("live strokes that are weak one by one count by their sum, together with a plan's")
 {
     drive_limits limits;
     limits.max_drive_s = 0.3;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// How live strokes end: by themselves, by request, by silence, with the device.
+// Ends of live strokes: by themselves, by request, by silence, with the device.
 #include <cmath>
 #include <memory>
 #include <new>
@@ -20,7 +20,7 @@ namespace live_ends_test {
 using namespace tactor;
 using namespace tactor::test;
 
-TEST_CASE("end fades out, plays the last point given, and is reported once as finished")
+TEST_CASE("a live stroke that ends fades, plays its last point, and is reported once as finished")
 {
     live_rig r;
     r.live->to({0.0, 0.0}, 1.0);
@@ -41,7 +41,7 @@ TEST_CASE("end fades out, plays the last point given, and is reported once as fi
     CHECK_FALSE(r.feed.knows({1}));
 }
 
-TEST_CASE("a live stroke without a point: ended it is finished with nothing, and cancelled it is cancelled")
+TEST_CASE("a live stroke without a point is finished with nothing when ended, and cancelled when cancelled")
 {
     live_rig r;
     auto other = r.add();
@@ -60,7 +60,7 @@ TEST_CASE("a live stroke without a point: ended it is finished with nothing, and
     CHECK_FALSE(third->to({0, 0}, 1.0));
 }
 
-TEST_CASE("cancel fades, in both renderings and both ways")
+TEST_CASE("a cancelled live stroke fades, in both renderings and both ways")
 {
     for (const bool as_bursts : {false, true}) {
         for (const bool by_handle : {false, true}) {
@@ -83,7 +83,7 @@ TEST_CASE("cancel fades, in both renderings and both ways")
     }
 }
 
-TEST_CASE("a producer that falls silent: faded out after the time-out, interrupted, with the reason")
+TEST_CASE("a live stroke without new points fades after the time-out and is interrupted with the reason")
 {
     for (const bool as_bursts : {false, true}) {
         live_options o = as_bursts ? bursts() : live_options{};
@@ -106,13 +106,13 @@ TEST_CASE("a producer that falls silent: faded out after the time-out, interrupt
     }
 }
 
-TEST_CASE("a live stroke lasts as long as it may, to a period: faded out, interrupted, with the reason")
+TEST_CASE("a live stroke is interrupted after its longest time, to a period, with the reason")
 {
     for (const bool as_bursts : {false, true}) {
         live_options o = as_bursts ? bursts() : live_options{};
         o.longest_s = 0.2;
         live_rig r(o);
-        r.play(48'000 / 4); // what waits for its first point does not sound
+        r.play(48'000 / 4); // a stroke that waits for its first point does not sound
         CHECK(r.ended.empty());
         r.live->to({0.0, 0.0}, 1.0);
         const std::uint64_t base = r.status().written;
@@ -131,7 +131,7 @@ TEST_CASE("a live stroke lasts as long as it may, to a period: faded out, interr
     }
 }
 
-TEST_CASE("an xrun ends a live stroke that sounds, and leaves one alone that waits for its first point")
+TEST_CASE("an xrun ends a live stroke that sounds, and spares one that waits for its first point")
 {
     live_rig r;
     auto waits = r.add();
@@ -154,7 +154,7 @@ TEST_CASE("an xrun ends a live stroke that sounds, and leaves one alone that wai
     CHECK(r.report({2})->state == state_kind::finished);
 }
 
-TEST_CASE("more live strokes than can sound at once wait their turn; stop and the device's loss end all")
+TEST_CASE("more live strokes than can sound wait their turn; stop and the device's loss end all")
 {
     for (const bool lost : {false, true}) {
         live_rig r;
@@ -189,7 +189,7 @@ TEST_CASE("more live strokes than can sound at once wait their turn; stop and th
 
 namespace {
 
-// All on the middle tactor, as strong as it was asked for, or so much stronger.
+// Drives the middle tactor at the given amplitude times a factor.
 class overdone final : public phantom_model {
 public:
     std::string_view name() const noexcept override { return "overdone"; }
@@ -200,7 +200,7 @@ public:
 
 } // namespace
 
-TEST_CASE("a model that gives more than it was asked for: faded out, interrupted, with the reason")
+TEST_CASE("a model that exceeds the amplitude it was given interrupts the stroke, faded, with the reason")
 {
     for (const bool as_bursts : {false, true}) {
         for (const double smooth_s : {0.0, 0.05}) {
@@ -215,7 +215,7 @@ TEST_CASE("a model that gives more than it was asked for: faded out, interrupted
                 r.live->to({20.0, 20.0}, 0.5);
                 r.play(96);
             }
-            model->factor = 1.0 + 1e-10; // its last digits
+            model->factor = 1.0 + 1e-10; // a rounding
             CHECK(r.live->to({20.0, 20.0}, 0.5));
             r.play(96);
             model->factor = 1e9;
@@ -234,8 +234,7 @@ TEST_CASE("a model that gives more than it was asked for: faded out, interrupted
     }
 }
 
-TEST_CASE(
-    "a model that gives more than it was asked for before the stroke sounds, or while it waits for others")
+TEST_CASE("a model that exceeds its amplitude ends a stroke before it sounds or while it waits for others")
 {
     live_rig r;
     std::vector<std::shared_ptr<live_stroke::impl>> all{r.live};
@@ -254,7 +253,7 @@ TEST_CASE(
         REQUIRE(r.report(id));
         CHECK(r.report(id)->state == state_kind::interrupted);
         CHECK(r.report(id)->frames == 0);
-        // The scale makes 0.01 of 0.1.
+        // The scale maps 0.1 to 0.01.
         CHECK(r.report(id)->why ==
               "phantom model \"overdone\" gave tactor 4 amplitude 0.01001, above the 0.01 asked for");
     }
@@ -317,7 +316,7 @@ public:
 
 } // namespace
 
-TEST_CASE("a model that fails ends the stroke, with what it said; one that refuses a point does not")
+TEST_CASE("a model that fails ends the stroke with its message; one that refuses a point does not")
 {
     for (const double smooth_s : {0.0, 0.05})
         for (const auto& [at, why] :

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What the program's log is told of the stream.
+// The program's log of the stream.
 #include <algorithm>
 #include <mutex>
 #include <string>
@@ -61,7 +61,7 @@ struct logged : Rig {
 
 } // namespace
 
-TEST_CASE("an xrun is a line, and so is that the stream runs again")
+TEST_CASE("an xrun is a line, and so is the restart of the stream")
 {
     logged<rig> r;
     REQUIRE(r.start().status == io_kind::ok);
@@ -76,7 +76,7 @@ TEST_CASE("an xrun is a line, and so is that the stream runs again")
     CHECK(r.told.count("xrun") == 1);
 }
 
-TEST_CASE("why a lost device ended the stream is a line, once")
+TEST_CASE("the reason why a lost device ended the stream is a line, once")
 {
     logged<rig> r;
     REQUIRE(r.start().status == io_kind::ok);
@@ -96,13 +96,13 @@ TEST_CASE("a muted amplifier is a line")
 {
     logged<playing> r;
     CHECK(r.told.count("mute") == 0);
-    r.line.is_on = false; // as when its holder died: beat() tells
+    r.line.is_on = false; // like after its holder's death: beat() shows it
     r.wait(200 * ms);
     r.play(960);
     CHECK(r.told.count("warning the amplifier was muted") == 1);
 }
 
-TEST_CASE("limits that act are told once a second at most")
+TEST_CASE("limits that act are logged once a second at most")
 {
     rig_options o;
     o.loop.guards = synth::make_guards({.power_dbfs = -60.0}, rate);
@@ -113,7 +113,7 @@ TEST_CASE("limits that act are told once a second at most")
     CHECK(r.told.count("warning the power of all tactors was held at -60 dBFS") == 3);
 }
 
-TEST_CASE("nobody listens: nothing is gathered")
+TEST_CASE("without a log nothing is gathered")
 {
     engine::link l;
     engine::stream_log silent({}, l, {});
@@ -124,7 +124,7 @@ TEST_CASE("nobody listens: nothing is gathered")
     CHECK_FALSE(silent.on());
 }
 
-TEST_CASE("a player tells of its start and its end, and bears a log that throws")
+TEST_CASE("a player logs its start and its end, and survives a log that throws")
 {
     for (const bool throws : {false, true}) {
         CAPTURE(throws);
@@ -149,7 +149,7 @@ TEST_CASE("a player tells of its start and its end, and bears a log that throws"
     }
 }
 
-TEST_CASE("a live stroke that asked for more than its level is told once, at its end")
+TEST_CASE("a live stroke above its level is logged once, at its end")
 {
     fake_dac dac;
     heard told;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The audio thread's work touches no heap, and the feeder's memory does not grow with a score.
+// Heap use: none in the audio thread; the feeder's does not grow with a score.
 #include <cstdlib>
 #include <utility>
 
@@ -49,7 +49,7 @@ COUNTING_TEST_CASE("the counter counts")
     std::int64_t left = 0;
     {
         const count_allocations count;
-        void* volatile p = std::malloc(400); // volatile: a pair of calls may be left out otherwise
+        void* volatile p = std::malloc(400); // volatile: the compiler may leave out a pair of calls
         held = count.bytes();
         std::free(p);
         calls = count.calls();

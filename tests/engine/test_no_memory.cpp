@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// When memory runs out: std::bad_alloc, or an error that says so; and nothing is lost or left behind.
+// Calls without memory: std::bad_alloc, or an error with the reason; nothing lost or left behind.
 #include <atomic>
 #include <cerrno>
 #include <cstdint>
@@ -34,7 +34,7 @@ using namespace tactor::test;
 
 namespace {
 
-// Calls again and again with more memory each time, until there is enough.
+// Repeats a call with more memory each time, until it succeeds.
 template <typename Call>
 std::uint64_t until_it_fits(Call call)
 {
@@ -57,7 +57,7 @@ std::uint64_t until_it_fits(Call call)
     }
 }
 
-// What a call came to: what an error says, "" for none.
+// Outcome of a call: the message of its error, "" for none.
 struct outcome {
     bool no_memory = false;
     std::string said = {};
@@ -66,8 +66,8 @@ struct outcome {
     bool operator==(const outcome& o) const { return no_memory == o.no_memory && said == o.said; }
 };
 
-// With so many allocations, and then so many that are refused.
-outcome outcome_of(const exhausted_call& c, std::uint64_t granted, std::uint64_t refused)
+// Calls with so many allocations granted, and then so many refused.
+outcome try_call(const exhausted_call& c, std::uint64_t granted, std::uint64_t refused)
 {
     if (c.before)
         c.before();
@@ -96,16 +96,16 @@ outcome outcome_of(const exhausted_call& c, std::uint64_t granted, std::uint64_t
     return o;
 }
 
-// All that come after some are refused, or one of them only. Returns how many the call makes.
+// Tries a call with all allocations after the n-th refused, and with only that one. Returns their number.
 std::uint64_t try_without(const exhausted_call& c)
 {
-    const outcome usual = outcome_of(c, 0, 0);
+    const outcome usual = try_call(c, 0, 0);
     CHECK_FALSE(usual.no_memory);
     for (std::uint64_t granted = 0;; ++granted) {
         CAPTURE(granted);
         REQUIRE(granted < 100'000);
-        const outcome all = outcome_of(c, granted, UINT64_MAX);
-        const outcome one = outcome_of(c, granted, 1);
+        const outcome all = try_call(c, granted, UINT64_MAX);
+        const outcome one = try_call(c, granted, 1);
         for (const outcome& o : {all, one}) {
             const bool well = o.no_memory || o == usual;
             CHECK_MESSAGE(well, o.said);
@@ -114,7 +114,7 @@ std::uint64_t try_without(const exhausted_call& c)
                 return granted;
         }
         if (all.no_memory)
-            CHECK(outcome_of(c, 0, 0) == usual);
+            CHECK(try_call(c, 0, 0) == usual);
         else
             return granted;
     }
@@ -131,7 +131,7 @@ void try_all(const call_table& calls)
 
 } // namespace
 
-COUNTING_TEST_CASE("without memory a call throws std::bad_alloc and has done nothing")
+COUNTING_TEST_CASE("without memory a call throws std::bad_alloc and has no effect")
 {
     fake_dac dac;
     const running_clock clock(dac);
@@ -172,7 +172,7 @@ COUNTING_TEST_CASE("without memory a call throws std::bad_alloc and has done not
     }
 }
 
-COUNTING_TEST_CASE("every call without memory says so at each of its allocations, and works again")
+COUNTING_TEST_CASE("every call without memory reports it at each of its allocations, and works again")
 {
     const call_things t;
     try_all(value_calls(t));
@@ -184,7 +184,7 @@ COUNTING_TEST_CASE("every call without memory says so at each of its allocations
     try_all(player_calls(*p));
 }
 
-COUNTING_TEST_CASE("the player's own thread waits for memory: every stroke ends, and is told once")
+COUNTING_TEST_CASE("the player's thread waits for memory: every stroke ends and is reported once")
 {
     fake_dac dac;
     const running_clock clock(dac);
@@ -196,7 +196,7 @@ COUNTING_TEST_CASE("the player's own thread waits for memory: every stroke ends,
         ++told[r.id];
         ++ended;
         ended.notify_all();
-        refuse_allocations(ended % 5, 3); // what comes next in this thread
+        refuse_allocations(ended % 5, 3); // for the next calls in this thread
     });
     constexpr unsigned strokes = 30;
     const score s = tone(0.002);
@@ -213,7 +213,7 @@ COUNTING_TEST_CASE("the player's own thread waits for memory: every stroke ends,
         CHECK(times == 1);
 }
 
-COUNTING_TEST_CASE("a stream that ends while there is no memory for one thing ends in order, with a log")
+COUNTING_TEST_CASE("a stream that ends while one allocation fails ends in order, with a log")
 {
     for (std::uint64_t granted = 0; granted < 40; ++granted) {
         CAPTURE(granted);
@@ -235,7 +235,7 @@ COUNTING_TEST_CASE("a stream that ends while there is no memory for one thing en
     }
 }
 
-COUNTING_TEST_CASE("a plan that fails at once ends once, also where there is no memory to say why")
+COUNTING_TEST_CASE("a plan that fails at once ends once, even without memory for the reason")
 {
     plan broken;
     broken.total_s = broken.stroke_duration_s = 1.0;

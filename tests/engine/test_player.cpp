@@ -40,7 +40,7 @@ void run_until(fake_dac& dac, std::uint64_t buffer, Condition done)
 
 } // namespace
 
-TEST_CASE("threads and all: the bytes are the renderer's, and the report comes once")
+TEST_CASE("with threads the bytes are the renderer's, and the report comes once")
 {
     fake_dac dac;
     std::vector<stroke_report> told;
@@ -66,7 +66,7 @@ TEST_CASE("threads and all: the bytes are the renderer's, and the report comes o
         const running_clock clock(dac);
         p.stop();
         CHECK_FALSE(p.position().running);
-        // Only now: until the audio thread has ended, it may stand between a write and its counting.
+        // Until the audio thread has ended, it may stand between a write and its count.
         CHECK(p.stats().frames == dac.captured_frames());
         CHECK(p.stats().periods * 96 == p.stats().frames);
         CHECK(p.stats().xruns == 0);
@@ -76,7 +76,7 @@ TEST_CASE("threads and all: the bytes are the renderer's, and the report comes o
     CHECK(told[0].state == state_kind::finished);
 }
 
-TEST_CASE("cancel and stop from another thread than the one that waits")
+TEST_CASE("cancel and stop work from another thread than the waiting one")
 {
     fake_dac dac;
     player p(pcm::adopt(dac.pcm(), nine()), palm(), patient());
@@ -98,7 +98,7 @@ TEST_CASE("cancel and stop from another thread than the one that waits")
     p.stop();
 }
 
-TEST_CASE("a player that is destroyed while strokes sound reports them as interrupted")
+TEST_CASE("a player destroyed while strokes sound reports them as interrupted")
 {
     fake_dac dac;
     const running_clock clock(dac);
@@ -118,7 +118,7 @@ TEST_CASE("a player that is destroyed while strokes sound reports them as interr
     CHECK(dac.closed());
 }
 
-TEST_CASE("the handler may submit, cancel and stop, and is not made to wait for itself")
+TEST_CASE("a handler may submit, cancel and stop, and never waits for itself")
 {
     fake_dac dac;
     const running_clock clock(dac);
@@ -204,7 +204,7 @@ TEST_CASE("an xrun is counted and survived")
     p.stop(); // while the clock still runs
 }
 
-TEST_CASE("a wait says whether its time was over, the report was taken before, or there is no such stroke")
+TEST_CASE("a wait tells a time-out, a report taken before, and an unknown stroke apart")
 {
     fake_dac dac;
     player p(pcm::adopt(dac.pcm(), nine()), palm(), patient());
@@ -249,7 +249,7 @@ TEST_CASE("a device that does not start, options out of range and no sink are er
     }
 }
 
-TEST_CASE("real-time priority that is required and refused is an error; otherwise a note")
+TEST_CASE("a required real-time priority that is refused is an error; otherwise a note")
 {
     fake_dac dac;
     player_options o = patient();

@@ -56,7 +56,7 @@ player_lines with(const std::shared_ptr<line_state>& s)
 
 } // namespace
 
-TEST_CASE("an amplifier waits until the DAC has played as long as is asked for")
+TEST_CASE("the amplifier waits until the DAC has played for the given time")
 {
     const auto state = std::make_shared<line_state>();
     player_lines l = with(state);
@@ -79,7 +79,7 @@ TEST_CASE("the player switches its amplifier on once, plays, and off once")
         state->await(1);
         p.stop();
         stalls = p.stats().stalls;
-        // On a machine that is too busy the watchdog may have had to do something.
+        // On a busy machine the watchdog may have acted.
         if (stalls == 0)
             CHECK(report->state == state_kind::finished);
     }
@@ -90,7 +90,7 @@ TEST_CASE("the player switches its amplifier on once, plays, and off once")
         CHECK(state->log[i] == (i % 2 == 0));
 }
 
-TEST_CASE("a player that is destroyed at any moment leaves its amplifier off")
+TEST_CASE("a player destroyed at any moment leaves its amplifier off")
 {
     for (int i = 0; i < 20; ++i) {
         const auto state = std::make_shared<line_state>();
@@ -126,7 +126,7 @@ TEST_CASE("an amplifier whose line fails ends the player's stream")
     CHECK(p.ended()->reason == reason_kind::left_on);
     CHECK(p.ended()->why == "the amplifier's line cannot be switched off: it may be on");
     CHECK(p.stats().left_on);
-    // All but the first were to switch it off. What has just been tried is counted in a moment.
+    // Each try but the first was to switch it off. The last one is counted a moment later.
     const auto tries = [&] {
         const std::lock_guard lock(state->mutex);
         return state->log.size();
@@ -135,7 +135,7 @@ TEST_CASE("an amplifier whose line fails ends the player's stream")
         std::this_thread::yield();
 }
 
-TEST_CASE("the player's limits are its own and are checked")
+TEST_CASE("the player checks its limits")
 {
     player_options o;
     o.limits.max_drive_s = -1.0;

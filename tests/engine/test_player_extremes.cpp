@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Numbers that cannot be: they are errors, or mean something sensible.
+// Impossible numbers: errors, or a sensible meaning.
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -89,7 +89,7 @@ static_assert(waits<double> && waits<int> && !waits<std::int64_t>);
 static_assert(fires<std::int64_t> && !fires<double>);
 static_assert(start_at::frame(7).stream_frame() == 7 && start_at::frame(8U).stream_frame() == 8);
 
-// Whether a call went well, or threw what it may.
+// Reports true where a call succeeds or throws error.
 bool no_harm(const std::function<void()>& call)
 {
     try {
@@ -128,7 +128,7 @@ private:
 
 } // namespace
 
-TEST_CASE("a negative frame is an error that says what to use")
+TEST_CASE("a negative frame is an error with a hint")
 {
     try {
         static_cast<void>(start_at::frame(-1));
@@ -139,7 +139,7 @@ TEST_CASE("a negative frame is an error that says what to use")
     CHECK_THROWS_AS(start_at::frame(earliest), error);
 }
 
-TEST_CASE("a time before all times plays now and says how late; one after all times waits")
+TEST_CASE("a time before all times plays now and reports how late; one after all times waits")
 {
     rig r;
     REQUIRE(r.start().status == io_kind::ok);
@@ -167,7 +167,7 @@ TEST_CASE("a time before all times plays now and says how late; one after all ti
     CHECK(r.report(far)->state == state_kind::cancelled);
 }
 
-TEST_CASE("edges at the ends of time")
+TEST_CASE("edges at the ends of time fire or wait")
 {
     fake_dac dac;
     const running_clock clock(dac);
@@ -185,7 +185,7 @@ TEST_CASE("edges at the ends of time")
     CHECK(p.wait(second)->state == state_kind::cancelled);
 }
 
-TEST_CASE("the longest wait is one without end, the shortest none")
+TEST_CASE("the longest wait has no end, the shortest does not wait")
 {
     fake_dac dac;
     const running_clock clock(dac);
@@ -197,7 +197,7 @@ TEST_CASE("the longest wait is one without end, the shortest none")
     p.stop();
 }
 
-TEST_CASE("options of the player that cannot be")
+TEST_CASE("impossible options of the player are errors that name their field")
 {
     std::string refused_field;
     const auto refused = [&](const player_options& o, player_lines lines = {}) {
@@ -240,7 +240,7 @@ TEST_CASE("options of the player that cannot be")
     }
 }
 
-TEST_CASE("any priority will do")
+TEST_CASE("the player accepts any priority")
 {
     for (const int priority : {std::numeric_limits<int>::min(), -1, 0, std::numeric_limits<int>::max()}) {
         fake_dac dac;
@@ -253,7 +253,7 @@ TEST_CASE("any priority will do")
     }
 }
 
-TEST_CASE("a live stroke refuses what cannot be, and goes on where it was")
+TEST_CASE("a live stroke refuses impossible numbers, and goes on where it was")
 {
     fake_dac dac;
     const running_clock clock(dac);
@@ -292,7 +292,7 @@ TEST_CASE("a live stroke refuses what cannot be, and goes on where it was")
     p.stop();
 }
 
-TEST_CASE("values of absurd numbers: an error, or something finite")
+TEST_CASE("values of absurd numbers give an error, or something finite")
 {
     const std::vector<point> corners{{0.0, 0.0}, {40.0, 30.0}, {0.0, 40.0}};
     const path p = path::polyline(corners);
@@ -332,7 +332,7 @@ TEST_CASE("values of absurd numbers: an error, or something finite")
     }
 }
 
-TEST_CASE("scores of plans with absurd numbers: an error, or something that can be rendered")
+TEST_CASE("scores of plans with absurd numbers give an error, or can be rendered")
 {
     const array a = palm();
     for (const double bad : absurd) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Keeping of a player: reports that nobody takes, and the set-up of its stream.
+// Kept by a player: reports not yet taken, and the set-up of its stream.
 #include <memory>
 #include <utility>
 
@@ -19,7 +19,7 @@ namespace player_keeps_test {
 using namespace tactor;
 using namespace tactor::test;
 
-TEST_CASE("of too many reports that nobody takes, those of the oldest ends go")
+TEST_CASE("of too many reports not yet taken, the oldest ends go")
 {
     fake_dac dac;
     player p(pcm::adopt(dac.pcm(), nine()), palm(), patient());
@@ -36,7 +36,7 @@ TEST_CASE("of too many reports that nobody takes, those of the oldest ends go")
 
 namespace {
 
-// Changes what it knows of the device with each start, as a PCM may that turns out to have no clock.
+// Changes its set-up with each start, like a PCM that turns out to have no clock.
 class changing_sink final : public forwarding_sink {
 public:
     explicit changing_sink(std::unique_ptr<sink> s)

@@ -61,12 +61,12 @@ public:
             return std::nullopt;
         return e;
     }
-    // Both are there at once.
+    // Writes both at once.
     void edges(const std::array<std::int64_t, 2>& times_ns)
     {
         REQUIRE(::write(fds_[1], times_ns.data(), sizeof times_ns) == sizeof times_ns);
     }
-    // Readable for ever, without an edge.
+    // Makes it readable for ever, without an edge.
     void break_off()
     {
         ::close(fds_[1]);
@@ -79,7 +79,7 @@ private:
 
 } // namespace
 
-TEST_CASE("an edge fires what is armed: at its time and the delay, for all at once, and again")
+TEST_CASE("an edge fires all armed strokes at once, at its time and the delay, and again")
 {
     fake_dac dac;
     const running_clock clock(dac);
@@ -94,7 +94,7 @@ TEST_CASE("an edge fires what is armed: at its time and the delay, for all at on
         const stroke_id b = p.submit(tone(0.01, 3), start_at::trigger());
         CHECK_FALSE(p.wait(a, 0.0));
         const std::int64_t t = now_ns();
-        trigger.edges({t, t + 1'000'000'000}); // there is nothing left for the second to start
+        trigger.edges({t, t + 1'000'000'000}); // the second has nothing left to start
         const auto ra = p.wait(a);
         const auto rb = p.wait(b);
         REQUIRE(ra);
@@ -116,7 +116,7 @@ TEST_CASE("an edge fires what is armed: at its time and the delay, for all at on
     CHECK_THROWS_AS(p.begin(), error);
 }
 
-TEST_CASE("a delay from the edge that cannot be is an error")
+TEST_CASE("an impossible delay from the edge is an error")
 {
     for (const double bad : {-0.001, 1e9, std::nan("")}) {
         fake_dac dac;
@@ -199,7 +199,7 @@ TEST_CASE("a live stroke outlives its player")
     CHECK(left->counts().points == 1);
 }
 
-TEST_CASE("on_end: in time, too late, for strangers, several for one")
+TEST_CASE("on_end works in time, late, for unknown strokes, and several times for one")
 {
     fake_dac dac;
     const running_clock clock(dac);
@@ -217,7 +217,7 @@ TEST_CASE("on_end: in time, too late, for strangers, several for one")
     p.fire(now_ns());
     for (int n = calls; n < 2; n = calls)
         calls.wait(n);
-    CHECK(p.on_end(id, count)); // its report has not been asked for
+    CHECK(p.on_end(id, count)); // its report has not been taken
     CHECK(calls == 3);
     CHECK(p.wait(id));
     CHECK_FALSE(p.on_end(id, count));
@@ -254,7 +254,7 @@ TEST_CASE("Asio: callbacks in the caller's executor")
     CHECK_THROWS_AS(std::rethrow_exception(refused), error);
 }
 
-TEST_CASE("Asio: futures, and a stroke that is not known")
+TEST_CASE("Asio: futures work, and an unknown stroke is an error")
 {
     fake_dac dac;
     const running_clock clock(dac);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What the sink makes of the descriptors that a device gives, or does not give.
+// The sink and a device that gives no descriptors.
 #include <cstddef>
 #include <span>
 #include <vector>

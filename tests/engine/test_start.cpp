@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// When strokes start: at a frame, at a time, or when triggered. Time is virtual.
+// Starts of strokes: at a frame, at a time, or when triggered. Time is virtual.
 #include <cmath>
 #include <random>
 
@@ -33,7 +33,7 @@ public:
         for (int i = 0; i < 100'000 && ended.size() < last_id && !loop.over(); ++i)
             run(1);
     }
-    /// When the DAC really has a frame of the first epoch.
+    /// Returns the true time of a frame of the first epoch at the DAC, ns.
     double true_time(std::uint64_t frame)
     {
         const auto ahead = static_cast<double>(static_cast<std::int64_t>(frame - status().played));
@@ -43,7 +43,7 @@ public:
 
 } // namespace
 
-TEST_CASE("a start at a time: the first sample is at the DAC then, within a frame, however far ahead")
+TEST_CASE("a start at a time puts the first sample at the DAC then, within a frame, however far ahead")
 {
     std::mt19937_64 random(3);
     slow_rig r;
@@ -68,7 +68,7 @@ TEST_CASE("a start at a time: the first sample is at the DAC then, within a fram
     }
 }
 
-TEST_CASE("a time that is over means now, and how late it is is reported")
+TEST_CASE("a time that is over means now, and the lateness is reported")
 {
     for (const std::int64_t ago :
          {std::int64_t{0}, 5 * ms, 100 * ms, std::int64_t{900'000'000'000}, INT64_MAX / 2}) {
@@ -87,7 +87,7 @@ TEST_CASE("a time that is over means now, and how late it is is reported")
     }
 }
 
-TEST_CASE("the most that is not late: the buffer's length and a period ahead")
+TEST_CASE("a start a buffer and a period ahead is just in time")
 {
     slow_rig r;
     REQUIRE(r.start().status == io_kind::ok);
@@ -109,7 +109,7 @@ TEST_CASE("a start at a time that is given before the clock is known waits for t
     CHECK(std::abs(r.true_time(*r.first_sound() - 1) - static_cast<double>(due)) < 1.05e9 / rate);
 }
 
-TEST_CASE("a start at a frame that is over is late by so much")
+TEST_CASE("a start at a frame that is over is late by the difference")
 {
     rig r;
     REQUIRE(r.start().status == io_kind::ok);
@@ -124,7 +124,7 @@ TEST_CASE("a start at a frame that is over is late by so much")
     CHECK(r.report(now)->late_s == 0.0);
 }
 
-TEST_CASE("armed strokes are silent until they are fired, and then start together at the time given")
+TEST_CASE("armed strokes are silent until they are fired, and then start together at the given time")
 {
     slow_rig r;
     REQUIRE(r.start().status == io_kind::ok);
@@ -145,7 +145,7 @@ TEST_CASE("armed strokes are silent until they are fired, and then start togethe
         CHECK(std::abs(*r.report(id)->started_ns - due) < 1'000'000'000 / rate);
     }
     CHECK(std::abs(r.true_time(*r.first_sound() - 1) - static_cast<double>(due)) < 1.05e9 / rate);
-    // One that is armed later waits for the next.
+    // A stroke armed later waits for the next shot.
     const stroke_id c = r.submit(tone(0.01), start_at::trigger());
     r.run(100);
     CHECK(r.ended.size() == 2);
@@ -154,7 +154,7 @@ TEST_CASE("armed strokes are silent until they are fired, and then start togethe
     CHECK(r.report(c)->late_s > 0.020);
 }
 
-TEST_CASE("armed strokes can be cancelled, before and after they are fired, and end when the stream does")
+TEST_CASE("armed strokes can be cancelled before and after they are fired, and end with the stream")
 {
     for (const bool closing : {false, true}) {
         rig r;
@@ -183,7 +183,7 @@ TEST_CASE("armed strokes can be cancelled, before and after they are fired, and 
     }
 }
 
-TEST_CASE("an xrun between the shot and the start: the time is kept, in the new epoch's frames")
+TEST_CASE("an xrun between the shot and the start keeps the time, in the new epoch's frames")
 {
     rig r;
     REQUIRE(r.start().status == io_kind::ok);
@@ -192,7 +192,7 @@ TEST_CASE("an xrun between the shot and the start: the time is kept, in the new 
     const std::int64_t due = r.now + 200 * ms;
     r.feed.fire(due);
     r.play(960);
-    r.dac.advance(1000); // dry, while the stroke is in the audio thread already
+    r.dac.advance(1000); // dry, with the stroke already in the audio thread
     r.now += 30 * ms;
     r.step();
     r.play_out();

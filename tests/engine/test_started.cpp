@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// When the first sample of a stroke was at the DAC: told of every stroke that sounded.
+// Start times: the first sample at the DAC of every stroke that sounded.
 #include <cmath>
 
 #include <doctest/doctest.h>
@@ -19,13 +19,13 @@ using namespace tactor::test;
 
 namespace {
 
-// The rig plays a period in each step, and its clock moves by as much.
+// Returns a period of the rig, ns: each step plays one, and the clock moves as much.
 double period_ns(rig& r)
 {
     return 1e9 * r.options.period / r.options.sample_rate;
 }
 
-// When the virtual DAC has a frame of the epoch whose frame `played` it has now.
+// Returns the time of a frame of the current epoch at the virtual DAC, ns.
 double true_time(rig& r, std::uint64_t frame)
 {
     const auto ahead = static_cast<double>(frame) - static_cast<double>(r.status().played);
@@ -39,7 +39,7 @@ void check_started(rig& r, stroke_id id, double when)
     CHECK(std::abs(static_cast<double>(*r.report(id)->started_ns) - when) < period_ns(r));
 }
 
-// A sink that never knows where it is until so many frames are written.
+// A sink without a position as long as it is shy.
 class shy_sink : public forwarding_sink {
 public:
     shy_sink(std::unique_ptr<sink> s, const bool& shy) : forwarding_sink(std::move(s)), shy_(shy) {}
@@ -90,7 +90,7 @@ TEST_CASE("a stroke as short as a frame or as a period has its start, one withou
     CHECK_FALSE(r.report(nothing)->started_ns.has_value());
 }
 
-TEST_CASE("strokes that are cut tell when they began, those that never sounded tell nothing")
+TEST_CASE("strokes that are cut report their start, those that never sounded report none")
 {
     rig r;
     const stroke_id cancelled = r.submit(tone(5.0));
@@ -116,7 +116,7 @@ TEST_CASE("strokes that are cut tell when they began, those that never sounded t
     }
 }
 
-TEST_CASE("an xrun before the DAC's position was ever read does not take the start away")
+TEST_CASE("an xrun before the DAC's position was ever read keeps the start")
 {
     bool shy = true;
     rig_options o;
@@ -135,7 +135,7 @@ TEST_CASE("an xrun before the DAC's position was ever read does not take the sta
     check_started(r, id, static_cast<double>(begin) + static_cast<double>(first) * 1e9 / rate);
 }
 
-TEST_CASE("the start of a stroke after an xrun is told by the clock of its own epoch")
+TEST_CASE("the start of a stroke after an xrun is in the clock of its epoch")
 {
     rig r;
     REQUIRE(r.start().status == io_kind::ok);
@@ -150,7 +150,7 @@ TEST_CASE("the start of a stroke after an xrun is told by the clock of its own e
     check_started(r, id, true_time(r, epoch + *r.first_sound(from) - 1));
 }
 
-TEST_CASE("a live stroke tells when its first point was felt")
+TEST_CASE("a live stroke reports when its first point was felt")
 {
     live_rig r;
     r.play(960);
@@ -162,7 +162,7 @@ TEST_CASE("a live stroke tells when its first point was felt")
     check_started(r, r.live->id, true_time(r, *r.first_sound() - 1));
 }
 
-TEST_CASE("every stroke that was played on null has its start, the first of each player too")
+TEST_CASE("every stroke played on null has its start, the first of each player too")
 {
     for (int n = 0; n < 10; ++n) {
         CAPTURE(n);

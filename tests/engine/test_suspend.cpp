@@ -14,7 +14,7 @@ using namespace tactor::test;
 
 namespace {
 
-// Says "not yet" whenever it is asked to resume.
+// Returns "again" for each resume.
 class sleepy_sink final : public forwarding_sink {
 public:
     using forwarding_sink::forwarding_sink;
@@ -22,7 +22,7 @@ public:
     io_kind resume() noexcept override { return io_kind::again; }
 };
 
-/// Does not start the second time, after its buffer was filled.
+/// Fails the second start, after its buffer was filled.
 class slow_starter final : public forwarding_sink {
 public:
     slow_starter(std::unique_ptr<sink> s, io_kind says) : forwarding_sink(std::move(s)), says_(says) {}
@@ -72,13 +72,13 @@ TEST_CASE("a suspended device is resumed when it can, with a fresh stream")
         CHECK(r.dac.starts() == 2);
         r.play_out();
         CHECK(r.report(waiting)->state == state_kind::finished);
-        // Nothing of the old stroke is heard again.
+        // The old stroke does not sound again.
         CHECK(r.first_sound(captured) == captured + 289);
         CHECK(r.link.count.xruns == 0);
     }
 }
 
-TEST_CASE("a device that never wakes up is prepared afresh in the end")
+TEST_CASE("a device that never wakes up neither ends nor spins")
 {
     rig r;
     REQUIRE(r.start().status == io_kind::ok);
@@ -88,7 +88,7 @@ TEST_CASE("a device that never wakes up is prepared afresh in the end")
         r.step();
     const std::int64_t took = r.now - begun;
     CHECK(r.loop.over() == false);
-    // prepare() says "suspended" again, and so on: no end, no spinning, no xrun.
+    // prepare() returns "suspended" again and again: no end, no spinning, no xrun.
     CHECK(took >= 10'000 * 1'900'000LL);
     CHECK(r.link.count.xruns == 0);
 }
@@ -126,7 +126,7 @@ TEST_CASE("stop ends a suspended stream at once")
     CHECK(r.feed.end().why.empty());
 }
 
-TEST_CASE("what begins in a buffer that is filled and not started ends there, once")
+TEST_CASE("a stroke that begins in a buffer that is filled and not started ends there, once")
 {
     for (const io_kind says : {io_kind::xrun, io_kind::suspended}) {
         CAPTURE(static_cast<int>(says));

@@ -12,7 +12,7 @@ using namespace tactor::test;
 
 namespace {
 
-/// Nobody drives the amplifier: what begins waits until the test says that it is ready.
+/// Returns options without an amplifier driver: strokes wait until the test sets it ready.
 rig_options held()
 {
     rig_options o;
@@ -27,7 +27,7 @@ live_options with_timeout(double s)
     return o;
 }
 
-state_kind state_of(const rig& r, stroke_id id)
+state_kind unheard_state(const rig& r, stroke_id id)
 {
     REQUIRE(r.report(id));
     CHECK(r.report(id)->frames == 0);
@@ -36,8 +36,7 @@ state_kind state_of(const rig& r, stroke_id id)
 
 } // namespace
 
-TEST_CASE(
-    "while the amplifier settles: a cancel is reported with the next wake-up, what is not cancelled plays")
+TEST_CASE("while the amplifier settles a cancel is reported with the next wake-up, and other strokes play")
 {
     rig r(held());
     REQUIRE(r.start().status == io_kind::ok);
@@ -52,8 +51,8 @@ TEST_CASE(
     CHECK_FALSE(r.feed.cancel(first));
     r.step(); // the DAC stands still
     r.control();
-    CHECK(state_of(r, first) == state_kind::cancelled);
-    CHECK(state_of(r, third) == state_kind::cancelled);
+    CHECK(unheard_state(r, first) == state_kind::cancelled);
+    CHECK(unheard_state(r, third) == state_kind::cancelled);
     CHECK_FALSE(r.report(second));
 
     const std::uint64_t from = r.status().written;
@@ -65,7 +64,7 @@ TEST_CASE(
     CHECK(r.ended.size() == 3);
 }
 
-TEST_CASE("thousands that are submitted and cancelled while they wait end once each, and none is heard")
+TEST_CASE("thousands of strokes submitted and cancelled while they wait end once each, unheard")
 {
     rig r(held());
     REQUIRE(r.start().status == io_kind::ok);
@@ -81,7 +80,7 @@ TEST_CASE("thousands that are submitted and cancelled while they wait end once e
     r.play(960);
     CHECK(r.ended.size() == rounds);
     for (unsigned n = 1; n <= rounds; ++n)
-        CHECK(state_of(r, {n}) == state_kind::cancelled);
+        CHECK(unheard_state(r, {n}) == state_kind::cancelled);
     r.link.amplifier.ready = true;
     r.play(9600);
     CHECK_FALSE(r.first_sound());
@@ -93,7 +92,7 @@ TEST_CASE("thousands that are submitted and cancelled while they wait end once e
     CHECK(r.first_sound());
 }
 
-TEST_CASE("stop reaches what waits for the amplifier")
+TEST_CASE("stop reaches strokes that wait for the amplifier")
 {
     rig r(held());
     REQUIRE(r.start().status == io_kind::ok);
@@ -103,14 +102,13 @@ TEST_CASE("stop reaches what waits for the amplifier")
     r.link.requests.push({.what = engine::request::kind::stop});
     r.step();
     r.control();
-    CHECK(state_of(r, cancelled) == state_kind::cancelled);
-    CHECK(state_of(r, stopped) == state_kind::cancelled);
+    CHECK(unheard_state(r, cancelled) == state_kind::cancelled);
+    CHECK(unheard_state(r, stopped) == state_kind::cancelled);
     r.play(4 * 96 + 288);
     CHECK(r.loop.over());
 }
 
-TEST_CASE(
-    "live strokes behind a stroke that waits: ended, cancelled and timed out as if nothing stood before them")
+TEST_CASE("live strokes behind a waiting stroke end, cancel and time out as without it")
 {
     rig_options o = held();
     live_rig r(with_timeout(0.2), o);
@@ -122,13 +120,13 @@ TEST_CASE(
     ended->voice.request(engine::live_voice::action::end);
     cancelled->voice.request(engine::live_voice::action::cancel);
     r.play(192);
-    CHECK(state_of(r, ended->id) == state_kind::finished);
-    CHECK(state_of(r, cancelled->id) == state_kind::cancelled);
+    CHECK(unheard_state(r, ended->id) == state_kind::finished);
+    CHECK(unheard_state(r, cancelled->id) == state_kind::cancelled);
     for (int i = 0; i < 110; ++i) {
         fed->to({0.0, 0.0}, 1.0);
         r.play(96);
     }
-    CHECK(state_of(r, r.live->id) == state_kind::interrupted);
+    CHECK(unheard_state(r, r.live->id) == state_kind::interrupted);
     CHECK(r.report(r.live->id)->why == "no more points came");
     CHECK(r.report(r.live->id)->reason == reason_kind::starved);
     CHECK_FALSE(r.report(before));
@@ -143,7 +141,7 @@ TEST_CASE(
     CHECK(r.report(before)->state == state_kind::finished);
 }
 
-TEST_CASE("while the system sleeps a live stroke that waits can be cancelled by its handle")
+TEST_CASE("while the system sleeps, a handle cancels a live stroke that waits")
 {
     live_rig r;
     r.play(960);
@@ -156,8 +154,8 @@ TEST_CASE("while the system sleeps a live stroke that waits can be cancelled by 
     CHECK(r.feed.cancel(score));
     r.step();
     r.control();
-    CHECK(state_of(r, r.live->id) == state_kind::cancelled);
-    CHECK(state_of(r, score) == state_kind::cancelled);
+    CHECK(unheard_state(r, r.live->id) == state_kind::cancelled);
+    CHECK(unheard_state(r, score) == state_kind::cancelled);
 }
 
 } // namespace waiting_test

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Live strokes without points, without handles and without a place: none waits for ever or keeps others from
-// it.
+// Live strokes without points, handles or a place: none waits for ever or keeps others waiting.
 #include <memory>
 #include <vector>
 
@@ -32,7 +31,7 @@ bool starved(const rig& r, stroke_id id)
 
 } // namespace
 
-TEST_CASE("strokes that never get a point take no place from those that do")
+TEST_CASE("live strokes without points take no place from those with points")
 {
     live_rig r;
     std::vector<std::shared_ptr<live_stroke::impl>> unfed;
@@ -65,7 +64,7 @@ TEST_CASE("the time-out holds before the first point, with and without a handle"
     CHECK(r.first_sound());
 }
 
-TEST_CASE("more than can sound: they wait in order, with their newest point, and time out where none comes")
+TEST_CASE("live strokes beyond the places wait in order, with their newest point, and time out without one")
 {
     live_rig r;
     std::vector<std::shared_ptr<live_stroke::impl>> all{r.live};
@@ -85,7 +84,7 @@ TEST_CASE("more than can sound: they wait in order, with their newest point, and
     const auto ended = r.add(short_timeout());
     ended->to({0.0, 0.0}, 1.0);
     ended->to({20.0, 0.0}, 1.0);
-    ended->voice.request(engine::live_voice::action::end); // no more points are owed
+    ended->voice.request(engine::live_voice::action::end); // no more points are due
     const auto last = r.add();
     feed(timeout_frames + 960);
     CHECK(starved(r, silent->id));
@@ -104,7 +103,7 @@ TEST_CASE("more than can sound: they wait in order, with their newest point, and
     CHECK(peak(r.channel(6), 0, SIZE_MAX) > 0.5 * live_level);
 }
 
-TEST_CASE("hundreds at once: each is cancelled by its handle, ended or timed out, wherever it waits")
+TEST_CASE("hundreds of live strokes at once: each can be cancelled, ended or timed out, wherever it waits")
 {
     live_rig r(short_timeout());
     std::vector<std::shared_ptr<live_stroke::impl>> all{r.live};
@@ -135,7 +134,7 @@ TEST_CASE("hundreds at once: each is cancelled by its handle, ended or timed out
     CHECK(r.first_sound());
 }
 
-TEST_CASE("one that waits for a place is cancelled by its number, once")
+TEST_CASE("a live stroke that waits for a place is cancelled by its number, once")
 {
     live_rig r;
     std::vector<std::shared_ptr<live_stroke::impl>> all{r.live};

@@ -58,7 +58,7 @@ TEST_CASE("cancel() is reported without a frame being played")
     p.stop();
 }
 
-TEST_CASE("stop() reports what waits before the amplifier has settled")
+TEST_CASE("stop() reports waiting strokes before the amplifier has settled")
 {
     fake_dac dac;
     player p(pcm::adopt(dac.pcm(), nine()), palm(), patient(), slow_amplifier());

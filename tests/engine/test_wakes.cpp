@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// When the audio thread wakes the control side: often enough to be fed, at once where the stream changes.
+// Wake-ups of the control side by the audio thread: often enough to feed it, at once where the stream
+// changes.
 #include <doctest/doctest.h>
 
 #include "live_rig.hpp"
@@ -12,7 +13,7 @@ using namespace tactor::test;
 
 namespace {
 
-// The DAC plays a period; whether the control side was woken for it.
+// Plays a period; returns whether the control side was woken for it.
 bool wakes(rig& r)
 {
     r.dac.advance_queued(r.options.period);
@@ -20,7 +21,7 @@ bool wakes(rig& r)
     return r.link.to_control.consume() > 0;
 }
 
-// The stream has begun, and its clock is known.
+// Plays until the stream has begun and its clock is known.
 void settle(rig& r)
 {
     for (int i = 0; i < 100; ++i)
@@ -31,7 +32,7 @@ void settle(rig& r)
 } // namespace
 
 TEST_CASE(
-    "a stroke longer than the horizon is fed to its end where the control side sleeps until it is woken")
+    "a stroke longer than the horizon is fed to its end by a control side that sleeps until it is woken")
 {
     rig r;
     REQUIRE(r.start().status == io_kind::ok);
@@ -51,13 +52,13 @@ TEST_CASE(
     CHECK(woken < periods / 10);
 }
 
-TEST_CASE("a stroke for a time that is named before the stream's clock is known begins at it")
+TEST_CASE("a stroke for a time before the stream's clock is known begins at that time")
 {
     rig r;
     REQUIRE(r.start().status == io_kind::ok);
     r.link.to_control.consume(); // that it has started
     r.control();
-    // After what is in the buffer, and long before the control side would be woken to feed it.
+    // After the buffer's frames, and long before the feeder's next wake-up.
     const std::int64_t at_ns = r.now + 2 * 288 * std::int64_t{1'000'000'000} / rate;
     const stroke_id id = r.submit(tone(0.01), start_at::time(at_ns));
     for (int i = 0; i < 200 && !r.report(id); ++i)
@@ -67,7 +68,7 @@ TEST_CASE("a stroke for a time that is named before the stream's clock is known 
     CHECK(r.report(id)->late_s == 0.0);
 }
 
-TEST_CASE("the control side sleeps as long as there is no stroke, and what comes then is fed at once")
+TEST_CASE("the control side sleeps while there is no stroke, and feeds a new one at once")
 {
     rig r;
     REQUIRE(r.start().status == io_kind::ok);
@@ -87,7 +88,7 @@ TEST_CASE("the control side sleeps as long as there is no stroke, and what comes
     }
 }
 
-TEST_CASE("a live stroke after a long silence, in which nobody looked, has all its time for a first point")
+TEST_CASE("a live stroke after a long unattended silence has all its time for a first point")
 {
     live_options o;
     o.timeout_s = 0.2;
@@ -105,7 +106,7 @@ TEST_CASE("a live stroke after a long silence, in which nobody looked, has all i
     CHECK(r.report(next->id)->reason == reason_kind::starved);
 }
 
-TEST_CASE("an xrun of a silent stream, its sleep and its waking up are told at once")
+TEST_CASE("an xrun of a silent stream, its sleep and its waking up are reported at once")
 {
     rig r;
     REQUIRE(r.start().status == io_kind::ok);
@@ -125,7 +126,7 @@ TEST_CASE("an xrun of a silent stream, its sleep and its waking up are told at o
     CHECK(r.status().epoch == 3);
 }
 
-TEST_CASE("how few drives waited is counted while a stroke is fed, not in silence and not at its end")
+TEST_CASE("the fewest waiting drives are counted while a stroke is fed, not in silence and not at its end")
 {
     rig r;
     REQUIRE(r.start().status == io_kind::ok);

@@ -6,7 +6,7 @@
 
 #include <tactor/error.hpp>
 
-/// What a call complains of, or "" if it does not. Other exceptions go through and fail the test.
+/// Returns the message of a call's error, or "". Other exceptions go through and fail the test.
 template <class F>
 std::string message_of(F call)
 {
@@ -19,7 +19,7 @@ std::string message_of(F call)
     return {};
 }
 
-/// The field that the complaint of a call is about; "" for none, "no error" where it does not complain.
+/// Returns the field of a call's error; "" for none, "no error" where it succeeds.
 template <class F>
 std::string field_of(F call)
 {
