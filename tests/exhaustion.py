@@ -36,12 +36,12 @@ def statements(text):
     while i < len(text):
         c = text[i]
         if c == "(":
-            i = end_of(text, i)
+            i = find_end(text, i)
         elif c == ";":
             yield text[begin:i].strip(), None
             begin = i + 1
         elif c == "{":
-            head, end = text[begin:i].strip(), end_of(text, i)
+            head, end = text[begin:i].strip(), find_end(text, i)
             # After a type, a namespace or a function there is a body; all other braces hold a value.
             if re.match(r"(inline )?namespace\b", head) or TYPE.match(ACCESS.sub("", head)) or "(" in head and not head.endswith("="):
                 yield head, text[i + 1:end]
@@ -53,7 +53,7 @@ def statements(text):
         i += 1
 
 
-def end_of(text, at):
+def find_end(text, at):
     """Where the bracket at a place is closed."""
     deep = 0
     for i in range(at, len(text)):
@@ -88,7 +88,7 @@ def throwing(text, cls="", public=True):
             if body is not None and m[1] != "enum":
                 yield from throwing(body, f"{cls}{m[2]}::", m[1] == "struct")
         elif (m := NAME.search(declared := without_template(head))) and not VALUE.match(declared):
-            after = declared[end_of(declared, m.end() - 1) + 1:].split(" : ")[0]
+            after = declared[find_end(declared, m.end() - 1) + 1:].split(" : ")[0]
             if not re.search(r"\bnoexcept\b|=\s*(?:delete|default)\b", after) and not m[1].startswith("~"):
                 yield cls + m[1].replace(" ", "")
 

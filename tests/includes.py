@@ -73,7 +73,7 @@ IMPURE_IN = {"src/core/owned.hpp": {"unistd.h"}, "src/files/input_files.cpp": {"
 INCLUDE = re.compile(r'^\s*#\s*include\s*[<"]([^>"]+)[>"]', re.M)
 
 
-def folder_of(parts):
+def folder_name(parts):
     """Of a file below src: the innermost folder that has rules."""
     return "/".join(parts[:2]) if "/".join(parts[:2]) in MAY_INCLUDE else parts[0]
 
@@ -81,7 +81,7 @@ def folder_of(parts):
 def complaints(root, file):
     where = file.relative_to(root).as_posix()
     parts = where.split("/")
-    folder = folder_of(parts[1:]) if parts[0] == "src" and len(parts) > 2 else None
+    folder = folder_name(parts[1:]) if parts[0] == "src" and len(parts) > 2 else None
     for header in INCLUDE.findall(file.read_text(encoding="utf-8")):
         for prefix, places in ONLY_IN.items():
             if header.startswith(prefix) and not any(where.startswith(p) for p in places):
@@ -102,7 +102,7 @@ def complaints(root, file):
             if owner and folder not in USES_ALL_PUBLIC and owner != folder and owner not in MAY_INCLUDE[folder]:
                 yield f"{where}: {folder} may not know {owner} ({header})"
         elif header.split("/")[0] in MAY_INCLUDE and "/" in header:
-            owner = folder_of(header.split("/"))
+            owner = folder_name(header.split("/"))
             if (root / "src" / header).exists() and owner != folder and owner not in MAY_INCLUDE[folder] \
                     and header not in INSIDE.get(folder, ()):
                 yield f"{where}: {folder} may not know {owner} ({header})"

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Prints, as one JSON array, what the tool would print on machines with cards, chips and trouble, for
-// test_json.py.
+// Prints, as one JSON array, the tool's output on machines with cards, chips and trouble, for test_json.py.
 #include <cstdio>
 #include <optional>
 

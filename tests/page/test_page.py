@@ -138,7 +138,7 @@ class DrawingPage(BrowserTest, ToolTest):
         p.click("#play")
         number = self.next_stroke(watcher, "started")["stroke"]
         p.key("Space", " ")
-        ended = watcher.end_of(number)
+        ended = watcher.await_end(number)
         self.assertEqual(ended["state"], "cancelled")
         self.assertNotIn("somebody", p.value("document.querySelector('#says').textContent"))
 
@@ -149,7 +149,7 @@ class DrawingPage(BrowserTest, ToolTest):
             number = self.next_stroke(watcher, "started")["stroke"]
             p.value(f"document.querySelector('#{id}').focus()")
             p.key("Space", " ")
-            self.assertEqual(watcher.end_of(number)["state"], "cancelled", id)
+            self.assertEqual(watcher.await_end(number)["state"], "cancelled", id)
 
     def test_somebody_else_stops(self):
         s = self.serve()

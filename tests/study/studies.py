@@ -82,7 +82,7 @@ def write_study(folder, text, people, answers, simulated=False, void=None):
         beh.mkdir(parents=True)
         source.mkdir()
         (source / "session.json").write_text(json.dumps({"simulated": simulated, "experiment": {"text": text}}))
-        for r in runs_of(text):
+        for r in split_runs(text):
             rows, seen = [], {}
             every = cells(r, motions, methods)
             for cell in shuffle.shuffled(every * (r["trials"] // len(every))):
@@ -104,7 +104,7 @@ def write_study(folder, text, people, answers, simulated=False, void=None):
                 (folder / f"task-{name}_beh.json").write_text(json.dumps({"TaskName": r["name"]}))
 
 
-def runs_of(text):
+def split_runs(text):
     """The runs of a definition, without a reader of TOML (Python 3.11 has one, 3.10 not)."""
     runs = []
     for part in text.split("[[run]]\n")[1:]:
@@ -225,7 +225,7 @@ def for_r(folder, file):
     motions, methods = names_in(text)
     file.write_text("".join("\t".join((
         r["name"], r["task"], ",".join(m for m in motions if m in r.get("motions", motions)),
-        ",".join(m for m in methods if m in r.get("methods", methods)))) + "\n" for r in runs_of(text)))
+        ",".join(m for m in methods if m in r.get("methods", methods)))) + "\n" for r in split_runs(text)))
 
 
 def main():

@@ -48,9 +48,9 @@ def whole(test):
     return getattr(test, "test_case", test)
 
 
-def tests_of(suite):
+def flatten(suite):
     for t in suite:
-        yield from tests_of(t) if isinstance(t, unittest.TestSuite) else (t,)
+        yield from flatten(t) if isinstance(t, unittest.TestSuite) else (t,)
 
 
 def run(tests):
@@ -72,7 +72,7 @@ def run(tests):
 def main():
     Timed.stalls = Stalls()
     names = sys.argv[3:] or sorted(p.stem for p in HERE.glob("test_*.py"))
-    tests = [t for n in names for t in tests_of(unittest.defaultTestLoader.loadTestsFromModule(importlib.import_module(n)))]
+    tests = [t for n in names for t in flatten(unittest.defaultTestLoader.loadTestsFromModule(importlib.import_module(n)))]
     failed, skipped = run(tests)
     for test, why in skipped:
         print(f"SKIPPED: {test}: {why}")

@@ -42,7 +42,7 @@ class Client:
                 return False
             self.told.append(json.loads(line))
 
-    def end_of(self, number):
+    def await_end(self, number):
         """How a stroke ended."""
         while True:
             for m in self.told:
@@ -116,7 +116,7 @@ class Service(AmplifierTest):
         self.off_within("SIGSTOP of the service", self.LIMIT_S + 0.2)
         os.kill(p.pid, signal.SIGCONT)
         # What was heard of it since is not known: it is told as broken off, and the next one plays.
-        self.assertEqual(c.end_of(number), "interrupted")
+        self.assertEqual(c.await_end(number), "interrupted")
         self.sounding(c)
         p.send_signal(signal.SIGTERM)
         self.assertEqual(p.wait(30), 0)

@@ -194,7 +194,7 @@ class Units(unittest.TestCase):
     def test_7_it_is_stopped_and_the_card_starts_it(self):
         c, number = self.playing()
         systemctl("stop", "tactor.service", "tactor.socket")
-        self.assertEqual(c.end_of(number), "cancelled")
+        self.assertEqual(c.await_end(number), "cancelled")
         self.assertFalse(c.hear("nothing more"))
         self.off("stop")
         self.assertEqual(shows("Result"), "success")
