@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The chips of a machine that has none, and folders that look like /dev.
+// The chips of a machine without any, and folders that look like /dev.
 #include "amplifier/chips.hpp"
 
 #include <cerrno>
@@ -39,7 +39,7 @@ TEST_CASE("a file's group has a name, a missing file's is the usual one")
     CHECK(tactor::gpio::find_group("/nowhere") == "gpio");
 }
 
-TEST_CASE("what is no GPIO chip is not opened as one")
+TEST_CASE("a file that is no GPIO chip is not opened as one")
 {
     const folder f;
     f.write("gpiochip0");
@@ -53,7 +53,7 @@ TEST_CASE("what is no GPIO chip is not opened as one")
     CHECK(tactor::gpio::read_chip("/nowhere").code == ENOENT);
 }
 
-TEST_CASE("what a file names as a chip and is none is never opened: a pipe, a file, a socket")
+TEST_CASE("a pipe, file or socket named as a chip is never opened")
 {
     const folder f;
     f.write("file");

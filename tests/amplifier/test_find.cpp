@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Which line a user means, on chips that are but values.
+// Search for the user's line, on chips that are plain values.
 #include "amplifier/chips.hpp"
 
 #include <cerrno>
@@ -89,7 +89,7 @@ TEST_CASE("a chip is found by label and by path, a line by offset and by name")
     }
 }
 
-TEST_CASE("what is not there is answered with what is")
+TEST_CASE("a missing line is refused with the existing ones")
 {
     CHECK(complaint(pi, by_chip("pinctrl-bcm2711", 17)) ==
           "GPIO line 17 of pinctrl-bcm2711: no chip labelled \"pinctrl-bcm2711\" (there are: \"pinctrl-rp1\" "
@@ -115,7 +115,7 @@ TEST_CASE("what is not there is answered with what is")
           "container has to be given them)");
 }
 
-TEST_CASE("a chip's number is no name for it, for it changes")
+TEST_CASE("a chip's number is no name for it, since it changes")
 {
     CHECK(complaint(pi, by_chip("gpiochip0", 17)) ==
           "GPIO line 17 of gpiochip0: \"gpiochip0\" is a number that the kernel gives anew at each start "
@@ -127,7 +127,7 @@ TEST_CASE("a chip's number is no name for it, for it changes")
     CHECK(find_line(std::vector{make_chip(3, "gpiochip0", {"", ""})}, by_chip("gpiochip0", 1)).offset == 1);
 }
 
-TEST_CASE("names that are there twice are not guessed")
+TEST_CASE("ambiguous names are refused")
 {
     CHECK(complaint(pi, by_name("LED")) ==
           "GPIO line \"LED\": 2 lines have this name: line 4 of /dev/gpiochip0, line 0 of /dev/gpiochip10 "
@@ -161,7 +161,7 @@ TEST_CASE("a chip that may not be opened is named with the group to join")
               .chip == 1);
 }
 
-TEST_CASE("a line without chip, offset and name is bad input, and says where it was written")
+TEST_CASE("a line without chip, offset and name is bad input, with the place where it was written")
 {
     CHECK(complaint(pi, {}, tactor::error_kind::bad_input) ==
           "GPIO line: a line needs chip and offset, or a name (line = { chip = \"pinctrl-rp1\", offset = 17 "

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The holder in the life of a player: commands, beats, what it keeps of the player, and its own loss. How
-// soon: timed/.
+// The holder in the life of a player: commands, beats, inherited resources, and its own loss. Its latency:
+// timed/.
 #include "amplifier/holder.hpp"
 
 #include <atomic>
@@ -70,7 +70,7 @@ TEST_CASE("the line follows the commands and ends off, and the holder ends with 
     ::close(holder);
 }
 
-TEST_CASE("a line that is on goes off when its player is silent, which learns of it and may switch on again")
+TEST_CASE("a line goes off when its player is silent, which notices and may switch on again")
 {
     fake_line line;
     gpio::holder_limits limits = patient;
@@ -102,7 +102,7 @@ TEST_CASE("a line that cannot be switched is reported")
     CHECK(next_of(line) == "off");
 }
 
-TEST_CASE("an off that is refused is answered as such, and at its end the holder tries again by itself")
+TEST_CASE("a refused off is answered as such, and at its end the holder tries again by itself")
 {
     fake_line line;
     line.refuse_off(4);
@@ -118,7 +118,7 @@ TEST_CASE("an off that is refused is answered as such, and at its end the holder
     ::close(holder);
 }
 
-TEST_CASE("the holder keeps nothing of the player but the line")
+TEST_CASE("the holder keeps nothing of the player except the line")
 {
     std::ofstream other("/dev/null");
     const int high = ::fcntl(STDIN_FILENO, F_DUPFD, 700);
@@ -160,7 +160,7 @@ TEST_CASE("two holders do not keep each other alive")
     CHECK(next_of(second) == "off");
 }
 
-TEST_CASE("a holder that was killed is noticed by beat and set, and the player switches off itself")
+TEST_CASE("beat and set notice a killed holder, and the player switches off itself")
 {
     for (const bool by_beat : {true, false}) {
         fake_line line;
@@ -180,7 +180,7 @@ TEST_CASE("a holder that was killed is noticed by beat and set, and the player s
     }
 }
 
-TEST_CASE("a rescue that failed is tried again when the line is to go off")
+TEST_CASE("a failed rescue is tried again at the next off")
 {
     fake_line line;
     int rescues = 0;

@@ -27,7 +27,7 @@ TEST_CASE("lengths are those of std::hypot, to the last digit but one on every m
     }
 }
 
-TEST_CASE("lengths of nothing, of what is too large to be squared, and of no numbers")
+TEST_CASE("lengths of zero, of squares beyond the range, and of non-numbers")
 {
     constexpr double huge = 1e300;
     constexpr double tiny = 1e-300;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// [array] and [[tactor]] of a file, and what is wrong with them.
+// [array] and [[tactor]] of a file, and their faults.
 #include <doctest/doctest.h>
 
 #include <string>
@@ -32,7 +32,7 @@ const std::string grid = "[array]\ngrid = { rows = 3, columns = 3, pitch_mm = 20
 
 } // namespace
 
-TEST_CASE("a grid with one pitch, and with two")
+TEST_CASE("a grid has one pitch, or two")
 {
     const array a = array_of("[array]\nname = \"mine\"\ngrid = { rows = 3, columns = 3, pitch_mm = 20 }\n");
     CHECK(a.name == "mine");
@@ -46,7 +46,7 @@ TEST_CASE("a grid with one pitch, and with two")
     CHECK(c.tactors[3].position == point{20.0, 40.0});
 }
 
-TEST_CASE("a list of tactors: every key, and the defaults")
+TEST_CASE("a list of tactors has every key, and defaults")
 {
     const array a = array_of(R"(
 [array]
@@ -120,7 +120,7 @@ TEST_CASE("a preset can be adjusted too")
               .starts_with("palm.toml:2:10: array: there is no preset 'palm'"));
 }
 
-TEST_CASE("an unknown key names the nearest, or lists what is known")
+TEST_CASE("an unknown key names the nearest, or lists the known ones")
 {
     const std::string one = "[[tactor]]\nx_mm = 0\ny_mm = 0\n";
     CHECK(complaint(one + "chanel = 3\n") ==
@@ -143,7 +143,7 @@ TEST_CASE("an unknown key names the nearest, or lists what is known")
     CHECK(complaint(std::string("\"") + std::string(5000, 'a') + "\" = 1\n").size() < 200);
 }
 
-TEST_CASE("wrong types and ranges, at the value")
+TEST_CASE("wrong types and ranges are reported at the value")
 {
     const std::string one = "[[tactor]]\nx_mm = 0\ny_mm = 0\n";
     CHECK(complaint(one + "channel = 1.0\n") == "palm.toml:4:11: channel is 1.0 (give a whole number)");
@@ -195,7 +195,7 @@ TEST_CASE("wrong types and ranges, at the value")
           "palm.toml:1:9: array is 'palm-3x3' (give a table, [array])");
 }
 
-TEST_CASE("grids that are none")
+TEST_CASE("impossible grids are refused")
 {
     const auto of = [](const std::string& g) { return complaint("[array]\ngrid = " + g + "\n"); };
     CHECK(of("{ rows = 3, columns = 3 }") == "palm.toml:2:8: grid has no pitch_mm (add pitch_mm = ...)");
@@ -231,7 +231,7 @@ TEST_CASE("an array comes from one source")
           "palm.toml:1:1: this is a stroke file, not an array or configuration (name it as the STROKE)");
 }
 
-TEST_CASE("two tactors on one place or channel, with both lines")
+TEST_CASE("two tactors on one place or channel are refused with both lines")
 {
     CHECK(complaint("[[tactor]]\nx_mm = 0\ny_mm = 0\n[[tactor]]\nx_mm = 1\ny_mm = 0\nchannel = 0\n") ==
           "palm.toml:4:1: tactor 1 is on channel 0, that of tactor 0 (palm.toml:1:1) (give each tactor a "
@@ -244,7 +244,7 @@ TEST_CASE("two tactors on one place or channel, with both lines")
           "channel of its own)");
 }
 
-TEST_CASE("16384 tactors in a list are read, one more is not")
+TEST_CASE("16384 tactors in a list are read, one more is refused")
 {
     std::string text;
     for (int i = 0; i < 16384; ++i)

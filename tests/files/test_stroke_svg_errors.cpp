@@ -30,7 +30,7 @@ std::string repeated(const std::string& what, int times)
 
 } // namespace
 
-TEST_CASE("what is wrong in an SVG file is named by line and column")
+TEST_CASE("faults of an SVG file are named by line and column")
 {
     struct sample {
         const char* svg;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Drawings whose lines say by their look how strong they are, and how they ease.
+// Drawings whose lines give strength and easing by their look.
 #include <doctest/doctest.h>
 
 #include <string>
@@ -28,7 +28,7 @@ const std::string by_opacity = "data-intensity-from=\"opacity\"";
 
 } // namespace
 
-TEST_CASE("the widest of the lines that ask for it has intensity 1")
+TEST_CASE("the widest of the lines with strength by width has intensity 1")
 {
     const std::string lines =
         "<path d=\"M 0 0 H 9\" stroke-width=\"4\"/><path d=\"M 0 0 H 9\" style=\"stroke-width:1\"/><g "
@@ -46,7 +46,7 @@ TEST_CASE("the widest of the lines that ask for it has intensity 1")
           std::vector<double>{1.0, 1.0}); // all alike
 }
 
-TEST_CASE("opacity is intensity, that of groups multiplied and that of lines inherited")
+TEST_CASE("opacity is intensity; groups multiply it and lines inherit it")
 {
     CHECK(intensities(by_opacity, "<g opacity=\"0.5\" stroke-opacity=\"50%\"><path d=\"M 0 0 H 9\"/><path "
                                   "d=\"M 0 0 H 9\" opacity=\"0.5\" stroke-opacity=\"1\"/></g><path d=\"M 0 0 "
@@ -65,7 +65,7 @@ TEST_CASE("shapes ease")
     CHECK(s[1].motion.position(0.25 * s[1].motion.duration_s()).x_mm == doctest::Approx(10.0));
 }
 
-TEST_CASE("looks that cannot be read are said where they are asked for")
+TEST_CASE("unreadable looks are reported where they are used")
 {
     const auto said = [](const std::string& root, const std::string& shape) {
         return message_of([&] { intensities(root, "\n" + shape); });

@@ -67,7 +67,7 @@ TEST_CASE("rules of classes, ids and tags hide, the most special one and then th
     CHECK(left(".ST0{display:none} .st{display:none} #A{display:none}") == list{"a", "b", "c"});
 }
 
-TEST_CASE("a sheet counts more than an attribute and less than the element's own style")
+TEST_CASE("a sheet wins over an attribute and loses to the element's own style")
 {
     CHECK(names("<style>.h{display:none} .v{display:inline}</style><line id='a' x2='9' display='none' "
                 "class='v'/><line id='b' x2='9' class='h' style='display:inline'/><line id='c' x2='9' "
@@ -136,7 +136,7 @@ TEST_CASE("a transform that cannot be read is named with its place")
               "d.svg:1:58: transform-origin of <line>: '1 2 3 4' is not an origin"));
 }
 
-TEST_CASE("what is not followed is warned of")
+TEST_CASE("unsupported styles are warned of")
 {
     const auto warned = [](const std::string& content) {
         std::string all;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Where nobody can listen, and why.
+// Listening that fails, with reasons.
 #include "net/listen.hpp"
 
 #include <cerrno>
@@ -35,7 +35,7 @@ int os_code(const std::function<void()>& call)
 
 } // namespace
 
-TEST_CASE("a folder that somebody holds locked is not waited for without end")
+TEST_CASE("a locked folder is not awaited without end")
 {
     const folder here;
     const owned_fd other(::open((here / ".").c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
@@ -43,7 +43,7 @@ TEST_CASE("a folder that somebody holds locked is not waited for without end")
     CHECK(listen_unix((here / "s").string(), 0600, {}));
 }
 
-TEST_CASE("what the system refuses a listener has its errno")
+TEST_CASE("a refused listener has its errno")
 {
     const folder here;
     CHECK(os_code([&] { listen_unix((here / "none/s").string(), 0600, {}); }) == ENOENT);
@@ -52,7 +52,7 @@ TEST_CASE("what the system refuses a listener has its errno")
     CHECK(os_code([&] { listen_tcp(parse_host(local_address(first.get()), "port"), "port"); }) == EADDRINUSE);
 }
 
-TEST_CASE("a port that is in use is said with the process that has it")
+TEST_CASE("a port in use is reported with its process")
 {
     const auto says = [](const std::function<void()>& call) {
         try {

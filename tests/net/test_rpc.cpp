@@ -41,7 +41,7 @@ TEST_CASE("requests, notifications and batches are told apart")
     CHECK(parse_rpc(R"([{"jsonrpc":"2.0","method":"m"}])", {}).batch);
 }
 
-TEST_CASE("what is no request has the standard's code")
+TEST_CASE("a bad request has the standard's code")
 {
     for (const char* text : {"", "{", "nul", "\"\xff\"", "{\"a\":1,}", "[1] 2", "\xc0\x80"})
         CHECK_MESSAGE(code_of(text) == code_parse_error, text);
@@ -139,7 +139,7 @@ TEST_CASE("nesting is counted outside of texts, and refused before anything is b
     CHECK(code_of("[[[]]]") == code_invalid_request);
 }
 
-TEST_CASE("what an error repeats of a client's text is cut at 80 characters")
+TEST_CASE("an error repeats at most 80 characters of a client's text")
 {
     const std::string x(200, 'x');
     const std::string x80 = x.substr(0, 80) + "...";
@@ -167,7 +167,7 @@ TEST_CASE("what an error repeats of a client's text is cut at 80 characters")
               .size() < 1000);
 }
 
-TEST_CASE("errors say kind, what, why and hint")
+TEST_CASE("errors have kind, what, why and hint")
 {
     const reply_json e = error_reply(7, {code_bad_params, "bad-input", "options.soa", "too long", "shorter"});
     CHECK(json_line(e) ==

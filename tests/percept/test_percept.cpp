@@ -43,7 +43,7 @@ burst burst_of(double onset_s, double duration_s, std::vector<drive> drives)
 
 const array pair = array_of({{0.0, 0.0}, {10.0, 0.0}});
 
-/// All of the prediction but the speed, looked up from scratch at each time.
+/// Computes the prediction without the speed, from scratch at each time.
 percept_sample by_search(const array& a, const plan& p, double t_s)
 {
     percept_sample r;
@@ -86,8 +86,8 @@ percept_sample by_search(const array& a, const plan& p, double t_s)
 TEST_CASE("by hand: a line between two tactors in two bursts")
 {
     // 10 mm in 0.1 s: bursts at 0 s where the target is at 0 mm, and at 0.07 s where it is at 7 mm. The
-    // centroid of Eq. (2) is the point itself, so the error is how far the target has gone on since the
-    // onset: 0.1 i mm for i = 0 ... 69, then for i = 0 ... 30.
+    // centroid of Eq. (2) is the point itself, so the error is the target's distance since the onset: 0.1 i
+    // mm for i = 0 ... 69, then for i = 0 ... 30.
     const stroke s = along("M 0 0 L 10 0", 0.1);
     const plan p = make_plan(pair, s);
     REQUIRE(p.bursts.size() == 2);
@@ -110,7 +110,7 @@ TEST_CASE("by hand: a line between two tactors in two bursts")
 
 TEST_CASE("by hand: the speed of one jump is the average's ramp")
 {
-    // One tactor for half a second, then another 10 mm away: the average over 101 samples rises by 10/101 mm
+    // A tactor for half a second, then another 10 mm away: the average over 101 samples rises by 10/101 mm
     // each millisecond, from sample 449 on to sample 550, at whose ends the central difference is half that.
     const stroke s = along("M 0 0 L 10 0", 1.0);
     const auto samples =
@@ -141,11 +141,11 @@ TEST_CASE("continuous with barycentric weights is felt where the target is")
     CHECK(r.silent_share == 0.0);
 }
 
-TEST_CASE("overlapping bursts on one tactor are joined as the plan says")
+TEST_CASE("overlapping bursts on one tactor are joined by the plan's rule")
 {
     const stroke s = along("M 0 0 L 10 0", 0.1);
     const std::vector<burst> both{burst_of(0.0, 0.1, {{0, 0.8}}), burst_of(0.04, 0.04, {{0, 0.8}, {1, 0.6}})};
-    const double on_one[] = {1.0, 0.8, 1.6}; // sqrt(1.28) is over the intensity asked for
+    const double on_one[] = {1.0, 0.8, 1.6}; // sqrt(1.28) is over the given intensity
     for (const overlap_kind join : {overlap_kind::energy, overlap_kind::max, overlap_kind::sum}) {
         const auto samples = predict_percept(pair, s, plan_of(both, join));
         const double a = on_one[static_cast<int>(join)];
@@ -180,7 +180,7 @@ TEST_CASE("silence is intensity 0, has no error, and holds the position for the 
     CHECK(*samples[71].speed_mm_s == doctest::Approx(10.0 / 101.0 / 0.001));
 }
 
-TEST_CASE("a burst that ends with the movement is still felt at its last sample, unless another begins there")
+TEST_CASE("a burst that ends with the movement is felt at its last sample, unless another begins there")
 {
     const stroke s = along("M 0 0 L 10 0", 0.1);
     const auto alone = predict_percept(pair, s, plan_of({burst_of(0.0, 0.1, {{0, 1.0}})}));
@@ -210,7 +210,7 @@ TEST_CASE("the last sample is on the raster, at the end where the end is")
               static_cast<std::size_t>(std::lround(t * 1e3)) + 1);
 }
 
-TEST_CASE("any plan is felt as a search at each time says")
+TEST_CASE("any plan is felt like in a search at each time")
 {
     generator g(31);
     unsigned compared = 0;
@@ -279,7 +279,7 @@ TEST_CASE("summaries of several plans at once are those of their samples, to the
     CHECK(detail::predict_summaries(a, along("M 3 3 L 37 37", 1.0), {}).empty());
 }
 
-TEST_CASE("samples are followed in order, and what takes them may end it")
+TEST_CASE("samples come in order, and their receiver may end it")
 {
     const stroke s = along("M 0 0 L 10 0", 1.0);
     const plan p = make_plan(pair, s);
@@ -303,7 +303,7 @@ TEST_CASE("samples are followed in order, and what takes them may end it")
     CHECK(n == 10);
 }
 
-TEST_CASE("nothing to feel has no error, and nothing to sum up is no error")
+TEST_CASE("a silent plan has no error, and an empty summary is no error")
 {
     const auto silent = predict(pair, timed({{0.0, {0, 0}, 0.0}, {0.5, {10, 0}, 0.0}}));
     const percept_summary r = summarise(silent);
@@ -315,7 +315,7 @@ TEST_CASE("nothing to feel has no error, and nothing to sum up is no error")
     CHECK_FALSE(summarise(std::vector<percept_sample>{}).rms_error_mm);
     CHECK(summarise(std::vector<percept_sample>{}).silent_share == 0.0);
 
-    // Felt, but not to move.
+    // Felt, but without motion.
     const stroke still = along("M 0 0 L 10 0", 0.5);
     const percept_summary q =
         summarise(predict_percept(pair, still, plan_of({burst_of(0.0, 0.5, {{0, 1.0}})})));
@@ -323,7 +323,7 @@ TEST_CASE("nothing to feel has no error, and nothing to sum up is no error")
     CHECK(*q.intensity_cv == 0.0);
 }
 
-TEST_CASE("hours, and plans of another array, are refused")
+TEST_CASE("plans of hours, and of another array, are refused")
 {
     plan_options o;
     o.algorithm = algorithm_kind::continuous;
@@ -339,7 +339,7 @@ TEST_CASE("hours, and plans of another array, are refused")
 
 TEST_CASE("by hand: another person feels one tactor less, and another one elsewhere")
 {
-    // Two tactors alike: half way. One of them 6.0206 dB less: a quarter of the energy, so a fifth of the
+    // Two equal tactors: half way. One of them 6.0206 dB less: a quarter of the energy, so a fifth of the
     // way.
     const stroke s = along("M 0 0 L 10 0", 0.1);
     const plan p = plan_of({burst_of(0.0, 0.1, {{0, 1.0}, {1, 1.0}})});
@@ -357,7 +357,7 @@ TEST_CASE("by hand: another person feels one tactor less, and another one elsewh
         CHECK(same[i].felt == predict_percept(pair, s, p)[i].felt);
 }
 
-TEST_CASE("a person has one number for each tactor, and finite ones")
+TEST_CASE("a person has a finite number for each tactor")
 {
     const stroke s = along("M 0 0 L 10 0", 0.1);
     const plan p = make_plan(pair, s);

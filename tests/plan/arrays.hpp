@@ -114,7 +114,7 @@ inline array some_array(generator& g, unsigned kind)
     }
 }
 
-/// A point in the hull: anywhere, on a segment between tactors, or on a tactor.
+/// Draws a point in the hull: anywhere, on a segment between tactors, or on a tactor.
 inline point some_point(generator& g, const layout& l)
 {
     const std::vector<point>& t = l.places();
@@ -150,7 +150,7 @@ inline point energy_centroid(const layout& l, const std::vector<drive>& d)
     return c;
 }
 
-/// The same array with its tactors in another order; second: where each one of the old order went.
+/// Returns the same array with its tactors in another order; second: the new place of each old one.
 inline std::pair<array, std::vector<unsigned>> shuffled(generator& g, const array& a)
 {
     std::vector<unsigned> old(a.tactors.size());

@@ -22,7 +22,7 @@ stroke circle(double duration_s)
     return stroke_of(trajectory::along(path::arc({20.0, 20.0}, 20.0, -90.0, 360.0), duration_s));
 }
 
-/// Eqs. of the schedule as they are written down first, not in closed form.
+/// Computes the schedule by its equations as first written, not in closed form.
 void check_law(const plan& p, const timing_profile& law)
 {
     for (std::size_t i = 0; i < p.bursts.size(); ++i) {
@@ -102,7 +102,7 @@ TEST_CASE("a row and a column met at once are one virtual tactor")
     CHECK(*p.bursts[1].tau_s == doctest::Approx(1.0));
 }
 
-TEST_CASE("along a grid line only the other lines are met")
+TEST_CASE("a path along a grid line meets only the other lines")
 {
     const plan p = make_plan(palm, along("M 5 20 L 35 20", 1.0), brush());
     REQUIRE(p.bursts.size() == 3);
@@ -186,7 +186,7 @@ TEST_CASE("a start or end off the grid is refused with the nearest point on it; 
     const plan p = make_plan(palm, along("M 3 8 L 20 20", 1.0), o);
     CHECK(p.bursts[0].position == point{0.0, 8.0});
     CHECK(p.bursts[0].tau_s == 0.0);
-    // Snapped onto the line that it crosses straight away: one place.
+    // Snapped onto the line that it crosses at once: one place.
     const plan q = make_plan(palm, along("M 10 21 L 10 0", 1.0), o);
     REQUIRE(q.bursts.size() == 2);
     CHECK(q.bursts[0].position == point{10.0, 20.0});
@@ -216,7 +216,7 @@ TEST_CASE("conflicts of bursts inside one another, one after the other, and side
     CHECK(found[2].to_s == doctest::Approx(1.0));
 }
 
-TEST_CASE("conflicts: when two bursts or more sound on one tactor, merged, by time and then by tactor")
+TEST_CASE("conflicts are times with two bursts or more on a tactor, merged, by time and then by tactor")
 {
     generator g(34);
     for (unsigned i = 0; i < 200; ++i) {
@@ -261,7 +261,7 @@ TEST_CASE("the array must be a grid; a single row is one")
           5);
 }
 
-TEST_CASE("a way out between two crossings is refused; clamped it stays at the edge")
+TEST_CASE("a path that leaves between two crossings is refused; clamped it stays at the edge")
 {
     plan_options o = brush();
     const stroke out = along("M 0 20 C 0 20 20 -30 40 20", 3.0);

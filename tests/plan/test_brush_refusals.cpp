@@ -54,7 +54,7 @@ TEST_CASE("the shortest duration of a timed stroke scales all its times")
     CHECK_FALSE(refusal(palm, stroke_of(s.motion.with_duration(shortest - 1e-6)), o).empty());
 }
 
-TEST_CASE("drop-points leaves out the place with the smallest gap, first of ties, until it works")
+TEST_CASE("drop-points leaves out the place with the smallest gap, the first of ties, until it works")
 {
     // By hand: at 50, 60 and 70 ms the smaller gap is 10 ms each, so 50 goes, then 60; 70 can stay.
     // first, ...
@@ -93,7 +93,7 @@ TEST_CASE("drop-points leaves out the place with the smallest gap, first of ties
     }
 }
 
-TEST_CASE("what was dropped is reported")
+TEST_CASE("dropped points are reported")
 {
     plan_options o = brush();
     const stroke s = along("M 0 18 L 40 22", 0.15);
@@ -112,7 +112,7 @@ TEST_CASE("what was dropped is reported")
     CHECK(make_plan(palm, s, o).dropped.empty());
 }
 
-TEST_CASE("dropping takes no quadratic time")
+TEST_CASE("dropping does not take quadratic time")
 {
     std::vector<double> tau{0.0};
     for (unsigned i = 0; i < 200000; ++i)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Carriers and recordings that lie along the path go with targets that ease, change their speed and rest.
+// Carriers and recordings along the path, with targets that ease, change their speed and rest.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -54,7 +54,7 @@ std::vector<carrier_point> course_of(const stroke& s)
     return make_plan(palm, s, {.algorithm = algorithm_kind::continuous}).course;
 }
 
-/// Along the path by its length, four times.
+/// Returns the course of a recording along the path by its length, four times.
 std::vector<carrier_point> texture_of(stroke s)
 {
     waveform w;
@@ -66,7 +66,7 @@ std::vector<carrier_point> texture_of(stroke s)
     return course_of(s);
 }
 
-/// The path that lies behind the target, as a part of it.
+/// Returns the part of the path behind the target.
 double part(const stroke& s, double t_s)
 {
     return std::abs(s.motion.position(t_s).x_mm - s.motion.position(0.0).x_mm) / length_mm;
@@ -80,7 +80,7 @@ double hz_at(const std::vector<carrier_point>& course, double t_s)
     return detail::hz_between(before, *after, (t_s - before.t_s) / (after->t_s - before.t_s));
 }
 
-/// Cycles from a point to a part u of the time to the next, as tactor-json(5) has it.
+/// Returns the cycles from a point to a part u of the time to the next, by tactor-json(5).
 long double cycles(const carrier_point& a, const carrier_point& b, long double u)
 {
     const auto& k = a.bend;
@@ -96,7 +96,7 @@ long double cycles(const carrier_point& a, const carrier_point& b, long double u
     return sum * (static_cast<long double>(b.t_s) - a.t_s);
 }
 
-/// How often it has come round until a time.
+/// Returns the cycles until a time.
 double rounds(const std::vector<carrier_point>& course, double t_s)
 {
     double sum = 0.0;
@@ -122,7 +122,7 @@ double greatest_hz(const std::vector<carrier_point>& course)
 
 } // namespace
 
-TEST_CASE("the carrier is that of the part of the path that the target has gone")
+TEST_CASE("the carrier is that of the covered part of the path")
 {
     for (stroke s : strokes()) {
         s.sound.carrier_profile = {{0.2, 100.0}, {0.7, 300.0}};
@@ -140,7 +140,7 @@ TEST_CASE("the carrier is that of the part of the path that the target has gone"
     }
 }
 
-TEST_CASE("the carrier's cycles are the integral of its frequency, over an hour too")
+TEST_CASE("the carrier's cycles are the integral of its frequency, even over an hour")
 {
     for (const double duration_s : {2.0, 3600.0})
         for (stroke s : strokes()) {
@@ -226,7 +226,7 @@ TEST_CASE("a course has as many points as its bends need")
     }
 }
 
-TEST_CASE("points as near in time as two numbers can be make no frequency that is none")
+TEST_CASE("points with almost equal times make no impossible frequency")
 {
     // With another duration the second and the third are at the same time.
     const double next = std::nextafter(1.0, 2.0);

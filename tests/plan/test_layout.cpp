@@ -57,7 +57,7 @@ std::vector<std::size_t> sizes(const layout& l)
 
 } // namespace
 
-TEST_CASE("the cells of a rectangular grid are its faces, however it is turned and whatever its pitch")
+TEST_CASE("the cells of a rectangular grid are its faces, at any turn and pitch")
 {
     generator g(11);
     for (unsigned round = 0; round < 300; ++round) {
@@ -135,7 +135,7 @@ TEST_CASE("faces are Delaunay: no tactor in the circle round one, every tactor i
     }
 }
 
-TEST_CASE("four points are on one circle when a move of a nanometre each puts them there, thin or not")
+TEST_CASE("four points are on one circle when moves of a nanometre put them there, thin or not")
 {
     CHECK(detail::cocircular({point{0, 0}, {20, 0}, {20, 40}, {0, 40}}));
     CHECK(detail::cocircular({point{0, 0}, {20, 0}, {20, 40 + 1e-6}, {0, 40}}));
@@ -173,13 +173,13 @@ TEST_CASE("the hull holds its edge within a nanometre, and nearest() lies on it"
             REQUIRE(distance_mm(p, q) <= same_place_mm);
             continue;
         }
-        // No point of the hull is nearer: in a convex hull it is enough to look at the tactors' side.
+        // No point of the hull is nearer: in a convex hull the tactors' side is enough.
         for (const point& t : m.places())
             REQUIRE((t.x_mm - q.x_mm) * (p.x_mm - q.x_mm) + (t.y_mm - q.y_mm) * (p.y_mm - q.y_mm) <= 1e-6);
     }
 }
 
-TEST_CASE("every place of a grid is inside, on the diagonals of the hull, too")
+TEST_CASE("every place of a grid is inside, even on the diagonals of the hull")
 {
     generator g(29);
     for (unsigned round = 0; round < 2000; ++round) {

@@ -88,7 +88,7 @@ TEST_CASE("pitch is the median distance to the nearest neighbour")
     CHECK(layout(array_of({{0, 0}, {1, 0}, {10, 0}, {30, 0}})).pitch_mm() == doctest::Approx(5.0));
 }
 
-TEST_CASE("an array that is none is refused")
+TEST_CASE("impossible arrays are refused")
 {
     CHECK_THROWS_AS(layout(array_of({})), error);
     CHECK_THROWS_AS(layout(array_of({{0, 0}, {not_a_number, 1}})), error);
@@ -96,7 +96,7 @@ TEST_CASE("an array that is none is refused")
     CHECK_THROWS_AS(layout(array_of({{0, 0}, {1e300, 0}})), error);
 }
 
-TEST_CASE("what is compared for one point does not grow with the tactors")
+TEST_CASE("the comparisons for a point do not grow with the tactors")
 {
     generator g(17);
     const auto most = [&](unsigned side) {

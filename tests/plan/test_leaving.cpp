@@ -38,7 +38,7 @@ array with_places(const std::vector<point>& places)
     return a;
 }
 
-/// How far a movement gets out of the array, looked at in many places; and the first of them that is outside.
+/// Returns how far a movement leaves the array, sampled at many places; and the first place outside.
 struct excursion {
     double farthest_mm = 0.0;
     double first_s = -1.0;
@@ -60,7 +60,7 @@ excursion look(const layout& l, const trajectory& t)
 
 } // namespace
 
-TEST_CASE("a way out of five milliseconds is found in a day, and told to the microsecond")
+TEST_CASE("a way out of five milliseconds is found in a day, to the microsecond")
 {
     for (const double duration : {10.0, 2000.0, 86400.0}) {
         for (const double part : {0.1234567, 0.5, 0.987654321}) {
@@ -81,7 +81,7 @@ TEST_CASE("a way out of five milliseconds is found in a day, and told to the mic
     }
 }
 
-TEST_CASE("curves that turn at the edge stay inside, those that turn beyond it do not")
+TEST_CASE("curves that turn at the edge stay inside, curves that turn beyond it do not")
 {
     // A parabola over the upper edge whose top is at y = 0, then a hundredth of a millimetre above.
     CHECK(refusal(palm, along("M 0 20 Q 20 -20 40 20", 86400.0), continuous()).empty());
@@ -96,7 +96,7 @@ TEST_CASE("curves that turn at the edge stay inside, those that turn beyond it d
     CHECK_FALSE(refusal(corner, along("M 30 5 Q 30 30 5 30", 1.0), continuous()).empty());
 }
 
-TEST_CASE("arrays in one line and of one tactor")
+TEST_CASE("strokes leave arrays in one line and of one tactor")
 {
     const array line = with_places({{30, 30}, {0, 0}, {10, 10}, {20, 20}});
     CHECK(refusal(line, along("M 0 0 L 30 30 L 10 10", 2.0), continuous()).empty());
@@ -111,7 +111,7 @@ TEST_CASE("arrays in one line and of one tactor")
 
 namespace {
 
-// Short times are said in smaller units.
+// Short times have smaller units.
 double time_after(const std::string& said)
 {
     const double v = number_after(said, "after ");

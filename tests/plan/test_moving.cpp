@@ -35,7 +35,7 @@ const movement resting{.duration_s = 3.0,
 
 } // namespace
 
-TEST_CASE("bursts of park2016 are where the eased target is at their onset, as strong as it is there")
+TEST_CASE("bursts of park2016 are at the eased target's place at their onset, with its strength")
 {
     const plan p = make_plan(palm, moving("M 0 10 L 40 30", jerk), {});
     REQUIRE(p.bursts.size() == 31);
@@ -52,7 +52,7 @@ TEST_CASE("bursts of park2016 are where the eased target is at their onset, as s
     CHECK(silent <= 9);
 }
 
-TEST_CASE("the Tactile Brush times its places by when the eased target is there")
+TEST_CASE("the Tactile Brush times its places by the eased target's arrival")
 {
     for (const movement& m : {jerk, resting}) {
         const stroke s = moving("M 0 0 H 45", m);
@@ -79,7 +79,7 @@ TEST_CASE("the shortest duration that the Tactile Brush names works for eased ta
     CHECK_FALSE(refusal(arm, s, brush()).empty());
 }
 
-TEST_CASE("continuous says where and when an eased target leaves the array")
+TEST_CASE("continuous reports where and when an eased target leaves the array")
 {
     plan_options o;
     o.algorithm = algorithm_kind::continuous;
@@ -89,7 +89,7 @@ TEST_CASE("continuous says where and when an eased target leaves the array")
     CHECK(std::abs(moving("M 0 10 C 20 10 60 20 60 30", jerk).motion.position(when).x_mm - 40.0) < 0.1);
 }
 
-TEST_CASE("a path that is short beside the distance between tactors is warned of")
+TEST_CASE("a path that is short compared with the tactors' distance is warned of")
 {
     const auto warned = [](std::string_view svg) {
         for (const std::string& w : make_plan(palm, along(svg, 1.0)).warnings)
@@ -103,7 +103,7 @@ TEST_CASE("a path that is short beside the distance between tactors is warned of
     CHECK(make_plan(palm, timed({{0.0, {10.0, 10.0}}, {1.0, {10.0, 10.0}}})).warnings.empty());
 }
 
-TEST_CASE("what a stroke chooses wins over what is asked of all")
+TEST_CASE("a stroke's choice wins over the common one")
 {
     stroke s = along("M 0 10 L 40 30", 1.4);
     s.choices = {{}, phantom_kind::barycentric, 0.06, 0.05};
@@ -118,7 +118,7 @@ TEST_CASE("what a stroke chooses wins over what is asked of all")
     CHECK(refusal(palm, s, {}).find("burst_s: ") == 0);
 }
 
-TEST_CASE("an SOA or a burst that a stroke chooses and cannot have is told with its place")
+TEST_CASE("a stroke's impossible SOA or burst is refused with its place")
 {
     const auto told = [](const char* text, plan_options o = {}) {
         const stroke s = parse_strokes_toml(text, "w.toml").front();
@@ -138,15 +138,15 @@ TEST_CASE("an SOA or a burst that a stroke chooses and cannot have is told with 
           is{"w.toml:3:11: burst_s: 0.2 s is longer than the SOA of 0.07 s, and bursts must not "
              "overlap (use at most 0.07 s, or a longer SOA)",
              3});
-    // The stroke's SOA is what is too short for the duration of all.
+    // The stroke's SOA is too short for the common duration.
     CHECK(told("[stroke]\npath = \"M 0 10 H 40\"\nsoa_s = 0.05\n", {.burst_s = 0.06}).second == 3);
-    // What is asked of all is not the file's doing.
+    // The common value is not the file's fault.
     CHECK(told("[stroke]\npath = \"M 0 10 H 40\"\nburst_s = 0.02\n", {.soa_s = 90.0}).first.find("soa_s: ") ==
           0);
     CHECK(told("[stroke]\npath = \"M 0 10 H 40\"\nsoa_s = 0.05\nburst_s = 0.05\n").second == 0);
 }
 
-TEST_CASE("a stroke that asks to be fitted is")
+TEST_CASE("a stroke that asks for a fit is fitted")
 {
     stroke s = along("M 100 100 L 900 700", 1.4);
     s.fit = stroke_fit{2.0};

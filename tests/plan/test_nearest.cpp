@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The three closest tactors of the whole array, as Park et al. 2016 have it.
+// The three closest tactors of the whole array, as in Park et al. 2016.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -31,7 +31,7 @@ std::vector<drive> nearest(const layout& l, point p, double a_v = 1.0)
     return d;
 }
 
-/// Tactors by distance, those at the same one in the order of the list.
+/// Sorts tactors by distance, equal ones in the order of the list.
 std::vector<unsigned> by_distance(const layout& l, point p)
 {
     std::vector<unsigned> order;
@@ -79,7 +79,7 @@ bool warns(const plan& p, const std::string& of)
 
 } // namespace
 
-TEST_CASE("on the paper's array the three closest are those of the face, but on the diagonals of cells")
+TEST_CASE("on the paper's array the three closest are those of the face, except on the diagonals of cells")
 {
     const layout l(preset_array("palm-3x3"));
     for (int i = 0; i <= 160; ++i)
@@ -135,7 +135,7 @@ TEST_CASE("the three closest keep Eqs. (8) and (9) and are the closest, by brute
     }
 }
 
-TEST_CASE("which are closest does not depend on the order of the tactors in the file")
+TEST_CASE("the closest do not depend on the order of the tactors in the file")
 {
     generator g(12);
     for (unsigned round = 0; round < 200; ++round) {
@@ -219,7 +219,7 @@ TEST_CASE("the guide's shares hold on the example of scattered tactors")
           }) == doctest::Approx(0.376).epsilon(0.0001));
 }
 
-TEST_CASE("faces go with inverse-distance alone")
+TEST_CASE("only inverse-distance takes faces")
 {
     const array a = preset_array("palm-3x3");
     const stroke s = preset_stroke("park2016-1");
@@ -252,7 +252,7 @@ TEST_CASE("faces go with inverse-distance alone")
     CHECK(has(message_of([&] { static_cast<void>(make_plan(a, own, {})); }), "not with log"));
 }
 
-TEST_CASE("Tactile Brush plays on the lines of the grid and says that it does not use the faces")
+TEST_CASE("the Tactile Brush plays on the lines of the grid and reports that it ignores the faces")
 {
     const array a = make_grid("g", 3, 4, 15.0, 15.0);
     const stroke s = along("M 10 30 L 45 10");

@@ -52,7 +52,7 @@ TEST_CASE(
     }
 }
 
-TEST_CASE("what a point gets does not depend on the points before it, near edges, diagonals and tactors too")
+TEST_CASE("a point's drives do not depend on the points before it, even near edges, diagonals and tactors")
 {
     generator g(7);
     std::vector<drive> d;
@@ -80,7 +80,7 @@ TEST_CASE("what a point gets does not depend on the points before it, near edges
     }
 }
 
-TEST_CASE("inverse distance chooses the tactors that the rules say, by brute force")
+TEST_CASE("inverse distance chooses tactors by the rules, by brute force")
 {
     generator g(2);
     for (unsigned round = 0; round < 500; ++round) {

@@ -85,7 +85,7 @@ TEST_CASE("barycentric is continuous: a small step changes every tactor's energy
     }
 }
 
-TEST_CASE("linear and log stand on the barycentric triangle")
+TEST_CASE("linear and log use the barycentric triangle")
 {
     generator g(8);
     for (unsigned round = 0; round < 200; ++round) {
@@ -115,7 +115,7 @@ TEST_CASE("a face of many tactors is split as a fan from its lowest one")
     CHECK(tactors_of(weights(l, phantom_kind::barycentric, {10.0, 10.0})) == std::vector<unsigned>{0, 4});
 }
 
-TEST_CASE("gaussian: all tactors near, weighed by distance, equal energy, the weak ones dropped")
+TEST_CASE("gaussian weighs all near tactors by distance, keeps the energy, and drops the weak ones")
 {
     generator g(9);
     for (unsigned round = 0; round < 400; ++round) {
@@ -146,7 +146,7 @@ TEST_CASE("gaussian: all tactors near, weighed by distance, equal energy, the we
     }
 }
 
-TEST_CASE("no intensity, no drives; no number, no answer")
+TEST_CASE("no intensity gives no drives, and non-numbers are refused")
 {
     const layout l(preset_array("palm-3x3"));
     for (const auto k : {phantom_kind::inverse_distance, phantom_kind::barycentric, phantom_kind::linear,

@@ -41,7 +41,7 @@ TEST_CASE("labels of one place do not cover each other, nor the place")
     }
 }
 
-TEST_CASE("labels stay in the area: in each corner too")
+TEST_CASE("labels stay in the area, even in each corner")
 {
     for (const spot at : {spot{2.0, 2.0}, spot{98.0, 2.0}, spot{2.0, 98.0}, spot{98.0, 98.0}}) {
         label_placer p({0.0, 0.0, 100.0, 100.0});
@@ -53,7 +53,7 @@ TEST_CASE("labels stay in the area: in each corner too")
     }
 }
 
-TEST_CASE("a label that belongs to one of many sites is nearest to that one, or there is none")
+TEST_CASE("a label of one of many sites is nearest to that one, or left out")
 {
     std::vector<spot> sites;
     for (int row = 0; row < 4; ++row)
@@ -82,7 +82,7 @@ TEST_CASE("a label that belongs to one of many sites is nearest to that one, or 
     CHECK_FALSE(p.place_at("a long name", 6.0, sites, 5, 5.2, 3.0));
 }
 
-TEST_CASE("a label that must be clear is nowhere rather than on another")
+TEST_CASE("a label that must be clear is left out rather than put on another")
 {
     label_placer p({0.0, 0.0, 100.0, 100.0});
     CHECK(p.place_clear("1", 6.0, {50.0, 50.0}, 3.0, 20.0));

@@ -18,7 +18,7 @@ namespace system_files_test {
 
 using namespace tactor;
 
-TEST_CASE("what is in a folder and in a file; what is not there is empty")
+TEST_CASE("contents of a folder and of a file; a missing one is empty")
 {
     const folder here;
     const std::string text(10'000, 'x');
@@ -34,7 +34,7 @@ TEST_CASE("what is in a folder and in a file; what is not there is empty")
     CHECK(rt::read_file(here.path().string()).empty());
 }
 
-EXHAUSTING_TEST_CASE("without a descriptor nothing is taken for empty")
+EXHAUSTING_TEST_CASE("without a descriptor nothing counts as empty")
 {
     const auto code_of = [](auto call) {
         const test::descriptors_left none(0);

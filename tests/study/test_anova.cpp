@@ -17,7 +17,7 @@ const cell_table study{{{420, 420, 480, 480, 600, 780},
                        2,
                        3};
 
-TEST_CASE("of two levels F is the square of the paired t, with its p")
+TEST_CASE("with two levels F is the square of the paired t, with its p")
 {
     std::vector<double> differences;
     for (const auto& row : study.values)
@@ -32,7 +32,7 @@ TEST_CASE("of two levels F is the square of the paired t, with its p")
     CHECK(!e.mauchly_w);
 }
 
-TEST_CASE("what is alike for everybody is no effect, and scale and place do not matter")
+TEST_CASE("equal values are no effect, and scale and place do not matter")
 {
     const anova a = repeated_measures(study);
     cell_table moved = study;
@@ -52,12 +52,12 @@ TEST_CASE("what is alike for everybody is no effect, and scale and place do not 
     CHECK(*a.second.eta2_generalised < *a.second.eta2_partial);
 }
 
-TEST_CASE("epsilon is 1 where all differences vary alike and 1 / (k - 1) where there is one")
+TEST_CASE("epsilon is 1 where all differences vary alike and 1 / (k - 1) where only one does")
 {
     CHECK(greenhouse_geisser({{2.0, 0.0}, {0.0, 2.0}}) == doctest::Approx(1.0));
     CHECK(greenhouse_geisser({{1.0, 1.0}, {1.0, 1.0}}) == doctest::Approx(0.5));
     CHECK(mauchly({{2.0, 0.0}, {0.0, 2.0}}, 5, 3)->w == doctest::Approx(1.0));
-    for (const double v : {0.1, 0.3, 0.7, 1.1, 2.3}) { // and never above, whatever rounding does
+    for (const double v : {0.1, 0.3, 0.7, 1.1, 2.3}) { // and never above, for any rounding
         CHECK(greenhouse_geisser({{v, 0.0, 0.0}, {0.0, v, 0.0}, {0.0, 0.0, v}}) <= 1.0);
         CHECK(mauchly({{v, 0.0, 0.0}, {0.0, v, 0.0}, {0.0, 0.0, v}}, 5, 4)->w <= 1.0);
     }

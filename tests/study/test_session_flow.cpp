@@ -22,7 +22,7 @@ session_step trial_step(std::size_t run, unsigned trial, unsigned attempt = 1)
     return {.what = step_kind::trial, .run = run, .which = {trial, attempt}};
 }
 
-// Past consent, walk and introduction.
+// Returns a session past consent, walk and introduction.
 session_flow begun(std::vector<flow_run> runs)
 {
     session_flow f(std::move(runs), false, 0);
@@ -115,11 +115,11 @@ TEST_CASE("the last trial can be made void once, until the next run begins")
     CHECK_FALSE(f.void_last()); // the next has begun
     f.took(false);
     CHECK(f.next().what == step_kind::over);
-    CHECK(f.void_last()); // at the very end, too
+    CHECK(f.void_last()); // even at the very end
     CHECK(f.next() == trial_step(1, 1, 2));
 }
 
-TEST_CASE("a pause comes before the next trial, and after five that were void by themselves")
+TEST_CASE("a pause comes before the next trial, and after five that became void by themselves")
 {
     session_flow f = begun({run_of(9)});
     f.pause();
@@ -136,7 +136,7 @@ TEST_CASE("a pause comes before the next trial, and after five that were void by
     CHECK(f.next().what == step_kind::trial);
 }
 
-TEST_CASE("a session that goes on passes over what is through")
+TEST_CASE("a resumed session skips its finished part")
 {
     run_queue half(2);
     half.take(true);
@@ -152,8 +152,8 @@ TEST_CASE("a session that goes on passes over what is through")
     CHECK(session_flow({{0, 0, done, true}}, true, 9).next().what == step_kind::over);
 }
 
-// What the tables say is all that a session that goes on knows.
-TEST_CASE("whatever happens, each trial counts once, and lines alone lead to the same place")
+// A resumed session knows only the tables.
+TEST_CASE("in any course of events each trial counts once, and lines alone restore the same place")
 {
     random_numbers r("flow");
     for (int round = 0; round < test::rounds(300); ++round) {

@@ -10,7 +10,7 @@ namespace {
 
 const std::vector<double> sleep{0.7, -1.6, -0.2, -1.2, -0.1, 3.4, 3.7, 0.8, 0.0, 2.0}; // Student 1908
 
-// All choices of signs, one by one.
+// Tries all choices of signs.
 double by_counting(const std::vector<double>& v)
 {
     double observed = 0.0;
@@ -51,12 +51,12 @@ TEST_CASE("noncentralities are those of R's pt")
     CHECK(i->second == doctest::Approx(10.22490451530).epsilon(1e-10));
     const auto mirrored = noncentrality_interval(-6.84, 11.0);
     CHECK(mirrored->first == doctest::Approx(-i->second).epsilon(1e-10));
-    // Where R's pt gives up, beyond 37.6: as large as it may be.
+    // Where R's pt ends, beyond 37.6: the greatest value.
     CHECK(noncentrality_interval(9000.0, 11.0)->first == doctest::Approx(5300.7335778).epsilon(1e-8));
     CHECK(!noncentrality_interval(1e5, 11.0));
 }
 
-TEST_CASE("what has no variance has a mean and signs, and no test")
+TEST_CASE("equal values have a mean and signs, and no test")
 {
     const t_test t = test_mean(std::vector<double>{70.0, 70.0, 70.0, 70.0}, 50.0);
     CHECK(*t.mean == 70.0);
@@ -75,7 +75,7 @@ TEST_CASE("what has no variance has a mean and signs, and no test")
     CHECK(!test_mean({}, 50.0).mean);
 }
 
-TEST_CASE("what rounding leaves of equal values is no variance, and has no sign")
+TEST_CASE("a rounding of equal values is no variance, and has no sign")
 {
     // Differences of ratings from 1 to 5 whose means are equal, added up in another order.
     const std::vector<double> noise{4.4e-16, 2.2e-16, 4.4e-16, 4.4e-16, 2.2e-16, 4.4e-16};
@@ -86,14 +86,14 @@ TEST_CASE("what rounding leaves of equal values is no variance, and has no sign"
     CHECK(!none.d);
     CHECK(*none.p_signflip == 1.0);
     CHECK(!quick_test_mean(noise, 0.0, 5e-12).p);
-    // All of one sign, and the same but for rounding.
+    // Equal signs, and equal values except for rounding.
     const t_test one = test_mean(std::vector<double>{0.25, 0.25 + 2.2e-16, 0.25 - 4.4e-16, 0.25}, 0.0, 5e-12);
     CHECK(!one.t);
     CHECK(*one.p_signflip == 0.125);
     // Per cent of halves that were added up from thirds.
     const std::vector<double> halves{50.0 + 7e-15, 50.0 + 7e-15, 50.0 + 1.4e-14, 50.0 + 7e-15};
     CHECK(*test_mean(halves, 50.0).p_signflip == 1.0);
-    // What is there is left: half of a scale's last step in a million trials.
+    // Real differences stay: half of a scale's last step in a million trials.
     CHECK(test_mean(std::vector<double>{0.0, 5e-7, 0.0, 5e-7}, 0.0, 5e-12).t);
 }
 
@@ -117,7 +117,7 @@ TEST_CASE("signs are exact, with ties and zeros")
     CHECK(!sign_flip_p({}));
 }
 
-TEST_CASE("Holm's p are in order, at most 1, and those that are not there do not count")
+TEST_CASE("Holm's p are in order, at most 1, and missing ones do not count")
 {
     const auto h = holm({0.01, std::nullopt, 0.04, 0.03, 0.9});
     CHECK(*h[0] == doctest::Approx(0.04));

@@ -10,7 +10,7 @@
 namespace tactor::study::test_tukey {
 namespace {
 
-TEST_CASE("the studentized range is as its definition, integrated by R, has it")
+TEST_CASE("the studentized range matches its definition, integrated by R")
 {
     struct known {
         double q;
@@ -29,7 +29,7 @@ TEST_CASE("the studentized range is as its definition, integrated by R, has it")
     CHECK(std::abs(studentized_range_p(0.1, 3, 5) - 0.997248706663421) < 1e-8);
 }
 
-TEST_CASE("of two levels it is Student's t, also where that is small")
+TEST_CASE("with two levels it is Student's t, also where that is small")
 {
     for (const double df : {1.0, 2.0, 7.0, 33.0, 500.0, 100000.0})
         for (const double q : {0.001, 0.5, 3.0, 9.0}) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// Strokes mixed at random: bursts from one frame on, every rule of overlap, carriers, waves, rates, ramps,
-/// gains and limits.
+/// Strokes mixed at random: bursts from a frame in length, each rule of overlap, carriers, waves, rates,
+/// ramps, gains and limits.
 #pragma once
 
 #include <algorithm>
@@ -22,7 +22,7 @@ namespace mixes {
 
 using namespace tactor;
 
-/// The same seed gives the same numbers, with any standard library.
+/// A generator that gives the same numbers for a seed with any standard library.
 class dice {
 public:
     explicit dice(std::uint64_t seed) : random_(seed) {}
@@ -85,7 +85,7 @@ inline render_options some_options(dice& d)
     return o;
 }
 
-/// From one frame to 0.2 s, as likely short as long; every other one in whole frames.
+/// Draws a duration from a frame to 0.2 s, short and long equally often; every second one in whole frames.
 inline double some_length(dice& d, unsigned rate)
 {
     const double frames = d.one_in(5) ? 1.0 : std::exp(d.from_to(0.0, std::log(0.2 * rate)));
@@ -136,7 +136,7 @@ inline plan some_curve(dice& d, unsigned tactors, unsigned rate)
     return p;
 }
 
-/// The same number gives the same mix.
+/// Makes the mix of a number.
 inline mix some_mix(std::uint64_t number)
 {
     dice d(number);

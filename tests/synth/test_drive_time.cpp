@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// For how long a tactor is driven: by what its channel is given in the end, and over any window.
+// Drive time of a tactor: counted by the final samples of its channel, over any window.
 #include <algorithm>
 #include <cmath>
 
@@ -66,7 +66,8 @@ played play(const std::vector<synth::drive_event>& events, double total_s, const
     return p;
 }
 
-/// Frames in which a channel is driven: above -40 dBFS, and between two such frames half a cycle apart.
+/// Counts frames in which a channel is driven: above -40 dBFS, and between two such frames half a cycle
+/// apart.
 std::vector<unsigned> driven(const std::vector<float>& x)
 {
     std::vector<unsigned> d(x.size());
@@ -94,7 +95,7 @@ std::size_t most_in_a_window(const std::vector<float>& x, std::size_t window)
     return most;
 }
 
-/// Time of the last sound before the first silence of 50 ms.
+/// Returns the time of the last sound before the first silence of 50 ms.
 double end_s(const std::vector<float>& x)
 {
     std::size_t last = 0;
@@ -132,7 +133,7 @@ TEST_CASE(
     CHECK(play({voice(0.0, 3.0, 0.5), voice(0.0, 3.0, 0.5)}, 3.0, g, 0.0099).cuts == 0);
 }
 
-TEST_CASE("of a stroke that rises and falls only what is above -40 dBFS counts")
+TEST_CASE("only the part of a stroke above -40 dBFS counts")
 {
     // From 0 to 0.02 in 1 s: the second half of it.
     const std::vector<synth::drive_event> rising{voice(0.0, 1.0, 0.0, 0.02)};
@@ -144,11 +145,11 @@ TEST_CASE("of a stroke that rises and falls only what is above -40 dBFS counts")
     CHECK(play({window}, 1.1, time_of(0.49, 2.0)).cuts == 1);
 }
 
-TEST_CASE("no window holds more than the limit and one fade, whatever the mix")
+TEST_CASE("no window holds more than the limit and one fade, for any mix")
 {
     std::mt19937_64 random(29);
     std::uniform_real_distribution<double> unit(0.0, 1.0);
-    // Steps of a cycle, so that gaps are told from zero crossings.
+    // Steps of a cycle, so that gaps differ from zero crossings.
     const auto whole = [](double s) { return std::round(s * 250.0) / 250.0; };
     for (int run = 0; run < tactor::test::rounds(60); ++run) {
         const double limit_s = 0.1 + 0.9 * unit(random) * unit(random);
@@ -176,7 +177,7 @@ TEST_CASE("no window holds more than the limit and one fade, whatever the mix")
     }
 }
 
-TEST_CASE("a pattern that is within the limit to the frame is not touched")
+TEST_CASE("a pattern that is within the limit to the frame is unchanged")
 {
     for (const double part : {5.0, 0.5, 0.1, 0.04}) {
         std::vector<synth::drive_event> events;
@@ -189,7 +190,7 @@ TEST_CASE("a pattern that is within the limit to the frame is not touched")
     }
 }
 
-TEST_CASE("what is counted together within a grain of the window may be cut that much early, and no more")
+TEST_CASE("counting by grains of the window cuts at most a grain early")
 {
     std::vector<synth::drive_event>
         events; // half of the time, in pieces of 4 ms: 78 grains of 39 ms are 3.04 s
@@ -199,7 +200,7 @@ TEST_CASE("what is counted together within a grain of the window may be cut that
     CHECK(play(events, 25.0, time_of(4.96, 10.0)).cuts > 0);
 }
 
-TEST_CASE("a quiet stroke on a channel that was cut is silent, too, whatever the block sizes")
+TEST_CASE("a quiet stroke on a channel that was cut is silent too, for any block size")
 {
     const std::vector<synth::drive_event> events{voice(0.0, 1.5, 0.5), voice(0.1, 2.9, 0.003),
                                                  voice(2.4, 0.2, 0.008, 0.012)};
@@ -211,7 +212,7 @@ TEST_CASE("a quiet stroke on a channel that was cut is silent, too, whatever the
         CHECK(play(events, 3.0, g, 1.0, block).x == whole.x);
 }
 
-TEST_CASE("each drive that meets a closed channel counts, however quiet, whatever the block sizes")
+TEST_CASE("each drive that meets a closed channel counts, even a quiet one, for any block size")
 {
     const synth::guard_settings g = time_of(0.5, 2.0);
     const auto cuts = [&](std::vector<synth::drive_event> more, std::size_t block = 160) {
@@ -227,11 +228,11 @@ TEST_CASE("each drive that meets a closed channel counts, however quiet, whateve
     CHECK(cuts({voice(0.9, 0.1, 0.5), voice(1.01, 0.1, 0.5)}) == 3);
     for (const std::size_t block : {1, 7, 161, 500})
         CHECK(cuts({voice(0.9, 0.1, 0.5), voice(1.2, 0.1, 0.003)}, block) == 3);
-    // Its last sample is the last that it may have: nothing is changed.
+    // Its last sample is the last allowed one: nothing changes.
     CHECK(play({voice(0.0, 0.5, 0.5)}, 1.0, g).cuts == 0);
 }
 
-TEST_CASE("the next mixer counts on, at another rate, and less for the time between")
+TEST_CASE("the next mixer counts on, at another rate, less the time between")
 {
     const auto first = [] {
         synth::mixer m(std::vector<double>(2, 1.0), format_kind::float32, 8, time_of(0.5, 1.0));
@@ -277,7 +278,7 @@ TEST_CASE("the next mixer counts on, at another rate, and less for the time betw
     CHECK(cut_s(h) == near(0.5));
 }
 
-TEST_CASE("what is handed on from mixer to mixer gains no frame by rounding")
+TEST_CASE("drive time handed from mixer to mixer gains no frame by rounding")
 {
     const synth::guard_settings g = time_of(9.0, 10.0);
     synth::mixer first(std::vector<double>(1, 1.0), format_kind::float32, 64, g);

@@ -81,7 +81,7 @@ TEST_CASE("silence has no negative zeros")
     CHECK(sample<std::uint32_t>(bytes, 1) == 0U);
 }
 
-TEST_CASE("whichever channels sound, each sample is in its place and the others are silent")
+TEST_CASE("for any sounding channels, each sample is in its place and the others are silent")
 {
     std::mt19937_64 random(3);
     std::vector<double> x(synth::block_frames);
@@ -111,7 +111,7 @@ TEST_CASE("whichever channels sound, each sample is in its place and the others 
     }
 }
 
-TEST_CASE("the limiter clamps, silences what is no number, and counts")
+TEST_CASE("the limiter clamps, silences non-numbers, and counts")
 {
     const double inf = std::numeric_limits<double>::infinity();
     std::vector<double> x{0.0, 0.4, -0.5, 0.6, -7.0, inf, -inf, std::nan("")};

@@ -15,7 +15,7 @@ using namespace pieces;
 
 namespace {
 
-/// 0.1 s and 0.1 s, overlapping from 0.06 s to 0.1 s, on tactor 0.
+/// Makes two bursts of 0.1 s, overlapping from 0.06 s to 0.1 s, on tactor 0.
 plan two_bursts(overlap_kind join, double a, double b, double a_v = 1.0)
 {
     plan p = make_plan({make_burst(0.0, 0.1, {{0, a}}, a_v), make_burst(0.06, 0.1, {{0, b}}, a_v)});
@@ -28,7 +28,7 @@ score score_of(const plan& p, double ramp_s)
     render_options o;
     o.level_dbfs = 0.0;
     o.ramp_s = ramp_s;
-    o.phase = phase_kind::burst; // tests of the stroke's: phase.cpp
+    o.phase = phase_kind::burst; // test_phase.cpp has the tests of the stroke's phase
     return {row(2), {{p, {}}}, o};
 }
 
@@ -58,7 +58,7 @@ TEST_CASE("overlapping bursts share one carrier that starts with the first")
     }
 }
 
-TEST_CASE("the largest intensity is that of any that sounds, whichever came last")
+TEST_CASE("the largest intensity is that of any sounding burst, not only of the last")
 {
     for (const bool louder_first : {true, false}) {
         CAPTURE(louder_first);
@@ -67,13 +67,13 @@ TEST_CASE("the largest intensity is that of any that sounds, whichever came last
                        make_burst(0.0, 0.1, {{0, louder_first ? 0.5 : 0.9}}, louder_first ? 0.5 : 0.95)});
         const auto x = channel(score_of(p, 0.0), 0);
         CHECK(x[48] == doctest::Approx(0.95)); // sqrt(0.81 + 0.25) would be more
-        // What a scale has made more of than the intensity may stay so.
+        // An amplitude that a scale raised above the intensity may stay so.
         p.bursts[0].intensity = p.bursts[1].intensity = 0.3;
         CHECK(channel(score_of(p, 0.0), 0)[48] == doctest::Approx(0.9));
     }
 }
 
-TEST_CASE("what is joined falls as finely as it would alone, however slowly it has risen")
+TEST_CASE("a joined burst falls as smoothly as alone, however slowly it has risen")
 {
     plan both = make_plan({make_burst(0.0, 0.1, {{0, 0.6}}), make_burst(0.06, 0.14, {{0, 0.6}})});
     both.overlap = overlap_kind::max;
@@ -93,7 +93,7 @@ TEST_CASE("what is joined falls as finely as it would alone, however slowly it h
     }
 }
 
-TEST_CASE("energy never exceeds the largest intensity that sounds")
+TEST_CASE("energy never exceeds the largest sounding intensity")
 {
     plan p = make_plan({make_burst(0.0, 0.1, {{0, 0.5}}, 0.5), make_burst(0.06, 0.1, {{0, 0.5}}, 0.6)});
     const auto x = channel(score_of(p, 0.0), 0);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Recordings as carriers: in cycles, in their own time, along the path; and those of which little or nothing
-// is left.
+// Recordings as carriers: in cycles, in time, along the path; and recordings of which little or nothing is
+// left.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -40,7 +40,7 @@ std::string refusal(const waveform& w, double hz = 250.0)
 
 } // namespace
 
-TEST_CASE("a recording is the carrier's cycle, without what folds back")
+TEST_CASE("a recording is the carrier's cycle, without aliases")
 {
     // 63 samples with every harmonic, some of them strong.
     std::vector<float> cycle;
@@ -53,7 +53,7 @@ TEST_CASE("a recording is the carrier's cycle, without what folds back")
     }
 }
 
-TEST_CASE("a recording in its own time has its samples at its rate, and its frequencies at another")
+TEST_CASE("a recording in time has its samples at its rate, and its frequencies at another")
 {
     std::vector<float> samples(4801);
     for (std::size_t i = 0; i < samples.size(); ++i)
@@ -120,9 +120,9 @@ TEST_CASE("a recording along the path follows the target's speed")
     CHECK(at(5.5, 2) < -0.7);           // 37.5 mm
 }
 
-TEST_CASE("a recording sounds alike in whatever unit its samples are")
+TEST_CASE("a recording sounds alike in any unit of its samples")
 {
-    // The second factors reach the ends of what a float can be.
+    // The second factors reach the ends of the range of floats.
     for (const texture_kind texture : {texture_kind::cycle, texture_kind::time}) {
         const auto as_it_is = played(tone(recorded(sine_of(480, 7.0, 0.75), texture), 250.0, 0.1));
         REQUIRE(greatest(as_it_is) > 0.99);
@@ -139,7 +139,7 @@ TEST_CASE("a recording sounds alike in whatever unit its samples are")
     }
 }
 
-TEST_CASE("of the greatest and the least floats there are, nothing becomes infinite or no number")
+TEST_CASE("the greatest and least floats give neither infinities nor non-numbers")
 {
     constexpr float most = std::numeric_limits<float>::max();
     constexpr float least = std::numeric_limits<float>::denorm_min();
@@ -159,7 +159,7 @@ TEST_CASE("of the greatest and the least floats there are, nothing becomes infin
     }
 }
 
-TEST_CASE("a small vibration on a large constant is what is played, at any rate")
+TEST_CASE("a small vibration on a large constant is played without the constant, at any rate")
 {
     for (const double rate_hz : {8000.0, 48000.0, 44100.0}) {
         CAPTURE(rate_hz);
@@ -171,14 +171,14 @@ TEST_CASE("a small vibration on a large constant is what is played, at any rate"
     }
 }
 
-TEST_CASE("a recording of which nothing is left is refused: its rounding is not played in its place")
+TEST_CASE("a recording of which nothing is left is refused, not played as rounding")
 {
     for (const texture_kind texture : {texture_kind::cycle, texture_kind::time, texture_kind::length}) {
         CAPTURE(std::string(to_string(texture)));
         CHECK(has(refusal(recorded({0.0F, 0.0F}, texture)), "silence"));
         CHECK(has(refusal(recorded(std::vector<float>(700, 0.1F), texture)), "silence"));
     }
-    // All of it at half its own rate, which says nothing of its phase, and above half the stream's.
+    // All of it at half its own rate, without a phase, and above half the stream's.
     CHECK(has(refusal(recorded({0.3F, -0.3F, 0.3F, -0.3F}, texture_kind::cycle)),
               "x.wav: nothing of it is left"));
     CHECK(has(refusal(recorded(sine_of(64, 20.0, 0.5), texture_kind::cycle), 2000.0),

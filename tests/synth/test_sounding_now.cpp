@@ -41,7 +41,7 @@ TEST_CASE(
         CHECK(levels[1] == doctest::Approx(0.5));
         CHECK(levels[2] == doctest::Approx(1.0));
     }
-    CHECK(now.at(1500)[0] == doctest::Approx(0.45)); // what is over is not found again: as at 3999
+    CHECK(now.at(1500)[0] == doctest::Approx(0.45)); // a past one is not found again: as at 3999
     CHECK(now.at(4000) == std::vector<double>{0.0, 0.0, 0.0});
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The bytes of WAV files that must not change unnoticed. If one differs, something that users hear or see
-// differs: say so in NEWS.md, and put the number that the failure prints here.
+// Golden bytes of WAV files. If one differs, something that users hear or see differs: say so in NEWS.md, and
+// put the number that the failure prints here.
 #include <clocale>
 #include <cstdint>
 #include <locale>
@@ -29,7 +29,7 @@ struct golden {
 };
 
 const golden all_golden[] = {
-    // Until the carrier ran through the stroke, these were what everybody got.
+    // Before the carrier ran through the stroke, these were the defaults.
     {algorithm_kind::park2016, phase_kind::burst, format_kind::float32, 0xc946580a297d916aU},
     {algorithm_kind::park2016, phase_kind::burst, format_kind::s16, 0x8af13b4bca8b7500U},
     {algorithm_kind::park2016, phase_kind::burst, format_kind::s24_3, 0x2103b24f6d27edcbU},

@@ -61,7 +61,7 @@ read_file read_back(const fs::path& p)
     return r;
 }
 
-/// Puts the greatest size of a file back, and what a file beyond it does.
+/// Restores the greatest size of a file, and the effect of exceeding it.
 class file_size_limit {
 public:
     explicit file_size_limit(rlim_t bytes) : handler_(std::signal(SIGXFSZ, SIG_IGN))
@@ -115,7 +115,7 @@ TEST_CASE("a WAV file holds the renderer's bytes, its rate and its channels")
     CHECK(dir.names() == std::vector<std::string>{"a.wav"});
 }
 
-TEST_CASE("the same score gives the same file, whatever stood there before")
+TEST_CASE("the same score gives the same file, whatever was there before")
 {
     const folder dir;
     for (const format_kind f : {format_kind::float32, format_kind::s24_3}) {
@@ -139,7 +139,7 @@ TEST_CASE("a score without frames is a file without frames")
     CHECK(read_back(dir / "a.wav").info.frames == 0);
 }
 
-TEST_CASE("RF64 is taken where 32 bits do not do")
+TEST_CASE("RF64 is used where 32 bits are too few")
 {
     using wav::container;
     CHECK(wav::container_for(0, 36) == container::wave);
@@ -199,7 +199,7 @@ TEST_CASE("giving up leaves nothing behind and an old file as it was")
     CHECK(dir.names() == std::vector<std::string>{"old.wav"});
 }
 
-TEST_CASE("nothing of it is seen under the file's name before it is complete")
+TEST_CASE("the file's name shows nothing before it is complete")
 {
     const folder dir;
     const score s = make_score(8.0);
@@ -225,7 +225,7 @@ TEST_CASE("names that cannot be a file are bad input")
     CHECK(dir.names() == std::vector<std::string>{"plain", "sub"});
 }
 
-TEST_CASE("a disk that is full is a failure at run time that leaves nothing")
+TEST_CASE("a full disk is a failure at run time that leaves nothing")
 {
     const folder dir;
     std::ofstream(dir / "old.wav") << "old";
@@ -248,7 +248,7 @@ TEST_CASE("a device is written to, not replaced")
     CHECK(fs::is_character_file("/dev/null"));
 }
 
-TEST_CASE("what may not be written is a failure at run time")
+TEST_CASE("a forbidden write is a failure at run time")
 {
     if (::geteuid() == 0)
         return;
@@ -262,7 +262,7 @@ TEST_CASE("what may not be written is a failure at run time")
     fs::permissions(dir / "sub", fs::perms::owner_all);
 }
 
-TEST_CASE("a link stays a link, and the longest name is no obstacle")
+TEST_CASE("a link stays a link, and the longest name works")
 {
     const folder dir;
     fs::create_directory(dir / "sub");
@@ -275,7 +275,7 @@ TEST_CASE("a link stays a link, and the longest name is no obstacle")
     CHECK(fs::is_regular_file(dir / longest));
 }
 
-TEST_CASE("a plan that fails in mid-stroke leaves no file; the renderer fades out before that and says why")
+TEST_CASE("a plan that fails in mid-stroke leaves no file; the renderer fades before that and says why")
 {
     for (const double amplitude : {std::numeric_limits<double>::quiet_NaN(), 1e300}) {
         CAPTURE(amplitude);
@@ -286,7 +286,7 @@ TEST_CASE("a plan that fails in mid-stroke leaves no file; the renderer fades ou
             if (broken && t >= 0.25)
                 out.drives[0].amplitude = amplitude;
         });
-        // What sounds beside it ends with it.
+        // Strokes beside it end with it.
         const plan beside = make_plan({make_burst(0.2, 0.2, {{3, 0.5}})});
         const score s(row(4), {{p, 0.0}, {beside, 0.0}}, {});
         const auto whole = render(s, format_kind::float32);
@@ -310,7 +310,7 @@ TEST_CASE("a plan that fails in mid-stroke leaves no file; the renderer fades ou
         CHECK(r.failure().find(std::isnan(amplitude) ? "amplitude nan cannot be rendered"
                                                      : "amplitude 1e+300, above the ") != std::string::npos);
         const std::size_t bytes = s.channels() * sizeof(float);
-        constexpr std::size_t end = 11952; // 0.249 s, the last control point that is in order
+        constexpr std::size_t end = 11952; // 0.249 s, the last control point that is right
         constexpr std::size_t fall = end - 480;
         const auto at = [bytes](std::size_t frame) { return static_cast<std::ptrdiff_t>(frame * bytes); };
         CHECK(std::equal(whole.begin(), whole.begin() + at(fall), half.begin()));
