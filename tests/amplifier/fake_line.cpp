@@ -173,7 +173,7 @@ bool ends(int pidfd)
     return readable(pidfd, hangs_ms);
 }
 
-std::string status_of(pid_t pid, const std::string& field)
+std::string read_status(pid_t pid, const std::string& field)
 {
     std::ifstream in("/proc/" + std::to_string(pid) + "/status");
     for (std::string line; std::getline(in, line);)

@@ -103,6 +103,6 @@ bool ends(int pidfd);
 int open_pidfd(pid_t pid);
 
 /// Returns a line of /proc/PID/status, without its name.
-std::string status_of(pid_t pid, const std::string& field);
+std::string read_status(pid_t pid, const std::string& field);
 
 } // namespace tactor::test

@@ -14,7 +14,7 @@ namespace bench {
 
 using namespace tactor;
 
-std::string name_of(const std::string& what, std::size_t bytes)
+std::string benchmark_name(const std::string& what, std::size_t bytes)
 {
     return fmt::format("{}/{}_bytes", what, bytes);
 }
@@ -112,8 +112,8 @@ private:
                                          : "burst",
                         std::string(to_string(row.format)).c_str(), ns,
                         ratio(time(row.plain_name()), ns).c_str(),
-                        ratio(time(name_of("memcpy", bytes)), ns).c_str(),
-                        ratio(time(name_of("memset", bytes)), ns).c_str(), 100.0 * ns / 10e6);
+                        ratio(time(benchmark_name("memcpy", bytes)), ns).c_str(),
+                        ratio(time(benchmark_name("memset", bytes)), ns).c_str(), 100.0 * ns / 10e6);
         }
     }
 

@@ -11,7 +11,7 @@
 
 namespace bench {
 
-std::string name_of(const std::string& what, std::size_t bytes);
+std::string benchmark_name(const std::string& what, std::size_t bytes);
 
 /// A line of the table of synthesis.
 struct synth_row {

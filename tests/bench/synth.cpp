@@ -102,10 +102,10 @@ void add(const std::string& name, F f)
 void add_bounds(unsigned channels, std::size_t sample)
 {
     const std::size_t n = bench::block * channels * sample;
-    add(bench::name_of("memset", n), [n](benchmark::State& state) {
+    add(bench::benchmark_name("memset", n), [n](benchmark::State& state) {
         bytes(state, n, [](std::byte* out, const std::byte*, std::size_t m) { std::memset(out, 0, m); });
     });
-    add(bench::name_of("memcpy", n), [n](benchmark::State& state) {
+    add(bench::benchmark_name("memcpy", n), [n](benchmark::State& state) {
         bytes(state, n, [](std::byte* out, const std::byte* in, std::size_t m) { std::memcpy(out, in, m); });
     });
 }

@@ -21,7 +21,7 @@ std::string complaint(const std::string& text)
     return message_of([&] { static_cast<void>(parse_setup(text, "palm.toml")); });
 }
 
-array array_of(const std::string& text)
+array parse_array(const std::string& text)
 {
     const setup s = parse_setup(text, "palm.toml");
     REQUIRE(s.array.has_value());
@@ -34,21 +34,22 @@ const std::string grid = "[array]\ngrid = { rows = 3, columns = 3, pitch_mm = 20
 
 TEST_CASE("a grid has one pitch, or two")
 {
-    const array a = array_of("[array]\nname = \"mine\"\ngrid = { rows = 3, columns = 3, pitch_mm = 20 }\n");
+    const array a =
+        parse_array("[array]\nname = \"mine\"\ngrid = { rows = 3, columns = 3, pitch_mm = 20 }\n");
     CHECK(a.name == "mine");
     const array b = preset_array("palm-3x3");
     for (unsigned i = 0; i < 9; ++i)
         CHECK(a.tactors[i].position == b.tactors[i].position);
     CHECK(a.where.text() == "palm.toml:1:1");
 
-    const array c = array_of("[array]\ngrid = { rows = 2, columns = 2, pitch_mm = [20.0, 40.0] }\n");
+    const array c = parse_array("[array]\ngrid = { rows = 2, columns = 2, pitch_mm = [20.0, 40.0] }\n");
     CHECK(c.name == "palm");
     CHECK(c.tactors[3].position == point{20.0, 40.0});
 }
 
 TEST_CASE("a list of tactors has every key, and defaults")
 {
-    const array a = array_of(R"(
+    const array a = parse_array(R"(
 [array]
 actuator = "piezo"
 [[tactor]]
@@ -84,7 +85,7 @@ actuator = "voice-coil"
 
 TEST_CASE("a list needs no [array], and may number its tactors")
 {
-    const array a = array_of("[[tactor]]\ntactor = 0\nx_mm = 0\ny_mm = 0\n");
+    const array a = parse_array("[[tactor]]\ntactor = 0\nx_mm = 0\ny_mm = 0\n");
     CHECK(a.tactors.size() == 1);
     CHECK(complaint("[[tactor]]\ntactor = 1\nx_mm = 0\ny_mm = 0\n") ==
           "palm.toml:2:10: tactor is 1, but this is entry 0 (without a grid, tactors are numbered from 0 in "
@@ -93,8 +94,8 @@ TEST_CASE("a list needs no [array], and may number its tactors")
 
 TEST_CASE("with a grid, entries adjust the tactors that they name")
 {
-    const array a = array_of(grid + "[[tactor]]\ntactor = 4\nthreshold_dbfs = -40\nchannel = 9\n"
-                                    "[[tactor]]\ntactor = 0\npolarity = -1\n");
+    const array a = parse_array(grid + "[[tactor]]\ntactor = 4\nthreshold_dbfs = -40\nchannel = 9\n"
+                                       "[[tactor]]\ntactor = 0\npolarity = -1\n");
     CHECK(a.tactors[4].threshold_dbfs == -40.0);
     CHECK(a.tactors[4].channel == 9);
     CHECK(a.tactors[4].position == point{20.0, 20.0});
@@ -113,7 +114,7 @@ TEST_CASE("with a grid, entries adjust the tactors that they name")
 
 TEST_CASE("a preset can be adjusted too")
 {
-    const array a = array_of("[array]\npreset = \"palm-2x4\"\n[[tactor]]\ntactor = 7\ngain_db = 3\n");
+    const array a = parse_array("[array]\npreset = \"palm-2x4\"\n[[tactor]]\ntactor = 7\ngain_db = 3\n");
     CHECK(a.name == "palm-2x4");
     CHECK(a.tactors[7].gain_db == 3.0);
     CHECK(complaint("[array]\npreset = \"palm\"\n")
@@ -167,7 +168,7 @@ TEST_CASE("wrong types and ranges are reported at the value")
     CHECK(complaint(one + "threshold_dbfs = [[100, -20], [100, -41]]\n") ==
           "palm.toml:4:31: the frequency 100 does not come after 100 (put thresholds in order of frequency, "
           "each once)");
-    CHECK(array_of(one + "rise_ms = 1000\n").tactors[0].rise_s == 1.0);
+    CHECK(parse_array(one + "rise_ms = 1000\n").tactors[0].rise_s == 1.0);
     CHECK(complaint(one + "rise_ms = 1001\n").starts_with("palm.toml:4:11: rise_ms is 1001 (allowed: "));
     CHECK(complaint(one + "polarity = 1.5\n") == "palm.toml:4:12: polarity is 1.5 (allowed: -1 to 1)");
     CHECK(complaint(one + "polarity = -1.5\n") == "palm.toml:4:12: polarity is -1.5 (allowed: -1 to 1)");
@@ -180,7 +181,7 @@ TEST_CASE("wrong types and ranges are reported at the value")
             CHECK(complaint(one + line) ==
                   "palm.toml:4:12: actuator is 'unknown' (known values: piezo, voice-coil, lra, erm)");
         else
-            CHECK(array_of(one + line).tactors[0].actuator == k);
+            CHECK(parse_array(one + line).tactors[0].actuator == k);
     }
     CHECK(complaint("[[tactor]]\nx_mm = inf\ny_mm = 0\n") ==
           "palm.toml:2:8: x_mm is inf (allowed: -1000000 to 1000000)");
@@ -249,7 +250,7 @@ TEST_CASE("16384 tactors in a list are read, one more is refused")
     std::string text;
     for (int i = 0; i < 16384; ++i)
         text += fmt::format("[[tactor]]\nx_mm = {}\ny_mm = {}\n", i % 128, i / 128);
-    CHECK(array_of(text).tactors.size() == 16384);
+    CHECK(parse_array(text).tactors.size() == 16384);
     CHECK(complaint(text + "[[tactor]]\nx_mm = -1\ny_mm = 0\n") ==
           "palm.toml:49153:1: more than 16384 tactors");
 }

@@ -13,7 +13,7 @@ using namespace tactor::net;
 
 namespace {
 
-int code_of(std::string_view text)
+int refusal_code(std::string_view text)
 {
     const rpc_message m = parse_rpc(text, {});
     REQUIRE(m.parts.size() == 1);
@@ -44,13 +44,13 @@ TEST_CASE("requests, notifications and batches are told apart")
 TEST_CASE("a bad request has the standard's code")
 {
     for (const char* text : {"", "{", "nul", "\"\xff\"", "{\"a\":1,}", "[1] 2", "\xc0\x80"})
-        CHECK_MESSAGE(code_of(text) == code_parse_error, text);
+        CHECK_MESSAGE(refusal_code(text) == code_parse_error, text);
     for (const char* text :
          {"1", "null", "[]", "{}", R"({"jsonrpc":"2.0"})", R"({"jsonrpc":2.0,"method":"m"})",
           R"({"jsonrpc":"2.0","method":1})", R"({"jsonrpc":"2.0","method":"m","params":"p"})",
           R"({"jsonrpc":"2.0","method":"m","id":true})", R"({"jsonrpc":"2.0","method":"m","id":{}})"})
-        CHECK_MESSAGE(code_of(text) == code_invalid_request, text);
-    CHECK(code_of(R"({"jsonrpc":"2.0","method":"m","params":[1],"id":null})") == 0);
+        CHECK_MESSAGE(refusal_code(text) == code_invalid_request, text);
+    CHECK(refusal_code(R"({"jsonrpc":"2.0","method":"m","params":[1],"id":null})") == 0);
 }
 
 TEST_CASE("no parameters are the same in each form")
@@ -63,7 +63,7 @@ TEST_CASE("no parameters are the same in each form")
         CHECK(std::get<rpc_request>(parse_rpc(text, {}).parts.front()).params == json::object());
     }
     for (const char* params : {"0", "false", "\"\"", "1"})
-        CHECK(code_of(R"({"jsonrpc":"2.0","method":"m","params":)" + std::string(params) + "}") ==
+        CHECK(refusal_code(R"({"jsonrpc":"2.0","method":"m","params":)" + std::string(params) + "}") ==
               code_invalid_request);
 }
 
@@ -81,7 +81,7 @@ TEST_CASE("a method that is accepted in any form is a request, whatever is besid
         CHECK(r.wants_reply == (text.find("id") != std::string::npos));
         CHECK(r.id == (text.find("5") != std::string::npos ? json(5) : json(nullptr)));
     }
-    CHECK(code_of(R"({"method":""})") == code_invalid_request); // as without such a method
+    CHECK(refusal_code(R"({"method":""})") == code_invalid_request); // as without such a method
 }
 
 TEST_CASE(
@@ -119,24 +119,24 @@ TEST_CASE("a number that no double holds is no number, and its message is answer
     CHECK(r.params["y"][1] == 0.0);
     CHECK(r.params["z"] == "1e400");
     CHECK(r.params["d"] == 2);
-    CHECK(code_of("[1e400,") == code_parse_error);
+    CHECK(refusal_code("[1e400,") == code_parse_error);
     // Read once, whatever follows: twice as long takes twice as long.
-    CHECK(code_of("[1e400," + std::string(1U << 20, 'e')) == code_parse_error);
+    CHECK(refusal_code("[1e400," + std::string(1U << 20, 'e')) == code_parse_error);
 }
 
 TEST_CASE("nesting is counted outside of texts, and refused before anything is built")
 {
     const auto nested = [](int n) { return std::string(static_cast<std::size_t>(n), '['); };
-    CHECK(code_of(nested(65)) == code_limit);
-    CHECK(code_of(nested(1'000'000)) == code_limit);
+    CHECK(refusal_code(nested(65)) == code_limit);
+    CHECK(refusal_code(nested(1'000'000)) == code_limit);
     CHECK(std::get<rpc_refusal>(parse_rpc(nested(65), {}).parts.front()).why.what == "max_nesting");
-    CHECK(code_of(nested(64)) == code_parse_error);
-    CHECK(code_of("\"" + nested(100) + "\\\"" + nested(100) + "\"") == code_invalid_request);
+    CHECK(refusal_code(nested(64)) == code_parse_error);
+    CHECK(refusal_code("\"" + nested(100) + "\\\"" + nested(100) + "\"") == code_invalid_request);
     std::string flat = "[";
     for (int i = 0; i < 1000; ++i)
         flat += "[],";
-    CHECK(code_of(flat + "[]]") == code_limit); // a batch of 1001
-    CHECK(code_of("[[[]]]") == code_invalid_request);
+    CHECK(refusal_code(flat + "[]]") == code_limit); // a batch of 1001
+    CHECK(refusal_code("[[[]]]") == code_invalid_request);
 }
 
 TEST_CASE("an error repeats at most 80 characters of a client's text")
@@ -159,8 +159,8 @@ TEST_CASE("an error repeats at most 80 characters of a client's text")
     const rpc_fault f{code_bad_params, "bad-input", x, "no '" + x + "'", "not \"" + x + '"'};
     CHECK(json_line(error_reply(7, f)).size() < 1000);
     CHECK(fault_text(f) == x80 + ": no '" + x80 + "' (not \"" + x80 + "\")");
-    CHECK(code_of(R"({"jsonrpc":"2.0","method":"m","id":")" + x + "\"}") == code_invalid_request);
-    CHECK(code_of(R"({"jsonrpc":"2.0","method":"m","id":")" + x.substr(0, 80) + "\"}") == 0);
+    CHECK(refusal_code(R"({"jsonrpc":"2.0","method":"m","id":")" + x + "\"}") == code_invalid_request);
+    CHECK(refusal_code(R"({"jsonrpc":"2.0","method":"m","id":")" + x.substr(0, 80) + "\"}") == 0);
     CHECK(json_line(
               error_reply(nullptr,
                           std::get<rpc_refusal>(parse_rpc(std::string(1U << 20, 'x'), {}).parts.front()).why))

@@ -40,7 +40,7 @@ double cost(const std::vector<point>& felt, const std::vector<point>& targets)
     return sum;
 }
 
-point between_of(point a, point b, double u)
+point blend(point a, point b, double u)
 {
     return {a.x_mm + u * (b.x_mm - a.x_mm), a.y_mm + u * (b.y_mm - a.y_mm)};
 }
@@ -65,7 +65,7 @@ double by_gradients(const layout& l, const low_speed_observer& o, const std::vec
         const double now = cost(felt_places(o, t, next), x);
         const double later = now > best ? 1.0 : (1.0 + std::sqrt(1.0 + 4.0 * momentum * momentum)) / 2.0;
         for (std::size_t k = 0; k < r.size(); ++k)
-            ahead[k] = between_of(m[k], next[k], 1.0 + (later > 1.0 ? (momentum - 1.0) / later : 0.0));
+            ahead[k] = blend(m[k], next[k], 1.0 + (later > 1.0 ? (momentum - 1.0) / later : 0.0));
         momentum = later;
         m = next;
         best = std::min(best, now);
@@ -107,7 +107,7 @@ TEST_CASE("two taps by hand: at the edge as far as possible")
 {
     // A pair of tactors 10 mm apart, targets at 1 and 9 mm, k = 1/2: 8 mm are felt of 16 mm, of which 10 fit;
     // they are felt 5 mm apart, 1.5 mm short on each side.
-    const layout l(array_of({{0.0, 0.0}, {10.0, 0.0}}));
+    const layout l(make_array({{0.0, 0.0}, {10.0, 0.0}}));
     const low_speed_observer o{5.0, 100.0};
     const double t = 0.05 * std::sqrt(2.0);
     const compensated_places p = compensate(l, o, {{0.0, t}}, {{{1.0, 3.0}, {9.0, -4.0}}});
@@ -120,7 +120,7 @@ TEST_CASE("two taps by hand: at the edge as far as possible")
     CHECK(free.at_edge == 0);
     CHECK(distance_mm(free.played[0], {1.0, 0.0}) < 1e-12);
     const compensated_places one =
-        compensate(layout(array_of({{2.0, 3.0}})), o, {{0.0, t}}, {{{1.0, 3.0}, {9.0, 4.0}}});
+        compensate(layout(make_array({{2.0, 3.0}})), o, {{0.0, t}}, {{{1.0, 3.0}, {9.0, 4.0}}});
     CHECK(one.played[1] == point{2.0, 3.0});
     CHECK(one.at_edge == 2);
 }

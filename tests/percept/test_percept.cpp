@@ -24,7 +24,7 @@ std::vector<percept_sample> predict(const array& a, const stroke& s, const plan_
     return predict_percept(a, s, make_plan(a, s, o));
 }
 
-plan plan_of(std::vector<burst> bursts, overlap_kind join = overlap_kind::energy)
+plan make_test_plan(std::vector<burst> bursts, overlap_kind join = overlap_kind::energy)
 {
     plan p;
     p.overlap = join;
@@ -32,7 +32,7 @@ plan plan_of(std::vector<burst> bursts, overlap_kind join = overlap_kind::energy
     return p;
 }
 
-burst burst_of(double onset_s, double duration_s, std::vector<drive> drives)
+burst one_burst(double onset_s, double duration_s, std::vector<drive> drives)
 {
     burst b;
     b.onset_s = onset_s;
@@ -41,7 +41,7 @@ burst burst_of(double onset_s, double duration_s, std::vector<drive> drives)
     return b;
 }
 
-const array pair = array_of({{0.0, 0.0}, {10.0, 0.0}});
+const array pair = make_array({{0.0, 0.0}, {10.0, 0.0}});
 
 /// Computes the prediction without the speed, from scratch at each time.
 percept_sample by_search(const array& a, const plan& p, double t_s)
@@ -113,8 +113,8 @@ TEST_CASE("by hand: the speed of one jump is the average's ramp")
     // A tactor for half a second, then another 10 mm away: the average over 101 samples rises by 10/101 mm
     // each millisecond, from sample 449 on to sample 550, at whose ends the central difference is half that.
     const stroke s = along("M 0 0 L 10 0", 1.0);
-    const auto samples =
-        predict_percept(pair, s, plan_of({burst_of(0.0, 0.5, {{0, 1.0}}), burst_of(0.5, 0.5, {{1, 1.0}})}));
+    const auto samples = predict_percept(
+        pair, s, make_test_plan({one_burst(0.0, 0.5, {{0, 1.0}}), one_burst(0.5, 0.5, {{1, 1.0}})}));
     REQUIRE(samples.size() == 1001);
     const double ramp = 10.0 / 101.0 / 0.001;
     for (std::size_t i = 0; i <= 1000; ++i) {
@@ -144,10 +144,11 @@ TEST_CASE("continuous with barycentric weights is felt where the target is")
 TEST_CASE("overlapping bursts on one tactor are joined by the plan's rule")
 {
     const stroke s = along("M 0 0 L 10 0", 0.1);
-    const std::vector<burst> both{burst_of(0.0, 0.1, {{0, 0.8}}), burst_of(0.04, 0.04, {{0, 0.8}, {1, 0.6}})};
+    const std::vector<burst> both{one_burst(0.0, 0.1, {{0, 0.8}}),
+                                  one_burst(0.04, 0.04, {{0, 0.8}, {1, 0.6}})};
     const double on_one[] = {1.0, 0.8, 1.6}; // sqrt(1.28) is over the given intensity
     for (const overlap_kind join : {overlap_kind::energy, overlap_kind::max, overlap_kind::sum}) {
-        const auto samples = predict_percept(pair, s, plan_of(both, join));
+        const auto samples = predict_percept(pair, s, make_test_plan(both, join));
         const double a = on_one[static_cast<int>(join)];
         CHECK_FALSE(samples[39].shared);
         CHECK(samples[39].intensity == doctest::Approx(0.8));
@@ -164,7 +165,7 @@ TEST_CASE("silence is intensity 0, has no error, and holds the position for the 
 {
     const stroke s = along("M 0 0 L 10 0", 0.2);
     const auto samples = predict_percept(
-        pair, s, plan_of({burst_of(0.02, 0.05, {{0, 1.0}}), burst_of(0.1, 0.05, {{1, 1.0}})}));
+        pair, s, make_test_plan({one_burst(0.02, 0.05, {{0, 1.0}}), one_burst(0.1, 0.05, {{1, 1.0}})}));
     REQUIRE(samples.size() == 201);
     CHECK_FALSE(samples[19].felt);
     CHECK(samples[20].felt);
@@ -183,18 +184,18 @@ TEST_CASE("silence is intensity 0, has no error, and holds the position for the 
 TEST_CASE("a burst that ends with the movement is felt at its last sample, unless another begins there")
 {
     const stroke s = along("M 0 0 L 10 0", 0.1);
-    const auto alone = predict_percept(pair, s, plan_of({burst_of(0.0, 0.1, {{0, 1.0}})}));
+    const auto alone = predict_percept(pair, s, make_test_plan({one_burst(0.0, 0.1, {{0, 1.0}})}));
     CHECK(alone.back().felt);
     CHECK(summarise(alone).silent_share == 0.0);
-    const auto next =
-        predict_percept(pair, s, plan_of({burst_of(0.0, 0.1, {{0, 1.0}}), burst_of(0.1, 0.1, {{1, 1.0}})}));
+    const auto next = predict_percept(
+        pair, s, make_test_plan({one_burst(0.0, 0.1, {{0, 1.0}}), one_burst(0.1, 0.1, {{1, 1.0}})}));
     CHECK(next[99].felt->x_mm == 0.0);
     CHECK(next.back().felt->x_mm == 10.0);
     CHECK_FALSE(next.back().shared);
     const auto longer = predict_percept(
-        pair, s, plan_of({burst_of(0.0, 0.12, {{0, 1.0}}), burst_of(0.05, 0.05, {{1, 1.0}})}));
+        pair, s, make_test_plan({one_burst(0.0, 0.12, {{0, 1.0}}), one_burst(0.05, 0.05, {{1, 1.0}})}));
     CHECK(longer.back().felt->x_mm == doctest::Approx(5.0));
-    const auto early = predict_percept(pair, s, plan_of({burst_of(0.0, 0.0999, {{0, 1.0}})}));
+    const auto early = predict_percept(pair, s, make_test_plan({one_burst(0.0, 0.0999, {{0, 1.0}})}));
     CHECK_FALSE(early.back().felt);
 }
 
@@ -261,9 +262,9 @@ TEST_CASE("summaries of several plans at once are those of their samples, to the
         for (const algorithm_kind algorithm : {algorithm_kind::park2016, algorithm_kind::continuous})
             plans.push_back(make_plan(a, s, {.algorithm = algorithm}));
         // Silent at first, for a while between and at last.
-        plans.push_back(plan_of({burst_of(0.11 * duration_s, 0.2 * duration_s, {{0, 1.0}, {1, 0.5}}),
-                                 burst_of(0.2 * duration_s, 0.2 * duration_s, {{0, 0.3}, {4, 0.5}}),
-                                 burst_of(0.6 * duration_s, 0.3 * duration_s, {{8, 1.0}})}));
+        plans.push_back(make_test_plan({one_burst(0.11 * duration_s, 0.2 * duration_s, {{0, 1.0}, {1, 0.5}}),
+                                        one_burst(0.2 * duration_s, 0.2 * duration_s, {{0, 0.3}, {4, 0.5}}),
+                                        one_burst(0.6 * duration_s, 0.3 * duration_s, {{8, 1.0}})}));
         plans.push_back(plan{});
         std::vector<const plan*> pointers;
         for (const plan& p : plans)
@@ -318,7 +319,7 @@ TEST_CASE("a silent plan has no error, and an empty summary is no error")
     // Felt, but without motion.
     const stroke still = along("M 0 0 L 10 0", 0.5);
     const percept_summary q =
-        summarise(predict_percept(pair, still, plan_of({burst_of(0.0, 0.5, {{0, 1.0}})})));
+        summarise(predict_percept(pair, still, make_test_plan({one_burst(0.0, 0.5, {{0, 1.0}})})));
     CHECK_FALSE(q.speed_cv);
     CHECK(*q.intensity_cv == 0.0);
 }
@@ -342,7 +343,7 @@ TEST_CASE("by hand: another person feels one tactor less, and another one elsewh
     // Two equal tactors: half way. One of them 6.0206 dB less: a quarter of the energy, so a fifth of the
     // way.
     const stroke s = along("M 0 0 L 10 0", 0.1);
-    const plan p = plan_of({burst_of(0.0, 0.1, {{0, 1.0}, {1, 1.0}})});
+    const plan p = make_test_plan({one_burst(0.0, 0.1, {{0, 1.0}, {1, 1.0}})});
     const person less{{0.0, 20.0 * std::log10(0.5)}, {}};
     const person moved{{}, {{0.0, 2.0}, {2.0, 2.0}}};
     CHECK(predict_percept(pair, s, p)[50].felt->x_mm == doctest::Approx(5.0).epsilon(1e-12));

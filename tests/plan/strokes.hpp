@@ -14,19 +14,19 @@
 
 namespace tactor::test {
 
-inline stroke stroke_of(trajectory t)
+inline stroke make_stroke(trajectory t)
 {
     return {"", std::move(t), {}, {}};
 }
 
 inline stroke along(std::string_view svg, double duration_s)
 {
-    return stroke_of(trajectory::along(path::from_svg(svg), duration_s));
+    return make_stroke(trajectory::along(path::from_svg(svg), duration_s));
 }
 
 inline stroke timed(std::vector<timed_point> p)
 {
-    return stroke_of(trajectory::timed(std::move(p)));
+    return make_stroke(trajectory::timed(std::move(p)));
 }
 
 /// Returns the planner's message; empty if none.

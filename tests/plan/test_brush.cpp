@@ -19,7 +19,7 @@ namespace {
 
 stroke circle(double duration_s)
 {
-    return stroke_of(trajectory::along(path::arc({20.0, 20.0}, 20.0, -90.0, 360.0), duration_s));
+    return make_stroke(trajectory::along(path::arc({20.0, 20.0}, 20.0, -90.0, 360.0), duration_s));
 }
 
 /// Computes the schedule by its equations as first written, not in closed form.
@@ -81,7 +81,7 @@ TEST_CASE("the law holds and the last burst ends with the stroke, for any path, 
         o.snap = true;
         o.drop_points = i % 2 == 0;
         o.profile = {between(g, 0.1, 0.9), between(g, 0.0, 0.06), 0.07};
-        const stroke s = stroke_of(trajectory::along(path::polyline(corners), between(g, 0.1, 3.0)));
+        const stroke s = make_stroke(trajectory::along(path::polyline(corners), between(g, 0.1, 3.0)));
         const std::string why = refusal(a, s, o);
         if (!why.empty()) {
             REQUIRE(why.find("follow one another too fast") != std::string::npos);
@@ -225,7 +225,7 @@ TEST_CASE("conflicts are times with two bursts or more on a tactor, merged, by t
         std::vector<point> corners;
         for (unsigned k = 0; k < 3; ++k)
             corners.push_back({between(g, 0.0, 45.0), between(g, 0.0, 30.0)});
-        const stroke s = stroke_of(trajectory::along(path::polyline(corners), between(g, 1.0, 4.0)));
+        const stroke s = make_stroke(trajectory::along(path::polyline(corners), between(g, 1.0, 4.0)));
         if (!refusal(arm, s, o).empty())
             continue;
         const plan p = make_plan(arm, s, o);
@@ -255,7 +255,7 @@ TEST_CASE("conflicts are times with two bursts or more on a tactor, merged, by t
 
 TEST_CASE("the array must be a grid; a single row is one")
 {
-    CHECK(refusal(ring_of(5, 20.0, true), along("M 0 0 L 10 0", 1.0), brush()).find("grid") !=
+    CHECK(refusal(make_ring(5, 20.0, true), along("M 0 0 L 10 0", 1.0), brush()).find("grid") !=
           std::string::npos);
     CHECK(make_plan(make_grid("row", 1, 5, 10.0, 10.0), along("M 5 0 L 40 0", 2.0), brush()).bursts.size() ==
           5);

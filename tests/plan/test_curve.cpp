@@ -34,7 +34,7 @@ plan flowing(double duration_s)
     return make_plan(palm, s, continuous());
 }
 
-curve_samples all_of(const curve& c)
+curve_samples read_samples(const curve& c)
 {
     curve_samples all;
     burst b;
@@ -105,12 +105,12 @@ TEST_CASE("a plan made again from its samples is the same plan, short or long")
         CAPTURE(duration);
         const plan p = flowing(duration);
         plan again = p;
-        again.curve = curve(duration, all_of(*p.curve));
+        again.curve = curve(duration, read_samples(*p.curve));
         CHECK(again == p);
         CHECK(p == flowing(duration));
         CHECK(p != flowing(duration + 0.001));
 
-        curve_samples other = all_of(*p.curve);
+        curve_samples other = read_samples(*p.curve);
         other.drives.back().amplitude = std::nextafter(other.drives.back().amplitude, 2.0);
         again.curve = curve(duration, other);
         CHECK(again != p);
@@ -169,7 +169,7 @@ TEST_CASE("a custom model is asked when the stroke is planned, once for each sam
 
 TEST_CASE("impossible samples of a curve are refused")
 {
-    const curve_samples good = all_of(*flowing(0.01).curve);
+    const curve_samples good = read_samples(*flowing(0.01).curve);
     const auto refused = [](double duration_s, const curve_samples& s) {
         return message_of([&] { curve(duration_s, s); });
     };

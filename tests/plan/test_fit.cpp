@@ -72,7 +72,7 @@ std::string drawing(generator& g)
 
 TEST_CASE("a circle of the paper fits palm-2x4: as high as the array, in its middle, round, in its time")
 {
-    const stroke circle = stroke_of(trajectory::along(path::arc({20, 20}, 16, 0, 360), 2.8));
+    const stroke circle = make_stroke(trajectory::along(path::arc({20, 20}, 16, 0, 360), 2.8));
     CHECK_FALSE(refusal(preset_array("palm-2x4"), circle, {}).empty());
     const fitted_strokes r = fit_strokes({circle}, low);
     CHECK(r.placed.scale == doctest::Approx(20.0 / 32.0).epsilon(1e-12));
@@ -93,7 +93,7 @@ TEST_CASE("a margin is kept from every edge, and must leave space")
     const fitted_strokes r = fit_strokes({square}, low, 4.0);
     CHECK(r.placed.scale == doctest::Approx(12.0).epsilon(1e-12));
     CHECK(r.placed.margin_mm == 4.0);
-    const layout diamond(array_of({{0, -10}, {10, 0}, {0, 10}, {-10, 0}}));
+    const layout diamond(make_array({{0, -10}, {10, 0}, {0, 10}, {-10, 0}}));
     for (const stroke& s : fit_strokes({square}, diamond, 2.0).strokes)
         for (double t = 0.0; t < 1.0; t += 0.01) {
             const point p = s.motion.position(t);
@@ -162,7 +162,7 @@ TEST_CASE("strokes without extent, or with one only, are fitted")
     const fitted_strokes r = fit_strokes({resting}, low);
     CHECK(r.placed.scale == 1.0);
     CHECK(distance_mm(r.strokes[0].motion.position(0.5), {30, 10}) < 1e-9);
-    const layout one(array_of({{3, 4}}));
+    const layout one(make_array({{3, 4}}));
     CHECK(distance_mm(fit_strokes({resting}, one).strokes[0].motion.position(0.5), {3, 4}) < 1e-9);
     CHECK(complaint({along("M 0 0 L 1 1", 1.0)}, one).starts_with("stroke: does not fit on a single tactor"));
     CHECK(complaint({resting}, one, 1.0).starts_with("margin_mm: 1 mm on each side"));
@@ -174,9 +174,9 @@ TEST_CASE("strokes without extent, or with one only, are fitted")
 
 TEST_CASE("an array in one row takes strokes along it")
 {
-    const array row = array_of({{0, 5}, {40, 5}, {80, 5}, {120, 5}});
+    const array row = make_array({{0, 5}, {40, 5}, {80, 5}, {120, 5}});
     const layout l(row);
-    const stroke circle = stroke_of(trajectory::along(path::arc({0, 0}, 1, 180, 360), 2.0));
+    const stroke circle = make_stroke(trajectory::along(path::arc({0, 0}, 1, 180, 360), 2.0));
     const fitted_strokes r = fit_strokes({circle}, l, 10.0);
     CHECK(r.placed.line);
     CHECK(r.placed.scale == doctest::Approx(50.0).epsilon(1e-12));
@@ -196,7 +196,7 @@ TEST_CASE("an array in one row takes strokes along it")
     CHECK(complaint({along("M 0 0 H 9", 1.0)}, l, 60.0).find("(less than 60 mm)") != std::string::npos);
 
     // Measured places are never in line: a wave must not become as thin as their errors.
-    const layout measured(array_of({{0, 0.2}, {40, -0.3}, {80, 0.1}, {120, 0.0}}));
+    const layout measured(make_array({{0, 0.2}, {40, -0.3}, {80, 0.1}, {120, 0.0}}));
     CHECK(fit_strokes({circle}, measured).placed.scale > 59.0);
     CHECK(l.contains(fit_strokes({circle}, measured).placed.to) == false);
     check_places(circle, fit_strokes({circle}, measured).strokes[0], fit_strokes({circle}, measured).placed,

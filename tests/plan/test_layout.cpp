@@ -85,16 +85,16 @@ TEST_CASE("a ring is one face, with its centre a face for each neighbouring pair
     generator g(12);
     for (unsigned n = 3; n < 200; n += n < 20 ? 1 : 13) {
         const double turn = between(g, 0.0, 6.3);
-        const layout ring(ring_of(n, 25.0, false, turn));
+        const layout ring(make_ring(n, 25.0, false, turn));
         CAPTURE(n);
         REQUIRE(ring.faces().size() == 1);
         REQUIRE(ring.faces()[0].size() == n);
-        const layout wheel(ring_of(n, 25.0, true, turn));
+        const layout wheel(make_ring(n, 25.0, true, turn));
         REQUIRE(wheel.faces().size() == (n == 4 ? 4 : n));
         REQUIRE(covered(wheel) == doctest::Approx(hull_area(wheel)).epsilon(1e-12));
     }
     // Written to six decimals.
-    array a = ring_of(48, 30.0, false);
+    array a = make_ring(48, 30.0, false);
     for (tactor_spec& t : a.tactors)
         t.position = {std::round(t.position.x_mm * 1e6) / 1e6, std::round(t.position.y_mm * 1e6) / 1e6};
     CHECK(layout(a).faces().size() == 1);

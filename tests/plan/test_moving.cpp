@@ -18,7 +18,7 @@ namespace {
 
 stroke moving(std::string_view svg, const movement& m)
 {
-    return stroke_of(trajectory::along(path::from_svg(svg), m));
+    return make_stroke(trajectory::along(path::from_svg(svg), m));
 }
 
 double minimum_jerk(double u)

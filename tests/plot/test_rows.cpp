@@ -18,7 +18,7 @@ using namespace tactor::plot;
 namespace {
 
 // Makes the rows of so many tactors in a line, all of which play.
-lanes rows_of(unsigned n, double space)
+lanes make_rows(unsigned n, double space)
 {
     tactor::array a;
     for (unsigned i = 0; i < n; ++i)
@@ -42,20 +42,20 @@ TEST_CASE("rows take no more than their space, and each has its number or is lis
     std::string said;
     for (const double space : {120.0, 270.0, 1000.0})
         for (const unsigned n : {1U, 9U, 40U, 64U, 65U, 82U, 83U, 120U, 400U}) {
-            const lanes l = rows_of(n, space);
+            const lanes l = make_rows(n, space);
             CHECK(l.all_height <= space + 1e-9);
             CHECK(l.rows.back().top + l.rows.back().height == doctest::Approx(l.all_height));
             const std::size_t shown = labels(l, said);
             CHECK(said.empty() == (shown == l.rows.size()));
         }
-    CHECK(labels(rows_of(82, 1000.0), said) == 82);
-    CHECK(labels(rows_of(83, 1000.0), said) == 42);
+    CHECK(labels(make_rows(82, 1000.0), said) == 82);
+    CHECK(labels(make_rows(83, 1000.0), said) == 42);
     CHECK(said == "one row in 2 has its number");
 }
 
 TEST_CASE("rows of many levels leave rows of one the height of a number")
 {
-    lanes l = rows_of(40, 1000.0);
+    lanes l = make_rows(40, 1000.0);
     for (std::size_t i = 0; i < l.rows.size(); i += 4)
         l.rows[i].levels = 10; // 130 in all
     REQUIRE(l.fit(350.0));

@@ -25,7 +25,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::string text_of(const fs::path& file)
+std::string file_text(const fs::path& file)
 {
     std::ifstream in(file, std::ios::binary);
     return {std::istreambuf_iterator<char>(in), {}};
@@ -73,7 +73,7 @@ outcome run(const fs::path& log, bool resume, calibration_settings s = settings(
     lines.begin();
     for (std::size_t i = 0; i < most && !c.done(); ++i)
         lines.append(c.answer(o.answer(c.next())));
-    return {text_of(log), calibration_text(s, c.thresholds())};
+    return {file_text(log), calibration_text(s, c.thresholds())};
 }
 
 std::string refusal(const fs::path& log, bool resume, const calibration_settings& s = settings())
@@ -103,7 +103,7 @@ TEST_CASE("a log cut off anywhere resumes as if nothing had happened")
 {
     const folder f;
     const outcome whole = run(f / "a.tsv", false);
-    const std::string began = text_of(f / "a.json");
+    const std::string began = file_text(f / "a.json");
     // Each byte of header, first and last trials; between them each seventh, which finds each place in a
     // line.
     const std::size_t size = whole.log.size();
@@ -140,7 +140,7 @@ TEST_CASE("a session resumes in each phase: staircase, checks above and below, s
     }
     const outcome whole = run(f / "a.tsv", false, s, 10000, careless);
     REQUIRE(has(whole.tables, "staircases = 2"));
-    const std::string began = text_of(f / "a.json");
+    const std::string began = file_text(f / "a.json");
     for (std::size_t end = whole.log.find('\n'); end != whole.log.npos; end = whole.log.find('\n', end + 1)) {
         CAPTURE(end);
         put(f / "b.tsv", whole.log.substr(0, end + 1));
@@ -175,10 +175,10 @@ TEST_CASE("without answers a session begins anew, even with other options")
     other.carrier_hz = 100.0;
     const outcome again = run(f / "a.tsv", false, other);
     CHECK(has(again.tables, "carrier_hz = 100\n"));
-    CHECK(has(text_of(f / "a.json"), "\"carrier_hz\": 100.0"));
+    CHECK(has(file_text(f / "a.json"), "\"carrier_hz\": 100.0"));
     put(f / "b.json", "{\"mine\": 1}");
     CHECK(has(refusal(f / "b.tsv", false), "b.json: it does not say how"));
-    CHECK(text_of(f / "b.json") == "{\"mine\": 1}");
+    CHECK(file_text(f / "b.json") == "{\"mine\": 1}");
 }
 
 TEST_CASE("a person's answers and times come back from the log")
@@ -194,12 +194,12 @@ TEST_CASE("a person's answers and times come back from the log")
             log.append(
                 c.answer({.interval = 1 + i % 2, .response_time_s = 0.25 * i, .onset_frame = 48000 * i}));
     }
-    const std::string before = text_of(f / "a.tsv");
+    const std::string before = file_text(f / "a.tsv");
     calibration_log log(f / "a.tsv", true, s);
     calibration c(s);
     replay(c, log, nullptr);
     CHECK(c.next().number == 10);
-    CHECK(text_of(f / "a.tsv") == before);
+    CHECK(file_text(f / "a.tsv") == before);
 }
 
 // Replaces each.
@@ -214,7 +214,7 @@ TEST_CASE("a log saved by another program resumes, and keeps its line ends")
 {
     const folder f;
     const outcome whole = run(f / "a.tsv", false);
-    const std::string began = text_of(f / "a.json");
+    const std::string began = file_text(f / "a.json");
     const std::string some = whole.log.substr(0, whole.log.find("\n9\t") + 1);
     const auto goes_on = [&](const std::string& saved, const std::string& end) {
         put(f / "b.tsv", saved);
@@ -263,16 +263,16 @@ TEST_CASE("a cut off part of a log is kept beside it, and only when the rest is 
     calibration_settings other = settings();
     other.seed = 7;
     CHECK(refusal(f / "a.tsv", true, other) != "no error");
-    CHECK(text_of(f / "a.tsv") == cut);
+    CHECK(file_text(f / "a.tsv") == cut);
     put(f / "a.tsv", with(cut, "true", "false"));
     CHECK(has(refusal(f / "a.tsv", true), "a.tsv:2: this is not how the session went"));
-    CHECK(text_of(f / "a.tsv") == with(cut, "true", "false"));
+    CHECK(file_text(f / "a.tsv") == with(cut, "true", "false"));
     put(f / "a.tsv", cut);
     CHECK(run(f / "a.tsv", true).log == whole.log);
-    CHECK(text_of(f / "a.tsv.cut-1") == last);
+    CHECK(file_text(f / "a.tsv.cut-1") == last);
     put(f / "a.tsv", cut);
     run(f / "a.tsv", true);
-    CHECK(text_of(f / "a.tsv.cut-2") == last);
+    CHECK(file_text(f / "a.tsv.cut-2") == last);
 }
 
 TEST_CASE("a file without a table is refused as what it is, and left alone")
@@ -289,7 +289,7 @@ TEST_CASE("a file without a table is refused as what it is, and left alone")
           {wide, "a.tsv: is UTF-16, not UTF-8"}}) {
         put(f / "a.tsv", text);
         CHECK(has(refusal(f / "a.tsv", true), says));
-        CHECK(text_of(f / "a.tsv") == text);
+        CHECK(file_text(f / "a.tsv") == text);
     }
 }
 
@@ -313,10 +313,10 @@ TEST_CASE("a log of another session is refused with the line")
     CHECK(has(refusal(f / "a.tsv", true), "the session ends before this line"));
     put(f / "a.tsv", "name\tvalue\n");
     CHECK(has(refusal(f / "a.tsv", true), "it is no log"));
-    CHECK(text_of(f / "a.tsv") == "name\tvalue\n");
+    CHECK(file_text(f / "a.tsv") == "name\tvalue\n");
     put(f / "a.tsv", "no line");
     CHECK(has(refusal(f / "a.tsv", true), "it is no log"));
-    CHECK(text_of(f / "a.tsv") == "no line");
+    CHECK(file_text(f / "a.tsv") == "no line");
     put(f / "a.tsv", whole.log);
     calibration_settings other = settings();
     other.carrier_hz = 200.0;

@@ -21,7 +21,7 @@
 namespace tactor::study::test_masking {
 namespace {
 
-double level_of(const std::vector<double>& x)
+double measure_level(const std::vector<double>& x)
 {
     double squares = 0.0;
     for (const double v : x)
@@ -70,7 +70,7 @@ TEST_CASE("noise has the given level, and the same seed gives the same samples")
     for (const noise_color c : {noise_color::white, noise_color::pink}) {
         CAPTURE(static_cast<int>(c));
         const auto x = samples(c, -30.0, "a", 1 << 19);
-        CHECK(level_of(x) == doctest::Approx(-30.0).epsilon(0.02)); // pink is slow to settle
+        CHECK(measure_level(x) == doctest::Approx(-30.0).epsilon(0.02)); // pink is slow to settle
         CHECK(x == samples(c, -30.0, "a", 1 << 19));
         CHECK(x != samples(c, -30.0, "b", 1 << 19));
         const auto loud = samples(c, greatest_noise_dbfs(c), "a", 1 << 18);

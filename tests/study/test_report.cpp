@@ -30,17 +30,17 @@ study_facts sessions_that_say(const std::vector<std::string>& devices)
     return f;
 }
 
-std::string device_of(const session_facts& s)
+std::string device_text(const session_facts& s)
 {
     return s.facts()["device"].words();
 }
 
 TEST_CASE("values shared by all are printed once, others with their participants")
 {
-    CHECK(told(sessions_that_say({"a", "a", "a"}), device_of) == "a");
-    CHECK(told(sessions_that_say({"a", "b", "a"}), device_of) == "a (sub-1, sub-3); b (sub-2)");
-    CHECK(told(sessions_that_say({"", "b"}), device_of) == "not recorded (sub-1); b (sub-2)");
-    CHECK(told(sessions_that_say({""}), device_of) == "not recorded");
+    CHECK(told(sessions_that_say({"a", "a", "a"}), device_text) == "a");
+    CHECK(told(sessions_that_say({"a", "b", "a"}), device_text) == "a (sub-1, sub-3); b (sub-2)");
+    CHECK(told(sessions_that_say({"", "b"}), device_text) == "not recorded (sub-1); b (sub-2)");
+    CHECK(told(sessions_that_say({""}), device_text) == "not recorded");
 }
 
 TEST_CASE("texts from files are no Markdown, and do not control a terminal")

@@ -12,7 +12,7 @@
 namespace tactor::study::test_session_flow {
 namespace {
 
-flow_run run_of(unsigned trials, unsigned practice = 0, bool rest = false)
+flow_run make_flow_run(unsigned trials, unsigned practice = 0, bool rest = false)
 {
     return {practice, 0, run_queue(trials), rest};
 }
@@ -32,7 +32,7 @@ session_flow begun(std::vector<flow_run> runs)
 
 TEST_CASE("consent, then each tactor, then the question, practice, trials, a break, the next run")
 {
-    session_flow f({run_of(1, 1, true), run_of(1, 0, true)}, true, 2);
+    session_flow f({make_flow_run(1, 1, true), make_flow_run(1, 0, true)}, true, 2);
     CHECK(f.next().what == step_kind::consent);
     f.agree(true);
     CHECK(f.next() == session_step{.what = step_kind::walk, .tactor = 0});
@@ -60,10 +60,10 @@ TEST_CASE("consent, then each tactor, then the question, practice, trials, a bre
 
 TEST_CASE("without consent, or where a tactor is not felt, nothing follows")
 {
-    session_flow no({run_of(1)}, true, 3);
+    session_flow no({make_flow_run(1)}, true, 3);
     no.agree(false);
     CHECK(no.next().what == step_kind::refused);
-    session_flow f({run_of(1)}, false, 3);
+    session_flow f({make_flow_run(1)}, false, 3);
     f.felt(walk_answer::felt);
     f.felt(walk_answer::not_felt);
     CHECK(f.next() == session_step{.what = step_kind::not_felt, .tactor = 1});
@@ -71,7 +71,7 @@ TEST_CASE("without consent, or where a tactor is not felt, nothing follows")
 
 TEST_CASE("a void trial comes again at the end of its run, its attempt counted up")
 {
-    session_flow f = begun({run_of(2)});
+    session_flow f = begun({make_flow_run(2)});
     f.took(true);
     CHECK(f.next() == trial_step(0, 2));
     f.took(false);
@@ -84,14 +84,14 @@ TEST_CASE("a void trial comes again at the end of its run, its attempt counted u
 
 TEST_CASE("void trials of practice do not come again")
 {
-    session_flow f = begun({run_of(1, 1)});
+    session_flow f = begun({make_flow_run(1, 1)});
     f.took(true);
     CHECK(f.next() == trial_step(0, 1));
 }
 
 TEST_CASE("the last trial can be made void once, until the next run begins")
 {
-    session_flow f = begun({run_of(2, 0, true), run_of(1)});
+    session_flow f = begun({make_flow_run(2, 0, true), make_flow_run(1)});
     CHECK_FALSE(f.void_last()); // there is none
     f.took(false);
     CHECK(f.void_last());
@@ -121,7 +121,7 @@ TEST_CASE("the last trial can be made void once, until the next run begins")
 
 TEST_CASE("a pause comes before the next trial, and after five that became void by themselves")
 {
-    session_flow f = begun({run_of(9)});
+    session_flow f = begun({make_flow_run(9)});
     f.pause();
     CHECK(f.next().what == step_kind::pause);
     f.go_on();
@@ -157,7 +157,7 @@ TEST_CASE("in any course of events each trial counts once, and lines alone resto
 {
     random_numbers r("flow");
     for (int round = 0; round < test::rounds(300); ++round) {
-        session_flow f = begun({run_of(6), run_of(3)});
+        session_flow f = begun({make_flow_run(6), make_flow_run(3)});
         struct line {
             pending_trial which;
             bool is_void;

@@ -138,7 +138,7 @@ inline std::int64_t integer(const std::vector<std::byte>& bytes, tactor::format_
     }
 }
 
-inline double scale_of(tactor::format_kind f)
+inline double full_scale(tactor::format_kind f)
 {
     switch (f) {
     case tactor::format_kind::s16:

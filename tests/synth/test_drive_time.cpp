@@ -44,7 +44,7 @@ struct played {
     std::uint64_t cuts = 0;
 };
 
-synth::guard_settings time_of(double max_drive_s, double window_s)
+synth::guard_settings limit_time(double max_drive_s, double window_s)
 {
     drive_limits l;
     l.max_drive_s = max_drive_s;
@@ -113,7 +113,7 @@ double decibels(double db)
 
 TEST_CASE("many weak strokes on one tactor are cut where a strong one is")
 {
-    const synth::guard_settings g = time_of(5.0, 10.0);
+    const synth::guard_settings g = limit_time(5.0, 10.0);
     const played strong = play({voice(0.0, 20.0, decibels(-0.1))}, 20.0, g);
     const played weak =
         play(std::vector<synth::drive_event>(100, voice(0.0, 20.0, decibels(-40.1))), 20.0, g);
@@ -126,7 +126,7 @@ TEST_CASE("many weak strokes on one tactor are cut where a strong one is")
 TEST_CASE(
     "strokes that cancel each other, and strokes held below -40 dBFS by the tactor's limit, do not count")
 {
-    const synth::guard_settings g = time_of(0.5, 1.0);
+    const synth::guard_settings g = limit_time(0.5, 1.0);
     const std::vector<synth::drive_event> opposite{voice(0.0, 3.0, 0.5, 0.5), voice(0.0, 3.0, 0.5, 0.5, 0.5)};
     CHECK(play(opposite, 3.0, g).cuts == 0);
     CHECK(play({voice(0.0, 3.0, 0.5), voice(0.0, 3.0, 0.5)}, 3.0, g).cuts > 0);
@@ -137,12 +137,12 @@ TEST_CASE("only the part of a stroke above -40 dBFS counts")
 {
     // From 0 to 0.02 in 1 s: the second half of it.
     const std::vector<synth::drive_event> rising{voice(0.0, 1.0, 0.0, 0.02)};
-    CHECK(play(rising, 1.1, time_of(0.51, 2.0)).cuts == 0);
-    CHECK(play(rising, 1.1, time_of(0.49, 2.0)).cuts == 1);
+    CHECK(play(rising, 1.1, limit_time(0.51, 2.0)).cuts == 0);
+    CHECK(play(rising, 1.1, limit_time(0.49, 2.0)).cuts == 1);
     synth::drive_event window = voice(0.0, 1.0, 0.02); // as much of it: 0.5 s above
     window.ramp = rate / 2;
-    CHECK(play({window}, 1.1, time_of(0.51, 2.0)).cuts == 0);
-    CHECK(play({window}, 1.1, time_of(0.49, 2.0)).cuts == 1);
+    CHECK(play({window}, 1.1, limit_time(0.51, 2.0)).cuts == 0);
+    CHECK(play({window}, 1.1, limit_time(0.49, 2.0)).cuts == 1);
 }
 
 TEST_CASE("no window holds more than the limit and one fade, for any mix")
@@ -165,7 +165,7 @@ TEST_CASE("no window holds more than the limit and one fade, for any mix")
             t += run % 7 == 0 ? whole(window_s * unit(random)) : 0.004;
         }
         const auto frames = [](double s) { return static_cast<std::size_t>(std::llround(s * rate)); };
-        const played p = play(events, 14.0, time_of(limit_s, window_s));
+        const played p = play(events, 14.0, limit_time(limit_s, window_s));
         CAPTURE(run);
         CAPTURE(limit_s);
         CAPTURE(window_s);
@@ -184,9 +184,9 @@ TEST_CASE("a pattern that is within the limit to the frame is unchanged")
         for (double t = 0.0; t < 40.0; t += 2.0 * part)
             events.push_back(voice(t, part, 0.7));
         CAPTURE(part);
-        CHECK(play(events, 41.0, time_of(5.0, 10.0)).cuts == 0);
-        CHECK(play(events, 41.0, time_of(5.0, 10.0)).x == play(events, 41.0, {}).x);
-        CHECK(play(events, 41.0, time_of(4.9, 10.0)).cuts > 0);
+        CHECK(play(events, 41.0, limit_time(5.0, 10.0)).cuts == 0);
+        CHECK(play(events, 41.0, limit_time(5.0, 10.0)).x == play(events, 41.0, {}).x);
+        CHECK(play(events, 41.0, limit_time(4.9, 10.0)).cuts > 0);
     }
 }
 
@@ -196,15 +196,15 @@ TEST_CASE("counting by grains of the window cuts at most a grain early")
         events; // half of the time, in pieces of 4 ms: 78 grains of 39 ms are 3.04 s
     for (double t = 0.0; t < 25.0; t += 0.008)
         events.push_back(voice(t, 0.004, 0.7));
-    CHECK(play(events, 25.0, time_of(5.0 + 10.0 / 256, 10.0)).cuts == 0);
-    CHECK(play(events, 25.0, time_of(4.96, 10.0)).cuts > 0);
+    CHECK(play(events, 25.0, limit_time(5.0 + 10.0 / 256, 10.0)).cuts == 0);
+    CHECK(play(events, 25.0, limit_time(4.96, 10.0)).cuts > 0);
 }
 
 TEST_CASE("a quiet stroke on a channel that was cut is silent too, for any block size")
 {
     const std::vector<synth::drive_event> events{voice(0.0, 1.5, 0.5), voice(0.1, 2.9, 0.003),
                                                  voice(2.4, 0.2, 0.008, 0.012)};
-    const synth::guard_settings g = time_of(0.5, 2.0);
+    const synth::guard_settings g = limit_time(0.5, 2.0);
     const played whole = play(events, 3.0, g);
     CHECK(std::all_of(whole.x.begin() + rate * 6 / 10, whole.x.begin() + rate * 2,
                       [](float v) { return v == 0; }));
@@ -214,7 +214,7 @@ TEST_CASE("a quiet stroke on a channel that was cut is silent too, for any block
 
 TEST_CASE("each drive that meets a closed channel counts, even a quiet one, for any block size")
 {
-    const synth::guard_settings g = time_of(0.5, 2.0);
+    const synth::guard_settings g = limit_time(0.5, 2.0);
     const auto cuts = [&](std::vector<synth::drive_event> more, std::size_t block = 160) {
         more.insert(more.begin(), voice(0.0, 0.7, 0.5)); // closed from 0.5 s on, until 2.27 s
         return play(more, 3.0, g, 1.0, block).cuts;
@@ -235,7 +235,7 @@ TEST_CASE("each drive that meets a closed channel counts, even a quiet one, for 
 TEST_CASE("the next mixer counts on, at another rate, less the time between")
 {
     const auto first = [] {
-        synth::mixer m(std::vector<double>(2, 1.0), format_kind::float32, 8, time_of(0.5, 1.0));
+        synth::mixer m(std::vector<double>(2, 1.0), format_kind::float32, 8, limit_time(0.5, 1.0));
         m.add(voice(0.1, 0.4, 0.5));
         std::vector<float> x(rate);
         m.process(rate / 2, reinterpret_cast<std::byte*>(x.data()));
@@ -280,7 +280,7 @@ TEST_CASE("the next mixer counts on, at another rate, less the time between")
 
 TEST_CASE("drive time handed from mixer to mixer gains no frame by rounding")
 {
-    const synth::guard_settings g = time_of(9.0, 10.0);
+    const synth::guard_settings g = limit_time(9.0, 10.0);
     synth::mixer first(std::vector<double>(1, 1.0), format_kind::float32, 64, g);
     for (int i = 0; i < 40; ++i)
         REQUIRE(first.add(voice(0.2 * i, 0.1 + 0.0013 * i, 0.5)));
@@ -303,7 +303,7 @@ TEST_CASE("drive time handed from mixer to mixer gains no frame by rounding")
 
 TEST_CASE("a tactor that was cut stays cut in the next mixer")
 {
-    const synth::guard_settings g = time_of(0.5, 1.0);
+    const synth::guard_settings g = limit_time(0.5, 1.0);
     synth::mixer a(std::vector<double>(1, 1.0), format_kind::float32, 8, g);
     a.add(voice(0.0, 2.0, 0.5));
     std::vector<float> x(2 * rate);

@@ -24,7 +24,7 @@ namespace {
 constexpr unsigned rate = 48000;
 
 /// Divides the samples of a burst at 1 kHz by the carrier's where that is not small: the window.
-std::vector<double> window_of(const render_options& o, double duration_s = 0.1)
+std::vector<double> measure_window(const render_options& o, double duration_s = 0.1)
 {
     const plan p = pieces::make_plan({make_burst(0.0, duration_s, {{0, 1.0}})}, 1000.0);
     const auto x = channel(score(row(1), p, o), 0);
@@ -48,7 +48,7 @@ render_options with(envelope_kind kind, std::optional<double> attack_s, std::opt
 void follows(const render_options& o, const std::function<double(double t_s)>& expected,
              double duration_s = 0.1)
 {
-    const auto w = window_of(o, duration_s);
+    const auto w = measure_window(o, duration_s);
     for (std::size_t k = 0; k < w.size(); ++k) {
         if (w[k] >= 0.0) {
             CAPTURE(k);

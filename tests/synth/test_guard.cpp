@@ -239,7 +239,7 @@ TEST_CASE("non-numbers reach no format")
                 const float v = sample<float>(out, i);
                 REQUIRE(std::abs(v) <= (i % 3 == 1 ? 0.5F : i % 3 == 2 ? 0.0F : 1.0F));
             } else {
-                const auto v = std::abs(static_cast<double>(integer(out, f, i))) / scale_of(f);
+                const auto v = std::abs(static_cast<double>(integer(out, f, i))) / full_scale(f);
                 REQUIRE(v <= (i % 3 == 1 ? 0.5 : i % 3 == 2 ? 0.0 : 1.0));
             }
         }

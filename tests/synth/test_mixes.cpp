@@ -146,7 +146,7 @@ void add_curve(const plan& p, unsigned rate, const std::vector<double>& peaks, s
     }
 }
 
-levels record_of(const mix& m, const score& s)
+levels read_record(const mix& m, const score& s)
 {
     std::vector<double> peaks;
     for (const tactor_spec& t : m.tactors.tactors) {
@@ -166,7 +166,7 @@ levels record_of(const mix& m, const score& s)
 }
 
 /// Mixes a score with no limit except the guards.
-std::vector<float> samples_of(const score& s, const render_options& o)
+std::vector<float> mix_samples(const score& s, const render_options& o)
 {
     const std::vector<double> limits(s.channels(), 1.0);
     std::vector<synth::drive_event> events;
@@ -220,8 +220,8 @@ TEST_CASE("no sample of random mixes is above the record, nor above the tactor's
             continue;
         }
         ++rendered;
-        const std::vector<float> samples = samples_of(*s, m.options);
-        levels told = record_of(m, *s);
+        const std::vector<float> samples = mix_samples(*s, m.options);
+        levels told = read_record(m, *s);
         for (std::size_t t = 0; t < told.size(); ++t) {
             const double limit = synth::tactor_limit(m.tactors, t);
             // A slow actuator gets more at first, as far as its limit allows.

@@ -39,7 +39,7 @@ synth::drive_event voice(double start_s, double length_s, double ramp_s, double 
     return e;
 }
 
-synth::guard_settings power_of(double dbfs)
+synth::guard_settings limit_power(double dbfs)
 {
     return synth::make_guards({.power_dbfs = dbfs, .max_drive_s = 3600.0, .window_s = 10.0}, rate);
 }
@@ -47,7 +47,8 @@ synth::guard_settings power_of(double dbfs)
 std::vector<signal> mixed(const std::vector<synth::drive_event>& events, unsigned channels,
                           std::size_t frames, double dbfs)
 {
-    synth::mixer m(std::vector<double>(channels, 1.0), format_kind::float32, events.size(), power_of(dbfs));
+    synth::mixer m(std::vector<double>(channels, 1.0), format_kind::float32, events.size(),
+                   limit_power(dbfs));
     for (const synth::drive_event& e : events)
         REQUIRE(m.add(e));
     std::vector<float> all(frames * channels);
@@ -210,7 +211,7 @@ TEST_CASE("the power is held in the same frames for any block size")
     for (int run = 0; run < tactor::test::rounds(8); ++run) {
         const auto voices = random_voices(random, run % 3 == 0 ? 0.0 : 0.005, run % 2 == 0);
         const auto played = [&](std::size_t largest_block) {
-            synth::guard_settings g = power_of(-12.0);
+            synth::guard_settings g = limit_power(-12.0);
             g.drive_frames = rate / 5;
             g.window_frames = rate / 2;
             synth::mixer m(std::vector<double>(9, 0.4), format_kind::s32, voices.size(), g);
@@ -245,7 +246,7 @@ TEST_CASE("beats on a tactor keep their part when others begin in the first fram
         all.back().start = begin;
     }
     const auto played = [&](std::size_t first) {
-        synth::mixer m(std::vector<double>(9, 1.0), format_kind::s32, all.size(), power_of(three));
+        synth::mixer m(std::vector<double>(9, 1.0), format_kind::s32, all.size(), limit_power(three));
         for (const synth::drive_event& e : all)
             REQUIRE(m.add(e));
         std::vector<std::byte> out(rate / 2 * 9 * 4);

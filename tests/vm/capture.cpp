@@ -50,7 +50,7 @@ snd_pcm_t* open_capture(const char* name, unsigned channels)
 }
 
 // When frame `frame` of the stream was at the device; `read`: frames read so far.
-long long time_of(snd_pcm_t* pcm, std::uint64_t frame, std::uint64_t read)
+long long frame_time(snd_pcm_t* pcm, std::uint64_t frame, std::uint64_t read)
 {
     snd_pcm_status_t* status = nullptr;
     snd_pcm_status_alloca(&status);
@@ -101,7 +101,7 @@ int main(int argc, char** argv)
                 sound = sound || block[f * channels + c] != 0;
             if (sound && silent >= quiet) {
                 std::printf("onset %llu %lld\n", static_cast<unsigned long long>(read + f),
-                            time_of(pcm, read + f, read + frames));
+                            frame_time(pcm, read + f, read + frames));
                 std::fflush(stdout);
             }
             silent = sound ? 0 : silent + 1;

@@ -142,7 +142,7 @@ void traced_session::note_child(pid_t parent, int event)
     }
 }
 
-bool traced_session::is_of(party who, pid_t pid) const
+bool traced_session::belongs_to(party who, pid_t pid) const
 {
     if (who == party::holder)
         return pid == holder_;
@@ -165,7 +165,7 @@ killed traced_session::kill_at(party counted, unsigned nth, party victim, const 
         if (const int event = status >> 16;
             event == PTRACE_EVENT_FORK || event == PTRACE_EVENT_VFORK || event == PTRACE_EVENT_CLONE)
             note_child(pid, event);
-        if (is_of(counted, pid) && stopped_at_entry(pid, status) && calls++ == nth) {
+        if (belongs_to(counted, pid) && stopped_at_entry(pid, status) && calls++ == nth) {
             k.reached = true;
             before();
             strike(victim, k);

@@ -45,7 +45,7 @@ public:
 private:
     bool stopped_at_entry(pid_t pid, int status) const;
     void note_child(pid_t parent, int event);
-    bool is_of(party who, pid_t pid) const;
+    bool belongs_to(party who, pid_t pid) const;
     void strike(party victim, killed& k);
     void let_go(pid_t stopped);
     void wait_for_all();

@@ -60,7 +60,7 @@ struct failure {
 };
 
 template <typename F>
-failure failure_of(F f)
+failure catch_failure(F f)
 {
     try {
         f();
@@ -73,7 +73,7 @@ failure failure_of(F f)
 
 failure failure_of_open(const alsa_options& o)
 {
-    return failure_of([&] { static_cast<void>(open_alsa(o)); });
+    return catch_failure([&] { static_cast<void>(open_alsa(o)); });
 }
 
 } // namespace
@@ -252,7 +252,7 @@ TEST_CASE("impossible numbers of a PCM are bad input")
         alsa_options o = {.pcm = "null", .channels = 9, .rate = rate, .period_frames = least};
         CHECK_NOTHROW(pcm::check(o));
         --o.period_frames;
-        const failure e = failure_of([&] { pcm::check(o); });
+        const failure e = catch_failure([&] { pcm::check(o); });
         CHECK(e.kind == error_kind::bad_input);
         CHECK(e.says(fmt::format("{} frames a period out of range (give {} to 1048576)", least - 1, least)));
     }
@@ -295,12 +295,12 @@ TEST_CASE("a device of a card: formats in order of preference, rate and channels
     CHECK(open({.formats = {SND_PCM_FORMAT_S16_LE, SND_PCM_FORMAT_S24_LE}}, o).format == format_kind::s24_4);
     CHECK(open({.formats = {SND_PCM_FORMAT_S16_LE}}, o).format == format_kind::s16);
 
-    const failure nothing = failure_of([&] { open({.formats = {SND_PCM_FORMAT_U8}}, o); });
+    const failure nothing = catch_failure([&] { open({.formats = {SND_PCM_FORMAT_U8}}, o); });
     CHECK(nothing.says("refused: format"));
     CHECK(nothing.says("none that tactor plays"));
     o.channels = 65;
     o.rate = 44100;
-    const failure e = failure_of([&] { open({}, o); });
+    const failure e = catch_failure([&] { open({}, o); });
     CHECK(e.says("refused: channels, rate"));
     CHECK(e.says("channels 1 to 64, rates 48000 Hz, formats s32 float s16"));
 }

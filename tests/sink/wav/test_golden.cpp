@@ -57,8 +57,8 @@ const golden all_golden[] = {
     {algorithm_kind::continuous, phase_kind::stroke, format_kind::s32, 0xf980c8980dc59b09U},
 };
 
-std::string file_of(const folder& dir, algorithm_kind algorithm, format_kind f,
-                    const render_options& sound = {})
+std::string render_file(const folder& dir, algorithm_kind algorithm, format_kind f,
+                        const render_options& sound = {})
 {
     const array a = preset_array("palm-3x3");
     plan_options o;
@@ -71,7 +71,7 @@ std::string file_of(const folder& dir, algorithm_kind algorithm, format_kind f,
     return dir.bytes("a.wav");
 }
 
-std::uint64_t digest_of(const std::string& bytes)
+std::uint64_t hash_bytes(const std::string& bytes)
 {
     return pieces::digest(std::as_bytes(std::span(bytes)));
 }
@@ -114,16 +114,16 @@ TEST_CASE("the bytes of park2016-1 are those of the last release, in any locale"
         CAPTURE(std::string(to_string(g.phase)));
         render_options sound;
         sound.phase = g.phase;
-        CHECK(digest_of(file_of(dir, g.algorithm, g.format, sound)) == g.digest);
+        CHECK(hash_bytes(render_file(dir, g.algorithm, g.format, sound)) == g.digest);
         const comma_locale with_comma;
-        CHECK(digest_of(file_of(dir, g.algorithm, g.format, sound)) == g.digest);
+        CHECK(hash_bytes(render_file(dir, g.algorithm, g.format, sound)) == g.digest);
     }
 }
 
 TEST_CASE("park2016-1 is 70560 frames of 9 channels")
 {
     const folder dir;
-    CHECK(file_of(dir, algorithm_kind::park2016, format_kind::s16).size() == 44 + 70560 * 9 * 2);
+    CHECK(render_file(dir, algorithm_kind::park2016, format_kind::s16).size() == 44 + 70560 * 9 * 2);
 }
 
 } // namespace golden_test

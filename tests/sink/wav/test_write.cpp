@@ -83,7 +83,7 @@ private:
     rlimit before_{};
 };
 
-error_kind kind_of(const fs::path& p, format_kind f = format_kind::s16)
+error_kind refusal_kind(const fs::path& p, format_kind f = format_kind::s16)
 {
     try {
         write_wav(make_score(), f, p);
@@ -214,14 +214,14 @@ TEST_CASE("the file's name shows nothing before it is complete")
 TEST_CASE("names that cannot be a file are bad input")
 {
     const folder dir;
-    CHECK(kind_of("") == error_kind::bad_input);
-    CHECK(kind_of(dir / "") == error_kind::bad_input);
-    CHECK(kind_of(dir / "missing/a.wav") == error_kind::bad_input);
+    CHECK(refusal_kind("") == error_kind::bad_input);
+    CHECK(refusal_kind(dir / "") == error_kind::bad_input);
+    CHECK(refusal_kind(dir / "missing/a.wav") == error_kind::bad_input);
     fs::create_directory(dir / "sub");
-    CHECK(kind_of(dir / "sub") == error_kind::bad_input);
+    CHECK(refusal_kind(dir / "sub") == error_kind::bad_input);
     std::ofstream(dir / "plain") << "x";
-    CHECK(kind_of(dir / "plain/a.wav") == error_kind::bad_input);
-    CHECK(kind_of(dir / "a.wav", format_kind::s24_4) == error_kind::bad_input);
+    CHECK(refusal_kind(dir / "plain/a.wav") == error_kind::bad_input);
+    CHECK(refusal_kind(dir / "a.wav", format_kind::s24_4) == error_kind::bad_input);
     CHECK(dir.names() == std::vector<std::string>{"plain", "sub"});
 }
 
@@ -231,13 +231,13 @@ TEST_CASE("a full disk is a failure at run time that leaves nothing")
     std::ofstream(dir / "old.wav") << "old";
     for (const rlim_t limit : {rlim_t{0}, rlim_t{20}, rlim_t{4096}, rlim_t{100000}}) {
         const file_size_limit small(limit);
-        CHECK(kind_of(dir / "a.wav") == error_kind::runtime);
-        CHECK(kind_of(dir / "old.wav") == error_kind::runtime);
+        CHECK(refusal_kind(dir / "a.wav") == error_kind::runtime);
+        CHECK(refusal_kind(dir / "old.wav") == error_kind::runtime);
     }
     CHECK(dir.names() == std::vector<std::string>{"old.wav"});
     CHECK(dir.bytes("old.wav") == "old");
     if (fs::exists("/dev/full")) {
-        CHECK(kind_of("/dev/full") == error_kind::runtime);
+        CHECK(refusal_kind("/dev/full") == error_kind::runtime);
         CHECK(fs::is_character_file("/dev/full"));
     }
 }
@@ -255,10 +255,10 @@ TEST_CASE("a forbidden write is a failure at run time")
     const folder dir;
     std::ofstream(dir / "old.wav") << "old";
     fs::permissions(dir / "old.wav", fs::perms::owner_read);
-    CHECK(kind_of(dir / "old.wav") == error_kind::runtime);
+    CHECK(refusal_kind(dir / "old.wav") == error_kind::runtime);
     fs::create_directory(dir / "sub");
     fs::permissions(dir / "sub", fs::perms::owner_read | fs::perms::owner_exec);
-    CHECK(kind_of(dir / "sub/a.wav") == error_kind::runtime);
+    CHECK(refusal_kind(dir / "sub/a.wav") == error_kind::runtime);
     fs::permissions(dir / "sub", fs::perms::owner_all);
 }
 
