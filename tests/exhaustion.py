@@ -31,7 +31,7 @@ ROW = re.compile(r'\{"([\w:]+(?:operator[^\w",]+)?)(,[^"]*)?",')
 
 
 def statements(text):
-    """What stands between semicolons and closing braces, each as its head and what is in its braces (or None)."""
+    """Returns the parts between semicolons and closing braces, each as its head and the content of its braces (or None)."""
     begin = i = 0
     while i < len(text):
         c = text[i]
@@ -54,7 +54,7 @@ def statements(text):
 
 
 def find_end(text, at):
-    """Where the bracket at a place is closed."""
+    """Returns the end of the bracket at a place."""
     deep = 0
     for i in range(at, len(text)):
         deep += (text[i] in "({[") - (text[i] in ")}]")
@@ -64,7 +64,7 @@ def find_end(text, at):
 
 
 def without_template(head):
-    """A declaration without "template <...>" and attributes."""
+    """Returns a declaration without "template <...>" and attributes."""
     while m := re.match(r"template\s*<", head):
         deep, i = 1, m.end()
         while deep:
@@ -75,7 +75,7 @@ def without_template(head):
 
 
 def throwing(text, cls="", public=True):
-    """Names of what may throw in the text of a namespace or a class."""
+    """Returns names that may throw in the text of a namespace or a class."""
     for head, body in statements(text):
         if m := ACCESS.match(head + ":" if head in ("public", "protected", "private") else head):
             public = m[1] == "public"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What a period costs the audio thread while 64 strokes sound on 64 channels: the mean, and the worst.
+// Cost of a period for the audio thread while 64 strokes sound on 64 channels: the mean, and the worst.
 #include <algorithm>
 #include <utility>
 #include <vector>
@@ -31,8 +31,8 @@ void submit(engine::feeder& feed, engine::link& link, stroke_id& id, const std::
         feed.submit({++id.number}, s, start_at::frame(link.status.load().written + 4800));
 }
 
-/// One step of the audio thread is one period. Feeding it is the control thread's; counted are the periods in
-/// which that had to wake up, and what it took.
+/// Measures a step of the audio thread, a period. The control thread feeds it; counts the periods in which it
+/// had to wake up, and its time.
 void periods(benchmark::State& state, algorithm_kind method, double power_dbfs)
 {
     const auto period = static_cast<unsigned>(state.range(0));
@@ -92,7 +92,7 @@ BENCHMARK_CAPTURE(periods, continuous, algorithm_kind::continuous, drive_limits{
     ->Arg(480)
     ->UseManualTime()
     ->Unit(benchmark::kMicrosecond);
-// 64 carriers, each of which counts by itself.
+// 64 carriers, each of which counts separately.
 BENCHMARK_CAPTURE(periods, held_down, algorithm_kind::park2016, -40.0)
     ->Name("engine/64_strokes_held_down")
     ->Arg(96)

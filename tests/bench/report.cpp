@@ -39,7 +39,7 @@ std::vector<synth_row>& table()
 
 namespace {
 
-/// Remembers the best of each; one line a benchmark while it runs would only be noise.
+/// Keeps the best of each; a line for each benchmark while it runs would only be noise.
 class reporter : public benchmark::BenchmarkReporter {
 public:
     explicit reporter(const std::vector<tool_row>& tool) : tool_(tool) {}
@@ -63,7 +63,7 @@ public:
                 order_.push_back(name);
                 best.unit = benchmark::GetTimeUnitString(r.time_unit);
             }
-            // Of what takes its own time, that; else the processor's, not the wall's.
+            // The given time where a benchmark measures it itself; else the processor's, not the wall's.
             const bool manual = !r.run_name.time_type.empty();
             const double time = manual ? r.GetAdjustedRealTime() : r.GetAdjustedCPUTime();
             best.time = is_new ? time : std::min(best.time, time);

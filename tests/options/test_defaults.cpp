@@ -96,7 +96,7 @@ TEST_CASE("each option of [defaults] is read as it may be typed, and no other")
         wishes w;
         w.place = o.where;
         apply_defaults(w, read(fmt::format("[defaults]\n{} = \"{}\"\n", name, all.at(name))));
-        if (name != "speed") // which is only the usual one
+        if (name != "speed") // it is only the usual one
             CHECK(o.to.get(w) != o.to.get(wishes()));
         CHECK(w.in_file.contains(index(o)));
     }

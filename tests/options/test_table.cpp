@@ -46,7 +46,7 @@ std::string speech(std::string_view text)
 
 } // namespace
 
-TEST_CASE("each row says what there is to know")
+TEST_CASE("each row has all its fields")
 {
     std::set<std::string_view> names;
     for (const option& o : all()) {
@@ -98,7 +98,7 @@ TEST_CASE("each number ends at its bounds, typed and as a value, and comes back"
     }
 }
 
-TEST_CASE("each choice and flag comes back, and no other word is taken")
+TEST_CASE("each choice and flag comes back, and no other word is accepted")
 {
     for (const option& o : all()) {
         CAPTURE(o.name);
@@ -120,7 +120,7 @@ TEST_CASE("each choice and flag comes back, and no other word is taken")
     }
 }
 
-TEST_CASE("two that cannot stand together are refused, in whatever order")
+TEST_CASE("two exclusive options are refused in any order")
 {
     for (const option& o : all()) {
         if (o.rival.empty())
@@ -133,7 +133,7 @@ TEST_CASE("two that cannot stand together are refused, in whatever order")
     }
 }
 
-TEST_CASE("what nothing uses is refused, and the cure is one of the place")
+TEST_CASE("an unused option is refused with a hint for its place")
 {
     const auto said = [](std::uint64_t place, std::initializer_list<std::pair<const char*, value>> given) {
         wishes w = with(place, given);
@@ -153,7 +153,7 @@ TEST_CASE("what nothing uses is refused, and the cure is one of the place")
     CHECK(said(on_plan, {{"fit_margin", 1.0}}) == "fit_margin: nothing here uses it (add fit_strokes())");
 }
 
-TEST_CASE("a law of the user's has its own longest SOA")
+TEST_CASE("a user's timing law has its own longest SOA")
 {
     wishes w = with(on_plan, {{"slope", 0.3}, {"intercept", 0.04}});
     settle(w);
@@ -204,7 +204,7 @@ TEST_CASE("an error about a field names the option, unless it is about a key of 
                    .with_field("soa_s")) == "s.toml:3:1: no (soa_s or <sl>)");
 }
 
-TEST_CASE("what plans a stroke is refused beside a plan")
+TEST_CASE("options of planning are refused beside a plan")
 {
     for (const option& o : all()) {
         wishes w;

@@ -30,14 +30,14 @@ namespace tactor::test {
 using net::json;
 using server::client_number;
 
-/// What one client was sent.
+/// Messages to one client.
 class inbox final : public server::client_link {
 public:
     void send(std::string message) override { all.push_back(json::parse(message)); }
     std::size_t waiting() const override { return unread; }
     void finish() override { finished = true; }
 
-    /// Of a stroke, in order.
+    /// Returns those of a stroke, in order.
     std::vector<json> of_stroke(const json& number) const
     {
         std::vector<json> found;

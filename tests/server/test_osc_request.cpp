@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What messages of OSC ask for, and what is wrong with their values.
+// Requests of OSC messages, and faults of their values.
 #include "server/osc/request.hpp"
 
 #include <limits>

@@ -265,7 +265,7 @@ TEST_CASE("stop reaches what waits for an idle stream to start")
         CHECK(c.box->of_stroke(n).size() == 1);
         CHECK(rig.code(c, "to", {{"stroke", n}, {"x_mm", 1}, {"y_mm", 1}}) == -32002);
     }
-    // What is asked for after the stop begins.
+    // A request after the stop begins.
     CHECK(rig.end_of(c, rig.ok(c, "play", brief)["stroke"])["state"] == "finished");
     CHECK(rig.ok(c, "status")["strokes"].empty());
 }

@@ -12,7 +12,7 @@ MAY_BE_ON = "tactor: amplifier: its line cannot be switched off"
 
 
 def holders():
-    """The processes that hold an amplifier's line for a player."""
+    """Returns the processes that hold an amplifier's line for a player."""
     found = []
     for process in filter(str.isdigit, os.listdir("/proc")):
         try:
@@ -60,7 +60,7 @@ class LineLost(AmplifierTest):
         self.assertEqual(len(found), 1, found)
         return found[0]
 
-    def test_a_chip_that_is_removed_while_the_line_is_on_is_an_error_that_says_so(self):
+    def test_a_chip_removed_while_the_line_is_on_is_an_error_that_says_so(self):
         p = self.playing()
         self.gpio.close()
         p.send_signal(signal.SIGINT)
@@ -70,7 +70,7 @@ class LineLost(AmplifierTest):
         self.assertEqual(r.returncode, 3, r.stderr)
         self.assertIn(self.gpio.label, r.stderr)
 
-    def test_a_line_that_another_program_took_after_the_holder_died_is_left_to_it_and_said_to_be_on(self):
+    def test_a_line_taken_by_another_program_after_the_holder_s_death_is_left_to_it_and_reported_on(self):
         p = self.playing()
         holder = self.find_holder()
         os.kill(p.pid, signal.SIGSTOP)  # or it would be faster
@@ -117,7 +117,7 @@ class LineLost(AmplifierTest):
         p.wait(20)
 
     def test_both_killed_the_line_is_as_the_chip_leaves_it(self):
-        # Floating, this line is high: a stand-in for chips that keep what was driven.
+        # Floating, this line is high: a stand-in for chips that keep their last state.
         p = self.playing()
         self.gpio.pull(self.LINE, True)
         holder = self.find_holder()
