@@ -13,7 +13,7 @@ class Block:
     line: int
 
 
-def kind_of(text):
+def classify(text):
     """What a block of code is; whatever it is not known to be is commands."""
     for kind, pattern in (("c++", r"^#include"), ("toml", r"^\[+\w+\]+$"), ("csv", r"^t_s,"), ("boot", r"^dtoverlay="), ("drawing", r"-->"),
                           ("formula", r"^(?:[A-Za-z_]\w*(?:\(\w\))? = |polarity \* )")):
