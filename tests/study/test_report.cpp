@@ -5,8 +5,6 @@
 #include <doctest/doctest.h>
 #include <nlohmann/json.hpp>
 
-#include <tactor/choices.hpp>
-
 #include "files/plan/json_value.hpp"
 #include "has.hpp"
 #include "message_of.hpp"

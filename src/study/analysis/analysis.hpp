@@ -65,7 +65,7 @@ using cell_values = std::vector<std::vector<double>>;
 
 /// A participant's values in a run: choose: per cent in which the last method was chosen; rate: the mean
 /// rating; identify: per cent correct. Nothing where a cell has no trial.
-std::optional<cell_values> values_of(const run_outline& run, const std::vector<trial>& trials);
+std::optional<cell_values> compute_cells(const run_outline& run, const std::vector<trial>& trials);
 
 /// The mean of a row: of a participant's cells, each with the same weight.
 double average_of(const std::vector<double>& row);

@@ -30,7 +30,7 @@ bool last_chosen(const trial& t, const run_outline& run) noexcept
     return (t.response == 1 ? t.method_1 : t.method_2) + 1 == run.methods.size();
 }
 
-std::optional<cell_values> values_of(const run_outline& run, const std::vector<trial>& trials)
+std::optional<cell_values> compute_cells(const run_outline& run, const std::vector<trial>& trials)
 {
     const std::size_t rows = run.task == task_kind::choose ? 1 : run.methods.size();
     cell_values sums(rows, std::vector<double>(run.motions.size(), 0.0));
