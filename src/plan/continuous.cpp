@@ -4,12 +4,15 @@
 #include <cmath>
 #include <memory>
 #include <utility>
+#include <variant>
 #include <vector>
 
 #include <fmt/format.h>
 
 #include "core/access.hpp"
+#include "core/path/curve_places.hpp"
 #include "core/path/shape.hpp"
+#include "core/trajectory/impl.hpp"
 #include "core/trajectory/spans.hpp"
 #include "plan/curve_impl.hpp"
 #include "plan/faces/layout_impl.hpp"
@@ -66,11 +69,20 @@ void check_inside(const job& j)
 // A longer one is computed whenever it is read.
 constexpr std::uint64_t most_kept = 4001;
 
+/// Returns the movement with the places on its curves at hand.
+trajectory with_places(const trajectory& t)
+{
+    trajectory::impl made = access::of(t);
+    if (auto* drawn = std::get_if<drawn_path>(&made.law))
+        drawn->way = with_places(drawn->way, drawn->way.length_mm() / made.duration_s * continuous_step_s);
+    return access::make<trajectory>(std::make_shared<const trajectory::impl>(std::move(made)));
+}
+
 /// The phantom along a stroke.
 class follow {
 public:
     explicit follow(const job& j)
-        : motion_(j.motion.motion),
+        : motion_(with_places(j.motion.motion)),
           faces_(j.faces),
           model_(j.model),
           three_(dynamic_cast<const model_of_three*>(model_.get())),

@@ -155,7 +155,8 @@ point path::at(double s_mm) const noexcept
     if (along == 0.0)
         return p.vertices[i];
     if (const auto* c = p.find_curve(i))
-        return detail::position(c->form, c->measure.parameter(c->form, along));
+        return c->places != nullptr ? c->places->at(along)
+                                    : detail::position(c->form, c->measure.parameter(c->form, along));
     return detail::between(p.vertices[i], p.vertices[i + 1], along / (p.s[i + 1] - p.s[i]));
 }
 
