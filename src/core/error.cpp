@@ -64,7 +64,7 @@ struct error::data {
     int os_code = 0;
 
     /// Returns a copy with other words.
-    data said(std::string_view what, std::string_view why, std::string_view hint) const
+    data with_text(std::string_view what, std::string_view why, std::string_view hint) const
     {
         data d = *this;
         d.subject = what;
@@ -86,12 +86,12 @@ error::error(error_kind kind, data d)
 }
 
 error::error(error_kind kind, std::string_view what, std::string_view why, std::string_view hint)
-    : error(kind, data().said(what, why, hint))
+    : error(kind, data().with_text(what, why, hint))
 {
 }
 
 error::error(error_kind kind, const source_place& at, std::string_view why, std::string_view hint)
-    : error(kind, data{.place = at}.said(at.text(), why, hint))
+    : error(kind, data{.place = at}.with_text(at.text(), why, hint))
 {
 }
 
@@ -160,7 +160,7 @@ error error::with_os_code(int code) const
 
 error error::reworded(std::string_view what, std::string_view why, std::string_view hint) const
 {
-    return {kind(), data_->said(what, why, hint)};
+    return {kind(), data_->with_text(what, why, hint)};
 }
 
 #define TACTOR_TEXT(x) #x

@@ -41,11 +41,11 @@ public:
     bool trying() const noexcept { return line_state_ == line_state::refused && !stuck_; }
 
 private:
-    void hear(const stream_status& s, std::int64_t now) noexcept;
+    void read_status(const stream_status& s, std::int64_t now) noexcept;
     void watch(const stream_status& s, std::int64_t now) noexcept;
     void beat(std::int64_t now) noexcept;
     void apply() noexcept;
-    void tell() noexcept;
+    void report_changes() noexcept;
     void switch_on() noexcept;
     void switch_off() noexcept;
     void try_off() noexcept;

@@ -204,7 +204,7 @@ void feeder::handle(const report& r)
         break;
     case report::kind::returned:
         if (a.cancelled)
-            tell({.id = a.id, .state = state_kind::cancelled, .frames = 0});
+            report_end({.id = a.id, .state = state_kind::cancelled, .frames = 0});
         else if (a.due_ns)
             timed_.emplace(*a.due_ns, task{a.id, *a.score, a.due_ns});
         else
@@ -222,9 +222,9 @@ void feeder::end_all(const report& r)
     const reason_kind why = r.why == reason_kind::none && closing_ ? reason_kind::closed : r.why;
     const auto end = [&](stroke_id id, bool cancelled) {
         if (cancelled || why == reason_kind::none)
-            tell({.id = id, .state = state_kind::cancelled});
+            report_end({.id = id, .state = state_kind::cancelled});
         else
-            tell(interrupted(id, why, text(why, r.code)));
+            report_end(interrupted(id, why, text(why, r.code)));
     };
     while (!in_use_.empty()) {
         slot& s = slots_[in_use_.front()];

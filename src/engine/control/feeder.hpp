@@ -138,7 +138,7 @@ private:
     bool waits(stroke_id id) const;
     void begun(active& a, std::uint64_t frame);
     void over(const active& a, const report& r);
-    void tell(stroke_report r);
+    void report_end(stroke_report r);
     void feed(std::uint64_t written, std::uint64_t horizon);
     bool has_room(std::size_t n);
     void hand_over_beginning(active& a, ticket t, std::size_t drives);

@@ -95,13 +95,13 @@ void feeder::look_at_waiting_live(std::uint64_t written)
         v.wait(frames);
         const live_voice::action asked = v.requested();
         if (asked == live_voice::action::cancel)
-            tell({.id = next->first, .state = state_kind::cancelled});
+            report_end({.id = next->first, .state = state_kind::cancelled});
         else if (asked == live_voice::action::fail)
-            tell(interrupted(next->first, reason_kind::plan, v.failure()));
+            report_end(interrupted(next->first, reason_kind::plan, v.failure()));
         else if (asked == live_voice::action::end && !v.has_point())
-            tell({.id = next->first, .state = state_kind::finished});
+            report_end({.id = next->first, .state = state_kind::finished});
         else if (v.starved())
-            tell(interrupted(next->first, reason_kind::starved, text(reason_kind::starved, 0)));
+            report_end(interrupted(next->first, reason_kind::starved, text(reason_kind::starved, 0)));
         else {
             ++next;
             continue;
@@ -129,7 +129,7 @@ bool feeder::cancel_waiting(stroke_id id)
     if (!waits(id))
         return false;
     // Reports first, because there may be no memory for it.
-    tell({.id = id, .state = state_kind::cancelled, .frames = 0});
+    report_end({.id = id, .state = state_kind::cancelled, .frames = 0});
     const auto live = waiting_live_.find(id);
     if (live != waiting_live_.end()) {
         live->second->close();
@@ -187,10 +187,10 @@ void feeder::over(const active& a, const report& r)
         if (const double was = late(r.started_ns, *a.due_ns, 1e9 / a.score->rate());
             !a.late_s || was > *a.late_s + clock_right_s)
             done.late_s = was;
-    tell(std::move(done));
+    report_end(std::move(done));
 }
 
-void feeder::tell(stroke_report r)
+void feeder::report_end(stroke_report r)
 {
     for (const live_map* live : {&playing_live_, &waiting_live_})
         if (const auto found = live->find(r.id); found != live->end())

@@ -36,8 +36,8 @@ void player::impl::close()
     stop(true);
     if (control->is_current()) {
         // A handler destroys the player: this thread does here what it would do after the handler.
-        if (telling != nullptr)
-            tell_watchers(*telling);
+        if (reporting != nullptr)
+            call_watchers(*reporting);
         for (woken(); !all_delivered; woken()) {
             pollfd fd{.fd = link.to_control.fd(), .events = POLLIN, .revents = 0};
             if (::poll(&fd, 1, -1) > 0)
@@ -171,8 +171,8 @@ void player::impl::woken()
     lock.unlock();
     gone.clear();
     news.notify_all();
-    log.tell();
-    tell();
+    log.write();
+    call_handlers();
     if (!done) {
         constexpr timespec soon{.tv_sec = 0, .tv_nsec = 10'000'000};
         ::nanosleep(&soon, nullptr); // other code may free memory

@@ -130,7 +130,7 @@ void stream_log::end(const std::string& why) noexcept
 }
 
 // Writes the lines. The function may destroy the player, which then looks and writes for the last time.
-void stream_log::tell() noexcept
+void stream_log::write() noexcept
 {
     const auto lines = std::exchange(lines_, {});
     for (const auto& [kind, text] : lines) {

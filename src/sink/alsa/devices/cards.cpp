@@ -82,12 +82,12 @@ std::optional<device_name> named_device(std::string_view pcm)
         return {};
     const std::string_view plugin = pcm.substr(0, colon);
     std::string_view rest = pcm.substr(colon + 1);
-    const bool said = rest.substr(0, 5) == "CARD=";
-    if (!said && plugin != "hw" && plugin != "plughw" && plugin != "dmix" && plugin != "sysdefault")
+    const bool has_key = rest.substr(0, 5) == "CARD=";
+    if (!has_key && plugin != "hw" && plugin != "plughw" && plugin != "dmix" && plugin != "sysdefault")
         return {};
     device_name n;
     const auto comma = rest.find(',');
-    n.card = rest.substr(said ? 5 : 0, comma == rest.npos ? rest.npos : comma - (said ? 5 : 0));
+    n.card = rest.substr(has_key ? 5 : 0, comma == rest.npos ? rest.npos : comma - (has_key ? 5 : 0));
     if (comma != rest.npos) {
         rest.remove_prefix(comma + 1);
         rest = rest.substr(0, rest.find(','));

@@ -57,20 +57,20 @@ private:
     void add_definition(snd_config_t* definition, int depth, bool slaves)
     {
         each_member(definition, [&](const std::string& id, snd_config_t* member) {
-            const char* said = nullptr;
+            const char* text = nullptr;
             if (id == "capture" || id == "hint")
                 return;
             if (snd_config_get_type(member) == SND_CONFIG_TYPE_COMPOUND) {
                 if (!full(depth))
                     add_definition(member, depth, id == "slaves");
-            } else if (snd_config_get_string(member, &said) < 0 || said == nullptr)
+            } else if (snd_config_get_string(member, &text) < 0 || text == nullptr)
                 return;
             else if (id == "type")
-                found_.emplace_back(said);
+                found_.emplace_back(text);
             else if (id == "pcm")
-                name("pcm", said, depth);
+                name("pcm", text, depth);
             else if (slaves || id == "slave" || id == "playback")
-                name("pcm_slave", said, depth);
+                name("pcm_slave", text, depth);
         });
     }
 

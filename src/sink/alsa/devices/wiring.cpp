@@ -45,11 +45,11 @@ snd_config_t* member(snd_config_t* compound, const char* id)
 
 std::string text(snd_config_t* value)
 {
-    char* said = nullptr;
-    if (value == nullptr || snd_config_get_ascii(value, &said) < 0 || said == nullptr)
+    char* text = nullptr;
+    if (value == nullptr || snd_config_get_ascii(value, &text) < 0 || text == nullptr)
         return {};
-    const std::unique_ptr<char, deleter<std::free>> freed(said);
-    return said;
+    const std::unique_ptr<char, deleter<std::free>> freed(text);
+    return text;
 }
 
 // Reads a number as libasound does: any base, and no other text. Returns most_channels for a number that no
@@ -144,10 +144,10 @@ private:
         snd_config_t* pcm = definition == nullptr ? nullptr : member(definition, "pcm");
         if (pcm == nullptr)
             throw hidden{"a slave that is not defined"};
-        long said = 0;
+        long count = 0;
         if (snd_config_t* n = member(definition, "channels");
-            n != nullptr && snd_config_get_integer(n, &said) >= 0)
-            channels = static_cast<unsigned>(std::clamp(said, 0L, long{most_channels}));
+            n != nullptr && snd_config_get_integer(n, &count) >= 0)
+            channels = static_cast<unsigned>(std::clamp(count, 0L, long{most_channels}));
         return at(pcm, channels, depth + 1);
     }
 
