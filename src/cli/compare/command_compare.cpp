@@ -34,7 +34,7 @@ using detail::comparison_row;
 template <class Enum>
 std::string join_names()
 {
-    return fmt::format("{}", fmt::join(detail::names_of<Enum>(), ","));
+    return fmt::format("{}", fmt::join(detail::kind_names<Enum>(), ","));
 }
 
 // "a,b,c", each once, in the order given.

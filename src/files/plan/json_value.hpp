@@ -51,7 +51,7 @@ public:
     std::optional<Kind> kind() const
     {
         const std::optional<std::string> name = text();
-        const std::optional<Kind> k = name ? detail::kind_named<Kind>(*name) : std::nullopt;
+        const std::optional<Kind> k = name ? detail::find_kind<Kind>(*name) : std::nullopt;
         if (name && !k)
             refuse("is \"" + *name + "\", which is not known");
         return k;

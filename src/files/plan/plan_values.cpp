@@ -43,7 +43,7 @@ burst read_place(const json_value& f)
 void check_amplitudes(const json_value& f, const std::string& name, const plan& p, const burst& b)
 {
     constexpr double rounding = 1e-9;
-    if (!detail::kind_named<phantom_kind>(p.phantom))
+    if (!detail::find_kind<phantom_kind>(p.phantom))
         return;
     for (const drive& d : b.drives)
         if (d.amplitude > b.intensity * (1.0 + rounding))
