@@ -21,6 +21,7 @@
 
 #include "folder.hpp"
 #include "has.hpp"
+#include "message_of.hpp"
 #include "player_support.hpp"
 #include "rig.hpp"
 #include "scores.hpp"
@@ -48,16 +49,6 @@ int system_cause(const std::function<void()>& call)
             CHECK(e.os_code() == cause.code().value());
             return cause.code().value();
         }
-    }
-    return 0;
-}
-
-int os_code(const std::function<void()>& call)
-{
-    try {
-        call();
-    } catch (const error& e) {
-        return e.os_code();
     }
     return 0;
 }

@@ -3,7 +3,6 @@
 #include "net/listen.hpp"
 
 #include <cerrno>
-#include <functional>
 #include <string>
 
 #include <doctest/doctest.h>
@@ -15,25 +14,12 @@
 
 #include "folder.hpp"
 #include "has.hpp"
+#include "message_of.hpp"
 
 namespace listen_test {
 
 using namespace tactor;
 using namespace tactor::net;
-
-namespace {
-
-int os_code(const std::function<void()>& call)
-{
-    try {
-        call();
-    } catch (const error& e) {
-        return e.os_code();
-    }
-    return 0;
-}
-
-} // namespace
 
 TEST_CASE("a locked folder is not awaited without end")
 {

@@ -8,11 +8,10 @@
 
 #include <doctest/doctest.h>
 
-#include <tactor/error.hpp>
-
 #include "count_allocations.hpp"
 #include "descriptors_left.hpp"
 #include "folder.hpp"
+#include "message_of.hpp"
 
 namespace system_files_test {
 
@@ -36,14 +35,9 @@ TEST_CASE("contents of a folder and of a file; a missing one is empty")
 
 EXHAUSTING_TEST_CASE("without a descriptor nothing counts as empty")
 {
-    const auto code_of = [](auto call) {
+    const auto refused = [](auto call) {
         const test::descriptors_left none(0);
-        try {
-            call();
-        } catch (const error& e) {
-            return e.os_code();
-        }
-        return 0;
+        return os_code(call);
     };
     CHECK(code_of([] { static_cast<void>(rt::names_in("/proc")); }) == EMFILE);
     CHECK(code_of([] { static_cast<void>(rt::read_file("/proc/self/status")); }) == EMFILE);

@@ -30,3 +30,15 @@ std::string field_of(F call)
     }
     return "no error";
 }
+
+/// Returns the errno of a call's error; 0 for none.
+template <class F>
+int os_code(F call)
+{
+    try {
+        call();
+    } catch (const tactor::error& e) {
+        return e.os_code();
+    }
+    return 0;
+}
