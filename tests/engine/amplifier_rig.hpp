@@ -113,7 +113,6 @@ struct amplifier_rig : rig {
             driver.update();
         }
     }
-    void stop() { link.requests.push({.what = engine::request::kind::stop, .closing = false}); }
     /// Returns the log since the last call.
     event_log news() { return std::exchange(*log, {}); }
 
@@ -142,26 +141,14 @@ private:
     }
 };
 
-inline std::string reason(const amplifier_rig& r, stroke_id id)
-{
-    return r.report(id) ? r.report(id)->why : "no report";
-}
-
 /// A stroke that sounds, with the amplifier on.
 struct playing : amplifier_rig {
     explicit playing(rig_options o = {}) : amplifier_rig(std::move(o))
     {
-        REQUIRE(start().status == io_kind::ok);
         warm_up();
         id = submit(tone(2.0));
         play(4800);
         CHECK(news() == event_log{"prepare", "start", "on"});
-    }
-    void xrun()
-    {
-        dac.advance(1000);
-        step();
-        control();
     }
     stroke_id id = {};
 };

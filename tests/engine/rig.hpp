@@ -16,6 +16,8 @@
 
 #include <poll.h>
 
+#include <doctest/doctest.h>
+
 #include <tactor/sink.hpp>
 
 #include "engine/audio/audio_loop.hpp"
@@ -82,6 +84,7 @@ struct rig_options {
     std::function<std::unique_ptr<sink>(std::unique_ptr<sink>)> wrap{};
     engine::loop_options loop{};
     fake_dac_options dac{};
+    bool started = true; ///< by the constructor
 };
 
 class rig {
@@ -101,6 +104,8 @@ public:
           loop(wrapped(o), link, limits, o.loop),
           options(o)
     {
+        if (o.started)
+            REQUIRE(start().status == io_kind::ok);
     }
 
     io_result start() { return loop.start(now); }
@@ -155,6 +160,22 @@ public:
         }
     }
 
+    /// Asks for the end of the stream, as stop() or the destructor of a player does.
+    void stop(bool closing = false)
+    {
+        if (closing)
+            feed.set_closing();
+        link.requests.push({.what = engine::request::kind::stop, .closing = closing});
+    }
+
+    /// Lets the DAC run dry, and both threads notice.
+    void xrun()
+    {
+        dac.advance(1000);
+        step();
+        control();
+    }
+
     /// Plays until all strokes have ended; gives up after a while.
     void play_out()
     {
@@ -169,6 +190,14 @@ public:
         if (found == ended.end() || found->second.size() != 1)
             return std::nullopt;
         return found->second.front();
+    }
+
+    /// Returns the only report of a stroke; fails without one.
+    stroke_report end(stroke_id id) const
+    {
+        const auto r = report(id);
+        REQUIRE(r);
+        return *r;
     }
 
     /// Returns frames captured from `from` on; zeros beyond the end.

@@ -42,10 +42,7 @@ inline score random_score(std::uint64_t seed, unsigned bursts, unsigned channels
         p.total_s = b.onset_s + b.duration_s;
         p.stroke_duration_s = p.total_s;
     }
-    render_options o;
-    o.rate = rate;
-    o.channels = channels;
-    return {a, {{.plan = p, .start_s = {}}}, o};
+    return {a, p, {.channels = channels}};
 }
 
 /// Makes a burst on one tactor.
@@ -58,9 +55,7 @@ inline score tone(double seconds, unsigned tactor = 0)
     p.bursts.push_back(b);
     p.total_s = seconds;
     p.stroke_duration_s = seconds;
-    render_options o;
-    o.rate = rate;
-    return {palm(), {{.plan = p, .start_s = {}}}, o};
+    return {palm(), p};
 }
 
 /// Renders a score offline, in one call.

@@ -59,7 +59,7 @@ score random_stroke(std::mt19937_64& random, const render_options& o)
         p.bursts.push_back(b);
     }
     p.stroke_duration_s = p.total_s;
-    return {row(), {{.plan = p, .start_s = {}}}, o};
+    return {row(), p, o};
 }
 
 struct totals {
@@ -84,7 +84,6 @@ public:
 
     void run(totals& t)
     {
-        REQUIRE(r_.start().status == io_kind::ok);
         for (std::uint64_t i = 0; i < most_periods_ && !r_.loop.over(); ++i) {
             producers();
             trouble();
@@ -213,7 +212,7 @@ private:
 
     void finish()
     {
-        r_.link.requests.push({.what = engine::request::kind::stop});
+        r_.stop();
         r_.dac.wake(true);
         for (int i = 0; i < 4000 && !r_.feed.stream_over(); ++i) {
             set_allowed();

@@ -63,7 +63,7 @@ TEST_CASE("a line that never goes off is tried for a second, and the stream's re
     CHECK(r.link.amplifier.stuck);
     CHECK_FALSE(r.link.amplifier.off);
     CHECK(r.feed.end().why == may_be_on);
-    CHECK(r.report(r.id)->state == state_kind::cancelled);
+    CHECK(r.end(r.id).state == state_kind::cancelled);
 
     r.driver.close(); // a last try, refused too
     CHECK(offs(r.news()) == 1);
@@ -84,10 +84,10 @@ TEST_CASE("a mute that is refused once is retried, and the stream goes on")
     CHECK(offs(r.news()) == 3);
     r.play(9600);
     CHECK(r.news() == event_log{"on"});
-    CHECK(reason(r, r.id) == "the amplifier was off");
+    CHECK(r.end(r.id).why == "the amplifier was off");
     const stroke_id next = r.submit(tone(0.1));
     r.play_out();
-    CHECK(r.report(next)->state == state_kind::finished);
+    CHECK(r.end(next).state == state_kind::finished);
 }
 
 TEST_CASE("a mute that stays refused ends the stream")
@@ -117,23 +117,29 @@ TEST_CASE("a device lost while the line refuses: the reason names the line that 
     }
     r.control();
     CHECK(r.loop.over());
-    CHECK(reason(r, r.id) == "the device is gone");
+    CHECK(r.end(r.id).why == "the device is gone");
     CHECK(r.feed.end().why == may_be_on);
 }
 
-TEST_CASE("a line that refuses to go on is switched off, since it may have gone on")
+TEST_CASE("a line that refuses to go on is switched off, since it may have gone on, and ends the stream")
 {
-    amplifier_rig r;
-    r.line.works = false;
-    r.line.refusals = 1;
-    REQUIRE(r.start().status == io_kind::ok);
-    const stroke_id id = r.submit(tone(0.1));
-    r.play(9600);
-    r.control();
-    CHECK(r.loop.over());
-    CHECK(r.news() == event_log{"prepare", "start", "on", "off", "off", "drop"});
-    CHECK(reason(r, id) == "the amplifier's line cannot be switched");
-    CHECK(r.feed.end().why == "the amplifier's line cannot be switched");
+    for (const unsigned refusals : {0U, 1U}) {
+        CAPTURE(refusals);
+        amplifier_rig r;
+        r.line.works = false;
+        r.line.refusals = refusals;
+        const stroke_id id = r.submit(tone(0.1));
+        r.play(9600);
+        r.control();
+        CHECK(r.loop.over());
+        event_log expected{"prepare", "start", "on", "off", "drop"};
+        expected.insert(expected.end() - 1, refusals, "off");
+        CHECK(r.news() == expected);
+        CHECK(r.end(id).state == state_kind::interrupted);
+        CHECK(r.end(id).why == "the amplifier's line cannot be switched");
+        CHECK(r.feed.end().why == "the amplifier's line cannot be switched");
+        CHECK_FALSE(r.first_sound());
+    }
 }
 
 TEST_CASE("a lost line counts as on until it is switched off")

@@ -18,7 +18,6 @@ using namespace tactor::test;
 TEST_CASE("a stroke submitted at once waits until the amplifier has settled, and is whole")
 {
     amplifier_rig r;
-    REQUIRE(r.start().status == io_kind::ok);
     const score s = random_score(3, 4);
     const stroke_id id = r.submit(s);
     std::uint64_t on_at = 0;
@@ -32,7 +31,7 @@ TEST_CASE("a stroke submitted at once waits until the amplifier has settled, and
     REQUIRE(r.first_sound());
     CHECK(*r.first_sound() >= on_at + 480);
     CHECK(*r.first_sound() <= on_at + 480 + 4 * 96 + 960);
-    CHECK(r.report(id)->state == state_kind::finished);
+    CHECK(r.end(id).state == state_kind::finished);
     const std::uint64_t first = *r.first_sound() - 1; // a sine begins with 0
     CHECK(r.captured(first, s.frames()) == rendered(s, format_kind::s32));
     CHECK(r.news() == event_log{"prepare", "start", "on"});
@@ -55,7 +54,7 @@ TEST_CASE("stop fades, plays silence, switches off, and only then drops")
     r.control();
     CHECK(r.loop.over());
     CHECK(r.news() == event_log{"off", "drop"});
-    CHECK(r.report(r.id)->state == state_kind::cancelled);
+    CHECK(r.end(r.id).state == state_kind::cancelled);
 }
 
 TEST_CASE("a stop that gets no answer ends after two seconds of zeros, with the reason")
@@ -80,13 +79,13 @@ TEST_CASE("one xrun leaves the amplifier on; the stroke is interrupted, the next
     const std::uint64_t cut = r.dac.captured_frames();
     r.xrun();
     CHECK(r.news() == event_log{"prepare", "start"});
-    CHECK(reason(r, r.id) == "xrun: the device ran dry");
+    CHECK(r.end(r.id).why == "xrun: the device ran dry");
     r.play(9600);
     CHECK_FALSE(r.first_sound(cut));
     const score s = random_score(2, 3);
     const stroke_id next = r.submit(s);
     r.play_out();
-    CHECK(r.report(next)->state == state_kind::finished);
+    CHECK(r.end(next).state == state_kind::finished);
     CHECK(r.news().empty());
 }
 
@@ -105,7 +104,7 @@ TEST_CASE("two xruns in a second mute; a new stroke waits for the amplifier")
     CHECK_FALSE(r.line.is_on);
     r.play_out();
     CHECK(r.news() == event_log{"on"});
-    CHECK(r.report(next)->state == state_kind::finished);
+    CHECK(r.end(next).state == state_kind::finished);
     CHECK(r.captured(*r.first_sound(muted) - 1, s.frames()) == rendered(s, format_kind::s32));
 }
 
@@ -150,7 +149,7 @@ TEST_CASE("a device that is unplugged, fails to start again or stands still: off
         REQUIRE(log.size() >= 2);
         CHECK(log.back() == "drop");
         CHECK(std::count(log.begin(), log.end(), "off") == 1);
-        CHECK(r.report(r.id)->state == state_kind::interrupted);
+        CHECK(r.end(r.id).state == state_kind::interrupted);
     }
 }
 
@@ -161,7 +160,7 @@ TEST_CASE("a system that sleeps switches off; waking up follows the order of a s
     r.step();
     r.control();
     CHECK(r.news() == event_log{"off"});
-    CHECK(reason(r, r.id) == "the system was suspended");
+    CHECK(r.end(r.id).why == "the system was suspended");
     r.wait(3000 * ms);
     r.dac.wake(true);
     for (int i = 0; i < 40; ++i)
@@ -208,7 +207,6 @@ TEST_CASE("EINTR, no space and idle wake-ups do not touch the line")
 TEST_CASE("short writes, writes of nothing and EAGAIN leave the samples and the line as they are")
 {
     amplifier_rig r;
-    REQUIRE(r.start().status == io_kind::ok);
     r.warm_up();
     const score s = random_score(8, 5);
     const std::uint64_t from = r.dac.captured_frames();
@@ -222,7 +220,7 @@ TEST_CASE("short writes, writes of nothing and EAGAIN leave the samples and the 
         r.play(96);
         REQUIRE(r.dac.captured_frames() < from + s.frames() + 48'000);
     }
-    CHECK(r.report(id)->state == state_kind::finished);
+    CHECK(r.end(id).state == state_kind::finished);
     const auto first = r.first_sound(from);
     REQUIRE(first);
     CHECK(r.captured(*first - 1, s.frames()) == rendered(s, format_kind::s32));
@@ -241,7 +239,7 @@ TEST_CASE("a write that fails for good switches off, then drops, and reports the
         r.control();
         CHECK(r.loop.over());
         CHECK(r.news() == event_log{"off", "drop"});
-        CHECK(reason(r, r.id) == why);
+        CHECK(r.end(r.id).why == why);
     }
 }
 

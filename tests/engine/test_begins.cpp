@@ -11,10 +11,8 @@
 #include <tactor/player.hpp>
 
 #include "clock_runner.hpp"
-#include "fake_dac.hpp"
 #include "player_support.hpp"
 #include "scores.hpp"
-#include "sink/alsa/adopt.hpp"
 
 namespace begins_test {
 
@@ -23,11 +21,10 @@ using namespace tactor::test;
 
 TEST_CASE("each stroke's beginning is reported once and before its end, with the time that its report has")
 {
-    fake_dac dac;
     std::mutex mutex;
     std::map<stroke_id, std::vector<std::optional<std::int64_t>>> begun;
     std::map<stroke_id, bool> ended;
-    player p(pcm::adopt(dac.pcm(), nine()), palm(), patient());
+    dac_player p;
     bool before = true;
     p.on_begin([&](stroke_id id, std::optional<std::int64_t> at_ns) {
         const std::lock_guard lock(mutex);
@@ -38,7 +35,7 @@ TEST_CASE("each stroke's beginning is reported once and before its end, with the
         const std::lock_guard lock(mutex);
         ended[r.id] = true;
     });
-    const running_clock clock(dac);
+    const running_clock clock(p.dac);
     const live_stroke live = p.begin({.timeout_s = 86400.0});
     CHECK(live.id().number != 0);
     std::vector<stroke_id> ids{live.id()};
@@ -67,10 +64,9 @@ TEST_CASE("each stroke's beginning is reported once and before its end, with the
 
 TEST_CASE("a handler of beginnings that throws ends the stream, as others do")
 {
-    fake_dac dac;
-    player p(pcm::adopt(dac.pcm(), nine()), palm(), patient());
+    dac_player p;
     p.on_begin([](stroke_id, std::optional<std::int64_t>) { throw 1; });
-    const running_clock clock(dac);
+    const running_clock clock(p.dac);
     // An endless one: another may have finished before the handler is called.
     const live_stroke live = p.begin({.timeout_s = 86400.0});
     auto moved = live;

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Samples that cannot be computed in mid-stroke, as without memory: a stroke that ends early never counts as
 // finished.
-#include <cmath>
 #include <limits>
 #include <memory>
 #include <stdexcept>
@@ -75,9 +74,7 @@ score made(const std::shared_ptr<fault>& broken, double from_s)
             throw 7;
         }
     });
-    render_options o;
-    o.rate = rate;
-    return {palm(), {{.plan = p, .start_s = {}}}, o};
+    return {palm(), p};
 }
 
 struct sample {
@@ -113,12 +110,10 @@ TEST_CASE("a plan that fails in mid-stroke interrupts the stroke with the reason
             rig_options o;
             o.period = period;
             rig r(o);
-            REQUIRE(r.start().status == io_kind::ok);
             const std::uint64_t base = r.status().written;
             const stroke_id id = r.submit(music);
             r.play_out();
-            REQUIRE(r.report(id));
-            const stroke_report report = *r.report(id);
+            const stroke_report report = r.end(id);
             CHECK(report.state == state_kind::interrupted);
             CHECK(report.why.find("the plan failed at 0.3") == 0);
             CHECK(report.why.find(s.why) != std::string::npos);
@@ -143,15 +138,12 @@ TEST_CASE("a plan that exceeds its promise by a rounding does not fail")
     plan p;
     p.total_s = p.stroke_duration_s = 0.1;
     p.curve = test::make_curve(0.1, [&](double, burst& out) { out.drives = {{4, amplitude}}; });
-    render_options o;
-    o.rate = rate;
-    const score music(palm(), {{.plan = p, .start_s = {}}}, o);
+    const score music(palm(), p);
     amplitude = std::nextafter(0.5, 1.0);
     rig r;
-    REQUIRE(r.start().status == io_kind::ok);
     const stroke_id id = r.submit(music);
     r.play_out();
-    CHECK(r.report(id)->state == state_kind::finished);
+    CHECK(r.end(id).state == state_kind::finished);
 }
 
 TEST_CASE("a plan that fails at its first point is interrupted before it sounds")
@@ -160,15 +152,13 @@ TEST_CASE("a plan that fails at its first point is interrupted before it sounds"
     const score music = made(broken, 0.0);
     *broken = fault::throws;
     rig r;
-    REQUIRE(r.start().status == io_kind::ok);
     const stroke_id now = r.submit(music);
     const stroke_id later = r.submit(music, r.status().written + 9600);
     r.play_out();
     for (const stroke_id id : {now, later}) {
-        REQUIRE(r.report(id));
-        CHECK(r.report(id)->state == state_kind::interrupted);
-        CHECK(r.report(id)->why == "the plan failed at 0 s of the stroke: the model has no idea");
-        CHECK(r.report(id)->frames == 0);
+        CHECK(r.end(id).state == state_kind::interrupted);
+        CHECK(r.end(id).why == "the plan failed at 0 s of the stroke: the model has no idea");
+        CHECK(r.end(id).frames == 0);
     }
     CHECK_FALSE(r.first_sound());
 }
@@ -179,26 +169,25 @@ TEST_CASE("a stroke that fails leaves the others alone")
     const score music = made(broken, 0.2);
     *broken = fault::nan;
     rig r;
-    REQUIRE(r.start().status == io_kind::ok);
     const stroke_id before = r.submit(tone(0.5));
     const stroke_id fails = r.submit(music);
     const stroke_id after = r.submit(tone(0.1), r.status().written + rate);
     r.play_out();
-    CHECK(r.report(before)->state == state_kind::finished);
-    CHECK(r.report(fails)->state == state_kind::interrupted);
-    CHECK(r.report(after)->state == state_kind::finished);
+    CHECK(r.end(before).state == state_kind::finished);
+    CHECK(r.end(fails).state == state_kind::interrupted);
+    CHECK(r.end(after).state == state_kind::finished);
     // A cancel before the failure counts as a cancel, and a score that fails keeps no place.
     const stroke_id cancelled = r.submit(music);
     r.play(960);
     r.feed.cancel(cancelled);
     r.play_out();
-    CHECK(r.report(cancelled)->state == state_kind::cancelled);
-    CHECK(r.report(cancelled)->why.empty());
+    CHECK(r.end(cancelled).state == state_kind::cancelled);
+    CHECK(r.end(cancelled).why.empty());
     for (int n = 0; n < 600; ++n)
         r.submit(music);
     r.play_out();
     CHECK(r.ended.size() == r.last_id);
-    CHECK(r.report(r.last())->state == state_kind::interrupted);
+    CHECK(r.end(r.last()).state == state_kind::interrupted);
 }
 
 } // namespace broken_plan_test

@@ -35,7 +35,6 @@ TEST_CASE("the length of each xrun is kept, of many the newest")
     rig_options o;
     o.wrap = [](std::unique_ptr<sink> s) { return std::make_unique<dry_sink>(std::move(s)); };
     rig r(o);
-    REQUIRE(r.start().status == io_kind::ok);
     for (unsigned i = 1; i <= 70; ++i) {
         r.play(rate); // more than three in a second end the stream
         r.dac.advance(1 << 20);
@@ -50,7 +49,6 @@ TEST_CASE("the length of each xrun is kept, of many the newest")
 TEST_CASE("a device that does not stamp its stop still gives the length of an xrun")
 {
     rig r;
-    REQUIRE(r.start().status == io_kind::ok);
     r.play(960);
     r.dac.advance(1 << 20);
     r.step();

@@ -47,7 +47,7 @@ score broad()
     p.stroke_duration_s = 0.15;
     render_options r;
     r.level_dbfs = -60.0;
-    return {make_grid("8x8", 8, 8, 20.0, 20.0), {{.plan = p, .start_s = {}}}, r};
+    return {make_grid("8x8", 8, 8, 20.0, 20.0), p, r};
 }
 
 // Counts strokes by the state and reason of their end.
@@ -56,7 +56,6 @@ std::map<std::string, int> play_at_once(const score& s, std::uint64_t at, int st
     rig_options o;
     o.channels = s.channels();
     rig r(o);
-    REQUIRE(r.start().status == io_kind::ok);
     for (int i = 0; i < strokes; ++i)
         r.submit(s, at);
     r.play_out();
@@ -83,7 +82,6 @@ TEST_CASE("400 strokes at once all play")
 TEST_CASE("64 continuous strokes wake the control side in few of the periods")
 {
     rig r;
-    REQUIRE(r.start().status == io_kind::ok);
     for (int i = 0; i < 64; ++i)
         r.submit(drawn(algorithm_kind::continuous), 0);
     r.link.to_control.consume();
@@ -100,7 +98,7 @@ TEST_CASE("64 continuous strokes wake the control side in few of the periods")
     CHECK(periods > 400);
     CHECK(wakes < periods / 3);
     for (const auto& [id, reports] : r.ended)
-        CHECK(r.report(id)->state == state_kind::finished);
+        CHECK(r.end(id).state == state_kind::finished);
 }
 
 TEST_CASE("strokes beyond the mixer's space are reported as too many, with a hint")

@@ -16,7 +16,6 @@
 #include "player_support.hpp"
 #include "rt/clock.hpp"
 #include "scores.hpp"
-#include "sink/alsa/adopt.hpp"
 
 namespace drive_history_test {
 
@@ -36,13 +35,12 @@ player_options one_second()
 
 std::uint64_t count_cuts(const player_options& o, double seconds, drive_history& after, unsigned tactor = 0)
 {
-    fake_dac dac;
-    player p(pcm::adopt(dac.pcm(), nine()), palm(), o);
+    dac_player p(o);
     {
-        const running_clock clock(dac);
+        const running_clock clock(p.dac);
         p.wait(p.submit(tone(seconds, tactor)));
     }
-    dac.disconnect();
+    p.dac.disconnect();
     p.stop();
     after = p.history();
     return p.stats().drives_cut;
@@ -68,10 +66,9 @@ TEST_CASE("a device that is lost and opened again does not give a tactor its tim
 
 TEST_CASE("a running stream refuses to give its history")
 {
-    fake_dac dac;
-    player p(pcm::adopt(dac.pcm(), nine()), palm(), one_second());
+    dac_player p(one_second());
     CHECK_THROWS_WITH_AS(static_cast<void>(p.history()), doctest::Contains("stop() it first"), error);
-    const running_clock clock(dac);
+    const running_clock clock(p.dac);
     p.stop();
     CHECK_NOTHROW(static_cast<void>(p.history()));
     CHECK_NOTHROW(static_cast<void>(p.history()));

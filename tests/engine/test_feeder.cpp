@@ -55,9 +55,7 @@ score bursts_at(const std::vector<std::uint64_t>& frames)
         p.total_s = b.onset_s + b.duration_s;
         p.stroke_duration_s = p.total_s;
     }
-    render_options o;
-    o.rate = rate;
-    return {palm(), p, o};
+    return {palm(), p};
 }
 
 } // namespace

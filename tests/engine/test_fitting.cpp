@@ -92,9 +92,7 @@ std::string complaint(const array& a, const score& s)
 // Returns the field that a player of nine channels at 48 kHz refuses.
 std::string refused_field(const score& s)
 {
-    fake_dac dac;
-    const running_clock clock(dac);
-    player p(pcm::adopt(dac.pcm(), nine()), palm(), patient());
+    clocked_player p;
     return field_of([&] { p.submit(s); });
 }
 

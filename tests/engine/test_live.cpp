@@ -81,7 +81,7 @@ TEST_CASE("samples do not jump when points do")
         const double allowed = live_level * (2 * 3.1416 * 250 / rate + 1.0 / 48);
         for (unsigned c = 0; c < 9; ++c)
             CHECK(largest_step(r.channel(c)) < allowed);
-        CHECK(r.report({1})->state == state_kind::finished);
+        CHECK(r.end({1}).state == state_kind::finished);
     }
 }
 
@@ -110,8 +110,8 @@ TEST_CASE("a live stroke of bursts plays one each SOA, at the newest position, a
     }
     r.live->voice.request(engine::live_voice::action::end);
     r.play_out();
-    CHECK(r.report({1})->state == state_kind::finished);
-    CHECK(r.report({1})->frames % 2880 == duration);
+    CHECK(r.end({1}).state == state_kind::finished);
+    CHECK(r.end({1}).frames % 2880 == duration);
 }
 
 TEST_CASE("points in time keep a stroke of bursts alive, however seldom a burst takes one")
@@ -129,8 +129,7 @@ TEST_CASE("points in time keep a stroke of bursts alive, however seldom a burst 
     // The time-out counts from the burst that took the last point.
     r.play(48000);
     r.play(9600);
-    REQUIRE(r.report({1}));
-    CHECK(r.report({1})->reason == reason_kind::starved);
+    CHECK(r.end({1}).reason == reason_kind::starved);
 }
 
 TEST_CASE("bursts in a row on one tactor continue the stroke's sine, or each begins anew if asked for")
@@ -261,9 +260,7 @@ TEST_CASE("live strokes that are weak one by one count by their sum, together wi
     weak.render.level_dbfs = -41.0;
     const auto cuts = [&](unsigned strokes, bool continuous) {
         live_rig r(weak, few);
-        std::vector<std::shared_ptr<live_stroke::impl>> all{r.live};
-        while (all.size() < strokes)
-            all.push_back(r.add(weak));
+        const auto all = r.fill(strokes, weak);
         if (continuous) {
             plan_options o;
             o.algorithm = algorithm_kind::continuous;

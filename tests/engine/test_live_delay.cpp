@@ -2,7 +2,6 @@
 // Delay of points of live strokes, from their time stamps to the DAC.
 #include <cmath>
 #include <cstdint>
-#include <optional>
 
 #include <doctest/doctest.h>
 
@@ -24,12 +23,12 @@ double ahead_s(live_rig& r)
 }
 
 /// Ends the stroke and plays it out.
-std::optional<stroke_report> end_and_report(live_rig& r, live_stroke::impl& s,
-                                            engine::live_voice::action w = engine::live_voice::action::end)
+stroke_report end_and_report(live_rig& r, live_stroke::impl& s,
+                             engine::live_voice::action w = engine::live_voice::action::end)
 {
     s.voice.request(w);
     r.play_out();
-    return r.report(s.id);
+    return r.end(s.id);
 }
 
 } // namespace
@@ -51,12 +50,11 @@ TEST_CASE("a live stroke's report has the delay of its points to the DAC")
     CHECK(r.live->to({30.0, 20.0}, 1.0, r.now - 900'000'000)); // overtaken
     point(7.0, 0);
     const auto report = end_and_report(r, *r.live);
-    REQUIRE(report);
-    REQUIRE(report->delay);
-    CHECK(report->delay->points == 5);
-    CHECK(std::abs(report->delay->least_s - (buffered - 0.001)) < 2e-5);
-    CHECK(std::abs(report->delay->most_s - (buffered + 0.003)) < 2e-5);
-    CHECK(std::abs(report->delay->mean_s - (buffered + 0.002 / 5)) < 2e-5);
+    REQUIRE(report.delay);
+    CHECK(report.delay->points == 5);
+    CHECK(std::abs(report.delay->least_s - (buffered - 0.001)) < 2e-5);
+    CHECK(std::abs(report.delay->most_s - (buffered + 0.003)) < 2e-5);
+    CHECK(std::abs(report.delay->mean_s - (buffered + 0.002 / 5)) < 2e-5);
 }
 
 TEST_CASE("a live stroke of one point has the delay of its first sample, even in a stream that just began")
@@ -66,14 +64,13 @@ TEST_CASE("a live stroke of one point has the delay of its first sample, even in
     CHECK(r.live->to({20.0, 20.0}, 1.0, stamp));
     r.play(960);
     const auto report = end_and_report(r, *r.live);
-    REQUIRE(report);
-    REQUIRE(report->started_ns);
-    REQUIRE(report->delay);
-    CHECK(report->delay->points == 1);
-    const double s = 1e-9 * static_cast<double>(*report->started_ns - stamp);
-    CHECK(report->delay->least_s == s);
-    CHECK(report->delay->mean_s == s);
-    CHECK(report->delay->most_s == s);
+    REQUIRE(report.started_ns);
+    REQUIRE(report.delay);
+    CHECK(report.delay->points == 1);
+    const double s = 1e-9 * static_cast<double>(*report.started_ns - stamp);
+    CHECK(report.delay->least_s == s);
+    CHECK(report.delay->mean_s == s);
+    CHECK(report.delay->most_s == s);
 }
 
 TEST_CASE("in a stroke of bursts a point's delay is to the burst that has it")
@@ -86,10 +83,9 @@ TEST_CASE("in a stroke of bursts a point's delay is to the burst that has it")
     CHECK(r.live->to({0.0, 20.0}, 1.0, r.now)); // 70 ms after the first one's burst, 2 ms of which are over
     r.play(4800);
     const auto report = end_and_report(r, *r.live);
-    REQUIRE(report);
-    REQUIRE(report->delay);
-    CHECK(report->delay->points == 2);
-    CHECK(std::abs(report->delay->most_s - (buffered + 0.07 - 0.002)) < 2e-5);
+    REQUIRE(report.delay);
+    CHECK(report.delay->points == 2);
+    CHECK(std::abs(report.delay->most_s - (buffered + 0.07 - 0.002)) < 2e-5);
 }
 
 TEST_CASE("without a sounding point there is no delay, and a time stamp is of CLOCK_MONOTONIC")
@@ -98,20 +94,17 @@ TEST_CASE("without a sounding point there is no delay, and a time stamp is of CL
     CHECK_THROWS_AS(r.live->to({20.0, 20.0}, 1.0, -1), error);
     r.play(960);
     const auto silent = end_and_report(r, *r.live, engine::live_voice::action::cancel);
-    REQUIRE(silent);
-    CHECK_FALSE(silent->delay);
+    CHECK_FALSE(silent.delay);
 
     const auto far = r.add();
     CHECK(far->to({20.0, 20.0}, 1.0, INT64_MAX)); // reported unchanged
     r.play(960);
     const auto report = end_and_report(r, *far);
-    REQUIRE(report);
-    REQUIRE(report->delay);
-    CHECK(report->delay->most_s < -9e9);
+    REQUIRE(report.delay);
+    CHECK(report.delay->most_s < -9e9);
 
     const stroke_id played = r.submit(tone(0.01));
     r.play_out();
-    const auto other = r.report(played);
-    REQUIRE(other);
-    CHECK_FALSE(other->delay);
+    const auto other = r.end(played);
+    CHECK_FALSE(other.delay);
 }

@@ -31,9 +31,8 @@ TEST_CASE("a live stroke that ends fades, plays its last point, and is reported 
     CHECK_FALSE(r.live->to({0.0, 40.0}, 1.0));
     const std::uint64_t end = r.status().written + 96 + 480;
     r.play(9600);
-    REQUIRE(r.report({1}));
-    CHECK(r.report({1})->state == state_kind::finished);
-    CHECK(r.report({1})->frames == end - base);
+    CHECK(r.end({1}).state == state_kind::finished);
+    CHECK(r.end({1}).frames == end - base);
     CHECK(peak(r.channel(8), 0, SIZE_MAX) > 0.7 * live_level);
     CHECK(peak(r.channel(6), 0, SIZE_MAX) == 0.0);
     CHECK_FALSE(r.first_sound(end));
@@ -52,11 +51,11 @@ TEST_CASE("a live stroke without a point is finished with nothing when ended, an
     other->voice.request(engine::live_voice::action::cancel);
     CHECK(r.feed.cancel({3}));
     r.play(960);
-    CHECK(r.report({1})->state == state_kind::finished);
-    CHECK(r.report({2})->state == state_kind::cancelled);
-    CHECK(r.report({3})->state == state_kind::cancelled);
+    CHECK(r.end({1}).state == state_kind::finished);
+    CHECK(r.end({2}).state == state_kind::cancelled);
+    CHECK(r.end({3}).state == state_kind::cancelled);
     for (const std::uint32_t n : {1U, 2U, 3U})
-        CHECK(r.report({n})->frames == 0);
+        CHECK(r.end({n}).frames == 0);
     CHECK_FALSE(third->to({0, 0}, 1.0));
 }
 
@@ -75,8 +74,7 @@ TEST_CASE("a cancelled live stroke fades, in both renderings and both ways")
                 CHECK(r.feed.cancel({1}));
             const std::uint64_t from = r.status().written;
             r.play(9600);
-            REQUIRE(r.report({1}));
-            CHECK(r.report({1})->state == state_kind::cancelled);
+            CHECK(r.end({1}).state == state_kind::cancelled);
             CHECK_FALSE(r.first_sound(from + 480));
             CHECK(largest_step(r.channel(0)) < live_level * (2 * 3.1416 * 250 / rate + 1.0 / 48));
         }
@@ -96,10 +94,9 @@ TEST_CASE("a live stroke without new points fades after the time-out and is inte
         }
         const std::uint64_t last = r.status().written;
         r.play(48'000);
-        REQUIRE(r.report({1}));
-        CHECK(r.report({1})->state == state_kind::interrupted);
-        CHECK(r.report({1})->why == "no more points came");
-        CHECK(r.report({1})->reason == reason_kind::starved);
+        CHECK(r.end({1}).state == state_kind::interrupted);
+        CHECK(r.end({1}).why == "no more points came");
+        CHECK(r.end({1}).reason == reason_kind::starved);
         CHECK(r.first_sound(last + 9000));
         CHECK_FALSE(r.first_sound(last + 9600 + 480 + 3 * 96 + (as_bursts ? 3360 : 0)));
         CHECK_FALSE(r.live->to({0.0, 0.0}, 1.0));
@@ -120,12 +117,11 @@ TEST_CASE("a live stroke is interrupted after its longest time, to a period, wit
             r.live->to({0.0, 0.0}, 1.0);
             r.play(96);
         }
-        REQUIRE(r.report({1}));
-        CHECK(r.report({1})->state == state_kind::interrupted);
-        CHECK(r.report({1})->why == "it has lasted as long as it may");
-        CHECK(r.report({1})->reason == reason_kind::too_long);
-        CHECK(r.report({1})->frames >= 9600);
-        CHECK(r.report({1})->frames <= 9600 + 96 + 480);
+        CHECK(r.end({1}).state == state_kind::interrupted);
+        CHECK(r.end({1}).why == "it has lasted as long as it may");
+        CHECK(r.end({1}).reason == reason_kind::too_long);
+        CHECK(r.end({1}).frames >= 9600);
+        CHECK(r.end({1}).frames <= 9600 + 96 + 480);
         CHECK_FALSE(r.first_sound(base + 9600 + 96 + 480));
         CHECK_FALSE(r.live->to({0.0, 0.0}, 1.0));
     }
@@ -140,10 +136,9 @@ TEST_CASE("an xrun ends a live stroke that sounds, and spares one that waits for
     r.dac.advance(10'000);
     r.step();
     r.control();
-    REQUIRE(r.report({1}));
-    CHECK(r.report({1})->state == state_kind::interrupted);
-    CHECK(r.report({1})->why == "xrun: the device ran dry");
-    CHECK(r.report({1})->reason == reason_kind::xrun);
+    CHECK(r.end({1}).state == state_kind::interrupted);
+    CHECK(r.end({1}).why == "xrun: the device ran dry");
+    CHECK(r.end({1}).reason == reason_kind::xrun);
     CHECK_FALSE(r.live->to({0.0, 0.0}, 1.0));
     const std::uint64_t from = r.dac.captured_frames();
     CHECK(waits->to({40.0, 40.0}, 1.0));
@@ -151,16 +146,14 @@ TEST_CASE("an xrun ends a live stroke that sounds, and spares one that waits for
     CHECK(r.first_sound(from));
     waits->voice.request(engine::live_voice::action::end);
     r.play_out();
-    CHECK(r.report({2})->state == state_kind::finished);
+    CHECK(r.end({2}).state == state_kind::finished);
 }
 
 TEST_CASE("more live strokes than can sound wait their turn; stop and the device's loss end all")
 {
     for (const bool lost : {false, true}) {
         live_rig r;
-        std::vector<std::shared_ptr<live_stroke::impl>> all{r.live};
-        for (int i = 0; i < 39; ++i)
-            all.push_back(r.add());
+        const auto all = r.fill(40);
         for (auto& s : all)
             s->to({0.0, 0.0}, 0.01);
         r.play(960);
@@ -172,7 +165,7 @@ TEST_CASE("more live strokes than can sound wait their turn; stop and the device
         if (lost)
             r.dac.disconnect();
         else
-            r.link.requests.push({.what = engine::request::kind::stop});
+            r.stop();
         r.play(9600);
         r.step();
         r.control();
@@ -223,9 +216,8 @@ TEST_CASE("a model that exceeds the amplitude it was given interrupts the stroke
             CHECK_FALSE(r.live->to({20.0, 20.0}, 0.0));
             const std::uint64_t from = r.status().written;
             r.play(9600);
-            REQUIRE(r.report({1}));
-            CHECK(r.report({1})->state == state_kind::interrupted);
-            CHECK(r.report({1})->why ==
+            CHECK(r.end({1}).state == state_kind::interrupted);
+            CHECK(r.end({1}).why ==
                   "phantom model \"overdone\" gave tactor 4 amplitude 5e+08, above the 0.5 asked for");
             CHECK_FALSE(r.first_sound(from + 480));
             CHECK(peak(r.channel(4), 0, SIZE_MAX) <= 0.5 * live_level * (1.0 + 1e-8));
@@ -250,11 +242,10 @@ TEST_CASE("a model that exceeds its amplitude ends a stroke before it sounds or 
     r.play(960);
     CHECK(r.ended.size() == 2);
     for (const stroke_id id : {all[1]->id, all.back()->id}) {
-        REQUIRE(r.report(id));
-        CHECK(r.report(id)->state == state_kind::interrupted);
-        CHECK(r.report(id)->frames == 0);
+        CHECK(r.end(id).state == state_kind::interrupted);
+        CHECK(r.end(id).frames == 0);
         // The scale maps 0.1 to 0.01.
-        CHECK(r.report(id)->why ==
+        CHECK(r.end(id).why ==
               "phantom model \"overdone\" gave tactor 4 amplitude 0.01001, above the 0.01 asked for");
     }
     CHECK_FALSE(r.first_sound());
@@ -289,8 +280,8 @@ COUNTING_TEST_CASE("an hour of a live stroke: no heap in the audio thread, nothi
     CHECK(held == 0);
     r.live->voice.request(engine::live_voice::action::end);
     r.play_out();
-    CHECK(r.report({1})->state == state_kind::finished);
-    CHECK(r.report({1})->frames > static_cast<std::uint64_t>(rounds(3600)) * rate);
+    CHECK(r.end({1}).state == state_kind::finished);
+    CHECK(r.end({1}).frames > static_cast<std::uint64_t>(rounds(3600)) * rate);
 }
 
 namespace {
@@ -342,10 +333,9 @@ TEST_CASE("a model that fails ends the stroke with its message; one that refuses
             CHECK(threw);
             CHECK_FALSE(r.live->to({0.0, 0.0}, 1.0));
             r.play(4800);
-            REQUIRE(r.report(r.live->id));
-            CHECK(r.report(r.live->id)->state == state_kind::interrupted);
-            CHECK(r.report(r.live->id)->reason == reason_kind::plan);
-            CHECK(r.report(r.live->id)->why == fmt::format("phantom model \"failing\" failed: {}", why));
+            CHECK(r.end(r.live->id).state == state_kind::interrupted);
+            CHECK(r.end(r.live->id).reason == reason_kind::plan);
+            CHECK(r.end(r.live->id).why == fmt::format("phantom model \"failing\" failed: {}", why));
         }
 }
 

@@ -137,8 +137,8 @@ TEST_CASE(
         r.live->voice.request(how);
         r.play_out();
         const bool ended = how == live_voice::action::end;
-        CHECK(r.report({1})->state == (ended ? state_kind::finished : state_kind::cancelled));
-        CHECK(r.report({1})->frames == came + (ended ? window : 0) + 480);
+        CHECK(r.end({1}).state == (ended ? state_kind::finished : state_kind::cancelled));
+        CHECK(r.end({1}).frames == came + (ended ? window : 0) + 480);
     }
     live_rig still(smoothed());
     still.live->to({10.0, 0.0}, 1.0);
@@ -147,7 +147,7 @@ TEST_CASE(
     const std::uint64_t came = still.status().written - base;
     still.live->voice.request(live_voice::action::end);
     still.play_out();
-    CHECK(still.report({1})->frames == came + 480);
+    CHECK(still.end({1}).frames == came + 480);
 }
 
 TEST_CASE("a refused point leaves the place as it was, even on the way")

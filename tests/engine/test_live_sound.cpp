@@ -113,8 +113,8 @@ TEST_CASE("a live stroke never exceeds its level, and points above it are counte
                 CHECK(peak(r.channel(0), 0, SIZE_MAX) == doctest::Approx(live_level).epsilon(1e-3));
                 r.live->voice.request(engine::live_voice::action::end);
                 r.play_out();
-                CHECK(r.report({1})->state == state_kind::finished);
-                CHECK(r.report({1})->held_points == 3);
+                CHECK(r.end({1}).state == state_kind::finished);
+                CHECK(r.end({1}).held_points == 3);
             }
 }
 
@@ -124,7 +124,7 @@ TEST_CASE("points above the ceiling count for a live stroke that never sounds, t
     r.live->to({0.0, 0.0}, 2.0);
     CHECK(r.feed.cancel({1}));
     r.play_out();
-    CHECK(r.report({1})->held_points == 1);
+    CHECK(r.end({1}).held_points == 1);
 }
 
 TEST_CASE("a live stroke whose object is gone leaves no sound behind")

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
 // Moved-from objects: they can be destroyed, assigned to and used, keep their value or report the fault.
-#include <array>
 #include <cstddef>
 #include <memory>
 #include <string>
@@ -170,9 +169,7 @@ TEST_CASE("a moved-from or copied error is still an error")
 
 TEST_CASE("a moved-from live stroke feeds the same stroke")
 {
-    fake_dac dac;
-    const running_clock clock(dac);
-    player p(pcm::adopt(dac.pcm(), nine()), palm(), patient());
+    clocked_player p;
     live_stroke a = p.begin({.timeout_s = 86400.0});
     live_stroke b(std::move(a));
     CHECK(a.to(1.0, 1.0));

@@ -25,7 +25,6 @@
 #include "player_support.hpp"
 #include "rig.hpp"
 #include "scores.hpp"
-#include "sink/alsa/adopt.hpp"
 
 namespace no_memory_test {
 
@@ -133,12 +132,10 @@ void try_all(const call_table& calls)
 
 COUNTING_TEST_CASE("without memory a call throws std::bad_alloc and has no effect")
 {
-    fake_dac dac;
-    const running_clock clock(dac);
     std::map<stroke_id, int> told;
     std::vector<stroke_id> accepted;
     std::mutex mutex;
-    player p(pcm::adopt(dac.pcm(), nine()), palm(), patient());
+    clocked_player p;
     p.on_report([&](const stroke_report& r) {
         const std::lock_guard lock(mutex);
         ++told[r.id];
@@ -186,11 +183,9 @@ COUNTING_TEST_CASE("every call without memory reports it at each of its allocati
 
 COUNTING_TEST_CASE("the player's thread waits for memory: every stroke ends and is reported once")
 {
-    fake_dac dac;
-    const running_clock clock(dac);
     std::map<stroke_id, int> told;
     std::atomic<unsigned> ended{0};
-    player p(pcm::adopt(dac.pcm(), nine()), palm(), patient());
+    clocked_player p;
     p.on_report([&](const stroke_report& r) {
         refuse_allocations(0, 0);
         ++told[r.id];
@@ -217,16 +212,15 @@ COUNTING_TEST_CASE("a stream that ends while one allocation fails ends in order,
 {
     for (std::uint64_t granted = 0; granted < 40; ++granted) {
         CAPTURE(granted);
-        fake_dac dac;
         player_options o = patient();
         o.log = [](log_kind, std::string_view) {};
-        player p(pcm::adopt(dac.pcm(), nine()), palm(), o);
-        const running_clock clock(dac);
+        dac_player p(o);
+        const running_clock clock(p.dac);
         const stroke_id id = p.submit(tone(3600.0));
         while (!p.position().stroke)
             std::this_thread::yield();
         refuse_allocations(granted, 1);
-        dac.disconnect();
+        p.dac.disconnect();
         while (p.position().running)
             std::this_thread::yield();
         p.stop();
@@ -247,12 +241,9 @@ COUNTING_TEST_CASE("a plan that fails at once ends once, even without memory for
                 throw std::runtime_error("a reason that is longer than what a string keeps within itself");
             out.drives = {{4, 0.5}};
         });
-        render_options sound;
-        sound.rate = rate;
-        const score s(palm(), {{.plan = broken, .start_s = {}}}, sound);
+        const score s(palm(), broken);
         *fails = true;
         rig r;
-        REQUIRE(r.start().status == io_kind::ok);
         r.feed.submit({1}, s, start_at::now());
         refuse_allocations(granted, 1);
         try {
@@ -261,8 +252,7 @@ COUNTING_TEST_CASE("a plan that fails at once ends once, even without memory for
         }
         refuse_allocations(0, 0);
         r.play(9600);
-        REQUIRE(r.report({1}));
-        CHECK(r.report({1})->state == state_kind::interrupted);
+        CHECK(r.end({1}).state == state_kind::interrupted);
         CHECK(r.ended.at({1}).size() == 1);
     }
 }

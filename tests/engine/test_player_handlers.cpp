@@ -175,9 +175,7 @@ TEST_CASE("a handler that throws ends the stream with the reason, and not the pr
 {
     for (const bool own : {false, true}) {
         CAPTURE(own);
-        fake_dac dac;
-        const running_clock clock(dac);
-        player p(pcm::adopt(dac.pcm(), nine()), palm(), patient());
+        clocked_player p;
         const std::string why = "a handler of the program threw: no such file";
         std::atomic<int> others{0};
         const auto throws = [](const stroke_report&) { throw std::runtime_error("no such file"); };
@@ -216,9 +214,7 @@ TEST_CASE("a handler that throws ends the stream with the reason, and not the pr
 
 TEST_CASE("a handler may throw anything; an on_end() that calls at once throws to its caller")
 {
-    fake_dac dac;
-    const running_clock clock(dac);
-    player p(pcm::adopt(dac.pcm(), nine()), palm(), patient());
+    clocked_player p;
     std::atomic<bool> ended{false};
     std::atomic<bool> told{false};
     p.on_report([&](const stroke_report&) { raise_flag(told); });
@@ -240,9 +236,7 @@ TEST_CASE("a handler may throw anything; an on_end() that calls at once throws t
 
 TEST_CASE("a handler may call all members, and replace itself")
 {
-    fake_dac dac;
-    const running_clock clock(dac);
-    player p(pcm::adopt(dac.pcm(), nine()), palm(), patient());
+    clocked_player p;
     std::atomic<bool> first{false};
     std::atomic<bool> second{false};
     p.on_report([&](const stroke_report& r) {
@@ -269,9 +263,7 @@ TEST_CASE("a handler may call all members, and replace itself")
 
 TEST_CASE("after the end all members may be called, and an empty function is refused")
 {
-    fake_dac dac;
-    const running_clock clock(dac);
-    player p(pcm::adopt(dac.pcm(), nine()), palm(), patient());
+    clocked_player p;
     CHECK_THROWS_AS(p.on_end({1}, {}), error);
     live_stroke live = p.begin();
     const stroke_id id = p.submit(tone(endless_s));
@@ -309,9 +301,7 @@ TEST_CASE("a trigger whose descriptor cannot be polled is an error")
 
 TEST_CASE("Asio: a plain callback runs in the named context, which stays at work until then")
 {
-    fake_dac dac;
-    const running_clock clock(dac);
-    player p(pcm::adopt(dac.pcm(), nine()), palm(), patient());
+    clocked_player p;
     const auto here = std::this_thread::get_id();
     int calls = 0;
     const auto ran = [&](std::exception_ptr failed, const stroke_report& r) {

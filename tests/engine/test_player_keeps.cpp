@@ -21,8 +21,7 @@ using namespace tactor::test;
 
 TEST_CASE("of too many reports not yet taken, the oldest ends go")
 {
-    fake_dac dac;
-    player p(pcm::adopt(dac.pcm(), nine()), palm(), patient());
+    dac_player p;
     const score s = tone(0.01);
     const stroke_id first = p.submit(s, start_at::trigger());
     const stroke_id second = p.submit(s, start_at::trigger());

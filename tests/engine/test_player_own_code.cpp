@@ -22,7 +22,6 @@
 #include "engine/live/live_voice.hpp"
 #include "player_support.hpp"
 #include "scores.hpp"
-#include "sink/alsa/adopt.hpp"
 
 namespace player_own_code_test {
 
@@ -102,10 +101,9 @@ live_options asking_options(const player& p, std::atomic<int>& gone)
 
 TEST_CASE("objects that a handler holds may call the player when they are destroyed")
 {
-    fake_dac dac;
     std::atomic<int> gone{0};
-    player p(pcm::adopt(dac.pcm(), nine()), palm(), patient());
-    const running_clock clock(dac);
+    dac_player p;
+    const running_clock clock(p.dac);
     SUBCASE("of one stroke's end")
     {
         const stroke_id id = p.submit(tone(0.01), start_at::trigger());
@@ -132,12 +130,11 @@ TEST_CASE("objects that a handler holds may call the player when they are destro
 
 TEST_CASE("a phantom model may call the player when it is asked and when it is destroyed")
 {
-    fake_dac dac;
     std::atomic<int> gone{0};
-    player p(pcm::adopt(dac.pcm(), nine()), palm(), patient());
+    dac_player p;
     SUBCASE("of a continuous stroke")
     {
-        const running_clock clock(dac);
+        const running_clock clock(p.dac);
         const auto line = trajectory::along(path::from_svg("M 0 0 L 40 40"), 0.1);
         plan_options o{.algorithm = algorithm_kind::continuous,
                        .custom_phantom = std::make_shared<asking_model>(p, gone)};
@@ -149,7 +146,7 @@ TEST_CASE("a phantom model may call the player when it is asked and when it is d
     }
     SUBCASE("of a live stroke that sounded")
     {
-        const running_clock clock(dac);
+        const running_clock clock(p.dac);
         stroke_id id;
         {
             live_stroke s = p.begin(asking_options(p, gone));
@@ -170,7 +167,7 @@ TEST_CASE("a phantom model may call the player when it is asked and when it is d
         const stroke_id second = p.begin(asking_options(p, gone)).id();
         CHECK(p.cancel(first));
         await(gone, 1);
-        const running_clock clock(dac);
+        const running_clock clock(p.dac);
         p.stop();
         CHECK(p.wait(second)->state == state_kind::cancelled);
         playing.clear();
@@ -180,9 +177,8 @@ TEST_CASE("a phantom model may call the player when it is asked and when it is d
 
 TEST_CASE("a phantom model that moves its own stroke is refused and ends it; it may end the stroke")
 {
-    fake_dac dac;
-    player p(pcm::adopt(dac.pcm(), nine()), palm(), patient());
-    const running_clock clock(dac);
+    dac_player p;
+    const running_clock clock(p.dac);
     for (const double smooth_s : {0.0, 0.05}) {
         std::optional<live_stroke> s;
         std::function<void()> does = [&s] { s->to(20.0, 20.0); };

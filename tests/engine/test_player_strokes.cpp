@@ -81,14 +81,12 @@ private:
 
 TEST_CASE("an edge fires all armed strokes at once, at its time and the delay, and again")
 {
-    fake_dac dac;
-    const running_clock clock(dac);
     player_lines lines;
     auto input = std::make_unique<pipe_edges>();
     pipe_edges& trigger = *input;
     lines.trigger = std::move(input);
     lines.trigger_delay_s = 0.001;
-    player p(pcm::adopt(dac.pcm(), nine()), palm(), patient(), std::move(lines));
+    clocked_player p(patient(), std::move(lines));
     for (int round = 0; round < 5; ++round) {
         const stroke_id a = p.submit(tone(0.01), start_at::trigger());
         const stroke_id b = p.submit(tone(0.01, 3), start_at::trigger());
@@ -114,17 +112,6 @@ TEST_CASE("an edge fires all armed strokes at once, at its time and the delay, a
     CHECK(p.wait(e)->state == state_kind::cancelled);
     CHECK(p.fire(now_ns()) == 0);
     CHECK_THROWS_AS(p.begin(), error);
-}
-
-TEST_CASE("an impossible delay from the edge is an error")
-{
-    for (const double bad : {-0.001, 1e9, std::nan("")}) {
-        fake_dac dac;
-        player_lines lines;
-        lines.trigger = std::make_unique<pipe_edges>();
-        lines.trigger_delay_s = bad;
-        CHECK_THROWS_AS(player(pcm::adopt(dac.pcm(), nine()), palm(), patient(), std::move(lines)), error);
-    }
 }
 
 TEST_CASE("several producers of every kind at once: each stroke ends exactly once")
@@ -201,9 +188,7 @@ TEST_CASE("a live stroke outlives its player")
 
 TEST_CASE("on_end works in time, late, for unknown strokes, and several times for one")
 {
-    fake_dac dac;
-    const running_clock clock(dac);
-    player p(pcm::adopt(dac.pcm(), nine()), palm(), patient());
+    clocked_player p;
     std::atomic<int> calls{0};
     const auto count = [&calls](const stroke_report& r) {
         CHECK(r.state == state_kind::finished);
@@ -225,9 +210,7 @@ TEST_CASE("on_end works in time, late, for unknown strokes, and several times fo
 
 TEST_CASE("Asio: callbacks in the caller's executor")
 {
-    fake_dac dac;
-    const running_clock clock(dac);
-    player p(pcm::adopt(dac.pcm(), nine()), palm(), patient());
+    clocked_player p;
     boost::asio::io_context context;
     const auto here = std::this_thread::get_id();
     std::vector<stroke_report> done;
@@ -256,9 +239,7 @@ TEST_CASE("Asio: callbacks in the caller's executor")
 
 TEST_CASE("Asio: futures work, and an unknown stroke is an error")
 {
-    fake_dac dac;
-    const running_clock clock(dac);
-    player p(pcm::adopt(dac.pcm(), nine()), palm(), patient());
+    clocked_player p;
     std::future<stroke_report> a = async_play(p, tone(0.01), start_at::now(), boost::asio::use_future);
     std::future<stroke_report> b = async_wait(p, stroke_id{99}, boost::asio::use_future);
     CHECK(a.get().state == state_kind::finished);

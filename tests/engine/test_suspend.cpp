@@ -41,7 +41,6 @@ TEST_CASE("a suspended device is resumed when it can, with a fresh stream")
     for (const bool can_resume : {true, false}) {
         CAPTURE(can_resume);
         rig r;
-        REQUIRE(r.start().status == io_kind::ok);
         const std::uint64_t base = r.status().written;
         const stroke_id id = r.submit(tone(1.0));
         r.play(9600);
@@ -55,11 +54,10 @@ TEST_CASE("a suspended device is resumed when it can, with a fresh stream")
         CHECK_FALSE(r.loop.polls_sink());
         CHECK(r.loop.timeout_ns() == 2'000'000);
         CHECK_FALSE(r.loop.over());
-        REQUIRE(r.report(id));
-        CHECK(r.report(id)->state == state_kind::interrupted);
-        CHECK(r.report(id)->why == "the system was suspended");
-        CHECK(r.report(id)->reason == reason_kind::suspended);
-        CHECK(r.report(id)->frames <= played - base);
+        CHECK(r.end(id).state == state_kind::interrupted);
+        CHECK(r.end(id).why == "the system was suspended");
+        CHECK(r.end(id).reason == reason_kind::suspended);
+        CHECK(r.end(id).frames <= played - base);
 
         const stroke_id waiting = r.submit(tone(0.01));
         r.step();
@@ -71,7 +69,7 @@ TEST_CASE("a suspended device is resumed when it can, with a fresh stream")
         CHECK(r.dac.captured_frames() == captured + 288);
         CHECK(r.dac.starts() == 2);
         r.play_out();
-        CHECK(r.report(waiting)->state == state_kind::finished);
+        CHECK(r.end(waiting).state == state_kind::finished);
         // The old stroke does not sound again.
         CHECK(r.first_sound(captured) == captured + 289);
         CHECK(r.link.count.xruns == 0);
@@ -81,7 +79,6 @@ TEST_CASE("a suspended device is resumed when it can, with a fresh stream")
 TEST_CASE("a device that never wakes up neither ends nor spins")
 {
     rig r;
-    REQUIRE(r.start().status == io_kind::ok);
     r.dac.suspend();
     const std::int64_t begun = r.now;
     for (int i = 0; i < 10'000; ++i)
@@ -96,7 +93,6 @@ TEST_CASE("a device that never wakes up neither ends nor spins")
 TEST_CASE("a resume that is never ready is given up after ten seconds, for a fresh start")
 {
     rig r({.wrap = [](auto s) { return std::make_unique<sleepy_sink>(std::move(s)); }});
-    REQUIRE(r.start().status == io_kind::ok);
     r.play(960);
     r.dac.suspend();
     r.step();
@@ -115,10 +111,9 @@ TEST_CASE("a resume that is never ready is given up after ten seconds, for a fre
 TEST_CASE("stop ends a suspended stream at once")
 {
     rig r;
-    REQUIRE(r.start().status == io_kind::ok);
     r.dac.suspend();
     r.play(960);
-    r.link.requests.push({.what = engine::request::kind::stop});
+    r.stop();
     r.step();
     r.control();
     CHECK(r.loop.over());
@@ -145,10 +140,9 @@ TEST_CASE("a stroke that begins in a buffer that is filled and not started ends 
             r.play(96);
         CHECK(r.status().running);
         CHECK(r.status().written > written);
-        REQUIRE(r.report({1}));
-        CHECK(r.report({1})->state == state_kind::interrupted);
-        CHECK(r.report({1})->reason == (says == io_kind::xrun ? reason_kind::xrun : reason_kind::suspended));
-        CHECK(r.report({1})->frames == 0);
+        CHECK(r.end({1}).state == state_kind::interrupted);
+        CHECK(r.end({1}).reason == (says == io_kind::xrun ? reason_kind::xrun : reason_kind::suspended));
+        CHECK(r.end({1}).frames == 0);
         CHECK(r.ended.size() == 1);
         CHECK(r.link.count.suspends == (says == io_kind::xrun ? 1 : 2));
     }

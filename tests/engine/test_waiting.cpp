@@ -29,9 +29,8 @@ live_options with_timeout(double s)
 
 state_kind unheard_state(const rig& r, stroke_id id)
 {
-    REQUIRE(r.report(id));
-    CHECK(r.report(id)->frames == 0);
-    return r.report(id)->state;
+    CHECK(r.end(id).frames == 0);
+    return r.end(id).state;
 }
 
 } // namespace
@@ -39,7 +38,6 @@ state_kind unheard_state(const rig& r, stroke_id id)
 TEST_CASE("while the amplifier settles a cancel is reported with the next wake-up, and other strokes play")
 {
     rig r(held());
-    REQUIRE(r.start().status == io_kind::ok);
     const score kept = random_score(3, 5);
     const stroke_id first = r.submit(tone(1.0));
     const stroke_id second = r.submit(kept);
@@ -58,8 +56,7 @@ TEST_CASE("while the amplifier settles a cancel is reported with the next wake-u
     const std::uint64_t from = r.status().written;
     r.link.amplifier.ready = true;
     r.play_out();
-    REQUIRE(r.report(second));
-    CHECK(r.report(second)->state == state_kind::finished);
+    CHECK(r.end(second).state == state_kind::finished);
     CHECK(r.captured(from, kept.frames()) == rendered(kept, format_kind::s32));
     CHECK(r.ended.size() == 3);
 }
@@ -67,7 +64,6 @@ TEST_CASE("while the amplifier settles a cancel is reported with the next wake-u
 TEST_CASE("thousands of strokes submitted and cancelled while they wait end once each, unheard")
 {
     rig r(held());
-    REQUIRE(r.start().status == io_kind::ok);
     constexpr unsigned rounds = 2000;
     for (unsigned n = 1; n <= rounds; ++n) {
         r.submit(tone(0.01, n % 9));
@@ -87,19 +83,17 @@ TEST_CASE("thousands of strokes submitted and cancelled while they wait end once
     CHECK(r.ended.size() == rounds);
     const stroke_id next = r.submit(tone(0.01));
     r.play_out();
-    REQUIRE(r.report(next));
-    CHECK(r.report(next)->state == state_kind::finished);
+    CHECK(r.end(next).state == state_kind::finished);
     CHECK(r.first_sound());
 }
 
 TEST_CASE("stop reaches strokes that wait for the amplifier")
 {
     rig r(held());
-    REQUIRE(r.start().status == io_kind::ok);
     const stroke_id cancelled = r.submit(tone(1.0));
     const stroke_id stopped = r.submit(tone(1.0));
     CHECK(r.feed.cancel(cancelled));
-    r.link.requests.push({.what = engine::request::kind::stop});
+    r.stop();
     r.step();
     r.control();
     CHECK(unheard_state(r, cancelled) == state_kind::cancelled);
@@ -127,8 +121,8 @@ TEST_CASE("live strokes behind a waiting stroke end, cancel and time out as with
         r.play(96);
     }
     CHECK(unheard_state(r, r.live->id) == state_kind::interrupted);
-    CHECK(r.report(r.live->id)->why == "no more points came");
-    CHECK(r.report(r.live->id)->reason == reason_kind::starved);
+    CHECK(r.end(r.live->id).why == "no more points came");
+    CHECK(r.end(r.live->id).reason == reason_kind::starved);
     CHECK_FALSE(r.report(before));
     CHECK_FALSE(r.report(fed->id));
     CHECK_FALSE(r.first_sound());
@@ -137,8 +131,8 @@ TEST_CASE("live strokes behind a waiting stroke end, cancel and time out as with
     CHECK(r.first_sound());
     fed->voice.request(engine::live_voice::action::end);
     r.play_out();
-    CHECK(r.report(fed->id)->state == state_kind::finished);
-    CHECK(r.report(before)->state == state_kind::finished);
+    CHECK(r.end(fed->id).state == state_kind::finished);
+    CHECK(r.end(before).state == state_kind::finished);
 }
 
 TEST_CASE("while the system sleeps, a handle cancels a live stroke that waits")

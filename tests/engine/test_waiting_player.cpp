@@ -11,7 +11,6 @@
 #include "clock_runner.hpp"
 #include "player_support.hpp"
 #include "scores.hpp"
-#include "sink/alsa/adopt.hpp"
 
 namespace waiting_player_test {
 
@@ -40,8 +39,7 @@ constexpr double long_enough_s = 60.0;
 
 TEST_CASE("cancel() is reported without a frame being played")
 {
-    fake_dac dac;
-    player p(pcm::adopt(dac.pcm(), nine()), palm(), patient(), slow_amplifier());
+    dac_player p(patient(), slow_amplifier());
     const stroke_id score = p.submit(tone(1.0));
     const live_stroke live = p.begin({.timeout_s = 86400.0});
     CHECK_FALSE(p.wait(score, 1e-9));
@@ -54,17 +52,16 @@ TEST_CASE("cancel() is reported without a frame being played")
         CHECK(r->frames == 0);
     }
     CHECK(p.position().played == 0);
-    const running_clock clock(dac);
+    const running_clock clock(p.dac);
     p.stop();
 }
 
 TEST_CASE("stop() reports waiting strokes before the amplifier has settled")
 {
-    fake_dac dac;
-    player p(pcm::adopt(dac.pcm(), nine()), palm(), patient(), slow_amplifier());
+    dac_player p(patient(), slow_amplifier());
     const stroke_id score = p.submit(tone(1.0));
     const live_stroke live = p.begin({.timeout_s = 86400.0});
-    const running_clock clock(dac);
+    const running_clock clock(p.dac);
     const auto before = std::chrono::steady_clock::now();
     p.stop();
     CHECK(std::chrono::steady_clock::now() - before < std::chrono::seconds(300)); // of 600

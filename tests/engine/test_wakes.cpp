@@ -35,7 +35,6 @@ TEST_CASE(
     "a stroke longer than the horizon is fed to its end by a control side that sleeps until it is woken")
 {
     rig r;
-    REQUIRE(r.start().status == io_kind::ok);
     const score s = random_score(1, 100);
     const stroke_id id = r.submit(s);
     REQUIRE(s.frames() > 10 * r.options.loop.horizon_frames);
@@ -47,15 +46,13 @@ TEST_CASE(
             ++woken;
         }
     }
-    REQUIRE(r.report(id));
-    CHECK(r.report(id)->state == state_kind::finished);
+    CHECK(r.end(id).state == state_kind::finished);
     CHECK(woken < periods / 10);
 }
 
 TEST_CASE("a stroke for a time before the stream's clock is known begins at that time")
 {
     rig r;
-    REQUIRE(r.start().status == io_kind::ok);
     r.link.to_control.consume(); // that it has started
     r.control();
     // After the buffer's frames, and long before the feeder's next wake-up.
@@ -64,14 +61,12 @@ TEST_CASE("a stroke for a time before the stream's clock is known begins at that
     for (int i = 0; i < 200 && !r.report(id); ++i)
         if (wakes(r))
             r.control();
-    REQUIRE(r.report(id));
-    CHECK(r.report(id)->late_s == 0.0);
+    CHECK(r.end(id).late_s == 0.0);
 }
 
 TEST_CASE("the control side sleeps while there is no stroke, and feeds a new one at once")
 {
     rig r;
-    REQUIRE(r.start().status == io_kind::ok);
     const score s = random_score(1, 100);
     REQUIRE(s.frames() > 10 * r.options.loop.horizon_frames);
     for (int strokes = 0; strokes < 3; ++strokes) {
@@ -82,9 +77,8 @@ TEST_CASE("the control side sleeps while there is no stroke, and feeds a new one
         for (int i = 0; i < 10'000 && !r.report(id); ++i)
             if (wakes(r))
                 r.control();
-        REQUIRE(r.report(id));
-        CHECK(r.report(id)->state == state_kind::finished);
-        CHECK(r.report(id)->frames == s.frames());
+        CHECK(r.end(id).state == state_kind::finished);
+        CHECK(r.end(id).frames == s.frames());
     }
 }
 
@@ -102,14 +96,12 @@ TEST_CASE("a live stroke after a long unattended silence has all its time for a 
     r.play(9600 - 192);
     CHECK_FALSE(r.report(next->id));
     r.play(480);
-    REQUIRE(r.report(next->id));
-    CHECK(r.report(next->id)->reason == reason_kind::starved);
+    CHECK(r.end(next->id).reason == reason_kind::starved);
 }
 
 TEST_CASE("an xrun of a silent stream, its sleep and its waking up are reported at once")
 {
     rig r;
-    REQUIRE(r.start().status == io_kind::ok);
     settle(r);
     CHECK_FALSE(wakes(r));
     r.dac.advance(1000); // runs dry
@@ -129,7 +121,6 @@ TEST_CASE("an xrun of a silent stream, its sleep and its waking up are reported 
 TEST_CASE("the fewest waiting drives are counted while a stroke is fed, not in silence and not at its end")
 {
     rig r;
-    REQUIRE(r.start().status == io_kind::ok);
     r.play(9600);
     CHECK(r.link.count.low_water == UINT64_MAX);
     const stroke_id id = r.submit(random_score(1, 20));
