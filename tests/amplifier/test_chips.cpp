@@ -39,7 +39,7 @@ TEST_CASE("a file's group has a name, a missing file's is the usual one")
     CHECK(tactor::gpio::find_group("/nowhere") == "gpio");
 }
 
-TEST_CASE("a file that is no GPIO chip is not opened as one")
+TEST_CASE("a file that is no GPIO chip is not opened")
 {
     const folder f;
     f.write("gpiochip0");

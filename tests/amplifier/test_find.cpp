@@ -156,7 +156,7 @@ TEST_CASE("a chip that may not be opened is named with the group to join")
     CHECK(
         complaint({shut_chip(0, ENOTTY, "")}, by_chip("/dev/gpiochip0", 17)) ==
         "GPIO line 17 of /dev/gpiochip0: /dev/gpiochip0 is not a GPIO chip (tactor devices lists the chips)");
-    // One that is not needed does not matter.
+    // An unneeded chip does not matter.
     CHECK(find_line(std::vector{shut_chip(0, EACCES, "gpio"), make_chip(1, "other", {"x"})}, by_name("x"))
               .chip == 1);
 }

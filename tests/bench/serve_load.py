@@ -184,7 +184,7 @@ async def load(process, path, seconds, checks):
           f" {sum(c.points for c in clients)} live points among them")
     checks.check("each request has its reply", not any(c.waiting for c in clients), [len(c.waiting) for c in clients])
     checks.check("nothing is refused", not any(c.refused for c in clients), [c.refused[0] for c in clients if c.refused][:3])
-    checks.check("each stroke has a number of its own", len(numbers) == len(set(numbers)) == wanted, (len(numbers), wanted))
+    checks.check("each stroke has its own number", len(numbers) == len(set(numbers)) == wanted, (len(numbers), wanted))
     checks.check("each stroke has one end", all(set(c.ends.values()) <= {1} and c.settled() for c in clients))
     status = await watcher.call("status")
     checks.check("nothing is left over", status["strokes"] == [] and status["clients"] == CLIENTS + 1, status)

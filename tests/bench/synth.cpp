@@ -18,7 +18,7 @@ using namespace tactor;
 
 namespace {
 
-/// All events of a piece, as they come over the ring.
+/// Events of a piece, as they come over the ring.
 struct events {
     explicit events(const score& s) : frames(s.frames())
     {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Prints, as one JSON array, the tool's output on machines with cards, chips and trouble, for test_json.py.
+// Prints in a JSON array the tool's output on machines with cards, chips and trouble, for test_json.py.
 #include <cstdio>
 #include <optional>
 

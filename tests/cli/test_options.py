@@ -8,7 +8,7 @@ from harness import ROOT, ToolTest, main
 COMMANDS = ("plan", "render", "plot", "compare", "play", "check", "calibrate", "experiment", "devices", "off", "serve")
 GROUPS = ("Stroke", "Place", "Timing", "Sound", "Level", "Device", "Real time", "Output")
 OWNER = "the owner's: it guards people or the machine"
-OTHER = "a parameter of its own in the protocol"
+OTHER = "a separate parameter of the protocol"
 # Options that no client of the service may give.
 NO_CLIENT = {
     "path": OTHER, "shape": OTHER, "live": OTHER, "smooth": OTHER, "arm": OTHER,

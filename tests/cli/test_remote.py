@@ -147,7 +147,7 @@ class Remote(ToolTest):
         p = self.begun("play", *LONG, "--socket", s.where["socket"])
         self.started(watcher)
         s.process.send_signal(signal.SIGSTOP)
-        for sent in (signal.SIGINT, signal.SIGTERM):  # two of one kind may come as one
+        for sent in (signal.SIGINT, signal.SIGTERM):  # two of one kind may be merged
             p.send_signal(sent)
         p.communicate(timeout=PATIENCE_S)
         self.assertIn(p.returncode, (130, 143))

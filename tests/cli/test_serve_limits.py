@@ -30,7 +30,7 @@ class Limits(ServeTest):
         self.check_error(c.error("play", path="M 0 0 L 40 40", options={"algorithm": "continuous", "duration": 300.1}),
                          -32001, "max_stroke_s")
         n = c.ok("begin", timeout_s=3600)["stroke"]
-        # All at once: five more may come each second.
+        # At once: five more may come each second.
         c.raw(b"".join(json.dumps({"jsonrpc": "2.0", "id": i, "method": "to", "params": {"stroke": n, "x_mm": 1, "y_mm": 1}}).encode()
                        + b"\n" for i in range(100)))
         codes = [c.reply().get("error", {}).get("code") for _ in range(100)]

@@ -196,7 +196,7 @@ class Protocol(ServeTest):
         self.assertNotIn("armed", [x["state"] for x in c.ok("status")["strokes"]])
         self.assertEqual(c.ok("fire"), {"count": 0})
         starts = [c.stroke(n, "started")["started_s"] for n in numbers]
-        # As far as two readings of the clock agree; timed/test_times.py checks the rest.
+        # Exact as far as two readings of the clock agree; timed/test_times.py checks the rest.
         self.assertGreaterEqual(starts[2] - starts[0], 0.199)
         self.assertEqual([c.await_end(n)["state"] for n in numbers], ["finished"] * 3)
         numbers = c.ok("play", toml=toml, start="armed")["strokes"]

@@ -172,7 +172,7 @@ class Walk(ToolTest):
             self.assertFalse((self.dir / "felt.toml").exists())
             heard = memoryview(raw.read_bytes()).cast("h")
             self.assertEqual(set(heard[-60:]), {0})
-            # One tactor at a time: their sum is the sound.
+            # A tactor at a time: their sum is the sound.
             sound = [sum(heard[i:i + 60]) for i in range(0, len(heard), 60)]
             self.assertGreater(max(sound), 1000)
             self.assertLessEqual(max(abs(a - b) for a, b in zip(sound, sound[1:])), 32768 * 0.0328)

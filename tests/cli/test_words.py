@@ -58,7 +58,7 @@ class Options(ToolTest):
             self.assertNotIn("1000000000", said)
         self.assertNotIn("1000000000", self.refused(2, "plan", "park2016-1", "--soa", "1e300").stderr)
         self.refused(2, "play", "park2016-1", "-D", "null", "--reopen-s", "-1", says=["(0 s or more)"])
-        # Where no factor can make it right it is only refused.
+        # A unit that no factor can make right is only refused.
         self.assertNotIn("without a unit", self.refused(2, "plan", "park2016-1", "--soa", "70furlongs").stderr)
         self.refused(2, "plan", "park2016-1", "--soa", "70", says=["70 s is out of bounds", "0.07"])
 

@@ -152,7 +152,7 @@ TEST_CASE("validate takes the presets and grids of the greatest size")
     for (const std::string& name : array_presets())
         CHECK_NOTHROW(validate(preset_array(name)));
     CHECK_NOTHROW(validate(make_grid("g", 128, 128, 2e-6, 2e-6)));
-    // All on one vertical line: no sweep over x may get slow.
+    // A single vertical line: no sweep over x may get slow.
     CHECK_NOTHROW(validate(make_grid("g", 16384, 1, 1.0, 1e-3)));
 }
 

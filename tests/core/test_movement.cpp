@@ -115,7 +115,7 @@ TEST_CASE("speeds follow the profile at the target's place, and times follow the
         const double said = x < 0.25 ? 20.0 + 240.0 * x : x < 0.5 ? 80.0 : 80.0 - 140.0 * (x - 0.5);
         CHECK(v == doctest::Approx(said).epsilon(2e-4));
     }
-    // One speed is that speed; with a duration only ratios count; without either it is the usual one.
+    // A single speed is that speed; with a duration only ratios count; without either it is the usual one.
     CHECK(trajectory::along(line, {.speed_mm_s = {{0.5, 20.0}}}).duration_s() == 2.0);
     CHECK(trajectory::along(line, movement{}).duration_s() == doctest::Approx(40.0 / 60.0));
     const trajectory slow = trajectory::along(line, {.duration_s = 3.0, .speed_mm_s = speeds});

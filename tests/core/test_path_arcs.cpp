@@ -131,7 +131,7 @@ TEST_CASE("S and T mirror the last handle of their own kind only")
           "M 0 0 C 0 4 4 8 8 8 L 9 9 C 9 9 16 4 16 0");
     CHECK(path::from_svg("M0 0Q3 6 6 0T12 0T18 0").svg() ==
           "M 0 0 C 2 4 4 4 6 0 C 8 -4 10 -4 12 0 C 14 4 16 4 18 0");
-    // Of another kind: T begins at the point, a line drawn as a curve.
+    // After another kind: T begins at the point, a line drawn as a curve.
     CHECK(path::from_svg("M0 0C0 4 4 8 6 6T12 0").svg() == path::from_svg("M0 0C0 4 4 8 6 6Q6 6 12 0").svg());
     CHECK(path::from_svg("M0 0Q3 6 6 0a1 1 0 0 0 0 0T12 0").svg() ==
           path::from_svg("M0 0Q3 6 6 0Q6 0 12 0").svg());

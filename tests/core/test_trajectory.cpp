@@ -86,7 +86,7 @@ TEST_CASE("another duration is the same movement at another pace")
     REQUIRE(t.meets_y(7.0).size() == 1);
     CHECK(t.meets_y(7.0)[0] == doctest::Approx(4.0));
     CHECK(line_in(2.0).with_duration(4.0).position(2.0).x_mm == doctest::Approx(20.0));
-    // As short as a double can express.
+    // The shortest that a double can express.
     const trajectory blink = t.with_duration(5e-324);
     CHECK(blink.position(0.0) == point{0.0, 0.0});
     CHECK(blink.position(1.0) == point{3.0, 10.0});

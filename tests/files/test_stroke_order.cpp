@@ -188,7 +188,7 @@ TEST_CASE("a stroke may be planned in its own way")
             k);
 }
 
-TEST_CASE("a group is fitted as one picture")
+TEST_CASE("a group is fitted together")
 {
     const std::string two = "[[stroke.stroke]]\npath = \"M 0 0 L 10 0\"\nduration_s = 0.5\n"
                             "[[stroke.stroke]]\npath = \"M 0 10 L 10 10\"\nduration_s = 0.5\n";

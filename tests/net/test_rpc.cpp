@@ -84,8 +84,7 @@ TEST_CASE("a method that is accepted in any form is a request, whatever is besid
     CHECK(refusal_code(R"({"method":""})") == code_invalid_request); // as without such a method
 }
 
-TEST_CASE(
-    "a message that is refused as a whole says whether the method that is accepted in any form is in it")
+TEST_CASE("a message refused as a whole still reports a method that is accepted in any form")
 {
     const auto acts = [](const std::string& text) {
         const rpc_message m = parse_rpc(text, {.batch = 3, .any_form = "halt"});

@@ -17,7 +17,7 @@ PROGRAM = shutil.which("chromium")
 class Browser:
     def __init__(self):
         self.folder = tempfile.mkdtemp(prefix="tactor-chromium-")
-        # As root, and in containers, it runs without its sandbox; it only ever sees this test's pages.
+        # It runs, as root and in containers, without its sandbox; it only ever sees this test's pages.
         self.process = subprocess.Popen(
             [PROGRAM, "--headless=new", "--no-sandbox", "--disable-gpu", "--disable-dev-shm-usage", "--no-first-run",
              "--disable-background-networking", "--disable-component-update", "--remote-debugging-port=0",

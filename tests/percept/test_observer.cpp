@@ -182,7 +182,7 @@ TEST_CASE("simultaneous taps are felt at one place, and taps far apart in time a
         for (std::size_t i = 0; i < m.size(); ++i)
             CHECK(distance_mm(y[i], m[i]) < 1e-9);
     }
-    // As rigid as possible: nothing cancels.
+    // A chain as rigid as possible: nothing cancels.
     const std::vector<point> z = felt_places({most_sigma_mm, least_sigma_v_mm_s}, {{0.0, 1e-9, 2e-9}}, m);
     CHECK(z[1].x_mm == doctest::Approx(50.0 / 3.0).epsilon(1e-12));
     CHECK(felt_places({}, {}, {}).empty());

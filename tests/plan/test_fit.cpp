@@ -106,7 +106,7 @@ TEST_CASE("a margin is kept from every edge, and must leave space")
     CHECK(complaint({square}, low, infinite).starts_with("margin_mm: inf mm"));
 }
 
-TEST_CASE("several strokes are fitted as one picture")
+TEST_CASE("several strokes are fitted together")
 {
     const stroke left = along("M 0 0 V 100", 1.0);
     stroke right = along("M 300 0 V 100", 1.0);
@@ -203,7 +203,7 @@ TEST_CASE("an array in one row takes strokes along it")
                  measured);
 }
 
-TEST_CASE("strokes ask for a fit alone, or as one picture")
+TEST_CASE("strokes ask for a fit alone, or together")
 {
     const layout l(preset_array("palm-3x3"));
     std::vector<stroke> asked{along("M 0 0 L 10 0", 1.0), along("M 3 3 L 4 3", 1.0),

@@ -110,8 +110,7 @@ double time_after(const std::string& said)
 
 } // namespace
 
-TEST_CASE(
-    "any curve on any array: what is refused is outside where it is said to be, what is not never leaves")
+TEST_CASE("any curve on any array is refused at a place outside, or never leaves")
 {
     std::mt19937_64 random(21);
     std::uniform_real_distribution<double> place(0.0, 40.0);

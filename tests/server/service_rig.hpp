@@ -188,7 +188,7 @@ public:
         closed = false;
         all->close([this] { closed = true; });
         until([&] { return closed; });
-        // What stands behind it in the queue.
+        // Handlers behind it in the queue.
         io.poll();
     }
 

@@ -161,8 +161,7 @@ TEST_CASE("the reason of an end says who ended it")
     CHECK(reason(last) == "stopped by the owner");
 }
 
-TEST_CASE(
-    "a stroke that was handed over twice, as after an xrun before it sounded, is told to have started once")
+TEST_CASE("a stroke handed over twice, as after an xrun before it sounds, is reported to start once")
 {
     service_rig rig;
     fake_dac& card = rig.plug();
@@ -286,8 +285,7 @@ TEST_CASE("a stop in a message that is refused as a whole stops all the same")
     CHECK(locked.ok(owner, "cancel", {{"stroke", n}}).empty());
 }
 
-TEST_CASE(
-    "cancel of all takes along what is being planned, also of a client that has gone, and nobody else's")
+TEST_CASE("cancel of all ends strokes being planned, even of a client that has gone, and only its own")
 {
     service_rig rig;
     rig.plug();

@@ -472,7 +472,7 @@ snap = true
     CHECK(read.array->tactors[2].thresholds == std::vector<threshold_point>{{100.0, -30.5}, {250.0, -50.0}});
     CHECK(*read.array->tactors[0].threshold_dbfs == -44.125);
     CHECK(!read.array->tactors[1].threshold_dbfs);
-    // Nothing is lost: written again, it is the same.
+    // The file is complete: written again, it is the same.
     CHECK(array_text(*read.array, read) == array_text(now, from));
     CHECK(*read.output.channels == 8);
     CHECK(read.sync->in->name == "GPIO6");

@@ -51,7 +51,7 @@ TEST_CASE("noncentralities are those of R's pt")
     CHECK(i->second == doctest::Approx(10.22490451530).epsilon(1e-10));
     const auto mirrored = noncentrality_interval(-6.84, 11.0);
     CHECK(mirrored->first == doctest::Approx(-i->second).epsilon(1e-10));
-    // Where R's pt ends, beyond 37.6: the greatest value.
+    // R's pt ends beyond 37.6: the greatest value.
     CHECK(noncentrality_interval(9000.0, 11.0)->first == doctest::Approx(5300.7335778).epsilon(1e-8));
     CHECK(!noncentrality_interval(1e5, 11.0));
 }

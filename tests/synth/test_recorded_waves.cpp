@@ -94,7 +94,7 @@ TEST_CASE("a recording at another rate keeps its level up to 0.95 of its highest
 
 TEST_CASE("a recording along the path follows the target's speed")
 {
-    // One cycle of a sine over 10 mm of a path of 40 mm: 4 cycles, in 1 s and then in 4 s.
+    // A cycle of a sine over 10 mm of a path of 40 mm: 4 cycles, in 1 s and then in 4 s.
     std::vector<float> cycle;
     for (int i = 0; i < 64; ++i)
         cycle.push_back(static_cast<float>(std::sin(2 * pi * i / 64.0)));
@@ -178,7 +178,7 @@ TEST_CASE("a recording of which nothing is left is refused, not played as roundi
         CHECK(has(refusal(recorded({0.0F, 0.0F}, texture)), "silence"));
         CHECK(has(refusal(recorded(std::vector<float>(700, 0.1F), texture)), "silence"));
     }
-    // All of it at half its own rate, without a phase, and above half the stream's.
+    // The whole at half its own rate, without a phase, and above half the stream's.
     CHECK(has(refusal(recorded({0.3F, -0.3F, 0.3F, -0.3F}, texture_kind::cycle)),
               "x.wav: nothing of it is left"));
     CHECK(has(refusal(recorded(make_sine(64, 20.0, 0.5), texture_kind::cycle), 2000.0),

@@ -13,8 +13,7 @@ namespace sounding_now_test {
 using namespace tactor;
 using namespace pieces;
 
-TEST_CASE(
-    "what sounds at a frame is as strong as was asked for, whatever its level, and no longer than it sounds")
+TEST_CASE("a sounding stroke has its given strength at each frame, at any level, and none after its end")
 {
     array a = row(3);
     a.tactors[1].gain_db = -6.0;

@@ -28,7 +28,7 @@ using namespace tactor;
 
 namespace {
 
-// Two devices of four channels as one of exactly eight.
+// Two devices of four channels joined to exactly eight.
 std::string eight_channels()
 {
     std::string s = "pcm.n { type null }\n"

@@ -41,7 +41,7 @@ class Pad:
         self.fd = None
 
 
-@unittest.skipIf(INSIDE, "the root of the other Debian has no /dev/input of its own")
+@unittest.skipIf(INSIDE, "the root of the other Debian has no /dev/input")
 class Keypad(RigTest):
     def setUp(self):
         super().setUp()
