@@ -2,10 +2,13 @@
 // The player with its real threads. Time is the fake DAC's; the tests wait for conditions.
 #include <atomic>
 #include <cerrno>
+#include <chrono>
 #include <cmath>
+#include <memory>
 #include <mutex>
 #include <string>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include <doctest/doctest.h>
@@ -17,6 +20,7 @@
 #include "clock_runner.hpp"
 #include "fake_dac.hpp"
 #include "player_support.hpp"
+#include "rig.hpp"
 #include "scores.hpp"
 #include "sink/alsa/adopt.hpp"
 
@@ -217,14 +221,6 @@ TEST_CASE("a wait tells a time-out, a report taken before, and an unknown stroke
     p.stop();
 }
 
-TEST_CASE("a score for another stream is refused")
-{
-    dac_player p;
-    CHECK_THROWS_AS(p.submit(random_score(1, 1, 10)), error);
-    const running_clock clock(p.dac);
-    p.stop();
-}
-
 TEST_CASE("a device that does not start and a missing sink are errors")
 {
     fake_dac broken;
@@ -252,6 +248,52 @@ TEST_CASE("a required real-time priority that is refused is an error; otherwise 
     const running_clock other_clock(other);
     const player p(pcm::adopt(other.pcm(), nine()), palm(), patient());
     CHECK(p.stats().realtime == realtime);
+}
+
+TEST_CASE("of too many reports not yet taken, the oldest ends go")
+{
+    dac_player p;
+    const score s = tone(0.01);
+    const stroke_id first = p.submit(s, start_at::trigger());
+    const stroke_id second = p.submit(s, start_at::trigger());
+    CHECK(p.cancel(second));
+    for (int i = 0; i < 4096; ++i)
+        REQUIRE(p.cancel(p.submit(s, start_at::trigger())));
+    CHECK(p.cancel(first));
+    CHECK(p.wait(first).outcome() == wait_kind::ended);
+    CHECK(p.wait(second).outcome() == wait_kind::taken);
+}
+
+namespace {
+
+// Changes its set-up with each start, like a PCM that turns out to have no clock.
+class changing_sink final : public forwarding_sink {
+public:
+    explicit changing_sink(std::unique_ptr<sink> s)
+        : forwarding_sink(std::move(s)), setup_(forwarding_sink::setup())
+    {
+    }
+    const stream_setup& setup() const noexcept override { return setup_; }
+    io_kind start() noexcept override
+    {
+        setup_.has_clock = !setup_.has_clock;
+        return forwarding_sink::start();
+    }
+
+private:
+    stream_setup setup_;
+};
+
+} // namespace
+
+TEST_CASE("a player's set-up is that of the start, whatever the audio thread finds out later")
+{
+    fake_dac dac;
+    auto changing = std::make_unique<changing_sink>(pcm::adopt(dac.pcm(), nine()));
+    const stream_setup& own = changing->setup();
+    player p(std::move(changing), palm(), patient());
+    CHECK_FALSE(p.setup().has_clock);
+    CHECK(&p.setup() != &own);
 }
 
 } // namespace player_test

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: MIT
-// The player's threads and an amplifier: on a paced null PCM, in real time.
+// The player's threads and an amplifier: on a paced null PCM in real time, or on a DAC that stands still.
+#include <atomic>
+#include <chrono>
 #include <condition_variable>
+#include <memory>
 #include <mutex>
 #include <thread>
 
@@ -140,6 +143,61 @@ TEST_CASE("the player checks its limits")
     player_options o;
     o.limits.max_drive_s = -1.0;
     CHECK_THROWS_AS(player(open_alsa(nine()), palm(), o), error);
+}
+
+namespace {
+
+class any_line final : public enable_line {
+public:
+    bool set(bool) noexcept override { return true; }
+};
+
+player_lines slow_amplifier()
+{
+    player_lines l;
+    l.amplifier = std::make_unique<any_line>();
+    l.settle_s = 600.0;
+    return l;
+}
+
+// Only a failure takes so long.
+constexpr double long_enough_s = 60.0;
+
+} // namespace
+
+TEST_CASE("cancel() is reported without a frame being played")
+{
+    dac_player p(patient(), slow_amplifier());
+    const stroke_id score = p.submit(tone(1.0));
+    const live_stroke live = p.begin({.timeout_s = 86400.0});
+    CHECK_FALSE(p.wait(score, 1e-9));
+    CHECK(p.cancel(score));
+    CHECK(p.cancel(live.id()));
+    for (const stroke_id id : {score, live.id()}) {
+        const auto r = p.wait(id, long_enough_s);
+        REQUIRE(r);
+        CHECK(r->state == state_kind::cancelled);
+        CHECK(r->frames == 0);
+    }
+    CHECK(p.position().played == 0);
+    const running_clock clock(p.dac);
+    p.stop();
+}
+
+TEST_CASE("stop() reports waiting strokes before the amplifier has settled")
+{
+    dac_player p(patient(), slow_amplifier());
+    const stroke_id score = p.submit(tone(1.0));
+    const live_stroke live = p.begin({.timeout_s = 86400.0});
+    const running_clock clock(p.dac);
+    const auto before = std::chrono::steady_clock::now();
+    p.stop();
+    CHECK(std::chrono::steady_clock::now() - before < std::chrono::seconds(300)); // of 600
+    for (const stroke_id id : {score, live.id()}) {
+        const auto r = p.wait(id, long_enough_s);
+        REQUIRE(r);
+        CHECK(r->state == state_kind::cancelled);
+    }
 }
 
 } // namespace player_amplifier_test

@@ -1,11 +1,19 @@
 // SPDX-License-Identifier: MIT
-// Devices that sleep.
+// Devices that sleep, and one that gives no descriptors.
+#include <cstddef>
 #include <memory>
+#include <span>
 #include <utility>
+#include <vector>
+
+#include <poll.h>
 
 #include <doctest/doctest.h>
 
+#include "fake_dac.hpp"
 #include "live_rig.hpp"
+#include "player_support.hpp"
+#include "sink/alsa/adopt.hpp"
 
 namespace suspend_test {
 
@@ -146,6 +154,26 @@ TEST_CASE("a stroke that begins in a buffer that is filled and not started ends 
         CHECK(r.ended.size() == 1);
         CHECK(r.link.count.suspends == (says == io_kind::xrun ? 1 : 2));
     }
+}
+
+TEST_CASE("a device without descriptors in an xrun, such as dmix, is not asked about them")
+{
+    fake_dac dac;
+    dac.hide_descriptors_in_xrun();
+    const auto s = pcm::adopt(dac.pcm(), nine());
+    std::vector<std::byte> silence(288 * s->setup().frame_bytes());
+    REQUIRE(s->prepare() == io_kind::ok);
+    REQUIRE(s->write(silence).frames == 288);
+    REQUIRE(s->start() == io_kind::ok);
+    std::vector<pollfd> fds(s->max_descriptors());
+    CHECK(s->descriptors(fds) == 1);
+    CHECK(s->ready(std::span(fds).first(1)) == io_kind::again);
+    dac.advance(10'000);
+    CHECK(s->available().status == io_kind::xrun);
+    const std::size_t n = s->descriptors(fds);
+    CHECK(n == 0);
+    CHECK(s->ready(std::span(fds).first(n)) == io_kind::xrun);
+    CHECK(dac.asked_in_vain() == 0);
 }
 
 } // namespace suspend_test
