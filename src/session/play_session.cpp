@@ -35,10 +35,11 @@ int milliseconds_until(std::optional<device_stream::time> t, int most_ms)
 void run_facts::check_amplifier() const
 {
     if (stats.left_on)
-        throw error(error_kind::not_available, "amplifier",
-                    fmt::format("its line cannot be switched off, {} failed: it may be on",
-                                counted(stats.off_failures, "try", "tries")),
-                    "cut the amplifier's supply; then see whether \"{command:off}\" works, and what dmesg says");
+        throw error(
+            error_kind::not_available, "amplifier",
+            fmt::format("its line cannot be switched off, {} failed: it may be on",
+                        counted(stats.off_failures, "try", "tries")),
+            "cut the amplifier's supply; then see whether \"{command:off}\" works, and what dmesg says");
 }
 
 play_session::play_session(const alsa_options& device, const stream_options& o, const environment& e,

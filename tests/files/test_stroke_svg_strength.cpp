@@ -39,9 +39,9 @@ TEST_CASE("the widest of the lines with strength by width has intensity 1")
     CHECK(intensities(by_width, "<path d=\"M 0 0 H 9\" stroke-width=\"4\" data-intensity=\"0.5\"/><path "
                                 "d=\"M 0 0 H 9\" transform=\"scale(2)\"/>") == std::vector<double>{0.5, 0.5});
     // One shape does not ask.
-    CHECK(intensities(by_width, "<path d=\"M 0 0 H 9\" stroke-width=\"4\"/><path d=\"M 0 0 H 9\" "
-                                "stroke-width=\"9\" data-intensity-from=\"none\"/>") ==
-          std::vector<double>{1.0, 1.0});
+    CHECK(intensities(by_width,
+                      "<path d=\"M 0 0 H 9\" stroke-width=\"4\"/><path d=\"M 0 0 H 9\" "
+                      "stroke-width=\"9\" data-intensity-from=\"none\"/>") == std::vector<double>{1.0, 1.0});
     CHECK(intensities(by_width, "<path d=\"M 0 0 H 9 M 0 5 H 9\" stroke-width=\"0\"/>") ==
           std::vector<double>{1.0, 1.0}); // all alike
 }
