@@ -70,7 +70,8 @@ trajectory with_places(const trajectory& t)
 {
     trajectory::impl made = access::of(t);
     if (auto* drawn = std::get_if<drawn_path>(&made.law))
-        drawn->way = with_places(drawn->way, drawn->way.length_mm() / made.duration_s * continuous_step_s);
+        drawn->way =
+            detail::with_places(drawn->way, drawn->way.length_mm() / made.duration_s * continuous_step_s);
     return access::make<trajectory>(std::make_shared<const trajectory::impl>(std::move(made)));
 }
 

@@ -52,7 +52,7 @@ struct logged : Rig {
             if (before)
                 before();
             log.look(this->status(), this->now);
-            log.tell();
+            log.write();
         };
     }
     heard told;
@@ -84,7 +84,7 @@ TEST_CASE("the reason why a lost device ended the stream is a line, once")
     REQUIRE(r.feed.stream_over());
     r.log.end(r.feed.end().why);
     r.log.end(r.feed.end().why);
-    r.log.tell();
+    r.log.write();
     CHECK(r.told.count("error the stream has ended: the device is gone") == 1);
 }
 
@@ -115,7 +115,7 @@ TEST_CASE("without a log nothing is gathered")
     l.count.count_xrun(5);
     silent.look({}, 1);
     silent.end("");
-    silent.tell();
+    silent.write();
     CHECK_FALSE(silent.on());
 }
 

@@ -39,8 +39,8 @@ EXHAUSTING_TEST_CASE("without a descriptor nothing counts as empty")
         const test::descriptors_left none(0);
         return os_code(call);
     };
-    CHECK(code_of([] { static_cast<void>(rt::names_in("/proc")); }) == EMFILE);
-    CHECK(code_of([] { static_cast<void>(rt::read_file("/proc/self/status")); }) == EMFILE);
+    CHECK(refused([] { static_cast<void>(rt::names_in("/proc")); }) == EMFILE);
+    CHECK(refused([] { static_cast<void>(rt::read_file("/proc/self/status")); }) == EMFILE);
 }
 
 } // namespace system_files_test
