@@ -66,12 +66,11 @@ void check_inside(const job& j)
 }
 
 /// Returns the movement with the places on its curves at hand.
-trajectory with_places(const trajectory& t)
+trajectory prepare(const trajectory& t)
 {
     trajectory::impl made = access::of(t);
     if (auto* drawn = std::get_if<drawn_path>(&made.law))
-        drawn->way =
-            detail::with_places(drawn->way, drawn->way.length_mm() / made.duration_s * continuous_step_s);
+        drawn->way = with_places(drawn->way, drawn->way.length_mm() / made.duration_s * continuous_step_s);
     return access::make<trajectory>(std::make_shared<const trajectory::impl>(std::move(made)));
 }
 
@@ -80,7 +79,7 @@ class followed final : public curve::impl {
 public:
     explicit followed(const job& j)
         : impl(j.motion.motion.duration_s()),
-          motion_(with_places(j.motion.motion)),
+          motion_(prepare(j.motion.motion)),
           faces_(j.faces),
           model_(j.model),
           three_(dynamic_cast<const model_of_three*>(model_.get())),
