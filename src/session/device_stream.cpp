@@ -43,7 +43,7 @@ stream_parts open_parts(const alsa_options& device, const stream_options& o, con
 {
     stream_parts p;
     p.open = [device] { return open_device(device); };
-    p.lines = lent_lines(o.no_gpio ? tactor::setup{} : e.config, arm, o.sync_delay_ms * 1e-3);
+    p.lines = lent_lines(open_lines(o, e, arm));
     p.tactors = e.tactors;
     p.player.limits = settle_limits(o, e);
     p.player.require_realtime = o.require_realtime;

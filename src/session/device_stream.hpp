@@ -36,7 +36,7 @@ struct stream_parts {
 };
 
 /// Returns the parts of a stream on a PCM, with the lines of the configuration: call it before threads and
-/// locked memory, as lent_lines. \throws error as lent_lines().
+/// locked memory, as open_lines(). \throws error as that.
 stream_parts open_parts(const alsa_options& device, const stream_options& o, const environment& e, bool arm);
 
 /// Has no thread: what blocks is handed out as work. One thread calls all members.

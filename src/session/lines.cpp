@@ -40,9 +40,12 @@ private:
     std::shared_ptr<edge_input> input_;
 };
 
-player_lines open_lines(const setup& config, bool arm, double trigger_delay_s)
+} // namespace
+
+player_lines open_lines(const stream_options& o, const environment& e, bool arm)
 {
-    player_lines l{.trigger_delay_s = trigger_delay_s};
+    const setup config = o.no_gpio ? setup{} : e.config;
+    player_lines l{.trigger_delay_s = o.sync_delay_ms * 1e-3};
     if (config.amplifier) {
         l.amplifier = open_amplifier(*config.amplifier);
         l.settle_s = config.amplifier->settle_s;
@@ -60,8 +63,6 @@ player_lines open_lines(const setup& config, bool arm, double trigger_delay_s)
     return l;
 }
 
-} // namespace
-
 std::string_view to_string(amplifier_state s) noexcept
 {
     return s == amplifier_state::none ? "none" : s == amplifier_state::on ? "on" : "off";
@@ -70,11 +71,6 @@ std::string_view to_string(amplifier_state s) noexcept
 lent_lines::lent_lines(player_lines own) : state_(std::make_shared<state>())
 {
     state_->own = std::move(own);
-}
-
-lent_lines::lent_lines(const setup& config, bool arm, double trigger_delay_s)
-    : lent_lines(open_lines(config, arm, trigger_delay_s))
-{
 }
 
 player_lines lent_lines::lend(double proof_s) const

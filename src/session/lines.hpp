@@ -10,6 +10,8 @@
 
 #include <tactor/tactor.hpp>
 
+#include "session/environment.hpp"
+
 namespace tactor::session {
 
 /// `muted`: off, though the player that has the lines had switched it on.
@@ -17,15 +19,16 @@ enum class amplifier_state { none, off, on, muted };
 /// "none", "off" or "on".
 std::string_view to_string(amplifier_state s) noexcept;
 
+/// Opens the lines that [amplifier] and [sync] name, unless no_gpio is set. Call it before threads and
+/// locked memory: it forks the holder of the amplifier's line. `arm`: the trigger is wanted. \throws error as
+/// open_amplifier() does.
+player_lines open_lines(const stream_options& o, const environment& e, bool arm);
+
 /// A player that plays on after its device was lost is a new one; the lines stay.
 class lent_lines {
 public:
     lent_lines() : lent_lines(player_lines{}) {}
     explicit lent_lines(player_lines own);
-    /// Opens what [amplifier] and [sync] name. Call it before threads and locked memory: it forks the holder
-    /// of the amplifier's line. `arm`: the trigger is wanted. \throws error as open_amplifier() does.
-    lent_lines(const setup& config, bool arm, double trigger_delay_s);
-
     /// Lends the lines to one player at a time. `proof_s`: as player_lines.
     player_lines lend(double proof_s = 0.0) const;
 
