@@ -37,26 +37,22 @@ std::vector<score> make_scores(std::vector<piece>& pieces, const settings& s, co
 
 constexpr const char* wait_hint = "--reopen-s S waits for the device to come back";
 
-// Plays one piece and says when it waits for its trigger. The picture leaves log lines alone.
-stroke_report play_once(session::play_session& session, bool as_json, const array& a, const piece& p,
-                        const score& s)
-{
-    return play_drawn(session, a, p, s, !as_json && !session.asked().verbose, [&] {
-        if (session.asked().arm && !as_json) {
-            say(stdout, "{}: armed\n", shown_name(p.name));
-            flush_output();
-        }
-    });
-}
-
-// Plays one piece, once more where its device went before it began. False when there is no device.
+// Plays one piece, once more where its device went before it began, and says when it waits for its trigger.
+// False when there is no device.
 bool play_piece(session::play_session& session, bool as_json, const array& a, const piece& p, const score& s,
                 stroke_outcome& out)
 {
+    const auto armed = [&] {
+        if (!session.asked().arm || as_json)
+            return;
+        say(stdout, "{}: armed\n", shown_name(p.name));
+        flush_output();
+    };
     for (bool again = false;; again = true) {
         if (session.lost() && !session.reopen())
             return false;
-        out.report = play_once(session, as_json, a, p, s);
+        // The picture leaves log lines alone.
+        out.report = play_drawn(session, a, p, s, !as_json && !session.asked().verbose, armed);
         const bool untouched =
             out.report->state == state_kind::interrupted && out.report->frames == 0 && session.lost();
         if (!untouched || again || !session.waits())

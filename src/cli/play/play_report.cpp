@@ -95,6 +95,30 @@ std::string xruns_text(const player_stats& s)
     return fmt::format("{}, the longest {:.1f} ms", s.xruns, *longest * 1e3);
 }
 
+// A short table of the counters.
+void print_table(std::FILE* to, const run_report& r)
+{
+    const player_stats& s = r.stats;
+    fmt::print(to, "xruns           {}\n", xruns_text(s));
+    fmt::print(to, "latest wake-up  {:.3f} ms\n", s.latest_wakeup_s * 1e3);
+    fmt::print(to, "ring low water  {}\n", counted(s.ring_low_water, "drive"));
+    fmt::print(to, "page faults     {}, {} from disk\n", s.minor_faults + s.major_faults, s.major_faults);
+    fmt::print(to, "limited         {}, power in {}, {} cut\n", counted(s.limited_frames, "sample"),
+               counted(s.power_limited_frames, "frame"), counted(s.drives_cut, "drive"));
+    if (s.stalls != 0)
+        fmt::print(to, "stalls          {}, amplifier off in each\n", s.stalls);
+    if (s.off_failures != 0)
+        fmt::print(to, "off refused     {} by the amplifier's line{}\n", counted(s.off_failures, "time"),
+                   s.left_on ? "" : ", off in the end");
+    if (s.sync_pulses + s.sync_missed != 0)
+        fmt::print(to, "sync pulses     {}, {} missed, late by {:.3f} ms, at worst {:.3f} ms\n",
+                   s.sync_pulses, s.sync_missed, s.sync_mean_late_s * 1e3, s.sync_worst_late_s * 1e3);
+    if (r.reopened != 0)
+        fmt::print(to, "reopened        {}\n", r.reopened);
+    fmt::print(to, "real time       {}, memory {}\n", s.realtime ? "yes" : "no",
+               r.locked_memory ? "locked" : "not locked");
+}
+
 } // namespace
 
 std::string fate(const stroke_outcome& s, unsigned rate)
@@ -146,29 +170,6 @@ std::optional<error> unfinished(const run_report& r)
     if (n > 1)
         why += fmt::format("; {} of {} did not finish", n, counted(r.strokes.size(), "stroke"));
     return error(error_kind::runtime, last->name, why);
-}
-
-void print_table(std::FILE* to, const run_report& r)
-{
-    const player_stats& s = r.stats;
-    fmt::print(to, "xruns           {}\n", xruns_text(s));
-    fmt::print(to, "latest wake-up  {:.3f} ms\n", s.latest_wakeup_s * 1e3);
-    fmt::print(to, "ring low water  {}\n", counted(s.ring_low_water, "drive"));
-    fmt::print(to, "page faults     {}, {} from disk\n", s.minor_faults + s.major_faults, s.major_faults);
-    fmt::print(to, "limited         {}, power in {}, {} cut\n", counted(s.limited_frames, "sample"),
-               counted(s.power_limited_frames, "frame"), counted(s.drives_cut, "drive"));
-    if (s.stalls != 0)
-        fmt::print(to, "stalls          {}, amplifier off in each\n", s.stalls);
-    if (s.off_failures != 0)
-        fmt::print(to, "off refused     {} by the amplifier's line{}\n", counted(s.off_failures, "time"),
-                   s.left_on ? "" : ", off in the end");
-    if (s.sync_pulses + s.sync_missed != 0)
-        fmt::print(to, "sync pulses     {}, {} missed, late by {:.3f} ms, at worst {:.3f} ms\n",
-                   s.sync_pulses, s.sync_missed, s.sync_mean_late_s * 1e3, s.sync_worst_late_s * 1e3);
-    if (r.reopened != 0)
-        fmt::print(to, "reopened        {}\n", r.reopened);
-    fmt::print(to, "real time       {}, memory {}\n", s.realtime ? "yes" : "no",
-               r.locked_memory ? "locked" : "not locked");
 }
 
 void print_json(std::FILE* to, const run_report& r)

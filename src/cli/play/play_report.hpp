@@ -56,9 +56,6 @@ int hold_run(const settings& s, const environment& e, unsigned channels, unsigne
 /// broken off or has strokes that did not finish.
 int judge_run(const run_report& r, int signal, const std::optional<error>& broken);
 
-/// A short table of the counters.
-void print_table(std::FILE* to, const run_report& r);
-
 /// One object of schema tactor-play/1.
 void print_json(std::FILE* to, const run_report& r);
 
