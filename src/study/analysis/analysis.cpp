@@ -14,7 +14,7 @@ by_motion test_row(const std::vector<cell_values>& all, std::size_t row, std::si
     by_motion b;
     std::vector<double> means;
     for (const cell_values& v : all)
-        means.push_back(average_of(v[row]));
+        means.push_back(mean(v[row]));
     b.all = test_mean(means, against);
     b.all_values = means;
     std::vector<std::optional<double>> p;

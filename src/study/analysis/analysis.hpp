@@ -67,9 +67,6 @@ using cell_values = std::vector<std::vector<double>>;
 /// rating; identify: per cent correct. Nothing where a cell has no trial.
 std::optional<cell_values> compute_cells(const run_outline& run, const std::vector<trial>& trials);
 
-/// The mean of a row: of a participant's cells, each with the same weight.
-double average_of(const std::vector<double>& row);
-
 /// What rounding may leave of 0 where values of a run are compared.
 double rounding_in(const run_outline& run) noexcept;
 

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include "study/statistics/tests.hpp"
 
@@ -54,18 +53,13 @@ double rounding_in(const run_outline& run) noexcept
     return few_digits * (run.task == task_kind::rate ? static_cast<double>(run.scale) : 100.0);
 }
 
-double average_of(const std::vector<double>& row)
-{
-    return std::accumulate(row.begin(), row.end(), 0.0) / static_cast<double>(row.size());
-}
-
 std::optional<double> compared_value(const run_outline& run, const cell_values& cells)
 {
     if (run.task != task_kind::rate)
-        return average_of(cells.back());
+        return mean(cells.back());
     if (cells.size() < 2)
         return {};
-    const double difference = average_of(cells.back()) - average_of(cells.front());
+    const double difference = mean(cells.back()) - mean(cells.front());
     return std::abs(difference) > rounding_in(run) ? difference : 0.0;
 }
 
