@@ -11,7 +11,6 @@
 
 #include "cli/commands.hpp"
 #include "cli/input.hpp"
-#include "cli/progress.hpp"
 #include "cli/say.hpp"
 #include "cli/warnings.hpp"
 #include "core/words.hpp"

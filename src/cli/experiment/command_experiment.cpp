@@ -17,7 +17,6 @@
 #include "session/interrupt.hpp"
 #include "study/session/prepared.hpp"
 #include "study/session/session_facts.hpp"
-#include "study/session/simulated_session.hpp"
 #include "study/session/trials.hpp"
 
 namespace tactor::cli {

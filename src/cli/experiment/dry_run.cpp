@@ -12,8 +12,8 @@
 #include "core/sha256.hpp"
 #include "core/words.hpp"
 #include "files/plan/json_value.hpp"
+#include "study/session/prepared.hpp"
 #include "study/session/session_facts.hpp"
-#include "study/session/session_time.hpp"
 #include "study/session/trials.hpp"
 
 namespace tactor::cli {

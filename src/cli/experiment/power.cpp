@@ -12,9 +12,9 @@
 
 #include <tactor/error.hpp>
 
-#include "cli/progress.hpp"
 #include "cli/say.hpp"
 #include "cli/settings.hpp"
+#include "cli/warnings.hpp"
 #include "core/sha256.hpp"
 #include "core/split.hpp"
 #include "session/interrupt.hpp"

@@ -10,6 +10,7 @@
 #include "cli/settings.hpp"
 #include "net/listen.hpp"
 #include "study/bids/session_store.hpp"
+#include "study/session/person_session.hpp"
 #include "study/session/prepared.hpp"
 #include "study/session/stage.hpp"
 
@@ -34,5 +35,14 @@ study::stage::left hold_real_session(const study::prepared_experiment& p, const 
 /// --check-noise: the definition's noise, and its stimuli under it, by keys. Returns the exit status. \throws
 /// error.
 int check_noise(const study::prepared_experiment& p, const experiment_options& o, const settings& s);
+
+/// Draws the moving target on standard output where that is a terminal; elsewhere says one line, without
+/// motion.
+class terminal_display final : public study::target_display {
+public:
+    bool moves() const override;
+    std::function<void(double t_s)> show(const array& a, const stroke& target,
+                                         const study::page_words& words) override;
+};
 
 } // namespace tactor::cli

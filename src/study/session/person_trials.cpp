@@ -10,7 +10,7 @@
 #include "session/say.hpp"
 #include "study/bids/acq_time.hpp"
 #include "study/session/person_session.hpp"
-#include "study/session/session_time.hpp"
+#include "study/session/prepared.hpp"
 #include "study/session/trials.hpp"
 
 namespace tactor::study {

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "study/bids/session_store.hpp"
+#include "study/experiment/simulated.hpp"
 #include "study/session/prepared.hpp"
 
 namespace tactor::study {
@@ -45,5 +46,9 @@ private:
     std::optional<std::uint64_t> first_frame_ = {}; ///< of that stream
     std::optional<std::int64_t> began_ns_ = {};     ///< CLOCK_REALTIME
 };
+
+/// Holds all trials that are left, without a device: a model answers, and it takes no time. Returns the
+/// signal that ended it, or 0. \throws error.
+int simulate_session(const prepared_experiment& p, const simulation& s, session_store& store);
 
 } // namespace tactor::study
