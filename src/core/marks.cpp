@@ -42,7 +42,7 @@ std::optional<mark> find_mark(std::string_view text) noexcept
     return std::nullopt;
 }
 
-std::string_view command_of(const mark& m) noexcept
+std::string_view command_name(const mark& m) noexcept
 {
     return m.name.substr(m.name.starts_with(command) ? command.size() : m.name.size());
 }
@@ -51,8 +51,8 @@ std::string plain(const mark& m)
 {
     if (m.setting == "fit=true") // no option of a plan, but a function
         return "fit_strokes()";
-    if (!command_of(m).empty())
-        return fmt::format("tactor {}", command_of(m));
+    if (!command_name(m).empty())
+        return fmt::format("tactor {}", command_name(m));
     return m.value.empty() ? std::string(m.name) : fmt::format("{} = {}", m.name, m.value);
 }
 

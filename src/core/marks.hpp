@@ -25,7 +25,7 @@ struct mark {
 [[nodiscard]] std::optional<mark> find_mark(std::string_view text) noexcept;
 
 /// Returns the command that a mark names; empty: it names none.
-[[nodiscard]] std::string_view command_of(const mark& m) noexcept;
+[[nodiscard]] std::string_view command_name(const mark& m) noexcept;
 
 /// Replaces each mark by what `write` returns for it.
 template <class Write>

@@ -25,7 +25,7 @@ std::string write(const detail::mark& m, const spelling& by, bool in_file)
     if (own != nullptr)
         return own->here.empty() ? "" : fmt::format(fmt::runtime(own->here), m.value).append(m.clause);
     const option* o = find_field(m.name);
-    if (o == nullptr && detail::command_of(m).empty())
+    if (o == nullptr && detail::command_name(m).empty())
         return std::string(m.text);
     const bool has_it =
         o != nullptr && (o->where & by.where) != 0 && !(in_file && (o->where & in_stroke) != 0);

@@ -17,8 +17,9 @@
 
 namespace tactor::options {
 
-/// What a front end writes for a mark, or for a field that is no row: {"command:devices", "devices()"}.
-/// "array" stands for {array=palm}, too, and {} for its value. Empty: it is left out, with its clause.
+/// A front end's own word for a mark, or for a field that is no row: {"command:devices", "devices()"}. The
+/// mark "array" stands for {array=palm}, too, and {} for its value. An empty word leaves it out, with its
+/// clause.
 struct own_word {
     std::string_view mark;
     std::string_view here;
@@ -28,8 +29,7 @@ struct own_word {
 struct spelling {
     /// The option, or with a value what sets it: "--timing", "--timing fit". The value of a flag is "true".
     std::string (*write)(const option& o, std::string_view value) = nullptr;
-    std::uint64_t where =
-        ~std::uint64_t{0}; ///< bits of the options that it has; others are written as fields
+    std::uint64_t where = ~std::uint64_t{0}; ///< bits of its options; others are written as fields
     std::span<const own_word> own = {};
 };
 

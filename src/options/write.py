@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Writes from the table of options: python3 src/options/write.py, where tactor can be imported.
 
-* src/python/tactor/_calls.py: signatures and docstrings of what takes options; what it does is in the modules around.
+* src/python/tactor/_calls.py: signatures and docstrings of the calls that take options; the modules around do the work.
 * $defs/options of the protocol's schema.
 
 tests/python/test_written.py holds both current.
@@ -17,7 +17,7 @@ WIDTH = 160
 ROWS = _tactor.option_rows()
 
 HEAD = '''# SPDX-License-Identifier: MIT
-"""What takes options. Written from the table of options by src/options/write.py: change it there."""
+"""Calls that take options. Written from the table of options by src/options/write.py: change it there."""
 from __future__ import annotations
 
 import typing as _t
@@ -99,7 +99,7 @@ def compare({signature}) -> Comparison:
 SCORE = '''
 
 class ScoreCall:
-    """How a score is made."""
+    """The call that makes a score."""
 
     __slots__ = ()
 
@@ -126,7 +126,7 @@ class ScoreCall:
 PLAYER = '''
 
 class PlayerCalls:
-    """How a player is opened, and begins a live stroke."""
+    """The calls that open a player and begin a live stroke."""
 
     __slots__ = ()
 

@@ -24,7 +24,9 @@ std::string write_param(const options::option& o, std::string_view value)
 }
 
 // A client can fit no stroke, and takes the array as it is.
-constexpr std::array own_words{options::own_word{"fit=true", ""}, options::own_word{"array", "{}"}};
+constexpr std::array own_words{options::own_word{"fit=true", ""}, options::own_word{"array", "{}"},
+                               options::own_word{"array=FILE", "an array"},
+                               options::own_word{"config=FILE", "a configuration of the server"}};
 
 constexpr options::spelling by_protocol{write_param, options::by_client, own_words};
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What is written from the table of options is current, and has each option."""
+"""Files that are written from the table of options are current, and have each option."""
 import importlib.util
 import inspect
 import pathlib

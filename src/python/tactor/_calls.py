@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What takes options. Written from the table of options by src/options/write.py: change it there."""
+"""Calls that take options. Written from the table of options by src/options/write.py: change it there."""
 from __future__ import annotations
 
 import typing as _t
@@ -194,7 +194,7 @@ def compare(array: Array, stroke: Stroke, *, algorithms: _t.Union[str, _t.Iterab
 
 
 class ScoreCall:
-    """How a score is made."""
+    """The call that makes a score."""
 
     __slots__ = ()
 
@@ -235,7 +235,7 @@ class ScoreCall:
 
 
 class PlayerCalls:
-    """How a player is opened, and begins a live stroke."""
+    """The calls that open a player and begin a live stroke."""
 
     __slots__ = ()
 
