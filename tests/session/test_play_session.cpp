@@ -84,13 +84,13 @@ struct run {
         const auto ended = session->submit(tone(seconds));
         return ended ? *ended : session->follow();
     }
+    // While the clock runs: a device that stands still is not asked any more whether it is there.
     void unplug()
     {
-        clocks.clear();
         cards.back().disconnect();
-        session->wait_for(-1, 0);
         while (!session->lost())
             session->wait_for(-1, 1);
+        clocks.clear();
     }
 };
 
