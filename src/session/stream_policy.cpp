@@ -43,10 +43,8 @@ bool stream_policy::is_due(time now, double after_s)
 
 stream_policy::act stream_policy::step_shut(time now)
 {
-    if (is_over() || (state_ == stream_state::idle && !wanted_))
-        return act::nothing;
-    if (wanted_)
-        return act::open;
+    if (is_over() || wanted_ || state_ == stream_state::idle)
+        return wanted_ && !is_over() ? act::open : act::nothing;
     if (!give_up_at_)
         give_up_at_ = later(now, times_.wait_s);
     if (!due_) {
@@ -75,15 +73,9 @@ stream_policy::act stream_policy::step_open(time now)
     return act::nothing;
 }
 
-void stream_policy::enter(phase p)
-{
-    phase_ = p;
-    due_.reset();
-}
-
 void stream_policy::opened()
 {
-    enter(phase::open);
+    phase_ = phase::open;
     wanted_ = broken_ = false;
     if (!proves_)
         run();
@@ -101,7 +93,7 @@ void stream_policy::run()
 
 void stream_policy::failed(std::string why)
 {
-    enter(phase::shut);
+    phase_ = phase::shut;
     wanted_ = false;
     proves_ = true;
     set(stream_state::lost, std::move(why));
@@ -117,7 +109,7 @@ void stream_policy::ended(std::string why)
 
 void stream_policy::closed(bool left_on)
 {
-    enter(phase::shut);
+    phase_ = phase::shut;
     if (!left_on)
         return;
     given_up_ = true;

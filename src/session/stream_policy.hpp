@@ -37,7 +37,11 @@ public:
     std::optional<time> again() const noexcept { return again_; }
 
     /// The device is being opened or closed; opened(), failed() or closed() follows.
-    void begin() noexcept { phase_ = phase::working; }
+    void begin() noexcept
+    {
+        phase_ = phase::working;
+        due_.reset();
+    }
     void opened();
     void failed(std::string why);
     /// `left_on`: the amplifier may be on. Then the device is never opened again.
@@ -69,7 +73,6 @@ private:
     act step_shut(time now);
     act step_open(time now);
     bool is_due(time now, double after_s);
-    void enter(phase p);
     void set(stream_state s, std::string reason);
     void run();
 
