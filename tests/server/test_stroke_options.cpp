@@ -201,6 +201,18 @@ TEST_CASE("bursts are moved for the low-speed observer where it is asked for")
           }).what == "options.compensate");
 }
 
+TEST_CASE("a hint names what a request can say")
+{
+    const auto hint_of = [p = palm()](const json& params) {
+        return fault_from([&] { make_planned(p, layout(p.tactors), params); }).hint;
+    };
+    CHECK(hint_of({{"toml", "[array]\npreset = \"palm-3x3\"\n"}}) ==
+          "give it as an array or a configuration of the server");
+    CHECK(hint_of({{"stroke", "wave-2x4"}}) ==
+          "palm-2x4 is the one it is drawn for, options.outside clamp plays "
+          "the nearest point of the array");
+}
+
 TEST_CASE("faces are those that are asked for, and go with inverse-distance alone")
 {
     const planning p = palm();
