@@ -109,10 +109,9 @@ public:
             look_around(*three_, faces_, out.position, seen);
     }
 
-    /// No tactor gets more than an intensity that is linear in time.
-    const trajectory* bounds() const noexcept override
+    const trajectory* bounds(std::size_t tactors) const noexcept override
     {
-        return scale_.kind == scale_kind::linear ? &motion_ : nullptr;
+        return scale_.kind == scale_kind::linear && faces_.places().size() <= tactors ? &motion_ : nullptr;
     }
 
 private:

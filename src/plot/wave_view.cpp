@@ -66,8 +66,6 @@ waveform look_at(const score& s, const std::vector<unsigned>& channels, std::siz
         const auto n = static_cast<std::size_t>(
             std::min({static_cast<std::uint64_t>(block), frames - at, length - at % length}));
         r.process(std::as_writable_bytes(std::span(buffer).first(n * per_frame)));
-        if (!r.failure().empty())
-            throw error(error_kind::bad_input, "stroke", r.failure());
         ranges.add(buffer.data(), n);
         at += n;
         if (at % length != 0 && at != frames)

@@ -152,8 +152,6 @@ public:
         while (!out.empty()) {
             const std::size_t n = std::min<std::size_t>(out.size(), frames_at_once * frame_);
             renderer_.process(out.first(n));
-            if (!renderer_.failure().empty())
-                throw error(error_kind::runtime, "render", renderer_.failure());
             out = out.subspan(n);
             if (!out.empty())
                 check_signals();

@@ -7,7 +7,7 @@
 #include <memory>
 #include <mutex>
 #include <new>
-#include <stdexcept>
+#include <span>
 #include <string>
 #include <string_view>
 #include <thread>
@@ -21,7 +21,6 @@
 #include "clock_runner.hpp"
 #include "count_allocations.hpp"
 #include "exhaustion_calls.hpp"
-#include "own_curve.hpp"
 #include "player_support.hpp"
 #include "rig.hpp"
 #include "scores.hpp"
@@ -229,32 +228,65 @@ COUNTING_TEST_CASE("a stream that ends while one allocation fails ends in order,
     }
 }
 
-COUNTING_TEST_CASE("a plan that fails at once ends once, even without memory for the reason")
+COUNTING_TEST_CASE("a continuous stroke without memory goes on when there is some, and is late otherwise")
 {
-    plan broken;
-    broken.total_s = broken.stroke_duration_s = 1.0;
-    for (std::uint64_t granted = 0; granted < 20; ++granted) {
-        CAPTURE(granted);
-        const auto fails = std::make_shared<bool>(false);
-        broken.curve = make_curve(1.0, [fails](double, burst& out) {
-            if (*fails)
-                throw std::runtime_error("a reason that is longer than what a string keeps within itself");
-            out.drives = {{4, 0.5}};
-        });
-        const score s(palm(), broken);
-        *fails = true;
+    plan_options o;
+    o.algorithm = algorithm_kind::continuous;
+    o.phantom = phantom_kind::gaussian; // each of its samples needs memory
+    const stroke drawn{"", trajectory::timed({{0.0, {3.0, 2.0}}, {1.5, {37.0, 31.0}}})};
+    const score s(palm(), make_plan(palm(), drawn, o));
+    // Half a second is prepared.
+    for (const std::uint64_t without : {rate / 4, rate}) {
+        CAPTURE(without);
         rig r;
-        r.feed.submit({1}, s, start_at::now());
-        refuse_allocations(granted, 1);
+        const std::uint64_t base = r.status().written;
+        const stroke_id id = r.submit(s);
+        r.play(9600);
+        unsigned refused = 0;
+        for (std::uint64_t n = 0; n < without; n += r.options.period) {
+            r.dac.advance_queued(r.options.period);
+            r.step();
+            refuse_allocations(0, UINT64_MAX);
+            try {
+                r.feed.pump(r.status().written, r.link.clock.load());
+            } catch (const std::bad_alloc&) {
+                ++refused;
+            }
+            refuse_allocations(0, 0);
+        }
+        CHECK(refused > 0);
+        r.play_out();
+        REQUIRE(r.report(id));
+        const bool is_late = without == rate;
+        CHECK(r.report(id)->state == (is_late ? state_kind::interrupted : state_kind::finished));
+        CHECK(r.report(id)->reason == (is_late ? reason_kind::late : reason_kind::none));
+        if (!is_late)
+            CHECK(r.captured(base, s.frames()) == rendered(s, format_kind::s32));
+    }
+}
+
+COUNTING_TEST_CASE("a renderer without memory goes on where it was")
+{
+    plan_options o;
+    o.algorithm = algorithm_kind::continuous;
+    o.phantom = phantom_kind::gaussian;
+    const stroke drawn{"", trajectory::timed({{0.0, {3.0, 2.0}}, {0.2, {37.0, 31.0}}})};
+    const score s(palm(), make_plan(palm(), drawn, o));
+    renderer r(s, format_kind::s32);
+    const std::size_t frame = s.channels() * bytes_of(format_kind::s32);
+    std::vector<std::byte> out(s.frames() * frame);
+    unsigned refused = 0;
+    while (r.position() < s.frames()) {
+        refuse_allocations(refused % 50, 1); // a sample takes some of them
         try {
-            r.feed.pump(r.status().written, r.link.clock.load());
-        } catch (const std::bad_alloc&) { // NOLINT(bugprone-empty-catch): it is tried again below
+            r.process(std::span(out).subspan(r.position() * frame));
+        } catch (const std::bad_alloc&) {
+            ++refused;
         }
         refuse_allocations(0, 0);
-        r.play(9600);
-        CHECK(r.end({1}).state == state_kind::interrupted);
-        CHECK(r.ended.at({1}).size() == 1);
     }
+    CHECK(refused > 20);
+    CHECK(out == rendered(s, format_kind::s32));
 }
 
 } // namespace no_memory_test

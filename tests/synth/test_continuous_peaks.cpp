@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <random>
-#include <span>
 #include <string>
 #include <vector>
 
@@ -13,10 +12,8 @@
 #include <tactor/phantom.hpp>
 #include <tactor/render.hpp>
 
-#include "core/access.hpp"
 #include "own_curve.hpp"
 #include "pieces.hpp"
-#include "synth/score/score.hpp"
 
 namespace continuous_peaks_test {
 
@@ -113,28 +110,27 @@ TEST_CASE("spans are skipped only where they stay below each limit: the result i
     CHECK(refused < 100);
 }
 
-TEST_CASE(
-    "a stroke with a spike that no tactor alone could have is played, and promises no more than was seen")
+TEST_CASE("a stroke with a spike that no tactor alone could have is played where two share it")
 {
-    // On a diagonal, where two tactors share it; harmless before and after.
+    // On a diagonal; harmless before and after.
     const plan p = continuous({{0.0, {0.0, 10.0}, 0.5},
                                {5.0, {10.0, 10.0}, 0.5},
                                {5.1, {10.0, 10.0}, 1.3},
                                {5.2, {10.0, 10.0}, 0.5},
                                {10.0, {40.0, 10.0}, 0.5}});
-    render_options o;
-    o.level_dbfs = 0.0;
-    o.rate = 8000;
-    const score s(palm, p, o);
-    const std::vector<double>& promised = detail::access::of(s).promised.at(0);
-    REQUIRE(promised.size() == 9);
-    CHECK(promised[0] == doctest::Approx(1.3 / std::sqrt(2.0)));
-    CHECK(promised[8] == 0.5); // not evaluated: its part of any harmless intensity
-    renderer r(s, format_kind::float32);
-    std::vector<float> samples(s.frames() * s.channels());
-    r.process(std::as_writable_bytes(std::span(samples)));
-    CHECK(r.failure().empty());
-    CHECK(std::any_of(samples.end() - 90, samples.end(), [](float v) { return v != 0.0F; }));
+    CHECK(refusal({{p, {}}}, 0.0).empty());
+}
+
+TEST_CASE("a plan for a larger array is looked at, and refused where it drives a tactor that is not there")
+{
+    const array wide = make_grid("wide", 3, 4, 20.0, 20.0);
+    plan_options o;
+    o.algorithm = algorithm_kind::continuous;
+    const auto down = [&](double to_mm) {
+        return make_plan(wide, {"", trajectory::timed({{0.0, {1.0, 1.0}}, {10.0, {1.0, to_mm}}})}, o);
+    };
+    CHECK(refusal({{down(9.0), {}}}, -12.0).empty());
+    CHECK(refusal({{down(39.0), {}}}, -12.0).find("cannot be rendered") != std::string::npos);
 }
 
 TEST_CASE("every control point of a program's plan is evaluated")

@@ -169,9 +169,6 @@ bool audio_loop::take(const command& c) noexcept
     case command::kind::end:
         scores_.end(c.score);
         break;
-    case command::kind::fail:
-        scores_.fail(c.score, c.at);
-        break;
     }
     return true;
 }
@@ -179,8 +176,7 @@ bool audio_loop::take(const command& c) noexcept
 void audio_loop::mix_period() noexcept
 {
     scores_.render_live(setup_.period_frames, offset_, clock_.line());
-    scores_.fade_what_failed(setup_.period_frames);
-    // Drives that wait for space in the mixer are in time.
+    // Drives that wait for space in the mixer are there in time.
     if (link_.commands.size() == 0)
         scores_.fade_what_runs_out(setup_.period_frames);
     mixer_.process(setup_.period_frames, block_.data());

@@ -100,7 +100,7 @@ void score_table::fade_what_runs_out(std::uint64_t period) noexcept
     const std::uint64_t next = mixer_.position();
     for (std::uint32_t i = 0; i < top_; ++i) {
         entry& e = entries_[i];
-        if (!e.used || !e.open || e.fed || e.fading || e.fade_wanted || e.broken != never)
+        if (!e.used || !e.open || e.fed || e.fading || e.fade_wanted)
             continue;
         if (e.covered >= next + 2 * period) {
             e.ahead = true;
@@ -117,24 +117,6 @@ void score_table::end(ticket t) noexcept
 {
     if (entry* e = find(t))
         e->fed = true;
-}
-
-void score_table::fail(ticket t, std::uint64_t at) noexcept
-{
-    if (entry* e = find(t))
-        e->broken = e->base + at;
-}
-
-void score_table::fade_what_failed(std::uint64_t period) noexcept
-{
-    const std::uint64_t next = mixer_.position();
-    for (std::uint32_t i = 0; i < top_; ++i) {
-        entry& e = entries_[i];
-        if (!e.used || e.fading || e.fade_wanted || e.broken >= next + period + fade_)
-            continue;
-        e.fade = static_cast<std::uint32_t>(std::min<std::uint64_t>(fade_, std::max(e.broken, next) - next));
-        want_fade(e, state_kind::interrupted, reason_kind::plan);
-    }
 }
 
 void score_table::cancel(ticket t) noexcept
@@ -324,9 +306,8 @@ void score_table::describe(std::uint64_t played, stream_status& s) const noexcep
 bool score_table::being_fed() const noexcept
 {
     const std::uint64_t next = mixer_.position();
-    return std::any_of(entries_.begin(), entries_.begin() + top_, [next](const entry& e) {
-        return e.used && !e.fed && !e.fading && e.broken == never && e.base <= next;
-    });
+    return std::any_of(entries_.begin(), entries_.begin() + top_,
+                       [next](const entry& e) { return e.used && !e.fed && !e.fading && e.base <= next; });
 }
 
 } // namespace tactor::engine

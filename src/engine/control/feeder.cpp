@@ -122,10 +122,7 @@ command feeder::next_command(active& a, ticket t)
 {
     const synth::drive_event* e = a.source->peek();
     if (e == nullptr) {
-        a.failure = a.source->failure(); // comes first, because there may be no memory for it
         a.fed = true;
-        if (!a.failure.empty())
-            return {.what = command::kind::fail, .score = t, .at = a.source->failed_at()};
         return {.what = command::kind::end, .score = t};
     }
     command c{.what = command::kind::drive, .score = t, .drive = *e};
@@ -134,7 +131,7 @@ command feeder::next_command(active& a, ticket t)
     return c;
 }
 
-std::uint64_t feeder::next_start(active& a, std::uint64_t written) noexcept
+std::uint64_t feeder::next_start(active& a, std::uint64_t written)
 {
     const synth::drive_event* e = a.source->peek();
     // Until the audio thread reports where it begins, only this bound is certain.

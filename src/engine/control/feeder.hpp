@@ -105,7 +105,6 @@ private:
         std::uint64_t base = 0;         ///< stream frame of its start, once begun
         std::optional<double> late_s{}; ///< none: the clock was not known when it began
         std::optional<synth::event_source> source{};
-        std::string failure{}; ///< reason why its plan could not be followed to its end
         bool begun = false;
         bool fed = false;
         bool cancelled = false;
@@ -143,7 +142,7 @@ private:
     bool has_room(std::size_t n);
     void hand_over_beginning(active& a, ticket t, std::size_t drives);
     static command next_command(active& a, ticket t);
-    static std::uint64_t next_start(active& a, std::uint64_t written) noexcept;
+    static std::uint64_t next_start(active& a, std::uint64_t written);
     void release(slot& s) noexcept;
     void end_all(const report& r);
 

@@ -171,9 +171,7 @@ void feeder::over(const active& a, const report& r)
                        .state = r.state,
                        .frames = r.frame,
                        .reason = r.why,
-                       .why = r.why != reason_kind::plan ? text(r.why, r.code)
-                              : a.voice != nullptr       ? a.voice->failure()
-                                                         : a.failure,
+                       .why = r.why == reason_kind::plan ? a.voice->failure() : text(r.why, r.code),
                        .late_s = a.late_s.value_or(0.0),
                        .started_ns = {},
                        .delay = {},

@@ -60,17 +60,17 @@ private:
     detail::same_tactors seen_;
 };
 
-/// The movement behind a plan, where none of its tactors gets more than its intensity; null for others.
-const trajectory* known(const plan& p)
+/// The movement behind a plan, where none of so many tactors gets more than its intensity; null for others.
+const trajectory* known(const plan& p, std::size_t tactors)
 {
-    return curve_access::of(*p.curve).bounds();
+    return curve_access::of(*p.curve).bounds(tactors);
 }
 
 /// Returns the greatest intensity of a continuous plan, as an upper bound of the amplitudes that it asks for.
 /// None where the intensity is not known to be a bound. May be infinite or no number.
-std::optional<double> greatest_intensity(const plan& p)
+std::optional<double> greatest_intensity(const plan& p, std::size_t tactors)
 {
-    const trajectory* motion = known(p);
+    const trajectory* motion = known(p, tactors);
     if (motion == nullptr)
         return std::nullopt;
     double greatest = 0.0;
@@ -94,7 +94,7 @@ std::optional<double> greatest_intensity(const plan& p)
 std::vector<double> continuous_peaks(const plan& p, std::size_t tactors, double harmless, std::uint64_t most)
 {
     look l(p, tactors);
-    const trajectory* motion = known(p);
+    const trajectory* motion = known(p, tactors);
     if (motion == nullptr) {
         l.at_all();
         return std::move(l).peaks();
@@ -176,7 +176,8 @@ const std::vector<double>& continuous_items::most(std::size_t number)
     const auto there = most_.find(number);
     if (there != most_.end())
         return there->second;
-    const auto intensity = greatest_intensity(score_.plans[score_.list.items[number].plan].plan);
+    const auto intensity =
+        greatest_intensity(score_.plans[score_.list.items[number].plan].plan, score_.tactors.size());
     if (!intensity)
         return looked_at(number);
     return most_[number] = std::vector<double>(score_.tactors.size(), *intensity);
@@ -204,19 +205,6 @@ std::vector<double> continuous_items::bounds(std::size_t number)
 std::vector<double> continuous_items::peaks(std::size_t number)
 {
     return at_levels(number, looked_at(number));
-}
-
-std::vector<std::vector<double>> continuous_items::promised()
-{
-    std::vector<std::vector<double>> all(score_.plans.size());
-    const auto& items = score_.list.items;
-    for (std::size_t i = 0; i < items.size(); ++i) {
-        if (items[i].kind == item_kind::continuous) {
-            const auto looked = looked_at_.find(i);
-            all[items[i].plan] = looked != looked_at_.end() ? looked->second : most(i);
-        }
-    }
-    return all;
 }
 
 } // namespace tactor::synth

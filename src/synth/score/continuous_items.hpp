@@ -27,10 +27,6 @@ public:
     /// \throws error (bad_input) for plans that cannot be rendered.
     std::vector<double> peaks(std::size_t number);
 
-    /// By plan and tactor, the greatest amplitudes that may come: those behind peaks() where they were asked
-    /// for, else those behind bounds(). Empty for plans that are not continuous.
-    std::vector<std::vector<double>> promised();
-
 private:
     const std::vector<double>& most(std::size_t number);
     const std::vector<double>& looked_at(std::size_t number);

@@ -184,7 +184,6 @@ std::vector<double> check_peaks(score::impl& s, const array& a, const render_opt
     if (continuous.have_bounds()) {
         std::vector<double> bounds = swept(s, [&](std::size_t i) { return continuous.bounds(i); }).peaks();
         if (within(bounds)) {
-            s.promised = continuous.promised();
             silence_unmeasured(s);
             return bounds;
         }
@@ -196,7 +195,6 @@ std::vector<double> check_peaks(score::impl& s, const array& a, const render_opt
             refuse_unmeasured(a, i, o);
     for (std::size_t i = 0; i < peaks.size(); ++i)
         check(a, i, peaks[i], all.factors()[i], o);
-    s.promised = continuous.promised();
     silence_unmeasured(s);
     return peaks;
 }

@@ -2,10 +2,8 @@
 #include "sink/wav/wav.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <cstdlib>
 #include <fstream>
-#include <limits>
 #include <string>
 
 #include <sndfile.h>
@@ -22,7 +20,6 @@
 
 #include "../../synth/pieces.hpp"
 #include "folder.hpp"
-#include "own_curve.hpp"
 
 namespace write_test {
 
@@ -273,61 +270,6 @@ TEST_CASE("a link stays a link, and the longest name works")
     const std::string longest(255, 'x');
     CHECK(write_wav(make_score(), format_kind::s16, dir / longest));
     CHECK(fs::is_regular_file(dir / longest));
-}
-
-TEST_CASE("a plan that fails in mid-stroke leaves no file; the renderer fades before that and says why")
-{
-    for (const double amplitude : {std::numeric_limits<double>::quiet_NaN(), 1e300}) {
-        CAPTURE(amplitude);
-        bool broken = false;
-        plan p = make_continuous(4, 0.5);
-        p.curve = test::make_curve(0.5, [&broken, amplitude, good = *p.curve](double t, burst& out) {
-            good.at(t, out);
-            if (broken && t >= 0.25)
-                out.drives[0].amplitude = amplitude;
-        });
-        // Strokes beside it end with it.
-        const plan beside = make_plan({make_burst(0.2, 0.2, {{3, 0.5}})});
-        const score s(row(4), {{p, 0.0}, {beside, 0.0}}, {});
-        const auto whole = render(s, format_kind::float32);
-        renderer r(s, format_kind::float32);
-        renderer by_frames(s, format_kind::float32);
-        broken = true;
-        const folder dir;
-        std::string said;
-        try {
-            write_wav(s, format_kind::float32, dir / "broken.wav");
-        } catch (const error& e) {
-            CHECK(e.kind() == error_kind::bad_input);
-            said = e.what();
-        }
-        CHECK(said.find("stroke: the plan failed at 0.25 s of the stroke: tactor ") == 0);
-        CHECK(fs::is_empty(dir.path()));
-
-        std::vector<std::byte> half(whole.size(), std::byte{1});
-        CHECK(r.failure().empty());
-        r.process(half);
-        CHECK(r.failure().find(std::isnan(amplitude) ? "amplitude nan cannot be rendered"
-                                                     : "amplitude 1e+300, above the ") != std::string::npos);
-        const std::size_t bytes = s.channels() * sizeof(float);
-        constexpr std::size_t end = 11952; // 0.249 s, the last control point that is right
-        constexpr std::size_t fall = end - 480;
-        const auto at = [bytes](std::size_t frame) { return static_cast<std::ptrdiff_t>(frame * bytes); };
-        CHECK(std::equal(whole.begin(), whole.begin() + at(fall), half.begin()));
-        CHECK(std::all_of(half.begin() + at(end), half.end(), [](std::byte b) { return b == std::byte{0}; }));
-        for (std::size_t frame = fall; frame < end; ++frame) {
-            const double left = 0.5 + 0.5 * std::cos(pi * static_cast<double>(frame - fall) / 480.0);
-            for (std::size_t c = 0; c < s.channels(); ++c) {
-                const std::size_t i = frame * s.channels() + c;
-                REQUIRE(static_cast<double>(sample<float>(half, i)) ==
-                        doctest::Approx(left * static_cast<double>(sample<float>(whole, i))).scale(1.0));
-            }
-        }
-        std::vector<std::byte> same(whole.size());
-        for (std::size_t frame = 0; frame < s.frames(); ++frame)
-            by_frames.process(std::span(same).subspan(frame * bytes, bytes));
-        CHECK(same == half);
-    }
 }
 
 } // namespace write_test
