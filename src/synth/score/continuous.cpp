@@ -1,40 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
-#include <cmath>
 
-#include <fmt/format.h>
-
-#include <tactor/error.hpp>
-
-#include "core/words.hpp"
 #include "synth/score/expander.hpp"
 #include "synth/score/frames.hpp"
 
 namespace tactor::synth {
-
-namespace {
-
-/// Empty where all can be played.
-std::string unplayable(const burst& b, std::size_t tactors)
-{
-    for (std::size_t i = 0; i < b.drives.size(); ++i) {
-        const drive& d = b.drives[i];
-        if (d.tactor >= tactors || !std::isfinite(d.amplitude))
-            return fmt::format("tactor {} at amplitude {} cannot be rendered", d.tactor, d.amplitude);
-        if (i > 0 && b.drives[i - 1].tactor >= d.tactor)
-            return fmt::format("tactor {} after tactor {}", d.tactor, b.drives[i - 1].tactor);
-    }
-    return {};
-}
-
-} // namespace
-
-void check_drives(const burst& b, double t_s, std::size_t tactors)
-{
-    const std::string why = unplayable(b, tactors);
-    if (!why.empty())
-        throw error(error_kind::bad_input, "stroke at " + seconds_text(t_s), why);
-}
 
 void control_points::reserve(std::size_t tactors)
 {

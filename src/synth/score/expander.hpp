@@ -85,8 +85,4 @@ joined_stretch join_members(const item_member* members, std::size_t count, std::
 /// Frame of control point k of a stroke of `length` frames, from its start. Points beyond the end are at it.
 std::uint64_t control_frame(std::uint64_t k, unsigned rate, std::uint64_t length) noexcept;
 
-/// \throws error (bad_input) where a continuous plan drives a tactor that is not there, gives an impossible
-///         amplitude, or is out of order.
-void check_drives(const burst& b, double t_s, std::size_t tactors);
-
 } // namespace tactor::synth
