@@ -240,7 +240,7 @@ TEST_CASE("impossible options of a live stroke are errors that name their field"
     for (const double bad : {-0.001, 1.001, std::nan("")})
         refused("smooth_s", [bad](live_options& o) { o.smooth_s = bad; });
     refused("level_dbfs", [](live_options& o) { o.render.level_dbfs = 3.0; });
-    refused("", [](live_options& o) { o.render.sl_db = 7.0; });
+    refused("sl_db", [](live_options& o) { o.render.sl_db = 7.0; });
     for (const double bad : {-1.0, 10.1})
         refused("ramp_s", [bad](live_options& o) { o.render.ramp_s = bad; });
     refused("soa_s", [](live_options& o) {
