@@ -21,7 +21,7 @@ namespace {
 namespace asio = boost::asio;
 using asio::ip::udp;
 
-// From the request to the answer. The sound is made by threads of the player; this coroutine sleeps meanwhile
+// Plays a requested stroke and answers. The player's threads make the sound; this coroutine sleeps meanwhile
 // and wakes up on its own executor, so that nothing in the program needs a lock.
 asio::awaitable<void> draw(tactor::player& player, udp::socket& socket, udp::endpoint who, std::string name)
 {

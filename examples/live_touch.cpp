@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // A finger draws: a touch screen, touch pad or mouse feeds a live stroke, point by point, while it sounds.
 //   live_touch EVENTS [PCM]        e.g. live_touch /dev/input/event5 hw:CARD=Tactor; PCM is null by default
-// EVENTS is an input device (members of the group input may read them), or what was read from one before.
+// EVENTS is an input device (members of the group input may read them), or a recording of one.
 #include <algorithm>
 #include <cstdio>
 #include <exception>
@@ -20,7 +20,7 @@ namespace {
 constexpr double palm_mm = 40.0; // the palm's array is a square
 constexpr double mouse_mm = 0.1; // on the palm, for each count of a mouse
 
-// All of the panel is the palm. A recording does not know how far its panel reached: 12 bits are usual.
+// The whole panel is the palm. A recording does not know the size of its panel: 12 bits are usual.
 double on_palm(int fd, const input_event& e)
 {
     input_absinfo range{};
@@ -47,13 +47,13 @@ try {
     std::optional<tactor::live_stroke> stroke; // from the finger's touch on; the newest one
     for (;;) {
         pollfd events{.fd = fd, .events = POLLIN, .revents = 0};
-        // A finger that rests sends no events, and a live stroke whose points stay away is taken for broken
-        // after live_options::timeout_s: every 100 ms say again where it is.
+        // A finger at rest sends no events, and the player ends a live stroke without points after
+        // live_options::timeout_s: repeat the place every 100 ms.
         input_event e{};
         e.type = EV_SYN;
         if (poll(&events, 1, 100) != 0 && read(fd, &e, sizeof e) != sizeof e)
             break;
-        // The kernel tells what has changed, one thing at a time, and then SYN_REPORT.
+        // The kernel sends one change at a time, and then SYN_REPORT.
         if (e.type == EV_ABS && (e.code == ABS_X || e.code == ABS_Y))
             (e.code == ABS_X ? at.x_mm : at.y_mm) = on_palm(fd, e);
         if (e.type == EV_REL && (e.code == REL_X || e.code == REL_Y))

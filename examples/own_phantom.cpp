@@ -25,7 +25,7 @@ public:
         std::iota(order.begin(), order.end(), 0U);
         const auto distance = [&](unsigned i) { return distance_mm(places_[i], p); };
         const auto near = order.begin() + static_cast<std::ptrdiff_t>(std::min<std::size_t>(3, order.size()));
-        // Of two that are equally far the first one: ties must not depend on the sorting.
+        // Takes the first of two at equal distance: ties must not depend on the sorting.
         std::partial_sort(order.begin(), near, order.end(), [&](unsigned i, unsigned j) {
             return std::pair(distance(i), i) < std::pair(distance(j), j);
         });

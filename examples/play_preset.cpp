@@ -8,7 +8,7 @@
 
 int main(int argc, char** argv)
 try {
-    // Plain values first: where the tactors are, what is drawn, who plays when, and at which level and rate.
+    // Plain values first: the array, the stroke, the plan of bursts, and the score with level and rate.
     const tactor::array palm = tactor::preset_array("palm-3x3");
     const tactor::stroke stroke = tactor::preset_stroke("park2016-3");
 

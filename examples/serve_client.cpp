@@ -37,7 +37,7 @@ std::string stroke_of(const std::string& reply)
     return reply.substr(at, reply.find_first_not_of("0123456789", at) - at);
 }
 
-/// Each stroke has exactly one end.
+/// Waits for the end of a stroke; each has exactly one.
 std::string wait(stream& server, const std::string& stroke)
 {
     for (std::string line; std::getline(server, line);)

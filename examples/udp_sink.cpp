@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A sink of your own: the frames go as UDP datagrams to whatever has the DAC, e.g. a microcontroller.
+// A sink of your own: the frames go as UDP datagrams to a device with a DAC, e.g. a microcontroller.
 //   udp_sink HOST PORT
 // Each datagram is the number of its first frame (64 bits, little-endian), then 48 frames of 9 samples,
 // S16_LE.
@@ -17,7 +17,7 @@
 
 namespace {
 
-// paced_sink keeps the time; a sink for a device with a clock of its own derives from tactor::sink instead.
+// paced_sink keeps the time; a sink for a device with its own clock derives from tactor::sink instead.
 class udp_sink final : public tactor::paced_sink {
 public:
     udp_sink(const tactor::stream_setup& s, const char* host, const char* port) : paced_sink(s)

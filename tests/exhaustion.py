@@ -2,7 +2,7 @@
 """Holds that every public function that may throw is tried without descriptors and without memory.
 
 What is declared in a public header and not noexcept stands in one of the tables tests/engine/exhaustion_*.cpp, each
-overload in a row of its own: under its name, with that of its class before it ("path::meets_x"), and is called in that
+overload in a separate row: under its name, with that of its class before it ("path::meets_x"), and is called in that
 row. Further rows for the same have more to say after a comma ("path::from_svg, no path"). from_string() has one row for
 all, which names each enumeration. UNTRIED has the others, with the reason.
 
@@ -31,17 +31,17 @@ ROW = re.compile(r'\{"([\w:]+(?:operator[^\w",]+)?)(,[^"]*)?",')
 
 
 def statements(text):
-    """What stands between semicolons and closing braces, each as its head and what is in its braces (or None)."""
+    """Returns the parts between semicolons and closing braces, each as its head and the content of its braces (or None)."""
     begin = i = 0
     while i < len(text):
         c = text[i]
         if c == "(":
-            i = end_of(text, i)
+            i = find_end(text, i)
         elif c == ";":
             yield text[begin:i].strip(), None
             begin = i + 1
         elif c == "{":
-            head, end = text[begin:i].strip(), end_of(text, i)
+            head, end = text[begin:i].strip(), find_end(text, i)
             # After a type, a namespace or a function there is a body; all other braces hold a value.
             if re.match(r"(inline )?namespace\b", head) or TYPE.match(ACCESS.sub("", head)) or "(" in head and not head.endswith("="):
                 yield head, text[i + 1:end]
@@ -53,8 +53,8 @@ def statements(text):
         i += 1
 
 
-def end_of(text, at):
-    """Where the bracket at a place is closed."""
+def find_end(text, at):
+    """Returns the end of the bracket at a place."""
     deep = 0
     for i in range(at, len(text)):
         deep += (text[i] in "({[") - (text[i] in ")}]")
@@ -64,7 +64,7 @@ def end_of(text, at):
 
 
 def without_template(head):
-    """A declaration without "template <...>" and attributes."""
+    """Returns a declaration without "template <...>" and attributes."""
     while m := re.match(r"template\s*<", head):
         deep, i = 1, m.end()
         while deep:
@@ -75,7 +75,7 @@ def without_template(head):
 
 
 def throwing(text, cls="", public=True):
-    """Names of what may throw in the text of a namespace or a class."""
+    """Returns names that may throw in the text of a namespace or a class."""
     for head, body in statements(text):
         if m := ACCESS.match(head + ":" if head in ("public", "protected", "private") else head):
             public = m[1] == "public"
@@ -88,7 +88,7 @@ def throwing(text, cls="", public=True):
             if body is not None and m[1] != "enum":
                 yield from throwing(body, f"{cls}{m[2]}::", m[1] == "struct")
         elif (m := NAME.search(declared := without_template(head))) and not VALUE.match(declared):
-            after = declared[end_of(declared, m.end() - 1) + 1:].split(" : ")[0]
+            after = declared[find_end(declared, m.end() - 1) + 1:].split(" : ")[0]
             if not re.search(r"\bnoexcept\b|=\s*(?:delete|default)\b", after) and not m[1].startswith("~"):
                 yield cls + m[1].replace(" ", "")
 

@@ -21,7 +21,7 @@ def run(*args):
 
 
 def unformatted(files):
-    """One run for all: a tenth of the time."""
+    """Formats all files in one run: a tenth of the time."""
     status, _, said = run("clang-format", "--dry-run", "-Werror", *map(str, files))
     found = {m[1]: m[0] for m in reversed(list(re.finditer(r"^(/.*?):\d+:\d+: error: .*", said, re.M)))}
     for f in files:
@@ -32,8 +32,8 @@ def unformatted(files):
 
 
 def braced(root, files):
-    """Files with braces around one statement. clang-format takes them away where it is asked to, but breaks lines after lambdas in
-    another way then; so only what is no space is compared."""
+    """Returns files with braces around one statement. clang-format can remove them, but breaks lines after lambdas in
+    another way then; so only the non-space characters are compared."""
     with tempfile.NamedTemporaryFile("w", suffix=".clang-format") as style:
         style.write((root / ".clang-format").read_text(encoding="utf-8") + "RemoveBracesLLVM: true\n")
         style.flush()
@@ -48,11 +48,11 @@ def braced(root, files):
 
 def unclean(page):
     _, said, _ = run("mandoc", "-Tlint", str(page))
-    # That another page is not installed here says nothing about this one.
+    # Another page that is not installed here says nothing about this one.
     yield from (line for line in said.splitlines() if "referenced manual not found" not in line)
     _, _, said = run("man", "--warnings", "-E", "UTF-8", "-l", "-Tutf8", "-Z", str(page))
-    # Lines in a narrow table column that stay short are a matter of taste, and of groff's version; and where
-    # a page of paper ends matters to nobody who reads this on a terminal.
+    # Lines in a narrow table column that stay short are a matter of taste, and of groff's version; and page ends do not matter
+    # on a terminal.
     matters = (line for line in said.splitlines() if "cannot adjust line" not in line and "not fit on one page" not in line)
     yield from (f"{page}: {line}" for line in matters)
 

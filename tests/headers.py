@@ -19,7 +19,7 @@ import sys
 
 COMMENT = re.compile(r"//[^\n]*|/\*.*?\*/", re.S)
 ENUM = re.compile(r"\benum\s+class\s+(\w+)")
-# A double that is a time by its name, and says no unit.
+# A double that is a time by its name, without a unit.
 TIME = re.compile(r"\bdouble\s+(duration|timeout|delay|onset|start|time|pause|wait|window|period|seconds)\b(?!_)")
 INT_TIME = re.compile(r"\b(?:std::)?u?int\d+_t\s+\w*_(?:s|ms|us)\b")
 DROPPED = re.compile(r"^TACTOR_API\s+(?!void\b)[^;{]*?\b(\w+)\(", re.M)
@@ -30,7 +30,7 @@ CLASS = re.compile(r"\bclass\s+(?:TACTOR_API\s+)?(\w+)(?:\s+final)?[^;{]*\{(.*?)
 
 
 def public_part(body):
-    """What of a class's text is public."""
+    """Returns the public part of a class's text."""
     kept, public = [], False
     for line in body.split("\n"):
         if m := re.match(r"\s*(public|protected|private):", line):

@@ -7,7 +7,7 @@ import pathlib
 import re
 import sys
 
-# A folder may include itself and these. A folder within another that has rules of its own stands here, too.
+# A folder may include itself and these. Also lists folders within another that have separate rules.
 MAY_INCLUDE = {
     "core": set(),
     "options": {"core", "percept"},
@@ -38,10 +38,10 @@ PUBLIC = {
     "sink": None, "alsa": "sink/alsa", "player": "engine", "live": "engine", "asio": "engine", "report": "engine",
 }
 USES_ALL_PUBLIC = {"cli", "files/plan", "options", "plot", "python", "server", "session", "study"}
-# What those may know of the library's inside, which is in the tool: no program that embeds it needs these.
+# Inner headers of the library that the tool may include: no program that embeds it needs these.
 INSIDE = {
-    "cli": {"core/asked_pace.hpp", "core/kind_names.hpp", "core/sha256.hpp", "core/split.hpp", "core/start_times.hpp", "core/suggest.hpp", "core/words.hpp", "files/channel_map.hpp", "files/setup_text.hpp", "percept/compare.hpp", "rt/advice.hpp", "rt/clock.hpp", "synth/score/sounding_now.hpp"},
-    "study": {"core/owned.hpp", "core/sha256.hpp", "core/split.hpp", "core/suggest.hpp", "core/words.hpp", "files/output_file.hpp", "files/setup_text.hpp", "files/text_file.hpp", "files/toml_reader.hpp", "rt/clock.hpp", "rt/event_fd.hpp", "rt/thread.hpp", "synth/mix/converter.hpp", "synth/score/drive_room.hpp"},
+    "cli": {"core/asked_pace.hpp", "core/kind_names.hpp", "core/sha256.hpp", "core/split.hpp", "core/start_times.hpp", "core/suggest.hpp", "core/words.hpp", "files/setup_text.hpp", "percept/compare.hpp", "rt/advice.hpp", "rt/clock.hpp", "synth/score/sounding_now.hpp"},
+    "study": {"core/marks.hpp", "core/owned.hpp", "core/sha256.hpp", "core/split.hpp", "core/suggest.hpp", "core/words.hpp", "files/output_file.hpp", "files/setup_text.hpp", "files/text_file.hpp", "files/toml_reader.hpp", "rt/clock.hpp", "rt/event_fd.hpp", "rt/thread.hpp", "synth/mix/converter.hpp", "synth/score/drive_room.hpp"},
     "plot": {"core/split.hpp", "core/words.hpp", "files/output_file.hpp", "percept/compare.hpp", "synth/mix/sample_ranges.hpp"},
     "server": {"core/asked_pace.hpp", "core/bounds.hpp", "core/start_times.hpp", "core/words.hpp"},
     "python": {"core/access.hpp", "core/asked_pace.hpp", "core/path/impl.hpp", "core/path/outline.hpp", "core/profile.hpp", "core/trajectory/impl.hpp", "core/words.hpp", "files/output_file.hpp", "files/setup_text.hpp", "files/text_file.hpp", "percept/compare.hpp", "plan/curve_impl.hpp"},
@@ -65,7 +65,8 @@ ONLY_IN = {
 PURE = {"core", "files", "plan", "percept", "synth"}
 IMPURE = {"thread", "mutex", "condition_variable", "chrono", "atomic", "future", "poll.h", "unistd.h", "time.h"}
 
-# But for what reads and writes files that a user named, by descriptors, and keeps which were read, and for a guess where to look first, which
+# Exceptions: reading and writing files that a user named, by descriptors, with a record of inputs; and a guess where to look
+# first, which threads share and no answer depends on.
 # threads share and no answer depends on.
 IMPURE_IN = {"src/core/owned.hpp": {"unistd.h"}, "src/files/input_files.cpp": {"mutex"}, "src/files/text_file.cpp": {"unistd.h"}, "src/files/output_file.cpp": {"unistd.h", "poll.h"},
              "src/plan/faces/layout_impl.hpp": {"atomic"}}
@@ -73,21 +74,21 @@ IMPURE_IN = {"src/core/owned.hpp": {"unistd.h"}, "src/files/input_files.cpp": {"
 INCLUDE = re.compile(r'^\s*#\s*include\s*[<"]([^>"]+)[>"]', re.M)
 
 
-def folder_of(parts):
-    """Of a file below src: the innermost folder that has rules."""
+def folder_name(parts):
+    """Returns the innermost folder with rules for a file below src."""
     return "/".join(parts[:2]) if "/".join(parts[:2]) in MAY_INCLUDE else parts[0]
 
 
 def complaints(root, file):
     where = file.relative_to(root).as_posix()
     parts = where.split("/")
-    folder = folder_of(parts[1:]) if parts[0] == "src" and len(parts) > 2 else None
+    folder = folder_name(parts[1:]) if parts[0] == "src" and len(parts) > 2 else None
     for header in INCLUDE.findall(file.read_text(encoding="utf-8")):
         for prefix, places in ONLY_IN.items():
             if header.startswith(prefix) and not any(where.startswith(p) for p in places):
                 yield f"{where}: includes {header}, which only {', '.join(places)} may"
         if parts[0] == "include" and not header.startswith("tactor/") and "/" in header \
-                and where != "include/tactor/asio.hpp":  # there for those who use Asio
+                and where != "include/tactor/asio.hpp":  # there for users of Asio
             yield f"{where}: a public header includes {header}"
         if folder is None:
             continue
@@ -102,7 +103,7 @@ def complaints(root, file):
             if owner and folder not in USES_ALL_PUBLIC and owner != folder and owner not in MAY_INCLUDE[folder]:
                 yield f"{where}: {folder} may not know {owner} ({header})"
         elif header.split("/")[0] in MAY_INCLUDE and "/" in header:
-            owner = folder_of(header.split("/"))
+            owner = folder_name(header.split("/"))
             if (root / "src" / header).exists() and owner != folder and owner not in MAY_INCLUDE[folder] \
                     and header not in INSIDE.get(folder, ()):
                 yield f"{where}: {folder} may not know {owner} ({header})"
@@ -112,7 +113,7 @@ def main():
     root = pathlib.Path(sys.argv[1]).resolve()
     files = [f for top in ("src", "include") for f in sorted((root / top).rglob("*.[ch]pp"))]
     bad = [c for f in files for c in complaints(root, f)]
-    # A list that is longer than what is used says nothing.
+    # An unused entry of the list is an error.
     for folder, headers in INSIDE.items():
         used = {h for f in (root / "src" / folder).rglob("*.[ch]pp") for h in INCLUDE.findall(f.read_text(encoding="utf-8"))}
         bad += [f"tests/includes.py: nobody in {folder} includes {h} (INSIDE)" for h in sorted(headers - used)]

@@ -11,7 +11,7 @@ import sys
 
 DOCTEST = re.compile(r"\[doctest\] test cases:\s+\d+ \|\s+(\d+) passed \|\s+(\d+) failed \|\s+(\d+) skipped")
 COUNTED = re.compile(r"^(\d+) passed, (\d+) failed(?:, (\d+) skipped)?$", re.M)
-# What doctest and unittest print above each case that failed, and what this prints of a lane's suites.
+# Lines that doctest and unittest print above each case that failed, and those of this script for a lane's suites.
 FAILED = re.compile(r"^(?:TEST CASE|FAIL|ERROR|\s*FAILED): +(.*)$", re.M)
 
 

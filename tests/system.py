@@ -47,7 +47,7 @@ def can_verify_rules():
 
 
 def bad_units(folder, *options):
-    """All units of a folder, which name one another. The system's must be hardened: exposure 2.0 at most."""
+    """Checks all units of a folder, which name one another. The system's must be hardened: exposure 2.0 at most."""
     with tempfile.TemporaryDirectory() as place:
         copies = []
         for file in sorted(f for f in folder.iterdir() if f.is_file()):
@@ -62,7 +62,8 @@ def bad_units(folder, *options):
 
 
 def bad_packages(root):
-    """The Debian packages are built with what tests/packages lists for library, tool and Python package, but for what all have."""
+    """Checks that the Debian packages are built with the listed packages for library, tool and Python package, except the
+    common ones."""
     lists = dict(line.split(": ", 1) for line in (root / "tests/packages").read_text(encoding="utf-8").splitlines()
                  if not line.startswith("#"))
     wanted = set(" ".join(lists[n] for n in ("library", "tool", "python-build")).split()) - {"dpkg-dev", "g++", "ninja-build", "pkg-config"}

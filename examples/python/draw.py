@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Drawing with the mouse: what is drawn is felt meanwhile.
+"""Drawing with the mouse: the drawing is felt meanwhile.
 
     draw.py [DEVICE]               without one: "null", which is not felt
 """
@@ -44,7 +44,7 @@ class Drawing(tkinter.Canvas):
         self.finger.to(x / PIXELS + self.origin[0], y / PIXELS + self.origin[1])
 
     def keep(self):
-        """A mouse that rests says nothing; who says nothing for half a second is taken to have failed."""
+        """Repeats the place: a mouse at rest sends nothing, and a live stroke without points ends after half a second."""
         if self.finger is not None:
             self.to_the_skin()
             self.after(50, self.keep)

@@ -21,7 +21,7 @@ except ImportError:  # without PsychoPy, a clock that began with the machine
 
 
 def offset(readings=50):
-    """PsychoPy's clock less CLOCK_MONOTONIC and the most that it may be wrong, s: of several readings the quickest."""
+    """Returns PsychoPy's clock less CLOCK_MONOTONIC and its greatest error, s: the quickest of several readings."""
     best, ahead = float("inf"), 0.0
     for _ in range(readings):
         before = time.monotonic()
@@ -49,7 +49,7 @@ class Window:
 
 
 class Simulated:
-    """Is right, mostly, after some 0.4 s."""
+    """Answers after some 0.4 s, mostly right."""
 
     chance = random.Random(1)
 

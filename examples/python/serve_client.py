@@ -27,7 +27,7 @@ class Service:
         self.lines.flush()
 
     def receive(self):
-        """The next reply; ends of strokes on the way are kept."""
+        """Returns the next reply; keeps ends of strokes on the way."""
         line = self.lines.readline()
         if not line:
             sys.exit("the service has gone")
@@ -47,7 +47,7 @@ class Service:
         return reply["result"]
 
     def tell(self, method, **params):
-        """Without a reply."""
+        """Sends a notification, which has no reply."""
         self.send(method=method, params=params)
 
     def wait(self, stroke):

@@ -50,7 +50,7 @@ private:
 
 /// Returns an executor: `where` itself, or the one of a context, a socket or a timer.
 template <typename Where>
-auto executor_of(Where& where)
+auto find_executor(Where& where)
 {
     if constexpr (requires { where.get_executor(); })
         return where.get_executor();
@@ -63,15 +63,15 @@ template <typename Token>
 constexpr bool runs_nowhere = std::is_invocable_v<std::decay_t<Token>&, std::exception_ptr, stroke_report>&&
     std::is_same_v<boost::asio::associated_executor_t<std::decay_t<Token>>, boost::asio::system_executor>;
 
-/// Calls the handler when a stroke has ended. `id_of` returns its id, and may start it.
+/// Calls the handler when a stroke has ended. `start` returns its id, and may start it.
 template <typename Named, typename Handler, typename Start>
-void wait_for_stroke(const Named& named, player& p, Handler&& h, Start id_of)
+void wait_for_stroke(const Named& named, player& p, Handler&& h, Start start)
 {
     // Shared, because std::function needs a copyable target.
     auto w = std::make_shared<stroke_waiter<std::decay_t<Handler>, Named>>(std::forward<Handler>(h), named);
     stroke_report none;
     try {
-        none.id = id_of();
+        none.id = start();
         if (p.on_end(none.id, [w](const stroke_report& r) { (*w)(nullptr, r); }))
             return;
         throw error(error_kind::bad_input, "stroke",
@@ -101,7 +101,7 @@ template <typename Where, typename Token>
 auto async_wait(Where&& where, player& p, stroke_id id, Token&& token)
 {
     return boost::asio::async_initiate<Token, void(std::exception_ptr, stroke_report)>(
-        [named = detail::executor_of(where), &p, id](auto&& handler) {
+        [named = detail::find_executor(where), &p, id](auto&& handler) {
             detail::wait_for_stroke(named, p, std::forward<decltype(handler)>(handler), [id] { return id; });
         },
         token);
@@ -122,7 +122,7 @@ template <typename Where, typename Token>
 auto async_play(Where&& where, player& p, score s, start_at start, Token&& token)
 {
     return boost::asio::async_initiate<Token, void(std::exception_ptr, stroke_report)>(
-        [named = detail::executor_of(where), &p, s = std::move(s), start](auto&& handler) {
+        [named = detail::find_executor(where), &p, s = std::move(s), start](auto&& handler) {
             detail::wait_for_stroke(named, p, std::forward<decltype(handler)>(handler),
                                     [&p, &s, start] { return p.submit(s, start); });
         },

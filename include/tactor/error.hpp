@@ -23,7 +23,7 @@ enum class error_kind {
 };
 TACTOR_KIND(error_kind);
 
-/// Category of error codes made from error_kind.
+/// Returns the category of error codes made from error_kind.
 [[nodiscard]] TACTOR_API const std::error_category& error_category() noexcept;
 [[nodiscard]] TACTOR_API std::error_code make_error_code(error_kind e) noexcept;
 
@@ -45,7 +45,7 @@ struct source_place {
 /// file that another file names, or a std::system_error with the errno of a system call.
 ///
 /// When memory runs out, std::bad_alloc passes through. Two cases differ: while TOML is read, the process
-/// ends (toml++ 3 does so); while ALSA lists or opens PCMs, the process may end (alsa-lib 1.2.8).
+/// ends (toml++ 3 does so); while ALSA looks up PCMs, the process may end (alsa-lib 1.2.8).
 ///
 /// Copies share the texts and do not throw.
 class TACTOR_API error : public std::system_error {
@@ -60,7 +60,7 @@ public:
     // Parts of what(), for programs that show them separately. Valid while this error or a copy of it lives.
     [[nodiscard]] std::string_view subject() const noexcept; ///< WHAT
     [[nodiscard]] std::string_view why() const noexcept;     ///< WHY
-    [[nodiscard]] std::string_view hint() const noexcept;    ///< HINT; may be empty
+    [[nodiscard]] std::string_view hint() const noexcept; ///< HINT, options as marks, "{soa_s}"; may be empty
     /// Returns the option or value at fault, under its name in this library or, with a place(), in the file
     /// ("soa_s"). Empty if the error is about none, or about several that do not go together.
     [[nodiscard]] std::string_view field() const noexcept;

@@ -114,11 +114,11 @@ struct fitted_strokes {
     fitting placed = {};
 };
 
-/// Moves and scales strokes together, as one picture. The middle of their common bounds moves to the array's
-/// middle, which is the centre of gravity of the hull of the tactors' centres. The picture becomes as large
-/// as possible inside that hull (the area that outside_kind::error accepts), at least `margin_mm` (finite, >=
-/// 0) from its edge. Width and height keep their ratio. `l` is the layout of the array: fit_strokes(strokes,
-/// layout(a)).
+/// Moves and scales strokes together, as a single picture. The middle of their common bounds moves to the
+/// middle of the array: the centre of gravity of the hull of the tactors' centres. The picture becomes as
+/// large as possible inside that hull (the area that outside_kind::error accepts), at least `margin_mm`
+/// (finite, >= 0) from its edge. Width and height keep their ratio. `l` is the layout of the array:
+/// fit_strokes(strokes, layout(a)).
 ///
 /// If all tactors lie in one line, to a tenth of their pitch, that line is the array: the picture is fitted
 /// by its extent along the line, and its extent across is dropped. A picture without extent (a timed stroke

@@ -126,9 +126,8 @@ struct curve_samples {
 
 /// Position, intensity and drives of a continuous stroke every continuous_step_s and at its end; linear
 /// between. A value: two curves are equal if all their samples are. Copies and moves share the samples, so a
-/// moved-from curve keeps its value. Any thread. make_plan() stores the samples of short strokes. For a
-/// stroke longer than a few seconds the curve computes them when they are read, so an hour needs no more
-/// memory.
+/// moved-from curve keeps its value. Any thread. With a phantom model of the library the curve computes its
+/// samples when they are read, so an hour needs no more memory than a second.
 class TACTOR_API curve {
 public:
     /// Makes a curve of ceil(duration_s / continuous_step_s) + 1 samples.
@@ -162,8 +161,8 @@ private:
     std::shared_ptr<const impl> impl_;
 };
 
-/// Which tactors play, when and how strongly: bursts or a curve. A value: the same input gives the same plan.
-/// A program can compare, store and rebuild it.
+/// Drives of the tactors over time: bursts or a curve. A value: the same input gives the same plan. A program
+/// can compare, store and rebuild it.
 struct plan {
     std::string algorithm = {}; ///< name of the planner: an algorithm_kind or another name
     std::string phantom = {};

@@ -212,10 +212,10 @@ public:
     /// With N periods in the buffer, the first sample of a score that starts now is in the device's buffer at
     /// most one period after this call, and at the DAC after at most N + 1 periods. A score that starts at a
     /// given time is punctual if this call comes N + 1 periods before it.
-    /// \throws error: bad_input if rate or channels differ from the stream's, and for a score that the
-    ///         player's array would not play in full: it drives a channel without a tactor there (a
-    ///         continuous stroke counts for all tactors of its own array), it drives a tactor above its
-    ///         limit there, or it has its marker on a tactor's channel; runtime if the stream has ended.
+    /// \throws error: bad_input if rate or channels differ from the stream's, or if the player's array cannot
+    ///         play the whole score: it drives a channel without a tactor there (a continuous stroke counts
+    ///         for all tactors of the score's array), it drives a tactor above its limit there, or it has its
+    ///         marker on a tactor's channel; runtime if the stream has ended.
     stroke_id submit(const score& s, start_at start = start_at::now());
 
     /// Starts all armed strokes: their first samples are at the DAC at a CLOCK_MONOTONIC time, ns, or as soon

@@ -123,9 +123,9 @@ private:
     std::shared_ptr<const impl> impl_;
 };
 
-/// Makes a score stroke by stroke. It never has a whole plan of its own in memory: an hour of park2016 takes
-/// 4 MB instead of 11. One thread at a time. If an add() throws, a part of the stroke may be in the score, so
-/// the builder is no longer usable.
+/// Makes a score stroke by stroke. It never keeps a whole plan in memory: an hour of park2016 takes 4 MB
+/// instead of 11. One thread at a time. If an add() throws, a part of the stroke may be in the score, so the
+/// builder is no longer usable.
 class TACTOR_API score_builder {
 public:
     /// Starts an empty score.
@@ -146,7 +146,7 @@ public:
 
     /// Returns the score of all that was added. Its samples equal those of a score made of the same plans.
     /// The builder becomes empty, even if this throws.
-    /// \throws error (bad_input) for a level above a tactor's limit.
+    /// \throws error (bad_input) for levels that a tactor may not have, as the constructor of score does.
     [[nodiscard]] score take();
 
 private:
@@ -164,18 +164,14 @@ public:
     renderer(renderer&&) noexcept;
     renderer& operator=(renderer&&) noexcept;
 
-    /// Fills `out` with the next interleaved frames, as many as fit, and with silence after the end. If a
-    /// continuous stroke fails, all strokes first fade out within 10 ms, and silence follows. Allocates only
-    /// the text of failure().
-    /// \throws error (bad_input) unless `out` is a whole number of frames (channels * bytes_of(format)).
+    /// Fills `out` with the next interleaved frames, as many as it has space for, and goes on; silence after
+    /// the end. Allocates nothing but what samples of a continuous stroke need.
+    /// \throws error (bad_input) where `out` is no whole number of frames (channels * bytes_of(format));
+    ///         std::bad_alloc where position() says how far it came, and the next call goes on from there.
     void process(std::span<std::byte> out);
 
     /// Returns the number of the next frame.
     [[nodiscard]] std::uint64_t position() const;
-
-    /// Returns why the rest is silence: the renderer could not follow a continuous stroke, for example
-    /// because memory ran out, or the stroke exceeded the levels that were checked. Empty while all is well.
-    [[nodiscard]] const std::string& failure() const;
 
 private:
     struct impl;
@@ -185,12 +181,12 @@ private:
 /// Called between blocks with the finished and all frames. Returns false to give up.
 using wav_progress = std::function<bool(std::uint64_t done, std::uint64_t all)>;
 
-/// Renders a score to a WAV file (RF64 above 4 GB) in bounded memory. Writes to a temporary name in the same
-/// folder and renames it to `file` when it is complete. On failure, or if `progress` gives up, it leaves
-/// nothing behind and an existing `file` unchanged. Blocks on the file system.
-/// \returns false if `progress` gave up.
-/// \throws error: bad_input for a format that WAV cannot hold (s24_4), for a folder that does not exist, and
-///         for a plan that fails in mid-stroke (renderer::failure()); runtime for errors of the file system.
+/// Renders a score to a WAV file (RF64 above 4 GB) in bounded memory. Writes to a temporary name in
+/// the same folder, which becomes `file` when complete; on failure, or when `progress` gives up,
+/// nothing is left behind and an existing `file` stays as it was. Blocks on the file system.
+/// \returns false when `progress` gave up.
+/// \throws error: bad_input for a format that WAV cannot hold (s24_4) and a folder that does not exist;
+///         runtime for what the file system refuses.
 TACTOR_API bool write_wav(const score& s, format_kind f, const std::filesystem::path& file,
                           const wav_progress& progress = {});
 

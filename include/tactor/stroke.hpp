@@ -174,8 +174,8 @@ struct stroke_sound {
 /// Request to make a stroke as large as the array allows, see fit_strokes().
 struct stroke_fit {
     double margin_mm = 0.0; ///< distance from the array's edge
-    /// Strokes with the same number above 0 are fitted together as one picture. 0: this stroke is fitted
-    /// alone.
+    /// Strokes with the same number above 0 are fitted together, as a single picture. 0: this stroke is
+    /// fitted alone.
     unsigned group = 0;
 
     friend bool operator==(const stroke_fit&, const stroke_fit&) = default;

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
-#include <charconv>
 #include <optional>
 #include <utility>
 
@@ -14,6 +13,7 @@
 #include <sys/sysmacros.h>
 
 #include "amplifier/errors.hpp"
+#include "core/split.hpp"
 #include "rt/system_files.hpp"
 
 namespace tactor::gpio {
@@ -22,12 +22,9 @@ namespace {
 std::optional<unsigned> chip_number(const std::string& name)
 {
     constexpr std::string_view prefix = "gpiochip";
-    unsigned number = 0;
     if (!name.starts_with(prefix))
         return std::nullopt;
-    const char* end = name.data() + name.size();
-    const auto [p, ec] = std::from_chars(name.data() + prefix.size(), end, number);
-    return ec == std::errc{} && p == end ? std::optional(number) : std::nullopt;
+    return detail::number_in<unsigned>(std::string_view(name).substr(prefix.size()));
 }
 
 chip unread(const std::string& path, int code)
@@ -44,7 +41,7 @@ chip read_with_group(const std::string& path)
     const int other = not_a_chip(path);
     chip c = other == 0 ? read_chip(path) : unread(path, other);
     if (c.code != 0)
-        c.group = group_of(path);
+        c.group = find_group(path);
     return c;
 }
 
@@ -90,7 +87,7 @@ int not_a_chip(const std::string& path)
     return bus.filename() == "gpio" ? 0 : ENODEV;
 }
 
-std::string group_of(const std::string& path)
+std::string find_group(const std::string& path)
 {
     struct stat status {};
     group entry{};
@@ -135,7 +132,7 @@ located_line locate(const gpio_line_name& wanted)
     return {p.path, p.line.offset};
 }
 
-std::string holder_of(const located_line& l)
+std::string find_holder(const located_line& l)
 {
     const chip c = read_chip(l.path);
     return l.offset < c.info.lines.size() ? c.info.lines[l.offset].consumer : std::string();

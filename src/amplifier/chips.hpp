@@ -36,7 +36,7 @@ std::vector<std::string> chip_paths(const std::filesystem::path& folder = "/dev"
 int not_a_chip(const std::string& path);
 
 /// Returns the name of the group that owns a file, or "gpio" if it is not known.
-std::string group_of(const std::string& path);
+std::string find_group(const std::string& path);
 
 /// Finds a line among the chips of this machine. Throws as find_line() does.
 gpio_line_place look_up(const gpio_line_name& wanted);
@@ -54,6 +54,6 @@ located_line locate(const gpio_line_name& wanted);
 std::vector<chip> read_chips();
 
 /// Returns the holder of a line now; empty if there is none or it is not known.
-std::string holder_of(const located_line& l);
+std::string find_holder(const located_line& l);
 
 } // namespace tactor::gpio

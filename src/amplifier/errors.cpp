@@ -38,7 +38,7 @@ std::string open_hint(const chip& c)
     if (c.code == ENOSYS)
         return "build it anew with -Dgpio=enabled, where libgpiod is";
     if (c.code != EACCES && c.code != EPERM)
-        return "tactor devices lists the chips";
+        return "{command:devices} lists the chips";
     if (c.group == "root")
         return "the device is root's alone: sudo groupadd --system --force gpio, install the udev rules, "
                "which give it "

@@ -2,7 +2,6 @@
 // Public functions of this folder, except the list of chips.
 #include <tactor/lines.hpp>
 
-#include <array>
 #include <cmath>
 #include <utility>
 
@@ -52,7 +51,7 @@ template <typename T>
 std::unique_ptr<T> take(requested<T> r, const gpio_line_name& wanted, const located_line& at)
 {
     if (!r.line)
-        detail::throw_caused(request_error(wanted, r.code, holder_of(at)), r.code);
+        detail::throw_caused(request_error(wanted, r.code, find_holder(at)), r.code);
     return std::move(r.line);
 }
 

@@ -1,15 +1,16 @@
 // SPDX-License-Identifier: MIT
+#include <array>
 #include <filesystem>
 #include <memory>
 #include <optional>
 
 #include <CLI/CLI.hpp>
-#include <fmt/format.h>
 
 #include "cli/commands.hpp"
 #include "cli/input.hpp"
 #include "cli/picture_options.hpp"
 #include "cli/say.hpp"
+#include "cli/settings.hpp"
 #include "cli/warnings.hpp"
 #include "plot/figure.hpp"
 #include "plot/paint/output.hpp"
@@ -25,29 +26,18 @@ struct plot_settings {
     figure_view view = figure_view::both;
 };
 
-figure_view parse_view(const std::string& text)
-{
-    if (text == "array")
-        return figure_view::array;
-    if (text == "timing")
-        return figure_view::timing;
-    if (text == "wave")
-        return figure_view::wave;
-    if (text == "both")
-        return figure_view::both;
-    throw error(error_kind::bad_input, "--view", fmt::format("\"{}\" is not known", text),
-                "one of array, timing, wave, both");
-}
+constexpr std::array views{figure_view::array, figure_view::timing, figure_view::wave, figure_view::both};
 
 void add_plot_options(CLI::App& c, plot_settings& p)
 {
     c.add_option("-o,--output", p.picture.file, "the file to write")
         ->type_name("FILE.svg|.png|.pdf")
         ->required();
-    c.add_option_function<std::string>(
-         "--view", [&p](const std::string& t) { p.view = parse_view(t); },
-         "what is shown: the array, who plays when, the samples, or the first two (default both)")
-        ->type_name("array|timing|wave|both");
+    add_text(c, "--view", "array|timing|wave|both",
+             "what is shown: the array, who plays when, the samples, or the first two (default both)",
+             [&p](const std::string& t) {
+                 p.view = views[choose("--view", t, {"array", "timing", "wave", "both"})];
+             });
     add_picture_options(c, p.picture, "85, one print column");
 }
 

@@ -7,12 +7,10 @@
 #include <string_view>
 
 #include <CLI/CLI.hpp>
-#include <fmt/format.h>
 #include <unistd.h>
 
 #include "cli/commands.hpp"
 #include "cli/input.hpp"
-#include "cli/progress.hpp"
 #include "cli/say.hpp"
 #include "cli/warnings.hpp"
 #include "core/words.hpp"

@@ -8,7 +8,7 @@
 #include <fmt/format.h>
 
 #include "cli/option_words.hpp"
-#include "cli/progress.hpp"
+#include "cli/warnings.hpp"
 #include "core/asked_pace.hpp"
 #include "core/start_times.hpp"
 #include "session/pipes.hpp"

@@ -23,7 +23,6 @@
 #include <tactor/version.hpp>
 
 #include "cli/commands.hpp"
-#include "cli/completion/complete.hpp"
 #include "cli/option_words.hpp"
 #include "cli/say.hpp"
 #include "cli/usage.hpp"

@@ -12,24 +12,15 @@ namespace tactor::cli {
 
 void add_picture_options(CLI::App& command, picture_options& into, const std::string& usual_width)
 {
-    command
-        .add_option_function<std::string>(
-            "--width",
-            [&into](const std::string& t) {
-                into.width_mm =
-                    options::parse_number("--width", t, {plot::least_width_mm, plot::most_width_mm}, "mm");
-            },
-            fmt::format("width of the picture (default {})", usual_width))
-        ->type_name("MM");
-    command
-        .add_option_function<std::string>(
-            "--dpi",
-            [&into](const std::string& t) {
-                into.dpi = static_cast<unsigned>(
-                    options::parse_whole("--dpi", t, {plot::least_dpi, plot::most_dpi}, "dpi"));
-            },
-            "resolution of a PNG (default 300)")
-        ->type_name("N");
+    add_text(command, "--width", "MM", fmt::format("width of the picture (default {})", usual_width),
+             [&into](const std::string& t) {
+                 into.width_mm =
+                     options::parse_number("--width", t, {plot::least_width_mm, plot::most_width_mm}, "mm");
+             });
+    add_text(command, "--dpi", "N", "resolution of a PNG (default 300)", [&into](const std::string& t) {
+        into.dpi =
+            static_cast<unsigned>(options::parse_whole("--dpi", t, {plot::least_dpi, plot::most_dpi}, "dpi"));
+    });
     command.add_option("--title", into.title, "title of the picture, or none to leave the heading out")
         ->type_name("TEXT|none");
     add_force_option(command, into.force);

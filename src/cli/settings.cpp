@@ -22,15 +22,13 @@ void add_one(CLI::App& command, settings& into, const options::option& o)
         fmt::format("{}{}", o.letter.empty() ? "" : fmt::format("-{},", o.letter), option_name(o));
     const std::string help = spelled(o.help);
     CLI::Option* added = nullptr;
-    if (o.what == options::kind::flag) {
+    if (o.what == options::kind::flag)
         added = command.add_flag_function(
             name, [&into, &o](std::int64_t n) { options::give(into, o, n > 0); }, help);
-    } else {
-        added = command.add_option_function<std::string>(
-            name, [&into, &o](const std::string& t) { options::give(into, o, options::read_text(o, t)); },
-            help);
-        added->type_name(options::type_text(o));
-    }
+    else
+        added = add_text(command, name, options::type_text(o), help, [&into, &o](const std::string& t) {
+            options::give(into, o, options::read_text(o, t));
+        });
     added->group(std::string(to_string(o.in)));
 }
 
@@ -45,17 +43,28 @@ void add_format_option(CLI::App& command, std::string& into, const std::vector<s
                        const std::string& help)
 {
     into = names.front();
-    command
-        .add_option_function<std::string>(
-            "--format",
-            [&into, names](const std::string& t) {
-                if (std::find(names.begin(), names.end(), t) == names.end())
-                    throw error(error_kind::bad_input, "--format", fmt::format("\"{}\" is not known", t),
-                                fmt::format("one of {}", fmt::join(names, ", ")));
-                into = t;
-            },
-            help)
-        ->type_name(fmt::format("{}", fmt::join(names, "|")));
+    add_text(command, "--format", fmt::format("{}", fmt::join(names, "|")), help,
+             [&into, names](const std::string& t) { into = names[choose("--format", t, names)]; });
+}
+
+CLI::Option* add_text(CLI::App& command, const std::string& names, const std::string& type,
+                      const std::string& help, const std::function<void(const std::string&)>& take)
+{
+    return command.add_option_function<std::string>(names, take, help)->type_name(type);
+}
+
+std::size_t choose(std::string_view option, const std::string& text, const std::vector<std::string>& names)
+{
+    const auto at = std::find(names.begin(), names.end(), text);
+    if (at == names.end())
+        refuse_option(option, fmt::format("\"{}\" is not known", text),
+                      fmt::format("one of {}", fmt::join(names, ", ")));
+    return static_cast<std::size_t>(at - names.begin());
+}
+
+void refuse_option(std::string_view option, const std::string& why, std::string_view hint)
+{
+    throw error(error_kind::bad_input, option, why, hint);
 }
 
 void add_options(CLI::App& command, settings& into, std::uint64_t place)

@@ -3,9 +3,11 @@
 /// Options of the command line that fill the settings.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <tactor/tactor.hpp>
@@ -46,5 +48,15 @@ void add_format_option(CLI::App& command, std::string& into, const std::vector<s
 
 /// --force: output replaces a file that tactor did not write.
 void add_force_option(CLI::App& command, bool& into);
+
+/// Adds an option whose text `take` reads. Returns it.
+CLI::Option* add_text(CLI::App& command, const std::string& names, const std::string& type,
+                      const std::string& help, const std::function<void(const std::string&)>& take);
+
+/// Returns the place of a text among names. \throws error (bad_input) that lists them.
+std::size_t choose(std::string_view option, const std::string& text, const std::vector<std::string>& names);
+
+/// \throws error (bad_input) about an option.
+[[noreturn]] void refuse_option(std::string_view option, const std::string& why, std::string_view hint);
 
 } // namespace tactor::cli

@@ -1,18 +1,20 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// What is wrong with a command line, in the tool's words.
+/// What main() makes of the options: complaints in the tool's words, and what a shell may offer while a
+/// command line is typed, so that nothing is written down twice.
 #pragma once
 
+#include <string>
+#include <vector>
+
 #include <tactor/error.hpp>
+
+#include "options/option.hpp"
 
 namespace CLI {
 class App;
 class ParseError;
 } // namespace CLI
-
-#include <string>
-
-#include "options/option.hpp"
 
 namespace tactor::cli {
 
@@ -22,5 +24,13 @@ std::string describe_option(const options::option& o);
 /// Turns the parser's complaint into an error that names the option and, where it is not known, the
 /// nearest one that is.
 error usage_error(const CLI::App& app, const CLI::ParseError& e);
+
+/// First argument of the hidden command that the shells' completions call: `tactor __complete WORD...`.
+inline constexpr const char* complete_command = "__complete";
+
+/// Returns lines for a shell. `words`: those after "tactor", the last one as far as it has been typed. Each
+/// line is a word that begins so, a tab and a description, or ":files" with the extensions of files that fit
+/// besides.
+std::vector<std::string> complete(const CLI::App& app, const std::vector<std::string>& words);
 
 } // namespace tactor::cli

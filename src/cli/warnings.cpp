@@ -1,15 +1,19 @@
 // SPDX-License-Identifier: MIT
 #include "cli/warnings.hpp"
 
+#include <cstdio>
 #include <map>
 #include <string_view>
 #include <utility>
+
+#include <unistd.h>
 
 #include <fmt/format.h>
 
 #include "cli/say.hpp"
 
 namespace tactor::cli {
+
 namespace {
 
 // Returns the text without numbers and quoted names.
@@ -46,6 +50,29 @@ std::vector<std::string> collect_warnings(std::span<const placed_plan> plans)
     for (const placed_plan& p : plans)
         all.insert(all.end(), p.plan.warnings.begin(), p.plan.warnings.end());
     return all;
+}
+
+progress_line::progress_line(const std::string& name)
+    : name_(shown(name)), terminal_(::isatty(STDERR_FILENO) != 0)
+{
+}
+
+progress_line::~progress_line()
+{
+    if (shown_)
+        std::fputs("\r\033[K", stderr);
+}
+
+void progress_line::update(std::uint64_t done, std::uint64_t all)
+{
+    const auto now = std::chrono::steady_clock::now();
+    if (!terminal_ || now - last_ < std::chrono::milliseconds(500))
+        return;
+    last_ = now;
+    shown_ = true;
+    const double percent = 100.0 * static_cast<double>(done) / static_cast<double>(all);
+    std::fputs(fmt::format("\r\033[K{}: {:.1f} %", name_, percent).c_str(), stderr);
+    std::fflush(stderr);
 }
 
 } // namespace tactor::cli

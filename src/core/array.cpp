@@ -15,7 +15,7 @@ inline namespace v0 {
 namespace {
 
 // Returns the coordinates in ascending order, with those nearer than same_place_mm merged.
-std::vector<double> lines_of(std::vector<double> at)
+std::vector<double> merge_lines(std::vector<double> at)
 {
     std::sort(at.begin(), at.end());
     std::vector<double> lines;
@@ -26,7 +26,7 @@ std::vector<double> lines_of(std::vector<double> at)
 }
 
 // Returns the index of the line into which v was merged.
-std::size_t line_of(const std::vector<double>& lines, double v)
+std::size_t find_line(const std::vector<double>& lines, double v)
 {
     return static_cast<std::size_t>(std::upper_bound(lines.begin(), lines.end(), v) - lines.begin()) - 1;
 }
@@ -51,14 +51,14 @@ std::optional<grid_lines> find_grid(const array& a)
         xs.push_back(t.position.x_mm);
         ys.push_back(t.position.y_mm);
     }
-    grid_lines g{lines_of(std::move(xs)), lines_of(std::move(ys))};
+    grid_lines g{merge_lines(std::move(xs)), merge_lines(std::move(ys))};
     if (g.x_mm.empty() || g.x_mm.size() * g.y_mm.size() != a.tactors.size())
         return std::nullopt;
 
     std::vector<bool> taken(a.tactors.size());
     for (const tactor_spec& t : a.tactors) {
         const std::size_t crossing =
-            line_of(g.y_mm, t.position.y_mm) * g.x_mm.size() + line_of(g.x_mm, t.position.x_mm);
+            find_line(g.y_mm, t.position.y_mm) * g.x_mm.size() + find_line(g.x_mm, t.position.x_mm);
         if (taken[crossing])
             return std::nullopt;
         taken[crossing] = true;

@@ -11,7 +11,7 @@ namespace tactor::detail {
 
 /// Returns std::hypot(x, y) on every machine, bit for bit as the C library has computed it since glibc 2.35
 /// without fused multiplications (Borges 2019, algorithm "fused" without the fusing).
-[[gnu::always_inline]] inline double hypot_of(double x, double y) noexcept
+[[gnu::always_inline]] inline double portable_hypot(double x, double y) noexcept
 {
     const double u = std::abs(x);
     const double v = std::abs(y);
@@ -32,7 +32,7 @@ namespace tactor::detail {
 /// Returns tactor::distance_mm().
 [[gnu::always_inline]] inline double length_mm(point a, point b) noexcept
 {
-    return hypot_of(a.x_mm - b.x_mm, a.y_mm - b.y_mm);
+    return portable_hypot(a.x_mm - b.x_mm, a.y_mm - b.y_mm);
 }
 
 } // namespace tactor::detail

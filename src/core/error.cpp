@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: MIT
 #include <tactor/error.hpp>
 
-#include <cstddef>
 #include <utility>
 
 #include <fmt/format.h>
 
 #include <tactor/version.hpp>
+
+#include "core/marks.hpp"
 
 namespace tactor {
 inline namespace v0 {
@@ -54,21 +55,27 @@ std::string source_place::text() const
 }
 
 struct error::data {
-    std::string text = {};
-    std::size_t why_at = 0;
-    std::size_t hint_at = 0; ///< size of the text if there is no hint
+    std::string text = {};    ///< without marks
+    std::string subject = {}; ///< the parts, with them
+    std::string reason = {};
+    std::string advice = {};
     std::string field = {};
     source_place place = {};
     int os_code = 0;
 
     /// Returns a copy with other words.
-    data said(std::string_view what, std::string_view why, std::string_view hint) const
+    data with_text(std::string_view what, std::string_view why, std::string_view hint) const
     {
         data d = *this;
-        d.text =
-            hint.empty() ? fmt::format("{}: {}", what, why) : fmt::format("{}: {} ({})", what, why, hint);
-        d.why_at = what.size() + 2;
-        d.hint_at = hint.empty() ? d.text.size() : d.why_at + why.size() + 2;
+        d.subject = what;
+        d.reason = why;
+        d.advice = hint;
+        // A file's name may have braces in it.
+        const auto m = detail::find_mark(what);
+        const bool whole = m && m->text.size() == what.size();
+        d.text = fmt::format("{}: {}", whole ? detail::plain(*m) : std::string(what), why);
+        if (!hint.empty())
+            d.text += fmt::format(" ({})", detail::plain(hint));
         return d;
     }
 };
@@ -79,12 +86,12 @@ error::error(error_kind kind, data d)
 }
 
 error::error(error_kind kind, std::string_view what, std::string_view why, std::string_view hint)
-    : error(kind, data().said(what, why, hint))
+    : error(kind, data().with_text(what, why, hint))
 {
 }
 
 error::error(error_kind kind, const source_place& at, std::string_view why, std::string_view hint)
-    : error(kind, data{.place = at}.said(at.text(), why, hint))
+    : error(kind, data{.place = at}.with_text(at.text(), why, hint))
 {
 }
 
@@ -102,20 +109,17 @@ const char* error::what() const noexcept
 
 std::string_view error::subject() const noexcept
 {
-    return std::string_view(data_->text).substr(0, data_->why_at - 2);
+    return data_->subject;
 }
 
 std::string_view error::why() const noexcept
 {
-    const bool last = data_->hint_at == data_->text.size();
-    const std::size_t end = last ? data_->hint_at : data_->hint_at - 2;
-    return std::string_view(data_->text).substr(data_->why_at, end - data_->why_at);
+    return data_->reason;
 }
 
 std::string_view error::hint() const noexcept
 {
-    const std::string_view rest = std::string_view(data_->text).substr(data_->hint_at);
-    return rest.substr(0, rest.empty() ? 0 : rest.size() - 1);
+    return data_->advice;
 }
 
 std::string_view error::field() const noexcept
@@ -156,7 +160,7 @@ error error::with_os_code(int code) const
 
 error error::reworded(std::string_view what, std::string_view why, std::string_view hint) const
 {
-    return {kind(), data_->said(what, why, hint)};
+    return {kind(), data_->with_text(what, why, hint)};
 }
 
 #define TACTOR_TEXT(x) #x

@@ -13,7 +13,7 @@ namespace tactor::detail {
 
 /// Returns the names in the order of declaration.
 template <typename Kind>
-std::vector<std::string_view> names_of()
+std::vector<std::string_view> kind_names()
 {
     std::vector<std::string_view> names;
     for (const Kind k : values_of<Kind>())
@@ -23,7 +23,7 @@ std::vector<std::string_view> names_of()
 
 /// Returns the value with that name, if any.
 template <typename Kind>
-std::optional<Kind> kind_named(std::string_view name)
+std::optional<Kind> find_kind(std::string_view name)
 {
     for (const Kind k : values_of<Kind>())
         if (to_string(k) == name)

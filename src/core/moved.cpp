@@ -13,7 +13,7 @@
 namespace tactor::detail {
 namespace {
 
-outline outline_of(const path::impl& p)
+outline make_outline(const path::impl& p)
 {
     outline o;
     o.vertices = p.vertices;
@@ -62,7 +62,7 @@ trajectory moved(const trajectory& t, point from, const affine& m, std::optional
     const affine to_origin{1.0, 0.0, 0.0, 1.0, -from.x_mm, -from.y_mm};
     const trajectory::impl& d = access::of(t);
     if (const auto* c = std::get_if<drawn_path>(&d.law)) {
-        outline o = mapped(outline_of(access::of(c->way)), to_origin);
+        outline o = mapped(make_outline(access::of(c->way)), to_origin);
         if (line)
             o = with_straight_pieces(o, *line);
         drawn_path there{make_path(mapped(std::move(o), m), what), c->intensity, c->moves};

@@ -12,7 +12,6 @@
 #include <tactor/error.hpp>
 
 #include "core/access.hpp"
-#include "core/moved.hpp"
 #include "core/path/impl.hpp"
 #include "core/profile.hpp"
 #include "core/refused.hpp"
@@ -49,7 +48,7 @@ double moving_time_s(const movement& m, double length_mm)
         throw detail::bad_field(
             "rests",
             fmt::format("{:g} s in all leave nothing of the {:g} s of the stroke", rests, *m.duration_s),
-            "the duration is that of all, rests included");
+            "the duration is that of all, with its pauses");
     return *m.duration_s - rests;
 }
 
@@ -124,9 +123,9 @@ trajectory trajectory::with_speed(double speed_mm_s) const
         return *this;
     const double moving = length / speed_mm_s;
     const auto* c = std::get_if<drawn_path>(&impl_->law);
-    if (c == nullptr || !c->moves || c->moves->said().rests.empty())
+    if (c == nullptr || !c->moves || c->moves->given().rests.empty())
         return with_duration(moving);
-    movement m = c->moves->said();
+    movement m = c->moves->given();
     const double stretched = impl_->duration_s / c->moves->total_s();
     for (rest& r : m.rests)
         r.time_s *= stretched;
@@ -144,7 +143,7 @@ trajectory trajectory::reversed() const
                      c->intensity,
                      {}};
         if (c->moves)
-            l.moves = std::make_shared<const pace>(backwards(c->moves->said()), c->moves->moving_s());
+            l.moves = std::make_shared<const pace>(backwards(c->moves->given()), c->moves->moving_s());
         return trajectory(std::make_shared<impl>(impl{std::move(l), impl_->duration_s, impl_->gain}));
     }
     const auto& l = std::get<timed_points>(impl_->law);

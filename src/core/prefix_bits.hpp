@@ -2,14 +2,14 @@
 // Prefixes of network addresses as files write them.
 #pragma once
 
-#include <charconv>
 #include <optional>
 #include <string>
 #include <string_view>
-#include <system_error>
 
 #include <arpa/inet.h>
 #include <netinet/in.h>
+
+#include "core/split.hpp"
 
 namespace tactor::detail {
 
@@ -27,10 +27,8 @@ inline std::optional<unsigned> prefix_bits(std::string_view text)
     if (slash == std::string_view::npos)
         return most;
     text.remove_prefix(slash + 1);
-    unsigned bits = 0;
-    const auto r = std::from_chars(text.data(), text.data() + text.size(), bits);
-    const bool good = r.ec == std::errc() && r.ptr == text.data() + text.size() && bits <= most;
-    return good ? std::optional(bits) : std::nullopt;
+    const auto bits = number_in<unsigned>(text);
+    return bits && *bits <= most ? bits : std::nullopt;
 }
 
 } // namespace tactor::detail

@@ -10,7 +10,7 @@
 namespace tactor::detail {
 
 /// Returns the recording's file, or "recording" if it has none.
-inline std::string name_of(const recording& r)
+inline std::string recording_name(const recording& r)
 {
     return r.file.empty() ? "recording" : r.file;
 }

@@ -36,7 +36,7 @@ std::uint32_t word_at(std::string_view bytes, std::size_t at)
     return w;
 }
 
-std::array<std::uint32_t, 64> schedule_of(std::string_view block)
+std::array<std::uint32_t, 64> message_schedule(std::string_view block)
 {
     std::array<std::uint32_t, 64> w{};
     for (std::size_t i = 0; i < 16; ++i)
@@ -52,7 +52,7 @@ std::array<std::uint32_t, 64> schedule_of(std::string_view block)
 
 void mix(state& h, std::string_view block)
 {
-    const auto w = schedule_of(block);
+    const auto w = message_schedule(block);
     auto [a, b, c, d, e, f, g, k] = h;
     for (std::size_t i = 0; i < w.size(); ++i) {
         const std::uint32_t t1 = k + (std::rotr(e, 6) ^ std::rotr(e, 11) ^ std::rotr(e, 25)) +

@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// Lists in one text.
+/// Lists and numbers in texts.
 #pragma once
 
 #include <algorithm>
+#include <charconv>
 #include <cstddef>
+#include <optional>
 #include <string_view>
+#include <system_error>
 #include <vector>
 
 namespace tactor::detail {
@@ -21,6 +24,16 @@ inline std::vector<std::string_view> split(std::string_view text, char separator
         at = end + 1;
     }
     return parts;
+}
+
+/// Returns the number that a text is as a whole; nothing for any other text, and beyond what T holds. `base`
+/// is of whole numbers, else ten.
+template <typename T, typename... Base>
+std::optional<T> number_in(std::string_view text, Base... base)
+{
+    T v{};
+    const auto [end, failed] = std::from_chars(text.data(), text.data() + text.size(), v, base...);
+    return failed == std::errc() && end == text.data() + text.size() ? std::optional(v) : std::nullopt;
 }
 
 } // namespace tactor::detail

@@ -2,9 +2,7 @@
 #include <tactor/waveform.hpp>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <functional>
 #include <optional>
 
 #include <fmt/format.h>
@@ -38,7 +36,7 @@ void check_noise(const waveform& w)
 void check_samples(const recording& r)
 {
     const auto refuse = [&r](std::string_view why, std::string_view hint) {
-        throw error(error_kind::bad_input, detail::name_of(r), why, hint).with_field("recorded");
+        throw error(error_kind::bad_input, detail::recording_name(r), why, hint).with_field("recorded");
     };
     if (r.samples.size() < 2 || r.samples.size() > most_recording_samples)
         refuse(fmt::format("it has {}", counted(r.samples.size(), "sample")),
@@ -59,7 +57,7 @@ void check_recording(const waveform& w)
             .with_field("wave");
     check_samples(*w.recorded);
     if (w.texture != texture_kind::time && w.recorded->samples.size() > most_cycle_samples)
-        throw error(error_kind::bad_input, detail::name_of(*w.recorded),
+        throw error(error_kind::bad_input, detail::recording_name(*w.recorded),
                     fmt::format("{} are too many for texture {}",
                                 counted(w.recorded->samples.size(), "sample"), to_string(w.texture)),
                     fmt::format("at most {}, which is 8 s at 8 kHz; or texture time", most_cycle_samples))

@@ -21,19 +21,18 @@ inline constexpr std::uint32_t voices = 512;
 /// one that are still in the ring are ignored.
 using ticket = std::uint32_t;
 
-constexpr std::uint32_t place_of(ticket t) noexcept
+constexpr std::uint32_t ticket_place(ticket t) noexcept
 {
     return t % voices;
 }
 
 /// Message from control to audio, in order.
 struct command {
-    enum class kind : std::uint32_t { begin, drive, end, fail };
+    enum class kind : std::uint32_t { begin, drive, end };
     kind what = kind::begin;
     ticket score = 0;
-    stroke_id id = {}; ///< begin
-    /// begin: frame of the stream; a past one means now. fail: frame of the score where its drives end
-    std::uint64_t at = 0;
+    stroke_id id = {};          ///< begin
+    std::uint64_t at = 0;       ///< begin: frame of the stream; one that is over means now
     std::uint64_t length = 0;   ///< begin: frames
     synth::drive_event drive{}; ///< drive: frames count from the start of the score; `score` is the ticket
 };

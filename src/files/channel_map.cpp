@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "files/channel_map.hpp"
+#include "files/setup_text.hpp"
 
 #include <algorithm>
 #include <cstdint>

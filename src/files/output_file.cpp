@@ -3,8 +3,6 @@
 
 #include <algorithm>
 #include <cerrno>
-#include <charconv>
-#include <climits>
 #include <fstream>
 #include <random>
 #include <string>
@@ -21,6 +19,7 @@
 #include <tactor/error.hpp>
 
 #include "core/refused.hpp"
+#include "core/split.hpp"
 namespace tactor::detail {
 
 namespace fs = std::filesystem;
@@ -42,14 +41,9 @@ fs::path folder_of(const fs::path& p)
 int descriptor_in(const fs::path& p)
 {
     const std::string folder = folder_of(p).string();
-    const std::string name = p.filename().string();
-    int n = -1;
-    if (folder == "/dev/fd" || folder == "/proc/self/fd") {
-        const auto [end, failed] = std::from_chars(name.data(), name.data() + name.size(), n);
-        if (failed != std::errc{} || end != name.data() + name.size())
-            return -1;
-    }
-    return n;
+    if (folder != "/dev/fd" && folder != "/proc/self/fd")
+        return -1;
+    return number_in<int>(p.filename().string()).value_or(-1);
 }
 
 [[noreturn]] void refuse(const fs::path& file, const std::string& why, std::string_view hint, int code = 0)
@@ -110,7 +104,7 @@ void check_replaced(const fs::path& file, bool force,
     if (!is_ours(begin, end))
         throw error(error_kind::bad_input, source_place{file.string()},
                     "there is such a file already, and tactor did not write it",
-                    "choose another name, or replace it with force = true")
+                    "choose another name, or replace it with {force=true}")
             .with_field("force");
 }
 

@@ -160,7 +160,7 @@ array preset_array(std::string_view name)
         if (p.name == name)
             return make_grid(std::string(name), p.rows, p.columns, p.pitch_mm, p.pitch_mm);
     throw error(error_kind::bad_input, "array", fmt::format("there is no preset {}", detail::quoted(name)),
-                detail::preset_hint(name, array_presets()) + "; or name a file");
+                detail::preset_hint(name, array_presets()));
 }
 
 } // namespace v0

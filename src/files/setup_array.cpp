@@ -81,10 +81,10 @@ array read_included(const toml_table& table, const setup_source& source, located
 // Without a word it is unknown; nobody says so.
 std::optional<actuator_kind> read_actuator(const toml_table& t)
 {
-    std::vector<std::string_view> known = names_of<actuator_kind>();
+    std::vector<std::string_view> known = kind_names<actuator_kind>();
     std::erase(known, to_string(actuator_kind::unknown));
     const auto name = t.choice("actuator", known);
-    return name ? kind_named<actuator_kind>(*name) : std::nullopt;
+    return name ? find_kind<actuator_kind>(*name) : std::nullopt;
 }
 
 // One level, or [[Hz, dBFS], ...] in order of frequency.

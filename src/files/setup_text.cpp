@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "files/setup_text.hpp"
 
-#include <map>
 #include <optional>
 
 #include <fmt/format.h>

@@ -3,6 +3,8 @@
 /// Arrays, what their files say, and strokes, as TOML that load_setup() and load_strokes() read again.
 #pragma once
 
+#include <filesystem>
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -32,5 +34,12 @@ std::string origin_text(const calibration_origin& o);
 /// \throws error (bad_input) for what no file can say: an intensity above 1 along a path, a stroke of a
 ///         group that is fitted as one picture.
 std::string stroke_text(const stroke& s);
+
+/// The text of an array or configuration file with other channels, one for each tactor in order; all else in
+/// it stays as it is, comments too. May block on the file system.
+/// \throws error (bad_input): what load_setup() throws; no array in the file; a wrong number of channels;
+///         channels that the file cannot have (two alike, more than [output] says). The text itself is
+///         checked: what it says is what was asked for.
+std::string with_channels(const std::filesystem::path& file, std::span<const unsigned> channels);
 
 } // namespace tactor::detail

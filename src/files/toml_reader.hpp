@@ -14,13 +14,11 @@
 
 #include <toml++/toml.h>
 
-#include <tactor/api.hpp>
 #include <tactor/error.hpp>
 #include <tactor/path.hpp>
 
 #include "core/bounds.hpp"
 #include "core/kind_names.hpp"
-#include "core/limits.hpp"
 
 namespace tactor::detail {
 
@@ -73,8 +71,8 @@ public:
     template <class Kind>
     std::optional<Kind> kind(std::string_view key) const
     {
-        const auto name = choice(key, names_of<Kind>());
-        return name ? kind_named<Kind>(*name) : std::nullopt;
+        const auto name = choice(key, kind_names<Kind>());
+        return name ? find_kind<Kind>(*name) : std::nullopt;
     }
     /// `shape` shows a wrong value's author how it is written.
     std::optional<toml_table> table(std::string_view key, std::string title, std::string_view shape) const;

@@ -113,7 +113,7 @@ address_prefix parse_prefix(const std::string& text, const std::string& what)
     return {address, *bits};
 }
 
-bool is_heard(const ip::address& from, const std::vector<address_prefix>& peers)
+bool is_accepted(const ip::address& from, const std::vector<address_prefix>& peers)
 {
     const ip::address a = plain(from);
     return a.is_loopback() ||
@@ -145,7 +145,7 @@ bool origin_is_ours(std::string_view origin, std::string_view host, const std::v
     return listed(name, port.empty() ? (secure ? "443" : usual_port) : port, allowed);
 }
 
-web_target target_of(std::string_view target, std::string_view host)
+web_target parse_target(std::string_view target, std::string_view host)
 {
     constexpr std::string_view http = "http://";
     const auto without_query = [](std::string_view t) { return t.substr(0, t.find('?')); };
@@ -157,7 +157,7 @@ web_target target_of(std::string_view target, std::string_view host)
     return {target.substr(0, end), path.empty() ? "/" : path};
 }
 
-std::string_view bearer_of(std::string_view authorization)
+std::string_view bearer_token(std::string_view authorization)
 {
     constexpr std::string_view scheme = "Bearer ";
     if (authorization.size() <= scheme.size() || !same_name(authorization.substr(0, scheme.size()), scheme))

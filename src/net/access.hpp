@@ -26,7 +26,7 @@ address_prefix parse_prefix(const std::string& text, const std::string& what);
 
 /// Returns true for this machine's own loopback addresses, and those of `peers`. An IPv4 address within IPv6
 /// counts as IPv4.
-bool is_heard(const boost::asio::ip::address& from, const std::vector<address_prefix>& peers);
+bool is_accepted(const boost::asio::ip::address& from, const std::vector<address_prefix>& peers);
 
 /// Returns true if a Host header means this server: localhost or the very address of the connection, each
 /// with its port, or one of `allowed` ("pi.lan" or "pi.lan:4003"). A page whose name was made to point here
@@ -45,9 +45,9 @@ struct web_target {
 /// Reads a request's target and its Host header. The target may be a whole address ("http://pi.lan/rpc", as
 /// to a proxy), which overrides the header. A text that is neither an address nor a path becomes a path that
 /// does not exist.
-web_target target_of(std::string_view target, std::string_view host);
+web_target parse_target(std::string_view target, std::string_view host);
 
 /// Returns the token after "Bearer " in an Authorization header; empty for others.
-std::string_view bearer_of(std::string_view authorization);
+std::string_view bearer_token(std::string_view authorization);
 
 } // namespace tactor::net

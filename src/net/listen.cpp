@@ -20,6 +20,7 @@
 #include <tactor/error.hpp>
 
 #include "core/refused.hpp"
+#include "core/split.hpp"
 
 namespace tactor::net {
 namespace {
@@ -157,10 +158,11 @@ host_and_port parse_host(std::string_view text, const std::string& what)
         at.host = host;
         port = text.substr(colon + 1);
     }
-    const auto r = std::from_chars(port.data(), port.data() + port.size(), at.port);
-    if (at.host.empty() || port.empty() || r.ec != std::errc() || r.ptr != port.data() + port.size())
+    const auto number = detail::number_in<decltype(at.port)>(port);
+    if (at.host.empty() || !number)
         throw error(error_kind::bad_input, what, fmt::format("\"{}\" is no address", all),
                     "[HOST:]PORT, such as 4001, 0.0.0.0:4001 or [::1]:4001; port 0 takes a free one");
+    at.port = *number;
     return at;
 }
 

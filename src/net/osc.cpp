@@ -2,7 +2,6 @@
 // Bundles. liblo reads them only in its own server, in its own order and time.
 #include "net/osc.hpp"
 
-#include <bit>
 #include <utility>
 
 #include <fmt/format.h>

@@ -5,7 +5,6 @@
 #include <limits>
 #include <memory>
 
-#include <fmt/format.h>
 #include <lo/lo_lowlevel.h>
 
 #include <tactor/error.hpp>
@@ -34,7 +33,7 @@ T read(const lo_arg* at)
     return v;
 }
 
-osc_value value_of(char tag, const lo_arg* at)
+osc_value read_value(char tag, const lo_arg* at)
 {
     switch (tag) {
     case 'i':
@@ -93,7 +92,7 @@ osc_message parse_osc_message(std::string_view bytes)
     const std::string_view tags = lo_message_get_types(m.get());
     lo_arg** const values = lo_message_get_argv(m.get());
     for (std::size_t i = 0; i < tags.size(); ++i)
-        read.values.push_back(value_of(tags[i], values[i]));
+        read.values.push_back(read_value(tags[i], values[i]));
     return read;
 }
 

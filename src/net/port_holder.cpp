@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "net/listen.hpp"
 
-#include <charconv>
 #include <filesystem>
 #include <fstream>
 #include <set>
@@ -9,6 +8,8 @@
 #include <system_error>
 
 #include <fmt/format.h>
+
+#include "core/split.hpp"
 
 namespace tactor::net {
 namespace {
@@ -62,10 +63,8 @@ std::string find_port_holder(std::uint16_t port, bool stream)
     std::error_code failed;
     for (fs::directory_iterator at("/proc", failed), end; !failed && at != end; at.increment(failed)) {
         const std::string name = at->path().filename().string();
-        pid_t pid = 0;
-        const auto r = std::from_chars(name.data(), name.data() + name.size(), pid);
-        if (r.ec == std::errc() && r.ptr == name.data() + name.size() && holds(at->path(), sockets))
-            return process_name(pid);
+        if (const auto pid = detail::number_in<pid_t>(name); pid && holds(at->path(), sockets))
+            return process_name(*pid);
     }
     return "another user's process";
 }

@@ -273,7 +273,7 @@ std::string cut_echo(std::string_view text)
     return out;
 }
 
-std::string words_of(const rpc_fault& f)
+std::string fault_text(const rpc_fault& f)
 {
     const std::string what = cut_echo(f.what);
     const std::string why = cut_echo(f.why);
@@ -287,7 +287,7 @@ reply_json error_reply(const json& id, const rpc_fault& f)
         {"kind", f.kind}, {"what", cut_echo(f.what)}, {"why", cut_echo(f.why)}, {"hint", cut_echo(f.hint)}};
     return {{"jsonrpc", "2.0"},
             {"id", id},
-            {"error", {{"code", f.code}, {"message", words_of(f)}, {"data", std::move(data)}}}};
+            {"error", {{"code", f.code}, {"message", fault_text(f)}, {"data", std::move(data)}}}};
 }
 
 reply_json notification(std::string_view method, reply_json params)
@@ -295,7 +295,7 @@ reply_json notification(std::string_view method, reply_json params)
     return {{"jsonrpc", "2.0"}, {"method", method}, {"params", std::move(params)}};
 }
 
-std::string text_of(const reply_json& j)
+std::string json_line(const reply_json& j)
 {
     return j.dump(-1, ' ', false, reply_json::error_handler_t::replace);
 }

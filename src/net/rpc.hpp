@@ -4,7 +4,6 @@
 #pragma once
 
 #include <cstddef>
-#include <optional>
 #include <string>
 #include <string_view>
 #include <variant>
@@ -76,11 +75,11 @@ reply_json result_reply(const json& id, reply_json result);
 /// 1,000.
 std::string cut_echo(std::string_view text);
 /// Returns "what: why (hint)", with repeated text shortened.
-std::string words_of(const rpc_fault& f);
+std::string fault_text(const rpc_fault& f);
 reply_json error_reply(const json& id, const rpc_fault& f);
 reply_json notification(std::string_view method, reply_json params);
 
 /// Returns the JSON on one line, without its end. Replaces bytes that are not UTF-8.
-std::string text_of(const reply_json& j);
+std::string json_line(const reply_json& j);
 
 } // namespace tactor::net

@@ -19,8 +19,8 @@ constexpr std::byte close_kind{0x08};
 // Returns the bytes of the length after the two bytes that each head has.
 std::size_t more_length(std::byte second) noexcept
 {
-    const auto said = std::to_integer<unsigned>(second & length_bits);
-    return said == 127 ? 8 : said == 126 ? 2 : 0;
+    const auto length = std::to_integer<unsigned>(second & length_bits);
+    return length == 127 ? 8 : length == 126 ? 2 : 0;
 }
 
 } // namespace

@@ -89,11 +89,12 @@ void web_connection::session::read_request()
 void web_connection::session::answer_request()
 {
     const auto& request = parser.get();
-    const std::string said(view(request[http::field::host]));
-    const web_target to = target_of(view(request.target()), said);
+    const std::string host_header(view(request[http::field::host]));
+    const web_target to = parse_target(view(request.target()), host_header);
     const auto origins = request.equal_range(http::field::origin);
     const bool one_host = request.count(http::field::host) == 1;
-    bool ours = one_host && host_is_ours(said, local, allowed) && host_is_ours(to.host, local, allowed);
+    bool ours =
+        one_host && host_is_ours(host_header, local, allowed) && host_is_ours(to.host, local, allowed);
     for (auto o = origins.first; o != origins.second; ++o)
         ours = ours && origin_is_ours(view(o->value()), to.host, allowed);
     if (!ours)
@@ -108,7 +109,7 @@ void web_connection::session::answer_request()
         return upgrade();
     if (to.path == "/rpc")
         return respond({426, "text/plain", "a WebSocket\n", ""});
-    respond(calls.get(to.path, to.host, bearer_of(view(request[http::field::authorization]))));
+    respond(calls.get(to.path, to.host, bearer_token(view(request[http::field::authorization]))));
 }
 
 // Sends the reply and closes. One request for each connection, because a page asks for little.

@@ -36,7 +36,7 @@ void put_value(T& into, const value& v)
     if constexpr (std::is_same_v<plain, bool>)
         into = std::get<bool>(v);
     else if constexpr (std::is_enum_v<plain>)
-        into = *detail::kind_named<plain>(std::get<std::string>(v));
+        into = *detail::find_kind<plain>(std::get<std::string>(v));
     else if constexpr (std::is_same_v<plain, std::string>)
         into = std::get<std::string>(v);
     else

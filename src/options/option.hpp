@@ -80,6 +80,11 @@ struct option {
     access to = {};
 
     [[nodiscard]] std::string_view field_name() const noexcept { return field.empty() ? name : field; }
+    /// Returns true for what a plan keeps of its sound.
+    [[nodiscard]] bool is_sound() const noexcept
+    {
+        return (where & in_score) != 0 && (where & in_defaults) != 0;
+    }
 };
 
 /// Returns all rows, in the order of help and manual.

@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "core/marks.hpp"
 #include "core/split.hpp"
 #include "core/suggest.hpp"
 #include "options/check.hpp"
@@ -81,11 +82,11 @@ error at_place(const source_place& at, const option& o, const error& e)
     const std::string name = dashed(o);
     return e
         .reworded(at.text(),
-                  about_it
-                      ? fmt::format("{}: {}", name, e.why())
-                      : fmt::format("{}: {}: {}", name,
-                                    subject.substr(subject.starts_with(mark(o)) ? mark(o).size() + 2 : 0),
-                                    e.why()),
+                  about_it ? fmt::format("{}: {}", name, e.why())
+                           : fmt::format("{}: {}: {}", name,
+                                         detail::plain(subject.substr(
+                                             subject.starts_with(mark(o)) ? mark(o).size() + 2 : 0)),
+                                         e.why()),
                   e.hint())
         .with_place(at);
 }

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// Names of options in errors: fields of the library and marks of the table, written as the user of a front
-/// end knows them.
+/// Names of options and commands in errors, written as the user of a front end knows them.
+///
+/// The library's hints and the table's errors have marks (core/marks.hpp). What an error is about is its
+/// field.
 #pragma once
 
 #include <cstdint>
@@ -15,9 +17,11 @@
 
 namespace tactor::options {
 
-/// Words of the library that stand for no option, and what a front end says.
+/// A front end's own word for a mark, or for a field that is no row: {"command:devices", "devices()"}. The
+/// mark "array" stands for {array=palm}, too, and {} for its value. An empty word leaves it out, with its
+/// clause.
 struct own_word {
-    std::string_view of_library;
+    std::string_view mark;
     std::string_view here;
 };
 
@@ -25,17 +29,16 @@ struct own_word {
 struct spelling {
     /// The option, or with a value what sets it: "--timing", "--timing fit". The value of a flag is "true".
     std::string (*write)(const option& o, std::string_view value) = nullptr;
-    std::uint64_t where = ~std::uint64_t{0}; ///< bits of the options that it has; others stay as they are
+    std::uint64_t where = ~std::uint64_t{0}; ///< bits of its options; others are written as fields
     std::span<const own_word> own = {};
 };
 
-/// Writes marks: {soa}, {soa_s}, {timing=fit}. Other braces stay.
-std::string spell_marks(std::string_view text, const spelling& by);
-/// The same of all texts of an error.
-error spell_marks(const error& e, const spelling& by);
-
-/// Writes marks, and what can only mean an option: "soa_s", "timing = fit", "snap = true", if it is no part
-/// of a longer word. `but_keys`: not what stroke files have keys for.
-std::string spell(std::string_view text, const spelling& by, bool but_keys = false);
+/// Writes the marks of a text. Braces that name nothing known stay. `in_file`: keys of stroke files are
+/// written as fields.
+std::string spell(std::string_view text, const spelling& by, bool in_file = false);
+/// Writes the name of a field.
+std::string spell_field(std::string_view field, const spelling& by);
+/// Writes what an error is about, and its marks.
+error spell(const error& e, const spelling& by);
 
 } // namespace tactor::options

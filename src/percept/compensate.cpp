@@ -28,7 +28,7 @@ constexpr double on_edge_mm = 1e-6;
 // Least give: below it, sixteen digits do not distinguish a place from its neighbours'.
 constexpr double least_give = 1e-7;
 
-point middle_of(const std::vector<point>& corners)
+point mean_point(const std::vector<point>& corners)
 {
     point sum;
     for (const point& p : corners)
@@ -83,7 +83,7 @@ void fit(const layout& l, std::span<const double> give, std::span<const point> t
     std::vector<point> x(targets.begin(), targets.end());
     if (in.hull.empty())
         x = onto_line(in, std::move(x));
-    r.played = detail::fit_inside(give, x, sides, middle_of(in.hull.empty() ? in.points : in.hull));
+    r.played = detail::fit_inside(give, x, sides, mean_point(in.hull.empty() ? in.points : in.hull));
     const auto on_edge = [&](point p) {
         return std::any_of(sides.begin(), sides.end(), [p](const detail::beyond& e) {
             return detail::dot(e.out, p) > e.reach - on_edge_mm;
@@ -132,11 +132,12 @@ compensated_places compensate(const layout& l, const low_speed_observer& o, std:
 {
     compensated_places r;
     static_cast<void>(felt_places(o, onsets_s, targets)); // checks the arguments
-    const std::vector<double> give = detail::give_of(o, onsets_s);
+    const std::vector<double> give = detail::link_give(o, onsets_s);
     if (std::any_of(give.begin(), give.end(), [](double g) { return g < least_give; }))
         throw error(error_kind::bad_input, "compensation",
                     "bursts that begin together, or nearly so for this observer, cannot be felt apart",
-                    "a smaller sigma_mm, a larger sigma_v_mm_s or a longer SOA");
+                    "a smaller {sigma_mm}, a larger {sigma_v_mm_s} or a longer SOA")
+            .with_field("compensate");
     r.played = detail::pushed(give, targets);
     if (!std::all_of(r.played.begin(), r.played.end(), [&](point p) { return l.contains(p); }))
         fit(l, give, targets, r);
@@ -153,7 +154,7 @@ compensated_plan make_compensated_plan(const array& a, const layout& l, const st
     if (chosen.algorithm == algorithm_kind::continuous)
         throw detail::bad_field("algorithm",
                                 "continuous has no bursts that could be moved for the low-speed observer",
-                                "algorithm = park2016, or no compensation");
+                                "{algorithm=park2016}, or no compensation");
     compensated_plan r;
     r.plan = make_plan(a, l, s, o);
     r.observer = m;
@@ -161,7 +162,7 @@ compensated_plan make_compensated_plan(const array& a, const layout& l, const st
     std::vector<double> onsets_s;
     std::vector<point> targets;
     for (burst& b : r.plan.bursts)
-        if (detail::centre_of(a, b)) {
+        if (detail::find_centre(a, b)) {
             felt.push_back(&b);
             onsets_s.push_back(b.onset_s);
             targets.push_back(s.motion.position(b.onset_s));

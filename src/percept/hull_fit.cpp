@@ -106,7 +106,7 @@ private:
     }
 
     // Returns the three elements of A in row l, from column l - 1.
-    std::array<double, 3> row_of(std::size_t l) const
+    std::array<double, 3> matrix_row(std::size_t l) const
     {
         const double before = l > 0 ? 1.0 / give_[l - 1] : 0.0;
         const double after = l < give_.size() ? 1.0 / give_[l] : 0.0;
@@ -122,16 +122,16 @@ private:
         for (std::size_t l = 0; l < x_.size(); ++l) {
             frames_.emplace_back(sides_,
                                  [&](std::size_t e) { return push_[l * sides + e] / slack_[l * sides + e]; });
-            const std::array<double, 3> a = row_of(l);
+            const std::array<double, 3> a = matrix_row(l);
             const std::array<double, 3>& d = frames_.back().inverse();
             const double here = a[0] * a[0] + a[1] * a[1] + a[2] * a[2];
             matrix_.at(2 * l, 2 * l) = here + d[0];
             matrix_.at(2 * l + 1, 2 * l) = d[1];
             matrix_.at(2 * l + 1, 2 * l + 1) = here + d[2];
             if (l > 0)
-                link(l, l - 1, a[0] * (row_of(l - 1)[1] + a[1]));
+                link(l, l - 1, a[0] * (matrix_row(l - 1)[1] + a[1]));
             if (l > 1)
-                link(l, l - 2, a[0] * row_of(l - 1)[0]);
+                link(l, l - 2, a[0] * matrix_row(l - 1)[0]);
         }
         return matrix_.factor();
     }
@@ -242,7 +242,8 @@ std::vector<point> fit_inside(std::span<const double> give, std::span<const poin
                     fmt::format("{} bursts on an array whose edge has {} sides are too many", targets.size(),
                                 sides.size()),
                     fmt::format("at most {} times {}; make the stroke shorter",
-                                most_fit_constraints / sides.size(), sides.size()));
+                                most_fit_constraints / sides.size(), sides.size()))
+            .with_field("compensate");
     // Centred on `inside`, in units of the array's size.
     std::vector<beyond> around = sides;
     double size = 0.0;
@@ -259,7 +260,8 @@ std::vector<point> fit_inside(std::span<const double> give, std::span<const poin
     if (!search.run())
         throw error(error_kind::bad_input, "compensation",
                     "the observer pulls bursts together too strongly for an answer to be found",
-                    "a smaller sigma_mm, a larger sigma_v_mm_s or a longer SOA");
+                    "a smaller {sigma_mm}, a larger {sigma_v_mm_s} or a longer SOA")
+            .with_field("compensate");
     std::vector<point> m = search.played();
     for (point& p : m)
         p = {inside.x_mm + size * p.x_mm, inside.y_mm + size * p.y_mm};

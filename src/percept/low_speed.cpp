@@ -27,7 +27,7 @@ void check(const char* what, double v, double least, double most)
 
 } // namespace
 
-std::vector<double> give_of(const low_speed_observer& o, std::span<const double> onsets_s)
+std::vector<double> link_give(const low_speed_observer& o, std::span<const double> onsets_s)
 {
     check("sigma_mm", o.sigma_mm, least_sigma_mm, most_sigma_mm);
     check("sigma_v_mm_s", o.sigma_v_mm_s, least_sigma_v_mm_s, most_sigma_v_mm_s);
@@ -90,7 +90,7 @@ void check_has_taps(const plan& p)
                     "take an algorithm that has bursts");
 }
 
-std::optional<point> centre_of(const array& a, const burst& b, std::span<const double> gains)
+std::optional<point> find_centre(const array& a, const burst& b, std::span<const double> gains)
 {
     double energy = 0.0;
     point moment;
@@ -117,7 +117,7 @@ inline namespace v0 {
 std::vector<point> felt_places(const low_speed_observer& o, std::span<const double> onsets_s,
                                std::span<const point> alone)
 {
-    const std::vector<double> give = detail::give_of(o, onsets_s);
+    const std::vector<double> give = detail::link_give(o, onsets_s);
     if (onsets_s.size() != alone.size())
         throw detail::bad_field("onsets_s",
                                 fmt::format("there are {}, and {} places", onsets_s.size(), alone.size()),

@@ -14,7 +14,7 @@ namespace tactor::detail {
 
 /// Returns 1 / k of each link: 0 if two taps begin together.
 /// \throws error (bad_input) as felt_places() does.
-std::vector<double> give_of(const low_speed_observer& o, std::span<const double> onsets_s);
+std::vector<double> link_give(const low_speed_observer& o, std::span<const double> onsets_s);
 
 /// Solves for x. O(n).
 std::vector<point> pulled(std::span<const double> give, std::span<const point> alone);
@@ -28,6 +28,6 @@ void check_has_taps(const plan& p);
 /// Returns the centre of energy of a burst's drives, multiplied by the gains of their tactors, if any;
 /// nothing for a silent burst.
 /// \throws error (bad_input) for a tactor that the array does not have.
-std::optional<point> centre_of(const array& a, const burst& b, std::span<const double> gains = {});
+std::optional<point> find_centre(const array& a, const burst& b, std::span<const double> gains = {});
 
 } // namespace tactor::detail

@@ -16,10 +16,9 @@ inline namespace v0 {
 
 std::string describe(const low_speed_observer& o)
 {
-    return fmt::format(
-        "the low-speed observer (Goldreich 2007) with sigma {} mm and sigma_v {} mm/s, built for "
-        "taps on the forearm; nobody has fitted it to a palm or to bursts that touch",
-        plain_number(o.sigma_mm), plain_number(o.sigma_v_mm_s));
+    return fmt::format("the low-speed observer (Goldreich 2007) with sigma {} mm and sigma_v {} mm/s, built "
+                       "for taps on the forearm; nobody has fitted it to a palm or to bursts that touch",
+                       plain_number(o.sigma_mm), plain_number(o.sigma_v_mm_s));
 }
 
 std::vector<tap> predict_taps(const array& a, const stroke& s, const plan& p, const low_speed_observer& o)
@@ -32,13 +31,13 @@ std::vector<tap> predict_taps(const array& a, const stroke& s, const plan& p, co
 {
     detail::check_has_taps(p);
     const array felt_at = detail::felt_array(a, who);
-    const std::vector<double> gains = detail::gains_of(a, who);
+    const std::vector<double> gains = detail::person_gains(a, who);
     std::vector<tap> taps;
     std::vector<double> onsets_s;
     std::vector<point> alone;
     taps.reserve(p.bursts.size());
     for (const burst& b : p.bursts) {
-        const std::optional<point> centre = detail::centre_of(felt_at, b, gains);
+        const std::optional<point> centre = detail::find_centre(felt_at, b, gains);
         if (!centre)
             continue;
         taps.push_back({b.onset_s, s.motion.position(b.onset_s), *centre});

@@ -185,7 +185,7 @@ void follow_percept(const array& a, const stroke& s, const plan& p, const person
     constexpr std::size_t delay = running_speed::delay;
     const std::size_t count = count_samples(s.motion.duration_s());
     const array felt = detail::felt_array(a, who);
-    detail::sounding now(felt, p, s.motion.duration_s(), detail::gains_of(a, who));
+    detail::sounding now(felt, p, s.motion.duration_s(), detail::person_gains(a, who));
     running_speed speed;
     std::array<percept_sample, delay + 1> waiting; // samples that wait for their speed
     for (std::size_t i = 0; i < count + delay; ++i) {

@@ -16,7 +16,7 @@ namespace {
 
 constexpr double never_s = std::numeric_limits<double>::infinity();
 
-double end_of(const burst& b)
+double burst_end_s(const burst& b)
 {
     return b.onset_s + b.duration_s;
 }
@@ -58,7 +58,7 @@ bool sounding::begin_bursts(double t_s)
     const std::size_t before = next_;
     for (; next_ < plan_.bursts.size() && plan_.bursts[next_].onset_s <= t_s + same_time_s; ++next_) {
         active_.push_back(next_);
-        first_end_s_ = std::min(first_end_s_, end_of(plan_.bursts[next_]));
+        first_end_s_ = std::min(first_end_s_, burst_end_s(plan_.bursts[next_]));
     }
     return next_ != before;
 }
@@ -72,10 +72,10 @@ bool sounding::end_bursts(double t_s)
     const bool begun = next_ > 0 && plan_.bursts[next_ - 1].onset_s >= t_s - same_time_s;
     const bool closing = t_s > end_s_ - same_time_s && !begun;
     const double limit_s = closing ? t_s - same_time_s : t_s + same_time_s;
-    std::erase_if(active_, [&](std::size_t i) { return end_of(plan_.bursts[i]) <= limit_s; });
+    std::erase_if(active_, [&](std::size_t i) { return burst_end_s(plan_.bursts[i]) <= limit_s; });
     first_end_s_ = never_s;
     for (const std::size_t i : active_)
-        first_end_s_ = std::min(first_end_s_, end_of(plan_.bursts[i]));
+        first_end_s_ = std::min(first_end_s_, burst_end_s(plan_.bursts[i]));
     return true;
 }
 

@@ -37,7 +37,7 @@ array felt_array(const array& a, const person& who)
     return felt;
 }
 
-std::vector<double> gains_of(const array& a, const person& who)
+std::vector<double> person_gains(const array& a, const person& who)
 {
     check_count(a, "sensitivity_db", who.sensitivity_db.size());
     std::vector<double> gains;

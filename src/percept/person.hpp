@@ -15,6 +15,6 @@ array felt_array(const array& a, const person& who);
 
 /// Returns factors on amplitudes by tactor; empty if all are 1.
 /// \throws error (bad_input) as predict_percept() does.
-std::vector<double> gains_of(const array& a, const person& who);
+std::vector<double> person_gains(const array& a, const person& who);
 
 } // namespace tactor::detail

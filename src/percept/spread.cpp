@@ -108,11 +108,10 @@ std::string spread_note(const spread_choice& c, bool by_taps)
 {
     const std::string sigma =
         by_taps ? fmt::format("sigma from 1/{0} to {0} times as much, ", plain_number(c.sigma_factor)) : "";
-    return fmt::format(
-        "5 to 95 % of {} drawn with seed {}: {}each tactor's threshold give or take {} dB, its place "
-        "within {} mm",
-        counted(c.people, "person", "people"), c.seed, sigma, plain_number(c.threshold_db),
-        plain_number(c.place_mm));
+    return fmt::format("5 to 95 % of {} drawn with seed {}: {}each tactor's threshold give or take {} dB, "
+                       "its place within {} mm",
+                       counted(c.people, "person", "people"), c.seed, sigma, plain_number(c.threshold_db),
+                       plain_number(c.place_mm));
 }
 
 std::vector<drawn_person> draw_people(const spread_choice& c, std::size_t tactors)
@@ -139,7 +138,7 @@ double quantile(const std::vector<double>& sorted, double part)
     return sorted[i] + (at - static_cast<double>(i)) * (sorted[next] - sorted[i]);
 }
 
-std::optional<interval> interval_of(std::vector<std::optional<double>> values)
+std::optional<interval> find_interval(std::vector<std::optional<double>> values)
 {
     std::vector<double> sorted;
     for (const std::optional<double>& v : values)
@@ -179,14 +178,14 @@ row_spread predict_spread(const std::vector<drawn_person>& people, const array& 
         }
         after_person();
     }
-    r.rms_error_mm = interval_of(std::move(g.rms));
-    r.largest_error_mm = interval_of(std::move(g.largest));
-    r.speed_cv = interval_of(std::move(g.speed_cv));
-    r.intensity_cv = interval_of(std::move(g.intensity_cv));
-    r.felt_length_mm = interval_of(std::move(g.length));
-    r.length_ratio = interval_of(std::move(g.ratio));
+    r.rms_error_mm = find_interval(std::move(g.rms));
+    r.largest_error_mm = find_interval(std::move(g.largest));
+    r.speed_cv = find_interval(std::move(g.speed_cv));
+    r.intensity_cv = find_interval(std::move(g.intensity_cv));
+    r.felt_length_mm = find_interval(std::move(g.length));
+    r.length_ratio = find_interval(std::move(g.ratio));
     for (std::size_t i = 0; i < g.speeds.size(); ++i)
-        if (const auto range = interval_of(std::move(g.speeds[i])))
+        if (const auto range = find_interval(std::move(g.speeds[i])))
             r.speeds.push_back({g.times_s[i], range->low, range->high});
     return r;
 }

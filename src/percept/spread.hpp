@@ -12,7 +12,6 @@
 
 #include <tactor/array.hpp>
 #include <tactor/percept.hpp>
-#include <tactor/phantom.hpp>
 #include <tactor/plan.hpp>
 #include <tactor/stroke.hpp>
 
@@ -49,7 +48,7 @@ struct interval {
 double quantile(const std::vector<double>& sorted, double part);
 
 /// Returns the interval of the values; nothing if one is missing.
-std::optional<interval> interval_of(std::vector<std::optional<double>> values);
+std::optional<interval> find_interval(std::vector<std::optional<double>> values);
 
 /// Band of a speed chart at one time.
 struct speed_range {

@@ -31,7 +31,7 @@ std::vector<double> times_of(const std::vector<meeting>& points)
                              ? fmt::format("the shortest duration that works is {} s", seconds_up(shortest))
                              : std::string("no duration up to a day works");
     if (!j.options.drop_points && tau.size() > 2)
-        advice += "; or drop_points = true leaves places out";
+        advice += "; or {drop_points=true} leaves places out";
     throw error(
         error_kind::bad_input, j.name(),
         fmt::format("the Tactile Brush cannot play {} on the grid in {} s: they follow one another too fast",
@@ -126,7 +126,8 @@ void plan_brush(const job& j, plan& out)
     const std::optional<grid_lines> grid = find_grid(j.tactors);
     if (!grid)
         throw error(error_kind::bad_input, fmt::format("array \"{}\"", j.tactors.name),
-                    "is no rectangular grid, which the Tactile Brush needs", "use algorithm = park2016");
+                    "is no rectangular grid, which the Tactile Brush needs", "use {algorithm=park2016}")
+            .with_field("algorithm");
     std::vector<meeting> points = virtual_tactors(j, *grid);
     if (j.options.drop_points)
         points = drop_points(j, points, out);

@@ -130,7 +130,7 @@ virtual_tactor path_end(const job& j, const grid_lines& g, const in_array& path,
         throw error(error_kind::bad_input, j.name(),
                     fmt::format("{} at {}, which is on no line of the grid; the nearest point on one is {}",
                                 start ? "starts" : "ends", place(p), place(v.place)),
-                    "snap = true moves it there");
+                    "{snap=true} moves it there");
     return v;
 }
 

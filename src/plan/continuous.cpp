@@ -4,12 +4,15 @@
 #include <cmath>
 #include <memory>
 #include <utility>
+#include <variant>
 #include <vector>
 
 #include <fmt/format.h>
 
 #include "core/access.hpp"
+#include "core/path/curve_places.hpp"
 #include "core/path/shape.hpp"
+#include "core/trajectory/impl.hpp"
 #include "core/trajectory/spans.hpp"
 #include "plan/curve_impl.hpp"
 #include "plan/faces/layout_impl.hpp"
@@ -62,15 +65,21 @@ void check_inside(const job& j)
     });
 }
 
-// A stroke of so many samples is computed once, when it is planned: 76 bytes a sample with three drives.
-// A longer one is computed whenever it is read.
-constexpr std::uint64_t most_kept = 4001;
+/// Returns the movement with the places on its curves at hand.
+trajectory prepare(const trajectory& t)
+{
+    trajectory::impl made = access::of(t);
+    if (auto* drawn = std::get_if<drawn_path>(&made.law))
+        drawn->way = with_places(drawn->way, drawn->way.length_mm() / made.duration_s * continuous_step_s);
+    return access::make<trajectory>(std::make_shared<const trajectory::impl>(std::move(made)));
+}
 
 /// The phantom along a stroke.
-class follow {
+class followed final : public curve::impl {
 public:
-    explicit follow(const job& j)
-        : motion_(j.motion.motion),
+    explicit followed(const job& j)
+        : impl(j.motion.motion.duration_s()),
+          motion_(prepare(j.motion.motion)),
           faces_(j.faces),
           model_(j.model),
           three_(dynamic_cast<const model_of_three*>(model_.get())),
@@ -83,8 +92,9 @@ public:
         scale_.level_db = 0.0;
     }
 
-    void at(double t_s, burst& out, same_tactors& seen) const
+    void fill(std::uint64_t k, same_tactors& seen, burst& out) const override
     {
+        const double t_s = sample_time_s(k, duration_s);
         const point p = motion_.position(t_s);
         const double a_v = scale_.amplitude(motion_.intensity(t_s));
         out.intensity = a_v;
@@ -99,9 +109,10 @@ public:
             look_around(*three_, faces_, out.position, seen);
     }
 
-    const trajectory& motion() const noexcept { return motion_; }
-    /// Whether no tactor gets more than an intensity that is linear in time.
-    bool is_bounded() const noexcept { return scale_.kind == scale_kind::linear; }
+    const trajectory* bounds(std::size_t tactors) const noexcept override
+    {
+        return scale_.kind == scale_kind::linear && faces_.places().size() <= tactors ? &motion_ : nullptr;
+    }
 
 private:
     trajectory motion_;
@@ -111,59 +122,25 @@ private:
     intensity_scale scale_;
 };
 
-curve_samples all_samples(const follow& f)
-{
-    const double duration_s = f.motion().duration_s();
-    curve_samples all;
-    burst b;
-    same_tactors seen;
-    const std::uint64_t count = samples_of(duration_s);
-    for (std::uint64_t k = 0; k < count; ++k) {
-        f.at(sample_time_s(k, duration_s), b, seen);
-        all.add(b);
-    }
-    all.drives.shrink_to_fit();
-    return all;
-}
-
-/// Of the library's own models.
-class followed final : public curve::impl {
-public:
-    explicit followed(const job& j) : impl(j.motion.motion.duration_s()), follow_(j)
-    {
-        if (size <= most_kept)
-            kept_ = all_samples(follow_);
-    }
-
-    void fill(std::uint64_t k, same_tactors& seen, burst& out) const override
-    {
-        if (kept_.ends.empty())
-            follow_.at(sample_time_s(k, duration_s), out, seen);
-        else
-            read(kept_, static_cast<std::size_t>(k), out);
-    }
-
-    const trajectory* bounds() const noexcept override
-    {
-        return follow_.is_bounded() ? &follow_.motion() : nullptr;
-    }
-
-private:
-    follow follow_;
-    curve_samples kept_;
-};
-
 // What a model of the user's own does is asked once, so that the plan is a value.
 curve asked(const job& j)
 {
-    const double duration_s = j.motion.motion.duration_s();
-    const auto count = static_cast<double>(samples_of(duration_s));
-    if (count > most_bursts)
+    const followed f(j);
+    if (static_cast<double>(f.size) > most_bursts)
         throw error(
             error_kind::bad_input, j.name(),
-            fmt::format("would need {:.3g} samples of phantom model \"{}\"", count, j.model->name()),
+            fmt::format("would need {:.3g} samples of phantom model \"{}\"", static_cast<double>(f.size),
+                        j.model->name()),
             fmt::format("at most {:.0f}, one each {} s; make it shorter", most_bursts, continuous_step_s));
-    return {duration_s, all_samples(follow(j))};
+    curve_samples all;
+    burst b;
+    same_tactors seen;
+    for (std::uint64_t k = 0; k < f.size; ++k) {
+        f.fill(k, seen, b);
+        all.add(b);
+    }
+    all.drives.shrink_to_fit();
+    return {f.duration_s, std::move(all)};
 }
 
 } // namespace

@@ -25,7 +25,7 @@ namespace {
 std::vector<carrier_point> texture_course(const trajectory& motion, double texture_mm)
 {
     const double rounds = texture_mm > 0.0 ? motion.length_mm() / texture_mm : 1.0;
-    const std::vector<way_point> way = way_over_time(motion);
+    const std::vector<progress_point> way = progress_over_time(motion);
     std::vector<carrier_point> course;
     for (std::size_t i = 0; i + 1 < way.size(); ++i) {
         const double hz = rounds * (way[i + 1].part - way[i].part) / (way[i + 1].t_s - way[i].t_s);
@@ -112,10 +112,10 @@ std::vector<carrier_point> profile_course(const trajectory& motion, const std::v
     std::vector<double> parts;
     for (const carrier_part& p : profile)
         parts.push_back(p.part);
-    const smooth_way way = find_smooth_way(motion, parts);
+    const smooth_progress way = find_smooth_progress(motion, parts);
     std::vector<carrier_point> course{{0.0, hz_at(profile, way.points.front().part)}};
     for (std::size_t i = 0; i + 1 < way.points.size(); ++i) {
-        const way_point& to = way.points[i + 1];
+        const progress_point& to = way.points[i + 1];
         add_bent(course, [&](double u) { return hz_at(profile, way.part(i, u)); },
                  {to.t_s, hz_at(profile, to.part)});
     }

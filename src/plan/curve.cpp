@@ -142,7 +142,7 @@ class scaled_curve final : public curve::impl {
 public:
     scaled_curve(const curve& from, double factor) : impl(from.duration_s()), from_(from), factor_(factor)
     {
-        if (const trajectory* b = curve_access::of(from_).bounds())
+        if (const trajectory* b = curve_access::of(from_).bounds(max_tactors))
             bounds_ = b->with_intensity(factor);
     }
 
@@ -151,7 +151,10 @@ public:
         curve_access::of(from_).fill(k, seen, out);
         scale(out, factor_);
     }
-    const trajectory* bounds() const noexcept override { return bounds_ ? &*bounds_ : nullptr; }
+    const trajectory* bounds(std::size_t tactors) const noexcept override
+    {
+        return curve_access::of(from_).bounds(tactors) != nullptr ? &*bounds_ : nullptr;
+    }
 
 private:
     curve from_;

@@ -27,9 +27,9 @@ struct curve::impl {
 
     /// Position, intensity and drives of sample k, which is there.
     virtual void fill(std::uint64_t k, detail::same_tactors& seen, burst& out) const = 0;
-    /// The movement that bounds what the tactors get: none is given more than its intensity, which is linear
-    /// between the trajectory's points. Null where that is not known.
-    virtual const trajectory* bounds() const noexcept { return nullptr; }
+    /// The movement that bounds what so many tactors get, and no others get anything: none is given more than
+    /// its intensity, which is linear between the trajectory's points. Null where that is not known.
+    virtual const trajectory* bounds(std::size_t /*tactors*/) const noexcept { return nullptr; }
 
     const double duration_s;
     const std::uint64_t size;

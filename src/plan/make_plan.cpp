@@ -105,7 +105,7 @@ void warn_of_missing_samples(plan& p)
     const std::shared_ptr<const recording>& r = p.wave.recorded;
     if (p.wave.kind == waveform_kind::recording && r->missing > 0)
         p.warnings.push_back(fmt::format("{}: the recording is cut short: it has {} of {}",
-                                         detail::name_of(*r), r->samples.size(),
+                                         detail::recording_name(*r), r->samples.size(),
                                          counted(r->samples.size() + r->missing, "sample")));
 }
 
@@ -243,7 +243,7 @@ std::shared_ptr<const phantom_model> model_of(const layout& l, const plan_option
     if (o.faces != faces_kind::delaunay)
         throw bad_field("faces",
                         "nearest goes with inverse-distance only, not with a phantom model of your own",
-                        "use faces = delaunay or phantom = inverse-distance");
+                        "use {faces=delaunay} or {phantom=inverse-distance}");
     return o.custom_phantom;
 }
 

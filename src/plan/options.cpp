@@ -61,10 +61,10 @@ void check_options(const plan_options& o)
         return;
     const double longest = law_duration_s(o.profile, o.soa_s);
     if (!(o.min_duration_s > 0.0 && o.min_duration_s <= longest))
-        throw error(error_kind::bad_input, "timing = fit",
+        throw error(error_kind::bad_input, "{timing=fit}",
                     fmt::format("bursts of at least {} cannot be had: an SOA of {} gives {}",
                                 seconds_text(o.min_duration_s), seconds_text(o.soa_s), seconds_text(longest)),
-                    "lower min_duration_s, or take a longer SOA")
+                    "lower {min_duration_s}, or take a longer SOA")
             .with_field("min_duration_s");
 }
 
@@ -106,16 +106,15 @@ double burst_duration_s(const plan_options& o)
                         o.soa_s, shortest_burst_s, longest_free_soa_s),
             fmt::format("use {}", o.profile.max_soa_s));
     if (!(*o.burst_s >= shortest_burst_s && std::isfinite(*o.burst_s)))
-        throw error(error_kind::bad_input, "duration of a burst",
-                    fmt::format("{} s is not one, {} s is the shortest", *o.burst_s, shortest_burst_s),
-                    fmt::format("use {} to {} s", shortest_burst_s, o.soa_s))
-            .with_field("burst_s");
+        throw detail::bad_field(
+            "burst_s", fmt::format("{} s is no duration, {} s is the shortest", *o.burst_s, shortest_burst_s),
+            fmt::format("use {} to {} s", shortest_burst_s, o.soa_s));
     if (*o.burst_s > o.soa_s)
-        throw error(error_kind::bad_input, "duration of a burst",
-                    fmt::format("{} s is longer than the SOA of {} s, and bursts must not overlap",
-                                *o.burst_s, o.soa_s),
-                    fmt::format("use at most {} s, or a longer SOA", o.soa_s))
-            .with_field("burst_s");
+        throw detail::bad_field(
+            "burst_s",
+            fmt::format("{} s is longer than the SOA of {} s, and bursts must not overlap", *o.burst_s,
+                        o.soa_s),
+            fmt::format("use at most {} s, or a longer SOA", o.soa_s));
     return *o.burst_s;
 }
 
@@ -163,9 +162,9 @@ double intensity_scale::amplitude(double intensity) const
         return std::pow(intensity, 1.0 / exponent);
     }
     if (!(sl_db > 0.0 && sl_db <= 100.0))
-        throw error(error_kind::bad_input, "intensity_scale",
+        throw error(error_kind::bad_input, "{intensity_scale}",
                     fmt::format("sl needs the sensation level of intensity 1, not {} dB", sl_db),
-                    "give sl_db above 0 dB, such as 7")
+                    "give {sl_db} above 0 dB, such as 7")
             .with_field("scale");
     return std::pow(10.0, sl_db * (intensity - 1.0) / 20.0);
 }

@@ -27,7 +27,7 @@ double fitted_soa(const job& j, double duration_s)
                   : fmt::format("needs bursts of {:.3f} s, shorter than {} s", law_duration_s(o.profile, soa),
                                 o.min_duration_s);
     throw error(
-        error_kind::bad_input, "timing = fit",
+        error_kind::bad_input, "{timing=fit}",
         fmt::format("{} of {} s in {:.0f} equal intervals {}", j.name(), seconds_down(duration_s), n, needs),
         fmt::format("the nearest durations that work are {} s and {} s", seconds_down((n - 1.0) * o.soa_s),
                     seconds_up(n * shortest)));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "plot/views.hpp"
+#include "plot/figure.hpp"
 
 #include <algorithm>
 #include <cmath>

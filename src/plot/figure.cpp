@@ -15,7 +15,6 @@
 #include "plot/draw/timeline.hpp"
 #include "plot/paint/text.hpp"
 #include "plot/sound_text.hpp"
-#include "plot/views.hpp"
 
 namespace tactor::plot {
 namespace {

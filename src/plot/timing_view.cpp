@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: MIT
-#include "plot/views.hpp"
+#include "plot/figure.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <string>
 #include <vector>
 
@@ -10,7 +9,6 @@
 
 #include "core/words.hpp"
 #include "plot/draw/axes.hpp"
-#include "plot/draw/dimensions.hpp"
 #include "plot/draw/notes.hpp"
 #include "plot/draw/stroke_starts.hpp"
 #include "plot/draw/timeline.hpp"

@@ -2,7 +2,7 @@
 #include <tactor/error.hpp>
 #include <tactor/render.hpp>
 
-#include "plot/views.hpp"
+#include "plot/figure.hpp"
 #include "synth/mix/sample_ranges.hpp"
 
 #include <algorithm>
@@ -66,14 +66,12 @@ waveform look_at(const score& s, const std::vector<unsigned>& channels, std::siz
         const auto n = static_cast<std::size_t>(
             std::min({static_cast<std::uint64_t>(block), frames - at, length - at % length}));
         r.process(std::as_writable_bytes(std::span(buffer).first(n * per_frame)));
-        if (!r.failure().empty())
-            throw error(error_kind::bad_input, "stroke", r.failure());
         ranges.add(buffer.data(), n);
         at += n;
         if (at % length != 0 && at != frames)
             continue;
         for (std::size_t c = 0; c < channels.size(); ++c) {
-            const auto [low, high] = ranges.of(channels[c]);
+            const auto [low, high] = ranges.range_at(channels[c]);
             w.by_channel[c][(at - 1) / length] = {low, high};
             w.peaks[c] = std::max({w.peaks[c], std::abs(low), std::abs(high)});
         }

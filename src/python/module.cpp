@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: MIT
-#include "options/words.hpp"
 #include "python/binding.hpp"
 #include "python/options.hpp"
 
@@ -52,7 +51,7 @@ void translate(std::exception_ptr p)
 // The classes are Python's, and so is what makes one of them.
 void set_error(const error& marked)
 {
-    const error e = options::spell_marks(marked, {spell});
+    const error e = in_keywords(marked);
     try {
         const py::object x =
             called(py::module_::import("tactor._errors").attr("made"),

@@ -2,6 +2,7 @@
 #include "python/options.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include <fmt/format.h>
@@ -17,6 +18,7 @@ namespace tactor::python {
 namespace {
 
 using options::option;
+using namespace py::literals;
 
 constexpr std::uint64_t of_python = options::in_plan | options::in_score | options::in_compare;
 // [defaults] speed, which a stroke's own wins over.
@@ -142,6 +144,36 @@ void take(wishes& w, const std::string& name, py::handle v, std::size_t tactors)
         w.given.set(index(*o));
 }
 
+std::string write_keyword(const option& o, std::string_view value)
+{
+    if (value.empty())
+        return std::string(o.name);
+    if (o.what == options::kind::flag)
+        return fmt::format("{}=True", o.name);
+    const bool is_text = o.what == options::kind::choice || o.what == options::kind::text;
+    return is_text ? fmt::format("{}=\"{}\"", o.name, value) : fmt::format("{}={}", o.name, value);
+}
+
+// Marks and fields of the library that no option stands for.
+constexpr std::array own_words{options::own_word{"command:devices", "tactor.devices()"},
+                               options::own_word{"command:plan", "Plan.write()"},
+                               options::own_word{"array=none", "take plan.array"},
+                               options::own_word{"array=FILE", "Array.from_file(FILE)"},
+                               options::own_word{"array", "Array.preset(\"{}\")"},
+                               options::own_word{"force=true", "force=True"},
+                               options::own_word{"wider=true", "without channels= it"},
+                               options::own_word{"wave", "waveform"},
+                               options::own_word{"scale", "intensity_scale"},
+                               options::own_word{"rests", "pauses"},
+                               options::own_word{"pitch_x_mm", "pitch_mm"},
+                               options::own_word{"pitch_y_mm", "pitch_mm"},
+                               options::own_word{"start_s", "start"},
+                               options::own_word{"timeout_s", "timeout"},
+                               options::own_word{"longest_s", "longest"},
+                               options::own_word{"at_ns", "at_s"}};
+
+constexpr options::spelling by_python{.write = write_keyword, .own = own_words};
+
 // A player has its limits with the stream, a score with the samples.
 void settle_score(wishes& w)
 {
@@ -220,11 +252,6 @@ std::vector<std::string> option_names(const std::string& which)
     return names;
 }
 
-std::string in_python_words(const std::string& text)
-{
-    return options::spell(text, {spell});
-}
-
 py::dict default_values(const setup& says)
 {
     py::dict all;
@@ -240,14 +267,40 @@ py::dict default_values(const setup& says)
     return all;
 }
 
-std::string spell(const option& o, std::string_view value)
+py::list option_rows()
 {
-    if (value.empty())
-        return std::string(o.name);
-    if (o.what == options::kind::flag)
-        return fmt::format("{}=True", o.name);
-    const bool is_text = o.what == options::kind::choice || o.what == options::kind::text;
-    return is_text ? fmt::format("{}=\"{}\"", o.name, value) : fmt::format("{}={}", o.name, value);
+    constexpr std::array places{
+        std::pair{"plan", options::in_plan},       std::pair{"score", options::in_score},
+        std::pair{"compare", options::in_compare}, std::pair{"player", options::in_player},
+        std::pair{"live", options::live},          std::pair{"client", options::by_client}};
+    constexpr std::array kinds{"float", "int", "choice", "bool", "str"};
+    py::list all;
+    for (const option& o : options::all()) {
+        py::list where;
+        for (const auto& [name, place] : places)
+            if ((o.where & place) != 0)
+                where.append(name);
+        const bool is_number = o.what == options::kind::number || o.what == options::kind::whole;
+        std::vector<double> bounds; // none where other values decide
+        if (is_number && o.range.empty())
+            bounds = {o.allowed.low, o.allowed.high};
+        all.append(
+            py::dict("name"_a = o.name, "kind"_a = kinds.at(static_cast<std::size_t>(o.what)),
+                     "may_be_number"_a = o.allowed.high > 0.0, "unit"_a = o.unit,
+                     "choices"_a = o.choices == nullptr ? std::vector<std::string_view>() : o.choices(),
+                     "help"_a = options::spell(o.help, by_python),
+                     "form"_a = o.what == options::kind::text ? o.shown : "",
+                     "range"_a = is_number ? options::spell(range_text(o), by_python) : "",
+                     "bounds"_a = bounds, "places"_a = where));
+    }
+    return all;
+}
+
+error in_keywords(const error& e)
+{
+    const error said = options::spell(e, by_python);
+    const bool in_file = !e.place().file.empty() || e.place().line != 0; // it has its own words
+    return in_file ? said : said.with_field(options::spell_field(e.field(), by_python));
 }
 
 } // namespace tactor::python

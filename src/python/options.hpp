@@ -29,17 +29,17 @@ void check_used(const std::vector<std::string>& names, const py::dict& all, cons
 /// Options of a player among `given`, checked. \throws error (bad_input).
 given_options player_options_in(const py::dict& given);
 
-/// A text of the library with options as keyword arguments.
-std::string in_python_words(const std::string& text);
-
 /// Names of options: "planning", "sounding", "live", or all that take_options() knows.
 std::vector<std::string> option_names(const std::string& which);
+
+/// The rows of the table, for what is written from them (src/options/write.py).
+py::list option_rows();
 
 /// Values of [defaults] by the names of options. \throws error (bad_input) with the place in the file.
 py::dict default_values(const setup& says);
 
-/// "soa", or timing="fit".
-std::string spell(const options::option& o, std::string_view value);
+/// An error of the library with options as keyword arguments: "soa", timing="fit".
+error in_keywords(const error& e);
 
 /// A Python object that says which tactors make a phantom: name, and weights(x_mm, y_mm, intensity).
 std::shared_ptr<const phantom_model> model_of(const py::object& own, std::size_t tactors);

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: MIT
-#include <cmath>
 #include <cstdint>
 #include <limits>
 #include <tuple>
@@ -211,8 +210,8 @@ asked_stroke stroke_as_asked(const stroke& s, const layout& faces, const wishes&
 void bind_plan(py::module_& m)
 {
     m.def("option_names", &option_names, py::arg("which") = "");
+    m.def("option_rows", &option_rows);
     m.def("check_used", &check_used);
-    m.def("in_python_words", &in_python_words);
     m.def("burst_duration", [](const py::dict& options) {
         wishes w;
         take_options(w, options, 0);

@@ -64,8 +64,7 @@ player_handle::player_handle(const array& a, const player_wishes& w)
     session::settle_server(device.pcm);
     const bool waits_for_edges = !s.stream.no_gpio && e.config.sync && e.config.sync->in;
     // Before threads: it forks the holder of the amplifier's line.
-    open_->lines = session::lent_lines(s.stream.no_gpio ? tactor::setup{} : e.config, waits_for_edges,
-                                       s.stream.sync_delay_ms * 1e-3);
+    open_->lines = session::lent_lines(session::open_lines(s.stream, e, waits_for_edges));
     player_options o;
     o.limits = session::settle_limits(s.stream, e);
     o.require_realtime = s.stream.require_realtime;

@@ -3,7 +3,6 @@
 #include <cmath>
 #include <cstdint>
 #include <filesystem>
-#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -13,6 +12,7 @@
 #include <fmt/format.h>
 
 #include "core/words.hpp"
+#include "options/check.hpp"
 #include "plan/curve_impl.hpp"
 #include "python/plan_handle.hpp"
 
@@ -152,8 +152,6 @@ public:
         while (!out.empty()) {
             const std::size_t n = std::min<std::size_t>(out.size(), frames_at_once * frame_);
             renderer_.process(out.first(n));
-            if (!renderer_.failure().empty())
-                throw error(error_kind::runtime, "render", renderer_.failure());
             out = out.subspan(n);
             if (!out.empty())
                 check_signals();
@@ -182,6 +180,7 @@ private:
 
 void write(const score& s, const std::string& file, const std::string& format)
 {
+    static_cast<void>(options::read_value(*options::find("sample_format"), format));
     const auto f = from_string<format_kind>(format);
     const without_lock free;
     std::uint64_t next = frames_at_once;

@@ -219,7 +219,7 @@ void put(writer& w, const trajectory& m)
         put(w, drawn->way);
         w.put(drawn->moves != nullptr);
         if (drawn->moves)
-            put(w, drawn->moves->said(), drawn->moves->moving_s());
+            put(w, drawn->moves->given(), drawn->moves->moving_s());
         return;
     }
     const auto& points = *std::get<detail::timed_points>(i.law).points;

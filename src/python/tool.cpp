@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "core/words.hpp"
-#include "files/plan/compare_json.hpp"
+#include "files/plan/plan_json.hpp"
 #include "percept/compare.hpp"
 #include "plot/compare_figure.hpp"
 #include "plot/figure.hpp"

@@ -42,7 +42,7 @@ std::vector<std::string> names_in(const std::string& folder)
     return names;
 }
 
-std::string text_of(const std::string& file)
+std::string read_file(const std::string& file)
 {
     const detail::owned_fd in(::open(file.c_str(), O_RDONLY | O_CLOEXEC));
     if (!in)

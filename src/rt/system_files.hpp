@@ -15,6 +15,6 @@ namespace tactor::rt {
 std::vector<std::string> names_in(const std::string& folder);
 
 /// Reads a small file as a whole. Throws as names_in() does.
-std::string text_of(const std::string& file);
+std::string read_file(const std::string& file);
 
 } // namespace tactor::rt

@@ -6,7 +6,6 @@
 #include <climits>
 #include <csignal>
 #include <latch>
-#include <memory>
 #include <system_error>
 #include <utility>
 

@@ -13,12 +13,6 @@ inline double seconds(std::int64_t ns) noexcept
     return static_cast<double>(ns) * 1e-9;
 }
 
-/// Seconds, for timers.
-inline std::chrono::steady_clock::duration steady_seconds(double s) noexcept
-{
-    return std::chrono::duration_cast<std::chrono::steady_clock::duration>(std::chrono::duration<double>(s));
-}
-
 /// Since 1970.
 inline std::int64_t unix_ns() noexcept
 {

@@ -18,25 +18,17 @@ namespace {
 using net::json;
 using net::rpc_fault;
 
-// Words of the library's advice that are no field of an option.
-constexpr std::array own_words{options::own_word{"fit_strokes() scales it to the array, ", ""},
-                               options::own_word{"array = FILE", "another array of the server"},
-                               options::own_word{"array = palm", "palm"}};
-
 std::string write_param(const options::option& o, std::string_view value)
 {
     return fmt::format("options.{}{}{}", o.name, value.empty() ? "" : " ", value);
 }
 
-constexpr options::spelling by_protocol{write_param, options::by_client, own_words};
+// A client can fit no stroke, and takes the array as it is.
+constexpr std::array own_words{options::own_word{"fit=true", ""}, options::own_word{"array", "{}"},
+                               options::own_word{"array=FILE", "an array"},
+                               options::own_word{"config=FILE", "a configuration of the server"}};
 
-// Subjects of the library that are about an option of another name, by how they begin.
-constexpr std::array own_subjects{options::own_word{"timing profile", "options.slope"},
-                                  options::own_word{"duration of a burst", "options.burst"},
-                                  options::own_word{"array ", "options.algorithm"},
-                                  options::own_word{"tactor ", "options.level_dbfs"},
-                                  options::own_word{"compensation", "options.compensate"},
-                                  options::own_word{"live_options", "options"}};
+constexpr options::spelling by_protocol{write_param, options::by_client, own_words};
 
 bool is_param(const options::option& o)
 {
@@ -48,20 +40,17 @@ std::string param_name(const options::option& o)
     return fmt::format("options.{}", o.name);
 }
 
-std::string in_params(std::string_view text)
+// Finds the option that an error is about, by its subject as it is written here, or by its field; empty:
+// none.
+std::string find_param(std::string_view subject, std::string_view field)
 {
-    return options::spell(text, by_protocol);
-}
-
-// The option that a subject of the library begins with; empty: none.
-std::string param_of(std::string_view subject)
-{
-    for (const options::own_word& w : own_subjects)
-        if (subject.starts_with(w.of_library))
-            return std::string(w.here);
     const std::string_view word = subject.substr(0, subject.find_first_of(" :"));
-    const options::option* o = options::find_field(word);
-    return o != nullptr && is_param(*o) ? param_name(*o) : "";
+    if (word.starts_with("options."))
+        return std::string(word);
+    for (const std::string_view name : {word, field})
+        if (const options::option* o = options::find_field(name); o != nullptr && is_param(*o))
+            return param_name(*o);
+    return "";
 }
 
 } // namespace
@@ -88,7 +77,7 @@ void no_stream(const std::string& why)
 
 rpc_fault option_fault(const error& e)
 {
-    const error said = options::spell_marks(e, by_protocol);
+    const error said = options::spell(e, by_protocol);
     return {net::code_bad_params, "bad-input", std::string(said.subject()), std::string(said.why()),
             std::string(said.hint())};
 }
@@ -96,28 +85,27 @@ rpc_fault option_fault(const error& e)
 rpc_fault fault_of(const error& e, const std::string& source)
 {
     const bool of_call = e.subject() == "live stroke" && !e.field().empty();
-    const std::string_view subject = of_call ? e.field() : e.subject();
-    // Keys of a file are called as they are there.
-    const bool of_file = subject.starts_with(source + ":");
-    const auto told = [&](std::string_view t) { return of_file ? std::string(t) : in_params(t); };
-    rpc_fault f{net::code_bad_params, std::string(to_string(e.kind())), source, told(e.why()),
-                told(e.hint())};
+    const error said = options::spell(of_call ? e.reworded(e.field(), e.why(), e.hint()) : e, by_protocol);
+    const std::string_view subject = said.subject();
+    rpc_fault f{net::code_bad_params, std::string(to_string(e.kind())), source, std::string(said.why()),
+                std::string(said.hint())};
     if (e.kind() == error_kind::runtime)
         f.code = net::code_internal;
     if (e.kind() == error_kind::not_available)
         f.code = net::code_no_stream;
-    const std::string param = param_of(subject);
+    if (subject.starts_with(source + ":")) { // "toml:3:5": the place in the text
+        f.why = fmt::format("{}: {}", subject.substr(source.size() + 1), f.why);
+        return f;
+    }
+    if (subject == source || subject == "stroke" || subject == fmt::format("stroke \"{}\"", source) ||
+        subject == "path data")
+        return f;
+    const std::string param = find_param(subject, e.field());
     if (!param.empty())
         f.what = param;
-    // "toml:3:5" says where in the text; "stroke" and the like, and a field, no more than the parameter does.
     const options::option* o = options::find_field(subject);
-    const bool field = o != nullptr && is_param(*o);
-    if (of_file)
-        f.why = fmt::format("{}: {}", subject.substr(source.size() + 1), f.why);
-    else if (!field && subject != source && subject != "stroke" &&
-             subject != fmt::format("stroke \"{}\"", source) && subject != "path data" &&
-             !subject.starts_with("soa_s"))
-        f.why = fmt::format("{}: {}", in_params(subject), f.why);
+    if (subject != param && (o == nullptr || !is_param(*o)))
+        f.why = fmt::format("{}: {}", subject, f.why);
     return f;
 }
 
@@ -134,14 +122,6 @@ rpc_fault current_fault(const std::string& source)
     } catch (const std::exception& e) {
         return {net::code_internal, "runtime", source, e.what(), ""};
     }
-}
-
-rpc_fault current_fault(const std::string& source, const render_options& asked)
-{
-    rpc_fault f = current_fault(source);
-    if (asked.sl_db && f.what == "options.level_dbfs")
-        f.what = "options.sl";
-    return f;
 }
 
 void only(const json& params, std::initializer_list<std::string_view> known)

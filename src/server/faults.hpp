@@ -40,8 +40,6 @@ net::rpc_fault option_fault(const error& e);
 net::rpc_fault fault_of(const error& e, const std::string& source);
 /// The fault of whatever is being handled: for catch (...).
 net::rpc_fault current_fault(const std::string& source);
-/// The same of what was asked for with these levels: a tactor's level is in dBFS or in dB SL.
-net::rpc_fault current_fault(const std::string& source, const render_options& asked);
 
 /// Refuses parameters that are not among these, and lists (params are an array).
 void only(const net::json& params, std::initializer_list<std::string_view> known);

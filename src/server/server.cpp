@@ -223,7 +223,7 @@ private:
             return {404, "text/plain", "there are / and /rpc and /status\n", ""};
         if (!service_.admits(token))
             return {401, "text/plain", "the token is owed: Authorization: Bearer TOKEN\n", ""};
-        return {200, "application/json", net::text_of(service_.status_now()) + "\n", ""};
+        return {200, "application/json", net::json_line(service_.status_now()) + "\n", ""};
     }
 
     void closed(client_number n)

@@ -10,7 +10,6 @@
 
 #include <boost/asio/post.hpp>
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include "server/service_impl.hpp"
 
@@ -62,20 +61,20 @@ void service::pending::give(std::size_t at, std::string reply, const std::vector
 
 void service::answer::result(reply_json r, const std::vector<std::uint32_t>& strokes) const
 {
-    all->give(at, net::text_of(net::result_reply(all->places[at].id, std::move(r))), strokes);
+    all->give(at, net::json_line(net::result_reply(all->places[at].id, std::move(r))), strokes);
 }
 
 void service::answer::result_text(const std::string& r) const
 {
     all->give(at,
               fmt::format(R"({{"jsonrpc":"2.0","id":{},"result":{}}})",
-                          net::text_of(reply_json(all->places[at].id)), r),
+                          net::json_line(reply_json(all->places[at].id)), r),
               {});
 }
 
 void service::answer::fault(const net::rpc_fault& f) const
 {
-    all->give(at, net::text_of(net::error_reply(all->places[at].id, f)), {});
+    all->give(at, net::json_line(net::error_reply(all->places[at].id, f)), {});
 }
 
 service::service(boost::asio::io_context& io, service_options o, stream_options s)
@@ -83,11 +82,20 @@ service::service(boost::asio::io_context& io, service_options o, stream_options 
       quiet_(io),
       options_(std::move(o)),
       faces_(options_.plans.tactors),
-      stream_(io, std::move(s),
-              {[this](std::uint64_t p, stroke_id id, std::optional<std::int64_t> at) { begun(p, id, at); },
-               [this](std::uint64_t p, const stroke_report& r) { ended(p, r); },
-               [this](stream_state state, const std::string& why) { tell_stream(state, why); }})
+      stream_(io, heard(std::move(s)))
 {
+}
+
+stream_options service::heard(stream_options s)
+{
+    s.begun = [this](std::uint64_t p, stroke_id id, std::optional<std::int64_t> at) { begun(p, id, at); };
+    s.ended = [this](std::uint64_t p, const stroke_report& r) { ended(p, r); };
+    s.changed = [this, owner = std::move(s.changed)](stream_state state, const std::string& why) {
+        if (owner)
+            owner(state, why);
+        tell_stream(state, why);
+    };
+    return s;
 }
 
 service::~service()
@@ -149,7 +157,7 @@ service::client* service::find(client_number c)
 
 void service::send(client& c, const reply_json& message)
 {
-    c.link->send(net::text_of(message));
+    c.link->send(net::json_line(message));
 }
 
 // What comes over a network begins with hello: a browser's POST does not.
@@ -304,7 +312,7 @@ void service::disconnect(client_number number)
 
 void service::tell_stream(stream_state s, const std::string& reason)
 {
-    const reply_json n = net::notification("stream", {{"state", name_of(s)}, {"reason", reason}});
+    const reply_json n = net::notification("stream", {{"state", to_string(s)}, {"reason", reason}});
     for (const auto& [number, c] : clients_)
         if (c->admitted && c->greeted && (c->events.contains("stream") || s == stream_state::closing))
             send(*c, n);

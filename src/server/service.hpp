@@ -12,7 +12,6 @@
 #include <map>
 #include <memory>
 #include <optional>
-#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -26,11 +25,27 @@
 #include <tactor/player.hpp>
 
 #include "net/rpc.hpp"
-#include "server/limits.hpp"
 #include "server/stream.hpp"
 #include "server/stroke_source.hpp"
 
 namespace tactor::server {
+
+/// Bounds of what a client, and all together, may ask of the service.
+struct service_limits {
+    std::size_t max_clients = 128;
+    std::size_t kept_clients = 8;     ///< of these, places for the Unix socket alone
+    std::size_t max_strokes = 64;     ///< of one client at once, those that are being planned included
+    std::size_t max_live_strokes = 4; ///< of these, live ones
+    double max_points_per_s = 2000.0; ///< of one client; as many at once
+    double max_stroke_s = 600.0;
+    std::size_t max_message_bytes = 1U << 20;
+    std::size_t max_nesting = 64;
+    double max_message_s = 10.0;             ///< for a message to be complete, and for the first one to come
+    std::size_t max_unread_bytes = 4U << 20; ///< that wait for one client
+    std::size_t max_all_unread_bytes = 64U
+                                       << 20; ///< for all, and as many of requests that wait to be planned
+    std::size_t max_all_unfinished_bytes = 32U << 20; ///< of messages that have not come whole, of all
+};
 
 using client_number = std::uint64_t;
 
@@ -156,6 +171,8 @@ private:
     client* find(client_number c);
     std::size_t gone() const; ///< clients that send no more and are owed something
     void send(client& c, const reply_json& message);
+    /// Returns the options of a stream that this hears of.
+    stream_options heard(stream_options s);
     void tell_stream(stream_state s, const std::string& reason);
     void check_told_all(client_number number);
     void give_memory_back_when_quiet();

@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 
 #include "server/service_impl.hpp"
-#include "server/start_wish.hpp"
+#include "server/stroke_options.hpp"
 
 namespace tactor::server {
 namespace {

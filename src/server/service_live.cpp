@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 // begin, to, end.
 #include <algorithm>
-#include <cmath>
 #include <limits>
 
 #include <fmt/format.h>
@@ -56,7 +55,7 @@ void service::begin(client& c, const json& params, const answer& to)
         try {
             begin_now(*then, o, to, stopped_since(asked, number));
         } catch (...) {
-            to.fault(current_fault("options", o.render));
+            to.fault(current_fault("options"));
         }
         note_busy();
     });

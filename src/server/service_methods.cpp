@@ -111,12 +111,12 @@ reply_json service::status_now()
     const double rate = stream_.setup().rate;
     return {{"version", options_.version},
             {"stream",
-             {{"state", name_of(stream_.state())},
+             {{"state", to_string(stream_.state())},
               {"reason", stream_.reason()},
               {"xruns", s.xruns},
               {"uptime_s", rate > 0.0 ? static_cast<double>(s.frames) / rate : 0.0},
               {"realtime", s.realtime}}},
-            {"amplifier", stream_.amplifier()},
+            {"amplifier", to_string(stream_.amplifier())},
             {"clients", clients_.size()},
             {"strokes", strokes},
             {"limits", limits_json()}};

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "server/stroke_options.hpp"
 
+#include <cmath>
 #include <string>
 #include <vector>
 
@@ -9,9 +10,11 @@
 
 #include "options/check.hpp"
 #include "options/settle.hpp"
+#include "server/clock.hpp"
 #include "server/faults.hpp"
 
 namespace tactor::server {
+
 namespace {
 
 using net::json;
@@ -53,6 +56,8 @@ void refuse_file(const option& o, const options::value& v)
                   "one of sine, square, triangle, sawtooth, noise:LO-HI");
 }
 
+constexpr double longest_wait_s = 86400.0;
+
 } // namespace
 
 options::wishes with_options(options::wishes w, const json& given, options_for which)
@@ -75,6 +80,31 @@ options::wishes with_options(options::wishes w, const json& given, options_for w
         throw fault_error(option_fault(e));
     }
     return w;
+}
+
+start_wish read_start(const net::json* start, std::int64_t now_ns)
+{
+    constexpr const char* forms = R"("now", "armed", {"delay_s":S}, {"monotonic_s":S} or {"unix_s":S})";
+    if (start == nullptr || *start == "now")
+        return {};
+    if (*start == "armed")
+        return {true, {}};
+    if (!start->is_object() || start->size() != 1)
+        bad_param("start", "it is not known", forms);
+    const std::string name = start->begin().key();
+    const net::json& value = start->begin().value();
+    const std::string what = "start." + name;
+    const double most_s = 9e9; // a time of day for centuries
+    if (name == "delay_s")
+        return {false, now_ns + std::llround(number(value, what, {0.0, longest_wait_s}) * 1e9)};
+    if (name != "monotonic_s" && name != "unix_s")
+        bad_param(what, "it is not known", forms);
+    std::int64_t at = std::llround(number(value, what, {0.0, most_s}) * 1e9);
+    if (name == "unix_s")
+        at += now_ns - unix_ns();
+    if (static_cast<double>(at - now_ns) * 1e-9 > longest_wait_s)
+        bad_param(what, "it is more than a day ahead", forms);
+    return {false, at};
 }
 
 } // namespace tactor::server

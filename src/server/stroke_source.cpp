@@ -2,7 +2,6 @@
 #include "server/stroke_source.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <utility>
 
@@ -236,7 +235,7 @@ planned make_planned(const planning& with, const layout& faces, const json& para
     } catch (const fault_error&) {
         throw;
     } catch (...) {
-        throw fault_error(current_fault(source, s.render));
+        throw fault_error(current_fault(source));
     }
 }
 

@@ -7,7 +7,7 @@ namespace tactor::server {
 
 std::string refusal(std::string what, std::string why, std::string hint)
 {
-    return net::text_of(net::error_reply(
+    return net::json_line(net::error_reply(
         nullptr, {net::code_limit, "limit", std::move(what), std::move(why), std::move(hint)}));
 }
 

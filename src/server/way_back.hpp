@@ -9,7 +9,6 @@
 #include <utility>
 
 #include "net/line_connection.hpp"
-#include "server/limits.hpp"
 #include "server/service.hpp"
 
 namespace tactor::server {

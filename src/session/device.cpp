@@ -8,6 +8,8 @@
 #include <fmt/format.h>
 #include <tactor/tactor.hpp>
 
+#include "session/say.hpp"
+
 namespace tactor::session {
 namespace {
 
@@ -20,10 +22,10 @@ std::string pcm_name(const settings& s, const output_settings& out)
         try {
             require_device_name(*out.pcm);
         } catch (const error& x) {
-            throw error(
-                x.kind(), out.pcm_at, fmt::format("{}: {}", x.subject(), x.why()),
-                "an array file can only name a device, such as hw:CARD=Tactor; more is taken from -D PCM "
-                "and from your own configuration: tactor.toml(5), SECURITY CONSIDERATIONS");
+            throw error(x.kind(), out.pcm_at, fmt::format("{}: {}", x.subject(), x.why()),
+                        "an array file can only name a device, such as hw:CARD=Tactor; more is taken from "
+                        "{device=PCM} "
+                        "and from your own configuration: tactor.toml(5), SECURITY CONSIDERATIONS");
         }
     }
     return *out.pcm;
@@ -34,6 +36,13 @@ std::string pcm_name(const settings& s, const output_settings& out)
 bool names_device(const settings& s, const environment& e)
 {
     return s.pcm || e.config.output.pcm;
+}
+
+void tell_of_no_device(const settings& s, const environment& e)
+{
+    if (!names_device(s, e))
+        say(stderr, "tactor: no device is configured: playing to \"null\", which nobody feels (-D PCM plays "
+                    "on hardware)\n");
 }
 
 alsa_options device_options(const settings& s, const stream_options& asked, const environment& e,

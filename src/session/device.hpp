@@ -16,6 +16,9 @@ namespace tactor::session {
 /// Returns whether anything says which PCM to play on.
 bool names_device(const settings& s, const environment& e);
 
+/// Says on standard error that "null" is played to where nothing says which PCM.
+void tell_of_no_device(const settings& s, const environment& e);
+
 /// Returns the PCM as it is to be opened for so many channels at that rate, Hz; "null" where nothing names
 /// one. \throws error (bad_input) where an array file says more than the name of a device.
 alsa_options device_options(const settings& s, const stream_options& asked, const environment& e,

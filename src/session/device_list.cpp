@@ -4,7 +4,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "files/plan/json_values.hpp"
+#include "files/plan/json_value.hpp"
 #include "session/device.hpp"
 
 namespace tactor::session {

@@ -113,24 +113,12 @@ const files::plan_file* first_plan(const settings& s, const environment& e)
 // How a plan was rendered is how it is, where no option says otherwise: no [defaults] does.
 void use_sound_of(const files::plan_file& f, settings& s)
 {
-    if (!s.gives("phase"))
-        s.render.phase = f.render.phase;
-    if (!s.gives("ramp"))
-        s.render.ramp_s = f.render.ramp_s;
-    if (!s.gives("envelope")) {
-        s.render.envelope.kind = f.render.envelope.kind;
-        s.render.envelope.tukey_part = f.render.envelope.tukey_part;
-    }
-    if (!s.gives("attack"))
-        s.render.envelope.attack_s = f.render.envelope.attack_s;
-    if (!s.gives("release"))
-        s.render.envelope.release_s = f.render.envelope.release_s;
-    if (!s.gives("level_dbfs") && !s.gives("sl")) {
-        s.render.level_dbfs = f.render.level_dbfs;
-        s.render.sl_db = f.render.sl_db;
-    }
-    if (!s.gives("rate"))
-        s.rate = f.render.rate;
+    options::wishes kept;
+    kept.render = f.render;
+    kept.rate = f.render.rate;
+    for (const options::option& o : options::all())
+        if (o.is_sound() && !s.gives(o) && (o.rival.empty() || !s.gives(o.rival)))
+            o.to.set(s, o.to.get(kept));
     s.render.marker_channel = f.render.marker_channel;
     s.render.marker_s = f.render.marker_s;
 }
@@ -140,6 +128,16 @@ array use_array_of(const files::plan_file& f, environment& e)
 {
     e.plan_channels = f.render.channels;
     return f.tactors;
+}
+
+// Its error lists the presets.
+array named_array(const std::string& name)
+{
+    try {
+        return preset_array(name);
+    } catch (const error& e) {
+        throw e.reworded(e.subject(), e.why(), fmt::format("{}; or name a file", e.hint()));
+    }
 }
 
 array find_array(settings& s, environment& e)
@@ -158,7 +156,7 @@ array find_array(settings& s, environment& e)
     }
     std::error_code unknown; // such as for a name that no file can have
     if (!fs::exists(*s.array_name, unknown) && s.array_name->find_first_of("./") == std::string::npos)
-        return preset_array(*s.array_name); // its error lists the presets
+        return named_array(*s.array_name);
     check_readable(*s.array_name);
     const setup file = load_setup(*s.array_name);
     if (!file.array)

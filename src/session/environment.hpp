@@ -12,9 +12,17 @@
 
 #include "files/plan/plan_file.hpp"
 #include "options/serve.hpp"
-#include "session/settings.hpp"
+#include "options/wishes.hpp"
 
 namespace tactor::session {
+
+using options::stream_options;
+
+/// Strokes, and options of strokes, plans, sound and the device: what a user asks for, before any file is
+/// read.
+struct settings : options::wishes {
+    std::vector<std::string> strokes = {}; ///< STROKE arguments
+};
 
 /// The configuration that applies, and the array file's own [output], [amplifier] and [sync] over it.
 struct environment {

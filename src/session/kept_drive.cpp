@@ -21,8 +21,8 @@
 #include "files/output_file.hpp"
 #include "files/text_file.hpp"
 #include "rt/clock.hpp"
-#include "session/runtime_folder.hpp"
 #include "session/say.hpp"
+#include "session/variable.hpp"
 
 namespace tactor::session {
 namespace {
@@ -153,7 +153,7 @@ drive_history kept_drive::until_now()
         look();
         take_up_killed();
     }
-    return own_.with(others_);
+    return own_.with(others_).with(ahead_);
 }
 
 void kept_drive::going(unsigned channels)

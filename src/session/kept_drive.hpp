@@ -17,6 +17,8 @@ namespace tactor::session {
 /// torn one counts as none. What cannot be kept is warned of once, and played all the same. One thread.
 class kept_drive {
 public:
+    /// Keeps it for this run alone.
+    kept_drive() = default;
     /// Where there is no runtime folder of the user's own nothing is kept from run to run. Without a limit
     /// there is nothing to count: then it is kept until when the array was driven, not for how long in
     /// between.
@@ -42,7 +44,7 @@ private:
     std::string driven_; ///< name of the file
     std::string going_;  ///< what such names begin with
     std::string text_;   ///< of driven-NAME, as it was last seen
-    bool counted_;
+    bool counted_ = true;
     drive_history own_;    ///< of this run, and what its streams went on from
     drive_history others_; ///< what the files said that this run had not written
     drive_history ahead_;  ///< what this stream may have driven; none: a going-NAME-PID is not this run's

@@ -3,30 +3,49 @@
 /// The GPIO lines of a run, which outlive each of its players.
 #pragma once
 
+#include <atomic>
+#include <functional>
 #include <memory>
+#include <string_view>
 
 #include <tactor/tactor.hpp>
 
+#include "session/environment.hpp"
+
 namespace tactor::session {
 
-/// Opens what [amplifier] and [sync] name. Make it before threads and locked memory: it forks the holder of
-/// the amplifier's line. A player that plays on after its device was lost is a new one; the lines stay.
+/// `muted`: off, though the player that has the lines had switched it on.
+enum class amplifier_state { none, off, on, muted };
+/// "none", "off" or "on".
+std::string_view to_string(amplifier_state s) noexcept;
+
+/// Opens the lines that [amplifier] and [sync] name, unless no_gpio is set. Call it before threads and
+/// locked memory: it forks the holder of the amplifier's line. `arm`: the trigger is wanted. \throws error as
+/// open_amplifier() does.
+player_lines open_lines(const stream_options& o, const environment& e, bool arm);
+
+/// A player that plays on after its device was lost is a new one; the lines stay.
 class lent_lines {
 public:
-    lent_lines() = default;
-    /// \throws error as open_amplifier() does. `arm`: whether the trigger is wanted.
-    lent_lines(const setup& config, bool arm, double trigger_delay_s);
-
+    lent_lines() : lent_lines(player_lines{}) {}
+    explicit lent_lines(player_lines own);
     /// Lends the lines to one player at a time. `proof_s`: as player_lines.
     player_lines lend(double proof_s = 0.0) const;
 
+    /// Calls `f`, which must not throw, when the amplifier has gone on or off, in the thread that switches.
+    void on_switch(std::function<void()> f) { state_->switched = std::move(f); }
+    /// Returns what the line was switched to. Any thread.
+    amplifier_state amplifier() const noexcept;
+
 private:
-    std::shared_ptr<enable_line> amplifier_;
-    std::shared_ptr<enable_line> sync_out_;
-    std::shared_ptr<edge_input> trigger_;
-    double settle_s_ = 0.0;
-    double pulse_s_ = 0.0;
-    double trigger_delay_s_ = 0.0;
+    struct state {
+        player_lines own;
+        std::function<void()> switched = {};
+        std::atomic<bool> on = false;
+        std::atomic<bool> was_on = false; ///< with the player that has the lines
+    };
+
+    std::shared_ptr<state> state_;
 };
 
 } // namespace tactor::session

@@ -78,7 +78,7 @@ void session_log::open()
     struct stat s {};
     if (!fd_ && code == ELOOP)
         throw error(error_kind::bad_input, file_, "is a link",
-                    "name the file itself; --verbose writes to standard error");
+                    "name the file itself; {verbose=true} writes to standard error");
     if (!fd_ && code == EISDIR)
         throw error(error_kind::bad_input, file_, "is a folder", "name a file in it");
     if (!fd_)
@@ -86,7 +86,7 @@ void session_log::open()
                     std::strerror(code));
     if (::fstat(fd_.get(), &s) != 0 || !S_ISREG(s.st_mode))
         throw error(error_kind::bad_input, file_, "is no regular file",
-                    "name a file; --verbose writes to standard error");
+                    "name a file; {verbose=true} writes to standard error");
     detail::refuse_input(s, file_);
     if (!may_be_appended_to(fd_.get()))
         throw error(error_kind::bad_input, file_, "there is such a file already, and it is no log",

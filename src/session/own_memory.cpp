@@ -19,6 +19,7 @@
 
 #include <tactor/tactor.hpp>
 
+#include "rt/advice.hpp"
 #include "session/say.hpp"
 
 namespace tactor::session {
@@ -66,13 +67,7 @@ void populate()
     }
 }
 
-} // namespace
-
-std::uint64_t memory_to_lock()
-{
-    return mapped_bytes() + reserve_bytes;
-}
-
+/// Returns why not; empty: all memory is locked.
 std::string lock_own_memory()
 {
     if (const auto most = probe_realtime_rights().lockable_bytes) {
@@ -89,6 +84,36 @@ std::string lock_own_memory()
         return std::strerror(errno);
     populate();
     return "";
+}
+
+void limit_runaway_threads()
+{
+    constexpr rlim_t soft_us = 200'000; // SIGXCPU
+    constexpr rlim_t hard_us = 1'000'000;
+    rlimit l{};
+    if (getrlimit(RLIMIT_RTTIME, &l) != 0)
+        return;
+    // What is stricter already stays. The amplifier's holder outlives either signal.
+    l.rlim_max = std::min(l.rlim_max, hard_us);
+    l.rlim_cur = std::min({l.rlim_cur, soft_us, l.rlim_max});
+    setrlimit(RLIMIT_RTTIME, &l);
+}
+
+} // namespace
+
+std::uint64_t memory_to_lock()
+{
+    return mapped_bytes() + reserve_bytes;
+}
+
+bool settle_realtime(bool required)
+{
+    limit_runaway_threads();
+    const std::string refused = lock_own_memory();
+    if (!refused.empty() && required)
+        throw error(error_kind::not_available, "locked memory", refused,
+                    rt::realtime_advice(probe_realtime_rights(), player_options{}.priority));
+    return refused.empty();
 }
 
 void give_memory_back()
@@ -110,19 +135,6 @@ void warn_of_rights(bool realtime, bool locked)
         "in limits.d, group audio)\n",
         realtime ? "" : "no real-time priority", realtime || locked ? "" : ", ",
         locked ? "" : "memory is not locked");
-}
-
-void limit_runaway_threads()
-{
-    constexpr rlim_t soft_us = 200'000; // SIGXCPU
-    constexpr rlim_t hard_us = 1'000'000;
-    rlimit l{};
-    if (getrlimit(RLIMIT_RTTIME, &l) != 0)
-        return;
-    // What is stricter already stays. The amplifier's holder outlives either signal.
-    l.rlim_max = std::min(l.rlim_max, hard_us);
-    l.rlim_cur = std::min({l.rlim_cur, soft_us, l.rlim_max});
-    setrlimit(RLIMIT_RTTIME, &l);
 }
 
 } // namespace tactor::session

@@ -8,20 +8,18 @@
 
 namespace tactor::session {
 
-/// Locks all memory of the process, now and to come, where the limits leave space for it. Returns why not;
-/// empty: it is locked. Call it before threads are made and after what forks.
-std::string lock_own_memory();
+/// Locks all memory of the process, now and to come, and has a real-time thread that runs for 0.2 s without a
+/// pause ended, and the process with it: it would hold a computer with one core for good. Call it before
+/// threads are made and after what forks. Returns whether memory is locked. \throws error (not_available)
+/// where it is not, and `required`.
+bool settle_realtime(bool required);
 
-/// How much lock_own_memory() would lock now, with what threads will need.
+/// Returns how much settle_realtime() would lock now, with what threads will need.
 std::uint64_t memory_to_lock();
 
 /// Lets the heap give back what is freed, for a process that lives long and whose clients come and go: large
-/// blocks are mapped one by one. Call it after lock_own_memory(), which keeps all.
+/// blocks are mapped one by one. Call it after settle_realtime(), which keeps all.
 void give_memory_back();
-
-/// A real-time thread that runs for 0.2 s without a pause is ended, and the process with it: it would hold
-/// a computer with one core for good.
-void limit_runaway_threads();
 
 /// Warns on standard error where the audio thread has no real-time priority or its memory is not locked.
 void warn_of_rights(bool realtime, bool locked);

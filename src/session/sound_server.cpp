@@ -9,6 +9,8 @@
 #include <fmt/format.h>
 #include <tactor/tactor.hpp>
 
+#include "session/say.hpp"
+
 namespace tactor::session {
 
 std::string settle_server(const std::string& pcm)
@@ -33,6 +35,12 @@ bool is_felt(const std::string& pcm)
 std::string server_note(const std::string& server)
 {
     return fmt::format("{} is in between: it may mix, resample and hide xruns", server);
+}
+
+void warn_of_server(const std::string& server, const char* cure)
+{
+    if (!server.empty())
+        say(stderr, "tactor: warning: {} ({})\n", server_note(server), cure);
 }
 
 std::vector<device_note> wiring_notes(const array& a, const stream_setup& s)

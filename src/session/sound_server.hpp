@@ -16,6 +16,13 @@ namespace tactor::session {
 /// yet. Before there are threads, and before the PCM is opened.
 std::string settle_server(const std::string& pcm);
 
+/// Hint for a sound server in the way.
+inline constexpr const char* server_cure =
+    "-D hw:CARD=NAME plays on the card itself; tactor devices lists them";
+
+/// Warns on standard error of the sound server in between; not where there is none.
+void warn_of_server(const std::string& server, const char* cure = server_cure);
+
 /// Whether anybody may feel what is played on a PCM: it does not end in one of type null alone.
 bool is_felt(const std::string& pcm);
 
@@ -31,9 +38,5 @@ struct device_note {
 /// Notes about the ways that the stream's channels go: levels that ALSA's configuration changes, and ways
 /// that are not known (but not those through a server, of which server_note() tells).
 std::vector<device_note> wiring_notes(const array& a, const stream_setup& s);
-
-/// Hint for a sound server in the way.
-inline constexpr const char* server_cure =
-    "-D hw:CARD=NAME plays on the card itself; tactor devices lists them";
 
 } // namespace tactor::session

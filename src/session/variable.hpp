@@ -15,4 +15,20 @@ inline std::string variable(const char* name)
     return v == nullptr ? "" : v;
 }
 
+/// Returns the first of RUNTIME_DIRECTORY, which systemd gives to services and may be a list; empty where
+/// there is none.
+inline std::string service_folder()
+{
+    const std::string all = variable("RUNTIME_DIRECTORY");
+    return all.substr(0, all.find(':'));
+}
+
+/// Returns the folder of what lives no longer than this machine's run: service_folder(), else
+/// XDG_RUNTIME_DIR; empty where nothing says which.
+inline std::string runtime_folder()
+{
+    const std::string given = service_folder();
+    return given.empty() ? variable("XDG_RUNTIME_DIR") : given;
+}
+
 } // namespace tactor::session

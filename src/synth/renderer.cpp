@@ -29,21 +29,11 @@ double plain_ramp_s(double onset_s, double duration_s, const plan& p, const rend
 namespace tactor {
 inline namespace v0 {
 
-namespace {
-
-/// Time in which a score whose plan failed falls silent, as in the player.
-constexpr double fade_s = 0.01;
-
-} // namespace
-
 struct renderer::impl {
-    /// Makes a mixer with space for the drives that sound at once, for those that begin in the block
-    /// meanwhile, and for those that come after a stroke that can fail.
+    /// Room for what sounds at once, and for what begins in the block meanwhile.
     impl(const score& s, format_kind f)
         : source(s),
-          ahead(detail::access::of(s).open_continuous > 0 ? synth::frame_at(fade_s, s.rate()) : 0),
-          mix(detail::access::of(s).limits, f,
-              detail::access::of(s).open_events + 256 + 16 * detail::access::of(s).open_continuous,
+          mix(detail::access::of(s).limits, f, detail::access::of(s).open_events + 256,
               guards(detail::access::of(s))),
           frame_bytes(s.channels() * bytes_of(f))
     {
@@ -51,11 +41,11 @@ struct renderer::impl {
 
     static synth::guard_settings guards(const score::impl& s)
     {
-        return s.guards ? synth::guards_of(*s.guards, s.rate) : synth::guard_settings{};
+        return s.guards ? synth::make_guards(*s.guards, s.rate) : synth::guard_settings{};
     }
 
-    /// Hands over the drives that start before a frame. Returns the frame up to which none is missing.
-    std::uint64_t feed(std::uint64_t until) noexcept
+    /// Hands over what starts before a frame. Returns the frame up to which nothing is missing.
+    std::uint64_t feed(std::uint64_t until)
     {
         for (const synth::drive_event* e = source.peek(); e != nullptr && e->start < until;
              e = source.peek()) {
@@ -66,30 +56,7 @@ struct renderer::impl {
         return until;
     }
 
-    /// Returns the frame up to which the mixer can run now. A failure of a plan is known one fade ahead. If
-    /// strokes are so crowded that there is no space for that, their fade is shorter.
-    std::uint64_t prepare(std::uint64_t until) noexcept
-    {
-        const std::uint64_t at = mix.position();
-        const std::uint64_t known = feed(until + ahead);
-        const std::uint64_t ready =
-            std::min(until, known > at + ahead ? known - ahead : std::max(known, at + 1));
-        if (source.failure().empty())
-            return ready;
-        const std::uint64_t silent = source.failed_at();
-        const std::uint64_t fall = silent - std::min(silent, ahead);
-        if (at < fall)
-            return std::min(ready, fall);
-        if (!failed) {
-            failed = true;
-            mix.fade_out(0, static_cast<std::uint32_t>(std::max(silent, at) - at));
-        }
-        return ready;
-    }
-
     synth::event_source source;
-    std::uint64_t ahead; ///< frames that are read before they are mixed
-    bool failed = false;
     synth::mixer mix;
     std::size_t frame_bytes;
 };
@@ -129,7 +96,7 @@ void renderer::process(std::span<std::byte> out)
     while (frames > 0) {
         const std::uint64_t at = r.mix.position();
         const std::uint64_t until = std::min(at + frames, at / stride * stride + stride);
-        const auto n = static_cast<std::size_t>(r.prepare(until) - at);
+        const auto n = static_cast<std::size_t>(std::max(r.feed(until), at + 1) - at);
         r.mix.process(n, to);
         to += n * r.frame_bytes;
         frames -= n;
@@ -139,11 +106,6 @@ void renderer::process(std::span<std::byte> out)
 std::uint64_t renderer::position() const
 {
     return not_moved(impl_).mix.position();
-}
-
-const std::string& renderer::failure() const
-{
-    return not_moved(impl_).source.failure();
 }
 
 double burst_ramp_s(double onset_s, double duration_s, double carrier_hz, const render_options& o) noexcept

@@ -91,7 +91,7 @@ player::player(fake_line& line, const gpio::holder_limits& limits, const body& b
     };
     pid_ = ::fork();
     if (pid_ == 0)
-        [&]() noexcept { // nothing may get out into the test's own loop
+        [&]() noexcept { // nothing may escape into the test's loop
             die_quietly();
             before();
             auto h = gpio::start_holder(
@@ -99,7 +99,7 @@ player::player(fake_line& line, const gpio::holder_limits& limits, const body& b
             tell(h->pid());
             if (h->set(true))
                 b(*h, tell);
-            ::_exit(0); // as abort() would: the link's destructor does not run
+            ::_exit(0); // like abort(): the link's destructor does not run
         }();
     ::close(ends[1]);
     told_ = ends[0];
@@ -173,7 +173,7 @@ bool ends(int pidfd)
     return readable(pidfd, hangs_ms);
 }
 
-std::string status_of(pid_t pid, const std::string& field)
+std::string read_status(pid_t pid, const std::string& field)
 {
     std::ifstream in("/proc/" + std::to_string(pid) + "/status");
     for (std::string line; std::getline(in, line);)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The amplifier's state machine on its own: tables of events and what the line does then.
+// The amplifier's state machine alone: tables of events and the line's state after each.
 #include "amplifier/amplifier.hpp"
 
 #include <random>
@@ -54,7 +54,7 @@ const std::vector<row> to_ready{
     {14, event::tick, 0, true, true},
 };
 
-/// As long as nobody knows when it is silent.
+/// The time of silence is not known yet.
 constexpr std::uint64_t unknown = UINT64_MAX;
 
 std::vector<row> after_ready(std::vector<row> more)
@@ -66,7 +66,7 @@ std::vector<row> after_ready(std::vector<row> more)
 
 } // namespace
 
-TEST_CASE("it does not go on again into what was written before the mute")
+TEST_CASE("it does not switch on again into sound from before the mute")
 {
     run(after_ready({
         {100, event::moved, 4800, true, true, 96'000},
@@ -115,7 +115,7 @@ TEST_CASE("amplifier: xruns a second apart never mute it")
                      {3100, event::xrun, 0, true, true}}));
 }
 
-TEST_CASE("amplifier: an xrun while it is muted prolongs that")
+TEST_CASE("amplifier: an xrun during a mute prolongs it")
 {
     run(after_ready({{100, event::xrun, 0, true, true},
                      {200, event::xrun, 0, false, false},
@@ -154,7 +154,7 @@ TEST_CASE("amplifier: one that went off by itself comes back in order")
                      {213, event::tick, 0, true, true}}));
 }
 
-TEST_CASE("amplifier: deadlines are those at which a tick changes something")
+TEST_CASE("amplifier: deadlines are the times at which a tick changes something")
 {
     amplifier a(options());
     a.handle(event::started, 0);
@@ -170,7 +170,7 @@ TEST_CASE("amplifier: deadlines are those at which a tick changes something")
     CHECK_FALSE(a.deadline());
 }
 
-TEST_CASE("amplifier: whatever happens, ready is on, on is after two periods, and the end is the end")
+TEST_CASE("amplifier: for any events, ready implies on, on comes after two periods, and the end is final")
 {
     std::mt19937_64 random(7);
     for (int run = 0; run < 2000; ++run) {
@@ -199,7 +199,7 @@ TEST_CASE("amplifier: whatever happens, ready is on, on is after two periods, an
                 ended = ended || e == event::silent || e == event::lost || e == event::failed;
                 const bool before = a.line();
                 a.handle(e, now, {.played = played});
-                // Nothing but the DAC that runs switches it on.
+                // Only a running DAC switches it on.
                 if (a.line() && !before)
                     CHECK(played >= 192);
             }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The chips of a machine that has none, and folders that look like /dev.
+// The chips of a machine without any, and folders that look like /dev.
 #include "amplifier/chips.hpp"
 
 #include <cerrno>
@@ -35,11 +35,11 @@ TEST_CASE("chips are listed by number, each once")
 
 TEST_CASE("a file's group has a name, a missing file's is the usual one")
 {
-    CHECK(tactor::gpio::group_of("/dev/null") == "root");
-    CHECK(tactor::gpio::group_of("/nowhere") == "gpio");
+    CHECK(tactor::gpio::find_group("/dev/null") == "root");
+    CHECK(tactor::gpio::find_group("/nowhere") == "gpio");
 }
 
-TEST_CASE("what is no GPIO chip is not opened as one")
+TEST_CASE("a file that is no GPIO chip is not opened")
 {
     const folder f;
     f.write("gpiochip0");
@@ -53,7 +53,7 @@ TEST_CASE("what is no GPIO chip is not opened as one")
     CHECK(tactor::gpio::read_chip("/nowhere").code == ENOENT);
 }
 
-TEST_CASE("what a file names as a chip and is none is never opened: a pipe, a file, a socket")
+TEST_CASE("a pipe, file or socket named as a chip is never opened")
 {
     const folder f;
     f.write("file");

@@ -23,7 +23,7 @@ std::vector<bool> filter(std::int64_t window, const std::vector<std::int64_t>& t
 
 } // namespace
 
-TEST_CASE("the first edge passes, at whatever time it comes")
+TEST_CASE("the first edge passes, at any time")
 {
     for (const std::int64_t t : {std::int64_t{0}, std::int64_t{5}, std::int64_t{1} << 62})
         CHECK(filter(1000, {t}) == std::vector{true});
@@ -46,7 +46,7 @@ TEST_CASE("without a window every edge passes")
     CHECK(filter(0, {7, 7, 7, 8}) == std::vector{true, true, true, true});
 }
 
-TEST_CASE("what passes is what no other edge came before within the window")
+TEST_CASE("an edge passes where no other came before it within the window")
 {
     std::mt19937_64 random(20240607);
     for (int round = 0; round < 2000; ++round) {

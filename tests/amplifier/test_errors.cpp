@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What the kernel's refusals say to the user.
+// Messages for the kernel's refusals.
 #include "amplifier/errors.hpp"
 
 #include <cerrno>
@@ -41,28 +41,26 @@ std::string complaint(F f)
 
 } // namespace
 
-TEST_CASE("a busy line is named with who holds it")
+TEST_CASE("a busy line is named with its holder")
 {
-    CHECK(refusal(EBUSY, "gpiomon") ==
-          "palm.toml:12:1: GPIO line 17 of pinctrl-rp1: busy: \"gpiomon\" holds it "
-          "(stop that program, or choose another line)");
+    CHECK(refusal(EBUSY, "gpiomon") == "palm.toml:12:1: GPIO line 17 of pinctrl-rp1: busy: \"gpiomon\" holds "
+                                       "it (stop that program, or choose another line)");
     CHECK(refusal(EBUSY, "tactor") ==
-          "palm.toml:12:1: GPIO line 17 of pinctrl-rp1: busy: another tactor holds it "
-          "(stop that one first)");
-    CHECK(refusal(EBUSY, gpio::nameless_consumer) == "palm.toml:12:1: GPIO line 17 of pinctrl-rp1: busy: the "
-                                                     "kernel holds it (a driver or overlay uses the "
-                                                     "pin; choose another line)");
+          "palm.toml:12:1: GPIO line 17 of pinctrl-rp1: busy: another tactor holds it (stop that one first)");
+    CHECK(refusal(EBUSY, gpio::nameless_consumer) ==
+          "palm.toml:12:1: GPIO line 17 of pinctrl-rp1: busy: the kernel holds it (a driver or overlay uses "
+          "the pin; choose another line)");
     CHECK(refusal(EBUSY, "").find("busy: the kernel holds it") != std::string::npos);
 }
 
-TEST_CASE("what the chip cannot do is said as such")
+TEST_CASE("a missing ability of the chip is reported as such")
 {
     CHECK(refusal(ENOTSUP, "").find("the chip cannot do this with the line: ") != std::string::npos);
     CHECK(refusal(EPERM, "").find("the kernel does not permit this use of the line") != std::string::npos);
     CHECK(refusal(EIO, "").find("the line cannot be had: ") != std::string::npos);
 }
 
-TEST_CASE("a chip of the list that cannot be opened says what to do")
+TEST_CASE("a listed chip that cannot be opened has a hint")
 {
     gpio::chip c;
     c.info.path = "/dev/gpiochip0";
@@ -72,7 +70,7 @@ TEST_CASE("a chip of the list that cannot be opened says what to do")
           "no permission to open /dev/gpiochip0 (sudo usermod -aG gpio $USER, then log in again)");
 }
 
-TEST_CASE("times that cannot be are refused before any device is touched")
+TEST_CASE("impossible times are refused before any device is touched")
 {
     const gpio_line_name l{.name = "no such line"};
     for (const double s :

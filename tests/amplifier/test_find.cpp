@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Which line a user means, on chips that are but values.
+// Search for the user's line, on chips that are plain values.
 #include "amplifier/chips.hpp"
 
 #include <cerrno>
@@ -89,22 +89,19 @@ TEST_CASE("a chip is found by label and by path, a line by offset and by name")
     }
 }
 
-TEST_CASE("what is not there is answered with what is")
+TEST_CASE("a missing line is refused with the existing ones")
 {
     CHECK(complaint(pi, by_chip("pinctrl-bcm2711", 17)) ==
           "GPIO line 17 of pinctrl-bcm2711: no chip labelled \"pinctrl-bcm2711\" (there are: \"pinctrl-rp1\" "
-          "at "
-          "/dev/gpiochip0, \"gpio-brcmstb@0\" at /dev/gpiochip10, \"empty\" at /dev/gpiochip11)");
+          "at /dev/gpiochip0, \"gpio-brcmstb@0\" at /dev/gpiochip10, \"empty\" at /dev/gpiochip11)");
     CHECK(complaint(pi, by_chip("/dev/gpiochip4", 17)) ==
           "GPIO line 17 of /dev/gpiochip4: there is no /dev/gpiochip4 (there are: \"pinctrl-rp1\" at "
           "/dev/gpiochip0, \"gpio-brcmstb@0\" at /dev/gpiochip10, \"empty\" at /dev/gpiochip11)");
-    CHECK(
-        complaint(pi, by_chip("pinctrl-rp1", 5)) ==
-        "GPIO line 5 of pinctrl-rp1: chip \"pinctrl-rp1\" at /dev/gpiochip0 has lines 0 to 4, no line 5 (an "
-        "offset counts the chip's own lines from 0)");
+    CHECK(complaint(pi, by_chip("pinctrl-rp1", 5)) ==
+          "GPIO line 5 of pinctrl-rp1: chip \"pinctrl-rp1\" at /dev/gpiochip0 has lines 0 to 4, no line 5 "
+          "(an offset counts the chip's own lines from 0)");
     CHECK(complaint(pi, by_chip("empty", 0)) == "GPIO line 0 of empty: chip \"empty\" at /dev/gpiochip11 has "
-                                                "no lines (an offset counts the chip's own "
-                                                "lines from 0)");
+                                                "no lines (an offset counts the chip's own lines from 0)");
     CHECK(complaint(pi, by_name("GPI017")) ==
           "GPIO line \"GPI017\": no line has this name (did you mean \"GPIO17\"?)");
     CHECK(complaint(pi, by_name("AMPLIFIER")) ==
@@ -113,69 +110,62 @@ TEST_CASE("what is not there is answered with what is")
           "GPIO line \"FAN\": no line of pinctrl-rp1 has this name (there are: ID_SD, GPIO1, GPIO17, LED)");
     CHECK(complaint({make_chip(0, "sim", {"", ""})}, by_name("GPIO17")) ==
           "GPIO line \"GPIO17\": no line has this name (no line here has a name: give chip and offset)");
-    CHECK(complaint({}, by_name("GPIO17")) == "GPIO line \"GPIO17\": there is no GPIO chip on this machine "
-                                              "(GPIO chips are /dev/gpiochip*; a container "
-                                              "has to be given them)");
+    CHECK(complaint({}, by_name("GPIO17")) ==
+          "GPIO line \"GPIO17\": there is no GPIO chip on this machine (GPIO chips are /dev/gpiochip*; a "
+          "container has to be given them)");
 }
 
-TEST_CASE("a chip's number is no name for it, for it changes")
+TEST_CASE("a chip's number is no name for it, since it changes")
 {
     CHECK(complaint(pi, by_chip("gpiochip0", 17)) ==
           "GPIO line 17 of gpiochip0: \"gpiochip0\" is a number that the kernel gives anew at each start "
-          "(use the "
-          "label, chip = \"pinctrl-rp1\", or the path /dev/gpiochip0)");
+          "(use the label, chip = \"pinctrl-rp1\", or the path /dev/gpiochip0)");
     CHECK(complaint({shut_chip(0, EACCES, "gpio")}, by_chip("gpiochip0", 17)) ==
           "GPIO line 17 of gpiochip0: \"gpiochip0\" is a number that the kernel gives anew at each start "
-          "(use the "
-          "chip's label, or the path /dev/gpiochip0)");
+          "(use the chip's label, or the path /dev/gpiochip0)");
     // Unless it is a label.
     CHECK(find_line(std::vector{make_chip(3, "gpiochip0", {"", ""})}, by_chip("gpiochip0", 1)).offset == 1);
 }
 
-TEST_CASE("names that are there twice are not guessed")
+TEST_CASE("ambiguous names are refused")
 {
-    CHECK(
-        complaint(pi, by_name("LED")) ==
-        "GPIO line \"LED\": 2 lines have this name: line 4 of /dev/gpiochip0, line 0 of /dev/gpiochip10 (say "
-        "which by chip and offset)");
+    CHECK(complaint(pi, by_name("LED")) ==
+          "GPIO line \"LED\": 2 lines have this name: line 4 of /dev/gpiochip0, line 0 of /dev/gpiochip10 "
+          "(say which by chip and offset)");
     const std::vector<chip> twins{make_chip(0, "ftdi", {"a"}), make_chip(1, "ftdi", {"b"})};
-    CHECK(complaint(twins, by_chip("ftdi", 0)) == "GPIO line 0 of ftdi: 2 chips are labelled \"ftdi\": "
-                                                  "/dev/gpiochip0, /dev/gpiochip1 (name the chip by "
-                                                  "its path)");
+    CHECK(complaint(twins, by_chip("ftdi", 0)) ==
+          "GPIO line 0 of ftdi: 2 chips are labelled \"ftdi\": /dev/gpiochip0, /dev/gpiochip1 (name the chip "
+          "by its path)");
     CHECK(find_line(twins, by_chip("/dev/gpiochip1", 0)).chip == 1);
 }
 
 TEST_CASE("a chip that may not be opened is named with the group to join")
 {
-    const std::string shut =
-        "GPIO line 17 of pinctrl-rp1: no permission to open /dev/gpiochip0 (sudo usermod -aG "
-        "gpio $USER, then log in again)";
+    const std::string shut = "GPIO line 17 of pinctrl-rp1: no permission to open /dev/gpiochip0 (sudo "
+                             "usermod -aG gpio $USER, then log in again)";
     CHECK(complaint({shut_chip(0, EACCES, "gpio")}, by_chip("pinctrl-rp1", 17)) == shut);
     CHECK(complaint({make_chip(1, "other", {"x"}), shut_chip(0, EACCES, "gpio")},
                     by_chip("pinctrl-rp1", 17)) == shut);
     CHECK(complaint({shut_chip(0, EPERM, "dialout")}, by_chip("/dev/gpiochip0", 17)) ==
           "GPIO line 17 of /dev/gpiochip0: no permission to open /dev/gpiochip0 (sudo usermod -aG dialout "
-          "$USER, "
-          "then log in again)");
+          "$USER, then log in again)");
     CHECK(complaint({shut_chip(0, EACCES, "root")}, by_name("GPIO17")) ==
           "GPIO line \"GPIO17\": no permission to open /dev/gpiochip0 (the device is root's alone: sudo "
           "groupadd --system --force gpio, install the udev rules, which give it to that group, then sudo "
-          "usermod -aG "
-          "gpio $USER, and log in again)");
+          "usermod -aG gpio $USER, and log in again)");
     CHECK(
         complaint({shut_chip(0, ENOTTY, "")}, by_chip("/dev/gpiochip0", 17)) ==
         "GPIO line 17 of /dev/gpiochip0: /dev/gpiochip0 is not a GPIO chip (tactor devices lists the chips)");
-    // One that is not needed does not matter.
+    // An unneeded chip does not matter.
     CHECK(find_line(std::vector{shut_chip(0, EACCES, "gpio"), make_chip(1, "other", {"x"})}, by_name("x"))
               .chip == 1);
 }
 
-TEST_CASE("a line without chip, offset and name is bad input, and says where it was written")
+TEST_CASE("a line without chip, offset and name is bad input, with the place where it was written")
 {
     CHECK(complaint(pi, {}, tactor::error_kind::bad_input) ==
           "GPIO line: a line needs chip and offset, or a name (line = { chip = \"pinctrl-rp1\", offset = 17 "
-          "} or { "
-          "name = \"GPIO17\" })");
+          "} or { name = \"GPIO17\" })");
     gpio_line_name half;
     half.chip = "pinctrl-rp1";
     half.where = {"palm.toml", 12, 3};

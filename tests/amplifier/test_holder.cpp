@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The holder in the life of a player: commands, beats, what it keeps of the player, and its own loss. How
-// soon: timed/.
+// The holder in the life of a player: commands, beats, inherited resources, and its own loss. Its latency:
+// timed/.
 #include "amplifier/holder.hpp"
 
 #include <atomic>
@@ -44,7 +44,7 @@ std::unique_ptr<gpio::holder_link> start(fake_line& line, std::function<bool()> 
     return gpio::start_holder(line.held(), std::move(rescue), patient);
 }
 
-std::string next_of(const fake_line& line)
+std::string next_record(const fake_line& line)
 {
     const auto s = line.next();
     return s ? (s->on ? "on" : "off") : "nothing";
@@ -59,18 +59,18 @@ TEST_CASE("the line follows the commands and ends off, and the holder ends with 
     const int holder = open_pidfd(h->pid());
     CHECK(!line.next(0).has_value());
     CHECK(h->set(true));
-    CHECK(next_of(line) == "on");
+    CHECK(next_record(line) == "on");
     CHECK(h->set(false));
-    CHECK(next_of(line) == "off");
+    CHECK(next_record(line) == "off");
     CHECK(h->set(true));
-    CHECK(next_of(line) == "on");
+    CHECK(next_record(line) == "on");
     h.reset();
-    CHECK(next_of(line) == "off");
+    CHECK(next_record(line) == "off");
     CHECK(ends(holder));
     ::close(holder);
 }
 
-TEST_CASE("a line that is on goes off when its player is silent, which learns of it and may switch on again")
+TEST_CASE("a line goes off when its player is silent, which notices and may switch on again")
 {
     fake_line line;
     gpio::holder_limits limits = patient;
@@ -80,7 +80,7 @@ TEST_CASE("a line that is on goes off when its player is silent, which learns of
     for (int i = 0; i < 3; ++i) {
         const std::int64_t before = now_ns();
         CHECK(h->set(true));
-        CHECK(next_of(line) == "on");
+        CHECK(next_record(line) == "on");
         const auto s = line.next();
         REQUIRE(s.has_value());
         CHECK(!s->on);
@@ -99,26 +99,26 @@ TEST_CASE("a line that cannot be switched is reported")
     const auto h = start(line);
     CHECK(!h->set(true));
     CHECK(h->set(false));
-    CHECK(next_of(line) == "off");
+    CHECK(next_record(line) == "off");
 }
 
-TEST_CASE("an off that is refused is answered as such, and at its end the holder tries again by itself")
+TEST_CASE("a refused off is answered as such, and at its end the holder tries again by itself")
 {
     fake_line line;
     line.refuse_off(4);
     auto h = start(line);
     CHECK(h->set(true));
-    CHECK(next_of(line) == "on");
+    CHECK(next_record(line) == "on");
     CHECK(!h->set(false));
     CHECK(!h->set(false));
     const int holder = open_pidfd(h->pid());
     h.reset();
-    CHECK(next_of(line) == "off");
+    CHECK(next_record(line) == "off");
     CHECK(ends(holder));
     ::close(holder);
 }
 
-TEST_CASE("the holder keeps nothing of the player but the line")
+TEST_CASE("the holder keeps nothing of the player except the line")
 {
     std::ofstream other("/dev/null");
     const int high = ::fcntl(STDIN_FILENO, F_DUPFD, 700);
@@ -136,10 +136,10 @@ TEST_CASE("the holder keeps nothing of the player but the line")
     }
     CHECK(open == 3); // the line, the socket, the pidfd
     CHECK(std::filesystem::read_symlink(proc / "cwd") == "/");
-    CHECK(status_of(h->pid(), "Name") == "tactor-amp");
-    CHECK(status_of(h->pid(), "VmLck") == "0 kB");
+    CHECK(read_status(h->pid(), "Name") == "tactor-amp");
+    CHECK(read_status(h->pid(), "VmLck") == "0 kB");
     CHECK(::getsid(h->pid()) == h->pid());
-    CHECK(status_of(h->pid(), "PPid") != std::to_string(::getpid()));
+    CHECK(read_status(h->pid(), "PPid") != std::to_string(::getpid()));
 }
 
 TEST_CASE("two holders do not keep each other alive")
@@ -150,17 +150,17 @@ TEST_CASE("two holders do not keep each other alive")
     auto b = start(second);
     CHECK(a->set(true));
     CHECK(b->set(true));
-    CHECK(next_of(first) == "on");
-    CHECK(next_of(second) == "on");
+    CHECK(next_record(first) == "on");
+    CHECK(next_record(second) == "on");
     a.reset();
-    CHECK(next_of(first) == "off");
+    CHECK(next_record(first) == "off");
     CHECK(b->set(true));
-    CHECK(next_of(second) == "on");
+    CHECK(next_record(second) == "on");
     b.reset();
-    CHECK(next_of(second) == "off");
+    CHECK(next_record(second) == "off");
 }
 
-TEST_CASE("a holder that was killed is noticed by beat and set, and the player switches off itself")
+TEST_CASE("beat and set notice a killed holder, and the player switches off itself")
 {
     for (const bool by_beat : {true, false}) {
         fake_line line;
@@ -180,7 +180,7 @@ TEST_CASE("a holder that was killed is noticed by beat and set, and the player s
     }
 }
 
-TEST_CASE("a rescue that failed is tried again when the line is to go off")
+TEST_CASE("a failed rescue is tried again at the next off")
 {
     fake_line line;
     int rescues = 0;
@@ -242,8 +242,8 @@ TEST_CASE("a player with busy threads can start one")
         auto h = start(line);
         CHECK(h->set(true));
         h.reset();
-        CHECK(next_of(line) == "on");
-        CHECK(next_of(line) == "off");
+        CHECK(next_record(line) == "on");
+        CHECK(next_record(line) == "off");
     }
     stop = true;
     for (std::thread& t : busy)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// However the player ends, the line goes off. Real processes; how soon is for timed/.
+// Ends of the player, after each of which the line goes off. Real processes; timed/ has the latency.
 #include <csignal>
 #include <cstdio>
 
@@ -48,7 +48,7 @@ bool no_terminals()
 
 } // namespace
 
-TEST_CASE("a player that is killed in any way leaves the line off")
+TEST_CASE("a player killed in any way leaves the line off")
 {
     for (const int number : {SIGKILL, SIGTERM, SIGINT, SIGHUP, SIGABRT, SIGSEGV}) {
         CAPTURE(number);
@@ -89,7 +89,7 @@ TEST_CASE("signals to the player's group and to the holder do not touch the hold
     check_off(line);
 }
 
-TEST_CASE("a terminal that is closed leaves the line off" * doctest::skip(no_terminals()))
+TEST_CASE("a closed terminal leaves the line off" * doctest::skip(no_terminals()))
 {
     const int terminal = new_terminal();
     REQUIRE(terminal >= 0);

@@ -16,7 +16,7 @@ namespace {
 constexpr unsigned strokes_at_once = 1024;
 constexpr unsigned rate = 48000;
 
-/// One burst of three tactors.
+/// Makes a burst of three tactors.
 placed_plan one_burst(unsigned number, bool own_carrier)
 {
     plan p;

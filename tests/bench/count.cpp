@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: MIT
-// So many blocks of one stroke on nine channels, and nothing else: for tests/bench/instructions, which counts
-// what they take where no clock means anything.
+// Plays so many blocks of one stroke on nine channels, and nothing else: for bench/instructions, which counts
+// instructions where clocks mean nothing.
 //   tactor-count mixer|std_sin BLOCKS
-#include <cstdlib>
 #include <span>
 #include <string>
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What a period costs the audio thread while 64 strokes sound on 64 channels: the mean, and the worst.
+// Cost of a period for the audio thread while 64 strokes sound on 64 channels: the mean, and the worst.
 #include <algorithm>
-#include <memory>
 #include <utility>
 #include <vector>
 
@@ -32,8 +31,8 @@ void submit(engine::feeder& feed, engine::link& link, stroke_id& id, const std::
         feed.submit({++id.number}, s, start_at::frame(link.status.load().written + 4800));
 }
 
-/// One step of the audio thread is one period. Feeding it is the control thread's; counted are the periods in
-/// which that had to wake up, and what it took.
+/// Measures a step of the audio thread, a period. The control thread feeds it; counts the periods in which it
+/// had to wake up, and its time.
 void periods(benchmark::State& state, algorithm_kind method, double power_dbfs)
 {
     const auto period = static_cast<unsigned>(state.range(0));
@@ -42,7 +41,7 @@ void periods(benchmark::State& state, algorithm_kind method, double power_dbfs)
     engine::link link;
     engine::feeder feed(link, 24'000);
     engine::loop_options o;
-    o.guards = synth::guards_of({.power_dbfs = power_dbfs}, 48000);
+    o.guards = synth::make_guards({.power_dbfs = power_dbfs}, 48000);
     engine::audio_loop loop(out, link, std::vector<double>(64, 1.0), o);
     loop.start(0);
     stroke_id id = {};
@@ -93,7 +92,7 @@ BENCHMARK_CAPTURE(periods, continuous, algorithm_kind::continuous, drive_limits{
     ->Arg(480)
     ->UseManualTime()
     ->Unit(benchmark::kMicrosecond);
-// 64 carriers, each of which counts by itself.
+// 64 carriers, each of which counts separately.
 BENCHMARK_CAPTURE(periods, held_down, algorithm_kind::park2016, -40.0)
     ->Name("engine/64_strokes_held_down")
     ->Arg(96)

@@ -22,8 +22,8 @@ bool sounds(const bench::nowhere& out)
     return std::any_of(out.last().begin(), out.last().end(), [](std::byte b) { return b != std::byte{}; });
 }
 
-/// The work of the two sides together: to(), then the audio thread's step that renders it. The counter says
-/// how many periods are written until a silent stroke's first point is in one.
+/// Measures the work of the two sides together: to(), then the audio thread's step that renders it. The
+/// counter gives the periods written until a silent stroke's first point is in one.
 void live_point(benchmark::State& state)
 {
     const auto period = static_cast<unsigned>(state.range(0));
@@ -51,7 +51,7 @@ void live_point(benchmark::State& state)
     }
     state.counters["periods_to_first_sample"] = waited;
 }
-/// What a period of 96 frames costs the audio thread on 64 channels while so many live strokes sound, each
+/// Measures a period of 96 frames of the audio thread on 64 channels while so many live strokes sound, each
 /// of which gets a point in every period.
 void live_strokes(benchmark::State& state)
 {

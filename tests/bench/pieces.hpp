@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// What is measured, and what it is measured against.
+/// Measured pieces, and references for them.
 #pragma once
 
 #include <cstddef>
@@ -11,26 +11,26 @@
 
 namespace bench {
 
-/// Frames that one call renders: 10 ms.
+/// Frames of a call: 10 ms.
 inline constexpr std::size_t block = 480;
 
-/// A square array with `channels` tactors (9, 16, 64, ...), 20 mm apart.
+/// Makes a square array with `channels` tactors (9, 16, 64, ...), 20 mm apart.
 tactor::array square(unsigned channels);
 
-/// For a square array: one stroke is park2016-1; of several, each has its own place, as far as there is
-/// space, and its own carrier.
+/// Makes strokes for a square array: one is park2016-1; several have different places, as far as there is
+/// space, and different carriers.
 std::vector<tactor::plan> strokes(const tactor::array& a, unsigned count, tactor::algorithm_kind algorithm);
 
-/// Options with a level at which so many strokes may sound together.
+/// Returns options with a level at which so many strokes may sound together.
 tactor::render_options levels(unsigned count);
 
-/// So many strokes at once, over and over, on a square array.
+/// Makes so many strokes at once, over and over, on a square array.
 std::vector<tactor::placed_plan> plans(unsigned channels, unsigned count, tactor::algorithm_kind algorithm);
 
-/// The score of these.
+/// Makes the score of these.
 tactor::score piece(unsigned channels, unsigned count, tactor::algorithm_kind algorithm);
 
-/// What one would write first: a call of std::sin for each sounding channel and sample.
+/// A first draft of a mixer: a call of std::sin for each sounding channel and sample.
 class plain_loop {
 public:
     plain_loop(const tactor::score& s, const std::vector<tactor::placed_plan>& plans, double level);
@@ -60,7 +60,7 @@ private:
     double rate_;
 };
 
-/// The calling thread's own time: what others do with the processor is not the engine's cost.
+/// Returns the calling thread's CPU time: other programs are not the engine's cost.
 double cpu_s() noexcept;
 
 } // namespace bench

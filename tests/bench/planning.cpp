@@ -20,7 +20,7 @@ void plan_park(benchmark::State& state)
 }
 BENCHMARK(plan_park)->Name("plan/park2016-1")->Unit(benchmark::kMicrosecond);
 
-/// Of long strokes, where nothing but the bursts takes time.
+/// Measures long strokes, where only the bursts take time.
 void plan_burst(benchmark::State& state, const stroke& s)
 {
     const array a = preset_array("palm-3x3");
@@ -44,7 +44,7 @@ BENCHMARK_CAPTURE(plan_burst, cubic,
     ->Iterations(20)
     ->UseManualTime();
 
-/// The drives of random points on a square array.
+/// Measures the drives of random points on a square array.
 void locate(benchmark::State& state, faces_kind faces)
 {
     const auto side = static_cast<unsigned>(state.range(0));

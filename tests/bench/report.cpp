@@ -14,7 +14,7 @@ namespace bench {
 
 using namespace tactor;
 
-std::string name_of(const std::string& what, std::size_t bytes)
+std::string benchmark_name(const std::string& what, std::size_t bytes)
 {
     return fmt::format("{}/{}_bytes", what, bytes);
 }
@@ -39,7 +39,7 @@ std::vector<synth_row>& table()
 
 namespace {
 
-/// Remembers the best of each; one line a benchmark while it runs would only be noise.
+/// Keeps the best of each; a line for each benchmark while it runs would only be noise.
 class reporter : public benchmark::BenchmarkReporter {
 public:
     explicit reporter(const std::vector<tool_row>& tool) : tool_(tool) {}
@@ -63,7 +63,7 @@ public:
                 order_.push_back(name);
                 best.unit = benchmark::GetTimeUnitString(r.time_unit);
             }
-            // Of what takes its own time, that; else the processor's, not the wall's.
+            // The given time where a benchmark measures it itself; else the processor's, not the wall's.
             const bool manual = !r.run_name.time_type.empty();
             const double time = manual ? r.GetAdjustedRealTime() : r.GetAdjustedCPUTime();
             best.time = is_new ? time : std::min(best.time, time);
@@ -112,8 +112,8 @@ private:
                                          : "burst",
                         std::string(to_string(row.format)).c_str(), ns,
                         ratio(time(row.plain_name()), ns).c_str(),
-                        ratio(time(name_of("memcpy", bytes)), ns).c_str(),
-                        ratio(time(name_of("memset", bytes)), ns).c_str(), 100.0 * ns / 10e6);
+                        ratio(time(benchmark_name("memcpy", bytes)), ns).c_str(),
+                        ratio(time(benchmark_name("memset", bytes)), ns).c_str(), 100.0 * ns / 10e6);
         }
     }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// One table out of one run. Times are the best of the repetitions, which come in random order: what else
-/// runs on the machine makes a time longer, never shorter.
+/// A table from one run. Times are the best of the repetitions, which come in random order: other work on the
+/// machine makes a time longer, never shorter.
 #pragma once
 
 #include <string>
@@ -11,7 +11,7 @@
 
 namespace bench {
 
-std::string name_of(const std::string& what, std::size_t bytes);
+std::string benchmark_name(const std::string& what, std::size_t bytes);
 
 /// A line of the table of synthesis.
 struct synth_row {
@@ -24,24 +24,24 @@ struct synth_row {
     std::string plain_name() const;
 };
 
-/// The lines, in order.
+/// Prints the lines, in order.
 std::vector<synth_row>& table();
 
 /// Registers the benchmarks of synthesis.
 void add_synth();
 
-/// What the tool as a process takes.
+/// Time and memory of the tool as a process.
 struct tool_row {
     std::string what;
     double cpu_ms = 0.0;
     double peak_mb = 0.0;
 };
 
-/// To be called first, while this process is small: the system counts its memory at the start of a child as
-/// the child's.
+/// Call first, while this process is small: the system counts its memory at the start of a child as the
+/// child's.
 std::vector<tool_row> measure_tool();
 
-/// Runs what was registered and prints the tables. Returns the exit status.
+/// Runs the registered benchmarks and prints the tables. Returns the exit status.
 int run(int argc, char** argv, const std::vector<tool_row>& tool);
 
 } // namespace bench

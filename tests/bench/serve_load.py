@@ -24,8 +24,8 @@ PLAYS_PER_S = 145
 LIVE_AT_ONCE = 12  # of the 16 that sound at once
 POINTS = 42  # of a live stroke, which makes a thousand a second of all
 POINT_S = 0.012
-MOST_MEMORY_KIB = 4096  # that a second part may add: what the allocator keeps differs from run to run
-MOST_PARTS = 12  # what leaks adds to each; where the machine stood still, messages waited once
+MOST_MEMORY_KIB = 4096  # that a second part may add: the allocator's reserve differs from run to run
+MOST_PARTS = 12  # a leak adds to each; where the machine stood still, messages waited once
 PATIENCE_S = 120
 MOST_PERIODS = 2  # in which 99 of 100 first points are
 ENDS = ("finished", "cancelled", "interrupted")
@@ -33,7 +33,7 @@ STROKE = {"path": "M 0 0 L 40 40", "options": {"algorithm": "continuous", "durat
 
 
 class Client:
-    """One connection: what it asked for, and what it was told."""
+    """A connection: its requests, and its messages."""
 
     def __init__(self):
         self.asked = 0
@@ -43,8 +43,8 @@ class Client:
         self.numbers = set()
         self.ends = collections.Counter()
         self.states = collections.Counter()
-        self.first_to = {}  # by stroke: when its first point was sent
-        self.delays = []    # from there to its first sample at the DAC, s
+        self.first_to = {}  # by stroke: time of its first point
+        self.delays = []  # from there to its first sample at the DAC, s
 
     async def connect(self, path):
         self.reader, self.writer = await asyncio.open_unix_connection(path, limit=1 << 22)
@@ -100,7 +100,7 @@ async def play(clients, begin, count):
 
 
 async def draw(clients, begin, strokes):
-    """One live stroke after the other, each of another client."""
+    """Draws one live stroke after the other, each of another client."""
     for i in range(strokes):
         c = next(clients)
         start = begin + i * POINTS * POINT_S
@@ -116,7 +116,7 @@ async def draw(clients, begin, strokes):
 
 
 async def part(clients, seconds):
-    """The load for so long; returns when all of it is settled. How many strokes there were."""
+    """Runs the load for so long, until all of it is settled. Returns the number of strokes."""
     begin = time.monotonic() + 0.1
     turns = itertools.cycle(clients)
     live = max(1, round(seconds / (POINTS * POINT_S)))
@@ -169,7 +169,7 @@ async def load(process, path, seconds, checks):
     watcher = Client()
     for c in [*clients, watcher]:
         await c.connect(path)
-        await c.call("hello")  # who says nothing for seconds is sent away
+        await c.call("hello")  # a client silent for seconds is disconnected
     stream = (await watcher.call("hello"))["stream"]
     memory, used = [], processor_s(process)
     wanted = 0
@@ -184,7 +184,7 @@ async def load(process, path, seconds, checks):
           f" {sum(c.points for c in clients)} live points among them")
     checks.check("each request has its reply", not any(c.waiting for c in clients), [len(c.waiting) for c in clients])
     checks.check("nothing is refused", not any(c.refused for c in clients), [c.refused[0] for c in clients if c.refused][:3])
-    checks.check("each stroke has a number of its own", len(numbers) == len(set(numbers)) == wanted, (len(numbers), wanted))
+    checks.check("each stroke has its own number", len(numbers) == len(set(numbers)) == wanted, (len(numbers), wanted))
     checks.check("each stroke has one end", all(set(c.ends.values()) <= {1} and c.settled() for c in clients))
     status = await watcher.call("status")
     checks.check("nothing is left over", status["strokes"] == [] and status["clients"] == CLIENTS + 1, status)

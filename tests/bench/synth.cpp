@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The audio thread's mixer over blocks of 10 ms that stay in the cache, against what bounds it: the same
-// bytes set and copied, and a loop that one would write first.
+// The audio thread's mixer over blocks of 10 ms that stay in the cache, against its bounds: the same bytes
+// set and copied, and a first draft of a mixer.
 #include <cstring>
 #include <memory>
 #include <string>
@@ -18,7 +18,7 @@ using namespace tactor;
 
 namespace {
 
-/// All events of a piece, as they come over the ring.
+/// Events of a piece, as they come over the ring.
 struct events {
     explicit events(const score& s) : frames(s.frames())
     {
@@ -102,15 +102,15 @@ void add(const std::string& name, F f)
 void add_bounds(unsigned channels, std::size_t sample)
 {
     const std::size_t n = bench::block * channels * sample;
-    add(bench::name_of("memset", n), [n](benchmark::State& state) {
+    add(bench::benchmark_name("memset", n), [n](benchmark::State& state) {
         bytes(state, n, [](std::byte* out, const std::byte*, std::size_t m) { std::memset(out, 0, m); });
     });
-    add(bench::name_of("memcpy", n), [n](benchmark::State& state) {
+    add(bench::benchmark_name("memcpy", n), [n](benchmark::State& state) {
         bytes(state, n, [](std::byte* out, const std::byte* in, std::size_t m) { std::memcpy(out, in, m); });
     });
 }
 
-/// Made when it is needed first.
+/// Made at its first use.
 class prepared {
 public:
     explicit prepared(const bench::synth_row& r) : row_(r) {}
@@ -157,7 +157,7 @@ void add_piece(bench::synth_row row)
     }
 }
 
-/// What `render` does with a plan, from the first frame to the last and again.
+/// Renders a plan like `render`, from the first frame to the last and again.
 void whole(benchmark::State& state, const score& s)
 {
     std::vector<std::byte> out(bench::block * s.channels() * sizeof(float));
@@ -174,7 +174,7 @@ void whole(benchmark::State& state, const score& s)
     }
 }
 
-/// park2016-1 on nine channels, in its own time and in a minute, whose samples are not kept.
+/// Renders park2016-1 on nine channels, in its own time and in a minute, without keeping the samples.
 void add_renderer(algorithm_kind method)
 {
     for (const double duration_s : {1.4, 60.0}) {
@@ -189,8 +189,8 @@ void add_renderer(algorithm_kind method)
     }
 }
 
-/// A minute from corner to corner of nine tactors: straight, along a cubic and an arc of an ellipse, and
-/// along a row of them, which are on the border between two faces, with two phantom models.
+/// Renders a minute from corner to corner of nine tactors: straight, along a cubic and an arc of an ellipse,
+/// and along a row of them, which are on the border between two faces, with two phantom models.
 void add_renderer_ways()
 {
     const array a = bench::square(9);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The tool as a process: what it costs to start, and the memory that it needs at most.
+// The tool as a process: cost of its start, and its greatest memory.
 #include <sys/resource.h>
 #include <sys/wait.h>
 
@@ -43,7 +43,7 @@ pid_t start(const std::vector<std::string>& arguments, int out)
     return failed == 0 ? child : 0;
 }
 
-/// Whether it ends with that status.
+/// Returns whether it ends with that status.
 bool ends(pid_t child, int wanted, rusage& used)
 {
     int status = 0;
@@ -56,7 +56,7 @@ bool run(const std::vector<std::string>& arguments, rusage& used)
     return ends(start(arguments, -1), 0, used);
 }
 
-/// Plays until the tool says what it plays on, when all is planned, and interrupts it.
+/// Plays until the tool prints its device, when all is planned, and interrupts it.
 bool interrupt(const std::vector<std::string>& arguments, rusage& used)
 {
     constexpr int interrupted = 130;
@@ -74,7 +74,7 @@ bool interrupt(const std::vector<std::string>& arguments, rusage& used)
     return said && ended;
 }
 
-/// Least time and greatest memory of so many runs.
+/// Returns the least time and greatest memory of so many runs.
 bench::tool_row measure(const std::string& what, const std::vector<std::string>& arguments, int times,
                         bool (*how)(const std::vector<std::string>&, rusage&) = run)
 {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What waves cost beside a sine: 16 strokes at once on 64 channels, each with its own, in blocks of 10 ms.
+// Cost of waves beside a sine: 16 strokes at once on 64 channels, each with its own, in blocks of 10 ms.
 #include <cmath>
 #include <cstddef>
 #include <memory>

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""What tactor experiment writes is BIDS, as bids-validator has it: whole, broken off, resumed, with void trials, and with
-what is made of it. Usage: test_bids.py TOOL SOURCE_ROOT VALIDATOR"""
+"""The folder of tactor experiment as BIDS, by bids-validator: whole, broken off, resumed, with void trials, and with
+derivatives. Usage: test_bids.py TOOL SOURCE_ROOT VALIDATOR"""
 import json
 import pathlib
 import subprocess
@@ -11,13 +11,13 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "cli"))
 from experiments import ExperimentTest  # noqa: E402
 from harness import main  # noqa: E402
 
-# One author is enough for an example.
+# A single author is enough for an example.
 HARMLESS = {"TOO_FEW_AUTHORS"}
 
 
 class Folders(ExperimentTest):
     def issues(self):
-        """What the validator says of the study: its errors and warnings by name, and its summary."""
+        """Returns the validator's errors and warnings by name, and its summary."""
         said = subprocess.run(["node", VALIDATOR, "--json", self.dir / "study"], capture_output=True, text=True, check=False)
         told = json.loads(said.stdout)
         errors = {i["key"]: [f["evidence"] for f in i["files"]] for i in told["issues"]["errors"]}
@@ -38,7 +38,7 @@ class Folders(ExperimentTest):
         told = self.valid(["01", "02"])
         self.assertEqual(sorted(told["tasks"]), ["similarity", "similarity-rating", "uniformity", "uniformity-rating"])
 
-    def test_void_trials_practice_and_what_is_made_of_it(self):
+    def test_void_trials_practice_and_derivatives(self):
         for code in ("A1", "b2"):
             self.simulate(code, spec="seed=2,void=0.3")
         rows = [r for code in ("A1", "b2") for task in ("whichone", "howgood", "what") for r in self.rows(code, task)]
@@ -47,7 +47,7 @@ class Folders(ExperimentTest):
         self.ok("analyze", "study", "-o", "study/derivatives/tactor/study.svg")
         self.valid(["A1", "b2"])
 
-    def test_a_session_that_was_broken_off_and_goes_on(self):
+    def test_a_session_that_was_broken_off_and_resumed(self):
         self.simulate("01")
         self.simulate("02")
         beh = self.dir / "study/sub-02/beh"
@@ -60,7 +60,7 @@ class Folders(ExperimentTest):
         scans.write_text("".join(scans.read_text().splitlines(True)[:at + 2]))
         table.write_text("".join(table.read_text().splitlines(True)[:3]))
         self.valid(["01", "02"], ["INCONSISTENT_SUBJECTS"])
-        # The line that a crash cut off is kept beside the table, and a list that is gone begun anew.
+        # The cut off line is kept beside the table, and a missing list is begun anew.
         with table.open("a") as f:
             f.write("12.5\t0.")
         scans.unlink()
@@ -69,13 +69,13 @@ class Folders(ExperimentTest):
         self.assertEqual(table.with_name(table.name + ".cut-1").read_text(), "12.5\t0.")
         self.valid(["01", "02"])
 
-    def test_columns_that_somebody_fills_in(self):
+    def test_columns_filled_in_by_hand(self):
         self.simulate("01")
         path = self.dir / "study/participants.tsv"
         path.write_text(path.read_text().replace("sub-01\tn/a\tn/a\tn/a", "sub-01\t31\tF\tR"))
         self.valid(["01"])
 
-    def test_the_validator_finds_what_is_wrong(self):
+    def test_the_validator_finds_faults(self):
         self.simulate("01")
         good = self.dir / "study/sub-01/beh/sub-01_task-what_beh.tsv"
         bad = good.with_name("sub-01_what_beh.tsv")

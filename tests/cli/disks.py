@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""A small disk of a test's own, which can be full or read-only for real. It takes root, and a kernel that lets root mount."""
+"""A small disk for a test, which can be full or read-only for real. Needs root, and a kernel that lets root mount."""
 import ctypes
 import os
 import pathlib
@@ -8,7 +8,7 @@ import shutil
 import subprocess
 import tempfile
 
-PAGE = 4096  # what a tmpfs gives space in
+PAGE = 4096  # a tmpfs gives space in pages
 CLONE_NEWNS, MS_REC, MS_PRIVATE = 0x20000, 0x4000, 0x40000
 
 
@@ -17,8 +17,8 @@ def run(*command):
 
 
 def why_not():
-    """Why there can be none; empty where there can. What is mounted from here on is this process's, and gone with it, even
-    where it is killed."""
+    """Returns the reason why there can be none; empty where there can. Later mounts belong to this process and end with it,
+    even if it is killed."""
     if os.geteuid() != 0 or shutil.which("mount") is None:
         return "a disk of a test's own takes root, and mount"
     libc = ctypes.CDLL(None)
@@ -31,7 +31,7 @@ def why_not():
 
 
 class Disk:
-    """Mounted at the folder `disk` of the test's, and gone when that ends in any way."""
+    """Mounts the folder `disk` of the test; unmounted when the test ends in any way."""
 
     def __init__(self, test, kib=1024, files=200):
         self.path = pathlib.Path(test.dir) / "disk"
@@ -44,13 +44,13 @@ class Disk:
         return os.statvfs(self.path).f_bavail * PAGE
 
     def fill(self, pages=0):
-        """Until so many are left."""
+        """Fills the disk until so many bytes are left."""
         with open(self.path / "filler", "ab", buffering=0) as f:
             f.write(bytes(self.left() - pages * PAGE))
         assert self.left() == pages * PAGE, self.left()
 
     def fill_names(self, left=0):
-        """Until so many further files can be made."""
+        """Makes files until so many more can be made."""
         there = len(list(self.path.glob("filler*")))
         for i in range(os.statvfs(self.path).f_ffree - left):
             (self.path / f"filler{there + i}").touch()
@@ -65,6 +65,6 @@ class Disk:
         assert done.returncode == 0, done.stderr
 
     def files(self):
-        """Names, and what is in them, but for what fills it and the day, which may end meanwhile."""
+        """Returns names and bytes, except of the filler and of the date, which may change meanwhile."""
         return {str(p.relative_to(self.path)): re.sub(rb'(?m)^( *"date": |date = )"\d{4}-\d\d-\d\d"', b"", p.read_bytes()) for p in sorted(self.path.rglob("*"))
                 if p.is_file() and not p.name.startswith("filler")}

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What documents show as code: commands, names of commands, and files, in the order of the text."""
+"""Code in documents: commands, names of commands, and files, in the order of the text."""
 import dataclasses
 import re
 
@@ -13,7 +13,7 @@ class Block:
     line: int
 
 
-def kind_of(text):
+def classify(text):
     """What a block of code is; whatever it is not known to be is commands."""
     for kind, pattern in (("c++", r"^#include"), ("toml", r"^\[+\w+\]+$"), ("csv", r"^t_s,"), ("boot", r"^dtoverlay="), ("drawing", r"-->"),
                           ("formula", r"^(?:[A-Za-z_]\w*(?:\(\w\))? = |polarity \* )")):
@@ -23,7 +23,8 @@ def kind_of(text):
 
 
 def commands_in(text, line):
-    """The commands of a manual's block: a backslash goes on, two spaces outside quotes begin what a command does."""
+    """Returns the commands of a manual's block: a backslash continues a line, two spaces outside quotes begin an
+    explanation."""
     joined, number = "", line
     for offset, part in enumerate(text.split("\n")):
         number = number if joined else line + offset
@@ -31,7 +32,7 @@ def commands_in(text, line):
         if joined.endswith("\\"):
             joined = joined[:-1]
             continue
-        if joined and not joined.startswith((" ", "#")):  # what is indented goes on with what a command does
+        if joined and not joined.startswith((" ", "#")):  # an indented line continues an explanation
             # Two quotes or none before the gap.
             command = re.match(r"""((?:[^"' ]|"[^"]*"|'[^']*'| (?! ))+)""", joined)[1]
             yield Block("command", command, number)
@@ -39,7 +40,7 @@ def commands_in(text, line):
 
 
 def inline(code, line):
-    """Code within a sentence: with arguments a command, without them the name of one."""
+    """Classifies code within a sentence: a command with arguments, a name without."""
     if not re.match(rf"(?:{PROGRAMS}) \S", code):
         return []
     name = re.fullmatch(r"tactor [\w-]+", code)
@@ -47,7 +48,7 @@ def inline(code, line):
 
 
 def copied_lines(text, line):
-    """The commands of a block as somebody copies them: whole lines, explanations and all."""
+    """Returns the commands of a block as a reader copies them: whole lines with their explanations."""
     found, open_line = [], False
     for i, part in enumerate(text.split("\n")):
         if open_line:
@@ -58,8 +59,8 @@ def copied_lines(text, line):
     return found
 
 
-def of_block(text, line, commands=commands_in):
-    kind = kind_of(text)
+def code_in_block(text, line, commands=commands_in):
+    kind = classify(text)
     return commands(text, line) if kind == "command" else [Block(kind, text, line)]
 
 
@@ -71,27 +72,27 @@ def code_of_markdown(text):
             end = at
             while end < len(lines) and (lines[end].startswith("    ") or not lines[end].strip()):
                 end += 1
-            yield from of_block("\n".join(part[4:] for part in lines[at:end]).rstrip("\n") + "\n", at + 1, copied_lines)
+            yield from code_in_block("\n".join(part[4:] for part in lines[at:end]).rstrip("\n") + "\n", at + 1, copied_lines)
             at = end
             continue
         end = at + 1
         while lines[at].strip() and end < len(lines) and lines[end].strip():
             end += 1
         paragraph = "\n".join(lines[at:end])
-        for code in re.finditer(r"`([^`]+)`", paragraph):  # which may go over the end of a line
+        for code in re.finditer(r"`([^`]+)`", paragraph):  # may continue over the end of a line
             yield from inline(" ".join(code[1].split()), at + 1 + paragraph.count("\n", 0, code.start()))
         at = end
 
 
 def plain(text):
-    """Escapes of roff as the characters that they print."""
+    """Replaces escapes of roff by the characters that they print."""
     for escape, character in (("\\(dq", '"'), ("\\(aq", "'"), ("\\-", "-"), ("\\&", ""), ("\\e", "\\")):
         text = text.replace(escape, character)
     return text
 
 
 def code_of_man(text, sentences=True):
-    """`sentences`: with what stands in them, too."""
+    """Returns the code of a page; `sentences`: also from its sentences."""
     lines = text.split("\n")
     at = 0
     while at < len(lines):
@@ -99,17 +100,17 @@ def code_of_man(text, sentences=True):
         if line.startswith(".Bd -literal"):
             end = lines.index(".Ed", at)
             block = plain("\n".join(lines[at + 1:end]) + "\n")
-            yield from of_block(block, at + 2)
+            yield from code_in_block(block, at + 2)
             at = end
         elif line.startswith(".Dl "):
-            yield from of_block(plain(line[4:]), at + 1)
+            yield from code_in_block(plain(line[4:]), at + 1)
         elif line.startswith(".Ic ") and sentences:
             yield from inline(plain(line[4:]), at + 1)
         at += 1
 
 
 def code_of_script(text):
-    """Commands of the tool in comments: indented, a line each."""
+    """Returns commands of the tool in comments: indented, a line each."""
     for number, line in enumerate(text.split("\n"), 1):
         if command := re.match(r"# {2,}(tactor .*)", line):
             yield Block("command", command[1], number)

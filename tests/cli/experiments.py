@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What the tests of tactor experiment share: a small definition, and reading what a session wrote."""
+"""Support for the tests of tactor experiment: a small definition, and the files of a session."""
 import json
 import pathlib
 
@@ -62,7 +62,7 @@ class ExperimentTest(ToolTest):
         return read_table(self.dir / folder / f"sub-{code}/beh/sub-{code}_task-{task}_beh.tsv")
 
     def without_cut(self):
-        """What is there, but for what was cut off a table."""
+        """Returns the files except the part cut off a table."""
         return {n: b for n, b in contents(self.dir / "study").items() if ".cut-" not in n and n != ".bidsignore"}
 
     def session(self, code="01", folder="study"):
@@ -78,5 +78,5 @@ def read_table(path):
 
 
 def contents(folder):
-    """Every file below a folder, hidden ones too: its name and bytes."""
+    """Returns every file below a folder, hidden ones too: its name and bytes."""
     return {str(p.relative_to(folder)): p.read_bytes() for p in sorted(pathlib.Path(folder).rglob("*")) if p.is_file()}

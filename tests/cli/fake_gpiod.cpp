@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Before libgpiod, of either version (LD_PRELOAD): /dev/null is a chip, and the one byte of the file
-// TACTOR_LINE is what its line is, '0' or '1'. Who has the file open has the line.
+// A stand-in for libgpiod, of either version (LD_PRELOAD): /dev/null is a chip, and the one byte of the file
+// TACTOR_LINE is the state of its line, '0' or '1'. The process that has the file open holds the line.
 #include <cerrno>
 #include <cstdlib>
 #include <cstring>
@@ -14,7 +14,7 @@ namespace {
 
 int line_fd = -1;
 
-/// Of each of the library's objects there is one, with nothing in it.
+/// Each of the library's objects exists once and is empty.
 template <class T>
 T* the() noexcept
 {
@@ -34,7 +34,7 @@ int take_line() noexcept
 
 } // namespace
 
-/// By the kernel's word, /dev/null is on the bus of GPIO chips.
+/// Puts /dev/null on the bus of GPIO chips, as the kernel would say.
 extern "C" char* realpath(const char* path, char* resolved)
 {
     if (resolved == nullptr && std::strcmp(path, "/sys/dev/char/1:3/subsystem") == 0)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What the tests of the tool share: running it, reading WAV files, and the closing line.
+"""Support for the tests of the tool: running it, reading WAV files, and the closing line.
 
 Each test file is run as: python3 test_X.py TOOL SOURCE_ROOT
 """
@@ -16,11 +16,11 @@ import unittest
 TOOL = pathlib.Path(sys.argv[1]).resolve()
 ROOT = pathlib.Path(sys.argv[2]).resolve()
 
-# The tool is then twenty times slower, and its memory is not its own. (Meson sets ASAN_OPTIONS for every test.)
+# With a sanitizer the tool is twenty times slower and uses more memory. (Meson sets ASAN_OPTIONS for every test.)
 SANITIZED = os.environ.get("TACTOR_SANITIZE", "none") != "none"
-PATIENCE_S = 600  # what takes longer hangs
+PATIENCE_S = 600  # anything slower hangs
 
-# Only what the tests define: neither the user's nor the system's configuration of ALSA or tactor.
+# A configuration by the tests alone: neither the user's nor the system's of ALSA or tactor.
 ALSA_CONFIG = """
 pcm.!default { type null }
 pcm.null { type null }
@@ -47,7 +47,7 @@ pcm.eight {
 }
 """
 
-# An array file as someone keeps it: with comments, a setting of its own and a device that is always there.
+# An array file of a user: with comments, an unusual setting and a device that is always there.
 GRID = """# the array on my desk
 [array]
 name = "desk"   # oak
@@ -63,7 +63,7 @@ pcm = "null"
 
 
 class ToolTest(unittest.TestCase):
-    """A test with a folder of its own, in which the tool runs."""
+    """A test with a temporary folder, in which the tool runs."""
 
     def setUp(self):
         self.folder = tempfile.TemporaryDirectory()
@@ -81,7 +81,7 @@ class ToolTest(unittest.TestCase):
         return path
 
     def until(self, condition, process=None):
-        """Looks again and again for what nothing announces, for as long as the process runs that is to bring it about."""
+        """Polls a condition that nothing announces, for as long as the process that causes it runs."""
         deadline = time.monotonic() + PATIENCE_S
         while not condition():
             self.assertTrue(process is None or process.poll() is None, "it ended early")
@@ -89,7 +89,7 @@ class ToolTest(unittest.TestCase):
             time.sleep(0.01)
 
     def run_tool(self, *args, stdin="", env=None, timeout=PATIENCE_S, before=None):
-        """before: called in the process before it becomes the tool."""
+        """Runs the tool; `before` is called in the process before it becomes the tool."""
         return subprocess.run([TOOL, *map(str, args)], input=stdin, capture_output=True, text=True, timeout=timeout,
                               cwd=self.dir, env=self.env | (env or {}), check=False, preexec_fn=before)
 
@@ -99,7 +99,7 @@ class ToolTest(unittest.TestCase):
         return result
 
     def refused(self, status, *args, says=(), **more):
-        """Runs what must fail with this status and one line of error that says all these."""
+        """Runs the tool; it must fail with this status and one line of error that has all these texts."""
         result = self.run_tool(*args, **more)
         self.assertEqual(result.returncode, status, f"{args}: {result.stdout[:300]} {result.stderr}")
         self.assertTrue(result.stderr.startswith("tactor: "), result.stderr)
@@ -112,7 +112,7 @@ class ToolTest(unittest.TestCase):
 
 
 def wav_bytes(samples, rate=8000, channels=1, bits=16, tag=1):
-    """A WAV file of one channel; its header says what is asked for."""
+    """Makes a WAV file of one channel; its header says what the arguments ask for."""
     data = b"".join(struct.pack("<h", round(32767 * s)) for s in samples)
     size = bits // 8 * channels
     head = struct.pack("<HHIIHH", tag, channels, rate, rate * size, size, bits)
@@ -138,7 +138,7 @@ class Wav:
         self.frames = len(self.data) // self.frame_bytes
 
     def samples(self):
-        """All samples as numbers, full scale 1, frame by frame."""
+        """Returns all samples as numbers, full scale 1, frame by frame."""
         if self.tag == 3:
             values = [v for (v,) in struct.iter_unpack("<f", self.data)]
         else:

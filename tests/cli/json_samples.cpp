@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: MIT
-// Prints, as one JSON array, what the tool would print on machines with cards, chips and trouble, for
-// test_json.py.
+// Prints in a JSON array the tool's output on machines with cards, chips and trouble, for test_json.py.
 #include <cstdio>
 #include <optional>
 
 #include <fmt/format.h>
 
-#include "cli/check/check_output.hpp"
+#include "cli/check/finding.hpp"
 #include "cli/devices/devices_text.hpp"
 #include "cli/play/play_report.hpp"
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""OSC 1.0 for the tests: packets, written and read by hand, so that no other reader's mistakes are ours."""
+"""OSC 1.0 for the tests: packets written and read by hand, so that no other reader's mistakes enter."""
 import socket
 import struct
 import time
@@ -15,7 +15,7 @@ def text(s):
 
 
 def message(address, *values):
-    """Whole numbers as i, others as f, texts as s; (tag, bytes) as they are."""
+    """Encodes whole numbers as i, others as f, texts as s; (tag, bytes) unchanged."""
     tags, data = ",", b""
     for v in values:
         if isinstance(v, tuple):
@@ -30,7 +30,7 @@ def message(address, *values):
 
 
 def bundle(unix_s, *elements):
-    """None: at once."""
+    """Encodes a time tag; None: at once."""
     tag = 1 if unix_s is None else round((unix_s + FROM_1900) * 2**32)
     return b"#bundle\0" + struct.pack(">Q", tag) + b"".join(struct.pack(">i", len(e)) + e for e in elements)
 
@@ -41,7 +41,7 @@ def read_text(data):
 
 
 def read(packet):
-    """A message of i, f and s: [address, value...]."""
+    """Decodes a message of i, f and s: [address, value...]."""
     assert len(packet) % 4 == 0, packet
     address, rest = read_text(packet)
     tags, rest = read_text(rest)
@@ -57,7 +57,7 @@ def read(packet):
 
 
 class Sender:
-    """A program that draws by OSC, at a port of its own."""
+    """A program that draws by OSC, at a separate port."""
 
     def __init__(self, test, server, host="127.0.0.1"):
         address, _, port = server.where["osc"].rpartition(":")
@@ -75,7 +75,7 @@ class Sender:
         self.raw(message(address, *values))
 
     def next(self, address=None):
-        """The next message, or the next to that address."""
+        """Returns the next message, or the next to that address."""
         while True:
             found = read(self.socket.recv(65536))
             if address is None or found[0] == address:
@@ -83,7 +83,7 @@ class Sender:
 
 
 def begun_by_a_time_tag(test, server):
-    """How much later than said a play, a drive and a live stroke of one bundle began, s; and the time of a period, s."""
+    """Returns the lateness of a play, a drive and a live stroke of one bundle, s, and the time of a period, s."""
     watcher = server.client()
     watcher.ok("subscribe", events=["strokes"])
     stream = watcher.ok("hello")["stream"]

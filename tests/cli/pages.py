@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""A session of tactor experiment whose participant sits before a page."""
+"""A session of tactor experiment with the participant's page."""
 import json
 import os
 import re
@@ -11,7 +11,7 @@ from websocket import TEXT, Peer
 
 
 class Session:
-    """The tool with --display page; what is written to `keys` is typed by the experimenter."""
+    """The tool with --display page; text written to `keys` is typed by the experimenter."""
 
     def __init__(self, test, args):
         self.test = test
@@ -22,11 +22,11 @@ class Session:
         self.address = self.told(r"page is at http://([^/]+)/\n")[1]
 
     def told(self, pattern):
-        """Once standard error has said so."""
+        """Waits until standard error has this."""
         while not (found := re.search(pattern, self.said)):
             if not select.select([self.process.stderr], [], [], PATIENCE_S)[0]:
                 raise AssertionError(self.said)
-            # Not by the stream, which would keep the lines after this one where select() does not see them.
+            # Not by the stream, which would hide the lines after this one from select().
             more = os.read(self.process.stderr.fileno(), 4096)
             assert more, self.said
             self.said += more.decode()
@@ -36,7 +36,7 @@ class Session:
         self.process.stdin.write(key + "\n")
 
     def end(self):
-        """Its exit status."""
+        """Returns its exit status."""
         self.shown, more = self.process.communicate(timeout=PATIENCE_S)
         self.said += more
         return self.process.returncode
@@ -53,7 +53,7 @@ class Session:
 
 
 class Participant(Peer):
-    """A page, as far as the wire is concerned."""
+    """A page, as the wire shows it."""
 
     def __init__(self, session):
         super().__init__(session.address)
@@ -81,7 +81,7 @@ class Participant(Peer):
         return s
 
     def begin(self, tactors=2):
-        """Up to the first run's first trial."""
+        """Answers up to the first run's first trial."""
         self.answer("consent", 1)
         for _ in range(tactors):
             self.answer("walk", 1)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Reading the tool's pictures: SVG by its groups and their scales, PNG pixel by pixel."""
+"""Readers of the tool's pictures: SVG by its groups and their scales, PNG pixel by pixel."""
 import struct
 import xml.etree.ElementTree as ET
 import zlib
@@ -11,7 +11,7 @@ BRUSH = ["--algorithm", "tactile-brush", "--snap", "--drop-points"]
 
 
 class Svg:
-    """A picture of ours."""
+    """A picture of the tool."""
 
     def __init__(self, path):
         self.text = path.read_text(encoding="utf-8")
@@ -30,7 +30,7 @@ class Svg:
         return ["".join(e.itertext()) for e in self.root.iter(NS + "text")]
 
     def place(self, x_mm, y_mm):
-        """Where a place on the skin is on the page, in pt."""
+        """Returns the place on the page of a place on the skin, pt."""
         g = self.id("array")
         s = float(g.get("data-mm-scale"))
         return float(g.get("data-x0")) + s * x_mm, float(g.get("data-y0")) + s * y_mm
@@ -45,7 +45,7 @@ def number(e, name):
 
 
 class Png:
-    """A PNG with 8-bit RGB, decoded."""
+    """A decoded PNG with 8-bit RGB."""
 
     def __init__(self, path):
         data = path.read_bytes()

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The samples of a plan from its JSON alone, by the formulas of tactor-json(5): what a reader of the record would write."""
+"""The samples of a plan from its JSON alone, by the formulas of tactor-json(5), as a reader of the record would write them."""
 import math
 
 
@@ -8,13 +8,13 @@ def frame_at(t_s, rate):
 
 
 def window(k, length, ramp):
-    """Raised cosine at both ends."""
+    """Returns a raised cosine at both ends."""
     inside = min(k, length - k)
     return 0.5 - 0.5 * math.cos(math.pi * inside / ramp) if inside < ramp else 1.0
 
 
 class Burst:
-    """One tactor's part in a burst, in frames of the stroke."""
+    """A tactor's part in a burst, in frames of the stroke."""
 
     def __init__(self, burst, amplitude, rate):
         self.from_s, self.to_s = burst["onset_s"], burst["onset_s"] + burst["duration_s"]
@@ -29,7 +29,7 @@ class Burst:
 
 
 def groups(bursts):
-    """Those of a tactor that overlap by more than a nanosecond, together."""
+    """Groups bursts of a tactor that overlap by more than a nanosecond."""
     found = []
     for b in sorted(bursts, key=lambda b: b.first):
         if not b.length:
@@ -42,7 +42,7 @@ def groups(bursts):
 
 
 def joined(sounding, n, overlap):
-    """The amplitude of bursts that sound together on a tactor."""
+    """Returns the amplitude of bursts that sound together on a tactor."""
     parts = [b.at(n) for b in sounding]
     if len(parts) == 1:
         return parts[0]
@@ -54,7 +54,7 @@ def joined(sounding, n, overlap):
 
 
 def envelopes_of_bursts(plan):
-    """For each group on a tactor: tactor, first frame of its carrier, and (frame, amplitude) one after the other."""
+    """Returns for each group on a tactor: tactor, first frame of its carrier, and (frame, amplitude) in order."""
     rate, overlap = plan["render"]["rate"], plan["render"]["overlap"]
     by_tactor = {}
     for burst in plan["bursts"]:
@@ -69,7 +69,7 @@ def envelopes_of_bursts(plan):
 
 
 def envelopes_of_points(plan):
-    """The same of a continuous stroke: straight lines from point to point, one window round them all."""
+    """Returns the same of a continuous stroke: straight lines from point to point, one window over all."""
     rate, points = plan["render"]["rate"], plan["continuous"]["points"]
     length = frame_at(plan["stroke"]["duration_s"], rate)
     ramp = min(frame_at(plan["continuous"]["ramp_s"], rate), length // 2)
@@ -83,7 +83,7 @@ def envelopes_of_points(plan):
 
 
 def samples(told):
-    """Channels of samples, full scale 1, of an object of tactor-plan/1 or tactor-plans/1."""
+    """Returns channels of samples, full scale 1, of an object of tactor-plan/1 or tactor-plans/1."""
     plans = told.get("plans", [told])
     render = plans[0]["render"]
     out = [[0.0] * render["frames"] for _ in range(render["channels"])]

@@ -11,7 +11,7 @@ import jsonschema
 
 from harness import PATIENCE_S, ROOT, TOOL, ToolTest
 
-# Whatever a server says is held against it.
+# Every message of a server is checked against its schema.
 MESSAGE = jsonschema.Draft202012Validator(
     json.loads((ROOT / "src/cli/schemas/tactor-protocol-1.schema.json").read_text(encoding="utf-8")))
 
@@ -20,7 +20,7 @@ SHORT = {"path": "M 0 0 L 40 40", "options": {"algorithm": "continuous", "durati
 
 
 class Client:
-    """One connection. Replies and notifications are kept until somebody asks for them."""
+    """A connection. Keeps replies and notifications until a test asks for them."""
 
     def __init__(self, address):
         family = socket.AF_UNIX if isinstance(address, str) else socket.AF_INET
@@ -38,7 +38,7 @@ class Client:
         self.socket.sendall(data)
 
     def next(self):
-        """The next message; None at the end."""
+        """Returns the next message; None at the end."""
         while b"\n" not in self.buffer:
             try:
                 more = self.socket.recv(65536)
@@ -53,7 +53,7 @@ class Client:
         return message
 
     def reply(self):
-        """The next that is no notification."""
+        """Returns the next message that is no notification."""
         while True:
             m = self.next()
             if m is None or isinstance(m, list) or "method" not in m:
@@ -78,7 +78,7 @@ class Client:
         return r["error"]
 
     def notification(self, matches):
-        """The first that matches, of those that came and those to come."""
+        """Returns the first message that matches, of those received and those to come."""
         for i, m in enumerate(self.told):
             if matches(m):
                 return self.told.pop(i)
@@ -93,7 +93,7 @@ class Client:
         return self.notification(lambda m: m["method"] == "stroke" and m["params"]["stroke"] == number
                                  and m["params"]["state"] in states)["params"]
 
-    def end_of(self, number):
+    def await_end(self, number):
         return self.stroke(number, "finished", "cancelled", "interrupted")
 
     def close(self):
@@ -101,7 +101,7 @@ class Client:
 
 
 class Server:
-    """`tactor serve`, listening once this is made; `where` is what it said of that."""
+    """`tactor serve`, listening once this is made; `where` is where it says that it listens."""
 
     def __init__(self, test, *args, env=None, pass_fds=(), device=("-D", "null"), config=""):
         self.test = test
@@ -128,7 +128,7 @@ class Server:
         return c
 
     def terminate(self, with_signal=signal.SIGTERM):
-        """Its exit status and what else it said."""
+        """Ends it; returns its exit status and the rest of its output."""
         self.process.send_signal(with_signal)
         out, err = self.process.communicate(timeout=PATIENCE_S)
         return self.process.returncode, out, err
@@ -146,12 +146,12 @@ def readable(fd):
 
 
 def listening_fds(names):
-    """Environment of a process that inherits sockets; LISTEN_PID must be its own, so a shell sets it."""
+    """Sets the environment of a process that inherits sockets; LISTEN_PID must be that process, so a shell sets it."""
     return {"LISTEN_FDS": str(len(names)), "LISTEN_FDNAMES": ":".join(names), "PATH": os.environ["PATH"]}
 
 
 class ServeTest(ToolTest):
-    """Tests that start servers and look at what these refuse."""
+    """Tests that start servers and check their refusals."""
 
     def serve(self, *args, **more):
         s = Server(self, *args, **more)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Arrays and strokes of all sizes in pictures of all widths, and where texts are in these."""
+"""Arrays and strokes of all sizes in pictures of all widths, and the places of their texts."""
 import math
 
 from pictures import PlotTest, number
@@ -27,7 +27,7 @@ ARRAYS = {"nine": (grid(3, 3, 20), (0, 0, 40, 40)), "twelve": (irregular(), (2, 
 
 
 def strokes(count, where):
-    """Curves over the whole array, the third closed and on tactors; three at once, ten in a row."""
+    """Returns curves over the whole array, the third closed and on tactors; three at once, ten in a row."""
     x, y, w, h = where
     def at(u, v):
         return f"{x + u * w:.1f} {y + v * h:.1f}"
@@ -42,7 +42,7 @@ def strokes(count, where):
 
 
 def box(e):
-    """Left, top, right and bottom of a text."""
+    """Returns left, top, right and bottom of a text."""
     size = number(e, "font-size")
     width = size * sum(ADVANCE.get(c, 0.636) for c in e.text)
     left = number(e, "x") - {"middle": width / 2, "end": width}.get(e.get("text-anchor"), 0)

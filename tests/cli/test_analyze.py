@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""tactor analyze: against what R computed (tests/study/golden, kept by the lane "statistics"), its forms, and what it
-refuses."""
+"""tactor analyze: compared with R's results (tests/study/golden, kept by the lane "statistics"), its forms, and its
+refusals."""
 import csv
 import io
 import json
@@ -29,7 +29,7 @@ class AnalyzeTest(ToolTest):
 
 
 class AsRHasIt(AnalyzeTest):
-    def test_every_figure_of_every_study(self):
+    def test_every_figure_matches_r(self):
         for name in studies.STUDIES:
             self.study(name)
             golden = check_r.read((check_r.GOLDEN / f"{name}.tsv").read_text(encoding="utf-8"))
@@ -53,7 +53,7 @@ class AsRHasIt(AnalyzeTest):
 
 
 class Counting(AnalyzeTest):
-    """By hand, from the lines of the tables."""
+    """Computes by hand, from the lines of the tables."""
 
     def rows(self, folder, code, run):
         return list(csv.DictReader((folder / f"sub-{code}/beh/sub-{code}_task-{run}_beh.tsv").open(), delimiter="\t"))
@@ -83,7 +83,7 @@ class Counting(AnalyzeTest):
                 if run["task"] == "rate":
                     self.assertAlmostEqual(run["anova"]["method"]["F"] / run["paired"]["t"] ** 2, 1, 9)
 
-    def test_who_lacks_a_cell_is_left_out_of_that_run_and_named(self):
+    def test_a_participant_without_a_cell_is_left_out_of_that_run_and_named(self):
         folder = self.study("missing")
         told = self.analysis(folder)
         runs = told["runs"]
@@ -107,7 +107,7 @@ class Counting(AnalyzeTest):
         self.assertIsNone(told["runs"]["marks"]["means"]["park2016"]["motion"]["motion-1"]["ci"])
         self.assertIn("marks: park2016, motion-1: no variance over participants, so no interval", told["warnings"])
 
-    def test_all_alike_has_no_analysis_of_variance(self):
+    def test_equal_ratings_have_no_analysis_of_variance(self):
         text = studies.definition("same", studies.FOUR, studies.TWO, [studies.run("marks", "rate", 8)])
         studies.write_study(self.dir / "same", text, ["1", "2", "3"], lambda *_: 3)
         told = self.analysis("same")
@@ -118,8 +118,8 @@ class Counting(AnalyzeTest):
         self.assertEqual((run["paired"]["t"], run["paired"]["difference"], run["paired"]["p_signflip"]), (None, 0, 1))
         self.assertEqual({p["p"] for p in run["tukey"]["park2016"]}, {None})
 
-    def test_equal_means_whose_sums_were_rounded_otherwise_are_no_result(self):
-        # Each rates both methods alike, each motion of one as another of the other: thirds in another order.
+    def test_equal_means_with_rounded_sums_are_no_result(self):
+        # Each rates both methods alike, each motion of one like another of the other: thirds in another order.
         numbers = studies.Numbers(7)
         sums = {code: [3 + numbers.below(12) for _ in studies.FOUR] for code in "123456"}
         text = studies.definition("equal", studies.FOUR, studies.TWO, [studies.run("marks", "rate", 24)])
@@ -145,14 +145,14 @@ class Counting(AnalyzeTest):
         self.assertIn("one participant: tests need two", " ".join(told["warnings"]))
         self.ok("analyze", folder, "--participants", "07", "-o", "one.svg")
 
-    def test_choosing_participants_is_as_if_the_others_were_not_there(self):
+    def test_choosing_participants_ignores_the_others(self):
         folder = self.study("simulated")
         some = self.analysis(folder, "--participants", "sub-02,05,11,12")
         others = ",".join(f"{i:02}" for i in range(1, 13) if i not in (2, 5, 11, 12))
         self.assertEqual(some, self.analysis(folder, "--exclude", others))
         self.assertEqual(some, self.analysis(folder, "--participants", "02,05,11,12,03", "--exclude", "03"))
         self.assertEqual(some["participants"], 4)
-        # Of those who are not chosen nothing is opened.
+        # Opens nothing of the others.
         (folder / "sub-01/beh/sub-01_task-similarity_beh.tsv").write_text("nonsense")
         self.assertEqual(some, self.analysis(folder, "--participants", "02,05,11,12"))
 
@@ -180,7 +180,7 @@ class Forms(AnalyzeTest):
                 self.assertTrue(0 <= float(low) <= float(high) <= 100)
         self.assertGreater(beyond, 0)  # else nothing was tried
 
-    def test_a_line_for_each_trial_that_counts(self):
+    def test_each_trial_that_counts_has_a_line(self):
         folder = self.study("simulated")
         text = self.ok("analyze", folder, "--format", "tsv").stdout
         notes = [line for line in text.splitlines() if line.startswith("#")]
@@ -219,7 +219,7 @@ class Forms(AnalyzeTest):
         self.assertTrue(lines[notes].startswith("participant\trun\t"))
         self.assertTrue(lines[4].endswith(f"subset(d, run == {json.dumps(name)}))"), lines[4])
 
-    def test_text_fits_a_terminal_and_says_what_the_paper_found(self):
+    def test_text_fits_a_terminal_and_gives_the_paper_s_result(self):
         text = self.ok("analyze", self.study("simulated")).stdout
         self.assertLessEqual(max(map(len, text.splitlines())), 80)
         self.assertIn("SIMULATED", text.splitlines()[0])
@@ -266,13 +266,13 @@ class Forms(AnalyzeTest):
         self.ok("analyze", self.study("ties"), "-o", "b.svg")
         self.assertNotIn("simulated", (self.dir / "b.svg").read_text())
 
-    def test_pictures_of_all_kinds_also_among_the_derivatives(self):
+    def test_pictures_of_all_kinds_work_also_among_the_derivatives(self):
         folder = self.study("two-levels")
         for name, head in (("a.pdf", b"%PDF-"), ("a.png", b"\x89PNG"), ("a.svg", b"<?xml")):
             where = folder / "derivatives/tactor" / name
             self.ok("analyze", folder, "-o", where)
             self.assertTrue(where.read_bytes().startswith(head))
-        # However that folder is written.
+        # For any way to write that folder.
         shutil.rmtree(folder / "derivatives")
         self.ok("analyze", f"./{folder.name}/", "-o", folder / "derivatives/tactor/b.svg")
         shutil.rmtree(folder / "derivatives")
@@ -304,7 +304,7 @@ class Refusals(AnalyzeTest):
         path.write_text("\n".join(lines))
         return text
 
-    def test_answers_and_names_that_cannot_be(self):
+    def test_impossible_answers_and_names_are_refused(self):
         for column, value, why in (
                 ("response", "3", "response is \"3\" (a whole number from 1 to 2)"), ("response", "n/a", "there is no response"),
                 ("motion", "motion-9", 'motion "motion-9" is none of the run\'s (one of motion-1'),
@@ -322,7 +322,7 @@ class Refusals(AnalyzeTest):
         (self.folder / BEH).write_text(both)
         self.ok("analyze", self.folder)
 
-    def test_ratings_that_cannot_be(self):
+    def test_impossible_ratings_are_refused(self):
         name = BEH.replace("taste", "marks")
         text = (self.folder / name).read_text()
         lines = text.split("\n")
@@ -335,7 +335,7 @@ class Refusals(AnalyzeTest):
             self.says(f"{name}:4: {why}")
         (self.folder / name).write_text(text)
 
-    def test_tables_that_are_not_whole(self):
+    def test_incomplete_tables_are_refused(self):
         text = (self.folder / BEH).read_text()
         for broken, why in ((text[:-20], ":41: the last line is cut off (tactor experiment --resume keeps what"), (text.replace("\t", " ", 1), ":2: it has"),
                             ("", ": it is empty"), (text.replace("void", "vo\x00id", 1), ":1: "),
@@ -347,7 +347,7 @@ class Refusals(AnalyzeTest):
         os.mkfifo(self.folder / BEH)
         self.says(f"{BEH}: it is no file")
 
-    def test_participants_that_cannot_be(self):
+    def test_impossible_participants_are_refused(self):
         people = self.folder / "participants.tsv"
         text = people.read_text()
         for extra, why in (("sub-../../etc\tn/a\tn/a\tn/a\n", "participants.tsv:8: this is no participant_id"),
@@ -363,7 +363,7 @@ class Refusals(AnalyzeTest):
         self.says("nobody is left", args=["--exclude", "01,02,03,04,05,06"])
         self.says("a code is empty", args=["--participants", "01,,02"])
 
-    def test_folders_that_are_none(self):
+    def test_folders_that_are_no_study_are_refused(self):
         self.refused(2, "analyze", self.dir / "none", says=["none: No such file"])
         self.refused(2, "analyze", self.folder / "participants.tsv", says=["it is no folder"])
         self.refused(2, "analyze", self.dir, says=["participants.tsv: No such file"])
@@ -372,7 +372,7 @@ class Refusals(AnalyzeTest):
         shutil.rmtree(self.folder / "sourcedata")
         self.says("session.json: No such file")
 
-    def test_sessions_that_cannot_be(self):
+    def test_impossible_sessions_are_refused(self):
         name = "sourcedata/sub-02/session.json"
         path = self.folder / name
         good = path.read_text()
@@ -393,8 +393,8 @@ class Refusals(AnalyzeTest):
         self.assertIn("the texts of their experiments differ", self.ok("analyze", self.folder).stderr)
         path.write_text(good)
 
-    def test_what_is_there_and_cannot_be_reached_is_no_missing_participant(self):
-        # As git-annex leaves what was not fetched; a folder that was moved and linked; a file for a folder.
+    def test_an_unreachable_participant_is_not_a_missing_one(self):
+        # Like git-annex before fetching; a folder that was moved and linked; a file in place of a folder.
         beh = self.folder / "sub-02/beh"
         for name, target, why in ((beh / "sub-02_task-taste_beh.tsv", "../../.annex/none", "is a link to nothing"),
                                   (beh, "beh", "symbolic links"), (beh, "/nowhere", "is a link to nothing"),
@@ -412,7 +412,7 @@ class Refusals(AnalyzeTest):
                 (self.dir / "aside").rename(name)
         self.ok("analyze", self.folder)
 
-    def test_a_study_of_nobody(self):
+    def test_a_study_without_participants_is_refused(self):
         folder = self.dir / "nobody"
         folder.mkdir()
         (folder / "participants.tsv").write_text("participant_id\n")
@@ -429,7 +429,7 @@ class Refusals(AnalyzeTest):
         (self.folder / "task-taste_beh.json").unlink()
         self.ok("analyze", self.folder)
 
-    def test_what_comes_from_files_cannot_steer_a_terminal(self):
+    def test_text_from_files_cannot_steer_a_terminal(self):
         self.line(7, "motion", "\x1b[2Jx")
         result = self.refused(2, "analyze", self.folder)
         self.assertNotIn("\x1b", result.stderr)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""tactor calibrate: simulated sessions, a person's at a terminal and through a pipe, and what is refused."""
+"""tactor calibrate: simulated sessions, sessions of a person at a terminal and through a pipe, and refusals."""
 import csv
 import json
 import os
@@ -65,12 +65,12 @@ class Simulated(CalibrateTest):
                        "--tactors", "0-6", *SHORT)
         self.assertIn("thresholds are P07's, simulated: those of tactors 7, 8 are left out", said.stderr)
         self.assertEqual(["threshold_dbfs" in t for t in self.toml("P08.toml")["tactor"]], [True] * 7 + [False] * 2)
-        # One's own stay.
+        # Thresholds of the same participant stay.
         said = self.simulated("again.toml", "--array", "P07.toml", "--tactors", 0, *SHORT)
         self.assertNotIn("left out", said.stderr)
         self.assertTrue(all("threshold_dbfs" in t for t in self.toml("again.toml")["tactor"]))
 
-    def test_what_is_measured_can_be_played_where_the_rest_is_not(self):
+    def test_a_measured_tactor_can_be_played_while_the_rest_is_not_measured(self):
         self.simulated("me.toml", "--tactors", 4, *SHORT)
         at_4 = ("--path", "M 20 20 L 20.001 20", "--array", "me.toml", "--sl", 7)
         plan = self.plan(*at_4)
@@ -79,7 +79,7 @@ class Simulated(CalibrateTest):
         self.ok("render", *at_4, "-o", "x.wav")
         self.refused(2, "render", "park2016-1", "--array", "me.toml", "--sl", 7, "-o", "y.wav", says=["has no threshold_dbfs"])
 
-    def test_log_and_result_tell_the_same(self):
+    def test_log_and_result_agree(self):
         self.simulated("me.toml", "--tactors", "3,1", "--practice", 2)
         rows, told = self.rows("me.tsv"), self.toml("me.toml")["calibration"]["tactor"]
         self.assertEqual(list(rows[0]), "trial tactor level_dbfs interval response correct reversal practice "
@@ -158,11 +158,11 @@ class Simulated(CalibrateTest):
         self.assertEqual(again.stderr, "")
         first, second = (self.toml(name)["tactor"] for name in ("me.toml", "again.toml"))
         self.assertEqual([a == b for a, b in zip(first, second)], [i != 3 for i in range(9)])
-        # What an earlier session left stays named, and adjustments are looked at alike.
+        # An earlier session's outlier stays named, and adjustments are checked alike.
         said = self.simulated("third.toml", "--tactors", 0, "--array", "me.toml", "--method", "adjustment", spec="threshold=-45,spread=1")
         self.assertIn("warning: tactor 3: the threshold is likely", said.stderr)
 
-    def test_the_observer_has_a_seed_as_that_of_an_experiment(self):
+    def test_the_observer_has_a_seed_like_that_of_an_experiment(self):
         found = []
         for n, seed in enumerate((1, 2, 1)):
             self.simulated(f"{n}.toml", "--tactors", "0-2", spec=f"seed={seed},threshold=-45,spread=2")
@@ -171,7 +171,7 @@ class Simulated(CalibrateTest):
         self.assertNotEqual(found[0], found[1])
         self.refused(2, "calibrate", "--participant", "P1", "-o", "me.toml", "--simulate", "seed=x,threshold=-45", says=["--simulate", "seed"])
 
-    def test_who_feels_nothing_has_no_threshold_and_it_is_said(self):
+    def test_a_participant_who_feels_nothing_has_no_threshold_with_a_warning(self):
         said = self.simulated("me.toml", "--tactors", "0,1", spec="threshold=-45,500,spread=2")
         self.assertIn("tactor 1 has no threshold (not felt)", said.stderr)
         self.assertNotIn("tactor 0 has no", said.stderr)
@@ -179,7 +179,7 @@ class Simulated(CalibrateTest):
         self.assertEqual(["threshold_dbfs" in t for t in entries], [True, False])
         self.refused(2, "plan", "park2016-1", "--array", "me.toml", "--sl", 7, says=["tactor"])
 
-    def test_a_level_that_does_not_fit_is_told_at_once_and_refused_later(self):
+    def test_a_level_that_does_not_fit_is_warned_of_at_once_and_refused_later(self):
         self.write("weak.toml", '[array]\npreset = "palm-3x3"\n' + "".join(
             f"[[tactor]]\ntactor = {i}\nmax_dbfs = -10\n" for i in range(9)))
         said = self.simulated("me.toml", "--array", "weak.toml", spec="threshold=-14,spread=0.5")
@@ -189,7 +189,7 @@ class Simulated(CalibrateTest):
                             says=["tactor 0", f"threshold of {threshold:.4g} dBFS", "dB are missing", "max_dbfs"])
         self.assertNotIn("full scale", told.stderr)
 
-    def test_what_the_array_file_says_is_kept(self):
+    def test_the_array_file_keeps_its_other_keys(self):
         self.write("desk.toml", GRID + '[limits]\nmax_drive_s = 2\n[defaults]\ncarrier = 180\n')
         self.simulated("me.toml", "--array", "desk.toml")
         made = self.toml("me.toml")
@@ -199,7 +199,7 @@ class Simulated(CalibrateTest):
         self.assertEqual(made["calibration"]["carrier_hz"], 180)
         self.ok("check", "--array", "me.toml")
 
-    def test_no_level_is_above_what_the_array_may_have(self):
+    def test_no_level_is_above_the_array_s_limit(self):
         self.write("low.toml", '[array]\npreset = "palm-3x3"\n[[tactor]]\ntactor = 4\nmax_dbfs = -25\n[limits]\npower_dbfs = -18\n')
         said = self.simulated("me.toml", "--array", "low.toml", "--practice", 1, *SHORT, spec="threshold=0,spread=0.001")
         self.assertIn("no level is above -18 dBFS, which power_dbfs in [limits] allows, and max_dbfs does not, of tactors "
@@ -225,7 +225,7 @@ class Simulated(CalibrateTest):
             self.assertNotIn(told, self.ok(*command, *at, "--carrier", 100).stderr)
         self.assertNotIn(told, self.ok("plan", "park2016-1", "--array", "me.toml").stderr)
 
-    def test_adjustment(self):
+    def test_adjustment_measures_thresholds(self):
         self.simulated("me.toml", "--method", "adjustment", "--tactors", 4)
         rows, told = self.rows("me.tsv"), self.toml("me.toml")["calibration"]
         self.assertEqual([(r["response"], r["interval"], r["correct"]) for r in rows], [("set", "n/a", "n/a")] * 6)
@@ -238,7 +238,7 @@ class Person(CalibrateTest):
     ARGS = ("calibrate", "--participant", "P1", "-o", "me.toml", "-D", "null", "--tactors", 1, "--interval", 0.05,
             "--start-dbfs", -20)
 
-    def test_answers_from_lines_and_on_where_it_was_left(self):
+    def test_answers_come_from_lines_and_a_session_resumes(self):
         result = self.refused(1, *self.ARGS, stdin="1\nx\n2\n", says=["trial 3: no answer", "--resume"])
         self.assertIn('"x" is neither 1 nor 2', result.stdout)
         self.assertEqual([r["response"] for r in self.rows("me.tsv")], ["1", "2"])
@@ -252,36 +252,36 @@ class Person(CalibrateTest):
             self.assertEqual(r["correct"] == "true", r["interval"] == r["response"])
         self.refused(2, *self.ARGS, stdin="1\n", says=["me.tsv", "--resume goes on"])
 
-    def test_nothing_tells_which_interval_it_is(self):
+    def test_nothing_tells_which_interval_has_the_stimulus(self):
         result = self.run_tool(*self.ARGS, "--feedback", "off", stdin="1\n" * 6)
         told = re.findall(r"trial \d+:(.*)which", result.stdout)
         self.assertEqual(set(told), {" interval 1 interval 2 "})
         self.assertEqual(len({r["interval"] for r in self.rows("me.tsv")}), 2)
         self.assertNotRegex(result.stdout, "right|wrong|dBFS")
 
-    def noise_of(self, name):
-        """Power of each 10 ms of what the second device got (S32, stereo)."""
+    def read_noise(self, name):
+        """Returns the power of each 10 ms that the second device received (S32, stereo)."""
         values = [v for v, in struct.iter_unpack("<i", (self.dir / name).read_bytes())]
         self.assertEqual(values[::2], values[1::2])
         left = [v / 2 ** 31 for v in values[::2]]
         return [sum(v * v for v in left[i:i + 480]) / 480 for i in range(0, len(left) - 479, 480)]
 
     def pieces(self, power):
-        """How many times 10 ms each piece of full noise lasts."""
+        """Returns the length of each piece of full noise, in 10 ms."""
         full = "".join(str(int(10 ** -2 * 0.7 < p < 10 ** -2 * 1.4)) for p in power)
         return [len(r) for r in re.findall("1+", full)]
 
     def test_noise_covers_both_intervals_of_each_trial(self):
         args = (*self.ARGS, "--masker", "raw:noise.raw", "--masker-dbfs", -20)
         self.refused(1, *args, stdin="1\n2\n", says=["trial 3: no answer"])
-        power = self.noise_of("noise.raw")
-        # Two devices, whose clocks both stand still where the machine does: how long it lasts, timed/test_times.py says.
+        power = self.read_noise("noise.raw")
+        # Both devices' clocks stand still where the machine does; timed/test_times.py checks durations.
         self.assertIn(len(self.pieces(power)), (1, 2, 3))
         self.assertEqual(power[0], 0)
         self.assertEqual(json.loads((self.dir / "me.json").read_text())["masker"],
                          "white noise, -20 dBFS")
         self.refused(2, *self.ARGS, "--resume", says=["masker", "white noise", '"none"'])
-        self.refused(1, *args[:-3], "null", *args[-2:], "--resume", says=["trial 3: no answer"])  # another device is none
+        self.refused(1, *args[:-3], "null", *args[-2:], "--resume", says=["trial 3: no answer"])  # another device without noise
         for args, status, says in ((("--masker", "hw:CARD=Nowhere"), 3, "hw:CARD=Nowhere"),
                                    (("--masker", ""), 2, "--masker")):
             self.refused(status, "calibrate", "--participant", "P2", "-o", f"n{status}.toml", "-D", "null", *args, says=[says])
@@ -291,7 +291,7 @@ class Person(CalibrateTest):
         self.assertEqual(self.toml("me.toml")["calibration"]["masker"], "pink noise, -30 dBFS, null")
         self.ok("check", "--array", "me.toml")
 
-    def test_levels_do_not_come_from_thresholds_that_the_array_has(self):
+    def test_levels_do_not_come_from_the_array_s_old_thresholds(self):
         self.write("a.toml", '[array]\nname = "a"\ngrid = { rows = 1, columns = 2, pitch_mm = 20.0 }\n[[tactor]]\ntactor = 1\n'
                              "max_dbfs = -15\nthreshold_dbfs = [[100, -8], [250, -6]]\n")
         self.refused(1, *self.ARGS, "--array", "a.toml", stdin="1\n", says=["trial 2: no answer"])
@@ -317,7 +317,7 @@ class Person(CalibrateTest):
             self.assertEqual(tool.wait(PATIENCE_S), 130)
         self.assertEqual(len(self.rows("you.tsv")), 2)
 
-    def test_feedback(self):
+    def test_feedback_is_shown_only_when_asked_for(self):
         result = self.run_tool(*self.ARGS, stdin="1\n" * 4)
         told = re.findall(r"^(right|wrong)$", result.stdout, re.M)
         self.assertEqual(told, ["right" if r["correct"] == "true" else "wrong" for r in self.rows("me.tsv")])
@@ -329,7 +329,7 @@ class Person(CalibrateTest):
                          [-9.5, -22, -11, -22, -9, -22.5])
         self.assertAlmostEqual(self.toml("me.toml")["tactor"][1]["threshold_dbfs"], -16, 9)
 
-    def test_keys_of_a_terminal_and_its_end_by_ctrl_c(self):
+    def test_keys_of_a_terminal_answer_and_ctrl_c_ends_it(self):
         pid, fd = pty.fork()
         if pid == 0:
             os.chdir(self.dir)
@@ -357,12 +357,12 @@ class Person(CalibrateTest):
             while os.read(fd, 4096):
                 pass
         except OSError:
-            pass  # the terminal is gone with the program
+            pass  # the terminal closes with the program
         self.assertEqual(os.waitstatus_to_exitcode(os.waitpid(pid, 0)[1]), 130)
         os.close(fd)
         self.assertEqual([r["response"] for r in self.rows("me.tsv")], ["1", "2"])
 
-    def test_killed_at_any_moment_nothing_answered_is_lost(self):
+    def test_a_session_killed_at_any_moment_loses_no_answer(self):
         with subprocess.Popen([TOOL, *map(str, self.ARGS)], cwd=self.dir, env=self.env, stdin=subprocess.PIPE,
                               stdout=subprocess.PIPE, text=True) as tool:
             tool.stdin.write("1\n1\n")
@@ -377,7 +377,7 @@ class Person(CalibrateTest):
 
 
 class Page(CalibrateTest):
-    """The participant before a page: tests/cli/test_experiment_page.py has what holds for every page."""
+    """The participant's page; test_experiment_page.py has the tests for every page."""
 
     def start(self, *more):
         s = Session(self, (*Person.ARGS, "--display", "page", *more))
@@ -390,7 +390,7 @@ class Page(CalibrateTest):
 
     def test_intervals_are_shown_and_answered_on_the_page(self):
         s = self.start()
-        s.key("1")  # what is typed at the terminal is no answer
+        s.key("1")  # text typed at the terminal is no answer
         self.assertEqual(self.page.answer("introduce", 1)["choices"], ["Begin"])
         for trial in (1, 2, 3):
             for interval in (1, 2):
@@ -399,7 +399,7 @@ class Page(CalibrateTest):
             s.key("2")
             self.assertEqual((asked["question"], asked["choices"]), ("Which one vibrated?", ["", ""]))
             self.page.say(ask=asked["ask"], answer=1)
-            self.page.say(ask=asked["ask"], answer=2)  # each question has one
+            self.page.say(ask=asked["ask"], answer=2)  # each question takes one
             self.until_text("That was (right|wrong)")
         s.process.send_signal(signal.SIGINT)
         self.assertEqual(s.end(), 130)
@@ -419,7 +419,7 @@ class Page(CalibrateTest):
         self.assertEqual(len(levels), 6)
         self.assertAlmostEqual(self.toml("me.toml")["calibration"]["tactor"][0]["threshold_dbfs"], sum(levels) / 6, 9)
 
-    def test_options(self):
+    def test_bad_options_are_refused(self):
         self.refused(2, *Person.ARGS, "--page", "0.0.0.0:0", says=["--page", "whoever is on the network"])
         self.refused(2, *Person.ARGS, "--page", "0", "--display", "terminal", says=["--page", "the participant sees the terminal"])
         self.refused(2, "calibrate", "--participant", "P07", "-o", "me.toml", "--simulate", OBSERVER, "--display", "page", says=["--display", "nobody looks"])
@@ -431,7 +431,7 @@ class BadInput(CalibrateTest):
         self.refused(status, "calibrate", "--participant", "P07", "-o", "me.toml", "--simulate", OBSERVER, *args, says=says)
         self.assertEqual(sorted(f.name for f in self.dir.iterdir()), before)
 
-    def test_each_is_said_before_a_trial(self):
+    def test_each_fault_is_reported_before_a_trial(self):
         self.write("limited.toml", '[array]\npreset = "palm-3x3"\n[[tactor]]\ntactor = 4\nmax_dbfs = -30\n')
         self.write("quiet.toml", '[array]\npreset = "palm-3x3"\n[limits]\npower_dbfs = -25\n')
         self.write("short.toml", '[array]\npreset = "palm-3x3"\n[limits]\nmax_drive_s = 0.3\n')
@@ -482,7 +482,7 @@ class BadInput(CalibrateTest):
         self.refused(1, "calibrate", "--participant", "P7", "-o", "/proc/me.toml", "-D", "null", says=["/proc/me.toml"])
         self.refused(2, "calibrate", "--participant", "P7", "-o", "me.toml", "--simulate", "level=3", says=["--simulate"])
 
-    def test_what_is_there_is_not_overwritten(self):
+    def test_existing_files_are_not_overwritten(self):
         self.write("me.toml", "mine")
         self.bad(says=["me.toml: there is such a file already"])
         self.assertEqual((self.dir / "me.toml").read_text(), "mine")
@@ -492,7 +492,7 @@ class BadInput(CalibrateTest):
         self.bad("--resume", says=["me.tsv: it is no log of a calibration"])
         self.assertEqual((self.dir / "me.tsv").read_text(), "my\ttable\n")
 
-    def test_somebody_else_s_json_is_not_replaced(self):
+    def test_another_program_s_json_is_not_replaced(self):
         for text in ('{"date":"2020-01-01","mydata":[1,2,3]}', "[]", "mine"):
             self.write("me.json", text)
             self.bad(says=["me.json: it does not say how a calibration was begun"])
@@ -520,7 +520,7 @@ class BadInput(CalibrateTest):
         (self.dir / "me.json").unlink()
         self.bad(*same, says=["me.json: it is missing"])
 
-    def test_a_session_goes_on_only_as_it_was_begun(self):
+    def test_a_session_resumes_only_with_its_options(self):
         self.simulated("me.toml", "--tactors", 0)
         (self.dir / "me.toml").unlink()
         self.bad("--resume", "--tactors", 4, "--array", "palm-2x4", says=["me.json", "begun with tactors [0], and [4]"])
@@ -529,21 +529,21 @@ class BadInput(CalibrateTest):
             self.bad("--resume", *(args if "--tactors" in args else ("--tactors", 0, *args)), says=["me.json", says])
         self.bad("--tactors", 0, says=["me.tsv: there is such a file already", "--resume"])
 
-    def test_two_sessions_on_one_log(self):
+    def test_two_sessions_on_one_log_are_refused(self):
         with subprocess.Popen([TOOL, *map(str, Person.ARGS)], cwd=self.dir, env=self.env, stdin=subprocess.PIPE,
                               stdout=subprocess.PIPE, text=True) as first:
-            first.stdout.readline()  # what it asks: the log is open
+            first.stdout.readline()  # the question: the log is open
             for more in ((), ("--resume",)):
                 self.refused(2, *Person.ARGS, *more, says=["me.tsv: another session is writing it"])
             first.send_signal(signal.SIGINT)
             self.assertEqual(first.wait(PATIENCE_S), 130)
 
-    def test_a_keypad_that_is_none(self):
+    def test_a_missing_keypad_is_refused(self):
         self.refused(2, *Person.ARGS, "--keypad", "/dev/null", says=["/dev/null: it is no input device (as /dev/input/by-id"])
         self.refused(3, *Person.ARGS, "--keypad", "/dev/input/nobody", says=["/dev/input/nobody: No such file"])
         self.bad("--keypad", "/dev/input/event0", says=["--keypad: nobody is asked"])
 
-    def test_what_ends_before_an_answer_leaves_no_trace(self):
+    def test_a_session_without_answers_leaves_no_trace(self):
         args = ("calibrate", "--participant", "P07", "-o", "me.toml", "--tactors", 0)
         self.refused(3, *args, "-D", "hw:CARD=Nowhere", says=["hw:CARD=Nowhere"])
         self.refused(1, *args, "-D", "null", says=["trial 1: no answer"])

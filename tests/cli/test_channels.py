@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Cards that have more channels than the array, or fewer, and no choice."""
+"""Cards with more or fewer channels than the array, without a choice of channels."""
 import json
 
 from harness import ALSA_CONFIG, ToolTest, main
@@ -22,7 +22,7 @@ class Channels(ToolTest):
         self.write("alsa.conf", ALSA_CONFIG + fixed("sixteen", 16) + fixed("ten", 10) + kept)
 
     def frames(self, channels, sample_bytes=4):
-        """What the device got from the first sound on, each frame as a list of the bytes of its samples."""
+        """Returns the frames at the device from the first sound on, each as a list of the bytes of its samples."""
         raw = (self.dir / "out.raw").read_bytes()
         frame = channels * sample_bytes
         self.assertEqual(len(raw) % frame, 0)
@@ -43,7 +43,7 @@ class Channels(ToolTest):
         told = json.loads(self.ok("play", *self.STROKE, "-D", "null", "--format", "json").stdout)
         self.assertEqual((told["device"]["channels"], told["device"]["device_channels"]), (9, 9))
 
-    def test_a_marker_has_its_own_channel_all_the_same(self):
+    def test_a_marker_still_has_its_channel(self):
         self.write("a.toml", 'array.preset = "palm-3x3"\nsync.channel = 12\n')
         r = self.ok("play", *self.STROKE, "--array", "a.toml", "-D", "kept", "--sample-format", "s32")
         self.assertIn("13 of 16 channels", r.stdout)
@@ -51,7 +51,7 @@ class Channels(ToolTest):
         self.assertIn(12, sounding)
         self.assertFalse(sounding & {9, 10, 11, 13, 14, 15})
 
-    def test_a_number_that_is_stated_is_exact(self):
+    def test_a_given_number_is_exact(self):
         self.assertIn(": 16 channels,", self.ok("play", *self.STROKE, "-D", "sixteen", "--channels", "16").stdout)
         says = ["cannot play 9 channels", "it can do channels 16", "without a number of channels it leaves the other channels silent"]
         r = self.refused(3, "play", *self.STROKE, "-D", "sixteen", "--channels", "9", says=says)
@@ -64,18 +64,18 @@ class Channels(ToolTest):
         self.ok("render", *self.STROKE, "--channels", "16", "-o", "o.wav")
         self.assertEqual((self.dir / "o.wav").read_bytes()[22:24], (16).to_bytes(2, "little"))
 
-    def test_a_plan_needs_what_its_array_needs(self):
+    def test_a_plan_needs_as_many_channels_as_its_array(self):
         self.write("p.json", self.ok("plan", *self.STROKE, "--format", "json").stdout)
         self.assertIn("9 of 16 channels", self.ok("play", "p.json", "-D", "sixteen").stdout)
 
-    def test_a_card_with_fewer_channels_says_which_array_fits(self):
+    def test_a_card_with_fewer_channels_names_an_array_that_fits(self):
         self.refused(3, "play", *self.STROKE, "-D", "eight", says=["cannot play 9 channels", "it can do channels 8", FITS])
         r = self.run_tool("check", "-D", "eight", "--format", "json")
         found = next(f for f in json.loads(r.stdout)["findings"] if f["check"] == "device")
         self.assertEqual((r.returncode, found["level"]), (3, "error"))
         self.assertIn(FITS, found["cure"])
 
-    def test_check_devices_and_the_service_know_it(self):
+    def test_check_devices_and_the_service_use_it(self):
         r = self.run_tool("check", "-D", "sixteen", "--format", "json")
         found = next(f for f in json.loads(r.stdout)["findings"] if f["check"] == "device")
         self.assertEqual(found["level"], "ok")
@@ -87,12 +87,12 @@ class Channels(ToolTest):
         c = s.client()
         self.assertEqual(c.ok("hello")["stream"]["channels"], 9)
         n = c.ok("play", stroke="park2016-1", options={"duration": 0.2})["stroke"]
-        self.assertEqual(c.end_of(n)["state"], "finished")
+        self.assertEqual(c.await_end(n)["state"], "finished")
 
-    def test_the_service_does_not_wait_for_a_card_that_cannot_do_it(self):
+    def test_the_service_does_not_wait_for_a_card_with_too_few_channels(self):
         self.refused(3, "serve", "--socket", f"{self.dir}/s", "-D", "eight", says=["cannot play 9 channels"])
 
-    def test_what_is_drawn_live_and_a_walk_take_it_too(self):
+    def test_live_strokes_and_a_walk_use_it_too(self):
         self.assertIn("9 of 16 channels", self.ok("play", "--live", "-", "-D", "sixteen", stdin="20 20\n").stdout)
         self.ok("check", "--walk", "--auto", "-D", "sixteen")
 

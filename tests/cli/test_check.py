@@ -30,7 +30,7 @@ class Check(ToolTest):
     def test_text_is_plain_and_fits_80_columns(self):
         out = self.ok("check", "-D", "null").stdout
         self.assertNotIn("\033", out)
-        # But for what others on this machine chose, as the socket of a service that runs now.
+        # Except for settings of others on this machine, such as the socket of a running service.
         ours = re.sub(r"(?m)^\w+ +service .*\n(?: .*\n)*", "", out)
         self.assertLess(len(ours), len(out))
         self.assertLessEqual(max(map(len, ours.splitlines())), 79)
@@ -42,14 +42,14 @@ class Check(ToolTest):
         self.assertEqual(found["device"]["level"], "warning")
         self.assertIn("tactor devices", found["device"]["cure"])
 
-    def test_the_stream_is_opened_as_play_would_and_nothing_sounds(self):
+    def test_the_stream_is_opened_as_by_play_and_nothing_sounds(self):
         _, found = self.check("-D", "null", "--rate", "96000", "--latency-ms", "3")
         self.assertIn("96000 Hz, s32, period 96 of 288 frames, latency 3.0 ms", found["device"]["found"])
         _, found = self.check("-D", f"raw:{self.dir}/out.raw")
         self.assertEqual(found["device"]["level"], "warning")
         self.assertFalse((self.dir / "out.raw").exists())
 
-    def test_a_device_that_cannot_be_had_is_status_3(self):
+    def test_a_device_that_is_not_available_is_status_3(self):
         r = self.refused(3, "check", "-D", "nowhere", says=["device: PCM \"nowhere\""])
         self.assertRegex(r.stdout, r"(?m)^error    device +PCM \"nowhere\"")
         _, found = self.check("-D", "eight", status=3)
@@ -64,12 +64,12 @@ class Check(ToolTest):
         self.assertIn("real time", found)
         self.refused(2, "check", "--array", "palm-9x9", says=["palm-9x9"])
 
-    def test_an_array_that_is_not_there_is_named_once(self):
+    def test_a_missing_array_is_named_once(self):
         r = self.run_tool("check", "--array", "palm-3x4")
         self.assertEqual(r.returncode, 2)
         self.assertEqual(r.stdout.count("array"), 1, r.stdout)
 
-    def test_levels_that_cannot_be_are_status_2(self):
+    def test_impossible_levels_are_status_2(self):
         self.write("a.toml", GRID.replace("-3.0", "30.0"))
         _, found = self.check("--array", "a.toml", status=2)
         self.assertIn("tactor 1", found["levels"]["found"])
@@ -83,7 +83,7 @@ class Check(ToolTest):
         self.assertEqual(self.check("--array", "a.toml")[1]["levels"]["found"],
                          "peaks of -12 dBFS, at beginnings of bursts up to -6 to -3 dBFS for rise_ms")
 
-    def test_actuators_against_bursts(self):
+    def test_actuators_are_checked_against_bursts(self):
         self.write("a.toml", GRID.replace("piezo", "erm"))
         _, found = self.check("--array", "a.toml")
         self.assertEqual(found["actuators"]["level"], "warning")
@@ -102,20 +102,20 @@ class Check(ToolTest):
             self.assertEqual(limits["level"], "warning", lifted)
             self.assertIn(lifted.split()[0], limits["cure"])
 
-    def test_where_somebody_feels_it_no_amplifier_is_a_warning(self):
+    def test_a_missing_amplifier_is_a_warning_where_a_person_feels_it(self):
         self.assertEqual(self.check("-D", "null")[1]["amplifier"]["level"], "ok")
         self.assertEqual(self.check("-D", f"raw:{self.dir}/out.raw")[1]["amplifier"]["level"], "ok")
-        # A card, though this machine has none.
+        # A card, on this machine without one.
         self.assertEqual(self.check("-D", "hw:CARD=Tactor", status=3)[1]["amplifier"]["level"], "warning")
 
-    def test_lines_that_are_not_there_are_status_3(self):
+    def test_missing_lines_are_status_3(self):
         self.write("a.toml", GRID + '[amplifier]\nline = { chip = "no-such-chip", offset = 17 }\n')
         _, found = self.check("--array", "a.toml", status=3)
         self.assertEqual(found["amplifier"]["level"], "error")
         self.assertIn("GPIO line 17 of no-such-chip", found["amplifier"]["found"])
         self.assertNotIn("amplifier", self.check("--array", "a.toml", "--no-gpio")[1])
 
-    def test_wrong_usage(self):
+    def test_wrong_usage_is_refused(self):
         self.write("there.toml", "")
         for args, says in ((["--auto"], "--walk"), (["-o", "x.toml"], "--walk"), (["--walk", "--auto", "-o", "x.toml"], "--auto"),
                            (["--walk", "-o", "there.toml"], "already"), (["--walk", "-o", "no/x.toml"], "no folder no"),

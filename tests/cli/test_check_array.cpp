@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // What `check` says of arrays, levels and actuators.
-#include "cli/check/check_array.hpp"
+#include "cli/check/finding.hpp"
 #include "session/device.hpp"
 
 #include <algorithm>
@@ -58,7 +58,7 @@ finding bursts(actuator_kind kind, const std::string& check, double carrier_hz =
 
 } // namespace
 
-TEST_CASE("for an array as large as a trunk, what is known of trunks is said")
+TEST_CASE("for an array as large as a trunk check cites the knowledge about trunks")
 {
     const finding vest = array_finding(make_grid("vest", 4, 5, 50.0, 50.0), "array");
     CHECK(vest.how == level::ok);
@@ -67,7 +67,7 @@ TEST_CASE("for an array as large as a trunk, what is known of trunks is said")
     CHECK(array_finding(make_grid("sleeve", 2, 5, 50.0, 50.0), "array").cure.empty());
 }
 
-TEST_CASE("places are told: number, grid, size, distances")
+TEST_CASE("check lists places: number, grid, size, distances")
 {
     const finding palm = array_finding(preset_array("palm-3x3"), "array");
     CHECK(palm.how == level::ok);
@@ -78,7 +78,7 @@ TEST_CASE("places are told: number, grid, size, distances")
           "palm-2x4: 8 tactors, no grid, 65 x 20 mm, neighbours 20 to 20.62 mm apart");
 }
 
-TEST_CASE("an array that cannot be in millimetres, or of one tactor, is a warning")
+TEST_CASE("an array that is not in millimetres, or has one tactor, is a warning")
 {
     CHECK(array_finding(make_grid("m", 3, 3, 0.02, 0.02), "array").how == level::warning);
     CHECK(array_finding(make_grid("um", 2, 2, 20000.0, 20000.0), "array").how == level::warning);
@@ -86,14 +86,14 @@ TEST_CASE("an array that cannot be in millimetres, or of one tactor, is a warnin
     CHECK(array_finding(make_grid("arm", 1, 4, 60.0, 60.0), "array").how == level::ok);
 }
 
-TEST_CASE("nearest neighbours are found wherever they stand in the file")
+TEST_CASE("nearest neighbours are found in any order of the file")
 {
     array a = make_grid("many", 40, 50, 10.0, 7.0);
     std::reverse(a.tactors.begin() + 100, a.tactors.end());
     CHECK(has(array_finding(a, "array").found, "neighbours 7 mm apart"));
 }
 
-TEST_CASE("channels and the marker are told")
+TEST_CASE("check lists channels and the marker")
 {
     environment e;
     e.tactors = preset_array("palm-3x3");
@@ -107,7 +107,7 @@ TEST_CASE("channels and the marker are told")
           "9 of 16 channels drive tactors: 0, 1, 2, 3, 4, 5, 6, 7, 12; 15 marks strokes");
 }
 
-TEST_CASE("levels that play would refuse are errors in its words")
+TEST_CASE("levels that play would refuse are errors in the same words")
 {
     array a = preset_array("palm-3x3");
     CHECK(array_finding(a, "levels").found == "peaks of -12 dBFS");
@@ -121,7 +121,7 @@ TEST_CASE("levels that play would refuse are errors in its words")
     CHECK_FALSE(over.cure.empty());
 }
 
-TEST_CASE("thresholds are looked at: missing ones, and levels that are not above them")
+TEST_CASE("missing thresholds, and levels that are not above them, are findings")
 {
     array a = preset_array("palm-3x3");
     settings sl;
@@ -139,7 +139,7 @@ TEST_CASE("thresholds are looked at: missing ones, and levels that are not above
     CHECK(has(array_finding(a, "levels").found, "no threshold of tactors 2"));
 }
 
-TEST_CASE("limits are told as they hold")
+TEST_CASE("check lists the limits that hold")
 {
     const finding usual = array_finding(preset_array("palm-3x3"), "limits");
     CHECK(usual.how == level::ok);
@@ -147,7 +147,7 @@ TEST_CASE("limits are told as they hold")
     CHECK(limits_finding({.power_dbfs = 0.0, .max_drive_s = 2.0, .window_s = 4.0}).how == level::ok);
 }
 
-TEST_CASE("a limit that is weaker than by default is a warning that says the default")
+TEST_CASE("a limit that is weaker than by default is a warning that gives the default")
 {
     const finding untimed = limits_finding({.power_dbfs = 0.0, .max_drive_s = 20.0});
     CHECK(untimed.how == level::warning);
@@ -164,7 +164,7 @@ TEST_CASE("a limit that is weaker than by default is a warning that says the def
     CHECK(has(loud.cure, "power_dbfs = 4.77"));
     CHECK(loud.cure.find("window_s") == std::string::npos);
     CHECK(limits_finding({.power_dbfs = 60.0, .max_drive_s = 60.0}).how == level::warning);
-    // Three tactors are what the default lets through: for them it is no limit either.
+    // The default lets three tactors through: for them it is no limit either.
     CHECK(limits_finding({.power_dbfs = 60.0}, make_grid("three", 1, 3, 20.0, 20.0)).how == level::ok);
 }
 
@@ -187,7 +187,7 @@ TEST_CASE("actuators that cannot make the bursts are a warning with the reason")
     CHECK(has(unknown.cure, "actuator = "));
 }
 
-TEST_CASE("of mixed actuators those that do not suit are named")
+TEST_CASE("the unsuitable ones of mixed actuators are named")
 {
     array a = with_actuator(actuator_kind::piezo);
     a.tactors[4].actuator = actuator_kind::erm;
@@ -200,7 +200,7 @@ TEST_CASE("of mixed actuators those that do not suit are named")
     CHECK(named(check_bursts({}, a, 48000), "actuators").found == "7 piezo, 2 voice-coil");
 }
 
-TEST_CASE("carriers are held against skin, burst and rate")
+TEST_CASE("carriers are checked against skin, burst and rate")
 {
     CHECK(bursts(actuator_kind::piezo, "bursts").found == "70 ms at 250 Hz, 17.5 cycles");
     CHECK(bursts(actuator_kind::piezo, "bursts", 60.0).how == level::warning);
@@ -213,7 +213,7 @@ TEST_CASE("carriers are held against skin, burst and rate")
     CHECK(alias.kind == error_kind::bad_input);
 }
 
-TEST_CASE("an SOA or an algorithm that cannot be is an error")
+TEST_CASE("an impossible SOA or algorithm is an error")
 {
     plan_options p;
     p.soa_s = 0.2;

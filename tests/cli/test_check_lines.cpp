@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: MIT
 // GPIO lines as `check` sees them, and how findings are printed.
-#include "cli/check/check_lines.hpp"
 
 #include <doctest/doctest.h>
 
-#include "cli/check/check_output.hpp"
+#include "cli/check/finding.hpp"
 
 namespace check_lines_test {
 
@@ -51,7 +50,7 @@ TEST_CASE("lines are free, held or not there")
     CHECK(status_of(all) == 3);
 }
 
-TEST_CASE("an amplifier that is on when low is a warning, and none at all where somebody feels it")
+TEST_CASE("an amplifier that is on when low is a warning, and so is none where a person feels it")
 {
     CHECK(check_lines(wired(true), true, find)[0].how == level::warning);
     for (const bool felt : {true, false}) {
@@ -62,7 +61,7 @@ TEST_CASE("an amplifier that is on when low is a warning, and none at all where 
     }
 }
 
-TEST_CASE("bad input comes before a missing device in the exit status, warnings do not count")
+TEST_CASE("bad input wins over a missing device in the exit status, warnings do not count")
 {
     const finding device = failure("device", error(error_kind::not_available, "a", "b"));
     const finding input = failure("levels", error(error_kind::bad_input, "a", "b"));
@@ -74,7 +73,7 @@ TEST_CASE("bad input comes before a missing device in the exit status, warnings 
     CHECK(status_of({other}) == 1);
 }
 
-TEST_CASE("findings read like this")
+TEST_CASE("findings have this form")
 {
     const std::vector<finding> all{
         fine("array", "palm-3x3: 9 tactors"),

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // What `check` finds on machines made of files, and how it judges them.
-#include "cli/check/check_system.hpp"
+#include "cli/check/system_facts.hpp"
 
 #include <algorithm>
 
@@ -34,7 +34,7 @@ private:
     folder files_;
 };
 
-// A user with all rights on a machine that has nothing against it.
+// A user with all rights on a machine without faults.
 system_facts good()
 {
     system_facts f;
@@ -66,7 +66,7 @@ finding judged(const system_facts& f, const system_needs& n, const std::string& 
 
 } // namespace
 
-TEST_CASE("a machine that is as it should be has nothing to cure")
+TEST_CASE("a machine without faults needs no hint")
 {
     for (const finding& f : check_system(good(), card_and_amplifier())) {
         INFO(f.check, ": ", f.found);
@@ -103,7 +103,7 @@ TEST_CASE("groups and devices are read")
     CHECK(f.gpio.size() == 1);
 }
 
-TEST_CASE("a device that may not be opened names the group to join, or the login that is due")
+TEST_CASE("a device that may not be opened names the group to join, or the missing login")
 {
     system_facts f = good();
     f.own.groups = {"ann"};
@@ -143,7 +143,7 @@ TEST_CASE("limits below what play asks for are warnings, and errors where real t
     CHECK(judged(f, n, "memory").how == level::ok);
 }
 
-TEST_CASE("how preemptible the kernel is, is read from wherever it says so")
+TEST_CASE("the kernel's preemption is read from each possible place")
 {
     const std::string dynamic = "#1 SMP PREEMPT_DYNAMIC Debian";
     CHECK(fake_root().read("#1 SMP PREEMPT_RT Debian").preempts == preemption::realtime);
@@ -186,7 +186,7 @@ TEST_CASE("governors of all CPUs are read; any but performance is a warning")
     CHECK(judged(f, {}, "CPU clock").how == level::ok);
 }
 
-TEST_CASE("sound servers that run are found, and udev's word for a card")
+TEST_CASE("running sound servers are found, and udev's word for a card")
 {
     const fake_root r;
     r.write("proc/812/comm", "pipewire\n").write("proc/99/comm", "jackd\n").write("proc/7/comm", "bash\n");
@@ -249,7 +249,7 @@ TEST_CASE("lines that keep their level are a warning where an amplifier hangs on
     CHECK(has(unknown.cure, "tactor off"));
 }
 
-TEST_CASE("a service that switches off after its end is found, and what it does not cover is said")
+TEST_CASE("a service that switches off after its end is found, and its gaps are named")
 {
     const fake_root r;
     r.write("sys/module/pinctrl_rp1/parameters/persist_gpio_outputs", "Y\n");
@@ -267,7 +267,7 @@ TEST_CASE("a service that switches off after its end is found, and what it does 
     CHECK(has(x.found, "killed together outside of it"));
 }
 
-TEST_CASE("addresses of the kernel's tables")
+TEST_CASE("addresses of the kernel's tables are read")
 {
     struct {
         const char* said;
@@ -295,7 +295,7 @@ TEST_CASE("addresses of the kernel's tables")
     }
 }
 
-TEST_CASE("where services listen is found and judged")
+TEST_CASE("listening sockets of services are found and judged")
 {
     const fake_root r;
     const auto process = [&](int pid, const std::string& arguments, const std::vector<int>& inodes) {

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""--compensate: bursts that are moved for the low-speed observer, in every command that plans."""
+"""--compensate: bursts moved for the low-speed observer, in every command that plans."""
 import csv
 import io
 import json
@@ -15,7 +15,7 @@ TAPS = ("low-speed", "sigma 5 mm", "sigma_v 100 mm/s", "built for taps")
 
 
 def equations(onsets, places, sigma, sigma_v):
-    """(I + K) x of a chain."""
+    """Computes (I + K) x of a chain."""
     out = [list(p) for p in places]
     for i in range(len(onsets) - 1):
         k = (sigma / (sigma_v * (onsets[i + 1] - onsets[i]))) ** 2
@@ -30,7 +30,7 @@ class Compensate(ToolTest):
         r = self.ok(*args)
         return r.stdout + r.stderr
 
-    def test_bursts_are_played_where_the_equations_say_and_felt_at_the_target(self):
+    def test_bursts_are_played_where_the_equations_put_them_and_felt_at_the_target(self):
         for sigma, sigma_v in ((5, 100), (8, 150)):
             args = ("park2016-3", *EXACT, "--sigma-mm", str(sigma), "--sigma-v-mm-s", str(sigma_v))
             plain, moved = self.plan("park2016-3", *EXACT), self.plan(*args, *MOVE)
@@ -45,7 +45,7 @@ class Compensate(ToolTest):
             for tap, place in zip(c["taps"], asked):
                 self.assertLess(math.dist((tap["felt_x_mm"], tap["felt_y_mm"]), place), 1e-6)
 
-    def test_at_the_edge_the_residual_is_said_and_nothing_leaves_the_array(self):
+    def test_at_the_edge_the_residual_is_reported_and_nothing_leaves_the_array(self):
         args = ("--path", "M 0 0 L 40 40 L 0 40", "--speed", "150", *EXACT, *MOVE)
         p = self.plan(*args)
         c = p["compensation"]
@@ -81,7 +81,7 @@ class Compensate(ToolTest):
                                                            ("compensated_sigma_v_mm_s", "100")])
             self.assertNotIn("compensated", self.ok(*args).stdout)
 
-    def test_what_is_silent_throughout_is_said_so_and_read_back(self):
+    def test_an_all_silent_plan_is_named_so_and_read_back(self):
         self.write("s.toml", '[stroke]\npath = "M 0 20 H 40"\nintensity = 0\n')
         text = self.ok("plan", "s.toml", *MOVE, "--format", "json").stdout
         self.write("p.json", text)
@@ -117,7 +117,7 @@ class Compensate(ToolTest):
             text = " ".join(t.text for t in ElementTree.parse(self.dir / "c.svg").getroot().iter(SVG + "text"))
             self.assertEqual(["Bursts are moved" in text, *(word in text for word in TAPS)], [moved] * (1 + len(TAPS)))
 
-    def test_compare_predicts_what_was_moved(self):
+    def test_compare_predicts_moved_bursts(self):
         def row(*more):
             told = json.loads(self.ok("compare", "park2016-1", "--observer", "low-speed", *EXACT, "--algorithms",
                                       "park2016", "--format", "json", *more).stdout)
@@ -129,7 +129,7 @@ class Compensate(ToolTest):
         told = json.loads(self.ok("compare", "park2016-1", *MOVE, "--format", "json").stdout)
         self.assertIn("no bursts", told["results"][2]["refused"])
 
-    def test_what_cannot_be_is_refused(self):
+    def test_impossible_combinations_are_refused(self):
         self.refused(2, "plan", "park2016-1", "--compensate", "more", says=["more", "low-speed"])
         self.refused(2, "plan", "park2016-1", *MOVE, "--algorithm", "continuous", says=["no bursts", "park2016"])
         self.refused(2, "plan", "park2016-1", "--sigma-mm", "4", says=["--sigma-mm", "--compensate low-speed"])

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Completion: what the tool offers, and bash, zsh and fish as people type in them."""
+"""Completion: the tool's candidates, and bash, zsh and fish as people type in them."""
 import os
 import pty
 import re
@@ -10,12 +10,12 @@ import subprocess
 from harness import ROOT, TOOL, ToolTest, main
 
 SCRIPTS = ROOT / "src/cli/completion"
-# Prints each word so that the line as it was typed, which the terminal shows too, does not look the same.
+# Prints each word in another form than it was typed, since the terminal shows the typed line too.
 SHOW = r"printf '\74%s\76' "
 
 
 class Terminal:
-    """An interactive shell on a terminal of its own."""
+    """An interactive shell on a pseudo-terminal."""
 
     def __init__(self, command, env, folder):
         self.pid, self.fd = pty.fork()
@@ -57,7 +57,7 @@ class Completion(ToolTest):
         if shutil.which(shell) is None:
             self.skipTest(f"{shell} is not here")
 
-    # What the tool says.
+    # Candidates of the tool.
 
     def test_commands_and_options_are_those_of_help(self):
         def of_help(*command):
@@ -72,7 +72,7 @@ class Completion(ToolTest):
         for command in commands:
             self.assertEqual(set(self.offered(command, "-")), of_help(command)[0], command)
 
-    def test_each_value_that_is_offered_is_taken(self):
+    def test_each_offered_value_is_accepted(self):
         for option in ("--phantom", "--faces", "--algorithm", "--overlap", "--timing", "--outside", "--array", "--phase",
                        "--sample-format", "--format"):
             values = [v for v in self.offered("plan", option, "") if not v.startswith(":")]
@@ -81,7 +81,7 @@ class Completion(ToolTest):
                 self.ok("plan", "--path", "M 0 0 L 20 0", option, value)
                 self.assertEqual(self.offered("plan", f"{option}={value[:-1]}").count(f"{option}={value}"), 1)
 
-    def test_strokes_files_devices_and_lists(self):
+    def test_strokes_files_devices_and_lists_are_offered(self):
         self.assertEqual(self.offered("play", "park2016-3"), ["park2016-3", ":files .toml .csv .svg"])
         self.assertEqual(self.offered("plan", "--array", "x"), [":files .toml"])
         self.assertEqual(self.offered("plan", "--config="), [":files .toml"])
@@ -106,7 +106,7 @@ class Completion(ToolTest):
         self.assertEqual(self.offered("nonsense", ""), [])
         self.assertEqual(self.ok("__complete").stdout, "")
 
-    # What shells make of it: what is typed, and the words that the line has after Tab.
+    # The shells' part: the typed text, and the words that the line has after Tab.
 
     TYPED = [
         ("tactor comp", ["tactor", "compare"]),
@@ -138,25 +138,25 @@ class Completion(ToolTest):
             t.until("DONE")
             for typed, words in self.TYPED:
                 if words[-1] == "folder/":
-                    continue  # ambiguous: nothing is taken
-                # Tab; a last word at the end of the line; and what shows the words at its beginning.
+                    continue  # ambiguous: nothing is completed
+                # Tab; a last word at the end of the line; and the code that shows the words at its beginning.
                 t.send(f"{typed}\t\005 END\001{SHOW}\n")
                 seen = t.until("<END>")
                 self.assertEqual(re.findall("<(.*?)>", seen)[:-1], words, typed)
         finally:
             t.close()
 
-    def test_bash(self):
+    def test_bash_completes(self):
         self.needs("bash")
         self.type_into("bash", "--norc", "--noprofile", "-i",
                        setup=f"bind 'set bell-style none'; source {SCRIPTS}/tactor.bash; complete -F _tactor fake")
 
-    def test_zsh(self):
+    def test_zsh_completes(self):
         self.needs("zsh")
         self.type_into("zsh", "-f", "-i", setup=f"fpath=({SCRIPTS} $fpath); setopt nobeep; bindkey -e; PROMPT='READY> '; "
                        "autoload -U compinit; compinit -u; compdef _tactor fake; unsetopt automenu")
 
-    def test_fish(self):
+    def test_fish_completes(self):
         self.needs("fish")
         for typed, words in self.TYPED:
             if words[0] == "fake":
@@ -166,7 +166,7 @@ class Completion(ToolTest):
             self.assertEqual(r.stderr, "")
             self.assertEqual(r.stdout.split("\n")[0].split("\t")[0], words[-1], typed)
 
-    def test_fish_says_what_commands_do(self):
+    def test_fish_explains_commands(self):
         self.needs("fish")
         r = subprocess.run(["fish", "--no-config", "-c", f"source {SCRIPTS}/tactor.fish; complete -C 'tactor pl'"],
                            env=self.env, cwd=self.dir, capture_output=True, text=True, check=False)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""tactor devices: PCMs with what they can do, and GPIO chips, on whatever machine this is."""
+"""tactor devices: PCMs with their properties, and GPIO chips, on any machine."""
 import json
 
 from harness import ALSA_CONFIG, ToolTest, main
@@ -24,7 +24,7 @@ class Devices(ToolTest):
         self.assertEqual(told["schema"], "tactor-devices/1")
         return told, {p["name"]: p for p in told["pcms"]}
 
-    def test_what_the_configuration_names_is_listed_with_what_it_can_do(self):
+    def test_pcms_of_the_configuration_are_listed_with_their_properties(self):
         told, pcms = self.devices()
         self.assertEqual(told["wanted"], {"array": "palm-3x3", "channels": 9, "rate_hz": 48000, "format": None})
         self.assertIn("default", pcms)
@@ -37,7 +37,7 @@ class Devices(ToolTest):
         self.assertIn("cannot play 9 channels at 48000 Hz", pcms["eight"]["misfit"])
         self.assertEqual(len(told["pcms"]), len(pcms), "a name is listed twice")
 
-    def test_what_fits_follows_array_rate_and_format(self):
+    def test_fitting_pcms_follow_array_rate_and_format(self):
         self.write("alsa.conf", ALSA_CONFIG + MORE_PCMS)
         self.assertTrue(self.devices("--array", "palm-2x4")[1]["eight"]["fits"])
         self.assertEqual(self.devices("--rate", "44100")[0]["wanted"]["rate_hz"], 44100)
@@ -64,7 +64,7 @@ class Devices(ToolTest):
         self.assertIn("Not tried", text)
         self.assertIn("mixed over_a_mixer", text)
 
-    def test_a_pcm_that_cannot_be_opened_says_why(self):
+    def test_a_pcm_that_cannot_be_opened_gives_its_reason(self):
         self.write("alsa.conf", ALSA_CONFIG + MORE_PCMS)
         _, pcms = self.devices("-D", "hw:CARD=Nowhere")
         self.assertEqual((pcms["round_and_round"]["tried"], pcms["round_and_round"]["opened"]), (False, False))
@@ -87,13 +87,13 @@ class Devices(ToolTest):
                 self.assertIn(f"sudo apt install {package}", r.stdout + r.stderr)
                 self.assertNotIn("no sound card", r.stdout + r.stderr)
 
-    def test_a_file_that_is_asked_about_is_listed_and_not_made(self):
+    def test_a_named_file_pcm_is_listed_and_not_made(self):
         _, pcms = self.devices("-D", f"raw:{self.dir}/out.raw")
         self.assertEqual((pcms[f"raw:{self.dir}/out.raw"]["configured"], pcms[f"raw:{self.dir}/out.raw"]["tried"]), (True, False))
         self.assertIn("type file", pcms[f"raw:{self.dir}/out.raw"]["error"])
         self.assertFalse((self.dir / "out.raw").exists())
 
-    def test_nothing_is_opened_that_would_be_emptied(self):
+    def test_no_file_is_opened_that_would_be_emptied(self):
         self.write("alsa.conf", ALSA_CONFIG + MORE_PCMS)
         self.write("kept.raw", "precious")
         for args in ((), ("-D", "kept"), ("-D", "raw:kept.raw")):
@@ -110,7 +110,7 @@ class Devices(ToolTest):
                      "    fits      palm-3x3\n"):
             self.assertIn(text, r.stdout)
 
-    def test_a_machine_without_cards_and_chips_says_what_to_do(self):
+    def test_a_machine_without_cards_and_chips_gets_a_hint(self):
         told, _ = self.devices()
         text = self.ok("devices").stdout
         if any(p["hardware"] for p in told["pcms"]):
@@ -119,7 +119,7 @@ class Devices(ToolTest):
             self.assertIn("  none; load the card's driver or overlay", text)
         self.assertEqual("none; they are /dev/gpiochip*" in text, not told["gpio_chips"])
 
-    def test_wrong_usage(self):
+    def test_wrong_usage_is_refused(self):
         self.refused(2, "devices", "--format", "csv", says=["--format", "text, json"])
         self.refused(2, "devices", "--array", "palm-9x9", says=["palm-9x9"])
         self.refused(2, "devices", "park2016-1", says=["park2016-1"])

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What `devices` prints for machines with cards and chips.
+// Output of `devices` for machines with cards and chips.
 #include <doctest/doctest.h>
 
 #include "cli/devices/devices_text.hpp"
@@ -54,7 +54,7 @@ session::device_list studio()
 
 } // namespace
 
-TEST_CASE("cards, other PCMs and chips read like this")
+TEST_CASE("cards, other PCMs and chips have this form")
 {
     CHECK(devices_text(studio()) == R"(palm-2x4 needs 8 channels at 48000 Hz.
 
@@ -101,7 +101,7 @@ TEST_CASE("rates between the usual ones are a range")
     CHECK(devices_text(d).find("rates     12345 Hz\n") != std::string::npos);
 }
 
-TEST_CASE("JSON has the numbers, and names that are no UTF-8 do not break it")
+TEST_CASE("JSON has the numbers, and names that are not UTF-8 do not break it")
 {
     session::device_list d = studio();
     d.pcms[0].description = "K\xfcnstler";

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Every command that README, man pages, examples and --help show runs as written, or stands below with the reason why not.
+"""Runs every command that README, man pages, examples and --help show, except those listed below with a reason.
 
 What a document's text and earlier commands make is there for the later ones. hw:CARD=Tactor is a null device here.
 """
@@ -18,7 +18,7 @@ import studies
 from documents import Block, code_of_man, code_of_markdown, code_of_script
 from harness import ALSA_CONFIG, PATIENCE_S, ROOT, TOOL, ToolTest, main
 
-# The card that the documents speak of.
+# The card that the documents name.
 CARD = """
 pcm.hw {
     @args [ CARD DEV SUBDEV ]
@@ -58,7 +58,7 @@ NOT_RUN = {
     "ulimit ": "says what step 4 of the page has changed",
     "kill -9": "is part of a sentence: which process is not said",
 }
-# Commands that run with something else in place of what is not here: (pattern, replacement, why).
+# Commands that run with a replacement for something missing here: (pattern, replacement, why).
 SOMEBODY = [(r"^((?:build/src/cli/)?tactor calibrate .*)-D hw:CARD=Tactor", r"\1--simulate threshold=-45", "there is nobody to answer"),
             (r"^((?:build/src/cli/)?tactor experiment (?!.*--check-noise).*)-D hw:CARD=Tactor", r"\1--simulate seed=1", "there is nobody to answer"),
             (r" --page 4004$", "", "and nobody to look at a page")]
@@ -74,13 +74,13 @@ INSTEAD = dict.fromkeys(["README.md", *(f"man/guide/{page.name}" for page in GUI
     ],
     "man/tactor-json.5": [(r"/usr/local/share/tactor/", str(TOOL.parent / "schemas") + "/", "schemas of the build")],
 }
-# Files that a document speaks of and that are in the sources.
+# Files that documents name and that are in the sources.
 FILES = {
     "man/guide/study.md": {"felt.toml": "examples/arrays/palm-measured.toml"},
     "man/tactor.1": {"palm.toml": "examples/arrays/palm-measured.toml", "curve.toml": "examples/strokes/curve.toml"},
     "man/tactor.toml.5": {"arrays/palm.toml": "examples/arrays/palm-measured.toml"},
 }
-# What is felt where, for --walk: all is wired as it should be.
+# Answers for --walk: all is wired correctly.
 ANSWERS = "".join(f"{k}\n" for k in range(16))
 
 
@@ -112,7 +112,7 @@ class Documents(ToolTest):
                               cwd=self.dir, env=self.env, timeout=4 * PATIENCE_S, check=False)
 
     def serve(self, document, command):
-        """What goes on until it is ended: until it says where it listens."""
+        """Runs a command without an end until it says where it listens."""
         process = subprocess.Popen(["sh", "-ec", "exec " + command], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, cwd=self.dir,
                                    env=self.env | {"XDG_RUNTIME_DIR": str(self.dir)})
         wanted = {"http": "listening: http://", "osc": "listening: osc "}
@@ -150,7 +150,7 @@ class Documents(ToolTest):
             print(f"run: {meant}   [{document}: {'; '.join(reasons)}]")
 
     def read_block(self, document, block):
-        """Blocks of TOML and CSV are what the tool reads them as."""
+        """Reads blocks of TOML and CSV as the tool does."""
         if block.kind == "csv":
             self.ok("plan", "-", stdin=block.text)
         if block.kind != "toml":
@@ -179,7 +179,7 @@ class Documents(ToolTest):
                 else:
                     self.read_block(document, block)
 
-    def test_readme(self):
+    def test_commands_of_the_readme(self):
         self.follow("README.md", code_of_markdown((ROOT / "README.md").read_text(encoding="utf-8")))
         self.assertGreater(self.ran, 12)
 
@@ -217,7 +217,7 @@ class Documents(ToolTest):
         for file in sorted((ROOT / "examples").rglob("README.md")):
             self.follow(file.relative_to(ROOT).as_posix(), code_of_markdown(file.read_text(encoding="utf-8")))
 
-    def test_man_pages(self):
+    def test_commands_of_man_pages(self):
         for page in sorted((ROOT / "man").glob("*.[1-8]")):
             self.env.pop("TACTOR_CONFIG", None)
             self.configured = False
@@ -229,7 +229,7 @@ class Documents(ToolTest):
         stroke, total_s = re.search(r'"method":"play","params":\{"stroke":"([\w-]+)".*?"total_s":([\d.]+)', page, re.S).groups()
         self.assertEqual(float(total_s), self.plan(stroke)["total_s"])
 
-    def test_comments_of_examples(self):
+    def test_commands_in_comments_of_examples(self):
         for folder in ("arrays", "strokes"):
             for file in (ROOT / "examples" / folder).iterdir():
                 shutil.copy(file, self.dir)
@@ -243,15 +243,15 @@ class Documents(ToolTest):
         shown += [block.text for page in (ROOT / "man").glob("*.[1-8]") for block in code_of_man(page.read_text(encoding="utf-8"))]
         self.assertEqual([begin for begin in NOT_RUN if not any(text.startswith(begin) for text in shown)], [])
 
-    def test_examples_of_help(self):
+    def test_examples_of_help_run(self):
         for name in sorted(self.names):
             example = re.search(r"^Example: (.*)", self.ok(name, "--help").stdout, re.M)[1]
             self.follow(f"tactor {name} --help", [Block("command", example, 0)])
         self.assertGreaterEqual(self.ran, 6)
 
     def not_shown(self, page):
-        """Lines of code that a reader does not see as they are meant: mdoc takes a lone point or comma in a macro's line for
-        punctuation, and quotes for its own."""
+        """Returns lines of code that mdoc changes: it takes a lone point or comma in a macro's line for punctuation, and
+        quotes for its syntax."""
         pages = [" ".join(subprocess.run([*command, page], capture_output=True, text=True, encoding="utf-8", check=True,
                                          env=self.env).stdout.replace("\u2010", "-").replace("\\\n", "\n").split())
                  for command in (["mandoc", "-Tutf8", "-Owidth=200"],
@@ -259,7 +259,7 @@ class Documents(ToolTest):
         return [f"{page.name}:{b.line}: {b.text}" for b in code_of_man(page.read_text(encoding="utf-8"), sentences=False)
                 if not all(" ".join(b.text.split()) in shown for shown in pages)]
 
-    def test_what_a_page_shows_is_what_its_source_says(self):
+    def test_a_page_shows_the_code_of_its_source(self):
         for page in sorted((ROOT / "man").glob("*.[1-8]")):
             self.assertEqual(self.not_shown(page), [])
         page = self.write("eaten.7", ".Dd November 20, 2026\n.Dt EATEN 7\n.Os\n.Sh NAME\n.Nm eaten\n.Nd by mdoc\n.Sh DESCRIPTION\n"
@@ -281,9 +281,9 @@ class Documents(ToolTest):
 
 
 class OneName(ToolTest):
-    """What is wired where has one name and one number in all documents."""
+    """Holds one name and one number for each wire in all documents."""
 
-    # I2C (identification and set-up of cards), I2S, and what a card of eight channels takes.
+    # I2C (identification and set-up of cards), I2S, and the lines of a card of eight channels.
     TAKEN = {0, 1, 2, 3, *range(18, 28)}
 
     def texts(self):

@@ -19,7 +19,7 @@ class CommandLine(ToolTest):
             self.assertEqual(self.ok("help", command).stdout, self.ok(command, "--help").stdout)
         self.refused(2, "help", "plam", says=["plam", "did you mean plan?"])
 
-    def test_what_is_missing_is_named_with_what_to_say(self):
+    def test_a_missing_argument_is_named_with_a_hint(self):
         for args, says in (((), "tactor: command line: no command (tactor --help lists them)\n"),
                            (("render", "park2016-1"), "tactor: --output: this option is missing (say --output FILE.wav; tactor render --help)\n"),
                            (("render", "park2016-1", "-o"), "tactor: --output: its value is missing (say --output FILE.wav; tactor render --help)\n"),
@@ -41,7 +41,7 @@ class CommandLine(ToolTest):
         self.refused(2, "plan", "park2016-1", "--array", self.write("s.toml", '[array]\nname = "s"\ngrid = { rows = 2, columns = 2, pitch_mm = 9.0 }\n'),
                      says=['tactor: stroke "park2016-1": starts outside'])
 
-    def test_version(self):
+    def test_version_is_printed(self):
         lines = self.ok("--version").stdout.splitlines()
         self.assertRegex(lines[0], r"^tactor \d+\.\d+\.\d+$")
         for name, says in (("build", r"\w+, optimization \w+"), ("compiler", r"(gcc|clang) \d+\.\d+"),
@@ -49,7 +49,7 @@ class CommandLine(ToolTest):
                            ("libraries", r"alsa-lib \d+\.\d+\.\d+.*, libgpiod [12]\.\d+.*, Boost 1\.\d+.*")):
             self.assertRegex("\n".join(lines), rf"(?m)^{name} +{says}")
 
-    def test_wrong_usage(self):
+    def test_wrong_usage_is_refused(self):
         self.refused(2, says=["--help"])
         self.refused(2, "plam", "park2016-1", says=["plam", "plan"])
         self.refused(2, "plan", "park2016-1", "--speeed", "3", says=["--speeed", "did you mean --speed"])
@@ -65,7 +65,7 @@ class CommandLine(ToolTest):
         self.refused(2, "plan", "park2016-1", "--algorithm", "park2017", says=["park2017", "park2016"])
         self.refused(2, "plan", "park2016-1", "--format", "xml", says=["xml", "json"])
 
-    def test_absurd_numbers(self):
+    def test_absurd_numbers_are_refused(self):
         for option in ("--duration", "--speed", "--soa", "--burst", "--carrier", "--rate", "--level-dbfs", "--ramp", "--sl"):
             for value in ("nan", "inf", "-inf", "-1e300", "1e300", "abc", "", "1,5", "0x10", "1e999"):
                 r = self.run_tool("plan", "park2016-1", f"{option}={value}")
@@ -94,7 +94,7 @@ class CommandLine(ToolTest):
         self.refused(2, "plan", "park2016-1", "--config", self.write("bad.toml", "[defaults]\nburst = 0\n"),
                      says=["bad.toml:2:9", "burst"])
 
-    def test_what_a_stroke_file_says_is_refused_at_its_place(self):
+    def test_faults_of_a_stroke_file_are_refused_at_their_place(self):
         line = 'path = "M 0 0 L 40 0"\n'
         self.write("carrier.toml", f"[stroke]\n{line}carrier_hz = 24000\n")
         self.write("profile.toml", f"[[stroke]]\n{line}[[stroke]]\n{line}carrier_profile = [[0, 100], [1, 30000]]\n")
@@ -108,30 +108,30 @@ class CommandLine(ToolTest):
         self.refused(2, "plot", "start.toml", "-o", "x.svg", says=["tactor: start.toml:6:11: start_s: "])
 
     def test_what_defaults_say_is_refused_at_its_place(self):
-        for text, where in (("soa = 5", "3:7: soa: 5 s is out of bounds"), ("burst = 3", "3:9: burst: duration of a burst: 3 s is longer"),
+        for text, where in (("soa = 5", "3:7: soa: 5 s is out of bounds"), ("burst = 3", "3:9: burst: 3 s is longer"),
                             ("carrier = 30000", "3:11: carrier: 30000 Hz cannot be rendered"),
                             ('waveform = "no.wav"', "3:12: waveform: no.wav: No such file")):
             self.write("d.toml", f'array.preset = "palm-3x3"\n[defaults]\n{text}\n')
             for option in ("--array", "--config"):
                 said = self.refused(2, "plan", "park2016-1", option, "d.toml", says=[f"tactor: d.toml:{where}"]).stderr
                 self.assertNotIn("--", said)
-        # What the command line or a stroke says itself stands there.
+        # Values of the command line or a stroke win.
         self.write("d.toml", "[defaults]\nsoa = 5\ncarrier = 30000\n")
         self.refused(2, "plan", "park2016-1", "--config", "d.toml", "--soa", "6", says=["tactor: --soa: 6 s"])
         self.write("c.svg", '<svg xmlns="http://www.w3.org/2000/svg"><path d="M 0 0 L 40 0" data-carrier-hz="9000"/></svg>')
         self.refused(2, "plan", "c.svg", "--config", "d.toml", "--soa", "0.07", "--rate", "8000", says=["tactor: c.svg: ", "9000 Hz"])
 
-    def test_standard_input_is_called_so(self):
+    def test_standard_input_is_named_so(self):
         two = '[[stroke]]\npath = "M 0 0 L 40 0"\n[[stroke]]\npath = "M 0 0 L 400 0"\n'
         self.refused(2, "plan", "-", stdin=two, says=['tactor: standard input: stroke 2 "standard input-2": leaves'])
         self.assertIn("standard input: played", self.ok("play", "-", "-D", "null", stdin='[stroke]\npath = "M 0 0 L 20 0"\n').stdout)
 
-    def test_standard_input_that_cannot_be_read_says_what_to_give(self):
+    def test_standard_input_that_cannot_be_read_has_a_hint(self):
         for command in (("plan", "-"), ("play", "--live", "-", "-D", "null"), ("check", "--walk", "-D", "null")):
             says = ["standard input: Bad file descriptor (give lines from a terminal, a file or a pipe)"]
             self.refused(2, *command, says=says, before=lambda: os.close(0))
 
-    def test_it_says_what_to_do(self):
+    def test_messages_have_hints(self):
         self.refused(2, "plan", "park2016-1", "--rate", "48000.5", says=["--rate: 48000.5 is not a whole number (give one, as 48000)"])
         self.refused(2, "play", "park2016-1", "--periods", "2.5", says=["--periods: 2.5 is not a whole number (give one, as 2)"])
         self.refused(2, "plan", "--path", "", says=["is empty (it starts with M x y)"])
@@ -150,11 +150,11 @@ class CommandLine(ToolTest):
             self.refused(2, "plan", "park2016-1", "--soa", soa, says=["0.0473", "0.07"])
         self.ok("plan", "park2016-1", "--soa", "0.0474")
 
-    def test_carriers_above_nyquist(self):
+    def test_carriers_above_nyquist_are_refused(self):
         self.refused(2, "plan", "park2016-1", "--carrier", "24000", says=["24000", "48000"])
         self.refused(2, "render", "park2016-1", "--carrier", "5000", "--rate", "8000", "-o", "o.wav", says=["5000"])
 
-    def test_levels_above_full_scale(self):
+    def test_levels_above_full_scale_are_refused(self):
         self.refused(2, "plan", "park2016-1", "--level-dbfs", "0.5")
         self.write("a.toml", '[array]\nname = "a"\ngrid = { rows = 3, columns = 3, pitch_mm = 20.0 }\n'
                              "[[tactor]]\ntactor = 4\ngain_db = 13.0\n")
@@ -171,21 +171,21 @@ class CommandLine(ToolTest):
 
 
 class Paths(ToolTest):
-    def test_what_is_not_a_path(self):
+    def test_a_bad_path_is_refused(self):
         for data in ("", "M", "M 0 0", "M 0 0 L", "M 0 0 L nan 3", "M 0 0 L inf 3", "M 0 0 L 1e400 3", "M 0 0 X 1 1",
                      "L 1 1", "M 0 0 L 0 0", "M 5 5 Z", "M 0 0 L 10 0 M 20 0 L 30 0", "hello", "M 0 0 L 1e9 0"):
             r = self.run_tool("plan", f"--path={data}")
             self.assertEqual(r.returncode, 2, f"{data}: {r.stdout[:100]} {r.stderr}")
             self.assertTrue(r.stderr.startswith("tactor: "), r.stderr)
 
-    def test_a_path_that_leaves_the_array_says_where(self):
+    def test_a_path_that_leaves_the_array_gives_the_place(self):
         self.refused(2, "plan", "--path", "M 20 20 L 60 20", says=["40", "--outside"])
         for algorithm in ("tactile-brush", "continuous"):
             self.refused(2, "plan", "--path", "M 20 20 L 60 20", "--algorithm", algorithm, says=["40"])
 
 
 class Files(ToolTest):
-    def test_missing_files(self):
+    def test_missing_files_are_named(self):
         self.refused(2, "plan", "no/such.toml", says=["no/such.toml"])
         self.refused(2, "plan", "missing.csv", says=["missing.csv"])
         self.refused(2, "plan", "park2016-1", "--array", "missing.toml", says=["missing.toml"])
@@ -199,7 +199,7 @@ class Files(ToolTest):
         self.write("a.toml", text)
         return self.refused(2, "plan", "park2016-1", "--array", "a.toml", says=says)
 
-    def test_arrays(self):
+    def test_bad_arrays_are_refused(self):
         grid = '[array]\nname = "a"\ngrid = { rows = 3, columns = 3, pitch_mm = 20.0 }\n'
         pair = "[[tactor]]\nx_mm = 0.0\ny_mm = 0.0\n"
         self.array_refused("[array\n", "a.toml:1")
@@ -218,7 +218,7 @@ class Files(ToolTest):
         self.array_refused('[array]\nname = "a"\n', "a.toml")
         self.array_refused("", "a.toml")
 
-    def test_strokes(self):
+    def test_bad_strokes_are_refused(self):
         def bad(name, text, *says):
             self.write(name, text)
             self.refused(2, "plan", name, says=says)
@@ -233,7 +233,7 @@ class Files(ToolTest):
         bad("s.svg", '<svg xmlns="http://www.w3.org/2000/svg"></svg>', "s.svg")
         self.refused(2, "plan", "-", stdin="", says=["standard input"])
 
-    def test_a_million_points(self):
+    def test_a_million_points_are_read(self):
         n = 1_000_000
         lines = (f"{i * 1e-5:.5f},{20 + 15 * ((i % 2000) / 1000 - 1):.4f},20" for i in range(n))
         self.write("big.csv", "t_s,x_mm,y_mm\n" + "\n".join(lines) + "\n")

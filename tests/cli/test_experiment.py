@@ -15,15 +15,15 @@ SHIPPED = ROOT / "examples/experiments/park2016.toml"
 
 
 class Definition(ExperimentTest):
-    def test_the_shipped_one_is_printed_as_it_stands_among_the_examples(self):
+    def test_the_shipped_definition_is_the_one_in_the_examples(self):
         self.assertEqual(self.ok("experiment", "park2016", "--print").stdout, SHIPPED.read_text(encoding="utf-8"))
 
-    def test_what_is_printed_can_be_used(self):
+    def test_a_printed_definition_can_be_used(self):
         self.write("mine.toml", self.ok("experiment", "park2016", "--print").stdout)
         self.assertEqual(self.ok("experiment", "mine.toml", "--dry-run", "--format", "json").stdout,
                          self.ok("experiment", "park2016", "--dry-run", "--format", "json").stdout)
 
-    def test_what_is_wrong_is_said_with_file_and_line_and_nothing_is_written(self):
+    def test_faults_have_file_and_line_and_nothing_is_written(self):
         for old, new, says in (
                 ("gap_s = 0.25", "gaps_s = 0.25", ("small.toml:5:", "did you mean 'gap_s'")),
                 ('path = "M0 20H40"', 'path = "M0 20H90"', ("small.toml:6:", "to the right", "line 14")),
@@ -48,7 +48,7 @@ class Definition(ExperimentTest):
             said = self.refused(2, "experiment", "small.toml", "--dry-run", says=(says,)).stderr
             self.assertNotIn("--", said)
 
-    def test_options_that_are_wrong(self):
+    def test_wrong_options_are_refused(self):
         self.small()
         for args, says in (((), ("--participant",)),
                            (("--participant", "01"), ("-o",)),
@@ -67,7 +67,7 @@ class Definition(ExperimentTest):
         self.refused(2, "experiment", "park2061", "--dry-run", says=("park2016, or a file",))
         self.refused(2, "experiment", "none.toml", "--dry-run", says=("none.toml",))
 
-    def test_what_a_limit_would_change_is_said_before_anybody_sits_down(self):
+    def test_strokes_that_a_limit_would_change_are_refused_before_the_session(self):
         long = SMALL.replace("gap_s = 0.25", "level = { dbfs = -18 }", 1).replace('path = "M0 20H40"\nduration = 0.7',
                                                                                    'path = "M0 20H2"\nduration = 6', 1)
         self.small(long.replace('algorithm = "tactile-brush"', 'algorithm = "continuous"', 1))
@@ -89,7 +89,7 @@ class Definition(ExperimentTest):
                      says=("no threshold", "tactor calibrate"))
         self.assertFalse((self.dir / "study").exists())
 
-    def test_thresholds_that_were_simulated_are_told(self):
+    def test_simulated_thresholds_are_reported(self):
         self.ok("calibrate", "--participant", "01", "-o", "felt.toml", "--simulate", "threshold=-45")
         self.assertIn("thresholds were simulated",
                       self.ok("experiment", "park2016", "--dry-run", "--array", "felt.toml").stderr)
@@ -102,7 +102,7 @@ class DryRun(ExperimentTest):
         result = self.ok("experiment", *more, "--dry-run", "--format", "json")
         return json.loads(result.stdout), result.stderr
 
-    def test_all_trials_of_the_shipped_one(self):
+    def test_the_shipped_definition_has_all_its_trials(self):
         told, warned = self.dry("park2016", "--participant", "02")
         self.assertEqual([r["name"] for r in told["runs"]],
                          ["uniformity", "similarity-rating", "similarity", "uniformity-rating"])
@@ -119,7 +119,7 @@ class DryRun(ExperimentTest):
         self.assertIn("-40 dBFS", warned)
         self.assertTrue(told["thresholds_assumed"])
 
-    def test_what_is_listed_is_what_a_session_gets(self):
+    def test_a_session_gets_the_listed_trials(self):
         told, _ = self.dry(self.small(), "--participant", "P3", "--seed", "8")
         self.simulate("P3", "--seed", "8")
         for run in told["runs"]:
@@ -156,7 +156,7 @@ class DryRun(ExperimentTest):
         said = self.ok("experiment", "small.toml", "--dry-run", "--config", "tired.toml").stdout
         self.assertIn("s without the answers", said)
 
-    def test_the_shipped_one_waits_by_exception(self):
+    def test_the_shipped_definition_waits_only_where_needed(self):
         told, _ = self.dry("park2016")
         waits = sum(r["waits"] for r in told["runs"])
         trials = sum(len(r["practice"]) + len(r["trials"]) for r in told["runs"])
@@ -223,7 +223,7 @@ class DryRun(ExperimentTest):
             self.refused(2, "experiment", small, "--array", felt, "--participant", "01", "-o", "study", "-D", "null",
                          says=("tactor 8",))
             self.assertFalse((self.dir / "study").exists())
-            self.simulate(definition=small, folder=felt[:4])  # nobody takes that walk
+            self.simulate(definition=small, folder=felt[:4])  # without that walk
         at_100 = self.small(SMALL.replace('algorithm = "', 'carrier = 100\nalgorithm = "'))
         felt = self.felt("low.toml", ["[[100, -20], [250, -2]]"] * 9)
         self.dry(at_100, "--array", felt)
@@ -238,7 +238,7 @@ class DryRun(ExperimentTest):
 
 
 class Simulated(ExperimentTest):
-    def test_the_folder_is_what_bids_wants(self):
+    def test_the_folder_follows_bids(self):
         self.simulate("P07")
         study = self.dir / "study"
         files = set(contents(study))
@@ -275,14 +275,14 @@ class Simulated(ExperimentTest):
         for t in times:
             self.assertRegex(t, r"^2000-01-01T\d\d:\d\d:\d\d\.\d{6}Z$")
 
-    def test_columns_of_each_task(self):
+    def test_each_task_has_its_columns(self):
         self.simulate()
         rate = 48000
         for row in self.rows("01", "whichone"):
             self.assertEqual({row["method_1"], row["method_2"]}, {"brush", "park"})
             self.assertIn(row["response"], ("1", "2"))
             self.assertEqual(row["rating"], "n/a")
-            # Both methods take their own time; the gap is exact to the frame.
+            # Both methods take the same time as before; the gap is exact to the frame.
             first = self.plan_frames(row["plan_1"])
             self.assertEqual(int(row["frame_2"]) - int(row["frame_1"]), first + rate // 4)
             self.assertAlmostEqual(float(row["duration"]), (first + rate / 4 + self.plan_frames(row["plan_2"])) / rate, 6)
@@ -306,7 +306,7 @@ class Simulated(ExperimentTest):
     def plan_frames(self, name):
         return json.loads((self.dir / f"study/sourcedata/sub-01/plans/{name}.json").read_text())["render"]["frames"]
 
-    def test_the_session_says_all_that_it_was(self):
+    def test_the_session_file_is_complete(self):
         self.simulate("01", "--seed", "12")
         s = self.session()
         self.assertEqual((s["simulated"], s["seed"], s["simulation"]), (True, 12, "seed=1,sigma=1"))
@@ -318,7 +318,7 @@ class Simulated(ExperimentTest):
         self.assertEqual(s["device"], None)
         self.assertIn("tactor", s["versions"])
 
-    def test_every_file_that_describes_says_that_it_is_simulated(self):
+    def test_every_description_says_that_the_data_are_simulated(self):
         result = self.simulate()
         self.assertIn("SIMULATED", result.stdout)
         study = self.dir / "study"
@@ -360,7 +360,7 @@ class Simulated(ExperimentTest):
         rows = [r for n in range(1, 9) for r in self.rows(f"{n:02}", "similarity")]
         chosen = sum(r["method_" + r["response"]] == "park2016" for r in rows)
         self.assertAlmostEqual(told["runs"]["similarity"]["preference"]["all"]["mean"], 100 * chosen / len(rows), 9)
-        # Who seems nearer to the target in the model is chosen more often.
+        # The stimulus nearer to the target in the model is chosen more often.
         self.assertGreater(abs(told["runs"]["similarity"]["preference"]["all"]["mean"] - 50), 3)
 
     def test_identify_is_analysed_too(self):
@@ -371,7 +371,7 @@ class Simulated(ExperimentTest):
 
 
 class Folder(ExperimentTest):
-    def test_somebody_who_was_here_is_refused_but_for_resume(self):
+    def test_a_known_participant_is_refused_without_resume(self):
         self.simulate()
         before = contents(self.dir / "study")
         self.simulate(run=lambda *a: self.refused(2, *a, says=("session of 01 already", "--resume")))
@@ -379,7 +379,7 @@ class Folder(ExperimentTest):
         self.assertIn("finished", result.stdout)
         self.assertEqual(contents(self.dir / "study"), before)
 
-    def test_what_a_finished_session_lacks_is_told(self):
+    def test_missing_parts_of_a_finished_session_are_named(self):
         self.simulate()
         plan = next((self.dir / "study/sourcedata/sub-01/plans").iterdir())
         for lost in (plan, self.dir / "study/participants.tsv", self.dir / "study/sub-01/sub-01_scans.tsv", self.dir / "study/README"):
@@ -415,14 +415,14 @@ class Folder(ExperimentTest):
         self.simulate("01", folder="two")
         self.assertEqual(contents(self.dir / "one"), contents(self.dir / "two"))
 
-    def test_a_session_that_stopped_anywhere_goes_on_as_if_it_had_not(self):
+    def test_a_session_that_stopped_anywhere_resumes_as_if_it_had_not(self):
         spec = "seed=4,sigma=1,void=0.3"
         self.simulate(spec=spec, folder="whole")
         whole = contents(self.dir / "whole")
         table = "sub-01/beh/sub-01_task-howgood_beh.tsv"
         later = [n for n in whole if "task-what" in n and n.startswith("sub-01")]
         text = whole[table]
-        # After any byte of any line but the header and the first, which come at once.
+        # After any byte of any line except the header and the first, which come at once.
         least = text.index(b"\n", text.index(b"\n") + 1) + 1
         for cut in sorted({least, *range(len(text) - 200, len(text), 9), *range(least, len(text), 199)}):
             os.system(f"rm -rf {self.dir}/study && cp -r {self.dir}/whole {self.dir}/study")
@@ -434,7 +434,7 @@ class Folder(ExperimentTest):
             self.simulate("01", "--resume", spec=spec)
             self.assertEqual(self.without_cut(), whole, f"cut at {cut} of {len(text)}")
 
-    def test_a_session_goes_on_only_as_it_was_begun(self):
+    def test_a_session_resumes_only_with_its_options(self):
         self.simulate("01", "--seed", "3")
         for more, says in ((("--seed", "4"), "seed 3"), (("--simulate", "seed=9"), "simulation")):
             args = ["experiment", "small.toml", "--participant", "01", "-o", "study", "--resume", *more]
@@ -466,13 +466,13 @@ class Folder(ExperimentTest):
         self.simulate("02", definition="small.toml",
                       run=lambda *a: self.refused(2, *a, says=("another experiment", "folder of its own")))
 
-    def test_a_definition_that_was_changed_meanwhile_is_told(self):
+    def test_a_changed_definition_is_reported(self):
         self.assertNotIn("another text", self.simulate("02").stderr + self.simulate("01").stderr)
         self.small(SMALL.replace("gap_s = 0.25", "gap_s = 0.5"))
         told = self.simulate("03", definition="small.toml").stderr
         self.assertIn("warning: study: sub-01, sub-02 had another text of this definition", told)
 
-    def test_two_experimenters_in_one_folder(self):
+    def test_two_experimenters_in_one_folder_are_refused(self):
         self.simulate()
         holder = os.open(self.dir / "study", os.O_RDONLY)
         fcntl.flock(holder, fcntl.LOCK_EX)
@@ -488,15 +488,15 @@ class Folder(ExperimentTest):
         self.simulate(folder="file", run=lambda *a: self.refused(2, *a, says=("no folder",)))
         self.simulate(folder="none/study", run=lambda *a: self.refused(2, *a, says=("does not exist",)))
 
-    def test_a_folder_that_cannot_be_written(self):
+    def test_a_folder_that_cannot_be_written_is_refused(self):
         self.simulate(folder="/proc/study", run=lambda *a: self.refused(1, *a, says=("/proc/study",)))
 
     @unittest.skipIf(os.geteuid() == 0, "root may write everywhere")
-    def test_a_folder_without_the_right_to_write(self):
+    def test_a_folder_without_write_permission_is_refused(self):
         (self.dir / "study").mkdir(mode=0o555)
         self.simulate(run=lambda *a: self.refused(1, *a, says=("study",)))
 
-    def test_what_the_experimenter_added_to_the_list_of_people_stays(self):
+    def test_the_experimenter_s_columns_in_the_list_of_participants_stay(self):
         self.simulate()
         file = self.dir / "study/participants.tsv"
         file.write_text("participant_id\tage\tsex\thandedness\tgroup\r\nsub-01\t24\tF\tR\told\r\n")
@@ -507,7 +507,7 @@ class Folder(ExperimentTest):
         self.simulate("03")
         self.assertEqual(file.read_bytes(), b"group\tparticipant_id\nold\tsub-01\nnew\tsub-02\nn/a\tsub-03\n")
 
-    def test_what_a_crash_left_is_cleared_away(self):
+    def test_leftovers_of_a_crash_are_removed(self):
         self.simulate(folder="whole")
         whole = contents(self.dir / "whole")
         os.system(f"cp -r {self.dir}/whole {self.dir}/study")

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""A simulated session that is killed at any of its writes, or whose disk is full at any of them, goes on with --resume
-as if nothing had been: strace injects the signal, and the error."""
+"""A simulated session that is killed at any of its writes, or whose disk is full at any of them, resumes as if nothing had
+happened: strace injects the signal and the error."""
 import shutil
 import subprocess
 import unittest
@@ -8,8 +8,8 @@ import unittest
 from experiments import SMALL, ExperimentTest, contents
 from harness import TOOL, main
 
-# What changes a disk. strace counts each by itself. (Who is killed at an fsync leaves what one leaves who is killed at the
-# next of these.)
+# System calls that change a disk. strace counts each separately. (A kill at an fsync leaves the same as a kill at the next of
+# these.)
 CALLS = ("write", "rename", "mkdir", "unlink", "ftruncate")
 
 
@@ -28,7 +28,7 @@ WHY_NOT = traceable()
 class AtEveryWrite(ExperimentTest):
     def setUp(self):
         super().setUp()
-        # Two runs, void trials, practice: each kind of write, and not many of them.
+        # Two runs, void trials, practice: each kind of write, but few of them.
         self.small(SMALL.replace("trials = 4", "trials = 2").replace("trials = 3", "trials = 2"))
         self.args = ["experiment", "small.toml", "--participant", "01", "-o", "study", "--simulate",
                      "seed=4,sigma=1,void=0.3"]
@@ -36,7 +36,7 @@ class AtEveryWrite(ExperimentTest):
         self.whole = contents(self.dir / "study")
 
     def with_fault(self, call, fault, n):
-        """Runs a session in which the n-th call fails so; its exit status."""
+        """Runs a session in which the n-th call fails; returns its exit status."""
         shutil.rmtree(self.dir / "study", ignore_errors=True)
         run = subprocess.run(["strace", "-f", "-qq", "-o", self.dir / "trace", "-e", f"trace={call}", "-e",
                               f"inject={call}:{fault}:when={n}", TOOL, *self.args], cwd=self.dir, env=self.env,
@@ -47,7 +47,7 @@ class AtEveryWrite(ExperimentTest):
         self.ok(*self.args, "--resume")
         self.assertEqual(contents(self.dir / "study"), self.whole, said)
 
-    def test_kill_9(self):
+    def test_kill_9_loses_nothing(self):
         for call in CALLS:
             n = 0
             while True:
@@ -61,7 +61,7 @@ class AtEveryWrite(ExperimentTest):
             if call in ("write", "fsync", "rename"):
                 self.assertGreater(n, 20, call)
 
-    def test_a_full_disk(self):
+    def test_a_full_disk_loses_nothing(self):
         refused = kept = 0
         for call, fault in (("write", "error=ENOSPC"), ("rename", "error=EDQUOT")):
             self.with_fault(call, fault, 65535)
@@ -70,11 +70,11 @@ class AtEveryWrite(ExperimentTest):
             for n in range(1, calls + 1):
                 run = self.with_fault(call, fault, n)
                 if run.returncode == 0:
-                    continue # of what is no file: a wake-up, a line on standard output that is tried again
+                    continue  # not a file: a wake-up, a line on standard output that is retried
                 refused += 1
                 self.assertEqual(run.returncode, 1, f"{call} {n}: {run.stderr}")
                 self.assertRegex(run.stderr, r"No space left|quota exceeded", f"{call} {n}")
-                # What was kept for it takes the answer, and the session stops.
+                # The reserved space takes the answer, and the session stops.
                 kept += "the last answer is kept" in run.stderr
                 self.resumed(f"{call} {n} failed")
         self.assertGreater(refused, 30)

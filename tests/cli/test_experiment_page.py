@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The participant's page of tactor experiment as it is on the wire: what is sent, which answer counts, and who may."""
+"""The participant's page of tactor experiment on the wire: the messages, the answers that count, and the clients that may."""
 import json
 import re
 import signal
@@ -30,7 +30,7 @@ class PageTest(ExperimentTest):
 
 
 class Sessions(PageTest):
-    def test_a_whole_session(self):
+    def test_a_whole_session_on_the_page(self):
         s = self.start()
         self.assertRegex(s.address, r"^127\.0\.0\.1:[1-9]\d*$")
         p = s.participant()
@@ -67,14 +67,14 @@ class Sessions(PageTest):
         self.assertEqual(len(read_table(self.dir / "study/sourcedata/sub-01/practice.tsv")), 1)
         self.assertEqual([x["display"] for x in self.session()["streams"]], ["page"])
         self.assertGreaterEqual(min(float(r["response_time"]) for r in self.rows("01", "pairs")), 0)
-        # The experimenter reads what was answered; neither reads the method, the participant not even the title.
+        # The experimenter reads the answers; neither reads the method, and the participant not even the title.
         self.assertIn("Trial 2/2: Which one? 1 or 2: 2", s.shown)
         self.assertNotIn("cannot be drawn", s.said)
         for text in (json.dumps(p.seen), s.shown, re.sub(r'tactor: warning: motion ".*', "", s.said)):
             self.assertNotRegex(text, "(?i)alder|birch|tactile-brush|park")
         self.assertNotIn("east", json.dumps(p.seen))
 
-    def test_what_is_sent_is_the_same_for_both_methods(self):
+    def test_the_page_gets_the_same_for_both_methods(self):
         s = self.start()
         p = s.participant()
         p.begin()
@@ -90,7 +90,7 @@ class Sessions(PageTest):
             del m["progress"], m["ask"]
         self.assertEqual(marks[:len(marks) // 2], marks[len(marks) // 2:])
 
-    def test_words_in_the_participant_s_language(self):
+    def test_words_are_in_the_participant_s_language(self):
         words = '[page]\nlanguage = "de"\nagree = "Machen Sie mit?"\nyes = "Ja"\npause = "Pause"\n'
         self.write("de.toml", SHORT.replace("[[motion]]", words + "[[motion]]", 1))
         s = self.start(definition="de.toml")
@@ -105,7 +105,7 @@ class Sessions(PageTest):
         self.write("de.toml", SHORT.replace("[[motion]]", '[page]\nagre = "x"\n[[motion]]', 1))
         self.refused(2, *self.args(definition="de.toml"), says=("agre", "agree"))
 
-    def test_the_experimenter_s_keys(self):
+    def test_the_experimenter_s_keys_work(self):
         s = self.start()
         p = s.participant()
         p.begin()
@@ -114,7 +114,7 @@ class Sessions(PageTest):
         s.key("r")
         s.told("trial 1 is void: the experimenter repeats it")
         p.until("question")
-        s.key("1")  # the participant answers, nobody else
+        s.key("1")  # the participant answers, not the experimenter
         s.key("p")
         s.told("a pause comes")
         p.say(ask=p.seen[-1]["ask"], answer=2)
@@ -135,7 +135,7 @@ class Sessions(PageTest):
         self.assertEqual(self.answers(), [("1", "1", "true", "n/a"), ("2", "1", "true", "2"), ("1", "2", "false", "1"),
                                           ("2", "2", "false", "1")])
 
-    def test_a_tactor_that_is_not_felt(self):
+    def test_a_tactor_that_is_not_felt_ends_the_session(self):
         s = self.start()
         p = s.participant()
         p.answer("consent", 1)
@@ -145,27 +145,27 @@ class Sessions(PageTest):
 
 
 class OnceAndNoMore(PageTest):
-    def test_reload_second_page_doubled_and_late_answers(self):
+    def test_reloads_second_pages_doubled_and_late_answers(self):
         s = self.start()
         p = s.participant()
         p.begin()
         old = p.until("question")["ask"]
-        # The practice's answer again, and one from before the question: neither is the first trial's. All at once, for later the
-        # question is there.
+        # The practice's answer again, and one from before the question: neither is the first trial's. All at once, since the
+        # question may come later.
         p.send(b"".join(framed(TEXT, json.dumps({"ask": ask, "answer": answer}).encode())
                         for ask, answer in ((old, 1), (old, 2), (old + 1, 2))))
         p.until("stimulus", asked=False)
-        # Reload in mid-trial: the present state.
+        # A reload in mid-trial gets the present state.
         p.socket.close()
         p = s.participant()
         now = p.next()
         self.assertEqual(now["progress"]["trial"], 1)
         ask = now["ask"] or p.until("question")["ask"]
-        # Reload while it is asked: the same question.
+        # A reload during a question gets the same question.
         p.socket.close()
         p = s.participant()
         self.assertEqual(p.next()["ask"], ask)
-        # A second page: the first is told, and its answer does not count.
+        # A second page: the first is notified, and its answer does not count.
         second = s.participant()
         self.assertEqual(second.next()["ask"], ask)
         self.assertEqual(p.next(), {"screen": "elsewhere"})
@@ -180,7 +180,7 @@ class OnceAndNoMore(PageTest):
         p.say(ask=ask, answer=1)
         p.say(ask=ask, answer=2)
         self.assertEqual(p.until("question")["progress"]["trial"], 2)
-        # Nobody there: the question waits.
+        # Without a page the question waits.
         p.socket.close()
         p = s.participant()
         p.answer("question", 1)
@@ -191,7 +191,7 @@ class OnceAndNoMore(PageTest):
         self.assertEqual(self.answers(), [("1", "1", "false", "2"), ("2", "1", "false", "1")])
         self.assertEqual(self.answers("marks", "rating"), [("1", "1", "false", "2"), ("2", "1", "false", "2")])
 
-    def test_a_target_that_nobody_saw_makes_its_trial_void(self):
+    def test_a_target_shown_on_no_page_makes_its_trial_void(self):
         s = self.start()
         p = s.participant()
         p.answer("consent", 1)
@@ -213,7 +213,7 @@ class OnceAndNoMore(PageTest):
         self.assertEqual(rows[0], ("1", "1", "true", "n/a"))
         self.assertEqual(sorted((r[0], r[3]) for r in rows if r[2] == "false"), [("1", "2"), ("2", "2")])
 
-    def test_killed_and_on_at_the_next_trial(self):
+    def test_a_killed_session_resumes_at_the_next_trial(self):
         s = self.start()
         p = s.participant()
         p.begin()
@@ -234,7 +234,7 @@ class OnceAndNoMore(PageTest):
         self.assertEqual(s.end(), 130)
         self.assertEqual(self.answers(), [("1", "1", "false", "2"), ("2", "1", "false", "1")])
 
-    def test_no_nonsense(self):
+    def test_nonsense_is_refused(self):
         s = self.start()
         s.participant().until("consent")
         for text in (b"", b"{", b"[]", b"7", b'{"answer":0}', b'{"answer":-1,"ask":1}', b'{"answer":"1","ask":1}', b"[" * 4000,
@@ -275,7 +275,7 @@ class WhoMay(PageTest):
         self.assertFalse(re.findall(r"(?:src|href)=\"(?!data:,)", page))
         self.assertFalse(re.findall(r"https?://(?!www\.w3\.org/2000/svg)", page))
 
-    def test_host_and_origin(self):
+    def test_host_and_origin_are_checked(self):
         s = self.start()
         port = s.address.rpartition(":")[2]
         for host, status in ((s.address, 200), (f"localhost:{port}", 200), ("localhost", 403), (f"evil.example:{port}", 403),
@@ -292,7 +292,7 @@ class WhoMay(PageTest):
             self.addCleanup(p.socket.close)
             self.assertEqual(p.request(target)[0], status, target)
 
-    def test_what_does_not_go_together(self):
+    def test_exclusive_options_are_refused(self):
         self.refused(2, *self.args("--page", "0.0.0.0:0"), says=("--page", "not of this machine alone"))
         self.refused(2, *self.args("--page", "4:4:4"), says=("--page", "no address"))
         self.refused(2, *self.args("--page", "0", "--display", "terminal"), says=("--page", "terminal"))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""tactor experiment with somebody at a terminal, and with lines for keys: what is shown, asked, written and refused."""
+"""tactor experiment with a person at a terminal, and with lines in place of keys: display, questions, files and refusals."""
 import contextlib
 import datetime
 import fcntl
@@ -73,12 +73,12 @@ class PersonTest(ExperimentTest):
     def args(self, *more, code="01", definition="short.toml", device="null"):
         return ("experiment", definition, "--participant", code, "-o", "study", *(("-D", device) if device else ()), *more)
 
-    def frames_of(self, plan, code="01"):
+    def count_frames(self, plan, code="01"):
         return json.loads((self.dir / f"study/sourcedata/sub-{code}/plans/{plan}.json").read_text())["render"]["frames"]
 
 
 class Terminal:
-    """The tool at a terminal of its own; standard error goes to a file, as an experimenter's console would."""
+    """The tool on a pseudo-terminal; standard error goes to a file, as an experimenter's console would."""
 
     def __init__(self, test, args):
         self.console = tempfile.TemporaryFile("w+")
@@ -110,15 +110,15 @@ class Terminal:
         self.key(key)
 
     def begin(self):
-        """Up to the first run's first trial."""
+        """Answers up to the first run's first trial."""
         self.answer("Do you agree", "y")
         for i in (0, 1):
             self.answer(f"{i}: Did you feel it", "y")
         self.answer("Any key begins", " ")
 
     def end(self):
-        """Its exit status."""
-        with contextlib.suppress(OSError):  # the terminal is gone with the program
+        """Returns its exit status."""
+        with contextlib.suppress(OSError):  # the terminal closes with the program
             while True:
                 self.read()
         os.close(self.fd)
@@ -154,14 +154,14 @@ class AtTheTerminal(PersonTest):
         self.assertEqual([r["response"] for r in rows], ["1", "2"])
         self.assertEqual([r["rating"] for r in self.rows("01", "marks")], ["3", "3"])
         for r in rows:
-            self.assertEqual(int(r["frame_2"]) - int(r["frame_1"]), self.frames_of(r["plan_1"]) + RATE // 10)
+            self.assertEqual(int(r["frame_2"]) - int(r["frame_1"]), self.count_frames(r["plan_1"]) + RATE // 10)
             self.assertAlmostEqual(float(r["duration"]),
-                                   (self.frames_of(r["plan_1"]) + RATE // 10 + self.frames_of(r["plan_2"])) / RATE, 6)
+                                   (self.count_frames(r["plan_1"]) + RATE // 10 + self.count_frames(r["plan_2"])) / RATE, 6)
             self.assertEqual((r["void"], r["xruns"], r["stream"], r["attempt"]), ("false", "0", "1", "1"))
             self.assertLess(float(r["response_time"]), PATIENCE_S)
         self.assertEqual(rows[0]["onset"], "0.000000")
         self.assertAlmostEqual(float(rows[1]["onset"]), (int(rows[1]["frame_1"]) - int(rows[0]["frame_1"])) / RATE, 5)
-        # Half a second, the animation's 0.2 s, and the stimuli are between two trials at least.
+        # At least half a second, the animation's 0.2 s, and the stimuli are between two trials.
         self.assertGreater(float(rows[1]["onset"]), float(rows[0]["duration"]) + 0.7)
         self.assertEqual(len(read_table(self.dir / "study/sourcedata/sub-01/practice.tsv")), 1)
 
@@ -188,10 +188,10 @@ class AtTheTerminal(PersonTest):
         t.answer("\\?2 1 \\(nada\\) <to> 3 \\(todo\\): ", "1")
         t.answer("<over>\\s+<any_key_ends>", " ")
         self.assertEqual(t.end(), 0, t.said())
-        # And what is read where there is no terminal.
+        # And the text read without a terminal.
         lines = self.ok(*self.args(code="02"), stdin="y\ny\ny\n" + "x\n1\n" + "1\n1\n" + "1\n1\n").stdout
         for shown in (t.all, lines):
-            # Nothing else is in letters, but what the picture says of time and place, and the tool at its end.
+            # The rest is not in letters, except the picture's words for time and place, and the tool's at its end.
             rest = re.sub(r"\033\[[0-9;?]*[A-Za-z]|<\w+>|Be at ease\.|nada|todo|\b[ynrb] (?=<)|\bs\b|at [\d.-]+, [\d.-]+ mm|sub-0\d: 4 trials.*", "", shown)
             self.assertNotRegex(rest, "[A-Za-z]{2}")
         self.assertIn("<target>\n", lines)
@@ -213,13 +213,13 @@ class AtTheTerminal(PersonTest):
         self.assertIn("\033[", t.all)
         self.assertNotIn("cannot be drawn", t.said())
 
-    def test_the_experimenter_s_keys(self):
+    def test_the_experimenter_s_keys_work(self):
         t = self.start()
         t.begin()
         t.answer("Which one\\? ", "1")  # practice
         t.answer("Trial 1/2", "r")  # while it plays
         t.until("Once more, later")
-        t.answer("Trial 2/2: [^?]*Which one\\? ", "r")  # while it is asked
+        t.answer("Trial 2/2: [^?]*Which one\\? ", "r")  # during the question
         t.until("Once more, later")
         t.answer("Trial 1/2 \\(again\\): [^?]*Which one\\? ", "p2")
         t.answer("A pause", "1g")
@@ -246,7 +246,7 @@ class AtTheTerminal(PersonTest):
         self.assertEqual(t.said().count("is void: the experimenter says so"), 3)
         self.ok("experiment", "short.toml", "--participant", "01", "-o", "study", "-D", "null", "--resume")
 
-    def test_what_the_participant_reads_breaks_at_words(self):
+    def test_the_participant_s_text_breaks_at_words(self):
         words = [f"word{i}x{'y' * (i % 9)}" for i in range(60)]
         self.write("short.toml", SHORT.replace("Be at ease.", " ".join(words) + "\\n\\nA second part.")
                    .replace("Which one?", " ".join(reversed(words)) + "?"))
@@ -296,14 +296,14 @@ class AtTheTerminal(PersonTest):
         self.assertNotRegex(t.all, r"\033\[[0-9;]*m")
         self.assertEqual(self.session("01")["streams"][0]["display"], "terminal with animation")
 
-    def test_ctrl_c_at_any_place_and_on_from_there(self):
+    def test_ctrl_c_ends_at_any_place_and_the_session_resumes(self):
         t = self.start()
         t.answer("Do you agree", "\x03")
         self.assertEqual(t.end(), 130)
         self.assertFalse((self.dir / "study/sourcedata").exists())
         t = self.start()
         t.answer("Do you agree", "y")
-        t.answer("0: Did you feel it", "q")  # as good
+        t.answer("0: Did you feel it", "q")  # the same effect
         self.assertEqual(t.end(), 130)
         self.assertIn("tactor: ended by the experimenter (q), before anything was answered: nothing is written", t.said())
         self.assertFalse((self.dir / "study/sourcedata").exists())
@@ -325,7 +325,7 @@ class AtTheTerminal(PersonTest):
             self.assertEqual(t.end(), 130, place)
             self.assertIn("--resume goes on", t.said())
         self.assertEqual([r["response"] for r in self.rows("01", "pairs")], ["1", "2"])
-        # The break was over with the interruption; and the stream is another.
+        # The break was over with the interruption, and the stream is another.
         result = self.ok(*self.args("--resume"), stdin="y\ny\n1\n2\n")
         self.assertNotIn("A break", result.stdout)
         self.assertEqual({r["stream"] for r in self.rows("01", "pairs")}, {"4"})
@@ -336,7 +336,7 @@ class AtTheTerminal(PersonTest):
 class ByLines(PersonTest):
     ANSWERS = AGREED + "1\n1\n2\n" + "1\n2\n"
 
-    def test_a_session_and_what_it_leaves(self):
+    def test_a_session_and_its_files(self):
         result = self.ok(*self.args(), stdin=self.ANSWERS)
         self.assertIn('warning: playing to "null", which nobody feels', result.stderr)
         self.assertIn("warning: the target cannot be drawn", result.stderr)
@@ -377,7 +377,7 @@ class ByLines(PersonTest):
         self.ok(*self.args(), stdin=self.ANSWERS)
         self.assertNotIn("simulated", (self.dir / "study/README").read_text().lower())
 
-    def test_who_did_not_agree_leaves_no_word_to_the_next(self):
+    def test_an_unconsented_participant_leaves_no_word_to_the_next(self):
         self.refused(1, *self.args(), stdin="n\n", says=("did not agree",))
         self.ok("experiment", "short.toml", "--participant", "02", "-o", "study", "--simulate", "seed=1")
         for name in ("README", "dataset_description.json", "participants.json", "task-pairs_beh.json"):
@@ -392,7 +392,7 @@ class ByLines(PersonTest):
         self.ok(*self.args(), stdin=self.ANSWERS)
         self.assertIn("ours", (self.dir / "study/dataset_description.json").read_text())
 
-    def test_what_cannot_be_written_is_told_before_anybody_is_asked(self):
+    def test_unwritable_files_are_reported_before_the_first_question(self):
         def told(status, *says, code="01"):
             self.assertNotIn("agree", self.refused(status, *self.args(code=code), stdin=self.ANSWERS, says=says).stdout)
             self.assertFalse((self.dir / "study/sourcedata").exists())
@@ -419,10 +419,10 @@ class ByLines(PersonTest):
         result = self.ok(*self.args(definition="what.toml"), stdin="y\ny\n3\n1\n2\n")
         self.assertIn("Which movement was it? 1 east, 2 west: ", result.stdout)
         self.assertIn("That is no answer: 1 east, 2 west", result.stdout)
-        self.assertNotIn("agree", result.stdout)  # there is nothing to agree to
+        self.assertNotIn("agree", result.stdout)  # without a consent question
         self.assertEqual([r["response"] for r in self.rows("01", "what")], ["east", "west"])
 
-    def test_no_more_answers_loses_none(self):
+    def test_the_end_of_answers_loses_none(self):
         self.refused(1, *self.args(), stdin=AGREED + "1\n1\n", says=("no answer any more", "--resume"))
         self.assertEqual(len(self.rows("01", "pairs")), 1)
         result = self.ok(*self.args("--resume"), stdin="y\ny\n" + "2\n1\n2\n")
@@ -433,7 +433,7 @@ class ByLines(PersonTest):
         # Over the gap between two streams the clock of the day counts.
         self.assertGreater(float(rows[1]["onset"]), float(rows[0]["duration"]))
 
-    def test_what_becomes_of_the_stream_is_told_and_appended_to_a_file(self):
+    def test_events_of_the_stream_are_reported_and_appended_to_a_file(self):
         told = self.refused(1, *self.args("--verbose", "--log", "stream.log"), stdin="n\n", says=("did not agree",)).stderr
         log = (self.dir / "stream.log").read_text()
         for text in (told, log):
@@ -454,20 +454,20 @@ class ByLines(PersonTest):
         self.ok(*self.args("--resume"), stdin="y\ny\n" + "1\n" * 5)
         self.assertRegex(self.session()["date"], r"^20\d\d-")
 
-    def test_authors_that_nobody_put_in_are_warned_of(self):
+    def test_missing_authors_are_warned_of(self):
         self.assertNotIn("authors", self.refused(1, *self.args(), stdin="n\n", says=("agree",)).stderr)
         for said, warned in (("put your names here", True), ("A. Author", False)):
             self.write("short.toml", SHORT.replace("gap_s", f'authors = ["{said}"]\ngap_s', 1))
             told = self.refused(1, *self.args(), stdin="n\n", says=("agree",)).stderr
             self.assertEqual('the data will say "put your names here"' in told, warned)
 
-    def test_a_keypad_that_is_none_is_told_before_anything_is_written(self):
+    def test_a_missing_keypad_is_reported_before_anything_is_written(self):
         self.refused(2, *self.args("--keypad", "/dev/null"), stdin=AGREED, says=("/dev/null: it is no input device",))
         self.refused(3, *self.args("--keypad", "/dev/input/nobody"), stdin=AGREED, says=("/dev/input/nobody: No such file",))
         self.refused(2, *self.args("--keypad", "/dev/null", "--simulate", "seed=1"), says=("--keypad", "nobody is asked"))
         self.assertFalse((self.dir / "study/sub-01").exists())
 
-    def test_killed_at_any_moment_nothing_answered_is_lost(self):
+    def test_a_session_killed_at_any_moment_loses_no_answer(self):
         with subprocess.Popen([TOOL, *map(str, self.args())], cwd=self.dir, env=self.env, stdin=subprocess.PIPE,
                               stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True) as tool:
             tool.stdin.write(AGREED + "1\n2\n")
@@ -487,7 +487,7 @@ class Masking(PersonTest):
         return "noisy.toml"
 
     def covered(self, name):
-        """How many times 10 ms each piece of full noise lasts (S32, stereo)."""
+        """Returns the length of each piece of full noise, in 10 ms (S32, stereo)."""
         values = [v / 2 ** 31 for v, in struct.iter_unpack("<i", (self.dir / name).read_bytes())]
         self.assertEqual(values[::2], values[1::2])
         left = values[::2]
@@ -496,20 +496,20 @@ class Masking(PersonTest):
         full = "".join(str(int(0.7e-2 < p < 1.4e-2)) for p in power)
         return [len(r) for r in re.findall("1+", full)]
 
-    def test_noise_around_each_stimulus(self):
+    def test_noise_surrounds_each_stimulus(self):
         self.ok(*self.args("--masker", "raw:noise.raw", definition=self.noisy()), stdin=ByLines.ANSWERS)
         self.assertEqual(self.session("01")["masker"], "raw:noise.raw")
         pieces = self.covered("noise.raw")
-        # Two devices, whose clocks both stand still where the machine does: how long it lasts, timed/test_times.py says.
-        # Two tactors of the walk, three pairs and two single stimuli; without answers to wait for, neighbours may run into one.
+        # Both devices' clocks stand still where the machine does; timed/test_times.py checks durations.
+        # Two tactors of the walk, three pairs and two single stimuli; without answers to wait for, neighbours may merge.
         self.assertIn(len(pieces), range(1, 8))
 
-    def test_noise_through_the_run(self):
+    def test_noise_lasts_through_the_run(self):
         self.ok(*self.args("--masker", "raw:noise.raw", definition=self.noisy('while = "run"\n')), stdin=ByLines.ANSWERS)
         pieces = self.covered("noise.raw")
         self.assertIn(len(pieces), range(1, 5))  # two tactors of the walk, two runs
 
-    def test_headphones_that_have_another_name_by_now(self):
+    def test_renamed_headphones_are_accepted(self):
         args = self.args(definition=self.noisy())
         self.refused(1, *args, "--masker", "raw:one.raw", stdin=AGREED + "1\n", says=("no answer any more",))
         self.refused(2, *args, "--resume", says=('begun with masker "raw:one.raw", and now it is null',))
@@ -521,11 +521,11 @@ class Masking(PersonTest):
         self.assertIn("Masking noise: white noise of -20 dBFS (root mean square), faded over 0.05 s, while stimuli played, from "
                       "raw:two.raw.", self.ok("report", "study").stdout)
 
-    def test_noise_that_was_asked_for_and_not_played_is_not_reported_as_played(self):
+    def test_noise_that_did_not_play_is_not_reported_as_played(self):
         self.ok(*self.args(definition=self.noisy()), stdin=ByLines.ANSWERS)
         self.assertIn("Masking noise: none (the definition asks for white noise of -20 dBFS", self.ok("report", "study").stdout)
 
-    def test_its_level_is_checked_by_ear(self):
+    def test_the_noise_level_is_checked_by_ear(self):
         check = ("experiment", self.noisy(), "--check-noise", "-D", "null")
         said = self.ok(*check, "--masker", "raw:noise.raw", stdin="s\ns\nn\nx\nn\nq\n").stdout
         self.assertIn("white noise, -20 dBFS, on raw:noise.raw", said)
@@ -533,13 +533,13 @@ class Masking(PersonTest):
         self.assertRegex(said.splitlines()[2], r"^a stimulus of 0\.\d\d s$")
         self.assertLessEqual(len(self.covered("noise.raw")), 3)
         self.assertFalse((self.dir / "study").exists())
-        self.ok(*check, "--masker", "null")  # no keys: it ends
+        self.ok(*check, "--masker", "null")  # without keys it ends
         self.refused(2, *check, says=("--check-noise", "--masker PCM"))
         self.refused(2, "experiment", "short.toml", "--check-noise", "-D", "null", "--masker", "null",
                      says=("--masker", "no masking noise"))
         self.refused(2, *check[:-2], "--simulate", "seed=1", "--masker", "null", says=("--check-noise", "nobody hears"))
 
-    def test_what_does_not_go_together(self):
+    def test_exclusive_options_are_refused(self):
         self.refused(2, *self.args("--masker", "null"), says=("--masker", "no masking noise"))
         self.refused(2, *self.args("--masker", ""), says=("--masker", "no device is named"))
         self.refused(3, *self.args("--masker", "hw:CARD=Nowhere", definition=self.noisy()), says=("hw:CARD=Nowhere",))
@@ -551,7 +551,7 @@ class Masking(PersonTest):
 
 
 class Refused(PersonTest):
-    def test_each_before_a_trial(self):
+    def test_each_fault_is_reported_before_a_trial(self):
         self.write("sl.toml", SHORT.replace("{ dbfs = -20 }", "{ sl_db = 7 }"))
         self.refused(2, *self.args(definition="sl.toml"), says=("tactor 0 has no threshold", "tactor calibrate"))
         self.refused(2, *self.args(device=None), says=("-D: no device is configured", "--simulate"))
@@ -564,15 +564,15 @@ class Refused(PersonTest):
         self.refused(3, *self.args(device="hw:CARD=Nowhere"), says=("hw:CARD=Nowhere",))
         self.refused(2, *self.args("--display", "hologram"), says=("--display",))
 
-    def test_two_experimenters_in_one_folder(self):
+    def test_two_experimenters_in_one_folder_are_refused(self):
         (self.dir / "study").mkdir()
         holder = os.open(self.dir / "study", os.O_RDONLY)
         fcntl.flock(holder, fcntl.LOCK_EX)
         self.refused(2, *self.args(), says=("another session is running",))
         os.close(holder)
 
-    def test_a_sound_server_in_between(self):
-        # By its type alone: a plugin that is called so, and that nothing stands behind.
+    def test_a_sound_server_in_between_is_reported(self):
+        # Recognised by its type alone: a plugin with that name and nothing behind it.
         self.write("alsa.conf", (self.dir / "alsa.conf").read_text() +
                    "pcm.shared { type pipewire }\npcm.!pipewire { type null }\n")
         told = self.refused(2, *self.args(device="shared"), says=("shared", "PipeWire is in between", "--allow-sound-server"))
@@ -583,7 +583,7 @@ class Refused(PersonTest):
         self.write("noisy.toml", SHORT.replace("[[motion]]", '[masking]\nnoise = "pink"\n[[motion]]', 1))
         self.refused(2, *self.args("--masker", "shared", definition="noisy.toml"), says=("shared", "PipeWire is in between", "--masker hw:CARD="))
 
-    def test_simulated_sessions_need_none_of_it(self):
+    def test_simulated_sessions_need_no_device(self):
         self.write("noisy.toml", SMALL.replace("[[motion]]", '[masking]\nnoise = "pink"\n[[motion]]', 1))
         result = self.simulate("01", definition="noisy.toml")
         self.assertNotIn("--masker", result.stderr)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Tables of tactor experiment that a crash, an editor, a spreadsheet, R or pandas left: what goes on, what is refused."""
+"""Tables of tactor experiment left by a crash, an editor, a spreadsheet, R or pandas: which resume, which are refused."""
 import json
 import re
 import shutil
@@ -10,7 +10,7 @@ from harness import main
 
 class Tables(ExperimentTest):
     def broken_off(self, spec="seed=1,sigma=1"):
-        """A session in its second run, two trials of which are answered; the bytes of the whole one, and the tables."""
+        """Makes a session in its second run with two answered trials; returns the bytes of the whole one, and the tables."""
         for folder in ("whole", "study"):
             shutil.rmtree(self.dir / folder, ignore_errors=True)
         self.simulate(spec=spec, folder="whole")
@@ -25,7 +25,7 @@ class Tables(ExperimentTest):
         scans.write_text("".join(lines[:-1]))
         return whole, table, [p for p in (self.dir / "study").rglob("*.tsv")]
 
-    def test_tables_that_another_program_saved_go_on_and_keep_their_line_ends(self):
+    def test_tables_saved_by_another_program_resume_and_keep_their_line_ends(self):
         def quoted(text):
             return re.sub(rb"[^\t\n]+", lambda m: b'"' + m[0] + b'"', text)
         def pandas(text):
@@ -59,7 +59,7 @@ class Tables(ExperimentTest):
                 self.assertEqual(json.loads(self.ok("analyze", "study", "--format", "json").stdout)["participants"], 2)
                 self.assertEqual(told["participants"], 1)
 
-    def test_tables_that_cannot_be_read_are_refused_before_the_session_and_left_as_they_are(self):
+    def test_unreadable_tables_are_refused_before_the_session_and_left_alone(self):
         wide = {"UTF-16": lambda t: t.decode().encode("utf-16"), "without a mark": lambda t: t.decode().encode("utf-16-le")}
         ways = {"commas": (lambda t: t.replace(b"\t", b","), ":1: commas are between the columns"),
                 "semicolons": (lambda t: t.replace(b"\t", b";"), ":1: semicolons are between the columns"),
@@ -83,7 +83,7 @@ class Tables(ExperimentTest):
                     self.assertEqual(contents(self.dir / "study"), before)
                 path.write_bytes(good)
 
-    def test_resume_refuses_what_the_analysis_refuses(self):
+    def test_resume_and_analysis_refuse_the_same(self):
         whole, _, _ = self.broken_off()
         table = self.dir / "study/sub-01/beh/sub-01_task-whichone_beh.tsv"
         table = table if table.exists() else self.dir / "study/sub-01/beh/sub-01_task-howgood_beh.tsv"
@@ -108,7 +108,7 @@ class Tables(ExperimentTest):
         self.simulate("01", "--resume")
         self.assertEqual(contents(self.dir / "study"), whole)
 
-    def test_a_line_that_was_cut_off_is_kept_beside_its_table_and_told(self):
+    def test_a_cut_off_line_is_kept_beside_its_table_and_reported(self):
         whole, table, _ = self.broken_off()
         practice = self.dir / "study/sourcedata/sub-01/practice.tsv"
         lines = practice.read_bytes().splitlines(True)
@@ -125,7 +125,7 @@ class Tables(ExperimentTest):
         self.assertEqual(self.without_cut(), whole)
         self.assertEqual((self.dir / "study/.bidsignore").read_text(), "*.cut-*\n")
         self.ok("analyze", "study")
-        # Once more: nothing that was kept is replaced, nothing ignored twice.
+        # Once more: nothing kept is replaced, nothing ignored twice.
         table.write_bytes(table.read_bytes()[:-30])
         scans = self.dir / "study/sub-01/sub-01_scans.tsv"
         *first, last = scans.read_text().splitlines(True)
@@ -155,7 +155,7 @@ class Tables(ExperimentTest):
             self.assertNotIn("--resume", refusal.stderr)
         self.assertEqual(contents(self.dir / "study"), before)
 
-    def test_lists_that_are_missing_are_told_and_begun_anew(self):
+    def test_missing_lists_are_reported_and_begun_anew(self):
         whole, _, _ = self.broken_off()
         people, scans = self.dir / "study/participants.tsv", self.dir / "study/sub-01/sub-01_scans.tsv"
         for name in (people, scans):
@@ -170,7 +170,7 @@ class Tables(ExperimentTest):
         self.assertEqual([s["acq_time"] for s in read_table(scans)][:2], ["n/a", "n/a"])
         self.ok("analyze", "study")
 
-    def test_somebody_who_was_taken_out_of_the_lists_is_told(self):
+    def test_a_participant_removed_from_the_lists_is_reported(self):
         whole, _, _ = self.broken_off()
         people = self.dir / "study/participants.tsv"
         people.write_text(people.read_text().splitlines(True)[0])
@@ -192,7 +192,7 @@ class Tables(ExperimentTest):
         self.assertEqual((self.dir / "study/participants.tsv").read_text().splitlines()[-1], "n/a\tn/a\tn/a\tsub-02\tn/a")
         self.ok("analyze", "study")
 
-    def test_a_column_that_is_not_there_is_refused(self):
+    def test_a_missing_column_is_refused(self):
         _, table, _ = self.broken_off()
         good = table.read_text()
         for column in COLUMNS:

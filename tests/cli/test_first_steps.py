@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What somebody tries first: shapes, taps, presets on the wrong array; and that all commands call a stroke alike."""
+"""First steps of a user: shapes, taps, presets on the wrong array; and one syntax for strokes in all commands."""
 import json
 import math
 import re
@@ -21,7 +21,7 @@ class Taps(ToolTest):
         self.assertEqual((plan["stroke"]["length_mm"], plan["stroke"]["duration_s"]), (0, seconds))
         self.assertEqual(set(places(plan)), {place})
 
-    def test_one_place_and_a_duration_are_a_tap(self):
+    def test_a_place_and_a_duration_are_a_tap(self):
         for data in ("M 20 20", "M 20 20 Z", "M20,20L20,20", "M 20 20 l 0 0 l 0 0"):
             self.is_tap(self.plan("--path", data, "--duration", "1"))
         for algorithm in ("park2016", "continuous"):
@@ -31,7 +31,7 @@ class Taps(ToolTest):
         self.ok("compare", *TAP)
         self.assertEqual(self.plan(*TAP, "--fit")["stroke"]["length_mm"], 0)
 
-    def test_without_a_duration_it_is_asked_for(self):
+    def test_a_missing_duration_has_a_hint(self):
         for more in ((), ("--speed", "50")):
             said = self.refused(2, "plan", "--path", "M 20 20", *more, says=["path: has no length", "--duration"]).stderr
             self.assertNotIn("duration_s", said)
@@ -64,7 +64,7 @@ class Taps(ToolTest):
 
 
 class Shapes(ToolTest):
-    def test_each_is_as_large_as_the_array(self):
+    def test_each_shape_is_as_large_as_the_array(self):
         for array, width, height in (("palm-3x3", 40, 40), ("palm-2x4", 60, 20)):
             for shape, x_span, y_span in (("line", width, 0), ("circle", height, height), ("eight", min(width, 2 * height), None),
                                           ("spiral", None, None)):
@@ -81,7 +81,7 @@ class Shapes(ToolTest):
                 self.assertAlmostEqual(math.dist((x, y), (width / 2, height / 2)), 0, 9)
             self.assertEqual(p["stroke"]["duration_s"], 0.3)
 
-    def test_durations_speeds_and_small_arrays(self):
+    def test_shapes_have_durations_speeds_and_fit_small_arrays(self):
         self.assertEqual(self.plan("--shape", "circle", "--duration", "2")["stroke"]["duration_s"], 2)
         p = self.plan("--shape", "circle", "--speed", "100")
         self.assertAlmostEqual(p["stroke"]["duration_s"], math.pi * 40 / 100, 6)
@@ -92,7 +92,7 @@ class Shapes(ToolTest):
         self.plan("--shape", "tap", "--array", "one.toml")
         self.refused(2, "plan", "--shape", "circle", "--array", "one.toml", says=["does not fit on a single tactor"])
 
-    def test_every_command_that_takes_a_stroke(self):
+    def test_every_command_that_takes_a_stroke_takes_a_shape(self):
         for args in (("render", "-o", "o.wav"), ("plot", "-o", "o.svg"), ("compare",), ("play", "-D", "null"), ("plan",)):
             self.ok(*args, "--shape", "eight")
         self.refused(2, "plan", "--shape", "square", says=["--shape", "'square' is not known", "one of tap, line, circle, eight, spiral"])
@@ -100,14 +100,14 @@ class Shapes(ToolTest):
         self.refused(2, "plan", "--shape", "tap", "--path", "M 0 0 L 9 9", says=["--path", "--shape tap"])
         self.refused(2, "plan", says=["--shape circle"])
 
-    def test_the_service(self):
+    def test_the_service_takes_a_shape(self):
         s = Server(self)
         self.assertAlmostEqual(s.client().ok("plan", stroke="circle")["stroke"]["length_mm"], math.pi * 40, 3)
         self.ok("play", "--shape", "tap", "--socket", s.where["socket"])
 
 
 class Presets(ToolTest):
-    def test_one_on_another_array_names_its_own(self):
+    def test_a_preset_on_another_array_names_its_own(self):
         said = self.refused(2, "plan", "wave-2x4", says=["--array palm-2x4 is the one it is drawn for"]).stderr
         self.assertLess(said.index("palm-2x4 is"), said.index("--fit"))
         self.refused(2, "plan", "park2016-3", "--array", "palm-2x4", says=["--array palm-3x3 is the one"])
@@ -133,7 +133,7 @@ class Names(ToolTest):
 
 
 class Sound(ToolTest):
-    def test_plan_says_what_vibrates_and_how_strongly(self):
+    def test_plan_prints_tactors_and_strengths(self):
         self.write("brush.wav", wav_bytes([math.sin(k / 3) for k in range(800)]))
         self.write("p.toml", '[stroke]\npath = "M 0 0 L 40 0"\ncarrier_profile = [[0, 60], [1, 250]]\n')
         for args, says in (((), "sine of 250 Hz, level -12 dBFS"), (("--carrier", "100"), "sine of 100 Hz, "),
@@ -161,7 +161,7 @@ class Sound(ToolTest):
 
 
 class Warnings(ToolTest):
-    def test_equal_ones_are_one(self):
+    def test_equal_thresholds_are_one(self):
         self.write("four.toml", "".join(f'[[stroke]]\npath = "M 0 {y} L 20 {y}"\nduration_s = 0.{y + 3}\n' for y in range(4)))
         for args in (("play", "-D", "null"), ("render", "-o", "o.wav"), ("plot", "-o", "o.svg"), ("plan", "--format", "csv")):
             said = self.ok(*args, "four.toml", "--burst", "0.003").stderr

@@ -25,11 +25,11 @@ class Fit(ToolTest):
         self.assertIn("--fit", said)
         p = self.plan("park2016-3", *LOW, "--fit")
         self.inside(p)
-        self.assertEqual(len(p["bursts"]), 31)  # in its own time
+        self.assertEqual(len(p["bursts"]), 31)  # with its original time
         for x, y in places(p):
             self.assertAlmostEqual(math.dist((x, y), (30, 10)), 10, 6)
 
-    def test_every_kind_of_stroke(self):
+    def test_every_kind_of_stroke_can_be_fitted(self):
         self.write("two.toml", TWO)
         self.write("a.svg", SVG)
         self.write("a.csv", CSV)
@@ -42,7 +42,7 @@ class Fit(ToolTest):
         for q, corner in zip(p, ((0, 0), (60, 0)), strict=True):  # one picture
             self.assertLess(math.dist(places(q)[0], corner), 1e-9)
 
-    def test_every_command(self):
+    def test_every_command_fits(self):
         for args in (("plan",), ("render", "-o", "a.wav"), ("plot", "-o", "a.svg"), ("compare", "-o", "b.svg"),
                      ("play", "-D", "null", "--duration", "0.2")):
             with self.subTest(command=args[0]):
@@ -57,14 +57,14 @@ class Fit(ToolTest):
             for preset in presets:
                 self.plan(preset, "--array", array, "--fit", "--outside", "error")
 
-    def test_times_and_speeds_count_after_it(self):
+    def test_times_and_speeds_count_after_the_fit(self):
         for args, expected in ((("--path", "M 0 0 H 600"), 1.0), (("--path", "M 0 0 H 600", "--speed", "30"), 2.0),
                                (("--path", "M 0 0 H 600", "--duration", "4"), 4.0), (("park2016-1",), 1.4),
                                (("park2016-1", "--speed", "10"), math.pi)):
             with self.subTest(args=args):
                 self.assertAlmostEqual(self.plan(*args, *LOW, "--fit")["stroke"]["duration_s"], expected, 6)
 
-    def test_json_and_text_say_what_was_done(self):
+    def test_json_and_text_report_the_fit(self):
         self.assertNotIn("fit", self.plan("wave-2x4", *LOW)["stroke"])
         fit = self.plan("--path", "M 100 100 H 200 V 110", *LOW, "--fit", "--fit-margin", "5")["stroke"]["fit"]
         self.assertEqual(fit["margin_mm"], 5)
@@ -81,7 +81,7 @@ class Fit(ToolTest):
         self.assertIn("onto the line of the array", self.ok("plan", "park2016-1", *line).stdout)
         self.assertEqual(self.plan("park2016-1", *line)["stroke"]["fit"]["matrix"][3], 0)
 
-    def test_margins_that_cannot_be(self):
+    def test_impossible_margins_are_refused(self):
         self.refused(2, "plan", "wave-2x4", *LOW, "--fit", "--fit-margin", "10", says=["tactor: --fit-margin: ", "less than 10 mm"])
         self.refused(2, "plan", "wave-2x4", *LOW, "--fit", "--fit-margin", "-1", says=["--fit-margin"])
         self.refused(2, "plan", "wave-2x4", *LOW, "--fit", "--fit-margin", "nan", says=["--fit-margin"])

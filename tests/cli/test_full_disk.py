@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""Disks that are full, or read-only all of a sudden: nothing is replaced by half of something, nothing that was answered is
-lost or doubled, and what to do is said."""
+"""Disks that become full or read-only: no file is replaced by half of another, no answer is lost or doubled, and a hint says
+what to do."""
 import shutil
 import subprocess
 import unittest
@@ -19,7 +19,7 @@ FREE_SOME = "free some space"
 @unittest.skipIf(WHY_NOT, WHY_NOT)
 class FullDisk(ExperimentTest):
     def redirected(self, *args):
-        """Standard output is a file on the disk; what was said."""
+        """Runs the tool with standard output on the disk; returns its messages."""
         with open(self.dir / "disk/out", "wb") as out:
             r = subprocess.run([TOOL, *args], cwd=self.dir, env=self.env, stdout=out, stderr=subprocess.PIPE, text=True,
                                timeout=PATIENCE_S, check=False)
@@ -27,7 +27,7 @@ class FullDisk(ExperimentTest):
         (self.dir / "disk/out").unlink()
         return r.stderr
 
-    def test_what_is_written_to_a_file_is_there_whole_or_not_at_all(self):
+    def test_a_file_is_written_whole_or_not_at_all(self):
         disk = Disk(self, 8192)
         self.simulate()
         for args in (("render", "park2016-1", "-o", "disk/o.wav"),
@@ -48,7 +48,7 @@ class FullDisk(ExperimentTest):
                 self.ok(*args)
                 self.assertGreater(len(disk.files()[args[-1].removeprefix("disk/")]), PAGE)
 
-    def test_standard_output_that_is_a_file(self):
+    def test_standard_output_to_a_full_disk_is_an_error(self):
         disk = Disk(self)
         long = ("plan", "--path", "M 0 0 L 40 40", "--duration", "300", "--format")
         for args in ((*long, "json"), (*long, "csv"), ("plan", "park2016-1", "--format", "json"), ("render", "park2016-1", "-o", "-"),
@@ -59,7 +59,7 @@ class FullDisk(ExperimentTest):
                 self.assertRegex(said, rf"(standard output|/dev/stdout: cannot be written): {NO_SPACE} \({FREE_SOME}, .* is cut short\)")
                 disk.make_room()
 
-    def test_a_disk_that_is_read_only(self):
+    def test_a_read_only_disk_is_an_error(self):
         disk = Disk(self, 8192)
         self.ok("render", "park2016-1", "-o", "disk/o.wav")
         kept = disk.files()
@@ -69,7 +69,7 @@ class FullDisk(ExperimentTest):
         disk.read_only(False)
         self.assertEqual(disk.files(), kept)
 
-    def test_calibrate(self):
+    def test_calibrate_loses_no_answer(self):
         args = ("calibrate", "--participant", "P07", "-o", "disk/me.toml", "--simulate", "threshold=-45,spread=2",
                 "--reversals", 8, "--tactors", "0-2")
         disk = Disk(self)
@@ -83,7 +83,7 @@ class FullDisk(ExperimentTest):
             r = self.run_tool(*args)
             if r.returncode == 0:
                 break
-            log = disk.files().get("me.tsv", b"")  # none where nothing was answered
+            log = disk.files().get("me.tsv", b"")  # missing without answers
             self.assertEqual(r.returncode, 1, r.stderr)
             self.assertTrue(whole["me.tsv"].startswith(log))
             self.assertNotIn("me.toml", disk.files())
@@ -102,7 +102,7 @@ class FullDisk(ExperimentTest):
         self.assertGreater(kept, 1)
 
     def study(self, fill):
-        """A simulated session for any space that is left on the disk, and how often an answer took what was kept for it."""
+        """Simulates a session for each amount of space, and counts how often an answer took the reserved space."""
         self.small(SMALL.replace("trials = 4", "trials = 40"))
         args = ("experiment", "small.toml", "--participant", "01", "-o", "disk/study", "--simulate", "seed=4,sigma=1,void=0.3")
         disk = Disk(self)
@@ -127,7 +127,7 @@ class FullDisk(ExperimentTest):
             for name, data in found.items():
                 self.assertTrue(whole[name].startswith(data) and data.endswith(b"\n"), name)
             if found:
-                fill(disk, 0)  # of what was kept for an answer
+                fill(disk, 0)  # of the space reserved for an answer
                 self.refused(1, *args, "--resume", says=[NO_SPACE])
                 self.assertEqual(answered(), found)
             disk.make_room()
@@ -137,10 +137,10 @@ class FullDisk(ExperimentTest):
         self.assertEqual(disk.files(), whole)
         return kept
 
-    def test_a_simulated_study_on_a_full_disk(self):
+    def test_a_simulated_study_on_a_full_disk_resumes(self):
         self.assertGreater(self.study(Disk.fill), 5)
 
-    def test_a_simulated_study_on_a_disk_without_names(self):
+    def test_a_simulated_study_on_a_disk_without_names_resumes(self):
         self.assertGreater(self.study(Disk.fill_names), 5)
 
     def person(self, *more):
@@ -154,7 +154,7 @@ class FullDisk(ExperimentTest):
         return [r["rating" if run == "marks" else "response"] for r in self.rows("01", run, "disk/study")]
 
     def resumed(self, *answers):
-        """A session that goes on, with these answers to the question that each is for."""
+        """Resumes a session with these answers to their questions."""
         t = self.person("--resume")
         for i in (0, 1):
             t.answer(f"{i}: Did you feel it", "y")
@@ -172,7 +172,7 @@ class FullDisk(ExperimentTest):
         disk.fill()
         t.key("2")  # there is space where the table ends
         t.answer("Any key begins", " ")
-        t.answer("How even\\? ", "3")  # this takes a table of its own
+        t.answer("How even\\? ", "3")  # this takes another table
         self.assertEqual(t.end(), 1)
         self.assertRegex(t.said(), rf"{NO_SPACE} \(the last answer is kept; free some space, and --resume goes on\)")
         self.assertEqual((self.answers("pairs"), self.answers("marks")), (["1", "2"], ["3"]))
@@ -223,14 +223,14 @@ class FullDisk(ExperimentTest):
         disk.fill()
         s = Server(self, "--log", log)
         c = s.client()
-        self.assertEqual(c.end_of(c.ok("play", stroke="park2016-1")["stroke"])["state"], "finished")
+        self.assertEqual(c.await_end(c.ok("play", stroke="park2016-1")["stroke"])["state"], "finished")
         disk.make_room()
-        self.assertEqual(c.end_of(c.ok("play", stroke="park2016-1")["stroke"])["state"], "finished")
+        self.assertEqual(c.await_end(c.ok("play", stroke="park2016-1")["stroke"])["state"], "finished")
         status, _, err = s.terminate()
         self.assertEqual(status, 0, err)
         self.assertEqual(err.count(f"serve.log: {NO_SPACE}: the log ends here"), 1)
         self.assertEqual(log.read_text(), before)
-        # Another one goes on in a line of its own.
+        # The next server begins a new line.
         s = Server(self, "--log", log)
         self.assertEqual(s.terminate()[0], 0)
         lines = log.read_text().removeprefix(before).splitlines()

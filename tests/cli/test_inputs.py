@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Output never replaces what the command reads, by whatever name or link, nor, without --force, what another program made."""
+"""Output never replaces an input of the command, under any name or link, nor, without --force, a file of another program."""
 import os
 import struct
 import subprocess
@@ -27,7 +27,7 @@ class OverInput(ExperimentTest):
         self.write("p.json", self.ok("plan", "s.toml", "--format", "json").stdout)
 
     def names(self, file, extension):
-        """The file under its own name, where that has the extension, and as links of both kinds."""
+        """Returns the file under its name, where that has the extension, and as links of both kinds."""
         if file.endswith(extension):
             yield file
             yield f"./../{self.dir.name}/{file}"
@@ -38,7 +38,7 @@ class OverInput(ExperimentTest):
             yield name
 
     def kept(self, file, extension, *args, force=True):
-        """No form of the command writes over the file."""
+        """Checks that no form of the command writes over the file."""
         before = (self.dir / file).read_bytes()
         for name in self.names(file, extension):
             for more in ((), ("--force",)) if force else ((),):
@@ -47,7 +47,7 @@ class OverInput(ExperimentTest):
                     self.refused(2, *args, "-o", name, *more, says=says)
                     self.assertEqual((self.dir / file).read_bytes(), before)
 
-    def test_pictures_do_not_replace_what_they_are_drawn_from(self):
+    def test_pictures_do_not_replace_their_inputs(self):
         for extension in (".svg", ".png", ".pdf"):
             for file, args in (("s.svg", ("s.svg",)), ("s.csv", ("s.csv",)), ("s.toml", ("s.toml",)), ("p.json", ("p.json",)),
                                ("a.toml", ("s.toml", "--array", "a.toml")), ("c.toml", ("s.toml", "--config", "c.toml")),
@@ -57,7 +57,7 @@ class OverInput(ExperimentTest):
         for file in ("s.svg", "s.toml"):
             self.kept(file, ".svg", "compare", file)
 
-    def test_nor_what_the_array_or_the_configuration_names(self):
+    def test_nor_files_that_the_array_or_the_configuration_names(self):
         self.write("more.toml", '[array]\nfile = "a.toml"\n')
         self.kept("a.toml", ".svg", "plot", "s.toml", "--array", "more.toml")
         self.kept("a.toml", ".svg", "plot", "s.toml", "--config", "more.toml")
@@ -101,7 +101,7 @@ class OverInput(ExperimentTest):
             self.refused(2, "play", *args, "-D", "null", "--log", file, says=[file])
             self.assertEqual((self.dir / file).read_bytes(), before)
 
-    def test_a_calibration_replaces_nothing_that_it_reads(self):
+    def test_a_calibration_replaces_none_of_its_inputs(self):
         calibrate = ("calibrate", "--participant", "P07", "--simulate", "threshold=-40,spread=2", "--tactors", "0")
         for output in ("a.toml", "c.toml"):
             before = (self.dir / output).read_bytes()
@@ -116,7 +116,7 @@ class OverInput(ExperimentTest):
         for command, extension in (("analyze", ".svg"), ("analyze", ".pdf"), ("report", ".md")):
             for file in ("study/participants.tsv", "study/sourcedata/sub-01/session.json", str(table.relative_to(self.dir))):
                 if command == "analyze" and file.endswith("participants.tsv"):
-                    continue  # it does not read that
+                    continue  # not an input of it
                 before = contents(self.dir / "study")
                 self.kept(file, extension, command, "study")
                 self.assertEqual(contents(self.dir / "study"), before)
@@ -149,7 +149,7 @@ class Foreign(ExperimentTest):
                     self.ok(*command, "-o", file.name)  # its own
                     self.assertEqual(file.read_bytes(), ours)
 
-    def test_a_picture_that_an_editor_saved_again_is_the_users(self):
+    def test_a_picture_saved_by_an_editor_belongs_to_the_user(self):
         self.ok("plot", "park2016-1", "-o", "p.svg")
         ours = (self.dir / "p.svg").read_text(encoding="utf-8")
         edited = ours.replace('encoding="UTF-8"?>', 'encoding="UTF-8" standalone="no"?>\n<!-- Created with Inkscape -->', 1)

@@ -25,7 +25,7 @@ SCHEMAS = {schema["properties"]["schema"]["const"]: schema
 SAMPLES = pathlib.Path(sys.argv[4]).resolve()
 PAGE = (ROOT / "man/tactor-json.5").read_text(encoding="utf-8")
 
-# What an object may have or not have. All else is always there, null where there is nothing to say.
+# Keys that an object may lack. All others are always there, null where there is no value.
 OPTIONAL = {"tactor-plan/1": {"faces", "stroke.note", "stroke.fit", "continuous", "bursts[].tau_s", "compensation", "render.envelope", "array.tactors[].rise_s",
                               *(f"stroke.{key}" for key in ("waveform", "recording", "noise_seed", "texture", "texture_mm", "am_hz", "am_depth", "course", "course[].bend"))},
             "tactor-compare/1": {"faces", "stroke.note"},
@@ -45,24 +45,24 @@ EASED = '[stroke]\npath = "M 0 0 L 10 0"\nduration_s = 0.5\neasing = "minimum-je
 BRUSH = ("--array", "grid.toml", "--algorithm", "tactile-brush", "--path", "M 10 30 L 45 10")
 
 
-# Objects whose keys are names that users gave.
+# Objects whose keys are names given by users.
 MAPS = {"runs", "void", "runs{}.preference.motion", "runs{}.means", "runs{}.means{}.motion", "runs{}.tukey",
         "runs{}.confusion", "runs{}.confusion{}", "runs{}.confusion{}{}", "runs{}.correct", "runs{}.correct{}.motion"}
 
 
-def paths_of(value, at=""):
-    """The places of all that a value holds: "a", "a.b", "a[].b", "a{}.b"; "at" is its own."""
+def list_paths(value, at=""):
+    """Returns the places in a value: "a", "a.b", "a[].b", "a{}.b"; "at" is that of the value itself."""
     if isinstance(value, dict) and at in MAPS:
         for v in value.values():
-            yield from paths_of(v, at + "{}")
+            yield from list_paths(v, at + "{}")
     elif isinstance(value, dict):
         for key, v in value.items():
             place = f"{at}.{key}" if at else key
             yield place
-            yield from paths_of(v, place)
+            yield from list_paths(v, place)
     elif isinstance(value, list):
         for v in value:
-            yield from paths_of(v, at + "[]")
+            yield from list_paths(v, at + "[]")
 
 
 # An experiment at a level in dBFS, without an attribute and without noise.
@@ -85,7 +85,7 @@ trials = 2
 
 
 def paths_in(schema, at="", root=None):
-    """The same of what a schema knows."""
+    """Returns the same places of a schema."""
     root = root or schema
     if "$ref" in schema:
         schema = root["$defs"][schema["$ref"].rpartition("/")[2]]
@@ -100,7 +100,7 @@ def paths_in(schema, at="", root=None):
 
 
 def objects_in(value, at=()):
-    """Keys to each object in a value."""
+    """Returns the keys to each object in a value."""
     if isinstance(value, dict):
         yield at
     for key, v in value.items() if isinstance(value, dict) else enumerate(value) if isinstance(value, list) else ():
@@ -108,7 +108,7 @@ def objects_in(value, at=()):
 
 
 def shortened(value):
-    """The same with at most three members in each list of objects or lists."""
+    """Returns the same with at most three members in each list of objects or lists."""
     if isinstance(value, dict):
         return {key: shortened(v) for key, v in value.items()}
     if isinstance(value, list):
@@ -116,7 +116,7 @@ def shortened(value):
     return value
 
 
-def place_of(keys):
+def join_keys(keys):
     place = ""
     for k in keys:
         place += "[]" if isinstance(k, int) else "{}" if place in MAPS else f".{k}" if place else k
@@ -124,13 +124,13 @@ def place_of(keys):
 
 
 def paths_on_page(name):
-    """What the page's part on a schema lists."""
+    """Returns the fields that the page lists for a schema."""
     part = re.search(rf"^\.Ss {re.escape(name)}\n(.*?)(?=^\.S[sh] )", PAGE, re.M | re.S)[1]
     return [path for line in re.findall(r"^\.It Cm (.*)", part, re.M) for path in line.split(" , ")]
 
 
 def own(paths):
-    """Of a list of plans, or comparisons, only the list: its members have a schema of their own."""
+    """Returns only the list of a list of plans or comparisons: its members have another schema."""
     return {p for p in paths if not p.startswith(("plans[]", "comparisons[]"))}
 
 
@@ -148,7 +148,7 @@ class Schemas(ToolTest):
         (self.dir / "grain.wav").write_bytes(wav_bytes([0.5, 0.5, -0.5, -0.5] * 20))
 
     def outputs(self):
-        """Name of a schema -> what the tool prints of it; once for all tests here."""
+        """Maps the name of a schema to the tool's output; made once for all tests here."""
         if self.told:
             return self.told
         walk = self.run_tool("check", "--walk", "--array", "pair.toml", "-D", "null", "--format", "json", stdin="1\n0\n")
@@ -177,27 +177,27 @@ class Schemas(ToolTest):
             self.told.setdefault(one["schema"], []).append(one)
         return self.told
 
-    def test_there_is_a_schema_for_each_kind_of_output_and_none_without(self):
+    def test_each_kind_of_output_has_a_schema_and_no_schema_lacks_one(self):
         self.assertEqual(set(self.outputs()), set(SCHEMAS))
         self.assertEqual(len(SCHEMAS), 10)
         for schema in SCHEMAS.values():
             jsonschema.Draft202012Validator.check_schema(schema)
             self.assertEqual(schema["$schema"], "https://json-schema.org/draft/2020-12/schema")
 
-    def test_what_the_tool_prints_is_valid(self):
+    def test_output_is_valid(self):
         for name, all_told in self.outputs().items():
             for told in all_told:
-                errors = [f"{place_of(e.absolute_path)}: {e.message[:200]}"
+                errors = [f"{join_keys(e.absolute_path)}: {e.message[:200]}"
                           for e in jsonschema.Draft202012Validator(SCHEMAS[name]).iter_errors(told)]
                 self.assertEqual(errors, [], name)
 
-    def test_a_schema_refuses_what_is_unknown_missing_or_of_another_type(self):
+    def test_a_schema_refuses_unknown_missing_and_wrongly_typed_fields(self):
         for name, all_told in self.outputs().items():
             valid = jsonschema.Draft202012Validator(SCHEMAS[name]).is_valid
             seen = set()
             for told in map(shortened, all_told):
                 for keys in objects_in(told):
-                    place = place_of(keys)
+                    place = join_keys(keys)
                     changed = copy.deepcopy(told)
                     inner = changed
                     for key in keys:
@@ -218,9 +218,9 @@ class Schemas(ToolTest):
                         inner[key] = kept
                     self.assertTrue(valid(changed))
 
-    def test_a_schema_knows_nothing_that_is_never_printed(self):
+    def test_a_schema_has_no_field_that_is_never_printed(self):
         for name, all_told in self.outputs().items():
-            printed = {path for told in all_told for path in paths_of(told)}
+            printed = {path for told in all_told for path in list_paths(told)}
             self.assertEqual(own(paths_in(SCHEMAS[name])), own(printed), name)
 
     def test_members_of_a_list_are_the_same_objects_as_those_printed_alone(self):
@@ -245,7 +245,7 @@ class Schemas(ToolTest):
         # A newer python3-jsonschema warns that its command line will go.
         self.assertEqual((said.returncode, said.stdout), (0, f"{[-12.0] * 9}\n"), said.stderr)
 
-    def test_names_that_are_no_utf_8_do_not_break_it(self):
+    def test_names_that_are_not_utf_8_do_not_break_it(self):
         name = self.dir / "K\udcfcnstler.csv"
         name.write_text("t_s,x_mm,y_mm\n0,0,10\n1,40,30\n")
         for command in ("plan", "compare"):
@@ -254,7 +254,7 @@ class Schemas(ToolTest):
 
 
 class Record(ToolTest):
-    """The JSON alone gives the samples that render writes, to half a step of a float at full scale."""
+    """Computes render's samples from the JSON alone, to half a step of a float at full scale."""
 
     CASES = {
         "the default": ("park2016-1",),
@@ -287,7 +287,7 @@ class Record(ToolTest):
         self.write("soft.csv", "t_s,x_mm,y_mm,intensity\n0,10,30,0.4\n1,45,10,0.4\n")
         self.write("touch.csv", "t_s,x_mm,y_mm,intensity\n12.5,0,10,1\n13,20,10,0.25\n13.5,40,30,1.5\n")
 
-    def test_samples(self):
+    def test_samples_follow_from_json(self):
         for what, args in self.CASES.items():
             with self.subTest(what):
                 self.ok("render", *args, "-o", "o.wav")
@@ -300,7 +300,7 @@ class Record(ToolTest):
                 worst = max(abs(a - b) for x, y in zip(mine, theirs) for a, b in zip(x, y))
                 self.assertLess(worst, 4e-8)
 
-    def test_what_was_asked_for_is_told(self):
+    def test_options_are_recorded(self):
         render = self.plan("park2016-1", "--rate", "44100", "--ramp", "0.003", "--level-dbfs", "-9.5", "--phase", "burst",
                            "--overlap", "max")["render"]
         self.assertEqual(render, {"rate": 44100, "channels": 9, "frames": 64827, "phase": "burst", "ramp_s": 0.003,
@@ -314,7 +314,7 @@ class Record(ToolTest):
         self.assertEqual([p["start_frame"] for p in (first, second, third)], [4800, 4800 + 26880, 14400])
         self.assertEqual(first["render"], third["render"])
 
-    def test_each_burst_tells_its_ramp(self):
+    def test_each_burst_records_its_ramp(self):
         ramps = {b["ramp_s"] for b in self.plan("park2016-1")["bursts"]}
         self.assertEqual(ramps, {0.0})
         ramps = [b["ramp_s"] for b in self.plan("park2016-1", "--carrier", "255")["bursts"]]

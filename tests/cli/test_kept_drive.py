@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""How long a tactor was driven counts on from one run of a user to the next on the same device. Windows last an hour: no
-machine is so slow that time itself would give it back."""
+"""Drive time of a tactor counts on from one run of a user to the next on the same device. Windows last an hour: no machine
+is so slow that time itself gives it back."""
 import json
 import signal
 import subprocess
@@ -53,7 +53,7 @@ class KeptDrive(ToolTest):
         self.refused(2, "play", *STILL, "--max-drive-s", "0", "-D", "null")
         self.assertEqual(self.kept() + self.kept("going"), [])
 
-    def test_a_file_that_is_torn_counts_as_none(self):
+    def test_a_torn_file_counts_as_none(self):
         self.assertEqual(self.cuts("-D", "null"), 0)
         file = self.kept()[0]
         whole = file.read_bytes()
@@ -77,7 +77,7 @@ class KeptDrive(ToolTest):
         self.assertEqual(self.cuts("-D", "null"), 0)
         self.assertEqual(self.kept(), [])
 
-    def test_what_cannot_be_kept_is_said_and_played(self):
+    def test_drive_time_that_cannot_be_kept_is_reported_and_played(self):
         self.assertEqual(self.cuts("-D", "null"), 0)
         file = self.kept()[0]
         file.unlink()
@@ -86,7 +86,7 @@ class KeptDrive(ToolTest):
         self.assertIn("played 0.100 s", r.stdout)
         self.assertEqual(r.stderr.count("the next run will not know for how long the array was driven"), 1, r.stderr)
 
-    def test_a_run_that_was_killed_counts_too(self):
+    def test_a_killed_run_counts_too(self):
         for stroke in ((*STILL, "--duration", "300"), ("--live", "-")):
             with self.subTest(stroke[0]):
                 p = self.running(*stroke)
@@ -101,7 +101,7 @@ class KeptDrive(ToolTest):
                 self.assertEqual(self.kept("going"), [])
                 self.kept()[0].unlink()
 
-    def test_a_run_of_the_same_number_was_killed_too(self):
+    def test_a_killed_run_of_the_same_number_counts_too(self):
         p = self.running(*STILL, "--duration", "300")
         self.until(lambda: self.kept("going"), p)
         began = time.monotonic()
@@ -114,7 +114,7 @@ class KeptDrive(ToolTest):
         self.assertEqual(json.loads(again.stdout)["counters"]["drives_cut"], 1)
         self.assertEqual(self.kept("going"), [])
 
-    def test_without_a_limit_it_is_kept_when_the_array_was_driven(self):
+    def test_without_a_limit_the_time_of_driving_is_kept(self):
         self.assertEqual(self.cuts("-D", "null", seconds=1.0, limits=("--max-drive-s", "3600", "--drive-window-s", "10")), 0)
         self.assertEqual(self.cuts("-D", "null", seconds=0.1), 1)
 
@@ -129,7 +129,7 @@ class KeptDrive(ToolTest):
         self.assertEqual(self.cuts("-D", "null", seconds=0.2, stroke=corner), 1)
         self.assertEqual(self.cuts("-D", "null", seconds=0.2), 1)
 
-    def test_a_service_that_opens_the_device_again_knows_what_was_given_meanwhile(self):
+    def test_a_service_that_reopens_the_device_knows_the_drive_time_of_others(self):
         s = Server(self, "--idle-stop", "0.1", config="[limits]\nmax_drive_s = 0.5\nwindow_s = 3600\n",
                    env={"XDG_RUNTIME_DIR": str(self.runtime)})
         client = s.client()
@@ -140,7 +140,7 @@ class KeptDrive(ToolTest):
         self.assertEqual(s.terminate()[0], 0)
         self.assertEqual(self.cuts("-D", "null", seconds=0.1), 1)
 
-    def test_a_service_counts_what_was_before_and_is_counted(self):
+    def test_a_service_counts_earlier_runs_and_is_counted(self):
         self.assertEqual(self.cuts("-D", "null"), 0)
         s = Server(self, config="[limits]\nmax_drive_s = 0.5\nwindow_s = 3600\n", env={"XDG_RUNTIME_DIR": str(self.runtime)})
         self.ok("play", *STILL, "--duration", "0.3", "--socket", s.where["socket"])

@@ -1,16 +1,14 @@
 // SPDX-License-Identifier: MIT
-// `tactor play` with an amplifier, killed at its system calls, one after the other, from where it has a
-// holder on: in whichever thread the call is, the line is off in the end. TACTOR_SOAK=whole: at every one.
+// `tactor play` with an amplifier, killed at its system calls, one after the other, from the one at which it
+// has a holder on: in any thread, the line ends off. TACTOR_SOAK=whole: at every one.
 //   TACTOR_TOOL: the tool; TACTOR_ARRAY: a file of an array with the amplifier's line; TACTOR_LINE: a file
 //   that says '0' or '1'. With TACTOR_FAKE_GPIOD (fake_gpiod.cpp) both are made here.
 #include <array>
-#include <cstdint>
 #include <cstdio>
 #include <cstdlib>
 #include <fstream>
 #include <stdexcept>
 #include <string>
-#include <vector>
 
 #include <doctest/doctest.h>
 #include <fcntl.h>
@@ -32,7 +30,7 @@ std::string variable(const char* name)
     return v == nullptr ? "" : v;
 }
 
-/// The amplifier's line, and the array that has it.
+/// The amplifier's line, and an array file with it.
 struct bench {
     std::string array = variable("TACTOR_ARRAY");
     std::string line = variable("TACTOR_LINE");

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Input without end, or as large as it may be: bounded memory, and time that grows with the size only."""
+"""Endless input, or input of the largest size: bounded memory, and time that grows only with the size."""
 import os
 import subprocess
 import unittest
@@ -11,14 +11,14 @@ MB = 1 << 20
 
 class Large(ToolTest):
     def write_pieces(self, name, pieces):
-        """Piece by piece: what this process ever had counts as the peak of those that it starts."""
+        """Writes in pieces: this process's peak memory counts as the peak of its children."""
         with open(self.dir / name, "wb") as f:
             for piece in pieces:
                 f.write(piece)
         return self.dir / name
 
     def cost(self, *args, stdin=subprocess.DEVNULL):
-        """Exit status, what was said, peak memory in MB and processor time in seconds."""
+        """Returns exit status, output, peak memory in MB and processor time in seconds."""
         with open(self.dir / "said", "w+b") as said:
             p = subprocess.Popen([TOOL, *args], stdin=stdin, stdout=subprocess.DEVNULL, stderr=said, cwd=self.dir,
                                  env=self.env)
@@ -31,14 +31,14 @@ class Large(ToolTest):
             return os.waitstatus_to_exitcode(status), said.read().decode(), usage.ru_maxrss / 1024, usage.ru_utime + usage.ru_stime
 
     @unittest.skipIf(SANITIZED, "a sanitizer's own memory is not bounded")
-    def test_standard_input_without_end_is_refused_in_bounded_memory(self):
+    def test_endless_standard_input_is_refused_in_bounded_memory(self):
         with open("/dev/zero", "rb") as endless:
             status, said, mb, _ = self.cost("plan", "-", stdin=endless)
         self.assertEqual((status, said), (2, "tactor: standard input: longer than 512 MB (is it the right file?)\n"))
         self.assertLess(mb, 600)
 
     @unittest.skipIf(SANITIZED, "a sanitizer's own memory is not bounded")
-    def test_values_without_end_in_a_line_are_refused_in_bounded_memory(self):
+    def test_endless_lists_in_a_line_are_refused_in_bounded_memory(self):
         self.write_pieces("commas.csv", (b"," * MB for _ in range(64)))
         status, said, mb, _ = self.cost("plan", "commas.csv")
         self.assertEqual(status, 2, said)
@@ -46,7 +46,7 @@ class Large(ToolTest):
         self.assertLess(mb, 128)
 
     @unittest.skipIf(SANITIZED, "a sanitizer's own memory is not bounded")
-    def test_a_million_timed_points_need_their_text_and_themselves(self):
+    def test_a_million_timed_points_need_memory_for_their_text_and_themselves(self):
         def lines():
             yield b"t_s,x_mm,y_mm\n"
             for i in range(1_000_000):
@@ -58,7 +58,7 @@ class Large(ToolTest):
         self.assertEqual((status, said), (0, ""))
         self.assertLess(mb, path.stat().st_size / MB + 32 + 32)  # points of 32 bytes; the tool itself
 
-    def test_two_lists_along_a_path_cost_what_they_have(self):
+    def test_two_lists_along_a_path_cost_time_by_their_length(self):
         def seconds(points):
             parts = [i / (points - 1) for i in range(points)]
             speeds = ", ".join(f"[{p:.9f}, {20 + 80 * (i * 7919 % points) / points:.3f}]" for i, p in enumerate(parts))
@@ -69,7 +69,7 @@ class Large(ToolTest):
             self.assertEqual((status, said), (0, ""))
             return used
 
-        # Eight times as many: with the square it would be 64.
+        # Eight times as many: quadratic time would be 64 times.
         self.assertLess(seconds(80_000), 24 * seconds(10_000))
 
     @unittest.skipIf(SANITIZED, "a sanitizer's own memory is not bounded")
@@ -82,7 +82,7 @@ class Large(ToolTest):
         bursts = 3600 / 0.07
         self.assertLess((peak_kb(3600) - peak_kb(1)) * 1024, 100 * bursts)
 
-    def test_a_text_for_a_tree_is_refused_earlier(self):
+    def test_a_text_for_a_tree_has_a_lower_limit(self):
         self.write_pieces("big.svg", [b"<svg>", *[b" " * MB] * 48])
         self.assertIn("big.svg: longer than 48 MB (simplify the drawing)", self.refused(2, "plan", "big.svg").stderr)
         self.write_pieces("big.toml", [b"#", *[b"#" * MB] * 48])
@@ -96,12 +96,12 @@ class Large(ToolTest):
             self.assertEqual(status, 0, said)
             return seconds
 
-        # The two together: the kernel shares them out by looking now and then. The largest: the others had luck.
+        # Both together: the kernel shares their time out now and then. The largest: the others had luck.
         few = max(time_for(1500) for _ in range(3))
         # Ten times as many took seventy times as long when each was looked up in the file.
         self.assertLess(time_for(15000), 25 * few)
 
-    def test_a_pipe_is_read_as_a_file_is(self):
+    def test_a_pipe_is_read_like_a_file(self):
         os.mkfifo(self.dir / "pipe")
         p = subprocess.Popen([TOOL, "plan", "pipe", "--format", "csv"], stdout=subprocess.PIPE, cwd=self.dir, env=self.env)
         with open(self.dir / "pipe", "w") as pipe:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What --help lists is what tactor(1) describes, command by command, and the other way round.
+"""The options of --help and those of tactor(1) are the same, command by command.
 
 An option in the section OPTIONS belongs to the commands that its text names in the form ".Cm plot , compare :", or that
 its subsection names in "All of these are of"; where none is named, to every command that takes a STROKE.
@@ -17,13 +17,13 @@ def section(title):
 
 
 def command_names(text, commands):
-    """The commands in all lines such as ".Cm plan , compare :" of a text."""
+    """Returns the commands in all lines such as ".Cm plan , compare :" of a text."""
     lists = re.findall(r"^\.Cm ((?:\w+ , )*\w+) :", text, re.M)
     return {name for names in lists for name in names.split(" , ")} & set(commands)
 
 
 def man_options(commands):
-    """Option name -> the commands that take it; empty: all that take a STROKE."""
+    """Maps an option to the commands that take it; empty: all that take a STROKE."""
     options = {}
     for subsection in re.split(r"^\.Ss ", section("OPTIONS"), flags=re.M):
         intro, *entries = re.split(r"^\.It ", subsection, flags=re.M)
@@ -37,12 +37,12 @@ def man_options(commands):
 
 
 class Manual(ToolTest):
-    def help_of(self, *command):
+    def read_help(self, *command):
         text = self.ok(*command, "--help").stdout
         return text, {name for names in re.findall(r"^  (-\S+)", text, re.M) for name in names.split(",")}
 
     def commands(self):
-        text, _ = self.help_of()
+        text, _ = self.read_help()
         found = re.findall(r"^  (\w+) ", text.partition("Subcommands:")[2], re.M)
         self.assertGreaterEqual(len(found), 5)
         return found
@@ -52,7 +52,7 @@ class Manual(ToolTest):
         manual = man_options(commands)
         self.assertGreater(len(manual), 35)
         for command in commands:
-            text, helped = self.help_of(command)
+            text, helped = self.read_help(command)
             takes_strokes = re.search(r"^  STROKE", text, re.M) is not None
             named = {o for o, takers in manual.items() if command in takers}
             common = {o for o, takers in manual.items() if not takers}
@@ -60,22 +60,22 @@ class Manual(ToolTest):
             self.assertEqual((named | (common if takes_strokes else set())) - helped - {"--version"}, set(),
                              f"the manual says of {command} what --help does not")
 
-    def test_commands_with_a_page_of_their_own_have_their_options_there(self):
+    def test_commands_with_a_separate_page_have_their_options_there(self):
         for command in ("calibrate", "experiment", "analyze", "report"):
             page = (ROOT / f"man/tactor-{command}.1").read_text(encoding="utf-8")
             described = {"-" + name for head in re.findall(r"^\.It (.*)", page, re.M)
                          for name in re.findall(r"(?:Fl|,) (-[\w-]+|[a-zA-Z](?= ))", head)}
-            self.assertEqual(self.help_of(command)[1] - {"-h", "--help"}, described, command)
+            self.assertEqual(self.read_help(command)[1] - {"-h", "--help"}, described, command)
 
     def test_a_plan_is_a_stroke_of_the_commands_that_take_one(self):
         self.write("plan.json", self.ok("plan", "park2016-1", "--format", "json").stdout)
         for command, more in (("plan", ()), ("render", ("-o", "x.wav")), ("play", ("-D", "null")), ("plot", ("-o", "x.svg")),
                               ("compare", ())):
             taken = self.run_tool(command, "plan.json", *more).returncode == 0
-            self.assertEqual(".json: a plan" in " ".join(self.help_of(command)[0].split()), taken, command)
+            self.assertEqual(".json: a plan" in " ".join(self.read_help(command)[0].split()), taken, command)
 
-    def test_the_options_of_all_commands(self):
-        _, helped = self.help_of()
+    def test_options_of_all_commands_are_in_the_manual(self):
+        _, helped = self.read_help()
         self.assertEqual(helped, {"-h", "--help", "--version"})
 
     def test_each_command_is_in_synopsis_and_description(self):
@@ -86,10 +86,10 @@ class Manual(ToolTest):
 
     def test_each_command_ends_its_help_with_an_example_that_parses(self):
         for command in self.commands():
-            text, _ = self.help_of(command)
+            text, _ = self.read_help(command)
             self.assertRegex(text.rstrip().splitlines()[-1], rf"^Example: tactor {command}", command)
 
-    def test_pages_read_as_they_were_meant(self):
+    def test_pages_read_as_intended(self):
         for page in sorted((ROOT / "man").glob("*.[1-8]")):
             with self.subTest(page=page.name):
                 # .Dq takes the whole line, "No" or not: .Do ... Dc ends before.
@@ -100,7 +100,7 @@ class Manual(ToolTest):
                 self.assertEqual(re.findall(r"^.*[\w”] +[,;:)](?:\s.*)?$", text, re.M), [])
 
 
-def number_of(text):
+def parse_number(text):
     base, _, power = text.partition("^")
     return float(base) ** float(power or 1)
 
@@ -109,7 +109,7 @@ class Ranges(ToolTest):
     RANGE = r"(-?[\d.e+]+) to ([\d.e+^]+)"
 
     def range_in(self, text):
-        return tuple(number_of(n) for n in re.search(self.RANGE, text).groups())
+        return tuple(parse_number(n) for n in re.search(self.RANGE, text).groups())
 
     def test_an_option_its_key_and_the_manual_agree(self):
         page = (ROOT / "man/tactor.toml.5").read_text(encoding="utf-8")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""tactor off without a GPIO chip: what it says. Switching itself is tested on a real kernel (tests/vm)."""
+"""tactor off without a GPIO chip: its messages. tests/vm tests the switching on a real kernel."""
 import re
 
 from harness import ROOT, ToolTest, main
@@ -18,20 +18,20 @@ class Off(ToolTest):
         self.assertEqual(r.returncode, 2)
         self.assertIn("there is no configuration", r.stderr)
 
-    def test_without_one_in_the_array_file_either_both_files_are_named(self):
+    def test_both_files_are_named_where_neither_has_an_amplifier(self):
         array = self.write("palm.toml", '[array]\npreset = "palm-3x3"\n')
         config = self.write("mine.toml", '[output]\npcm = "null"\n')
         self.refused(2, "off", "--array", array, says=[f"no [amplifier] in {array}, and there is no configuration ("])
         self.refused(2, "off", "--array", array, "--config", config, says=[f"no [amplifier] in {array} or {config} ("])
         self.refused(2, "off", "--array", "palm-2x4", "--config", config, says=[f"no [amplifier] in {config} ("])
 
-    def test_the_example_that_is_shown_has_an_amplifier(self):
+    def test_the_shown_example_has_an_amplifier(self):
         example = re.search(r"^Example: tactor (.*)", self.ok("off", "--help").stdout, re.M)[1]
         self.assertIn(f"\n.Dl tactor {example}\n", (ROOT / "man/tactor.1").read_text(encoding="utf-8"))
         self.write("tactor.toml", (ROOT / "examples/tactor.toml").read_bytes())
         self.refused(3, *example.split(), says=["pinctrl-rp1"])
 
-    def test_a_chip_that_is_not_there_is_an_error(self):
+    def test_a_missing_chip_is_an_error(self):
         for name, options in (("config.toml", ["--config"]), ("array.toml", ["--array"])):
             array = '[array]\npreset = "palm-3x3"\n'
             file = self.write(name, array + LINE)

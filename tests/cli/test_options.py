@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Each option in each front end: there by the name that `tactor help OPTION` says, or left out for a reason."""
+"""Each option in each front end: present under the name in `tactor help OPTION`, or left out for a reason."""
 import json
 import re
 
@@ -8,7 +8,7 @@ from harness import ROOT, ToolTest, main
 COMMANDS = ("plan", "render", "plot", "compare", "play", "check", "calibrate", "experiment", "devices", "off", "serve")
 GROUPS = ("Stroke", "Place", "Timing", "Sound", "Level", "Device", "Real time", "Output")
 OWNER = "the owner's: it guards people or the machine"
-OTHER = "a parameter of its own in the protocol"
+OTHER = "a separate parameter of the protocol"
 # Options that no client of the service may give.
 NO_CLIENT = {
     "path": OTHER, "shape": OTHER, "live": OTHER, "smooth": OTHER, "arm": OTHER,
@@ -21,7 +21,7 @@ NO_CLIENT = {
     "spread-seed": "a comparison is the tool's", "spread-sigma": "a comparison is the tool's", "spread-threshold-db": "a comparison is the tool's",
     "spread-place-mm": "a comparison is the tool's",
 }
-# Options that a method of an experiment leaves to the definition, or to the session.
+# Options that a method of an experiment leaves to the definition or the session.
 NO_METHOD = {
     "duration": "a motion's", "speed": "a motion's", "compensate": "of people who are asked what they feel, it would decide the answer",
     "sigma-mm": "of compensate", "sigma-v-mm-s": "of compensate", "waveform": "all methods of a study vibrate alike",
@@ -30,9 +30,10 @@ NO_METHOD = {
     "level-dbfs": "[experiment] level", "sl": "[experiment] level", "intensity-scale": "its motions have the intensities that they have",
     "stevens-exponent": "of intensity-scale",
 }
-# What a stroke file may say of one stroke. The other options of planning hold for the piece: its strokes share one clock and one array.
+# Options that a stroke file may give for one stroke. The other options of planning hold for the piece: its strokes share one
+# clock and one array.
 IN_STROKE = {"duration", "speed", "carrier", "algorithm", "phantom", "faces", "soa", "burst", "waveform", "noise-seed", "texture", "texture-mm", "fit"}
-# Where else front ends differ, and why:
+# Other differences between front ends, and their reasons:
 # - Configuration: Python's Player and devices() read its [defaults]; plan(), Score() and live() read those of the array file alone, so that a
 #   plan is the same on each machine. marker_channel is [sync]'s on the command line, beside the wires.
 # - Time: Python gives all times in seconds (latency, sync_delay); the tool's --latency-ms is what other audio programs have. A stream's
@@ -53,8 +54,8 @@ class Options(ToolTest):
         super().setUpClass()
         cls.told = {}
 
-    def options_of(self, command):
-        """Names in the groups of the table, as --help lists them."""
+    def list_options(self, command):
+        """Returns the names in the groups of the table, as --help lists them."""
         text = self.ok(command, "--help").stdout
         parts = re.split(r"^(\w[\w ]*):$", text, flags=re.M)
         inside = "".join(body for title, body in zip(parts[1::2], parts[2::2]) if title in GROUPS)
@@ -67,21 +68,24 @@ class Options(ToolTest):
         return self.told[name]
 
     def every(self):
-        return sorted(set().union(*map(self.options_of, COMMANDS)))
+        return sorted(set().union(*map(self.list_options, COMMANDS)))
 
-    def test_help_says_which_commands_take_an_option(self):
-        takes = {command: self.options_of(command) for command in COMMANDS}
+    def test_help_names_the_commands_that_take_an_option(self):
+        takes = {command: self.list_options(command) for command in COMMANDS}
         self.assertGreater(len(self.every()), 60)
         for name in self.every():
             said = self.about(name)["Commands"].split(", ")
             self.assertEqual(said, [c for c in COMMANDS if name in takes[c]], name)
 
-    def test_the_manual_has_each(self):
+    def test_the_manual_has_each_option(self):
         page = (ROOT / "man/tactor.1").read_text(encoding="utf-8")
         for name in self.every():
             self.assertRegex(page, rf"(?m)^\.(It|Fl|Op|Pq)?.*\bFl (\w , )?-{name}\b", name)
+            form = self.ok("help", name).stdout.partition("\n")[0].partition(" ")[2]
+            if re.fullmatch(r"[a-z0-9-]+(\|[a-z0-9-]+)+", form):
+                self.assertIn(f"-{name} Cm {form.replace('|', ' | ')}\n", page)
 
-    def test_a_client_has_each_or_there_is_a_reason(self):
+    def test_a_client_has_each_option_or_there_is_a_reason(self):
         schema = json.loads((ROOT / "src/cli/schemas/tactor-protocol-1.schema.json").read_text(encoding="utf-8"))
         known = schema["$defs"]["options"]["properties"]
         page = (ROOT / "man/tactor-protocol.7").read_text(encoding="utf-8")
@@ -94,7 +98,7 @@ class Options(ToolTest):
         for name in by_client:
             self.assertEqual(self.about(name)["OSC"], name.replace("-", "_") + "=")
 
-    def test_a_method_of_an_experiment_has_each_or_there_is_a_reason(self):
+    def test_a_method_of_an_experiment_has_each_option_or_there_is_a_reason(self):
         page = (ROOT / "man/tactor-experiment.5").read_text(encoding="utf-8")
         line = re.search(r"^\.It Cm (algorithm .*)$", page, re.M)[1]
         by_method = {name for name in self.every() if "[[method]]" in self.about(name)}
@@ -102,33 +106,33 @@ class Options(ToolTest):
         clients = {name for name in self.every() if "JSON-RPC" in self.about(name)}
         self.assertEqual(clients - by_method, set(NO_METHOD))
 
-    def test_a_stroke_of_a_file_has_what_is_its_own(self):
+    def test_a_stroke_of_a_file_has_the_options_of_a_stroke(self):
         self.assertEqual({n for n in self.every() if "Stroke files" in self.about(n)}, IN_STROKE)
 
-    def test_a_prediction_takes_nothing_that_only_sounds(self):
-        compare = self.options_of("compare")
+    def test_a_prediction_takes_no_option_that_only_sounds(self):
+        compare = self.list_options("compare")
         self.assertLessEqual({"carrier", "sl", "intensity-scale", "stevens-exponent"}, compare)
         for name in ("level-dbfs", "ramp", "phase", "envelope", "attack", "release", "am", "waveform", "rate", "sample-format"):
-            self.assertIn(name, self.options_of("plan"))
+            self.assertIn(name, self.list_options("plan"))
             self.assertNotIn(name, compare)
 
-    def test_whoever_measures_says_how_the_device_is_driven(self):
+    def test_each_command_that_measures_takes_the_options_of_the_device(self):
         of_stream = {"latency-ms", "period-frames", "periods", "require-realtime", "no-gpio"}
         for command in ("play", "check", "serve", "calibrate", "experiment"):
-            self.assertLessEqual(of_stream, self.options_of(command), command)
-        self.assertIn("sync-delay-ms", self.options_of("serve"))
+            self.assertLessEqual(of_stream, self.list_options(command), command)
+        self.assertIn("sync-delay-ms", self.list_options("serve"))
         for option in ("--no-gpio", "--require-realtime", "--verbose"):
             self.refused(2, "calibrate", "--participant", "P1", "-o", "c.toml", "--simulate", "seed=1", option, says=[option, "nothing is played"])
         self.refused(2, "experiment", "park2016", "--participant", "P1", "-o", "study", "--simulate", "seed=1,sigma=1", "--periods", "4",
                      says=["--periods", "nothing is played"])
 
-    def test_each_key_of_defaults_is_taken_by_its_name(self):
+    def test_each_key_of_defaults_is_accepted_by_its_name(self):
         for name in self.every():
             if "[defaults]" in self.about(name):
                 file = self.write("d.toml", f"[defaults]\n{self.about(name)['[defaults]']} = []\n")
                 self.refused(2, "plan", "park2016-1", "--config", file, says=[f"d.toml:2:{len(name) + 4}: {name} is"])
 
-    def test_what_is_no_option_is_no_command_either(self):
+    def test_no_command_takes_an_unknown_option(self):
         self.refused(2, "help", "nosuch", says=["nosuch", "no such command"])
         for name in ("soa", "--soa", "max-drive-s", "max_drive_s"):
             self.assertIn("Range:", self.ok("help", name).stdout)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Where `render` writes: pipes, standard output, files of others; and what people read of names that strangers chose."""
+"""Destinations of `render`: pipes, standard output, files of others; and names chosen by strangers in the output."""
 import contextlib
 import os
 import pathlib
@@ -26,7 +26,7 @@ class Output(ToolTest):
                                 **({"stdout": subprocess.PIPE} | more))
 
     def await_blocked_signals(self, process):
-        """Until the tool takes signals itself: SIGINT stands among those that it blocks."""
+        """Waits until the tool handles signals itself: SIGINT is among those that it blocks."""
         def blocked():
             with open(f"/proc/{process.pid}/status", encoding="ascii") as f:
                 return int(next(line for line in f if line.startswith("SigBlk:")).split()[1], 16)
@@ -54,7 +54,7 @@ class Pipes(Output):
             else:
                 self.assertTrue(out.startswith(self.expected))
 
-    def test_a_redirected_file_is_written_from_where_it_stands(self):
+    def test_a_redirected_file_is_written_from_its_position(self):
         with open(self.dir / "all", "wb", buffering=0) as f:
             f.write(b"before")
             self.assertEqual(self.start("render", "park2016-1", "-o", "-", stdout=f).wait(timeout=PATIENCE_S), 0)
@@ -67,7 +67,7 @@ class Pipes(Output):
         self.assertEqual(process.returncode, 0)
         self.assertTrue(stat.S_ISFIFO((self.dir / "pipe").stat().st_mode))
 
-    def test_a_pipe_that_nobody_reads_can_be_interrupted(self):
+    def test_an_unread_pipe_can_be_interrupted(self):
         for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGQUIT):
             process = self.start("render", "park2016-1", "-o", "pipe")
             self.await_blocked_signals(process)
@@ -75,7 +75,7 @@ class Pipes(Output):
             process.communicate(timeout=PATIENCE_S)
             self.assertEqual(process.returncode, 128 + number)
 
-    def test_a_reader_that_waits_keeps_nobody(self):
+    def test_a_reader_that_waits_gets_the_sound(self):
         process = self.start("render", "park2016-1", "-o", "pipe")
         with open(self.dir / "pipe", "rb", buffering=0) as reader:
             reader.read(4096)
@@ -103,7 +103,7 @@ class Pipes(Output):
 
 
 class Files(Output):
-    def test_a_slip_of_the_keyboard_replaces_nothing(self):
+    def test_a_typing_slip_replaces_nothing(self):
         self.write("thesis.tex", "years of work")
         self.write("notes.wav", "not a sound")
         self.refused(2, "render", "park2016-1", "-o", "thesis.tex", says=["thesis.tex", ".wav", "-o - >"])
@@ -122,7 +122,7 @@ class Files(Output):
             self.ok(command, "park2016-1", "-o", name)
             self.assertEqual((self.dir / name).stat().st_mode & 0o7777, 0o640)
 
-    def test_no_link_of_others_is_followed(self):
+    def test_links_of_others_are_not_followed(self):
         (self.dir / "shared").mkdir()
         (self.dir / "shared").chmod(0o1777)
         self.write("victim.wav", "")
@@ -130,7 +130,7 @@ class Files(Output):
         self.refused(2, "render", "park2016-1", "-o", "shared/o.wav", says=["link", "name the file"])
         self.assertEqual((self.dir / "victim.wav").read_bytes(), b"")
 
-    def test_beyond_the_greatest_size_there_is_a_hint_and_no_part(self):
+    def test_above_the_greatest_size_there_is_a_hint_and_no_part(self):
         small = lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (1 << 20, 1 << 20))  # noqa: E731
         process = self.start("render", "park2016-1", "-o", "o.wav", preexec_fn=small)
         _, said = process.communicate(timeout=PATIENCE_S)
@@ -139,7 +139,7 @@ class Files(Output):
         self.assertEqual(self.leftovers(), [])
 
     def test_quit_leaves_nothing(self):
-        # It stands still where it says how far it is: the terminal is stopped.
+        # It stands still at its progress line: the terminal is stopped.
         terminal, side = pty.openpty()
         self.addCleanup(os.close, terminal)
         termios.tcflow(side, termios.TCOOFF)
@@ -154,7 +154,7 @@ class Files(Output):
 
 
 class People(Output):
-    def test_who_reads_only_the_beginning_gets_no_error(self):
+    def test_a_reader_of_only_the_beginning_gets_no_error(self):
         process = self.start("plan", "--path", "M 0 10 L 40 30", "--duration", "3600")
         process.stdout.readline()
         process.stdout.close()
@@ -162,7 +162,7 @@ class People(Output):
         self.assertEqual((process.wait(timeout=PATIENCE_S), said), (128 + signal.SIGPIPE, b""))
         process.stderr.close()
 
-    def test_nobody_who_reads_is_no_error_whatever_is_printed(self):
+    def test_an_early_closed_pipe_is_no_error_for_any_output(self):
         # More than a buffer holds, and less: help, listings, tables.
         studies.simulated(self.dir / "study")
         for args in (("help", "play"), ("help",), ("--version",), ("plan", "park2016-1"), ("plan", "park2016-1", "--format", "json"),
@@ -177,7 +177,7 @@ class People(Output):
             self.assertEqual(process.returncode, 128 + signal.SIGPIPE, f"{args}: {said}")
             self.assertNotIn(b"standard output", said, args)
 
-    def test_a_full_disk_is_named_whatever_is_printed(self):
+    def test_a_full_disk_is_named_for_any_output(self):
         for args in (("help", "play"), ("plan", "park2016-1"), ("devices",), ("--version",)):
             with open("/dev/full", "wb") as full:
                 process = self.start(*args, stdout=full)
@@ -185,8 +185,8 @@ class People(Output):
             self.assertEqual(process.returncode, 1, args)
             self.assertIn(b"No space left on device", said, args)
 
-    def test_who_reads_only_the_beginning_of_sound_gets_no_error_either(self):
-        # However standard output is named; one that is a pipe by name has its error elsewhere.
+    def test_a_reader_of_only_the_beginning_of_sound_gets_no_error_either(self):
+        # For any name of standard output; a named pipe has its error elsewhere.
         (self.dir / "link.svg").symlink_to("/dev/stdout")
         for command, name in (("render", "-"), ("render", "/dev/stdout"), ("render", "/dev/fd/1"), ("render", "/proc/self/fd/1"),
                               ("plot", "link.svg")):
@@ -204,7 +204,7 @@ class People(Output):
         self.assertEqual(process.returncode, 1)
         self.assertIn(b"ended before all was written", said)
 
-    def test_standard_error_that_is_gone_changes_no_status(self):
+    def test_missing_standard_error_changes_no_status(self):
         closed = lambda: os.close(2)  # noqa: E731
         with open("/dev/full", "wb", buffering=0) as full:
             for status, args in ((2, ("plan", "no-such-preset")), (0, ("play", "park2016-1")),
@@ -214,7 +214,7 @@ class People(Output):
                                        timeout=PATIENCE_S, **more)
                     self.assertEqual(r.returncode, status, f"{args} {more}")
 
-    def test_standard_output_that_is_closed_is_said(self):
+    def test_closed_standard_output_is_reported(self):
         for args in (("render", "park2016-1", "-o", "-"), ("plan", "park2016-1"), ("render", "park2016-1", "-o", "x.wav")):
             r = subprocess.run([TOOL, *args], cwd=self.dir, env=self.env, stderr=subprocess.PIPE, text=True, check=False,
                                timeout=PATIENCE_S, preexec_fn=lambda: os.close(1))
@@ -246,7 +246,7 @@ class People(Output):
                                    cwd=self.dir, env=self.env, stdout=subprocess.DEVNULL, stderr=side)
         os.close(side)
         said = b""
-        # Read until it says how far it is; it waits for more to be read.
+        # Read until its progress line; it waits for more to be read.
         with open(self.dir / f"l{ESCAPE}.wav", "rb", buffering=0) as reader:
             while b"%" not in said:
                 ready = select.select([terminal, reader], [], [], PATIENCE_S)[0]
@@ -260,7 +260,7 @@ class People(Output):
         self.assertIn(b"l\\x1b[31m.wav: ", said)
 
     def test_long_work_shows_its_progress(self):
-        # Half a minute of planning: whoever is through within half a second, on whatever machine, shows nothing.
+        # Half a minute of planning: work that ends within half a second shows nothing.
         self.write("s.toml", "".join(f'[[stroke]]\npath = "M 0 {i % 40} L 40 20"\nduration_s = 20\n' for i in range(100_000)))
         for args, name in ((("compare", "park2016-1", "--spread", "100000"), b"compare: "),
                            (("experiment", "park2016", "--power", "1000", "--studies", "100000", "--simulate", "seed=1,sigma=1"), b"--power: "),
@@ -271,7 +271,7 @@ class People(Output):
                 process = subprocess.Popen([TOOL, *args], cwd=self.dir, env=self.env, stdout=subprocess.DEVNULL, stderr=side)
                 os.close(side)
                 said = b""
-                with contextlib.suppress(OSError): # it has ended
+                with contextlib.suppress(OSError):  # it has ended
                     while not said.endswith(b" %"):
                         self.assertTrue(select.select([terminal], [], [], PATIENCE_S)[0], said)
                         said += os.read(terminal, 4096)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The live picture of play, on a terminal that is emulated: what is seen, and what is left behind."""
+"""The live picture of play, on an emulated terminal: its rows, and the rows left behind."""
 import fcntl
 import os
 import re
@@ -29,7 +29,7 @@ SHADES = set("·░▒▓█")
 
 
 class Window:
-    """The tool on a terminal of some size."""
+    """The tool on a terminal of a given size."""
 
     def __init__(self, test, args, columns, rows, **env):
         self.primary, secondary = os.openpty()
@@ -57,7 +57,7 @@ class Window:
         self.set_size(columns, rows)
 
     def read(self, timeout=PATIENCE_S):
-        """Takes what has been written; false when the other end is closed."""
+        """Reads the output; false when the other end is closed."""
         if not select.select([self.primary], [], [], timeout)[0]:
             raise AssertionError(f"nothing comes:\n{self.text()}")
         try:
@@ -92,12 +92,12 @@ class Window:
 
 
 def has_picture(w, duration="3600"):
-    """A whole one: what was read may end in the middle of a frame."""
+    """Returns a whole picture: the output may end in the middle of a frame."""
     return w.raw.endswith(b"\033[J") and w.shades() >= 27 and re.search(rf"\d / {duration}\.\d\d s", w.text())
 
 
 class Picture(ToolTest):
-    def test_array_levels_place_time_and_progress(self):
+    def test_the_picture_has_array_levels_place_time_and_progress(self):
         w = Window(self, LONG, 80, 24)
         w.until(has_picture)
         w.until(lambda w: "▓" in w.text() or "▒" in w.text() or "█" in w.text())
@@ -143,7 +143,7 @@ class Picture(ToolTest):
         self.assertGreater(places[-1][1] - places[0][1], 8)
         self.assertGreater(places[-1][2] - places[0][2], 16)
 
-    def test_it_takes_itself_away(self):
+    def test_the_picture_removes_itself(self):
         plain = self.ok(*SHORT).stdout.splitlines()
         for columns, rows in ((80, 24), (80, 40), (200, 60), (80, 12), (79, 11)):
             w = Window(self, SHORT, columns, rows)
@@ -151,11 +151,11 @@ class Picture(ToolTest):
             self.assertIn(b"/ 0.56 s", w.raw)
             self.assertFalse(w.screen.cursor.hidden)
             self.assertFalse(SHADES & set(w.text()), w.text())
-            # The first line may have been scrolled away when a high picture came.
+            # The first line may have scrolled away with a high picture.
             self.assertEqual([line[:8] for line in w.lines() if line][-7:], [line[:8] for line in plain][-7:], (columns, rows))
 
     def frames(self, w):
-        """Each is between "up" and "clear the rest"."""
+        """Returns the pictures, each between "up" and "clear the rest"."""
         return re.findall(r"\r(?:\033\[\d+A)?((?:(?!\033\[\d*A)[^\r])*?)\033\[J", w.raw.decode(errors="ignore").replace("\r\n", "\n"))
 
     def test_small_terminals_neither_wrap_nor_scroll(self):
@@ -176,13 +176,13 @@ class Picture(ToolTest):
                     self.assertTrue(any(" s" in f for f in frames), (columns, rows))
                 self.assertEqual(any(SHADES & set(f) for f in frames), columns >= 12 and rows >= 4, (array, columns, rows))
 
-    def test_it_follows_the_size_of_the_window(self):
+    def test_the_picture_follows_the_size_of_the_window(self):
         w = Window(self, LONG, 100, 40)
         w.until(has_picture)
         for columns, rows in ((60, 15), (30, 8), (120, 50), (80, 24)):
             w.resize(columns, rows)
             before = len(w.raw)
-            # One picture, and its last line is above the cursor, once what was drawn for the old size has been read.
+            # A single picture, its last line above the cursor, once the output for the old size has been read.
             w.until(lambda w, before=before: len(w.raw) > before + 3000 and has_picture(w) and len(re.findall(TIME, w.text())) == 1
                     and re.search(TIME, w.lines()[w.screen.cursor.y - 1]) and w.screen.cursor.x == 0)
         self.process_ends(w, signal.SIGINT, 130)
@@ -200,20 +200,20 @@ class Picture(ToolTest):
             w.until(has_picture)
             self.process_ends(w, number, status)
 
-    def test_whatever_kills_it_the_terminal_works_on(self):
+    def test_the_terminal_works_on_after_any_signal(self):
         w = Window(self, LONG, 80, 24)
         w.until(has_picture)
         mode = termios.tcgetattr(w.primary)
         w.process.send_signal(signal.SIGKILL)
         w.to_the_end()
         self.assertFalse(w.screen.cursor.hidden)
-        self.assertNotIn(b"\033[?", w.raw)  # no mode was set that somebody would have to reset
+        self.assertNotIn(b"\033[?", w.raw)  # no mode was set that would need a reset
         self.assertEqual(mode, termios.tcgetattr(w.primary))
 
-    def test_a_terminal_that_takes_nothing_does_not_hold_it_up(self):
+    def test_a_full_terminal_does_not_hold_it_up(self):
         w = Window(self, LONG, 200, 60)
         w.until(has_picture)
-        # Nobody reads; when the terminal's buffer is full it cannot be written to.
+        # Without a reader the terminal's buffer fills, and writes block.
         out = os.open(f"/proc/{w.process.pid}/fd/1", os.O_WRONLY | os.O_NONBLOCK | os.O_NOCTTY)
         try:
             while True:
@@ -224,12 +224,12 @@ class Picture(ToolTest):
             os.close(out)
         w.process.send_signal(signal.SIGTERM)
         try:
-            # The report at the end must be written, and waits for somebody who reads; the sound has ended before.
+            # The final report must be written and waits for a reader; the sound has ended before.
             self.assertEqual(w.to_the_end(), 143)
         finally:
             w.process.kill()
 
-    def test_a_terminal_that_is_closed_ends_it(self):
+    def test_a_closed_terminal_ends_it(self):
         w = Window(self, LONG, 80, 24)
         w.until(has_picture)
         os.close(w.primary)
@@ -238,7 +238,7 @@ class Picture(ToolTest):
         w.process.wait(timeout=PATIENCE_S)
         self.assertIn(w.process.returncode, (1, 129))
 
-    def test_plain_where_that_is_asked_for(self):
+    def test_output_is_plain_where_asked_for(self):
         for env in ({"TERM": "dumb"}, {"TERM": ""}):
             w = Window(self, SHORT, 80, 24, **env)
             self.assertEqual(w.to_the_end(), 0)
@@ -247,7 +247,7 @@ class Picture(ToolTest):
         self.assertEqual(w.to_the_end(), 0)
         self.assertNotIn(b"\033", w.raw)
 
-    def test_no_color_takes_the_colours_and_leaves_the_picture(self):
+    def test_no_color_removes_the_colours_and_keeps_the_picture(self):
         for env, coloured in (({"NO_COLOR": "1"}, False), ({"NO_COLOR": ""}, True), ({}, True)):
             w = Window(self, SHORT, 80, 24, **env)
             self.assertEqual(w.to_the_end(), 0)
@@ -263,7 +263,7 @@ class Picture(ToolTest):
         w = Window(self, ("play", "--path", "M 0 10 L 40 30", "--duration", "3600", "-D", "raw:/dev/full"), 80, 24)
         self.assertEqual(w.to_the_end(), 1)
         self.assertFalse(SHADES & set(w.text()), w.text())
-        # On a slow machine the device is lost before the stroke begins: then the error says it all.
+        # On a slow machine the device is lost before the stroke begins: then the error is the whole output.
         said = w.text() + w.process.stderr.read().decode()
         self.assertRegex(said, "interrupted after|not played")
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Plans that were stored are played, rendered and drawn as they are."""
+"""Stored plans are played, rendered and drawn unchanged."""
 import json
 
 from harness import ROOT, ToolTest, main
@@ -43,7 +43,7 @@ class PlanFile(ToolTest):
         return name
 
     def same(self, *args):
-        """Rendered from its plan a stroke has the same bytes, and its plan is the same text."""
+        """Renders a stroke from its plan: the bytes are the same, and its plan is the same text."""
         file = self.stored(*args)
         self.ok("render", *args, "-o", "stroke.wav")
         self.ok("render", file, "-o", "plan.wav")
@@ -61,11 +61,11 @@ class PlanFile(ToolTest):
         for name in ("reach", "knocks"):
             self.same(str(ROOT / f"examples/strokes/{name}.toml"))
 
-    def test_where_it_was_put_is_in_it(self):
+    def test_a_plan_holds_the_stroke_s_placing(self):
         self.same("park2016-1", "--array", "palm-2x4", "--fit", "--fit-margin", "1.3")
         self.write("arm.toml", '[array]\nname = "arm"\ngrid = { rows = 1, columns = 6, pitch_mm = 35.0 }\n')
         self.same("park2016-3", "--array", "arm.toml", "--fit")
-        # Of a line that lies across, the last digits may be others.
+        # For a line that lies across, the last digits may differ.
         self.write("across.toml", '[array]\nname = "across"\n' + "".join(
             f"[[tactor]]\nx_mm = {11.1 * i}\ny_mm = {-23.4 * i}\nchannel = {i}\n" for i in range(5)))
         first = self.stored("park2016-3", "--array", "across.toml", "--fit")
@@ -75,7 +75,7 @@ class PlanFile(ToolTest):
         for x, y in zip(matrix, again):
             self.assertAlmostEqual(x, y, delta=1e-12)
 
-    def test_how_it_is_rendered_is_in_it(self):
+    def test_a_plan_holds_its_rendering(self):
         self.same("park2016-3", "--rate", "44100", "--level-dbfs", "-20.05", "--phase", "burst", "--ramp", "0.0013")
         self.same("park2016-2", "--algorithm", "tactile-brush", "--overlap", "max", "--carrier", "187.5")
         self.write("desk.toml", DESK)
@@ -83,7 +83,7 @@ class PlanFile(ToolTest):
         self.write("heard.toml", HEARD)
         self.same("--path", "M 0 10 L 30 12", "--array", "heard.toml", "--sl", "7.7")
 
-    def test_the_faces_are_in_it(self):
+    def test_a_plan_holds_its_faces(self):
         self.write("wide.toml", '[array]\nname = "wide"\ngrid = { rows = 3, columns = 3, pitch_mm = [20.0, 40.0] }\n')
         drawn = ("--path", "M 0 10 L 40 10", "--array", "wide.toml", "--faces", "nearest")
         for algorithm in ("park2016", "continuous"):
@@ -114,7 +114,7 @@ class PlanFile(ToolTest):
             said = self.refused(2, "render", file, *option, "-o", "x.wav", says=[f"{option[0]}: plan.json is planned"])
             self.assertFalse((self.dir / "x.wav").exists(), said)
 
-    def test_defaults_are_for_planning_anew(self):
+    def test_defaults_of_planning_do_not_change_a_plan(self):
         file = self.stored("park2016-1")
         self.ok("render", file, "-o", "plan.wav")
         config = self.write("tactor.toml", '[defaults]\nalgorithm = "continuous"\nlevel-dbfs = -30.0\nsoa = 0.06\n')
@@ -125,7 +125,7 @@ class PlanFile(ToolTest):
         self.ok("render", file, "--array", palm, "-o", "configured.wav")
         self.assertEqual((self.dir / "plan.wav").read_bytes(), (self.dir / "configured.wav").read_bytes())
 
-    def test_every_command_that_plays_or_draws_takes_it(self):
+    def test_every_command_that_plays_or_draws_takes_a_plan(self):
         for algorithm in ("park2016", "continuous"):
             file = self.stored("park2016-1", "--algorithm", algorithm)
             self.ok("plot", file, "-o", "a.svg")
@@ -135,7 +135,7 @@ class PlanFile(ToolTest):
         self.refused(2, "compare", file, says=["plan.json: it is a plan"])
         self.refused(2, "render", file, "park2016-1", "-o", "x.wav")
 
-    def test_an_array_that_differs_is_refused(self):
+    def test_a_different_array_is_refused(self):
         file = self.stored("park2016-1")
         self.ok("render", file, "--array", "palm-3x3", "-o", "x.wav")
         self.refused(2, "play", file, "--array", "palm-2x4", "-D", "null", says=["9 tactors there, 8 here", "--array"])
@@ -163,7 +163,7 @@ class PlanFile(ToolTest):
         self.refused(2, "render", "-", "-o", "x.wav", stdin=" {}", says=["standard input", "tactor plan STROKE --format json"])
         self.assertFalse((self.dir / "x.wav").exists())
 
-    def test_what_is_no_plan_says_where(self):
+    def test_a_broken_plan_is_refused_with_the_place(self):
         good = self.plan("park2016-1", "--algorithm", "continuous")
         bursts = self.plan("park2016-1")
         self.refused(2, "render", "none.json", "-o", "x.wav", says=["none.json: No such file"])
@@ -212,7 +212,7 @@ class PlanFile(ToolTest):
         refuses(changed(good, -0.1, "continuous", "points", 5, "drives", 0, "amplitude"), "points[5].drives[0].amplitude", "not from 0 to 1000")
         refuses(changed(good, 1.5, "continuous", "points", 5, "drives", 0, "amplitude"), "points[5]: drives tactor 0 at 1.5, above its intensity of 1")
         refuses(changed(bursts, 1.5, "bursts", 3, "drives", 0, "amplitude"), "bursts[3]: drives tactor", "at 1.5, above its intensity of 1")
-        # A model of somebody's own may be stronger than its intensity, as far as the channel goes.
+        # A custom model may exceed its intensity, as far as the channel goes.
         own = changed(changed(good, 900.0, "continuous", "points", 5, "drives", 0, "amplitude"), "own", "phantom")
         self.write("loud.json", json.dumps(own))
         self.refused(2, "render", "loud.json", "-o", "x.wav", says=["tactor 0: would be driven", "full scale"])

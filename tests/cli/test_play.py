@@ -11,7 +11,7 @@ import time
 from harness import GRID, PATIENCE_S, TOOL, ToolTest, Wav, main
 
 PATIENCE = str(PATIENCE_S)
-# The fade of 10 ms is in one period: it is written whole, also where the machine stands still for so long that it is not waited for.
+# The fade of 10 ms is in one period: it is written whole, even where the machine stands still beyond the wait for it.
 WHOLE_FADE = ("--period-frames", "1024", "--periods", "3")
 
 
@@ -23,7 +23,7 @@ class Play(ToolTest):
         self.assertIn("null", r.stderr)
         self.assertIn("9 channels", r.stdout)
 
-    def test_what_a_device_gets_is_what_render_writes(self):
+    def test_a_device_gets_what_render_writes(self):
         for name, pcm_bytes in (("s16", 2), ("s32", 4)):
             self.ok("render", *self.SHORT, "--sample-format", name, "-o", "o.wav")
             self.ok("play", *self.SHORT, "--sample-format", name, "-D", f"raw:{self.dir}/out.raw")
@@ -48,10 +48,10 @@ class Play(ToolTest):
         for text in ("6 channels", "44100 Hz", "128", "512"):
             self.assertIn(text, out)
 
-    def test_a_device_that_does_not_exist(self):
+    def test_a_missing_device_is_status_3(self):
         self.refused(3, "play", "park2016-1", "-D", "nowhere", says=["nowhere"])
 
-    def test_a_device_with_other_channels_says_what_it_can(self):
+    def test_a_device_with_other_channels_names_its_own(self):
         self.refused(3, "play", "park2016-1", "-D", "eight", says=["9", "8", "channels"])
         self.ok("play", "--path", "M 0 0 L 60 0", "--duration", "0.2", "--array", "palm-2x4", "-D", "eight")
 
@@ -114,7 +114,7 @@ class Play(ToolTest):
                               ("--periods", "1"), ("--reopen-s", "-1"), ("--sync-delay-ms", "x"), ("--format", "xml")):
             self.refused(2, "play", *self.SHORT, option, value, says=[option])
 
-    def test_the_run_as_json(self):
+    def test_the_run_is_reported_as_json(self):
         before_ns = time.monotonic_ns()
         r = self.ok("play", "park2016-1", "--duration", "0.3", "--format", "json", "-D", "null")
         after_ns = time.monotonic_ns()
@@ -130,14 +130,14 @@ class Play(ToolTest):
         self.assertEqual((counters["xruns"], counters["xrun_s"], counters["reopened"]), (0, [], 0))
         self.assertGreaterEqual(counters["frames"], stroke["frames"])
 
-    def test_counters_as_text(self):
+    def test_counters_are_reported_as_text(self):
         out = self.ok("play", *self.SHORT).stdout
         for name in ("xruns", "latest wake-up", "ring low water", "page faults", "limited", "real time"):
             self.assertRegex(out, f"(?m)^{name} +\\S")
 
     def on_failing_device(self, *args, comes_back=False):
-        """Plays two strokes to a file of s32 that takes nothing more once a second of the first, which lasts an hour, has been
-        heard; `comes_back` once the tool waits for it."""
+        """Plays two strokes to a file of s32 that refuses writes after a second of the first, which lasts an hour;
+        `comes_back` once the tool waits for it."""
         folder = self.dir / "device"
         folder.mkdir()
         self.write("long.toml", '[stroke]\npath = "M 0 10 L 40 30"\nduration_s = 3600\n')
@@ -169,7 +169,7 @@ class Play(ToolTest):
         return subprocess.CompletedProcess(p.args, p.returncode, out, said + err), told, [s["state"] for s in told["strokes"]]
 
     def heard_for(self, process, file, size):
-        """Until so many bytes from the first sound on are in the file."""
+        """Waits until so many bytes from the first sound on are in the file."""
         first = None
 
         def heard():
@@ -187,7 +187,7 @@ class Play(ToolTest):
         self.assertLess(told["strokes"][0]["frames"], told["strokes"][0]["length_frames"])
         self.assertRegex(r.stderr, r"tactor: long.toml: interrupted after \d+\.\d+ s: .*--reopen-s")
 
-    def test_an_interrupted_stroke_voids_the_run_where_that_is_asked_for(self):
+    def test_an_interrupted_stroke_voids_the_run_where_asked_for(self):
         r, _, _ = self.on_failing_device("--void-on-xrun", "--reopen-s", PATIENCE)
         self.assertEqual(r.returncode, 1)
         self.assertRegex(r.stderr, r"tactor: long.toml: interrupted after .*void")
@@ -203,7 +203,7 @@ class Play(ToolTest):
 
     LOG_LINE = r"\d{4}-\d\d-\d\dT\d\d:\d\d:\d\d\.\d{3}Z (debug|info|warning|error) \S.*"
 
-    def test_a_log_tells_what_was_agreed_on_and_is_appended_to(self):
+    def test_a_log_has_the_stream_s_setup_and_is_appended_to(self):
         quiet = self.ok("play", *self.SHORT, "-D", "null")
         self.assertNotRegex(quiet.stderr, self.LOG_LINE)
         for times in (1, 2):
@@ -216,14 +216,14 @@ class Play(ToolTest):
             self.assertEqual(sum(line.endswith("info the stream has ended") for line in lines), times)
         self.assertRegex(self.ok("play", *self.SHORT, "-D", "null", "--verbose").stderr, f"(?m)^{self.LOG_LINE}$")
 
-    def test_a_log_tells_of_a_lost_device_and_its_return(self):
+    def test_a_log_has_a_lost_device_and_its_return(self):
         r, _, _ = self.on_failing_device("--reopen-s", PATIENCE, "--log", "play.log", "--verbose", comes_back=True)
         self.assertEqual(r.returncode, 1, r.stderr)
         log = (self.dir / "play.log").read_text()
         self.assertRegex(log, r'(?s)error the stream has ended: .*info waiting for PCM "raw:.*info PCM "raw:.*" is back'
                               r".*info stream on .*info the stream has ended\n")
 
-    def test_a_log_is_written_to_nothing_but_logs(self):
+    def test_a_log_is_written_only_to_logs(self):
         array = self.write("a.toml", GRID)
         (self.dir / "link.log").symlink_to("elsewhere")
         os.mkfifo(self.dir / "pipe")
@@ -267,7 +267,7 @@ class Play(ToolTest):
                 os.setuid(65534)
 
         os.chmod(self.dir, 0o777)
-        # Where a tool that counts its lines (the coverage build) may write the counts, as that user.
+        # Folder for the coverage build's counts, writable by that user.
         env = {**self.env, "GCOV_PREFIX": str(self.dir)}
         try:
             subprocess.run([TOOL, "--version"], preexec_fn=no_rights, env=env, check=True, capture_output=True)
@@ -288,7 +288,7 @@ class Play(ToolTest):
         self.assertEqual(r.returncode, 3)
         self.assertIn("limits.d", r.stderr)
 
-    def test_lines_of_the_configuration_must_be_there_unless_left_alone(self):
+    def test_lines_of_the_configuration_must_exist_unless_switched_off(self):
         self.write("c.toml", '[amplifier]\nline = { chip = "no-such-chip", offset = 3 }\n')
         self.refused(3, "play", *self.SHORT, "--config", "c.toml", "-D", "null", says=["no-such-chip"])
         self.ok("play", *self.SHORT, "--config", "c.toml", "-D", "null", "--no-gpio")
@@ -302,7 +302,7 @@ class Play(ToolTest):
         self.assertEqual(len(marked), 240)  # 5 ms
         self.assertGreaterEqual(min(marked), 32767)
 
-    def test_a_mistyped_device_is_told_the_near_one(self):
+    def test_a_mistyped_device_gets_a_suggestion(self):
         self.refused(3, "play", *self.SHORT, "-D", "eigth", says=["did you mean eight?"])
         self.refused(3, "play", *self.SHORT, "-D", "hw:CARD=NoSuchCard", says=["NoSuchCard"])
 

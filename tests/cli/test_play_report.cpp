@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What is said in the end of a run whose strokes did not all finish.
+// The final message of a run whose strokes did not all finish.
 #include "cli/play/play_report.hpp"
 
 #include <string>
@@ -43,12 +43,12 @@ std::string said(std::vector<stroke_outcome> strokes)
 
 } // namespace
 
-TEST_CASE("of a run whose strokes all finished nothing is said")
+TEST_CASE("a run whose strokes all finished has no message")
 {
     CHECK_FALSE(unfinished(run({ended("a", state_kind::finished), ended("b", state_kind::finished)})));
 }
 
-TEST_CASE("one stroke that did not finish is an error, wherever it stands")
+TEST_CASE("one stroke that did not finish is an error, wherever it is")
 {
     const stroke_outcome whole = ended("a", state_kind::finished);
     const stroke_outcome cut = ended("b", state_kind::interrupted);
@@ -58,7 +58,7 @@ TEST_CASE("one stroke that did not finish is an error, wherever it stands")
     CHECK(said({ended("b", state_kind::cancelled), whole}) == "b: cancelled after 0.500 s: it is tired");
 }
 
-TEST_CASE("of several the last is named, and how many they are")
+TEST_CASE("of several unfinished strokes the last is named, with their number")
 {
     CHECK(said({ended("a", state_kind::interrupted), ended("b", state_kind::finished),
                 ended("c", state_kind::interrupted)}) ==

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""tactor plot: what is in the pictures, and where.
-
-Places are computed here from the plan and from the scales that the picture's own groups state."""
+"""tactor plot: contents and places of the pictures.
+Places are computed here from the plan and from the scales that the picture's groups state."""
 import math
 
 from harness import ROOT, main
@@ -10,7 +9,7 @@ from pictures import BRUSH, NS, PlotTest, number
 
 class ArrayView(PlotTest):
     def check_bursts(self, svg, plan, bursts):
-        """Dots where the plan has bursts, joined to the tactors that play them."""
+        """Checks for dots where the plan has bursts, joined to the tactors that play them."""
         tactors = {t["tactor"]: t for t in plan["array"]["tactors"]}
         dots = svg.all("burst")
         self.assertEqual([d.get("id") for d in dots], [f"burst-{i}" for i, _ in bursts])
@@ -29,7 +28,7 @@ class ArrayView(PlotTest):
                     self.near(got, want)
                 self.near(float(line.get("data-amplitude")), drive["amplitude"], 1e-5)
 
-    def test_each_burst_is_where_the_plan_says_and_joined_to_its_tactors(self):
+    def test_each_burst_is_where_the_plan_puts_it_and_joined_to_its_tactors(self):
         for stroke in ("park2016-1", "park2016-2", "park2016-3", "park2016-4"):
             for options in ([], ["--phantom", "gaussian"], BRUSH):
                 plan = self.plan(stroke, *options)
@@ -63,7 +62,7 @@ class ArrayView(PlotTest):
                 else:
                     self.assertEqual(label, f"{t['tactor']}" if same else f"{t['tactor']} (ch {t['channel']})")
 
-    def test_the_scale_bar_is_as_long_as_it_says(self):
+    def test_the_scale_bar_is_as_long_as_its_label(self):
         for name, stroke in (("palm-3x3", "park2016-1"), ("arm-line-4", None), ("ring-8", None)):
             array = name if stroke else ROOT / f"examples/arrays/{name}.toml"
             svg = self.svg(*([stroke] if stroke else ["--path", "M 10 0 L 20 0", "--outside", "clamp"]), "--array", array)
@@ -93,7 +92,7 @@ class ArrayView(PlotTest):
             cross = (back[0] - cx) * (tip[1] - cy) - (back[1] - cy) * (tip[0] - cx)
             self.assertLess(cross, 0)
 
-    def test_the_path_is_where_the_stroke_runs(self):
+    def test_the_path_is_the_stroke_s(self):
         svg = self.svg("park2016-3")
         (line,) = svg.all("path")
         cx, cy = svg.place(20, 20)
@@ -154,7 +153,7 @@ class TimingView(PlotTest):
             self.near(number(bar, "y") + number(bar, "height"), top + row * (playing.index(d["tactor"]) + 1))
         return plan, svg
 
-    def test_a_bar_for_each_tactor_of_each_burst(self):
+    def test_each_tactor_of_each_burst_has_a_bar(self):
         for stroke in ("park2016-1", "park2016-2", "park2016-3", "park2016-4"):
             self.check_bars(stroke)
         self.check_bars("park2016-3", "--duration", "0.3", "--array", ROOT / "examples/arrays/palm-measured.toml")
@@ -199,7 +198,7 @@ class TimingView(PlotTest):
         self.assertIn(f"first SOA {brush[1]['onset_s'] - brush[0]['onset_s']:.4g} s", svg.texts())
         self.assertIn(f"first duration {brush[0]['duration_s']:.4g} s", svg.texts())
 
-    def test_what_is_silent_throughout_is_drawn_too(self):
+    def test_an_all_silent_plan_is_drawn_too(self):
         self.write("s.toml", '[stroke]\npath = "M 0 20 H 40"\nintensity = 0\n')
         for view in ("both", "timing", "array", "wave"):
             svg = self.svg("s.toml", "--view", view)
@@ -227,7 +226,7 @@ class TimingView(PlotTest):
                     self.assertLess((base - y) / full, max(near) + 0.02)
         self.assertGreater(len(svg.all("burst")), 10)
 
-    def test_what_is_too_dense_for_bars_is_drawn_as_its_largest_amplitude(self):
+    def test_bars_that_are_too_dense_are_drawn_as_their_largest_amplitude(self):
         svg = self.svg("park2016-1", "--duration", "120")
         self.assertEqual(svg.id("timing").get("data-drawn"), "columns")
         self.assertEqual(svg.all("bar", "sound"), [])

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""tactor plot: pictures in which not all has space. Widths of text by the table of DejaVu Sans."""
+"""tactor plot: crowded pictures. Widths of text by the table of DejaVu Sans."""
 import itertools
 
 from harness import main
@@ -8,7 +8,7 @@ from sheets import ARRAYS, WIDTHS, Sheets, box, grid, overlap
 
 
 class Crowded(Sheets):
-    """Many strokes on 64 tactors: what has no space is said, and the page is one."""
+    """Many strokes on 64 tactors: the picture reports what has no space, and fits one page."""
     PAGE_MM = 247.05  # of A4, rounding included
 
     def sheets(self, view="both"):
@@ -38,7 +38,7 @@ class Crowded(Sheets):
                 svg = self.svg("s.toml", "--array", "a.toml", "--width", width, "--view", view, "--level-dbfs", "-40")
                 self.assertLessEqual(float(svg.root.get("height")[:-2]), self.PAGE_MM * max(1, width / 170), (view, width))
 
-    def test_all_that_is_said_is_there_to_its_end(self):
+    def test_texts_are_complete(self):
         for what, svg in self.sheets():
             self.assertNotIn("\u2026", self.notes(svg), what)
 
@@ -57,7 +57,7 @@ class Crowded(Sheets):
                 self.assertGreaterEqual(number(bar, "y"), tops[i] - 0.01, what)
                 self.assertLessEqual(number(bar, "y") + number(bar, "height"), rows[i] + 0.01, what)
 
-    def test_each_start_has_its_number_or_it_is_said_how_many_have_none(self):
+    def test_each_start_has_its_number_or_the_rest_is_counted(self):
         for view in ("timing", "wave"):
             for what, svg in self.sheets(view):
                 texts = svg.id("stroke-starts").findall(NS + "text")
@@ -70,7 +70,7 @@ class Crowded(Sheets):
                 for a, b in itertools.combinations(texts, 2):
                     self.assertFalse(overlap(box(a), box(b)), (what, a.text, b.text))
 
-    def test_a_tactor_that_plays_is_joined_to_a_burst_or_said_to_be_played_by_others(self):
+    def test_a_tactor_that_plays_is_joined_to_a_burst_or_reported_as_left_out(self):
         seen = 0
         for what, svg in self.sheets("array"):
             joined = {e.get("data-tactor") for e in svg.all("join")}
@@ -82,7 +82,7 @@ class Crowded(Sheets):
                 self.assertIn(f"{who if len(others) <= 8 else f'{len(others)} tactors'} play", self.notes(svg), what)
         self.assertGreater(seen, 0)
 
-    def test_of_very_many_rows_it_is_said_which_have_numbers(self):
+    def test_of_very_many_rows_the_numbered_ones_are_stated(self):
         self.write("a.toml", grid(10, 10, 10))
         path = " ".join(f"{'M' if y == 0 else 'L'} 0 {y} L 90 {y} L 90 {y + 5} L 0 {y + 5}" for y in range(0, 91, 10))
         for view in ("timing", "wave"):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Files of tactor plot: formats, sizes, what is refused, and pictures that change only on purpose."""
+"""Files of tactor plot: formats, sizes, refusals, and pictures that change only on purpose."""
 import os
 import re
 import struct
@@ -24,7 +24,7 @@ class Formats(PlotTest):
             edge += [png.pixel(x, y) for y in range(png.height) for x in (0, 1, png.width - 2, png.width - 1)]
             self.assertEqual(set(edge), {(255, 255, 255)}, "something is cut off at the edge")
 
-    def test_the_png_shows_what_the_svg_says(self):
+    def test_the_png_shows_the_same_as_the_svg(self):
         svg = self.svg("park2016-3", "--view", "array")
         self.ok("plot", "park2016-3", "--view", "array", "-o", "a.png", "--dpi", "300")
         png = Png(self.dir / "a.png")
@@ -46,7 +46,7 @@ class Formats(PlotTest):
             self.ok("plot", "park2016-2", "-o", f"b.{ext}", env={"LC_ALL": "de_DE.UTF-8", "TZ": "Asia/Tokyo"})
             self.assertEqual((self.dir / f"a.{ext}").read_bytes(), (self.dir / f"b.{ext}").read_bytes())
 
-    def test_svg_is_of_the_size_asked_with_title_and_description(self):
+    def test_svg_has_the_given_size_with_title_and_description(self):
         svg = self.svg("park2016-1", "--width", "120")
         self.assertEqual(svg.root.get("width"), "120mm")
         self.assertEqual(svg.root.find(NS + "title").text, "park2016-1 on palm-3x3")
@@ -58,7 +58,7 @@ class Formats(PlotTest):
         self.assertGreaterEqual(min(sizes), 6.0)
 
     def test_no_text_leaves_the_page_and_no_labels_overlap(self):
-        # About those of DejaVu Sans, in em.
+        # Approximate widths of DejaVu Sans, in em.
         width = {c: w for letters, w in (("0123456789", 0.64), (" ().,:'il|", 0.34), ("fjrt-", 0.38), ("mMW", 0.95))
                  for c in letters}
         jobs = [["park2016-%d" % i] for i in (1, 2, 3, 4)] + [
@@ -88,7 +88,7 @@ class Formats(PlotTest):
 
 
 class Bounds(PlotTest):
-    def test_an_hour_makes_a_picture_like_any_other(self):
+    def test_an_hour_makes_a_picture_of_ordinary_size(self):
         for view in ("wave",) if SANITIZED else ("both", "wave"):
             self.ok("plot", "--path", "M 0 0 C 40 0 0 40 40 40", "--duration", "3600", "--view", view, "-o", "a.svg")
             self.assertLess((self.dir / "a.svg").stat().st_size, 300_000)
@@ -122,7 +122,7 @@ class Bounds(PlotTest):
 
 
 class Refusals(PlotTest):
-    def test_unknown_formats_and_values(self):
+    def test_unknown_formats_and_values_are_refused(self):
         self.refused(2, "plot", "park2016-1", "-o", "a.jpg", says=("a.jpg", '".jpg"', ".svg, .png or .pdf"))
         self.refused(2, "plot", "park2016-1", "-o", "a", says=("no extension",))
         self.refused(2, "plot", "park2016-1", says=("--output",))
@@ -135,7 +135,7 @@ class Refusals(PlotTest):
         self.refused(2, "plot", "park2016-1", "park2016-2", "-o", "a.svg", says=("park2016-2",))
         self.assertEqual([p.name for p in self.dir.iterdir()], ["alsa.conf"])
 
-    def test_what_cannot_be_written_leaves_nothing_behind(self):
+    def test_a_failed_write_leaves_nothing_behind(self):
         self.refused(2, "plot", "park2016-1", "-o", "none/a.svg", says=("none", "does not exist"))
         (self.dir / "folder.svg").mkdir()
         self.refused(2, "plot", "park2016-1", "-o", "folder.svg", says=("is a folder",))
@@ -147,7 +147,7 @@ class Refusals(PlotTest):
         self.assertEqual(sorted(p.name for p in self.dir.iterdir()), ["alsa.conf", "folder.svg", "full.svg", "old.png"])
 
     @unittest.skipIf(os.geteuid() == 0, "root may write everywhere")
-    def test_a_folder_without_rights(self):
+    def test_a_folder_without_rights_is_refused(self):
         closed = self.dir / "closed"
         closed.mkdir(mode=0o500)
         self.refused(1, "plot", "park2016-1", "-o", "closed/a.svg", says=("Permission denied", "where you may write"))
@@ -167,7 +167,7 @@ class Refusals(PlotTest):
 
 
 class Goldens(PlotTest):
-    """Pictures that change only on purpose: run with TACTOR_UPDATE_GOLDEN=1 to accept what is drawn now."""
+    """Pictures that change only on purpose: run with TACTOR_UPDATE_GOLDEN=1 to accept the present ones."""
 
     NUMBER = re.compile(r"-?\d+(?:\.\d+)?")
 

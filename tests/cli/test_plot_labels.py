@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""tactor plot and compare: labels belong to what they stand at, strokes are told apart, at every width.
-
+"""tactor plot and compare: each label is nearest to its object, and strokes can be told apart, at every width.
 Boxes of texts are measured here by the advances of DejaVu Sans, the widest of the usual fonts."""
 import itertools
 import math
@@ -53,12 +52,12 @@ class Labels(Sheets):
             shown = len(svg.all("number")) + len(svg.all("tactor-label"))
             self.assertGreaterEqual(shown, len(svg.all("tactor")), what)
 
-    def test_what_has_no_room_is_said(self):
+    def test_labels_without_room_are_reported(self):
         self.write("a.toml", grid(30, 30, 5))
         svg = self.svg("--path", "M 2 2 L 140 140", "--array", "a.toml", "--width", "60", "--view", "array")
         self.assertIn("no space for the numbers", " ".join(e.text for e in svg.all("note")))
 
-    def test_a_channel_is_said_once(self):
+    def test_a_channel_is_named_once(self):
         for file, channels in (("nine", False), ("twelve", True)):
             self.write("a.toml", ARRAYS[file][0])
             self.write("s.toml", strokes(1, ARRAYS[file][1]))
@@ -93,7 +92,7 @@ class Strokes(Sheets):
             names = [e.text.partition(" ")[2] for e in self.svg("s.toml", "--array", "a.toml", "--width", str(width)).all("stroke-name")]
             self.assertEqual((len(names), len(set(names))), (14, 14), names)
 
-    def test_bars_of_strokes_at_one_time_do_not_lie_on_each_other(self):
+    def test_bars_of_simultaneous_strokes_do_not_overlap(self):
         seen = 0
         for what, svg in self.pictures("timing", counts=(3,), widths=(170,)):
             rows = {}
@@ -132,7 +131,7 @@ class Strokes(Sheets):
 
 
 class Compare(PlotTest):
-    def test_the_picture_has_a_scale_and_neither_digits_nor_advice_too_many(self):
+    def test_the_picture_has_a_scale_few_digits_and_little_advice(self):
         for width in WIDTHS:
             self.ok("compare", "--path", "M 5 5 C 20 -5 20 45 39 30", "--duration", "2.61799387", "-o", "c.svg", "--width", width)
             svg = Svg(self.dir / "c.svg")

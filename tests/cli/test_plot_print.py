@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Pictures as they are printed, 85 mm wide: titles, typefaces, numbers and colours that say one thing."""
+"""Pictures printed 85 mm wide: titles, typefaces, numbers and colours with one meaning."""
 import itertools
 import pathlib
 import re
@@ -27,7 +27,7 @@ class Print(PlotTest):
         self.ok(command, *args, "-o", "a.svg")
         return Svg(self.dir / "a.svg")
 
-    def test_a_title_is_another_or_none(self):
+    def test_a_title_can_be_changed_or_left_out(self):
         study = self.study()
         for args, own in ((("plot", "park2016-1"), "park2016-1"), (("compare", "park2016-1"), "park2016-1"), (("analyze", study), "(simulated)")):
             plain, none = self.drawn(*args), self.drawn(*args, "--title", "none")
@@ -77,7 +77,7 @@ class Print(PlotTest):
         self.assertEqual(len(set(colours)), 3)
         paths = svg.all("path")
         self.assertEqual([p.get("stroke") for p in paths], colours)
-        # What lies on another path lets it show through.
+        # Lines over another path let it show through.
         self.assertEqual([p.get("stroke-dasharray") is not None for p in paths], [False, True, False])
         self.assertEqual({e.get("stroke") for e in svg.all("join")}, {"#969696"})
 
@@ -96,7 +96,7 @@ class Print(PlotTest):
         for panel in svg.all("panel"):
             self.assertEqual([e.text for e in panel.iter(NS + "text") if e.get("class") == "number"], [str(i) for i in range(9)])
 
-    def test_analyze_shows_everybody_and_its_error_bars(self):
+    def test_analyze_shows_each_participant_and_its_error_bars(self):
         study = self.study()
         people = len([p for p in (self.dir / study).iterdir() if p.name.startswith("sub-")])
         svg = self.drawn("analyze", study, "--width", "85")
@@ -107,7 +107,7 @@ class Print(PlotTest):
             order = [e.get("class") for e in panel.iter() if e.get("class") in ("bar", "across", "value", "error")]
             self.assertLess(order.index("across"), order.index("error"))
             self.assertLess(order.index("across"), order.index("value"))
-        self.assertEqual(len({number(p[0], "x") for p in svg.all("bars")}), 1)  # under each other
+        self.assertEqual(len({number(p[0], "x") for p in svg.all("bars")}), 1)  # one below the other
         self.refused(2, "analyze", study, "-o", "a.svg", "--width", "20", says=["--width"])
         self.ok("analyze", study, "-o", "a.png", "--dpi", "72")
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""tactor experiment --power: how often simulated studies come out significant, what it refuses, and Ctrl-C."""
+"""tactor experiment --power: how often simulated studies are significant, its refusals, and Ctrl-C."""
 import json
 import os
 import signal
@@ -19,7 +19,7 @@ class PowerTest(ExperimentTest):
 
 
 class Tells(PowerTest):
-    def test_the_first_study_is_the_one_that_sessions_give(self):
+    def test_the_first_study_is_the_one_of_the_simulated_sessions(self):
         told = self.told("2,5", "--studies", "1")
         for n in range(1, 6):
             self.simulate(f"{n:02}", definition="park2016", spec=SPEC[1])
@@ -48,7 +48,7 @@ class Tells(PowerTest):
                 self.assertLessEqual(p["for_last"], p["significant"])
         self.assertTrue(any(0 < p["significant"] < 60 for r in told["runs"] for p in r["power"]))
 
-    def test_text_says_the_same_and_that_it_is_simulated(self):
+    def test_text_has_the_same_and_says_that_it_is_simulated(self):
         told, text = self.told("4,12", "--studies", "60"), self.power("4,12", "--studies", "60")
         self.assertIn("60 SIMULATED studies (seed=4,sigma=6)", text)
         for run in told["runs"]:
@@ -58,13 +58,13 @@ class Tells(PowerTest):
                                                 f"{100 * p['ci'][0]:.1f}", "...", f"{100 * p['ci'][1]:.1f}",
                                                 f"{100 * p['for_last'] / 60:.1f}", "%", str(p["untested"])])
 
-    def test_it_is_the_same_each_time_and_another_with_another_seed(self):
+    def test_it_is_reproducible_and_depends_on_the_seed(self):
         one = self.power("6", "--studies", "50")
         self.assertEqual(self.power("6", "--studies", "50"), one)
         self.assertNotEqual(self.power("6", "--studies", "50", spec=("--simulate", "seed=900,sigma=6")), one)
         self.assertEqual(self.told("3")["studies"], 200)
 
-    def test_own_definitions_with_identify_and_void_trials(self):
+    def test_custom_definitions_with_identify_and_void_trials(self):
         told = self.told("3", "--studies", "20", definition=self.small(), spec=("--simulate", "sigma=5,void=0.3"))
         self.assertEqual([r["comparison"] for r in told["runs"]],
                          ["park chosen, t against 50 %", "park less brush, paired t", "park correct, t against 50.00 %"])
@@ -80,26 +80,26 @@ class Refuses(PowerTest):
         result = self.refused(2, "experiment", "park2016", *args, says=says)
         self.assertEqual(result.stdout, "")
 
-    def test_numbers_that_cannot_be(self):
+    def test_impossible_numbers_are_refused(self):
         for text in ("1", "0", "-3", "1001", "12,", "", "twelve", "12;14", "1e3", "99999999999999999999999"):
             self.says(f"--power={text}", *SPEC, says=["--power", "2 to 1000"])
         self.says("--power", "8,12,8", *SPEC, says=["8 is said twice"])
         for text in ("0", "-1", "1000001", "many"):
             self.says("--power", "8", f"--studies={text}", *SPEC, says=["--studies", "1 to 1000000"])
 
-    def test_what_does_not_go_together(self):
+    def test_exclusive_options_are_refused(self):
         self.says("--power", "8", says=["--power", "not said who answers", "--simulate"])
         self.says("--studies", "8", "--dry-run", says=["--studies", "there is no --power"])
         for more in (("--participant", "01"), ("-o", "study"), ("--resume",), ("--dry-run",), ("--print",)):
             self.says("--power", "8", *SPEC, *more, says=["it holds no session"])
         self.assertFalse((self.dir / "study").exists())
 
-    def test_a_definition_that_is_wrong(self):
+    def test_a_wrong_definition_is_refused(self):
         self.write("bad.toml", "[experiment]\n")
         self.refused(2, "experiment", "bad.toml", "--power", "8", *SPEC, says=["bad.toml:1"])
 
     def test_ctrl_c_ends_it_without_a_result(self):
-        # It waits for the tool from its first moment on: it must be seen while studies are simulated.
+        # The thread waits for the tool from the start: the signal must come while studies are simulated.
         def pending():
             signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
             os.kill(os.getpid(), signal.SIGINT)

@@ -65,11 +65,11 @@ class Remote(ToolTest):
         self.assertEqual(json.loads(self.ok("status", "--format", "json", env=env).stdout)["stream"]["state"], "running")
         self.assertIn("running", self.ok("status", env=env).stdout)
 
-    def test_no_server_is_no_device(self):
+    def test_a_missing_server_is_a_missing_device(self):
         for command in (("stop",), ("status",), ("play", "park2016-1")):
             self.refused(3, *command, "--socket", "none.sock", says=("none.sock", "tactor serve"))
 
-    def test_what_the_server_refuses_is_said_in_options(self):
+    def test_a_server_s_refusal_names_options(self):
         s = self.serve()
         for option, value in (("--soa", "3"), ("--level-dbfs", "-1")):
             self.refused(2, "play", "park2016-1", option, value, "--socket", s.where["socket"], says=(f"tactor: {option}: ",))
@@ -85,7 +85,7 @@ class Remote(ToolTest):
         for argument, name in (("plan.json", "plan.json"), ("-", "standard input")):
             self.refused(2, "play", argument, "--socket", s.where["socket"], stdin=plan, says=(f"{name}: it is a plan", "a server"))
 
-    def test_what_is_wrong_in_a_file_has_its_line(self):
+    def test_a_fault_in_a_file_has_its_line(self):
         s = self.serve()
         self.write("bad.toml", '[stroke]\npath = "M 0 0 L 40 40"\nsoas = 1\n')
         here = self.refused(2, "play", "bad.toml", "-D", "null", says=["bad.toml:3:1: ", "'soa_s'"])
@@ -107,9 +107,9 @@ class Remote(ToolTest):
         p.send_signal(signal.SIGINT)
         p.communicate(timeout=PATIENCE_S)
         self.assertEqual(p.returncode, 130)
-        self.assertEqual(watcher.end_of(n)["state"], "cancelled")
+        self.assertEqual(watcher.await_end(n)["state"], "cancelled")
 
-    def test_a_signal_ends_what_a_server_does_not_answer(self):
+    def test_a_signal_ends_a_client_whose_server_does_not_answer(self):
         hung = str(self.dir / "hung.sock")
         with socket.socket(socket.AF_UNIX) as door:
             door.bind(hung)
@@ -118,7 +118,7 @@ class Remote(ToolTest):
                 for sent, status in ((signal.SIGINT, 130), (signal.SIGTERM, 143)):
                     p = self.begun(*command, "--socket", hung)
                     with door.accept()[0] as taken:
-                        self.assertTrue(taken.recv(1)) # it has asked
+                        self.assertTrue(taken.recv(1))  # it has asked
                         p.send_signal(sent)
                         p.communicate(timeout=PATIENCE_S)
                     self.assertEqual(p.returncode, status, command)
@@ -130,7 +130,7 @@ class Remote(ToolTest):
         much = ("--path", "M 0 0 L 40 40", "--duration", "250", "--soa", "0.001", "--burst", "0.001", "--level-dbfs", "-60")
         for signals in ((signal.SIGINT,), (signal.SIGINT, signal.SIGTERM)):
             p = self.begun("play", *much, "--socket", s.where["socket"])
-            self.assertIn("through", p.stdout.readline()) # it asks next
+            self.assertIn("through", p.stdout.readline())  # it asks next
             time.sleep(0.1)
             for sent in signals:
                 p.send_signal(sent)
@@ -147,7 +147,7 @@ class Remote(ToolTest):
         p = self.begun("play", *LONG, "--socket", s.where["socket"])
         self.started(watcher)
         s.process.send_signal(signal.SIGSTOP)
-        for sent in (signal.SIGINT, signal.SIGTERM): # two of one kind may come as one
+        for sent in (signal.SIGINT, signal.SIGTERM):  # two of one kind may be merged
             p.send_signal(sent)
         p.communicate(timeout=PATIENCE_S)
         self.assertIn(p.returncode, (130, 143))
@@ -194,7 +194,7 @@ class Remote(ToolTest):
         out, err = p.communicate(timeout=PATIENCE_S)
         self.assertEqual(p.returncode, 0, err)
         self.assertIn("live: played", out)
-        self.assertEqual(watcher.end_of(n)["state"], "finished")
+        self.assertEqual(watcher.await_end(n)["state"], "finished")
         p = self.begun("play", "--live", "-", "--socket", s.where["socket"])
         p.stdin.write("10 10\n")
         p.stdin.flush()
@@ -203,10 +203,10 @@ class Remote(ToolTest):
         p.stdin.flush()
         self.assertEqual(p.wait(PATIENCE_S), 2)
         self.assertIn("standard input:2:", p.stderr.read())
-        self.assertIn(watcher.end_of(n)["state"], ("cancelled", "finished"))
+        self.assertIn(watcher.await_end(n)["state"], ("cancelled", "finished"))
 
     def played_at_a_door(self, points, answer):
-        """Plays live points at a server that this test is; `answer(params)` gives its reply to each of them, None: that it is taken."""
+        """Plays live points to a server in this test; `answer(params)` gives its reply to each of them, None: accepted."""
         path = str(self.dir / "door.sock")
         with socket.socket(socket.AF_UNIX) as door:
             door.bind(path)
@@ -229,7 +229,7 @@ class Remote(ToolTest):
         out, err = p.communicate(timeout=PATIENCE_S)
         self.assertEqual((p.returncode, err), (0, ""), out)
 
-    def test_points_that_a_limit_refuses_come_later_and_none_is_left_out(self):
+    def test_points_that_a_limit_refuses_are_sent_again_and_none_is_lost(self):
         taken, refused = [], set()
 
         def answer(params):
@@ -242,7 +242,7 @@ class Remote(ToolTest):
         self.played_at_a_door("".join(f"{i} {i}\n" for i in range(40)), answer)
         self.assertEqual(taken, list(range(40)))
 
-    def test_what_a_server_refuses_is_said_in_options(self):
+    def test_a_server_s_refusal_of_points_names_options(self):
         s = self.serve()
         refused = self.refused(2, "play", "park2016-1", "--sl", "7", "--socket", s.where["socket"], says=("--sl",)).stderr
         self.assertIn("--level-dbfs", refused)
@@ -281,7 +281,7 @@ class Remote(ToolTest):
             self.refused(2, "play", "--live", "-", *option, says=(option[0], "a live stroke does not know it"))
         self.refused(2, "play", "--live", "-", "--level-dbfs", "-1", "--array", "none.toml", says=("none.toml",))
 
-    def test_an_intensity_above_1_sounds_as_1_and_is_said_once(self):
+    def test_an_intensity_above_1_sounds_as_1_and_is_reported_once(self):
         lines = "20 20 80\n20, 20, 0.5\n0.1 20 20\n"
         warning = "tactor: warning: standard input:1: an intensity of 80 sounds as 1: the level asked for is the ceiling "
         for where in (("-D", "null"), ("--socket", self.serve().where["socket"])):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""tactor render: the WAV file against the signal computed here from the plan, and what becomes of the file."""
+"""tactor render: the WAV file against the signal computed here from the plan, and the fate of the file."""
 import cmath
 import math
 import os
@@ -16,7 +16,7 @@ FORMATS = {"float": (3, 32), "s16": (1, 16), "s24": (1, 24), "s32": (1, 32)}
 
 
 def expected(plan, channels, rate=48000, carrier=250.0, level=LEVEL, restart=False):
-    """Section by section as the method says: bursts that do not overlap, no ramp."""
+    """Computes the signal section by section: bursts that do not overlap, no ramp."""
     frames = round(plan["total_s"] * rate)
     out = [[0.0] * channels for _ in range(frames)]
     for b in plan["bursts"]:
@@ -36,13 +36,13 @@ class Samples(ToolTest):
         worst = max(abs(a - b) for x, y in zip(got, reference) for a, b in zip(x, y))
         self.assertLessEqual(worst, tolerance)
 
-    def test_a_preset_is_what_the_paper_describes_in_every_format(self):
+    def test_a_preset_matches_the_paper_in_every_format(self):
         reference = expected(self.plan("park2016-1"), 9)
         for name, (tag, bits) in FORMATS.items():
             self.ok("render", "park2016-1", "--sample-format", name, "-o", "o.wav")
             wav = Wav(self.dir / "o.wav")
             self.assertEqual((wav.tag, wav.bits, wav.channels, wav.rate, wav.frames), (tag, bits, 9, 48000, 70560))
-            # Half a step of the format, and what a float can hold.
+            # Half a step of the format, and the precision of a float.
             self.compare(wav, reference, 0.5000001 / 2 ** (bits - 1) if tag == 1 else 2e-8)
 
     def test_a_marker_channel_is_high_for_5_ms_from_each_strokes_first_frame(self):
@@ -87,7 +87,7 @@ class Samples(ToolTest):
         last = max(abs(f[0]) for f in got)
         self.assertAlmostEqual(last, 10 ** (-6 / 20) * math.sqrt(14 * 0.07), 4)
 
-    def test_sensation_level_stands_on_the_threshold(self):
+    def test_sensation_level_adds_to_the_threshold(self):
         self.write("a.toml", '[array]\nname = "one"\n[[tactor]]\nx_mm = 0.0\ny_mm = 0.0\nthreshold_dbfs = -41.5\n')
         self.write("s.csv", "t_s,x_mm,y_mm\n0,0,0\n1,0,0\n")
         self.ok("render", "s.csv", "--array", "a.toml", "--sl", "7", "-o", "o.wav")
@@ -150,7 +150,7 @@ class Samples(ToolTest):
 
 
 class Files(ToolTest):
-    # A day's; under sanitizers planning it took half a minute.
+    # A day's; with sanitizers planning it took half a minute.
     LONG = ("render", "--path", "M 0 10 L 40 30", "--duration", "3600" if SANITIZED else "86400", "-o", "long.wav")
 
     def leftovers(self):

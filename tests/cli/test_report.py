@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""tactor report: each number against the study's files, what differs between participants, marks of what is simulated,
-and what it refuses."""
+"""tactor report: each number against the study's files, differences between participants, marks of simulated data, and
+refusals."""
 import hashlib
 import json
 import re
@@ -19,7 +19,7 @@ RUNS = ("similarity", "uniformity", "similarityrating", "uniformityrating")
 
 
 def section(text, heading):
-    """From a heading to the next of the same rank or above."""
+    """Returns the text from a heading to the next of the same rank or above."""
     rank = heading.split(" ")[0]
     found = re.search(rf"^{re.escape(heading)}[^\n]*\n(.*?)(?=^#{{1,{len(rank)}}} |\Z)", text, re.M | re.S)
     assert found, f"no {heading}"
@@ -27,7 +27,7 @@ def section(text, heading):
 
 
 def tables(text):
-    """Each table as a list of dicts by the head's cells."""
+    """Returns each table as a list of dicts by the head's cells."""
     found = []
     for block in re.findall(r"(?:^\|.*\n)+", text, re.M):
         head, _, *rows = ([c.strip() for c in line.strip("|").split(" | ")] for line in block.splitlines())
@@ -40,7 +40,7 @@ class ReportTest(ExperimentTest):
         return self.ok("report", *args).stdout
 
     def change(self, code, change, folder="study"):
-        """Rewrites a session as change(its JSON) makes it."""
+        """Rewrites a session with change(its JSON)."""
         path = self.dir / folder / f"sourcedata/sub-{code}/session.json"
         told = json.loads(path.read_text())
         change(told)
@@ -119,7 +119,7 @@ class Numbers(ReportTest):
         self.assertGreater(voids, 3)
         self.assertIn(f"Void trials: {voids}, of which had gaps in the sound: {voids};", self.text)
 
-    def test_procedure_is_the_definition_s_and_the_sessions(self):
+    def test_procedure_is_from_the_definition_and_the_sessions(self):
         procedure = section(self.text, "## Procedure")
         for told in ("Gap between the two stimuli of a choice: 1 s.", "Question: Which of the two moved more evenly in speed?",
                      "Labels of the scale: very uneven, very even", "Break after the run: 60 s", "rated from 1 to 5",
@@ -132,7 +132,7 @@ class Numbers(ReportTest):
             self.assertIn(f"{session['seed']} (sub-{code})", procedure)
         self.assertEqual(procedure.count("of each participant: 5\n"), 4)
 
-    def test_versions_and_hashes(self):
+    def test_versions_and_hashes_are_given(self):
         data = section(self.text, "### Versions and hashes")
         text = self.one["experiment"]["text"]
         self.assertIn(f"`{hashlib.sha256(text.encode()).hexdigest()}`", data)
@@ -162,13 +162,13 @@ class Numbers(ReportTest):
             for e in run["anova"].values():
                 self.assertIn(f"F({e['df1']:.0f}, {e['df2']:.0f}) = {e['F']:.2f}, {p(e['p'])}", results)
 
-    def test_the_equations_of_both_algorithms_and_their_sources(self):
+    def test_the_equations_of_both_algorithms_and_their_sources_are_given(self):
         for told in (r"A_i = \sqrt{(1/d_i) / \sum_{j=1}^{3} 1/d_j}\,A_v", r"A_1 = \sqrt{d_2 / (d_1 + d_2)}\,A_v",
                      r"m_{i+1} = (\tau_{i+1} - \tau_i - b + (1 - a)\,m_i) / (1 + a)", "- Israr, A., Poupyrev, I. (2011)",
                      "- Park, J., Kim, J., Oh, Y., Tan, H. Z. (2016)"):
             self.assertIn(told, self.text)
 
-    def test_simulated_is_said_at_the_top_and_at_each_result(self):
+    def test_simulated_data_are_marked_at_the_top_and_at_each_result(self):
         self.assertIn("**SIMULATED: nobody was asked.**", "\n".join(self.text.splitlines()[:4]))
         results = section(self.text, "## Results (SIMULATED)")
         runs = results.partition("### ")[2].partition("### Warnings")[0]
@@ -192,14 +192,14 @@ class Differences(ReportTest):
         for code in ("01", "02", "03"):
             self.simulate(code)
 
-    def test_versions_that_are_mixed_are_told_with_their_participants(self):
+    def test_mixed_versions_are_given_with_their_participants(self):
         def older(told):
             told["versions"] = {"tactor": "0.0.9", "build": "an older one"}
         self.change("02", older)
         own = self.session("01")["versions"]["tactor"]
         self.assertRegex(self.report("study"), rf"- tactor: {re.escape(own)} \(.*\) \(sub-01, sub-03\); 0\.0\.9 \(an older one\) \(sub-02\)")
 
-    def test_thresholds_levels_and_arrays_that_differ(self):
+    def test_different_thresholds_levels_and_arrays_are_reported(self):
         def measured(told):
             told["thresholds_assumed"] = False
             for i, t in enumerate(told["array"]["tactors"]):
@@ -223,7 +223,7 @@ class Differences(ReportTest):
         self.assertIn("in no grid, 20 mm from neighbour to neighbour (median)", text)
         self.assertIn("-18.5 dBFS, the same for all tactors but for their gains (sub-02)", text)
 
-    def test_definitions_that_differ_in_what_is_asked(self):
+    def test_definitions_with_different_questions_are_reported(self):
         def other(told):
             e = told["experiment"]
             e["text"] = e["text"].replace("gap_s = 0.25", "gap_s = 0.5")
@@ -233,7 +233,7 @@ class Differences(ReportTest):
         self.assertIn("Gap between the two stimuli of a choice: 0.5 s (sub-01); 0.25 s (sub-02, sub-03).", text)
         self.assertIn("the texts of their experiments differ", text)
 
-    def test_participants_as_their_table_has_them(self):
+    def test_participants_are_those_of_their_table(self):
         path = self.dir / "study/participants.tsv"
         path.write_text("participant_id\tage\tsex\thandedness\nsub-01\t26\tF\tR\nsub-02\t36\tM\tR\nsub-03\tn/a\tF\tL\n"
                         "sub-04\t99\tn/a\tn/a\n")
@@ -271,7 +271,7 @@ class Differences(ReportTest):
         self.assertIn("| continuous |", text)
 
 
-    def test_what_an_array_file_says_besides(self):
+    def test_other_keys_of_an_array_file_are_reported(self):
         tactor = '[[tactor]]\nx_mm = {}\ny_mm = {}\nchannel = {}\nthreshold_dbfs = {}\nactuator = "lra"\nrise_ms = 20\n'
         self.write("own.toml", '[array]\nname = "own"\n' + "".join(
             tactor.format(20 * (i % 3), 20 * (i // 3), i, "[[100, -40], [250, -50.5]]" if i == 4 else f"-{40 + i}.25") for i in range(9)))
@@ -285,7 +285,7 @@ class Differences(ReportTest):
         self.assertIn("Thresholds: from the array file, none assumed.", text)
 
 
-    def test_how_thresholds_were_measured(self):
+    def test_the_measurement_of_thresholds_is_described(self):
         self.ok("calibrate", "--participant", "P1", "-o", "P1.toml", "--simulate", "threshold=-45,spread=2")
         made = (self.dir / "P1.toml").read_text()
         date = re.search(r'^date = "(.*)"$', made, re.M)[1]
@@ -303,7 +303,7 @@ class Differences(ReportTest):
         self.simulate("02", folder="own")
         self.assertIn("(sub-P1); none (sub-02)", self.report("own"))
 
-    def test_thresholds_of_somebody_else_or_another_carrier_are_told(self):
+    def test_thresholds_of_another_participant_or_carrier_are_reported(self):
         self.ok("calibrate", "--participant", "P1", "-o", "P1.toml", "--carrier", 100, "--simulate", "threshold=-45,spread=2")
         self.write("P1.toml", (self.dir / "P1.toml").read_text().replace("simulated = true", "simulated = false"))
         said = self.simulate("P2", "--array", "P1.toml", folder="others")
@@ -314,13 +314,13 @@ class Differences(ReportTest):
 
 
 class AsItWasHeld(ReportTest):
-    """Simulated sessions, changed into what sessions with people leave."""
+    """Simulated sessions, changed into those of people."""
 
     NOISE = '[masking]\nnoise = "white"\nlevel_dbfs = -30\n[[motion]]'
     ASKED = "white noise of -30 dBFS (root mean square), faded over 0.05 s, while stimuli played"
 
     def hold(self, *streams, **facts):
-        """A session for each list of openings of the device."""
+        """Makes a session for each list of openings of the device."""
         self.small(experiments.SMALL.replace("[[motion]]", self.NOISE, 1))
         codes = [f"{i + 1:02}" for i in range(len(streams))]
         for code in codes:
@@ -336,21 +336,21 @@ class AsItWasHeld(ReportTest):
         self.write("study/participants.tsv", "participant_id\tage\tsex\thandedness\n" +
                    "".join(f"sub-{code}\t{age}\tn/a\tn/a\n" for code, age in rows))
 
-    def test_noise_and_animation_are_those_that_there_were(self):
+    def test_noise_and_animation_are_those_of_the_sessions(self):
         noise = {"masker": "hw:1", "masking": {"noise": "pink", "level_dbfs": -20, "fade_s": 0.1, "while": "run"}}
         self.hold([{"display": "terminal without animation"}], [{"display": "page", **noise}],
-                  [{"display": "terminal with animation", "masker": "hw:2"}])  # the last as older versions say it
+                  [{"display": "terminal with animation", "masker": "hw:2"}])  # the last like those of older versions
         text = self.report("study")
         self.assertIn(f"Masking noise: none (the definition asks for {self.ASKED}) (sub-01); pink noise of -20 dBFS (root mean "
                       f"square), faded over 0.1 s, through each run, from hw:1 (sub-02); {self.ASKED}, from hw:2 (sub-03).", text)
         self.assertIn("Animation of the target before the first stimulus: no, the terminal could not show it (the definition "
                       "asks for it) (sub-01); yes, on the page (sub-02); yes, on the terminal (sub-03)\n", text)
-        self.assertIn("Animation of the target before the first stimulus: no\n", text)  # the run that has none
+        self.assertIn("Animation of the target before the first stimulus: no\n", text)  # the run without animation
         self.assertIn("Display: terminal without animation (sub-01); page (sub-02); terminal with animation (sub-03).", text)
         self.simulate("01", folder="simulated")
         self.assertIn("none: the session was simulated (the definition asks for it)", self.report("simulated"))
 
-    def test_openings_of_the_device_that_differ(self):
+    def test_different_openings_of_the_device_are_reported(self):
         self.hold([{"display": "page"}, {"display": "terminal without animation"}])
         beh = self.dir / "study/sub-01/beh/sub-01_task-whichone_beh.tsv"
         head, *lines = beh.read_text().splitlines()
@@ -361,7 +361,7 @@ class AsItWasHeld(ReportTest):
         self.assertIn("yes, on the page (opening 1 of the device), no, the terminal could not show it (opening 2 of the device)",
                       self.report("study"))
 
-    def test_days_and_consent_of_a_session_that_went_on_later(self):
+    def test_days_and_consent_of_a_session_that_resumed_later(self):
         self.hold([{"display": "page"}] * 3, consent="2026-11-21T08:59:00.000000Z",
                   walk=[{"tactor": i % 9, "asked": f"2026-11-21T08:59:{i + 10}.000000Z"} for i in range(18)])
         text = self.report("study")
@@ -370,7 +370,7 @@ class AsItWasHeld(ReportTest):
         self.assertIn("Consent: given on 2026-11-21T08:59:00.000000Z.", text)
         self.assertIn("before the runs: 9 tactors, the last on 2026-11-21T08:59:27.000000Z.", text)
 
-    def test_ages_as_bids_has_them(self):
+    def test_ages_follow_bids(self):
         for code in ("01", "02", "03", "04"):
             self.simulate(code)
         self.people(("01", "31"), ("02", "89+"), ("03", "n/a"), ("04", "30-39"))
@@ -379,7 +379,7 @@ class AsItWasHeld(ReportTest):
         self.people(("01", "inf"), ("02", "nan"), ("03", "-3"), ("04", "n/a"))
         self.assertIn('Age: sub-01: "inf"; sub-02: "nan"; sub-03: "-3". Sex', self.report("study"))
 
-    def test_who_was_excluded_and_why(self):
+    def test_exclusions_have_their_reasons(self):
         for code in ("01", "02", "03", "04"):
             self.simulate(code)
         text = self.report("study", "--exclude", "sub-02:fell asleep,03")
@@ -389,7 +389,7 @@ class AsItWasHeld(ReportTest):
         self.assertNotIn("Excluded", self.report("study"))
         self.assertIn("excluded: sub-02 (fell asleep)", self.ok("analyze", "study", "--exclude", "02:fell asleep").stdout)
 
-    def test_void_trials_that_did_not_come_again(self):
+    def test_void_trials_that_did_not_come_again_are_counted(self):
         self.simulate("01", spec="seed=1,sigma=1,void=0.5")
         self.assertIn("they do not count. All of them came again.", self.report("study"))
         beh = self.dir / "study/sub-01/beh/sub-01_task-howgood_beh.tsv"
@@ -398,7 +398,7 @@ class AsItWasHeld(ReportTest):
         beh.write_text("\n".join([head, *lines[:last + 1]]) + "\n")  # broken off after a void one
         self.assertRegex(self.report("study"), r"they do not count. \d+ of them came again, [1-9]\d* did not\.")
 
-    def test_no_thresholds_where_the_level_needs_none(self):
+    def test_missing_thresholds_are_fine_where_the_level_needs_none(self):
         self.small(experiments.SMALL.replace("gap_s = 0.25", "gap_s = 0.25\nlevel = { dbfs = -20 }"))
         self.ok("experiment", "small.toml", "--participant", "01", "-o", "study", "--simulate", "seed=1,sigma=1")
         levels = section(self.report("study"), "### Levels and thresholds")
@@ -406,7 +406,7 @@ class AsItWasHeld(ReportTest):
         self.assertNotIn("| none |", levels)
         self.assertNotIn("threshold (dBFS)", levels)
 
-    def test_papers_that_the_text_names_and_no_others(self):
+    def test_papers_that_the_text_names_are_listed_and_no_others(self):
         self.simulate("01")
         self.assertNotIn("Yun", self.report("study"))
         self.small(experiments.SMALL.replace('algorithm = "park2016"', 'algorithm = "park2016"\nphantom = "gaussian"'))
@@ -419,7 +419,7 @@ class AsItWasHeld(ReportTest):
 
 
 class OtherStudies(ReportTest):
-    def test_what_other_programs_wrote_has_what_is_there_and_no_more(self):
+    def test_data_of_other_programs_are_reported_as_far_as_they_go(self):
         for name, make in studies.STUDIES.items():
             make(self.dir / name)
             text = self.report(name)
@@ -450,7 +450,7 @@ class Refusals(ReportTest):
             self.assertEqual(result.stdout, "")
         self.assertFalse((self.dir / "never.md").exists())
 
-    def test_folders_and_names_that_are_none(self):
+    def test_impossible_folders_and_names_are_refused(self):
         self.refused(2, "report", says=["DIR"])
         self.refused(2, "report", "none", says=["none: No such file"])
         self.refused(2, "report", self.dir, says=["participants.tsv: No such file"])
@@ -461,7 +461,7 @@ class Refusals(ReportTest):
         self.write("study/sub-01/beh/sub-01_task-whichone_beh.tsv", "half")
         self.says("sub-01_task-whichone_beh.tsv")
 
-    def test_what_was_changed_after_the_session(self):
+    def test_changes_after_the_session_are_reported(self):
         good = (self.dir / "study/sourcedata/sub-01/session.json").read_text()
         for change, why in (
                 (lambda t: t["experiment"].update(text=t["experiment"]["text"] + "# more\n"), "its SHA-256 is"),
@@ -483,7 +483,7 @@ class Refusals(ReportTest):
             self.write("study/sourcedata/sub-01/session.json", good)
         self.ok("report", "study")
 
-    def test_a_plan_that_was_changed_or_lost(self):
+    def test_a_changed_or_lost_plan_is_reported(self):
         plan = sorted((self.dir / "study/sourcedata/sub-01/plans").iterdir())[0]
         text = plan.read_bytes()
         plan.write_bytes(text + b"\n")
@@ -500,7 +500,7 @@ class Refusals(ReportTest):
         beh.write_text(table)
         self.ok("report", "study")
 
-    def test_a_disk_that_refuses_leaves_the_old_file(self):
+    def test_a_failing_disk_leaves_the_old_file(self):
         self.write("locked/m.md", "old")
         shutil.copytree(self.dir / "study", self.dir / "locked/study")
         self.refused(2, "report", "study", "-o", "locked/m.md/x.md", says=["locked/m.md"])

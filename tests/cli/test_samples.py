@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""A plan's JSON is a record: samples of every kind are computed here from it and from the formulas of tactor-json(5) alone."""
+"""A plan's JSON is a record: samples of every kind are computed here from it and the formulas of tactor-json(5) alone."""
 import cmath
 import hashlib
 import json
@@ -30,7 +30,7 @@ def frame(seconds, rate):
 
 
 class Envelope:
-    """Attack and release of bursts, in frames, and their window."""
+    """Returns attack and release of bursts, in frames, and their window."""
 
     def __init__(self, kind, attack, release):
         self.kind, self.attack, self.release = kind, attack, release
@@ -68,7 +68,7 @@ class Envelope:
 
 
 class Carrier:
-    """What vibrates: at(m, origin) is its sample at frame m of the stroke; its phase is 0 at frame `origin`."""
+    """A carrier: at(m, origin) is its sample at frame m of the stroke; its phase is 0 at frame `origin`."""
 
     def __init__(self, stroke, rate, samples=None):
         self.stroke, self.rate = stroke, rate
@@ -170,7 +170,7 @@ class Lag:
 
 
 class Record:
-    """The samples of a plan, channel by channel."""
+    """Returns the samples of a plan, channel by channel."""
 
     def __init__(self, plan, samples=None):
         self.plan, self.render = plan, plan["render"]
@@ -199,7 +199,7 @@ class Record:
         return t.get("polarity", 1) * 10 ** (db / 20)
 
     def bursts(self):
-        """(tactor, first frame, frames, amplitude, greatest intensity, envelope), also those that boost others."""
+        """Returns (tactor, first frame, frames, amplitude, greatest intensity, envelope), also of those that boost others."""
         all_of_them = []
         for b in self.plan["bursts"]:
             first = frame(b["onset_s"], self.rate)
@@ -254,7 +254,7 @@ class Record:
         return out
 
     def samples(self, n):
-        """Of all channels at a frame."""
+        """Returns all channels at a frame."""
         out = [0.0] * self.render["channels"]
         if "continuous" in self.plan:
             drives = [(t, [(a, math.inf, False)], self.start) for t, a in self.continuous(n).items()]

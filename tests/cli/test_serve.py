@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""tactor serve as programs meet it: where it listens, who may, and its end."""
+"""tactor serve for other programs: its sockets, their permissions, and its end."""
 import json
 import os
 import resource
@@ -13,9 +13,9 @@ from serving import Client, ServeTest, Server
 
 
 class Serve(ServeTest):
-    # Where it listens.
+    # Sockets.
 
-    def test_the_line_and_the_end(self):
+    def test_the_first_line_and_the_end(self):
         s = self.serve("--tcp", "0")
         self.assertEqual(set(s.where), {"event", "socket", "tcp", "osc", "http"})
         self.assertEqual(s.where["event"], "listening")
@@ -37,7 +37,7 @@ class Serve(ServeTest):
     def test_sigint_ends_it_too(self):
         self.assertEqual(self.serve().terminate(signal.SIGINT)[0], 0)
 
-    def test_whatever_signals_come_with_it_it_ends_well(self):
+    def test_it_ends_well_with_any_signals(self):
         for other in (signal.SIGINT, signal.SIGHUP, signal.SIGTERM):
             s = self.serve()
             s.process.send_signal(signal.SIGTERM)
@@ -56,7 +56,7 @@ class Serve(ServeTest):
         self.assertEqual(first.process.wait(PATIENCE_S), 0)
         self.assertEqual(second.client().ok("hello")["protocol"], "tactor/1")
 
-    def test_the_mode_of_the_socket_under_any_umask(self):
+    def test_the_socket_has_its_mode_under_any_umask(self):
         before = os.umask(0)
         self.addCleanup(os.umask, before)
         for mask in (0, 0o777, 0o22):
@@ -74,23 +74,23 @@ class Serve(ServeTest):
             self.assertEqual(stat.S_IMODE(file.stat().st_mode), 0o600)
             self.assertEqual(s.terminate()[0], 0)
 
-    def test_the_systems_socket_is_the_groups(self):
+    def test_the_system_s_socket_belongs_to_the_group(self):
         (self.dir / "run").mkdir()
         s = self.serve(env={"RUNTIME_DIRECTORY": str(self.dir / "run"), "XDG_RUNTIME_DIR": str(self.dir / "user")})
         self.assertEqual(s.where["socket"], str(self.dir / "run/tactor.sock"))
         self.assertEqual(stat.S_IMODE(os.stat(s.where["socket"]).st_mode), 0o660)
 
-    def test_a_users_default_socket(self):
+    def test_a_user_s_default_socket(self):
         s = self.serve(env={"XDG_RUNTIME_DIR": str(self.dir)})
         self.assertEqual(s.where["socket"], str(self.dir / "tactor.sock"))
         self.assertEqual(stat.S_IMODE(os.stat(s.where["socket"]).st_mode), 0o600)
 
-    def test_a_second_server_says_who_has_the_socket(self):
+    def test_a_second_server_names_the_holder_of_the_socket(self):
         first = self.serve()
         self.refuses_to_start(3, says=f"process {first.process.pid}")
         self.assertEqual(first.client().ok("status")["amplifier"], "none")
 
-    def test_what_a_killed_server_left_is_replaced_and_nothing_else(self):
+    def test_a_killed_server_s_socket_is_replaced_and_nothing_else(self):
         first = self.serve()
         first.kill()
         self.assertTrue(os.path.exists(first.where["socket"]))
@@ -117,7 +117,7 @@ class Serve(ServeTest):
             self.assertEqual(p.wait(PATIENCE_S), 0)
             self.assertTrue(os.path.exists(path))
 
-    def test_inherited_sockets_are_looked_at_as_if_bound_here(self):
+    def test_inherited_sockets_are_checked_like_bound_ones(self):
         open_to_all = str(self.dir / "open.sock")
         with socket.socket(socket.AF_UNIX) as given, socket.socket(socket.AF_UNIX) as nameless:
             given.bind(open_to_all)
@@ -138,24 +138,24 @@ class Serve(ServeTest):
                 self.assertIn('inherited socket "socket"', r.stderr)
                 self.assertIn(why, r.stderr)
 
-    def test_it_tells_its_manager(self):
+    def test_it_notifies_its_manager(self):
         path = str(self.dir / "notify")
         with socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM) as manager:
             manager.bind(path)
             manager.settimeout(PATIENCE_S)
             s = self.serve("--socket", self.dir / "n.sock", env={"NOTIFY_SOCKET": path, "WATCHDOG_USEC": "200000"})
             said = set()
-            while len(said) < 3: # on a slow machine the watchdog is fed more than once before the rest comes
+            while len(said) < 3:  # on a slow machine the watchdog is fed more than once before the rest comes
                 said.add(manager.recv(1000))
             self.assertEqual(said, {b"READY=1", b"WATCHDOG=1", b"STATUS=stream: running"})
-            for _ in range(2): # and again and again
+            for _ in range(2):  # repeatedly
                 while manager.recv(1000) != b"WATCHDOG=1":
                     pass
             s.process.terminate()
             while manager.recv(1000) != b"STOPPING=1":
                 pass
 
-    def test_what_is_not_served_and_where_nothing_says_where(self):
+    def test_bad_addresses_are_refused_with_the_reason(self):
         self.refuses_to_start(2, "--tcp", "nonsense:1:2", says="no address")
         self.refuses_to_start(2, "--tcp", "0.0.0.0:0", says="token_file")
         token = self.write("token", "fifteen letters\n")
@@ -170,27 +170,27 @@ class Serve(ServeTest):
         r = self.run_tool("serve", "-D", "null", env={"XDG_RUNTIME_DIR": "", "RUNTIME_DIRECTORY": ""})
         self.assertEqual(r.returncode, 2)
 
-    def test_a_port_that_is_in_use_is_said_with_who_has_it(self):
+    def test_a_port_in_use_is_reported_with_its_holder(self):
         s = self.serve("--tcp", "0", "--http", "0")
         me = f"by tactor, process {s.process.pid} (choose another port, or end it)"
         self.refuses_to_start(3, "--socket", self.dir / "b.sock", "--tcp", s.where["tcp"], says=me)
         self.refuses_to_start(3, "--socket", self.dir / "b.sock", "--http", s.where["http"][7:-1], says=me)
 
-    def test_too_few_descriptors_are_said(self):
+    def test_too_few_descriptors_are_reported(self):
         before = resource.getrlimit(resource.RLIMIT_NOFILE)
         few = self.serve_with_descriptors(60, 60)
         self.assertIn("too few descriptors: 60 may be open, and 128 clients need 224", few)
         self.assertNotIn("descriptors", self.serve_with_descriptors(60, before[1]))
 
     def serve_with_descriptors(self, soft, hard):
-        """What it says when it begins so."""
+        """Returns its messages when it begins with these arguments."""
         p = subprocess.Popen(["prlimit", f"--nofile={soft}:{hard}", TOOL, "serve", "--socket", self.dir / f"{hard}.sock", "-D", "null"],
                              cwd=self.dir, env=self.env, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
         self.assertIn("listening", p.stdout.readline())
         p.terminate()
         return p.communicate(timeout=PATIENCE_S)[1]
 
-    def test_check_says_what_listens_where(self):
+    def test_check_lists_the_listening_sockets(self):
         s = self.serve("--tcp", "0")
         token = self.write("token", "sixteen letters!\n")
         token.chmod(0o600)
@@ -210,7 +210,7 @@ class Serve(ServeTest):
         self.assertEqual(r.returncode, 2)
         self.assertIn("others may read it", r.stderr)
 
-    # Who may.
+    # Permissions.
 
     def test_tcp_begins_with_hello(self):
         s = self.serve("--tcp", "0")
@@ -222,7 +222,7 @@ class Serve(ServeTest):
             c.raw(first)
             self.assertIsNone(c.next())
 
-    def test_a_token(self):
+    def test_a_token_is_required(self):
         token = self.write("token", "secret\n")
         token.chmod(0o604)
         config = f'[serve]\ntcp = 0\ntoken_file = "{token}"\n'

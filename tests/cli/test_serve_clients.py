@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""tactor serve as programs meet it that others wrote: curl, a client of JSON-RPC, and one of WebSockets, each from Debian."""
+"""tactor serve with other people's clients: curl, one of JSON-RPC, and one of WebSockets, each from Debian."""
 import json
 import pathlib
 import shutil
@@ -9,7 +9,7 @@ import unittest
 from harness import PATIENCE_S, ToolTest, main
 from serving import Server
 
-# Debian's own, for which its modules are.
+# Debian's python, for which its modules are.
 PYTHON = "/usr/bin/python3"
 
 JSON_RPC = """
@@ -76,7 +76,7 @@ class Others(ToolTest):
         self.assertEqual((r.returncode, r.stderr), (0, ""))
         return r.stdout
 
-    def test_a_client_of_json_rpc(self):
+    def test_a_client_of_json_rpc_works(self):
         need("aiorpcx")
         s = Server(self, "--tcp", "0")
         said = json.loads(self.program(PYTHON, "-c", JSON_RPC, s.where["tcp"], PATIENCE_S))
@@ -86,7 +86,7 @@ class Others(ToolTest):
         states = [told["state"] for method, told in said["heard"] if method == "stroke" and told["stroke"] == number]
         self.assertEqual(states, ["started", "finished"])
 
-    def test_a_client_of_websockets(self):
+    def test_a_client_of_websockets_works(self):
         need("websockets")
         s = Server(self, "--http", "0")
         (hello, status), code = json.loads(self.program(PYTHON, "-c", WEBSOCKET, s.where["http"].replace("http", "ws", 1) + "rpc"))
@@ -95,7 +95,7 @@ class Others(ToolTest):
         self.assertEqual(code, 1000)
 
     @unittest.skipUnless(shutil.which("curl"), "curl is not here")
-    def test_curl(self):
+    def test_curl_works(self):
         s = Server(self, "--http", "0")
         http = s.where["http"]
         curl = lambda *args: self.program("curl", "--silent", "--show-error", "--noproxy", "*", *args)

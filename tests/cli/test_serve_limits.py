@@ -16,7 +16,7 @@ from serving import LONG, SHORT, Client, ServeTest
 class Limits(ServeTest):
     # Limits.
 
-    def test_strokes_at_once(self):
+    def test_strokes_at_once_are_limited(self):
         c = self.serve(config="[serve]\nmax_strokes = 3\nmax_live_strokes = 1\n").client()
         c.ok("begin", timeout_s=3600)
         self.check_error(c.error("begin"), -32001, "max_live_strokes")
@@ -25,40 +25,21 @@ class Limits(ServeTest):
         self.check_error(c.error("play", **SHORT), -32001, "max_strokes")
         self.check_error(c.error("drive", tactor=0), -32001, "max_strokes")
 
-    def test_strokes_that_last_and_points(self):
-        c = self.serve(config="[serve]\nmax_points_per_s = 5\n").client()
-        self.check_error(c.error("play", path="M 0 0 L 40 40", options={"algorithm": "continuous", "duration": 600.1}),
+    def test_the_length_and_the_points_of_strokes_are_limited(self):
+        c = self.serve(config="[serve]\nmax_points_per_s = 5\nmax_stroke_s = 300\n").client()
+        self.check_error(c.error("play", path="M 0 0 L 40 40", options={"algorithm": "continuous", "duration": 300.1}),
                          -32001, "max_stroke_s")
         n = c.ok("begin", timeout_s=3600)["stroke"]
-        # All at once: five more may come each second.
+        # At once: five more may come each second.
         c.raw(b"".join(json.dumps({"jsonrpc": "2.0", "id": i, "method": "to", "params": {"stroke": n, "x_mm": 1, "y_mm": 1}}).encode()
                        + b"\n" for i in range(100)))
         codes = [c.reply().get("error", {}).get("code") for _ in range(100)]
         self.assertEqual(codes[:5], [None] * 5)
         self.assertIn(-32001, codes)
 
-    def test_live_strokes_that_last(self):
-        c = self.serve(config="[serve]\nmax_stroke_s = 0.1\n").client()
-        n = c.ok("begin", timeout_s=3600)["stroke"]
-        c.ok("to", stroke=n, x_mm=1, y_mm=1)
-        end = c.end_of(n)
-        self.assertEqual((end["state"], end["reason"]), ("interrupted", "limit: it has lasted as long as it may"))
-        self.assertGreaterEqual(end["frames"], 4800)
+    # Exhaustion.
 
-    def test_live_strokes_that_are_smoothed(self):
-        c = self.serve().client()
-        n = c.ok("begin", timeout_s=3600, smooth_s=0.3)["stroke"]
-        c.ok("to", stroke=n, x_mm=1, y_mm=1)
-        c.stroke(n, "started")
-        c.end_of(c.ok("drive", tactor=8, duration_s=0.05)["stroke"])
-        c.ok("to", stroke=n, x_mm=39, y_mm=39)
-        c.ok("end", stroke=n)
-        self.assertGreaterEqual(c.end_of(n)["frames"], 0.3 * 48000)
-        self.check_error(c.error("begin", smooth_s=2), -32602, "smooth_s")
-
-    # What runs out.
-
-    def test_descriptors(self):
+    def test_exhausted_descriptors_refuse_new_clients(self):
         s = self.serve("--http", "0")
         busy = s.client()
         live = busy.ok("begin", timeout_s=3600)["stroke"]
@@ -69,37 +50,37 @@ class Limits(ServeTest):
         before = resource.prlimit(pid, resource.RLIMIT_NOFILE)
         highest = max(map(int, os.listdir(f"/proc/{pid}/fd")))
         resource.prlimit(pid, resource.RLIMIT_NOFILE, (highest + 1, before[1]))
-        space = highest + 1 - used # gaps among those that are open
+        space = highest + 1 - used  # gaps among the open ones
         for c in [s.client() for _ in range(space + 10)][space:]:
             self.check_error(c.next()["error"], -32001, "descriptors")
             self.assertIsNone(c.next())
         host, _, port = s.where["http"].removeprefix("http://").rstrip("/").rpartition(":")
         with socket.create_connection((host, int(port)), PATIENCE_S) as page:
             self.assertTrue(page.recv(65536).startswith(b"HTTP/1.1 503 "))
-        # Who is there draws on.
+        # Present clients go on.
         busy.ok("to", stroke=live, x_mm=20, y_mm=20)
-        self.assertEqual(busy.end_of(busy.ok("play", **SHORT)["stroke"])["state"], "finished")
+        self.assertEqual(busy.await_end(busy.ok("play", **SHORT)["stroke"])["state"], "finished")
         resource.prlimit(pid, resource.RLIMIT_NOFILE, before)
         self.assertEqual(s.client().ok("hello")["protocol"], "tactor/1")
         busy.ok("end", stroke=live)
-        self.assertEqual(busy.end_of(live)["state"], "finished")
+        self.assertEqual(busy.await_end(live)["state"], "finished")
         self.assertEqual(busy.ok("status")["stream"]["xruns"], 0)
         self.assertEqual(s.terminate()[0], 0)
 
-    def test_a_full_disk(self):
+    def test_a_full_disk_ends_only_the_log(self):
         log = self.dir / "serve.log"
         s = self.serve("--log", log)
         c = s.client()
-        c.end_of(c.ok("play", **SHORT)["stroke"])
-        # No further byte, as on a full disk: the log ends, with the reason, and nothing else does.
+        c.await_end(c.ok("play", **SHORT)["stroke"])
+        # No further byte, like on a full disk: the log ends with the reason, and nothing else does.
         resource.prlimit(s.process.pid, resource.RLIMIT_FSIZE, (log.stat().st_size, resource.RLIM_INFINITY))
-        self.assertEqual(c.end_of(c.ok("play", **SHORT)["stroke"])["state"], "finished")
+        self.assertEqual(c.await_end(c.ok("play", **SHORT)["stroke"])["state"], "finished")
         status, _, err = s.terminate()
         self.assertEqual(status, 0, err)
         self.assertIn("serve.log: File too large: the log ends here", err)
         self.assertFalse(os.path.exists(s.where["socket"]))
 
-    def test_where_it_listens_cannot_be_said(self):
+    def test_unwritable_standard_output_does_not_stop_it(self):
         if not os.path.exists("/dev/full"):
             self.skipTest("there is no /dev/full")
         file = str(self.dir / "full.sock")
@@ -110,12 +91,12 @@ class Limits(ServeTest):
         said = next(line for line in p.stderr if "standard output" in line)
         self.assertIn("No space left on device: where it listens could not be said", said)
         c = Client(file)
-        self.assertEqual(c.end_of(c.ok("play", **SHORT)["stroke"])["state"], "finished")
+        self.assertEqual(c.await_end(c.ok("play", **SHORT)["stroke"])["state"], "finished")
         c.close()
         p.terminate()
         self.assertEqual(p.wait(PATIENCE_S), 0)
 
-    def test_places(self):
+    def test_places_are_limited_and_freed(self):
         s = self.serve("--tcp", "0", config="[serve]\nmax_clients = 4\nkept_clients = 2\n")
         for _ in range(3):  # a place that leaks shows in the second round
             network = [s.client(tcp=True) for _ in range(2)]
@@ -138,7 +119,7 @@ class Limits(ServeTest):
             local[0].socket.shutdown(socket.SHUT_WR)
             self.assertIsNone(local[0].next())
 
-    def test_messages_too_long_and_too_slow(self):
+    def test_messages_that_are_too_long_or_too_slow_are_refused(self):
         c = self.serve(config="[serve]\nmax_message_bytes = 2000\n").client()
         c.raw(b" " * 2001)
         self.check_error(c.next()["error"], -32001, "max_message_bytes")
@@ -147,7 +128,7 @@ class Limits(ServeTest):
         c = s.client()
         self.check_error(c.next()["error"], -32001, "max_message_s")
         self.assertIsNone(c.next())
-        # Whether what it says arrives within the time, or only a later client's, is for the machine to say.
+        # Depending on the machine, its message or a later client's arrives within the time.
         answered = False
         while not answered:
             c = s.client()
@@ -163,11 +144,11 @@ class Limits(ServeTest):
         self.check_error(c.next()["error"], -32001, "max_message_s")
         self.assertIsNone(c.next())
 
-    def test_unfinished_messages_of_all_together(self):
+    def test_unfinished_messages_have_a_limit_for_all_together(self):
         s = self.serve(config="[serve]\nmax_all_unfinished_bytes = 600000\n")
         most, other = s.client(), s.client()
         most.raw(b"x" * 400_000)
-        # What has come of it is not to be seen: it is given up with the second message, or that waits.
+        # The effect is invisible: it is given up with the second message, or that waits.
         other.raw(b"x" * 300_000)
         self.check_error(most.next()["error"], -32001, "max_all_unfinished_bytes")
         self.assertIsNone(most.next())
@@ -176,7 +157,7 @@ class Limits(ServeTest):
         self.assertEqual(other.ok("hello")["protocol"], "tactor/1")
 
     @unittest.skipIf(SANITIZED, "a sanitizer takes terabytes of addresses")
-    def test_many_that_send_much_in_little_memory(self):
+    def test_many_large_senders_need_little_memory(self):
         s = self.serve()
         resource.prlimit(s.process.pid, resource.RLIMIT_AS, (256 << 20, 256 << 20))
         bystander = s.client()
@@ -190,8 +171,8 @@ class Limits(ServeTest):
             for c in many:
                 c.close()
         self.assertEqual(bystander.ok("stop"), {})
-        self.assertEqual(bystander.end_of(mine)["reason"], "cancelled by its client")
-        self.assertEqual(bystander.end_of(bystander.ok("play", **SHORT)["stroke"])["state"], "finished")
+        self.assertEqual(bystander.await_end(mine)["reason"], "cancelled by its client")
+        self.assertEqual(bystander.await_end(bystander.ok("play", **SHORT)["stroke"])["state"], "finished")
         self.assertEqual(s.terminate()[0], 0)
 
     def test_an_answer_repeats_little(self):
@@ -211,7 +192,7 @@ class Limits(ServeTest):
             self.assertLess(len(said), 3000)
             self.assertNotIn("x" * 81, said)
 
-    def test_a_token_that_does_not_come(self):
+    def test_a_token_that_does_not_come_ends_the_connection(self):
         token = self.write("token", "secret\n")
         token.chmod(0o600)
         s = self.serve("--tcp", "0", config=f'[serve]\ntoken_file = "{token}"\nmax_message_s = 0.2\n')
@@ -223,7 +204,7 @@ class Limits(ServeTest):
             self.check_error(last["error"], -32001, "max_message_s")
             self.assertIn("token", last["error"]["data"]["why"])
 
-    def test_who_does_not_read_is_dropped_and_others_play_on(self):
+    def test_a_client_that_does_not_read_is_dropped_and_others_play_on(self):
         s = self.serve(config="[serve]\nmax_unread_bytes = 100000\n")
         deaf, other = s.client(), s.client()
         deaf.socket.settimeout(PATIENCE_S)
@@ -232,11 +213,11 @@ class Limits(ServeTest):
             for _ in range(1_000_000):
                 deaf.raw(line * 100)
         n = other.ok("play", **SHORT)["stroke"]
-        self.assertEqual(other.end_of(n)["state"], "finished")
+        self.assertEqual(other.await_end(n)["state"], "finished")
 
     # Faults.
 
-    def test_each_number_has_one_end_when_it_is_told_to_stop(self):
+    def test_each_number_has_one_end_at_a_stop(self):
         s = self.serve()
         c = s.client()
         numbers = [c.ok("play", **LONG)["stroke"] for _ in range(3)] + [c.ok("play", **SHORT, start="armed")["stroke"]]
@@ -253,7 +234,7 @@ class Limits(ServeTest):
         self.assertIn("closing", [m["params"]["state"] for m in told if m["method"] == "stream"])
         self.assertEqual(s.process.wait(PATIENCE_S), 0)
 
-    def test_a_card_that_comes_later(self):
+    def test_a_card_that_comes_later_is_used(self):
         conf = self.dir / "late.conf"
         conf.write_text("pcm.!default { type null }\n")
         s = self.serve(device=("-D", "late"), env={"ALSA_CONFIG_PATH": str(conf), "XDG_RUNTIME_DIR": str(self.dir)})
@@ -267,22 +248,22 @@ class Limits(ServeTest):
         os.utime(conf, (time.time() + 10, time.time() + 10))  # ALSA looks at whole seconds
         c.notification(lambda m: m["method"] == "stream" and m["params"]["state"] == "running")
         n = c.ok("play", **SHORT)["stroke"]
-        self.assertEqual(c.end_of(n)["state"], "finished")
+        self.assertEqual(c.await_end(n)["state"], "finished")
 
     def test_an_idle_stream_stops_and_starts_with_the_next_stroke(self):
         c = self.serve("--idle-stop", "0.05").client()
         c.ok("subscribe", events=["stream"])
-        # It may have been told before anybody listened.
+        # The notification may have come before anybody listened.
         while c.ok("status")["stream"]["state"] != "idle":
             pass
         for method, params in (("play", SHORT), ("drive", {"tactor": 0, "duration_s": 0.05})):
             n = c.ok(method, **params)["stroke"]
-            self.assertEqual(c.end_of(n)["state"], "finished")
+            self.assertEqual(c.await_end(n)["state"], "finished")
             c.notification(lambda m: m["method"] == "stream" and m["params"]["state"] == "idle")
         n = c.ok("begin", timeout_s=3600)["stroke"]
         self.assertEqual(c.ok("status")["stream"]["state"], "running")
         c.ok("end", stroke=n)
-        c.end_of(n)
+        c.await_end(n)
 
 
 if __name__ == "__main__":

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""tactor serve --osc as programs of music and art meet it: real sockets, and liblo's own oscsend and oscdump."""
+"""tactor serve --osc with programs of music and art: real sockets, and liblo's oscsend and oscdump."""
 import contextlib
 import json
 import os
@@ -17,7 +17,7 @@ DRAWING = "M 0 0 L 40 40"
 
 
 def udp_ports(pid):
-    """Those at which a process listens."""
+    """Returns the ports at which a process listens."""
     own = set()
     for fd in os.listdir(f"/proc/{pid}/fd"):
         with contextlib.suppress(FileNotFoundError):  # closed since
@@ -42,15 +42,15 @@ class ServeOsc(ToolTest):
         self.assertEqual(s.process.returncode, 2, s.errors)
         self.assertIn(says, s.errors)
 
-    # Where it listens.
+    # Sockets.
 
-    def test_the_line_and_the_end(self):
+    def test_the_first_line_and_the_end(self):
         s = self.serve()
         self.assertRegex(s.where["osc"], r"^127\.0\.0\.1:[1-9]\d*$")
         a = Sender(self, s)
         a.say("/tactor/play", 1, DRAWING, "duration=300")
         self.assertEqual(a.next(), ["/tactor/stroke", 1, "started"])
-        a.say("/tactor/subscribe", "stream") # who has nothing else going on is told of the end, too
+        a.say("/tactor/subscribe", "stream")  # an idle sender is notified of the end, too
         status, out, err = s.terminate()
         self.assertEqual((status, out), (0, ""), err)
         self.assertIn("osc 127.0.0.1", err)
@@ -59,7 +59,7 @@ class ServeOsc(ToolTest):
         self.assertIn(["/tactor/stroke", 1, "cancelled"], told)
         self.assertIn(["/tactor/stream", "closing"], told)
 
-    def test_text_says_the_endpoint_too(self):
+    def test_text_has_the_endpoint_too(self):
         self.write("t.toml", "[serve]\nosc = 0\n")
         p = subprocess.Popen([TOOL, "serve", "-D", "null", "--socket", "t.sock", "--config", "t.toml"], cwd=self.dir,
                              env=self.env, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True)
@@ -76,7 +76,7 @@ class ServeOsc(ToolTest):
         self.refuses_to_start("no address", "--osc", "nonsense:1:2")
         s = Server(self, "--osc", "0.0.0.0:0", config='[serve]\nosc_peers = ["10.0.0.0/8"]\n')
         self.assertRegex(s.where["osc"], r"^0\.0\.0\.0:\d+$")
-        a = Sender(self, s) # loopback is heard
+        a = Sender(self, s)  # loopback is heard
         a.say("/tactor/nonsense")
         self.assertEqual(a.next()[:2], ["/tactor/error", "/tactor/nonsense"])
         r = self.run_tool("check", "-D", "null", "--format", "json")
@@ -92,7 +92,7 @@ class ServeOsc(ToolTest):
             other = Sender(self, s, own[0])
             other.to = (own[0], other.to[1])
             other.say("/tactor/nonsense")
-            # What loopback says later is answered later.
+            # Loopback's later messages are answered later.
             local = Sender(self, s)
             local.say("/tactor/end")
             self.assertEqual(local.next()[1], "/tactor/end")
@@ -103,7 +103,7 @@ class ServeOsc(ToolTest):
                 self.assertRaises(BlockingIOError, other.next)
             s.terminate()
 
-    def test_ipv6(self):
+    def test_ipv6_works(self):
         try:
             with socket.socket(socket.AF_INET6, socket.SOCK_DGRAM) as probe:
                 probe.bind(("::1", 0))
@@ -140,9 +140,9 @@ class ServeOsc(ToolTest):
         self.assertEqual(p.returncode, 0 if where else 2, err)
         self.assertIn(says, err)
 
-    # What it does.
+    # Effects.
 
-    def test_a_live_stroke(self):
+    def test_a_live_stroke_by_osc(self):
         s = self.serve()
         a = Sender(self, s)
         a.say("/tactor/begin", 3, "timeout_s=60")
@@ -159,9 +159,9 @@ class ServeOsc(ToolTest):
         self.assertEqual(a.next(), ["/tactor/stroke", 3, "started"])
         self.assertEqual(a.next(), ["/tactor/stroke", 3, "interrupted"])
 
-    def test_what_has_a_time_tag_does_not_begin_before_it(self):
+    def test_a_message_with_a_time_tag_does_not_begin_early(self):
         began, period_s = begun_by_a_time_tag(self, self.serve())
-        # The live stroke to a period; how late, and how exactly, is for timed/test_osc_times.py.
+        # The live stroke to a period; timed/test_osc_times.py checks lateness and precision.
         self.assertGreater(min(began), -1.5 * period_s - 0.002)
 
     def test_far_times_are_refused_and_the_past_is_now(self):
@@ -173,7 +173,7 @@ class ServeOsc(ToolTest):
             self.assertEqual(a.next(), ["/tactor/stroke", 1, "started"])
             self.assertEqual(a.next(), ["/tactor/stroke", 1, "finished"])
 
-    def test_stop_is_everybodys(self):
+    def test_any_sender_may_stop(self):
         s = self.serve()
         a, b, c = Sender(self, s), Sender(self, s), s.client()
         a.say("/tactor/play", 1, DRAWING, "duration=300")
@@ -181,9 +181,9 @@ class ServeOsc(ToolTest):
         n = c.ok("play", path=DRAWING, options={"duration": 300})["stroke"]
         b.raw(bundle(time.time() + 50, message("/tactor/stop")))
         self.assertEqual(a.next(), ["/tactor/stroke", 1, "cancelled"])
-        self.assertEqual(c.end_of(n)["state"], "cancelled")
+        self.assertEqual(c.await_end(n)["state"], "cancelled")
 
-    def test_levels_and_stream_at_a_port_of_choice(self):
+    def test_levels_and_stream_go_to_a_chosen_port(self):
         s = self.serve()
         a, ears = Sender(self, s), Sender(self, s)
         a.say("/tactor/subscribe", ears.port, "levels", "stream")
@@ -196,9 +196,9 @@ class ServeOsc(ToolTest):
                 break
         self.assertEqual(a.next(), ["/tactor/stroke", 0, "started"])
 
-    # What it does not.
+    # Refusals.
 
-    def test_hostile_packets_are_answered_in_words_or_not_at_all(self):
+    def test_hostile_packets_get_words_or_nothing(self):
         s = self.serve()
         play = message("/tactor/play", 1, DRAWING)
         deep = play
@@ -225,7 +225,7 @@ class ServeOsc(ToolTest):
         self.assertEqual(s.client().ok("stop"), {})
 
     def assertRefused(self, server, packet, says):
-        # Each from an address of its own, which may have its errors.
+        # Each from another address, with its separate count of errors.
         self.last = getattr(self, "last", 1) + 1
         a = Sender(self, server, f"127.0.0.{self.last}")
         a.raw(packet)
@@ -233,14 +233,14 @@ class ServeOsc(ToolTest):
         self.assertEqual(kind, "/tactor/error")
         self.assertIn(says, why)
 
-    def test_ten_errors_a_second_to_an_address(self):
+    def test_an_address_gets_ten_errors_a_second(self):
         s = self.serve()
         began = time.monotonic()
         a, b = Sender(self, s), Sender(self, s)
-        for _ in range(50): # more than that do not fit into a socket that is not read
+        for _ in range(50):  # more than fit into a socket that is not read
             a.say("/tactor/nonsense")
             b.say("/tactor/nonsense")
-        # Another address hears its own: all above was dealt with.
+        # Another address gets its errors: the server has dealt with all above.
         c = Sender(self, s, "127.0.0.2")
         c.say("/tactor/nonsense")
         c.next()
@@ -260,10 +260,10 @@ class ServeOsc(ToolTest):
     def test_two_servers_that_hear_each_other_fall_silent(self):
         one = self.serve()
         two = self.serve("--socket", self.dir / "two.sock")
-        # Each is the subscriber of the other: what one sends comes from its own port to the other's.
+        # Each subscribes to the other: messages go from the port of one to that of the other.
         between = Sender(self, one)
         between.say("/tactor/subscribe", int(two.where["osc"].rpartition(":")[2]), "levels", "stream")
-        # What one says to somebody, that one says to the other.
+        # Messages of one to a sender go to the other.
         said = []
         between.say("/tactor/nonsense")
         said.append(between.next())
@@ -274,7 +274,7 @@ class ServeOsc(ToolTest):
             relay.say(*m)
         relay.say("/tactor/cancel", 77)
         self.assertEqual(relay.next()[:2], ["/tactor/error", "/tactor/cancel"])
-        # A stroke's own sender and the asker: nobody else became a client of the second.
+        # The stroke's sender and the asker: no further client of the second.
         self.assertEqual(two.client().ok("status")["clients"], 1)
 
     def test_senders_are_forgotten(self):
@@ -287,12 +287,12 @@ class ServeOsc(ToolTest):
             a.socket.close()
         self.assertEqual(s.client().ok("status")["clients"], 1)
 
-    # Others' programs.
+    # Programs of others.
 
-    def test_oscsend_and_oscdump(self):
+    def test_oscsend_and_oscdump_work(self):
         s = self.serve()
         port = s.where["osc"].rpartition(":")[2]
-        # At a port that the kernel chooses: one that was free may be somebody else's by then.
+        # At a port that the kernel chooses: a free one may be taken by then.
         dump = subprocess.Popen(["oscdump", "-L", "0"], stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True)
         self.addCleanup(dump.stdout.close)
         self.addCleanup(dump.wait)

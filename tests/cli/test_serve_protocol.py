@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""tactor serve as programs meet it: its protocol."""
+"""The protocol of tactor serve for other programs."""
 import json
 import socket
 import time
@@ -9,7 +9,7 @@ from serving import LONG, SHORT, ServeTest
 
 
 class Protocol(ServeTest):
-    def test_hello(self):
+    def test_hello_has_the_versions(self):
         r = self.serve().client().ok("hello")
         self.assertEqual(list(r), ["protocol", "version", "array", "stream", "presets", "clock", "max_level_dbfs"])
         self.assertEqual(set(r["stream"]), {"rate", "channels", "format", "period_frames", "latency_s", "pcm"})
@@ -18,7 +18,7 @@ class Protocol(ServeTest):
         self.assertIn("park2016-1", r["presets"])
         self.assertLess(abs(r["clock"]["monotonic_s"] - time.monotonic()), PATIENCE_S)
 
-    def test_json_rpc(self):
+    def test_json_rpc_is_followed(self):
         c = self.serve().client()
 
         def answer(raw):
@@ -47,9 +47,9 @@ class Protocol(ServeTest):
                        b'{"jsonrpc":"2.0","id":2,"method":"play","params":' + json.dumps(SHORT).encode() + b'}]\r')
         self.assertEqual([r.get("id") for r in batch], [1, None, 2])
         self.assertEqual(batch[1]["error"]["code"], -32600)
-        self.assertEqual(c.end_of(batch[2]["result"]["stroke"])["state"], "finished")
+        self.assertEqual(c.await_end(batch[2]["result"]["stroke"])["state"], "finished")
 
-    def test_no_parameters_are_empty_ones_for_every_method(self):
+    def test_missing_parameters_are_empty_ones_for_every_method(self):
         c = self.serve().client()
         for method in ("hello", "play", "plan", "cancel", "stop", "fire", "begin", "to", "end", "drive", "status", "subscribe"):
             told = []
@@ -69,16 +69,16 @@ class Protocol(ServeTest):
             b.raw(b'{"jsonrpc":"2.0","method":"stop",' + raw + b'}\n')
             if answered:
                 self.assertEqual(b.reply()["result"], {}, raw)
-            self.assertEqual(a.end_of(mine)["state"], "cancelled", raw)
+            self.assertEqual(a.await_end(mine)["state"], "cancelled", raw)
         quiet = b'{"jsonrpc":"2.0","method":"status"},'
         for raw in (b"[" + quiet * 70 + b'{"jsonrpc":"2.0","method":"stop"}]', b'{"jsonrpc":"2.0","method":"stop","params":' + b"[" * 99 + b"]" * 99 + b"}",
                     b"[" + quiet * 9000 + b'{"jsonrpc":"2.0","method":"stop"}]'):
             mine = a.ok("play", **LONG)["stroke"]
             b.raw(raw + b"\n")
             self.assertEqual(b.reply()["error"]["code"], -32001)
-            self.assertEqual(a.end_of(mine)["state"], "cancelled")
+            self.assertEqual(a.await_end(mine)["state"], "cancelled")
 
-    def test_play_in_all_forms(self):
+    def test_play_takes_all_forms(self):
         c = self.serve().client()
         toml = "[[stroke]]\npath = 'M 0 0 L 40 0'\nduration_s = 0.1\n[[stroke]]\npath = 'M 0 0 L 0 40'\nduration_s = 0.1\n"
         for params, count in (({"stroke": "park2016-1"}, 1), (SHORT, 1), ({"points": [[0, 0, 0], [0.1, 20, 20, 0.5]]}, 1),
@@ -89,13 +89,13 @@ class Protocol(ServeTest):
             self.assertEqual((r["strokes"][0], len(r["strokes"])), (r["stroke"], count))
             for n in r["strokes"]:
                 self.assertIsInstance(c.stroke(n, "started")["started_s"], float)
-                end = c.end_of(n)
+                end = c.await_end(n)
                 self.assertEqual((end["state"], end["reason"]), ("finished", ""))
                 self.assertGreater(end["frames"], 0)
                 self.assertLess(abs(end["started_unix_s"] - time.time()), 2 * PATIENCE_S)
         self.assertEqual(c.ok("status")["strokes"], [])
 
-    def test_plan_is_what_the_tool_prints(self):
+    def test_plan_gives_the_output_of_the_tool(self):
         c = self.serve().client()
         self.assertEqual(c.ok("plan", stroke="park2016-3", options={"phantom": "barycentric"}),
                          self.plan("park2016-3", "--phantom", "barycentric"))
@@ -130,7 +130,7 @@ class Protocol(ServeTest):
                               ("options.algorithm", {"algorithm": "tactile-brush"})):
             self.check_error(c.error("begin", options=options), -32602, what)
 
-    def test_keys_of_a_file_are_called_as_they_are_there(self):
+    def test_faults_of_a_file_name_its_keys(self):
         c = self.serve().client()
         for line, word in (("soas = 1", "did you mean 'soa_s'?"), ("level_dbfs = 1", "unknown key 'level_dbfs'"), ("nonsense = 1", "carrier_hz")):
             said = c.error("play", toml=f'[stroke]\npath = "M 0 0 L 40 40"\n{line}\n')
@@ -147,7 +147,7 @@ class Protocol(ServeTest):
         self.assertEqual(said["id"], 77)
         self.check_error(said["error"], -32602, "x_mm")
 
-    def test_the_owners_speed_is_for_strokes_that_say_neither_time_nor_speed(self):
+    def test_the_owner_s_speed_is_for_strokes_without_time_and_speed(self):
         c = self.serve(config="[defaults]\nspeed = 20\nlatency-ms = 5\n").client()
         line = {"path": "M 0 20 L 40 20"}
         self.assertAlmostEqual(c.ok("plan", **line)["stroke"]["duration_s"], 2.0)
@@ -156,7 +156,7 @@ class Protocol(ServeTest):
         self.assertAlmostEqual(c.ok("plan", points=[[0, 0, 20], [1, 40, 20]])["stroke"]["duration_s"], 1.0)
         self.assertAlmostEqual(c.ok("hello")["stream"]["latency_s"], 0.005)
 
-    def test_the_owners_level_is_the_ceiling(self):
+    def test_the_owner_s_level_is_the_ceiling(self):
         c = self.serve(config='[serve]\nmax_level_dbfs = -30\n[defaults]\nlevel-dbfs = -20\n').client()
         self.assertEqual(c.ok("hello")["max_level_dbfs"], -30)
         self.check_error(c.error("play", path="M 0 0 L 40 40", options={"level_dbfs": -29.9}), -32602, "options.level_dbfs")
@@ -165,7 +165,7 @@ class Protocol(ServeTest):
         c = self.serve("--socket", self.dir / "b.sock", config='[defaults]\nlevel-dbfs = -20\n').client()
         self.assertEqual(c.ok("hello")["max_level_dbfs"], -20)
 
-    def test_cancel_stop_fire(self):
+    def test_cancel_stop_and_fire_work(self):
         s = self.serve()
         a, b = s.client(), s.client()
         mine = a.ok("play", **LONG)["stroke"]
@@ -173,19 +173,19 @@ class Protocol(ServeTest):
         for method, params in (("cancel", {}), ("to", {"x_mm": 1, "y_mm": 1}), ("end", {})):
             self.check_error(b.error(method, stroke=mine, **params), -32002, "stroke")
         self.assertEqual(a.ok("cancel", stroke=mine), {})
-        end = a.end_of(mine)
+        end = a.await_end(mine)
         self.assertEqual(end["state"], "cancelled")
         self.check_error(a.error("cancel", stroke=mine), -32002)
         armed = a.ok("play", **SHORT, start="armed")["stroke"]
         later = a.ok("play", **SHORT, start={"delay_s": 3600})["stroke"]
         self.assertEqual({x["stroke"]: x["state"] for x in b.ok("status")["strokes"]}, {armed: "armed", later: "waiting"})
         self.assertEqual(b.ok("fire"), {"count": 1})
-        self.assertEqual(a.end_of(armed)["state"], "finished")
+        self.assertEqual(a.await_end(armed)["state"], "finished")
         self.assertEqual(b.ok("stop"), {})
-        end = a.end_of(later)
+        end = a.await_end(later)
         self.assertEqual((end["state"], end["frames"], end["started_s"]), ("cancelled", 0, None))
         n = a.ok("play", **SHORT)["stroke"]
-        self.assertEqual(a.end_of(n)["state"], "finished")
+        self.assertEqual(a.await_end(n)["state"], "finished")
 
     def test_an_armed_file_of_several_strokes_plays_them_all(self):
         c = self.serve().client()
@@ -196,14 +196,14 @@ class Protocol(ServeTest):
         self.assertNotIn("armed", [x["state"] for x in c.ok("status")["strokes"]])
         self.assertEqual(c.ok("fire"), {"count": 0})
         starts = [c.stroke(n, "started")["started_s"] for n in numbers]
-        # As far as two readings of the clock agree; that it is no more, timed/test_times.py says.
+        # Exact as far as two readings of the clock agree; timed/test_times.py checks the rest.
         self.assertGreaterEqual(starts[2] - starts[0], 0.199)
-        self.assertEqual([c.end_of(n)["state"] for n in numbers], ["finished"] * 3)
+        self.assertEqual([c.await_end(n)["state"] for n in numbers], ["finished"] * 3)
         numbers = c.ok("play", toml=toml, start="armed")["strokes"]
         c.ok("stop")
-        self.assertEqual([c.end_of(n)["state"] for n in numbers], ["cancelled"] * 3)
+        self.assertEqual([c.await_end(n)["state"] for n in numbers], ["cancelled"] * 3)
 
-    def test_a_live_stroke(self):
+    def test_a_live_stroke_by_json_rpc(self):
         s = self.serve()
         c = s.client()
         n = c.ok("begin", timeout_s=3600)["stroke"]
@@ -211,15 +211,15 @@ class Protocol(ServeTest):
         self.assertIsNotNone(c.stroke(n, "started"))
         self.assertEqual(c.ok("to", stroke=n, x_mm=20, y_mm=20, intensity=100), {})
         self.assertEqual(c.ok("end", stroke=n), {})
-        end = c.end_of(n)
+        end = c.await_end(n)
         self.assertEqual((end["state"], end["held_points"]), ("finished", 1))
         self.check_error(c.error("to", stroke=n, x_mm=1, y_mm=1), -32002)
         n = c.ok("begin", timeout_s=0.01)["stroke"]
-        self.assertEqual(c.end_of(n)["state"], "interrupted")
+        self.assertEqual(c.await_end(n)["state"], "interrupted")
         self.check_error(c.error("begin", options={"duration": 1}), -32602, "options.duration")
         self.check_error(c.error("to", stroke=1), -32602, "x_mm")
 
-    def test_who_goes_ends_live_strokes_only(self):
+    def test_a_leaving_client_ends_only_live_strokes(self):
         s = self.serve()
         c, watcher = s.client(), s.client()
         watcher.ok("subscribe", events=["strokes"])
@@ -228,15 +228,15 @@ class Protocol(ServeTest):
         played = c.ok("play", **LONG)["stroke"]
         c.stroke(played, "started")
         c.close()
-        self.assertEqual(watcher.end_of(live)["state"], "finished")
+        self.assertEqual(watcher.await_end(live)["state"], "finished")
         self.assertEqual([(x["stroke"], x["state"]) for x in watcher.ok("status")["strokes"]], [(played, "started")])
 
-    def test_half_closed_sockets_hear_of_the_end(self):
+    def test_half_closed_sockets_get_the_end(self):
         c = self.serve().client()
         c.send({"jsonrpc": "2.0", "id": 1, "method": "play", "params": SHORT})
         c.socket.shutdown(socket.SHUT_WR)
         n = c.reply()["result"]["stroke"]
-        self.assertEqual(c.end_of(n)["state"], "finished")
+        self.assertEqual(c.await_end(n)["state"], "finished")
         self.assertIsNone(c.next())
 
     def test_the_end_of_the_input_ends_the_last_line(self):
@@ -249,10 +249,10 @@ class Protocol(ServeTest):
             self.assertTrue(answered(c.next()), sent)
             self.assertIsNone(c.next())
 
-    def test_drive(self):
+    def test_drive_plays_one_tactor(self):
         c = self.serve().client()
         n = c.ok("drive", tactor=3, intensity=0.5, duration_s=0.05)["stroke"]
-        self.assertEqual(c.end_of(n)["frames"], 2400)
+        self.assertEqual(c.await_end(n)["frames"], 2400)
         for what, params in (("tactor", {"tactor": 9}), ("tactor", {}), ("tactor", {"tactor": 0.5}),
                              ("intensity", {"tactor": 0, "intensity": 1.1}), ("duration_s", {"tactor": 0, "duration_s": -1})):
             self.check_error(c.error("drive", **params), -32602, what)
@@ -269,7 +269,7 @@ class Protocol(ServeTest):
         self.check_error(c.error("subscribe", events=[], levels_hz=101), -32602, "levels_hz")
         c.ok("subscribe", events=[])
 
-    def test_status(self):
+    def test_status_has_its_fields(self):
         s = self.serve()
         c = s.client()
         c.ok("play", **SHORT)

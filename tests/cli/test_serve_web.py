@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""tactor serve --http as browsers meet it: who may ask, the page, the status, and the WebSocket as RFC 6455 has it."""
+"""tactor serve --http with browsers: permissions, the page, the status, and the WebSocket by RFC 6455."""
 import json
 import re
 import socket
@@ -12,7 +12,7 @@ from websocket import BINARY, CLOSE, CONTINUATION, PING, PONG, TEXT, Peer, frame
 
 
 class Caller(Peer):
-    """Calls the service through the WebSocket."""
+    """A client that calls the service through the WebSocket."""
 
     def message(self):
         m = json.loads(self.text())
@@ -48,7 +48,7 @@ class Web(ToolTest):
         return p
 
     def in_time(self, s, *methods):
-        """One that was answered within max_message_s, for which a busy machine may take more than one."""
+        """Returns an answer that came within max_message_s, for which a busy machine may need several tries."""
         deadline = time.monotonic() + PATIENCE_S
         while True:
             p = s.peer()
@@ -81,7 +81,7 @@ class Web(ToolTest):
         self.assertFalse(re.findall(r"https?://(?!www\.w3\.org/2000/svg)", page))
         self.assertNotIn(nonce, str(s.peer().request()))
 
-    def test_status(self):
+    def test_status_is_served(self):
         s = self.serve()
         p = s.peer()
         status, headers = p.request("/status")
@@ -90,7 +90,7 @@ class Web(ToolTest):
         self.assertEqual(told["clients"], 0)
         self.assertEqual(told["stream"]["state"], s.client().ok("status")["stream"]["state"])
 
-    def test_nothing_else(self):
+    def test_nothing_else_is_served(self):
         s = self.serve()
         for target, method, status in (("/x", "GET", 404), ("/status/", "GET", 404), ("/rpc", "GET", 426), ("/rpc", "HEAD", 426),
                                        ("/x?/", "GET", 404),
@@ -110,7 +110,7 @@ class Web(ToolTest):
         self.assertIn("allow_hosts", p.body(headers).decode())
         p = s.peer()
         self.assertEqual(p.request("/", Content_Length="5")[0], 413)
-        # Whoever asks is looked at before what is asked for: a body makes no difference.
+        # Permissions are checked before the request: a body makes no difference.
         for body in ({"Content_Length": "40"}, {"Transfer_Encoding": "chunked"}):
             self.assertEqual(s.peer().request("/rpc", "POST", **body)[0], 405)
             self.assertEqual(s.peer().request("/rpc", "POST", Origin="http://evil.example", **body)[0], 403)
@@ -122,21 +122,21 @@ class Web(ToolTest):
         p.send(b"GET / HTTP/1.1\r\nHost: x\r\nX: " + b"a" * 20000)
         self.assertEqual(p.head()[0], 413)
 
-    def test_a_request_in_pieces_and_one_that_never_ends(self):
+    def test_requests_in_pieces_work_and_unfinished_ones_end(self):
         s = self.serve(config="[serve]\nmax_message_s = 1\n")
         p = s.peer()
         p.send(b"GET / HTTP/1.1\r\n")
         self.assertEqual(p.head()[0], 408)
-        self.assertRaises(EOFError, s.peer().head)  # nobody asked anything
+        self.assertRaises(EOFError, s.peer().head)  # no request was made
         s = self.serve("--socket", self.dir / "other.sock")
         p = s.peer()
         for b in b"GET / HTTP/1.1\r\nHost: %s\r\n\r\n" % s.address.encode():
             p.send(bytes([b]))
         self.assertEqual(p.head()[0], 200)
 
-    # Who may.
+    # Permissions.
 
-    def test_host_and_origin(self):
+    def test_host_and_origin_are_checked(self):
         s = self.serve(config='[serve]\nallow_hosts = ["pi.lan"]\n')
         for host, status in ((f"localhost:{s.port}", 200), (f"LOCALHOST:{s.port}", 200), (s.address, 200), ("localhost", 403),
                              ("127.0.0.1", 403), (f"127.0.0.2:{s.port}", 403), (f"evil.example:{s.port}", 403), ("localhost:1", 403),
@@ -154,7 +154,7 @@ class Web(ToolTest):
             self.assertEqual(s.peer().request("/status", Origin=origin)[0], status, origin)
             self.assertEqual(s.peer().upgrade(Origin=origin), 101 if status == 200 else 403, origin)
 
-    def test_a_whole_address_as_target(self):
+    def test_a_whole_address_is_a_target(self):
         s = self.serve(config='[serve]\nallow_hosts = ["pi.lan"]\n')
         for name, status in ((s.address, 200), ("pi.lan", 200), (f"localhost:{s.port}", 200), ("evil.example", 403), ("", 403)):
             self.assertEqual(s.peer().request(f"http://{name}/status")[0], status, name)
@@ -162,10 +162,10 @@ class Web(ToolTest):
         self.assertEqual(s.peer().request(f"http://{s.address}")[0], 200)
         self.assertEqual(s.peer().request(f"http://{s.address}/x")[0], 404)
         self.assertEqual(s.peer().request(f"http://{s.address}/status", host="evil.example")[0], 403)
-        # A page of the host that is called, and no other.
+        # A page of the called host, and no other.
         self.assertEqual(s.peer().request("http://pi.lan/status", Origin=f"http://{s.address}")[0], 403)
 
-    def test_the_token(self):
+    def test_the_token_is_required(self):
         token = self.write("token", "secret\n")
         token.chmod(0o600)
         s = self.serve(config=f'[serve]\ntoken_file = "{token}"\n')
@@ -202,7 +202,7 @@ class Web(ToolTest):
         self.assertEqual(p.message()["params"]["state"], "finished")
         self.assertEqual(p.call("status")["result"]["clients"], 1)
 
-    def test_large_messages(self):
+    def test_large_messages_work(self):
         p = self.websocket(self.serve())
         points = [[i / 10000, 20, 20] for i in range(1000)]
         self.assertEqual(len(p.call("play", points=points, start="armed")["result"]["strokes"]), 1)
@@ -211,7 +211,7 @@ class Web(ToolTest):
         self.assertEqual(p.call("stop")["result"], {})
         self.assertEqual(p.message()["params"]["reason"], "cancelled by its client")
 
-    def test_who_goes_ends_live_strokes(self):
+    def test_a_leaving_client_ends_live_strokes(self):
         s = self.serve()
         p = self.websocket(s)
         number = p.call("begin", timeout_s=300)["result"]["stroke"]
@@ -224,7 +224,7 @@ class Web(ToolTest):
             told = watcher.next()
         self.assertEqual((told["params"]["stroke"], told["params"]["state"]), (number, "finished"))
 
-    def test_control_frames_and_pieces(self):
+    def test_control_frames_and_pieces_work(self):
         p = self.websocket(self.serve())
         p.frame(PING, b"are you there")
         self.assertEqual(p.next_frame(), (PONG, b"are you there"))
@@ -238,7 +238,7 @@ class Web(ToolTest):
         p.frame(CLOSE, struct.pack("!H", 1000) + b"done")
         self.assertEqual(p.end(), 1000)
 
-    def test_close_codes(self):
+    def test_close_codes_are_right(self):
         s = self.serve(config="[serve]\nmax_message_bytes = 1024\n")
         for code, send in ((1003, lambda p: p.frame(BINARY, b"{}")), (1007, lambda p: p.frame(TEXT, b'{"x":"\xff"}')),
                            (1009, lambda p: p.frame(TEXT, b"a" * 1025)), (1002, lambda p: p.frame(TEXT, b"{}", masked=False)),
@@ -249,7 +249,7 @@ class Web(ToolTest):
             self.assertEqual(p.end(), code)
         self.websocket(s).call("hello")
 
-    def test_a_reason_that_is_no_utf8_is_1007(self):
+    def test_a_reason_that_is_not_utf8_is_1007(self):
         s = self.serve()
         bye = struct.pack("!H", 1000)
         for code, reason in ((1007, b"\xff"), (1007, b"good \xc3"), (1007, b"\xed\xa0\x80"), (1007, b"\xc0\xaf"), (1007, b"a" * 122 + b"\xe2"),
@@ -271,7 +271,7 @@ class Web(ToolTest):
         p.frame(CLOSE, bye + b"\xff")
         self.assertEqual(p.end(), 1007)
 
-    def test_a_message_that_never_ends_and_a_silent_client(self):
+    def test_endless_messages_and_silent_clients_end(self):
         s = self.serve(config="[serve]\nmax_message_s = 1\n")
         silent = self.in_time(s)
         self.assertEqual((silent.end(), silent.reason), (1008, "the first message did not come"))
@@ -281,7 +281,7 @@ class Web(ToolTest):
         slow = self.in_time(s, "hello")
         slow.frame(TEXT, b'{"jsonrpc"', last=False)
         self.assertEqual((slow.end(), slow.reason), (1008, "a message took too long"))
-        # Nothing of it is payload: a fragment without any, and a head of which the rest does not come.
+        # No payload at all: an empty fragment, and a head without the rest.
         for begun in (framed(TEXT, last=False), framed(TEXT, b"{}")[:6], framed(TEXT, b"a" * 200)[:3], framed(PING, b"x")[:1]):
             slow = self.in_time(s, "hello")
             slow.send(begun)
@@ -297,10 +297,10 @@ class Web(ToolTest):
         busy.send(ask[5:])
         self.assertIn("result", busy.call("status"))
         patient = self.in_time(s, "hello")
-        self.assertEqual(self.in_time(s).end(), 1008)  # so long, patient has said nothing
+        self.assertEqual(self.in_time(s).end(), 1008)  # patient was silent for that long
         self.assertIn("result", patient.call("status"))
 
-    def test_places(self):
+    def test_places_are_limited(self):
         s = self.serve(config="[serve]\nmax_clients = 3\nkept_clients = 1\n")
         first, second = self.websocket(s), self.websocket(s)
         first.call("hello")
@@ -319,15 +319,15 @@ class Web(ToolTest):
             self.assertEqual(status, 503)
             p.socket.close()  # there may be more of them than descriptors
 
-    def test_visitors_beyond_the_places_are_told(self):
+    def test_visitors_beyond_the_places_are_refused_with_a_reason(self):
         s = self.serve(config="[serve]\nmax_clients = 1\nkept_clients = 0\nmax_message_s = 3600\n")
-        waiting = [s.peer() for _ in range(33)]  # 32 that only ask for pages beside the clients
+        waiting = [s.peer() for _ in range(33)]  # 32 page visitors beside the clients
         status, headers = s.peer().head()
         self.assertEqual(status, 503)
         self.assertEqual(headers["content-type"], "text/plain")
         self.assertEqual(waiting[0].request("/")[0], 200)
 
-    def test_the_end_is_told(self):
+    def test_the_end_is_announced(self):
         s = self.serve()
         p = self.websocket(s)
         number = p.call("play", path="M 0 0 L 40 40", options={"algorithm": "continuous", "duration": 300})["result"]["stroke"]

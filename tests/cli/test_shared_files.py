@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Array files that others made: they say which device, and nothing that they say writes a file or runs a command."""
+"""Array files by others: they name the device, and none of their texts writes a file or runs a command."""
 import os
 
 from harness import ALSA_CONFIG, GRID, ToolTest, main
@@ -20,7 +20,7 @@ pcm.hidden { type plug slave.pcm "recorder" }
 pcm.desk { type plug slave.pcm "null" }
 """
 COMMAND = "file:'|touch ran; cat >/dev/null',raw"
-# Each would write, run or define something; how they do it differs.
+# Each would write, run or define something, in another way.
 HOSTILE = (COMMAND, "file:kept,raw", "file:FILE=kept", "raw:kept", "recorder", "hidden", "plug:recorder", "plug:'recorder'",
            "{ type file slave.pcm null file kept format raw }", "plug:{ type file slave.pcm null file kept format raw }",
            "plug:\"file:'kept',raw\"", "plug:'file:\\'kept\\',raw'", "null\nfile:kept", "@x", "kept/../kept", " null")
@@ -50,11 +50,11 @@ class SharedFiles(ToolTest):
             self.array(pcm)
             for command in (("play", *self.STROKE), ("check",), ("check", "--walk", "--auto"), ("devices",)):
                 with self.subTest(pcm=pcm, command=command):
-                    # The line and column of pcm, what is wrong with it, and what to do.
+                    # The line and column of pcm, the fault, and the hint.
                     self.refused(2, *command, "--array", "a.toml", says=["a.toml:11:7: ", "-D PCM", "SECURITY CONSIDERATIONS"])
                     self.untouched()
 
-    def test_nor_can_one_that_another_file_names(self):
+    def test_nor_can_an_included_file(self):
         self.array(COMMAND, "others/a.toml")
         self.write("mine.toml", '[array]\nfile = "others/a.toml"\n')
         self.write("between.toml", '[array]\nfile = "mine.toml"\n')
@@ -64,14 +64,14 @@ class SharedFiles(ToolTest):
                 self.refused(2, "check", *how, says=["others/a.toml:11:7: "])
         self.untouched()
 
-    def test_check_says_so_for_the_device_and_hides_nothing_else(self):
+    def test_check_reports_it_for_the_device_and_hides_nothing_else(self):
         self.array(COMMAND)
         out = self.refused(2, "check", "--array", "a.toml").stdout
         self.assertRegex(out, r"(?m)^error    device +a\.toml:11:7: PCM")
         self.assertRegex(out, r"(?m)^(ok|warning)  +real time ")
         self.untouched()
 
-    def test_what_needs_no_device_works_all_the_same(self):
+    def test_commands_without_a_device_still_work(self):
         self.array(COMMAND)
         self.plan(*self.STROKE, "--array", "a.toml")
         self.ok("render", *self.STROKE, "--array", "a.toml", "-o", "a.wav")
@@ -79,7 +79,7 @@ class SharedFiles(ToolTest):
         self.ok("check", "--array", "a.toml", "-D", "null")
         self.untouched()
 
-    def test_devices_by_their_names_are_taken(self):
+    def test_devices_by_their_names_are_accepted(self):
         for pcm in ("null", "default", "desk", "plug:null", "plug:'null'", "plug:SLAVE=null"):
             with self.subTest(pcm=pcm):
                 self.array(pcm)
@@ -88,19 +88,19 @@ class SharedFiles(ToolTest):
         self.array("hw:CARD=Nowhere,DEV=0")
         self.refused(3, "play", *self.STROKE, "--array", "a.toml", says=["Nowhere"])
 
-    def test_the_command_line_and_the_users_own_configuration_may_say_more(self):
+    def test_the_command_line_and_the_user_s_configuration_may_name_more(self):
         self.write("mine.toml", GRID.replace('"null"', quoted(f"file:'{self.dir}/out.raw',raw")))
         self.ok("play", *self.STROKE, "--config", "mine.toml")
         self.assertTrue((self.dir / "out.raw").stat().st_size)
         self.ok("play", *self.STROKE, "-D", f"file:'|cat >{self.dir}/piped',raw")
         self.assertTrue((self.dir / "piped").stat().st_size)
-        # Its own word over that of a file that it includes.
+        # The file's own name wins over that of an included file.
         self.array(COMMAND, "others/a.toml")
         self.write("mine.toml", '[array]\nfile = "others/a.toml"\n[output]\npcm = "recorder"\n')
         self.ok("play", *self.STROKE, "--config", "mine.toml")
         self.assertNotEqual((self.dir / "kept").read_bytes(), b"precious")
 
-    def test_check_and_devices_never_open_what_they_would_empty(self):
+    def test_check_and_devices_never_open_files_that_they_would_empty(self):
         for pcm in ("file:FILE=kept", "recorder", "hidden", "plug:recorder", COMMAND):
             with self.subTest(pcm=pcm):
                 r = self.ok("check", "-D", pcm)
@@ -110,14 +110,14 @@ class SharedFiles(ToolTest):
         self.ok("devices")
         self.untouched()
 
-    def test_an_included_file_is_a_file(self):
+    def test_an_included_file_must_be_a_file(self):
         os.mkfifo(self.dir / "pipe.toml")
         self.write("mine.toml", '[array]\nfile = "pipe.toml"\n')
         self.refused(2, "plan", *self.STROKE, "--array", "mine.toml", says=["mine.toml:2", "pipe.toml is not a regular file"])
         self.write("mine.toml", '[array]\nfile = "/dev/zero"\n')
         self.refused(2, "plan", *self.STROKE, "--array", "mine.toml", says=["/dev/zero is not a regular file"])
 
-    def test_what_is_no_gpio_chip_is_not_opened(self):
+    def test_a_file_that_is_no_gpio_chip_is_not_opened(self):
         os.mkfifo(self.dir / "pipe")
         for table in ("[amplifier]\nline =", "[sync]\nout ="):
             for chip in (f"{self.dir}/pipe", f"{self.dir}/kept", "/dev/null"):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What vibrates, how bursts rise and fall, and what an intensity means: options, stroke files and plans."""
+"""Carriers, envelopes and scales: options, stroke files and plans."""
 import math
 
 from harness import ToolTest, Wav, main, wav_bytes
@@ -30,7 +30,7 @@ class Sound(ToolTest):
         self.assertEqual(self.ok("plan", "plan.json", "--format", "json").stdout, (self.dir / "plan.json").read_text(), args)
         return direct
 
-    def test_each_wave_is_its_own_and_keeps_the_level(self):
+    def test_each_wave_is_different_and_keeps_the_level(self):
         seen = {self.rendered(*LINE).data}
         for extra in [("--waveform", w) for w in WAVES] + [("--am", "30"), ("--am", "30:0.5")]:
             wav = self.same_from_plan(*LINE, *extra)
@@ -40,7 +40,7 @@ class Sound(ToolTest):
             self.assertLessEqual(peak, 10 ** (-12 / 20) * (1 + 1e-6))
         self.same_from_plan("park2016-1", "--algorithm", "continuous", "--waveform", "square", "--am", "7:1")
 
-    def test_a_sine_that_is_asked_for_has_the_same_bytes(self):
+    def test_an_explicit_sine_has_the_same_bytes(self):
         plain = self.rendered("park2016-3")
         self.assertEqual(self.rendered("park2016-3", "--waveform", "sine", "--am", "0", "--intensity-scale", "linear").data, plain.data)
         self.assertEqual(self.rendered("park2016-3", "--envelope", "raised-cosine").data, plain.data)
@@ -58,7 +58,7 @@ class Sound(ToolTest):
             seen.add(self.same_from_plan(*LINE, "--waveform", "grain.wav", *extra).data)
         self.assertEqual(len(seen), 4)
 
-    def test_stroke_files_say_their_own(self):
+    def test_stroke_files_choose_their_wave(self):
         self.wave("beside.wav")
         for keys, options in (('waveform = "square"', ("--waveform", "square")),
                               ("am_hz = 20\nam_depth = 0.5", ("--am", "20:0.5")),
@@ -67,7 +67,7 @@ class Sound(ToolTest):
                                ("--waveform", "beside.wav", "--texture", "length", "--texture-mm", "10"))):
             file = self.write("own.toml", STROKE + keys)
             self.assertEqual(self.rendered("own.toml").data, self.rendered(*LINE, *options).data, keys)
-            # A stroke's own wins.
+            # A stroke's own value wins.
             other = "triangle" if "waveform" in keys else "sine"
             self.assertEqual(self.rendered("own.toml", "--waveform", other).data, self.rendered("own.toml").data, file)
 
@@ -85,7 +85,7 @@ class Sound(ToolTest):
         self.assertEqual([(p["t_s"], p["hz"], "bend" in p) for p in course], [(0, 100, True), (0.7, 300, False)])
         self.same_from_plan("eased.toml", "--algorithm", "continuous")
 
-    def test_gaussian_says_where_tactors_are_too_far_apart_for_it(self):
+    def test_gaussian_warns_where_tactors_are_too_far_apart_for_it(self):
         for pitch, told in (("20.0", False), ("[20.0, 40.0]", True)):
             self.write("grid.toml", f'[array]\nname = "g"\ngrid = {{ rows = 3, columns = 3, pitch_mm = {pitch} }}\n')
             said = self.ok("plan", "--path", "M 0 20 L 40 20", "--array", "grid.toml", "--phantom", "gaussian").stdout
@@ -118,7 +118,7 @@ class Sound(ToolTest):
             self.assertAlmostEqual(20 * math.log10(at_end), -13, delta=2.0)
         self.refused(2, "plan", "rise.toml", "--array", "measured.toml", "--sl", "21", says=["tactor", "--sl"])
 
-    def test_half_as_strong_is_what_the_scale_says(self):
+    def test_half_as_strong_follows_the_scale(self):
         self.write("half.toml", STROKE + "intensity = 0.5\n")
         greatest = lambda *args: max(d["amplitude"] for b in self.plan("half.toml", *args)["bursts"] for d in b["drives"])
         self.assertAlmostEqual(greatest(), 0.5)
@@ -131,7 +131,7 @@ class Sound(ToolTest):
         self.same_from_plan("half.toml", *sl)
         self.same_from_plan("half.toml", "--intensity-scale", "stevens", "--algorithm", "continuous")
 
-    def test_bad_options_say_what_to_do(self):
+    def test_bad_options_have_hints(self):
         self.wave("stereo.wav", channels=2)
         (self.dir / "no.wav").write_bytes(b"RIFFxxxxAVI ")
         (self.dir / "cut.wav").write_bytes(wav_bytes([0.5, -0.5])[:30])
@@ -172,7 +172,7 @@ class Sound(ToolTest):
                 self.refused(2, "render", *LINE, *args, "-o", "bad.wav", says=says)
                 self.assertFalse((self.dir / "bad.wav").exists())
 
-    def test_what_a_file_asks_for_is_not_said_by_an_option(self):
+    def test_a_fault_of_a_file_does_not_name_an_option(self):
         for keys, says in (('carrier_profile = [[0, 30000]]', "bad.toml:4:19: carrier_profile: 30000 Hz cannot be rendered"),
                            ('carrier_profile = [[0, 100], [1, 24000]]', "bad.toml:4:19: carrier_profile: 24000 Hz cannot be rendered"),
                            ('carrier_profile = [[0, 100], [1, 23990]]\nam_hz = 20', "carrier_profile: with its modulation 24010 Hz"),
@@ -200,7 +200,7 @@ class Sound(ToolTest):
         self.refused(2, "plan", *LINE, "--array", "a.toml", says=["a.toml:7", "rise_ms"])
         self.refused(2, "plan", "-", stdin='[stroke]\npath = "M 0 0 L 40 0"\nwaveform = "x.wav"\n', says=["waveform", "file of its own"])
 
-    def test_defaults_take_them(self):
+    def test_they_may_be_defaults(self):
         self.write("c.toml", '[defaults]\nwaveform = "square"\nam = "20:0.5"\nenvelope = "linear"\nattack = 0.01\n'
                              'intensity-scale = "stevens"\nstevens-exponent = 0.9\n')
         options = ("--waveform", "square", "--am", "20:0.5", "--envelope", "linear", "--attack", "0.01", "--intensity-scale", "stevens",

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""compare --spread: intervals of what people feel who differ, and that they are what a calculation from the draw gives."""
+"""compare --spread: intervals of the sensations of different people, and their agreement with a calculation from the draw."""
 import csv
 import io
 import json
@@ -13,7 +13,7 @@ MASK = (1 << 64) - 1
 
 
 class Draws:
-    """SplitMix64."""
+    """Generates numbers by SplitMix64."""
 
     def __init__(self, seed):
         self.state = seed
@@ -39,10 +39,10 @@ def people(n, seed, tactors, factor, db, mm):
         yield sigma, each
 
 
-def pulled(onsets, places, k_of):
-    """(I + K) x = m by Thomas."""
+def pulled(onsets, places, coupling):
+    """Solves (I + K) x = m by Thomas."""
     n = len(onsets)
-    k = [k_of(onsets[i + 1] - onsets[i]) for i in range(n - 1)]
+    k = [coupling(onsets[i + 1] - onsets[i]) for i in range(n - 1)]
     out = []
     for c in (0, 1):
         diagonal = [1 + (k[i - 1] if i else 0) + (k[i] if i < n - 1 else 0) for i in range(n)]
@@ -95,7 +95,7 @@ class Spread(ToolTest):
                 self.assertAlmostEqual(end, quantile(values, part), delta=1e-6, msg=name)
         self.assertIsNone(got["speed_cv"])
 
-    def test_who_does_not_differ_feels_what_the_table_says(self):
+    def test_people_without_differences_feel_the_table_s_values(self):
         for observer in ("centroid", "low-speed"):
             told = self.compare("park2016-3", "--observer", observer, "--spread", "3", "--spread-sigma", "1",
                                 "--spread-threshold-db", "0", "--spread-place-mm", "0")
@@ -152,7 +152,7 @@ class Spread(ToolTest):
             for word in ("50 people", "seed 1", "6 dB"):
                 self.assertIn(word, text)
 
-    def test_wrong_usage(self):
+    def test_wrong_usage_is_refused(self):
         for value in ("0", "1", "2.5", "1e9", "many"):
             self.refused(2, "compare", "park2016-1", "--spread", value, says=["--spread"])
         for option, value in (("--spread-seed", "-1"), ("--spread-sigma", "0.5"), ("--spread-threshold-db", "nan"),

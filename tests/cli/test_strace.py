@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Which system calls the audio thread makes, as the kernel sees them."""
+"""System calls of the audio thread, as the kernel sees them."""
 import collections
 import re
 import shutil
@@ -9,8 +9,8 @@ import unittest
 
 from harness import TOOL, ToolTest, main
 
-# Of the stream: waiting, the timer and the eventfds, samples to the file, the clock, and one look at the page faults
-# in a second and 50 at how long it has worked without a pause. The clock is a system call only where the vDSO has none.
+# Calls for the stream: waiting, the timer and the eventfds, samples to the file, the clock, and a check of the page faults once
+# a second and of the time without a pause 50 times. The clock is a system call only where the vDSO has none.
 ALLOWED = {"ppoll", "read", "write", "timerfd_settime", "ioctl", "clock_gettime", "getrusage"}
 
 
@@ -27,7 +27,7 @@ WHY_NOT = traceable()
 @unittest.skipIf(WHY_NOT, WHY_NOT)
 class AudioThread(ToolTest):
     def calls(self, pcm):
-        """The audio thread's calls between its start and the end of its stream, in order."""
+        """Returns the audio thread's calls between its start and the end of its stream, in order."""
         trace = self.dir / "trace"
         began = time.monotonic()
         subprocess.run(["strace", "-f", "-o", trace, TOOL, "play", "park2016-1", "--duration", "1.5", "-D", pcm,
@@ -52,15 +52,15 @@ class AudioThread(ToolTest):
         self.assertNotIn("futex", stream)
         return stream
 
-    def test_on_null(self):
+    def test_calls_on_null(self):
         stream = self.check("null")
-        # A period costs two calls: the timer is set, and waited for, by who is late for several at once. The rest is what the
-        # stroke costs, by the 50 ms, of 750 periods: 0.15 for each.
+        # A period costs two calls: the timer is set, and awaited, by a thread that is late for several at once. The rest is the
+        # cost of the stroke, by the 50 ms, over 750 periods: 0.15 for each.
         rest = sum(n for call, n in stream.items() if call not in ("ppoll", "timerfd_settime", "getrusage"))
         self.assertLessEqual(stream["timerfd_settime"], stream["ppoll"] + 1)
         self.assertLessEqual(rest, 0.15 * 750)
 
-    def test_on_a_file(self):
+    def test_calls_on_a_file(self):
         self.check(f"raw:{self.dir}/out.raw")
 
 

@@ -9,7 +9,7 @@ import termios
 from harness import PATIENCE_S, ROOT, TOOL, ToolTest, main
 
 NINE = ("--path", "M 5 5 L 35 30", "--phantom", "gaussian")
-# Of a machine that has none of the packages: the list is old, and the first download fails.
+# A machine without the packages: the list is old, and the first download fails.
 APT_GET = """#!/bin/sh
 echo "$*" >>log
 case " $* " in
@@ -25,7 +25,7 @@ class Terminal(ToolTest):
         self.env |= {"TERM": "dumb", "LC_ALL": "C.UTF-8"}
 
     def on_terminal(self, columns, *args, program=TOOL):
-        """The exit status, and what a program writes to a terminal of that width."""
+        """Returns the exit status, and the output of a program on a terminal of that width."""
         ours, theirs = os.openpty()
         self.addCleanup(os.close, ours)
         fcntl.ioctl(theirs, termios.TIOCSWINSZ, struct.pack("HHHH", 24, columns, 0, 0))
@@ -50,7 +50,7 @@ class Terminal(ToolTest):
                 self.assertEqual(status, piped.returncode)
                 self.assertEqual(text.split(), plain, args)
                 if args[0] == "compare":
-                    text = text.rpartition("\n\n")[2]  # not its table
+                    text = text.rpartition("\n\n")[2]  # without its table
                 for line in text.splitlines():
                     self.assertTrue(len(line) < columns or " " not in line.strip(), f"{args} {columns}: {line}")
 
@@ -62,7 +62,7 @@ class Terminal(ToolTest):
     def test_nothing_wraps_where_a_program_reads(self):
         self.assertEqual(self.refused(2, "plan", "wave-2x4").stderr.count("\n"), 1)
 
-    def test_packages_show_how_far_they_are(self):
+    def test_packages_show_their_progress(self):
         for name, text in (("apt-get", APT_GET), ("dpkg-query", "#!/bin/sh\n"), ("dpkg", "#!/bin/sh\n"),
                            ("sudo", '#!/bin/sh\nexec "$@"\n')):
             self.write(f"bin/{name}", text).chmod(0o755)

@@ -21,7 +21,7 @@ class Walk(ToolTest):
         return [t["channel"] for t in self.plan("--path", "M 0 0 L 20 0", "--array", array)["array"]["tactors"]]
 
     def sounded(self, channels):
-        """The channels of out.raw (s16) in the order in which they sounded, each run once."""
+        """Returns the channels of out.raw (s16) in the order in which they sounded, each run once."""
         raw = memoryview((self.dir / "out.raw").read_bytes()).cast("h")
         order = []
         for i in range(0, len(raw), channels * 7):
@@ -115,7 +115,7 @@ class Walk(ToolTest):
         walked = json.loads(r.stdout)["walk"]
         self.assertEqual((walked["channels"], len(walked["problems"]), walked["answers"][1]["felt"]), (None, 1, None))
 
-    def test_nobody_is_driven_on_a_setup_with_errors(self):
+    def test_a_setup_with_errors_drives_nothing(self):
         self.write("a.toml", GRID + '[amplifier]\nline = { name = "no such line" }\n')
         r = self.walk([0, 1], "--array", "a.toml", "-D", f"raw:{self.dir}/out.raw", "--sample-format", "s16", "-o", "felt.toml")
         self.assertEqual(r.returncode, 3)
@@ -123,7 +123,7 @@ class Walk(ToolTest):
         self.assertEqual((self.dir / "out.raw").stat().st_size if (self.dir / "out.raw").exists() else 0, 0)
 
     def on_terminal(self, *args):
-        """The tool on a terminal of its own; its process, and the end to read and write."""
+        """Starts the tool on a pseudo-terminal; returns its process, and the end to read and write."""
         ours, theirs = pty.openpty()
         fcntl.ioctl(ours, termios.TIOCSWINSZ, struct.pack("HHHH", 24, 80, 0, 0))
         p = subprocess.Popen([TOOL, *args], stdin=theirs, stdout=theirs, stderr=subprocess.PIPE, cwd=self.dir,
@@ -139,7 +139,7 @@ class Walk(ToolTest):
             seen += os.read(fd, 4096)
         return seen.decode()
 
-    def test_on_a_terminal_the_picture_shows_which(self):
+    def test_on_a_terminal_the_picture_shows_the_tactor(self):
         self.write("a.toml", GRID)
         p, fd = self.on_terminal("check", "--walk", "--array", "a.toml", "-o", "felt.toml")
         for i in range(2):
@@ -152,7 +152,7 @@ class Walk(ToolTest):
         self.assertEqual(self.channels("felt.toml"), [1, 0])
 
     def test_ctrl_c_at_a_question_and_in_a_burst_ends_in_silence_without_a_file(self):
-        # So many that none of it is over before it has been seen.
+        # Long enough that none of it is over before it has been seen.
         self.write("a.toml", GRID.replace("columns = 2", "columns = 60"))
         raw = self.dir / "out.raw"
         for auto in ((), ("--auto",)):
@@ -165,14 +165,14 @@ class Walk(ToolTest):
             else:
                 self.read_until(fd, "which did you feel?")
             p.send_signal(signal.SIGINT)
-            with contextlib.suppress(OSError):  # the terminal is gone with the program
+            with contextlib.suppress(OSError):  # the terminal closes with the program
                 while os.read(fd, 4096):
                     pass
             self.assertEqual(p.wait(timeout=PATIENCE_S), 130)
             self.assertFalse((self.dir / "felt.toml").exists())
             heard = memoryview(raw.read_bytes()).cast("h")
             self.assertEqual(set(heard[-60:]), {0})
-            # One tactor after the other: their sum is what is heard.
+            # A tactor at a time: their sum is the sound.
             sound = [sum(heard[i:i + 60]) for i in range(0, len(heard), 60)]
             self.assertGreater(max(sound), 1000)
             self.assertLessEqual(max(abs(a - b) for a, b in zip(sound, sound[1:])), 32768 * 0.0328)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A walk on a device whose clock the test has: what is not driven to its end.
+// A walk on a device whose clock the test moves: tactors that are not driven to their end.
 #include "cli/check/walk_session.hpp"
 
 #include <algorithm>
@@ -24,7 +24,7 @@ using namespace tactor::test;
 
 namespace {
 
-// To be called again and again: one xrun as soon as the first burst sounds.
+// Makes one xrun as soon as the first burst sounds; called again and again.
 class stumble_once {
 public:
     explicit stumble_once(fake_dac& d) : dac_(d) {}
@@ -76,8 +76,11 @@ walk_result stumble(bool ask)
     device.channels = 2;
     render_options r;
     r.channels = 2;
-    session::stream_source source{[&](const alsa_options& o) { return pcm::adopt(dac.pcm(), o); }, patient()};
-    source.player.realtime = false;
+    const auto source = [&](session::stream_parts& p) {
+        p.open = [&] { return pcm::adopt(dac.pcm(), device); };
+        p.player = patient(p.player.limits);
+        p.player.realtime = false;
+    };
     const running_clock clock(dac, running_clock::capture_kind::kept, stumble_once(dac));
     walk_options o;
     o.ask = ask;
@@ -86,14 +89,14 @@ walk_result stumble(bool ask)
 
 } // namespace
 
-TEST_CASE("a walk on which a tactor was not driven to its end fails in the end")
+TEST_CASE("a walk on which a tactor was not driven to its end fails at its end")
 {
     const std::string said = message_of([] { stumble(false); });
     CHECK(has(said, "tactor 0: interrupted: "));
     CHECK(has(said, "walk again"));
 }
 
-TEST_CASE("one that was driven again, to its end, does not")
+TEST_CASE("a walk whose tactor was driven again, to its end, succeeds")
 {
     const answers a("r\n0\n1\n");
     CHECK(stumble(true).felt == session::walk_answers{0, 1});

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""A tactor whose channel reaches no channel of the device by itself: with the ALSA configuration of examples/asound."""
+"""A tactor whose channel reaches no channel of the device alone: with the ALSA configuration of examples/asound."""
 import json
 
 from harness import ALSA_CONFIG, ROOT, ToolTest, main
@@ -34,7 +34,7 @@ class Wiring(ToolTest):
         self.assertEqual(r.returncode, status, r.stdout + r.stderr)
         return next(f for f in json.loads(r.stdout)["findings"] if f["check"] == "device")
 
-    def test_nothing_is_played_where_a_tactor_is_lost(self):
+    def test_nothing_plays_where_a_tactor_is_lost(self):
         r = self.refused(3, "play", *self.STROKE, "-D", "tactor8", says=['stream on "tactor8"', LOST, "ttable", "hw:CARD=NAME"])
         self.assertNotIn("played", r.stdout)
         self.refused(3, "play", *self.STROKE, "-D", "summed",
@@ -42,11 +42,11 @@ class Wiring(ToolTest):
         self.ok("play", "--path", "M 0 0 L 60 0", "--duration", "0.2", "--array", "palm-2x4", "-D", "tactor8")
         self.assertNotIn("not known", self.ok("play", *self.STROKE, "-D", "straight").stderr)
 
-    def test_what_is_drawn_live_and_a_walk_are_refused_too(self):
+    def test_live_strokes_and_a_walk_are_refused_too(self):
         self.refused(3, "play", "--live", "-", "-D", "tactor8", stdin="0 0\n", says=[LOST])
         self.refused(3, "check", "--walk", "--auto", "-D", "tactor8", says=[LOST])
 
-    def test_check_says_so(self):
+    def test_check_reports_it(self):
         found = self.device("tactor8", status=3)
         self.assertEqual((found["level"], found["found"]), ("error", f'PCM "tactor8": {LOST}'))
         self.assertIn("-D hw:CARD=NAME", found["cure"])
@@ -54,18 +54,18 @@ class Wiring(ToolTest):
         self.assertEqual(self.device("straight")["level"], "ok")
         self.assertEqual(self.device("tactor8", "--array", "palm-2x4")["level"], "ok")
 
-    def test_what_may_not_be_opened_is_looked_through_all_the_same(self):
+    def test_a_refused_pcm_is_examined_all_the_same(self):
         self.write("kept.raw", "precious")
         self.assertIn("tactor 1 of palm-3x3", self.device("kept", status=3)["found"])
         self.assertEqual((self.dir / "kept.raw").read_text(), "precious")
 
-    def test_devices_says_that_it_does_not_fit(self):
+    def test_devices_reports_that_it_does_not_fit(self):
         pcms = {p["name"]: p for p in json.loads(self.ok("devices", "--format", "json").stdout)["pcms"]}
         self.assertEqual((pcms["tactor8"]["fits"], pcms["tactor8"]["misfit"]), (False, LOST))
         self.assertEqual((pcms["straight"]["fits"], pcms["straight"]["misfit"]), (True, None))
         self.assertIn("    unfit     tactor 8 of palm-3x3 is on channel 8", self.ok("devices").stdout)
 
-    def test_a_level_that_alsa_changes_is_said_and_a_louder_one_refused(self):
+    def test_a_level_changed_by_alsa_is_reported_and_a_louder_one_refused(self):
         said = ("tactor 0 of palm-3x3 is on channel 0, which ALSA's configuration plays at -20 dB",
                 "tactor 2 of palm-3x3 is on channel 2, which ALSA's configuration plays at 0 dB with its polarity reversed",
                 "tactor 8 of palm-3x3 is on channel 8, which reaches 2 channels of the device, at -6.02 dB, 0 dB")
@@ -83,11 +83,11 @@ class Wiring(ToolTest):
         pcms = {p["name"]: p for p in json.loads(self.ok("devices", "--format", "json").stdout)["pcms"]}
         self.assertEqual((pcms["loud"]["fits"], pcms["loud"]["misfit"]), (False, louder))
 
-    def test_what_is_below_60_db_is_lost(self):
+    def test_below_60_db_a_tactor_is_lost(self):
         self.assertIn(LOST, self.device("below", status=3)["found"])
         self.refused(3, "play", *self.STROKE, "-D", "below", says=[LOST])
 
-    def test_where_it_cannot_be_known_there_is_a_warning(self):
+    def test_unknown_wiring_is_a_warning(self):
         note = "not known: type route to a channel FL is between"
         found = self.device("named")
         self.assertEqual(found["level"], "warning")

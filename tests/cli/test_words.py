@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What messages say: numbers as people read them, names once, and what to do."""
+"""Words of messages: numbers for people, names once, and hints."""
 import os
 import re
 import subprocess
@@ -46,7 +46,7 @@ class Numbers(ToolTest):
 
 
 class Options(ToolTest):
-    def test_a_unit_is_answered_with_the_number_to_give(self):
+    def test_a_unit_gets_a_hint_with_the_number_to_give(self):
         for option, value, says in (
                 ("--soa", "70ms", ["give seconds without a unit, as 0.07", "0.0473 to 0.07 s"]),
                 ("--burst", "60 ms", ["give seconds without a unit, as 0.06", "0.0001 to 10 s"]),
@@ -58,7 +58,7 @@ class Options(ToolTest):
             self.assertNotIn("1000000000", said)
         self.assertNotIn("1000000000", self.refused(2, "plan", "park2016-1", "--soa", "1e300").stderr)
         self.refused(2, "play", "park2016-1", "-D", "null", "--reopen-s", "-1", says=["(0 s or more)"])
-        # What no factor can make right is only refused.
+        # A unit that no factor can make right is only refused.
         self.assertNotIn("without a unit", self.refused(2, "plan", "park2016-1", "--soa", "70furlongs").stderr)
         self.refused(2, "plan", "park2016-1", "--soa", "70", says=["70 s is out of bounds", "0.07"])
 
@@ -84,7 +84,7 @@ class Files(ToolTest):
         self.refused(2, "plan", "park2016-1", "--array", "a.toml", says=["a.toml:2:8", 'end it with """'])
         self.write("a.toml", "[array]\nname = palm\n")
         self.refused(2, "plan", "park2016-1", "--array", "a.toml", says=["a.toml:2:8", 'as name = "palm"'])
-        # Another fault before it is told first; quotes in comments and in other strings are no quotes.
+        # Another fault before it comes first; quotes in comments and in other strings are no quotes.
         self.write("a.toml", "[array\nname = 'palm\n")
         self.refused(2, "plan", "park2016-1", "--array", "a.toml", says=["a.toml:1:"])
         self.write("a.toml", GRID.replace("oak", "it's \"oak").replace('"desk"', "'5\" desk'"))
@@ -103,7 +103,7 @@ class Files(ToolTest):
         self.write("a.toml", GRID.encode("utf-16"))
         self.refused(2, "plan", "park2016-1", "--array", "a.toml", says=["is UTF-16", "iconv"])
 
-    def test_what_is_no_text_is_named(self):
+    def test_binary_data_are_named(self):
         wav = wav_bytes([0.0] * 100)
         for name, data, what in (("s.wav", wav, "a WAV file"), ("s.toml", wav, "a WAV file"), ("s.csv", wav, "a WAV file"),
                                  ("s.svg", wav, "a WAV file"), ("s", b"RF64" + wav[4:], "a WAV file"),
@@ -128,25 +128,25 @@ class Files(ToolTest):
         said = self.refused(2, "plan", "s.toml", says=["s.toml:3:", "burst_s"]).stderr
         self.assertNotIn("--", said)
 
-    def test_a_folder_is_a_folder_everywhere(self):
+    def test_a_folder_is_named_so_everywhere(self):
         (self.dir / "folder.json").mkdir()
         for args in (("plan", "."), ("plan", "folder.json"), ("plan", "park2016-1", "--array", "."), ("plan", "park2016-1", "--config", "."),
                      ("experiment", "./", "--dry-run"), ("render", "park2016-1", "-o", "."), ("play", "park2016-1", "-D", "null", "--log", ".")):
             said = self.refused(2, *args, says=[" a folder"]).stderr
             self.assertNotIn("irectory", said)
 
-    def test_presets_that_are_slips_have_a_suggestion(self):
+    def test_slips_of_presets_have_a_suggestion(self):
         self.refused(2, "plan", "prak2016-1", says=["did you mean 'park2016-1'? presets: park2016-1"])
         self.refused(2, "plan", "park2016-1", "--array", "plam-3x3", says=["did you mean 'palm-3x3'? presets: palm-3x3"])
 
-    def test_an_array_that_no_device_can_play_says_so(self):
+    def test_an_array_that_no_device_can_play_is_named_so(self):
         self.write("a.toml", '[array]\nname = "wall"\ngrid = { rows = 40, columns = 40, pitch_mm = 5.0 }\n')
         for args in (("play", "park2016-1"), ("check",), ("devices",), ("serve", "--socket", "x.sock")):
             self.refused(2, *args, "-D", "null", "--array", "a.toml",
                          says=['array "wall": 1600 channels are more than a device has: 1024'])
         self.ok("render", "park2016-1", "--array", "a.toml", "-o", "x.wav")
 
-    def test_what_is_written_to_cannot_be_read(self):
+    def test_a_write_only_file_cannot_be_read(self):
         r = subprocess.run([TOOL, "plan", "/dev/stdout"], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
                            env=self.env, timeout=PATIENCE_S, check=False, stdin=subprocess.DEVNULL)
         self.assertEqual((r.returncode, r.stdout), (2, ""))
@@ -154,7 +154,7 @@ class Files(ToolTest):
         self.refused(2, "plot", "park2016-1", "-o", "/dev/stdout", says=["/dev/stdout", "FILE.svg, .png or .pdf"])
         self.refused(2, "plot", "park2016-1", "-o", "picture", says=["end the name in .svg, .png or .pdf"])
 
-    def test_a_named_pipe_says_that_it_waits(self):
+    def test_waiting_for_a_named_pipe_is_reported(self):
         os.mkfifo(self.dir / "s.toml")
         def write():
             (self.dir / "s.toml").write_text('[stroke]\npath = "M 0 0 L 20 0"\n', encoding="ascii")
@@ -177,7 +177,7 @@ class Files(ToolTest):
 
 class Journal(ToolTest):
     def said(self, *args, is_journal=True):
-        """What is written to a file that is, or is not, what systemd says its journal is."""
+        """Returns the output to a file that is, or is not, systemd's journal."""
         with open(self.dir / "said", "w+b") as file:
             at = os.fstat(file.fileno())
             number = at.st_ino if is_journal else at.st_ino + 1

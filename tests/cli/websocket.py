@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""A client of HTTP and of WebSockets (RFC 6455) that shows what is on the wire; nothing but Python's standard library."""
+"""A client of HTTP and of WebSockets (RFC 6455) that shows the bytes on the wire; uses only Python's standard library."""
 import base64
 import hashlib
 import os
@@ -94,7 +94,7 @@ class Peer:
         return first & 0x0F, self.take(size)
 
     def text(self):
-        """The next message of text."""
+        """Returns the next message of text."""
         while True:
             kind, payload = self.next_frame()
             if kind == TEXT:
@@ -103,7 +103,7 @@ class Peer:
                 raise EOFError(payload)
 
     def end(self):
-        """The close frame's code; None for none. Its text is then in `reason`."""
+        """Returns the close frame's code; None for none. Its text is then in `reason`."""
         try:
             while True:
                 kind, payload = self.next_frame()

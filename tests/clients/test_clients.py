@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""tactor serve as other people's programs meet it: wscat, and SuperCollider with the example for it. Usage:
-test_clients.py TOOL SOURCE_ROOT WSCAT"""
+"""tactor serve with other people's programs: wscat, and SuperCollider with the example for it. Usage: test_clients.py TOOL
+SOURCE_ROOT WSCAT"""
 import json
 import os
 import pathlib
@@ -20,13 +20,13 @@ from serving import MESSAGE, Server  # noqa: E402
 
 
 class Program:
-    """A process whose lines are waited for; what it says is kept in `said`."""
+    """A process whose lines can be awaited; keeps its output in `said`."""
 
     def __init__(self, test, command, fd=None, **more):
         self.said = []
         self.process = subprocess.Popen(list(map(str, command)), **more)
         self.output = self.process.stdout if fd is None else os.fdopen(fd, "rb")
-        # One that hangs is ended, and its lines with it.
+        # A process that hangs is ended, and its lines with it.
         patience = threading.Timer(PATIENCE_S, self.process.kill)
         patience.start()
         for undo in (self.close, self.process.wait, self.process.kill, patience.cancel):
@@ -38,7 +38,7 @@ class Program:
                 stream.close()
 
     def until(self, pattern):
-        """The match in the first line from here on that has it."""
+        """Returns the match in the first line from here on that has it."""
         for line in self.lines():
             if found := re.search(pattern, line):
                 return found
@@ -52,7 +52,7 @@ class Program:
                 line = b""
             if not line:
                 return
-            # What moves the cursor is none of ours, nor is what was overwritten.
+            # The text without cursor movements and overwritten parts.
             self.said.append(re.sub(r"\x1b\[[0-9;]*[A-Za-z]", "", line.decode()).strip().rpartition("\r")[2])
             yield self.said[-1]
 
@@ -66,7 +66,7 @@ class Wscat(ToolTest):
         return s
 
     def on_a_terminal(self, s, *args):
-        """Only there it says how connections end."""
+        """A terminal: only there it prints how connections end."""
         screen, terminal = pty.openpty()
         p = Program(self, ["node", WSCAT, "--no-color", "-c", s.rpc, *args], fd=screen, stdin=subprocess.PIPE, stdout=terminal,
                     stderr=terminal)
@@ -137,18 +137,18 @@ class Wscat(ToolTest):
         self.call(self.on_a_terminal(s, "-o", s.where["http"].rstrip("/")), "hello")
 
 
-# Evaluates a block of the example, as Ctrl-Return does, when told its number.
+# Evaluates a block of the example, as Ctrl-Return does, when it gets its number.
 DRIVER = r"""
 OSCdef(\evaluate, { |m| File.readAllString("FOLDER/block" ++ m[1]).interpret }, '/evaluate');
 OSCdef(\leave, { 0.exit }, '/leave');
 "evaluates at %".format(NetAddr.langPort).postln;
 """
-# sclang is linked with Qt's browser, which does not run as root otherwise, and wants a screen where nothing is shown.
+# sclang is linked with Qt's browser, which does not run as root otherwise, and needs a screen where nothing is shown.
 NO_SCREEN = {"QT_QPA_PLATFORM": "offscreen", "QTWEBENGINE_DISABLE_SANDBOX": "1"}
 
 
 def blocks(text):
-    """What Ctrl-Return evaluates, in turn: from a ( that begins a line to the ) that does, or a line."""
+    """Returns the blocks that Ctrl-Return evaluates, in turn: from a ( that begins a line to the ) that does, or a line."""
     return re.findall(r"^\((?s:.*?)^\)|^[^\s(/)].*", text, re.M)
 
 
@@ -158,7 +158,7 @@ class SuperCollider(ToolTest):
         for number, code in enumerate(parts):
             self.write(f"block{number}", code)
         driver = self.write("driver.scd", DRIVER.replace("FOLDER", str(self.dir)))
-        # Nothing of the user's, and nothing is left in their home.
+        # Without the user's files, and leaving none in their home.
         env = self.env | NO_SCREEN | {"HOME": str(self.dir), "XDG_CONFIG_HOME": str(self.dir / "config"), "XDG_DATA_HOME": str(self.dir / "data"),
                                       "XDG_RUNTIME_DIR": str(self.dir)}
         p = Program(self, ["sclang", driver], stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, env=env, cwd=self.dir)
@@ -187,7 +187,7 @@ class SuperCollider(ToolTest):
         p.until("^stroke 2: started$")
         p.until("^stroke 2: finished$")
         told = watcher.notification(lambda m: m["params"]["state"] != "started")["params"]
-        # A second of points, however late they were said.
+        # A second of points, however late they were sent.
         self.assertEqual(told["state"], "finished")
         self.assertGreater(told["frames"], 40000)
 

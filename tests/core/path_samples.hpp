@@ -36,7 +36,7 @@ struct walked {
     std::vector<point> p;
 };
 
-/// Two million chords with the same numbers as the curve.
+/// Measures two million chords with the same numbers as the curve.
 inline walked walk_cubic(std::string_view data)
 {
     std::array<double, 8> c{};
@@ -65,7 +65,7 @@ inline walked walk_cubic(std::string_view data)
     return w;
 }
 
-/// Path data of lines, arcs and Beziers within about 50 mm.
+/// Makes path data of lines, arcs and Beziers within about 50 mm.
 inline std::string random_path(std::mt19937_64& random, int segments)
 {
     std::uniform_real_distribution<double> place(-50.0, 50.0);

@@ -42,7 +42,7 @@ error thrown_by(F call)
 static_assert(std::is_nothrow_copy_constructible_v<error> && std::is_nothrow_copy_assignable_v<error>);
 static_assert(std::is_nothrow_move_constructible_v<error>);
 
-TEST_CASE("an error is made of what it says, of its field, place and errno")
+TEST_CASE("an error consists of its text, field, place and errno")
 {
     const error plain(error_kind::runtime, "stream", "it broke");
     CHECK(std::string(plain.what()) == "stream: it broke");
@@ -77,6 +77,21 @@ TEST_CASE("an error is made of what it says, of its field, place and errno")
     CHECK(reworded.with_place({"b.toml", 1, 0}).place().text() == "b.toml:1");
 }
 
+TEST_CASE("marks are fields to the library's own users, and marks in its hint")
+{
+    const error e(error_kind::bad_input, "{timing=fit}", "\"{a}\" is none",
+                  "{fit=true| scales it, }{soa_s}, or ask {command:devices}; [sync] in = { chip }");
+    CHECK(std::string(e.what()) ==
+          "timing = fit: \"{a}\" is none (fit_strokes() scales it, soa_s, or ask tactor "
+          "devices; [sync] in = { chip })");
+    CHECK(e.subject() == "{timing=fit}");
+    CHECK(e.hint().starts_with("{fit=true| scales it, }{soa_s}"));
+    CHECK(std::string(error(error_kind::bad_input, "{a}.toml", "no").what()) == "{a}.toml: no");
+    for (const char* text : {"", "{", "}", "{}", "{ a }", "{1}", "{A}", "{a b}", "{:}", "{command:}", "{=a}"})
+        CHECK(std::string(error(error_kind::bad_input, "a", "b", text).what()).find(text) !=
+              std::string::npos);
+}
+
 TEST_CASE("an error that was moved from, and a copy of one that is gone, say the same")
 {
     std::optional<error> first(error(error_kind::bad_input, "grid", "0 rows", "1 or more"));
@@ -90,7 +105,7 @@ TEST_CASE("an error that was moved from, and a copy of one that is gone, say the
     CHECK(std::string(second.what()) == "other: why");
 }
 
-TEST_CASE("what the library refuses names its field")
+TEST_CASE("refusals of the library name their field")
 {
     const path line = path::polyline(std::array{point{0.0, 0.0}, point{10.0, 0.0}});
     CHECK(thrown_by([] { throw detail::bad_field("soa_s", "0 s"); }).field() == "soa_s");
@@ -126,7 +141,7 @@ TEST_CASE("what the library refuses names its field")
     CHECK(thrown_by([] { static_cast<void>(trajectory::timed({})); }).field() == "points");
 }
 
-TEST_CASE("what an array refuses of a tactor names its value")
+TEST_CASE("refusals of a tactor name its value")
 {
     const auto with = [](auto change) {
         array a = make_grid("two", 1, 2, 20.0, 20.0);
@@ -144,13 +159,13 @@ TEST_CASE("what an array refuses of a tactor names its value")
     CHECK(with([](tactor_spec& t) { t.polarity = 0; }) == "polarity");
 }
 
-TEST_CASE("what the system refuses has its errno")
+TEST_CASE("refusals of the system have their errno")
 {
     CHECK(thrown_by([] { detail::refused_by_system("thread", EAGAIN, "none"); }).os_code() == EAGAIN);
     CHECK(thrown_by([] { detail::throw_caused(error(error_kind::runtime, "a", "b")); }).os_code() == 0);
 }
 
-TEST_CASE("an error has the errno of what is nested in it, unless it has one of its own")
+TEST_CASE("an error has the errno of its nested error, unless it has its own")
 {
     const auto around = [](const auto& cause, int own) {
         return thrown_by([&] {

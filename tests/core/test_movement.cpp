@@ -37,7 +37,7 @@ std::string refusal(const movement& m)
     return message_of([&] { static_cast<void>(trajectory::along(line, m)); });
 }
 
-/// Rests, speeds and intensities at random places.
+/// Draws rests, speeds and intensities at random places.
 movement random_movement(std::mt19937_64& random)
 {
     std::uniform_real_distribution<double> any(0.0, 1.0);
@@ -76,7 +76,7 @@ TEST_CASE("minimum jerk is its polynomial, and in-out its parabola's integral")
         CHECK(jerk.position(duration_s) == point{40.0, 10.0});
         CHECK(jerk.position(-1.0) == point{0.0, 10.0});
     }
-    // Along a curve it is the arc length that is eased.
+    // Along a curve the arc length is eased.
     const trajectory t = trajectory::along(bend, {.duration_s = 2.0, .easing = easing_kind::minimum_jerk});
     for (int i = 0; i <= 100; ++i) {
         const point p = bend.at(bend.length_mm() * minimum_jerk(i / 100.0));
@@ -100,7 +100,7 @@ TEST_CASE("an easing and its inverse are exact at both ends and symmetric")
     CHECK(from_string<easing_kind>("minimum-jerk") == easing_kind::minimum_jerk);
 }
 
-TEST_CASE("speeds are those of the profile where the target is, and their time follows")
+TEST_CASE("speeds follow the profile at the target's place, and times follow them")
 {
     const std::vector<profile_point> speeds{{0.0, 20.0}, {0.25, 80.0}, {0.5, 80.0}, {1.0, 10.0}};
     const trajectory t = trajectory::along(line, {.speed_mm_s = speeds});
@@ -115,7 +115,7 @@ TEST_CASE("speeds are those of the profile where the target is, and their time f
         const double said = x < 0.25 ? 20.0 + 240.0 * x : x < 0.5 ? 80.0 : 80.0 - 140.0 * (x - 0.5);
         CHECK(v == doctest::Approx(said).epsilon(2e-4));
     }
-    // One speed is that speed; with a duration only ratios count; without either it is the usual one.
+    // A single speed is that speed; with a duration only ratios count; without either it is the usual one.
     CHECK(trajectory::along(line, {.speed_mm_s = {{0.5, 20.0}}}).duration_s() == 2.0);
     CHECK(trajectory::along(line, movement{}).duration_s() == doctest::Approx(40.0 / 60.0));
     const trajectory slow = trajectory::along(line, {.duration_s = 3.0, .speed_mm_s = speeds});
@@ -139,12 +139,12 @@ TEST_CASE("a rest takes its time, and each stretch between rests goes from rest 
     CHECK(t.intensity(0.7) == 1.0);
     CHECK(t.intensity(1.0) == 0.0); // it rests in silence
     CHECK(t.intensity(1.3) == 1.0);
-    CHECK(t.meets_x(10.0) == std::vector<double>{0.75}); // when it arrives
+    CHECK(t.meets_x(10.0) == std::vector<double>{0.75}); // on arrival
     CHECK(t.meets_x(40.0) == std::vector<double>{2.75});
     CHECK(t.meets_x(0.0) == std::vector<double>{0.0});
 }
 
-TEST_CASE("intensity follows the part of the path, however the target gets there")
+TEST_CASE("intensity follows the part of the path, for any movement")
 {
     const std::vector<profile_point> ramp{{0.25, 0.2}, {0.75, 1.0}};
     for (const easing_kind k : values_of<easing_kind>()) {
@@ -158,7 +158,7 @@ TEST_CASE("intensity follows the part of the path, however the target gets there
     }
 }
 
-TEST_CASE("another time, another speed, and backwards")
+TEST_CASE("movements take another time, another speed, and reverse")
 {
     const movement m{.duration_s = 2.0,
                      .easing = easing_kind::in_out,
@@ -176,7 +176,7 @@ TEST_CASE("another time, another speed, and backwards")
         CHECK(distance_mm(back.position(5.0 - when), slow.position(when)) < 1e-9);
     }
     CHECK(back.intensity(5.0 - 1.0) == doctest::Approx(slow.intensity(1.0)));
-    // The rest stays as long as it is.
+    // The rest keeps its length.
     CHECK(t.with_speed(100.0).duration_s() == doctest::Approx(t.length_mm() / 100.0 + 0.4));
     CHECK(slow.with_speed(100.0).duration_s() == doctest::Approx(t.length_mm() / 100.0 + 1.0));
     const trajectory dots = trajectory::timed({{0.0, {0.0, 0.0}, 0.5}, {1.0, {3.0, 4.0}}, {4.0, {3.0, 9.0}}});
@@ -188,7 +188,7 @@ TEST_CASE("another time, another speed, and backwards")
     CHECK(trajectory::timed({{0.0, {1.0, 1.0}}, {1.0, {1.0, 1.0}}}).with_speed(5.0).duration_s() == 1.0);
 }
 
-TEST_CASE("whatever the movement, lines are met when the target is on them, in order")
+TEST_CASE("for any movement, lines are met when the target is on them, in order")
 {
     std::mt19937_64 random(15);
     for (int k = 0; k < 300; ++k) {
@@ -247,7 +247,7 @@ TEST_CASE("extremes stay finite and in order")
     CHECK(t.meets_x(20.0).size() == 1);
 }
 
-TEST_CASE("movements that cannot be are refused")
+TEST_CASE("impossible movements are refused")
 {
     const double nan_value = std::numeric_limits<double>::quiet_NaN();
     CHECK(refusal({.speed_mm_s = {{0.5, 10.0}, {0.5, 20.0}}}) ==

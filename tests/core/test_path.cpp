@@ -44,7 +44,7 @@ TEST_CASE("a straight line is exact")
     CHECK(p.at(p.length_mm()) == point{40.0, 30.0});
 }
 
-TEST_CASE("arc length is clamped to the path, and not a number is its start")
+TEST_CASE("arc length is clamped to the path, and a non-number is its start")
 {
     const path p = path::from_svg("M 1 2 L 3 4 C 5 5 6 6 7 9");
     CHECK(p.at(-1.0) == point{1.0, 2.0});
@@ -128,9 +128,8 @@ TEST_CASE("equal steps of arc length are chords no longer than the step")
 
 TEST_CASE("all commands of path data, absolute and relative, mean the same")
 {
-    const path a =
-        path::from_svg("M 10 10 L 20 10 H 30 V 20 C 35 20 40 25 40 30 S 45 40 50 40 Q 55 40 60 45 T 70 "
-                       "50 A 10 10 0 0 1 90 50 Z");
+    const path a = path::from_svg("M 10 10 L 20 10 H 30 V 20 C 35 20 40 25 40 30 S 45 40 50 40 Q 55 40 60 45 "
+                                  "T 70 50 A 10 10 0 0 1 90 50 Z");
     const path r =
         path::from_svg("m10 10l10 0h10v10c5 0 10 5 10 10s5 10 10 10q5 0 10 5t10 5a10 10 0 0120 0z");
     CHECK(a.length_mm() == doctest::Approx(r.length_mm()).epsilon(1e-12));
@@ -148,7 +147,7 @@ TEST_CASE("Z goes back to the start, once")
     CHECK(path::from_svg("m 1 1 h 3 v 4 z").at(12.0) == point{1.0, 1.0});
 }
 
-TEST_CASE("zero-length pieces neither add nor hurt")
+TEST_CASE("zero-length pieces change nothing")
 {
     const path p = path::from_svg("M 0 0 L 0 0 L 3 0 L 3 0 C 3 0 3 0 3 0 Q 3 0 3 0 A 5 5 0 0 1 3 0 L 3 4");
     CHECK(p.length_mm() == 7.0);
@@ -183,7 +182,7 @@ TEST_CASE("a polyline is its points")
     CHECK(p.svg() == "M 0 0 L 3 4 L 3 10");
 }
 
-TEST_CASE("a million points are quick to take and to ask")
+TEST_CASE("a million points are read and measured fast")
 {
     std::vector<point> points(1'000'000);
     for (std::size_t i = 0; i < points.size(); ++i)
@@ -211,7 +210,7 @@ TEST_CASE("a path may be one place")
     }
 }
 
-TEST_CASE("polylines and arcs that make no sense are refused")
+TEST_CASE("senseless polylines and arcs are refused")
 {
     const double nan = std::numeric_limits<double>::quiet_NaN();
     const double inf = std::numeric_limits<double>::infinity();
@@ -235,7 +234,7 @@ TEST_CASE("polylines and arcs that make no sense are refused")
     CHECK(arc({}, 1.0, 0.0, 361.0).find("sweep") != std::string::npos);
     CHECK(arc({}, 1.0, 0.0, 0.0).find("sweep") != std::string::npos);
     CHECK(arc({}, 1.0, 0.0, nan).find("sweep") != std::string::npos);
-    // The last that are let pass, and the next.
+    // The last that pass, and the next.
     const auto above = [](double v) { return std::nextafter(v, 2.0 * v); };
     for (const double sign : {1.0, -1.0}) {
         CHECK(arc({}, 1.0, sign * 1e6, 90.0).empty());

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: MIT
-// What A draws, by closed forms, and where the other commands of path data take their handles from.
+// Arcs of path data, by closed forms, and the implied handles of the other commands.
 #include <doctest/doctest.h>
 
 #include <cmath>
 #include <numbers>
-#include <string>
 
 #include <fmt/format.h>
 
@@ -33,7 +32,7 @@ void check_at(const path& p, double share, point want, double within)
 
 } // namespace
 
-TEST_CASE("arcs in path data are the circles they say")
+TEST_CASE("arcs in path data are circles")
 {
     for (const char* data :
          {"M 20 4 A 16 16 0 0 0 20 36", "m20 4a16 16 0 0 0 0 32", "M20,4A16,16,0,0020,36"}) {
@@ -47,7 +46,7 @@ TEST_CASE("arcs in path data are the circles they say")
     check_at(three_quarters, 2.0 / 3.0, {20.0, 4.0}, 1e-12);
 }
 
-TEST_CASE("a half circle is one wherever it lies, though its ends are rounded")
+TEST_CASE("a half circle is one anywhere, though its ends are rounded")
 {
     for (int k = 1; k <= 500; ++k) {
         const double x = 0.1 * k;
@@ -93,7 +92,7 @@ TEST_CASE("radii that do not reach grow together until they do")
           doctest::Approx(10.0 * pi).epsilon(1e-14));
 }
 
-TEST_CASE("an arc with a radius of 0 is a line, and one to where it begins is nothing")
+TEST_CASE("an arc with a radius of 0 is a line, and an arc to its start is nothing")
 {
     for (const char* data : {"M 0 0 A 0 5 0 0 1 3 4", "M 0 0 A 5 0 30 1 0 3 4", "M 0 0 A 0 0 0 0 0 3 4"}) {
         CHECK(path::from_svg(data).length_mm() == 5.0);
@@ -115,7 +114,7 @@ TEST_CASE("a turned ellipse's quarter ends on its axes")
     CHECK(along * along + across * across == doctest::Approx(1.0).epsilon(1e-12));
 }
 
-TEST_CASE("what follows a move's first pair are lines, and a command goes on without its letter")
+TEST_CASE("further pairs of a move are lines, and a command goes on without its letter")
 {
     CHECK(path::from_svg("M1 2 3 4 5 6").svg() == "M 1 2 L 3 4 L 5 6");
     CHECK(path::from_svg("m1 2 3 4 5 6").svg() == "M 1 2 L 4 6 L 9 12");
@@ -132,7 +131,7 @@ TEST_CASE("S and T mirror the last handle of their own kind only")
           "M 0 0 C 0 4 4 8 8 8 L 9 9 C 9 9 16 4 16 0");
     CHECK(path::from_svg("M0 0Q3 6 6 0T12 0T18 0").svg() ==
           "M 0 0 C 2 4 4 4 6 0 C 8 -4 10 -4 12 0 C 14 4 16 4 18 0");
-    // Of another kind: T begins at the point, a line drawn as a curve.
+    // After another kind: T begins at the point, a line drawn as a curve.
     CHECK(path::from_svg("M0 0C0 4 4 8 6 6T12 0").svg() == path::from_svg("M0 0C0 4 4 8 6 6Q6 6 12 0").svg());
     CHECK(path::from_svg("M0 0Q3 6 6 0a1 1 0 0 0 0 0T12 0").svg() ==
           path::from_svg("M0 0Q3 6 6 0Q6 0 12 0").svg());

@@ -3,9 +3,7 @@
 
 #include <array>
 #include <cmath>
-#include <numbers>
 #include <random>
-#include <string>
 #include <utility>
 
 #include <boost/math/quadrature/gauss.hpp>

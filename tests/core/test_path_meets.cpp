@@ -52,7 +52,7 @@ TEST_CASE("start and end on the line are meetings")
     check_same(closed.meets_y(5.0), {15.0, 20.0 + std::sqrt(50.0)});
 }
 
-TEST_CASE("a stretch along the line gives nothing, its ends included")
+TEST_CASE("a stretch along the line gives nothing, not even at its ends")
 {
     const path p = path::from_svg("M 0 10 L 10 20 H 30 L 40 30");
     check_same(p.meets_y(20.0), {});
@@ -104,7 +104,7 @@ TEST_CASE("an inflection on the line is one meeting")
     check_same(level.meets_y(10.0), {10.0}, 1e-6);
 }
 
-TEST_CASE("the half circle of the paper meets the grid where geometry says")
+TEST_CASE("the half circle of the paper meets the grid by geometry")
 {
     const path p = path::arc({20.0, 20.0}, 16.0, -90.0, -180.0);
     check_same(p.meets_x(20.0), {0.0, 16.0 * pi}, 1e-12);
@@ -130,7 +130,7 @@ TEST_CASE("a circle in fine steps touches its tangent once")
     }
 }
 
-TEST_CASE("a line that is no number is never met")
+TEST_CASE("a non-number as a line is never met")
 {
     const path p = path::from_svg("M 0 0 L 1 1");
     CHECK(p.meets_x(std::numeric_limits<double>::quiet_NaN()).empty());
@@ -188,7 +188,7 @@ TEST_CASE("a curve and the same curve turned by a right angle meet the grid alik
     }
 }
 
-TEST_CASE("no meeting lies beyond the end of the path, not by a rounding error either")
+TEST_CASE("no meeting lies beyond the end of the path, not even by a rounding")
 {
     // Found by the fuzzer: the sum of these lengths was 3e-14 mm longer than the path.
     const path p = path::from_svg("M 0 0 C 0 10 0 1 10 5t10 50 0 10 C 0 10 0 10 10 20 Q 1 2 3 -1e-64");

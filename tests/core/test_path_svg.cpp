@@ -5,8 +5,6 @@
 #include <random>
 #include <string>
 
-#include <fmt/format.h>
-
 #include <tactor/error.hpp>
 #include <tactor/path.hpp>
 #include <tactor/stroke.hpp>
@@ -51,7 +49,7 @@ private:
 
 } // namespace
 
-TEST_CASE("what is not path data is refused at the first bad column")
+TEST_CASE("bad path data is refused at the first bad column")
 {
     struct sample {
         std::string data;

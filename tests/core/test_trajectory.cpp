@@ -32,7 +32,7 @@ std::string timed_refusal(std::vector<timed_point> points)
 
 } // namespace
 
-TEST_CASE("a stroke of which nothing was said rests where the coordinates begin")
+TEST_CASE("a default stroke rests at the origin")
 {
     const tactor::stroke s;
     CHECK(s.motion.duration_s() == 1.0);
@@ -41,7 +41,7 @@ TEST_CASE("a stroke of which nothing was said rests where the coordinates begin"
     CHECK(s.motion.intensity(0.5) == 1.0);
 }
 
-TEST_CASE("along a path, the way is in proportion to time")
+TEST_CASE("along a path, the distance is in proportion to time")
 {
     const trajectory t = line_in(2.0);
     CHECK(t.duration_s() == 2.0);
@@ -86,7 +86,7 @@ TEST_CASE("another duration is the same movement at another pace")
     REQUIRE(t.meets_y(7.0).size() == 1);
     CHECK(t.meets_y(7.0)[0] == doctest::Approx(4.0));
     CHECK(line_in(2.0).with_duration(4.0).position(2.0).x_mm == doctest::Approx(20.0));
-    // As short as a double can say.
+    // The shortest that a double can express.
     const trajectory blink = t.with_duration(5e-324);
     CHECK(blink.position(0.0) == point{0.0, 0.0});
     CHECK(blink.position(1.0) == point{3.0, 10.0});
@@ -106,7 +106,7 @@ TEST_CASE("intensity is scaled with the movement as it was")
     CHECK_THROWS_AS(t.with_intensity(infinite), tactor::error);
 }
 
-TEST_CASE("times at which the target meets a line of the grid")
+TEST_CASE("trajectories give the times at which the target meets a line of the grid")
 {
     const trajectory t = line_in(2.0);
     REQUIRE(t.meets_x(20.0).size() == 1);
@@ -138,7 +138,7 @@ TEST_CASE("a target that rests on a line meets it when it arrives")
     CHECK(still.position(0.5) == point{5.0, 5.0});
 }
 
-TEST_CASE("a path that is one place is a tap of the duration that it is given")
+TEST_CASE("a path of one place is a tap of the given duration")
 {
     const path place = path::from_svg("M 5 7");
     const trajectory tap = trajectory::along(place, 0.4, 0.5);
@@ -173,7 +173,7 @@ TEST_CASE("durations and intensities out of range are refused")
     }
 }
 
-TEST_CASE("timed points that make no sense are refused by their number")
+TEST_CASE("senseless timed points are refused by their number")
 {
     CHECK(timed_refusal({}).find("0 of at least 2") != std::string::npos);
     CHECK(timed_refusal({{0.0, {}}}).find("1 of at least 2") != std::string::npos);

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
 #include <limits>
-#include <string>
 
 #include <doctest/doctest.h>
 
@@ -37,7 +36,7 @@ TEST_CASE("numbers have no exponent and no zeros at their end")
     CHECK(plain_number(std::numeric_limits<double>::infinity()) == "inf");
 }
 
-TEST_CASE("times say their unit, and what rounding leaves is no time")
+TEST_CASE("times have their unit, and a rounding is no time")
 {
     CHECK(seconds_text(0.0) == "0 s");
     CHECK(seconds_text(1e-17) == "0 s");

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// The engine without its threads, and an amplifier behind it: a log of what happened to the PCM and to the
-/// line, in order.
+/// The engine without its threads, with an amplifier: logs in order what happens to the PCM and to the line.
 #pragma once
 
 #include <cstdint>
@@ -22,10 +21,10 @@ namespace tactor::test {
 
 using event_log = std::vector<std::string>;
 
-/// What the next writes come to; ok with fewer frames than asked for is a short write.
+/// Results of the next writes; ok with fewer frames than offered is a short write.
 using write_results = std::deque<io_result>;
 
-/// Logs prepare, start and drop, and spoils writes.
+/// Logs prepare, start and drop, and can spoil writes.
 class logging_sink final : public forwarding_sink {
 public:
     logging_sink(std::unique_ptr<sink> s, event_log& log, std::shared_ptr<write_results> spoilt)
@@ -84,7 +83,7 @@ public:
     }
 
     bool works = true;     ///< on
-    unsigned refusals = 0; ///< so many times it stays on
+    unsigned refusals = 0; ///< number of times that it stays on
     bool is_on = false;
     unsigned beats = 0;
 
@@ -100,13 +99,13 @@ struct amplifier_rig : rig {
     {
     }
 
-    /// Until strokes may sound.
+    /// Plays until strokes may sound.
     void warm_up()
     {
         for (int i = 0; i < 1000 && !link.amplifier.ready; ++i)
             play(options.period);
     }
-    /// Time passes for the amplifier's thread only.
+    /// Lets time pass for the amplifier's thread only.
     void wait(std::int64_t ns)
     {
         for (const std::int64_t end = now + ns; now < end;) {
@@ -114,8 +113,7 @@ struct amplifier_rig : rig {
             driver.update();
         }
     }
-    void stop() { link.requests.push({.what = engine::request::kind::stop, .closing = false}); }
-    /// The log since the last call.
+    /// Returns the log since the last call.
     event_log news() { return std::exchange(*log, {}); }
 
     std::shared_ptr<event_log> log;
@@ -143,26 +141,14 @@ private:
     }
 };
 
-inline std::string reason_of(const amplifier_rig& r, stroke_id id)
-{
-    return r.report(id) ? r.report(id)->why : "no report";
-}
-
-/// An amplifier that is on, and a stroke that sounds.
+/// A stroke that sounds, with the amplifier on.
 struct playing : amplifier_rig {
     explicit playing(rig_options o = {}) : amplifier_rig(std::move(o))
     {
-        REQUIRE(start().status == io_kind::ok);
         warm_up();
         id = submit(tone(2.0));
         play(4800);
         CHECK(news() == event_log{"prepare", "start", "on"});
-    }
-    void xrun()
-    {
-        dac.advance(1000);
-        step();
-        control();
     }
     stroke_id id = {};
 };

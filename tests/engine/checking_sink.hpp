@@ -15,12 +15,12 @@
 
 namespace tactor::test {
 
-/// Looks at every sample that the device takes, and is itself a source of trouble.
+/// Checks every sample that the device takes, and refuses writes at random.
 class checking_sink : public forwarding_sink {
 public:
     static constexpr unsigned channels = 4;
 
-    /// `limit`: greatest magnitude; `allowed`: greatest change from frame to frame, looked at anew each time.
+    /// `limit`: greatest magnitude; `allowed`: greatest change from frame to frame, read anew each time.
     checking_sink(std::unique_ptr<sink> s, std::mt19937_64& random, double limit, const double& allowed)
         : forwarding_sink(std::move(s)), random_(random), limit_(limit), allowed_(allowed)
     {
@@ -29,7 +29,7 @@ public:
     io_kind prepare() noexcept override
     {
         empty_ = true;
-        before_.fill(0.0); // a gap that the device made: from zero
+        before_.fill(0.0); // the device made a gap: from zero
         return forwarding_sink::prepare();
     }
 

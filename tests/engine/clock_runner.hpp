@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// For the tests of the player with its real threads.
+/// Support for tests of the player with its real threads.
 #pragma once
 
 #include <atomic>
@@ -14,18 +14,19 @@
 
 namespace tactor::test {
 
-/// The fake clock stands still while the test thinks, and runs as fast as it can when it runs: neither is a
-/// reason to give up.
-inline player_options patient()
+/// Options with long limits: the fake clock stands still while the test thinks and outruns time while it
+/// runs.
+inline player_options patient(const drive_limits& limits = {})
 {
     player_options o;
+    o.limits = limits;
     o.stall_s = 600.0;
     o.horizon_s = 600.0;
     return o;
 }
 
-/// Lets the DAC run in a thread of its own for as long as it lives: for the calls that block. What it plays
-/// from then on is kept only where a test says that it reads it: it is up to 170 MB a second.
+/// Runs the DAC in a thread for as long as it lives, for calls that block. Keeps what it plays from then on
+/// only where a test reads it: up to 170 MB a second.
 class running_clock {
 public:
     enum class capture_kind { dropped, kept };

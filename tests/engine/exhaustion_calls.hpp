@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// \file
-/// All calls of the library that may throw, to be tried without descriptors and without memory.
-/// tests/exhaustion.py holds that none is missing: each overload stands under its name once, a member's with
+/// Calls of the library that may throw, to be tried without descriptors and without memory.
+/// tests/exhaustion.py checks that none is missing: each overload stands under its name once, a member's with
 /// that of its class. Other ways to call it have more after a comma.
 #pragma once
 
@@ -21,12 +20,12 @@
 
 namespace tactor::test {
 
-/// What a call does that matters here.
+/// Effect of a call that matters here.
 enum class call_kind {
     plain,
     opens, ///< needs a descriptor
-    /// Not tried without memory, where others' code ends the process: reads TOML (toml++ 3 is noexcept where
-    /// it allocates), or ALSA's configuration (alsa-lib 1.2.8 does not look whether it was given memory).
+    /// Not tried without memory, where other people's code ends the process: reads TOML (toml++ 3 is noexcept
+    /// where it allocates), or ALSA's configuration (alsa-lib 1.2.8 does not check its allocations).
     ends,
     opens_ends, ///< both
 };
@@ -47,10 +46,10 @@ struct exhausted_call {
     std::string name;
     std::function<void()> call;
     call_kind kind;
-    std::function<void()> before; ///< what it needs anew each time, made with all there is
+    std::function<void()> before; ///< makes what the call needs anew each time, with all memory there is
 };
 
-/// What the calls are given. Outlives them.
+/// Arguments of the calls. Outlives them.
 struct call_things {
     folder here = {};
     array a = palm();
@@ -67,7 +66,7 @@ call_table plan_calls(const call_things& t);
 call_table sound_calls(const call_things& t);
 call_table device_calls();
 
-/// A player on a DAC whose clock runs, and one that is made anew where a call needs that.
+/// A player on a DAC whose clock runs, and one that is made anew where a call needs it.
 struct player_things;
 std::shared_ptr<player_things> make_player_things();
 call_table player_calls(player_things& t);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Calls that throw: what reads and writes files, and texts as they stand in files.
+// Calls that throw: files read and written, and texts as files hold them.
 #include <memory>
 #include <string>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Calls that throw: layouts, phantoms, plans, who feels them; scores and what renders them.
+// Calls that throw: layouts, phantoms, plans, predictions, scores and renderers.
 #include <cstddef>
 #include <memory>
 #include <vector>
@@ -95,6 +95,9 @@ call_table sound_calls(const call_things& t)
     const std::vector<placed_plan> early{{.plan = t.p, .start_s = -1.0}};
     const auto sine = make_plan(t.a, t.l, t.s, planned_by(algorithm_kind::continuous));
     const auto sound = std::make_shared<score>(t.a, std::vector<placed_plan>{{.plan = sine}});
+    plan_options spread = planned_by(algorithm_kind::continuous);
+    spread.phantom = phantom_kind::gaussian; // each of its samples needs memory
+    const auto wide = std::make_shared<score>(t.a, make_plan(t.a, t.l, t.s, spread));
     const auto rendered_by = std::make_shared<renderer>(*sound, format_kind::s16);
     const auto builder = std::make_shared<score_builder>(t.a, render_options{});
     return {
@@ -127,13 +130,18 @@ call_table sound_calls(const call_things& t)
              std::vector<std::byte> out(2UL * 9 * 4096);
              made.process(out);
          }},
+        {"renderer::process, gaussian",
+         [wide] {
+             renderer made(*wide, format_kind::s16);
+             std::vector<std::byte> out(2UL * 9 * 1024);
+             made.process(out);
+         }},
         {"renderer::process, of half a frame",
          [rendered_by] {
              std::vector<std::byte> out(1);
              rendered_by->process(out);
          }},
         {"renderer::position", [rendered_by] { return rendered_by->position(); }},
-        {"renderer::failure", [rendered_by] { return rendered_by->failure().size(); }},
     };
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Calls that throw: those of a player, of its live strokes, and of what it gives the next one.
+// Calls that throw: a player, its live strokes, and the drive history for the next player.
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -17,19 +17,12 @@
 namespace tactor::test {
 namespace {
 
-// A player with its DAC, which is made first and goes last.
-struct running {
-    fake_dac dac{};
-    running_clock clock{dac};
-    player p{pcm::adopt(dac.pcm(), nine()), palm(), patient()};
-};
-
-// What is made anew before each call.
+// Things made anew before each call.
 struct fresh {
     std::unique_ptr<fake_dac> dac = {};
     std::unique_ptr<running_clock> clock = {};
     std::unique_ptr<sink> out = {};
-    std::unique_ptr<running> open = {};
+    std::unique_ptr<clocked_player> open = {};
 
     void make_sink()
     {
@@ -42,7 +35,7 @@ struct fresh {
     void make_player()
     {
         open.reset();
-        open = std::make_unique<running>();
+        open = std::make_unique<clocked_player>();
     }
 };
 
@@ -54,7 +47,7 @@ live_options soon_over()
 } // namespace
 
 struct player_things {
-    running open{};
+    clocked_player open{};
     fresh anew = {};
     score s = tone(0.001);
     stroke_id id = {};
@@ -71,7 +64,7 @@ std::shared_ptr<player_things> make_player_things()
 call_table player_calls(player_things& t)
 {
     using enum call_kind;
-    player& p = t.open.p;
+    player& p = t.open;
     const auto submitted = [&t, &p] { t.id = p.submit(t.s); };
     const auto armed = [&t, &p] { t.id = p.submit(t.s, start_at::trigger()); };
     const auto begun = [&t, &p] {
@@ -81,7 +74,7 @@ call_table player_calls(player_things& t)
     };
     const auto stopped = [&t] {
         t.anew.make_player();
-        t.anew.open->p.stop();
+        t.anew.open->stop();
     };
     return {
         {"player::player", [&t] { const player made(std::move(t.anew.out), palm(), patient()); }, opens,
@@ -90,7 +83,7 @@ call_table player_calls(player_things& t)
         {"player::submit, from a frame on", [&t, &p] { return p.submit(t.s, start_at::frame(0)); }},
         {"player::submit, from a time on", [&t, &p] { return p.submit(t.s, start_at::time(0)); }},
         {"player::submit, when triggered", [&t, &p] { return p.submit(t.s, start_at::trigger()); }},
-        {"player::submit, to a stream that has ended", [&t] { return t.anew.open->p.submit(t.s); }, plain,
+        {"player::submit, to a stream that has ended", [&t] { return t.anew.open->submit(t.s); }, plain,
          stopped},
         {"player::fire", [&p] { return p.fire(0); }, plain, armed},
         {"player::begin", [&p] { return p.begin(soon_over()); }},
@@ -106,10 +99,10 @@ call_table player_calls(player_things& t)
         {"player::on_report", [&p] { p.on_report([](const stroke_report&) {}); }},
         {"player::on_end", [&t, &p] { return p.on_end(t.id, [](const stroke_report&) {}); }, plain, armed},
         {"player::on_end, of nothing", [&t, &p] { return p.on_end(t.id, {}); }},
-        {"player::stop", [&t] { t.anew.open->p.stop(); }, plain, [&t] { t.anew.make_player(); }},
-        {"player::ended", [&t] { return t.anew.open->p.ended(); }, plain, stopped},
+        {"player::stop", [&t] { t.anew.open->stop(); }, plain, [&t] { t.anew.make_player(); }},
+        {"player::ended", [&t] { return t.anew.open->ended(); }, plain, stopped},
         {"player::stats", [&p] { return p.stats(); }},
-        {"player::history", [&t] { return t.anew.open->p.history(); }, plain, stopped},
+        {"player::history", [&t] { return t.anew.open->history(); }, plain, stopped},
         {"player::history, while it plays", [&p] { return p.history(); }},
         {"live_stroke::to", [&t] { return t.live->to(20.0, 20.0); }, plain, begun},
         {"live_stroke::to, nowhere", [&t] { return t.live->to(1.0 / 0.0, 20.0); }, plain, begun},

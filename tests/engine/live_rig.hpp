@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// For the tests of live strokes.
+/// Support for tests of live strokes.
 #pragma once
 
 #include <algorithm>
@@ -22,11 +22,7 @@ inline const double live_level = std::pow(10.0, -12.0 / 20.0);
 /// A rig with one live stroke.
 class live_rig : public rig {
 public:
-    explicit live_rig(const live_options& o = {}, const rig_options& r = {}) : rig(r)
-    {
-        REQUIRE(start().status == io_kind::ok);
-        live = add(o);
-    }
+    explicit live_rig(const live_options& o = {}, const rig_options& r = {}) : rig(r) { live = add(o); }
 
     std::shared_ptr<live_stroke::impl> add(const live_options& o = {})
     {
@@ -35,6 +31,15 @@ public:
         feed.submit(last(), std::shared_ptr<engine::live_voice>(s, &s->voice));
         feed.pump(status().written, link.clock.load());
         return s;
+    }
+
+    /// Returns the rig's stroke and new ones, n in all.
+    std::vector<std::shared_ptr<live_stroke::impl>> fill(std::size_t n, const live_options& o = {})
+    {
+        std::vector<std::shared_ptr<live_stroke::impl>> all{live};
+        while (all.size() < n)
+            all.push_back(add(o));
+        return all;
     }
 
     std::vector<double> channel(unsigned c, std::uint64_t from = 0) const

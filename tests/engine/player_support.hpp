@@ -1,14 +1,21 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// For the tests of the player.
+/// Support for tests of the player.
 #pragma once
 
 #include <cstddef>
+#include <utility>
 #include <vector>
 
 #include <doctest/doctest.h>
 
 #include <tactor/alsa.hpp>
+#include <tactor/player.hpp>
+
+#include "clock_runner.hpp"
+#include "fake_dac.hpp"
+#include "scores.hpp"
+#include "sink/alsa/adopt.hpp"
 
 namespace tactor::test {
 
@@ -20,7 +27,31 @@ inline alsa_options nine(format_kind f = format_kind::s32)
     return o;
 }
 
-/// Bytes from ... from + n.
+struct dac_holder {
+    fake_dac dac{};
+};
+
+/// A player on a fake DAC, whose clock stands still until a running_clock moves it.
+struct dac_player : dac_holder, player {
+    explicit dac_player(const player_options& o = patient(), player_lines lines = {})
+        : player(pcm::adopt(dac.pcm(), nine()), palm(), o, std::move(lines))
+    {
+    }
+};
+
+struct clock_holder : dac_holder {
+    running_clock clock{dac};
+};
+
+/// A player on a fake DAC whose clock runs.
+struct clocked_player : clock_holder, player {
+    explicit clocked_player(const player_options& o = patient(), player_lines lines = {})
+        : player(pcm::adopt(dac.pcm(), nine()), palm(), o, std::move(lines))
+    {
+    }
+};
+
+/// Returns n bytes from `from` on.
 inline std::vector<std::byte> part(const std::vector<std::byte>& all, std::size_t from, std::size_t n)
 {
     REQUIRE(from + n <= all.size());

@@ -16,6 +16,8 @@
 
 #include <poll.h>
 
+#include <doctest/doctest.h>
+
 #include <tactor/sink.hpp>
 
 #include "engine/audio/audio_loop.hpp"
@@ -26,7 +28,7 @@
 
 namespace tactor::test {
 
-/// Another sink, to change single members of.
+/// Another sink, of which a test changes single members.
 class forwarding_sink : public sink {
 public:
     explicit forwarding_sink(std::unique_ptr<sink> s) : inner_(std::move(s)) {}
@@ -41,7 +43,7 @@ public:
     io_kind ready(std::span<pollfd> f) noexcept override { return inner_->ready(f); }
     io_result available() noexcept override { return inner_->available(); }
     io_result write(std::span<const std::byte> frames) noexcept override { return inner_->write(frames); }
-    /// Some of what is offered.
+    /// Writes the first n frames of those offered.
     io_result write_first(std::size_t n, std::span<const std::byte> frames) noexcept
     {
         return forwarding_sink::write(frames.first(n * setup().frame_bytes()));
@@ -82,6 +84,7 @@ struct rig_options {
     std::function<std::unique_ptr<sink>(std::unique_ptr<sink>)> wrap{};
     engine::loop_options loop{};
     fake_dac_options dac{};
+    bool started = true; ///< by the constructor
 };
 
 class rig {
@@ -101,6 +104,8 @@ public:
           loop(wrapped(o), link, limits, o.loop),
           options(o)
     {
+        if (o.started)
+            REQUIRE(start().status == io_kind::ok);
     }
 
     io_result start() { return loop.start(now); }
@@ -118,7 +123,7 @@ public:
 
     engine::stream_status status() { return link.status.load(); }
 
-    /// One wake-up of the audio thread: poll, step.
+    /// Does a wake-up of the audio thread: poll, step.
     void step()
     {
         io_kind ready = io_kind::again;
@@ -132,7 +137,7 @@ public:
         loop.step(ready, now);
     }
 
-    /// One wake-up of the control thread.
+    /// Does a wake-up of the control thread.
     void control()
     {
         engine::report r;
@@ -145,7 +150,7 @@ public:
             also_control();
     }
 
-    /// The DAC plays so many frames, a period at a time, and both threads do their work.
+    /// Plays so many frames, a period at a time; both threads do their work.
     void play(std::uint64_t frames)
     {
         for (std::uint64_t n = 0; n < frames && !loop.over(); n += options.period) {
@@ -155,6 +160,22 @@ public:
         }
     }
 
+    /// Asks for the end of the stream, as stop() or the destructor of a player does.
+    void stop(bool closing = false)
+    {
+        if (closing)
+            feed.set_closing();
+        link.requests.push({.what = engine::request::kind::stop, .closing = closing});
+    }
+
+    /// Lets the DAC run dry, and both threads notice.
+    void xrun()
+    {
+        dac.advance(1000);
+        step();
+        control();
+    }
+
     /// Plays until all strokes have ended; gives up after a while.
     void play_out()
     {
@@ -162,7 +183,7 @@ public:
             play(options.period);
     }
 
-    /// The only report of a stroke, if there is exactly one.
+    /// Returns the only report of a stroke, if there is exactly one.
     std::optional<stroke_report> report(stroke_id id) const
     {
         const auto found = ended.find(id);
@@ -171,7 +192,15 @@ public:
         return found->second.front();
     }
 
-    /// Frames captured from `from` on, as many as `frames`; zeros beyond the end.
+    /// Returns the only report of a stroke; fails without one.
+    stroke_report end(stroke_id id) const
+    {
+        const auto r = report(id);
+        REQUIRE(r);
+        return *r;
+    }
+
+    /// Returns frames captured from `from` on; zeros beyond the end.
     std::vector<std::byte> captured(std::uint64_t from, std::uint64_t frames) const
     {
         std::vector<std::byte> part = dac.captured(from);
@@ -179,7 +208,7 @@ public:
         return part;
     }
 
-    /// First captured frame that is not silent; none if all is.
+    /// Returns the first captured frame that is not silent; none if all are.
     std::optional<std::uint64_t> first_sound(std::uint64_t from = 0) const
     {
         const std::vector<std::byte> all = dac.captured(from);
@@ -207,7 +236,7 @@ public:
     engine::audio_loop loop;
     rig_options options;
     std::uint32_t last_id = 0;
-    std::function<void()> also_control{}; ///< at the end of control()
+    std::function<void()> also_control{}; ///< called at the end of control()
     std::map<stroke_id, std::vector<stroke_report>> ended;
 };
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// Scores for the tests, and what the renderer makes of them.
+/// Scores for the tests, and their bytes as the renderer makes them.
 #pragma once
 
 #include <cstddef>
@@ -15,8 +15,8 @@ namespace tactor::test {
 
 inline constexpr unsigned rate = 48000;
 
-/// Of a stroke that is still there when a test gets to it, on a clock that runs a hundred times as fast as
-/// time. Below 2^32 frames.
+/// Duration of a stroke that still plays when a test gets to it, on a clock a hundred times as fast as time.
+/// Below 2^32 frames.
 inline constexpr double endless_s = 80'000.0;
 
 /// Nine channels, 3 x 3.
@@ -42,13 +42,10 @@ inline score random_score(std::uint64_t seed, unsigned bursts, unsigned channels
         p.total_s = b.onset_s + b.duration_s;
         p.stroke_duration_s = p.total_s;
     }
-    render_options o;
-    o.rate = rate;
-    o.channels = channels;
-    return {a, {{.plan = p, .start_s = {}}}, o};
+    return {a, p, {.channels = channels}};
 }
 
-/// One burst on one tactor.
+/// Makes a burst on one tactor.
 inline score tone(double seconds, unsigned tactor = 0)
 {
     plan p;
@@ -58,12 +55,10 @@ inline score tone(double seconds, unsigned tactor = 0)
     p.bursts.push_back(b);
     p.total_s = seconds;
     p.stroke_duration_s = seconds;
-    render_options o;
-    o.rate = rate;
-    return {palm(), {{.plan = p, .start_s = {}}}, o};
+    return {palm(), p};
 }
 
-/// What the offline renderer makes of a score, in one call.
+/// Renders a score offline, in one call.
 inline std::vector<std::byte> rendered(const score& s, format_kind f)
 {
     std::vector<std::byte> out(s.frames() * s.channels() * bytes_of(f));

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: MIT
-// A day on the virtual clock: what a period costs does not depend on how long the engine has run. Work is
-// counted, not timed, so that the machine's load does not matter.
+// A day on the virtual clock: a period costs the same however long the engine has run. Counts work, not time,
+// so that the machine's load does not matter.
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <memory>
 #include <random>
-#include <vector>
 
 #include <doctest/doctest.h>
 
@@ -27,7 +26,7 @@ constexpr unsigned period = 4000;
 constexpr unsigned periods_an_hour = 3600 * low_rate / period;
 
 struct work {
-    std::uint64_t heap_calls = 0; ///< of both sides
+    std::uint64_t heap_calls = 0; ///< by both sides
     std::uint64_t audio_heap_calls = 0;
     std::int64_t held = 0; ///< bytes
     std::uint64_t most_drives = 0;
@@ -36,7 +35,7 @@ struct work {
     std::uint64_t strokes = 0;
 };
 
-score stroke_of(unsigned bursts)
+score make_stroke(unsigned bursts)
 {
     plan p;
     for (unsigned k = 0; k < bursts; ++k) {
@@ -50,18 +49,17 @@ score stroke_of(unsigned bursts)
     p.stroke_duration_s = p.total_s;
     render_options o;
     o.rate = low_rate;
-    return {make_grid("pair", 1, 2, 20.0, 20.0), {{.plan = p, .start_s = {}}}, o};
+    return {make_grid("pair", 1, 2, 20.0, 20.0), p, o};
 }
 
 class day {
 public:
-    day() : r_(options()), shorter_(stroke_of(5)), longer_(stroke_of(300))
+    day() : r_(options()), shorter_(make_stroke(5)), longer_(make_stroke(300))
     {
         r_.dac.reserve_capture(1 << 12);
-        REQUIRE(r_.start().status == io_kind::ok);
     }
 
-    // Each hour is like every other.
+    // Runs an hour that is like every other.
     work hour()
     {
         std::mt19937_64 random(4);
@@ -71,7 +69,7 @@ public:
         for (unsigned i = 0; i < periods_an_hour; ++i)
             half_second(i, random, w);
         counted(w, [&] {
-            live_->voice.ask(engine::live_voice::wish::end);
+            live_->voice.request(engine::live_voice::action::end);
             r_.feed.fire(r_.now);
             for (int i = 0; i < 1000 && r_.ended.size() < r_.last_id - before; ++i)
                 r_.play(period);
@@ -159,7 +157,7 @@ private:
 
 } // namespace
 
-TEST_CASE("a day: the last hour costs what the second did, and nothing is left behind")
+TEST_CASE("a day: the last hour costs as much as the second, and nothing is left behind")
 {
     day d;
     d.hour();

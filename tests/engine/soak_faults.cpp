@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// A million periods of everything that can go wrong, in any order: what the DAC gets never jumps and never
-// exceeds the limit, and every stroke ends once.
+// A million periods with every fault in any order: the samples at the DAC never jump and never exceed the
+// limit, and every stroke ends once.
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -36,7 +36,7 @@ array row()
     return a;
 }
 
-// Most that a stroke of these tests can change from frame to frame: the carrier's slope, and its whole
+// Greatest change from frame to frame of a stroke of these tests: the carrier's slope, and its whole
 // amplitude within the shortest ramp, a live stroke's control step or a fade.
 double slope(const render_options& o)
 {
@@ -51,7 +51,7 @@ score random_stroke(std::mt19937_64& random, const render_options& o)
     for (unsigned k = 0; k < n; ++k) {
         burst b;
         b.onset_s = 0.05 * k;
-        b.duration_s = 0.008 + 0.06 * uniform(random); // those that overlap are joined
+        b.duration_s = 0.008 + 0.06 * uniform(random); // overlapping ones are joined
         for (unsigned t = 0; t < channels; ++t)
             if (random() % 2 == 0)
                 b.drives.push_back({.tactor = t, .amplitude = uniform(random)});
@@ -59,7 +59,7 @@ score random_stroke(std::mt19937_64& random, const render_options& o)
         p.bursts.push_back(b);
     }
     p.stroke_duration_s = p.total_s;
-    return {row(), {{.plan = p, .start_s = {}}}, o};
+    return {row(), p, o};
 }
 
 struct totals {
@@ -71,20 +71,19 @@ struct totals {
     double loudest = 0.0;
 };
 
-// One device from start to its end, by stop or by loss.
+// A device from its start to its end, by stop or by loss.
 class life {
 public:
     life(std::mt19937_64& random, std::uint64_t most_periods)
         : random_(random), most_periods_(most_periods), r_(make())
     {
         levels_.level_dbfs = -20.0;
-        levels_.ramp_s = 0.002; // bursts that overlap and have none are joined with a step
+        levels_.ramp_s = 0.002; // bursts that overlap and have no ramp are joined with a step
         r_.dac.reserve_capture(1 << 12);
     }
 
     void run(totals& t)
     {
-        REQUIRE(r_.start().status == io_kind::ok);
         for (std::uint64_t i = 0; i < most_periods_ && !r_.loop.over(); ++i) {
             producers();
             trouble();
@@ -129,7 +128,7 @@ private:
         return o;
     }
 
-    // As many strokes as have not ended may sound at once, each with its own slope.
+    // Allows one slope for each stroke that has not ended: all of them may sound at once.
     void set_allowed() { allowed_ = static_cast<double>(r_.last_id - r_.ended.size()) * slope(levels_); }
 
     void producers()
@@ -180,9 +179,9 @@ private:
             l.to({static_cast<double>(random_() % 25) - 2.0, static_cast<double>(random_() % 25) - 2.0},
                  static_cast<double>(random_() % 3) / 2.0);
         if (random_() % 3000 == 0)
-            l.voice.ask(engine::live_voice::wish::end);
+            l.voice.request(engine::live_voice::action::end);
         if (random_() % 3000 == 0)
-            l.voice.ask(engine::live_voice::wish::cancel);
+            l.voice.request(engine::live_voice::action::cancel);
         if (random_() % 64 == 0 && l.voice.closed()) {
             live_[i] = live_.back();
             live_.pop_back();
@@ -213,7 +212,7 @@ private:
 
     void finish()
     {
-        r_.link.requests.push({.what = engine::request::kind::stop});
+        r_.stop();
         r_.dac.wake(true);
         for (int i = 0; i < 4000 && !r_.feed.stream_over(); ++i) {
             set_allowed();
@@ -235,7 +234,7 @@ private:
 } // namespace
 
 TEST_CASE(
-    "a million periods with faults at random: every stroke is accounted for once, no jump, no limit passed")
+    "a million periods with random faults: every stroke ends once, no sample jumps, none passes the limit")
 {
     std::mt19937_64 random(seed);
     totals t;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// An amplifier whose line refuses to go off: it is tried again for a second, counted, and said.
+// An amplifier whose line refuses to go off: the engine retries for a second, counts and reports it.
 #include <algorithm>
 
 #include <doctest/doctest.h>
@@ -16,7 +16,7 @@ namespace {
 constexpr const char* may_be_on = "the amplifier's line cannot be switched off: it may be on";
 constexpr unsigned always = 1'000'000;
 
-/// How long until the stream is over.
+/// Plays until the stream is over; returns how long that took, ns.
 std::int64_t end(amplifier_rig& r)
 {
     const std::int64_t begun = r.now;
@@ -34,7 +34,7 @@ std::ptrdiff_t offs(const event_log& log)
 
 } // namespace
 
-TEST_CASE("at the last stop an off that is refused is tried again before the DAC stops")
+TEST_CASE("at the last stop, an off that is refused is tried again before the DAC stops")
 {
     playing r;
     r.line.refusals = 3;
@@ -63,9 +63,9 @@ TEST_CASE("a line that never goes off is tried for a second, and the stream's re
     CHECK(r.link.amplifier.stuck);
     CHECK_FALSE(r.link.amplifier.off);
     CHECK(r.feed.end().why == may_be_on);
-    CHECK(r.report(r.id)->state == state_kind::cancelled);
+    CHECK(r.end(r.id).state == state_kind::cancelled);
 
-    r.driver.close(); // a last time, and in vain
+    r.driver.close(); // a last try, refused too
     CHECK(offs(r.news()) == 1);
     CHECK_FALSE(r.link.amplifier.off);
     r.line.refusals = 0;
@@ -74,7 +74,7 @@ TEST_CASE("a line that never goes off is tried for a second, and the stream's re
     CHECK(r.link.amplifier.off);
 }
 
-TEST_CASE("a mute that is refused once is made up for, and the stream goes on")
+TEST_CASE("a mute that is refused once is retried, and the stream goes on")
 {
     playing r;
     r.line.refusals = 2;
@@ -84,10 +84,10 @@ TEST_CASE("a mute that is refused once is made up for, and the stream goes on")
     CHECK(offs(r.news()) == 3);
     r.play(9600);
     CHECK(r.news() == event_log{"on"});
-    CHECK(reason_of(r, r.id) == "the amplifier was off");
+    CHECK(r.end(r.id).why == "the amplifier was off");
     const stroke_id next = r.submit(tone(0.1));
     r.play_out();
-    CHECK(r.report(next)->state == state_kind::finished);
+    CHECK(r.end(next).state == state_kind::finished);
 }
 
 TEST_CASE("a mute that stays refused ends the stream")
@@ -105,7 +105,7 @@ TEST_CASE("a mute that stays refused ends the stream")
     CHECK(r.feed.end().why == may_be_on);
 }
 
-TEST_CASE("a device that is lost while the line refuses: what may be on is what is said")
+TEST_CASE("a device lost while the line refuses: the reason names the line that may be on")
 {
     playing r;
     r.line.refusals = always;
@@ -117,29 +117,35 @@ TEST_CASE("a device that is lost while the line refuses: what may be on is what 
     }
     r.control();
     CHECK(r.loop.over());
-    CHECK(reason_of(r, r.id) == "the device is gone");
+    CHECK(r.end(r.id).why == "the device is gone");
     CHECK(r.feed.end().why == may_be_on);
 }
 
-TEST_CASE("a line that refuses to go on is switched off, for it may have gone on all the same")
+TEST_CASE("a line that refuses to go on is switched off, since it may have gone on, and ends the stream")
 {
-    amplifier_rig r;
-    r.line.works = false;
-    r.line.refusals = 1;
-    REQUIRE(r.start().status == io_kind::ok);
-    const stroke_id id = r.submit(tone(0.1));
-    r.play(9600);
-    r.control();
-    CHECK(r.loop.over());
-    CHECK(r.news() == event_log{"prepare", "start", "on", "off", "off", "drop"});
-    CHECK(reason_of(r, id) == "the amplifier's line cannot be switched");
-    CHECK(r.feed.end().why == "the amplifier's line cannot be switched");
+    for (const unsigned refusals : {0U, 1U}) {
+        CAPTURE(refusals);
+        amplifier_rig r;
+        r.line.works = false;
+        r.line.refusals = refusals;
+        const stroke_id id = r.submit(tone(0.1));
+        r.play(9600);
+        r.control();
+        CHECK(r.loop.over());
+        event_log expected{"prepare", "start", "on", "off", "drop"};
+        expected.insert(expected.end() - 1, refusals, "off");
+        CHECK(r.news() == expected);
+        CHECK(r.end(id).state == state_kind::interrupted);
+        CHECK(r.end(id).why == "the amplifier's line cannot be switched");
+        CHECK(r.feed.end().why == "the amplifier's line cannot be switched");
+        CHECK_FALSE(r.first_sound());
+    }
 }
 
-TEST_CASE("a line that was lost counts as on until it was switched off")
+TEST_CASE("a lost line counts as on until it is switched off")
 {
     playing r;
-    r.line.is_on = false; // what beat() says
+    r.line.is_on = false; // beat() returns this
     r.line.refusals = always;
     r.play(4800);
     CHECK_FALSE(r.link.amplifier.off);

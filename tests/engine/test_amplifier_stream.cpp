@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The amplifier's line through everything that can happen to the stream: the order of both, what the DAC
-// received, what was reported.
+// The amplifier's line through every event of the stream: their order, the bytes at the DAC, the reports.
 #include <algorithm>
 
 #include <cerrno>
@@ -16,10 +15,9 @@ namespace amplifier_stream_test {
 using namespace tactor;
 using namespace tactor::test;
 
-TEST_CASE("a stroke that is submitted at once waits until the amplifier has settled, and is whole")
+TEST_CASE("a stroke submitted at once waits until the amplifier has settled, and is whole")
 {
     amplifier_rig r;
-    REQUIRE(r.start().status == io_kind::ok);
     const score s = random_score(3, 4);
     const stroke_id id = r.submit(s);
     std::uint64_t on_at = 0;
@@ -33,13 +31,13 @@ TEST_CASE("a stroke that is submitted at once waits until the amplifier has sett
     REQUIRE(r.first_sound());
     CHECK(*r.first_sound() >= on_at + 480);
     CHECK(*r.first_sound() <= on_at + 480 + 4 * 96 + 960);
-    CHECK(r.report(id)->state == state_kind::finished);
+    CHECK(r.end(id).state == state_kind::finished);
     const std::uint64_t first = *r.first_sound() - 1; // a sine begins with 0
     CHECK(r.captured(first, s.frames()) == rendered(s, format_kind::s32));
     CHECK(r.news() == event_log{"prepare", "start", "on"});
 }
 
-TEST_CASE("stop: fade, silence played, off, and only then drop")
+TEST_CASE("stop fades, plays silence, switches off, and only then drops")
 {
     playing r;
     r.stop();
@@ -47,7 +45,7 @@ TEST_CASE("stop: fade, silence played, off, and only then drop")
     for (int i = 0; i < 100 && !r.loop.over(); ++i) {
         r.play(96);
         if (!r.line.is_on && heard) {
-            // All that had sounded was out when it went off.
+            // The last sound was out when it went off.
             CHECK(r.dac.queued() <= 288);
             heard = false;
             CHECK_FALSE(r.first_sound(r.dac.captured_frames() - r.dac.queued() - 96));
@@ -56,10 +54,10 @@ TEST_CASE("stop: fade, silence played, off, and only then drop")
     r.control();
     CHECK(r.loop.over());
     CHECK(r.news() == event_log{"off", "drop"});
-    CHECK(r.report(r.id)->state == state_kind::cancelled);
+    CHECK(r.end(r.id).state == state_kind::cancelled);
 }
 
-TEST_CASE("an end that nobody answers comes all the same, after two seconds of zeros, and is said")
+TEST_CASE("a stop that gets no answer ends after two seconds of zeros, with the reason")
 {
     playing r;
     r.also_control = {};
@@ -81,17 +79,17 @@ TEST_CASE("one xrun leaves the amplifier on; the stroke is interrupted, the next
     const std::uint64_t cut = r.dac.captured_frames();
     r.xrun();
     CHECK(r.news() == event_log{"prepare", "start"});
-    CHECK(reason_of(r, r.id) == "xrun: the device ran dry");
+    CHECK(r.end(r.id).why == "xrun: the device ran dry");
     r.play(9600);
     CHECK_FALSE(r.first_sound(cut));
     const score s = random_score(2, 3);
     const stroke_id next = r.submit(s);
     r.play_out();
-    CHECK(r.report(next)->state == state_kind::finished);
+    CHECK(r.end(next).state == state_kind::finished);
     CHECK(r.news().empty());
 }
 
-TEST_CASE("two xruns in a second mute; a stroke that comes meanwhile waits for the amplifier")
+TEST_CASE("two xruns in a second mute; a new stroke waits for the amplifier")
 {
     playing r;
     r.xrun();
@@ -106,11 +104,11 @@ TEST_CASE("two xruns in a second mute; a stroke that comes meanwhile waits for t
     CHECK_FALSE(r.line.is_on);
     r.play_out();
     CHECK(r.news() == event_log{"on"});
-    CHECK(r.report(next)->state == state_kind::finished);
+    CHECK(r.end(next).state == state_kind::finished);
     CHECK(r.captured(*r.first_sound(muted) - 1, s.frames()) == rendered(s, format_kind::s32));
 }
 
-TEST_CASE("xruns that end the stream: off before drop")
+TEST_CASE("xruns that end the stream switch off before the drop")
 {
     playing r;
     for (int i = 0; i < 4; ++i) {
@@ -127,7 +125,7 @@ TEST_CASE("xruns that end the stream: off before drop")
     CHECK(std::count(log.begin(), log.end(), "on") == 0);
 }
 
-TEST_CASE("an unplugged device, one that fails to start again or stands still: off, then drop")
+TEST_CASE("a device that is unplugged, fails to start again or stands still: off, then drop")
 {
     for (const int how : {0, 1, 2, 3}) {
         CAPTURE(how);
@@ -151,18 +149,18 @@ TEST_CASE("an unplugged device, one that fails to start again or stands still: o
         REQUIRE(log.size() >= 2);
         CHECK(log.back() == "drop");
         CHECK(std::count(log.begin(), log.end(), "off") == 1);
-        CHECK(r.report(r.id)->state == state_kind::interrupted);
+        CHECK(r.end(r.id).state == state_kind::interrupted);
     }
 }
 
-TEST_CASE("a system that sleeps: off; when it wakes up, the order of a start")
+TEST_CASE("a system that sleeps switches off; waking up follows the order of a start")
 {
     playing r;
     r.dac.suspend();
     r.step();
     r.control();
     CHECK(r.news() == event_log{"off"});
-    CHECK(reason_of(r, r.id) == "the system was suspended");
+    CHECK(r.end(r.id).why == "the system was suspended");
     r.wait(3000 * ms);
     r.dac.wake(true);
     for (int i = 0; i < 40; ++i)
@@ -171,7 +169,7 @@ TEST_CASE("a system that sleeps: off; when it wakes up, the order of a start")
     CHECK(r.link.amplifier.ready);
 }
 
-TEST_CASE("a sleep that passes between two looks of the amplifier's thread is none that it misses")
+TEST_CASE("the amplifier's thread notices a sleep that begins and ends between two of its updates")
 {
     for (const bool can_resume : {true, false}) {
         playing r;
@@ -190,7 +188,7 @@ TEST_CASE("a sleep that passes between two looks of the amplifier's thread is no
     }
 }
 
-TEST_CASE("EINTR, no space and wake-ups in vain do not touch the line")
+TEST_CASE("EINTR, no space and idle wake-ups do not touch the line")
 {
     playing r;
     for (int i = 0; i < 3; ++i)
@@ -206,10 +204,9 @@ TEST_CASE("EINTR, no space and wake-ups in vain do not touch the line")
     CHECK(r.line.is_on);
 }
 
-TEST_CASE("short writes, writes of nothing and EAGAIN: the same samples, the line as it was")
+TEST_CASE("short writes, writes of nothing and EAGAIN leave the samples and the line as they are")
 {
     amplifier_rig r;
-    REQUIRE(r.start().status == io_kind::ok);
     r.warm_up();
     const score s = random_score(8, 5);
     const std::uint64_t from = r.dac.captured_frames();
@@ -223,14 +220,14 @@ TEST_CASE("short writes, writes of nothing and EAGAIN: the same samples, the lin
         r.play(96);
         REQUIRE(r.dac.captured_frames() < from + s.frames() + 48'000);
     }
-    CHECK(r.report(id)->state == state_kind::finished);
+    CHECK(r.end(id).state == state_kind::finished);
     const auto first = r.first_sound(from);
     REQUIRE(first);
     CHECK(r.captured(*first - 1, s.frames()) == rendered(s, format_kind::s32));
     CHECK(r.news() == event_log{"prepare", "start", "on"});
 }
 
-TEST_CASE("a write that fails for good: off, then drop, and the reason is told")
+TEST_CASE("a write that fails for good switches off, then drops, and reports the reason")
 {
     for (const auto& [status, code, why] :
          {std::tuple{io_kind::failed, -EIO, "the device failed: Input/output error"},
@@ -242,7 +239,7 @@ TEST_CASE("a write that fails for good: off, then drop, and the reason is told")
         r.control();
         CHECK(r.loop.over());
         CHECK(r.news() == event_log{"off", "drop"});
-        CHECK(reason_of(r, r.id) == why);
+        CHECK(r.end(r.id).why == why);
     }
 }
 

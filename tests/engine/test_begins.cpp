@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Who is told that a stroke begins, and when its first sample is at the DAC.
+// Handlers of beginnings: which strokes they get, and the time of the first sample at the DAC.
 #include <map>
 #include <mutex>
 #include <optional>
@@ -11,23 +11,20 @@
 #include <tactor/player.hpp>
 
 #include "clock_runner.hpp"
-#include "fake_dac.hpp"
 #include "player_support.hpp"
 #include "scores.hpp"
-#include "sink/alsa/adopt.hpp"
 
 namespace begins_test {
 
 using namespace tactor;
 using namespace tactor::test;
 
-TEST_CASE("each stroke's beginning is told once and before its end, with the time that its report has")
+TEST_CASE("each stroke's beginning is reported once and before its end, with the time that its report has")
 {
-    fake_dac dac;
     std::mutex mutex;
     std::map<stroke_id, std::vector<std::optional<std::int64_t>>> begun;
     std::map<stroke_id, bool> ended;
-    player p(pcm::adopt(dac.pcm(), nine()), palm(), patient());
+    dac_player p;
     bool before = true;
     p.on_begin([&](stroke_id id, std::optional<std::int64_t> at_ns) {
         const std::lock_guard lock(mutex);
@@ -38,7 +35,7 @@ TEST_CASE("each stroke's beginning is told once and before its end, with the tim
         const std::lock_guard lock(mutex);
         ended[r.id] = true;
     });
-    const running_clock clock(dac);
+    const running_clock clock(p.dac);
     const live_stroke live = p.begin({.timeout_s = 86400.0});
     CHECK(live.id().number != 0);
     std::vector<stroke_id> ids{live.id()};
@@ -67,11 +64,10 @@ TEST_CASE("each stroke's beginning is told once and before its end, with the tim
 
 TEST_CASE("a handler of beginnings that throws ends the stream, as others do")
 {
-    fake_dac dac;
-    player p(pcm::adopt(dac.pcm(), nine()), palm(), patient());
+    dac_player p;
     p.on_begin([](stroke_id, std::optional<std::int64_t>) { throw 1; });
-    const running_clock clock(dac);
-    // One without an end: another may have finished before the handler is called.
+    const running_clock clock(p.dac);
+    // An endless one: another may have finished before the handler is called.
     const live_stroke live = p.begin({.timeout_s = 86400.0});
     auto moved = live;
     REQUIRE(moved.to(20.0, 20.0));

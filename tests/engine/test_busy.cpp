@@ -26,7 +26,7 @@ using namespace tactor::test;
 
 namespace {
 
-// Has played what it is given before anybody can look.
+// Plays all frames at once.
 class hasty_sink final : public sink {
 public:
     hasty_sink() { REQUIRE(ready_ >= 0); }
@@ -66,7 +66,7 @@ private:
 
 } // namespace
 
-TEST_CASE("an audio thread that never rests gives up real time, says so once, and plays on")
+TEST_CASE("an audio thread that never rests gives up real time, reports it once, and plays on")
 {
     std::atomic<bool> fifo{false};
     std::atomic<int> told{0};
@@ -86,7 +86,7 @@ TEST_CASE("an audio thread that never rests gives up real time, says so once, an
     if (fifo)
         told.wait(0);
     else
-        MESSAGE("no real-time priority here: only that nothing is given up is seen");
+        MESSAGE("no real-time priority here: checks only that nothing is given up");
     CHECK_FALSE(p.stats().realtime);
     const auto r = p.wait(p.submit(tone(0.01)));
     REQUIRE(r);

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: MIT
-// What went wrong first is nested in the error that a caller gets.
+// First causes, nested in the error that a caller gets.
 #include <doctest/doctest.h>
 
 #include <cerrno>
 #include <cstddef>
-#include <exception>
 #include <functional>
 #include <memory>
 #include <span>
@@ -22,6 +21,7 @@
 
 #include "folder.hpp"
 #include "has.hpp"
+#include "message_of.hpp"
 #include "player_support.hpp"
 #include "rig.hpp"
 #include "scores.hpp"
@@ -34,7 +34,7 @@ using namespace tactor::test;
 
 namespace {
 
-// The errno of what is nested in what a call throws; 0 where nothing is.
+// Returns the errno of the error nested in what a call throws; 0 for none.
 int system_cause(const std::function<void()>& call)
 {
     try {
@@ -53,17 +53,7 @@ int system_cause(const std::function<void()>& call)
     return 0;
 }
 
-int os_code(const std::function<void()>& call)
-{
-    try {
-        call();
-    } catch (const error& e) {
-        return e.os_code();
-    }
-    return 0;
-}
-
-// The text of the nested error of ours; "" where nothing is nested.
+// Returns the text of the tactor::error nested in what a call throws; "" for none.
 std::string own_cause(const std::function<void()>& call)
 {
     try {
@@ -78,7 +68,7 @@ std::string own_cause(const std::function<void()>& call)
     return "";
 }
 
-// The first write says this.
+// Returns this result for each write.
 class broken_sink final : public forwarding_sink {
 public:
     broken_sink(std::unique_ptr<sink> s, io_result said) : forwarding_sink(std::move(s)), said_(said) {}
@@ -97,7 +87,7 @@ int cause_of_start(io_result said)
 
 } // namespace
 
-TEST_CASE("what the system refused is nested with its errno")
+TEST_CASE("a refusal of the system is nested with its errno")
 {
     const folder here;
     CHECK(system_cause([&] { static_cast<void>(load_setup(here / "none.toml")); }) == ENOENT);
@@ -114,7 +104,7 @@ TEST_CASE("a stream that does not start has the errno of its device")
     CHECK(cause_of_start({io_kind::failed, 0, 0}) == 0);
 }
 
-TEST_CASE("an error of a file within a file is nested in that of the outer")
+TEST_CASE("the error of a file within a file is nested in that of the outer")
 {
     const folder here;
     const auto outer = here.write("outer.toml", "[array]\nfile = \"none.toml\"\n");
@@ -129,7 +119,7 @@ TEST_CASE("an error of a file within a file is nested in that of the outer")
     CHECK(!geometry.empty());
 }
 
-TEST_CASE("an error without a cause has none")
+TEST_CASE("an error without a cause nests nothing")
 {
     CHECK(own_cause([] { static_cast<void>(preset_stroke("no-such")); }).empty());
     CHECK(system_cause([] { static_cast<void>(preset_stroke("no-such")); }) == 0);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Everything that can go wrong, in any order.
+// Faults in any order.
 #include <random>
 
 #include <doctest/doctest.h>
@@ -11,13 +11,12 @@ namespace chance_test {
 using namespace tactor;
 using namespace tactor::test;
 
-TEST_CASE("faults at random: every stroke ends once, nothing is heard twice")
+TEST_CASE("random faults: every stroke ends once")
 {
     std::mt19937_64 random(77);
     for (int round = 0; round < 200; ++round) {
         CAPTURE(round);
         rig r({.ring = std::size_t{8} << random() % 8});
-        REQUIRE(r.start().status == io_kind::ok);
         for (int i = 0; i < 400 && !r.loop.over(); ++i) {
             if (random() % 20 == 0)
                 r.submit(random_score(random(), 1 + random() % 5),
@@ -36,7 +35,7 @@ TEST_CASE("faults at random: every stroke ends once, nothing is heard twice")
                     r.dac.disconnect();
                 break;
             case 3:
-                r.link.requests.push({.what = engine::request::kind::stop});
+                r.stop();
                 break;
             default:
                 if (random() % 8 == 0)
@@ -49,7 +48,7 @@ TEST_CASE("faults at random: every stroke ends once, nothing is heard twice")
             if (random() % 3 != 0)
                 r.control();
         }
-        r.link.requests.push({.what = engine::request::kind::stop});
+        r.stop();
         r.dac.wake(true);
         for (int i = 0; i < 1000 && !r.feed.stream_over(); ++i)
             r.play(96);

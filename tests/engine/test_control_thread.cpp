@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The control thread where the system gives none.
+// The control thread where the system gives no thread.
 #include <system_error>
 
 #include <doctest/doctest.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Many strokes at once: they play, or they say that they were too many.
+// Many strokes at once: they play, or are reported as too many.
 #include <cstddef>
 #include <cstdint>
 #include <map>
@@ -47,16 +47,15 @@ score broad()
     p.stroke_duration_s = 0.15;
     render_options r;
     r.level_dbfs = -60.0;
-    return {make_grid("8x8", 8, 8, 20.0, 20.0), {{.plan = p, .start_s = {}}}, r};
+    return {make_grid("8x8", 8, 8, 20.0, 20.0), p, r};
 }
 
-// How many strokes ended with each state and reason.
+// Counts strokes by the state and reason of their end.
 std::map<std::string, int> play_at_once(const score& s, std::uint64_t at, int strokes = crowd)
 {
     rig_options o;
     o.channels = s.channels();
     rig r(o);
-    REQUIRE(r.start().status == io_kind::ok);
     for (int i = 0; i < strokes; ++i)
         r.submit(s, at);
     r.play_out();
@@ -69,7 +68,7 @@ std::map<std::string, int> play_at_once(const score& s, std::uint64_t at, int st
 
 } // namespace
 
-TEST_CASE("400 strokes at once all play, at once")
+TEST_CASE("400 strokes at once all play")
 {
     for (const algorithm_kind how : {algorithm_kind::park2016, algorithm_kind::continuous}) {
         for (const std::uint64_t at : {0, 48'000}) {
@@ -80,10 +79,9 @@ TEST_CASE("400 strokes at once all play, at once")
     }
 }
 
-TEST_CASE("64 continuous strokes wake the control side for few of the periods")
+TEST_CASE("64 continuous strokes wake the control side in few of the periods")
 {
     rig r;
-    REQUIRE(r.start().status == io_kind::ok);
     for (int i = 0; i < 64; ++i)
         r.submit(drawn(algorithm_kind::continuous), 0);
     r.link.to_control.consume();
@@ -100,10 +98,10 @@ TEST_CASE("64 continuous strokes wake the control side for few of the periods")
     CHECK(periods > 400);
     CHECK(wakes < periods / 3);
     for (const auto& [id, reports] : r.ended)
-        CHECK(r.report(id)->state == state_kind::finished);
+        CHECK(r.end(id).state == state_kind::finished);
 }
 
-TEST_CASE("more than can be mixed: what does not play says that they were too many, and what to do")
+TEST_CASE("strokes beyond the mixer's space are reported as too many, with a hint")
 {
     int refused = 0;
     for (const auto& [end, n] : play_at_once(broad(), 48'000)) {
@@ -117,7 +115,7 @@ TEST_CASE("more than can be mixed: what does not play says that they were too ma
     CHECK(refused < crowd);
 }
 
-TEST_CASE("more than the ring between the threads holds: that is no slow computer either")
+TEST_CASE("strokes beyond the ring's space are reported as too many, not as a slow computer")
 {
     const score s = drawn(algorithm_kind::tactile_brush);
     for (const auto& [strokes, at] : {std::pair(1000, 0), std::pair(4000, 48'000)}) {

@@ -25,7 +25,7 @@ struct truth {
     std::int64_t start_ns = 5'000'000'000'000;
     std::uint64_t first = 0;
 
-    std::int64_t time_of(double frame) const
+    std::int64_t time_at(double frame) const
     {
         return start_ns +
                std::llround((frame - static_cast<double>(first)) * 1e9 / rate * (1.0 + ppm * 1e-6));
@@ -37,19 +37,19 @@ struct truth {
     }
 };
 
-// Largest error of the line over the next half second from a frame on, ns.
+// Returns the largest error of the line over half a second from a frame on, ns.
 double error_ns(const clock_line& line, const truth& t, std::uint64_t frame)
 {
     double worst = 0.0;
     for (std::uint64_t f = frame; f <= frame + 24'000; f += 2400)
         worst = std::max(worst,
-                         std::abs(static_cast<double>(line.time_of(f) - t.time_of(static_cast<double>(f)))));
+                         std::abs(static_cast<double>(line.time_at(f) - t.time_at(static_cast<double>(f)))));
     return worst;
 }
 
 } // namespace
 
-TEST_CASE("readings that are off by up to 1 ms, drifts up to 1000 ppm: within the bounds that are stated")
+TEST_CASE("with jitter up to 1 ms and drift up to 1000 ppm, the line stays within its stated bounds")
 {
     std::mt19937_64 random(5);
     std::uniform_real_distribution<double> jitter(-1e6, 1e6);
@@ -61,10 +61,10 @@ TEST_CASE("readings that are off by up to 1 ms, drifts up to 1000 ppm: within th
             clock.begin_epoch(0);
             double early = 0.0;
             for (std::uint64_t f = 48; f <= 10 * 48'000; f += 48) {
-                clock.add(t.time_of(static_cast<double>(f)) + std::llround(jitter(random)), f);
+                clock.add(t.time_at(static_cast<double>(f)) + std::llround(jitter(random)), f);
                 REQUIRE(clock.line().frame == f); // taken
                 const auto here = std::abs(
-                    static_cast<double>(clock.line().time_of(f) - t.time_of(static_cast<double>(f))));
+                    static_cast<double>(clock.line().time_at(f) - t.time_at(static_cast<double>(f))));
                 if (f > 4800)
                     early = std::max(early, here);
                 if (f > 5 * 48'000) {
@@ -77,7 +77,7 @@ TEST_CASE("readings that are off by up to 1 ms, drifts up to 1000 ppm: within th
     }
 }
 
-TEST_CASE("a day of 40 ppm: the error stays, and what is expected of it is true")
+TEST_CASE("over a day at 40 ppm the error stays small, and matches its own estimate")
 {
     std::mt19937_64 random(6);
     std::uniform_real_distribution<double> jitter(-1e6, 1e6);
@@ -87,10 +87,10 @@ TEST_CASE("a day of 40 ppm: the error stays, and what is expected of it is true"
     double sum = 0.0;
     std::uint64_t n = 0;
     for (std::uint64_t f = 480; f <= 24 * 3600ULL * 48'000; f += 4800) {
-        clock.add(t.time_of(static_cast<double>(f)) + std::llround(jitter(random)), f);
+        clock.add(t.time_at(static_cast<double>(f)) + std::llround(jitter(random)), f);
         if (f < 120 * 48'000)
             continue;
-        const auto e = static_cast<double>(clock.line().time_of(f) - t.time_of(static_cast<double>(f)));
+        const auto e = static_cast<double>(clock.line().time_at(f) - t.time_at(static_cast<double>(f)));
         REQUIRE(std::abs(e) < 0.25e6);
         sum += e * e;
         ++n;
@@ -100,7 +100,7 @@ TEST_CASE("a day of 40 ppm: the error stays, and what is expected of it is true"
     CHECK(deviation < 2.0 * clock.line().error_ns);
 }
 
-TEST_CASE("a position in whole periods, read at random times, is late by no more than the time between")
+TEST_CASE("a position in whole periods, read at random times, is late by at most the time between readings")
 {
     std::mt19937_64 random(7);
     std::uniform_real_distribution<double> gap(0.1e6, 0.9e6);
@@ -116,7 +116,7 @@ TEST_CASE("a position in whole periods, read at random times, is late by no more
             if (now < t.start_ns + 10'000'000'000)
                 continue;
             const auto late =
-                static_cast<double>(clock.line().time_of(period) - t.time_of(static_cast<double>(period)));
+                static_cast<double>(clock.line().time_at(period) - t.time_at(static_cast<double>(period)));
             REQUIRE(late > -0.4e6);
             REQUIRE(late < 0.9e6);
         }
@@ -134,7 +134,7 @@ TEST_CASE("single readings far off change nothing; when all are, the line begins
     for (int i = 0; i < 20'000; ++i) {
         f += 48;
         const bool wrong = i > 100 && random() % 10 == 0;
-        clock.add(t.time_of(static_cast<double>(f)) + (wrong ? 30'000'000 : 0), f);
+        clock.add(t.time_at(static_cast<double>(f)) + (wrong ? 30'000'000 : 0), f);
         refused += clock.line().frame != f ? 1 : 0;
         if (i > 1000)
             REQUIRE(error_ns(clock.line(), t, f) < 10e3);
@@ -143,9 +143,9 @@ TEST_CASE("single readings far off change nothing; when all are, the line begins
     const truth slept{.ppm = 40.0, .start_ns = t.start_ns + 3'000'000'000};
     for (int i = 0; i < 8; ++i) {
         f += 48;
-        clock.add(slept.time_of(static_cast<double>(f)), f);
+        clock.add(slept.time_at(static_cast<double>(f)), f);
     }
-    CHECK(std::abs(clock.line().time_of(f) - slept.time_of(static_cast<double>(f))) < 1000);
+    CHECK(std::abs(clock.line().time_at(f) - slept.time_at(static_cast<double>(f))) < 1000);
     CHECK(clock.line().valid());
 }
 
@@ -155,24 +155,24 @@ TEST_CASE("each epoch begins without the one before")
     CHECK_FALSE(clock.line().valid());
     clock.begin_epoch(0);
     CHECK_FALSE(clock.line().valid());
-    clock.add(1'000'000, 0); // nothing has moved yet
+    clock.add(1'000'000, 0); // nothing has moved
     CHECK_FALSE(clock.line().valid());
     clock.add(2'000'000, 48);
     CHECK(clock.line().valid());
     CHECK(clock.line().epoch == 1);
-    CHECK(clock.line().time_of(96) == 3'000'000);
+    CHECK(clock.line().time_at(96) == 3'000'000);
     clock.add(90'000'000, 48); // no news
-    CHECK(clock.line().time_of(48) == 2'000'000);
+    CHECK(clock.line().time_at(48) == 2'000'000);
     clock.begin_epoch(1000);
     CHECK_FALSE(clock.line().valid());
     CHECK(clock.line().epoch == 2);
     CHECK(clock.line().first == 1000);
     clock.add(500'000'000, 1048);
-    CHECK(clock.line().time_of(1000) == 499'000'000);
+    CHECK(clock.line().time_at(1000) == 499'000'000);
     CHECK(clock.line().frame_at(501'000'000) == 1096);
 }
 
-TEST_CASE("times and frames beyond all measure stay numbers")
+TEST_CASE("extreme times and frames stay numbers")
 {
     dac_clock clock(48000, 0);
     clock.begin_epoch(0);
@@ -182,11 +182,11 @@ TEST_CASE("times and frames beyond all measure stay numbers")
     CHECK(l.frame_at(limits::min()) == 0);
     CHECK(l.frame_at(0) == 0);
     CHECK(l.frame_at(limits::max()) > std::uint64_t{1} << 48);
-    CHECK(l.time_of(~std::uint64_t{0}) > limits::max() / 2);
+    CHECK(l.time_at(~std::uint64_t{0}) > limits::max() / 2);
     clock.add(limits::max(), 50'000);
     clock.add(limits::min(), 60'000);
     CHECK(l.frame == 48'000); // neither was taken
-    CHECK(l.frame_at(l.time_of(123'456)) == 123'456);
+    CHECK(l.frame_at(l.time_at(123'456)) == 123'456);
 }
 
 } // namespace dac_clock_test

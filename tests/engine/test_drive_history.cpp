@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What an array was given lately outlives the player that gave it.
+// Drive time of an array: it outlives the player.
 #include <doctest/doctest.h>
 
 #include <cstddef>
@@ -16,7 +16,6 @@
 #include "player_support.hpp"
 #include "rt/clock.hpp"
 #include "scores.hpp"
-#include "sink/alsa/adopt.hpp"
 
 namespace drive_history_test {
 
@@ -25,7 +24,7 @@ using namespace tactor::test;
 
 namespace {
 
-// One second in an hour: no test takes so long that time itself would give it back.
+// Allows a second in an hour: no test takes so long that time itself gives it back.
 player_options one_second()
 {
     player_options o = patient();
@@ -34,15 +33,14 @@ player_options one_second()
     return o;
 }
 
-std::uint64_t cuts_of(const player_options& o, double seconds, drive_history& after, unsigned tactor = 0)
+std::uint64_t count_cuts(const player_options& o, double seconds, drive_history& after, unsigned tactor = 0)
 {
-    fake_dac dac;
-    player p(pcm::adopt(dac.pcm(), nine()), palm(), o);
+    dac_player p(o);
     {
-        const running_clock clock(dac);
+        const running_clock clock(p.dac);
         p.wait(p.submit(tone(seconds, tactor)));
     }
-    dac.disconnect();
+    p.dac.disconnect();
     p.stop();
     after = p.history();
     return p.stats().drives_cut;
@@ -50,49 +48,48 @@ std::uint64_t cuts_of(const player_options& o, double seconds, drive_history& af
 
 } // namespace
 
-TEST_CASE("a device that was lost and is opened again does not give a tactor its time back")
+TEST_CASE("a device that is lost and opened again does not give a tactor its time back")
 {
     player_options o = one_second();
     drive_history h;
-    CHECK(cuts_of(o, 0.7, h) == 0);
+    CHECK(count_cuts(o, 0.7, h) == 0);
     drive_history ignored;
-    CHECK(cuts_of(o, 0.7, ignored) == 0); // without it the next counts from nothing
+    CHECK(count_cuts(o, 0.7, ignored) == 0); // without the history the next player counts from zero
     o.driven = h;
     drive_history third;
-    CHECK(cuts_of(o, 0.2, third) == 0);
-    CHECK(cuts_of(o, 0.7, ignored) == 1);
-    CHECK(cuts_of(o, 0.7, ignored, 1) == 0); // another tactor has had none
+    CHECK(count_cuts(o, 0.2, third) == 0);
+    CHECK(count_cuts(o, 0.7, ignored) == 1);
+    CHECK(count_cuts(o, 0.7, ignored, 1) == 0); // another tactor has had none
     o.driven = third;
-    CHECK(cuts_of(o, 0.2, ignored) == 1); // 0.7 + 0.2 + 0.2 s, over three players
+    CHECK(count_cuts(o, 0.2, ignored) == 1); // 0.7 + 0.2 + 0.2 s, over three players
 }
 
-TEST_CASE("the history of a stream that goes on is not to be had")
+TEST_CASE("a running stream refuses to give its history")
 {
-    fake_dac dac;
-    player p(pcm::adopt(dac.pcm(), nine()), palm(), one_second());
+    dac_player p(one_second());
     CHECK_THROWS_WITH_AS(static_cast<void>(p.history()), doctest::Contains("stop() it first"), error);
-    const running_clock clock(dac);
+    const running_clock clock(p.dac);
     p.stop();
     CHECK_NOTHROW(static_cast<void>(p.history()));
     CHECK_NOTHROW(static_cast<void>(p.history()));
 }
 
-TEST_CASE("what was driven goes through a text to another process")
+TEST_CASE("drive time goes through a text to another process")
 {
     player_options o = one_second();
     drive_history h;
-    CHECK(cuts_of(o, 0.7, h) == 0);
+    CHECK(count_cuts(o, 0.7, h) == 0);
     CHECK_FALSE(h.empty());
     drive_history ignored;
     o.driven = drive_history::restore(h.save());
     CHECK_FALSE(o.driven.empty());
-    CHECK(cuts_of(o, 0.2, ignored) == 0);
-    CHECK(cuts_of(o, 0.4, ignored) == 1);
-    CHECK(cuts_of(o, 0.7, ignored, 1) == 0);
+    CHECK(count_cuts(o, 0.2, ignored) == 0);
+    CHECK(count_cuts(o, 0.4, ignored) == 1);
+    CHECK(count_cuts(o, 0.7, ignored, 1) == 0);
     CHECK(drive_history::restore(drive_history().save()).empty());
 }
 
-TEST_CASE("of a process that did not live what it was about to drive counts until now")
+TEST_CASE("a plan's drive time counts only until now when its process died early")
 {
     player_options o = patient();
     o.limits.max_drive_s = 600.0;
@@ -100,13 +97,13 @@ TEST_CASE("of a process that did not live what it was about to drive counts unti
     const drive_history ahead = drive_history().with_ahead(9, 3000.0);
     drive_history ignored;
     o.driven = drive_history::restore(ahead.save());
-    CHECK(cuts_of(o, 0.9, ignored) == 0); // it is not the 3000 s that count
+    CHECK(count_cuts(o, 0.9, ignored) == 0); // the 3000 s do not count
     const std::int64_t enough_ns = rt::monotonic_ns() + 100'000'000;
     while (rt::monotonic_ns() < enough_ns)
         std::this_thread::yield();
     o.limits.max_drive_s = 0.1;
     o.driven = drive_history::restore(ahead.save());
-    CHECK(cuts_of(o, 0.05, ignored) == 1);
+    CHECK(count_cuts(o, 0.05, ignored) == 1);
     CHECK_THROWS_WITH_AS(static_cast<void>(ahead.with_ahead(9, -1.0)),
                          "drive history: -1 s ahead (give 0 to 86400 s)", error);
     CHECK_THROWS_WITH_AS(static_cast<void>(ahead.with_ahead(16385, 1.0)),
@@ -115,27 +112,27 @@ TEST_CASE("of a process that did not live what it was about to drive counts unti
     CHECK(field_of([&] { static_cast<void>(ahead.with_ahead(16385, 1.0)); }) == "channels");
 }
 
-TEST_CASE("what two gave one array adds up")
+TEST_CASE("histories of one array add up")
 {
     player_options o = one_second();
     drive_history one;
     drive_history two;
-    CHECK(cuts_of(o, 0.9, one) == 0);
-    CHECK(cuts_of(o, 0.9, two, 1) == 0);
+    CHECK(count_cuts(o, 0.9, one) == 0);
+    CHECK(count_cuts(o, 0.9, two, 1) == 0);
     CHECK(drive_history().with(one).save() == one.save());
     CHECK(one.with(drive_history()).save() == one.save());
     drive_history ignored;
     o.driven = one.with(two);
-    CHECK(cuts_of(o, 0.2, ignored) == 1);
-    CHECK(cuts_of(o, 0.2, ignored, 1) == 1);
-    CHECK(cuts_of(o, 0.2, ignored, 2) == 0);
+    CHECK(count_cuts(o, 0.2, ignored) == 1);
+    CHECK(count_cuts(o, 0.2, ignored, 1) == 1);
+    CHECK(count_cuts(o, 0.2, ignored, 2) == 0);
 }
 
-TEST_CASE("a text that is not whole, or is another's, is refused; one from before the last start is empty")
+TEST_CASE("a text that is incomplete or foreign is refused; one from before the last boot is empty")
 {
     player_options o = one_second();
     drive_history h;
-    CHECK(cuts_of(o, 0.3, h) == 0);
+    CHECK(count_cuts(o, 0.3, h) == 0);
     const std::string text = h.save();
     for (std::size_t n = 0; n < text.size(); ++n) {
         CAPTURE(n);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Each stroke ends once, in the state that is true.
+// Ends of strokes: once each, in the true state.
 #include <algorithm>
 #include <cmath>
 #include <cstring>
@@ -23,7 +23,7 @@ std::int32_t sample(const std::vector<std::byte>& bytes, std::size_t i)
     return v;
 }
 
-// Largest step from frame to frame in channel 0, relative to the peak of a tone of `amplitude`.
+// Returns the largest step from frame to frame in channel 0.
 double largest_step(const std::vector<std::byte>& bytes, unsigned channels)
 {
     double worst = 0.0;
@@ -35,7 +35,7 @@ double largest_step(const std::vector<std::byte>& bytes, unsigned channels)
     return worst / 2147483648.0;
 }
 
-// Only the DAC and the audio thread go on.
+// Runs only the DAC and the audio thread.
 void sleep_of_control(rig& r, int periods)
 {
     for (int i = 0; i < periods; ++i) {
@@ -49,7 +49,6 @@ void sleep_of_control(rig& r, int periods)
 TEST_CASE("a stroke is not finished before its last frame has reached the DAC")
 {
     rig r;
-    REQUIRE(r.start().status == io_kind::ok);
     const score s = tone(0.01);
     const std::uint64_t end = r.status().written + s.frames();
     const stroke_id id = r.submit(s);
@@ -58,16 +57,14 @@ TEST_CASE("a stroke is not finished before its last frame has reached the DAC")
         r.play(96);
         REQUIRE_FALSE(r.loop.over());
     }
-    REQUIRE(r.report(id));
-    CHECK(r.report(id)->state == state_kind::finished);
-    CHECK(r.report(id)->frames == s.frames());
-    CHECK(r.report(id)->why.empty());
+    CHECK(r.end(id).state == state_kind::finished);
+    CHECK(r.end(id).frames == s.frames());
+    CHECK(r.end(id).why.empty());
 }
 
 TEST_CASE("a cancelled stroke fades and is then reported once, with the frames that it got")
 {
     rig r;
-    REQUIRE(r.start().status == io_kind::ok);
     const std::uint64_t from = r.status().written;
     const stroke_id id = r.submit(tone(10.0));
     r.play(9600);
@@ -75,12 +72,11 @@ TEST_CASE("a cancelled stroke fades and is then reported once, with the frames t
     CHECK(r.feed.cancel(id));
     CHECK_FALSE(r.feed.cancel(id));
     r.play(9600);
-    REQUIRE(r.report(id));
-    CHECK(r.report(id)->state == state_kind::cancelled);
-    CHECK(r.report(id)->frames == fade_from + 480 - from);
+    CHECK(r.end(id).state == state_kind::cancelled);
+    CHECK(r.end(id).frames == fade_from + 480 - from);
     CHECK_FALSE(r.first_sound(fade_from + 480));
     CHECK(r.first_sound(fade_from + 470));
-    // A 250 Hz sine of -12 dBFS moves by at most 0.0083 a frame; a fade of 10 ms adds next to nothing.
+    // A 250 Hz sine of -12 dBFS moves by at most 0.0083 a frame; a fade of 10 ms adds little.
     const double tone_step = 0.2512 * 2 * 3.14159265 * 250 / rate;
     CHECK(largest_step(r.captured(from, fade_from + 600 - from), 9) < tone_step * 1.1);
     CHECK_FALSE(r.feed.cancel(id));
@@ -90,7 +86,6 @@ TEST_CASE("a cancelled stroke fades and is then reported once, with the frames t
 TEST_CASE("cancelling leaves the other strokes alone")
 {
     rig r({.format = format_kind::s32});
-    REQUIRE(r.start().status == io_kind::ok);
     const score other = random_score(4, 10);
     const std::uint64_t from = r.status().written;
     r.submit(other);
@@ -99,9 +94,9 @@ TEST_CASE("cancelling leaves the other strokes alone")
     CHECK(r.feed.cancel(id));
     r.play_out();
     CHECK(r.captured(from, other.frames()) == rendered(other, format_kind::s32));
-    CHECK(r.report({1})->state == state_kind::finished);
-    CHECK(r.report(id)->state == state_kind::cancelled);
-    CHECK(r.report(id)->frames == 0);
+    CHECK(r.end({1}).state == state_kind::finished);
+    CHECK(r.end(id).state == state_kind::cancelled);
+    CHECK(r.end(id).frames == 0);
 }
 
 TEST_CASE("a cancel before, in, and after the hand-over ends a stroke once and without a sound")
@@ -109,15 +104,13 @@ TEST_CASE("a cancel before, in, and after the hand-over ends a stroke once and w
     for (const std::uint64_t ahead : {std::uint64_t{1'000'000}, std::uint64_t{10'000}, std::uint64_t{0}}) {
         CAPTURE(ahead);
         rig r;
-        REQUIRE(r.start().status == io_kind::ok);
         const stroke_id id = r.submit(tone(0.5), ahead == 0 ? 0 : r.status().written + ahead);
         if (ahead == 10'000)
             r.play(960);
         CHECK(r.feed.cancel(id));
         r.play(20'000);
-        REQUIRE(r.report(id));
-        CHECK(r.report(id)->state == state_kind::cancelled);
-        CHECK(r.report(id)->frames == 0);
+        CHECK(r.end(id).state == state_kind::cancelled);
+        CHECK(r.end(id).frames == 0);
         CHECK_FALSE(r.first_sound());
         CHECK(r.feed.stream_over() == false);
     }
@@ -133,7 +126,6 @@ TEST_CASE("cancels at random times: each stroke ends once, and the stream goes o
 {
     std::mt19937_64 random(21);
     rig r({.ring = 64});
-    REQUIRE(r.start().status == io_kind::ok);
     unsigned cancelled = 0;
     for (int i = 0; i < 3000; ++i) {
         if (random() % 8 == 0)
@@ -153,35 +145,31 @@ TEST_CASE("cancels at random times: each stroke ends once, and the stream goes o
         CHECK(reports[0].state != state_kind::interrupted);
         reported += static_cast<unsigned>(reports[0].state == state_kind::cancelled);
     }
-    // One that was all on its way to the DAC when it was cancelled has finished.
+    // A stroke whose frames were all on their way when it was cancelled has finished.
     CHECK(reported <= cancelled);
     CHECK(r.status().running);
 }
 
-TEST_CASE("stop fades what sounds, waits until it is out, and drops the stream")
+TEST_CASE("stop fades all sound, waits until it is out, and drops the stream")
 {
     for (const bool closing : {false, true}) {
         CAPTURE(closing);
         rig r;
-        REQUIRE(r.start().status == io_kind::ok);
         const stroke_id sounding = r.submit(tone(5.0));
         const stroke_id later = r.submit(tone(5.0), r.status().written + 12'000);
         const stroke_id far = r.submit(tone(5.0), r.status().written + 10 * rate);
         r.play(4800);
         const std::uint64_t next = r.status().written;
-        if (closing)
-            r.feed.set_closing();
-        r.link.requests.push({.what = engine::request::kind::stop, .closing = closing});
+        r.stop(closing);
         r.play(48'000);
         CHECK(r.loop.over());
         CHECK_FALSE(r.dac.running());
         CHECK(r.feed.stream_over());
         const auto state = closing ? state_kind::interrupted : state_kind::cancelled;
         for (const stroke_id id : {sounding, later, far}) {
-            REQUIRE(r.report(id));
-            CHECK(r.report(id)->state == state);
-            CHECK(r.report(id)->why == (closing ? "the player was closed" : ""));
-            CHECK((r.report(id)->frames > 0) == (id == sounding));
+            CHECK(r.end(id).state == state);
+            CHECK(r.end(id).why == (closing ? "the player was closed" : ""));
+            CHECK((r.end(id).frames > 0) == (id == sounding));
         }
         CHECK_FALSE(r.first_sound(next + 480));
         // The fade and a period of silence left the buffer before the drop.
@@ -190,36 +178,31 @@ TEST_CASE("stop fades what sounds, waits until it is out, and drops the stream")
     }
 }
 
-TEST_CASE("stop does not wait for a long buffer: what still sounds after 0.4 s is cut")
+TEST_CASE("stop cuts a long buffer after 0.4 s")
 {
     for (const bool closing : {false, true}) {
         CAPTURE(closing);
         rig r({.period = 480, .periods = 200});
-        REQUIRE(r.start().status == io_kind::ok);
         const stroke_id sounding = r.submit(tone(10.0));
         r.play(5 * rate);
         REQUIRE(r.status().running);
-        if (closing)
-            r.feed.set_closing();
-        r.link.requests.push({.what = engine::request::kind::stop, .closing = closing});
+        r.stop(closing);
         r.play(rate / 10 * 4);
         CHECK_FALSE(r.loop.over());
-        // So that it wakes by itself, however long a period is.
+        // Wakes by itself, however long a period is.
         CHECK(r.loop.timeout_ns() <= 20'000'000);
         r.play(960);
         CHECK(r.loop.over());
         CHECK_FALSE(r.dac.running());
-        REQUIRE(r.report(sounding));
-        CHECK(r.report(sounding)->state == (closing ? state_kind::interrupted : state_kind::cancelled));
-        CHECK(r.report(sounding)->why == (closing ? "the player was closed" : ""));
+        CHECK(r.end(sounding).state == (closing ? state_kind::interrupted : state_kind::cancelled));
+        CHECK(r.end(sounding).why == (closing ? "the player was closed" : ""));
     }
 }
 
 TEST_CASE("a stopped loop stays stopped")
 {
     rig r;
-    REQUIRE(r.start().status == io_kind::ok);
-    r.link.requests.push({.what = engine::request::kind::stop});
+    r.stop();
     r.play(48'000);
     REQUIRE(r.loop.over());
     const std::uint64_t frames = r.dac.captured_frames();
@@ -231,16 +214,14 @@ TEST_CASE("a stopped loop stays stopped")
 TEST_CASE("drives that come too late end the stroke instead of starting in mid-burst")
 {
     rig r({.loop = {.horizon_frames = 2400}});
-    REQUIRE(r.start().status == io_kind::ok);
     const std::uint64_t from = r.status().written;
     const score s = random_score(31, 20);
     const stroke_id id = r.submit(s);
     sleep_of_control(r, 200); // much longer than its horizon
     r.play_out();
-    REQUIRE(r.report(id));
-    CHECK(r.report(id)->state == state_kind::interrupted);
-    CHECK(r.report(id)->why.find("too slow") != std::string::npos);
-    // What sounded is a true beginning of the stroke.
+    CHECK(r.end(id).state == state_kind::interrupted);
+    CHECK(r.end(id).why.find("too slow") != std::string::npos);
+    // The part that sounded is a true beginning of the stroke.
     const std::uint64_t sure = 2400 - 480;
     const std::vector<std::byte> all = rendered(s, format_kind::s32);
     const std::vector<std::byte> got = r.captured(from, sure);
@@ -251,18 +232,16 @@ TEST_CASE("drives that come too late end the stroke instead of starting in mid-b
 TEST_CASE("a cancel ends a stroke whose drives never came, although its time is over")
 {
     rig r({.loop = {.horizon_frames = 2400}});
-    REQUIRE(r.start().status == io_kind::ok);
     const score s = random_score(31, 20);
     const stroke_id id = r.submit(s);
     while (r.status().written < s.frames() + 9600)
         sleep_of_control(r, 1);
-    CHECK(r.feed.cancel(id)); // before the control thread hands over what is late
+    CHECK(r.feed.cancel(id)); // before the control thread hands over its late drives
     r.play(4800);
-    REQUIRE(r.report(id));
-    CHECK(r.report(id)->state == state_kind::cancelled);
+    CHECK(r.end(id).state == state_kind::cancelled);
 }
 
-TEST_CASE("a continuous stroke whose drives stop coming fades out before the last of them")
+TEST_CASE("a continuous stroke whose drives stop coming fades before the last of them")
 {
     stroke around = preset_stroke("park2016-3");
     around.sound.carrier_hz = 230.0;
@@ -271,33 +250,30 @@ TEST_CASE("a continuous stroke whose drives stop coming fades out before the las
     const score s(palm(), {{make_plan(palm(), around, o)}}, {});
     for (const std::uint32_t fade : {48U, 480U, 4800U}) {
         rig r({.loop = {.fade_frames = fade, .horizon_frames = 2400}});
-        REQUIRE(r.start().status == io_kind::ok);
         const std::uint64_t from = r.status().written;
         const stroke_id id = r.submit(s);
         r.play(9600);
         REQUIRE_FALSE(r.report(id));
         sleep_of_control(r, 100);
         r.play_out();
-        REQUIRE(r.report(id));
-        CHECK(r.report(id)->state == state_kind::interrupted);
-        CHECK(r.report(id)->why.find("too slow") != std::string::npos);
-        const std::uint64_t end = r.report(id)->frames;
+        CHECK(r.end(id).state == state_kind::interrupted);
+        CHECK(r.end(id).why.find("too slow") != std::string::npos);
+        const std::uint64_t end = r.end(id).frames;
         CHECK(end > 9600);
         CHECK_FALSE(r.first_sound(from + end));
         const std::vector<std::byte> got = r.captured(from, end);
         const std::vector<std::byte> all = rendered(s, format_kind::s32);
         const std::size_t whole = (end - 192) * s.channels() * 4;
         CHECK(std::equal(got.begin(), got.begin() + static_cast<std::ptrdiff_t>(whole), all.begin()));
-        // Its last frames are all but silent.
+        // Its last frames are nearly silent.
         for (std::size_t i = got.size() / 4 - 6 * s.channels(); i < got.size() / 4; ++i)
             CHECK(std::abs(sample(got, i)) < 0.05 * 0.25 * 2147483648.0);
     }
 }
 
-TEST_CASE("the display sees the newest stroke that sounds")
+TEST_CASE("the display shows the newest stroke that sounds")
 {
     rig r;
-    REQUIRE(r.start().status == io_kind::ok);
     CHECK(r.status().running);
     CHECK_FALSE(r.status().sounding);
     const std::uint64_t base = r.status().written;
@@ -316,10 +292,9 @@ TEST_CASE("the display sees the newest stroke that sounds")
     CHECK_FALSE(r.status().sounding);
 }
 
-TEST_CASE("the display sees a stroke from its first frame to its last, at the DAC")
+TEST_CASE("the display shows a stroke from its first frame to its last, at the DAC")
 {
     rig r;
-    REQUIRE(r.start().status == io_kind::ok);
     const std::uint64_t at = r.status().written + 960;
     r.submit(tone(0.01), at);
     for (std::uint64_t played = 0; played < at + 960; played = r.status().played) {
@@ -329,12 +304,11 @@ TEST_CASE("the display sees a stroke from its first frame to its last, at the DA
     }
 }
 
-TEST_CASE("before its first frame is mixed a stroke is cancelled without a sound, and waits out a mute")
+TEST_CASE("before its first frame is mixed a stroke is cancelled without a sound, and outlasts a mute")
 {
     for (const bool muted : {false, true}) {
         CAPTURE(muted);
         rig r;
-        REQUIRE(r.start().status == io_kind::ok);
         const std::uint64_t at = r.status().written + 960;
         const stroke_id id = r.submit(tone(0.1), at);
         while (r.status().written < at)
@@ -345,9 +319,8 @@ TEST_CASE("before its first frame is mixed a stroke is cancelled without a sound
         else
             r.feed.cancel(id);
         r.play_out();
-        REQUIRE(r.report(id));
-        CHECK(r.report(id)->state == (muted ? state_kind::finished : state_kind::cancelled));
-        CHECK((r.report(id)->frames == 0) != muted);
+        CHECK(r.end(id).state == (muted ? state_kind::finished : state_kind::cancelled));
+        CHECK((r.end(id).frames == 0) != muted);
         CHECK(r.first_sound().has_value() == muted);
     }
 }

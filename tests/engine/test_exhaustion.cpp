@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// When descriptors run out: an error that says so, and nothing is lost or left behind.
+// Calls without descriptors: an error with the reason, nothing lost or left behind.
 #include <cerrno>
 #include <filesystem>
 #include <functional>
@@ -36,7 +36,7 @@ std::ptrdiff_t open_descriptors()
     return std::distance(begin(all), end(all));
 }
 
-// What a call throws, "" for nothing, and the errno with it.
+// Message of a call's error, "" for none, and its errno.
 struct outcome {
     std::string said = {};
     int code = 0;
@@ -44,7 +44,7 @@ struct outcome {
     friend bool operator==(const outcome&, const outcome&) = default;
 };
 
-outcome outcome_of(const std::function<void()>& call)
+outcome try_call(const std::function<void()>& call)
 {
     try {
         call();
@@ -61,7 +61,7 @@ outcome outcome_of(const std::function<void()>& call)
 outcome with_descriptors(unsigned n, const std::function<void()>& call)
 {
     const descriptors_left few(n);
-    return outcome_of(call);
+    return try_call(call);
 }
 
 void try_all(const call_table& calls)
@@ -73,7 +73,7 @@ void try_all(const call_table& calls)
                 c.before();
         };
         prepare();
-        const outcome usual = outcome_of(c.call);
+        const outcome usual = try_call(c.call);
         CHECK(usual.code != -1);
         bool refused = true;
         for (unsigned n = 0; refused || n < 6; ++n) {
@@ -89,7 +89,7 @@ void try_all(const call_table& calls)
             if (n == 0)
                 CHECK(refused == c.opens());
             prepare();
-            CHECK(outcome_of(c.call) == usual);
+            CHECK(try_call(c.call) == usual);
         }
     }
 }
@@ -97,7 +97,7 @@ void try_all(const call_table& calls)
 } // namespace
 
 EXHAUSTING_TEST_CASE(
-    "a player without descriptors says so, leaves none behind, and opens once there are enough")
+    "a player without descriptors gives the reason, leaves none behind, and opens once there are enough")
 {
     for (unsigned n = 0;; ++n) {
         CAPTURE(n);
@@ -125,7 +125,7 @@ EXHAUSTING_TEST_CASE(
     }
 }
 
-EXHAUSTING_TEST_CASE("a PCM without descriptors says so, and opens once there are enough")
+EXHAUSTING_TEST_CASE("a PCM without descriptors gives the reason, and opens once there are enough")
 {
     alsa_options o = nine();
     o.pcm = "null";
@@ -143,7 +143,7 @@ EXHAUSTING_TEST_CASE("a PCM without descriptors says so, and opens once there ar
     }
 }
 
-EXHAUSTING_TEST_CASE("every call without descriptors does its work, or says that it was refused one")
+EXHAUSTING_TEST_CASE("every call without descriptors does its work, or reports that it was refused one")
 {
     const call_things t;
     try_all(value_calls(t));

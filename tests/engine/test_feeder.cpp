@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What the control side puts into the ring, and when.
+// Commands that the control side puts into the ring, and when.
 #include <map>
 #include <string>
 #include <thread>
@@ -26,7 +26,7 @@ std::vector<command> take_all(engine::link& l)
     return all;
 }
 
-// What follows on what: b a beginning, d a drive, e an end, each with the number of its stroke.
+// Lists the commands in order: b a beginning, d a drive, e an end, each with the number of its stroke.
 std::string in_order(engine::link& l)
 {
     std::string all;
@@ -42,7 +42,7 @@ std::string in_order(engine::link& l)
     return all;
 }
 
-// A burst of 100 frames at each of these frames, each on a tactor of its own.
+// Makes a score with a burst of 100 frames at each of these frames, each on another tactor.
 score bursts_at(const std::vector<std::uint64_t>& frames)
 {
     plan p;
@@ -55,16 +55,14 @@ score bursts_at(const std::vector<std::uint64_t>& frames)
         p.total_s = b.onset_s + b.duration_s;
         p.stroke_duration_s = p.total_s;
     }
-    render_options o;
-    o.rate = rate;
-    return {palm(), p, o};
+    return {palm(), p};
 }
 
 } // namespace
 
-TEST_CASE("a beginning and its first drives become visible at once")
+TEST_CASE("a beginning and its first drives become visible together")
 {
-    // Otherwise a producer that loses its processor in between makes its own stroke late.
+    // Otherwise a producer that loses its processor in between makes its stroke late.
     for (int round = 0; round < 300; ++round) {
         engine::link link;
         engine::feeder feed(link, 24'000);
@@ -80,7 +78,7 @@ TEST_CASE("a beginning and its first drives become visible at once")
     }
 }
 
-TEST_CASE("strokes that begin together have each its first drives with its beginning")
+TEST_CASE("strokes that begin together get their first drives with their beginnings")
 {
     engine::link link;
     engine::feeder feed(link, 24'000);
@@ -90,7 +88,8 @@ TEST_CASE("strokes that begin together have each its first drives with its begin
     CHECK(in_order(link) == "b1 d1 e1 b2 d2 e2 b3 d3 e3 ");
 }
 
-TEST_CASE("what begins within an eighth of the horizon has its drives at once, the rest in the order of all")
+TEST_CASE(
+    "a stroke that begins within an eighth of the horizon has its drives at once, others in the order of all")
 {
     engine::link link;
     engine::feeder feed(link, 8000);
@@ -101,7 +100,7 @@ TEST_CASE("what begins within an eighth of the horizon has its drives at once, t
     CHECK(in_order(link) == "b1 d1 e1 b2 b3 d2 e2 d3 e3 ");
 }
 
-TEST_CASE("with a beginning come the drives of an eighth of the horizon")
+TEST_CASE("a beginning brings the drives of an eighth of the horizon")
 {
     engine::link link;
     engine::feeder feed(link, 8000);
@@ -111,7 +110,7 @@ TEST_CASE("with a beginning come the drives of an eighth of the horizon")
     CHECK(in_order(link) == "b1 d1 d1 b2 d2 e2 d1 e1 ");
 }
 
-TEST_CASE("of a crowd that begins together each has a part of the first drives, none all of them")
+TEST_CASE("strokes of a crowd that begin together each get a part of the first drives, none all of them")
 {
     engine::link link(16'384);
     engine::feeder feed(link, 8000);
@@ -124,7 +123,7 @@ TEST_CASE("of a crowd that begins together each has a part of the first drives, 
     CHECK(all.find(" d511 b512 d512 d512 d512 d512 d512 d512 d512 d512 d1 ") != std::string::npos);
 }
 
-TEST_CASE("nothing beyond the horizon is handed over, and what is within it at once")
+TEST_CASE("drives beyond the horizon wait, those within it are handed over at once")
 {
     engine::link link;
     engine::feeder feed(link, 4800);
@@ -170,7 +169,7 @@ TEST_CASE("drives of several strokes come in the order of their start")
         if (c.what != command::kind::drive)
             continue;
         ++drives;
-        // What goes with a beginning, an eighth of the horizon, is in the order of the strokes instead.
+        // Drives that go with a beginning, an eighth of the horizon, are in the order of the strokes instead.
         if (c.drive.start <= 125'000)
             continue;
         CHECK(c.drive.start + starts[c.score] >= last);
@@ -181,7 +180,7 @@ TEST_CASE("drives of several strokes come in the order of their start")
     CHECK(last > 0);
 }
 
-TEST_CASE("what begins is to be seen at once, drives are not")
+TEST_CASE("beginnings are urgent, drives are not")
 {
     engine::link link;
     engine::feeder feed(link, 4800);
@@ -195,7 +194,7 @@ TEST_CASE("what begins is to be seen at once, drives are not")
     CHECK_FALSE(feed.take_urgent());
 }
 
-TEST_CASE("a full ring asks to be told, and the feeder goes on where it was")
+TEST_CASE("a full ring asks for a wake-up, and the feeder goes on where it was")
 {
     engine::link link(4);
     engine::feeder feed(link, 1'000'000);
@@ -228,7 +227,7 @@ TEST_CASE("a stroke is handed over when it begins within the horizon, its last f
     CHECK(link.commands.size() == 3);
 }
 
-TEST_CASE("while a stroke waits for space to begin, those that play get half of their horizon only")
+TEST_CASE("while a stroke waits for space to begin, playing strokes get only half of their horizon")
 {
     engine::link link(8); // a beginning and its drives take up to 3
     engine::feeder feed(link, 8000);
@@ -249,7 +248,7 @@ TEST_CASE("while a stroke waits for space to begin, those that play get half of 
     CHECK(then[3].drive.start == 9000);
 }
 
-TEST_CASE("how late a timed stroke is, is known also where the clock of its beginning is not")
+TEST_CASE("the lateness of a timed stroke is known even where the clock of its beginning is not")
 {
     engine::clock_line clock{.epoch = 1, .time_ns = 1'000'000'000, .ns_per_frame = 1e9 / rate};
     engine::clock_line of_later = clock;
@@ -273,7 +272,7 @@ TEST_CASE("how late a timed stroke is, is known also where the clock of its begi
     }
 }
 
-TEST_CASE("what was cancelled stays so where the stream ends before its fade is told")
+TEST_CASE("a cancelled stroke stays cancelled where the stream ends before its fade is reported")
 {
     engine::link link;
     engine::feeder feed(link, 4800);

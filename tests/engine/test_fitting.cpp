@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Scores for another array than the player's: what would be left out or cut is refused, the rest plays.
+// Scores for another array than the player's: scores that lose or exceed something are refused, the rest
+// play.
 #include <cstddef>
 #include <string>
 #include <utility>
@@ -25,7 +26,7 @@ using namespace tactor::test;
 
 namespace {
 
-// palm() without its last tactors.
+// Returns palm() without its last tactors.
 array first_of_palm(std::size_t tactors)
 {
     array a = palm();
@@ -33,7 +34,7 @@ array first_of_palm(std::size_t tactors)
     return a;
 }
 
-// palm(), one tactor of which may have less.
+// Returns palm() with a lower limit on one tactor.
 array palm_with_limit(std::size_t tactor, double max_dbfs)
 {
     array a = palm();
@@ -49,7 +50,7 @@ render_options on_nine_channels(double level_dbfs = -12.0)
     return o;
 }
 
-// One burst on a tactor of palm().
+// Makes one burst on a tactor of palm().
 score burst_on(unsigned tactor, const render_options& o, double amplitude = 1.0)
 {
     plan p;
@@ -71,8 +72,8 @@ score continuous(const array& a)
     return {a, make_plan(a, s, o), on_nine_channels()};
 }
 
-// What a player with this array says to a score; "" where it plays it to its end.
-std::string said(const array& a, const score& s)
+// Returns the error of a player with this array for a score; "" where it plays it to its end.
+std::string complaint(const array& a, const score& s)
 {
     fake_dac dac;
     const running_clock clock(dac);
@@ -88,12 +89,10 @@ std::string said(const array& a, const score& s)
     }
 }
 
-// The field of what a player of nine channels at 48 kHz does not take.
+// Returns the field that a player of nine channels at 48 kHz refuses.
 std::string refused_field(const score& s)
 {
-    fake_dac dac;
-    const running_clock clock(dac);
-    player p(pcm::adopt(dac.pcm(), nine()), palm(), patient());
+    clocked_player p;
     return field_of([&] { p.submit(s); });
 }
 
@@ -112,38 +111,38 @@ TEST_CASE("a score of another rate or of other channels than the stream's is ref
     CHECK(with(10, 44100).empty());
 }
 
-TEST_CASE("a score that drives a channel without a tactor is refused, one that does not is played")
+TEST_CASE("a score that drives a channel without a tactor is refused, others play")
 {
     const array few = first_of_palm(4);
-    CHECK(said(few, burst_on(3, on_nine_channels())).empty());
-    CHECK(said(few, burst_on(4, on_nine_channels())) ==
+    CHECK(complaint(few, burst_on(3, on_nine_channels())).empty());
+    CHECK(complaint(few, burst_on(4, on_nine_channels())) ==
           "stroke: it drives tactor 4 on channel 4, where the player's array has none (plan it for the array "
           "that the player was opened with)");
-    CHECK(said(few, burst_on(4, on_nine_channels(), 0.0)).empty());
-    has(said(few, random_score(1, 20, 9)), "where the player's array has none");
+    CHECK(complaint(few, burst_on(4, on_nine_channels(), 0.0)).empty());
+    has(complaint(few, random_score(1, 20, 9)), "where the player's array has none");
 }
 
-TEST_CASE("a continuous stroke may come to any tactor of its array")
+TEST_CASE("a continuous stroke counts every tactor of its array as driven")
 {
-    CHECK(said(palm(), continuous(palm())).empty());
-    has(said(first_of_palm(8), continuous(palm())), "it drives tactor 8 on channel 8, where");
+    CHECK(complaint(palm(), continuous(palm())).empty());
+    has(complaint(first_of_palm(8), continuous(palm())), "it drives tactor 8 on channel 8, where");
 }
 
-TEST_CASE("a score that drives a tactor above its limit at the player is refused, with both levels")
+TEST_CASE("a score that drives a tactor above the player's limit is refused, with both levels")
 {
     const array careful = palm_with_limit(2, -30.0);
-    CHECK(said(careful, burst_on(2, on_nine_channels())) ==
+    CHECK(complaint(careful, burst_on(2, on_nine_channels())) ==
           "stroke: it drives tactor 2 at up to -12 dBFS, but the player's array allows -30 dBFS on channel 2 "
           "(plan it for the array that the player was opened with)");
-    CHECK(said(careful, burst_on(1, on_nine_channels())).empty());
-    CHECK(said(careful, burst_on(2, on_nine_channels(-30.0))).empty());
-    has(said(careful, burst_on(2, on_nine_channels(-29.9))), "at up to -29.9 dBFS");
-    has(said(careful, continuous(palm())), "at up to -12 dBFS");
+    CHECK(complaint(careful, burst_on(1, on_nine_channels())).empty());
+    CHECK(complaint(careful, burst_on(2, on_nine_channels(-30.0))).empty());
+    has(complaint(careful, burst_on(2, on_nine_channels(-29.9))), "at up to -29.9 dBFS");
+    has(complaint(careful, continuous(palm())), "at up to -12 dBFS");
 }
 
-TEST_CASE("a score that was planned within the same limits is played, whatever was known of its peaks")
+TEST_CASE("a score planned within the same limits plays, whatever its peaks are known to be")
 {
-    // Two continuous strokes at once would come to more than their limit, if both were at the same place.
+    // The bound on two continuous strokes at once is above their limit, since both may be at one place.
     array a = palm();
     for (tactor_spec& t : a.tactors)
         t.max_dbfs = -12.0;
@@ -154,19 +153,19 @@ TEST_CASE("a score that was planned within the same limits is played, whatever w
         return make_plan(a, s, o);
     };
     const score two(a, {{across(0.0), 0.0, {}}, {across(40.0), 0.0, {}}}, on_nine_channels());
-    CHECK(said(a, two).empty());
-    has(said(palm_with_limit(0, -20.0), two), "but the player's array allows -20 dBFS on channel 0");
+    CHECK(complaint(a, two).empty());
+    has(complaint(palm_with_limit(0, -20.0), two), "but the player's array allows -20 dBFS on channel 0");
 }
 
-TEST_CASE("a marker on a tactor's channel is refused, one on a spare channel is not")
+TEST_CASE("a marker on a tactor's channel is refused, on a spare channel it plays")
 {
     render_options o = on_nine_channels();
     o.marker_channel = 8;
     const array eight = first_of_palm(8);
     const score s(eight, make_plan(eight, preset_stroke("park2016-1")), o);
-    CHECK(said(eight, s).empty());
-    CHECK(said(palm(), s) == "stroke: its marker is on channel 8, where the player's array has a tactor "
-                             "(choose a spare channel for it)");
+    CHECK(complaint(eight, s).empty());
+    CHECK(complaint(palm(), s) == "stroke: its marker is on channel 8, where the player's array has a tactor "
+                                  "(choose a spare channel for it)");
     CHECK(refused_field(s) == "marker_channel");
 }
 

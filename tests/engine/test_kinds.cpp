@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Closed sets: each value has a name of its own, and the name leads back to it.
+// Closed sets: each value has a unique name, and the name leads back to it.
 #include <set>
 #include <string>
 
@@ -36,7 +36,7 @@ TEST_CASE_TEMPLATE("every value of an enumeration has a name that leads back to 
     }
 }
 
-TEST_CASE("what an enumeration does not have is named so, not another value")
+TEST_CASE("an unknown value of an enumeration is named unknown")
 {
     CHECK(to_string(static_cast<phantom_kind>(99)) == "unknown");
     CHECK(to_string(static_cast<state_kind>(99)) == "unknown");

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Strokes that are fed point by point, on the virtual clock.
+// Strokes fed point by point, on the virtual clock.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -17,7 +17,7 @@ namespace live_test {
 using namespace tactor;
 using namespace tactor::test;
 
-TEST_CASE("silent until the first point, then a sine at its tactor, from the next period on")
+TEST_CASE("a live stroke is silent until its first point, then a sine at its tactor from the next period on")
 {
     live_rig r;
     r.play(4800);
@@ -41,7 +41,7 @@ TEST_CASE("silent until the first point, then a sine at its tactor, from the nex
         CHECK(peak(r.channel(c), 0, SIZE_MAX) == 0.0);
 }
 
-TEST_CASE("a point is heard within a period and a control step, in every phase and size of period")
+TEST_CASE("a point sounds within a period and a control step, in every phase and size of period")
 {
     for (const unsigned period : {16U, 48U, 96U, 480U, 1024U}) {
         CAPTURE(period);
@@ -65,7 +65,7 @@ TEST_CASE("a point is heard within a period and a control step, in every phase a
     }
 }
 
-TEST_CASE("wherever the points jump, the samples do not")
+TEST_CASE("samples do not jump when points do")
 {
     std::mt19937_64 random(12);
     std::uniform_real_distribution<double> place(0.0, 40.0);
@@ -75,17 +75,17 @@ TEST_CASE("wherever the points jump, the samples do not")
             r.live->to({place(random), place(random)}, static_cast<double>(random() % 2));
             r.play(period);
         }
-        r.live->voice.ask(engine::live_voice::wish::end);
+        r.live->voice.request(engine::live_voice::action::end);
         r.play_out();
         // The carrier's slope and a whole amplitude within a control step.
         const double allowed = live_level * (2 * 3.1416 * 250 / rate + 1.0 / 48);
         for (unsigned c = 0; c < 9; ++c)
             CHECK(largest_step(r.channel(c)) < allowed);
-        CHECK(r.report({1})->state == state_kind::finished);
+        CHECK(r.end({1}).state == state_kind::finished);
     }
 }
 
-TEST_CASE("bursts: each SOA one, at the newest position, as long as the law says")
+TEST_CASE("a live stroke of bursts plays one each SOA, at the newest position, as long as the law says")
 {
     live_options o = bursts();
     o.plan.soa_s = 0.06;
@@ -108,13 +108,13 @@ TEST_CASE("bursts: each SOA one, at the newest position, as long as the law says
             CHECK(peak(s, at + duration, at + 2880) == 0.0);
         }
     }
-    r.live->voice.ask(engine::live_voice::wish::end);
+    r.live->voice.request(engine::live_voice::action::end);
     r.play_out();
-    CHECK(r.report({1})->state == state_kind::finished);
-    CHECK(r.report({1})->frames % 2880 == duration);
+    CHECK(r.end({1}).state == state_kind::finished);
+    CHECK(r.end({1}).frames % 2880 == duration);
 }
 
-TEST_CASE("bursts: points that come in time keep a stroke alive, however seldom a burst takes one")
+TEST_CASE("points in time keep a stroke of bursts alive, however seldom a burst takes one")
 {
     live_options o = bursts();
     o.plan.soa_s = 0.6;
@@ -126,18 +126,16 @@ TEST_CASE("bursts: points that come in time keep a stroke alive, however seldom 
         r.play(960);
         REQUIRE_FALSE(r.report({1}));
     }
-    // Silence counts from the burst that took the last one.
+    // The time-out counts from the burst that took the last point.
     r.play(48000);
     r.play(9600);
-    REQUIRE(r.report({1}));
-    CHECK(r.report({1})->reason == reason_kind::starved);
+    CHECK(r.end({1}).reason == reason_kind::starved);
 }
 
-TEST_CASE(
-    "bursts: those in a row on one tactor are one sine of the stroke; or each begins anew, if asked for")
+TEST_CASE("bursts in a row on one tactor continue the stroke's sine, or each begins anew if asked for")
 {
     for (const phase_kind phase : {phase_kind::stroke, phase_kind::burst}) {
-        // At 255 Hz a burst is 17.85 cycles, which end anywhere: 2 ms of ramp.
+        // At 255 Hz a burst has 17.85 cycles and ends anywhere: 2 ms of ramp.
         for (const double hz : {250.0, 255.0}) {
             live_options o = bursts();
             o.plan.carrier_hz = hz;
@@ -166,7 +164,7 @@ TEST_CASE(
     }
 }
 
-TEST_CASE("outside the array the nearest point plays, and is counted; or it is an error")
+TEST_CASE("outside the array the nearest point plays and is counted, or is an error")
 {
     live_rig r;
     CHECK(r.live->to({-50.0, 0.0}, 1.0));
@@ -198,10 +196,10 @@ TEST_CASE("outside the array the nearest point plays, and is counted; or it is a
     CHECK(field({nan, 0.0}, 1.0) == "x_mm");
     CHECK(field({0.0, nan}, 1.0) == "y_mm");
     CHECK(field({0.0, 0.0}, nan) == "intensity");
-    CHECK(r.live->to({0.0, 0.0}, 1e300)); // sounds as 1
+    CHECK(r.live->to({0.0, 0.0}, 1e300)); // sounds like 1
     CHECK(r.live->limited_points == 0);
     r.play(9600);
-    CHECK(peak(r.channel(0), 0, SIZE_MAX) <= 2.0 * live_level * (1.0 + 1e-6)); // there are two strokes
+    CHECK(peak(r.channel(0), 0, SIZE_MAX) <= 2.0 * live_level * (1.0 + 1e-6)); // of two strokes
 }
 
 TEST_CASE("a point is held at its channel's limit, and counted")
@@ -215,7 +213,7 @@ TEST_CASE("a point is held at its channel's limit, and counted")
     CHECK(s.limited_points == 1);
 }
 
-TEST_CASE("options that cannot be are errors, which name their field")
+TEST_CASE("impossible options of a live stroke are errors that name their field")
 {
     live_rig r;
     const auto refused = [&](const char* field, auto change) {
@@ -242,7 +240,7 @@ TEST_CASE("options that cannot be are errors, which name their field")
     for (const double bad : {-0.001, 1.001, std::nan("")})
         refused("smooth_s", [bad](live_options& o) { o.smooth_s = bad; });
     refused("level_dbfs", [](live_options& o) { o.render.level_dbfs = 3.0; });
-    refused("", [](live_options& o) { o.render.sl_db = 7.0; });
+    refused("sl_db", [](live_options& o) { o.render.sl_db = 7.0; });
     for (const double bad : {-1.0, 10.1})
         refused("ramp_s", [bad](live_options& o) { o.render.ramp_s = bad; });
     refused("soa_s", [](live_options& o) {
@@ -251,20 +249,18 @@ TEST_CASE("options that cannot be are errors, which name their field")
     });
 }
 
-TEST_CASE("live strokes that are weak one by one count as what they are together, and so do a plan's")
+TEST_CASE("live strokes that are weak one by one count by their sum, together with a plan's")
 {
     drive_limits limits;
     limits.max_drive_s = 0.3;
     limits.window_s = 1.0;
     rig_options few;
-    few.loop.guards = synth::guards_of(limits, rate);
+    few.loop.guards = synth::make_guards(limits, rate);
     live_options weak;
     weak.render.level_dbfs = -41.0;
     const auto cuts = [&](unsigned strokes, bool continuous) {
         live_rig r(weak, few);
-        std::vector<std::shared_ptr<live_stroke::impl>> all{r.live};
-        while (all.size() < strokes)
-            all.push_back(r.add(weak));
+        const auto all = r.fill(strokes, weak);
         if (continuous) {
             plan_options o;
             o.algorithm = algorithm_kind::continuous;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// How live strokes end: by themselves, by request, by silence, with the device.
+// Ends of live strokes: by themselves, by request, by silence, with the device.
 #include <cmath>
 #include <memory>
 #include <new>
@@ -20,20 +20,19 @@ namespace live_ends_test {
 using namespace tactor;
 using namespace tactor::test;
 
-TEST_CASE("end fades out, plays the last point given, and is reported once as finished")
+TEST_CASE("a live stroke that ends fades, plays its last point, and is reported once as finished")
 {
     live_rig r;
     r.live->to({0.0, 0.0}, 1.0);
     const std::uint64_t base = r.status().written;
     r.play(960);
     r.live->to({40.0, 40.0}, 1.0);
-    r.live->voice.ask(engine::live_voice::wish::end);
+    r.live->voice.request(engine::live_voice::action::end);
     CHECK_FALSE(r.live->to({0.0, 40.0}, 1.0));
     const std::uint64_t end = r.status().written + 96 + 480;
     r.play(9600);
-    REQUIRE(r.report({1}));
-    CHECK(r.report({1})->state == state_kind::finished);
-    CHECK(r.report({1})->frames == end - base);
+    CHECK(r.end({1}).state == state_kind::finished);
+    CHECK(r.end({1}).frames == end - base);
     CHECK(peak(r.channel(8), 0, SIZE_MAX) > 0.7 * live_level);
     CHECK(peak(r.channel(6), 0, SIZE_MAX) == 0.0);
     CHECK_FALSE(r.first_sound(end));
@@ -41,26 +40,26 @@ TEST_CASE("end fades out, plays the last point given, and is reported once as fi
     CHECK_FALSE(r.feed.knows({1}));
 }
 
-TEST_CASE("a live stroke without a point: ended it is finished with nothing, and cancelled it is cancelled")
+TEST_CASE("a live stroke without a point is finished with nothing when ended, and cancelled when cancelled")
 {
     live_rig r;
     auto other = r.add();
     auto third = r.add();
     r.play(960);
     CHECK(r.ended.empty());
-    r.live->voice.ask(engine::live_voice::wish::end);
-    other->voice.ask(engine::live_voice::wish::cancel);
+    r.live->voice.request(engine::live_voice::action::end);
+    other->voice.request(engine::live_voice::action::cancel);
     CHECK(r.feed.cancel({3}));
     r.play(960);
-    CHECK(r.report({1})->state == state_kind::finished);
-    CHECK(r.report({2})->state == state_kind::cancelled);
-    CHECK(r.report({3})->state == state_kind::cancelled);
+    CHECK(r.end({1}).state == state_kind::finished);
+    CHECK(r.end({2}).state == state_kind::cancelled);
+    CHECK(r.end({3}).state == state_kind::cancelled);
     for (const std::uint32_t n : {1U, 2U, 3U})
-        CHECK(r.report({n})->frames == 0);
+        CHECK(r.end({n}).frames == 0);
     CHECK_FALSE(third->to({0, 0}, 1.0));
 }
 
-TEST_CASE("cancel fades, in both renderings and both ways")
+TEST_CASE("a cancelled live stroke fades, in both renderings and both ways")
 {
     for (const bool as_bursts : {false, true}) {
         for (const bool by_handle : {false, true}) {
@@ -70,20 +69,19 @@ TEST_CASE("cancel fades, in both renderings and both ways")
                 r.play(96);
             }
             if (by_handle)
-                r.live->voice.ask(engine::live_voice::wish::cancel);
+                r.live->voice.request(engine::live_voice::action::cancel);
             else
                 CHECK(r.feed.cancel({1}));
             const std::uint64_t from = r.status().written;
             r.play(9600);
-            REQUIRE(r.report({1}));
-            CHECK(r.report({1})->state == state_kind::cancelled);
+            CHECK(r.end({1}).state == state_kind::cancelled);
             CHECK_FALSE(r.first_sound(from + 480));
             CHECK(largest_step(r.channel(0)) < live_level * (2 * 3.1416 * 250 / rate + 1.0 / 48));
         }
     }
 }
 
-TEST_CASE("a producer that falls silent: faded out after the time-out, interrupted, with the reason")
+TEST_CASE("a live stroke without new points fades after the time-out and is interrupted with the reason")
 {
     for (const bool as_bursts : {false, true}) {
         live_options o = as_bursts ? bursts() : live_options{};
@@ -96,23 +94,22 @@ TEST_CASE("a producer that falls silent: faded out after the time-out, interrupt
         }
         const std::uint64_t last = r.status().written;
         r.play(48'000);
-        REQUIRE(r.report({1}));
-        CHECK(r.report({1})->state == state_kind::interrupted);
-        CHECK(r.report({1})->why == "no more points came");
-        CHECK(r.report({1})->reason == reason_kind::starved);
+        CHECK(r.end({1}).state == state_kind::interrupted);
+        CHECK(r.end({1}).why == "no more points came");
+        CHECK(r.end({1}).reason == reason_kind::starved);
         CHECK(r.first_sound(last + 9000));
         CHECK_FALSE(r.first_sound(last + 9600 + 480 + 3 * 96 + (as_bursts ? 3360 : 0)));
         CHECK_FALSE(r.live->to({0.0, 0.0}, 1.0));
     }
 }
 
-TEST_CASE("a live stroke lasts as long as it may, to a period: faded out, interrupted, with the reason")
+TEST_CASE("a live stroke is interrupted after its longest time, to a period, with the reason")
 {
     for (const bool as_bursts : {false, true}) {
         live_options o = as_bursts ? bursts() : live_options{};
         o.longest_s = 0.2;
         live_rig r(o);
-        r.play(48'000 / 4); // what waits for its first point does not sound
+        r.play(48'000 / 4); // a stroke that waits for its first point does not sound
         CHECK(r.ended.empty());
         r.live->to({0.0, 0.0}, 1.0);
         const std::uint64_t base = r.status().written;
@@ -120,18 +117,17 @@ TEST_CASE("a live stroke lasts as long as it may, to a period: faded out, interr
             r.live->to({0.0, 0.0}, 1.0);
             r.play(96);
         }
-        REQUIRE(r.report({1}));
-        CHECK(r.report({1})->state == state_kind::interrupted);
-        CHECK(r.report({1})->why == "it has lasted as long as it may");
-        CHECK(r.report({1})->reason == reason_kind::too_long);
-        CHECK(r.report({1})->frames >= 9600);
-        CHECK(r.report({1})->frames <= 9600 + 96 + 480);
+        CHECK(r.end({1}).state == state_kind::interrupted);
+        CHECK(r.end({1}).why == "it has lasted as long as it may");
+        CHECK(r.end({1}).reason == reason_kind::too_long);
+        CHECK(r.end({1}).frames >= 9600);
+        CHECK(r.end({1}).frames <= 9600 + 96 + 480);
         CHECK_FALSE(r.first_sound(base + 9600 + 96 + 480));
         CHECK_FALSE(r.live->to({0.0, 0.0}, 1.0));
     }
 }
 
-TEST_CASE("an xrun ends a live stroke that sounds, and leaves one alone that waits for its first point")
+TEST_CASE("an xrun ends a live stroke that sounds, and spares one that waits for its first point")
 {
     live_rig r;
     auto waits = r.add();
@@ -140,39 +136,36 @@ TEST_CASE("an xrun ends a live stroke that sounds, and leaves one alone that wai
     r.dac.advance(10'000);
     r.step();
     r.control();
-    REQUIRE(r.report({1}));
-    CHECK(r.report({1})->state == state_kind::interrupted);
-    CHECK(r.report({1})->why == "xrun: the device ran dry");
-    CHECK(r.report({1})->reason == reason_kind::xrun);
+    CHECK(r.end({1}).state == state_kind::interrupted);
+    CHECK(r.end({1}).why == "xrun: the device ran dry");
+    CHECK(r.end({1}).reason == reason_kind::xrun);
     CHECK_FALSE(r.live->to({0.0, 0.0}, 1.0));
     const std::uint64_t from = r.dac.captured_frames();
     CHECK(waits->to({40.0, 40.0}, 1.0));
     r.play(960);
     CHECK(r.first_sound(from));
-    waits->voice.ask(engine::live_voice::wish::end);
+    waits->voice.request(engine::live_voice::action::end);
     r.play_out();
-    CHECK(r.report({2})->state == state_kind::finished);
+    CHECK(r.end({2}).state == state_kind::finished);
 }
 
-TEST_CASE("more live strokes than can sound at once wait their turn; stop and the device's loss end all")
+TEST_CASE("more live strokes than can sound wait their turn; stop and the device's loss end all")
 {
     for (const bool lost : {false, true}) {
         live_rig r;
-        std::vector<std::shared_ptr<live_stroke::impl>> all{r.live};
-        for (int i = 0; i < 39; ++i)
-            all.push_back(r.add());
+        const auto all = r.fill(40);
         for (auto& s : all)
             s->to({0.0, 0.0}, 0.01);
         r.play(960);
         CHECK(r.ended.empty());
         for (int i = 0; i < 10; ++i)
-            all[static_cast<std::size_t>(i)]->voice.ask(engine::live_voice::wish::end);
+            all[static_cast<std::size_t>(i)]->voice.request(engine::live_voice::action::end);
         r.play(9600);
         CHECK(r.ended.size() == 10);
         if (lost)
             r.dac.disconnect();
         else
-            r.link.requests.push({.what = engine::request::kind::stop});
+            r.stop();
         r.play(9600);
         r.step();
         r.control();
@@ -189,7 +182,7 @@ TEST_CASE("more live strokes than can sound at once wait their turn; stop and th
 
 namespace {
 
-// All on the middle tactor, as strong as it was asked for, or so much stronger.
+// Drives the middle tactor at the given amplitude times a factor.
 class overdone final : public phantom_model {
 public:
     std::string_view name() const noexcept override { return "overdone"; }
@@ -200,7 +193,7 @@ public:
 
 } // namespace
 
-TEST_CASE("a model that gives more than it was asked for: faded out, interrupted, with the reason")
+TEST_CASE("a model that exceeds the amplitude it was given interrupts the stroke, faded, with the reason")
 {
     for (const bool as_bursts : {false, true}) {
         for (const double smooth_s : {0.0, 0.05}) {
@@ -215,7 +208,7 @@ TEST_CASE("a model that gives more than it was asked for: faded out, interrupted
                 r.live->to({20.0, 20.0}, 0.5);
                 r.play(96);
             }
-            model->factor = 1.0 + 1e-10; // its last digits
+            model->factor = 1.0 + 1e-10; // a rounding
             CHECK(r.live->to({20.0, 20.0}, 0.5));
             r.play(96);
             model->factor = 1e9;
@@ -223,9 +216,8 @@ TEST_CASE("a model that gives more than it was asked for: faded out, interrupted
             CHECK_FALSE(r.live->to({20.0, 20.0}, 0.0));
             const std::uint64_t from = r.status().written;
             r.play(9600);
-            REQUIRE(r.report({1}));
-            CHECK(r.report({1})->state == state_kind::interrupted);
-            CHECK(r.report({1})->why ==
+            CHECK(r.end({1}).state == state_kind::interrupted);
+            CHECK(r.end({1}).why ==
                   "phantom model \"overdone\" gave tactor 4 amplitude 5e+08, above the 0.5 asked for");
             CHECK_FALSE(r.first_sound(from + 480));
             CHECK(peak(r.channel(4), 0, SIZE_MAX) <= 0.5 * live_level * (1.0 + 1e-8));
@@ -234,8 +226,7 @@ TEST_CASE("a model that gives more than it was asked for: faded out, interrupted
     }
 }
 
-TEST_CASE(
-    "a model that gives more than it was asked for before the stroke sounds, or while it waits for others")
+TEST_CASE("a model that exceeds its amplitude ends a stroke before it sounds or while it waits for others")
 {
     live_rig r;
     std::vector<std::shared_ptr<live_stroke::impl>> all{r.live};
@@ -251,11 +242,10 @@ TEST_CASE(
     r.play(960);
     CHECK(r.ended.size() == 2);
     for (const stroke_id id : {all[1]->id, all.back()->id}) {
-        REQUIRE(r.report(id));
-        CHECK(r.report(id)->state == state_kind::interrupted);
-        CHECK(r.report(id)->frames == 0);
-        // The scale makes 0.01 of 0.1.
-        CHECK(r.report(id)->why ==
+        CHECK(r.end(id).state == state_kind::interrupted);
+        CHECK(r.end(id).frames == 0);
+        // The scale maps 0.1 to 0.01.
+        CHECK(r.end(id).why ==
               "phantom model \"overdone\" gave tactor 4 amplitude 0.01001, above the 0.01 asked for");
     }
     CHECK_FALSE(r.first_sound());
@@ -288,10 +278,10 @@ COUNTING_TEST_CASE("an hour of a live stroke: no heap in the audio thread, nothi
     }
     CHECK(calls == 0);
     CHECK(held == 0);
-    r.live->voice.ask(engine::live_voice::wish::end);
+    r.live->voice.request(engine::live_voice::action::end);
     r.play_out();
-    CHECK(r.report({1})->state == state_kind::finished);
-    CHECK(r.report({1})->frames > static_cast<std::uint64_t>(rounds(3600)) * rate);
+    CHECK(r.end({1}).state == state_kind::finished);
+    CHECK(r.end({1}).frames > static_cast<std::uint64_t>(rounds(3600)) * rate);
 }
 
 namespace {
@@ -317,7 +307,7 @@ public:
 
 } // namespace
 
-TEST_CASE("a model that fails ends the stroke, with what it said; one that refuses a point does not")
+TEST_CASE("a model that fails ends the stroke with its message; one that refuses a point does not")
 {
     for (const double smooth_s : {0.0, 0.05})
         for (const auto& [at, why] :
@@ -343,10 +333,9 @@ TEST_CASE("a model that fails ends the stroke, with what it said; one that refus
             CHECK(threw);
             CHECK_FALSE(r.live->to({0.0, 0.0}, 1.0));
             r.play(4800);
-            REQUIRE(r.report(r.live->id));
-            CHECK(r.report(r.live->id)->state == state_kind::interrupted);
-            CHECK(r.report(r.live->id)->reason == reason_kind::plan);
-            CHECK(r.report(r.live->id)->why == fmt::format("phantom model \"failing\" failed: {}", why));
+            CHECK(r.end(r.live->id).state == state_kind::interrupted);
+            CHECK(r.end(r.live->id).reason == reason_kind::plan);
+            CHECK(r.end(r.live->id).why == fmt::format("phantom model \"failing\" failed: {}", why));
         }
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Points that come in bursts, smoothed over a window.
+// Points that come in groups, smoothed over a window.
 #include <cmath>
 #include <memory>
 #include <random>
@@ -21,7 +21,7 @@ namespace {
 
 constexpr std::uint64_t window = 2400; // 0.05 s
 
-// The first tactor's amplitude tells where it is: x = 40 is 1.
+// Drives the first tactor by the place: x = 40 is 1.
 class across final : public phantom_model {
 public:
     std::string_view name() const noexcept override { return "across"; }
@@ -43,7 +43,7 @@ live_options smoothed(double seconds = 0.05)
     return o;
 }
 
-// Where it is at each crest of the carrier from a frame on, mm: crests are 96 frames apart.
+// Returns x at each crest of the carrier from a frame on, mm: crests are 96 frames apart.
 std::vector<double> places(const live_rig& r, std::uint64_t base, std::uint64_t from)
 {
     constexpr std::uint64_t crest = 48;
@@ -61,7 +61,8 @@ bool near(double a, double b)
 
 } // namespace
 
-TEST_CASE("off, a point is there at the end of the next period; on, the place moves evenly over the window")
+TEST_CASE(
+    "without smoothing a point holds from the next period on; with it the place moves evenly over the window")
 {
     for (const double seconds : {0.0, 0.05}) {
         CAPTURE(seconds);
@@ -83,7 +84,7 @@ TEST_CASE("off, a point is there at the end of the next period; on, the place mo
     }
 }
 
-TEST_CASE("bursts of points as long as the window: even speed, half a window and half a burst behind")
+TEST_CASE("groups of points as long as the window: even speed, half a window and half a group behind")
 {
     live_rig r(smoothed());
     r.live->to({0.0, 0.0}, 1.0);
@@ -122,33 +123,34 @@ TEST_CASE("intensity moves with the place, in bursts of the carrier too")
     }
 }
 
-TEST_CASE("end waits until the last point is reached, cancel does not, and what stands still does not wait")
+TEST_CASE(
+    "end waits until the last point is reached; a cancel does not, nor the end of a touch that stands still")
 {
     using engine::live_voice;
-    for (const auto how : {live_voice::wish::end, live_voice::wish::cancel}) {
+    for (const auto how : {live_voice::action::end, live_voice::action::cancel}) {
         live_rig r(smoothed());
         r.live->to({10.0, 0.0}, 1.0);
         const std::uint64_t base = r.status().written;
         r.play(960);
         const std::uint64_t came = r.status().written - base;
         r.live->to({40.0, 0.0}, 1.0);
-        r.live->voice.ask(how);
+        r.live->voice.request(how);
         r.play_out();
-        const bool ended = how == live_voice::wish::end;
-        CHECK(r.report({1})->state == (ended ? state_kind::finished : state_kind::cancelled));
-        CHECK(r.report({1})->frames == came + (ended ? window : 0) + 480);
+        const bool ended = how == live_voice::action::end;
+        CHECK(r.end({1}).state == (ended ? state_kind::finished : state_kind::cancelled));
+        CHECK(r.end({1}).frames == came + (ended ? window : 0) + 480);
     }
     live_rig still(smoothed());
     still.live->to({10.0, 0.0}, 1.0);
     const std::uint64_t base = still.status().written;
     still.play(960);
     const std::uint64_t came = still.status().written - base;
-    still.live->voice.ask(live_voice::wish::end);
+    still.live->voice.request(live_voice::action::end);
     still.play_out();
-    CHECK(still.report({1})->frames == came + 480);
+    CHECK(still.end({1}).frames == came + 480);
 }
 
-TEST_CASE("a point that is refused leaves it where it was, also on its way")
+TEST_CASE("a refused point leaves the place as it was, even on the way")
 {
     live_rig r(smoothed());
     r.live->to({10.0, 0.0}, 1.0);
@@ -169,7 +171,7 @@ TEST_CASE("a point that is refused leaves it where it was, also on its way")
 
 namespace {
 
-// Gives too much where it is asked first, and then refuses its second point.
+// Gives too much at its first call, and refuses the second.
 struct odd_model final : phantom_model {
     void weights(point, double a_v, std::vector<drive>& out) const override
     {
@@ -184,7 +186,7 @@ struct odd_model final : phantom_model {
 
 } // namespace
 
-TEST_CASE("too much for a point that is refused does not fail the next one")
+TEST_CASE("an excess at a refused point does not fail the next one")
 {
     live_options o = smoothed();
     const auto model = std::make_shared<odd_model>();
@@ -198,24 +200,24 @@ TEST_CASE("too much for a point that is refused does not fail the next one")
     CHECK(r.live->to({20.0, 0.0}, 0.5));
 }
 
-TEST_CASE("the mean over the window, however the points came")
+TEST_CASE("the smoothed place is the mean over the window, however the points came")
 {
     std::mt19937_64 random(3);
     for (const std::uint64_t w : {1U, 7U, 100U}) {
         engine::smoothing s(w);
-        std::vector<double> told; // by frame
+        std::vector<double> told; // place by frame
         double x = 0.0;
         for (std::uint64_t frame = 0; frame < 1000; ++frame) {
             if (frame == 0 || random() % 11 == 0) {
                 x = static_cast<double>(1 + random() % 1000);
                 s.to(frame, {{x, -x}, x});
-                s.to(frame, {{x, -x}, x}); // once more counts once
+                s.to(frame, {{x, -x}, x}); // a repeated point counts once
             }
             told.push_back(x);
             double sum = 0.0;
             for (std::uint64_t back = 0; back < w; ++back)
                 sum += told[frame - std::min(back, frame)];
-            // What was told of a frame holds after it.
+            // A point of a frame holds after it.
             const auto p = s.at(frame + 1);
             REQUIRE(p.at.x_mm == doctest::Approx(sum / static_cast<double>(w)));
             REQUIRE(p.at.y_mm == -p.at.x_mm);
@@ -227,7 +229,7 @@ TEST_CASE("the mean over the window, however the points came")
     }
 }
 
-TEST_CASE("after a pause the touch is back at its new place, not on its way from the old one")
+TEST_CASE("after a pause the touch is at its new place, not on its way from the old one")
 {
     engine::smoothing s(100);
     s.to(0, {{10.0, 0.0}, 1.0});

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What live strokes vibrate with, on the virtual clock.
+// Carriers and levels of live strokes, on the virtual clock.
 #include <cmath>
 #include <vector>
 
@@ -23,7 +23,7 @@ live_options with_wave(const char* name)
     return o;
 }
 
-// A tenth of a second at the first tactor, after the first few milliseconds.
+// Returns a tenth of a second at the first tactor, after the first few milliseconds.
 std::vector<double> heard(const live_options& o, double intensity = 1.0)
 {
     live_rig r(o);
@@ -63,7 +63,7 @@ TEST_CASE("live strokes vibrate with any wave, its peak at their level")
     }
 }
 
-TEST_CASE("a live stroke's noise is that of its seed")
+TEST_CASE("a live stroke's noise depends on its seed alone")
 {
     live_options o = with_wave("noise:50-500");
     const std::vector<double> one = heard(o);
@@ -72,7 +72,7 @@ TEST_CASE("a live stroke's noise is that of its seed")
     CHECK(heard(o) != one);
 }
 
-TEST_CASE("amplitude modulation goes down to what its depth leaves")
+TEST_CASE("amplitude modulation goes down to the rest that its depth leaves")
 {
     live_options o;
     o.plan.am = {50.0, 1.0};
@@ -84,7 +84,7 @@ TEST_CASE("amplitude modulation goes down to what its depth leaves")
     CHECK(peak(s, 0, SIZE_MAX) > 0.95 * live_level);
 }
 
-TEST_CASE("the intensity of a live point is as the scale says")
+TEST_CASE("the intensity of a live point follows the scale")
 {
     live_options o;
     CHECK(peak(heard(o, 0.5), 0, SIZE_MAX) == doctest::Approx(0.5 * live_level).epsilon(1e-3));
@@ -94,7 +94,7 @@ TEST_CASE("the intensity of a live point is as the scale says")
     CHECK(peak(heard(o, 1.0), 0, SIZE_MAX) == doctest::Approx(live_level).epsilon(1e-3));
 }
 
-TEST_CASE("the level asked for is the ceiling of a live stroke, and what was above it is counted")
+TEST_CASE("a live stroke never exceeds its level, and points above it are counted")
 {
     for (const algorithm_kind algorithm : {algorithm_kind::continuous, algorithm_kind::park2016})
         for (const scale_kind scale : {scale_kind::linear, scale_kind::sl, scale_kind::stevens})
@@ -111,23 +111,23 @@ TEST_CASE("the level asked for is the ceiling of a live stroke, and what was abo
                     r.live->to({0.0, 0.0}, intensity);
                 r.play(9600);
                 CHECK(peak(r.channel(0), 0, SIZE_MAX) == doctest::Approx(live_level).epsilon(1e-3));
-                r.live->voice.ask(engine::live_voice::wish::end);
+                r.live->voice.request(engine::live_voice::action::end);
                 r.play_out();
-                CHECK(r.report({1})->state == state_kind::finished);
-                CHECK(r.report({1})->held_points == 3);
+                CHECK(r.end({1}).state == state_kind::finished);
+                CHECK(r.end({1}).held_points == 3);
             }
 }
 
-TEST_CASE("points that are above the ceiling count for a live stroke that never sounds, too")
+TEST_CASE("points above the ceiling count for a live stroke that never sounds, too")
 {
     live_rig r;
     r.live->to({0.0, 0.0}, 2.0);
     CHECK(r.feed.cancel({1}));
     r.play_out();
-    CHECK(r.report({1})->held_points == 1);
+    CHECK(r.end({1}).held_points == 1);
 }
 
-TEST_CASE("a live stroke whose sound is gone with it leaves nothing behind")
+TEST_CASE("a live stroke whose object is gone leaves no sound behind")
 {
     for (const char* wave : {"square", "noise:50-500"}) {
         live_options o = with_wave(wave);
@@ -135,7 +135,7 @@ TEST_CASE("a live stroke whose sound is gone with it leaves nothing behind")
         live_rig r(o);
         r.live->to({0.0, 0.0}, 1.0);
         r.play(4800);
-        r.live->voice.ask(engine::live_voice::wish::end);
+        r.live->voice.request(engine::live_voice::action::end);
         r.live.reset();
         r.play_out();
         const std::vector<double> s = r.channel(0);

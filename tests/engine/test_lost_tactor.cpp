@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Each tactor has a channel of the device to itself, or there is no player.
+// Wiring: each tactor needs a channel of the device to itself.
 #include <string>
 #include <utility>
 #include <vector>
@@ -29,7 +29,7 @@ std::string lost(std::vector<std::vector<unsigned>> outputs)
 
 } // namespace
 
-TEST_CASE("a tactor is lost whose channel reaches nothing, or nothing by itself")
+TEST_CASE("a tactor is lost when its channel reaches nothing, or nothing by itself")
 {
     CHECK(lost({}).empty());
     CHECK(lost({{2}, {0}, {1}}).empty());
@@ -40,21 +40,20 @@ TEST_CASE("a tactor is lost whose channel reaches nothing, or nothing by itself"
     CHECK(lost({{5}, {1}, {5}}) == "tactor 0 of line is on channel 0, which reaches the device only together "
                                    "with channel 2 of tactor 2");
     CHECK(lost({{0}, {1}}) == "tactor 2 of line is on channel 2, which reaches no channel of the device");
-    // What no tactor is on may share.
+    // Channels without a tactor may share.
     CHECK(lost({{0}, {1}, {2}, {2}, {}}).empty());
     CHECK(lost_tactor(line_of_three(), {.hidden_by = "type pulse"}).empty());
 }
 
-TEST_CASE("a tactor that arrives louder is refused, and one that arrives in another way is told")
+TEST_CASE("a tactor that arrives louder is refused, other changes are warned of")
 {
     stream_wiring w{.outputs = {{0}, {1}, {2, 3}}, .gains = {{1.0}, {-0.5}, {1.0, 0.1}}};
     CHECK(lost_tactor(line_of_three(), w).empty());
     CHECK(wiring_warnings(line_of_three(), w) ==
           std::vector<std::string>{
-              "tactor 1 of line is on channel 1, which ALSA's configuration plays at -6.02 "
-              "dB with its polarity reversed",
-              "tactor 2 of line is on channel 2, which reaches 2 channels of the device, "
-              "at 0 dB, -20 dB"});
+              "tactor 1 of line is on channel 1, which ALSA's configuration plays at -6.02 dB with its "
+              "polarity reversed",
+              "tactor 2 of line is on channel 2, which reaches 2 channels of the device, at 0 dB, -20 dB"});
     w.gains[1] = {-2.0};
     CHECK(lost_tactor(line_of_three(), w) ==
           "tactor 1 of line is on channel 1, which ALSA's configuration plays at 6.02 dB with its polarity "
@@ -64,7 +63,7 @@ TEST_CASE("a tactor that arrives louder is refused, and one that arrives in anot
           std::vector<std::string>{"a mixer control sets the level of all tactors: type softvol is between"});
 }
 
-TEST_CASE("there is no player for an array of which a tactor is lost")
+TEST_CASE("a player refuses an array of which a tactor is lost")
 {
     alsa_options o{.pcm = "t",
                    .channels = 3,
@@ -75,18 +74,17 @@ TEST_CASE("there is no player for an array of which a tactor is lost")
         FAIL("it opened");
     } catch (const error& e) {
         CHECK(e.kind() == error_kind::not_available);
-        CHECK(
-            std::string(e.what()) ==
-            "stream on \"t\": tactor 1 of line is on channel 1, which reaches no channel of the device (give "
-            "each channel one of the device's, at 1, where the PCM is defined (ttable, bindings), or play on "
-            "the card itself, hw:CARD=NAME)");
+        CHECK(std::string(e.what()) ==
+              "stream on \"t\": tactor 1 of line is on channel 1, which reaches no channel of the device "
+              "(give each channel one of the device's, at 1, where the PCM is defined (ttable, bindings), or "
+              "play on the card itself, hw:CARD=NAME)");
     }
     array two = line_of_three();
     two.tactors.erase(two.tactors.begin() + 1);
     CHECK_NOTHROW(player(open_alsa(o), two));
 }
 
-TEST_CASE("what hides the channels' ways is said in the log, and plays")
+TEST_CASE("wiring that hides the channels' routes is logged, and plays")
 {
     std::string said;
     alsa_options o{.pcm = "t",
@@ -98,9 +96,8 @@ TEST_CASE("what hides the channels' ways is said in the log, and plays")
             said += text;
     };
     CHECK_NOTHROW(player(open_alsa(o), line_of_three()));
-    CHECK(said ==
-          "PCM \"t\": which of the device's channels its own reach is not known: type route to a channel "
-          "FL is between");
+    CHECK(said == "PCM \"t\": which of the device's channels its own reach is not known: type route to a "
+                  "channel FL is between");
 }
 
 } // namespace lost_tactor_test

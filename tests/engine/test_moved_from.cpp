@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What was moved from can be destroyed, assigned to and asked: it is what it was, or says what is wrong.
-#include <array>
+// Moved-from objects: they can be destroyed, assigned to and used, keep their value or report the fault.
 #include <cstddef>
 #include <memory>
 #include <string>
@@ -27,8 +26,8 @@ namespace moved_from_test {
 using namespace tactor;
 using namespace tactor::test;
 
-// Nothing here may be spared to the tests by the compiler's eye: reading what was moved from is what they are
-// about. NOLINTBEGIN(bugprone-use-after-move,hicpp-invalid-access-moved)
+// Reading moved-from objects is the subject of these tests.
+// NOLINTBEGIN(bugprone-use-after-move,hicpp-invalid-access-moved)
 
 namespace {
 
@@ -38,7 +37,7 @@ path line()
     return path::polyline(points);
 }
 
-// Moves, looks at what was left, assigns it anew.
+// Moves, checks the rest, assigns it anew.
 template <typename T, typename Same>
 void stays_usable(T a, T other, Same same)
 {
@@ -69,7 +68,7 @@ std::string refused(Call c)
 
 } // namespace
 
-TEST_CASE("a path, a trajectory, a layout and a score that were moved from are what they were")
+TEST_CASE("a moved-from path, trajectory, layout or score keeps its value")
 {
     stays_usable(line(), line(), [](const path& p) {
         return p.length_mm() == 50.0 && p.at(25.0) == point{20.0, 15.0} && p.meets_x(20.0).size() == 1 &&
@@ -91,7 +90,7 @@ TEST_CASE("a path, a trajectory, a layout and a score that were moved from are w
     });
 }
 
-// Only the library makes handles, so that there is none without anything behind it.
+// Only the library makes handles, so that none is empty.
 static_assert(!std::is_constructible_v<path, std::shared_ptr<const path::impl>>);
 static_assert(!std::is_constructible_v<trajectory, std::shared_ptr<const trajectory::impl>>);
 static_assert(!std::is_constructible_v<live_stroke, std::shared_ptr<live_stroke::impl>>);
@@ -101,7 +100,7 @@ TEST_CASE("a player without a sink is refused")
     has(refused([] { player(nullptr, palm()); }), "no sink");
 }
 
-TEST_CASE("a renderer that was moved from says so, and can be assigned to")
+TEST_CASE("a moved-from renderer reports it, and can be assigned to")
 {
     const score s = tone(0.01);
     std::vector<std::byte> out(480 * 9 * 2);
@@ -118,7 +117,7 @@ TEST_CASE("a renderer that was moved from says so, and can be assigned to")
     CHECK(b.position() == 0);
 }
 
-TEST_CASE("plain values that were moved from are empty, and refused where something is needed")
+TEST_CASE("moved-from plain values are empty, and refused where something is needed")
 {
     array a = palm();
     const array b(std::move(a));
@@ -153,7 +152,7 @@ TEST_CASE("plain values that were moved from are empty, and refused where someth
     CHECK(score(b, {{flowing}}, {}).channels() == 9);
 }
 
-TEST_CASE("an error that was moved from or copied is still one")
+TEST_CASE("a moved-from or copied error is still an error")
 {
     error a(error_kind::runtime, "a subject that is longer than any small string", "why it was",
             "what to do");
@@ -168,11 +167,9 @@ TEST_CASE("an error that was moved from or copied is still one")
     CHECK(a.subject() == c.subject());
 }
 
-TEST_CASE("a live stroke that was moved from feeds the same stroke")
+TEST_CASE("a moved-from live stroke feeds the same stroke")
 {
-    fake_dac dac;
-    const running_clock clock(dac);
-    player p(pcm::adopt(dac.pcm(), nine()), palm(), patient());
+    clocked_player p;
     live_stroke a = p.begin({.timeout_s = 86400.0});
     live_stroke b(std::move(a));
     CHECK(a.to(1.0, 1.0));
@@ -186,7 +183,7 @@ TEST_CASE("a live stroke that was moved from feeds the same stroke")
     p.stop();
 }
 
-TEST_CASE("a player takes what it is given, and what is left can be used again")
+TEST_CASE("a player takes its sink and lines, and the moved-from ones can be used again")
 {
     fake_dac dac;
     const running_clock clock(dac);

@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: MIT
-// When memory runs out: std::bad_alloc, or an error that says so; and nothing is lost or left behind.
+// Calls without memory: std::bad_alloc, or an error with the reason; nothing lost or left behind.
 #include <atomic>
 #include <cerrno>
 #include <cstdint>
-#include <functional>
 #include <map>
 #include <memory>
 #include <mutex>
 #include <new>
-#include <stdexcept>
+#include <span>
 #include <string>
 #include <string_view>
 #include <thread>
@@ -22,11 +21,9 @@
 #include "clock_runner.hpp"
 #include "count_allocations.hpp"
 #include "exhaustion_calls.hpp"
-#include "own_curve.hpp"
 #include "player_support.hpp"
 #include "rig.hpp"
 #include "scores.hpp"
-#include "sink/alsa/adopt.hpp"
 
 namespace no_memory_test {
 
@@ -35,7 +32,7 @@ using namespace tactor::test;
 
 namespace {
 
-// Calls again and again with more memory each time, until there is enough.
+// Repeats a call with more memory each time, until it succeeds.
 template <typename Call>
 std::uint64_t until_it_fits(Call call)
 {
@@ -58,7 +55,7 @@ std::uint64_t until_it_fits(Call call)
     }
 }
 
-// What a call came to: what an error says, "" for none.
+// Outcome of a call: the message of its error, "" for none.
 struct outcome {
     bool no_memory = false;
     std::string said = {};
@@ -67,8 +64,8 @@ struct outcome {
     bool operator==(const outcome& o) const { return no_memory == o.no_memory && said == o.said; }
 };
 
-// With so many allocations, and then so many that are refused.
-outcome outcome_of(const exhausted_call& c, std::uint64_t granted, std::uint64_t refused)
+// Calls with so many allocations granted, and then so many refused.
+outcome try_call(const exhausted_call& c, std::uint64_t granted, std::uint64_t refused)
 {
     if (c.before)
         c.before();
@@ -97,16 +94,16 @@ outcome outcome_of(const exhausted_call& c, std::uint64_t granted, std::uint64_t
     return o;
 }
 
-// All that come after some are refused, or one of them only. Returns how many the call makes.
+// Tries a call with all allocations after the n-th refused, and with only that one. Returns their number.
 std::uint64_t try_without(const exhausted_call& c)
 {
-    const outcome usual = outcome_of(c, 0, 0);
+    const outcome usual = try_call(c, 0, 0);
     CHECK_FALSE(usual.no_memory);
     for (std::uint64_t granted = 0;; ++granted) {
         CAPTURE(granted);
         REQUIRE(granted < 100'000);
-        const outcome all = outcome_of(c, granted, UINT64_MAX);
-        const outcome one = outcome_of(c, granted, 1);
+        const outcome all = try_call(c, granted, UINT64_MAX);
+        const outcome one = try_call(c, granted, 1);
         for (const outcome& o : {all, one}) {
             const bool well = o.no_memory || o == usual;
             CHECK_MESSAGE(well, o.said);
@@ -115,7 +112,7 @@ std::uint64_t try_without(const exhausted_call& c)
                 return granted;
         }
         if (all.no_memory)
-            CHECK(outcome_of(c, 0, 0) == usual);
+            CHECK(try_call(c, 0, 0) == usual);
         else
             return granted;
     }
@@ -132,14 +129,12 @@ void try_all(const call_table& calls)
 
 } // namespace
 
-COUNTING_TEST_CASE("without memory a call throws std::bad_alloc and has done nothing")
+COUNTING_TEST_CASE("without memory a call throws std::bad_alloc and has no effect")
 {
-    fake_dac dac;
-    const running_clock clock(dac);
     std::map<stroke_id, int> told;
     std::vector<stroke_id> accepted;
     std::mutex mutex;
-    player p(pcm::adopt(dac.pcm(), nine()), palm(), patient());
+    clocked_player p;
     p.on_report([&](const stroke_report& r) {
         const std::lock_guard lock(mutex);
         ++told[r.id];
@@ -173,7 +168,7 @@ COUNTING_TEST_CASE("without memory a call throws std::bad_alloc and has done not
     }
 }
 
-COUNTING_TEST_CASE("every call without memory says so at each of its allocations, and works again")
+COUNTING_TEST_CASE("every call without memory reports it at each of its allocations, and works again")
 {
     const call_things t;
     try_all(value_calls(t));
@@ -185,19 +180,17 @@ COUNTING_TEST_CASE("every call without memory says so at each of its allocations
     try_all(player_calls(*p));
 }
 
-COUNTING_TEST_CASE("the player's own thread waits for memory: every stroke ends, and is told once")
+COUNTING_TEST_CASE("the player's thread waits for memory: every stroke ends and is reported once")
 {
-    fake_dac dac;
-    const running_clock clock(dac);
     std::map<stroke_id, int> told;
     std::atomic<unsigned> ended{0};
-    player p(pcm::adopt(dac.pcm(), nine()), palm(), patient());
+    clocked_player p;
     p.on_report([&](const stroke_report& r) {
         refuse_allocations(0, 0);
         ++told[r.id];
         ++ended;
         ended.notify_all();
-        refuse_allocations(ended % 5, 3); // what comes next in this thread
+        refuse_allocations(ended % 5, 3); // for the next calls in this thread
     });
     constexpr unsigned strokes = 30;
     const score s = tone(0.002);
@@ -214,20 +207,19 @@ COUNTING_TEST_CASE("the player's own thread waits for memory: every stroke ends,
         CHECK(times == 1);
 }
 
-COUNTING_TEST_CASE("a stream that ends while there is no memory for one thing ends in order, with a log")
+COUNTING_TEST_CASE("a stream that ends while one allocation fails ends in order, with a log")
 {
     for (std::uint64_t granted = 0; granted < 40; ++granted) {
         CAPTURE(granted);
-        fake_dac dac;
         player_options o = patient();
         o.log = [](log_kind, std::string_view) {};
-        player p(pcm::adopt(dac.pcm(), nine()), palm(), o);
-        const running_clock clock(dac);
+        dac_player p(o);
+        const running_clock clock(p.dac);
         const stroke_id id = p.submit(tone(3600.0));
         while (!p.position().stroke)
             std::this_thread::yield();
         refuse_allocations(granted, 1);
-        dac.disconnect();
+        p.dac.disconnect();
         while (p.position().running)
             std::this_thread::yield();
         p.stop();
@@ -236,36 +228,65 @@ COUNTING_TEST_CASE("a stream that ends while there is no memory for one thing en
     }
 }
 
-COUNTING_TEST_CASE("a plan that fails at once ends once, also where there is no memory to say why")
+COUNTING_TEST_CASE("a continuous stroke without memory goes on when there is some, and is late otherwise")
 {
-    plan broken;
-    broken.total_s = broken.stroke_duration_s = 1.0;
-    for (std::uint64_t granted = 0; granted < 20; ++granted) {
-        CAPTURE(granted);
-        const auto fails = std::make_shared<bool>(false);
-        broken.curve = make_curve(1.0, [fails](double, burst& out) {
-            if (*fails)
-                throw std::runtime_error("a reason that is longer than what a string keeps within itself");
-            out.drives = {{4, 0.5}};
-        });
-        render_options sound;
-        sound.rate = rate;
-        const score s(palm(), {{.plan = broken, .start_s = {}}}, sound);
-        *fails = true;
+    plan_options o;
+    o.algorithm = algorithm_kind::continuous;
+    o.phantom = phantom_kind::gaussian; // each of its samples needs memory
+    const stroke drawn{"", trajectory::timed({{0.0, {3.0, 2.0}}, {1.5, {37.0, 31.0}}})};
+    const score s(palm(), make_plan(palm(), drawn, o));
+    // Half a second is prepared.
+    for (const std::uint64_t without : {rate / 4, rate}) {
+        CAPTURE(without);
         rig r;
-        REQUIRE(r.start().status == io_kind::ok);
-        r.feed.submit({1}, s, start_at::now());
-        refuse_allocations(granted, 1);
+        const std::uint64_t base = r.status().written;
+        const stroke_id id = r.submit(s);
+        r.play(9600);
+        unsigned refused = 0;
+        for (std::uint64_t n = 0; n < without; n += r.options.period) {
+            r.dac.advance_queued(r.options.period);
+            r.step();
+            refuse_allocations(0, UINT64_MAX);
+            try {
+                r.feed.pump(r.status().written, r.link.clock.load());
+            } catch (const std::bad_alloc&) {
+                ++refused;
+            }
+            refuse_allocations(0, 0);
+        }
+        CHECK(refused > 0);
+        r.play_out();
+        REQUIRE(r.report(id));
+        const bool is_late = without == rate;
+        CHECK(r.report(id)->state == (is_late ? state_kind::interrupted : state_kind::finished));
+        CHECK(r.report(id)->reason == (is_late ? reason_kind::late : reason_kind::none));
+        if (!is_late)
+            CHECK(r.captured(base, s.frames()) == rendered(s, format_kind::s32));
+    }
+}
+
+COUNTING_TEST_CASE("a renderer without memory goes on where it was")
+{
+    plan_options o;
+    o.algorithm = algorithm_kind::continuous;
+    o.phantom = phantom_kind::gaussian;
+    const stroke drawn{"", trajectory::timed({{0.0, {3.0, 2.0}}, {0.2, {37.0, 31.0}}})};
+    const score s(palm(), make_plan(palm(), drawn, o));
+    renderer r(s, format_kind::s32);
+    const std::size_t frame = s.channels() * bytes_of(format_kind::s32);
+    std::vector<std::byte> out(s.frames() * frame);
+    unsigned refused = 0;
+    while (r.position() < s.frames()) {
+        refuse_allocations(refused % 50, 1); // a sample takes some of them
         try {
-            r.feed.pump(r.status().written, r.link.clock.load());
-        } catch (const std::bad_alloc&) { // NOLINT(bugprone-empty-catch): it is tried again below
+            r.process(std::span(out).subspan(r.position() * frame));
+        } catch (const std::bad_alloc&) {
+            ++refused;
         }
         refuse_allocations(0, 0);
-        r.play(9600);
-        REQUIRE(r.report({1}));
-        CHECK(r.report({1})->state == state_kind::interrupted);
-        CHECK(r.ended.at({1}).size() == 1);
     }
+    CHECK(refused > 20);
+    CHECK(out == rendered(s, format_kind::s32));
 }
 
 } // namespace no_memory_test

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Sinks of one's own that pace themselves.
+// Sinks of a program that pace themselves.
 #include <algorithm>
 #include <span>
 #include <thread>
@@ -31,7 +31,7 @@ stream_setup nine_channels()
     return s;
 }
 
-// What a sink was given; outlives it.
+// Frames that a sink was given; outlives it.
 struct taken {
     std::vector<std::byte> bytes = {};
     std::uint64_t frames = 0;
@@ -65,7 +65,7 @@ private:
 
 } // namespace
 
-TEST_CASE("a sink of one's own gets each frame once, a period at most at a time, and what the renderer makes")
+TEST_CASE("a program's sink gets each frame once, at most a period at a time, with the renderer's bytes")
 {
     taken t;
     const score s = random_score(4, 3);
@@ -79,14 +79,14 @@ TEST_CASE("a sink of one's own gets each frame once, a period at most at a time,
     CHECK(t.gapless);
     CHECK(t.most == 96);
     const auto expected = rendered(s, format_kind::s32);
-    // The stroke's first frame is silent, like what is before it: look for its first sound.
+    // The stroke's first frame is silent: look for its first sound.
     const auto sound = [](std::byte b) { return b != std::byte{0}; };
     const auto heard = std::find_if(t.bytes.begin(), t.bytes.end(), sound) - t.bytes.begin();
     const auto begins = std::find_if(expected.begin(), expected.end(), sound) - expected.begin();
     CHECK(part(t.bytes, static_cast<std::size_t>(heard - begins), expected.size()) == expected);
 }
 
-TEST_CASE("a sink of one's own that is lost ends the stream, and the stroke with it")
+TEST_CASE("a program's sink that is lost ends the stream and the stroke")
 {
     taken t;
     player p(std::make_unique<memory_sink>(nine_channels(), t, 4800), palm(), patient());
@@ -102,7 +102,7 @@ TEST_CASE("a sink of one's own that is lost ends the stream, and the stroke with
     CHECK(t.frames == 4800);
 }
 
-TEST_CASE("a sink of one's own cannot have numbers that cannot be")
+TEST_CASE("a program's sink refuses impossible numbers")
 {
     taken t;
     const auto with = [&](auto change) {

@@ -4,9 +4,11 @@
 #include <cerrno>
 #include <chrono>
 #include <cmath>
+#include <memory>
 #include <mutex>
 #include <string>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include <doctest/doctest.h>
@@ -18,6 +20,7 @@
 #include "clock_runner.hpp"
 #include "fake_dac.hpp"
 #include "player_support.hpp"
+#include "rig.hpp"
 #include "scores.hpp"
 #include "sink/alsa/adopt.hpp"
 
@@ -41,7 +44,7 @@ void run_until(fake_dac& dac, std::uint64_t buffer, Condition done)
 
 } // namespace
 
-TEST_CASE("threads and all: the bytes are the renderer's, and the report comes once")
+TEST_CASE("with threads the bytes are the renderer's, and the report comes once")
 {
     fake_dac dac;
     std::vector<stroke_report> told;
@@ -67,7 +70,7 @@ TEST_CASE("threads and all: the bytes are the renderer's, and the report comes o
         const running_clock clock(dac);
         p.stop();
         CHECK_FALSE(p.position().running);
-        // Only now: until the audio thread has ended, it may stand between a write and its counting.
+        // Until the audio thread has ended, it may stand between a write and its count.
         CHECK(p.stats().frames == dac.captured_frames());
         CHECK(p.stats().periods * 96 == p.stats().frames);
         CHECK(p.stats().xruns == 0);
@@ -77,13 +80,12 @@ TEST_CASE("threads and all: the bytes are the renderer's, and the report comes o
     CHECK(told[0].state == state_kind::finished);
 }
 
-TEST_CASE("cancel and stop from another thread than the one that waits")
+TEST_CASE("cancel and stop work from another thread than the waiting one")
 {
-    fake_dac dac;
-    player p(pcm::adopt(dac.pcm(), nine()), palm(), patient());
+    dac_player p;
     const stroke_id id = p.submit(tone(endless_s));
     const stroke_id other = p.submit(tone(endless_s, 3));
-    const running_clock clock(dac);
+    const running_clock clock(p.dac);
     std::thread canceller([&] { CHECK(p.cancel(id)); });
     const auto r = p.wait(id);
     canceller.join();
@@ -99,7 +101,7 @@ TEST_CASE("cancel and stop from another thread than the one that waits")
     p.stop();
 }
 
-TEST_CASE("a player that is destroyed while strokes sound reports them as interrupted")
+TEST_CASE("a player destroyed while strokes sound reports them as interrupted")
 {
     fake_dac dac;
     const running_clock clock(dac);
@@ -119,13 +121,11 @@ TEST_CASE("a player that is destroyed while strokes sound reports them as interr
     CHECK(dac.closed());
 }
 
-TEST_CASE("the handler may submit, cancel and stop, and is not made to wait for itself")
+TEST_CASE("a handler may submit, cancel and stop, and never waits for itself")
 {
-    fake_dac dac;
-    const running_clock clock(dac);
     std::atomic<int> rounds{0};
     std::atomic<stroke_id> last{stroke_id{}};
-    player p(pcm::adopt(dac.pcm(), nine()), palm(), patient());
+    clocked_player p;
     p.on_report([&](const stroke_report& r) {
         if (rounds++ < 5) {
             last = p.submit(tone(0.01));
@@ -145,9 +145,7 @@ TEST_CASE("the handler may submit, cancel and stop, and is not made to wait for 
 
 TEST_CASE("several producers: every stroke ends once")
 {
-    fake_dac dac;
-    const running_clock clock(dac);
-    player p(pcm::adopt(dac.pcm(), nine()), palm(), patient());
+    clocked_player p;
     std::atomic<int> finished{0};
     std::vector<std::thread> producers;
     for (unsigned t = 0; t < 4; ++t) {
@@ -165,10 +163,9 @@ TEST_CASE("several producers: every stroke ends once")
 
 TEST_CASE("an unplugged device ends the waits and the stream")
 {
-    fake_dac dac;
-    player p(pcm::adopt(dac.pcm(), nine()), palm(), patient());
+    dac_player p;
     const stroke_id id = p.submit(tone(endless_s));
-    dac.disconnect();
+    p.dac.disconnect();
     const auto r = p.wait(id);
     REQUIRE(r);
     CHECK(r->state == state_kind::interrupted);
@@ -188,27 +185,25 @@ TEST_CASE("an unplugged device ends the waits and the stream")
 
 TEST_CASE("an xrun is counted and survived")
 {
-    fake_dac dac;
-    player p(pcm::adopt(dac.pcm(), nine()), palm(), patient());
+    dac_player p;
     const stroke_id id = p.submit(tone(endless_s));
-    run_until(dac, 288, [&] { return p.position().stroke == id; });
-    dac.advance(10'000);
+    run_until(p.dac, 288, [&] { return p.position().stroke == id; });
+    p.dac.advance(10'000);
     const auto r = p.wait(id);
     REQUIRE(r);
     CHECK(r->state == state_kind::interrupted);
     CHECK(r->why == "xrun: the device ran dry");
     CHECK(r->reason == reason_kind::xrun);
-    dac.await([&] { return dac.starts() == 2; });
+    p.dac.await([&] { return p.dac.starts() == 2; });
     CHECK(p.stats().xruns == 1);
-    const running_clock clock(dac);
+    const running_clock clock(p.dac);
     CHECK(p.wait(p.submit(tone(0.01)))->state == state_kind::finished);
     p.stop(); // while the clock still runs
 }
 
-TEST_CASE("a wait says whether its time was over, the report was taken before, or there is no such stroke")
+TEST_CASE("a wait tells a time-out, a report taken before, and an unknown stroke apart")
 {
-    fake_dac dac;
-    player p(pcm::adopt(dac.pcm(), nine()), palm(), patient());
+    dac_player p;
     CHECK(p.wait({17}).outcome() == wait_kind::unknown);
     CHECK(p.wait({}).outcome() == wait_kind::unknown);
     const stroke_id id = p.submit(tone(endless_s));
@@ -216,7 +211,7 @@ TEST_CASE("a wait says whether its time was over, the report was taken before, o
     CHECK(none.outcome() == wait_kind::timeout);
     CHECK_FALSE(none);
     CHECK(p.cancel(id));
-    const running_clock clock(dac);
+    const running_clock clock(p.dac);
     const wait_result some = p.wait(id);
     CHECK(some.outcome() == wait_kind::ended);
     REQUIRE(some);
@@ -226,31 +221,16 @@ TEST_CASE("a wait says whether its time was over, the report was taken before, o
     p.stop();
 }
 
-TEST_CASE("a score for another stream is refused")
-{
-    fake_dac dac;
-    player p(pcm::adopt(dac.pcm(), nine()), palm(), patient());
-    CHECK_THROWS_AS(p.submit(random_score(1, 1, 10)), error);
-    const running_clock clock(dac);
-    p.stop();
-}
-
-TEST_CASE("a device that does not start, options out of range and no sink are errors")
+TEST_CASE("a device that does not start and a missing sink are errors")
 {
     fake_dac broken;
     broken.fail_start(-EIO);
     CHECK_THROWS_AS(player(pcm::adopt(broken.pcm(), nine()), palm()), error);
     CHECK(broken.closed());
     CHECK_THROWS_AS(player(nullptr, palm()), error);
-    for (const double bad : {-1.0, 1e9, std::nan("")}) {
-        fake_dac dac;
-        player_options o;
-        o.fade_s = bad;
-        CHECK_THROWS_AS(player(pcm::adopt(dac.pcm(), nine()), palm(), o), error);
-    }
 }
 
-TEST_CASE("real-time priority that is required and refused is an error; otherwise a note")
+TEST_CASE("a required real-time priority that is refused is an error; otherwise a note")
 {
     fake_dac dac;
     player_options o = patient();
@@ -268,6 +248,52 @@ TEST_CASE("real-time priority that is required and refused is an error; otherwis
     const running_clock other_clock(other);
     const player p(pcm::adopt(other.pcm(), nine()), palm(), patient());
     CHECK(p.stats().realtime == realtime);
+}
+
+TEST_CASE("of too many reports not yet taken, the oldest ends go")
+{
+    dac_player p;
+    const score s = tone(0.01);
+    const stroke_id first = p.submit(s, start_at::trigger());
+    const stroke_id second = p.submit(s, start_at::trigger());
+    CHECK(p.cancel(second));
+    for (int i = 0; i < 4096; ++i)
+        REQUIRE(p.cancel(p.submit(s, start_at::trigger())));
+    CHECK(p.cancel(first));
+    CHECK(p.wait(first).outcome() == wait_kind::ended);
+    CHECK(p.wait(second).outcome() == wait_kind::taken);
+}
+
+namespace {
+
+// Changes its set-up with each start, like a PCM that turns out to have no clock.
+class changing_sink final : public forwarding_sink {
+public:
+    explicit changing_sink(std::unique_ptr<sink> s)
+        : forwarding_sink(std::move(s)), setup_(forwarding_sink::setup())
+    {
+    }
+    const stream_setup& setup() const noexcept override { return setup_; }
+    io_kind start() noexcept override
+    {
+        setup_.has_clock = !setup_.has_clock;
+        return forwarding_sink::start();
+    }
+
+private:
+    stream_setup setup_;
+};
+
+} // namespace
+
+TEST_CASE("a player's set-up is that of the start, whatever the audio thread finds out later")
+{
+    fake_dac dac;
+    auto changing = std::make_unique<changing_sink>(pcm::adopt(dac.pcm(), nine()));
+    const stream_setup& own = changing->setup();
+    player p(std::move(changing), palm(), patient());
+    CHECK_FALSE(p.setup().has_clock);
+    CHECK(&p.setup() != &own);
 }
 
 } // namespace player_test

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
-// The player's threads and an amplifier: on a paced null PCM, in real time.
+// The player's threads and an amplifier: on a paced null PCM in real time, or on a DAC that stands still.
 #include <atomic>
+#include <chrono>
 #include <condition_variable>
+#include <memory>
 #include <mutex>
 #include <thread>
 
@@ -57,7 +59,7 @@ player_lines with(const std::shared_ptr<line_state>& s)
 
 } // namespace
 
-TEST_CASE("an amplifier waits until the DAC has played as long as is asked for")
+TEST_CASE("the amplifier waits until the DAC has played for the given time")
 {
     const auto state = std::make_shared<line_state>();
     player_lines l = with(state);
@@ -80,7 +82,7 @@ TEST_CASE("the player switches its amplifier on once, plays, and off once")
         state->await(1);
         p.stop();
         stalls = p.stats().stalls;
-        // On a machine that is too busy the watchdog may have had to do something.
+        // On a busy machine the watchdog may have acted.
         if (stalls == 0)
             CHECK(report->state == state_kind::finished);
     }
@@ -91,7 +93,7 @@ TEST_CASE("the player switches its amplifier on once, plays, and off once")
         CHECK(state->log[i] == (i % 2 == 0));
 }
 
-TEST_CASE("a player that is destroyed at any moment leaves its amplifier off")
+TEST_CASE("a player destroyed at any moment leaves its amplifier off")
 {
     for (int i = 0; i < 20; ++i) {
         const auto state = std::make_shared<line_state>();
@@ -127,7 +129,7 @@ TEST_CASE("an amplifier whose line fails ends the player's stream")
     CHECK(p.ended()->reason == reason_kind::left_on);
     CHECK(p.ended()->why == "the amplifier's line cannot be switched off: it may be on");
     CHECK(p.stats().left_on);
-    // All but the first were to switch it off. What has just been tried is counted in a moment.
+    // Each try but the first was to switch it off. The last one is counted a moment later.
     const auto tries = [&] {
         const std::lock_guard lock(state->mutex);
         return state->log.size();
@@ -136,11 +138,66 @@ TEST_CASE("an amplifier whose line fails ends the player's stream")
         std::this_thread::yield();
 }
 
-TEST_CASE("the player's limits are its own and are checked")
+TEST_CASE("the player checks its limits")
 {
     player_options o;
     o.limits.max_drive_s = -1.0;
     CHECK_THROWS_AS(player(open_alsa(nine()), palm(), o), error);
+}
+
+namespace {
+
+class any_line final : public enable_line {
+public:
+    bool set(bool) noexcept override { return true; }
+};
+
+player_lines slow_amplifier()
+{
+    player_lines l;
+    l.amplifier = std::make_unique<any_line>();
+    l.settle_s = 600.0;
+    return l;
+}
+
+// Only a failure takes so long.
+constexpr double long_enough_s = 60.0;
+
+} // namespace
+
+TEST_CASE("cancel() is reported without a frame being played")
+{
+    dac_player p(patient(), slow_amplifier());
+    const stroke_id score = p.submit(tone(1.0));
+    const live_stroke live = p.begin({.timeout_s = 86400.0});
+    CHECK_FALSE(p.wait(score, 1e-9));
+    CHECK(p.cancel(score));
+    CHECK(p.cancel(live.id()));
+    for (const stroke_id id : {score, live.id()}) {
+        const auto r = p.wait(id, long_enough_s);
+        REQUIRE(r);
+        CHECK(r->state == state_kind::cancelled);
+        CHECK(r->frames == 0);
+    }
+    CHECK(p.position().played == 0);
+    const running_clock clock(p.dac);
+    p.stop();
+}
+
+TEST_CASE("stop() reports waiting strokes before the amplifier has settled")
+{
+    dac_player p(patient(), slow_amplifier());
+    const stroke_id score = p.submit(tone(1.0));
+    const live_stroke live = p.begin({.timeout_s = 86400.0});
+    const running_clock clock(p.dac);
+    const auto before = std::chrono::steady_clock::now();
+    p.stop();
+    CHECK(std::chrono::steady_clock::now() - before < std::chrono::seconds(300)); // of 600
+    for (const stroke_id id : {score, live.id()}) {
+        const auto r = p.wait(id, long_enough_s);
+        REQUIRE(r);
+        CHECK(r->state == state_kind::cancelled);
+    }
 }
 
 } // namespace player_amplifier_test

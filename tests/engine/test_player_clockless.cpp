@@ -26,7 +26,7 @@ using namespace tactor::test;
 
 namespace {
 
-// The PCM called t of a configuration.
+// Returns options for the PCM called t of a configuration.
 alsa_options configured(const std::string& text, format_kind f = format_kind::s32)
 {
     alsa_options o = nine(f);
@@ -52,7 +52,7 @@ std::size_t first_sound(const std::vector<std::byte>& all)
 
 } // namespace
 
-TEST_CASE("what a file PCM receives is silence, the renderer's bytes without a gap, silence")
+TEST_CASE("a file PCM receives silence, the renderer's bytes without a gap, silence")
 {
     for (const format_kind f : {format_kind::s32, format_kind::s16}) {
         CAPTURE(to_string(f));
@@ -129,7 +129,7 @@ TEST_CASE("null paces a stroke in real time, multi of nulls too")
     }
 }
 
-TEST_CASE("a stream with fewer channels than the array is refused, and says which tactor would be mute")
+TEST_CASE("a stream with fewer channels than the array is refused with the tactor that would be mute")
 {
     const array palm = preset_array("palm-3x3");
     try {
@@ -137,9 +137,8 @@ TEST_CASE("a stream with fewer channels than the array is refused, and says whic
         FAIL("it opened");
     } catch (const error& e) {
         CHECK(e.kind() == error_kind::bad_input);
-        CHECK(std::string(e.what()) ==
-              "player: tactor 4 of palm-3x3 is on channel 4, but the stream has 4 channels "
-              "(open it with 9 channels; they count from 0)");
+        CHECK(std::string(e.what()) == "player: tactor 4 of palm-3x3 is on channel 4, but the stream has 4 "
+                                       "channels (open it with 9 channels; they count from 0)");
     }
     CHECK_NOTHROW(player(open_alsa({.pcm = "null", .channels = 9}), palm));
     CHECK_NOTHROW(player(open_alsa({.pcm = "null", .channels = 16}), palm));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What the program's handlers may do to the player: anything; and what is called after the end.
+// Handlers of the program, which may call any member of the player; and calls after the end.
 #include <atomic>
 #include <cerrno>
 #include <exception>
@@ -49,7 +49,7 @@ void raise_flag(std::atomic<bool>& flag)
     flag.notify_all();
 }
 
-// An input that has no edges, with a descriptor of any kind.
+// An input without edges, with a descriptor of any kind.
 class odd_input final : public edge_input {
 public:
     explicit odd_input(int fd) : fd_(fd) {}
@@ -79,7 +79,8 @@ std::string refused_trigger(int fd, int code = 0)
 
 } // namespace
 
-TEST_CASE("a handler may destroy the player: what is left is reported from within, and the device is closed")
+TEST_CASE(
+    "a handler may destroy the player: the other strokes are reported from within, and the device is closed")
 {
     for (const bool own : {false, true}) {
         CAPTURE(own);
@@ -121,7 +122,7 @@ TEST_CASE("a handler may destroy the player: what is left is reported from withi
     }
 }
 
-TEST_CASE("a handler may destroy a player whose device is gone, and one that was stopped")
+TEST_CASE("a handler may destroy a player whose device is gone, or one that was stopped")
 {
     for (const bool unplugged : {false, true}) {
         fake_dac dac;
@@ -170,13 +171,11 @@ TEST_CASE("a handler that destroys the player: the stroke's other handlers are c
     CHECK(others == 2);
 }
 
-TEST_CASE("a handler that throws ends the stream, with the reason, and not the program")
+TEST_CASE("a handler that throws ends the stream with the reason, and not the program")
 {
     for (const bool own : {false, true}) {
         CAPTURE(own);
-        fake_dac dac;
-        const running_clock clock(dac);
-        player p(pcm::adopt(dac.pcm(), nine()), palm(), patient());
+        clocked_player p;
         const std::string why = "a handler of the program threw: no such file";
         std::atomic<int> others{0};
         const auto throws = [](const stroke_report&) { throw std::runtime_error("no such file"); };
@@ -213,11 +212,9 @@ TEST_CASE("a handler that throws ends the stream, with the reason, and not the p
     }
 }
 
-TEST_CASE("a handler may throw anything; what on_end() calls at once throws to its caller")
+TEST_CASE("a handler may throw anything; an on_end() that calls at once throws to its caller")
 {
-    fake_dac dac;
-    const running_clock clock(dac);
-    player p(pcm::adopt(dac.pcm(), nine()), palm(), patient());
+    clocked_player p;
     std::atomic<bool> ended{false};
     std::atomic<bool> told{false};
     p.on_report([&](const stroke_report&) { raise_flag(told); });
@@ -230,18 +227,16 @@ TEST_CASE("a handler may throw anything; what on_end() calls at once throws to i
     p.on_report([](const stroke_report&) { throw 17; });
     const stroke_id other = p.submit(tone(0.001));
     CHECK(p.wait(other)->state == state_kind::finished);
-    // The report may be here before the handler is there.
+    // The report may arrive before the handler is set.
     while (!p.ended())
         std::this_thread::yield();
     p.stop();
     CHECK(p.ended()->why == "a handler of the program threw: not a std::exception");
 }
 
-TEST_CASE("a handler may call all members, and set itself anew")
+TEST_CASE("a handler may call all members, and replace itself")
 {
-    fake_dac dac;
-    const running_clock clock(dac);
-    player p(pcm::adopt(dac.pcm(), nine()), palm(), patient());
+    clocked_player p;
     std::atomic<bool> first{false};
     std::atomic<bool> second{false};
     p.on_report([&](const stroke_report& r) {
@@ -268,9 +263,7 @@ TEST_CASE("a handler may call all members, and set itself anew")
 
 TEST_CASE("after the end all members may be called, and an empty function is refused")
 {
-    fake_dac dac;
-    const running_clock clock(dac);
-    player p(pcm::adopt(dac.pcm(), nine()), palm(), patient());
+    clocked_player p;
     CHECK_THROWS_AS(p.on_end({1}, {}), error);
     live_stroke live = p.begin();
     const stroke_id id = p.submit(tone(endless_s));
@@ -306,11 +299,9 @@ TEST_CASE("a trigger whose descriptor cannot be polled is an error")
     ::close(event);
 }
 
-TEST_CASE("Asio: a plain callback runs in the context that was named, which is at work until then")
+TEST_CASE("Asio: a plain callback runs in the named context, which stays at work until then")
 {
-    fake_dac dac;
-    const running_clock clock(dac);
-    player p(pcm::adopt(dac.pcm(), nine()), palm(), patient());
+    clocked_player p;
     const auto here = std::this_thread::get_id();
     int calls = 0;
     const auto ran = [&](std::exception_ptr failed, const stroke_report& r) {
@@ -328,7 +319,7 @@ TEST_CASE("Asio: a plain callback runs in the context that was named, which is a
     CHECK(io.run() > 0);
     CHECK(calls == 2);
 
-    // One that runs elsewhere is waited for here, too.
+    // A callback bound to another context runs there.
     boost::asio::io_context other;
     io.restart();
     async_play(io, p, tone(0.01), start_at::now(), boost::asio::bind_executor(other, ran));
@@ -348,7 +339,7 @@ TEST_CASE("Asio: a plain callback runs in the context that was named, which is a
     p.stop();
 }
 
-TEST_CASE("Asio: callbacks that nobody gave a context are refused by the compiler")
+TEST_CASE("Asio: the compiler refuses callbacks without a context")
 {
     const auto plain = [](std::exception_ptr, const stroke_report&) {};
     boost::asio::io_context io;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What is the program's own may call the player while it goes: handlers with what they hold, phantom models.
+// Code of the program that calls the player while it is destroyed: handlers' captures, phantom models.
 #include <atomic>
 #include <cstddef>
 #include <functional>
@@ -22,7 +22,6 @@
 #include "engine/live/live_voice.hpp"
 #include "player_support.hpp"
 #include "scores.hpp"
-#include "sink/alsa/adopt.hpp"
 
 namespace player_own_code_test {
 
@@ -31,7 +30,7 @@ using namespace tactor::test;
 
 namespace {
 
-/// Asks the player where it is when it goes.
+/// Asks the player for its position when it is destroyed.
 class asking {
 public:
     asking(const player& p, std::atomic<int>& gone) : player_(&p), gone_(&gone) {}
@@ -49,7 +48,7 @@ private:
     std::atomic<int>* gone_;
 };
 
-/// The same, whenever it is asked for something, too.
+/// The same, also whenever it is asked for something.
 class asking_model final : public phantom_model {
 public:
     asking_model(const player& p, std::atomic<int>& gone) : player_(&p), goes_(p, gone) {}
@@ -70,7 +69,7 @@ private:
     asking goes_;
 };
 
-/// Does something to the stroke that asks it.
+/// Acts on the stroke that asks it.
 class meddling_model final : public phantom_model {
 public:
     explicit meddling_model(std::function<void()> f) : does_(std::move(f)) {}
@@ -91,7 +90,7 @@ void await(const std::atomic<int>& n, int wanted)
         n.wait(seen);
 }
 
-live_options of_model(const player& p, std::atomic<int>& gone)
+live_options asking_options(const player& p, std::atomic<int>& gone)
 {
     live_options o{.timeout_s = 86400.0};
     o.plan.custom_phantom = std::make_shared<asking_model>(p, gone);
@@ -100,12 +99,11 @@ live_options of_model(const player& p, std::atomic<int>& gone)
 
 } // namespace
 
-TEST_CASE("what a handler holds may call the player when it goes")
+TEST_CASE("objects that a handler holds may call the player when they are destroyed")
 {
-    fake_dac dac;
     std::atomic<int> gone{0};
-    player p(pcm::adopt(dac.pcm(), nine()), palm(), patient());
-    const running_clock clock(dac);
+    dac_player p;
+    const running_clock clock(p.dac);
     SUBCASE("of one stroke's end")
     {
         const stroke_id id = p.submit(tone(0.01), start_at::trigger());
@@ -130,14 +128,13 @@ TEST_CASE("what a handler holds may call the player when it goes")
     p.stop();
 }
 
-TEST_CASE("a phantom model may call the player when it is asked and when it goes")
+TEST_CASE("a phantom model may call the player when it is asked and when it is destroyed")
 {
-    fake_dac dac;
     std::atomic<int> gone{0};
-    player p(pcm::adopt(dac.pcm(), nine()), palm(), patient());
+    dac_player p;
     SUBCASE("of a continuous stroke")
     {
-        const running_clock clock(dac);
+        const running_clock clock(p.dac);
         const auto line = trajectory::along(path::from_svg("M 0 0 L 40 40"), 0.1);
         plan_options o{.algorithm = algorithm_kind::continuous,
                        .custom_phantom = std::make_shared<asking_model>(p, gone)};
@@ -149,10 +146,10 @@ TEST_CASE("a phantom model may call the player when it is asked and when it goes
     }
     SUBCASE("of a live stroke that sounded")
     {
-        const running_clock clock(dac);
+        const running_clock clock(p.dac);
         stroke_id id;
         {
-            live_stroke s = p.begin(of_model(p, gone));
+            live_stroke s = p.begin(asking_options(p, gone));
             id = s.id();
             REQUIRE(s.to(20.0, 20.0));
             s.end();
@@ -163,14 +160,14 @@ TEST_CASE("a phantom model may call the player when it is asked and when it goes
     }
     SUBCASE("of live strokes that did not begin: cancelled, or ended with the stream")
     {
-        std::vector<live_stroke> playing; // all places, so that the others wait for one
+        std::vector<live_stroke> playing; // all places, so that the others wait
         for (std::size_t i = 0; i < engine::live_places; ++i)
-            REQUIRE(playing.emplace_back(p.begin(of_model(p, gone))).to(20.0, 20.0));
-        const stroke_id first = p.begin(of_model(p, gone)).id();
-        const stroke_id second = p.begin(of_model(p, gone)).id();
+            REQUIRE(playing.emplace_back(p.begin(asking_options(p, gone))).to(20.0, 20.0));
+        const stroke_id first = p.begin(asking_options(p, gone)).id();
+        const stroke_id second = p.begin(asking_options(p, gone)).id();
         CHECK(p.cancel(first));
         await(gone, 1);
-        const running_clock clock(dac);
+        const running_clock clock(p.dac);
         p.stop();
         CHECK(p.wait(second)->state == state_kind::cancelled);
         playing.clear();
@@ -178,11 +175,10 @@ TEST_CASE("a phantom model may call the player when it is asked and when it goes
     }
 }
 
-TEST_CASE("a phantom model that moves the stroke that asks it is refused, and the stroke ends; it may end it")
+TEST_CASE("a phantom model that moves its own stroke is refused and ends it; it may end the stroke")
 {
-    fake_dac dac;
-    player p(pcm::adopt(dac.pcm(), nine()), palm(), patient());
-    const running_clock clock(dac);
+    dac_player p;
+    const running_clock clock(p.dac);
     for (const double smooth_s : {0.0, 0.05}) {
         std::optional<live_stroke> s;
         std::function<void()> does = [&s] { s->to(20.0, 20.0); };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Sync pulses: which, when, and what is counted; on virtual time, and once with the real thread.
+// Sync pulses: which, when, and their counts; on virtual time, and once with the real thread.
 
 #include <algorithm>
 #include <condition_variable>
@@ -29,7 +29,7 @@ namespace {
 
 constexpr std::int64_t us = 1000;
 
-/// Sleeps are late by what the test says.
+/// Sleeps too long by a given time.
 struct fake_time final : engine::pulse_time {
     std::int64_t now() noexcept override { return t; }
     void sleep_until(std::int64_t until) noexcept override { t = std::max(t, until) + late; }
@@ -61,7 +61,7 @@ void send(engine::pulse_emitter& e, std::int64_t due_ns)
 
 } // namespace
 
-TEST_CASE("a pulse is switched on at its time, less what the call costs, and off after its length")
+TEST_CASE("a pulse goes on at its time, less the cost of the call, and off after its length")
 {
     fake_time t;
     fake_output line(t);
@@ -82,7 +82,7 @@ TEST_CASE("a pulse is switched on at its time, less what the call costs, and off
     CHECK(e.stats().mean_late_s == doctest::Approx(3e-6));
 }
 
-TEST_CASE("lateness is counted, a pulse that is far too late is not sent")
+TEST_CASE("lateness is counted, and a pulse that is far too late is not sent")
 {
     fake_time t;
     fake_output line(t);
@@ -98,7 +98,7 @@ TEST_CASE("lateness is counted, a pulse that is far too late is not sent")
     CHECK(line.log.size() == 2);
 }
 
-TEST_CASE("a pulse that is called off while it waits is not sent; a line that fails is counted")
+TEST_CASE("a pulse called off while it waits is not sent; a line that fails is counted")
 {
     fake_time t;
     fake_output line(t);
@@ -149,7 +149,7 @@ TEST_CASE("the player sends or misses one pulse for each stroke")
         lines.pulse_s = 0.001;
         player p(open_alsa(nine()), palm(), patient(), std::move(lines));
         for (int i = 0; i < 3; ++i) {
-            // A machine that is busy may miss one, and be so late that its stroke is over: it says so.
+            // A busy machine may miss one, and be so late that its stroke is over: that is counted.
             const stroke_id id = p.submit(tone(i == 0 ? 0.01 : endless_s));
             const auto settled = [&] {
                 const player_stats s = p.stats();

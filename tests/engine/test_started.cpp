@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
-// When the first sample of a stroke was at the DAC: told of every stroke that sounded.
+// Start times: the first sample at the DAC of every stroke that sounded.
 #include <cmath>
-#include <vector>
 
 #include <doctest/doctest.h>
 
@@ -20,13 +19,13 @@ using namespace tactor::test;
 
 namespace {
 
-// The rig plays a period in each step, and its clock moves by as much.
+// Returns a period of the rig, ns: each step plays one, and the clock moves as much.
 double period_ns(rig& r)
 {
     return 1e9 * r.options.period / r.options.sample_rate;
 }
 
-// When the virtual DAC has a frame of the epoch whose frame `played` it has now.
+// Returns the time of a frame of the current epoch at the virtual DAC, ns.
 double true_time(rig& r, std::uint64_t frame)
 {
     const auto ahead = static_cast<double>(frame) - static_cast<double>(r.status().played);
@@ -35,12 +34,11 @@ double true_time(rig& r, std::uint64_t frame)
 
 void check_started(rig& r, stroke_id id, double when)
 {
-    REQUIRE(r.report(id));
-    REQUIRE(r.report(id)->started_ns);
-    CHECK(std::abs(static_cast<double>(*r.report(id)->started_ns) - when) < period_ns(r));
+    REQUIRE(r.end(id).started_ns);
+    CHECK(std::abs(static_cast<double>(*r.end(id).started_ns) - when) < period_ns(r));
 }
 
-// A sink that never knows where it is until so many frames are written.
+// A sink without a position as long as it is shy.
 class shy_sink : public forwarding_sink {
 public:
     shy_sink(std::unique_ptr<sink> s, const bool& shy) : forwarding_sink(std::move(s)), shy_(shy) {}
@@ -61,16 +59,13 @@ TEST_CASE("the first stroke of a player, submitted before the clock is known, ha
 {
     for (const unsigned period : {32U, 96U, 1024U}) {
         CAPTURE(period);
-        rig_options o;
-        o.period = period;
-        rig r(o);
+        rig r({.period = period, .started = false});
         const stroke_id id = r.submit(tone(0.1));
         REQUIRE(r.start().status == io_kind::ok);
         CHECK_FALSE(r.link.clock.load().valid());
         r.play_out();
-        REQUIRE(r.report(id));
-        CHECK(r.report(id)->state == state_kind::finished);
-        CHECK(r.report(id)->late_s == 0.0);
+        CHECK(r.end(id).state == state_kind::finished);
+        CHECK(r.end(id).late_s == 0.0);
         check_started(r, id, true_time(r, *r.first_sound() - 1)); // a sine begins with a zero
     }
 }
@@ -78,22 +73,18 @@ TEST_CASE("the first stroke of a player, submitted before the clock is known, ha
 TEST_CASE("a stroke as short as a frame or as a period has its start, one without sound has none")
 {
     rig r;
-    REQUIRE(r.start().status == io_kind::ok);
     const stroke_id frame = r.submit(tone(1.0 / rate));
     const stroke_id period = r.submit(tone(96.0 / rate));
     const stroke_id nothing = r.submit(score(palm(), {}, {}));
     r.play_out();
-    for (const stroke_id id : {frame, period}) {
-        REQUIRE(r.report(id));
-        CHECK(r.report(id)->started_ns.has_value());
-    }
-    REQUIRE(r.report(nothing));
-    CHECK_FALSE(r.report(nothing)->started_ns.has_value());
+    for (const stroke_id id : {frame, period})
+        CHECK(r.end(id).started_ns.has_value());
+    CHECK_FALSE(r.end(nothing).started_ns.has_value());
 }
 
-TEST_CASE("strokes that are cut tell when they began, those that never sounded tell nothing")
+TEST_CASE("strokes that are cut report their start, those that never sounded report none")
 {
-    rig r;
+    rig r({.started = false});
     const stroke_id cancelled = r.submit(tone(5.0));
     const stroke_id cut = r.submit(tone(5.0));
     const stroke_id waiting = r.submit(tone(0.1), start_at::frame(480'000));
@@ -106,24 +97,21 @@ TEST_CASE("strokes that are cut tell when they began, those that never sounded t
     r.feed.cancel(armed);
     r.play(4800);
     check_started(r, cancelled, when);
-    CHECK(r.report(cancelled)->state == state_kind::cancelled);
+    CHECK(r.end(cancelled).state == state_kind::cancelled);
     r.dac.advance(4800); // runs dry
     r.play(960);
     check_started(r, cut, when);
-    CHECK(r.report(cut)->state == state_kind::interrupted);
-    for (const stroke_id id : {waiting, armed}) {
-        REQUIRE(r.report(id));
-        CHECK_FALSE(r.report(id)->started_ns.has_value());
-    }
+    CHECK(r.end(cut).state == state_kind::interrupted);
+    for (const stroke_id id : {waiting, armed})
+        CHECK_FALSE(r.end(id).started_ns.has_value());
 }
 
-TEST_CASE("an xrun before the DAC's position was ever read does not take the start away")
+TEST_CASE("an xrun before the DAC's position was ever read keeps the start")
 {
     bool shy = true;
     rig_options o;
     o.wrap = [&shy](std::unique_ptr<sink> s) { return std::make_unique<shy_sink>(std::move(s), shy); };
     rig r(o);
-    REQUIRE(r.start().status == io_kind::ok);
     const std::int64_t begin = r.now;
     const stroke_id id = r.submit(tone(5.0));
     r.play(960);
@@ -131,15 +119,13 @@ TEST_CASE("an xrun before the DAC's position was ever read does not take the sta
     r.dac.advance(4800);
     shy = false;
     r.play(960);
-    REQUIRE(r.report(id));
-    CHECK(r.report(id)->state == state_kind::interrupted);
+    CHECK(r.end(id).state == state_kind::interrupted);
     check_started(r, id, static_cast<double>(begin) + static_cast<double>(first) * 1e9 / rate);
 }
 
-TEST_CASE("the start of a stroke after an xrun is told by the clock of its own epoch")
+TEST_CASE("the start of a stroke after an xrun is in the clock of its epoch")
 {
     rig r;
-    REQUIRE(r.start().status == io_kind::ok);
     r.play(9600);
     r.dac.advance(4800); // runs dry, and stands for a second
     r.now += 1'000'000'000;
@@ -151,19 +137,19 @@ TEST_CASE("the start of a stroke after an xrun is told by the clock of its own e
     check_started(r, id, true_time(r, epoch + *r.first_sound(from) - 1));
 }
 
-TEST_CASE("a live stroke tells when its first point was felt")
+TEST_CASE("a live stroke reports when its first point was felt")
 {
     live_rig r;
     r.play(960);
     CHECK(r.live->to({20.0, 20.0}, 1.0));
     r.play(960);
-    r.live->voice.ask(engine::live_voice::wish::end);
+    r.live->voice.request(engine::live_voice::action::end);
     r.play_out();
     REQUIRE(r.first_sound());
     check_started(r, r.live->id, true_time(r, *r.first_sound() - 1));
 }
 
-TEST_CASE("every stroke that was played on null has its start, the first of each player too")
+TEST_CASE("every stroke played on null has its start, the first of each player too")
 {
     for (int n = 0; n < 10; ++n) {
         CAPTURE(n);

@@ -1,11 +1,19 @@
 // SPDX-License-Identifier: MIT
-// Devices that sleep.
+// Devices that sleep, and one that gives no descriptors.
+#include <cstddef>
 #include <memory>
+#include <span>
 #include <utility>
+#include <vector>
+
+#include <poll.h>
 
 #include <doctest/doctest.h>
 
+#include "fake_dac.hpp"
 #include "live_rig.hpp"
+#include "player_support.hpp"
+#include "sink/alsa/adopt.hpp"
 
 namespace suspend_test {
 
@@ -14,7 +22,7 @@ using namespace tactor::test;
 
 namespace {
 
-// Says "not yet" whenever it is asked to resume.
+// Returns "again" for each resume.
 class sleepy_sink final : public forwarding_sink {
 public:
     using forwarding_sink::forwarding_sink;
@@ -22,7 +30,7 @@ public:
     io_kind resume() noexcept override { return io_kind::again; }
 };
 
-/// Does not start the second time, after its buffer was filled.
+/// Fails the second start, after its buffer was filled.
 class slow_starter final : public forwarding_sink {
 public:
     slow_starter(std::unique_ptr<sink> s, io_kind says) : forwarding_sink(std::move(s)), says_(says) {}
@@ -41,7 +49,6 @@ TEST_CASE("a suspended device is resumed when it can, with a fresh stream")
     for (const bool can_resume : {true, false}) {
         CAPTURE(can_resume);
         rig r;
-        REQUIRE(r.start().status == io_kind::ok);
         const std::uint64_t base = r.status().written;
         const stroke_id id = r.submit(tone(1.0));
         r.play(9600);
@@ -55,11 +62,10 @@ TEST_CASE("a suspended device is resumed when it can, with a fresh stream")
         CHECK_FALSE(r.loop.polls_sink());
         CHECK(r.loop.timeout_ns() == 2'000'000);
         CHECK_FALSE(r.loop.over());
-        REQUIRE(r.report(id));
-        CHECK(r.report(id)->state == state_kind::interrupted);
-        CHECK(r.report(id)->why == "the system was suspended");
-        CHECK(r.report(id)->reason == reason_kind::suspended);
-        CHECK(r.report(id)->frames <= played - base);
+        CHECK(r.end(id).state == state_kind::interrupted);
+        CHECK(r.end(id).why == "the system was suspended");
+        CHECK(r.end(id).reason == reason_kind::suspended);
+        CHECK(r.end(id).frames <= played - base);
 
         const stroke_id waiting = r.submit(tone(0.01));
         r.step();
@@ -71,24 +77,23 @@ TEST_CASE("a suspended device is resumed when it can, with a fresh stream")
         CHECK(r.dac.captured_frames() == captured + 288);
         CHECK(r.dac.starts() == 2);
         r.play_out();
-        CHECK(r.report(waiting)->state == state_kind::finished);
-        // Nothing of the old stroke is heard again.
+        CHECK(r.end(waiting).state == state_kind::finished);
+        // The old stroke does not sound again.
         CHECK(r.first_sound(captured) == captured + 289);
         CHECK(r.link.count.xruns == 0);
     }
 }
 
-TEST_CASE("a device that never wakes up is prepared afresh in the end")
+TEST_CASE("a device that never wakes up neither ends nor spins")
 {
     rig r;
-    REQUIRE(r.start().status == io_kind::ok);
     r.dac.suspend();
     const std::int64_t begun = r.now;
     for (int i = 0; i < 10'000; ++i)
         r.step();
     const std::int64_t took = r.now - begun;
     CHECK(r.loop.over() == false);
-    // prepare() says "suspended" again, and so on: no end, no spinning, no xrun.
+    // prepare() returns "suspended" again and again: no end, no spinning, no xrun.
     CHECK(took >= 10'000 * 1'900'000LL);
     CHECK(r.link.count.xruns == 0);
 }
@@ -96,7 +101,6 @@ TEST_CASE("a device that never wakes up is prepared afresh in the end")
 TEST_CASE("a resume that is never ready is given up after ten seconds, for a fresh start")
 {
     rig r({.wrap = [](auto s) { return std::make_unique<sleepy_sink>(std::move(s)); }});
-    REQUIRE(r.start().status == io_kind::ok);
     r.play(960);
     r.dac.suspend();
     r.step();
@@ -115,10 +119,9 @@ TEST_CASE("a resume that is never ready is given up after ten seconds, for a fre
 TEST_CASE("stop ends a suspended stream at once")
 {
     rig r;
-    REQUIRE(r.start().status == io_kind::ok);
     r.dac.suspend();
     r.play(960);
-    r.link.requests.push({.what = engine::request::kind::stop});
+    r.stop();
     r.step();
     r.control();
     CHECK(r.loop.over());
@@ -126,7 +129,7 @@ TEST_CASE("stop ends a suspended stream at once")
     CHECK(r.feed.end().why.empty());
 }
 
-TEST_CASE("what begins in a buffer that is filled and not started ends there, once")
+TEST_CASE("a stroke that begins in a buffer that is filled and not started ends there, once")
 {
     for (const io_kind says : {io_kind::xrun, io_kind::suspended}) {
         CAPTURE(static_cast<int>(says));
@@ -145,13 +148,32 @@ TEST_CASE("what begins in a buffer that is filled and not started ends there, on
             r.play(96);
         CHECK(r.status().running);
         CHECK(r.status().written > written);
-        REQUIRE(r.report({1}));
-        CHECK(r.report({1})->state == state_kind::interrupted);
-        CHECK(r.report({1})->reason == (says == io_kind::xrun ? reason_kind::xrun : reason_kind::suspended));
-        CHECK(r.report({1})->frames == 0);
+        CHECK(r.end({1}).state == state_kind::interrupted);
+        CHECK(r.end({1}).reason == (says == io_kind::xrun ? reason_kind::xrun : reason_kind::suspended));
+        CHECK(r.end({1}).frames == 0);
         CHECK(r.ended.size() == 1);
         CHECK(r.link.count.suspends == (says == io_kind::xrun ? 1 : 2));
     }
+}
+
+TEST_CASE("a device without descriptors in an xrun, such as dmix, is not asked about them")
+{
+    fake_dac dac;
+    dac.hide_descriptors_in_xrun();
+    const auto s = pcm::adopt(dac.pcm(), nine());
+    std::vector<std::byte> silence(288 * s->setup().frame_bytes());
+    REQUIRE(s->prepare() == io_kind::ok);
+    REQUIRE(s->write(silence).frames == 288);
+    REQUIRE(s->start() == io_kind::ok);
+    std::vector<pollfd> fds(s->max_descriptors());
+    CHECK(s->descriptors(fds) == 1);
+    CHECK(s->ready(std::span(fds).first(1)) == io_kind::again);
+    dac.advance(10'000);
+    CHECK(s->available().status == io_kind::xrun);
+    const std::size_t n = s->descriptors(fds);
+    CHECK(n == 0);
+    CHECK(s->ready(std::span(fds).first(n)) == io_kind::xrun);
+    CHECK(dac.asked_in_vain() == 0);
 }
 
 } // namespace suspend_test

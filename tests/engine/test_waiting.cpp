@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: MIT
 // Strokes that wait, for the amplifier, for a point, for others: cancel and stop reach them at once.
-#include <memory>
-#include <vector>
 
 #include <doctest/doctest.h>
 
@@ -14,7 +12,7 @@ using namespace tactor::test;
 
 namespace {
 
-/// Nobody drives the amplifier: what begins waits until the test says that it is ready.
+/// Returns options without an amplifier driver: strokes wait until the test sets it ready.
 rig_options held()
 {
     rig_options o;
@@ -29,20 +27,17 @@ live_options with_timeout(double s)
     return o;
 }
 
-state_kind state_of(const rig& r, stroke_id id)
+state_kind unheard_state(const rig& r, stroke_id id)
 {
-    REQUIRE(r.report(id));
-    CHECK(r.report(id)->frames == 0);
-    return r.report(id)->state;
+    CHECK(r.end(id).frames == 0);
+    return r.end(id).state;
 }
 
 } // namespace
 
-TEST_CASE(
-    "while the amplifier settles: a cancel is reported with the next wake-up, what is not cancelled plays")
+TEST_CASE("while the amplifier settles a cancel is reported with the next wake-up, and other strokes play")
 {
     rig r(held());
-    REQUIRE(r.start().status == io_kind::ok);
     const score kept = random_score(3, 5);
     const stroke_id first = r.submit(tone(1.0));
     const stroke_id second = r.submit(kept);
@@ -54,23 +49,21 @@ TEST_CASE(
     CHECK_FALSE(r.feed.cancel(first));
     r.step(); // the DAC stands still
     r.control();
-    CHECK(state_of(r, first) == state_kind::cancelled);
-    CHECK(state_of(r, third) == state_kind::cancelled);
+    CHECK(unheard_state(r, first) == state_kind::cancelled);
+    CHECK(unheard_state(r, third) == state_kind::cancelled);
     CHECK_FALSE(r.report(second));
 
     const std::uint64_t from = r.status().written;
     r.link.amplifier.ready = true;
     r.play_out();
-    REQUIRE(r.report(second));
-    CHECK(r.report(second)->state == state_kind::finished);
+    CHECK(r.end(second).state == state_kind::finished);
     CHECK(r.captured(from, kept.frames()) == rendered(kept, format_kind::s32));
     CHECK(r.ended.size() == 3);
 }
 
-TEST_CASE("thousands that are submitted and cancelled while they wait end once each, and none is heard")
+TEST_CASE("thousands of strokes submitted and cancelled while they wait end once each, unheard")
 {
     rig r(held());
-    REQUIRE(r.start().status == io_kind::ok);
     constexpr unsigned rounds = 2000;
     for (unsigned n = 1; n <= rounds; ++n) {
         r.submit(tone(0.01, n % 9));
@@ -83,36 +76,33 @@ TEST_CASE("thousands that are submitted and cancelled while they wait end once e
     r.play(960);
     CHECK(r.ended.size() == rounds);
     for (unsigned n = 1; n <= rounds; ++n)
-        CHECK(state_of(r, {n}) == state_kind::cancelled);
+        CHECK(unheard_state(r, {n}) == state_kind::cancelled);
     r.link.amplifier.ready = true;
     r.play(9600);
     CHECK_FALSE(r.first_sound());
     CHECK(r.ended.size() == rounds);
     const stroke_id next = r.submit(tone(0.01));
     r.play_out();
-    REQUIRE(r.report(next));
-    CHECK(r.report(next)->state == state_kind::finished);
+    CHECK(r.end(next).state == state_kind::finished);
     CHECK(r.first_sound());
 }
 
-TEST_CASE("stop reaches what waits for the amplifier")
+TEST_CASE("stop reaches strokes that wait for the amplifier")
 {
     rig r(held());
-    REQUIRE(r.start().status == io_kind::ok);
     const stroke_id cancelled = r.submit(tone(1.0));
     const stroke_id stopped = r.submit(tone(1.0));
     CHECK(r.feed.cancel(cancelled));
-    r.link.requests.push({.what = engine::request::kind::stop});
+    r.stop();
     r.step();
     r.control();
-    CHECK(state_of(r, cancelled) == state_kind::cancelled);
-    CHECK(state_of(r, stopped) == state_kind::cancelled);
+    CHECK(unheard_state(r, cancelled) == state_kind::cancelled);
+    CHECK(unheard_state(r, stopped) == state_kind::cancelled);
     r.play(4 * 96 + 288);
     CHECK(r.loop.over());
 }
 
-TEST_CASE(
-    "live strokes behind a stroke that waits: ended, cancelled and timed out as if nothing stood before them")
+TEST_CASE("live strokes behind a waiting stroke end, cancel and time out as without it")
 {
     rig_options o = held();
     live_rig r(with_timeout(0.2), o);
@@ -121,31 +111,31 @@ TEST_CASE(
     const auto cancelled = r.add(with_timeout(0.2));
     const auto fed = r.add(with_timeout(0.2));
     r.play(960);
-    ended->voice.ask(engine::live_voice::wish::end);
-    cancelled->voice.ask(engine::live_voice::wish::cancel);
+    ended->voice.request(engine::live_voice::action::end);
+    cancelled->voice.request(engine::live_voice::action::cancel);
     r.play(192);
-    CHECK(state_of(r, ended->id) == state_kind::finished);
-    CHECK(state_of(r, cancelled->id) == state_kind::cancelled);
+    CHECK(unheard_state(r, ended->id) == state_kind::finished);
+    CHECK(unheard_state(r, cancelled->id) == state_kind::cancelled);
     for (int i = 0; i < 110; ++i) {
         fed->to({0.0, 0.0}, 1.0);
         r.play(96);
     }
-    CHECK(state_of(r, r.live->id) == state_kind::interrupted);
-    CHECK(r.report(r.live->id)->why == "no more points came");
-    CHECK(r.report(r.live->id)->reason == reason_kind::starved);
+    CHECK(unheard_state(r, r.live->id) == state_kind::interrupted);
+    CHECK(r.end(r.live->id).why == "no more points came");
+    CHECK(r.end(r.live->id).reason == reason_kind::starved);
     CHECK_FALSE(r.report(before));
     CHECK_FALSE(r.report(fed->id));
     CHECK_FALSE(r.first_sound());
     r.link.amplifier.ready = true;
     r.play(960);
     CHECK(r.first_sound());
-    fed->voice.ask(engine::live_voice::wish::end);
+    fed->voice.request(engine::live_voice::action::end);
     r.play_out();
-    CHECK(r.report(fed->id)->state == state_kind::finished);
-    CHECK(r.report(before)->state == state_kind::finished);
+    CHECK(r.end(fed->id).state == state_kind::finished);
+    CHECK(r.end(before).state == state_kind::finished);
 }
 
-TEST_CASE("while the system sleeps a live stroke that waits can be cancelled by its handle")
+TEST_CASE("while the system sleeps, a handle cancels a live stroke that waits")
 {
     live_rig r;
     r.play(960);
@@ -154,12 +144,12 @@ TEST_CASE("while the system sleeps a live stroke that waits can be cancelled by 
     r.control();
     REQUIRE(r.status().stage == engine::stream_stage::suspended);
     const stroke_id score = r.submit(tone(0.1));
-    r.live->voice.ask(engine::live_voice::wish::cancel);
+    r.live->voice.request(engine::live_voice::action::cancel);
     CHECK(r.feed.cancel(score));
     r.step();
     r.control();
-    CHECK(state_of(r, r.live->id) == state_kind::cancelled);
-    CHECK(state_of(r, score) == state_kind::cancelled);
+    CHECK(unheard_state(r, r.live->id) == state_kind::cancelled);
+    CHECK(unheard_state(r, score) == state_kind::cancelled);
 }
 
 } // namespace waiting_test

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Live strokes without points, without handles and without a place: none waits for ever or keeps others from
-// it.
+// Live strokes without points, handles or a place: none waits for ever or keeps others waiting.
 #include <memory>
 #include <vector>
 
@@ -27,12 +26,12 @@ live_options short_timeout()
 bool starved(const rig& r, stroke_id id)
 {
     return r.report(id) && r.report(id)->state == state_kind::interrupted &&
-           r.report(id)->why == "no more points came";
+           r.end(id).why == "no more points came";
 }
 
 } // namespace
 
-TEST_CASE("strokes that never get a point take no place from those that do")
+TEST_CASE("live strokes without points take no place from those with points")
 {
     live_rig r;
     std::vector<std::shared_ptr<live_stroke::impl>> unfed;
@@ -57,7 +56,7 @@ TEST_CASE("the time-out holds before the first point, with and without a handle"
     r.play(480);
     CHECK(starved(r, r.live->id));
     CHECK(starved(r, dropped));
-    CHECK(r.report(dropped)->frames == 0);
+    CHECK(r.end(dropped).frames == 0);
     CHECK_FALSE(r.live->to({0.0, 0.0}, 1.0));
     CHECK_FALSE(r.report(patient->id));
     CHECK(patient->to({0.0, 0.0}, 1.0));
@@ -65,13 +64,11 @@ TEST_CASE("the time-out holds before the first point, with and without a handle"
     CHECK(r.first_sound());
 }
 
-TEST_CASE("more than can sound: they wait in order, with their newest point, and time out where none comes")
+TEST_CASE("live strokes beyond the places wait in order, with their newest point, and time out without one")
 {
     live_rig r;
-    std::vector<std::shared_ptr<live_stroke::impl>> all{r.live};
     const auto most = static_cast<std::size_t>(engine::live_voices);
-    while (all.size() < most)
-        all.push_back(r.add());
+    const auto all = r.fill(most);
     const auto feed = [&](std::uint64_t frames) {
         for (std::uint64_t f = 0; f < frames; f += 480) {
             for (std::size_t i = 0; i < most; ++i)
@@ -85,7 +82,7 @@ TEST_CASE("more than can sound: they wait in order, with their newest point, and
     const auto ended = r.add(short_timeout());
     ended->to({0.0, 0.0}, 1.0);
     ended->to({20.0, 0.0}, 1.0);
-    ended->voice.ask(engine::live_voice::wish::end); // no more points are owed
+    ended->voice.request(engine::live_voice::action::end); // no more points are due
     const auto last = r.add();
     feed(timeout_frames + 960);
     CHECK(starved(r, silent->id));
@@ -94,39 +91,35 @@ TEST_CASE("more than can sound: they wait in order, with their newest point, and
     CHECK(peak(r.channel(1), 0, SIZE_MAX) == 0.0);
 
     last->to({0.0, 40.0}, 1.0);
-    all[3]->voice.ask(engine::live_voice::wish::end); // one place, for the first that waits
+    all[3]->voice.request(engine::live_voice::action::end); // one place, for the first that waits
     feed(3360);
-    REQUIRE(r.report(ended->id));
-    CHECK(r.report(ended->id)->state == state_kind::finished);
-    CHECK(r.report(ended->id)->frames > 0);
+    CHECK(r.end(ended->id).state == state_kind::finished);
+    CHECK(r.end(ended->id).frames > 0);
     CHECK(peak(r.channel(1), 0, SIZE_MAX) > 0.5 * live_level);
     feed(960);
     CHECK(peak(r.channel(6), 0, SIZE_MAX) > 0.5 * live_level);
 }
 
-TEST_CASE("hundreds at once: each is cancelled by its handle, ended or timed out, wherever it waits")
+TEST_CASE("hundreds of live strokes at once: each can be cancelled, ended or timed out, wherever it waits")
 {
     live_rig r(short_timeout());
-    std::vector<std::shared_ptr<live_stroke::impl>> all{r.live};
-    while (all.size() < 3 * engine::live_places)
-        all.push_back(r.add(short_timeout()));
+    const auto all = r.fill(3 * engine::live_places, short_timeout());
     r.play(960);
     for (std::size_t i = 0; i < all.size(); ++i)
         if (i % 3 == 1)
-            all[i]->voice.ask(engine::live_voice::wish::end);
+            all[i]->voice.request(engine::live_voice::action::end);
         else if (i % 3 == 2)
-            all[i]->voice.ask(engine::live_voice::wish::cancel);
+            all[i]->voice.request(engine::live_voice::action::cancel);
     r.play(288);
     CHECK(r.ended.size() == 2 * engine::live_places);
     r.play(timeout_frames);
     CHECK(r.ended.size() == all.size());
     for (std::size_t i = 0; i < all.size(); ++i) {
-        const auto report = r.report(all[i]->id);
-        REQUIRE(report);
-        CHECK(report->frames == 0);
-        CHECK(report->state == (i % 3 == 0   ? state_kind::interrupted
-                                : i % 3 == 1 ? state_kind::finished
-                                             : state_kind::cancelled));
+        const auto report = r.end(all[i]->id);
+        CHECK(report.frames == 0);
+        CHECK(report.state == (i % 3 == 0   ? state_kind::interrupted
+                               : i % 3 == 1 ? state_kind::finished
+                                            : state_kind::cancelled));
         CHECK(all[i]->voice.closed());
     }
     const auto fresh = r.add();
@@ -135,20 +128,17 @@ TEST_CASE("hundreds at once: each is cancelled by its handle, ended or timed out
     CHECK(r.first_sound());
 }
 
-TEST_CASE("one that waits for a place is cancelled by its number, once")
+TEST_CASE("a live stroke that waits for a place is cancelled by its number, once")
 {
     live_rig r;
-    std::vector<std::shared_ptr<live_stroke::impl>> all{r.live};
-    while (all.size() <= engine::live_places)
-        all.push_back(r.add());
+    const auto all = r.fill(engine::live_places + 1);
     const auto& last = all.back();
     CHECK(r.feed.knows(last->id));
     CHECK(r.feed.cancel(last->id));
     CHECK_FALSE(r.feed.cancel(last->id));
     CHECK(last->voice.closed());
     r.control();
-    REQUIRE(r.report(last->id));
-    CHECK(r.report(last->id)->state == state_kind::cancelled);
+    CHECK(r.end(last->id).state == state_kind::cancelled);
     CHECK_FALSE(r.feed.knows(last->id));
 }
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// When the audio thread wakes the control side: often enough to be fed, at once where the stream changes.
+// Wake-ups of the control side by the audio thread: often enough to feed it, at once where the stream
+// changes.
 #include <doctest/doctest.h>
 
 #include "live_rig.hpp"
@@ -12,7 +13,7 @@ using namespace tactor::test;
 
 namespace {
 
-// The DAC plays a period; whether the control side was woken for it.
+// Plays a period; returns whether the control side was woken for it.
 bool wakes(rig& r)
 {
     r.dac.advance_queued(r.options.period);
@@ -20,7 +21,7 @@ bool wakes(rig& r)
     return r.link.to_control.consume() > 0;
 }
 
-// The stream has begun, and its clock is known.
+// Plays until the stream has begun and its clock is known.
 void settle(rig& r)
 {
     for (int i = 0; i < 100; ++i)
@@ -31,10 +32,9 @@ void settle(rig& r)
 } // namespace
 
 TEST_CASE(
-    "a stroke longer than the horizon is fed to its end where the control side sleeps until it is woken")
+    "a stroke longer than the horizon is fed to its end by a control side that sleeps until it is woken")
 {
     rig r;
-    REQUIRE(r.start().status == io_kind::ok);
     const score s = random_score(1, 100);
     const stroke_id id = r.submit(s);
     REQUIRE(s.frames() > 10 * r.options.loop.horizon_frames);
@@ -46,31 +46,27 @@ TEST_CASE(
             ++woken;
         }
     }
-    REQUIRE(r.report(id));
-    CHECK(r.report(id)->state == state_kind::finished);
+    CHECK(r.end(id).state == state_kind::finished);
     CHECK(woken < periods / 10);
 }
 
-TEST_CASE("a stroke for a time that is named before the stream's clock is known begins at it")
+TEST_CASE("a stroke for a time before the stream's clock is known begins at that time")
 {
     rig r;
-    REQUIRE(r.start().status == io_kind::ok);
     r.link.to_control.consume(); // that it has started
     r.control();
-    // After what is in the buffer, and long before the control side would be woken to feed it.
+    // After the buffer's frames, and long before the feeder's next wake-up.
     const std::int64_t at_ns = r.now + 2 * 288 * std::int64_t{1'000'000'000} / rate;
     const stroke_id id = r.submit(tone(0.01), start_at::time(at_ns));
     for (int i = 0; i < 200 && !r.report(id); ++i)
         if (wakes(r))
             r.control();
-    REQUIRE(r.report(id));
-    CHECK(r.report(id)->late_s == 0.0);
+    CHECK(r.end(id).late_s == 0.0);
 }
 
-TEST_CASE("the control side sleeps as long as there is no stroke, and what comes then is fed at once")
+TEST_CASE("the control side sleeps while there is no stroke, and feeds a new one at once")
 {
     rig r;
-    REQUIRE(r.start().status == io_kind::ok);
     const score s = random_score(1, 100);
     REQUIRE(s.frames() > 10 * r.options.loop.horizon_frames);
     for (int strokes = 0; strokes < 3; ++strokes) {
@@ -81,13 +77,12 @@ TEST_CASE("the control side sleeps as long as there is no stroke, and what comes
         for (int i = 0; i < 10'000 && !r.report(id); ++i)
             if (wakes(r))
                 r.control();
-        REQUIRE(r.report(id));
-        CHECK(r.report(id)->state == state_kind::finished);
-        CHECK(r.report(id)->frames == s.frames());
+        CHECK(r.end(id).state == state_kind::finished);
+        CHECK(r.end(id).frames == s.frames());
     }
 }
 
-TEST_CASE("a live stroke after a long silence, in which nobody looked, has all its time for a first point")
+TEST_CASE("a live stroke after a long unattended silence has all its time for a first point")
 {
     live_options o;
     o.timeout_s = 0.2;
@@ -101,14 +96,12 @@ TEST_CASE("a live stroke after a long silence, in which nobody looked, has all i
     r.play(9600 - 192);
     CHECK_FALSE(r.report(next->id));
     r.play(480);
-    REQUIRE(r.report(next->id));
-    CHECK(r.report(next->id)->reason == reason_kind::starved);
+    CHECK(r.end(next->id).reason == reason_kind::starved);
 }
 
-TEST_CASE("an xrun of a silent stream, its sleep and its waking up are told at once")
+TEST_CASE("an xrun of a silent stream, its sleep and its waking up are reported at once")
 {
     rig r;
-    REQUIRE(r.start().status == io_kind::ok);
     settle(r);
     CHECK_FALSE(wakes(r));
     r.dac.advance(1000); // runs dry
@@ -125,10 +118,9 @@ TEST_CASE("an xrun of a silent stream, its sleep and its waking up are told at o
     CHECK(r.status().epoch == 3);
 }
 
-TEST_CASE("how few drives waited is counted while a stroke is fed, not in silence and not at its end")
+TEST_CASE("the fewest waiting drives are counted while a stroke is fed, not in silence and not at its end")
 {
     rig r;
-    REQUIRE(r.start().status == io_kind::ok);
     r.play(9600);
     CHECK(r.link.count.low_water == UINT64_MAX);
     const stroke_id id = r.submit(random_score(1, 20));

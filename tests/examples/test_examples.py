@@ -23,7 +23,7 @@ SO_RCVBUFFORCE = 33  # asm-generic/socket.h
 
 
 def events(*steps):
-    """Input events as the kernel writes them: (type, code, value) each, and SYN_REPORT after each step."""
+    """Returns input events as the kernel writes them: (type, code, value) each, and SYN_REPORT after each step."""
     return b"".join(struct.pack("@llHHi", 0, 0, *e) for step in steps for e in (*step, (SYN, 0, 0)))
 
 
@@ -61,7 +61,7 @@ class Examples(ToolTest):
         self.assertEqual(self.run_example("play_preset"), "finished after 104160 frames\n")
         self.assertIn("nowhere", self.run_example("play_preset", "nowhere", status=1))
 
-    def test_render_wav_writes_what_the_tool_writes(self):
+    def test_render_wav_writes_the_tool_s_bytes(self):
         out = self.run_example("render_wav", "a.wav")
         self.assertRegex(out, r"a\.wav: 9 channels, \d\.\d{3} s")
         self.ok("render", "--path", "M 0 10 C 20 -5 20 45 40 30", "--speed", "80", "--phantom", "barycentric",
@@ -77,13 +77,13 @@ class Examples(ToolTest):
             return [float(r[1]) for r in rows]
 
         squared, paper = errors(), errors(1)
-        self.assertEqual(squared[:2], [2.09, 1.43])  # as `tactor compare park2016-3` has them
+        self.assertEqual(squared[:2], [2.09, 1.43])  # the values of `tactor compare park2016-3`
         self.assertEqual(paper[:2], squared[:2])
         self.assertNotEqual(paper[2], squared[2])
         self.assertLess(max(paper[2], squared[2]), 10.0)
 
     def heard(self, file, channel):
-        """Whether a raw file of nine channels of s32 has sound on a channel in its last 0.1 s."""
+        """Returns whether a raw file of nine channels of s32 has sound on a channel in its last 0.1 s."""
         if not file.exists():
             return False
         with open(file, "rb") as f:
@@ -93,14 +93,14 @@ class Examples(ToolTest):
         return any(samples[channel::9])
 
     def live_touches(self):
-        """How the strokes of two touches ended: down in one corner, at rest, to the other, up; and once more."""
+        """Returns the ends of the strokes of two touches: down in one corner, at rest, to the other, up; and once more."""
         raw, pipe = self.dir / "out.raw", self.dir / "events"
         os.mkfifo(pipe)
         p = self.start("live_touch", pipe, f"raw:{raw}")
         with open(pipe, "wb", buffering=0) as finger:
             finger.write(events(touch(0, 0, (KEY, BTN_TOUCH, 1))))
             self.until(lambda: self.heard(raw, 0), p)
-            # A second of rest, twice what a stroke without points lives.
+            # A second of rest, twice the life of a stroke without points.
             size = raw.stat().st_size
             self.until(lambda: raw.stat().st_size > size + 48000 * 36, p)
             self.assertFalse(self.heard(raw, 8))
@@ -117,8 +117,8 @@ class Examples(ToolTest):
 
     def test_live_touch_follows_a_finger(self):
         ends = self.live_touches()
-        # Where the program itself comes to its turn too late, a stroke is interrupted, and the next one goes on:
-        # that a finger at rest keeps one alive is for timed/test_live_touch.py to say.
+        # A program without processor time has its stroke interrupted, and the next one goes on: timed/test_live_touch.py checks
+        # that a finger at rest keeps one alive.
         self.assertGreaterEqual(len(ends), 2)
         self.assertLessEqual(set(ends), {"finished", "interrupted"})
 
@@ -137,13 +137,13 @@ class Examples(ToolTest):
                 s.sendto(request.encode(), ("127.0.0.1", port))
             answers = sorted(s.recv(1000).decode() for _ in range(3))
             self.assertEqual(answers[:2], ["park2016-1: finished", "park2016-2: finished"])
-            self.assertIn("park2016-4", answers[2])  # the presets that there are
+            self.assertIn("park2016-4", answers[2])  # the existing presets
             s.sendto(b"park2016-3", ("127.0.0.1", port))
         p.send_signal(signal.SIGTERM)
         self.assertEqual(p.communicate(timeout=PATIENCE_S), ("", ""))
         self.assertEqual(p.returncode, 0)
 
-    def test_udp_sink_sends_what_render_writes(self):
+    def test_udp_sink_sends_render_s_bytes(self):
         with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as s:
             # Room for all of them, however late this reads. Only root may have as much.
             with contextlib.suppress(PermissionError):
@@ -159,7 +159,7 @@ class Examples(ToolTest):
         self.assertEqual(p.communicate(timeout=PATIENCE_S), ("finished\n", ""))
         self.ok("render", "park2016-1", "--sample-format", "s16", "-o", "o.wav")
         data = Wav(self.dir / "o.wav").data
-        # Each at its number; what did not fit into a smaller buffer is lost.
+        # Each at its number; packets beyond a smaller buffer are lost.
         numbers = range(0, max(datagrams) + 48, 48)
         self.assertLessEqual(set(datagrams), set(numbers))
         self.assertEqual({len(d) for d in datagrams.values()}, {48 * 18})

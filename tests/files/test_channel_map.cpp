@@ -8,7 +8,7 @@
 
 #include <tactor/setup.hpp>
 
-#include "files/channel_map.hpp"
+#include "files/setup_text.hpp"
 #include "folder.hpp"
 #include "message_of.hpp"
 
@@ -72,7 +72,7 @@ TEST_CASE("the array of another file is changed where it is used")
           "channel = 0\n");
 }
 
-TEST_CASE("channels that the file cannot have, or cannot say, are refused")
+TEST_CASE("channels that the file cannot have, or cannot express, are refused")
 {
     const std::string grid = "[array]\ngrid = { rows = 1, columns = 2, pitch_mm = 20.0 }\n";
     CHECK(message_of([&] { changed(grid, {0}); }).find("1 channel for 2 tactors") != std::string::npos);

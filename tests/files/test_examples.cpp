@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The example files and those of tactor.toml(5) do what they say.
+// The example files and those of tactor.toml(5), as documented.
 #include <doctest/doctest.h>
-#include <fmt/format.h>
 
 #include <filesystem>
 #include <string>
@@ -58,7 +57,7 @@ TEST_CASE("every example stroke is read")
     CHECK(files.size() >= 4);
     for (const fs::path& f : files) {
         CAPTURE(f.string());
-        if (f.extension() == ".wav") // what vibrates in one of them
+        if (f.extension() == ".wav") // a waveform of one of them
             continue;
         const std::string said = message_of([&] { CHECK_FALSE(load_strokes(f).empty()); });
         CHECK((said.empty() || (TACTOR_HAS_RECORDINGS == 0 && said.find("libsndfile") != std::string::npos)));

@@ -48,7 +48,7 @@ std::string why_not(const fs::path& p)
     return {};
 }
 
-/// A pipe's writer must not die of it.
+/// A pipe's writer must survive it.
 class no_sigpipe {
 public:
     no_sigpipe() : before_(std::signal(SIGPIPE, SIG_IGN)) {}
@@ -62,7 +62,7 @@ private:
 
 } // namespace
 
-TEST_CASE("a file that is replaced keeps its rights")
+TEST_CASE("a replaced file keeps its rights")
 {
     const folder dir;
     std::ofstream(dir / "a") << "old";
@@ -71,13 +71,13 @@ TEST_CASE("a file that is replaced keeps its rights")
         put(dir / "a", "new");
         CHECK(rights(dir / "a") == mode);
     }
-    // Nobody runs as somebody else because of a file that we wrote.
+    // Files that we wrote never give another user's rights.
     REQUIRE(::chmod((dir / "a").c_str(), 04755) == 0);
     put(dir / "a", "new");
     CHECK(rights(dir / "a") == 0755);
 }
 
-TEST_CASE("a link is followed, but not where anybody may put one")
+TEST_CASE("a link is followed, but not in a folder where anybody may put one")
 {
     const folder dir;
     fs::create_symlink("real", dir / "link");
@@ -97,7 +97,7 @@ TEST_CASE("a link is followed, but not where anybody may put one")
     CHECK(why_not(dir / "second").find("shared/link is a link in") != std::string::npos);
 }
 
-TEST_CASE("a pipe without a reader is waited for until the user has enough")
+TEST_CASE("writing waits for a pipe without a reader until the user stops it")
 {
     const folder dir;
     REQUIRE(::mkfifo((dir / "pipe").c_str(), 0600) == 0);
@@ -109,7 +109,7 @@ TEST_CASE("a pipe without a reader is waited for until the user has enough")
     CHECK_THROWS_AS(f.commit(), error);
 }
 
-TEST_CASE("a pipe that is full is waited for until the user has enough, and nothing is lost until then")
+TEST_CASE("writing waits for a full pipe until the user stops it, and nothing is lost until then")
 {
     const folder dir;
     REQUIRE(::mkfifo((dir / "pipe").c_str(), 0600) == 0);
@@ -145,7 +145,7 @@ TEST_CASE("a reader that leaves is a failure that says so")
     CHECK_THROWS_WITH_AS(f.commit(), doctest::Contains("ended before"), error);
 }
 
-TEST_CASE("names of descriptors are written to from where they stand")
+TEST_CASE("names of descriptors are written to from their position")
 {
     const folder dir;
     const int fd = ::open((dir / "a").c_str(), O_WRONLY | O_CREAT, 0600);
@@ -157,7 +157,7 @@ TEST_CASE("names of descriptors are written to from where they stand")
     CHECK(why_not("/dev/fd/" + std::to_string(fd)).find("cannot be written") != std::string::npos);
 }
 
-TEST_CASE("a file that was read is not replaced, by whatever name")
+TEST_CASE("a file that was read is not replaced, under any name")
 {
     const folder dir;
     std::ofstream(dir / "drawing") << "mine";
@@ -173,7 +173,7 @@ TEST_CASE("a file that was read is not replaced, by whatever name")
     put(dir / "other", "new");
 }
 
-TEST_CASE("a file that got the number of a deleted input is none")
+TEST_CASE("a file with the reused number of a deleted input is no input")
 {
     const folder dir;
     std::ofstream(dir / "a") << "mine";
@@ -185,7 +185,7 @@ TEST_CASE("a file that got the number of a deleted input is none")
     CHECK(dir.bytes("b") == "new");
 }
 
-TEST_CASE("text of the library's caller replaces what was read, and sound still does not")
+TEST_CASE("text of the library's caller replaces an input, and sound still does not")
 {
     const folder dir;
     for (const auto owner : {detail::owner_kind::program, detail::owner_kind::user}) {
@@ -196,7 +196,7 @@ TEST_CASE("text of the library's caller replaces what was read, and sound still 
     }
 }
 
-TEST_CASE("an input is remembered beside many that are gone")
+TEST_CASE("an input is remembered beside many deleted ones")
 {
     const folder dir;
     std::ofstream(dir / "kept") << "mine";
@@ -210,7 +210,7 @@ TEST_CASE("an input is remembered beside many that are gone")
     CHECK_THROWS_AS(detail::output_file(dir / "kept"), error);
 }
 
-TEST_CASE("the program brings its own records up to date, and no file of the user's")
+TEST_CASE("the program updates its own records, and no file of the user's")
 {
     const folder dir;
     for (const auto owner : {detail::owner_kind::program, detail::owner_kind::user}) {

@@ -78,7 +78,7 @@ TEST_CASE("two motions for palm-2x4 stay on it and use all of it")
     }
 }
 
-TEST_CASE("a preset that is not there is refused with the list, and the one that it is a slip of")
+TEST_CASE("an unknown preset is refused with the list, and a slip with its nearest")
 {
     const std::string all = "presets: park2016-1, park2016-2, park2016-3, park2016-4, wave-2x4, round-2x4)";
     const auto said = [](const char* name) {

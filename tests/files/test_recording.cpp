@@ -60,7 +60,7 @@ std::string samples(std::initializer_list<T> all)
 
 } // namespace
 
-TEST_CASE("a WAV file's samples are read in every format, whatever chunks stand before them")
+TEST_CASE("a WAV file's samples are read in every format, after any chunks")
 {
     const folder dir;
     const std::vector<float> expected{0.5F, -0.25F, 0.0F};
@@ -83,7 +83,7 @@ TEST_CASE("a WAV file's samples are read in every format, whatever chunks stand 
     }
 }
 
-TEST_CASE("what is no WAV file of one channel is refused by name")
+TEST_CASE("a file that is no WAV file of one channel is refused by name")
 {
     const folder dir;
     const std::string data = chunk("data", samples<std::int16_t>({1000, -1000}));
@@ -129,7 +129,7 @@ std::string in_four_bytes(std::initializer_list<std::int32_t> all, std::int32_t 
 
 } // namespace
 
-TEST_CASE("24 bits in four bytes are found where ALSA and where others put them, however quiet")
+TEST_CASE("24 bits in four bytes are found at either end, however quiet")
 {
     const folder dir;
     const std::initializer_list<std::int32_t> loud{0, 4194304, -2097152, 8388607, -8388608};
@@ -140,7 +140,7 @@ TEST_CASE("24 bits in four bytes are found where ALSA and where others put them,
         [](std::int32_t v) { return v; }, [](std::int32_t v) { return v & 0xFFFFFF; },
         [](std::int32_t v) { return static_cast<std::int32_t>(static_cast<std::uint32_t>(v) << 8U); }};
     for (const auto& all : {loud, quiet, of_16_bits}) {
-        // Only the shape is played: of quiet samples nobody can tell where they stand.
+        // Only the shape is played: the position of quiet samples cannot be known.
         const auto shape = [](std::vector<float> x) {
             float peak = 0.0F;
             for (const float v : x)
@@ -178,7 +178,7 @@ TEST_CASE("sizes that a recorder left open end with the file")
               "0 samples"));
 }
 
-TEST_CASE("long files name their size elsewhere, and what stands behind the samples is none of them")
+TEST_CASE("long files give their size elsewhere, and later chunks are no samples")
 {
     const folder dir;
     const std::vector<float> expected{0.5F, -0.25F, 0.0F};
@@ -190,7 +190,7 @@ TEST_CASE("long files name their size elsewhere, and what stands behind the samp
     }
 }
 
-TEST_CASE("chunks of odd size stand anywhere, with or without the byte that makes them even")
+TEST_CASE("chunks of odd size may be anywhere, with or without padding")
 {
     const folder dir;
     const std::vector<float> expected{0.5F, -0.25F, 0.0F};
@@ -221,7 +221,7 @@ TEST_CASE("a recording knows the hash of its file")
     CHECK(load_recording(dir.write("a.wav", w)).sha256 == detail::sha256_text(w));
 }
 
-TEST_CASE("text that is no file names no file")
+TEST_CASE("text that is not a file cannot name a recording")
 {
     const folder dir;
     dir.write("w.wav",

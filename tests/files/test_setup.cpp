@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: MIT
-// [output], [amplifier], [sync] and [defaults]; texts that are no TOML.
+// [output], [amplifier], [sync] and [defaults]; texts that are not TOML.
 #include <doctest/doctest.h>
 #include <fmt/format.h>
 
 #include <clocale>
-#include <cstdint>
 #include <random>
 #include <string>
 
@@ -29,7 +28,7 @@ std::string complaint(const std::string& text)
     return message_of([&] { read(text); });
 }
 
-// The format's example, all tables in use.
+// The format's example, with all tables.
 const std::string whole = R"([array]
 name = "palm-3x3"
 grid = { rows = 3, columns = 3, pitch_mm = 20.0 }
@@ -74,7 +73,7 @@ std::string with(std::string from, const std::string& to)
 
 } // namespace
 
-TEST_CASE("a whole configuration")
+TEST_CASE("a whole configuration is read")
 {
     const setup s = read(whole);
     CHECK(s.array->tactors.size() == 9);
@@ -104,7 +103,7 @@ TEST_CASE("a whole configuration")
     CHECK(s.defaults.size() == 6);
 }
 
-TEST_CASE("what a file leaves out is left to the program")
+TEST_CASE("keys that a file leaves out are left to the program")
 {
     for (const char* text : {"", "# nothing\n", "[output]\n", "\xef\xbb\xbf# with a byte order mark\r\n"}) {
         const setup s = read(text);
@@ -125,7 +124,7 @@ TEST_CASE("what a file leaves out is left to the program")
     CHECK_FALSE(s.sync->out.has_value());
 }
 
-TEST_CASE("[output] out of range")
+TEST_CASE("[output] out of range is refused")
 {
     CHECK(complaint(with("rate = 48000", "rate = 7999")) ==
           "t.toml:7:8: rate is 7999 (allowed: 8000 to 768000)");
@@ -147,12 +146,11 @@ TEST_CASE("[output] out of range")
           "t.toml:8:12: channels is 1025 (allowed: 1 to 1024)");
 }
 
-TEST_CASE("fewer channels than the map or the marker needs")
+TEST_CASE("fewer channels than the map or the marker needs are refused")
 {
-    CHECK(
-        complaint("[array]\npreset = \"palm-3x3\"\n[output]\nchannels = 8\n") ==
-        "t.toml:4:12: channels is 8, but tactor 8 (t.toml:2:10) is on channel 8 (the array needs 9 channels; "
-        "they count from 0)");
+    CHECK(complaint("[array]\npreset = \"palm-3x3\"\n[output]\nchannels = 8\n") ==
+          "t.toml:4:12: channels is 8, but tactor 8 (t.toml:2:10) is on channel 8 (the array needs 9 "
+          "channels; they count from 0)");
     CHECK(complaint("[array]\npreset = \"palm-3x3\"\n[output]\nchannels = 9\n").empty());
     CHECK(complaint(with("channels = 16", "channels = 15")) ==
           "t.toml:19:11: the marker's channel is 15, but there are 15 channels (t.toml:8:12) (channels count "
@@ -165,7 +163,7 @@ TEST_CASE("fewer channels than the map or the marker needs")
           "without a tactor)");
 }
 
-TEST_CASE("GPIO lines: a chip and an offset, or a name, each line once")
+TEST_CASE("a GPIO line is a chip and an offset, or a name, each line once")
 {
     const auto line = [](const std::string& l) { return complaint("[amplifier]\nline = " + l + "\n"); };
     CHECK(line("{ chip = \"a\" }") == "t.toml:2:8: line has no offset (add offset = ...)");
@@ -173,8 +171,7 @@ TEST_CASE("GPIO lines: a chip and an offset, or a name, each line once")
           "t.toml:2:29: line has both chip and name (keep one of them)");
     CHECK(line("{ name = \"a\", offset = 2 }") ==
           "t.toml:2:31: line has both name and offset (a name is enough)");
-    CHECK(line("{ offset = 2 }") == "t.toml:2:8: line says nothing of what it "
-                                    "is (add one of: chip, name)");
+    CHECK(line("{ offset = 2 }") == "t.toml:2:8: line says nothing of what it is (add one of: chip, name)");
     CHECK(line("{ chip = \"a\", offset = -2 }") == "t.toml:2:31: offset is -2 (allowed: 0 to 65535)");
     CHECK(line("\"GPIO17\"") ==
           "t.toml:2:8: line is 'GPIO17' (give a table, line = { chip, offset } or { name })");
@@ -213,7 +210,7 @@ TEST_CASE("[defaults] is read and written in any locale")
 {
     const std::string before = std::setlocale(LC_ALL, nullptr);
     for (const char* name : {"de_DE.UTF-8", "fr_FR.UTF-8", "C.UTF-8"})
-        std::setlocale(LC_ALL, name); // those that are installed
+        std::setlocale(LC_ALL, name); // the installed ones
     const setup s = read("[defaults]\nsoa = 0.0575\nramp = 1e-4\n");
     const std::string text = detail::besides_text(s);
     std::setlocale(LC_ALL, before.c_str());
@@ -221,7 +218,7 @@ TEST_CASE("[defaults] is read and written in any locale")
     CHECK(read(text).defaults == s.defaults);
 }
 
-TEST_CASE("what is no TOML has its line")
+TEST_CASE("bad TOML has its line")
 {
     CHECK(complaint("[array]\nname = \n").starts_with("t.toml:2:"));
     CHECK(complaint("a = 1\na = 2\n").starts_with("t.toml:2:"));
@@ -232,7 +229,7 @@ TEST_CASE("what is no TOML has its line")
     CHECK(complaint("<svg/>").starts_with("t.toml:1:1:"));
 }
 
-TEST_CASE("where pcm comes from is told")
+TEST_CASE("the origin of pcm is recorded")
 {
     const setup s = parse_setup("[output]\nrate = 48000\npcm = \"null\"\n", "t.toml");
     CHECK(s.output.pcm_at.text() == "t.toml:3:7");
@@ -251,7 +248,7 @@ TEST_CASE("keys and values nested without end are refused, not followed")
           std::string::npos);
     CHECK(complaint("x = '#' # '\n" + dotted + " = 1\n").starts_with("t.toml:2:34: a key of too many parts"));
     CHECK_FALSE(complaint("a = " + std::string(300000, '[')).empty());
-    // Dots that are no keys.
+    // Dots outside keys.
     CHECK(
         complaint(
             "[output]\npcm = \"a.b.c.d.e.f.g.h.i.j.k.l.m.n.o.p.q.r.s.t\" # . . . . . . . . . . . . . . . .\n")
@@ -281,7 +278,7 @@ TEST_CASE("damaged files are refused or read, never worse")
     CHECK(refused > 2000);
 }
 
-TEST_CASE("limits that are none are told")
+TEST_CASE("impossible limits are reported")
 {
     for (const char* said : {"power_dbfs = nan", "power_dbfs = 61", "max_drive_s = 0", "max_drive_s = -1",
                              "window_s = inf", "window = 10"}) {

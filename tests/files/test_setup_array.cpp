@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// [array] and [[tactor]] of a file, and what is wrong with them.
+// [array] and [[tactor]] of a file, and their faults.
 #include <doctest/doctest.h>
 
 #include <string>
@@ -21,7 +21,7 @@ std::string complaint(const std::string& text)
     return message_of([&] { static_cast<void>(parse_setup(text, "palm.toml")); });
 }
 
-array array_of(const std::string& text)
+array parse_array(const std::string& text)
 {
     const setup s = parse_setup(text, "palm.toml");
     REQUIRE(s.array.has_value());
@@ -32,23 +32,24 @@ const std::string grid = "[array]\ngrid = { rows = 3, columns = 3, pitch_mm = 20
 
 } // namespace
 
-TEST_CASE("a grid with one pitch, and with two")
+TEST_CASE("a grid has one pitch, or two")
 {
-    const array a = array_of("[array]\nname = \"mine\"\ngrid = { rows = 3, columns = 3, pitch_mm = 20 }\n");
+    const array a =
+        parse_array("[array]\nname = \"mine\"\ngrid = { rows = 3, columns = 3, pitch_mm = 20 }\n");
     CHECK(a.name == "mine");
     const array b = preset_array("palm-3x3");
     for (unsigned i = 0; i < 9; ++i)
         CHECK(a.tactors[i].position == b.tactors[i].position);
     CHECK(a.where.text() == "palm.toml:1:1");
 
-    const array c = array_of("[array]\ngrid = { rows = 2, columns = 2, pitch_mm = [20.0, 40.0] }\n");
+    const array c = parse_array("[array]\ngrid = { rows = 2, columns = 2, pitch_mm = [20.0, 40.0] }\n");
     CHECK(c.name == "palm");
     CHECK(c.tactors[3].position == point{20.0, 40.0});
 }
 
-TEST_CASE("a list of tactors: every key, and the defaults")
+TEST_CASE("a list of tactors has every key, and defaults")
 {
-    const array a = array_of(R"(
+    const array a = parse_array(R"(
 [array]
 actuator = "piezo"
 [[tactor]]
@@ -84,7 +85,7 @@ actuator = "voice-coil"
 
 TEST_CASE("a list needs no [array], and may number its tactors")
 {
-    const array a = array_of("[[tactor]]\ntactor = 0\nx_mm = 0\ny_mm = 0\n");
+    const array a = parse_array("[[tactor]]\ntactor = 0\nx_mm = 0\ny_mm = 0\n");
     CHECK(a.tactors.size() == 1);
     CHECK(complaint("[[tactor]]\ntactor = 1\nx_mm = 0\ny_mm = 0\n") ==
           "palm.toml:2:10: tactor is 1, but this is entry 0 (without a grid, tactors are numbered from 0 in "
@@ -93,8 +94,8 @@ TEST_CASE("a list needs no [array], and may number its tactors")
 
 TEST_CASE("with a grid, entries adjust the tactors that they name")
 {
-    const array a = array_of(grid + "[[tactor]]\ntactor = 4\nthreshold_dbfs = -40\nchannel = 9\n"
-                                    "[[tactor]]\ntactor = 0\npolarity = -1\n");
+    const array a = parse_array(grid + "[[tactor]]\ntactor = 4\nthreshold_dbfs = -40\nchannel = 9\n"
+                                       "[[tactor]]\ntactor = 0\npolarity = -1\n");
     CHECK(a.tactors[4].threshold_dbfs == -40.0);
     CHECK(a.tactors[4].channel == 9);
     CHECK(a.tactors[4].position == point{20.0, 20.0});
@@ -113,14 +114,14 @@ TEST_CASE("with a grid, entries adjust the tactors that they name")
 
 TEST_CASE("a preset can be adjusted too")
 {
-    const array a = array_of("[array]\npreset = \"palm-2x4\"\n[[tactor]]\ntactor = 7\ngain_db = 3\n");
+    const array a = parse_array("[array]\npreset = \"palm-2x4\"\n[[tactor]]\ntactor = 7\ngain_db = 3\n");
     CHECK(a.name == "palm-2x4");
     CHECK(a.tactors[7].gain_db == 3.0);
     CHECK(complaint("[array]\npreset = \"palm\"\n")
               .starts_with("palm.toml:2:10: array: there is no preset 'palm'"));
 }
 
-TEST_CASE("an unknown key names the nearest, or lists what is known")
+TEST_CASE("an unknown key names the nearest, or lists the known ones")
 {
     const std::string one = "[[tactor]]\nx_mm = 0\ny_mm = 0\n";
     CHECK(complaint(one + "chanel = 3\n") ==
@@ -135,8 +136,7 @@ TEST_CASE("an unknown key names the nearest, or lists what is known")
     CHECK(complaint("[aray]\nname = \"x\"\n") ==
           "palm.toml:1:2: unknown key 'aray' in the file (did you mean 'array'?)");
     CHECK(complaint("[array]\ngrid = { rows = 3, colums = 3, pitch_mm = 20 }\n") ==
-          "palm.toml:2:20: unknown key 'colums' in grid (did you mean "
-          "'columns'?)");
+          "palm.toml:2:20: unknown key 'colums' in grid (did you mean 'columns'?)");
     CHECK(complaint("[array]\ngrid = { rows = 3, columns = 3, pitch = 20 }\n")
               .ends_with("(did you mean 'pitch_mm'?)"));
     CHECK(complaint("[array]\nzz = 1\naa = 1\n").starts_with("palm.toml:2:1: unknown key 'zz'"));
@@ -144,7 +144,7 @@ TEST_CASE("an unknown key names the nearest, or lists what is known")
     CHECK(complaint(std::string("\"") + std::string(5000, 'a') + "\" = 1\n").size() < 200);
 }
 
-TEST_CASE("wrong types and ranges, at the value")
+TEST_CASE("wrong types and ranges are reported at the value")
 {
     const std::string one = "[[tactor]]\nx_mm = 0\ny_mm = 0\n";
     CHECK(complaint(one + "channel = 1.0\n") == "palm.toml:4:11: channel is 1.0 (give a whole number)");
@@ -168,7 +168,7 @@ TEST_CASE("wrong types and ranges, at the value")
     CHECK(complaint(one + "threshold_dbfs = [[100, -20], [100, -41]]\n") ==
           "palm.toml:4:31: the frequency 100 does not come after 100 (put thresholds in order of frequency, "
           "each once)");
-    CHECK(array_of(one + "rise_ms = 1000\n").tactors[0].rise_s == 1.0);
+    CHECK(parse_array(one + "rise_ms = 1000\n").tactors[0].rise_s == 1.0);
     CHECK(complaint(one + "rise_ms = 1001\n").starts_with("palm.toml:4:11: rise_ms is 1001 (allowed: "));
     CHECK(complaint(one + "polarity = 1.5\n") == "palm.toml:4:12: polarity is 1.5 (allowed: -1 to 1)");
     CHECK(complaint(one + "polarity = -1.5\n") == "palm.toml:4:12: polarity is -1.5 (allowed: -1 to 1)");
@@ -178,10 +178,10 @@ TEST_CASE("wrong types and ranges, at the value")
     for (const actuator_kind k : values_of<actuator_kind>()) {
         const std::string line = fmt::format("actuator = \"{}\"\n", to_string(k));
         if (k == actuator_kind::unknown)
-            CHECK(complaint(one + line) == "palm.toml:4:12: actuator is 'unknown' (known values: piezo, "
-                                           "voice-coil, lra, erm)");
+            CHECK(complaint(one + line) ==
+                  "palm.toml:4:12: actuator is 'unknown' (known values: piezo, voice-coil, lra, erm)");
         else
-            CHECK(array_of(one + line).tactors[0].actuator == k);
+            CHECK(parse_array(one + line).tactors[0].actuator == k);
     }
     CHECK(complaint("[[tactor]]\nx_mm = inf\ny_mm = 0\n") ==
           "palm.toml:2:8: x_mm is inf (allowed: -1000000 to 1000000)");
@@ -196,7 +196,7 @@ TEST_CASE("wrong types and ranges, at the value")
           "palm.toml:1:9: array is 'palm-3x3' (give a table, [array])");
 }
 
-TEST_CASE("grids that are none")
+TEST_CASE("impossible grids are refused")
 {
     const auto of = [](const std::string& g) { return complaint("[array]\ngrid = " + g + "\n"); };
     CHECK(of("{ rows = 3, columns = 3 }") == "palm.toml:2:8: grid has no pitch_mm (add pitch_mm = ...)");
@@ -232,26 +232,25 @@ TEST_CASE("an array comes from one source")
           "palm.toml:1:1: this is a stroke file, not an array or configuration (name it as the STROKE)");
 }
 
-TEST_CASE("two tactors on one place or channel, with both lines")
+TEST_CASE("two tactors on one place or channel are refused with both lines")
 {
     CHECK(complaint("[[tactor]]\nx_mm = 0\ny_mm = 0\n[[tactor]]\nx_mm = 1\ny_mm = 0\nchannel = 0\n") ==
           "palm.toml:4:1: tactor 1 is on channel 0, that of tactor 0 (palm.toml:1:1) (give each tactor a "
           "channel of its own)");
     CHECK(complaint("[[tactor]]\nx_mm = 0\ny_mm = 0\n[[tactor]]\nx_mm = 5e-7\ny_mm = 0\n") ==
           "palm.toml:4:1: tactor 1 is at (5e-07, 0) mm, the place of tactor 0 (palm.toml:1:1) (give each "
-          "tactor "
-          "a place of its own)");
+          "tactor a place of its own)");
     CHECK(complaint(grid + "[[tactor]]\ntactor = 4\nchannel = 0\n") ==
           "palm.toml:3:1: tactor 4 is on channel 0, that of tactor 0 (palm.toml:2:8) (give each tactor a "
           "channel of its own)");
 }
 
-TEST_CASE("16384 tactors in a list are read, one more is not")
+TEST_CASE("16384 tactors in a list are read, one more is refused")
 {
     std::string text;
     for (int i = 0; i < 16384; ++i)
         text += fmt::format("[[tactor]]\nx_mm = {}\ny_mm = {}\n", i % 128, i / 128);
-    CHECK(array_of(text).tactors.size() == 16384);
+    CHECK(parse_array(text).tactors.size() == 16384);
     CHECK(complaint(text + "[[tactor]]\nx_mm = -1\ny_mm = 0\n") ==
           "palm.toml:49153:1: more than 16384 tactors");
 }

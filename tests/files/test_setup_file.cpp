@@ -29,7 +29,7 @@ const std::string grid = "[array]\nname = \"arm\"\ngrid = { rows = 1, columns = 
 
 } // namespace
 
-TEST_CASE("a file that cannot be read says which and why")
+TEST_CASE("an unreadable file is named with the reason")
 {
     const folder f;
     const std::string missing = (f / "none.toml").string();
@@ -95,7 +95,7 @@ speed = 70
     CHECK(s.array->tactors[2].threshold_dbfs == -40.0);
     CHECK(s.array->tactors[2].where.text() == (f / "tactor.toml").string() + ":4:1");
     CHECK(s.array->tactors[1].where.text() == (f / "arrays/arm.toml").string() + ":3:8");
-    // What the other file says besides holds, unless this one says other.
+    // Other keys of that file hold, unless this one has them.
     CHECK(s.output.pcm == "null");
     CHECK(s.output.pcm_included);
     CHECK(s.output.pcm_at.text() == (f / "arrays/arm.toml").string() + ":5:7");
@@ -108,19 +108,17 @@ speed = 70
     CHECK(named.array->name == "left");
 }
 
-TEST_CASE("the channel count of one file and the map of another")
+TEST_CASE("the channel count of one file is checked against the map of another")
 {
     const folder f;
     f.write("arm.toml", grid);
     const fs::path c = f.write("c.toml", "[array]\nfile = \"arm.toml\"\n[output]\nchannels = 3\n");
-    CHECK(complaint(c) ==
-          fmt::format(
-              "{}:4:12: channels is 3, but tactor 3 ({}:3:8) is on channel 3 (the array needs 4 channels; "
-              "they count from 0)",
-              c.string(), (f / "arm.toml").string()));
+    CHECK(complaint(c) == fmt::format("{}:4:12: channels is 3, but tactor 3 ({}:3:8) is on channel 3 (the "
+                                      "array needs 4 channels; they count from 0)",
+                                      c.string(), (f / "arm.toml").string()));
 }
 
-TEST_CASE("included files that are missing, wrong, without an array or a circle")
+TEST_CASE("included files that are missing, wrong, circular or without an array are refused")
 {
     const folder f;
     const fs::path a = f.write("a.toml", "[array]\nfile = \"b.toml\"\n");
@@ -139,7 +137,7 @@ TEST_CASE("included files that are missing, wrong, without an array or a circle"
     CHECK(complaint(a) == b + ":2:8: it takes its array from itself (break the circle of files)");
 }
 
-TEST_CASE("a chain of files ends somewhere")
+TEST_CASE("a chain of files has a limit")
 {
     const folder f;
     for (int i = 0; i < 100; ++i)

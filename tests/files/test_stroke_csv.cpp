@@ -49,16 +49,15 @@ TEST_CASE("columns come in any order, and intensity may be left out")
     CHECK(s.motion.intensity(1.0) == 1.0);
 }
 
-TEST_CASE("byte order mark, CRLF, blanks, quotes, comments and empty lines are taken")
+TEST_CASE("byte order mark, CRLF, blanks, quotes, comments and empty lines are accepted")
 {
-    const stroke s =
-        one("\xEF\xBB\xBF# recorded\r\n\r\n \"t_s\" , x_mm,\ty_mm \r\n# begin\r\n 0 , \"0\" , +10 "
-            "\r\n\r\n  # end\r\n2.0e0,4e1, 30. \r\n");
+    const stroke s = one("\xEF\xBB\xBF# recorded\r\n\r\n \"t_s\" , x_mm,\ty_mm \r\n# begin\r\n 0 , \"0\" , "
+                         "+10 \r\n\r\n  # end\r\n2.0e0,4e1, 30. \r\n");
     CHECK(s.motion.position(1.0) == point{20.0, 20.0});
     CHECK(one("t_s,x_mm,y_mm\n0,0,0\n1,1,1").motion.duration_s() == 1.0);
 }
 
-TEST_CASE("the time of the first line is the stroke's zero, whatever a recorder counted from")
+TEST_CASE("the time of the first line is the stroke's zero, for any clock of a recorder")
 {
     for (const char* csv :
          {"t_s,x_mm,y_mm\n2.5,0,0\n3,5,0\n4.5,5,5\n", "t_s,x_mm,y_mm\n-2.5,0,0\n-2,5,0\n-0.5,5,5\n",
@@ -72,7 +71,7 @@ TEST_CASE("the time of the first line is the stroke's zero, whatever a recorder 
     }
 }
 
-TEST_CASE("of lines with equal times the last counts, and the stroke says so")
+TEST_CASE("the last of lines with equal times counts, and the stroke has a note")
 {
     const std::string head = "t_s,x_mm,y_mm,intensity\n";
     const stroke s = one(head + "2,9,9,1\n2,0,0,0.5\n# same report\n3,9,9,1\n3,8,8,1\n3,4,2,0\n4,8,8,1\n");
@@ -93,7 +92,7 @@ TEST_CASE("of lines with equal times the last counts, and the stroke says so")
     CHECK(one(head + "0,0,0,1\n1,1,1,1\n").warnings.empty());
 }
 
-TEST_CASE("what is wrong in a CSV file is named by line and column")
+TEST_CASE("faults of a CSV file are named by line and column")
 {
     struct sample {
         const char* csv;
@@ -157,7 +156,7 @@ TEST_CASE("what is wrong in a CSV file is named by line and column")
     }
 }
 
-TEST_CASE("columns that a tracker adds are left out, and the stroke says so")
+TEST_CASE("columns that a tracker adds are ignored, with a note")
 {
     const stroke s = one("frame,t_s,pupil,x_mm,note,y_mm\n7,0,n/a,0,\"a, b\",10\n8,1,,40,x,30\n");
     CHECK(s.motion.position(0.5) == point{20.0, 20.0});
@@ -195,7 +194,7 @@ TEST_CASE("lines without a place are gaps, in which the touch is lifted")
     CHECK(half.motion.duration_s() == 4.0);
 }
 
-TEST_CASE("a million lines are read as they are")
+TEST_CASE("a million lines are read unchanged")
 {
     std::string csv = "t_s,x_mm,y_mm\n";
     for (int i = 0; i < 1'000'000; ++i)

@@ -31,7 +31,7 @@ std::string refusal(const std::filesystem::path& file)
 
 } // namespace
 
-TEST_CASE("the extension says what a stroke file is, in any case")
+TEST_CASE("the extension gives the kind of a stroke file, in any case")
 {
     const folder f;
     CHECK(length(tactor::load_strokes(f.write("a.csv", csv))) == 6.0);
@@ -64,7 +64,7 @@ TEST_CASE("the kind of stroke text is guessed from its first line")
     CHECK_FALSE(message_of([] { static_cast<void>(tactor::parse_strokes("\xff\xfe", "-")); }).empty());
 }
 
-TEST_CASE("files that cannot be read are named")
+TEST_CASE("unreadable files are named")
 {
     const folder f;
     CHECK(refusal(f.path() / "none.csv").find("none.csv: No such file or directory (check the name)") !=
@@ -77,7 +77,7 @@ TEST_CASE("files that cannot be read are named")
     }
 }
 
-TEST_CASE("text of gigabytes is refused before it is looked at")
+TEST_CASE("text of gigabytes is refused before it is read")
 {
     const std::string_view long_text(csv.data(), std::size_t{1} << 32);
     CHECK(message_of([&] {

@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: MIT
-// Keys that say how a stroke of a TOML file moves along its path.
+// Keys that define how a stroke of a TOML file moves along its path.
 #include <doctest/doctest.h>
 
-#include <cmath>
 #include <string>
-#include <vector>
 
 #include <fmt/format.h>
 
@@ -57,7 +55,7 @@ TEST_CASE("easing, profiles and pauses of a file are those of the library")
                trajectory::along(way, {.duration_s = 2.0, .rests = {{0.5, 0.5}, {1.0, 0.25, 0.0}}}));
 }
 
-TEST_CASE("a duration is that of all, a speed and a preset's own time are those of the movement")
+TEST_CASE("a duration is that of the whole, a speed and a preset's time are those of the movement")
 {
     const std::string pause = "pauses = [[0.5, 0.5]]\n";
     CHECK(one(line + pause + "duration_s = 2.0").motion.duration_s() == 2.0);
@@ -69,7 +67,7 @@ TEST_CASE("a duration is that of all, a speed and a preset's own time are those 
     CHECK(one("preset = \"park2016-1\"\nintensity = [[0, 0.5]]").motion.intensity(0.7) == 0.5);
 }
 
-TEST_CASE("scaled, a stroke keeps its mean speed and its pauses")
+TEST_CASE("a scaled stroke keeps its mean speed and its pauses")
 {
     const std::string speeds = "speed_mm_s = [[0, 20], [1, 80]]\n";
     const stroke s = one(line + speeds + "pauses = [[0.5, 0.5]]");
@@ -81,7 +79,7 @@ TEST_CASE("scaled, a stroke keeps its mean speed and its pauses")
     CHECK(one(line + "duration_s = 2.0\neasing = \"in-out\"\nscale = 0.5").motion.duration_s() == 2.0);
 }
 
-TEST_CASE("without these keys all is as it was, to the bit")
+TEST_CASE("without these keys nothing changes, to the bit")
 {
     const stroke s = one("path = \"M 0 10 C 20 -5 20 45 40 30\"\nspeed_mm_s = 37.0\nintensity = 0.3");
     const path way = path::from_svg("M 0 10 C 20 -5 20 45 40 30");
@@ -91,7 +89,7 @@ TEST_CASE("without these keys all is as it was, to the bit")
         CHECK(s.motion.position(t.duration_s() * i / 100.0) == t.position(t.duration_s() * i / 100.0));
 }
 
-TEST_CASE("what is wrong with them is said with its place")
+TEST_CASE("their faults have their place")
 {
     for (const auto& [key, wrong] : {
              std::pair{"easing", "\"fast\""},

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-// Keys of a stroke file that repeat, group and start strokes, play them backwards and plan each its own way.
+// Keys of a stroke file that repeat, group and start strokes, play them backwards and plan each in another
+// way.
 #include <doctest/doctest.h>
 
 #include <algorithm>
-#include <cmath>
 #include <string>
 #include <vector>
 
@@ -21,23 +21,23 @@ using namespace tactor;
 
 namespace {
 
-/// A stroke along a line that lasts so long.
+/// Returns TOML of a stroke along a line with this duration.
 std::string line(double seconds, const std::string& keys = "")
 {
     return fmt::format("points = [[0, 0], [40, 0]]\nduration_s = {}\n{}\n", seconds, keys);
 }
 
-std::vector<stroke> all_of(const std::string& text)
+std::vector<stroke> parse_all(const std::string& text)
 {
     return parse_strokes_toml(text, "p.toml");
 }
 
-/// When each starts, if each takes the time of its movement.
+/// Returns the start of each stroke, if each takes the time of its movement.
 std::vector<double> starts(const std::string& text)
 {
     std::vector<double> from;
     std::vector<double> to;
-    for (const stroke& s : all_of(text)) {
+    for (const stroke& s : parse_all(text)) {
         from.push_back(resolve_start_s(s.start_s, s.anchor, from, to));
         to.push_back(from.back() + s.motion.duration_s());
     }
@@ -55,7 +55,7 @@ void check_starts(const std::string& text, const std::vector<double>& wanted)
 
 std::string complaint(const std::string& text)
 {
-    return message_of([&] { all_of(text); });
+    return message_of([&] { parse_all(text); });
 }
 
 const std::string one = "[[stroke]]\n";
@@ -63,7 +63,7 @@ const std::string inside = "[[stroke.stroke]]\n";
 
 } // namespace
 
-TEST_CASE("a stroke says which faces its tactors come from")
+TEST_CASE("a stroke chooses its faces")
 {
     const std::string text = "[stroke]\npath = \"M 0 0 L 40 0\"\nfaces = ";
     const stroke s = parse_strokes_toml(text + "\"nearest\"\n", "t").front();
@@ -85,47 +85,47 @@ TEST_CASE("starts count from the piece, from the start of the one before, or fro
     check_starts(one + line(1, "start_s = 2") + one + line(2, "start_from = \"start\""), {2.0, 2.0});
     check_starts(one + line(1, "start_s = 2") + one + line(2, "start_from = \"piece\""), {2.0, 0.0});
     check_starts(one + line(1, "start_s = 2\nstart_from = \"end\"") + one + line(1), {2.0, 3.0});
-    // As it was, to the bit and to the frame.
-    const auto s = all_of(one + line(1, "start_s = 0.1") + one + line(2, "start_s = 0.3") + one + line(1) +
-                          one + line(1, "start_from = \"end\""));
+    // The same to the bit and to the frame.
+    const auto s = parse_all(one + line(1, "start_s = 0.1") + one + line(2, "start_s = 0.3") + one + line(1) +
+                             one + line(1, "start_from = \"end\""));
     CHECK(s[1].start_s == 0.3);
     CHECK(s[1].anchor == start_anchor{});
     CHECK_FALSE(s[2].start_s.has_value());
     CHECK_FALSE(s[3].start_s.has_value());
-    CHECK_FALSE(all_of("[stroke]\n" + line(1))[0].start_s.has_value());
-    CHECK(all_of("[stroke]\nstart_s = 0.25\n" + line(1))[0].start_s == 0.25);
+    CHECK_FALSE(parse_all("[stroke]\n" + line(1))[0].start_s.has_value());
+    CHECK(parse_all("[stroke]\nstart_s = 0.25\n" + line(1))[0].start_s == 0.25);
 }
 
-TEST_CASE("a start before the piece is refused when it is known")
+TEST_CASE("a start before the piece is refused once it is known")
 {
-    const auto s = all_of(one + line(1) + one + line(2, "start_s = -1.5\nstart_from = \"end\""));
+    const auto s = parse_all(one + line(1) + one + line(2, "start_s = -1.5\nstart_from = \"end\""));
     const std::vector<double> from{0.0};
     const std::vector<double> to{1.0};
     CHECK(message_of([&] { static_cast<void>(resolve_start_s(s[1].start_s, s[1].anchor, from, to)); }) ==
           "start of the stroke: 1.5 s before the end of what comes before it is before the piece "
           "(1 s before is the start of the piece)");
-    CHECK(s[1].places.start.line != 0); // where the file says so
+    CHECK(s[1].places.start.line != 0); // where the file has it
     CHECK(s[0].places.start.line == 0);
 }
 
-TEST_CASE("a stroke is repeated with pauses between, and what follows comes behind all")
+TEST_CASE("a stroke is repeated with pauses, and the next ones come after all")
 {
     check_starts(one + line(1, "repeat = 3\npause_s = 0.5") + one + line(1), {0.0, 1.5, 3.0, 4.0});
     check_starts(one + line(1, "repeat = 2\nstart_s = 2") + one +
                      line(1, "start_s = 0.1\nstart_from = \"start\""),
                  {2.0, 3.0, 2.1});
-    const auto s = all_of(one + line(1, "repeat = 2\nname = \"knock\""));
+    const auto s = parse_all(one + line(1, "repeat = 2\nname = \"knock\""));
     CHECK(s[0].name == "knock (1 of 2)");
     CHECK(s[1].name == "knock (2 of 2)");
     CHECK_FALSE(s[1].start_s.has_value());
-    CHECK(all_of(one + line(1, "repeat = 1"))[0].name == "p-1");
+    CHECK(parse_all(one + line(1, "repeat = 1"))[0].name == "p-1");
 }
 
-TEST_CASE("groups repeat as a whole, and what is in them counts from their start")
+TEST_CASE("groups repeat as a whole, and their strokes count from their start")
 {
     const std::string group = one + "repeat = 2\npause_s = 0.5\nstart_s = 1\n" + inside + line(1) + inside +
                               line(3, "start_s = 0.25");
-    // The group lasts 3.25 s; what follows comes when the last of it has ended.
+    // The group lasts 3.25 s; the next stroke comes when the last of it has ended.
     check_starts(group + one + line(1), {1.0, 1.25, 4.75, 5.0, 8.0});
     check_starts(group + one + line(1, "start_from = \"start\""), {1.0, 1.25, 4.75, 5.0, 1.0});
     // Its first stroke begins later than the group.
@@ -138,11 +138,11 @@ TEST_CASE("groups repeat as a whole, and what is in them counts from their start
                  {0.0, 1.0, 1.3, 1.5, 2.5, 2.8});
 }
 
-TEST_CASE("what a group says holds for all in it")
+TEST_CASE("a group's keys hold for all its strokes")
 {
     const auto s =
-        all_of(one + "name = \"pair\"\nscale = 0.5\ntranslate_mm = [1, 2]\nlevel_db = -20\n" + inside +
-               line(1, "translate_mm = [2, 0]") + inside + line(1, "level_db = -20\nname = \"weak\""));
+        parse_all(one + "name = \"pair\"\nscale = 0.5\ntranslate_mm = [1, 2]\nlevel_db = -20\n" + inside +
+                  line(1, "translate_mm = [2, 0]") + inside + line(1, "level_db = -20\nname = \"weak\""));
     REQUIRE(s.size() == 2);
     CHECK(s[0].name == "pair-1");
     CHECK(s[1].name == "weak");
@@ -153,59 +153,60 @@ TEST_CASE("what a group says holds for all in it")
     CHECK(s[1].motion.intensity(0.5) == 1.0);
 }
 
-TEST_CASE("reversed, a stroke goes from its end to its start, with its profile")
+TEST_CASE("a reversed stroke goes from its end to its start, with its profile")
 {
-    const stroke s = all_of(one + line(1, "reverse = true\nintensity = [[0, 0.2], [1, 1]]"))[0];
+    const stroke s = parse_all(one + line(1, "reverse = true\nintensity = [[0, 0.2], [1, 1]]"))[0];
     CHECK(s.motion.position(0.0) == point{40.0, 0.0});
     CHECK(s.motion.intensity(0.0) == doctest::Approx(1.0));
     CHECK(s.motion.intensity(1.0) == doctest::Approx(0.2));
-    CHECK(all_of(one + "timed = [[0, 1, 1, 0.5], [1, 9, 1]]\nreverse = true")[0].motion.position(1.0) ==
+    CHECK(parse_all(one + "timed = [[0, 1, 1, 0.5], [1, 9, 1]]\nreverse = true")[0].motion.position(1.0) ==
           point{1.0, 1.0});
-    CHECK(all_of(one + line(1, "reverse = false"))[0].motion.position(0.0) == point{0.0, 0.0});
+    CHECK(parse_all(one + line(1, "reverse = false"))[0].motion.position(0.0) == point{0.0, 0.0});
 }
 
-TEST_CASE("reversed, a stroke has the carrier at each place that it has there forwards")
+TEST_CASE("a reversed stroke has the same carrier at each place")
 {
     const std::string rising = "carrier_profile = [[0, 100], [0.25, 300]]\n";
-    CHECK(all_of(one + line(1, rising))[0].sound.carrier_profile ==
+    CHECK(parse_all(one + line(1, rising))[0].sound.carrier_profile ==
           std::vector<carrier_part>{{0.0, 100.0}, {0.25, 300.0}});
-    CHECK(all_of(one + line(1, rising + "reverse = true"))[0].sound.carrier_profile ==
+    CHECK(parse_all(one + line(1, rising + "reverse = true"))[0].sound.carrier_profile ==
           std::vector<carrier_part>{{0.75, 300.0}, {1.0, 100.0}});
 }
 
 TEST_CASE("a stroke may be planned in its own way")
 {
     const stroke s =
-        all_of(one + line(1, "algorithm = \"tactile-brush\"\nphantom = \"barycentric\"\nsoa_s = 0.06\n"
-                             "burst_s = 0.05\nfit = true\nfit_margin_mm = 2"))[0];
+        parse_all(one + line(1, "algorithm = \"tactile-brush\"\nphantom = \"barycentric\"\nsoa_s = 0.06\n"
+                                "burst_s = 0.05\nfit = true\nfit_margin_mm = 2"))[0];
     CHECK(s.choices == stroke_choices{algorithm_kind::tactile_brush, phantom_kind::barycentric, 0.06, 0.05});
     CHECK(s.fit == stroke_fit{2.0});
-    CHECK(all_of(one + line(1, "fit = true"))[0].fit == stroke_fit{});
-    CHECK(all_of(one + line(1))[0].choices == stroke_choices{});
+    CHECK(parse_all(one + line(1, "fit = true"))[0].fit == stroke_fit{});
+    CHECK(parse_all(one + line(1))[0].choices == stroke_choices{});
     for (const algorithm_kind k : values_of<algorithm_kind>())
-        CHECK(all_of(one + line(1, fmt::format("algorithm = \"{}\"", to_string(k))))[0].choices.algorithm ==
-              k);
+        CHECK(
+            parse_all(one + line(1, fmt::format("algorithm = \"{}\"", to_string(k))))[0].choices.algorithm ==
+            k);
 }
 
-TEST_CASE("a group is fitted as one picture")
+TEST_CASE("a group is fitted together")
 {
     const std::string two = "[[stroke.stroke]]\npath = \"M 0 0 L 10 0\"\nduration_s = 0.5\n"
                             "[[stroke.stroke]]\npath = \"M 0 10 L 10 10\"\nduration_s = 0.5\n";
     const std::vector<stroke> asked =
-        all_of("[[stroke]]\nfit = true\nfit_margin_mm = 5\n" + two + "[[stroke]]\nfit = true\n" + two);
+        parse_all("[[stroke]]\nfit = true\nfit_margin_mm = 5\n" + two + "[[stroke]]\nfit = true\n" + two);
     REQUIRE(asked.size() == 4);
     CHECK(asked[0].fit->group == asked[1].fit->group);
     CHECK(asked[2].fit->group == asked[3].fit->group);
     CHECK(asked[0].fit->group != asked[2].fit->group);
     CHECK(asked[0].fit->margin_mm == 5.0);
     CHECK(asked[3].fit->margin_mm == 0.0);
-    CHECK_FALSE(all_of("[[stroke]]\n" + two)[0].fit);
+    CHECK_FALSE(parse_all("[[stroke]]\n" + two)[0].fit);
     CHECK(complaint("[[stroke]]\nfit = true\n" + two + "fit = true\n").find("is fitted already") !=
           std::string::npos);
     CHECK(complaint("[[stroke]]\nfit_margin_mm = 1\n" + two).find("nothing is fitted") != std::string::npos);
 }
 
-TEST_CASE("what is wrong with them is said with its place")
+TEST_CASE("their faults have their place")
 {
     for (const std::string wrong : {"repeat = 0",
                                     "repeat = 1.5",

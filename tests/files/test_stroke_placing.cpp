@@ -30,8 +30,8 @@ std::string complaint(const std::string& body)
 const std::string bend = "path = \"M 10 0 C 20 0 30 10 30 30 L 30 40\"\nduration_s = 2.0\n";
 const std::string dots = "timed = [[0, 10, 0, 0.5], [0.5, 30, 10, 1.0], [2.0, 30, 40, 0.25]]\n";
 
-/// Each place of the stroke as drawn, mapped by hand, is where the placed one is at the same part of the
-/// time.
+/// Checks that each place of the placed stroke is that of the drawn one, mapped by hand, at the same part of
+/// the time.
 template <class Map>
 void check_mapped(const std::string& keys, Map&& map)
 {
@@ -50,7 +50,7 @@ void check_mapped(const std::string& keys, Map&& map)
 
 } // namespace
 
-TEST_CASE("each key does what it says, and together they go in order: mirror, scale, turn, move")
+TEST_CASE("keys place a stroke in order: mirror, scale, turn, move")
 {
     check_mapped("scale = 0.5", [](point p) { return point{0.5 * p.x_mm, 0.5 * p.y_mm}; });
     check_mapped("translate_mm = [3, -4]", [](point p) { return point{p.x_mm + 3.0, p.y_mm - 4.0}; });
@@ -78,7 +78,7 @@ TEST_CASE("quarter turns and doubling are exact, and no key changes nothing")
     CHECK(one(bend).motion.position(0.77) == one(bend + "scale = 1").motion.position(0.77));
 }
 
-TEST_CASE("a stroke keeps the speed that it says, and the time that it says")
+TEST_CASE("a placed stroke keeps its given speed, or its given time")
 {
     const std::string line = "points = [[0, 0], [10, 0]]\nscale = 3\n";
     CHECK(one(line + "speed_mm_s = 15").motion.duration_s() == doctest::Approx(2.0));
@@ -89,7 +89,7 @@ TEST_CASE("a stroke keeps the speed that it says, and the time that it says")
           doctest::Approx(0.5 * one("preset = \"park2016-1\"").motion.length_mm()).epsilon(1e-6));
 }
 
-TEST_CASE("what is wrong with them is said with its place")
+TEST_CASE("their faults have their place")
 {
     const std::string line = "points = [[0, 0], [10, 0]]\n";
     for (const auto& [key, wrong] :

@@ -26,7 +26,7 @@ std::vector<stroke> parse(const std::string& svg)
     return tactor::parse_strokes_svg(svg, "a.svg");
 }
 
-// One shape in a document of millimetres.
+// A shape in a document of millimetres.
 stroke one(const std::string& shape, const std::string& attributes = {})
 {
     std::vector<stroke> all = parse(fmt::format("<svg {}>{}</svg>", attributes, shape));
@@ -103,7 +103,7 @@ TEST_CASE("subpaths are strokes one after the other")
     CHECK_FALSE(all[1].start_s.has_value());
 }
 
-TEST_CASE("data attributes say time, pace, intensity and carrier")
+TEST_CASE("data attributes give time, pace, intensity and carrier")
 {
     const stroke s = one("<line x2='6' data-duration-s='1.5' data-start-s='0.25' data-intensity='0.5' "
                          "data-carrier-hz='200'/>");
@@ -112,7 +112,7 @@ TEST_CASE("data attributes say time, pace, intensity and carrier")
     CHECK(s.motion.intensity(1.0) == 0.5);
     CHECK(s.sound.carrier_hz == 200.0);
     CHECK(one("<line x2='6' data-speed-mm-s='12'/>").motion.duration_s() == 0.5);
-    // A group's pace is that of what it holds.
+    // A group's pace holds for its shapes.
     CHECK(one("<g data-speed-mm-s='12'><g><line x2='6'/></g></g>").motion.duration_s() == 0.5);
     CHECK(one("<g data-speed-mm-s='12'><line x2='6' data-speed-mm-s='6'/></g>").motion.duration_s() == 1.0);
     CHECK(one("<g data-speed-mm-s='12'><line x2='6' data-duration-s='3'/></g>").motion.duration_s() == 3.0);
@@ -138,7 +138,7 @@ TEST_CASE("without a physical size, a user unit is a millimetre")
     check_near(at(one("<line x2='1cm'/>"), 1.0), {10.0, 0.0});
 }
 
-TEST_CASE("with a physical size, the drawing is as large as it says")
+TEST_CASE("with a physical size, the drawing has that size")
 {
     const auto end = [](const std::string& size,
                         const std::string& line = "<line x1='10' y1='10' x2='20' y2='10'/>") {
@@ -157,7 +157,7 @@ TEST_CASE("with a physical size, the drawing is as large as it says")
     check_near(end("width='50mm' height='50mm'", "<line x2='20mm'/>"), {20.0, 0.0});
 }
 
-TEST_CASE("preserveAspectRatio")
+TEST_CASE("preserveAspectRatio is followed")
 {
     const auto end = [](const std::string& aspect) {
         return at(one("<line x2='10' y2='10'/>",
@@ -193,7 +193,7 @@ TEST_CASE("transforms, in lists and nested")
         at(one("<g transform='translate(1,2)'><g transform='scale(2)'><line x1='1' x2='10'/></g></g>"), 1.0),
         {21.0, 2.0});
     check_near(at(one("<line x1='1' x2='10'/>", "transform='scale(3)'"), 1.0), {30.0, 0.0});
-    // A skewed circle has the length of the ellipse that it is.
+    // A skewed circle has the length of its ellipse.
     const stroke s = one("<circle r='10' transform='skewX(30)'/>");
     check_near(at(s, 0.0), {10.0, 0.0});
     double chords = 0.0;
@@ -218,7 +218,7 @@ TEST_CASE("nested svg elements place their picture in their frame")
     check_near(at(one("<line x2='50%' y2='50%'/>", "viewBox='0 0 40 80'"), 1.0), {20.0, 40.0});
 }
 
-TEST_CASE("use draws what it refers to; definitions alone draw nothing")
+TEST_CASE("use draws its target; definitions alone draw nothing")
 {
     const std::string defs = "<defs><path id='p' d='M 1 0 H 10'/></defs>";
     check_near(at(one(defs + "<use href='#p' x='5' y='6'/>"), 1.0), {15.0, 6.0});
@@ -240,7 +240,7 @@ TEST_CASE("use draws what it refers to; definitions alone draw nothing")
         CHECK(one(fmt::format("<line x2='3' {}/><line x2='7'/>", hidden)).motion.length_mm() == 7.0);
         CHECK(one(fmt::format("<g {}><line x2='3'/><line x2='7' visibility='visible'/></g>", hidden))
                   .motion.length_mm() == 7.0);
-        // What is hidden need not be drawable.
+        // A hidden shape need not be drawable.
         CHECK(one(fmt::format("<g {}><line x2='x'/></g><line x2='7'/>", hidden)).motion.length_mm() == 7.0);
     }
     CHECK(one("<g display='none'><line x2='3' display='inline' visibility='visible'/></g><line x2='7'/>")

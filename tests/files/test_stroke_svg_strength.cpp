@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Drawings whose lines say by their look how strong they are, and how they ease.
+// Drawings whose lines give strength and easing by their look.
 #include <doctest/doctest.h>
 
 #include <string>
@@ -28,31 +28,29 @@ const std::string by_opacity = "data-intensity-from=\"opacity\"";
 
 } // namespace
 
-TEST_CASE("the widest of the lines that ask for it has intensity 1")
+TEST_CASE("the widest of the lines with strength by width has intensity 1")
 {
     const std::string lines =
-        "<path d=\"M 0 0 H 9\" stroke-width=\"4\"/><path d=\"M 0 0 H 9\" style=\"stroke-width:1\"/>"
-        "<g stroke-width=\"3\"><path d=\"M 0 0 H 9\"/></g><path d=\"M 0 0 H 9\"/>";
+        "<path d=\"M 0 0 H 9\" stroke-width=\"4\"/><path d=\"M 0 0 H 9\" style=\"stroke-width:1\"/><g "
+        "stroke-width=\"3\"><path d=\"M 0 0 H 9\"/></g><path d=\"M 0 0 H 9\"/>";
     CHECK(intensities("", lines) == std::vector<double>{1.0, 1.0, 1.0, 1.0}); // nobody asked
     CHECK(intensities(by_width, lines) == std::vector<double>{1.0, 0.25, 0.75, 0.25});
     // With what the shape says, and as wide as its transform makes it.
-    CHECK(intensities(by_width,
-                      "<path d=\"M 0 0 H 9\" stroke-width=\"4\" data-intensity=\"0.5\"/>"
-                      "<path d=\"M 0 0 H 9\" transform=\"scale(2)\"/>") == std::vector<double>{0.5, 0.5});
+    CHECK(intensities(by_width, "<path d=\"M 0 0 H 9\" stroke-width=\"4\" data-intensity=\"0.5\"/><path "
+                                "d=\"M 0 0 H 9\" transform=\"scale(2)\"/>") == std::vector<double>{0.5, 0.5});
     // One shape does not ask.
-    CHECK(intensities(by_width, "<path d=\"M 0 0 H 9\" stroke-width=\"4\"/>"
-                                "<path d=\"M 0 0 H 9\" stroke-width=\"9\" data-intensity-from=\"none\"/>") ==
-          std::vector<double>{1.0, 1.0});
+    CHECK(intensities(by_width,
+                      "<path d=\"M 0 0 H 9\" stroke-width=\"4\"/><path d=\"M 0 0 H 9\" "
+                      "stroke-width=\"9\" data-intensity-from=\"none\"/>") == std::vector<double>{1.0, 1.0});
     CHECK(intensities(by_width, "<path d=\"M 0 0 H 9 M 0 5 H 9\" stroke-width=\"0\"/>") ==
           std::vector<double>{1.0, 1.0}); // all alike
 }
 
-TEST_CASE("opacity is intensity, that of groups multiplied and that of lines inherited")
+TEST_CASE("opacity is intensity; groups multiply it and lines inherit it")
 {
-    CHECK(intensities(by_opacity, "<g opacity=\"0.5\" stroke-opacity=\"50%\"><path d=\"M 0 0 H 9\"/>"
-                                  "<path d=\"M 0 0 H 9\" opacity=\"0.5\" stroke-opacity=\"1\"/></g>"
-                                  "<path d=\"M 0 0 H 9\" style=\"opacity: 0.125\"/>"
-                                  "<path d=\"M 0 0 H 9\" opacity=\"7\"/>") ==
+    CHECK(intensities(by_opacity, "<g opacity=\"0.5\" stroke-opacity=\"50%\"><path d=\"M 0 0 H 9\"/><path "
+                                  "d=\"M 0 0 H 9\" opacity=\"0.5\" stroke-opacity=\"1\"/></g><path d=\"M 0 0 "
+                                  "H 9\" style=\"opacity: 0.125\"/><path d=\"M 0 0 H 9\" opacity=\"7\"/>") ==
           std::vector<double>{0.25, 0.25, 0.125, 1.0});
 }
 
@@ -67,7 +65,7 @@ TEST_CASE("shapes ease")
     CHECK(s[1].motion.position(0.25 * s[1].motion.duration_s()).x_mm == doctest::Approx(10.0));
 }
 
-TEST_CASE("looks that cannot be read are said where they are asked for")
+TEST_CASE("unreadable looks are reported where they are used")
 {
     const auto said = [](const std::string& root, const std::string& shape) {
         return message_of([&] { intensities(root, "\n" + shape); });

@@ -42,9 +42,8 @@ bool near(point a, point b)
 }
 
 using list = std::vector<std::string>;
-const std::string lines =
-    "<path id='a' class='st0' d='M 0 0 H 9'/><path id='b' class='st1 thin' d='M 0 0 H 9'/>"
-    "<line id='c' class='thin' x2='9'/>";
+const std::string lines = "<path id='a' class='st0' d='M 0 0 H 9'/><path id='b' class='st1 thin' d='M 0 0 H "
+                          "9'/><line id='c' class='thin' x2='9'/>";
 
 } // namespace
 
@@ -68,25 +67,24 @@ TEST_CASE("rules of classes, ids and tags hide, the most special one and then th
     CHECK(left(".ST0{display:none} .st{display:none} #A{display:none}") == list{"a", "b", "c"});
 }
 
-TEST_CASE("a sheet counts more than an attribute and less than the element's own style")
+TEST_CASE("a sheet wins over an attribute and loses to the element's own style")
 {
-    CHECK(
-        names(
-            "<style>.h{display:none} .v{display:inline}</style><line id='a' x2='9' display='none' class='v'/>"
-            "<line id='b' x2='9' class='h' style='display:inline'/><line id='c' x2='9' class='h' "
-            "display='inline'/>") == list{"a", "b"});
+    CHECK(names("<style>.h{display:none} .v{display:inline}</style><line id='a' x2='9' display='none' "
+                "class='v'/><line id='b' x2='9' class='h' style='display:inline'/><line id='c' x2='9' "
+                "class='h' display='inline'/>") == list{"a", "b"});
     CHECK(names("<line id='a' x2='9'/><g class='h'><line id='b' "
                 "x2='9'/></g><defs><style>.h{display:none}</style></defs>") == list{"a"});
-    CHECK(names("<style>.h{display:none!important}</style><line id='a' x2='9'/>"
-                "<line id='b' x2='9' class='h' style='display:inline'/>"
-                "<line id='c' x2='9' class='h' style='display:inline !important'/>") == list{"a", "c"});
+    CHECK(
+        names("<style>.h{display:none!important}</style><line id='a' x2='9'/><line id='b' x2='9' class='h' "
+              "style='display:inline'/><line id='c' x2='9' class='h' style='display:inline !important'/>") ==
+        list{"a", "c"});
 }
 
 TEST_CASE("widths and opacities of a sheet are intensities")
 {
     const auto all =
-        strokes("<style>.w4{stroke-width:4} #b{stroke-width:1px;} line{stroke-width:2}</style>"
-                "<path class='w4' d='M 0 0 H 9'/><path id='b' class='w4' d='M 0 0 H 9'/><line x2='9'/>",
+        strokes("<style>.w4{stroke-width:4} #b{stroke-width:1px;} line{stroke-width:2}</style><path "
+                "class='w4' d='M 0 0 H 9'/><path id='b' class='w4' d='M 0 0 H 9'/><line x2='9'/>",
                 "data-intensity-from='stroke-width'");
     REQUIRE(all.size() == 3);
     CHECK(all[0].motion.intensity(0.0) == 1.0);
@@ -138,7 +136,7 @@ TEST_CASE("a transform that cannot be read is named with its place")
               "d.svg:1:58: transform-origin of <line>: '1 2 3 4' is not an origin"));
 }
 
-TEST_CASE("what is not followed is warned of")
+TEST_CASE("unsupported styles are warned of")
 {
     const auto warned = [](const std::string& content) {
         std::string all;

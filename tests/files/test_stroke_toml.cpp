@@ -27,7 +27,7 @@ stroke one(const std::string& body)
     return all.front();
 }
 
-// What is wrong with a stroke whose keys begin in line 2.
+// Returns the fault of a stroke whose keys begin in line 2.
 std::string complaint(const std::string& body)
 {
     return message_of([&] { static_cast<void>(parse_strokes_toml("[stroke]\n" + body + "\n", "w.toml")); });
@@ -40,7 +40,7 @@ void check_near(point p, double x_mm, double y_mm)
 
 } // namespace
 
-TEST_CASE("a path at the default speed, at a speed, in a time")
+TEST_CASE("a path takes the default speed, a speed, or a time")
 {
     const stroke s = one("path = \"M 0 10 L 40 10\"");
     CHECK(s.name == "wave");
@@ -70,7 +70,7 @@ TEST_CASE("an arc is clockwise on a screen")
     check_near(s.motion.position(1.4), 20.0, 36.0);
 }
 
-TEST_CASE("timed points keep their times, or take others in proportion")
+TEST_CASE("timed points keep their times, or are scaled in proportion")
 {
     const std::string timed = "timed = [[0, 0, 0], [0.5, 10, 0, 0.5], [2, 10, 30, 0]]";
     const stroke s = one(timed);
@@ -85,7 +85,7 @@ TEST_CASE("timed points keep their times, or take others in proportion")
     CHECK(one(timed + "\nspeed_mm_s = 10").motion.duration_s() == doctest::Approx(4.0));
 }
 
-TEST_CASE("a preset has its own time, note and name, and can be changed")
+TEST_CASE("a preset has its time, note and name, and can be changed")
 {
     const stroke own = preset_stroke("park2016-3");
     const stroke s = one("preset = \"park2016-3\"");
@@ -103,7 +103,7 @@ TEST_CASE("a preset has its own time, note and name, and can be changed")
     }
 }
 
-TEST_CASE("several strokes with start, carrier, intensity and name")
+TEST_CASE("strokes have start, carrier, intensity and name")
 {
     const std::vector<stroke> all = read(R"(
 [[stroke]]
@@ -124,7 +124,7 @@ intensity = 0.5
     CHECK(all[1].motion.intensity(0.1) == 0.5);
 }
 
-TEST_CASE("a stroke is one thing, in one time")
+TEST_CASE("a stroke has one geometry and one time")
 {
     CHECK(complaint("duration_s = 1") ==
           "w.toml:1:1: [stroke] says nothing of what it is (add one of: path, points, timed, arc, preset)");
@@ -137,7 +137,7 @@ TEST_CASE("a stroke is one thing, in one time")
     CHECK(complaint("path = \"M 0 0 H 1\"\nspeed = 1").ends_with("(did you mean 'speed_mm_s'?)"));
 }
 
-TEST_CASE("values out of range, at the value")
+TEST_CASE("values out of range are reported at the value")
 {
     const std::string path = "path = \"M 0 0 H 1\"\n";
     CHECK(complaint(path + "duration_s = 0") ==
@@ -151,10 +151,8 @@ TEST_CASE("values out of range, at the value")
     CHECK(complaint(path + "carrier_hz = 0").starts_with("w.toml:3:14: carrier_hz is 0"));
     CHECK(complaint(path + "texture = \"weave\"") ==
           "w.toml:3:11: texture is 'weave' (known values: cycle, time, length)");
-    CHECK(
-        complaint(path + "texture_mm = 20") ==
-        "w.toml:3:14: [stroke] has texture_mm, which nothing uses (add waveform = \"FILE.wav\" and texture = "
-        "\"length\")");
+    CHECK(complaint(path + "texture_mm = 20") == "w.toml:3:14: [stroke] has texture_mm, which nothing uses "
+                                                 "(add waveform = \"FILE.wav\" and texture = \"length\")");
     for (const texture_kind k : values_of<texture_kind>())
         CHECK(complaint(path + fmt::format("texture = \"{}\"", to_string(k))) ==
               "w.toml:3:11: [stroke] has texture, which nothing uses (add waveform = \"FILE.wav\")");
@@ -162,7 +160,7 @@ TEST_CASE("values out of range, at the value")
     CHECK(complaint("path = 3") == "w.toml:2:8: path is 3 (give a string in quotes)");
 }
 
-TEST_CASE("what geometry refuses has its line")
+TEST_CASE("refusals of geometry have their line")
 {
     CHECK(complaint("\npath = \"M 0 0 X 1\"").starts_with("w.toml:3:8: "));
     CHECK(complaint("path = \"M 0 0 H 0\"").starts_with("w.toml:2:8: "));
@@ -186,27 +184,26 @@ TEST_CASE("what geometry refuses has its line")
               .starts_with("w.toml:2:7: "));
 }
 
-TEST_CASE("timed points out of order, with the line of the point")
+TEST_CASE("timed points out of order are refused with the line of the point")
 {
     CHECK(
         complaint("timed = [\n[0, 0, 0],\n[1, 1, 1],\n[1, 2, 2]]") ==
         "w.toml:5:1: the time 1 s does not come after 1 s (put the points in order of time, each time once)");
-    CHECK(
-        complaint("timed = [[0.5, 0, 0], [1, 1, 1]]") ==
-        "w.toml:2:10: the first time is 0.5 s (times count from 0 at the start of the stroke; start_s moves "
-        "all of it)");
+    CHECK(complaint("timed = [[0.5, 0, 0], [1, 1, 1]]") ==
+          "w.toml:2:10: the first time is 0.5 s (times count from 0 at the start of the stroke; start_s "
+          "moves all of it)");
     CHECK(complaint("timed = [\n[0, 0]]") ==
           "w.toml:3:1: a timed point is a list (give [t_s, x_mm, y_mm] or [t_s, x_mm, y_mm, intensity])");
     CHECK(complaint("timed = [[0, 0, 0, -1], [1, 1, 1]]").starts_with("w.toml:2:20: intensity is -1"));
     CHECK(complaint("timed = [[0, 0, 0], [nan, 1, 1]]").starts_with("w.toml:2:22: t_s is nan"));
     CHECK(complaint("timed = [[0, 0, 0]]").starts_with("w.toml:2:9: "));
     CHECK(complaint("timed = []").starts_with("w.toml:2:9: "));
-    // No way at all cannot be done at a speed.
+    // A path of no length has no speed.
     CHECK(complaint("timed = [[0, 1, 1], [1, 1, 1]]").empty());
     CHECK(complaint("timed = [[0, 1, 1], [1, 1, 1]]\nspeed_mm_s = 5").starts_with("w.toml:3:14: "));
 }
 
-TEST_CASE("files without a stroke")
+TEST_CASE("files without a stroke are refused")
 {
     const auto whole = [](const std::string& text) {
         return message_of([&] { static_cast<void>(parse_strokes_toml(text, "w.toml")); });

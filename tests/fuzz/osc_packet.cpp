@@ -46,7 +46,7 @@ void check_request(const net::osc_message& m)
         HOLDS(!server::is_servers_own(m.address));
         HOLDS(m.address == "/tactor/" + r.method);
         HOLDS(r.params.is_object());
-        HOLDS(!net::text_of(net::reply_json(r.params)).empty());
+        HOLDS(!net::json_line(net::reply_json(r.params)).empty());
     } catch (const server::fault_error& e) {
         HOLDS(!e.fault().what.empty() && !e.fault().why.empty());
     }

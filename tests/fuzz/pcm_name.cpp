@@ -9,7 +9,6 @@
 #include "holds.hpp"
 #include "sink/alsa/devices/plain_name.hpp"
 #include "sink/alsa/devices/route.hpp"
-#include "sink/alsa/devices/wiring.hpp"
 #include "sink/alsa/handle.hpp"
 #include "sink/alsa/library_messages.hpp"
 

@@ -95,7 +95,7 @@ void check_names(std::string_view host, std::string_view origin)
     }
     if (net::origin_is_ours(origin, host, {}))
         HOLDS(origin.size() == host.size() + 7 && origin.starts_with("http://"));
-    HOLDS(net::bearer_of(host).size() <= host.size());
+    HOLDS(net::bearer_token(host).size() <= host.size());
 }
 
 } // namespace

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What the tests of installing share: running a command that must succeed, and a folder that goes with the tests."""
+"""Support for the tests of installing: running a command that must succeed, and a folder for the tests."""
 import pathlib
 import subprocess
 import sys
@@ -20,7 +20,7 @@ def run(*args, **more):
 
 
 class FolderTest(unittest.TestCase):
-    """One folder, cls.dir, for all tests of a class."""
+    """Makes one folder, cls.dir, for all tests of a class."""
 
     @classmethod
     def setUpClass(cls):

@@ -11,7 +11,7 @@ import tarfile
 
 from building import BUILD, CONSUMER, FolderTest, main, run
 
-# A third of the time: see tests/lanes/say.
+# A third of the time: see lanes/say.
 TOGETHER = ["-Dunity=on", "-Dunity_size=40"]
 
 
@@ -40,7 +40,7 @@ class Dist(FolderTest):
         run("ninja", "-C", build, "uninstall")
         self.assertFalse(prefix.exists())
 
-    def test_it_is_a_subproject_of_which_only_the_library_is_built(self):
+    def test_as_a_subproject_only_the_library_is_built(self):
         project = self.dir / "project"
         shutil.copytree(CONSUMER, project)
         shutil.copytree(self.source, project / "subprojects/tactor", ignore=shutil.ignore_patterns("build"))

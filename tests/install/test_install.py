@@ -24,14 +24,14 @@ class Install(FolderTest):
     @classmethod
     def setUpClass(cls):
         super().setUpClass()
-        # `ninja uninstall` goes by this log, which is that of the user's own installation otherwise.
+        # `ninja uninstall` uses this log, which is that of the user's own installation otherwise.
         log = BUILD / "meson-logs/install-log.txt"
         kept = log.read_bytes() if log.exists() else None
         cls.addClassCleanup(lambda: log.unlink() if kept is None else log.write_bytes(kept))
         run("meson", "install", "-C", BUILD, "--no-rebuild", "--strip", "--destdir", cls.dir / "root")
         cls.log = log.read_bytes()
         cls.installed = cls.dir / "root" / PREFIX.relative_to("/")
-        # Moved: nothing may remember where it was put.
+        # Moved: nothing may remember the old place.
         cls.prefix = cls.dir / "elsewhere"
         shutil.copytree(cls.installed, cls.prefix, symlinks=True)
         (pc,) = cls.prefix.rglob("tactor.pc")
@@ -57,13 +57,13 @@ class Install(FolderTest):
         self.assertEqual(schemas, {f"share/tactor/tactor-{kind}-1.schema.json" for kind in (
             "plan", "analysis", "experiment", "plans", "compare", "compares", "play", "devices", "check", "protocol", "power")})
 
-    def test_the_tool_runs_from_where_it_was_moved_to(self):
+    def test_the_tool_runs_from_its_new_place(self):
         tool = self.prefix / "bin/tactor"
         self.assertIn("tactor ", run(tool, "--version", env=self.env))
         self.assertIn("tactor-plan/1", run(tool, "plan", "park2016-1", "--format", "json", env=self.env))
 
     def test_the_tool_has_the_library_within_and_shows_nothing_of_it(self):
-        # What the linker would otherwise look for each time it starts.
+        # Libraries that the linker would otherwise look for at each start.
         painter, = self.libdir.glob("tactor/painter-*.so")
         for file in (self.prefix / "bin/tactor", painter):
             self.assertNotIn("libtactor", run("ldd", file, env=self.env), file)
@@ -71,7 +71,7 @@ class Install(FolderTest):
             self.assertNotIn("tactor::", exported, file)
         self.assertEqual([line.split()[2] for line in exported.splitlines()], ["tactor_painter"])
 
-    def test_what_paints_is_loaded_from_beside_the_tool_and_only_for_pictures(self):
+    def test_the_painter_is_loaded_from_beside_the_tool_and_only_for_pictures(self):
         tool = self.prefix / "bin/tactor"
         (painter,) = self.libdir.glob("tactor/painter-*.so")
         self.assertNotIn("cairo", run("ldd", tool, env=self.env))
@@ -86,7 +86,7 @@ class Install(FolderTest):
         self.assertEqual((self.dir / "a.pdf").read_bytes()[:4], b"%PDF")
 
         away = painter.rename(self.dir / painter.name)
-        try:  # neither the working folder nor the environment says where it is
+        try:  # neither the working folder nor the environment gives the place
             r = subprocess.run([tool, "plot", "park2016-1", "-o", self.dir / "b.png"], capture_output=True, text=True, check=False,
                                cwd=self.dir, env=self.env | {"LD_LIBRARY_PATH": str(self.dir)})
         finally:
@@ -110,14 +110,14 @@ class Install(FolderTest):
         run(*os.environ.get("CXX", "c++").split(), "-std=c++20", "-Wall", "-Wextra", "-Wpedantic", "-Werror", source, *args,
             *self.flags("--cflags", "--libs"), env=self.env)
 
-    def test_what_manual_and_readme_show_compiles(self):
+    def test_code_in_manual_and_readme_compiles(self):
         page = (ROOT / "man/libtactor.3").read_text(encoding="utf-8")
         example = re.search(r"^\.Bd -literal.*?\n(.*?)^\.Ed", page, re.M | re.S)[1].replace("\\e", "\\")
         (self.dir / "manual.cpp").write_text(example, encoding="utf-8")
         self.compile(self.dir / "manual.cpp", "-o", self.dir / "manual")
         self.assertEqual(run(self.dir / "manual", env=self.env | {"LD_LIBRARY_PATH": str(self.libdir)}), "finished\n")
 
-        # Whole, as it stands there, with the command that stands there.
+        # Complete, as printed, with the printed command.
         readme = (ROOT / "README.md").read_text(encoding="utf-8").partition("## From C++")[2]
         body = re.match(r"\n*((?:    .*\n|\n)*)", readme)[1]
         (self.dir / "curve.cpp").write_text(body, encoding="utf-8")
@@ -130,7 +130,7 @@ class Install(FolderTest):
             self.assertIn("hw:CARD=Tactor", told.stderr)
             self.assertEqual(told.returncode, 1)
 
-    def test_each_header_says_before_all_else_that_it_needs_a_newer_language(self):
+    def test_each_header_first_reports_an_old_language(self):
         flags = self.flags("--cflags")
         for header in sorted((self.prefix / "include/tactor").glob("*.hpp")):
             if header.name == "config.hpp":
@@ -142,7 +142,7 @@ class Install(FolderTest):
             self.assertRegex(errors[0], "tactor needs C\\+\\+20: -std=c\\+\\+20", header.name)
             self.assertEqual(len(errors), 2, r.stderr)  # the second ends it
 
-    def test_what_was_compiled_for_another_version_does_not_link(self):
+    def test_a_program_compiled_for_another_version_does_not_link(self):
         headers = self.dir / "other"
         shutil.copytree(ROOT / "include/tactor", headers / "tactor")
         for header in (headers / "tactor").glob("*.hpp"):
@@ -172,7 +172,7 @@ class Install(FolderTest):
             self.assertRegex(dynamic, r"BIND_NOW|FLAGS_1.*NOW", file)
             self.assertIn("GNU_RELRO", dynamic, file)
             self.assertIn("__stack_chk_fail", names, file)
-            if options["optimization"] not in ("0", "plain") and file != painter:  # which calls nothing that has a checked twin
+            if options["optimization"] not in ("0", "plain") and file != painter:  # the painter calls nothing that has a checked twin
                 self.assertRegex(names, r"__\w+_chk\b", file)
 
     def test_the_library_brings_few_others(self):
@@ -180,11 +180,11 @@ class Install(FolderTest):
         needed = run("ldd", library, env=self.env).splitlines()
         self.assertLessEqual(len(needed), 20, needed)
 
-    def test_only_names_of_its_own_leave_the_library(self):
+    def test_only_its_names_leave_the_library(self):
         library = self.libdir / "libtactor.so"
         self.assertRegex(run("readelf", "-dW", library), r"SONAME.*\[libtactor\.so\.0\]")
         names = [line.split(" ", 2)[2] for line in run("nm", "-D", "-C", "--defined-only", library).splitlines()]
-        own = re.compile(r"((typeinfo( name)?|vtable) for |std::span<)?tactor::v0::")  # a template says first what it returns
+        own = re.compile(r"((typeinfo( name)?|vtable) for |std::span<)?tactor::v0::")  # a template begins with its return type
         self.assertEqual([n for n in names if not own.match(n)], [])
         for wanted in ("tactor::v0::player::", "tactor::v0::path::from_svg(", "typeinfo for tactor::v0::error", "vtable for tactor::v0::sink"):
             self.assertTrue(any(n.startswith(wanted) for n in names), wanted)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What two builds of the tool answer to the same questions.
+"""Answers of two builds of the tool to the same questions.
 
 Usage: answers.py TOOL... > FILE      asks: plans of all presets with each algorithm and phantom, samples in each format
        answers.py --compare A B      counts where two such files differ
@@ -13,7 +13,7 @@ import subprocess
 import sys
 import tempfile
 
-TOLERANCE = 1e-12  # of mm and s, and of what is larger than one in parts of itself
+TOLERANCE = 1e-12  # of mm and s; relative above one
 PRESETS = [f"park2016-{i}" for i in (1, 2, 3, 4)]
 METHODS = [["--algorithm", "park2016"], ["--algorithm", "tactile-brush", "--snap", "--drop-points"],
            ["--algorithm", "continuous"]]

@@ -84,7 +84,7 @@ struct pair {
 
 } // namespace
 
-TEST_CASE("lines come whole, however they were cut")
+TEST_CASE("lines come whole, cut in any way")
 {
     pair p;
     p.write("on");
@@ -105,7 +105,7 @@ TEST_CASE("lines come whole, however they were cut")
           "still heard\n");
 }
 
-TEST_CASE("who sends no more may still read, and who is gone is gone")
+TEST_CASE("a peer that sends no more may still read, and a closed one is gone")
 {
     for (const bool at_once : {false, true}) {
         CAPTURE(at_once);
@@ -123,7 +123,7 @@ TEST_CASE("who sends no more may still read, and who is gone is gone")
     }
 }
 
-TEST_CASE("a line that is too long is refused when that is known, not when it ends")
+TEST_CASE("a line that is too long is refused at its excess, not at its end")
 {
     pair p({.message_bytes = 10});
     p.write("0123456789\n0123456789\r"); // the end is no part of it
@@ -136,7 +136,7 @@ TEST_CASE("a line that is too long is refused when that is known, not when it en
     CHECK(p.faults == std::vector<line_fault>{line_fault::too_long});
 }
 
-TEST_CASE("a message that is not complete in time, also the first, ends the connection")
+TEST_CASE("a message that is incomplete for too long, even the first, ends the connection")
 {
     for (const char* begin : {"", "half", "whole\nhalf"}) {
         pair p({.message_s = 0.001});
@@ -153,7 +153,7 @@ TEST_CASE("a message that is not complete in time, also the first, ends the conn
     }
 }
 
-TEST_CASE("who does not read is dropped, and what waited is given back")
+TEST_CASE("a peer that does not read is dropped, and its waiting data are freed")
 {
     pair p({.waiting_bytes = 1'000'000});
     for (int i = 0; i < 1000 && !p.closed; ++i) {
@@ -168,7 +168,7 @@ TEST_CASE("who does not read is dropped, and what waited is given back")
     CHECK(p.all.unread.held() == 0);
 }
 
-TEST_CASE("an empty line is no first message, and after that no message that is late")
+TEST_CASE("an empty line is no first message, and after that no late message")
 {
     pair p({.message_s = 0.001});
     p.write("\n\r\n\n");
@@ -177,7 +177,7 @@ TEST_CASE("an empty line is no first message, and after that no message that is 
     CHECK(p.faults == std::vector<line_fault>{line_fault::too_slow});
 }
 
-TEST_CASE("the first message may be owed until one is the right one")
+TEST_CASE("the first message may be missing until one is the right one")
 {
     const auto is_right = [](std::string_view line) { return line == "right"; };
     pair p({.message_s = 0.001}, std::make_shared<machine>(), is_right);
@@ -190,7 +190,7 @@ TEST_CASE("the first message may be owed until one is the right one")
     CHECK(q.faults.empty());
 }
 
-TEST_CASE("where all together have too much waiting, it ends for who has most")
+TEST_CASE("when all together have too much waiting, the one with most is dropped")
 {
     byte_budget all(10'000);
     std::vector<int> given_up;
@@ -208,7 +208,7 @@ TEST_CASE("where all together have too much waiting, it ends for who has most")
     CHECK(given_up == std::vector<int>{1});
     CHECK(all.held() == 2'000);
     CHECK_FALSE(hog.add(1));
-    hog.take(9'000); // what was on its way when it was given up
+    hog.take(9'000); // on its way when it was given up
     CHECK(all.held() == 2'000);
     innocent.take(2'000);
     CHECK_FALSE(innocent.add(10'001)); // more than there is
@@ -216,7 +216,7 @@ TEST_CASE("where all together have too much waiting, it ends for who has most")
     CHECK(all.held() == 0);
 }
 
-TEST_CASE("a peer that is sent to is not given up for another that does not read")
+TEST_CASE("a peer with a large message stays when another does not read")
 {
     const auto both = std::make_shared<machine>(50'000);
     pair reads({}, both);
@@ -249,7 +249,7 @@ TEST_CASE("each peer has one line a turn")
     many.until([&] { return many.lines.size() == 1000; });
 }
 
-TEST_CASE("a long line comes whole, wherever its blocks end")
+TEST_CASE("a long line comes whole, for any ends of its blocks")
 {
     for (const std::size_t size : {100'000U, 114'688U, 131'070U, 131'072U, 131'073U, 262'144U, 500'000U}) {
         CAPTURE(size);
@@ -306,7 +306,7 @@ TEST_CASE("large lines are read one at a time, and small ones of others pass the
     CHECK(all->all.unfinished.held() < 4 * small_message);
 }
 
-TEST_CASE("where all together have too much unfinished, it ends for who has most")
+TEST_CASE("when all together have too much unfinished, the one with most is dropped")
 {
     const auto both = std::make_shared<machine>(64U << 20, 45'000);
     pair large({}, both);
@@ -324,11 +324,11 @@ TEST_CASE("where all together have too much unfinished, it ends for who has most
     CHECK(small.faults.empty());
 }
 
-TEST_CASE("what one peer sends may not fit into memory: only that one goes")
+TEST_CASE("a message beyond memory drops only its peer")
 {
     const auto both = std::make_shared<machine>();
     pair other({}, both);
-    // The handler fails as an allocation does.
+    // The handler fails like an allocation.
     int fds[2] = {-1, -1};
     REQUIRE(::socketpair(AF_UNIX, SOCK_STREAM | SOCK_NONBLOCK, 0, fds) == 0);
     line_connection::socket_type s(both->io);

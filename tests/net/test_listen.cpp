@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: MIT
-// Where nobody can listen, and why.
+// Listening that fails, with reasons.
 #include "net/listen.hpp"
 
 #include <cerrno>
-#include <functional>
 #include <string>
 
 #include <doctest/doctest.h>
@@ -15,27 +14,14 @@
 
 #include "folder.hpp"
 #include "has.hpp"
+#include "message_of.hpp"
 
 namespace listen_test {
 
 using namespace tactor;
 using namespace tactor::net;
 
-namespace {
-
-int os_code(const std::function<void()>& call)
-{
-    try {
-        call();
-    } catch (const error& e) {
-        return e.os_code();
-    }
-    return 0;
-}
-
-} // namespace
-
-TEST_CASE("a folder that somebody holds locked is not waited for without end")
+TEST_CASE("a locked folder is not awaited without end")
 {
     const folder here;
     const owned_fd other(::open((here / ".").c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
@@ -43,7 +29,7 @@ TEST_CASE("a folder that somebody holds locked is not waited for without end")
     CHECK(listen_unix((here / "s").string(), 0600, {}));
 }
 
-TEST_CASE("what the system refuses a listener has its errno")
+TEST_CASE("a refused listener has its errno")
 {
     const folder here;
     CHECK(os_code([&] { listen_unix((here / "none/s").string(), 0600, {}); }) == ENOENT);
@@ -52,7 +38,7 @@ TEST_CASE("what the system refuses a listener has its errno")
     CHECK(os_code([&] { listen_tcp(parse_host(local_address(first.get()), "port"), "port"); }) == EADDRINUSE);
 }
 
-TEST_CASE("a port that is in use is said with the process that has it")
+TEST_CASE("a port in use is reported with its process")
 {
     const auto says = [](const std::function<void()>& call) {
         try {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Packets of OSC: what they say, and what is wrong with them.
+// Packets of OSC: their values, and their faults.
 #include "net/osc.hpp"
 
 #include <cmath>
@@ -53,7 +53,7 @@ std::string refusal(const std::string& packet, const osc_limits& l = {})
 
 } // namespace
 
-TEST_CASE("a message as the standard's example has it, byte by byte")
+TEST_CASE("a message matches the standard's example, byte by byte")
 {
     // OSC 1.0's second example: /foo with two integers, a text and two floats.
     const std::string packet = "/foo\0\0\0\0,iisff\0\0\0\0\x03\xe8\xff\xff\xff\xffhello\0\0\0"
@@ -71,7 +71,7 @@ TEST_CASE("a message as the standard's example has it, byte by byte")
     CHECK(osc_packet("/foo", all[0].values) == packet);
 }
 
-TEST_CASE("numbers of 8 bytes wherever they stand, and types that are passed over")
+TEST_CASE("numbers of 8 bytes are read at any place, and unused types are skipped")
 {
     const std::string values = big_endian(1, 4) + big_endian(0xfffffffffffffffeU, 8) +
                                big_endian(0x3ff8000000000000U, 8) + big_endian(3, 4) + padded("abc") +
@@ -86,7 +86,7 @@ TEST_CASE("numbers of 8 bytes wherever they stand, and types that are passed ove
         CHECK(std::get<osc_other>(m.values[i]).tag == "TFNI"[i - 5]);
 }
 
-TEST_CASE("no values: with types and without")
+TEST_CASE("a message may have no values, with types and without")
 {
     for (const std::string& packet : {stop, padded("/tactor/stop")}) {
         const auto all = parse_osc(packet);
@@ -109,7 +109,7 @@ TEST_CASE("bundles give each message the time of the innermost")
     CHECK(parse_osc(bundle(1, {})).empty());
 }
 
-TEST_CASE("a broken packet says why, and none of it is taken")
+TEST_CASE("a broken packet gives the reason, and none of it is used")
 {
     struct broken {
         std::string packet;
@@ -148,7 +148,7 @@ TEST_CASE("a broken packet says why, and none of it is taken")
     }
 }
 
-TEST_CASE("bundles in bundles and messages have an end")
+TEST_CASE("bundles in bundles and messages have a limit")
 {
     std::string deep = stop;
     for (int i = 0; i < 8; ++i)
@@ -163,7 +163,7 @@ TEST_CASE("bundles in bundles and messages have an end")
     CHECK(parse_osc(bundle(1, {many.begin(), many.end() - 1})).size() == 256);
 }
 
-TEST_CASE("what is written is read, whatever the numbers")
+TEST_CASE("written packets are read back, for any numbers")
 {
     const auto m =
         parse_osc(osc_packet("/tactor/stroke", {std::int64_t{1} << 40, -1e300, ""s, "abc"s, "abcd"s}))
@@ -176,7 +176,7 @@ TEST_CASE("what is written is read, whatever the numbers")
     CHECK(std::get<std::string>(m.values[4]) == "abcd");
 }
 
-TEST_CASE("no packet is more than refused, whichever of its bytes are wrong or missing")
+TEST_CASE("any wrong or missing bytes of a packet only refuse it")
 {
     std::mt19937 random(7);
     const std::string good =
@@ -185,7 +185,7 @@ TEST_CASE("no packet is more than refused, whichever of its bytes are wrong or m
     std::size_t cut_off = 0;
     for (std::size_t n = 0; n < good.size(); ++n)
         cut_off += refusal(good.substr(0, n)).empty() ? 0 : 1;
-    CHECK(cut_off == good.size() - 2); // but where an element ends, before the first one and after
+    CHECK(cut_off == good.size() - 2); // except where an element ends, before the first one and after
     int refused = 0;
     const int times = tactor::test::rounds(20000);
     for (int i = 0; i < times; ++i) {

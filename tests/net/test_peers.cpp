@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Whose datagrams are heard.
+// Peers whose datagrams are heard.
 #include "net/access.hpp"
 
 #include <doctest/doctest.h>
@@ -21,12 +21,12 @@ bool heard(const char* from, const std::vector<std::string>& prefixes)
     std::vector<address_prefix> peers;
     for (const std::string& p : prefixes)
         peers.push_back(parse_prefix(p, "osc_peers"));
-    return is_heard(boost::asio::ip::make_address(from), peers);
+    return is_accepted(boost::asio::ip::make_address(from), peers);
 }
 
 } // namespace
 
-TEST_CASE("without a list this machine alone is heard")
+TEST_CASE("without a list only this machine is heard")
 {
     for (const char* own : {"127.0.0.1", "127.9.8.7", "::1", "::ffff:127.0.0.1"}) {
         CAPTURE(own);
@@ -55,7 +55,7 @@ TEST_CASE("a prefix is compared to its last bit")
     CHECK(heard("192.168.1.9", {"192.168.1.77/24"}));
 }
 
-TEST_CASE("what is no prefix is refused by its name")
+TEST_CASE("a bad prefix is refused by its name")
 {
     for (const char* bad : {"", "/", "10.0.0.0/33", "::/129", "10.0.0.0/", "10.0.0.0/-1", "10.0.0.0/8x",
                             "10.0.0", "example.org", "10.0.0.0/8/8", "10.0.0.0/ 8", "[::1]"}) {

@@ -13,7 +13,7 @@ using namespace tactor::net;
 
 namespace {
 
-int code_of(std::string_view text)
+int refusal_code(std::string_view text)
 {
     const rpc_message m = parse_rpc(text, {});
     REQUIRE(m.parts.size() == 1);
@@ -41,16 +41,16 @@ TEST_CASE("requests, notifications and batches are told apart")
     CHECK(parse_rpc(R"([{"jsonrpc":"2.0","method":"m"}])", {}).batch);
 }
 
-TEST_CASE("what is no request has the standard's code")
+TEST_CASE("a bad request has the standard's code")
 {
     for (const char* text : {"", "{", "nul", "\"\xff\"", "{\"a\":1,}", "[1] 2", "\xc0\x80"})
-        CHECK_MESSAGE(code_of(text) == code_parse_error, text);
+        CHECK_MESSAGE(refusal_code(text) == code_parse_error, text);
     for (const char* text :
          {"1", "null", "[]", "{}", R"({"jsonrpc":"2.0"})", R"({"jsonrpc":2.0,"method":"m"})",
           R"({"jsonrpc":"2.0","method":1})", R"({"jsonrpc":"2.0","method":"m","params":"p"})",
           R"({"jsonrpc":"2.0","method":"m","id":true})", R"({"jsonrpc":"2.0","method":"m","id":{}})"})
-        CHECK_MESSAGE(code_of(text) == code_invalid_request, text);
-    CHECK(code_of(R"({"jsonrpc":"2.0","method":"m","params":[1],"id":null})") == 0);
+        CHECK_MESSAGE(refusal_code(text) == code_invalid_request, text);
+    CHECK(refusal_code(R"({"jsonrpc":"2.0","method":"m","params":[1],"id":null})") == 0);
 }
 
 TEST_CASE("no parameters are the same in each form")
@@ -63,7 +63,7 @@ TEST_CASE("no parameters are the same in each form")
         CHECK(std::get<rpc_request>(parse_rpc(text, {}).parts.front()).params == json::object());
     }
     for (const char* params : {"0", "false", "\"\"", "1"})
-        CHECK(code_of(R"({"jsonrpc":"2.0","method":"m","params":)" + std::string(params) + "}") ==
+        CHECK(refusal_code(R"({"jsonrpc":"2.0","method":"m","params":)" + std::string(params) + "}") ==
               code_invalid_request);
 }
 
@@ -81,11 +81,10 @@ TEST_CASE("a method that is accepted in any form is a request, whatever is besid
         CHECK(r.wants_reply == (text.find("id") != std::string::npos));
         CHECK(r.id == (text.find("5") != std::string::npos ? json(5) : json(nullptr)));
     }
-    CHECK(code_of(R"({"method":""})") == code_invalid_request); // as without such a method
+    CHECK(refusal_code(R"({"method":""})") == code_invalid_request); // as without such a method
 }
 
-TEST_CASE(
-    "a message that is refused as a whole says whether the method that is accepted in any form is in it")
+TEST_CASE("a message refused as a whole still reports a method that is accepted in any form")
 {
     const auto acts = [](const std::string& text) {
         const rpc_message m = parse_rpc(text, {.batch = 3, .any_form = "halt"});
@@ -119,27 +118,27 @@ TEST_CASE("a number that no double holds is no number, and its message is answer
     CHECK(r.params["y"][1] == 0.0);
     CHECK(r.params["z"] == "1e400");
     CHECK(r.params["d"] == 2);
-    CHECK(code_of("[1e400,") == code_parse_error);
+    CHECK(refusal_code("[1e400,") == code_parse_error);
     // Read once, whatever follows: twice as long takes twice as long.
-    CHECK(code_of("[1e400," + std::string(1U << 20, 'e')) == code_parse_error);
+    CHECK(refusal_code("[1e400," + std::string(1U << 20, 'e')) == code_parse_error);
 }
 
 TEST_CASE("nesting is counted outside of texts, and refused before anything is built")
 {
     const auto nested = [](int n) { return std::string(static_cast<std::size_t>(n), '['); };
-    CHECK(code_of(nested(65)) == code_limit);
-    CHECK(code_of(nested(1'000'000)) == code_limit);
+    CHECK(refusal_code(nested(65)) == code_limit);
+    CHECK(refusal_code(nested(1'000'000)) == code_limit);
     CHECK(std::get<rpc_refusal>(parse_rpc(nested(65), {}).parts.front()).why.what == "max_nesting");
-    CHECK(code_of(nested(64)) == code_parse_error);
-    CHECK(code_of("\"" + nested(100) + "\\\"" + nested(100) + "\"") == code_invalid_request);
+    CHECK(refusal_code(nested(64)) == code_parse_error);
+    CHECK(refusal_code("\"" + nested(100) + "\\\"" + nested(100) + "\"") == code_invalid_request);
     std::string flat = "[";
     for (int i = 0; i < 1000; ++i)
         flat += "[],";
-    CHECK(code_of(flat + "[]]") == code_limit); // a batch of 1001
-    CHECK(code_of("[[[]]]") == code_invalid_request);
+    CHECK(refusal_code(flat + "[]]") == code_limit); // a batch of 1001
+    CHECK(refusal_code("[[[]]]") == code_invalid_request);
 }
 
-TEST_CASE("what an error repeats of a client's text is cut at 80 characters")
+TEST_CASE("an error repeats at most 80 characters of a client's text")
 {
     const std::string x(200, 'x');
     const std::string x80 = x.substr(0, 80) + "...";
@@ -157,25 +156,25 @@ TEST_CASE("what an error repeats of a client's text is cut at 80 characters")
         "one of algorithm, phantom, duration, speed, soa, burst, slope, intercept, timing, outside, \"snap\"";
     CHECK(cut_echo(own) == own);
     const rpc_fault f{code_bad_params, "bad-input", x, "no '" + x + "'", "not \"" + x + '"'};
-    CHECK(text_of(error_reply(7, f)).size() < 1000);
-    CHECK(words_of(f) == x80 + ": no '" + x80 + "' (not \"" + x80 + "\")");
-    CHECK(code_of(R"({"jsonrpc":"2.0","method":"m","id":")" + x + "\"}") == code_invalid_request);
-    CHECK(code_of(R"({"jsonrpc":"2.0","method":"m","id":")" + x.substr(0, 80) + "\"}") == 0);
-    CHECK(text_of(
+    CHECK(json_line(error_reply(7, f)).size() < 1000);
+    CHECK(fault_text(f) == x80 + ": no '" + x80 + "' (not \"" + x80 + "\")");
+    CHECK(refusal_code(R"({"jsonrpc":"2.0","method":"m","id":")" + x + "\"}") == code_invalid_request);
+    CHECK(refusal_code(R"({"jsonrpc":"2.0","method":"m","id":")" + x.substr(0, 80) + "\"}") == 0);
+    CHECK(json_line(
               error_reply(nullptr,
                           std::get<rpc_refusal>(parse_rpc(std::string(1U << 20, 'x'), {}).parts.front()).why))
               .size() < 1000);
 }
 
-TEST_CASE("errors say kind, what, why and hint")
+TEST_CASE("errors have kind, what, why and hint")
 {
     const reply_json e = error_reply(7, {code_bad_params, "bad-input", "options.soa", "too long", "shorter"});
-    CHECK(text_of(e) ==
+    CHECK(json_line(e) ==
           R"x({"jsonrpc":"2.0","id":7,"error":{"code":-32602,"message":"options.soa: too long (shorter)",)x"
           R"("data":{"kind":"bad-input","what":"options.soa","why":"too long","hint":"shorter"}}})");
-    CHECK(text_of(result_reply(nullptr, reply_json::object())) ==
+    CHECK(json_line(result_reply(nullptr, reply_json::object())) ==
           R"({"jsonrpc":"2.0","id":null,"result":{}})");
-    CHECK(text_of(notification("stroke", {{"stroke", 1}})) ==
+    CHECK(json_line(notification("stroke", {{"stroke", 1}})) ==
           R"({"jsonrpc":"2.0","method":"stroke","params":{"stroke":1}})");
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Which browsers' requests are meant for this server.
+// Browsers' requests that are meant for this server.
 #include "net/access.hpp"
 
 #include <doctest/doctest.h>
@@ -8,14 +8,14 @@ namespace web_access_test {
 
 using namespace tactor::net;
 
-TEST_CASE("names by which a browser may call this server")
+TEST_CASE("a browser may call this server by its names")
 {
     const std::string local = "127.0.0.1:4003";
     for (const char* ours : {"127.0.0.1:4003", "localhost:4003", "LocalHost:4003"}) {
         CAPTURE(ours);
         CHECK(host_is_ours(ours, local, {}));
     }
-    // A name that somebody pointed at this address, another address, another port, no port, and rubbish.
+    // A foreign name for this address, another address, another port, no port, and rubbish.
     for (const char* not_ours :
          {"evil.example:4003", "127.0.0.2:4003", "127.1:4003", "0x7f000001:4003", "localhost:4004",
           "localhost", "127.0.0.1", "localhost.:4003", "localhost:4003:4003", "[::1]:4003", "", ":", ":4003",
@@ -27,7 +27,7 @@ TEST_CASE("names by which a browser may call this server")
     CHECK(host_is_ours("[::1]:4003", "[::1]:4003", {}));
     CHECK(host_is_ours("[0:0::1]:4003", "[::1]:4003", {}));
     CHECK_FALSE(host_is_ours("[::1]", "[::1]:4003", {}));
-    // What listens on [::] hears IPv4, too.
+    // A server on [::] hears IPv4, too.
     CHECK(host_is_ours("192.168.1.7:4003", "[::ffff:192.168.1.7]:4003", {}));
     CHECK(host_is_ours("[::ffff:192.168.1.7]:4003", "[::ffff:192.168.1.7]:4003", {}));
     CHECK_FALSE(host_is_ours("192.168.1.8:4003", "[::ffff:192.168.1.7]:4003", {}));
@@ -35,7 +35,7 @@ TEST_CASE("names by which a browser may call this server")
     CHECK(host_is_ours("192.168.1.7:4003", "192.168.1.7:4003", {}));
 }
 
-TEST_CASE("names that the owner allows")
+TEST_CASE("the owner can allow names")
 {
     const std::vector<std::string> allowed{"pi.lan", "desk.lan:8080"};
     CHECK(host_is_ours("pi.lan", "10.0.0.2:4003", allowed));
@@ -44,7 +44,7 @@ TEST_CASE("names that the owner allows")
     CHECK_FALSE(host_is_ours("desk.lan:4003", "10.0.0.2:4003", allowed));
     CHECK_FALSE(host_is_ours("pi.lan.evil.example", "10.0.0.2:4003", allowed));
     CHECK_FALSE(host_is_ours("xpi.lan", "10.0.0.2:4003", allowed));
-    // What goes into the page's policy is a name and a port, and nothing else.
+    // The page's policy gets a name and a port, and nothing else.
     for (const char* nonsense : {"pi.lan:evil", "pi.lan:80;x", "pi.lan:", "pi.lan:4003 x", "pi.lan:123456",
                                  "[pi.lan]:4003", "[pi.lan"}) {
         CAPTURE(nonsense);
@@ -53,7 +53,7 @@ TEST_CASE("names that the owner allows")
     CHECK_FALSE(host_is_ours("", "10.0.0.2:4003", {""}));
 }
 
-TEST_CASE("pages that may connect")
+TEST_CASE("only pages of this server and allowed ones may connect")
 {
     const std::string host = "127.0.0.1:4003";
     const std::vector<std::string> allowed{"pi.lan", "desk.lan:8443"};
@@ -70,10 +70,10 @@ TEST_CASE("pages that may connect")
     }
 }
 
-TEST_CASE("what a request is for, as a path or as a whole address")
+TEST_CASE("the target of a request is a path or a whole address")
 {
     const auto is = [](std::string_view target, std::string_view host, std::string_view path) {
-        const web_target t = target_of(target, "said:4003");
+        const web_target t = parse_target(target, "said:4003");
         return t.host == host && t.path == path;
     };
     CHECK(is("/rpc", "said:4003", "/rpc"));
@@ -91,13 +91,13 @@ TEST_CASE("what a request is for, as a path or as a whole address")
     }
 }
 
-TEST_CASE("tokens")
+TEST_CASE("tokens are read from the header")
 {
-    CHECK(bearer_of("Bearer secret") == "secret");
-    CHECK(bearer_of("bearer secret") == "secret");
-    CHECK(bearer_of("Basic secret").empty());
-    CHECK(bearer_of("Bearer ").empty());
-    CHECK(bearer_of("").empty());
+    CHECK(bearer_token("Bearer secret") == "secret");
+    CHECK(bearer_token("bearer secret") == "secret");
+    CHECK(bearer_token("Basic secret").empty());
+    CHECK(bearer_token("Bearer ").empty());
+    CHECK(bearer_token("").empty());
 }
 
 } // namespace web_access_test

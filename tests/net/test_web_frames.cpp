@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Where messages end in the bytes of a WebSocket.
+// Ends of messages in the bytes of a WebSocket.
 #include "net/web_frames.hpp"
 
 #include <algorithm>
@@ -37,7 +37,7 @@ bytes framed(unsigned kind, std::size_t size, bool last = true, bool masked = tr
         add_length(126, 2);
     else
         add_length(127, 8);
-    // What is in it looks like anything else.
+    // Its content looks like any frame.
     b.resize(b.size() + (masked ? 4 : 0) + size, std::byte{0x81});
     return b;
 }
@@ -63,7 +63,7 @@ TEST_CASE("messages of any size, in any pieces, are open from their first byte t
         }
 }
 
-TEST_CASE("a message in fragments is open between them, whatever control frames come")
+TEST_CASE("a message in fragments is open between them, with any control frames")
 {
     web_frames f;
     const auto take = [&f](const bytes& b) { f.take(b); };

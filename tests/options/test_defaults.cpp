@@ -96,7 +96,7 @@ TEST_CASE("each option of [defaults] is read as it may be typed, and no other")
         wishes w;
         w.place = o.where;
         apply_defaults(w, read(fmt::format("[defaults]\n{} = \"{}\"\n", name, all.at(name))));
-        if (name != "speed") // which is only the usual one
+        if (name != "speed") // it is only the usual one
             CHECK(o.to.get(w) != o.to.get(wishes()));
         CHECK(w.in_file.contains(index(o)));
     }
@@ -173,8 +173,7 @@ TEST_CASE("values of [defaults] that nothing uses may stand there for other stro
     wishes w;
     w.place = on_plan;
     give(w, *find("noise_seed"), 3.0);
-    CHECK(message_of([&] { settle(w); }) ==
-          "{noise_seed}: nothing here uses it (add {waveform=noise:LO-HI})");
+    CHECK(message_of([&] { settle(w); }) == "noise_seed: nothing here uses it (add waveform = noise:LO-HI)");
 }
 
 TEST_CASE("an error about a value of [defaults] has its place in the file")

@@ -66,7 +66,7 @@ max_all_unfinished_bytes = 70000
     CHECK_FALSE(options::read_serve(parse_setup("[serve]\n", "t").serve).tcp);
 }
 
-TEST_CASE("[serve]: what cannot be, with its place")
+TEST_CASE("[serve]: impossible values are refused with their place")
 {
     const auto says = [](const std::string& line) {
         return message_of([&] {

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""A headless Chromium, driven by the DevTools protocol over its own WebSocket. The client of that is in tests/cli."""
+"""A headless Chromium, driven by the DevTools protocol over a WebSocket. The client of that is in cli."""
 import base64
 import json
 import pathlib
@@ -17,7 +17,7 @@ PROGRAM = shutil.which("chromium")
 class Browser:
     def __init__(self):
         self.folder = tempfile.mkdtemp(prefix="tactor-chromium-")
-        # As root, and in containers, it has no sandbox of its own; it only ever sees this test's pages.
+        # It runs, as root and in containers, without its sandbox; it only ever sees this test's pages.
         self.process = subprocess.Popen(
             [PROGRAM, "--headless=new", "--no-sandbox", "--disable-gpu", "--disable-dev-shm-usage", "--no-first-run",
              "--disable-background-networking", "--disable-component-update", "--remote-debugging-port=0",
@@ -27,7 +27,7 @@ class Browser:
         while not told.exists() or len(told.read_text(encoding="ascii").splitlines()) < 2:
             if self.process.poll() is not None or time.monotonic() > until:
                 raise RuntimeError("chromium does not start")
-            time.sleep(0.05)  # there is nothing to wait on but the file
+            time.sleep(0.05)  # only the file can be waited for
         port, path = told.read_text(encoding="ascii").splitlines()[:2]
         self.channel = Peer(f"127.0.0.1:{port}")
         assert self.channel.upgrade(path) == 101
@@ -44,7 +44,7 @@ class Browser:
         return m["result"]
 
     def await_event(self, method, session, since):
-        """One of the events from number `since` on."""
+        """Returns one of the events from number `since` on."""
         while not any(e.get("method") == method and e.get("sessionId") == session for e in self.events[since:]):
             self.events.append(json.loads(self.channel.text()))
 
@@ -72,7 +72,7 @@ class Page:
         return self.browser.call(method, self.session, **params)
 
     def reload(self):
-        """Until nothing of the document before is left."""
+        """Waits until nothing of the document before is left."""
         since = len(self.browser.events)
         self.call("Page.reload")
         self.browser.await_event("Page.frameNavigated", self.session, since)
@@ -83,7 +83,7 @@ class Page:
         return r["result"].get("value")
 
     def until(self, expression):
-        """What an expression is once it is true; asked once a frame, by the page itself."""
+        """Returns the value of an expression once it is true; the page itself checks it once a frame."""
         return self.value(f"""new Promise((done, failed) => {{
             const end = performance.now() + {PATIENCE_S * 1000};
             const look = () => {{ let v; try {{ v = {expression}; }} catch {{}}
@@ -116,7 +116,7 @@ class Page:
             self.call("Input.dispatchKeyEvent", type=kind, code=code, key=key or code, modifiers=modifiers)
 
     def picture(self, file):
-        self.call("Page.bringToFront")  # of a tab behind another none is made
+        self.call("Page.bringToFront")  # a tab behind another is not painted
         data = self.call("Page.captureScreenshot", format="png")["data"]
         pathlib.Path(file).write_bytes(base64.b64decode(data))
 
@@ -125,7 +125,7 @@ class Page:
 
 
 class BrowserTest:
-    """Beside unittest.TestCase: one browser for the tests of a class, as self.browser."""
+    """A mix-in for unittest.TestCase: one browser for the tests of a class, as self.browser."""
 
     @classmethod
     def setUpClass(cls):

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""The page of `tactor serve --http` in a real Chromium: drawing, stopping, playing, who may, and what it says when something
-is not there. Usage: test_page.py TOOL SOURCE_ROOT [FOLDER_FOR_PICTURES]"""
+"""The page of `tactor serve --http` in a real Chromium: drawing, stopping, playing, permissions, and its messages when
+something is missing. Usage: test_page.py TOOL SOURCE_ROOT [FOLDER_FOR_PICTURES]"""
 import http.server
 import json
 import pathlib
@@ -31,7 +31,7 @@ class DrawingPage(BrowserTest, ToolTest):
         return p, watcher
 
     def place(self, p, part_x, part_y):
-        """A place on the field, by parts of the way between the first tactor and the last."""
+        """Returns a place on the field, by parts of the distance between the first tactor and the last."""
         a, b = p.middle(".ring"), p.value("(() => { const r = [...document.querySelectorAll('.ring')].at(-1)"
                                           ".getBoundingClientRect(); return [r.x + r.width / 2, r.y + r.height / 2]; })()")
         return a[0] + part_x * (b[0] - a[0]), a[1] + part_y * (b[1] - a[1])
@@ -43,7 +43,7 @@ class DrawingPage(BrowserTest, ToolTest):
     def says(self, p, text):
         p.until(f"document.querySelector('#says').textContent.includes({json.dumps(text)})")
 
-    def test_the_mouse_draws_and_what_was_drawn_plays_again(self):
+    def test_the_mouse_draws_and_the_drawing_plays_again(self):
         p, watcher = self.ready(self.serve())
         self.assertEqual(p.value("document.querySelectorAll('.ring').length"), 9)
         self.assertTrue(p.value("document.querySelector('#again').disabled"))
@@ -67,7 +67,7 @@ class DrawingPage(BrowserTest, ToolTest):
         self.assertEqual(self.run_tool("plan", "drawn.csv").returncode, 0)
 
     def saved(self, p):
-        """The name of the file that the page gives to be kept, which is there then."""
+        """Returns the name of the file that the page offers, once it exists."""
         name, text = p.value("""(async () => { let blob, name; const make = URL.createObjectURL;
             URL.createObjectURL = b => { blob = b; return make(b); };
             HTMLAnchorElement.prototype.click = function () { name = this.download; };
@@ -75,7 +75,7 @@ class DrawingPage(BrowserTest, ToolTest):
         self.write(name, text)
         return name
 
-    def test_fingers_are_strokes_of_their_own(self):
+    def test_each_finger_is_a_stroke(self):
         p, watcher = self.ready(self.serve(), size=(390, 844))
         p.touch("touchStart", (1, *self.place(p, 0.1, 0.1)), (2, *self.place(p, 0.9, 0.1)))
         both = {self.next_stroke(watcher, "started")["stroke"] for _ in range(2)}
@@ -83,7 +83,7 @@ class DrawingPage(BrowserTest, ToolTest):
         p.touch("touchMove", (1, *self.place(p, 0.1, 0.9)), (2, *self.place(p, 0.9, 0.9)))
         p.touch("touchEnd")
         self.assertEqual({self.next_stroke(watcher, "finished")["stroke"] for _ in range(2)}, both)
-        # And one recording, that plays and is kept as it was drawn.
+        # And one recording, which plays and is saved as it was drawn.
         p.until("!document.querySelector('#again').disabled")
         self.assertEqual(p.value("drawn.length"), 2)
         p.click("#again")
@@ -95,7 +95,7 @@ class DrawingPage(BrowserTest, ToolTest):
         self.assertEqual(result.returncode, 0, result.stderr)
         self.assertEqual([s["stroke"]["name"] for s in json.loads(result.stdout)["plans"]], ["finger 1", "finger 2"])
 
-    def test_fingers_that_touch_one_after_the_other_are_one_recording_while_one_touches(self):
+    def test_fingers_that_touch_in_turn_are_one_recording_while_one_touches(self):
         p, watcher = self.ready(self.serve(), size=(390, 844))
         p.touch("touchStart", (1, *self.place(p, 0.1, 0.1)))
         self.next_stroke(watcher, "started")
@@ -106,7 +106,7 @@ class DrawingPage(BrowserTest, ToolTest):
         p.until("!document.querySelector('#again').disabled")
         self.assertEqual(p.value("drawn[0].start_s"), 0)
         self.assertGreater(p.value("drawn[1].start_s"), 0)
-        # What is drawn next takes its place.
+        # The next drawing replaces it.
         p.mouse("mousePressed", *self.place(p, 0.5, 0.5))
         p.mouse("mouseMoved", *self.place(p, 0.6, 0.5))
         p.mouse("mouseReleased", *self.place(p, 0.6, 0.5))
@@ -117,7 +117,7 @@ class DrawingPage(BrowserTest, ToolTest):
         p, watcher = self.ready(s)
         p.mouse("mousePressed", *self.place(p, 0.5, 0.5))
         number = self.next_stroke(watcher, "started")["stroke"]
-        # Longer than the service waits for a point, by the stream's own clock.
+        # Longer than the service waits for a point, by the stream's clock.
         began = s.client().ok("status")["stream"]["uptime_s"]
         asker = s.client()
         while asker.ok("status")["stream"]["uptime_s"] < began + 0.8:
@@ -138,20 +138,20 @@ class DrawingPage(BrowserTest, ToolTest):
         p.click("#play")
         number = self.next_stroke(watcher, "started")["stroke"]
         p.key("Space", " ")
-        ended = watcher.end_of(number)
+        ended = watcher.await_end(number)
         self.assertEqual(ended["state"], "cancelled")
         self.assertNotIn("somebody", p.value("document.querySelector('#says').textContent"))
 
-    def test_space_stops_wherever_the_focus_is(self):
+    def test_space_stops_with_any_focus(self):
         p, watcher = self.ready(self.serve())
         for id in ("level", "file", "preset", "play", "field"):
             p.value("play({path: 'M 0 0 L 40 40'}).then(() => 1)")
             number = self.next_stroke(watcher, "started")["stroke"]
             p.value(f"document.querySelector('#{id}').focus()")
             p.key("Space", " ")
-            self.assertEqual(watcher.end_of(number)["state"], "cancelled", id)
+            self.assertEqual(watcher.await_end(number)["state"], "cancelled", id)
 
-    def test_somebody_else_stops(self):
+    def test_another_client_stops(self):
         s = self.serve()
         p, watcher = self.ready(s)
         p.value("play({path: 'M 0 0 L 40 40'}).then(() => 1)")
@@ -159,7 +159,7 @@ class DrawingPage(BrowserTest, ToolTest):
         s.client().ok("stop")
         self.says(p, "stopped by another client")
 
-    def test_files_and_their_errors(self):
+    def test_files_and_their_errors_are_shown(self):
         p, watcher = self.ready(self.serve())
         upload = """(() => { const d = new DataTransfer(); d.items.add(new File([%s], %s));
             const f = document.querySelector('#file'); f.files = d.files; f.dispatchEvent(new Event('change')); })()"""
@@ -170,12 +170,12 @@ class DrawingPage(BrowserTest, ToolTest):
         p.value(upload % (json.dumps("x"), json.dumps("line.exe")))
         self.says(p, "ends in .toml")
 
-    def test_nothing_is_asked_of_others(self):
+    def test_no_other_server_is_asked(self):
         s = self.serve()
         p, _ = self.ready(s)
         self.assertEqual({u for u in p.requests() if u != "data:,"}, {s.where["http"]})
 
-    def test_the_token(self):
+    def test_the_token_is_required(self):
         token = self.write("token", "secret\n")
         token.chmod(0o600)
         s = self.serve(config=f'[serve]\ntoken_file = "{token}"\n')
@@ -184,7 +184,7 @@ class DrawingPage(BrowserTest, ToolTest):
         p = self.page(s.where["http"] + "#token=secret")
         p.until("document.querySelector('#state').textContent.startsWith('running')")
 
-    def test_another_origins_page_cannot_connect(self):
+    def test_another_origin_s_page_cannot_connect(self):
         s = self.serve("--tcp", "0")
 
         class Evil(http.server.BaseHTTPRequestHandler):
@@ -223,7 +223,7 @@ class DrawingPage(BrowserTest, ToolTest):
         self.assertIsNotNone(again.where)
         p.until("document.querySelector('#state').textContent.startsWith('running')")
 
-    def test_no_device_is_said(self):
+    def test_a_missing_device_is_shown(self):
         p = self.page(self.serve(device=("-D", "hw:CARD=NotThere")).where["http"])
         p.until("document.querySelector('#state').textContent.startsWith('no device')")
 

@@ -32,7 +32,7 @@ class ParticipantPage(BrowserTest, ExperimentTest):
 
     @staticmethod
     def asked(p, screen, ask=0):
-        """The number of a question that is newer than `ask`."""
+        """Returns the number of a question that is newer than `ask`."""
         return p.until(f"state.screen === '{screen}' && state.ask > {ask} && !document.querySelector('#answers button').disabled && state.ask")
 
     def click(self, p, screen, choice, ask=0):
@@ -56,7 +56,7 @@ class ParticipantPage(BrowserTest, ExperimentTest):
         return [(r["trial"], r["attempt"], r["void"], r[column]) for r in self.rows("01", task)]
 
     def picture(self, p, name):
-        """Of each size, light and dark, nothing beside the screen and no button too small."""
+        """Checks each size, light and dark: nothing outside the screen and no button too small."""
         for width, height in SIZES:
             p.call("Emulation.setDeviceMetricsOverride", width=width, height=height, deviceScaleFactor=1, mobile=False)
             self.assertLessEqual(p.value("document.documentElement.scrollWidth"), width, name)
@@ -68,7 +68,7 @@ class ParticipantPage(BrowserTest, ExperimentTest):
                 p.call("Emulation.setEmulatedMedia", features=DARK if width < 500 else [])
                 p.picture(PICTURES / f"participant-{name}-{width}x{height}.png")
 
-    def test_mouse_keys_and_touch(self):
+    def test_mouse_keys_and_touch_answer(self):
         s = self.start()
         p = self.open(s)
         self.asked(p, "consent")
@@ -100,7 +100,7 @@ class ParticipantPage(BrowserTest, ExperimentTest):
         self.assertEqual(s.end(), 0, s.said)
         self.assertEqual(self.told("pairs"), [("1", "1", "false", "2"), ("2", "1", "false", "1")])
         self.assertEqual(self.told("marks", "rating"), [("1", "1", "false", "3"), ("2", "1", "false", "1")])
-        # The end is not taken for a lost connection, and nothing was asked of anybody else.
+        # The end does not count as a lost connection, and no other server was asked.
         self.assertTrue(p.value("document.querySelector('#offline').hidden"))
         self.assertEqual({u.split("/rpc")[0].rstrip("/").replace("ws:", "http:") for u in p.requests() if not u.startswith("data:")},
                          {f"http://{s.address}"})
@@ -113,7 +113,7 @@ class ParticipantPage(BrowserTest, ExperimentTest):
         for _ in (0, 1):
             ask = self.click(p, "walk", 1, ask)
         ask = self.click(p, "introduce", 1, ask)
-        # Where it is in each frame, beside where the plan's own time has it.
+        # The target's place in each frame, beside that of the plan's time.
         p.until("state.screen === 'target' && document.querySelector('#dot')")
         self.assertGreater(p.value("document.querySelector('#dot').getBoundingClientRect().width"), 4)
         seen = p.value("""new Promise(done => { const all = [];
@@ -137,7 +137,7 @@ class ParticipantPage(BrowserTest, ExperimentTest):
             self.assertLessEqual(abs((x if east else 20 - x) - speed * min(t, 2.0)), speed * FRAME_S, (t, x))
 
     def test_all_160_trials(self):
-        """The paper's four runs, with quick motions."""
+        """Runs the paper's four runs, with quick motions."""
         text = self.ok("experiment", "park2016", "--print").stdout
         for pattern, other in ((r"^(preset = .*)", r"\1\nduration = 0.15"), ("^gap_s.*", "gap_s = 0.05"), ("^rest_s.*", "rest_s = 0"),
                                ("^break_s.*", "break_s = 0.2"), ("^practice.*", "practice = 1"), ("^level = .*", "level = { dbfs = -20 }"), ("^noise = .*", 'noise = "none"')):
@@ -186,7 +186,7 @@ class ParticipantPage(BrowserTest, ExperimentTest):
         p.until("state.screen === 'stimulus'")
         p.reload()  # in mid-trial
         ask = self.asked(p, "question", ask)
-        p.reload()  # while it is asked
+        p.reload()  # during the question
         self.assertEqual(self.asked(p, "question"), ask)
         second = self.open(s, size=SIZES[1])
         self.assertEqual(self.asked(second, "question"), ask)
@@ -194,13 +194,13 @@ class ParticipantPage(BrowserTest, ExperimentTest):
         self.picture(p, "elsewhere")
         p.key("Digit1", "1")
         second.call("Page.bringToFront")
-        # A lost connection: said, and found again by itself; what was asked is asked still.
+        # A lost connection: shown, and restored by itself; the question stays.
         self.assertTrue(second.value("""new Promise(done => {
             socket.addEventListener("close", () => done(!document.querySelector("#offline").hidden));
             socket.close(); })"""))
         self.assertEqual(self.asked(second, "question"), ask)
         second.until("document.querySelector('#offline').hidden")
-        # Doubled: by hand, beside the page's own guard.
+        # Doubled: by hand, against the page's guard.
         second.value(f"socket.send('{{\"ask\":{ask},\"answer\":2}}'); socket.send('{{\"ask\":{ask},\"answer\":1}}')")
         ask = self.asked(second, "question", ask)
         # At once, so that nothing that they could answer comes in between.
@@ -249,7 +249,7 @@ class ParticipantPage(BrowserTest, ExperimentTest):
         self.assertEqual([r["rating"] for r in self.rows("01", "marks")], ["9"])
         self.assertEqual([r["response"] for r in self.rows("01", "what")], ["west"])
 
-    def test_thresholds_are_asked_for_on_it(self):
+    def test_thresholds_are_measured_on_it(self):
         for method in ("staircase", "adjustment"):
             s = Session(self, ("calibrate", "--participant", "01", "-o", f"{method}.toml", "-D", "null", "--tactors", "0", "--interval", "0.05",
                                "--method", method, "--display", "page"))

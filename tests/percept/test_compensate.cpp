@@ -40,13 +40,13 @@ double cost(const std::vector<point>& felt, const std::vector<point>& targets)
     return sum;
 }
 
-point between_of(point a, point b, double u)
+point blend(point a, point b, double u)
 {
     return {a.x_mm + u * (b.x_mm - a.x_mm), a.y_mm + u * (b.y_mm - a.y_mm)};
 }
 
-/// The least cost that another way finds: projected gradients with momentum (Beck and Teboulle 2009), begun
-/// anew where they climb, knowing nothing but felt_places() and the nearest point of the array.
+/// Finds the least cost in another way: projected gradients with momentum (Beck and Teboulle 2009), restarted
+/// where they climb, using only felt_places() and the nearest point of the array.
 double by_gradients(const layout& l, const low_speed_observer& o, const std::vector<double>& t,
                     const std::vector<point>& x, int steps)
 {
@@ -65,7 +65,7 @@ double by_gradients(const layout& l, const low_speed_observer& o, const std::vec
         const double now = cost(felt_places(o, t, next), x);
         const double later = now > best ? 1.0 : (1.0 + std::sqrt(1.0 + 4.0 * momentum * momentum)) / 2.0;
         for (std::size_t k = 0; k < r.size(); ++k)
-            ahead[k] = between_of(m[k], next[k], 1.0 + (later > 1.0 ? (momentum - 1.0) / later : 0.0));
+            ahead[k] = blend(m[k], next[k], 1.0 + (later > 1.0 ? (momentum - 1.0) / later : 0.0));
         momentum = later;
         m = next;
         best = std::min(best, now);
@@ -103,11 +103,11 @@ TEST_CASE("inside the array the target itself is felt")
     }
 }
 
-TEST_CASE("two taps by hand: at the edge as far as it goes")
+TEST_CASE("two taps by hand: at the edge as far as possible")
 {
     // A pair of tactors 10 mm apart, targets at 1 and 9 mm, k = 1/2: 8 mm are felt of 16 mm, of which 10 fit;
     // they are felt 5 mm apart, 1.5 mm short on each side.
-    const layout l(array_of({{0.0, 0.0}, {10.0, 0.0}}));
+    const layout l(make_array({{0.0, 0.0}, {10.0, 0.0}}));
     const low_speed_observer o{5.0, 100.0};
     const double t = 0.05 * std::sqrt(2.0);
     const compensated_places p = compensate(l, o, {{0.0, t}}, {{{1.0, 3.0}, {9.0, -4.0}}});
@@ -120,7 +120,7 @@ TEST_CASE("two taps by hand: at the edge as far as it goes")
     CHECK(free.at_edge == 0);
     CHECK(distance_mm(free.played[0], {1.0, 0.0}) < 1e-12);
     const compensated_places one =
-        compensate(layout(array_of({{2.0, 3.0}})), o, {{0.0, t}}, {{{1.0, 3.0}, {9.0, 4.0}}});
+        compensate(layout(make_array({{2.0, 3.0}})), o, {{0.0, t}}, {{{1.0, 3.0}, {9.0, 4.0}}});
     CHECK(one.played[1] == point{2.0, 3.0});
     CHECK(one.at_edge == 2);
 }
@@ -151,7 +151,7 @@ TEST_CASE("at the edge no other way finds places that are felt nearer")
         const double ours = cost(p.felt, x);
         const double theirs = by_gradients(l, o, t, x, 4000);
         CHECK(ours <= theirs + 1e-6);
-        CHECK(theirs <= ours + 1e-3 * (1.0 + ours)); // they are after the same thing
+        CHECK(theirs <= ours + 1e-3 * (1.0 + ours)); // both minimise the same cost
     }
     CHECK(at_edge > rounds(40));
 }
@@ -167,7 +167,7 @@ std::vector<point> circles(std::size_t taps)
     return x;
 }
 
-TEST_CASE("circles at the edge have an answer at every sigma, and it is the other way's")
+TEST_CASE("circles at the edge have an answer at every sigma, equal to the other way's")
 {
     const layout l(palm);
     const std::vector<point> x = circles(1001);
@@ -205,7 +205,7 @@ TEST_CASE("long chains and quick ones have an answer")
         }
 }
 
-TEST_CASE("arrays of all kinds have an answer, however strong the pull")
+TEST_CASE("arrays of all kinds have an answer, for any strength of pull")
 {
     generator g(29);
     for (int round = 0; round < rounds(96); ++round) {
@@ -238,7 +238,7 @@ TEST_CASE("strong pulls and long chains have an answer, or are refused")
         const compensated_places p = compensate(l, o, t, x);
         CAPTURE(sigma);
         CHECK(p.at_edge > 0);
-        // Nobody feels less than where all are played in the middle.
+        // The sensation is no less than with all taps in the middle.
         CHECK(cost(p.felt, x) <= cost(std::vector<point>(x.size(), {20.0, 20.0}), x));
         for (const point& m : p.played)
             CHECK(l.contains(m));
@@ -260,7 +260,7 @@ TEST_CASE("strong pulls and long chains have an answer, or are refused")
     CHECK_THROWS_WITH_AS(compensate(l, {}, onsets(x.size(), 0.07), x), doctest::Contains("too many"), error);
 }
 
-TEST_CASE("a plan is moved whole: places, drives and what it says")
+TEST_CASE("compensation moves a whole plan: places, drives and its description")
 {
     const compensated_plan p = of_motion("park2016-1", phantom_kind::barycentric);
     const plan before = make_plan(palm, preset_stroke("park2016-1"), {.phantom = phantom_kind::barycentric});
@@ -280,7 +280,7 @@ TEST_CASE("a plan is moved whole: places, drives and what it says")
     REQUIRE(p.plan.warnings.size() == before.warnings.size() + 1);
     for (const char* word : {"low-speed", "sigma 5 mm", "taps", "RMS"})
         CHECK(p.plan.warnings.back().find(word) != std::string::npos);
-    // With another phantom what it is off by itself is left.
+    // With another phantom its own error stays.
     const compensated_plan q = of_motion("park2016-1", phantom_kind::inverse_distance);
     CHECK(q.residual_rms_mm == doctest::Approx(p.residual_rms_mm).epsilon(1e-9));
     CHECK(*summarise(q.taps).rms_error_mm > p.residual_rms_mm + 0.1);
@@ -292,7 +292,7 @@ TEST_CASE("a plan is moved whole: places, drives and what it says")
                          doctest::Contains("no bursts"), error);
 }
 
-TEST_CASE("what is moved has the phantom and the scale of its plan")
+TEST_CASE("moved bursts keep the phantom and the scale of their plan")
 {
     stroke s = preset_stroke("park2016-3");
     s.motion = trajectory::timed({{0.0, {5.0, 20.0}, 0.5}, {1.0, {35.0, 20.0}, 0.5}});
@@ -310,7 +310,7 @@ TEST_CASE("what is moved has the phantom and the scale of its plan")
     }
 }
 
-TEST_CASE("where the three closest miss the point is counted at the places that bursts are moved to")
+TEST_CASE("misses of the three closest are counted at the moved places")
 {
     const array wide = make_grid("wide", 3, 3, 20.0, 40.0);
     const layout l(wide);
@@ -336,7 +336,7 @@ TEST_CASE("where the three closest miss the point is counted at the places that 
     CHECK(missed(still) != missed(p.plan));
 }
 
-TEST_CASE("what is fitted to the array is moved where it was fitted")
+TEST_CASE("a fitted stroke is compensated at its fitted place")
 {
     stroke s = preset_stroke("park2016-1");
     s.fit = stroke_fit{12.0};

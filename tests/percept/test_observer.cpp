@@ -19,7 +19,7 @@ using namespace tactor::test;
 
 namespace {
 
-/// Of this thread.
+/// CPU time of this thread.
 double processor_s()
 {
     timespec t{};
@@ -149,7 +149,7 @@ TEST_CASE("check values of the rendering model")
     }
 }
 
-TEST_CASE("any chain solves its equations, whatever its onsets")
+TEST_CASE("any chain solves its equations, for any onsets")
 {
     generator g(7);
     for (int round = 0; round < 200; ++round) {
@@ -169,7 +169,7 @@ TEST_CASE("any chain solves its equations, whatever its onsets")
     }
 }
 
-TEST_CASE("taps at one time are felt at one place, and far apart in time each where it is")
+TEST_CASE("simultaneous taps are felt at one place, and taps far apart in time at their own")
 {
     const std::vector<point> m{{0.0, 0.0}, {10.0, 2.0}, {40.0, -2.0}};
     const std::vector<point> x = felt_places({}, {{1.0, 1.0, 1.0}}, m);
@@ -182,7 +182,7 @@ TEST_CASE("taps at one time are felt at one place, and far apart in time each wh
         for (std::size_t i = 0; i < m.size(); ++i)
             CHECK(distance_mm(y[i], m[i]) < 1e-9);
     }
-    // As rigid as can be: nothing cancels.
+    // A chain as rigid as possible: nothing cancels.
     const std::vector<point> z = felt_places({most_sigma_mm, least_sigma_v_mm_s}, {{0.0, 1e-9, 2e-9}}, m);
     CHECK(z[1].x_mm == doctest::Approx(50.0 / 3.0).epsilon(1e-12));
     CHECK(felt_places({}, {}, {}).empty());
@@ -203,7 +203,7 @@ TEST_CASE("a hundred thousand taps are solved exactly, with work in proportion")
         worst = std::max(
             worst, std::abs((1.0 + 2.0 * k) * x[i].y_mm - k * (x[i - 1].y_mm + x[i + 1].y_mm) - m[i].y_mm));
     CHECK(worst < 1e-8);
-    // A quadratic way would take 10,000 times as long for 100 times as many: the best of several is asked, so
+    // A quadratic way would take 10,000 times as long for 100 times as many: takes the best of several, so
     // that a busy machine does not matter.
     const auto best_s = [&](std::size_t count) {
         double best = 1e9;
@@ -217,7 +217,7 @@ TEST_CASE("a hundred thousand taps are solved exactly, with work in proportion")
     CHECK(best_s(n) < 2000.0 * best_s(n / 100));
 }
 
-TEST_CASE("bursts that are silent are not felt; the target counts at the onset")
+TEST_CASE("silent bursts are not felt; the target counts at the onset")
 {
     const stroke s = timed({{0.0, {0.0, 0.0}, 1.0}, {0.07, {10.0, 0.0}, 0.0}, {0.14, {20.0, 0.0}, 1.0}});
     const plan p = make_plan(palm, s);
@@ -234,7 +234,7 @@ TEST_CASE("bursts that are silent are not felt; the target counts at the onset")
     CHECK_FALSE(none.length_ratio);
 }
 
-TEST_CASE("another person's taps are elsewhere before they are pulled together")
+TEST_CASE("another person's taps are shifted before they are pulled together")
 {
     const stroke s = along("M 0 20 L 40 20", 0.2);
     const plan p = make_plan(palm, s);
@@ -251,7 +251,7 @@ TEST_CASE("another person's taps are elsewhere before they are pulled together")
     CHECK_THROWS_WITH_AS(predict_taps(palm, s, p, {}, who), doctest::Contains("shift"), error);
 }
 
-TEST_CASE("what it cannot predict, and parameters that are none, are refused")
+TEST_CASE("impossible predictions and parameters are refused")
 {
     const stroke s = preset_stroke("park2016-1");
     plan_options o;
@@ -272,7 +272,7 @@ TEST_CASE("what it cannot predict, and parameters that are none, are refused")
     CHECK(refused({}, {0.0, 0.1}, {{0.0, 0.0}, {infinite, 0.0}}).find("finite") != std::string::npos);
 }
 
-TEST_CASE("the sentence that goes with its numbers names model, parameters and what it was built for")
+TEST_CASE("the description of its numbers names model, parameters and purpose")
 {
     const std::string text = describe({7.5, 120.0});
     for (const char* word : {"low-speed", "Goldreich", "7.5 mm", "120 mm/s", "taps", "nobody has fitted"})

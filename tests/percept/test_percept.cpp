@@ -24,7 +24,7 @@ std::vector<percept_sample> predict(const array& a, const stroke& s, const plan_
     return predict_percept(a, s, make_plan(a, s, o));
 }
 
-plan plan_of(std::vector<burst> bursts, overlap_kind join = overlap_kind::energy)
+plan make_test_plan(std::vector<burst> bursts, overlap_kind join = overlap_kind::energy)
 {
     plan p;
     p.overlap = join;
@@ -32,7 +32,7 @@ plan plan_of(std::vector<burst> bursts, overlap_kind join = overlap_kind::energy
     return p;
 }
 
-burst burst_of(double onset_s, double duration_s, std::vector<drive> drives)
+burst one_burst(double onset_s, double duration_s, std::vector<drive> drives)
 {
     burst b;
     b.onset_s = onset_s;
@@ -41,9 +41,9 @@ burst burst_of(double onset_s, double duration_s, std::vector<drive> drives)
     return b;
 }
 
-const array pair = array_of({{0.0, 0.0}, {10.0, 0.0}});
+const array pair = make_array({{0.0, 0.0}, {10.0, 0.0}});
 
-/// All of the prediction but the speed, looked up from scratch at each time.
+/// Computes the prediction without the speed, from scratch at each time.
 percept_sample by_search(const array& a, const plan& p, double t_s)
 {
     percept_sample r;
@@ -86,8 +86,8 @@ percept_sample by_search(const array& a, const plan& p, double t_s)
 TEST_CASE("by hand: a line between two tactors in two bursts")
 {
     // 10 mm in 0.1 s: bursts at 0 s where the target is at 0 mm, and at 0.07 s where it is at 7 mm. The
-    // centroid of Eq. (2) is the point itself, so the error is how far the target has gone on since the
-    // onset: 0.1 i mm for i = 0 ... 69, then for i = 0 ... 30.
+    // centroid of Eq. (2) is the point itself, so the error is the target's distance since the onset: 0.1 i
+    // mm for i = 0 ... 69, then for i = 0 ... 30.
     const stroke s = along("M 0 0 L 10 0", 0.1);
     const plan p = make_plan(pair, s);
     REQUIRE(p.bursts.size() == 2);
@@ -110,11 +110,11 @@ TEST_CASE("by hand: a line between two tactors in two bursts")
 
 TEST_CASE("by hand: the speed of one jump is the average's ramp")
 {
-    // One tactor for half a second, then another 10 mm away: the average over 101 samples rises by 10/101 mm
+    // A tactor for half a second, then another 10 mm away: the average over 101 samples rises by 10/101 mm
     // each millisecond, from sample 449 on to sample 550, at whose ends the central difference is half that.
     const stroke s = along("M 0 0 L 10 0", 1.0);
-    const auto samples =
-        predict_percept(pair, s, plan_of({burst_of(0.0, 0.5, {{0, 1.0}}), burst_of(0.5, 0.5, {{1, 1.0}})}));
+    const auto samples = predict_percept(
+        pair, s, make_test_plan({one_burst(0.0, 0.5, {{0, 1.0}}), one_burst(0.5, 0.5, {{1, 1.0}})}));
     REQUIRE(samples.size() == 1001);
     const double ramp = 10.0 / 101.0 / 0.001;
     for (std::size_t i = 0; i <= 1000; ++i) {
@@ -141,13 +141,14 @@ TEST_CASE("continuous with barycentric weights is felt where the target is")
     CHECK(r.silent_share == 0.0);
 }
 
-TEST_CASE("overlapping bursts on one tactor are joined as the plan says")
+TEST_CASE("overlapping bursts on one tactor are joined by the plan's rule")
 {
     const stroke s = along("M 0 0 L 10 0", 0.1);
-    const std::vector<burst> both{burst_of(0.0, 0.1, {{0, 0.8}}), burst_of(0.04, 0.04, {{0, 0.8}, {1, 0.6}})};
-    const double on_one[] = {1.0, 0.8, 1.6}; // sqrt(1.28) is over the intensity asked for
+    const std::vector<burst> both{one_burst(0.0, 0.1, {{0, 0.8}}),
+                                  one_burst(0.04, 0.04, {{0, 0.8}, {1, 0.6}})};
+    const double on_one[] = {1.0, 0.8, 1.6}; // sqrt(1.28) is over the given intensity
     for (const overlap_kind join : {overlap_kind::energy, overlap_kind::max, overlap_kind::sum}) {
-        const auto samples = predict_percept(pair, s, plan_of(both, join));
+        const auto samples = predict_percept(pair, s, make_test_plan(both, join));
         const double a = on_one[static_cast<int>(join)];
         CHECK_FALSE(samples[39].shared);
         CHECK(samples[39].intensity == doctest::Approx(0.8));
@@ -164,7 +165,7 @@ TEST_CASE("silence is intensity 0, has no error, and holds the position for the 
 {
     const stroke s = along("M 0 0 L 10 0", 0.2);
     const auto samples = predict_percept(
-        pair, s, plan_of({burst_of(0.02, 0.05, {{0, 1.0}}), burst_of(0.1, 0.05, {{1, 1.0}})}));
+        pair, s, make_test_plan({one_burst(0.02, 0.05, {{0, 1.0}}), one_burst(0.1, 0.05, {{1, 1.0}})}));
     REQUIRE(samples.size() == 201);
     CHECK_FALSE(samples[19].felt);
     CHECK(samples[20].felt);
@@ -180,21 +181,21 @@ TEST_CASE("silence is intensity 0, has no error, and holds the position for the 
     CHECK(*samples[71].speed_mm_s == doctest::Approx(10.0 / 101.0 / 0.001));
 }
 
-TEST_CASE("a burst that ends with the movement is still felt at its last sample, unless another begins there")
+TEST_CASE("a burst that ends with the movement is felt at its last sample, unless another begins there")
 {
     const stroke s = along("M 0 0 L 10 0", 0.1);
-    const auto alone = predict_percept(pair, s, plan_of({burst_of(0.0, 0.1, {{0, 1.0}})}));
+    const auto alone = predict_percept(pair, s, make_test_plan({one_burst(0.0, 0.1, {{0, 1.0}})}));
     CHECK(alone.back().felt);
     CHECK(summarise(alone).silent_share == 0.0);
-    const auto next =
-        predict_percept(pair, s, plan_of({burst_of(0.0, 0.1, {{0, 1.0}}), burst_of(0.1, 0.1, {{1, 1.0}})}));
+    const auto next = predict_percept(
+        pair, s, make_test_plan({one_burst(0.0, 0.1, {{0, 1.0}}), one_burst(0.1, 0.1, {{1, 1.0}})}));
     CHECK(next[99].felt->x_mm == 0.0);
     CHECK(next.back().felt->x_mm == 10.0);
     CHECK_FALSE(next.back().shared);
     const auto longer = predict_percept(
-        pair, s, plan_of({burst_of(0.0, 0.12, {{0, 1.0}}), burst_of(0.05, 0.05, {{1, 1.0}})}));
+        pair, s, make_test_plan({one_burst(0.0, 0.12, {{0, 1.0}}), one_burst(0.05, 0.05, {{1, 1.0}})}));
     CHECK(longer.back().felt->x_mm == doctest::Approx(5.0));
-    const auto early = predict_percept(pair, s, plan_of({burst_of(0.0, 0.0999, {{0, 1.0}})}));
+    const auto early = predict_percept(pair, s, make_test_plan({one_burst(0.0, 0.0999, {{0, 1.0}})}));
     CHECK_FALSE(early.back().felt);
 }
 
@@ -210,7 +211,7 @@ TEST_CASE("the last sample is on the raster, at the end where the end is")
               static_cast<std::size_t>(std::lround(t * 1e3)) + 1);
 }
 
-TEST_CASE("any plan is felt as a search at each time says")
+TEST_CASE("any plan is felt like in a search at each time")
 {
     generator g(31);
     unsigned compared = 0;
@@ -261,9 +262,9 @@ TEST_CASE("summaries of several plans at once are those of their samples, to the
         for (const algorithm_kind algorithm : {algorithm_kind::park2016, algorithm_kind::continuous})
             plans.push_back(make_plan(a, s, {.algorithm = algorithm}));
         // Silent at first, for a while between and at last.
-        plans.push_back(plan_of({burst_of(0.11 * duration_s, 0.2 * duration_s, {{0, 1.0}, {1, 0.5}}),
-                                 burst_of(0.2 * duration_s, 0.2 * duration_s, {{0, 0.3}, {4, 0.5}}),
-                                 burst_of(0.6 * duration_s, 0.3 * duration_s, {{8, 1.0}})}));
+        plans.push_back(make_test_plan({one_burst(0.11 * duration_s, 0.2 * duration_s, {{0, 1.0}, {1, 0.5}}),
+                                        one_burst(0.2 * duration_s, 0.2 * duration_s, {{0, 0.3}, {4, 0.5}}),
+                                        one_burst(0.6 * duration_s, 0.3 * duration_s, {{8, 1.0}})}));
         plans.push_back(plan{});
         std::vector<const plan*> pointers;
         for (const plan& p : plans)
@@ -279,7 +280,7 @@ TEST_CASE("summaries of several plans at once are those of their samples, to the
     CHECK(detail::predict_summaries(a, along("M 3 3 L 37 37", 1.0), {}).empty());
 }
 
-TEST_CASE("samples are followed in order, and what takes them may end it")
+TEST_CASE("samples come in order, and their receiver may end it")
 {
     const stroke s = along("M 0 0 L 10 0", 1.0);
     const plan p = make_plan(pair, s);
@@ -303,7 +304,7 @@ TEST_CASE("samples are followed in order, and what takes them may end it")
     CHECK(n == 10);
 }
 
-TEST_CASE("nothing to feel has no error, and nothing to sum up is no error")
+TEST_CASE("a silent plan has no error, and an empty summary is no error")
 {
     const auto silent = predict(pair, timed({{0.0, {0, 0}, 0.0}, {0.5, {10, 0}, 0.0}}));
     const percept_summary r = summarise(silent);
@@ -315,15 +316,15 @@ TEST_CASE("nothing to feel has no error, and nothing to sum up is no error")
     CHECK_FALSE(summarise(std::vector<percept_sample>{}).rms_error_mm);
     CHECK(summarise(std::vector<percept_sample>{}).silent_share == 0.0);
 
-    // Felt, but not to move.
+    // Felt, but without motion.
     const stroke still = along("M 0 0 L 10 0", 0.5);
     const percept_summary q =
-        summarise(predict_percept(pair, still, plan_of({burst_of(0.0, 0.5, {{0, 1.0}})})));
+        summarise(predict_percept(pair, still, make_test_plan({one_burst(0.0, 0.5, {{0, 1.0}})})));
     CHECK_FALSE(q.speed_cv);
     CHECK(*q.intensity_cv == 0.0);
 }
 
-TEST_CASE("hours, and plans of another array, are refused")
+TEST_CASE("plans of hours, and of another array, are refused")
 {
     plan_options o;
     o.algorithm = algorithm_kind::continuous;
@@ -339,10 +340,10 @@ TEST_CASE("hours, and plans of another array, are refused")
 
 TEST_CASE("by hand: another person feels one tactor less, and another one elsewhere")
 {
-    // Two tactors alike: half way. One of them 6.0206 dB less: a quarter of the energy, so a fifth of the
+    // Two equal tactors: half way. One of them 6.0206 dB less: a quarter of the energy, so a fifth of the
     // way.
     const stroke s = along("M 0 0 L 10 0", 0.1);
-    const plan p = plan_of({burst_of(0.0, 0.1, {{0, 1.0}, {1, 1.0}})});
+    const plan p = make_test_plan({one_burst(0.0, 0.1, {{0, 1.0}, {1, 1.0}})});
     const person less{{0.0, 20.0 * std::log10(0.5)}, {}};
     const person moved{{}, {{0.0, 2.0}, {2.0, 2.0}}};
     CHECK(predict_percept(pair, s, p)[50].felt->x_mm == doctest::Approx(5.0).epsilon(1e-12));
@@ -357,7 +358,7 @@ TEST_CASE("by hand: another person feels one tactor less, and another one elsewh
         CHECK(same[i].felt == predict_percept(pair, s, p)[i].felt);
 }
 
-TEST_CASE("a person has one number for each tactor, and finite ones")
+TEST_CASE("a person has a finite number for each tactor")
 {
     const stroke s = along("M 0 0 L 10 0", 0.1);
     const plan p = make_plan(pair, s);

@@ -8,7 +8,6 @@
 #include <limits>
 #include <numbers>
 #include <random>
-#include <string>
 #include <utility>
 #include <vector>
 
@@ -32,7 +31,7 @@ inline unsigned pick(generator& g, unsigned low, unsigned high)
     return std::uniform_int_distribution<unsigned>(low, high)(g);
 }
 
-inline array array_of(const std::vector<point>& places)
+inline array make_array(const std::vector<point>& places)
 {
     array a;
     a.name = "test";
@@ -45,7 +44,7 @@ inline array array_of(const std::vector<point>& places)
     return a;
 }
 
-inline array ring_of(unsigned n, double radius_mm, bool centre, double turn_rad = 0.0)
+inline array make_ring(unsigned n, double radius_mm, bool centre, double turn_rad = 0.0)
 {
     std::vector<point> p;
     for (unsigned i = 0; i < n; ++i) {
@@ -54,7 +53,7 @@ inline array ring_of(unsigned n, double radius_mm, bool centre, double turn_rad 
     }
     if (centre)
         p.push_back({0.0, 0.0});
-    return array_of(p);
+    return make_array(p);
 }
 
 inline array staggered(unsigned rows, unsigned columns, double pitch_mm)
@@ -63,7 +62,7 @@ inline array staggered(unsigned rows, unsigned columns, double pitch_mm)
     for (unsigned r = 0; r < rows; ++r)
         for (unsigned c = 0; c < columns; ++c)
             p.push_back({pitch_mm * (c + (r % 2 == 1 ? 0.5 : 0.0)), pitch_mm * r * std::sqrt(0.75)});
-    return array_of(p);
+    return make_array(p);
 }
 
 inline array cloud(generator& g, unsigned n)
@@ -74,7 +73,7 @@ inline array cloud(generator& g, unsigned n)
         if (std::none_of(p.begin(), p.end(), [&](point o) { return distance_mm(o, q) < 0.5; }))
             p.push_back(q);
     }
-    return array_of(p);
+    return make_array(p);
 }
 
 inline array line(generator& g, unsigned n)
@@ -86,7 +85,7 @@ inline array line(generator& g, unsigned n)
         p.push_back({3.0 + at * std::cos(angle), -7.0 + at * std::sin(angle)});
         at += between(g, 2.0, 30.0);
     }
-    return array_of(p);
+    return make_array(p);
 }
 
 constexpr unsigned kinds_of_array = 9;
@@ -101,21 +100,21 @@ inline array some_array(generator& g, unsigned kind)
     case 2:
         return staggered(pick(g, 2, 5), pick(g, 2, 5), between(g, 5.0, 40.0));
     case 3:
-        return ring_of(pick(g, 3, 24), between(g, 10.0, 60.0), false, between(g, 0.0, 6.3));
+        return make_ring(pick(g, 3, 24), between(g, 10.0, 60.0), false, between(g, 0.0, 6.3));
     case 4:
-        return ring_of(pick(g, 3, 24), between(g, 10.0, 60.0), true, between(g, 0.0, 6.3));
+        return make_ring(pick(g, 3, 24), between(g, 10.0, 60.0), true, between(g, 0.0, 6.3));
     case 5:
         return line(g, pick(g, 3, 9));
     case 6:
         return line(g, 2);
     case 7:
-        return array_of({{between(g, -9.0, 9.0), between(g, -9.0, 9.0)}});
+        return make_array({{between(g, -9.0, 9.0), between(g, -9.0, 9.0)}});
     default:
         return cloud(g, pick(g, 3, 40));
     }
 }
 
-/// A point in the hull: anywhere, on a segment between tactors, or on a tactor.
+/// Draws a point in the hull: anywhere, on a segment between tactors, or on a tactor.
 inline point some_point(generator& g, const layout& l)
 {
     const std::vector<point>& t = l.places();
@@ -151,7 +150,7 @@ inline point energy_centroid(const layout& l, const std::vector<drive>& d)
     return c;
 }
 
-/// The same array with its tactors in another order; second: where each one of the old order went.
+/// Returns the same array with its tactors in another order; second: the new place of each old one.
 inline std::pair<array, std::vector<unsigned>> shuffled(generator& g, const array& a)
 {
     std::vector<unsigned> old(a.tactors.size());
@@ -167,7 +166,7 @@ inline std::pair<array, std::vector<unsigned>> shuffled(generator& g, const arra
     return {b, now};
 }
 
-inline std::vector<unsigned> tactors_of(const std::vector<drive>& d)
+inline std::vector<unsigned> list_tactors(const std::vector<drive>& d)
 {
     std::vector<unsigned> t;
     for (const drive& x : d)

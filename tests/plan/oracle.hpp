@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// The phantom rules once more, written down as they are read: every pair and every triple of a face.
+/// The phantom rules once more, written as they are read: every pair and every triple of a face.
 #pragma once
 
 #include <algorithm>
@@ -43,7 +43,7 @@ inline bool in_face(const layout& l, const std::vector<unsigned>& f, point p)
     return false;
 }
 
-/// The tactors that play at p, ascending. For arrays whose indices follow their ranks.
+/// Returns the tactors that play at p, ascending. For arrays whose indices follow their ranks.
 inline std::vector<unsigned> expected_tactors(const layout& l, point p)
 {
     const std::vector<point>& t = l.places();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// Strokes for tests, and what an error says.
+/// Strokes for tests, and messages of errors.
 #pragma once
 
 #include <string>
@@ -14,22 +14,22 @@
 
 namespace tactor::test {
 
-inline stroke stroke_of(trajectory t)
+inline stroke make_stroke(trajectory t)
 {
     return {"", std::move(t), {}, {}};
 }
 
 inline stroke along(std::string_view svg, double duration_s)
 {
-    return stroke_of(trajectory::along(path::from_svg(svg), duration_s));
+    return make_stroke(trajectory::along(path::from_svg(svg), duration_s));
 }
 
 inline stroke timed(std::vector<timed_point> p)
 {
-    return stroke_of(trajectory::timed(std::move(p)));
+    return make_stroke(trajectory::timed(std::move(p)));
 }
 
-/// What the planner says against it; empty if nothing.
+/// Returns the planner's message; empty if none.
 inline std::string refusal(const array& a, const stroke& s, const plan_options& o)
 {
     try {
@@ -40,7 +40,7 @@ inline std::string refusal(const array& a, const stroke& s, const plan_options& 
     return {};
 }
 
-/// The number after `word` in a text.
+/// Returns the number after `word` in a text.
 inline double number_after(const std::string& text, std::string_view word)
 {
     const auto at = text.find(word);

@@ -24,7 +24,7 @@ double distance_to(const box& b, point p)
 
 } // namespace
 
-TEST_CASE("a look at every box finds the same, be they on a grid, long, far apart or one")
+TEST_CASE("the index finds the same boxes as a search of all, on a grid, long, far apart or single")
 {
     generator g(23);
     for (unsigned round = 0; round < 400; ++round) {

@@ -19,10 +19,10 @@ namespace {
 
 stroke circle(double duration_s)
 {
-    return stroke_of(trajectory::along(path::arc({20.0, 20.0}, 20.0, -90.0, 360.0), duration_s));
+    return make_stroke(trajectory::along(path::arc({20.0, 20.0}, 20.0, -90.0, 360.0), duration_s));
 }
 
-/// Eqs. of the schedule as they are written down first, not in closed form.
+/// Computes the schedule by its equations as first written, not in closed form.
 void check_law(const plan& p, const timing_profile& law)
 {
     for (std::size_t i = 0; i < p.bursts.size(); ++i) {
@@ -59,9 +59,8 @@ TEST_CASE("Tactile Brush: the check value of the rendering model, to a microseco
     CHECK(p.dropped.empty());
     CHECK(p.bursts[1].position.x_mm == 15.0);
     REQUIRE(p.warnings.size() == 1);
-    CHECK(p.warnings[0] ==
-          "4 of 5 bursts last longer than 0.160 s (up to 0.594 s), beyond the range for which the "
-          "timing law was fitted");
+    CHECK(p.warnings[0] == "4 of 5 bursts last longer than 0.160 s (up to 0.594 s), beyond the range for "
+                           "which the timing law was fitted");
     check_law(p, {});
 }
 
@@ -82,7 +81,7 @@ TEST_CASE("the law holds and the last burst ends with the stroke, for any path, 
         o.snap = true;
         o.drop_points = i % 2 == 0;
         o.profile = {between(g, 0.1, 0.9), between(g, 0.0, 0.06), 0.07};
-        const stroke s = stroke_of(trajectory::along(path::polyline(corners), between(g, 0.1, 3.0)));
+        const stroke s = make_stroke(trajectory::along(path::polyline(corners), between(g, 0.1, 3.0)));
         const std::string why = refusal(a, s, o);
         if (!why.empty()) {
             REQUIRE(why.find("follow one another too fast") != std::string::npos);
@@ -103,7 +102,7 @@ TEST_CASE("a row and a column met at once are one virtual tactor")
     CHECK(*p.bursts[1].tau_s == doctest::Approx(1.0));
 }
 
-TEST_CASE("along a grid line only the other lines are met")
+TEST_CASE("a path along a grid line meets only the other lines")
 {
     const plan p = make_plan(palm, along("M 5 20 L 35 20", 1.0), brush());
     REQUIRE(p.bursts.size() == 3);
@@ -187,7 +186,7 @@ TEST_CASE("a start or end off the grid is refused with the nearest point on it; 
     const plan p = make_plan(palm, along("M 3 8 L 20 20", 1.0), o);
     CHECK(p.bursts[0].position == point{0.0, 8.0});
     CHECK(p.bursts[0].tau_s == 0.0);
-    // Snapped onto the line that it crosses straight away: one place.
+    // Snapped onto the line that it crosses at once: one place.
     const plan q = make_plan(palm, along("M 10 21 L 10 0", 1.0), o);
     REQUIRE(q.bursts.size() == 2);
     CHECK(q.bursts[0].position == point{10.0, 20.0});
@@ -217,7 +216,7 @@ TEST_CASE("conflicts of bursts inside one another, one after the other, and side
     CHECK(found[2].to_s == doctest::Approx(1.0));
 }
 
-TEST_CASE("conflicts: when two bursts or more sound on one tactor, merged, by time and then by tactor")
+TEST_CASE("conflicts are times with two bursts or more on a tactor, merged, by time and then by tactor")
 {
     generator g(34);
     for (unsigned i = 0; i < 200; ++i) {
@@ -226,7 +225,7 @@ TEST_CASE("conflicts: when two bursts or more sound on one tactor, merged, by ti
         std::vector<point> corners;
         for (unsigned k = 0; k < 3; ++k)
             corners.push_back({between(g, 0.0, 45.0), between(g, 0.0, 30.0)});
-        const stroke s = stroke_of(trajectory::along(path::polyline(corners), between(g, 1.0, 4.0)));
+        const stroke s = make_stroke(trajectory::along(path::polyline(corners), between(g, 1.0, 4.0)));
         if (!refusal(arm, s, o).empty())
             continue;
         const plan p = make_plan(arm, s, o);
@@ -256,13 +255,13 @@ TEST_CASE("conflicts: when two bursts or more sound on one tactor, merged, by ti
 
 TEST_CASE("the array must be a grid; a single row is one")
 {
-    CHECK(refusal(ring_of(5, 20.0, true), along("M 0 0 L 10 0", 1.0), brush()).find("grid") !=
+    CHECK(refusal(make_ring(5, 20.0, true), along("M 0 0 L 10 0", 1.0), brush()).find("grid") !=
           std::string::npos);
     CHECK(make_plan(make_grid("row", 1, 5, 10.0, 10.0), along("M 5 0 L 40 0", 2.0), brush()).bursts.size() ==
           5);
 }
 
-TEST_CASE("a way out between two crossings is refused; clamped it stays at the edge")
+TEST_CASE("a path that leaves between two crossings is refused; clamped it stays at the edge")
 {
     plan_options o = brush();
     const stroke out = along("M 0 20 C 0 20 20 -30 40 20", 3.0);

@@ -28,7 +28,7 @@ TEST_CASE("an impossible timing is refused with the shortest duration that works
         for (unsigned k = 0; k < 4; ++k)
             corners.push_back({between(g, 0.0, 45.0), between(g, 0.0, 30.0)});
         const double duration = between(g, 0.01, 0.5);
-        const auto at = [&](double t) { return stroke_of(trajectory::along(path::polyline(corners), t)); };
+        const auto at = [&](double t) { return make_stroke(trajectory::along(path::polyline(corners), t)); };
         const std::string why = refusal(arm, at(duration), o);
         if (why.empty() || why.find("no duration") != std::string::npos)
             continue;
@@ -47,14 +47,14 @@ TEST_CASE("the shortest duration of a timed stroke scales all its times")
 {
     const plan_options o = brush();
     const stroke s = timed({{0.0, {0, 0}}, {0.1, {20, 0}}, {1.0, {40, 0}}});
-    const stroke fast = stroke_of(s.motion.with_duration(0.2));
+    const stroke fast = make_stroke(s.motion.with_duration(0.2));
     const double shortest = number_after(refusal(palm, fast, o), "that works is ");
     REQUIRE(shortest > 0.2);
-    CHECK(refusal(palm, stroke_of(s.motion.with_duration(shortest)), o).empty());
-    CHECK_FALSE(refusal(palm, stroke_of(s.motion.with_duration(shortest - 1e-6)), o).empty());
+    CHECK(refusal(palm, make_stroke(s.motion.with_duration(shortest)), o).empty());
+    CHECK_FALSE(refusal(palm, make_stroke(s.motion.with_duration(shortest - 1e-6)), o).empty());
 }
 
-TEST_CASE("drop-points leaves out the place with the smallest gap, first of ties, until it works")
+TEST_CASE("drop-points leaves out the place with the smallest gap, the first of ties, until it works")
 {
     // By hand: at 50, 60 and 70 ms the smaller gap is 10 ms each, so 50 goes, then 60; 70 can stay.
     // first, ...
@@ -93,7 +93,7 @@ TEST_CASE("drop-points leaves out the place with the smallest gap, first of ties
     }
 }
 
-TEST_CASE("what was dropped is reported")
+TEST_CASE("dropped points are reported")
 {
     plan_options o = brush();
     const stroke s = along("M 0 18 L 40 22", 0.15);
@@ -112,7 +112,7 @@ TEST_CASE("what was dropped is reported")
     CHECK(make_plan(palm, s, o).dropped.empty());
 }
 
-TEST_CASE("dropping takes no quadratic time")
+TEST_CASE("dropping does not take quadratic time")
 {
     std::vector<double> tau{0.0};
     for (unsigned i = 0; i < 200000; ++i)

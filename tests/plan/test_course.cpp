@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Carriers and recordings that lie along the path go with targets that ease, change their speed and rest.
+// Carriers and recordings along the path, with targets that ease, change their speed and rest.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -34,7 +34,7 @@ const movement at_ends{.duration_s = 2.0, .rests = {{0.0, 0.5}, {1.0, 0.25}}};
 
 stroke moving(const movement& m)
 {
-    return stroke_of(trajectory::along(path::from_svg("M 0 20 H 40"), m));
+    return make_stroke(trajectory::along(path::from_svg("M 0 20 H 40"), m));
 }
 
 std::vector<stroke> strokes()
@@ -43,19 +43,19 @@ std::vector<stroke> strokes()
     for (const movement& m : {eased, jerk, ever_faster, two_speeds, resting, at_ends}) {
         const stroke s = moving(m);
         all.push_back(s);
-        all.push_back(stroke_of(s.motion.with_duration(0.7)));
-        all.push_back(stroke_of(s.motion.reversed()));
+        all.push_back(make_stroke(s.motion.with_duration(0.7)));
+        all.push_back(make_stroke(s.motion.reversed()));
     }
     return all;
 }
 
-std::vector<carrier_point> course_of(const stroke& s)
+std::vector<carrier_point> carrier_points(const stroke& s)
 {
     return make_plan(palm, s, {.algorithm = algorithm_kind::continuous}).course;
 }
 
-/// Along the path by its length, four times.
-std::vector<carrier_point> texture_of(stroke s)
+/// Returns the course of a recording along the path by its length, four times.
+std::vector<carrier_point> texture_points(stroke s)
 {
     waveform w;
     w.kind = waveform_kind::recording;
@@ -63,10 +63,10 @@ std::vector<carrier_point> texture_of(stroke s)
     w.texture_mm = length_mm / 4.0;
     w.recorded = std::make_shared<const recording>(recording{"x.wav", 8000.0, {0.0F, 1.0F, 0.0F, -1.0F}});
     s.sound.wave = w;
-    return course_of(s);
+    return carrier_points(s);
 }
 
-/// The path that lies behind the target, as a part of it.
+/// Returns the part of the path behind the target.
 double part(const stroke& s, double t_s)
 {
     return std::abs(s.motion.position(t_s).x_mm - s.motion.position(0.0).x_mm) / length_mm;
@@ -80,7 +80,7 @@ double hz_at(const std::vector<carrier_point>& course, double t_s)
     return detail::hz_between(before, *after, (t_s - before.t_s) / (after->t_s - before.t_s));
 }
 
-/// Cycles from a point to a part u of the time to the next, as tactor-json(5) has it.
+/// Returns the cycles from a point to a part u of the time to the next, by tactor-json(5).
 long double cycles(const carrier_point& a, const carrier_point& b, long double u)
 {
     const auto& k = a.bend;
@@ -96,7 +96,7 @@ long double cycles(const carrier_point& a, const carrier_point& b, long double u
     return sum * (static_cast<long double>(b.t_s) - a.t_s);
 }
 
-/// How often it has come round until a time.
+/// Returns the cycles until a time.
 double rounds(const std::vector<carrier_point>& course, double t_s)
 {
     double sum = 0.0;
@@ -122,11 +122,11 @@ double greatest_hz(const std::vector<carrier_point>& course)
 
 } // namespace
 
-TEST_CASE("the carrier is that of the part of the path that the target has gone")
+TEST_CASE("the carrier is that of the covered part of the path")
 {
     for (stroke s : strokes()) {
         s.sound.carrier_profile = {{0.2, 100.0}, {0.7, 300.0}};
-        const auto course = course_of(s);
+        const auto course = carrier_points(s);
         const double end_s = s.motion.duration_s();
         CHECK(course.front().t_s == 0.0);
         CHECK(course.back().t_s == end_s);
@@ -140,13 +140,13 @@ TEST_CASE("the carrier is that of the part of the path that the target has gone"
     }
 }
 
-TEST_CASE("the carrier's cycles are the integral of its frequency, over an hour too")
+TEST_CASE("the carrier's cycles are the integral of its frequency, even over an hour")
 {
     for (const double duration_s : {2.0, 3600.0})
         for (stroke s : strokes()) {
             s.motion = s.motion.with_duration(duration_s);
             s.sound.carrier_profile = {{0.2, 60.0}, {0.7, 300.0}};
-            const auto course = course_of(s);
+            const auto course = carrier_points(s);
             // By Gauss and Legendre, from point to point in many pieces, and at each of them.
             constexpr int pieces = 50;
             long double wanted = 0.0;
@@ -174,7 +174,7 @@ TEST_CASE("the carrier's cycles are the integral of its frequency, over an hour 
 TEST_CASE("a recording along the path is where the target is, at every time")
 {
     for (const stroke& s : strokes()) {
-        const auto course = texture_of(s);
+        const auto course = texture_points(s);
         const double end_s = s.motion.duration_s();
         CHECK(course.back().t_s == end_s);
         double worst = 0.0;
@@ -184,8 +184,8 @@ TEST_CASE("a recording along the path is where the target is, at every time")
         CHECK(worst < 1e-4);
         CHECK(rounds(course, end_s) == doctest::Approx(4.0));
     }
-    CHECK(greatest_hz(texture_of(moving(jerk))) == doctest::Approx(1.875 * 2.0).epsilon(0.02));
-    CHECK(greatest_hz(texture_of(moving(eased))) == doctest::Approx(1.5 * 2.0).epsilon(0.02));
+    CHECK(greatest_hz(texture_points(moving(jerk))) == doctest::Approx(1.875 * 2.0).epsilon(0.02));
+    CHECK(greatest_hz(texture_points(moving(eased))) == doctest::Approx(1.5 * 2.0).epsilon(0.02));
 }
 
 TEST_CASE("where the target rests a recording along the path stays, and the carrier is held")
@@ -198,12 +198,12 @@ TEST_CASE("where the target rests a recording along the path stays, and the carr
                 sum += course[i + 1].t_s - course[i].t_s;
         return sum;
     };
-    CHECK(silent_s(texture_of(s)) == doctest::Approx(rest_s));
-    CHECK(silent_s(texture_of(moving(at_ends))) == doctest::Approx(0.75));
-    CHECK(silent_s(texture_of(moving(jerk))) == 0.0);
+    CHECK(silent_s(texture_points(s)) == doctest::Approx(rest_s));
+    CHECK(silent_s(texture_points(moving(at_ends))) == doctest::Approx(0.75));
+    CHECK(silent_s(texture_points(moving(jerk))) == 0.0);
     s.sound.carrier_profile = {{0.0, 100.0}, {1.0, 200.0}};
     double held_s = 0.0;
-    const auto course = course_of(s);
+    const auto course = carrier_points(s);
     for (std::size_t i = 0; i + 1 < course.size(); ++i)
         if (course[i].hz == course[i + 1].hz) {
             CHECK(course[i].hz == doctest::Approx(140.0));
@@ -216,24 +216,24 @@ TEST_CASE("a course has as many points as its bends need")
 {
     stroke s = moving({.duration_s = 2.0, .intensity = {{0.0, 0.2}, {1.0, 0.8}}});
     s.sound.carrier_profile = {{0.0, 100.0}, {1.0, 200.0}};
-    CHECK(course_of(s) == std::vector<carrier_point>{{0.0, 100.0}, {2.0, 200.0}});
+    CHECK(carrier_points(s) == std::vector<carrier_point>{{0.0, 100.0}, {2.0, 200.0}});
     s.motion = moving(at_ends).motion;
-    CHECK(course_of(s) ==
+    CHECK(carrier_points(s) ==
           std::vector<carrier_point>{{0.0, 100.0}, {0.5, 100.0}, {1.75, 200.0}, {2.0, 200.0}});
     for (stroke t : strokes()) {
         t.sound.carrier_profile = s.sound.carrier_profile;
-        CHECK(course_of(t).size() < 600);
+        CHECK(carrier_points(t).size() < 600);
     }
 }
 
-TEST_CASE("points as near in time as two numbers can be make no frequency that is none")
+TEST_CASE("points with almost equal times make no impossible frequency")
 {
     // With another duration the second and the third are at the same time.
     const double next = std::nextafter(1.0, 2.0);
     REQUIRE(1.0 / 7.0 * 0.111 == next / 7.0 * 0.111);
     stroke s = timed({{0.0, {0, 20}}, {1.0, {10, 20}}, {next, {11, 20}}, {7.0, {40, 20}}});
     s.motion = s.motion.with_duration(0.111);
-    const auto course = texture_of(s);
+    const auto course = texture_points(s);
     for (const carrier_point& c : course)
         CHECK(std::isfinite(c.hz));
     CHECK(rounds(course, 0.111) == doctest::Approx(4.0));

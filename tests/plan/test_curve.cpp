@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Continuous plans are values, whether their samples are kept or computed as they are read.
+// Continuous plans as values, with samples kept or computed when read.
 #include <cmath>
 #include <limits>
 #include <memory>
@@ -34,7 +34,7 @@ plan flowing(double duration_s)
     return make_plan(palm, s, continuous());
 }
 
-curve_samples all_of(const curve& c)
+curve_samples read_samples(const curve& c)
 {
     curve_samples all;
     burst b;
@@ -75,7 +75,7 @@ TEST_CASE("a curve has a sample each millisecond and one at its end")
     }
 }
 
-TEST_CASE("a sample takes the place of all that a burst was")
+TEST_CASE("a sample replaces the whole of a burst")
 {
     for (const double duration : {1.4, 7.0}) { // kept, and computed
         const plan p = flowing(duration);
@@ -105,12 +105,12 @@ TEST_CASE("a plan made again from its samples is the same plan, short or long")
         CAPTURE(duration);
         const plan p = flowing(duration);
         plan again = p;
-        again.curve = curve(duration, all_of(*p.curve));
+        again.curve = curve(duration, read_samples(*p.curve));
         CHECK(again == p);
         CHECK(p == flowing(duration));
         CHECK(p != flowing(duration + 0.001));
 
-        curve_samples other = all_of(*p.curve);
+        curve_samples other = read_samples(*p.curve);
         other.drives.back().amplitude = std::nextafter(other.drives.back().amplitude, 2.0);
         again.curve = curve(duration, other);
         CHECK(again != p);
@@ -122,7 +122,7 @@ TEST_CASE("a plan made again from its samples is the same plan, short or long")
     CHECK(bursts != make_plan(palm, preset_stroke("park2016-4")));
 }
 
-TEST_CASE("between samples a curve is linear, as it sounds")
+TEST_CASE("a curve is linear between samples, as it sounds")
 {
     curve_samples s;
     burst b;
@@ -139,7 +139,7 @@ TEST_CASE("between samples a curve is linear, as it sounds")
     CHECK(b.position == point{1.0, 10.0});
     CHECK(b.intensity == 1.5);
     CHECK(b.drives == std::vector<drive>{{0, 0.375}, {3, 0.375}, {8, 0.25}});
-    c.at(1e-10, b); // a nanosecond is nothing
+    c.at(1e-10, b); // a nanosecond changes nothing
     CHECK(b.drives.size() == 2);
     c.at(5.0, b);
     CHECK(b.drives == std::vector<drive>{{3, 0.75}, {8, 1.0}});
@@ -147,7 +147,7 @@ TEST_CASE("between samples a curve is linear, as it sounds")
     CHECK(b.position == point{0.0, 10.0});
 }
 
-TEST_CASE("a model of one's own is asked when the stroke is planned, once for each sample")
+TEST_CASE("a custom model is asked when the stroke is planned, once for each sample")
 {
     const auto mine = std::make_shared<counting>();
     plan_options o = continuous();
@@ -167,9 +167,9 @@ TEST_CASE("a model of one's own is asked when the stroke is planned, once for ea
     CHECK(mine->asked == 1401);
 }
 
-TEST_CASE("samples that make no curve are refused")
+TEST_CASE("impossible samples of a curve are refused")
 {
-    const curve_samples good = all_of(*flowing(0.01).curve);
+    const curve_samples good = read_samples(*flowing(0.01).curve);
     const auto refused = [](double duration_s, const curve_samples& s) {
         return message_of([&] { curve(duration_s, s); });
     };

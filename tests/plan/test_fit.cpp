@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Any stroke on any array: as large as it can be, in shape, and nowhere outside.
+// Fitting of any stroke to any array: as large as possible, in shape, and nowhere outside.
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -33,8 +33,7 @@ std::string complaint(const std::vector<stroke>& s, const layout& l, double marg
     return {};
 }
 
-/// What is found at as many times: the fitted stroke is where its fitting says, and how near the edge it
-/// gets.
+/// Places at equal times: the fitted stroke is at the mapped places; returns the least distance to the edge.
 void check_places(const stroke& drawn, const stroke& now, const fitting& f, const layout& l)
 {
     for (int k = 0; k <= 200; ++k) {
@@ -71,9 +70,9 @@ std::string drawing(generator& g)
 
 } // namespace
 
-TEST_CASE("a circle of the paper on palm-2x4: as high as the array, in its middle, round, in its own time")
+TEST_CASE("a circle of the paper fits palm-2x4: as high as the array, in its middle, round, in its time")
 {
-    const stroke circle = stroke_of(trajectory::along(path::arc({20, 20}, 16, 0, 360), 2.8));
+    const stroke circle = make_stroke(trajectory::along(path::arc({20, 20}, 16, 0, 360), 2.8));
     CHECK_FALSE(refusal(preset_array("palm-2x4"), circle, {}).empty());
     const fitted_strokes r = fit_strokes({circle}, low);
     CHECK(r.placed.scale == doctest::Approx(20.0 / 32.0).epsilon(1e-12));
@@ -94,7 +93,7 @@ TEST_CASE("a margin is kept from every edge, and must leave space")
     const fitted_strokes r = fit_strokes({square}, low, 4.0);
     CHECK(r.placed.scale == doctest::Approx(12.0).epsilon(1e-12));
     CHECK(r.placed.margin_mm == 4.0);
-    const layout diamond(array_of({{0, -10}, {10, 0}, {0, 10}, {-10, 0}}));
+    const layout diamond(make_array({{0, -10}, {10, 0}, {0, 10}, {-10, 0}}));
     for (const stroke& s : fit_strokes({square}, diamond, 2.0).strokes)
         for (double t = 0.0; t < 1.0; t += 0.01) {
             const point p = s.motion.position(t);
@@ -107,7 +106,7 @@ TEST_CASE("a margin is kept from every edge, and must leave space")
     CHECK(complaint({square}, low, infinite).starts_with("margin_mm: inf mm"));
 }
 
-TEST_CASE("several strokes are one picture")
+TEST_CASE("several strokes are fitted together")
 {
     const stroke left = along("M 0 0 V 100", 1.0);
     stroke right = along("M 300 0 V 100", 1.0);
@@ -122,7 +121,7 @@ TEST_CASE("several strokes are one picture")
     CHECK(fit_strokes({}, low).strokes.empty());
 }
 
-TEST_CASE("a stroke that says a speed keeps it, one that says a time keeps that")
+TEST_CASE("a stroke with a speed keeps it, one with a time keeps that")
 {
     stroke s = along("M 0 0 H 600", 10.0);
     CHECK(fit_strokes({s}, low).strokes[0].motion.duration_s() == 10.0);
@@ -157,13 +156,13 @@ TEST_CASE("timed points keep their times, intensities and factor")
     CHECK(now.intensity(2.0) == doctest::Approx(0.5));
 }
 
-TEST_CASE("what has no extent, or one only")
+TEST_CASE("strokes without extent, or with one only, are fitted")
 {
     const stroke resting = timed({{0.0, {7, 7}, 1.0}, {1.0, {7, 7}, 1.0}});
     const fitted_strokes r = fit_strokes({resting}, low);
     CHECK(r.placed.scale == 1.0);
     CHECK(distance_mm(r.strokes[0].motion.position(0.5), {30, 10}) < 1e-9);
-    const layout one(array_of({{3, 4}}));
+    const layout one(make_array({{3, 4}}));
     CHECK(distance_mm(fit_strokes({resting}, one).strokes[0].motion.position(0.5), {3, 4}) < 1e-9);
     CHECK(complaint({along("M 0 0 L 1 1", 1.0)}, one).starts_with("stroke: does not fit on a single tactor"));
     CHECK(complaint({resting}, one, 1.0).starts_with("margin_mm: 1 mm on each side"));
@@ -173,11 +172,11 @@ TEST_CASE("what has no extent, or one only")
     CHECK(fit_strokes({along("M 0 0 L 1 1", 1.0)}, low).placed.scale == doctest::Approx(20.0));
 }
 
-TEST_CASE("an array in one row takes what goes along it")
+TEST_CASE("an array in one row takes strokes along it")
 {
-    const array row = array_of({{0, 5}, {40, 5}, {80, 5}, {120, 5}});
+    const array row = make_array({{0, 5}, {40, 5}, {80, 5}, {120, 5}});
     const layout l(row);
-    const stroke circle = stroke_of(trajectory::along(path::arc({0, 0}, 1, 180, 360), 2.0));
+    const stroke circle = make_stroke(trajectory::along(path::arc({0, 0}, 1, 180, 360), 2.0));
     const fitted_strokes r = fit_strokes({circle}, l, 10.0);
     CHECK(r.placed.line);
     CHECK(r.placed.scale == doctest::Approx(50.0).epsilon(1e-12));
@@ -196,15 +195,15 @@ TEST_CASE("an array in one row takes what goes along it")
     CHECK(complaint({circle, along("M 3 0 L 3.1 9", 1.0)}, l).empty());
     CHECK(complaint({along("M 0 0 H 9", 1.0)}, l, 60.0).find("(less than 60 mm)") != std::string::npos);
 
-    // Measured places are never in line: a wave is not to become as thin as their errors are.
-    const layout measured(array_of({{0, 0.2}, {40, -0.3}, {80, 0.1}, {120, 0.0}}));
+    // Measured places are never in line: a wave must not become as thin as their errors.
+    const layout measured(make_array({{0, 0.2}, {40, -0.3}, {80, 0.1}, {120, 0.0}}));
     CHECK(fit_strokes({circle}, measured).placed.scale > 59.0);
     CHECK(l.contains(fit_strokes({circle}, measured).placed.to) == false);
     check_places(circle, fit_strokes({circle}, measured).strokes[0], fit_strokes({circle}, measured).placed,
                  measured);
 }
 
-TEST_CASE("strokes ask to be fitted by themselves, or as one picture")
+TEST_CASE("strokes ask for a fit alone, or together")
 {
     const layout l(preset_array("palm-3x3"));
     std::vector<stroke> asked{along("M 0 0 L 10 0", 1.0), along("M 3 3 L 4 3", 1.0),
@@ -219,14 +218,14 @@ TEST_CASE("strokes ask to be fitted by themselves, or as one picture")
     };
     CHECK(goes(0, {5, 5}, {35, 5}));
     CHECK(goes(2, {5, 35}, {35, 35}));
-    CHECK(goes(1, {3, 3}, {4, 3})); // nobody asked
+    CHECK(goes(1, {3, 3}, {4, 3})); // without a fit
     CHECK(goes(3, {0, 20}, {40, 20}));
     CHECK(goes(4, {0, 20}, {40, 20}));
     for (const stroke& k : s)
         CHECK_FALSE(k.fit);
 }
 
-TEST_CASE("small pictures far away and huge ones")
+TEST_CASE("small pictures far away and huge ones are fitted")
 {
     for (const char* path : {"M 900000 900000 l 0.01 0 l 0 0.02", "M -1000000 -1000000 L 1000000 1000000",
                              "M 900000 0 a 0.01 0.02 0 1 1 0.01 0"}) {
@@ -237,7 +236,7 @@ TEST_CASE("small pictures far away and huge ones")
     }
 }
 
-TEST_CASE("any picture on any array is accepted with outside = error, and nothing larger would be")
+TEST_CASE("any fitted picture is accepted with outside = error, and no larger one would be")
 {
     generator g(22);
     for (int k = 0; k < rounds(600); ++k) {

@@ -57,7 +57,7 @@ std::vector<std::size_t> sizes(const layout& l)
 
 } // namespace
 
-TEST_CASE("the cells of a rectangular grid are its faces, however it is turned and whatever its pitch")
+TEST_CASE("the cells of a rectangular grid are its faces, at any turn and pitch")
 {
     generator g(11);
     for (unsigned round = 0; round < 300; ++round) {
@@ -85,16 +85,16 @@ TEST_CASE("a ring is one face, with its centre a face for each neighbouring pair
     generator g(12);
     for (unsigned n = 3; n < 200; n += n < 20 ? 1 : 13) {
         const double turn = between(g, 0.0, 6.3);
-        const layout ring(ring_of(n, 25.0, false, turn));
+        const layout ring(make_ring(n, 25.0, false, turn));
         CAPTURE(n);
         REQUIRE(ring.faces().size() == 1);
         REQUIRE(ring.faces()[0].size() == n);
-        const layout wheel(ring_of(n, 25.0, true, turn));
+        const layout wheel(make_ring(n, 25.0, true, turn));
         REQUIRE(wheel.faces().size() == (n == 4 ? 4 : n));
         REQUIRE(covered(wheel) == doctest::Approx(hull_area(wheel)).epsilon(1e-12));
     }
     // Written to six decimals.
-    array a = ring_of(48, 30.0, false);
+    array a = make_ring(48, 30.0, false);
     for (tactor_spec& t : a.tactors)
         t.position = {std::round(t.position.x_mm * 1e6) / 1e6, std::round(t.position.y_mm * 1e6) / 1e6};
     CHECK(layout(a).faces().size() == 1);
@@ -135,7 +135,7 @@ TEST_CASE("faces are Delaunay: no tactor in the circle round one, every tactor i
     }
 }
 
-TEST_CASE("four points are on one circle when a move of a nanometre each puts them there, thin or not")
+TEST_CASE("four points are on one circle when moves of a nanometre put them there, thin or not")
 {
     CHECK(detail::cocircular({point{0, 0}, {20, 0}, {20, 40}, {0, 40}}));
     CHECK(detail::cocircular({point{0, 0}, {20, 0}, {20, 40 + 1e-6}, {0, 40}}));
@@ -173,13 +173,13 @@ TEST_CASE("the hull holds its edge within a nanometre, and nearest() lies on it"
             REQUIRE(distance_mm(p, q) <= same_place_mm);
             continue;
         }
-        // No point of the hull is nearer: in a convex hull it is enough to look at the tactors' side.
+        // No point of the hull is nearer: in a convex hull the tactors' side is enough.
         for (const point& t : m.places())
             REQUIRE((t.x_mm - q.x_mm) * (p.x_mm - q.x_mm) + (t.y_mm - q.y_mm) * (p.y_mm - q.y_mm) <= 1e-6);
     }
 }
 
-TEST_CASE("every place of a grid is inside, on the diagonals of the hull, too")
+TEST_CASE("every place of a grid is inside, even on the diagonals of the hull")
 {
     generator g(29);
     for (unsigned round = 0; round < 2000; ++round) {

@@ -33,7 +33,7 @@ TEST_CASE("tactors in one line have no faces; the hull is the line")
         REQUIRE_FALSE(l.contains(off));
         REQUIRE(distance_mm(l.nearest(off), on) < 1e-9);
     }
-    const layout one(array_of({{3.0, 4.0}}));
+    const layout one(make_array({{3.0, 4.0}}));
     CHECK(one.faces().empty());
     CHECK(one.pitch_mm() == 0.0);
     CHECK(one.contains({3.0, 4.0}));
@@ -51,7 +51,7 @@ TEST_CASE("nearly collinear and crowded tactors: every point of the hull is play
             p.push_back({10.0 * i + between(g, 0.0, 3.0), between(g, -scale, scale)});
         if (round % 3 == 0)
             p.push_back({50.0, 60.0});
-        const layout l(rotated(array_of(p), between(g, 0.0, 6.3)));
+        const layout l(rotated(make_array(p), between(g, 0.0, 6.3)));
         const auto model = make_phantom(phantom_kind::inverse_distance, l);
         const auto centroid = make_phantom(phantom_kind::barycentric, l);
         std::vector<drive> d;
@@ -72,12 +72,12 @@ TEST_CASE("nearly collinear and crowded tactors: every point of the hull is play
 TEST_CASE("tactors a micrometre apart beside others far away")
 {
     const layout l(
-        array_of({{0.0, 0.0}, {1e-3, 0.0}, {0.0, 1e-3}, {500.0, 0.0}, {0.0, 500.0}, {500.0, 500.0}}));
+        make_array({{0.0, 0.0}, {1e-3, 0.0}, {0.0, 1e-3}, {500.0, 0.0}, {0.0, 500.0}, {500.0, 500.0}}));
     std::vector<drive> d;
     make_phantom(phantom_kind::inverse_distance, l)->weights({0.4e-3, 0.3e-3}, 1.0, d);
     CHECK(energy(d) == doctest::Approx(1.0));
     CHECK(d.size() == 3);
-    CHECK_THROWS_WITH_AS(layout(array_of({{0.0, 0.0}, {2e-6, 0.0}, {0.0, 2e-6}, {1e6, 0.0}, {0.0, 1e6}})),
+    CHECK_THROWS_WITH_AS(layout(make_array({{0.0, 0.0}, {2e-6, 0.0}, {0.0, 2e-6}, {1e6, 0.0}, {0.0, 1e6}})),
                          doctest::Contains("too near"), error);
 }
 
@@ -85,18 +85,18 @@ TEST_CASE("pitch is the median distance to the nearest neighbour")
 {
     CHECK(layout(preset_array("palm-3x3")).pitch_mm() == doctest::Approx(20.0));
     CHECK(layout(make_grid("g", 3, 3, 20.0, 40.0)).pitch_mm() == doctest::Approx(20.0));
-    CHECK(layout(array_of({{0, 0}, {1, 0}, {10, 0}, {30, 0}})).pitch_mm() == doctest::Approx(5.0));
+    CHECK(layout(make_array({{0, 0}, {1, 0}, {10, 0}, {30, 0}})).pitch_mm() == doctest::Approx(5.0));
 }
 
-TEST_CASE("an array that is none is refused")
+TEST_CASE("impossible arrays are refused")
 {
-    CHECK_THROWS_AS(layout(array_of({})), error);
-    CHECK_THROWS_AS(layout(array_of({{0, 0}, {not_a_number, 1}})), error);
-    CHECK_THROWS_AS(layout(array_of({{0, 0}, {0, 0}})), error);
-    CHECK_THROWS_AS(layout(array_of({{0, 0}, {1e300, 0}})), error);
+    CHECK_THROWS_AS(layout(make_array({})), error);
+    CHECK_THROWS_AS(layout(make_array({{0, 0}, {not_a_number, 1}})), error);
+    CHECK_THROWS_AS(layout(make_array({{0, 0}, {0, 0}})), error);
+    CHECK_THROWS_AS(layout(make_array({{0, 0}, {1e300, 0}})), error);
 }
 
-TEST_CASE("what is compared for one point does not grow with the tactors")
+TEST_CASE("the comparisons for a point do not grow with the tactors")
 {
     generator g(17);
     const auto most = [&](unsigned side) {
@@ -121,7 +121,7 @@ TEST_CASE("what is compared for one point does not grow with the tactors")
 
 TEST_CASE("a ring of 2000 tactors, one face, is played by the rules")
 {
-    const array a = ring_of(2000, 50.0, false);
+    const array a = make_ring(2000, 50.0, false);
     const layout l(a);
     REQUIRE(l.faces().size() == 1);
     const auto model = make_phantom(phantom_kind::inverse_distance, l);

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 // A continuous stroke that leaves the array is refused, however short the way out and however long the
 // stroke.
-#include <cmath>
 #include <random>
 #include <string>
 #include <vector>
@@ -9,6 +8,7 @@
 #include <doctest/doctest.h>
 #include <fmt/format.h>
 
+#include "arrays.hpp"
 #include "rounds.hpp"
 #include "strokes.hpp"
 
@@ -26,20 +26,7 @@ plan_options continuous()
     return o;
 }
 
-array with_places(const std::vector<point>& places)
-{
-    array a;
-    a.name = "places";
-    for (const point p : places) {
-        tactor_spec t;
-        t.position = p;
-        t.channel = static_cast<unsigned>(a.tactors.size());
-        a.tactors.push_back(t);
-    }
-    return a;
-}
-
-/// How far a movement gets out of the array, looked at in many places; and the first of them that is outside.
+/// Returns how far a movement leaves the array, sampled at many places; and the first place outside.
 struct excursion {
     double farthest_mm = 0.0;
     double first_s = -1.0;
@@ -61,7 +48,7 @@ excursion look(const layout& l, const trajectory& t)
 
 } // namespace
 
-TEST_CASE("a way out of five milliseconds is found in a day, and told to the microsecond")
+TEST_CASE("a way out of five milliseconds is found in a day, to the microsecond")
 {
     for (const double duration : {10.0, 2000.0, 86400.0}) {
         for (const double part : {0.1234567, 0.5, 0.987654321}) {
@@ -82,7 +69,7 @@ TEST_CASE("a way out of five milliseconds is found in a day, and told to the mic
     }
 }
 
-TEST_CASE("curves that turn at the edge stay inside, those that turn beyond it do not")
+TEST_CASE("curves that turn at the edge stay inside, curves that turn beyond it do not")
 {
     // A parabola over the upper edge whose top is at y = 0, then a hundredth of a millimetre above.
     CHECK(refusal(palm, along("M 0 20 Q 20 -20 40 20", 86400.0), continuous()).empty());
@@ -92,27 +79,27 @@ TEST_CASE("curves that turn at the edge stay inside, those that turn beyond it d
         refusal(palm, along("M 20 0 A 20 20 0 1 1 20 40 A 20 20 0 1 1 20 0", 3600.0), continuous()).empty());
     CHECK_FALSE(refusal(palm, along("M 20 0 A 20.001 20.001 0 1 1 20 40", 3600.0), continuous()).empty());
     // A slanted edge, which no turn of x or y touches.
-    const array corner = with_places({{0, 0}, {40, 0}, {0, 40}});
+    const array corner = make_array({{0, 0}, {40, 0}, {0, 40}});
     CHECK(refusal(corner, along("M 30 5 Q 20 24.99 5 30", 1.0), continuous()).empty());
     CHECK_FALSE(refusal(corner, along("M 30 5 Q 30 30 5 30", 1.0), continuous()).empty());
 }
 
-TEST_CASE("arrays in one line and of one tactor")
+TEST_CASE("strokes leave arrays in one line and of one tactor")
 {
-    const array line = with_places({{30, 30}, {0, 0}, {10, 10}, {20, 20}});
+    const array line = make_array({{30, 30}, {0, 0}, {10, 10}, {20, 20}});
     CHECK(refusal(line, along("M 0 0 L 30 30 L 10 10", 2.0), continuous()).empty());
     CHECK(refusal(line, along("M 5 5 C 10 10 20 20 29 29", 2.0), continuous()).empty());
     CHECK_FALSE(refusal(line, along("M 5 5 C 10 10 70 70 20 20", 2.0), continuous()).empty());
     CHECK_FALSE(refusal(line, along("M 5 5 Q 10 10.1 20 20", 2.0), continuous()).empty());
     CHECK_FALSE(refusal(line, along("M 0 0 L 31 31", 2.0), continuous()).empty());
-    const array one = with_places({{3, 4}});
+    const array one = make_array({{3, 4}});
     CHECK_FALSE(refusal(one, along("M 3 4 C 10 4 3 10 3 4", 1.0), continuous()).empty());
     CHECK(refusal(one, timed({{0.0, {3, 4}}, {5.0, {3, 4}}}), continuous()).empty());
 }
 
 namespace {
 
-// Short times are said in smaller units.
+// Short times have smaller units.
 double time_after(const std::string& said)
 {
     const double v = number_after(said, "after ");
@@ -123,8 +110,7 @@ double time_after(const std::string& said)
 
 } // namespace
 
-TEST_CASE(
-    "any curve on any array: what is refused is outside where it is said to be, what is not never leaves")
+TEST_CASE("any curve on any array is refused at a place outside, or never leaves")
 {
     std::mt19937_64 random(21);
     std::uniform_real_distribution<double> place(0.0, 40.0);
@@ -135,7 +121,7 @@ TEST_CASE(
         std::vector<point> places;
         for (int i = 0; i < 4 + n % 7; ++i)
             places.push_back({place(random), place(random)});
-        const array a = n % 2 == 0 ? palm : with_places(places);
+        const array a = n % 2 == 0 ? palm : make_array(places);
         const layout l(a);
         const auto inside = [&] { return l.nearest({place(random), place(random)}); };
         const auto any = [&] {

@@ -23,7 +23,7 @@ stroke across(double duration_s)
 
 } // namespace
 
-TEST_CASE("a path that leaves the array is refused where it does, or clamped")
+TEST_CASE("a path that leaves the array is refused at the place, or clamped")
 {
     plan_options o;
     const stroke out = along("M 0 20 L 100 20", 1.0);
@@ -48,7 +48,7 @@ TEST_CASE("a path that leaves the array is refused where it does, or clamped")
     CHECK(p.bursts.back().drives == std::vector<drive>{{5, 1.0}});
 }
 
-TEST_CASE("carrier: the stroke's own before the common one; anything but a frequency is refused")
+TEST_CASE("a stroke's carrier wins over the common one; anything but a frequency is refused")
 {
     stroke s = across(1.0);
     plan_options o;
@@ -63,7 +63,7 @@ TEST_CASE("carrier: the stroke's own before the common one; anything but a frequ
     }
 }
 
-TEST_CASE("more bursts than anyone can mean are refused at once")
+TEST_CASE("an absurd number of bursts is refused at once")
 {
     plan_options o;
     o.profile = {0.32, 0.0, 0.07};
@@ -71,7 +71,7 @@ TEST_CASE("more bursts than anyone can mean are refused at once")
     CHECK(refusal(palm, across(86400.0), o).find("bursts") != std::string::npos);
 }
 
-TEST_CASE("a scale says what half an intensity means, and is held to its bounds")
+TEST_CASE("a scale defines half an intensity, and is held to its bounds")
 {
     const intensity_scale linear;
     for (const double i : {0.0, 0.5, 1.0, 3.0, -1.0})
@@ -105,7 +105,7 @@ TEST_CASE("a scale says what half an intensity means, and is held to its bounds"
             static_cast<void>(intensity_scale{.kind = scale_kind::sl, .sl_db = db}.amplitude(0.5)), error);
 }
 
-TEST_CASE("a model of one's own is used by its name, and held to its contract")
+TEST_CASE("a custom model is used by its name, and held to its contract")
 {
     struct nearest final : phantom_model {
         std::vector<drive> answer;
@@ -138,7 +138,7 @@ TEST_CASE("a layout of another array is refused")
     CHECK_THROWS_AS(make_plan(palm, layout(preset_array("palm-2x4")), across(1.0), {}), error);
 }
 
-TEST_CASE("continuous: no bursts, the phantom at every time")
+TEST_CASE("a continuous plan has no bursts, and the phantom at every time")
 {
     plan_options o;
     o.algorithm = algorithm_kind::continuous;
@@ -172,7 +172,7 @@ TEST_CASE("continuous: no bursts, the phantom at every time")
     CHECK(b.position == point{0.0, 20.0});
 }
 
-TEST_CASE("continuous: a short way out between two bursts is found")
+TEST_CASE("a continuous plan finds a short way out between two bursts")
 {
     plan_options o;
     const stroke s = timed({{0.0, {30, 20}}, {0.03, {50, 20}}, {0.06, {30, 20}}, {1.0, {20, 20}}});

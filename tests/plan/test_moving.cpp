@@ -18,7 +18,7 @@ namespace {
 
 stroke moving(std::string_view svg, const movement& m)
 {
-    return stroke_of(trajectory::along(path::from_svg(svg), m));
+    return make_stroke(trajectory::along(path::from_svg(svg), m));
 }
 
 double minimum_jerk(double u)
@@ -35,7 +35,7 @@ const movement resting{.duration_s = 3.0,
 
 } // namespace
 
-TEST_CASE("bursts of park2016 are where the eased target is at their onset, as strong as it is there")
+TEST_CASE("bursts of park2016 are at the eased target's place at their onset, with its strength")
 {
     const plan p = make_plan(palm, moving("M 0 10 L 40 30", jerk), {});
     REQUIRE(p.bursts.size() == 31);
@@ -52,7 +52,7 @@ TEST_CASE("bursts of park2016 are where the eased target is at their onset, as s
     CHECK(silent <= 9);
 }
 
-TEST_CASE("the Tactile Brush times its places by when the eased target is there")
+TEST_CASE("the Tactile Brush times its places by the eased target's arrival")
 {
     for (const movement& m : {jerk, resting}) {
         const stroke s = moving("M 0 0 H 45", m);
@@ -79,7 +79,7 @@ TEST_CASE("the shortest duration that the Tactile Brush names works for eased ta
     CHECK_FALSE(refusal(arm, s, brush()).empty());
 }
 
-TEST_CASE("continuous says where and when an eased target leaves the array")
+TEST_CASE("continuous reports where and when an eased target leaves the array")
 {
     plan_options o;
     o.algorithm = algorithm_kind::continuous;
@@ -89,7 +89,7 @@ TEST_CASE("continuous says where and when an eased target leaves the array")
     CHECK(std::abs(moving("M 0 10 C 20 10 60 20 60 30", jerk).motion.position(when).x_mm - 40.0) < 0.1);
 }
 
-TEST_CASE("a path that is short beside the distance between tactors is warned of")
+TEST_CASE("a path that is short compared with the tactors' distance is warned of")
 {
     const auto warned = [](std::string_view svg) {
         for (const std::string& w : make_plan(palm, along(svg, 1.0)).warnings)
@@ -97,14 +97,13 @@ TEST_CASE("a path that is short beside the distance between tactors is warned of
                 return w;
         return std::string();
     };
-    CHECK(warned("M 10 10 h 3.9") ==
-          "its path of 3.9 mm is shorter than a fifth of the 20 mm between tactors: it "
-          "may not be felt to move");
+    CHECK(warned("M 10 10 h 3.9") == "its path of 3.9 mm is shorter than a fifth of the 20 mm between "
+                                     "tactors: it may not be felt to move");
     CHECK(warned("M 10 10 h 4").empty());
     CHECK(make_plan(palm, timed({{0.0, {10.0, 10.0}}, {1.0, {10.0, 10.0}}})).warnings.empty());
 }
 
-TEST_CASE("what a stroke chooses wins over what is asked of all")
+TEST_CASE("a stroke's choice wins over the common one")
 {
     stroke s = along("M 0 10 L 40 30", 1.4);
     s.choices = {{}, phantom_kind::barycentric, 0.06, 0.05};
@@ -116,10 +115,10 @@ TEST_CASE("what a stroke chooses wins over what is asked of all")
     CHECK(make_plan(palm, s).curve.has_value());
     s.choices.soa_s = 0.02;
     s.choices.algorithm.reset();
-    CHECK(refusal(palm, s, {}).find("duration of a burst: ") == 0);
+    CHECK(refusal(palm, s, {}).find("burst_s: ") == 0);
 }
 
-TEST_CASE("an SOA or a burst that a stroke chooses and cannot have is told with its place")
+TEST_CASE("a stroke's impossible SOA or burst is refused with its place")
 {
     const auto told = [](const char* text, plan_options o = {}) {
         const stroke s = parse_strokes_toml(text, "w.toml").front();
@@ -132,23 +131,22 @@ TEST_CASE("an SOA or a burst that a stroke chooses and cannot have is told with 
     };
     using is = std::pair<std::string, unsigned>;
     const char* soa = "[stroke]\npath = \"M 0 10 H 40\"\nsoa_s = 9\n";
-    CHECK(told(soa) ==
-          is{"w.toml:3:9: soa_s: 9 s is out of bounds: an SOA is longer than 0.0473 s and at most "
-             "0.07 s (use 0.07)",
-             3});
+    CHECK(told(soa) == is{"w.toml:3:9: soa_s: 9 s is out of bounds: an SOA is longer than 0.0473 s and at "
+                          "most 0.07 s (use 0.07)",
+                          3});
     CHECK(told("[stroke]\npath = \"M 0 10 H 40\"\nburst_s = 0.2\n") ==
-          is{"w.toml:3:11: duration of a burst: 0.2 s is longer than the SOA of 0.07 s, and bursts must not "
+          is{"w.toml:3:11: burst_s: 0.2 s is longer than the SOA of 0.07 s, and bursts must not "
              "overlap (use at most 0.07 s, or a longer SOA)",
              3});
-    // The stroke's SOA is what is too short for the duration of all.
+    // The stroke's SOA is too short for the common duration.
     CHECK(told("[stroke]\npath = \"M 0 10 H 40\"\nsoa_s = 0.05\n", {.burst_s = 0.06}).second == 3);
-    // What is asked of all is not the file's doing.
+    // The common value is not the file's fault.
     CHECK(told("[stroke]\npath = \"M 0 10 H 40\"\nburst_s = 0.02\n", {.soa_s = 90.0}).first.find("soa_s: ") ==
           0);
     CHECK(told("[stroke]\npath = \"M 0 10 H 40\"\nsoa_s = 0.05\nburst_s = 0.05\n").second == 0);
 }
 
-TEST_CASE("a stroke that asks to be fitted is")
+TEST_CASE("a stroke that asks for a fit is fitted")
 {
     stroke s = along("M 100 100 L 900 700", 1.4);
     s.fit = stroke_fit{2.0};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The three closest tactors of the whole array, as Park et al. 2016 have it.
+// The three closest tactors of the whole array, as in Park et al. 2016.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -31,7 +31,7 @@ std::vector<drive> nearest(const layout& l, point p, double a_v = 1.0)
     return d;
 }
 
-/// Tactors by distance, those at the same one in the order of the list.
+/// Sorts tactors by distance, equal ones in the order of the list.
 std::vector<unsigned> by_distance(const layout& l, point p)
 {
     std::vector<unsigned> order;
@@ -79,7 +79,7 @@ bool warns(const plan& p, const std::string& of)
 
 } // namespace
 
-TEST_CASE("on the paper's array the three closest are those of the face, but on the diagonals of cells")
+TEST_CASE("on the paper's array the three closest are those of the face, except on the diagonals of cells")
 {
     const layout l(preset_array("palm-3x3"));
     for (int i = 0; i <= 160; ++i)
@@ -135,7 +135,7 @@ TEST_CASE("the three closest keep Eqs. (8) and (9) and are the closest, by brute
     }
 }
 
-TEST_CASE("which are closest does not depend on the order of the tactors in the file")
+TEST_CASE("the closest do not depend on the order of the tactors in the file")
 {
     generator g(12);
     for (unsigned round = 0; round < 200; ++round) {
@@ -149,7 +149,7 @@ TEST_CASE("which are closest does not depend on the order of the tactors in the 
             for (const drive& x : nearest(l, p))
                 moved.push_back(now[x.tactor]);
             std::sort(moved.begin(), moved.end());
-            REQUIRE(moved == tactors_of(nearest(m, p)));
+            REQUIRE(moved == list_tactors(nearest(m, p)));
         }
     }
 }
@@ -157,12 +157,12 @@ TEST_CASE("which are closest does not depend on the order of the tactors in the 
 TEST_CASE("Eq. (2) holds on a segment between two of the three closest, and nowhere else")
 {
     const layout l(make_grid("g", 3, 3, 20.0, 40.0));
-    CHECK(tactors_of(nearest(l, {20.0, 40.0})) == std::vector<unsigned>{4});
-    CHECK(tactors_of(nearest(l, {5.0, 0.0})) == std::vector<unsigned>{0, 1});
-    CHECK(tactors_of(nearest(l, {20.0, 20.0})) == std::vector<unsigned>{1, 4}); // of one column
+    CHECK(list_tactors(nearest(l, {20.0, 40.0})) == std::vector<unsigned>{4});
+    CHECK(list_tactors(nearest(l, {5.0, 0.0})) == std::vector<unsigned>{0, 1});
+    CHECK(list_tactors(nearest(l, {20.0, 20.0})) == std::vector<unsigned>{1, 4}); // of one column
     // Near its first tactor the second one of a long side is not among the three.
-    CHECK(tactors_of(nearest(l, {20.0, 5.0})) == std::vector<unsigned>{0, 1, 2});
-    CHECK(tactors_of(nearest(l, {5.0, 10.0})) == std::vector<unsigned>{0, 1, 3});
+    CHECK(list_tactors(nearest(l, {20.0, 5.0})) == std::vector<unsigned>{0, 1, 2});
+    CHECK(list_tactors(nearest(l, {5.0, 10.0})) == std::vector<unsigned>{0, 1, 3});
     const auto d = nearest(l, {5.0, 0.0}, 2.0);
     CHECK(d[0].amplitude == doctest::Approx(2.0 * std::sqrt(0.75)).epsilon(1e-14));
 }
@@ -180,7 +180,7 @@ TEST_CASE("on a 20 x 40 mm grid the three closest are in one line in 44 % of pla
     CHECK(p.phantom == "inverse-distance");
     std::size_t lines = 0;
     for (const burst& b : p.bursts)
-        lines += tactors_of(b.drives) == std::vector<unsigned>{0, 1, 2} ? 1 : 0;
+        lines += list_tactors(b.drives) == std::vector<unsigned>{0, 1, 2} ? 1 : 0;
     CHECK(lines > 0);
     REQUIRE(p.warnings.size() == 1);
     CHECK(
@@ -211,7 +211,8 @@ TEST_CASE("the guide's shares hold on the example of scattered tactors")
     const layout l(*s.array);
     REQUIRE(l.places().size() == 12);
     CHECK(share(l, 0.5, [&](point p) {
-              return tactors_of(nearest(l, p)) != tactors_of(weights(l, phantom_kind::inverse_distance, p));
+              return list_tactors(nearest(l, p)) !=
+                     list_tactors(weights(l, phantom_kind::inverse_distance, p));
           }) == doctest::Approx(0.576).epsilon(0.0001));
     CHECK(share(l, 0.5, [&](point p) {
               const auto t = by_distance(l, p);
@@ -219,7 +220,7 @@ TEST_CASE("the guide's shares hold on the example of scattered tactors")
           }) == doctest::Approx(0.376).epsilon(0.0001));
 }
 
-TEST_CASE("faces go with inverse-distance alone")
+TEST_CASE("only inverse-distance takes faces")
 {
     const array a = preset_array("palm-3x3");
     const stroke s = preset_stroke("park2016-1");
@@ -252,7 +253,7 @@ TEST_CASE("faces go with inverse-distance alone")
     CHECK(has(message_of([&] { static_cast<void>(make_plan(a, own, {})); }), "not with log"));
 }
 
-TEST_CASE("Tactile Brush plays on the lines of the grid and says that it does not use the faces")
+TEST_CASE("the Tactile Brush plays on the lines of the grid and reports that it ignores the faces")
 {
     const array a = make_grid("g", 3, 4, 15.0, 15.0);
     const stroke s = along("M 10 30 L 45 10");

@@ -53,7 +53,7 @@ TEST_CASE("the four target motions give 21, 21, 31 and 31 bursts that never over
     }
 }
 
-TEST_CASE("a burst of its own duration keeps the SOA, up to the SOA, and warns where the law is left")
+TEST_CASE("a burst with a given duration keeps the SOA, up to the SOA, and warns where it leaves the law")
 {
     struct example {
         double soa_s;
@@ -86,25 +86,24 @@ TEST_CASE("a burst of its own duration keeps the SOA, up to the SOA, and warns w
     }
 }
 
-TEST_CASE("what leaves the timing law, or the range that it was fitted for, is told in figures")
+TEST_CASE("a plan that leaves the timing law, or its fitted range, says so in figures")
 {
     plan_options o;
     o.burst_s = 0.05;
     CHECK(make_plan(palm, across(1.0), o).warnings ==
           std::vector<std::string>{
-              "bursts of 0.05 s each 0.07 s leave the timing law, SOA = 0.32 duration + 0.0473 s, by "
-              "which their SOA is 0.0633 s: they may not be felt as one motion"});
+              "bursts of 0.05 s each 0.07 s leave the timing law, SOA = 0.32 duration + 0.0473 s, by which "
+              "their SOA is 0.0633 s: they may not be felt as one motion"});
     o.soa_s = 2.0;
     o.burst_s = 0.161;
     const auto warnings = make_plan(palm, across(1.0), o).warnings;
     REQUIRE(warnings.size() == 2);
-    CHECK(warnings[0] ==
-          "1 of 1 burst lasts longer than 0.160 s (up to 0.161 s), beyond the range for which the "
-          "timing law was fitted");
+    CHECK(warnings[0] == "1 of 1 burst lasts longer than 0.160 s (up to 0.161 s), beyond the range for which "
+                         "the timing law was fitted");
     CHECK(warnings[1].find("by which their SOA is 0.09882 s:") != std::string::npos);
     o.burst_s = 0.160;
     CHECK(make_plan(palm, across(1.0), o).warnings.size() == 1);
-    // By the law 39.6875 ms: a duration is said to the millisecond.
+    // By the law 39.6875 ms: a duration is printed to the millisecond.
     o.soa_s = 0.06;
     for (const auto& [burst_s, told] : {std::pair{0.0401, 0U}, {0.0402, 1U}, {0.0392, 0U}, {0.0391, 1U}}) {
         CAPTURE(burst_s);
@@ -113,7 +112,7 @@ TEST_CASE("what leaves the timing law, or the range that it was fitted for, is t
     }
 }
 
-TEST_CASE("a burst that cannot be is refused, with what can")
+TEST_CASE("an impossible burst is refused with the possible ones")
 {
     plan_options o;
     for (const double s : {0.0701, 1.0, 1e300}) {
@@ -122,7 +121,7 @@ TEST_CASE("a burst that cannot be is refused, with what can")
     }
     for (const double s : {0.0, -0.01, 1e-5, not_a_number, infinite, -infinite}) {
         o.burst_s = s;
-        CHECK(refusal(palm, across(1.0), o).starts_with("duration of a burst"));
+        CHECK(refusal(palm, across(1.0), o).starts_with("burst_s: "));
     }
     o.burst_s = 0.05;
     for (const double s : {0.0, -1.0, 10.1, not_a_number, infinite}) {
@@ -133,7 +132,7 @@ TEST_CASE("a burst that cannot be is refused, with what can")
     CHECK(burst_duration_s(o = {}) == 0.07);
 }
 
-TEST_CASE("fit with a duration of its own: the SOA does not fall under it")
+TEST_CASE("with fit and a given burst the SOA does not fall below it")
 {
     plan_options o;
     o.timing = timing_kind::fit;
@@ -150,7 +149,7 @@ TEST_CASE("fit with a duration of its own: the SOA does not fall under it")
     CHECK(why.find("0.14 s and 0.21 s") != std::string::npos);
 }
 
-TEST_CASE("the other algorithms say that they do not use a burst's duration")
+TEST_CASE("the other algorithms report that they do not use a burst's duration")
 {
     plan_options o;
     o.burst_s = 0.05;
@@ -163,7 +162,7 @@ TEST_CASE("the other algorithms say that they do not use a burst's duration")
     }
 }
 
-TEST_CASE("bursts of less than one cycle of the carrier are warned about, whatever made them so")
+TEST_CASE("bursts of less than one cycle of the carrier are warned about, for any reason")
 {
     plan_options o;
     o.soa_s = 0.0483; // 3.125 ms by the law, a cycle at 320 Hz
@@ -249,7 +248,7 @@ TEST_CASE("fit: both ends of the path are sampled, with the fewest intervals")
     CHECK(make_plan(palm, across(0.05), o).soa_s == 0.07);
 }
 
-TEST_CASE("fit: where bursts would be too short the error names durations on both sides that work")
+TEST_CASE("where fitted bursts would be too short the error names working durations on both sides")
 {
     plan_options o;
     o.timing = timing_kind::fit;
@@ -306,7 +305,7 @@ TEST_CASE("another timing profile is used throughout")
     }
 }
 
-TEST_CASE("intensity over time sets A_v; none gives a burst without drives")
+TEST_CASE("intensity over time sets A_v; zero gives a burst without drives")
 {
     const plan p = make_plan(palm, timed({{0.0, {0, 0}, 0.0}, {0.7, {40, 40}, 1.0}}));
     CHECK(p.bursts[0].drives.empty());

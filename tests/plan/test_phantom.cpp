@@ -52,7 +52,7 @@ TEST_CASE(
     }
 }
 
-TEST_CASE("what a point gets does not depend on the points before it, near edges, diagonals and tactors too")
+TEST_CASE("a point's drives do not depend on the points before it, even near edges, diagonals and tactors")
 {
     generator g(7);
     std::vector<drive> d;
@@ -80,7 +80,7 @@ TEST_CASE("what a point gets does not depend on the points before it, near edges
     }
 }
 
-TEST_CASE("inverse distance chooses the tactors that the rules say, by brute force")
+TEST_CASE("inverse distance chooses tactors by the rules, by brute force")
 {
     generator g(2);
     for (unsigned round = 0; round < 500; ++round) {
@@ -101,7 +101,7 @@ TEST_CASE("inverse distance chooses the tactors that the rules say, by brute for
             CAPTURE(round);
             CAPTURE(p.x_mm);
             CAPTURE(p.y_mm);
-            REQUIRE(tactors_of(d) == expected_tactors(l, p));
+            REQUIRE(list_tactors(d) == expected_tactors(l, p));
         }
     }
 }
@@ -120,7 +120,7 @@ TEST_CASE("on a square grid these are the paper's three closest tactors")
         });
         order.resize(3);
         std::sort(order.begin(), order.end());
-        REQUIRE(tactors_of(weights(l, phantom_kind::inverse_distance, p)) == order);
+        REQUIRE(list_tactors(weights(l, phantom_kind::inverse_distance, p)) == order);
     }
 }
 
@@ -129,7 +129,7 @@ TEST_CASE("on a 20 x 40 mm grid no point is played by three tactors in one line"
     const layout l(make_grid("g", 3, 3, 20.0, 40.0));
     generator g(4);
     for (unsigned i = 0; i < 5000; ++i) {
-        const auto t = tactors_of(
+        const auto t = list_tactors(
             weights(l, phantom_kind::inverse_distance, {between(g, 0.0, 40.0), between(g, 0.0, 80.0)}));
         REQUIRE(t.size() == 3);
         REQUIRE(std::abs(cross(l.places()[t[0]], l.places()[t[1]], l.places()[t[2]])) > 1.0);
@@ -140,7 +140,7 @@ TEST_CASE("edges and diagonals play two tactors, the shortest segment first and 
 {
     const layout l(make_grid("g", 3, 3, 20.0, 40.0));
     const auto at = [&](double x, double y) {
-        return tactors_of(weights(l, phantom_kind::inverse_distance, {x, y}));
+        return list_tactors(weights(l, phantom_kind::inverse_distance, {x, y}));
     };
     CHECK(at(20.0, 40.0) == std::vector<unsigned>{4});
     CHECK(at(20.0 + 0.9e-6, 40.0) == std::vector<unsigned>{4});
@@ -161,7 +161,7 @@ TEST_CASE("Eq. (10), worked by hand")
 {
     const layout l(preset_array("palm-3x3"));
     const auto d = weights(l, phantom_kind::inverse_distance, {8.0, 6.0});
-    REQUIRE(tactors_of(d) == std::vector<unsigned>{0, 1, 3});
+    REQUIRE(list_tactors(d) == std::vector<unsigned>{0, 1, 3});
     const double d0 = 10.0;
     const double d1 = std::sqrt(180.0);
     const double d3 = std::sqrt(260.0);
@@ -193,7 +193,7 @@ TEST_CASE("ties in distance go to the lowest tactor by row and column, within a 
             a.tactors[i].position.y_mm += i % 2 == 0 ? noise : 0.0;
         const layout l(a);
         const auto at = [&](double x, double y) {
-            return tactors_of(weights(l, phantom_kind::inverse_distance, {x, y}));
+            return list_tactors(weights(l, phantom_kind::inverse_distance, {x, y}));
         };
         CAPTURE(noise);
         CHECK(at(10.0, 3.0) == std::vector<unsigned>{0, 1, 3});

@@ -61,7 +61,7 @@ TEST_CASE("barycentric keeps the energy and its centroid is the point")
 TEST_CASE("barycentric is continuous: a small step changes every tactor's energy little")
 {
     generator g(7);
-    for (const array& a : {preset_array("palm-3x3"), staggered(4, 4, 20.0), ring_of(12, 30.0, false),
+    for (const array& a : {preset_array("palm-3x3"), staggered(4, 4, 20.0), make_ring(12, 30.0, false),
                            make_grid("g", 3, 3, 20.0, 40.0), cloud(g, 25)}) {
         const layout l(a);
         const auto model = make_phantom(phantom_kind::barycentric, l);
@@ -85,7 +85,7 @@ TEST_CASE("barycentric is continuous: a small step changes every tactor's energy
     }
 }
 
-TEST_CASE("linear and log stand on the barycentric triangle")
+TEST_CASE("linear and log use the barycentric triangle")
 {
     generator g(8);
     for (unsigned round = 0; round < 200; ++round) {
@@ -110,12 +110,12 @@ TEST_CASE("a face of many tactors is split as a fan from its lowest one")
 {
     const layout l(preset_array("palm-3x3"));
     // Cell 0, 1, 4, 3: the diagonal goes from 0 to 4.
-    CHECK(tactors_of(weights(l, phantom_kind::barycentric, {15.0, 5.0})) == std::vector<unsigned>{0, 1, 4});
-    CHECK(tactors_of(weights(l, phantom_kind::barycentric, {5.0, 15.0})) == std::vector<unsigned>{0, 3, 4});
-    CHECK(tactors_of(weights(l, phantom_kind::barycentric, {10.0, 10.0})) == std::vector<unsigned>{0, 4});
+    CHECK(list_tactors(weights(l, phantom_kind::barycentric, {15.0, 5.0})) == std::vector<unsigned>{0, 1, 4});
+    CHECK(list_tactors(weights(l, phantom_kind::barycentric, {5.0, 15.0})) == std::vector<unsigned>{0, 3, 4});
+    CHECK(list_tactors(weights(l, phantom_kind::barycentric, {10.0, 10.0})) == std::vector<unsigned>{0, 4});
 }
 
-TEST_CASE("gaussian: all tactors near, weighed by distance, equal energy, the weak ones dropped")
+TEST_CASE("gaussian weighs all near tactors by distance, keeps the energy, and drops the weak ones")
 {
     generator g(9);
     for (unsigned round = 0; round < 400; ++round) {
@@ -146,7 +146,7 @@ TEST_CASE("gaussian: all tactors near, weighed by distance, equal energy, the we
     }
 }
 
-TEST_CASE("no intensity, no drives; no number, no answer")
+TEST_CASE("no intensity gives no drives, and non-numbers are refused")
 {
     const layout l(preset_array("palm-3x3"));
     for (const auto k : {phantom_kind::inverse_distance, phantom_kind::barycentric, phantom_kind::linear,

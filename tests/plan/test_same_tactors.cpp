@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
 // Who follows a target gets what who asks anew gets, to the bit, and mostly need not ask.
-#include <memory>
 #include <vector>
 
 #include <doctest/doctest.h>

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: MIT
-#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <random>
@@ -17,7 +16,7 @@ using namespace tactor::plot;
 
 namespace {
 
-// Labels of ticks, left to right, as boxes on the page.
+// Returns labels of ticks, left to right, as boxes on the page.
 struct label {
     double from;
     double to;
@@ -37,7 +36,7 @@ std::vector<label> tick_labels(const canvas& c)
 
 } // namespace
 
-TEST_CASE("ticks are round numbers inside the range, as many as asked for at most")
+TEST_CASE("ticks are round numbers inside the range, at most as many as asked for")
 {
     std::mt19937_64 random(11);
     std::uniform_real_distribution<double> exponent(-6.0, 6.0);
@@ -60,7 +59,7 @@ TEST_CASE("ticks are round numbers inside the range, as many as asked for at mos
     }
 }
 
-TEST_CASE("a range of nothing, and one that is no number, has one tick")
+TEST_CASE("an empty range, and a non-number, have one tick")
 {
     CHECK(nice_ticks(2.0, 2.0, 5).at.size() == 1);
     CHECK(nice_ticks(0.0, std::numeric_limits<double>::infinity(), 5).at.size() == 1);

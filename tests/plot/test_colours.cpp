@@ -22,7 +22,7 @@ double linear_light(std::uint8_t v) noexcept
     return c <= 0.04045 ? c / 12.92 : std::pow((c + 0.055) / 1.055, 2.4);
 }
 
-// Relative, 0 ... 1 (ITU-R BT.709 weights on linear light).
+// Returns relative luminance, 0 ... 1 (ITU-R BT.709 weights on linear light).
 double luminance(colour c)
 {
     return 0.2126 * linear_light(c.r) + 0.7152 * linear_light(c.g) + 0.0722 * linear_light(c.b);
@@ -30,7 +30,7 @@ double luminance(colour c)
 
 } // namespace
 
-TEST_CASE("the colours of time get lighter all the way, so that they are in order in grey too")
+TEST_CASE("the colours of time get steadily lighter, so that they are in order in grey too")
 {
     double before = luminance(ordered(0.0));
     for (int i = 1; i <= 1000; ++i) {
@@ -43,14 +43,14 @@ TEST_CASE("the colours of time get lighter all the way, so that they are in orde
         CHECK(std::sqrt(luminance(ordered((i + 1) / 10.0))) - std::sqrt(luminance(ordered(i / 10.0))) > 0.04);
 }
 
-TEST_CASE("the lightest colour of time is still seen on white")
+TEST_CASE("the lightest colour of time is visible on white")
 {
     const double contrast = 1.05 / (luminance(ordered(1.0)) + 0.05);
     CHECK(contrast > 1.4);
     CHECK(luminance(ordered(0.0)) < 0.02);
 }
 
-TEST_CASE("what is out of range is the nearest colour")
+TEST_CASE("a value out of range has the nearest colour")
 {
     CHECK(ordered(-3.0) == ordered(0.0));
     CHECK(ordered(7.0) == ordered(1.0));
@@ -60,7 +60,8 @@ TEST_CASE("what is out of range is the nearest colour")
 
 namespace {
 
-// Linear light, 0 ... 1, as eyes of one kind see it: matrices of Machado et al. 2009 for full severity.
+// Converts linear light, 0 ... 1, to that of colour-blind eyes: matrices of Machado et al. 2009 for full
+// severity.
 using matrix = std::array<std::array<double, 3>, 3>;
 constexpr std::array<matrix, 4> sights{
     {{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}},
@@ -84,7 +85,7 @@ double light(std::uint8_t v)
     return c <= 0.04045 ? c / 12.92 : std::pow((c + 0.055) / 1.055, 2.4);
 }
 
-// CIELAB, D65.
+// Converts to CIELAB, D65.
 std::array<double, 3> lab(colour c, const matrix& sight)
 {
     std::array<double, 3> seen = times(sight, {light(c.r), light(c.g), light(c.b)});
@@ -101,7 +102,7 @@ std::array<double, 3> lab(colour c, const matrix& sight)
 
 } // namespace
 
-TEST_CASE("colours of strokes are told apart by eyes of each kind, and seen on white")
+TEST_CASE("colours of strokes differ for eyes of each kind, and are visible on white")
 {
     for (const matrix& sight : sights)
         for (std::size_t i = 0; i < stroke_colours; ++i) {

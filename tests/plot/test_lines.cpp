@@ -41,7 +41,7 @@ std::vector<spot> wander(std::mt19937_64& random, int n)
 
 } // namespace
 
-TEST_CASE("a clipped line is inside the box, and all that was inside is left")
+TEST_CASE("a clipped line is inside the box, and keeps its part inside")
 {
     std::mt19937_64 random(3);
     const box b{20.0, 30.0, 60.0, 40.0};

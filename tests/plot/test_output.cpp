@@ -36,7 +36,7 @@ std::uint32_t big_endian(const std::string& s, std::size_t at)
 
 } // namespace
 
-TEST_CASE("a PNG has the pixels that its size and resolution make, and says so")
+TEST_CASE("a PNG has the pixels of its size and resolution, and their density")
 {
     const std::string png = to_png(page(), 300);
     CHECK(png.starts_with("\x89PNG\r\n\x1a\n"));
@@ -65,7 +65,7 @@ TEST_CASE("a PDF is one, without the time of day")
     CHECK(to_pdf(page()) == pdf);
 }
 
-TEST_CASE("the format is in the name, in upper or lower case")
+TEST_CASE("the format follows the name, in upper or lower case")
 {
     CHECK(format_of("a.svg") == file_format::svg);
     CHECK(format_of("b/c.PNG") == file_format::png);

@@ -17,8 +17,8 @@ using namespace tactor::plot;
 
 namespace {
 
-// The rows of so many tactors in a line, all of which play.
-lanes rows_of(unsigned n, double space)
+// Makes the rows of so many tactors in a line, all of which play.
+lanes make_rows(unsigned n, double space)
 {
     tactor::array a;
     for (unsigned i = 0; i < n; ++i)
@@ -37,25 +37,25 @@ std::size_t labels(const lanes& l, std::string& said)
 
 } // namespace
 
-TEST_CASE("rows take no more than their space, and each has its number or it is said which have")
+TEST_CASE("rows take no more than their space, and each has its number or is listed as without")
 {
     std::string said;
     for (const double space : {120.0, 270.0, 1000.0})
         for (const unsigned n : {1U, 9U, 40U, 64U, 65U, 82U, 83U, 120U, 400U}) {
-            const lanes l = rows_of(n, space);
+            const lanes l = make_rows(n, space);
             CHECK(l.all_height <= space + 1e-9);
             CHECK(l.rows.back().top + l.rows.back().height == doctest::Approx(l.all_height));
             const std::size_t shown = labels(l, said);
             CHECK(said.empty() == (shown == l.rows.size()));
         }
-    CHECK(labels(rows_of(82, 1000.0), said) == 82);
-    CHECK(labels(rows_of(83, 1000.0), said) == 42);
+    CHECK(labels(make_rows(82, 1000.0), said) == 82);
+    CHECK(labels(make_rows(83, 1000.0), said) == 42);
     CHECK(said == "one row in 2 has its number");
 }
 
-TEST_CASE("rows of many levels leave those of one the height of a number")
+TEST_CASE("rows of many levels leave rows of one the height of a number")
 {
-    lanes l = rows_of(40, 1000.0);
+    lanes l = make_rows(40, 1000.0);
     for (std::size_t i = 0; i < l.rows.size(); i += 4)
         l.rows[i].levels = 10; // 130 in all
     REQUIRE(l.fit(350.0));
@@ -64,10 +64,10 @@ TEST_CASE("rows of many levels leave those of one the height of a number")
     CHECK(labels(l, said) == 40);
     CHECK(l.rows[0].height == doctest::Approx(10.0 * l.height));
     CHECK(l.rows[1].height > 2.0 * l.height);
-    CHECK_FALSE(l.fit(300.0)); // levels too low to be seen
+    CHECK_FALSE(l.fit(300.0)); // levels too low to be visible
 }
 
-TEST_CASE("a note too wide for a line goes on in the next, one too many is shortened")
+TEST_CASE("a note too wide for a line continues in the next, one too many is shortened")
 {
     const std::string wide = "no space for the numbers of tactors 3, 12, 15, 20, 26, 34, 41, 52";
     const auto lines = note_lines({"squares: ends", "", wide, "one burst in 4"}, 120.0, 4);

@@ -30,7 +30,7 @@ bool has(const std::string& text, const std::string& part)
 
 } // namespace
 
-TEST_CASE("an SVG says its size in mm, its title and what it shows")
+TEST_CASE("an SVG has its size in mm, its title and its description")
 {
     const std::string s = to_svg(empty());
     CHECK(has(s, "width=\"85mm\" height=\"25.4mm\" viewBox=\"0 0 240.945 72\""));
@@ -54,7 +54,7 @@ TEST_CASE("elements carry their ids, classes, titles and data")
     CHECK(has(s, "stroke-dasharray=\"2\"/>\n</g>\n</svg>"));
 }
 
-TEST_CASE("text is text, whatever is in it")
+TEST_CASE("text is text, with any content")
 {
     canvas c = empty();
     c.text({5.0, 6.0}, "a&b\x01\xFF", {.anchor = align::end, .halo = true, .upwards = true},
@@ -70,7 +70,7 @@ TEST_CASE("numbers are numbers in every locale, and never nan")
 {
     const std::string before = std::setlocale(LC_ALL, nullptr);
     for (const char* l : {"de_DE.UTF-8", "fr_FR.UTF-8", "C"}) {
-        std::setlocale(LC_ALL, l); // where it is not installed, the test says less
+        std::setlocale(LC_ALL, l); // where it is not installed, the test checks less
         canvas c = empty();
         c.circle({0.5, -0.0001}, std::numeric_limits<double>::quiet_NaN(), {.fill = black});
         CHECK(has(to_svg(c), "<circle cx=\"0.5\" cy=\"0\" r=\"0\" fill=\"#000000\"/>"));

@@ -20,7 +20,7 @@ TEST_CASE("text is as wide as the sum of its letters, and scales with its size")
     CHECK(text_width("\xC3\xA9", 10.0) == doctest::Approx(10.0)); // one letter of two bytes
 }
 
-TEST_CASE("clean keeps text and replaces what is none")
+TEST_CASE("clean keeps text and replaces other bytes")
 {
     CHECK(clean("Fingerkuppe \xC3\xA4\xE2\x82\xAC\xF0\x9F\x96\x90") ==
           "Fingerkuppe \xC3\xA4\xE2\x82\xAC\xF0\x9F\x96\x90");
@@ -35,7 +35,7 @@ TEST_CASE("clean keeps text and replaces what is none")
     CHECK(clean("a\tb\nc") == "a b c");
 }
 
-TEST_CASE("clean comes to rest: what it gives is clean, whatever the bytes")
+TEST_CASE("clean is idempotent for any bytes")
 {
     std::mt19937_64 random(7);
     std::uniform_int_distribution<int> byte(0, 255);
@@ -49,7 +49,7 @@ TEST_CASE("clean comes to rest: what it gives is clean, whatever the bytes")
     }
 }
 
-TEST_CASE("shortened text fits, and says that it was longer")
+TEST_CASE("shortened text fits, and shows that it was longer")
 {
     CHECK(shorten("short", 6.0, 100.0) == "short");
     const std::string all = "a name that is far too long for the place that it has";
@@ -62,7 +62,7 @@ TEST_CASE("shortened text fits, and says that it was longer")
     CHECK(text_width(shorten(std::string(1 << 20, 'x'), 6.0, 80.0), 6.0) <= 80.0);
 }
 
-TEST_CASE("text that is shortened in its middle fits, and keeps both ends, in whole characters")
+TEST_CASE("text shortened in its middle fits, and keeps both ends, in whole characters")
 {
     CHECK(shorten_middle("short", 6.0, 100.0) == "short");
     for (const std::string all :

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What the tests share. TACTOR_TOOL names the tool of the same build."""
+"""Fixtures of the tests. TACTOR_TOOL names the tool of the same build."""
 import os
 import pathlib
 import shlex
@@ -17,7 +17,7 @@ def pytest_configure(config):
 
 
 class Tool:
-    """The command-line tool, without the configuration of whoever runs the tests."""
+    """The command-line tool, without the user's configuration."""
 
     def __init__(self, folder):
         self.program = os.environ["TACTOR_TOOL"]
@@ -31,12 +31,12 @@ class Tool:
 
 
 def without_preloaded():
-    """For programs that are none of ours: under a sanitizer that is loaded before them they would fail by their own leaks."""
+    """Environment for foreign programs: with a sanitizer loaded before them they would fail by their own leaks."""
     return {name: value for name, value in os.environ.items() if name != "LD_PRELOAD"}
 
 
 def compiled(folder, name, *arguments):
-    """A library of C++ beside the package: its path."""
+    """Path of a C++ library beside the package."""
     file = folder / f"lib{name}.so"
     command = [*shlex.split(os.environ.get("CXX", "c++")), "-std=c++20", "-O2", "-fPIC", "-DPIC", "-shared", "-o", file, *arguments]
     subprocess.run(command, env=without_preloaded(), check=True)
@@ -52,7 +52,7 @@ def fake_pcm(tmp_path_factory):
 
 @pytest.fixture(scope="session")
 def cpp_library(tmp_path_factory):
-    """A program's part in C++ that does what Python does, with the library of the tool's build."""
+    """A program's C++ counterpart of the Python code, with the library of the tool's build."""
     built = pathlib.Path(os.environ["TACTOR_TOOL"]).resolve().parents[1]
     return compiled(tmp_path_factory.mktemp("overhead"), "overhead", f"-I{ROOT / 'include'}", f"-I{built.parent / 'include'}",
                     ROOT / "tests/python/overhead.cpp", f"-L{built}", "-ltactor", f"-Wl,-rpath,{built}")

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The fake DAC as an ALSA plugin: a device whose clock moves when the test says so, opened by its name as any
-// other.
+// The fake DAC as an ALSA plugin: a device whose clock the test moves, opened by its name like any other.
 #include <cerrno>
 #include <exception>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What a program in C++ does for the samples of park2016-3 on palm-3x3: planning and rendering.
+// Makes the samples of park2016-3 on palm-3x3 as a C++ program does: planning and rendering.
 #include <cstddef>
 #include <cstring>
 #include <memory>

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What cannot be is refused under the name that the caller gave it."""
+"""Refusals name the caller's argument."""
 import json
 import os
 import types
@@ -41,7 +41,7 @@ def test_noise_seeds_go_as_far_as_the_tools(tmp_path, tool, palm):
 
 
 def refusals(player, finger, ticket):
-    """What is called, and the name under which it is refused."""
+    """Calls, and the names under which they are refused."""
     palm, stroke = player.array, tactor.Stroke.along(LINE, duration=1.0)
     plan = tactor.plan(palm, stroke)
     score = tactor.Score(palm, plan)
@@ -86,7 +86,7 @@ def refusals(player, finger, ticket):
 WORDS = ("at_ns", "window_s (", "window_s:", "rests", "_kind", "::", "timeout_s", "longest_s", "smooth_s", "duration_s", "speed_mm_s")
 
 
-def test_what_cannot_be_is_refused_by_the_name_it_was_given(palm):
+def test_impossible_values_are_refused_by_the_name_they_were_given(palm):
     with tactor.Player("null", palm, config=os.devnull) as player:
         score = tactor.Score(palm, tactor.plan(palm, tactor.Stroke.along(LINE, duration=0.05)))
         ticket = player.submit(score, at="armed")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""How pip builds the package, and what it says where it cannot."""
+"""The package's build by pip, and its messages when something is missing."""
 import importlib.util
 import re
 import subprocess
@@ -18,7 +18,7 @@ def backend(root):
     return module
 
 
-def test_a_machine_with_nothing_is_told_all_in_one_line(backend, monkeypatch, capsys):
+def test_a_bare_machine_gets_all_missing_parts_in_one_line(backend, monkeypatch, capsys):
     monkeypatch.setenv("PATH", "/nonexistent")
     monkeypatch.delenv("CXX", raising=False)
     with pytest.raises(SystemExit) as e:
@@ -31,7 +31,7 @@ def test_a_machine_with_nothing_is_told_all_in_one_line(backend, monkeypatch, ca
         == {package for _, package, _ in backend.missing()} - {"libasound2-dev", "libgpiod-dev"}
 
 
-def test_one_library_that_is_missing_is_named_alone(backend, monkeypatch, capsys):
+def test_a_single_missing_library_is_named_alone(backend, monkeypatch, capsys):
     monkeypatch.setattr(backend, "_is_there", lambda compiler, module, header: header != "gpiod.h")
     monkeypatch.setattr(importlib.util, "find_spec", lambda name: name)
     monkeypatch.setattr(backend.os.path, "exists", lambda path: True)
@@ -50,13 +50,13 @@ def test_its_packages_are_those_of_the_list_and_of_the_guide(backend, root):
     assert "--system-site-packages" in guide and all(f" {package}" in guide for package in needed)
 
 
-def test_what_plays_and_paints_is_required(root):
+def test_libraries_for_playing_and_painting_are_required(root):
     setup = (root / "pyproject.toml").read_text()
     assert all(f'"-D{option}"' in setup for option in ("alsa=enabled", "gpio=enabled", "plots=enabled", "unity=on"))
 
 
 @pytest.mark.unsanitized
-def test_facts_of_the_build_have_the_libraries_own_versions():
+def test_facts_of_the_build_have_the_library_s_versions():
     for name, module in (("toml++", "tomlplusplus"), ("pugixml", "pugixml"), ("fmt", "fmt")):
         version = subprocess.run(["pkg-config", "--modversion", module], capture_output=True, text=True, check=True).stdout.strip()
         assert re.search(rf"{re.escape(name)} ([\d.]+)", tactor.build_facts())[1] == version, tactor.build_facts()

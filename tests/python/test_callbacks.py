@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Callbacks and signals' handlers, whatever they know and whenever they come."""
+"""Callbacks and signal handlers, with any content and at any time."""
 import gc
 import os
 import textwrap
@@ -12,7 +12,7 @@ from test_player import endless, player, run, short  # noqa: F401 (fixtures)
 
 
 class Experiment:
-    """Has a player and hands it its own methods, as programs do."""
+    """An object that has a player and hands it its own methods, as programs do."""
 
     def __init__(self, palm, score, with_log):
         self.lines, self.ended = [], []
@@ -38,7 +38,7 @@ def test_bound_methods_do_not_keep_a_forgotten_player_alive(palm, endless, with_
     assert ended == ["cancelled"]
 
 
-def test_a_log_that_nobody_else_holds_is_told(palm, short):  # noqa: F811
+def test_a_log_without_other_references_gets_its_lines(palm, short):  # noqa: F811
     lines = []
 
     class Log:
@@ -71,7 +71,7 @@ HANDLER = """
 
 
 def test_strokes_may_be_submitted_in_a_signals_handler():
-    """At any moment, also while the program itself submits, waits or adds a callback."""
+    """Submits at any moment, also while the program itself submits, waits or adds a callback."""
     code, out, err = run(HANDLER + """
     fired = []
     def handler(*_):
@@ -100,7 +100,7 @@ def test_players_may_be_ended_in_a_signals_handler(what):
         if len(calls) == 300:
             signal.setitimer(signal.ITIMER_REAL, 0)  # where a handler takes longer than the time between two, nothing else goes on
         if len(within) == 20:
-            return  # beside a load the signals overtake their handlers, which interrupt each other up to Python's recursion limit
+            return  # with a load the signals overtake their handlers, which interrupt each other up to Python's recursion limit
         within.append(1)
         try:
             {what}
@@ -123,7 +123,7 @@ def test_players_may_be_ended_in_a_signals_handler(what):
     assert (code, out.split()[:2], err) == (0, ["True", "True"], "")
 
 
-def test_counters_and_the_end_are_told_after_close(palm, short):  # noqa: F811
+def test_counters_and_the_end_can_be_read_after_close(palm, short):  # noqa: F811
     with tactor.Player("null", palm, config=os.devnull) as p:
         p.play(short)
         before = p.stats()

@@ -12,12 +12,12 @@ import pytest
 
 import tactor
 
-LONG = 120.0  # s: an answer that takes longer never comes
+LONG = 120.0  # s: a longer answer never comes
 
 
 @contextlib.contextmanager
 def serving(folder):
-    """A service on ALSA's null device: where it listens, and its process."""
+    """A service on ALSA's null device: its address, and its process."""
     path, config = folder / "tactor.sock", folder / "c.toml"
     config.write_text("[serve]\nmax_level_dbfs = -6.0\n")
     with subprocess.Popen([os.environ["TACTOR_TOOL"], "serve", "--socket", path, "-D", "null", "--config", config], stdout=subprocess.PIPE,
@@ -28,7 +28,7 @@ def serving(folder):
 
 @pytest.fixture(scope="module")
 def service(tmp_path_factory):
-    """Where one listens."""
+    """Address of a service."""
     with serving(tmp_path_factory.mktemp("service")) as (path, server):
         yield path
         server.terminate()
@@ -84,7 +84,7 @@ def test_strokes_are_awaited(service, tap, endless):
     assert asyncio.run(draw()) == "finished"
 
 
-def test_what_the_service_refuses_is_raised(client, tap):
+def test_refusals_of_the_service_are_raised(client, tap):
     for call, what in ((lambda: client.play("park"), "stroke"), (lambda: client.play(tap, soa=5), "options.soa"), (lambda: client.play(tap, level_dbfs=0), "level"),
                        (lambda: client.call("dance"), "method"), (lambda: client.plan(tap, tempo=3), "options.tempo")):
         with pytest.raises(tactor.InputError) as e:
@@ -148,7 +148,7 @@ def test_callbacks_run_in_the_clients_thread(client, tap):
     assert told[-1] is stroke
 
 
-def test_a_service_that_is_not_there(tmp_path, monkeypatch):
+def test_a_missing_service_is_an_error(tmp_path, monkeypatch):
     with pytest.raises(FileNotFoundError) as e:
         tactor.Client(tmp_path / "none.sock")
     assert isinstance(e.value, tactor.DeviceError) and e.value.file == str(tmp_path / "none.sock") and "tactor serve" in e.value.hint
@@ -157,7 +157,7 @@ def test_a_service_that_is_not_there(tmp_path, monkeypatch):
         tactor.Client()
 
 
-def test_a_service_that_goes_ends_what_waits(tmp_path, endless):
+def test_a_service_that_ends_wakes_waiting_calls(tmp_path, endless):
     with serving(tmp_path) as (path, server):
         c = tactor.Client(path)
         stroke = c.play(endless, algorithm="continuous")

@@ -31,7 +31,7 @@ def test_weights_of_many_places(palm, phantom):
 
 
 @pytest.mark.parametrize("place", [(45.0, 20.0), (-300.0, 5.0), (1e6, 1e6)])
-def test_weights_outside_are_an_error_as_in_a_plan(palm, place):
+def test_weights_outside_are_an_error_like_in_a_plan(palm, place):
     for points in (place, [(0.0, 0.0), place]):
         with pytest.raises(tactor.InputError) as e:
             palm.weights(points)
@@ -58,7 +58,7 @@ def test_a_percept_has_columns_and_samples(palm, stroke):
 
 
 @pytest.mark.parametrize("phantom", ["inverse-distance", "barycentric"])
-def test_a_percept_map_is_what_single_places_feel_like(palm, phantom):
+def test_a_percept_map_agrees_with_single_places(palm, phantom):
     felt = palm.percept_map(5.0, phantom)
     assert felt.x.tolist() == felt.y.tolist() == list(range(0, 41, 5)) and felt.positions.shape == (9, 9, 2) and felt.error_mm.shape == (9, 9)
     weights = palm.weights((5.0, 15.0), phantom)
@@ -87,7 +87,7 @@ NO_NUMBERS = [np.ma.array([0.0, 1.0], mask=[False, True]), np.array([0, 1 + 1j])
 
 
 @pytest.mark.parametrize("values", NO_NUMBERS, ids=repr)
-def test_arrays_that_are_no_real_numbers_are_refused(values, palm, stroke):
+def test_arrays_of_other_than_real_numbers_are_refused(values, palm, stroke):
     ones = [0.0, 1.0]
     for call in (lambda: tactor.Stroke.timed(values, ones, ones), lambda: tactor.Stroke.timed(ones, values, ones), lambda: tactor.Stroke.timed(ones, ones, ones, values),
                  lambda: stroke.position(values), lambda: stroke.intensity(values), lambda: tactor.Path.svg("M 0 0 L 9 9").at(values),
@@ -99,7 +99,7 @@ def test_arrays_that_are_no_real_numbers_are_refused(values, palm, stroke):
 
 @pytest.mark.parametrize("value", [np.complex128(1), np.datetime64("2020-01-01"), np.timedelta64(1, "s"), np.str_("1"), np.bool_(True), np.ma.masked, "1", 1j,
                                    np.array([1.0]), datetime.datetime(2020, 1, 1)], ids=repr)
-def test_single_values_that_are_no_real_numbers_are_refused(value, palm, stroke):
+def test_single_values_other_than_real_numbers_are_refused(value, palm, stroke):
     for call in (lambda: tactor.plan(palm, stroke, soa=value), lambda: tactor.plan(palm, stroke, level_dbfs=value), lambda: stroke.with_duration(value),
                  lambda: tactor.Array.grid("g", 2, 2, value), lambda: palm.contains((value, 1.0))):
         with pytest.raises(tactor.InputError):
@@ -108,7 +108,7 @@ def test_single_values_that_are_no_real_numbers_are_refused(value, palm, stroke)
 
 @pytest.mark.parametrize("values", [[0, 1], (0.0, 1.0), np.array([0, 1], np.float32), np.array([0, 1], np.int8), np.ma.array([0.0, 1.0]), range(2),
                                     [decimal.Decimal(0), decimal.Decimal(1)], [fractions.Fraction(0), fractions.Fraction(1)], np.longdouble([0, 1])], ids=repr)
-def test_arrays_of_real_numbers_are_taken(values):
+def test_arrays_of_real_numbers_are_accepted(values):
     assert tactor.Stroke.timed(values, values, values) == tactor.Stroke.timed([0, 1], [0, 1], [0, 1], name="timed")
 
 
@@ -127,7 +127,7 @@ def test_scores_are_rendered_in_parts(palm, stroke, dtype, algorithm):
     assert score.render(out=out, start=300) is out and np.array_equal(out, whole[300:400])
 
 
-def test_what_cannot_be_rendered_into_is_refused(palm, stroke):
+def test_unsuitable_outputs_of_a_rendering_are_refused(palm, stroke):
     score = tactor.Score(palm, tactor.plan(palm, stroke))
     frozen = np.zeros((10, 9), "float32")
     frozen.flags.writeable = False

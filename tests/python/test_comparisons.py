@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What a comparison is asked for counts, or is refused."""
+"""Options of a comparison: each counts or is refused."""
 import json
 
 import pytest

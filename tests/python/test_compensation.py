@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Where no place inside the array is felt at the target, SciPy's solvers find none that is felt nearer."""
+"""Compensation at the edge: SciPy's solvers find no place inside the array that is felt nearer."""
 import numpy as np
 import pytest
 
@@ -12,8 +12,8 @@ SIGMA, SIGMA_V = 5.0, 100.0
 TRIANGLE = "".join(f"[[tactor]]\nx_mm = {x}\ny_mm = {y}\n" for x, y in ((0, 0), (40, 0), (12, 34)))
 
 
-def felt_of(onsets):
-    """The matrix by which the observer makes felt places of played ones."""
+def felt_places(onsets):
+    """Returns the matrix by which the observer makes felt places of played ones."""
     n = len(onsets)
     stiff = np.eye(n)
     for i, k in enumerate((SIGMA / (SIGMA_V * np.diff(onsets))) ** 2):
@@ -22,7 +22,7 @@ def felt_of(onsets):
 
 
 def both(array, points, **more):
-    """Onsets, targets and what is played for them."""
+    """Returns onsets, targets and the played places for them."""
     stroke = tactor.Stroke.timed(*np.array(points).T)
     asked = tactor.plan(array, stroke, phantom="barycentric", **more)
     moved = tactor.plan(array, stroke, phantom="barycentric", compensate="low-speed", **more)
@@ -39,8 +39,8 @@ def test_in_a_rectangle(seed):
     points = [(0.25 * i, *random.choice((0.0, 5.0, 35.0, 40.0), 2)) for i in range(6)]
     onsets, targets, played = both(tactor.Array.preset("palm-3x3"), points)
     assert played.min() >= -1e-9 and played.max() <= 40 + 1e-9
-    felt = felt_of(onsets)
-    # A box parts the axes: two problems of least squares with bounds.
+    felt = felt_places(onsets)
+    # A box separates the axes: two problems of least squares with bounds.
     best = np.stack([optimize.lsq_linear(felt, targets[:, axis], (0, 40), method="bvls", tol=1e-14).x for axis in (0, 1)], axis=1)
     assert np.abs(best - targets).max() > 1.0 and np.minimum(best, 40 - best).min() < 1e-6
     assert cost(felt, targets, played) <= cost(felt, targets, best) + 1e-6
@@ -59,7 +59,7 @@ def test_in_a_triangle(tmp_path, seed):
     normals /= np.linalg.norm(normals, axis=1, keepdims=True)  # inwards
     offsets = (normals * corners).sum(axis=1)
     assert (played @ normals.T - offsets).min() > -1e-7
-    felt = felt_of(onsets)
+    felt = felt_places(onsets)
 
     def slack(flat):
         return (flat.reshape(-1, 2) @ normals.T - offsets).ravel()

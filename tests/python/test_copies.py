@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""A value's copy is the value; a device's copy would be a second hand on it."""
+"""Copies: a value's copy is equal; a device cannot be copied."""
 import copy
 import os
 import pickle
@@ -13,7 +13,7 @@ COPIES = [copy.copy, copy.deepcopy, lambda x: pickle.loads(pickle.dumps(x))]
 
 
 @pytest.mark.parametrize("again", COPIES)
-def test_what_is_there_once_is_not_copied(palm, stroke, again):
+def test_unique_objects_are_not_copied(palm, stroke, again):
     score = tactor.Score(palm, tactor.plan(palm, stroke))
     with tactor.Player("null", palm, config=os.devnull) as player:
         with player.live(timeout=3600.0) as finger:
@@ -30,7 +30,7 @@ def test_what_is_there_once_is_not_copied(palm, stroke, again):
 
 
 @pytest.mark.parametrize("again", [copy.copy, copy.deepcopy])
-def test_a_copy_is_what_it_was_whatever_became_of_the_file(tmp_path, stroke, again):
+def test_a_copy_stays_the_same_when_the_file_changes(tmp_path, stroke, again):
     file = tmp_path / "quiet.toml"
     file.write_text('[array]\npreset = "palm-3x3"\n[defaults]\nlevel-dbfs = -30\n')
     array = tactor.Array.from_file(file)

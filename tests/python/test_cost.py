@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What Python costs."""
+"""Costs of Python."""
 import ctypes
 import subprocess
 import sys
@@ -26,7 +26,7 @@ def test_importing_takes_little_time_alone_and_little_more_than_numpy():
     numpy = importing("import numpy")
     both, alone = importing("import numpy, tactor"), importing("import tactor")
     print(f"import numpy {1e3 * numpy:.1f} ms, with tactor {both / numpy:.2f} times that, tactor alone {1e3 * alone:.1f} ms")
-    # Aims are 1.5 times and 30 ms; machines differ, and a shared one is noisy: what is held is that it stays about there.
+    # Aims are 1.5 times and 30 ms; machines differ, and a shared one is noisy: the test holds it near there.
     assert both < 1.7 * numpy
     assert alone < 0.6 * numpy
     assert "numpy" not in subprocess.run([sys.executable, "-c", "import tactor, sys; print([m for m in sys.modules if m == 'numpy'])"],

@@ -49,7 +49,7 @@ def trials(text):
 
 def test_a_trial_is_in_psychopys_time(root, tmp_path):
     program = root / "examples/python/psychopy_trial.py"
-    # PsychoPy's clock is another than CLOCK_MONOTONIC: of this one it is known by how much.
+    # PsychoPy's clock is another than CLOCK_MONOTONIC: the difference of this one is known.
     (tmp_path / "psychopy").mkdir()
     (tmp_path / "psychopy/__init__.py").write_text("")
     (tmp_path / "psychopy/core.py").write_text("import time\ndef getTime():\n    return time.monotonic() - 1234.5\n")
@@ -62,7 +62,7 @@ def test_a_trial_is_in_psychopys_time(root, tmp_path):
             assert r["response"] in ("left", "right") and float(r["response_time_s"]) < 1.0
 
 
-def test_a_study_is_read(root, tmp_path):
+def test_a_study_can_be_read(root, tmp_path):
     subprocess.run([sys.executable, root / "tests/study/studies.py", tmp_path], check=True)
     studies = sorted(p for p in tmp_path.iterdir() if (p / "participants.tsv").exists())
     assert studies
@@ -71,7 +71,7 @@ def test_a_study_is_read(root, tmp_path):
         assert lines and all(re.match(r"sub-\w+_task-[\w-]+_beh: \d+ trials: ", line) for line in lines)
 
 
-def test_what_an_experiment_writes_is_read(root, tool, tmp_path):
+def test_the_output_of_an_experiment_can_be_read(root, tool, tmp_path):
     for participant in ("01", "02"):
         tool("experiment", "park2016", "--participant", participant, "-o", "study", "--simulate", f"seed={participant},sigma=1")
     lines = run(root / "examples/python/read_study.py", tmp_path / "study").splitlines()
@@ -110,7 +110,7 @@ DRAWING = """
 
 @pytest.fixture
 def display():
-    """A screen that nobody sees."""
+    """An invisible screen."""
     read, write = os.pipe()
     try:
         screen = subprocess.Popen(["Xvfb", "-displayfd", str(write), "-screen", "0", "800x600x24", "-nolisten", "tcp"], pass_fds=[write],
@@ -128,7 +128,7 @@ def display():
     screen.wait()
 
 
-def test_what_is_drawn_with_the_mouse_is_played(root, tmp_path, display):
+def test_strokes_drawn_with_the_mouse_are_played(root, tmp_path, display):
     pytest.importorskip("tkinter", reason="tkinter is not here: nothing is drawn with the mouse")
     (tmp_path / "drawing.py").write_text(textwrap.dedent(DRAWING))
     said = sorted(run(tmp_path / "drawing.py", root / "examples/python/draw.py", DISPLAY=display).splitlines())
@@ -147,7 +147,7 @@ def test_a_client_draws_through_the_service(root, tool, tmp_path):
 
 
 def shown(cell, names):
-    """Runs a cell as a notebook does; what its last line gives."""
+    """Runs a cell as a notebook does; returns the value of its last line."""
     tree = ast.parse("".join(cell["source"]))
     last = ast.Expression(tree.body.pop().value) if isinstance(tree.body[-1], ast.Expr) else None
     exec(compile(tree, cell["id"], "exec"), names)

@@ -35,7 +35,7 @@ def test_strokes_are_written_and_read_again(tmp_path, stroke):
     assert again == stroke and again.note == stroke.note
 
 
-def test_what_is_no_number_of_the_file_itself_is_written_closely(tmp_path):
+def test_numbers_that_are_not_exact_are_written_closely(tmp_path):
     for stroke in (tactor.Stroke.along(tactor.Path.svg(PATH), speed=[(0, 20), (1, 80)], pauses=[(0.5, 0.2)]),
                    tactor.Stroke.along(tactor.Path.arc((20, 20), 8, 0, 300), 1.0, easing="in-out"),
                    tactor.Stroke.along(tactor.Path.svg(PATH), 3.0, speed=[(0, 20), (0.5, 80)]).with_duration(1.5),
@@ -47,7 +47,7 @@ def test_what_is_no_number_of_the_file_itself_is_written_closely(tmp_path):
         assert np.allclose(again.position(t), stroke.position(t), rtol=0, atol=1e-8)
 
 
-def test_what_was_read_is_changed_and_written_again(tmp_path, palm, stroke):
+def test_strokes_that_were_read_are_changed_and_written_again(tmp_path, palm, stroke):
     stroke.write(tmp_path / "s.toml")
     palm.write(tmp_path / "a.toml")
     tactor.plan(palm, stroke).write(tmp_path / "p.json")
@@ -61,7 +61,7 @@ def test_what_was_read_is_changed_and_written_again(tmp_path, palm, stroke):
     assert tactor.Array.from_file(tmp_path / "a.toml")[0].gain_db == palm[0].gain_db - 2
 
 
-def test_sound_does_not_replace_what_was_read(tmp_path, palm, stroke):
+def test_sound_does_not_replace_a_file_that_was_read(tmp_path, palm, stroke):
     score = tactor.Score(palm, tactor.plan(palm, stroke))
     score.write(tmp_path / "tone.wav")
     score.write(tmp_path / "tone.wav")  # not an input yet
@@ -78,7 +78,7 @@ def test_sound_does_not_replace_what_was_read(tmp_path, palm, stroke):
     assert before == ((tmp_path / "tone.wav").read_bytes(), (tmp_path / "s.toml").read_bytes())
 
 
-def test_what_no_stroke_file_can_say_is_refused(tmp_path, stroke):
+def test_strokes_that_no_file_can_hold_are_refused(tmp_path, stroke):
     with pytest.raises(tactor.InputError, match="above 1"):
         stroke.with_intensity(2.0).write(tmp_path / "s.toml")
     with pytest.raises(tactor.InputError, match="TOML"):
@@ -148,7 +148,7 @@ def test_amplitudes_beyond_the_plans_are_refused(palm, stroke, algorithm, amplit
 @pytest.mark.parametrize("algorithm", ["park2016", "continuous", "tactile-brush"])
 @pytest.mark.parametrize("phantom", ["inverse-distance", "barycentric", "linear", "log", "gaussian"])
 @pytest.mark.parametrize("scale", [{}, {"intensity_scale": "stevens"}, {"compensate": "low-speed"}])
-def test_what_a_plan_gives_is_taken_again(palm, algorithm, phantom, scale):
+def test_a_written_plan_is_read_back(palm, algorithm, phantom, scale):
     if algorithm != "park2016":
         scale = {name: value for name, value in scale.items() if name != "compensate"}  # it moves bursts of park2016 only
     stroke = tactor.Stroke.along(tactor.Path.svg("M 0 10 L 40 10"), 1.0, intensity=0.7) if algorithm == "tactile-brush" else tactor.Stroke.preset("park2016-2")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Levels, limits and defaults stay with what they were given to."""
+"""Levels, limits and defaults stay with their objects."""
 import pickle
 
 import numpy as np
@@ -33,7 +33,7 @@ def tap(palm):
 
 
 def parts(score):
-    """What each plan of a score sounds like in it."""
+    """Returns the level of each plan in a score."""
     x = score.render()
     return [x[a:b] for a, b in zip(score.starts, [*score.starts[1:], score.frames])]
 
@@ -81,13 +81,13 @@ def test_plans_that_disagree_are_refused(palm, tap, name, a, b):
 
 @pytest.mark.parametrize("name,a,b", [("level_dbfs", -30, -3), ("phase", "stroke", "burst"), ("envelope", "raised-cosine", "linear"), ("rate", 44100, 48000),
                                       ("ramp", 0.001, 0.002), ("attack", 0.001, 0.002), ("release", 0.001, 0.002), ("envelope", "tukey:0.2", "tukey:0.3")])
-def test_what_sounds_otherwise_is_not_equal(palm, tap, name, a, b):
+def test_plans_that_sound_different_are_not_equal(palm, tap, name, a, b):
     one, other = (tactor.plan(palm, tap, **{name: value}) for value in (a, b))
     assert one != other and hash(one) != hash(other)
     assert tactor.Score(palm, one) != tactor.Score(palm, other) and hash(tactor.Score(palm, one)) != hash(tactor.Score(palm, other))
     plain = tactor.plan(palm, tap)
     assert tactor.Score(palm, plain, **{name: a}) != tactor.Score(palm, plain, **{name: b})
-    # Said to the plan or to its score, it is the same.
+    # For the plan or for its score, it is the same.
     assert tactor.Score(palm, plain, **{name: a}) == tactor.Score(palm, one)
     assert hash(tactor.Score(palm, plain, **{name: a})) == hash(tactor.Score(palm, one))
     assert pickle.loads(pickle.dumps(one)) == one == tactor.Plan.from_dict(one.to_dict())
@@ -109,7 +109,7 @@ def filed(tmp_path):
     return tactor.Array.from_file(tmp_path / "a.toml")
 
 
-def test_what_a_file_says_counts_in_equality_and_stays(filed, tmp_path, tap):
+def test_keys_of_a_file_count_in_equality_and_stay(filed, tmp_path, tap):
     bare = tactor.Array(filed.name, filed.tactors)
     assert bare != filed and filed == tactor.Array.from_file(tmp_path / "a.toml")
     assert bare == tactor.Array.preset("palm-3x3")
@@ -156,7 +156,7 @@ def test_replacements_that_do_not_fit_are_refused(palm, what, value):
 
 
 def test_levels_go_along_to_another_array(palm, filed, tap):
-    """What the plan was asked for stays; what it leaves open is as the array's file says."""
+    """Checks that given options of a plan stay; others follow the array's file."""
     said, open_ = tactor.plan(palm, tap, level_dbfs=-30), tactor.plan(palm, tap)
     assert tactor.Score(filed, said) == tactor.Score(filed, open_, level_dbfs=-30)
     assert tactor.Score(filed, open_) == tactor.Score(filed, tactor.plan(filed, tap))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Live strokes on the fake DAC, whose clock moves when this says so."""
+"""Live strokes on the fake DAC, whose clock moves when the test says so."""
 import os
 import subprocess
 import sys
@@ -9,7 +9,7 @@ FEEDING = """
     import ctypes, gc, math, pathlib, sys
     import tactor
 
-    # Whoever calls it keeps the interpreter's lock: what plays would wait for ever, did it ever ask for that.
+    # The caller keeps the interpreter's lock: playing would wait for ever if it ever asked for it.
     fake = ctypes.PyDLL(sys.argv[1])
     seconds = int(sys.argv[2])
 
@@ -49,12 +49,12 @@ def test_ten_minutes_of_a_thousand_points_a_second_neither_fail_nor_grow(fake_pc
     for _ in range(5):
         r = subprocess.run([sys.executable, "-c", textwrap.dedent(FEEDING), fake_pcm, str(seconds)], env=env, capture_output=True,
                            text=True, timeout=1800, check=False)
-        # Whose clock does not move for half a second is lost. It is this process that moves it, and the machine may be busy.
+        # A device whose clock stands still for half a second is lost. This process moves it, and the machine may be busy.
         if r.stderr != "the device does not move any more\n":
             break
     assert (r.returncode, r.stderr) == (0, "")
     state, *numbers = r.stdout.split()
     played, points, xruns, stalls, pages, objects = map(int, numbers)
     assert (state, played, points, xruns, stalls) == ("finished", seconds, 1000 * seconds + 1, 0, 0)
-    # What was given back is kept for a while by the address sanitizer.
+    # The address sanitizer keeps freed memory for a while.
     assert objects < 100 and (pages < 512 or "libasan" in os.environ.get("LD_PRELOAD", ""))  # 2 MB

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Markers carry the times of the frames that were played. The library is a stand-in with the same calls."""
+"""Markers carry the times of the played frames. The library is a stand-in with the same calls."""
 import os
 import subprocess
 import threading
@@ -38,7 +38,7 @@ def score(palm):
 
 
 def ended(ticket):
-    """Its report, when the callbacks before this one have been called."""
+    """Returns its report, when the callbacks before this one have been called."""
     called = threading.Event()
     ticket.add_done_callback(lambda _: called.set())
     assert called.wait(30)
@@ -71,7 +71,7 @@ def test_closed_markers_are_not_sent(library, said, player, score):
         markers.mark(player.submit(score))
 
 
-def test_what_cannot_be_loaded_is_said(tmp_path, monkeypatch):
+def test_a_library_that_cannot_be_loaded_is_reported(tmp_path, monkeypatch):
     (tmp_path / "liblsl.so").write_text("no library")
     for library in (tmp_path / "liblsl.so", tmp_path / "none.so", "libm.so.6"):
         with pytest.raises(tactor.DeviceError, match="liblsl: it cannot be loaded") as e:
@@ -79,7 +79,7 @@ def test_what_cannot_be_loaded_is_said(tmp_path, monkeypatch):
         assert "PYLSL_LIB" in e.value.hint
 
 
-def test_a_stream_that_is_not_made_is_said(library, monkeypatch, tmp_path):
+def test_a_stream_that_cannot_be_made_is_reported(library, monkeypatch, tmp_path):
     monkeypatch.setenv("STAND_IN_LSL", str(tmp_path / "none" / "said"))
     with pytest.raises(tactor.DeviceError, match="no stream"):
         tactor.lsl.Markers(library=library)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Phantom models that are Python objects, and what they do wrong."""
+"""Phantom models that are Python objects, and their faults."""
 import collections.abc
 import os
 import subprocess
@@ -11,7 +11,7 @@ import pytest
 
 import tactor
 
-LONG = 120.0  # s: an answer that takes longer never comes
+LONG = 120.0  # s: a longer answer never comes
 
 
 @pytest.fixture
@@ -21,7 +21,7 @@ def player(palm):
 
 
 class Meddling:
-    """Does something to the stroke that asks it."""
+    """A model that acts on the stroke that asks it."""
 
     def __init__(self, does):
         self.does = does
@@ -100,7 +100,7 @@ AT_EXIT = """
 
 
 @pytest.mark.parametrize("what", ["feed", "plan", "count"])
-@pytest.mark.unsanitized  # what the thread holds is given back by nobody
+@pytest.mark.unsanitized  # the thread never frees its objects
 def test_a_program_ends_while_a_daemon_thread_is_in_the_package(what):
     env = {**os.environ, "TACTOR_CONFIG": os.devnull}
     for _ in range(5):
@@ -109,7 +109,7 @@ def test_a_program_ends_while_a_daemon_thread_is_in_the_package(what):
 
 
 class Pairs(collections.abc.Mapping):
-    """What it is made of, though no dict would hold it."""
+    """An answer with keys that no dict would hold."""
 
     def __init__(self, *pairs):
         self.pairs = pairs
@@ -138,7 +138,7 @@ RUBBISH = [
 
 
 @pytest.mark.parametrize("answer,why", RUBBISH)
-def test_rubbish_is_refused_and_ends_a_live_stroke_with_that_as_its_reason(palm, stroke, player, answer, why):
+def test_rubbish_is_refused_and_ends_a_live_stroke_with_that_reason(palm, stroke, player, answer, why):
     class Rubbish:
         name = "rubbish"
 
@@ -153,7 +153,7 @@ def test_rubbish_is_refused_and_ends_a_live_stroke_with_that_as_its_reason(palm,
     assert finger.report.state == "interrupted" and why in finger.report.reason
 
 
-def test_whole_numbers_and_amplitudes_of_numpy_are_some(palm, stroke):
+def test_whole_numbers_and_amplitudes_of_numpy_are_accepted(palm, stroke):
     class Given:
         def weights(self, x_mm, y_mm, intensity):
             return {np.int64(4): np.float32(0.5), np.uint8(3): np.array(0.25)}

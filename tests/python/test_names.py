@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: MIT
-"""Each public C++ name has its Python one, or stands here with a reason."""
+"""Holds a Python name, or a reason, for each public C++ name."""
 import re
 
 import tactor
 
-# C++ name: where it is in Python.
+# C++ name: its place in Python.
 HAS = """
 actuator_kind: Tactor.actuator
 algorithm_kind: Plan.algorithm
@@ -142,7 +142,7 @@ intensity_scale: plan
 write_wav: Score.write
 """
 
-# C++ names: why there is no Python one.
+# C++ names without a Python one, with the reason.
 HAS_NOT = {
     "to_string values_of from_string": "closed sets are str",
     "error_category make_error_code": "exceptions have classes",

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What is installed, how it is documented and typed, and what it costs."""
+"""The installed package, its documentation, types and costs."""
 import importlib.metadata
 import importlib.util
 import inspect
@@ -33,7 +33,7 @@ def test_the_version_is_that_of_the_library(tool):
     assert "alsa-lib" in tactor.build_facts()
 
 
-def test_the_markers_are_there_without_an_import_of_their_own():
+def test_the_markers_need_no_import():
     code = "import sys, tactor; assert 'tactor.lsl' not in sys.modules; print(tactor.lsl.Markers.__name__)"
     assert subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout == "Markers\n"
 
@@ -44,11 +44,11 @@ def test_everything_public_is_documented():
 
 
 def test_docstrings_name_the_parameters_that_there_are():
-    # numpydoc: a section that is there lists what the signature has, in names that it has.
+    # numpydoc: each section lists the parameters of the signature under their names.
     wrong = []
     for name, thing in public_things():
-        doc = inspect.getdoc(thing) or ""
         function = thing.__init__ if inspect.isclass(thing) else thing
+        doc = f"{inspect.getdoc(thing)}\n\n{inspect.getdoc(function) or ''}"
         section = re.search(r"^Parameters\n-+\n(.*?)(?=^\w+\n-+\n|\Z)", doc, re.M | re.S)
         if section is None or not inspect.isfunction(function) or name == "Tactor":
             continue
@@ -68,7 +68,7 @@ def test_types_are_complete(tmp_path, root):
                     "reveal_type(plan.amplitudes)\nreveal_type(palm[3])\ntactor.plan(palm, 'x')\n"
                     "tactor.plan(palm, plan.stroke, algorithm='park')\n")
     def mypy(*arguments):
-        # mypy looks into a virtual environment, not into where PYTHONPATH or the system's Python point.
+        # mypy looks into a virtual environment, not into PYTHONPATH or the system's Python.
         env = {**os.environ, "MYPYPATH": str(FOLDER.parent)} if "site-packages" not in FOLDER.parts else None
         return subprocess.run([sys.executable, "-m", *arguments], cwd=tmp_path, env=env, capture_output=True, text=True, check=False)
     cache = "--cache-dir", str(tmp_path / "cache")
@@ -89,7 +89,7 @@ def test_a_wheel_holds_the_package_alone():
     assert {f.suffix for f in files if f.parts[0] == "tactor"} <= {".py", ".pyi", ".so", ".typed", ".pyc", ".json"}
 
 
-def test_the_extension_shows_others_nothing_but_its_beginning():
+def test_the_extension_exports_only_its_entry_point():
     file = tactor._tactor.__file__
     r = subprocess.run(["nm", "-D", "--defined-only", file], capture_output=True, text=True, check=True)
     assert [line.split()[-1] for line in r.stdout.splitlines()] == ["PyInit__tactor"]

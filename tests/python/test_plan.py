@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Plans are those of the tool, as arrays."""
+"""Plans as arrays, equal to those of the tool."""
 import json
 import pickle
 import re
@@ -11,7 +11,7 @@ import tactor
 from tactor import _tactor
 
 
-def test_bursts_and_arrays_say_the_same(palm, stroke):
+def test_bursts_and_arrays_are_the_same(palm, stroke):
     plan = tactor.plan(palm, stroke, algorithm="park2016", phantom="inverse-distance", soa=0.07)
     bursts = plan.bursts
     assert len(bursts) == 18 and plan.curve is None and plan.soa == 0.07
@@ -27,7 +27,7 @@ def test_bursts_and_arrays_say_the_same(palm, stroke):
     assert (onset, duration, position, intensity) == (0.0, 0.07, (0.0, 10.0), 1.0) and len(drives) == 2
 
 
-def test_arrays_look_at_the_plan_and_outlive_it(palm, stroke):
+def test_arrays_are_views_of_the_plan_and_outlive_it(palm, stroke):
     plan = tactor.plan(palm, stroke)
     onsets, positions, amplitudes = plan.onsets, plan.positions, plan.amplitudes
     assert amplitudes is plan.amplitudes
@@ -67,7 +67,7 @@ CASES = [
 
 
 @pytest.mark.parametrize("arguments,options", CASES)
-def test_the_record_is_the_tools(tool, palm, arguments, options):
+def test_the_record_is_the_tool_s(tool, palm, arguments, options):
     plan = tactor.plan(palm, tactor.Stroke.preset(arguments[0]), **options)
     printed = json.loads(tool("plan", *arguments, "--format", "json"))
     assert plan.to_dict() == printed
@@ -81,14 +81,14 @@ def test_the_record_is_the_tools(tool, palm, arguments, options):
 def test_options_have_the_names_of_the_tools(tool):
     said = {name.replace("-", "_") for command in ("plan", "compare") for name in re.findall(r"--([a-z][a-z-]+)", tool(command, "--help"))}
     not_ours = {"help", "path", "array", "config", "format", "sample_format", "algorithms", "phantoms", "output", "width", "dpi",
-                "shape", "title", "force", "version"}  # objects and arguments of their own
+                "shape", "title", "force", "version"}  # objects and arguments of this package
     own = {"channels", "marker_channel", "marker_s", "power_dbfs", "max_drive_s", "drive_window_s",  # a score's, from files and `play`
            "usual_speed",  # from [defaults] speed
            "tukey_part"}  # the tool's --envelope tukey:PART
     assert said - not_ours == set(_tactor.option_names()) - own
 
 
-def test_what_is_not_an_option_is_a_type_error(palm, stroke):
+def test_an_unknown_option_is_a_type_error(palm, stroke):
     with pytest.raises(TypeError):
         tactor.plan(palm, stroke, sao=0.07)
     with pytest.raises(TypeError):
@@ -106,13 +106,13 @@ def test_what_is_not_an_option_is_a_type_error(palm, stroke):
     (dict(envelope="tukey:x"), "envelope"), (dict(envelope="linear:0.3"), "envelope"), (dict(envelope="tukey:0.3", tukey_part=0.3), "envelope"),
     (dict(envelope="tukey:2"), "tukey_part"), (dict(envelope="tukey", attack=0.01), "attack"), (dict(envelope="tukey", ramp=0.01), "ramp"),
 ])
-def test_options_that_cannot_be_are_refused_by_their_name(palm, stroke, options, what):
+def test_impossible_options_are_refused_by_their_name(palm, stroke, options, what):
     with pytest.raises(tactor.InputError) as e:
         tactor.plan(palm, stroke, **options)
     assert e.value.what == what and e.value.why
 
 
-def test_an_observer_of_a_file_may_stand_there_for_other_strokes(tmp_path, stroke):
+def test_an_unused_observer_of_a_file_is_accepted(tmp_path, stroke):
     file = tmp_path / "palm.toml"
     file.write_text('[array]\npreset = "palm-3x3"\n[defaults]\nsigma-mm = 2.0\n')
     array = tactor.Array.from_file(file)
@@ -127,7 +127,7 @@ def test_numbers_of_numpy_are_numbers(palm, stroke):
     assert tactor.plan(palm, stroke, soa=np.float64(0.06), fit=np.bool_(False), rate=np.int64(44100)) == tactor.plan(palm, stroke, soa=0.06, rate=44100)
 
 
-def test_a_plan_is_compared_by_what_it_plays(palm, stroke):
+def test_plans_are_equal_where_they_play_the_same(palm, stroke):
     plan = tactor.plan(palm, stroke)
     assert plan == tactor.plan(palm, stroke) and plan != tactor.plan(palm, stroke, soa=0.06) and plan != 1
     assert repr(plan) == "<tactor.Plan of 'path': park2016, inverse-distance, 18 bursts, 1.26 s on 'palm-3x3'>"
@@ -137,7 +137,7 @@ def test_a_plan_is_compared_by_what_it_plays(palm, stroke):
     lambda d: d.pop("array"), lambda d: d.update(schema="x"), lambda d: d.update(total_s="1"), lambda d: d["bursts"][0].pop("onset_s"),
     lambda d: d["bursts"][0]["drives"][0].update(tactor=9), lambda d: d.update(total_s=float("nan")), lambda d: d.update(total_s={1}),
 ])
-def test_records_that_cannot_be_are_refused(palm, stroke, change):
+def test_impossible_records_are_refused(palm, stroke, change):
     d = tactor.plan(palm, stroke).to_dict()
     change(d)
     with pytest.raises(tactor.InputError):
@@ -145,7 +145,7 @@ def test_records_that_cannot_be_are_refused(palm, stroke, change):
 
 
 class Nearest:
-    """The nearest tactor alone."""
+    """A model that drives the nearest tactor alone."""
 
     name = "nearest"
 
@@ -174,7 +174,7 @@ def test_a_model_that_returns_rubbish_is_an_error(palm, stroke, answer):
         tactor.plan(palm, stroke, phantom=Rubbish())
 
 
-def test_what_a_model_raises_comes_out(palm, stroke):
+def test_exceptions_of_a_model_come_out(palm, stroke):
     class Raises:
         def weights(self, x_mm, y_mm, intensity):
             raise ZeroDivisionError("mine")
@@ -182,7 +182,7 @@ def test_what_a_model_raises_comes_out(palm, stroke):
         tactor.plan(palm, stroke, algorithm="continuous", phantom=Raises())
 
 
-def test_what_is_predicted_to_be_felt(palm, stroke):
+def test_sensations_are_predicted(palm, stroke):
     plan = tactor.plan(palm, stroke, algorithm="continuous", phantom="barycentric")
     samples = plan.percept()
     assert len(samples) == 1201 and samples[600].target == pytest.approx(samples[600].felt, abs=1e-9)
@@ -206,7 +206,7 @@ def test_a_stroke_keeps_its_time_beside_a_files_speed(tmp_path):
     assert lasts == pytest.approx({"time": 1.0, "speed": 0.5, "neither": 2.0, "asked": 1.0, "copy": 2.0, "preset": 1.4})
 
 
-def test_a_file_says_what_nobody_else_does(tmp_path, stroke, tool):
+def test_a_file_s_value_is_the_default(tmp_path, stroke, tool):
     file = tmp_path / "quiet.toml"
     file.write_text('[array]\npreset = "palm-3x3"\n[defaults]\nphantom = "barycentric"\nlevel-dbfs = -30\nsoa = 0.06\n[output]\nchannels = 12\nrate = 44100\n')
     quiet = tactor.Array.from_file(file)

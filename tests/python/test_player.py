@@ -17,7 +17,7 @@ import pytest
 
 import tactor
 
-LONG = 120.0  # s: an answer that takes longer never comes
+LONG = 120.0  # s: a longer answer never comes
 
 
 @pytest.fixture
@@ -39,11 +39,11 @@ def endless(palm):
 
 
 def run(code, *arguments):
-    """A program of its own; what it printed."""
+    """Runs a separate program; returns its output."""
     env = {**os.environ, "TACTOR_CONFIG": os.devnull}
-    # From Python 3.12 on, whoever forks beside threads is warned.
+    # From Python 3.12 on, a fork beside threads gives a warning.
     warned = "-W", "error::ResourceWarning", "-W", "ignore:This process:DeprecationWarning"
-    # What a shell starts in the background ignores Ctrl-C, and so do its children.
+    # A process that a shell starts in the background ignores Ctrl-C, and so do its children.
     r = subprocess.run([sys.executable, *warned, "-c", textwrap.dedent(code), *arguments], env=env, capture_output=True, text=True,
                        timeout=LONG, check=False, preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL))
     return r.returncode, r.stdout, r.stderr
@@ -58,7 +58,7 @@ def test_a_score_is_played_to_its_end(player, short):
     assert stats["frames"] >= short.frames and stats["xruns"] == 0 and isinstance(stats["realtime"], bool) and stats["xrun_s"] == []
 
 
-def test_what_the_device_agreed_to(palm):
+def test_the_setup_is_that_of_the_device(palm):
     with tactor.Player("null", palm, rate=44100.0, period_frames=441, periods=4.0, config=os.devnull) as p:
         assert (p.rate, p.channels, p.setup["period_frames"], p.setup["buffer_frames"], p.setup["has_clock"]) == (44100, 9, 441, 1764, False)
         assert repr(p).startswith("<tactor.Player 'null': 9 channels, 44100 Hz")
@@ -97,12 +97,12 @@ def test_armed_strokes_wait_to_be_fired(player, short):
 
 @pytest.mark.parametrize("options", [dict(at="soon"), dict(at="armed", delay=1), dict(at_s=1.0, delay=1.0), dict(at_s=float("nan")),
                                      dict(at_s=1e300), dict(frame=-1), dict(frame=1 << 70)])
-def test_starts_that_cannot_be_are_refused(player, short, options):
+def test_impossible_starts_are_refused(player, short, options):
     with pytest.raises(tactor.InputError):
         player.submit(short, **options)
 
 
-def test_cancelled_strokes_say_so(player, endless):
+def test_cancelled_strokes_are_reported_so(player, endless):
     ticket = player.submit(endless)
     assert ticket.cancel() and ticket.wait(LONG).state == "cancelled" and not ticket.cancel()
     assert ticket.wait() is ticket.report and ticket.done() and repr(ticket).endswith("cancelled>")
@@ -142,7 +142,7 @@ def test_a_live_stroke_follows_its_points(player):
     assert finger.counts["points"] == 3 and finger.counts["outside"] == 1
 
 
-def test_an_intensity_above_1_sounds_as_1_and_is_said_once(player, short):
+def test_an_intensity_above_1_sounds_as_1_and_is_reported_once(player, short):
     with warnings.catch_warnings(record=True) as said:
         warnings.simplefilter("always")
         with player.live() as finger:
@@ -212,7 +212,7 @@ def test_a_model_that_raises_or_returns_rubbish_ends_a_live_stroke(player, x_mm,
     assert finger.report.state == "interrupted" and why in finger.report.reason and "\n" not in finger.report.reason
 
 
-def test_a_live_stroke_is_as_its_arrays_file_says(tmp_path):
+def test_a_live_stroke_follows_its_array_s_file(tmp_path):
     file = tmp_path / "quiet.toml"
     file.write_text('[array]\npreset = "palm-3x3"\n[defaults]\nlevel-dbfs = -30\nalgorithm = "tactile-brush"\nenvelope = "tukey:0.3"\n'
                     'phantom = "barycentric"\n')
@@ -270,7 +270,7 @@ def test_awaiting_gives_the_report(player, short, endless):
     asyncio.run(main())
 
 
-def test_who_cancels_waiting_for_what_has_ended_cancels_nothing(palm, endless):
+def test_cancelling_a_wait_for_an_ended_stroke_cancels_nothing(palm, endless):
     async def main():
         p = tactor.Player("null", palm, config=os.devnull)
         ticket = p.submit(endless)
@@ -309,7 +309,7 @@ def test_several_threads_may_close_a_player_at_once(palm, endless):
         assert failed == [] and [t.report.state for t in tickets] == ["cancelled"] * 3
 
 
-def test_waiting_leaves_the_interpreter_to_others(player, endless):
+def test_waiting_releases_the_interpreter(player, endless):
     ticket = player.submit(endless)
     waiter = threading.Thread(target=ticket.wait)
     waiter.start()
@@ -333,7 +333,7 @@ def test_many_threads_may_play(player, short):
     assert [r.state for r in reports] == ["finished"] * 16
 
 
-def test_a_closed_player_says_so(palm, short, endless):
+def test_a_closed_player_is_reported(palm, short, endless):
     p = tactor.Player("null", palm, config=os.devnull)
     ticket = p.submit(endless)
     p.close()
@@ -348,7 +348,7 @@ def test_a_closed_player_says_so(palm, short, endless):
         assert next_one.play(short).state == "finished"
 
 
-def test_devices_that_are_not_there(palm):
+def test_missing_devices_are_errors(palm):
     with pytest.raises(tactor.DeviceError) as e:
         tactor.Player("hw:CARD=Nowhere", palm, config=os.devnull)
     assert "Nowhere" in str(e.value) and isinstance(e.value, OSError) and e.value.hint
@@ -390,7 +390,7 @@ def test_rate_and_sample_format_of_defaults_are_the_streams_too(tmp_path):
 
 @pytest.mark.parametrize("limit", [{"power_dbfs": 1000}, {"power_dbfs": 60.1}, {"power_dbfs": float("nan")}, {"max_drive_s": 3601}, {"max_drive_s": float("inf")},
                                    {"drive_window_s": 0.01}])
-def test_limits_are_bounded_as_in_the_tool(palm, limit):
+def test_limits_have_the_bounds_of_the_tool(palm, limit):
     with pytest.raises(tactor.InputError, match="out of range"):
         tactor.Player("null", palm, config=os.devnull, **limit)
 
@@ -416,7 +416,7 @@ except tactor.DeviceError as e:
 """
 
 
-def test_a_card_of_fixed_channels_takes_the_array_or_says_which_one_fits(tmp_path):
+def test_a_card_of_fixed_channels_takes_the_array_or_names_one_that_fits(tmp_path):
     def fixed(name, n):
         bindings = " ".join(f"bindings.{c} {{ slave a channel {c} }}" for c in range(n))
         return f"pcm.{name} {{ type multi slaves.a {{ pcm {{ type null }} channels {n} }} {bindings} }}\n"
@@ -429,7 +429,7 @@ def test_a_card_of_fixed_channels_takes_the_array_or_says_which_one_fits(tmp_pat
     assert "the array palm-2x4 fits" in out[4]
 
 
-def test_an_arrays_file_brings_its_limits(tmp_path):
+def test_an_array_s_file_brings_its_limits(tmp_path):
     file = tmp_path / "palm.toml"
     file.write_text('[array]\npreset = "palm-3x3"\n[output]\nchannels = 12\n[limits]\npower_dbfs = -40.0\n')
     array = tactor.Array.from_file(file)
@@ -445,7 +445,7 @@ def test_a_stream_of_more_channels_takes_a_score_of_fewer(palm, short):
         assert p.play(short).state == "finished"
 
 
-def test_the_log_is_told_in_the_packages_thread(palm, short):
+def test_the_log_is_called_in_the_package_s_thread(palm, short):
     lines = []
     with tactor.Player("null", palm, config=os.devnull, log=lambda kind, text: lines.append((threading.current_thread().name, kind, text))) as p:
         p.play(short)
@@ -491,7 +491,7 @@ def test_ctrl_c_fades_out():
     assert (code, out, err) == (0, "cancelled\n", "")
 
 
-@pytest.mark.unsanitized  # a child gives nothing back of what is its parent's
+@pytest.mark.unsanitized  # a child frees nothing of its parent's memory
 def test_a_fork_leaves_the_player_to_its_parent():
     code, out, err = run(PLAYING + """
     import asyncio
@@ -521,8 +521,8 @@ def test_a_fork_leaves_the_player_to_its_parent():
     assert err == "" and sorted(out.split("\n")) == sorted(["True", "0 False True None", "cancelled", ""]) and code == 0
 
 
-@pytest.mark.unsanitized  # a child gives nothing back of what is its parent's
-def test_a_forked_process_may_have_a_player_of_its_own():
+@pytest.mark.unsanitized  # a child frees nothing of its parent's memory
+def test_a_forked_process_may_have_a_player():
     code, out, err = run(PLAYING + """
     child = os.fork()
     if child == 0:
@@ -537,7 +537,7 @@ def test_a_forked_process_may_have_a_player_of_its_own():
     assert (code, out, err) == (0, "cancelled\n", "")
 
 
-def test_nothing_of_a_player_is_left_behind(palm, short):
+def test_a_player_leaves_nothing_behind(palm, short):
     def descriptors():
         return len(os.listdir("/proc/self/fd"))
     with tactor.Player("null", palm, config=os.devnull) as p:
@@ -549,7 +549,7 @@ def test_nothing_of_a_player_is_left_behind(palm, short):
     assert (descriptors(), threading.active_count()) == before
 
 
-def test_the_signal_that_python_set_stays(player, short):
+def test_python_s_signal_handlers_stay(player, short):
     before = signal.getsignal(signal.SIGINT)
     player.play(short)
     assert signal.getsignal(signal.SIGINT) is before

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Samples are the bytes of `tactor render`."""
+"""Samples, equal to the bytes of `tactor render`."""
 import os
 import pickle
 import random
@@ -12,7 +12,7 @@ import tactor
 
 
 def samples(file, dtype):
-    """What a WAV file holds after its header."""
+    """Returns the bytes of a WAV file after its header."""
     data = file.read_bytes()
     at = data.index(b"data") + 8
     return np.frombuffer(data[at:], dtype=dtype)
@@ -36,7 +36,7 @@ def test_24_bits_are_written(tool, tmp_path, palm):
     assert (tmp_path / "ours.wav").read_bytes() == (tmp_path / "tool.wav").read_bytes()
 
 
-def test_samples_belong_to_whoever_asked(palm, stroke):
+def test_samples_belong_to_the_caller(palm, stroke):
     score = tactor.Score(palm, tactor.plan(palm, stroke))
     x = score.render()
     x *= 2
@@ -92,7 +92,7 @@ def random_options(rng):
     return options
 
 
-# A piece is many strokes, so that the tool need not be started for each.
+# Pieces of many strokes, so that the tool need not start for each.
 @pytest.mark.parametrize("seed", range(2 if os.environ.get("TACTOR_SOAK") == "short" else 50))
 def test_ten_thousand_random_strokes_are_the_bytes_of_the_tool(tool, tmp_path, seed):
     rng = random.Random(seed)
@@ -126,7 +126,7 @@ def test_pieces_of_several_plans(tool, tmp_path, root, palm):
     assert not shifted.render()[:24000].any()
 
 
-def test_a_score_sounds_as_its_plan_was_meant_to(palm, stroke):
+def test_a_score_keeps_its_plan_s_options(palm, stroke):
     loud = tactor.plan(palm, stroke, level_dbfs=-6, rate=44100)
     assert tactor.Score(palm, loud).rate == 44100 and tactor.Score(palm, loud, rate=48000).rate == 48000
     assert np.array_equal(tactor.Score(palm, loud).render(), tactor.Score(palm, tactor.plan(palm, stroke), level_dbfs=-6, rate=44100).render())
@@ -149,7 +149,7 @@ def test_markers_and_limits(palm, stroke):
     ({}, dict(tukey_part=0.3), "tukey_part"), (dict(envelope="linear"), dict(tukey_part=0.3), "tukey_part"), ({}, dict(marker_s=0.01), "marker_s"),
     (dict(envelope="tukey"), dict(ramp=0.01), "ramp"), (dict(envelope="tukey"), dict(attack=0.01), "attack"), ({}, dict(envelope="tukey", ramp=0.01), "ramp"),
 ])
-def test_what_nothing_in_a_score_uses_is_refused(palm, stroke, planned, said, what):
+def test_options_that_nothing_in_a_score_uses_are_refused(palm, stroke, planned, said, what):
     plan = tactor.plan(palm, stroke, **planned)
     for one in (plan, tactor.Plan.from_dict(plan.to_dict()), pickle.loads(pickle.dumps(plan))):
         with pytest.raises(tactor.InputError) as e:
@@ -157,7 +157,7 @@ def test_what_nothing_in_a_score_uses_is_refused(palm, stroke, planned, said, wh
         assert e.value.what == what
 
 
-def test_a_score_may_say_more_of_what_its_plan_says(tmp_path, palm, stroke):
+def test_a_score_may_add_to_its_plan_s_options(tmp_path, palm, stroke):
     plan = tactor.plan(palm, stroke, envelope="tukey")
     expected = tactor.Score(palm, plan, envelope="tukey", tukey_part=0.3).render()
     assert np.array_equal(tactor.Score(palm, plan, tukey_part=0.3).render(), expected)
@@ -180,12 +180,12 @@ def test_a_score_may_say_more_of_what_its_plan_says(tmp_path, palm, stroke):
     lambda a, p: tactor.Score(a, p).write("/nonexistent/x.wav"), lambda a, p: tactor.Score(a, p).write("x.wav", "s24-4"),
     lambda a, p: tactor.Score(a, [(float("nan"), p)]), lambda a, p: tactor.Score(a, [(-1.0, p)]),
 ])
-def test_scores_that_cannot_be_are_refused(palm, stroke, make):
+def test_impossible_scores_are_refused(palm, stroke, make):
     with pytest.raises(tactor.InputError):
         make(palm, tactor.plan(palm, stroke))
 
 
-def test_what_is_no_plan_is_a_type_error(palm):
+def test_anything_but_a_plan_is_a_type_error(palm):
     with pytest.raises(TypeError):
         tactor.Score(palm, [1])
     with pytest.raises(TypeError):
@@ -199,7 +199,7 @@ def test_scores_are_values(palm, stroke):
     assert repr(score) == f"<tactor.Score: 1 plan, 9 channels, 48000 Hz, {score.duration:.6g} s>" and len(score) == score.frames
 
 
-def test_a_score_sounds_as_its_plan_was_to_wherever_that_comes_from(tmp_path, stroke):
+def test_a_score_keeps_its_plan_s_options_from_any_source(tmp_path, stroke):
     file = tmp_path / "q.toml"
     file.write_text('[array]\npreset = "palm-3x3"\n[defaults]\nlevel-dbfs = -30\n')
     quiet = tactor.Array.from_file(file)
@@ -213,13 +213,13 @@ def test_a_score_sounds_as_its_plan_was_to_wherever_that_comes_from(tmp_path, st
         assert np.array_equal(tactor.Score(tactor.Array.from_file(file), one).render(), expected)
     score = tactor.Score(quiet, plan)
     assert np.array_equal(pickle.loads(pickle.dumps(score)).render(), expected)
-    plain = tactor.plan(tactor.Array.preset("palm-3x3"), stroke)  # of which no file has said anything
+    plain = tactor.plan(tactor.Array.preset("palm-3x3"), stroke)  # without a file's values
     for one in (plain, pickle.loads(pickle.dumps(plain))):
         assert 10 ** (-35 / 20) < np.abs(tactor.Score(quiet, one).render()).max() < 10 ** (-29.9 / 20)
 
 
-def test_rendering_leaves_the_interpreter_to_others(palm, stroke):
-    # The main thread counts while another renders: a lock that was held would keep it from that.
+def test_rendering_releases_the_interpreter(palm, stroke):
+    # The main thread counts while another renders: a held lock would stop it.
     score = tactor.Score(palm, [tactor.plan(palm, stroke, algorithm="continuous")] * 200)
     expected = score.render("int16")[:1000].copy()
     results = []
@@ -254,7 +254,7 @@ def test_strokes_keep_their_sound_when_they_are_pickled(palm):
     assert tactor.Score(palm, tactor.plan(palm, again)).render().tobytes() == tactor.Score(palm, tactor.plan(palm, one)).render().tobytes()
 
 
-def test_sounds_that_are_none_are_refused(palm, stroke):
+def test_impossible_sounds_are_refused(palm, stroke):
     for bad in ({"waveform": "sqare"}, {"waveform": 3}, {"am": "x"}, {"am": -1.0}, {"envelope": "round"}, {"attack": -1.0},
                 {"texture": "x"}, {"stevens_exponent": 0.0}, {"noise_seed": 1.5}):
         with pytest.raises(tactor.InputError):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Comparisons, figures and devices are the tool's."""
+"""Comparisons, figures and devices, equal to the tool's."""
 import copy
 import json
 import os
@@ -34,11 +34,11 @@ def test_a_strokes_own_fit_and_a_speed_are_the_tools(tool, tmp_path, palm, keys,
     file = tmp_path / "s.toml"
     file.write_text(f'[stroke]\npath = "M 5 10 L 30 20"\n{keys}\n'.replace("rest", "pauses = [[0.5, 0.3]]"))
     said = tool("compare", file, *([] if speed is None else ["--speed", speed]), "--format", "json")
-    printed = json.loads(said.replace("(--snap moves", "(snap = true moves")) # the tool makes options of the library's fields
+    printed = json.loads(said.replace("(--snap moves", "(snap = true moves"))  # the tool makes options of the library's fields
     assert tactor.compare(palm, tactor.load(file)[0], speed=speed) == printed["results"]
 
 
-def test_an_algorithm_that_cannot_says_why(palm):
+def test_an_algorithm_that_cannot_play_says_why(palm):
     line = tactor.Array.from_points([(0, 0), (13, 2), (29, 1), (11, 20)])
     rows = tactor.compare(line, tactor.Stroke.along(tactor.Path.svg("M 1 1 L 20 1.5"), duration=1.0))
     assert [r["refused"] is None for r in rows] == [True, False, True] and "grid" in rows[1]["refused"]
@@ -50,7 +50,7 @@ def test_an_algorithm_that_cannot_says_why(palm):
             tactor.compare(palm, tactor.Stroke.preset("park2016-1"), **options)
 
 
-def test_a_comparison_is_drawn_as_the_tool_does(tool, tmp_path, palm):
+def test_a_comparison_is_drawn_like_the_tool_s(tool, tmp_path, palm):
     tool("compare", "park2016-3", "-o", "tool.svg")
     compared = tactor.compare(palm, tactor.Stroke.preset("park2016-3"))
     compared.plot(tmp_path / "ours.svg")
@@ -66,7 +66,7 @@ def test_figures_are_those_of_the_tool(tool, tmp_path, palm, view):
 
 
 @pytest.mark.parametrize("kind", ["png", "pdf"])
-def test_other_formats_are_painted_by_the_tools_module(tool, tmp_path, palm, kind):
+def test_other_formats_are_painted_by_the_tool_s_module(tool, tmp_path, palm, kind):
     tool("plot", "park2016-3", "--dpi", "100", "-o", f"tool.{kind}")
     plan = tactor.plan(palm, tactor.Stroke.preset("park2016-3"))
     tactor.plot(plan, str(tmp_path / f"ours.{kind}"), dpi=100)
@@ -88,13 +88,13 @@ def test_several_plans_in_one_figure(tmp_path, root, palm):
 
 
 @pytest.mark.parametrize("file,options", [("x.gif", {}), ("x.svg", dict(view="side")), ("x.svg", dict(width=1)), ("x.png", dict(dpi=-1)), ("x.png", dict(dpi=100000)), ("none/x.svg", {})])
-def test_figures_that_cannot_be_are_refused(tmp_path, palm, stroke, file, options):
+def test_impossible_figures_are_refused(tmp_path, palm, stroke, file, options):
     with pytest.raises(tactor.InputError):
         tactor.plot(tactor.plan(palm, stroke), tmp_path / file, **options)
     assert list(tmp_path.iterdir()) == []
 
 
-def test_figures_do_not_replace_what_was_read_nor_without_force_what_others_drew(tmp_path, palm):
+def test_figures_do_not_replace_inputs_nor_without_force_foreign_files(tmp_path, palm):
     drawing = tmp_path / "d.svg"
     text = '<svg xmlns="http://www.w3.org/2000/svg" width="40mm" height="40mm" viewBox="0 0 40 40"><path d="M 0 20 L 40 20"/></svg>'
     (tmp_path / "other.svg").write_text(text)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Arrays, paths and strokes are values."""
+"""Arrays, paths and strokes as values."""
 import json
 import pickle
 
@@ -19,7 +19,7 @@ def test_an_array_is_a_sequence_of_tactors(palm):
         palm[9]
 
 
-def test_positions_are_a_look_that_cannot_be_written(palm):
+def test_positions_are_a_read_only_view(palm):
     assert palm.positions.shape == (9, 2) and palm.positions.dtype == np.float64
     assert not palm.positions.flags.owndata and not palm.positions.flags.writeable
     assert palm.positions.tolist() == [list(t.position) for t in palm]
@@ -46,7 +46,7 @@ def test_an_array_knows_its_faces(palm):
     assert palm.weights((20.0, 20.0)) == {4: 1.0}
 
 
-def test_what_a_tactor_has_is_kept():
+def test_the_values_of_a_tactor_are_kept():
     one = tactor.Tactor(tactor.Point(1.0, 2.0), 3, -1.0, -2.0, -40.0, -1, "piezo")
     more = one._replace(position=tactor.Point(9.0, 2.0), channel=0, threshold_dbfs=None, thresholds=((100.0, -20.0), (250.0, -41.0)), rise_s=0.02)
     array = tactor.Array("two", [one, more])
@@ -80,7 +80,7 @@ def test_a_pickled_array_is_as_loud_as_that_of_its_file(tmp_path, stroke):
     lambda: tactor.Array("below", [tactor.Tactor(tactor.Point(0, 0), -1)]),
     lambda: tactor.Array("word", [tactor.Tactor(tactor.Point(0, 0), 0, actuator="steam")]),
 ])
-def test_arrays_that_cannot_be_are_refused(make):
+def test_impossible_arrays_are_refused(make):
     with pytest.raises(tactor.InputError):
         make()
 
@@ -106,7 +106,7 @@ def test_paths_are_pickled_to_the_bit(data):
     assert np.array_equal(again.at(lengths), path.at(lengths))
 
 
-def test_strokes_say_how_they_move(stroke):
+def test_strokes_have_their_movement(stroke):
     assert stroke.duration == 1.2 and stroke.position(0.0) == (0.0, 10.0) and stroke.intensity(0.5) == 1.0
     path = tactor.Path.polyline([(0, 0), (30, 0)])
     assert tactor.Stroke.along(path, speed=60.0).duration == 0.5 == tactor.Stroke.along(path).duration
@@ -139,7 +139,7 @@ def test_strokes_ease_change_their_speed_and_rest():
             tactor.Stroke.along(path, **wrong)
 
 
-def test_strokes_of_files_start_from_others_and_choose(tmp_path, palm):
+def test_strokes_of_files_have_starts_and_choices(tmp_path, palm):
     drawn = tmp_path / "s.toml"
     drawn.write_text("""[[stroke]]
 path = "M 0 10 L 40 10"
@@ -182,7 +182,7 @@ def test_strokes_are_pickled_to_the_bit(stroke, tmp_path):
     assert stroke != stroke.with_duration(1.3) and stroke != timed
 
 
-def test_pickles_that_were_damaged_are_refused(stroke):
+def test_damaged_pickles_are_refused(stroke):
     state = stroke._core.state()
     for cut in range(0, len(state), 7):
         with pytest.raises(tactor.Error):
@@ -198,13 +198,13 @@ def test_pickles_that_were_damaged_are_refused(stroke):
     lambda: tactor.Stroke.timed([1, 2], [0, 1], [0, 1]), lambda: tactor.Stroke.timed([0, 1], [0, 1], [0, 1], [1, 2, 3]),
     lambda: tactor.Stroke.preset("park"), lambda: tactor.Stroke.shape("square"),
 ])
-def test_paths_and_strokes_that_cannot_be_are_refused(make):
+def test_impossible_paths_and_strokes_are_refused(make):
     with pytest.raises(tactor.InputError):
         make()
 
 
 @pytest.mark.parametrize("place", [tactor.Path.svg("M 20 10"), tactor.Path.polyline([(20, 10)]), tactor.Path.svg("M 20 10 L 20 10")])
-def test_a_path_of_one_place_is_a_tap_of_the_duration_that_is_given(palm, place):
+def test_a_path_of_one_place_is_a_tap_of_the_given_duration(palm, place):
     tap = tactor.Stroke.along(place, duration=0.3)
     assert place.length_mm == tap.length_mm == 0 and tap.duration == 0.3
     assert tap.position(0) == tap.position(0.3) == (20, 10)
@@ -225,7 +225,7 @@ def test_shapes_are_as_large_as_the_array(palm, name):
         assert name == "tap" or np.isclose(x, width, rtol=1e-3) or np.isclose(y, height, rtol=1e-3)
 
 
-def test_files_are_loaded_as_the_tool_does(root):
+def test_files_are_loaded_like_by_the_tool(root):
     assert [s.name for s in tactor.load(root / "examples/strokes/several.toml")]
     csv = tactor.load(str(root / "examples/strokes/touch.csv"))
     of_text = tactor.parse((root / "examples/strokes/touch.csv").read_text())
@@ -240,7 +240,7 @@ def test_strokes_are_fitted(palm, stroke):
     assert tactor.plan(palm, far, fit=True, fit_margin=2.0).stroke == fitted
 
 
-def test_a_group_is_fitted_as_one_picture(tmp_path, palm, tool):
+def test_a_group_is_fitted_together(tmp_path, palm, tool):
     file = tmp_path / "group.toml"
     file.write_text('[[stroke]]\nfit = true\nfit_margin_mm = 5\n[[stroke.stroke]]\npath = "M 0 0 L 10 0"\n[[stroke.stroke]]\npath = "M 0 10 L 5 10"\n'
                     '[[stroke]]\npath = "M 1 2 L 30 40"\n')
@@ -256,13 +256,13 @@ def test_a_group_is_fitted_as_one_picture(tmp_path, palm, tool):
         assert [(b["x_mm"], b["y_mm"]) for b in other["bursts"]] == [tuple(b.position) for b in plan.bursts]
 
 
-def test_values_say_what_they_are(palm, stroke):
+def test_values_have_a_readable_repr(palm, stroke):
     assert repr(palm) == "<tactor.Array 'palm-3x3': 9 tactors, 9 channels>"
     assert repr(stroke) == f"<tactor.Stroke 'path': {stroke.length_mm:.6g} mm in 1.2 s>"
     assert repr(tactor.Path.svg("M 0 0 L 3 4")) == "<tactor.Path 'M 0 0 L 3 4': 5 mm>"
 
 
-def test_values_cannot_be_made_of_nothing():
+def test_values_need_their_arguments():
     for kind in (tactor.Path, tactor.Stroke, tactor.Plan):
         with pytest.raises(TypeError):
             kind()

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A real-time thread that never waits gives up real time.
+// A real-time thread that never waits, and gives up real time.
 #include "rt/busy_watch.hpp"
 
 #include <algorithm>
@@ -24,7 +24,7 @@ constexpr std::int64_t ms = 1'000'000;
 
 } // namespace
 
-TEST_CASE("60 ms of work without a pause are too long, whatever went before")
+TEST_CASE("60 ms of work without a pause are too long, after any history")
 {
     busy_time t;
     CHECK_FALSE(t.too_long(5000 * ms, 7)); // set-up counts for nothing
@@ -42,13 +42,13 @@ TEST_CASE("a thread that waits now and then may work for ever")
     CHECK(t.too_long(1000 * 100 * ms, 999));
 }
 
-TEST_CASE("whatever the length of its pieces of work, a thread is told before the kernel would end it")
+TEST_CASE("for pieces of work of any length, a thread is warned before the kernel would end it")
 {
     for (std::int64_t piece = 1; piece <= 95; ++piece) {
         CAPTURE(piece);
         for (std::int64_t late = 1; late <= std::max<std::int64_t>(20, piece); ++late) {
             busy_time t;
-            std::int64_t worked = late; // by the first look since it waited
+            std::int64_t worked = late; // by the first check since it waited
             std::int64_t looked = worked;
             REQUIRE_FALSE(t.too_long(worked * ms, 0));
             for (bool told = false; !told;) {
@@ -63,7 +63,7 @@ TEST_CASE("whatever the length of its pieces of work, a thread is told before th
     }
 }
 
-TEST_CASE("a thread with real-time priority that spins loses it, and is told so once")
+TEST_CASE("a spinning thread with real-time priority loses it, and is warned once")
 {
     int policy = -1;
     bool again = true;
@@ -79,7 +79,7 @@ TEST_CASE("a thread with real-time priority that spins loses it, and is told so 
     spinning.join();
     CHECK(policy == SCHED_OTHER);
     CHECK_FALSE(again);
-    // Else nothing was seen but that the watch leaves other threads alone.
+    // Else only checks that the watch leaves other threads alone.
     WARN(spinning.fifo_error() == 0);
 }
 

@@ -17,7 +17,7 @@ namespace realtime_test {
 
 using namespace tactor;
 
-TEST_CASE("rights that are said to be there are granted, and the other way round")
+TEST_CASE("reported rights are granted, and others are not")
 {
     const realtime_rights r = probe_realtime_rights();
     CHECK(r.priority >= 0);
@@ -37,7 +37,7 @@ TEST_CASE("rights that are said to be there are granted, and the other way round
         CHECK(granted == std::min(65, r.priority));
 }
 
-TEST_CASE("what to do is one line that says the limits, the group and the unit")
+TEST_CASE("the hint is one line with the limits, the group and the unit")
 {
     const std::string text = rt::realtime_advice({.priority = 0, .lockable_bytes = 8U << 20}, 65);
     CHECK(text.find('\n') == std::string::npos);
@@ -51,7 +51,7 @@ TEST_CASE("what to do is one line that says the limits, the group and the unit")
     }
 }
 
-TEST_CASE("where all limits allow it, the advice is another")
+TEST_CASE("where all limits allow it, the hint is another")
 {
     const std::string text = rt::realtime_advice({.priority = 99, .lockable_bytes = {}}, 65);
     CHECK(text.find("rtprio") == std::string::npos);

@@ -53,7 +53,7 @@ TEST_CASE("every size from 1 to 64 fills, refuses, empties and wraps")
     }
 }
 
-TEST_CASE("behaves as a deque of bounded length")
+TEST_CASE("the ring behaves like a deque of bounded length")
 {
     std::mt19937_64 random(1);
     for (int round = 0; round < 2000; ++round) {

@@ -8,17 +8,16 @@
 
 #include <doctest/doctest.h>
 
-#include <tactor/error.hpp>
-
 #include "count_allocations.hpp"
 #include "descriptors_left.hpp"
 #include "folder.hpp"
+#include "message_of.hpp"
 
 namespace system_files_test {
 
 using namespace tactor;
 
-TEST_CASE("what is in a folder and in a file; what is not there is empty")
+TEST_CASE("contents of a folder and of a file; a missing one is empty")
 {
     const folder here;
     const std::string text(10'000, 'x');
@@ -27,26 +26,21 @@ TEST_CASE("what is in a folder and in a file; what is not there is empty")
     std::vector<std::string> names = rt::names_in(here.path().string());
     std::sort(names.begin(), names.end());
     CHECK(names == std::vector<std::string>{"a", "b"});
-    CHECK(rt::text_of(file.string()) == text);
+    CHECK(rt::read_file(file.string()) == text);
     CHECK(rt::names_in(here / "none").empty());
     CHECK(rt::names_in(file).empty());
-    CHECK(rt::text_of(here / "none").empty());
-    CHECK(rt::text_of(here.path().string()).empty());
+    CHECK(rt::read_file(here / "none").empty());
+    CHECK(rt::read_file(here.path().string()).empty());
 }
 
-EXHAUSTING_TEST_CASE("without a descriptor nothing is taken for empty")
+EXHAUSTING_TEST_CASE("without a descriptor nothing counts as empty")
 {
-    const auto code_of = [](auto call) {
+    const auto refused = [](auto call) {
         const test::descriptors_left none(0);
-        try {
-            call();
-        } catch (const error& e) {
-            return e.os_code();
-        }
-        return 0;
+        return os_code(call);
     };
-    CHECK(code_of([] { static_cast<void>(rt::names_in("/proc")); }) == EMFILE);
-    CHECK(code_of([] { static_cast<void>(rt::text_of("/proc/self/status")); }) == EMFILE);
+    CHECK(refused([] { static_cast<void>(rt::names_in("/proc")); }) == EMFILE);
+    CHECK(refused([] { static_cast<void>(rt::read_file("/proc/self/status")); }) == EMFILE);
 }
 
 } // namespace system_files_test

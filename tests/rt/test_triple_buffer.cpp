@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "rt/triple_buffer.hpp"
 
-#include <atomic>
 #include <cstdint>
 #include <latch>
 #include <thread>
@@ -63,7 +62,7 @@ TEST_CASE("the reader never gets half a value, never an older one, and at last t
 
 namespace {
 
-/// Its writer is stopped half-way through a copy, as one is that loses its processor there.
+/// A value whose writer is stopped half-way through a copy, like one that loses its processor there.
 struct slow_value {
     slow_value() = default;
     explicit slow_value(int n) : a(n), b(n) {}
@@ -88,7 +87,7 @@ struct slow_value {
 
 } // namespace
 
-TEST_CASE("a writer that is stopped in the middle keeps no reader waiting: it gets the value before, whole")
+TEST_CASE("a writer stopped in the middle delays no reader: it gets the value before, whole")
 {
     triple_buffer<slow_value> b;
     std::latch stopped(1);

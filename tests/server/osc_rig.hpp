@@ -75,7 +75,7 @@ public:
         });
         return found;
     }
-    /// Whether nothing waits for somebody when all that is going on now is done.
+    /// Returns whether no message waits for an address once all present work is done.
     bool silent(const endpoint& to)
     {
         io.poll();

@@ -3,9 +3,7 @@
 /// The service with fake DACs in place of a card, and clients that are lists of messages.
 #pragma once
 
-#include <algorithm>
 #include <cstdint>
-#include <deque>
 #include <functional>
 #include <list>
 #include <memory>
@@ -32,14 +30,14 @@ namespace tactor::test {
 using net::json;
 using server::client_number;
 
-/// What one client was sent.
+/// Messages to one client.
 class inbox final : public server::client_link {
 public:
     void send(std::string message) override { all.push_back(json::parse(message)); }
     std::size_t waiting() const override { return unread; }
     void finish() override { finished = true; }
 
-    /// Of a stroke, in order.
+    /// Returns those of a stroke, in order.
     std::vector<json> of_stroke(const json& number) const
     {
         std::vector<json> found;
@@ -102,8 +100,8 @@ public:
         s.player.limits.window_s = 3600.0;
         s.wished.channels = 9;
         s.wished.rate = 48000;
-        s.retry_s = 0.001;
-        s.proof_s = 0.01;
+        s.times.retry_s = 0.001;
+        s.times.proof_s = 0.01;
         s.open = [this] { return open(); };
         if (change)
             change(o, s);
@@ -190,7 +188,7 @@ public:
         closed = false;
         all->close([this] { closed = true; });
         until([&] { return closed; });
-        // What stands behind it in the queue.
+        // Handlers behind it in the queue.
         io.poll();
     }
 

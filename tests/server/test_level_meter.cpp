@@ -2,7 +2,6 @@
 // Levels of what is written, in every sample format.
 #include "server/page/level_meter.hpp"
 
-#include <cmath>
 #include <cstring>
 #include <memory>
 #include <vector>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Senders of OSC: their numbers, their times, what they are told, and that they are forgotten.
+// Senders of OSC: their numbers, their times, their messages, and their end.
 #include "server/osc/clients.hpp"
 
 #include <set>
@@ -41,7 +41,7 @@ void ready(osc_rig& rig)
 
 } // namespace
 
-TEST_CASE("a stroke is told of by the sender's own number, and then nobody is left")
+TEST_CASE("a stroke is reported by the sender's number, and then no sender is left")
 {
     osc_rig rig;
     ready(rig);
@@ -130,7 +130,7 @@ TEST_CASE("a stop stops in whatever form it comes, but a button's release does n
 
 TEST_CASE("a live stroke in one packet, before its own number is known to anybody")
 {
-    osc_rig rig([](auto&, auto& s) { s.idle_stop_s = 0.001; });
+    osc_rig rig([](auto&, auto& s) { s.times.idle_stop_s = 0.001; });
     ready(rig);
     rig.sleep_and_plug();
     // The stream has to start first: the points wait.
@@ -150,7 +150,7 @@ TEST_CASE("a live stroke in one packet, before its own number is known to anybod
     CHECK(has(rig.next(me), "no stroke 5"));
 }
 
-TEST_CASE("what goes wrong is said with the address and the number")
+TEST_CASE("faults are reported with the address and the number")
 {
     osc_rig rig;
     ready(rig);
@@ -222,7 +222,7 @@ TEST_CASE("to, end and cancel act at their time, stop at once")
     CHECK(rig.silent(me));
     rig.pass(1.0);
     CHECK(rig.next(me) == "/tactor/stroke 1 finished");
-    // What had its end before its time came is told so.
+    // A stroke that ended before its time came reports that.
     rig.say(me, "/tactor/begin", endless(2));
     rig.osc.receive(osc_rig::bundle(later(1.0), {rig.message("/tactor/cancel", {2_i})}), me);
     rig.say(me, "/tactor/cancel", {2_i});
@@ -371,7 +371,7 @@ TEST_CASE("two servers that hear each other fall silent")
         r->say(me, "/tactor/begin", endless(1));
         r->say(me, "/tactor/nonsense");
         r->all->close([] {}); // the stroke's end, and the stream's
-        // Of each kind one, however often the levels come meanwhile.
+        // Each kind once, however often the levels come meanwhile.
         r->until([&] {
             std::set<std::string> kinds;
             for (const auto& [to, packet] : r->packets)

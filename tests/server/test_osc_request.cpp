@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: MIT
-// What messages of OSC ask for, and what is wrong with their values.
+// Requests of OSC messages, and faults of their values.
 #include "server/osc/request.hpp"
 
-#include <cmath>
 #include <limits>
 
 #include <doctest/doctest.h>
@@ -29,7 +28,7 @@ std::string refusal(const std::string& address, values v)
     try {
         static_cast<void>(read(address, std::move(v)));
     } catch (const fault_error& e) {
-        return net::words_of(e.fault());
+        return net::fault_text(e.fault());
     }
     return {};
 }

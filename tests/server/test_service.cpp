@@ -56,7 +56,7 @@ TEST_CASE("a stroke: the reply, its beginning, its end, each once and in this or
     CHECK(told[0]["started_s"].is_number());
 }
 
-TEST_CASE("a batch's reply comes before what it began is told of")
+TEST_CASE("a batch's reply comes before reports of its strokes")
 {
     service_rig rig;
     rig.plug();
@@ -161,8 +161,7 @@ TEST_CASE("the reason of an end says who ended it")
     CHECK(reason(last) == "stopped by the owner");
 }
 
-TEST_CASE(
-    "a stroke that was handed over twice, as after an xrun before it sounded, is told to have started once")
+TEST_CASE("a stroke handed over twice, as after an xrun before it sounds, is reported to start once")
 {
     service_rig rig;
     fake_dac& card = rig.plug();
@@ -273,7 +272,7 @@ TEST_CASE("a stop in a message that is refused as a whole stops all the same")
         CHECK(rig.end_of(a, n)["reason"] == "stopped by another client");
         CHECK(b.box->all.front()["error"]["code"] == -32001);
     }
-    // As any request: not before the token.
+    // Like any request: not before the token.
     service_rig locked([](server::service_options& o, server::stream_options&) { o.token = "secret"; });
     locked.plug();
     locked.start();
@@ -286,8 +285,7 @@ TEST_CASE("a stop in a message that is refused as a whole stops all the same")
     CHECK(locked.ok(owner, "cancel", {{"stroke", n}}).empty());
 }
 
-TEST_CASE(
-    "cancel of all takes along what is being planned, also of a client that has gone, and nobody else's")
+TEST_CASE("cancel of all ends strokes being planned, even of a client that has gone, and only its own")
 {
     service_rig rig;
     rig.plug();
@@ -309,7 +307,7 @@ TEST_CASE(
     CHECK(end["state"] == "cancelled");
     CHECK(end["reason"] == "cancelled by its client");
     CHECK(end["frames"] == 0);
-    // What comes afterwards plays.
+    // Later strokes play.
     const json next = rig.ok(me, "play", stroke)["stroke"];
     CHECK(rig.end_of(me, next)["state"] == "finished");
     you.box->all.clear();
@@ -396,7 +394,7 @@ TEST_CASE("those that go leave one turn of the planner behind, however much they
             rig.send(gone, {{"jsonrpc", "2.0"}, {"id", k}, {"method", "play"}, {"params", stroke}});
         rig.all->disconnect(gone.number);
     }
-    // One was being planned, and one of the others may come before it.
+    // A stroke was being planned, and one of the others may come before it.
     CHECK(rig.ok(watcher, "play", stroke)["stroke"].get<int>() <= 3);
 }
 

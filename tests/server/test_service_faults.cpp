@@ -124,7 +124,7 @@ TEST_CASE("at the end each number has had exactly one end, whoever is still ther
 
 TEST_CASE("an idle stream is closed, and opened by the next stroke")
 {
-    service_rig rig([](server::service_options&, server::stream_options& s) { s.idle_stop_s = 0.001; });
+    service_rig rig([](server::service_options&, server::stream_options& s) { s.times.idle_stop_s = 0.001; });
     rig.plug();
     rig.start();
     const auto c = rig.client();
@@ -135,7 +135,7 @@ TEST_CASE("an idle stream is closed, and opened by the next stroke")
 
 TEST_CASE("of an idle stream there is nothing to fire, which is no error")
 {
-    service_rig rig([](server::service_options&, server::stream_options& s) { s.idle_stop_s = 0.001; });
+    service_rig rig([](server::service_options&, server::stream_options& s) { s.times.idle_stop_s = 0.001; });
     rig.plug();
     rig.start();
     const auto c = rig.client();
@@ -177,7 +177,7 @@ TEST_CASE("a card that opens and then fails is tried less and less often, and do
     std::atomic<int> opened{0};
     service_rig* here = nullptr;
     service_rig rig([&](server::service_options&, server::stream_options& s) {
-        s.proof_s = 3600.0;
+        s.times.proof_s = 3600.0;
         s.open = [&, open = s.open] {
             fake_dac& card = here->plug();
             std::unique_ptr<sink> taken = open();
@@ -205,12 +205,7 @@ TEST_CASE("with an amplifier that may be on, a lost card is not opened again")
 {
     std::atomic<int> opened{0};
     service_rig rig([&](server::service_options&, server::stream_options& s) {
-        s.has_amplifier = true;
-        s.lines = [] {
-            player_lines l;
-            l.amplifier = std::make_unique<stuck_line>();
-            return l;
-        };
+        s.lines = session::lent_lines({.amplifier = std::make_unique<stuck_line>()});
         s.open = [&opened, open = s.open] {
             ++opened;
             return open();
@@ -220,12 +215,12 @@ TEST_CASE("with an amplifier that may be on, a lost card is not opened again")
     rig.start();
     const auto c = rig.client();
     rig.ok(c, "subscribe", {{"events", {"stream"}}});
-    rig.until([&] { return rig.all->output().amplifier() == "on"; });
+    rig.until([&] { return rig.all->output().amplifier() == session::amplifier_state::on; });
     rig.unplug();
     rig.plug();
     rig.until([&] { return rig.all->output().is_out(); });
     CHECK(rig.all->output().reason().find("start the service again") != std::string::npos);
-    CHECK(rig.all->output().amplifier() == "on");
+    CHECK(rig.all->output().amplifier() == session::amplifier_state::on);
     CHECK(rig.code(c, "play", brief) == -32000);
     CHECK(rig.code(c, "begin") == -32000);
     // The pauses between two tries are 1, 2, 4 ms.
@@ -239,7 +234,7 @@ TEST_CASE("stop reaches what waits for an idle stream to start")
     std::promise<void> gate;
     std::atomic<int> opened{0};
     service_rig rig([&](server::service_options&, server::stream_options& s) {
-        s.idle_stop_s = 0.001;
+        s.times.idle_stop_s = 0.001;
         s.open = [&, open = s.open, started = gate.get_future().share()] {
             if (opened++ == 1)
                 started.wait();
@@ -270,7 +265,7 @@ TEST_CASE("stop reaches what waits for an idle stream to start")
         CHECK(c.box->of_stroke(n).size() == 1);
         CHECK(rig.code(c, "to", {{"stroke", n}, {"x_mm", 1}, {"y_mm", 1}}) == -32002);
     }
-    // What is asked for after the stop begins.
+    // A request after the stop begins.
     CHECK(rig.end_of(c, rig.ok(c, "play", brief)["stroke"])["state"] == "finished");
     CHECK(rig.ok(c, "status")["strokes"].empty());
 }

@@ -22,7 +22,7 @@ constexpr int rounds = 20;
 constexpr int drawing = 12; // of them, in each round
 constexpr int points = 42;
 
-/// One of them: what it asked for, and what it was told.
+/// A client: its requests, and its messages.
 struct asker {
     service_rig::connected link;
     int asked = 0;

@@ -201,6 +201,18 @@ TEST_CASE("bursts are moved for the low-speed observer where it is asked for")
           }).what == "options.compensate");
 }
 
+TEST_CASE("a hint names what a request can say")
+{
+    const auto hint_of = [p = palm()](const json& params) {
+        return fault_from([&] { make_planned(p, layout(p.tactors), params); }).hint;
+    };
+    CHECK(hint_of({{"toml", "[array]\npreset = \"palm-3x3\"\n"}}) ==
+          "give it as an array or a configuration of the server");
+    CHECK(hint_of({{"stroke", "wave-2x4"}}) ==
+          "palm-2x4 is the one it is drawn for, options.outside clamp plays "
+          "the nearest point of the array");
+}
+
 TEST_CASE("faces are those that are asked for, and go with inverse-distance alone")
 {
     const planning p = palm();
@@ -297,13 +309,13 @@ TEST_CASE("the work is known before it is done, whatever the text is as long as"
     const std::string file =
         "[[stroke]]\npath = 'M 0 0 L 40 40'\nduration_s = 500\nalgorithm = 'continuous'\n";
     CHECK(weighed({{"toml", file}}, false).samples > 499'999.0);
-    // What the planner refuses is its own to say.
+    // The planner reports its refusals itself.
     CHECK(weighed({{"path", path}, {"options", {{"duration", 600}, {"soa", 1e-7}, {"burst", 0.001}}}}, false)
               .steps == 0.0);
     CHECK(weighed({{"path", path}, {"options", {{"duration", 600}, {"soa", 0.001}}}}, false).steps == 0.0);
 }
 
-TEST_CASE("planning ends between strokes where it is told to")
+TEST_CASE("planning ends between strokes when asked to")
 {
     const planning p = palm();
     const json two{{"toml", "[[stroke]]\npath = 'M 0 0 L 40 40'\n[[stroke]]\npath = 'M 0 0 L 40 0'\n"}};
@@ -339,7 +351,7 @@ TEST_CASE("the ceiling holds for level, intensity and dB SL")
     CHECK_FALSE(plays(path({{"level_dbfs", -11.99}})));
     CHECK(plays(path({{"sl", 28}})));
     CHECK_FALSE(plays(path({{"sl", 28.01}})));
-    // What counts is the threshold at the stroke's own carrier.
+    // The threshold at the stroke's own carrier counts.
     planning measured = p;
     for (tactor_spec& t : measured.tactors.tactors)
         t.thresholds = {{50.0, -10.0}, {250.0, -40.0}};

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Sound servers of a test's own: PipeWire with a null sink of nine channels, JACK with its dummy driver."""
+"""Sound servers of a test: PipeWire with a null sink of nine channels, JACK with its dummy driver."""
 import os
 import pathlib
 import subprocess
@@ -9,12 +9,12 @@ import time
 CHANNELS = 9
 RATE = 48000
 FRAME_BYTES = 4 * CHANNELS
-# Long, so that a machine that does other work keeps up: what is lost, no server tells.
+# Long, so that a machine that does other work keeps up: no server reports lost frames.
 QUANTUM = 4096
 
 
 def wait_for(condition, what, seconds=60.0):
-    """Until the condition gives something that is true; returns that."""
+    """Waits until the condition is true; returns its value."""
     end = time.monotonic() + seconds
     while True:
         if value := condition():
@@ -25,7 +25,7 @@ def wait_for(condition, what, seconds=60.0):
 
 
 class Servers:
-    """Processes that end, in the reverse of their order, when this does. They see nothing of the user's."""
+    """Processes that end, in reverse order, with this object. They see nothing of the user's."""
 
     def __init__(self, folder):
         self.folder = pathlib.Path(folder)
@@ -58,7 +58,7 @@ class Servers:
         self.runtime.cleanup()
 
     def says(self, *command):
-        """What a command prints; nothing where it fails, as it does while the server starts."""
+        """Returns the output of a command; nothing where it fails, as it does while the server starts."""
         r = subprocess.run(command, env=self.env, cwd=self.folder, capture_output=True, text=True, timeout=60, check=False)
         return r.stdout if r.returncode == 0 else ""
 
@@ -79,7 +79,7 @@ class PipeWire(Servers):
         wait_for(lambda: "nine" in self.says("wpctl", "inspect", "@DEFAULT_AUDIO_SINK@"), "the sink is not the default one")
 
     def record(self, file):
-        """Records what the sink is given, from when this returns."""
+        """Records the sink's input, from when this returns."""
         recorder = self.start("pw-record", "--target", "nine", "-P", "{ stream.capture.sink=true stream.dont-remix=true }",
                               "--rate", str(RATE), "--channels", str(CHANNELS), "--format", "f32", "--latency", str(QUANTUM),
                               "--channel-map", ",".join(f"AUX{i}" for i in range(CHANNELS)), file)
@@ -96,7 +96,7 @@ class Jack(Servers):
         wait_for(lambda: f"system:playback_{CHANNELS}" in self.says("jack_lsp"), "JACK does not answer")
 
     def record(self, file):
-        """Records what is sent to the ports that this returns, in order, with the recorder."""
+        """Records the input of the ports that this returns, in order, with the recorder."""
         self.env["ALSA_CONFIG_PATH"] = str(alsa_configuration(self.folder / "record.conf", jack_pcm(
             "recorder", "capture", [f"system:capture_{i + 1}" for i in range(CHANNELS)])))
         recorder = self.start("arecord", "-q", "-D", "recorder", "-t", "raw", "-f", "FLOAT_LE", "-c", str(CHANNELS), "-r", str(RATE),

@@ -16,7 +16,7 @@ UNPACKED = FOLDER / "unpacked"
 # Every tactor of palm-3x3 has its turn.
 STROKE = ("--path", "M 0 0 L 40 0 L 40 20 L 0 20 L 0 40 L 40 40", "--speed", "160")
 PLAY = ("play", *STROKE, "--sample-format", "float", "--period-frames", str(QUANTUM), "--periods", "3")
-# A server that is kept from running loses frames and tells nobody. What it does to the samples, it does each time.
+# A server without processor time loses frames without a report. Its changes of the samples are the same each time.
 TRIES = 5
 
 
@@ -25,7 +25,7 @@ def frames(data):
 
 
 def sound(data):
-    """From the first frame that is not silent to the last; a zero is a zero, whatever its sign."""
+    """Returns the frames from the first sound to the last; a zero is a zero, whatever its sign."""
     values = [frame.replace(b"\0\0\0\x80", b"\0\0\0\0") if b"\0\0\0\x80" in frame else frame for frame in frames(data)]
     loud = [i for i, v in enumerate(values) if any(v)]
     return values[loud[0]:loud[-1] + 1] if loud else []
@@ -55,7 +55,7 @@ class ServerTest(unittest.TestCase):
         return made
 
     def finish(self, recorder, file):
-        """Once a second has been recorded after the stroke, all of it has been."""
+        """Waits until a second has been recorded after the stroke: then it is complete."""
         enough = file.stat().st_size + RATE * FRAME_BYTES
         wait_for(lambda: file.stat().st_size >= enough, "nothing is recorded")
         recorder.send_signal(signal.SIGINT)
@@ -93,15 +93,15 @@ class ThroughPipeWire(ServerTest):
         made = self.rendered(self.server)
         self.assert_the_same(lambda: self.play("pipewire"), made)
 
-    def test_so_they_do_where_it_is_the_default_device(self):
+    def test_channels_arrive_as_the_default_device_too(self):
         made = self.rendered(self.server)
         self.assert_the_same(lambda: self.play("default"), made)
 
-    def test_what_the_user_says_of_the_stream_wins(self):
-        # So it was without the tool's word: all is mixed down to two channels.
+    def test_the_user_s_properties_of_the_stream_win(self):
+        # The result without the tool's property: all is mixed down to two channels.
         self.assertLess(len(channels_in(self.play("pipewire", PIPEWIRE_ALSA="{ media.name = mine }"))), CHANNELS)
 
-    def test_check_says_that_it_is_there(self):
+    def test_check_reports_it(self):
         out = " ".join(self.ok(self.server, "check", "-D", "pipewire").stdout.split())
         self.assertRegex(out, r"warning device pipewire: 9 channels.*PipeWire is in between: it may mix, resample and hide xruns "
                               r"-> -D hw:CARD=NAME plays on the card itself")
@@ -128,7 +128,7 @@ class ThroughJack(ServerTest):
         made = self.rendered(self.server)
         self.assert_the_same(self.play, made)
 
-    def test_check_says_that_it_is_there(self):
+    def test_check_reports_it(self):
         out = self.ok(self.server, "check", "-D", "nine", **self.configured([f"system:playback_{i + 1}" for i in range(CHANNELS)])).stdout
         self.assertRegex(" ".join(out.split()), r"warning device nine: 9 channels.*JACK is in between")
 

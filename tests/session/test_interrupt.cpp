@@ -15,7 +15,7 @@ using tactor::session::interrupt;
 
 namespace {
 
-// Runs `act` in a child. Returns its wait status, and what it wrote on standard error.
+// Runs `act` in a child. Returns its wait status, and its standard error.
 template <class Act>
 std::pair<int, std::string> in_child(const Act& act)
 {
@@ -40,14 +40,14 @@ std::pair<int, std::string> in_child(const Act& act)
 
 } // namespace
 
-TEST_CASE("a program that a device holds up is ended after its time, with the status of the signal")
+TEST_CASE("a program held up by a device is ended after its time, with the status of the signal")
 {
     const auto [status, said] = in_child([] {
         interrupt stop(1);
         ::raise(SIGTERM);
         while (stop.poll() == 0)
             ;
-        for (;;) // as in a library that hangs
+        for (;;) // like a library that hangs
             ::poll(nullptr, 0, -1);
     });
     REQUIRE(WIFEXITED(status));

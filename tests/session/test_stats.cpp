@@ -4,7 +4,7 @@
 
 #include <doctest/doctest.h>
 
-#include "session/play_session.hpp"
+#include "session/device_stream.hpp"
 
 namespace stats_test {
 
@@ -27,7 +27,7 @@ player_stats one_of_each(double scale)
 
 } // namespace
 
-TEST_CASE("counters add up, of the worst the worst is kept")
+TEST_CASE("counters add up, and the worst value stays the worst")
 {
     player_stats sum;
     session::add_stats(sum, one_of_each(3));
@@ -43,7 +43,7 @@ TEST_CASE("counters add up, of the worst the worst is kept")
     CHECK(sum.xrun_s == std::vector<double>{3.0, 1.0});
 }
 
-TEST_CASE("one stream without real time, and all together were without")
+TEST_CASE("one stream without real time makes the sum one without")
 {
     player_stats sum;
     session::add_stats(sum, one_of_each(1));
@@ -55,7 +55,7 @@ TEST_CASE("one stream without real time, and all together were without")
     CHECK_FALSE(sum.realtime);
 }
 
-TEST_CASE("of xruns the newest 64 have their lengths")
+TEST_CASE("the newest 64 xruns keep their lengths")
 {
     player_stats sum;
     for (int i = 0; i < 100; ++i)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What the answers of a walk say of the channel map.
+// Answers of a walk, and the channel map that they give.
 #include "session/walk.hpp"
 
 #include <doctest/doctest.h>
@@ -38,14 +38,14 @@ TEST_CASE("answers that are all right change nothing")
     CHECK(v.channels == std::vector{5U, 6U, 7U});
 }
 
-TEST_CASE("two that were felt at one place, and one that was felt nowhere, make no map")
+TEST_CASE("two felt at one place, and one felt nowhere, make no map")
 {
     const walk_verdict v = judge(three(), {2, std::nullopt, 2});
     CHECK(v.channels.empty());
     CHECK(v.problems == std::vector<std::string>{
                             "tactor 1 (channel 6) was felt nowhere",
                             "tactor 0 (channel 5) and tactor 2 (channel 7) were felt at one place, 2"});
-    // The place that is left is a guess, not a finding.
+    // The remaining place is a guess, not a finding.
     CHECK(judge(three(), {0, 1, std::nullopt}).channels.empty());
 }
 

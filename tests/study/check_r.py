@@ -18,7 +18,7 @@ GOLDEN = HERE / "golden"
 
 
 def flat(value, at=""):
-    """The places of all numbers and nulls in JSON."""
+    """Returns the places of all numbers and nulls in JSON."""
     if isinstance(value, dict):
         for k, v in value.items():
             yield from flat(v, f"{at}.{k}" if at else k)
@@ -30,16 +30,16 @@ def flat(value, at=""):
 
 
 def read(text):
-    """Place -> number or None, of what analyze.R prints."""
+    """Maps places to numbers or None, from the output of analyze.R."""
     rows = (line.split("\t") for line in text.splitlines() if not line.startswith("#"))
     return {place: None if value == "NA" else float(value) for place, value in rows}
 
 
 def differences(expected, told):
-    """What is not the same; `told` is JSON."""
+    """Returns the differences; `told` is JSON."""
     mine = dict(flat(told))
     for place, value in expected.items():
-        # An interval that is not there is null as a whole.
+        # A missing interval is null as a whole.
         got = mine.get(place, mine.get(place.rsplit(".", 1)[0], "nothing"))
         if value is None or not isinstance(got, (int, float)):
             if got != value:
@@ -81,9 +81,9 @@ stopifnot(length(said) >= 5, nrow(d) == sum(!grepl("^#", lines)) - 1)
 cat("fitted", length(said) - 3)
 """
 
-# Ratings by people who differ in what the methods are to them, and of whom nobody prefers one on the whole: how often
-# the line that is printed finds an effect of the method all the same, and one without slopes. And ratings in which a
-# method is better in one motion and worse in the others: the method's coefficient is that over all of them.
+# Ratings by people who differ in the effect of the methods on them, but without a common preference: how often the printed line
+# finds an effect of the method all the same, and one without slopes. And ratings in which a method is better in one motion and
+# worse in the others: the method's coefficient is that over all of them.
 SLOPES = """
 lines <- readLines("trials.tsv")
 said <- sub("^# ", "", grep("^# ", lines, value = TRUE))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Makes the folders of small studies, the same on every machine: those that R analyses, too.
+"""Makes the folders of small studies, the same on every machine: R analyses them too.
 
 Usage: studies.py FOLDER [--R]   writes FOLDER/NAME for each; with --R also FOLDER/NAME.runs, what analyze.R reads of
 the definition: a line for each run, its name, task, motions, methods, with tabs between and "," in lists.
@@ -15,7 +15,7 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 
 
 class Numbers:
-    """A small generator of our own (Lehmer's), so that no library's version changes a study."""
+    """A small generator of numbers (Lehmer's), so that no library's version changes a study."""
 
     def __init__(self, seed):
         self.state = seed
@@ -53,13 +53,13 @@ def definition(name, motions, methods, runs):
 
 
 def names_in(text):
-    """The motions and the methods of a definition."""
+    """Returns the motions and the methods of a definition."""
     return ([json.loads(n) for k, n in re.findall(r'\[\[(\w+)\]\]\nname = (".*")', text) if k == kind]
             for kind in ("motion", "method"))
 
 
 def cells(r, motions, methods):
-    """What the trials of a run are of, as often as each other."""
+    """Returns the cells of a run, each equally often."""
     ms, ns = r.get("motions", motions), [m for m in methods if m in r.get("methods", methods)]
     pairs = [(ns[0], ns[1]), (ns[1], ns[0])] if r["task"] == "choose" else [(n, "n/a") for n in ns]
     return [(m, *p) for m in ms for p in pairs]
@@ -71,7 +71,7 @@ def table(rows):
 
 
 def write_study(folder, text, people, answers, simulated=False, void=None):
-    """answers(code, run, cell, n) is the answer of the n-th trial of a cell, or None where there is none."""
+    """Writes a study; answers(code, run, cell, n) is the answer of the n-th trial of a cell, or None without one."""
     motions, methods = names_in(text)
     (folder / "sourcedata").mkdir(parents=True)
     (folder / "participants.tsv").write_text("participant_id\tage\tsex\thandedness\n" + "".join(
@@ -82,7 +82,7 @@ def write_study(folder, text, people, answers, simulated=False, void=None):
         beh.mkdir(parents=True)
         source.mkdir()
         (source / "session.json").write_text(json.dumps({"simulated": simulated, "experiment": {"text": text}}))
-        for r in runs_of(text):
+        for r in split_runs(text):
             rows, seen = [], {}
             every = cells(r, motions, methods)
             for cell in shuffle.shuffled(every * (r["trials"] // len(every))):
@@ -94,7 +94,7 @@ def write_study(folder, text, people, answers, simulated=False, void=None):
                        "method_2": cell[2], "response": answer, "response_time": 0.5 + n / 8, "void": "false"}
                 row |= {"rating": answer} if r["task"] == "rate" else {}
                 rows.append(row)
-            # Trials that were not good come again at the end.
+            # Bad trials come again at the end.
             for row in [r for r in rows if void and r["trial"] % void == 0]:
                 rows.append(row | {"attempt": 2})
                 row |= {"void": "true", "response": "n/a", "rating": "n/a", "response_time": "n/a"}
@@ -104,8 +104,8 @@ def write_study(folder, text, people, answers, simulated=False, void=None):
                 (folder / f"task-{name}_beh.json").write_text(json.dumps({"TaskName": r["name"]}))
 
 
-def runs_of(text):
-    """The runs of a definition, without a reader of TOML (Python 3.11 has one, 3.10 not)."""
+def split_runs(text):
+    """Returns the runs of a definition, without a reader of TOML (Python 3.11 has one, 3.10 not)."""
     runs = []
     for part in text.split("[[run]]\n")[1:]:
         runs.append({k: json.loads(v) for k, v in re.findall(
@@ -114,7 +114,7 @@ def runs_of(text):
 
 
 def likes(numbers, strength):
-    """Answers of somebody who prefers the last method by `strength` (choose), and rates so."""
+    """Returns answers of a person who prefers the last method by `strength` (choose), and rates so."""
     def answer(_, r, cell, __):
         effect = strength(cell[0])
         if r["task"] == "choose":
@@ -134,7 +134,7 @@ TWO = ["tactile-brush", "park2016"]
 
 
 def simulated(folder):
-    """The shipped experiment, twelve people, some trials void."""
+    """Makes the shipped experiment, twelve people, some trials void."""
     text = (ROOT / "examples/experiments/park2016.toml").read_text(encoding="utf-8")
     numbers = Numbers(2016)
     own = {f"{i:02}": 0.4 * numbers.normal() for i in range(1, 13)}
@@ -146,7 +146,7 @@ def simulated(folder):
 
 
 def ties(folder):
-    """Few trials: many participants have the same figures, and some differences are 0."""
+    """Makes few trials: many participants have the same figures, and some differences are 0."""
     text = definition("ties", FOUR, TWO, [run("taste", "choose", 16), run("marks", "rate", 16, scale=3)])
     numbers = Numbers(77)
     answers = likes(numbers, lambda m: 0.5 if m != "motion-2" else -0.2)
@@ -154,7 +154,7 @@ def ties(folder):
 
 
 def missing(folder):
-    """One has no trial of the first run, another lacks a cell of the second, a third has not come."""
+    """Leaves out a participant's first run, another's cell of the second, and a third participant."""
     text = definition("missing", FOUR, TWO, [run("taste", "choose", 40), run("marks", "rate", 40)])
     numbers = Numbers(5)
     base = with_last(likes(numbers, lambda m: 0.8 + 0.2 * FOUR.index(m)), "park2016")
@@ -170,7 +170,7 @@ def missing(folder):
 
 
 def constant(folder):
-    """Everybody always chooses the last method for one motion, and rates one cell the same."""
+    """Makes everybody always choose the last method for one motion, and rate one cell the same."""
     text = definition("constant", FOUR, TWO, [run("taste", "choose", 40), run("marks", "rate", 40)])
     numbers = Numbers(31)
     base = with_last(likes(numbers, lambda m: 0.7), "park2016")
@@ -186,21 +186,21 @@ def constant(folder):
 
 
 def two_levels(folder):
-    """Two motions only, where nothing can fail to be spherical."""
+    """Makes two motions only, where sphericity always holds."""
     text = definition("two-levels", FOUR[:2], TWO, [run("taste", "choose", 20), run("marks", "rate", 20, scale=7)])
     numbers = Numbers(12345)
     write_study(folder, text, [f"p{i}" for i in range(5)], with_last(likes(numbers, lambda m: 0.9), "park2016"))
 
 
 def few(folder):
-    """Three people and four motions: no Mauchly."""
+    """Makes three people and four motions: no Mauchly."""
     text = definition("few", FOUR, TWO, [run("taste", "choose", 40), run("marks", "rate", 40)])
     numbers = Numbers(999)
     write_study(folder, text, ["x1", "x2", "x3"], with_last(likes(numbers, lambda m: 0.6), "park2016"))
 
 
 def three_by_three(folder):
-    """Three methods, three motions, and a run in which motions are told apart."""
+    """Makes three methods, three motions, and a run that identifies motions."""
     methods = [*TWO, "continuous"]
     text = definition("three", FOUR[:3], methods, [run("marks", "rate", 27, scale=9), run("which", "identify", 36),
                                                    run("pair", "choose", 12, methods=["continuous", "tactile-brush"])])
@@ -220,12 +220,12 @@ STUDIES = {"simulated": simulated, "ties": ties, "missing": missing, "constant":
 
 
 def for_r(folder, file):
-    """What analyze.R reads of the definition."""
+    """Returns the part of the definition that analyze.R reads."""
     text = json.loads(next(folder.glob("sourcedata/sub-*/session.json")).read_text())["experiment"]["text"]
     motions, methods = names_in(text)
     file.write_text("".join("\t".join((
         r["name"], r["task"], ",".join(m for m in motions if m in r.get("motions", motions)),
-        ",".join(m for m in methods if m in r.get("methods", methods)))) + "\n" for r in runs_of(text)))
+        ",".join(m for m in methods if m in r.get("methods", methods)))) + "\n" for r in split_runs(text)))
 
 
 def main():

@@ -25,7 +25,7 @@ run_outline run(const std::string& name, task_kind task, unsigned trials)
     return r;
 }
 
-// Trials of one motion, in which the second method was chosen.
+// Makes trials of one motion, in which the second method was chosen.
 run_data chosen(unsigned trials)
 {
     run_data d;
@@ -34,7 +34,7 @@ run_data chosen(unsigned trials)
     return d;
 }
 
-TEST_CASE("trials that are missing are told, whoever lacks them")
+TEST_CASE("missing trials are reported with their participants")
 {
     dataset d;
     d.experiment.runs = {run("pairs", task_kind::choose, 4)};
@@ -48,11 +48,11 @@ TEST_CASE("trials that are missing are told, whoever lacks them")
         return w.find("that count, of") != std::string::npos;
     });
     CHECK(told == 2);
-    d.experiment.runs[0].trials = 0; // the definition does not say how many
+    d.experiment.runs[0].trials = 0; // the definition does not give their number
     CHECK_FALSE(warns(analyse(d), "pairs: sub-2 has 3 trials that count, of 0"));
 }
 
-// The first method is always rated 1, the second 5, but for some fours.
+// The first method is always rated 1, the second 5, except for some fours.
 run_data rated(unsigned trials, unsigned fours)
 {
     run_data d;
@@ -65,7 +65,7 @@ run_data rated(unsigned trials, unsigned fours)
     return d;
 }
 
-TEST_CASE("an effect too large for an interval is told")
+TEST_CASE("an effect too large for an interval is reported")
 {
     dataset d;
     d.experiment.runs = {run("marks", task_kind::rate, 0)};

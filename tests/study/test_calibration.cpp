@@ -25,7 +25,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::string text_of(const fs::path& file)
+std::string file_text(const fs::path& file)
 {
     std::ifstream in(file, std::ios::binary);
     return {std::istreambuf_iterator<char>(in), {}};
@@ -62,7 +62,7 @@ struct outcome {
     std::string tables;
 };
 
-// A session, or the rest of one.
+// Runs a session, or the rest of one.
 outcome run(const fs::path& log, bool resume, calibration_settings s = settings(), std::size_t most = 10000,
             const observer_settings& asked = who)
 {
@@ -73,7 +73,7 @@ outcome run(const fs::path& log, bool resume, calibration_settings s = settings(
     lines.begin();
     for (std::size_t i = 0; i < most && !c.done(); ++i)
         lines.append(c.answer(o.answer(c.next())));
-    return {text_of(log), calibration_text(s, c.thresholds())};
+    return {file_text(log), calibration_text(s, c.thresholds())};
 }
 
 std::string refusal(const fs::path& log, bool resume, const calibration_settings& s = settings())
@@ -99,12 +99,12 @@ TEST_CASE("the same seed gives the same session, another seed another")
     CHECK(has(a.log, "1\t2\t-20\t"));
 }
 
-TEST_CASE("a log cut off anywhere goes on as if nothing had been")
+TEST_CASE("a log cut off anywhere resumes as if nothing had happened")
 {
     const folder f;
     const outcome whole = run(f / "a.tsv", false);
-    const std::string began = text_of(f / "a.json");
-    // Each byte of header, first and last trials; between, each seventh: sooner or later each place in a
+    const std::string began = file_text(f / "a.json");
+    // Each byte of header, first and last trials; between them each seventh, which finds each place in a
     // line.
     const std::size_t size = whole.log.size();
     for (std::size_t bytes = 0; bytes <= size; bytes += bytes < 300 || size - bytes <= 300 ? 1 : 7) {
@@ -119,7 +119,7 @@ TEST_CASE("a log cut off anywhere goes on as if nothing had been")
     }
 }
 
-TEST_CASE("a session goes on in each phase: staircase, checks above and below, second staircase")
+TEST_CASE("a session resumes in each phase: staircase, checks above and below, second staircase")
 {
     const folder f;
     calibration_settings s = settings();
@@ -140,7 +140,7 @@ TEST_CASE("a session goes on in each phase: staircase, checks above and below, s
     }
     const outcome whole = run(f / "a.tsv", false, s, 10000, careless);
     REQUIRE(has(whole.tables, "staircases = 2"));
-    const std::string began = text_of(f / "a.json");
+    const std::string began = file_text(f / "a.json");
     for (std::size_t end = whole.log.find('\n'); end != whole.log.npos; end = whole.log.find('\n', end + 1)) {
         CAPTURE(end);
         put(f / "b.tsv", whole.log.substr(0, end + 1));
@@ -151,7 +151,7 @@ TEST_CASE("a session goes on in each phase: staircase, checks above and below, s
     }
 }
 
-TEST_CASE("what was killed before its first byte can go on, too")
+TEST_CASE("a session killed before its first byte resumes, too")
 {
     const folder f;
     const outcome whole = run(f / "a.tsv", false);
@@ -162,23 +162,23 @@ TEST_CASE("what was killed before its first byte can go on, too")
     CHECK(run(f / "beside.tsv", true).log == whole.log);
 }
 
-TEST_CASE("where nothing was answered a session is begun anew, on other terms too")
+TEST_CASE("without answers a session begins anew, even with other options")
 {
     const folder f;
     run(f / "a.tsv", false, settings(), 0);
     CHECK_FALSE(fs::exists(f / "a.tsv"));
     CHECK_FALSE(fs::exists(f / "a.json"));
-    // As one that was killed leaves it.
+    // Like after a kill.
     put(f / "a.tsv", header);
     put(f / "a.json", settings_text(settings()));
     calibration_settings other = settings();
     other.carrier_hz = 100.0;
     const outcome again = run(f / "a.tsv", false, other);
     CHECK(has(again.tables, "carrier_hz = 100\n"));
-    CHECK(has(text_of(f / "a.json"), "\"carrier_hz\": 100.0"));
+    CHECK(has(file_text(f / "a.json"), "\"carrier_hz\": 100.0"));
     put(f / "b.json", "{\"mine\": 1}");
     CHECK(has(refusal(f / "b.tsv", false), "b.json: it does not say how"));
-    CHECK(text_of(f / "b.json") == "{\"mine\": 1}");
+    CHECK(file_text(f / "b.json") == "{\"mine\": 1}");
 }
 
 TEST_CASE("a person's answers and times come back from the log")
@@ -194,12 +194,12 @@ TEST_CASE("a person's answers and times come back from the log")
             log.append(
                 c.answer({.interval = 1 + i % 2, .response_time_s = 0.25 * i, .onset_frame = 48000 * i}));
     }
-    const std::string before = text_of(f / "a.tsv");
+    const std::string before = file_text(f / "a.tsv");
     calibration_log log(f / "a.tsv", true, s);
     calibration c(s);
     replay(c, log, nullptr);
     CHECK(c.next().number == 10);
-    CHECK(text_of(f / "a.tsv") == before);
+    CHECK(file_text(f / "a.tsv") == before);
 }
 
 // Replaces each.
@@ -210,11 +210,11 @@ std::string with(std::string text, const std::string& from, const std::string& t
     return text;
 }
 
-TEST_CASE("a log that another program saved goes on, and keeps its line ends")
+TEST_CASE("a log saved by another program resumes, and keeps its line ends")
 {
     const folder f;
     const outcome whole = run(f / "a.tsv", false);
-    const std::string began = text_of(f / "a.json");
+    const std::string began = file_text(f / "a.json");
     const std::string some = whole.log.substr(0, whole.log.find("\n9\t") + 1);
     const auto goes_on = [&](const std::string& saved, const std::string& end) {
         put(f / "b.tsv", saved);
@@ -253,7 +253,7 @@ TEST_CASE("a log of columns in another order takes answers by their names")
     CHECK(run(f / "a.tsv", true).log == turned(whole.log));
 }
 
-TEST_CASE("what is cut off a log is kept beside it, and only when the rest is this session's")
+TEST_CASE("a cut off part of a log is kept beside it, and only when the rest is of this session")
 {
     const folder f;
     const outcome whole = run(f / "a.tsv", false);
@@ -263,19 +263,19 @@ TEST_CASE("what is cut off a log is kept beside it, and only when the rest is th
     calibration_settings other = settings();
     other.seed = 7;
     CHECK(refusal(f / "a.tsv", true, other) != "no error");
-    CHECK(text_of(f / "a.tsv") == cut);
+    CHECK(file_text(f / "a.tsv") == cut);
     put(f / "a.tsv", with(cut, "true", "false"));
     CHECK(has(refusal(f / "a.tsv", true), "a.tsv:2: this is not how the session went"));
-    CHECK(text_of(f / "a.tsv") == with(cut, "true", "false"));
+    CHECK(file_text(f / "a.tsv") == with(cut, "true", "false"));
     put(f / "a.tsv", cut);
     CHECK(run(f / "a.tsv", true).log == whole.log);
-    CHECK(text_of(f / "a.tsv.cut-1") == last);
+    CHECK(file_text(f / "a.tsv.cut-1") == last);
     put(f / "a.tsv", cut);
     run(f / "a.tsv", true);
-    CHECK(text_of(f / "a.tsv.cut-2") == last);
+    CHECK(file_text(f / "a.tsv.cut-2") == last);
 }
 
-TEST_CASE("what is no table with tabs is refused as what it is, and left as it was")
+TEST_CASE("a file without a table is refused as what it is, and left alone")
 {
     const folder f;
     const outcome whole = run(f / "a.tsv", false);
@@ -289,11 +289,11 @@ TEST_CASE("what is no table with tabs is refused as what it is, and left as it w
           {wide, "a.tsv: is UTF-16, not UTF-8"}}) {
         put(f / "a.tsv", text);
         CHECK(has(refusal(f / "a.tsv", true), says));
-        CHECK(text_of(f / "a.tsv") == text);
+        CHECK(file_text(f / "a.tsv") == text);
     }
 }
 
-TEST_CASE("the array file quotes what a device's name may have in it")
+TEST_CASE("the array file quotes the name of a device")
 {
     calibration_settings s = settings();
     s.masker = "white noise";
@@ -301,7 +301,7 @@ TEST_CASE("the array file quotes what a device's name may have in it")
     CHECK(has(calibration_text(s, {}), "a\\\"b\\\\c\\u0001\\u001F\\u007F d\""));
 }
 
-TEST_CASE("what is not of the session is refused with its line")
+TEST_CASE("a log of another session is refused with the line")
 {
     const folder f;
     const outcome whole = run(f / "a.tsv", false);
@@ -313,10 +313,10 @@ TEST_CASE("what is not of the session is refused with its line")
     CHECK(has(refusal(f / "a.tsv", true), "the session ends before this line"));
     put(f / "a.tsv", "name\tvalue\n");
     CHECK(has(refusal(f / "a.tsv", true), "it is no log"));
-    CHECK(text_of(f / "a.tsv") == "name\tvalue\n");
+    CHECK(file_text(f / "a.tsv") == "name\tvalue\n");
     put(f / "a.tsv", "no line");
     CHECK(has(refusal(f / "a.tsv", true), "it is no log"));
-    CHECK(text_of(f / "a.tsv") == "no line");
+    CHECK(file_text(f / "a.tsv") == "no line");
     put(f / "a.tsv", whole.log);
     calibration_settings other = settings();
     other.carrier_hz = 200.0;
@@ -394,7 +394,7 @@ TEST_CASE("simulated adjustment finds the threshold")
     CHECK(std::abs(sum / 200 + 30.0) < 0.3);
 }
 
-TEST_CASE("the result is an array file that says the whole array")
+TEST_CASE("the result is an array file of the whole array")
 {
     const setup from = parse_setup(R"([array]
 name = "a \"desk\""
@@ -467,12 +467,12 @@ snap = true
         CHECK(a.thresholds == b.thresholds);
         CHECK(a.rise_s == b.rise_s);
     }
-    // What is measured takes the place of a list; who is not asked keeps it.
+    // A measurement replaces a list; an unmeasured tactor keeps its list.
     CHECK(read.array->tactors[0].thresholds.empty());
     CHECK(read.array->tactors[2].thresholds == std::vector<threshold_point>{{100.0, -30.5}, {250.0, -50.0}});
     CHECK(*read.array->tactors[0].threshold_dbfs == -44.125);
     CHECK(!read.array->tactors[1].threshold_dbfs);
-    // Nothing is lost: written again, it is the same.
+    // The file is complete: written again, it is the same.
     CHECK(array_text(*read.array, read) == array_text(now, from));
     CHECK(*read.output.channels == 8);
     CHECK(read.sync->in->name == "GPIO6");
@@ -515,13 +515,13 @@ TEST_CASE("one participant's calibrations at several carriers come to lists by f
     CHECK(less.tactors[0].thresholds == points{{100.0, -20.0}});
     CHECK(less.tactors[2].thresholds == points{{60.0, -10.0}});
 
-    // Nobody else's, and nothing that nobody felt.
+    // Without other people's, and without thresholds that nobody felt.
     for (const auto& other : {calibration_origin{"P08", 100.0, false}, {"P07", 100.0, true}}) {
         const array fresh = with_thresholds(a, other, s, measured);
         CHECK(fresh.tactors[0].threshold_dbfs == -41.0);
         CHECK(fresh.tactors[0].thresholds.empty());
         CHECK(fresh.tactors[2].thresholds.empty());
-        CHECK_FALSE(fresh.tactors[1].threshold_dbfs); // whom nobody asked now, neither
+        CHECK_FALSE(fresh.tactors[1].threshold_dbfs); // the tactor was not measured now, either
         CHECK(with_thresholds(a, other, s, {}).tactors[2].thresholds.empty());
     }
 }
@@ -553,7 +553,7 @@ TEST_CASE("the tables of a calibration are checked where they are read")
     CHECK_THROWS_AS(parse_setup(good, "me.toml"), error);
 }
 
-TEST_CASE("simulate says what is wrong with it")
+TEST_CASE("a bad simulation is refused with the fault")
 {
     const auto said = [](std::string_view text) {
         try {

@@ -48,7 +48,7 @@ TEST_CASE("the shipped experiment is the paper's")
     CHECK(d.masking.noise == noise_kind::white);
 }
 
-TEST_CASE("what is not said is the default")
+TEST_CASE("missing keys have defaults")
 {
     const experiment_definition d = read(head + motion + methods + run);
     CHECK(d.title == "e");
@@ -64,7 +64,7 @@ TEST_CASE("what is not said is the default")
     CHECK(d.runs[0].break_s == 0.0);
 }
 
-TEST_CASE("a motion says what a stroke may say, with the unit in the key or without")
+TEST_CASE("a motion takes the keys of a stroke, with the unit in the key or without")
 {
     const auto duration = [](const std::string& m) {
         return read(head + "[[motion]]\nname = \"m\"\n" + m + methods + run)
@@ -77,7 +77,7 @@ TEST_CASE("a motion says what a stroke may say, with the unit in the key or with
     CHECK(duration("path = \"M0 0H30\"\n") == doctest::Approx(0.5)); // 60 mm/s
 }
 
-TEST_CASE("a method says what options of a plan may say")
+TEST_CASE("a method takes the options of a plan")
 {
     const experiment_definition d =
         read(head + motion +
@@ -94,7 +94,7 @@ TEST_CASE("a method says what options of a plan may say")
     CHECK(d.methods[1].options.faces == faces_kind::nearest);
 }
 
-TEST_CASE("what is wrong is said with its line")
+TEST_CASE("faults have their line")
 {
     const auto says = [](const std::string& text, const char* where, const char* what) {
         const std::string message = refusal(text);
@@ -127,7 +127,7 @@ TEST_CASE("what is wrong is said with its line")
     says(head + "[[motion]]\nname = \"m\"\nfile = \"none.csv\"\n" + methods + run, "e.toml:5:", "none.csv");
     says(head + "[[motion]]\nname = \"a\\tb\"\npreset = \"park2016-1\"\n" + methods + run,
          "e.toml:4:", "tabs");
-    // A key that is there in its other spelling is not the one that is unknown.
+    // A present key in its other spelling is not reported as unknown.
     says(head + motion + "[[method]]\nname = \"a\"\ndrop-points = true\nsoa_s = 0.06\nburts = 0.05\n" + run,
          "e.toml", "unknown key 'burts' in [[method]] (did you mean 'burst'?)");
     says(head + motion + "[[method]]\nname = \"a\"\nalgorithm = \"brush\"\n" + run,
@@ -149,7 +149,7 @@ TEST_CASE("what is wrong is said with its line")
     says(head + motion + methods + run + run, "e.toml:18:", "one name");
 }
 
-TEST_CASE("an experiment that is not there lists those that are")
+TEST_CASE("a missing experiment lists the existing ones")
 {
     CHECK(has(message_of([] { load_definition("park2017"); }), "park2016, or a file"));
     CHECK(has(message_of([] { load_definition("./none.toml"); }), "none.toml"));

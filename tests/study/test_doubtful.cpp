@@ -26,7 +26,8 @@ TEST_CASE("a threshold more than 12 dB above the array's median is named, one be
     CHECK(found[0].why == "it is 12.1 dB above the median of the array's (-45.0 dBFS)");
     CHECK(find_doubtful(row({-45, -44, -33, -46, -70}), {}, {}).empty());
     CHECK(find_doubtful(row({-46, -44, -20}), {}, {}).size() == 1);
-    CHECK(find_doubtful(row({-46, -44, -32, -30}), {}, {}).empty()); // an even number: the middle two's mean
+    CHECK(find_doubtful(row({-46, -44, -32, -30}), {}, {})
+              .empty()); // an even number: the mean of the middle two
     CHECK(find_doubtful(row({}), {}, {}).empty());
 }
 

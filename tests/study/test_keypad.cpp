@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Which keys of an input device answer what. A device itself: tests/vm/guest/test_keypad.py.
-#include "study/session/keypad.hpp"
+#include "study/session/key_input.hpp"
 
 #include <map>
-#include <string>
 
 #include <doctest/doctest.h>
 #include <linux/input-event-codes.h>
@@ -23,7 +22,7 @@ TEST_CASE("keys of a keyboard, a number block, a button box and a joystick answe
             CHECK(study::answer_of_key(static_cast<std::uint16_t>(code)) == static_cast<char>('1' + i));
 }
 
-TEST_CASE("an adjustment is made with signs or arrows, and most keys answer nothing")
+TEST_CASE("an adjustment uses signs or arrows, and most keys answer nothing")
 {
     std::map<char, unsigned> of;
     for (unsigned code = 0; code <= 0xFFFF; ++code)
@@ -50,7 +49,7 @@ TEST_CASE("an adjustment is made with signs or arrows, and most keys answer noth
     CHECK(study::answer_of_key(KEY_0) == 'n');
 }
 
-TEST_CASE("a keypad that is not there, and what is none")
+TEST_CASE("missing keypads and other files are refused")
 {
     const auto kind = [](const char* device) {
         try {

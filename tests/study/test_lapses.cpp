@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Prints the errors of thresholds of simulated observers who sometimes press the wrong key:
-//   build-tests/tests/study/test-study -tc="*lapses*"
+//   build-tests/test-study -tc="*lapses*"
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
 #include <vector>
 
 #include <doctest/doctest.h>
@@ -74,9 +73,9 @@ errors measure(double spread_db, double lapse)
     return e;
 }
 
-// A little more than they came to when this was written: seeds are fixed, so only a change of the rules
-// moves them. With the rule from the first trial on and no check below, 2.3 % of tactors were more than 5 dB
-// off at lapses of 5 % and spreads of 1 and 2 dB, and 17 % at 6 dB.
+// A little above the errors when this was written: seeds are fixed, so only a change of the rules moves them.
+// With the rule from the first trial on and no check below, 2.3 % of tactors were more than 5 dB off at
+// lapses of 5 % and spreads of 1 and 2 dB, and 17 % at 6 dB.
 struct bounds {
     double spread_db, lapse, bias_db, sd_db, far;
 };

@@ -21,7 +21,7 @@
 namespace tactor::study::test_masking {
 namespace {
 
-double level_of(const std::vector<double>& x)
+double measure_level(const std::vector<double>& x)
 {
     double squares = 0.0;
     for (const double v : x)
@@ -37,7 +37,7 @@ std::vector<double> samples(noise_color c, double dbfs, const char* seed, std::s
     return x;
 }
 
-// Power in a Hz around a frequency, at 48 kHz, mean over blocks of 4096 with a Hann window.
+// Returns the power in a Hz around a frequency, at 48 kHz, mean over blocks of 4096 with a Hann window.
 double density_db(const std::vector<double>& x, double hz)
 {
     constexpr std::size_t block = 4096;
@@ -56,7 +56,7 @@ double density_db(const std::vector<double>& x, double hz)
     return 10.0 * std::log10(power);
 }
 
-// The mean around it, from 0.8 to 1.2 of it.
+// Returns the mean around it, from 0.8 to 1.2 of it.
 double band_db(const std::vector<double>& x, double hz)
 {
     double sum = 0.0;
@@ -65,12 +65,12 @@ double band_db(const std::vector<double>& x, double hz)
     return sum / 9.0;
 }
 
-TEST_CASE("noise has the level asked for, and the same seed the same samples")
+TEST_CASE("noise has the given level, and the same seed gives the same samples")
 {
     for (const noise_color c : {noise_color::white, noise_color::pink}) {
         CAPTURE(static_cast<int>(c));
         const auto x = samples(c, -30.0, "a", 1 << 19);
-        CHECK(level_of(x) == doctest::Approx(-30.0).epsilon(0.02)); // pink is slow to settle
+        CHECK(measure_level(x) == doctest::Approx(-30.0).epsilon(0.02)); // pink is slow to settle
         CHECK(x == samples(c, -30.0, "a", 1 << 19));
         CHECK(x != samples(c, -30.0, "b", 1 << 19));
         const auto loud = samples(c, greatest_noise_dbfs(c), "a", 1 << 18);
@@ -78,7 +78,7 @@ TEST_CASE("noise has the level asked for, and the same seed the same samples")
     }
 }
 
-TEST_CASE("white noise is as strong at each frequency, pink falls by 3 dB an octave")
+TEST_CASE("white noise is equally strong at each frequency, pink falls by 3 dB an octave")
 {
     const std::size_t n = static_cast<std::size_t>(test::rounds(128)) * 4096;
     const auto white = samples(noise_color::white, -20.0, "s", n);
@@ -91,7 +91,7 @@ TEST_CASE("white noise is as strong at each frequency, pink falls by 3 dB an oct
     }
 }
 
-// A device whose clock moves when the test says so.
+// A device whose clock the test moves.
 class own_sink final : public sink {
 public:
     own_sink()
@@ -122,7 +122,7 @@ public:
     }
     io_result write(std::span<const std::byte> offered) noexcept override
     {
-        // Fewer than offered, as devices may.
+        // Takes fewer than offered, as devices may.
         const std::size_t frames = std::min<std::size_t>(offered.size() / setup_.frame_bytes(), 37);
         std::vector<float> x(2 * frames);
         std::memcpy(x.data(), offered.data(), x.size() * sizeof(float));
@@ -222,7 +222,7 @@ TEST_CASE("a device that is lost, or stands still all the time, ends the noise")
     CHECK(n.step(io_kind::ok, true) == io_kind::lost);
 }
 
-TEST_CASE("a masker that cannot be is refused")
+TEST_CASE("an impossible masker is refused")
 {
     const auto said = [](const masking_options& o, io_kind preparing) -> std::string {
         auto s = std::make_unique<own_sink>();

@@ -38,7 +38,7 @@ TEST_CASE("runs in order, motions and methods in the order of the definition")
     CHECK(e.runs[2].motions == std::vector<std::string>{"a", "b"});
 }
 
-TEST_CASE("what is wrong is said with its line")
+TEST_CASE("faults have their line")
 {
     CHECK(refusal("[experiment\n").find("e.toml:1:") == 0);
     CHECK(refusal("[[run]]\n").find("there is no [experiment]") != std::string::npos);
@@ -64,7 +64,7 @@ TEST_CASE("what is wrong is said with its line")
     CHECK(refusal(head + "[[motion]]\nname = \"a\\tb\"\n").find("no such name") != std::string::npos);
 }
 
-TEST_CASE("what the analysis does not need is passed over")
+TEST_CASE("keys that the analysis does not need are skipped")
 {
     CHECK(refusal("[masking]\nnoise = 7\n" + head +
                   "algorithm = 7\nnew = true\n[[run]]\nname = \"r\"\ntask = \"choose\"\nscale = 7\n"

@@ -29,7 +29,7 @@ std::string answer(unsigned ask, unsigned choice)
     return json{{"ask", ask}, {"answer", choice}}.dump();
 }
 
-// What the one message says.
+// Returns the only message.
 json only(const std::vector<page_dialogue::message>& all, page_dialogue::visitor to)
 {
     REQUIRE(all.size() == 1);
@@ -37,10 +37,10 @@ json only(const std::vector<page_dialogue::message>& all, page_dialogue::visitor
     return json::parse(all.front().text);
 }
 
-TEST_CASE("a page that comes is told the facts and the present state")
+TEST_CASE("a new page gets the facts and the present state")
 {
     page_dialogue d(json{{"words", "here"}});
-    CHECK(d.show({.name = "rest", .lasts_s = 60.0}, 5 * second_ns).empty()); // nobody there
+    CHECK(d.show({.name = "rest", .lasts_s = 60.0}, 5 * second_ns).empty()); // without a page
     const auto h = d.hear(7, hello, 8 * second_ns);
     CHECK(h.understood);
     CHECK_FALSE(h.answer);
@@ -70,18 +70,18 @@ TEST_CASE("a keypad answers for the page that shows the question")
 {
     page_dialogue d(json::object());
     static_cast<void>(d.show(question("ynr"), 0));
-    CHECK_FALSE(d.press('1', 0).answer); // nobody sees what is asked
+    CHECK_FALSE(d.press('1', 0).answer); // no page shows the question
     static_cast<void>(d.hear(1, hello, 0));
     CHECK_FALSE(d.press('0', 0).answer);
     CHECK_FALSE(d.press('4', 0).answer);
     const auto pressed = d.press('2', 0);
     CHECK(pressed.answer == 'n');
-    CHECK(only(pressed.replies, 1)["ask"] == 0); // its buttons mean nothing any more
+    CHECK(only(pressed.replies, 1)["ask"] == 0); // its buttons have no effect any more
     CHECK_FALSE(d.press('2', 0).answer);
     CHECK_FALSE(d.hear(1, answer(1, 1), 0).answer);
 }
 
-TEST_CASE("what is not asked any more has no answer")
+TEST_CASE("a past question takes no answer")
 {
     page_dialogue d(json::object());
     static_cast<void>(d.hear(1, hello, 0));
@@ -90,7 +90,7 @@ TEST_CASE("what is not asked any more has no answer")
     CHECK_FALSE(d.hear(1, answer(1, 1), 0).answer);
 }
 
-TEST_CASE("of two pages the one that came last answers, and the other is told")
+TEST_CASE("the newest of two pages answers, and the other is notified")
 {
     page_dialogue d(json::object());
     static_cast<void>(d.hear(1, hello, 0));
@@ -111,7 +111,7 @@ TEST_CASE("of two pages the one that came last answers, and the other is told")
     CHECK_FALSE(d.hear(2, answer(2, 1), 0).answer);
 }
 
-TEST_CASE("nonsense is not understood")
+TEST_CASE("nonsense is refused")
 {
     page_dialogue d(json::object());
     for (const char* text :
@@ -119,15 +119,15 @@ TEST_CASE("nonsense is not understood")
         CHECK_FALSE_MESSAGE(d.hear(1, text, 0).understood, text);
 }
 
-TEST_CASE("words that are no UTF-8 do not break a message")
+TEST_CASE("words that are not UTF-8 do not break a message")
 {
     page_dialogue d(json::object());
     static_cast<void>(d.hear(1, hello, 0));
     CHECK(only(d.show({.name = "consent", .text = "\xff"}, 0), 1)["text"] == "\xEF\xBF\xBD");
 }
 
-// Pages that come, go, and say what they like, at any time.
-TEST_CASE("each question is answered once at most, and only as it was asked")
+// Pages that come, go, and send any message, at any time.
+TEST_CASE("each question is answered at most once, and only as it was asked")
 {
     random_numbers r("pages");
     page_dialogue d(json::object());

@@ -48,7 +48,7 @@ TEST_CASE("the interval of a share is that of Clopper and Pearson")
     CHECK(binomial_interval(10, 10).second == 1.0);
 }
 
-TEST_CASE("the quick test is the other's t and p")
+TEST_CASE("the quick test gives the t and p of the full one")
 {
     const std::vector<double> v{62.5, 70.0, 41.0, 88.5, 50.0};
     const t_test quick = quick_test_mean(v, 50.0);
@@ -60,7 +60,7 @@ TEST_CASE("the quick test is the other's t and p")
     CHECK_FALSE(quick.d_ci.has_value());
 }
 
-TEST_CASE("where both methods are one, one study in twenty is significant")
+TEST_CASE("where both methods are equal, one study in twenty is significant")
 {
     const rig r("tactile-brush", std::string(choose) + rate);
     const std::vector<run_power> told = r.tell({{.seed = 1, .sigma = 1.0}, {8}, 3000});
@@ -84,7 +84,7 @@ TEST_CASE("less noise and more people find more")
     CHECK(power(8.0, 6) < power(8.0, 24));
 }
 
-TEST_CASE("studies of fewer are the first of those of more, in any order that is asked for")
+TEST_CASE("smaller studies are the first people of larger ones, in any given order")
 {
     const rig r("park2016", std::string(choose) + rate);
     const simulation s{.seed = 3, .sigma = 4.0, .voids = 0.2};
@@ -116,7 +116,7 @@ TEST_CASE("ratings of one method have nothing to compare, identifications chance
     CHECK(told[1].at[0].significant > 0);
 }
 
-TEST_CASE("it is asked before each study whether to go on, and then tells nothing")
+TEST_CASE("the computation asks before each study whether to go on, and gives nothing when stopped")
 {
     const rig r("park2016", choose);
     int asked = 0;

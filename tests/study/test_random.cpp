@@ -21,21 +21,21 @@ TEST_CASE("SHA-256 is that of FIPS 180-4")
           "248d6a61d20638b8e5c026930c3e6039a33ce45964ff2167f6ecedd419db06c1");
     CHECK(detail::sha256_text(std::string(1000000, 'a')) ==
           "cdc76e5c9914fb9281a1c7e284d73e67f1809a48a497200e046d39ccc7112cd0");
-    // Around the length at which the end needs a block of its own.
+    // Around the length at which the end needs another block.
     CHECK(detail::sha256_text(std::string(55, 'a')) ==
           "9f4390f8d30c2dd92ec9f095b65e2b9ae9b0a925a5258e241c9f1e910f734318");
     CHECK(detail::sha256_text(std::string(56, 'a')) ==
           "b35439a4ac6f0948b6d6f9e3c6af0f5f590ce20f1bde7090ef7970686ec6738a");
 }
 
-TEST_CASE("xoshiro256** draws what its authors' program draws")
+TEST_CASE("xoshiro256** draws the numbers of its authors' program")
 {
     random_numbers r(std::array<std::uint64_t, 4>{1, 2, 3, 4});
     for (const std::uint64_t known : {11520ULL, 0ULL, 1509978240ULL, 1215971899390074240ULL})
         CHECK(r.next() == known);
 }
 
-TEST_CASE("a text is a seed, and another text another")
+TEST_CASE("each text gives its own seed")
 {
     random_numbers a("1/park2016/01/similarity");
     random_numbers again("1/park2016/01/similarity");
@@ -45,7 +45,7 @@ TEST_CASE("a text is a seed, and another text another")
     CHECK(first != b.next());
 }
 
-// Chi-square of a fixed seed: it is the same each time.
+// Returns the chi-square of a fixed seed, the same each time.
 double chi_square(const std::vector<unsigned>& counts)
 {
     const double mean =
@@ -63,7 +63,7 @@ TEST_CASE("no number below n is favoured")
     for (int i = 0; i < 70000; ++i)
         ++counts.at(r.below(7));
     CHECK(chi_square(counts) < 22.5); // p = 0.001 with 6 degrees of freedom
-    // 3 * 2^30: without what Lemire rejects, the lowest quarter comes twice as often as the others.
+    // 3 * 2^30: without Lemire's rejections, the lowest quarter comes twice as often as the others.
     const std::uint32_t n = 3U << 30;
     std::vector<unsigned> thirds(3);
     for (int i = 0; i < 30000; ++i)
@@ -72,7 +72,7 @@ TEST_CASE("no number below n is favoured")
     CHECK(r.below(1) == 0);
 }
 
-TEST_CASE("all orders are as likely")
+TEST_CASE("all orders are equally likely")
 {
     random_numbers r("shuffle");
     std::vector<unsigned> counts(24);

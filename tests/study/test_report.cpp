@@ -30,20 +30,20 @@ study_facts sessions_that_say(const std::vector<std::string>& devices)
     return f;
 }
 
-std::string device_of(const session_facts& s)
+std::string device_text(const session_facts& s)
 {
     return s.facts()["device"].words();
 }
 
-TEST_CASE("what all say is said once, and else with who says it")
+TEST_CASE("values shared by all are printed once, others with their participants")
 {
-    CHECK(told(sessions_that_say({"a", "a", "a"}), device_of) == "a");
-    CHECK(told(sessions_that_say({"a", "b", "a"}), device_of) == "a (sub-1, sub-3); b (sub-2)");
-    CHECK(told(sessions_that_say({"", "b"}), device_of) == "not recorded (sub-1); b (sub-2)");
-    CHECK(told(sessions_that_say({""}), device_of) == "not recorded");
+    CHECK(told(sessions_that_say({"a", "a", "a"}), device_text) == "a");
+    CHECK(told(sessions_that_say({"a", "b", "a"}), device_text) == "a (sub-1, sub-3); b (sub-2)");
+    CHECK(told(sessions_that_say({"", "b"}), device_text) == "not recorded (sub-1); b (sub-2)");
+    CHECK(told(sessions_that_say({""}), device_text) == "not recorded");
 }
 
-TEST_CASE("what files say is no Markdown, and no control of a terminal")
+TEST_CASE("texts from files are no Markdown, and do not control a terminal")
 {
     CHECK(plain("a_b*c|d") == "a\\_b\\*c\\|d");
     CHECK(plain("two\nlines\tand") == "two lines and");
@@ -52,14 +52,14 @@ TEST_CASE("what files say is no Markdown, and no control of a terminal")
     CHECK(table_head({"a", "b"}) == "| a | b |\n| --- | --- |\n");
 }
 
-TEST_CASE("ranges are one number where all are alike to six digits")
+TEST_CASE("ranges are one number where all are equal to six digits")
 {
     CHECK(range_text({}) == "not recorded");
     CHECK(range_text({0.07, 0.07000000001}) == "0.07");
     CHECK(range_text({3.0, 1.5, 2.0}) == "1.5 to 3");
 }
 
-TEST_CASE("a value that is not what it should be is told with its place")
+TEST_CASE("a wrong value is reported with its place")
 {
     const ordered j = {{"array", {{"tactors", {{{"x_mm", "left"}}}}}}, {"n", nullptr}, {"date", 7}};
     const json_value f(j, file, "it was changed");
@@ -86,7 +86,7 @@ TEST_CASE("any value has words")
     CHECK(f["c"].words().empty());
 }
 
-TEST_CASE("carriers are told as they were")
+TEST_CASE("carriers are reported as they were")
 {
     const auto carrier = [](const ordered& stroke) {
         const ordered plan = {{"stroke", stroke}};
@@ -102,7 +102,7 @@ TEST_CASE("carriers are told as they were")
           "sine of 80 Hz, its frequency changing on the way: 80 to 300 Hz");
 }
 
-TEST_CASE("options are told where they matter")
+TEST_CASE("options are reported where they matter")
 {
     plan_options o;
     CHECK(method_options(o) == "SOA 0.07 s, timing fixed");

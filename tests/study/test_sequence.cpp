@@ -37,7 +37,7 @@ std::string order_text(std::size_t n, const std::string& code)
     return text;
 }
 
-// How likely counts so far from equal are, where all are as likely as each other.
+// Returns the probability of counts so far from equal, if all are equally likely.
 double p_of_equal(const std::vector<double>& counts)
 {
     double sum = 0.0;
@@ -63,7 +63,7 @@ TEST_CASE("four runs come in the paper's Williams square")
     CHECK(order_text(1, "7") == "1");
 }
 
-TEST_CASE("a code without a number has a row of the square too, and codes get them all")
+TEST_CASE("a code without a number gets a row of the square too, and codes use them all")
 {
     std::set<std::string> seen;
     for (const char* code : {"ada", "bob", "eve", "mallory", "zoe", "kim", "lee", "ann", "tom", "sue"})
@@ -152,12 +152,11 @@ TEST_CASE("over 10,000 seeds no motion, order or position is favoured")
         }
         ++first[s.trials[0].method_1];
     }
-    // Forty looks: the smallest p of forty fair ones is below 1e-4 in one of 250 tests, and the seeds are
-    // fixed.
+    // Forty tests: the smallest p of forty fair ones is below 1e-4 in one of 250, and the seeds are fixed.
     for (const std::vector<double>& at : cells)
         CHECK(p_of_equal(at) > 1e-4);
     CHECK(p_of_equal(first) > 1e-4);
-    // Who follows whom: of twelve pairs of different motions none is favoured, nor of the four repetitions.
+    // Sequences: of twelve pairs of different motions none is favoured, nor of the four repetitions.
     std::vector<double> others;
     std::vector<double> same;
     for (std::size_t i = 0; i < 16; ++i)
@@ -166,7 +165,7 @@ TEST_CASE("over 10,000 seeds no motion, order or position is favoured")
     CHECK(p_of_equal(same) > 1e-4);
 }
 
-TEST_CASE("what is left over is drawn fairly, too")
+TEST_CASE("the remainder is drawn fairly, too")
 {
     const experiment_definition d = with_run("task = \"rate\"\nattribute = \"uniformity\"\ntrials = 3\n");
     std::vector<double> cells(8, 0.0);
@@ -176,7 +175,7 @@ TEST_CASE("what is left over is drawn fairly, too")
     CHECK(p_of_equal(cells) > 1e-4);
 }
 
-TEST_CASE("seed, experiment, code and run each make another order, and the same make the same")
+TEST_CASE("seed, experiment, code and run each change the order, and the same ones give the same")
 {
     const experiment_definition d = load_definition("park2016");
     const run_sequence s = make_run(d, 0, "01", 1);
@@ -189,7 +188,7 @@ TEST_CASE("seed, experiment, code and run each make another order, and the same 
     CHECK(make_run(other, 0, "01", 1).trials != s.trials);
 }
 
-TEST_CASE("the same on every machine")
+TEST_CASE("orders are the same on every machine")
 {
     std::string text;
     for (const run_sequence& s : make_sequence(load_definition("park2016"), "P07", 2016))
@@ -199,7 +198,7 @@ TEST_CASE("the same on every machine")
     CHECK(seed_of("abc") == 0xba7816bf);
 }
 
-TEST_CASE("an order that cannot be found is refused, and one motion is no order")
+TEST_CASE("an impossible order is refused, and one motion is no order")
 {
     const std::string many = "task = \"rate\"\nattribute = \"similarity\"\ntrials = 200\n";
     CHECK(
@@ -207,7 +206,7 @@ TEST_CASE("an order that cannot be found is refused, and one motion is no order"
     CHECK(make_run(with_run(many, 1), 0, "01", 1).trials.size() == 200);
 }
 
-TEST_CASE("of long runs fewer orders are drawn, so that it is known soon that there is none")
+TEST_CASE("long runs try fewer orders, so that the refusal comes soon")
 {
     static_assert(most_draws(1) == 1000000);
     static_assert(most_draws(200) == 1000000);

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "study/experiment/session_flow.hpp"
 
-#include <algorithm>
 #include <map>
 #include <vector>
 
@@ -13,7 +12,7 @@
 namespace tactor::study::test_session_flow {
 namespace {
 
-flow_run run_of(unsigned trials, unsigned practice = 0, bool rest = false)
+flow_run make_flow_run(unsigned trials, unsigned practice = 0, bool rest = false)
 {
     return {practice, 0, run_queue(trials), rest};
 }
@@ -23,7 +22,7 @@ session_step trial_step(std::size_t run, unsigned trial, unsigned attempt = 1)
     return {.what = step_kind::trial, .run = run, .which = {trial, attempt}};
 }
 
-// Past consent, walk and introduction.
+// Returns a session past consent, walk and introduction.
 session_flow begun(std::vector<flow_run> runs)
 {
     session_flow f(std::move(runs), false, 0);
@@ -33,7 +32,7 @@ session_flow begun(std::vector<flow_run> runs)
 
 TEST_CASE("consent, then each tactor, then the question, practice, trials, a break, the next run")
 {
-    session_flow f({run_of(1, 1, true), run_of(1, 0, true)}, true, 2);
+    session_flow f({make_flow_run(1, 1, true), make_flow_run(1, 0, true)}, true, 2);
     CHECK(f.next().what == step_kind::consent);
     f.agree(true);
     CHECK(f.next() == session_step{.what = step_kind::walk, .tactor = 0});
@@ -61,10 +60,10 @@ TEST_CASE("consent, then each tactor, then the question, practice, trials, a bre
 
 TEST_CASE("without consent, or where a tactor is not felt, nothing follows")
 {
-    session_flow no({run_of(1)}, true, 3);
+    session_flow no({make_flow_run(1)}, true, 3);
     no.agree(false);
     CHECK(no.next().what == step_kind::refused);
-    session_flow f({run_of(1)}, false, 3);
+    session_flow f({make_flow_run(1)}, false, 3);
     f.felt(walk_answer::felt);
     f.felt(walk_answer::not_felt);
     CHECK(f.next() == session_step{.what = step_kind::not_felt, .tactor = 1});
@@ -72,7 +71,7 @@ TEST_CASE("without consent, or where a tactor is not felt, nothing follows")
 
 TEST_CASE("a void trial comes again at the end of its run, its attempt counted up")
 {
-    session_flow f = begun({run_of(2)});
+    session_flow f = begun({make_flow_run(2)});
     f.took(true);
     CHECK(f.next() == trial_step(0, 2));
     f.took(false);
@@ -85,14 +84,14 @@ TEST_CASE("a void trial comes again at the end of its run, its attempt counted u
 
 TEST_CASE("void trials of practice do not come again")
 {
-    session_flow f = begun({run_of(1, 1)});
+    session_flow f = begun({make_flow_run(1, 1)});
     f.took(true);
     CHECK(f.next() == trial_step(0, 1));
 }
 
 TEST_CASE("the last trial can be made void once, until the next run begins")
 {
-    session_flow f = begun({run_of(2, 0, true), run_of(1)});
+    session_flow f = begun({make_flow_run(2, 0, true), make_flow_run(1)});
     CHECK_FALSE(f.void_last()); // there is none
     f.took(false);
     CHECK(f.void_last());
@@ -116,13 +115,13 @@ TEST_CASE("the last trial can be made void once, until the next run begins")
     CHECK_FALSE(f.void_last()); // the next has begun
     f.took(false);
     CHECK(f.next().what == step_kind::over);
-    CHECK(f.void_last()); // at the very end, too
+    CHECK(f.void_last()); // even at the very end
     CHECK(f.next() == trial_step(1, 1, 2));
 }
 
-TEST_CASE("a pause comes before the next trial, and after five that were void by themselves")
+TEST_CASE("a pause comes before the next trial, and after five that became void by themselves")
 {
-    session_flow f = begun({run_of(9)});
+    session_flow f = begun({make_flow_run(9)});
     f.pause();
     CHECK(f.next().what == step_kind::pause);
     f.go_on();
@@ -137,7 +136,7 @@ TEST_CASE("a pause comes before the next trial, and after five that were void by
     CHECK(f.next().what == step_kind::trial);
 }
 
-TEST_CASE("a session that goes on passes over what is through")
+TEST_CASE("a resumed session skips its finished part")
 {
     run_queue half(2);
     half.take(true);
@@ -153,12 +152,12 @@ TEST_CASE("a session that goes on passes over what is through")
     CHECK(session_flow({{0, 0, done, true}}, true, 9).next().what == step_kind::over);
 }
 
-// What the tables say is all that a session that goes on knows.
-TEST_CASE("whatever happens, each trial counts once, and lines alone lead to the same place")
+// A resumed session knows only the tables.
+TEST_CASE("in any course of events each trial counts once, and lines alone restore the same place")
 {
     random_numbers r("flow");
     for (int round = 0; round < test::rounds(300); ++round) {
-        session_flow f = begun({run_of(6), run_of(3)});
+        session_flow f = begun({make_flow_run(6), make_flow_run(3)});
         struct line {
             pending_trial which;
             bool is_void;

@@ -27,7 +27,7 @@ struct rig {
     mutable simulation simulation_ = {};
 };
 
-TEST_CASE("who chooses takes the larger -ln cost plus noise, as often as the normal distribution says")
+TEST_CASE("a choice takes the larger -ln cost plus noise, as often as the normal distribution says")
 {
     const rig r;
     const simulated_observer o = r.observer(0, "seed=3,sigma=1");
@@ -42,7 +42,7 @@ TEST_CASE("who chooses takes the larger -ln cost plus noise, as often as the nor
     CHECK(chosen / static_cast<double>(n) == doctest::Approx(p).epsilon(0.03));
 }
 
-TEST_CASE("without noise the better one is chosen, wherever it is")
+TEST_CASE("without noise the better one is chosen, in either place")
 {
     const rig r;
     const simulated_observer o = r.observer(1, "sigma=0");
@@ -51,7 +51,7 @@ TEST_CASE("without noise the better one is chosen, wherever it is")
     CHECK(o.answer({0, 1, 0}, 1, 1, false).response == (second ? 1 : 2));
 }
 
-TEST_CASE("without noise a rating is the middle plus what the cost is better than the mean")
+TEST_CASE("without noise a rating is the middle plus the advantage of the cost over the mean")
 {
     const rig r;
     double mean = 0.0;
@@ -82,7 +82,7 @@ TEST_CASE("ratings stay on the scale, and noise uses all of it")
     CHECK(high == 5);
 }
 
-TEST_CASE("who identifies names the nearest target: the right one without noise, any with much")
+TEST_CASE("an identification names the nearest target: the right one without noise, any with much")
 {
     const std::string text = "[experiment]\nname = \"i\"\nlevel = { dbfs = -12 }\n"
                              "[[motion]]\nname = \"right\"\npath = \"M0 20H40\"\n"
@@ -120,7 +120,7 @@ TEST_CASE("an answer depends on its place and attempt alone")
     CHECK(o.answer({0, 0, 1}, 7, 1, true).response_time_ms != a.response_time_ms);
 }
 
-TEST_CASE("a share of the trials is void where that is asked for, and no practice")
+TEST_CASE("a given share of the trials is void, and no practice")
 {
     const rig r;
     const simulated_observer o = r.observer(0, "void=0.25");
@@ -133,7 +133,7 @@ TEST_CASE("a share of the trials is void where that is asked for, and no practic
     CHECK(voids < 1100);
 }
 
-TEST_CASE("what is no simulation is refused")
+TEST_CASE("impossible simulations are refused")
 {
     const auto refusal = [](const char* text) { return message_of([&] { parse_simulation(text); }); };
     CHECK(has(refusal("sigma=-1"), "sigma is \"-1\""));

@@ -3,7 +3,6 @@
 #include "study/session/stage.hpp"
 
 #include <algorithm>
-#include <atomic>
 #include <cstring>
 #include <functional>
 #include <thread>
@@ -77,9 +76,11 @@ struct set_up {
 
     static session::stream_source source(fake_dac& d)
     {
-        session::stream_source s{[&d](const alsa_options& o) { return pcm::adopt(d.pcm(), o); }, patient()};
-        s.player.realtime = false;
-        return s;
+        return [&d](session::stream_parts& p) {
+            p.open = [&d] { return pcm::adopt(d.pcm(), nine()); };
+            p.player = patient(p.player.limits);
+            p.player.realtime = false;
+        };
     }
 };
 
@@ -101,7 +102,7 @@ public:
                     s.dac.advance_queued(96);
                 std::this_thread::yield();
             };
-            while (!s.there.session().position().stroke)
+            while (!s.there.position().stroke)
                 step();
             const std::size_t heard = s.dac.captured_frames();
             while (s.dac.captured_frames() <= heard + 960)
@@ -241,7 +242,8 @@ TEST_CASE("a stimulus that has waited for room is whole")
 TEST_CASE("what the experimenter cuts off says so")
 {
     set_up s;
-    const study::given_stimulus g = s.there.give(tone(100'000.0), 0.0, [&](std::uint64_t) { s.there.cut(); });
+    const study::given_stimulus g =
+        s.there.give(tone(100'000.0), 0.0, [&](std::uint64_t) { s.there.cancel(); });
     CHECK(g.flaw == "it was cut off");
     s.there.finish();
 }
@@ -249,7 +251,7 @@ TEST_CASE("what the experimenter cuts off says so")
 TEST_CASE("time passes by the stream alone")
 {
     set_up s;
-    const std::uint64_t before = s.there.session().position().played;
+    const std::uint64_t before = s.there.position().played;
     double last = -1.0;
     CHECK(s.there.pass(0.5, [&](double t) {
         CHECK(t >= last);
@@ -257,7 +259,7 @@ TEST_CASE("time passes by the stream alone")
         last = t;
         return true;
     }));
-    CHECK(s.there.session().position().played >= before + rate / 2);
+    CHECK(s.there.position().played >= before + rate / 2);
     CHECK(s.there.pass(1e9, [](double) { return false; })); // somebody ends it
     s.there.finish();
 }

@@ -16,7 +16,7 @@
 namespace tactor::study::test_staircase {
 namespace {
 
-// Right for '1', wrong for '0'; the level of each trial.
+// Answers '1' right and '0' wrong; returns the level of each trial.
 std::vector<double> levels(staircase& s, std::string_view answers)
 {
     std::vector<double> all;
@@ -92,7 +92,7 @@ TEST_CASE("fewer than eight right of the last ten at the ceiling: not felt")
     CHECK(!s.check_right());
 }
 
-TEST_CASE("what is right where nothing is left to feel has no threshold")
+TEST_CASE("a participant right at the floor has no threshold")
 {
     staircase s({.start_dbfs = -140.0});
     while (!s.end())
@@ -102,7 +102,7 @@ TEST_CASE("what is right where nothing is left to feel has no threshold")
     CHECK(s.trials() < 30);
 }
 
-TEST_CASE("mean, deviation and halves of the reversals that count")
+TEST_CASE("mean, deviation and halves of the counted reversals")
 {
     const std::vector<double> r{-40, -10, -30, -20, -31, -29, -32, -28};
     const reversal_mean m = mean_of(r, 4);
@@ -112,7 +112,7 @@ TEST_CASE("mean, deviation and halves of the reversals that count")
     CHECK(mean_of(r, 6).halves_db == doctest::Approx(std::abs((-30 - 20 - 31) / 3.0 + (29 + 32 + 28) / 3.0)));
 }
 
-// Whether the threshold is there and the trials above it run.
+// Reports whether the threshold is there and the trials above it run.
 bool checking(const staircase& s)
 {
     return s.threshold() && !s.end();
@@ -127,7 +127,7 @@ void turn(staircase& s, std::size_t reversals, double drift_db)
     }
 }
 
-TEST_CASE("of an odd number that counts the earliest is dropped too")
+TEST_CASE("an odd number of counted reversals drops the earliest")
 {
     staircase s({.reversals = 11, .discard = 4});
     turn(s, 11, 0.0);
@@ -145,7 +145,7 @@ TEST_CASE(
     CHECK(s.threshold()->halves_db > 2.0);
     CHECK(s.threshold()->mean_dbfs == mean_of(s.reversals_dbfs(), 8).mean_dbfs);
 
-    // Whatever was asked for.
+    // For any setting.
     for (const auto& [reversals, discard] : {std::pair{9U, 2U}, std::pair{20U, 4U}, std::pair{6U, 4U}}) {
         staircase other({.reversals = reversals, .discard = discard});
         turn(other, 24, -1.2);
@@ -176,7 +176,7 @@ TEST_CASE(
         CHECK((halves[i] > 2.0) == (i + 1 < halves.size()));
 }
 
-TEST_CASE("ten check trials, 6 dB above the threshold or at the ceiling, say what is not felt")
+TEST_CASE("ten check trials, 6 dB above the threshold or at the ceiling, find tactors that are not felt")
 {
     for (const double ceiling : {0.0, -18.0}) {
         staircase s({.ceiling_dbfs = ceiling});
@@ -196,7 +196,7 @@ TEST_CASE("ten check trials, 6 dB above the threshold or at the ceiling, say wha
     }
 }
 
-// At the first of the ten check trials below.
+// Returns a staircase at the first of the ten check trials below.
 staircase checked_above(staircase_options o = {})
 {
     staircase s(std::move(o));
@@ -244,7 +244,7 @@ TEST_CASE("nine right 6 dB below the threshold: the staircase runs once more, fr
     CHECK(s.trials() > before + 30);
 }
 
-TEST_CASE("what the second staircase does not find is not felt")
+TEST_CASE("a threshold that the second staircase does not find is not felt")
 {
     staircase s = checked_above({.ceiling_dbfs = -18.0});
     levels(s, "1111111111");
@@ -276,7 +276,7 @@ tactor_threshold measured(unsigned right_for_down, std::uint32_t seed, const obs
     return c.thresholds().front();
 }
 
-// The level at which an observer is right in that part of the trials, by halving.
+// Returns the level at which an observer is right in that part of the trials, by halving.
 double level_for(const observer_settings& o, double part)
 {
     double low = -200.0;
@@ -288,7 +288,7 @@ double level_for(const observer_settings& o, double part)
     return high;
 }
 
-TEST_CASE("a thousand observers' thresholds are what the rule targets")
+TEST_CASE("a thousand observers' thresholds are those that the rule targets")
 {
     struct sort {
         unsigned right_for_down;
@@ -325,7 +325,7 @@ TEST_CASE("a thousand observers' thresholds are what the rule targets")
     }
 }
 
-TEST_CASE("who never feels anything comes out so")
+TEST_CASE("an observer who never feels anything is reported so")
 {
     for (const unsigned right_for_down : {3U, 2U}) {
         int not_felt = 0;

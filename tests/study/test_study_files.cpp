@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Files of a study's folder, as they are written.
+// Files of a study's folder.
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -18,7 +18,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-TEST_CASE("a description says whether its sessions are simulated, where tactor wrote it")
+TEST_CASE("a description records whether its sessions are simulated, where tactor wrote it")
 {
     experiment_definition d;
     CHECK(says_simulated(dataset_text(d, true)) == true);
@@ -32,7 +32,7 @@ TEST_CASE("a description says whether its sessions are simulated, where tactor w
           true);
 }
 
-TEST_CASE("what is cut off a file is kept under a name that is free")
+TEST_CASE("a cut off part of a file is kept under a free name")
 {
     const folder f;
     const fs::path file = f.write("t.tsv", "a\n1\n23");
@@ -46,7 +46,7 @@ TEST_CASE("what is cut off a file is kept under a name that is free")
     CHECK(f.names() == std::vector<std::string>{"t.tsv", "t.tsv.cut-1", "t.tsv.cut-2"});
 }
 
-TEST_CASE("text goes behind what is there, and a file that is not there is told")
+TEST_CASE("text is appended, and a missing file is reported")
 {
     const folder f;
     const fs::path file = f.write("t.tsv", "a\n");
@@ -64,7 +64,7 @@ bool cut_in_plan(const std::string& columns, const std::string& line)
     return is_cut_in_plan(text_table("t.tsv", columns + "\n" + line, last_line::may_be_cut));
 }
 
-TEST_CASE("a last plan that is not whole makes a line one that is cut off")
+TEST_CASE("an incomplete last plan makes a line a cut off one")
 {
     const std::string hash(64, 'a');
     const std::string two = "method_2\tplan_1\tplan_2";

@@ -21,7 +21,7 @@ std::string refusal(const std::string& text)
     return said.empty() ? said : said.substr(f.path().string().size() + 1);
 }
 
-TEST_CASE("cells by name, n/a as nothing, lines of any system")
+TEST_CASE("cells by name, n/a as missing, lines of any system")
 {
     const folder f;
     f.write("t.tsv", "\xef\xbb\xbftrial\tmotion\tx\r\n1\tone two\t0.5\r\n2\tn/a\tn/a\r\n");
@@ -44,7 +44,7 @@ TEST_CASE("cells by name, n/a as nothing, lines of any system")
           std::string::npos);
 }
 
-TEST_CASE("numbers that are none are refused")
+TEST_CASE("bad numbers are refused")
 {
     const folder f;
     f.write("t.tsv", "x\nnan\ninf\n1e999\n0x1\n 1\n1 \n-1\n4294967296\n");
@@ -55,7 +55,7 @@ TEST_CASE("numbers that are none are refused")
         CHECK(!message_of([&] { t.number(row, "x"); }).empty());
 }
 
-TEST_CASE("a table that is not whole says where")
+TEST_CASE("an incomplete table is refused with the place")
 {
     CHECK(refusal("").find("t.tsv: it is empty") == 0);
     CHECK(refusal("a\tb\n1\t2\n3\n").find("t.tsv:3: it has 1 column, not 2") == 0);
@@ -71,7 +71,7 @@ TEST_CASE("a table that is not whole says where")
     CHECK(refusal("a\tb\n1\t2\n").empty());
 }
 
-TEST_CASE("tables of other programs that cannot be read say which")
+TEST_CASE("unreadable tables of other programs are named")
 {
     CHECK(
         refusal("a,b\n1,2\n").find("t.tsv:1: commas are between the columns, not tabs (save it with tabs") ==
@@ -101,7 +101,7 @@ std::string read(const std::string& text)
     return all;
 }
 
-TEST_CASE("tables of spreadsheets, R and pandas are read as they were")
+TEST_CASE("tables of spreadsheets, R and pandas are read correctly")
 {
     const std::string all = "x 2; - 4; ";
     for (const char* text :
@@ -136,7 +136,7 @@ TEST_CASE("truths in any case, whole numbers with a point")
     CHECK(message_of([&] { t.whole(0, "b", 0, 2); }).find("b is \"3.0\"") != std::string::npos);
 }
 
-TEST_CASE("lines are counted as an editor counts them")
+TEST_CASE("lines are counted like in an editor")
 {
     CHECK(refusal("a\tb\r\n\r\n\"x\r\ny\"\t2\r\n3\r\n").find("t.tsv:5: it has 1 column, not 2") == 0);
     CHECK(refusal("a\tb\r\r1\t2\r3").find("t.tsv:4: ") == 0);
@@ -151,7 +151,7 @@ std::string added(const std::string& text, std::string seven = "7")
     return all.substr(text.size());
 }
 
-TEST_CASE("a line goes into the columns that are there, and ends as the others do")
+TEST_CASE("a line fills the existing columns, and ends like the others")
 {
     CHECK(added("a\tb\n1\t2\n") == "7\tn/a\n");
     CHECK(added("b\ta\n1\t2\n") == "n/a\t7\n");
@@ -180,7 +180,7 @@ TEST_CASE("cells change in their place")
           "a\t\"b\"\tc\r\n1\t\"2\"\t3\r\n44\ttrue\t6\r\n\r\n");
 }
 
-TEST_CASE("a last line without its cells and its end is cut off, if it may be")
+TEST_CASE("an incomplete last line is cut off, where allowed")
 {
     const std::string text = "a\tb\n1\t2\n";
     const auto cut = [&](const std::string& rest) {
@@ -203,7 +203,7 @@ TEST_CASE("a last line without its cells and its end is cut off, if it may be")
     CHECK(message_of([&] { t.refuse_cut("mend it"); }) == "t.tsv:3: the last line is cut off (mend it)");
 }
 
-TEST_CASE("what is no file is not waited for")
+TEST_CASE("anything other than a file is refused at once")
 {
     const folder f;
     REQUIRE(::mkfifo((f / "pipe").c_str(), 0600) == 0);

@@ -23,7 +23,7 @@ thread_local constinit bool counting = false;
 thread_local constinit std::uint64_t calls_made = 0;
 thread_local constinit std::int64_t bytes_held = 0;
 thread_local constinit std::uint64_t calls_granted = 0;
-thread_local constinit std::uint64_t calls_refused = 0; // after those
+thread_local constinit std::uint64_t calls_refused = 0; // after the granted ones
 
 } // namespace
 
@@ -133,14 +133,14 @@ bool counts_allocations() noexcept
 bool can_count(const char* test_case) noexcept
 {
     if (!counts_allocations())
-        std::printf("SKIPPED: %s: a sanitizer has an allocator of its own\n", test_case);
+        std::printf("SKIPPED: %s: a sanitizer replaces the allocator\n", test_case);
     return counts_allocations();
 }
 
 bool can_exhaust(const char* test_case) noexcept
 {
     if (!counts_allocations())
-        std::printf("SKIPPED: %s: a sanitizer needs descriptors of its own\n", test_case);
+        std::printf("SKIPPED: %s: a sanitizer needs descriptors itself\n", test_case);
     return counts_allocations();
 }
 

@@ -7,7 +7,7 @@
 
 #include <doctest/doctest.h>
 
-/// A test case that counts. Where that cannot be, it is skipped, and said to be.
+/// A test case that counts; skipped, with a message, where that is impossible.
 #define COUNTING_TEST_CASE(name) TEST_CASE(name* doctest::skip(!tactor::test::can_count(name)))
 
 /// A test case that leaves the process without descriptors.
@@ -15,15 +15,15 @@
 
 namespace tactor::test {
 
-/// Whether this program counts (it does not under sanitizers).
+/// Returns false under sanitizers, where this program cannot count.
 bool counts_allocations() noexcept;
 
 /// The same; says "SKIPPED" for the test case where it does not.
 bool can_count(const char* test_case) noexcept;
 bool can_exhaust(const char* test_case) noexcept;
 
-/// Lets this thread have so much of the heap, counted in calls, and then refuses it so often; 0 refusals: no
-/// end to it. Without effect under sanitizers.
+/// Grants this thread so many heap calls, and then refuses so many; 0 refusals: grants all. Without effect
+/// under sanitizers.
 void refuse_allocations(std::uint64_t granted, std::uint64_t refused) noexcept;
 
 /// Counts malloc, calloc, realloc, free and the like of the calling thread while it lives.

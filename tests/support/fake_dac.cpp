@@ -208,7 +208,7 @@ fake_dac::fake_dac(const fake_dac_options& o) : event_(::eventfd(0, EFD_NONBLOCK
 
 fake_dac::~fake_dac()
 {
-    if (!taken_) // else whoever took it closes it
+    if (!taken_) // else its owner closes it
         snd_pcm_close(io_.pcm);
     ::close(event_);
 }

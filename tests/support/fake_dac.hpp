@@ -40,9 +40,9 @@ public:
         return io_.pcm;
     }
 
-    /// Plays frames; where there are none left the stream has an xrun.
+    /// Plays frames; the stream has an xrun where there are none left.
     void advance(std::uint64_t frames);
-    /// The same, but at most what is queued: never an xrun. Returns how many.
+    /// The same, but plays at most the queued frames: never an xrun. Returns how many.
     std::uint64_t advance_queued(std::uint64_t frames);
 
     void suspend();             ///< the system sleeps
@@ -50,14 +50,14 @@ public:
     void disconnect();          ///< unplugged
     void fail_prepare(int code) { fail_prepare_ = code; }
     void fail_start(int code) { fail_start_ = code; }
-    /// Whatever is polled, it looks ready.
+    /// Makes every poll look ready.
     void cry_ready(bool on);
-    /// As dmix: nothing to poll in an xrun.
+    /// Hides its descriptors in an xrun, like dmix.
     void hide_descriptors_in_xrun();
-    /// How often what had no descriptors was asked about them; dmix ends the process then.
+    /// Number of polls while it had no descriptors; dmix ends the process then.
     unsigned asked_in_vain() const;
 
-    /// All bytes that were transferred so far, over all epochs, from a frame on.
+    /// Returns all bytes that were transferred so far, over all epochs, from a frame on.
     std::vector<std::byte> captured(std::uint64_t from = 0) const;
     std::size_t captured_frames() const;
     std::size_t frame_bytes() const;
@@ -68,7 +68,7 @@ public:
     bool closed() const;
     bool running() const;
 
-    /// Blocks until the condition holds; looked at whenever something happens to the device.
+    /// Blocks until the condition holds; checks it at each event of the device.
     template <typename Condition>
     void await(Condition c)
     {
@@ -85,7 +85,7 @@ public:
 
     /// Reserves memory for what will be captured; no more than that is kept.
     void reserve_capture(std::size_t bytes);
-    /// Keeps what has been captured, and no more.
+    /// Keeps the frames captured so far, and no more.
     void stop_capture();
 
 private:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What a test can see of the fake DAC.
+// State of the fake DAC that a test can see.
 #include "fake_dac.hpp"
 
 #include <algorithm>

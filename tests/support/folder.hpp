@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// A folder that goes with its object.
+/// A temporary folder, removed with its object.
 #pragma once
 
 #include <algorithm>
@@ -32,7 +32,7 @@ public:
     const std::filesystem::path& path() const { return path_; }
     std::filesystem::path operator/(const std::filesystem::path& name) const { return path_ / name; }
 
-    /// Makes the folders on the way, too. Returns the file's path.
+    /// Writes a file and makes the folders on its way. Returns its path.
     std::filesystem::path write(const std::filesystem::path& name, const std::string& text = "") const
     {
         std::filesystem::create_directories((path_ / name).parent_path());
@@ -40,7 +40,7 @@ public:
         return path_ / name;
     }
 
-    /// What is in it, in order.
+    /// Returns the sorted names in it.
     std::vector<std::string> names() const
     {
         std::vector<std::string> all;

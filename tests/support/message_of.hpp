@@ -6,7 +6,7 @@
 
 #include <tactor/error.hpp>
 
-/// What a call complains of, or "" if it does not. Other exceptions go through and fail the test.
+/// Returns the message of a call's error, or "". Other exceptions go through and fail the test.
 template <class F>
 std::string message_of(F call)
 {
@@ -19,7 +19,7 @@ std::string message_of(F call)
     return {};
 }
 
-/// The field that the complaint of a call is about; "" for none, "no error" where it does not complain.
+/// Returns the field of a call's error; "" for none, "no error" where it succeeds.
 template <class F>
 std::string field_of(F call)
 {
@@ -29,4 +29,16 @@ std::string field_of(F call)
         return std::string(e.field());
     }
     return "no error";
+}
+
+/// Returns the errno of a call's error; 0 for none.
+template <class F>
+int os_code(F call)
+{
+    try {
+        call();
+    } catch (const tactor::error& e) {
+        return e.os_code();
+    }
+    return 0;
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A curve whose samples a function gives, each time that they are read.
+// A curve whose samples come from a function, each time that they are read.
 #pragma once
 
 #include <cstdint>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// How long a test goes on.
+/// Length of a test.
 #pragma once
 
 #include <cstdint>
@@ -10,7 +10,7 @@
 
 namespace tactor::test {
 
-/// Whether tests are to do less, as where each instruction costs tens of them, under sanitizers and
+/// Returns true where tests do less, as where each instruction costs tens of them, under sanitizers and
 /// emulation: the lanes set TACTOR_SOAK=short.
 inline bool shortened()
 {
@@ -18,21 +18,21 @@ inline bool shortened()
     return asked != nullptr && std::string_view(asked) == "short";
 }
 
-/// `all`, and an eighth of it where tests are to do less: what is looked for there is in any of the rounds,
-/// and the suite runs all.
+/// Returns `all`, or an eighth where tests do less: any of the rounds can find a fault, and the suite runs
+/// all.
 inline int rounds(int all)
 {
     return shortened() ? all / 8 : all;
 }
 
-/// The same, and `all` of them where everything is asked for, which takes minutes: TACTOR_SOAK=whole.
+/// The same, but all of them with TACTOR_SOAK=whole, which takes minutes.
 inline int rounds(int some, int all)
 {
     const char* asked = std::getenv("TACTOR_SOAK");
     return asked != nullptr && std::string_view(asked) == "whole" ? all : rounds(some);
 }
 
-/// `whole`, or `short_one` where tests are to do less, which it then says.
+/// Returns `whole`, or `short_one` where tests do less, and prints that.
 inline std::uint64_t soak_length(const char* what, std::uint64_t whole, std::uint64_t short_one)
 {
     if (!shortened())

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// Strokes mixed at random: bursts from one frame on, every rule of overlap, carriers, waves, rates, ramps,
-/// gains and limits.
+/// Strokes mixed at random: bursts from a frame in length, each rule of overlap, carriers, waves, rates,
+/// ramps, gains and limits.
 #pragma once
 
 #include <algorithm>
@@ -22,7 +22,7 @@ namespace mixes {
 
 using namespace tactor;
 
-/// The same seed gives the same numbers, with any standard library.
+/// A generator that gives the same numbers for a seed with any standard library.
 class dice {
 public:
     explicit dice(std::uint64_t seed) : random_(seed) {}
@@ -34,7 +34,7 @@ public:
     int up_to(int most) { return static_cast<int>(random_() % (static_cast<std::uint64_t>(most) + 1)); }
     bool one_in(int n) { return up_to(n - 1) == 0; }
     template <class T>
-    T one_of(std::initializer_list<T> all)
+    T pick(std::initializer_list<T> all)
     {
         return *(all.begin() + up_to(static_cast<int>(all.size()) - 1));
     }
@@ -70,11 +70,11 @@ inline render_options some_options(dice& d)
     o.level_dbfs = d.one_in(3) ? 0.0 : d.from_to(-20.0, 0.0);
     if (d.one_in(5))
         o.sl_db = d.from_to(0.0, 35.0);
-    o.phase = d.one_of({phase_kind::stroke, phase_kind::burst});
+    o.phase = d.pick({phase_kind::stroke, phase_kind::burst});
     if (!d.one_in(3))
         o.ramp_s = d.one_in(2) ? 0.0 : d.from_to(0.0, 0.01);
-    o.envelope.kind = d.one_of({envelope_kind::raised_cosine, envelope_kind::raised_cosine,
-                                envelope_kind::linear, envelope_kind::exponential, envelope_kind::tukey});
+    o.envelope.kind = d.pick({envelope_kind::raised_cosine, envelope_kind::raised_cosine,
+                              envelope_kind::linear, envelope_kind::exponential, envelope_kind::tukey});
     if (d.one_in(5))
         o.envelope.attack_s = d.from_to(0.0, 0.02);
     if (d.one_in(5))
@@ -85,7 +85,7 @@ inline render_options some_options(dice& d)
     return o;
 }
 
-/// From one frame to 0.2 s, as likely short as long; every other one in whole frames.
+/// Draws a duration from a frame to 0.2 s, short and long equally often; every second one in whole frames.
 inline double some_length(dice& d, unsigned rate)
 {
     const double frames = d.one_in(5) ? 1.0 : std::exp(d.from_to(0.0, std::log(0.2 * rate)));
@@ -100,7 +100,7 @@ inline plan some_bursts(dice& d, unsigned tactors, unsigned rate)
     for (int i = 0; i < count; ++i) {
         const double length_s = some_length(d, rate);
         // After the one before it, a frame or less into it, or anywhere.
-        const double back_s = d.one_of({0.0, 1e-12, 1e-9, 0.5, 1.0, 1.5}) / rate;
+        const double back_s = d.pick({0.0, 1e-12, 1e-9, 0.5, 1.0, 1.5}) / rate;
         const double onset_s = d.one_in(2)   ? std::max(0.0, end_s - back_s)
                                : d.one_in(2) ? 0.0
                                              : d.from_to(0.0, 0.2);
@@ -114,7 +114,7 @@ inline plan some_bursts(dice& d, unsigned tactors, unsigned rate)
         end_s = onset_s + length_s;
     }
     plan p = pieces::make_plan(std::move(all));
-    p.overlap = d.one_of({overlap_kind::energy, overlap_kind::max, overlap_kind::sum});
+    p.overlap = d.pick({overlap_kind::energy, overlap_kind::max, overlap_kind::sum});
     return p;
 }
 
@@ -136,7 +136,7 @@ inline plan some_curve(dice& d, unsigned tactors, unsigned rate)
     return p;
 }
 
-/// The same number gives the same mix.
+/// Makes the mix of a number.
 inline mix some_mix(std::uint64_t number)
 {
     dice d(number);
@@ -147,8 +147,8 @@ inline mix some_mix(std::uint64_t number)
         plan p =
             d.one_in(4) ? some_curve(d, tactors, m.options.rate) : some_bursts(d, tactors, m.options.rate);
         p.carrier_hz = d.one_in(3) ? 250.0 : d.from_to(1.0, 0.499 * m.options.rate - 100.0);
-        p.wave.kind = d.one_of({waveform_kind::sine, waveform_kind::sine, waveform_kind::square,
-                                waveform_kind::triangle, waveform_kind::sawtooth, waveform_kind::noise});
+        p.wave.kind = d.pick({waveform_kind::sine, waveform_kind::sine, waveform_kind::square,
+                              waveform_kind::triangle, waveform_kind::sawtooth, waveform_kind::noise});
         if (d.one_in(4))
             p.am = {d.from_to(1.0, 100.0), d.from_to(0.0, 1.0)};
         std::optional<double> start_s;

@@ -20,7 +20,7 @@ namespace pieces {
 
 inline constexpr double pi = 3.14159265358979323846;
 
-/// n tactors in a row, channel = index.
+/// Makes n tactors in a row, channel = index.
 inline tactor::array row(unsigned n)
 {
     tactor::array a;
@@ -57,7 +57,8 @@ inline tactor::plan make_plan(std::vector<tactor::burst> bursts, double carrier_
     return p;
 }
 
-/// Intensity walks from tactor 0 over the row to the last; each moment has one or two tactors.
+/// Makes a plan whose intensity moves from tactor 0 over the row to the last; each moment has one or two
+/// tactors.
 inline tactor::plan make_continuous(unsigned tactors, double duration_s, double carrier_hz = 250.0)
 {
     tactor::plan p;
@@ -76,7 +77,7 @@ inline tactor::plan make_continuous(unsigned tactors, double duration_s, double 
     return p;
 }
 
-/// Bursts at random, many of them on top of each other.
+/// Makes random bursts, many of which overlap.
 inline tactor::plan make_random(std::mt19937_64& random, unsigned tactors, unsigned bursts, double total_s)
 {
     std::uniform_real_distribution<double> unit(0.0, 1.0);
@@ -92,7 +93,7 @@ inline tactor::plan make_random(std::mt19937_64& random, unsigned tactors, unsig
     return make_plan(std::move(all), 100.0 + 300.0 * unit(random));
 }
 
-/// The whole piece in blocks of the size that next() gives.
+/// Renders the whole piece in blocks of the sizes that next() gives.
 template <class Next>
 std::vector<std::byte> render(const tactor::score& s, tactor::format_kind f, Next next, std::size_t frames)
 {
@@ -121,7 +122,7 @@ T sample(const std::vector<std::byte>& bytes, std::size_t i)
     return v;
 }
 
-/// Sample i of a rendering as an integer, whatever the format (not float).
+/// Returns sample i of a rendering as an integer, in any format except float.
 inline std::int64_t integer(const std::vector<std::byte>& bytes, tactor::format_kind f, std::size_t i)
 {
     switch (f) {
@@ -137,7 +138,7 @@ inline std::int64_t integer(const std::vector<std::byte>& bytes, tactor::format_
     }
 }
 
-inline double scale_of(tactor::format_kind f)
+inline double full_scale(tactor::format_kind f)
 {
     switch (f) {
     case tactor::format_kind::s16:
@@ -153,7 +154,7 @@ inline constexpr tactor::format_kind all_formats[] = {tactor::format_kind::float
                                                       tactor::format_kind::s24_3, tactor::format_kind::s24_4,
                                                       tactor::format_kind::s32};
 
-/// One channel of a rendering in floats.
+/// Returns a channel of a rendering in floats.
 inline std::vector<double> channel(const tactor::score& s, unsigned c)
 {
     const auto bytes = render(s, tactor::format_kind::float32);
@@ -163,7 +164,7 @@ inline std::vector<double> channel(const tactor::score& s, unsigned c)
     return x;
 }
 
-/// Section 7's window, from the formula.
+/// Computes section 7's window from the formula.
 inline double window(std::int64_t k, std::int64_t n, std::int64_t r)
 {
     if (k < r)
@@ -173,7 +174,7 @@ inline double window(std::int64_t k, std::int64_t n, std::int64_t r)
     return 1.0;
 }
 
-/// FNV-1a, 64 bits.
+/// Hashes by FNV-1a, 64 bits.
 inline std::uint64_t digest(std::span<const std::byte> bytes)
 {
     std::uint64_t h = 14695981039346656037U;

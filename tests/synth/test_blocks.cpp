@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The same bytes whatever the sizes of the blocks.
+// Rendering in blocks of any size: the same bytes.
 #include <algorithm>
 #include <cstddef>
 #include <span>
@@ -49,7 +49,7 @@ TEST_CASE("any block size gives the same bytes")
     std::mt19937_64 random(3);
     const std::vector<score> all = various();
     for (int i = 0; i < tactor::test::rounds(18); ++i) {
-        const score& s = all[static_cast<std::size_t>(i) * 7 % all.size()]; // all 18, or a few unlike ones
+        const score& s = all[static_cast<std::size_t>(i) * 7 % all.size()]; // all 18, or a few different ones
         for (const format_kind f : all_formats) {
             const auto whole = render(s, f);
             const std::size_t sizes[] = {1, 7, 63, 64, 65, 96, 1000, 4096};
@@ -75,7 +75,7 @@ TEST_CASE("the renderer goes on in silence after the end")
                       [](std::byte b) { return b == std::byte{0}; }));
 }
 
-TEST_CASE("what is no whole number of frames is refused, and nothing is written; nothing at all is")
+TEST_CASE("a part of a frame is refused and writes nothing; an empty block is accepted")
 {
     const score s = various().front();
     renderer r(s, format_kind::s16);
@@ -106,7 +106,7 @@ TEST_CASE("more voices than a block has frames keep their order")
                         s, format_kind::float32, [&] { return 1 + random() % 300; }, s.frames())));
 }
 
-TEST_CASE("a stroke has the same bytes wherever it starts")
+TEST_CASE("a stroke has the same bytes at any start")
 {
     std::mt19937_64 random(23);
     for (int i = 0; i < 20; ++i) {

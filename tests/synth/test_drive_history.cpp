@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: MIT
-// What was driven, as a value: how two become one, and what is still to come.
+// Drive time as a value: joining two histories, and time still to come.
 #include <doctest/doctest.h>
 
-#include <cstddef>
 #include <utility>
 #include <vector>
 
@@ -34,7 +33,7 @@ void check(const drive_history::stretch& s, double begin_s, double end_s, double
 
 } // namespace
 
-TEST_CASE("two histories become one, in which no time counts twice")
+TEST_CASE("two histories join without counting time twice")
 {
     const drive_history a = one_channel({{-9.0, -8.0, 1.0}, {-5.0, -3.0, 0.5}, {-1.0, 0.0, 1.0}}, 0.5);
     const drive_history b = one_channel({{-7.0, -6.0, 0.1}, {-4.0, -2.0, 0.75}, {-0.5, 0.0, 0.5}}, 0.25);
@@ -53,7 +52,7 @@ TEST_CASE("two histories become one, in which no time counts twice")
     CHECK(together({}, a).channels[0].opens_s == 0.5);
 }
 
-TEST_CASE("of what was to come the part that went by counts")
+TEST_CASE("the elapsed part of the time ahead counts")
 {
     drive_history h = one_channel({{-3.0, -2.0, 1.0}});
     h.add_ahead(2, 2.0);
@@ -68,7 +67,7 @@ TEST_CASE("of what was to come the part that went by counts")
     check(h.channels[0].stretches[0], -3.5, -2.5, 1.0);
     check(h.channels[0].stretches[1], -0.5, 0.0, 0.5);
     check(h.channels[1].stretches[0], -0.5, 0.0, 0.5);
-    h.add_ahead(1, 1.0); // goes on where that ended
+    h.add_ahead(1, 1.0); // continues where that ended
     CHECK(h.channels[0].stretches.size() == 3);
     h.pass(5.0);
     h.end_now();
@@ -84,7 +83,7 @@ TEST_CASE("a history is empty where nothing was driven and nothing is cut")
     CHECK_FALSE(one_channel({{-1.0, 0.0, 0.1}}).empty());
 }
 
-TEST_CASE("a coarser history holds what the finer one held")
+TEST_CASE("a coarser history covers the finer one")
 {
     drive_history h;
     h.channels.resize(2);
@@ -106,7 +105,7 @@ TEST_CASE("a coarser history holds what the finer one held")
     check(s[0], -10.0, -0.5, 2.5);
 }
 
-TEST_CASE("what is too old for any window is forgotten")
+TEST_CASE("drive time older than any window is forgotten")
 {
     drive_history h = one_channel({{-9.0, -8.0, 1.0}, {-5.0, -3.0, 0.5}, {-1.0, 0.0, 1.0}});
     tactor::synth::forget(h, 8.0);
@@ -147,7 +146,7 @@ TEST_CASE("a channel that was cut for a lower limit is open where a higher one a
     CHECK_FALSE(same.drive(0, 0, 10));
 }
 
-TEST_CASE("a channel of which nothing is known but that it was driven is not faded in")
+TEST_CASE("a driven channel without further history is not faded in")
 {
     drive_guard g(1, 500, 1000, 1000);
     g.resume(one_channel({{-0.1, 0.0, 0.1}}));
@@ -155,7 +154,7 @@ TEST_CASE("a channel of which nothing is known but that it was driven is not fad
     CHECK_FALSE(g.acts(0, 0, 10));
 }
 
-TEST_CASE("what has left the window is no history")
+TEST_CASE("drive time that has left the window leaves an empty history")
 {
     drive_guard g(2, 500, 1000, 1000);
     g.drive(0, 0, 100);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What has room is not cut, and waits no longer than it must.
+// Room for drives: a piece with room is not cut, and waits no longer than it must.
 #include "synth/score/drive_room.hpp"
 
 #include <algorithm>
@@ -51,7 +51,7 @@ double wait_s(const synth::drive_room& r, const score& s, double at_s)
     return frames ? static_cast<double>(*frames) / rate : -1.0;
 }
 
-// Adds a piece to a mixer and lets it play to its end.
+// Adds a piece to a mixer and plays it to its end.
 void play(synth::mixer& m, const score& s)
 {
     const std::uint64_t begin = m.position();
@@ -73,7 +73,7 @@ void rest(synth::mixer& m, std::uint64_t frames)
 
 } // namespace
 
-TEST_CASE("on an array that has rested nothing waits; what is too long alone has no room")
+TEST_CASE("on a rested array nothing waits; a piece that is too long alone has no room")
 {
     const synth::drive_room r(2, {}, rate);
     CHECK(wait_s(r, pieces({one(0.0, 5.0)}, -12.0), 3.0) == 0.0);
@@ -85,7 +85,7 @@ TEST_CASE("on an array that has rested nothing waits; what is too long alone has
     CHECK(wait_s(synth::drive_room(2, none, rate), pieces({one(0.0, 500.0)}, -12.0), 0.0) == 0.0);
 }
 
-TEST_CASE("a piece waits until as much has left the window as it needs, and for its own tactors alone")
+TEST_CASE("a piece waits until enough drive time has left the window, counting its own tactors alone")
 {
     synth::drive_room r(2, {}, rate);
     r.played(pieces({one(0.0, 4.0)}, -12.0), 0);
@@ -98,7 +98,7 @@ TEST_CASE("a piece waits until as much has left the window as it needs, and for 
     CHECK(wait_s(r, pieces({one(0.0, 3.0, 1)}, -12.0), 4.0) == 0.0);
 }
 
-TEST_CASE("what waited as long as it is told is never changed by the mixer's guard")
+TEST_CASE("the mixer's guard never changes a piece that has waited as long as computed")
 {
     for (int round = 0; round < test::rounds(24); ++round) {
         std::mt19937_64 random(static_cast<std::uint64_t>(round));
@@ -106,7 +106,7 @@ TEST_CASE("what waited as long as it is told is never changed by the mixer's gua
             return std::uniform_real_distribution<double>(low, high)(random);
         };
         synth::drive_room r(2, {}, rate);
-        synth::mixer m(std::vector<double>(2, 1.0), format_kind::float32, 4096, synth::guards_of({}, rate));
+        synth::mixer m(std::vector<double>(2, 1.0), format_kind::float32, 4096, synth::make_guards({}, rate));
         std::uint64_t waited = 0;
         for (int k = 0; k < 20; ++k) {
             std::vector<burst> bursts;

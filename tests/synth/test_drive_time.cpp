@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// For how long a tactor is driven: by what its channel is given in the end, and over any window.
+// Drive time of a tactor: counted by the final samples of its channel, over any window.
 #include <algorithm>
 #include <cmath>
 
@@ -44,12 +44,12 @@ struct played {
     std::uint64_t cuts = 0;
 };
 
-synth::guard_settings time_of(double max_drive_s, double window_s)
+synth::guard_settings limit_time(double max_drive_s, double window_s)
 {
     drive_limits l;
     l.max_drive_s = max_drive_s;
     l.window_s = window_s;
-    return synth::guards_of(l, rate);
+    return synth::make_guards(l, rate);
 }
 
 played play(const std::vector<synth::drive_event>& events, double total_s, const synth::guard_settings& g,
@@ -66,7 +66,8 @@ played play(const std::vector<synth::drive_event>& events, double total_s, const
     return p;
 }
 
-/// Frames in which a channel is driven: above -40 dBFS, and between two such frames half a cycle apart.
+/// Counts frames in which a channel is driven: above -40 dBFS, and between two such frames half a cycle
+/// apart.
 std::vector<unsigned> driven(const std::vector<float>& x)
 {
     std::vector<unsigned> d(x.size());
@@ -94,7 +95,7 @@ std::size_t most_in_a_window(const std::vector<float>& x, std::size_t window)
     return most;
 }
 
-/// Time of the last sound before the first silence of 50 ms.
+/// Returns the time of the last sound before the first silence of 50 ms.
 double end_s(const std::vector<float>& x)
 {
     std::size_t last = 0;
@@ -112,7 +113,7 @@ double decibels(double db)
 
 TEST_CASE("many weak strokes on one tactor are cut where a strong one is")
 {
-    const synth::guard_settings g = time_of(5.0, 10.0);
+    const synth::guard_settings g = limit_time(5.0, 10.0);
     const played strong = play({voice(0.0, 20.0, decibels(-0.1))}, 20.0, g);
     const played weak =
         play(std::vector<synth::drive_event>(100, voice(0.0, 20.0, decibels(-40.1))), 20.0, g);
@@ -125,30 +126,30 @@ TEST_CASE("many weak strokes on one tactor are cut where a strong one is")
 TEST_CASE(
     "strokes that cancel each other, and strokes held below -40 dBFS by the tactor's limit, do not count")
 {
-    const synth::guard_settings g = time_of(0.5, 1.0);
+    const synth::guard_settings g = limit_time(0.5, 1.0);
     const std::vector<synth::drive_event> opposite{voice(0.0, 3.0, 0.5, 0.5), voice(0.0, 3.0, 0.5, 0.5, 0.5)};
     CHECK(play(opposite, 3.0, g).cuts == 0);
     CHECK(play({voice(0.0, 3.0, 0.5), voice(0.0, 3.0, 0.5)}, 3.0, g).cuts > 0);
     CHECK(play({voice(0.0, 3.0, 0.5), voice(0.0, 3.0, 0.5)}, 3.0, g, 0.0099).cuts == 0);
 }
 
-TEST_CASE("of a stroke that rises and falls only what is above -40 dBFS counts")
+TEST_CASE("only the part of a stroke above -40 dBFS counts")
 {
     // From 0 to 0.02 in 1 s: the second half of it.
     const std::vector<synth::drive_event> rising{voice(0.0, 1.0, 0.0, 0.02)};
-    CHECK(play(rising, 1.1, time_of(0.51, 2.0)).cuts == 0);
-    CHECK(play(rising, 1.1, time_of(0.49, 2.0)).cuts == 1);
+    CHECK(play(rising, 1.1, limit_time(0.51, 2.0)).cuts == 0);
+    CHECK(play(rising, 1.1, limit_time(0.49, 2.0)).cuts == 1);
     synth::drive_event window = voice(0.0, 1.0, 0.02); // as much of it: 0.5 s above
     window.ramp = rate / 2;
-    CHECK(play({window}, 1.1, time_of(0.51, 2.0)).cuts == 0);
-    CHECK(play({window}, 1.1, time_of(0.49, 2.0)).cuts == 1);
+    CHECK(play({window}, 1.1, limit_time(0.51, 2.0)).cuts == 0);
+    CHECK(play({window}, 1.1, limit_time(0.49, 2.0)).cuts == 1);
 }
 
-TEST_CASE("no window holds more than the limit and one fade, whatever the mix")
+TEST_CASE("no window holds more than the limit and one fade, for any mix")
 {
     std::mt19937_64 random(29);
     std::uniform_real_distribution<double> unit(0.0, 1.0);
-    // Steps of a cycle, so that gaps are told from zero crossings.
+    // Steps of a cycle, so that gaps differ from zero crossings.
     const auto whole = [](double s) { return std::round(s * 250.0) / 250.0; };
     for (int run = 0; run < tactor::test::rounds(60); ++run) {
         const double limit_s = 0.1 + 0.9 * unit(random) * unit(random);
@@ -164,7 +165,7 @@ TEST_CASE("no window holds more than the limit and one fade, whatever the mix")
             t += run % 7 == 0 ? whole(window_s * unit(random)) : 0.004;
         }
         const auto frames = [](double s) { return static_cast<std::size_t>(std::llround(s * rate)); };
-        const played p = play(events, 14.0, time_of(limit_s, window_s));
+        const played p = play(events, 14.0, limit_time(limit_s, window_s));
         CAPTURE(run);
         CAPTURE(limit_s);
         CAPTURE(window_s);
@@ -176,34 +177,34 @@ TEST_CASE("no window holds more than the limit and one fade, whatever the mix")
     }
 }
 
-TEST_CASE("a pattern that is within the limit to the frame is not touched")
+TEST_CASE("a pattern that is within the limit to the frame is unchanged")
 {
     for (const double part : {5.0, 0.5, 0.1, 0.04}) {
         std::vector<synth::drive_event> events;
         for (double t = 0.0; t < 40.0; t += 2.0 * part)
             events.push_back(voice(t, part, 0.7));
         CAPTURE(part);
-        CHECK(play(events, 41.0, time_of(5.0, 10.0)).cuts == 0);
-        CHECK(play(events, 41.0, time_of(5.0, 10.0)).x == play(events, 41.0, {}).x);
-        CHECK(play(events, 41.0, time_of(4.9, 10.0)).cuts > 0);
+        CHECK(play(events, 41.0, limit_time(5.0, 10.0)).cuts == 0);
+        CHECK(play(events, 41.0, limit_time(5.0, 10.0)).x == play(events, 41.0, {}).x);
+        CHECK(play(events, 41.0, limit_time(4.9, 10.0)).cuts > 0);
     }
 }
 
-TEST_CASE("what is counted together within a grain of the window may be cut that much early, and no more")
+TEST_CASE("counting by grains of the window cuts at most a grain early")
 {
     std::vector<synth::drive_event>
         events; // half of the time, in pieces of 4 ms: 78 grains of 39 ms are 3.04 s
     for (double t = 0.0; t < 25.0; t += 0.008)
         events.push_back(voice(t, 0.004, 0.7));
-    CHECK(play(events, 25.0, time_of(5.0 + 10.0 / 256, 10.0)).cuts == 0);
-    CHECK(play(events, 25.0, time_of(4.96, 10.0)).cuts > 0);
+    CHECK(play(events, 25.0, limit_time(5.0 + 10.0 / 256, 10.0)).cuts == 0);
+    CHECK(play(events, 25.0, limit_time(4.96, 10.0)).cuts > 0);
 }
 
-TEST_CASE("a quiet stroke on a channel that was cut is silent, too, whatever the block sizes")
+TEST_CASE("a quiet stroke on a channel that was cut is silent too, for any block size")
 {
     const std::vector<synth::drive_event> events{voice(0.0, 1.5, 0.5), voice(0.1, 2.9, 0.003),
                                                  voice(2.4, 0.2, 0.008, 0.012)};
-    const synth::guard_settings g = time_of(0.5, 2.0);
+    const synth::guard_settings g = limit_time(0.5, 2.0);
     const played whole = play(events, 3.0, g);
     CHECK(std::all_of(whole.x.begin() + rate * 6 / 10, whole.x.begin() + rate * 2,
                       [](float v) { return v == 0; }));
@@ -211,9 +212,9 @@ TEST_CASE("a quiet stroke on a channel that was cut is silent, too, whatever the
         CHECK(play(events, 3.0, g, 1.0, block).x == whole.x);
 }
 
-TEST_CASE("each drive that meets a closed channel counts, however quiet, whatever the block sizes")
+TEST_CASE("each drive that meets a closed channel counts, even a quiet one, for any block size")
 {
-    const synth::guard_settings g = time_of(0.5, 2.0);
+    const synth::guard_settings g = limit_time(0.5, 2.0);
     const auto cuts = [&](std::vector<synth::drive_event> more, std::size_t block = 160) {
         more.insert(more.begin(), voice(0.0, 0.7, 0.5)); // closed from 0.5 s on, until 2.27 s
         return play(more, 3.0, g, 1.0, block).cuts;
@@ -227,14 +228,14 @@ TEST_CASE("each drive that meets a closed channel counts, however quiet, whateve
     CHECK(cuts({voice(0.9, 0.1, 0.5), voice(1.01, 0.1, 0.5)}) == 3);
     for (const std::size_t block : {1, 7, 161, 500})
         CHECK(cuts({voice(0.9, 0.1, 0.5), voice(1.2, 0.1, 0.003)}, block) == 3);
-    // Its last sample is the last that it may have: nothing is changed.
+    // Its last sample is the last allowed one: nothing changes.
     CHECK(play({voice(0.0, 0.5, 0.5)}, 1.0, g).cuts == 0);
 }
 
-TEST_CASE("the next mixer counts on, at another rate, and less for the time between")
+TEST_CASE("the next mixer counts on, at another rate, less the time between")
 {
     const auto first = [] {
-        synth::mixer m(std::vector<double>(2, 1.0), format_kind::float32, 8, time_of(0.5, 1.0));
+        synth::mixer m(std::vector<double>(2, 1.0), format_kind::float32, 8, limit_time(0.5, 1.0));
         m.add(voice(0.1, 0.4, 0.5));
         std::vector<float> x(rate);
         m.process(rate / 2, reinterpret_cast<std::byte*>(x.data()));
@@ -245,7 +246,7 @@ TEST_CASE("the next mixer counts on, at another rate, and less for the time betw
         drive_limits l;
         l.max_drive_s = 0.5;
         l.window_s = 1.0;
-        synth::mixer m(std::vector<double>(2, 1.0), format_kind::float32, 8, synth::guards_of(l, other));
+        synth::mixer m(std::vector<double>(2, 1.0), format_kind::float32, 8, synth::make_guards(l, other));
         m.resume(h);
         synth::drive_event e = voice(0.0, 1.0, 0.5);
         e.length = other;
@@ -277,9 +278,9 @@ TEST_CASE("the next mixer counts on, at another rate, and less for the time betw
     CHECK(cut_s(h) == near(0.5));
 }
 
-TEST_CASE("what is handed on from mixer to mixer gains no frame by rounding")
+TEST_CASE("drive time handed from mixer to mixer gains no frame by rounding")
 {
-    const synth::guard_settings g = time_of(9.0, 10.0);
+    const synth::guard_settings g = limit_time(9.0, 10.0);
     synth::mixer first(std::vector<double>(1, 1.0), format_kind::float32, 64, g);
     for (int i = 0; i < 40; ++i)
         REQUIRE(first.add(voice(0.2 * i, 0.1 + 0.0013 * i, 0.5)));
@@ -302,7 +303,7 @@ TEST_CASE("what is handed on from mixer to mixer gains no frame by rounding")
 
 TEST_CASE("a tactor that was cut stays cut in the next mixer")
 {
-    const synth::guard_settings g = time_of(0.5, 1.0);
+    const synth::guard_settings g = limit_time(0.5, 1.0);
     synth::mixer a(std::vector<double>(1, 1.0), format_kind::float32, 8, g);
     a.add(voice(0.0, 2.0, 0.5));
     std::vector<float> x(2 * rate);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// How bursts rise and fall.
+// Rise and fall of bursts.
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -23,8 +23,8 @@ namespace {
 
 constexpr unsigned rate = 48000;
 
-/// Samples of one burst of 0.1 s at 1 kHz over the carrier's where that is not small: the window.
-std::vector<double> window_of(const render_options& o, double duration_s = 0.1)
+/// Divides the samples of a burst at 1 kHz by the carrier's where that is not small: the window.
+std::vector<double> measure_window(const render_options& o, double duration_s = 0.1)
 {
     const plan p = pieces::make_plan({make_burst(0.0, duration_s, {{0, 1.0}})}, 1000.0);
     const auto x = channel(score(row(1), p, o), 0);
@@ -48,7 +48,7 @@ render_options with(envelope_kind kind, std::optional<double> attack_s, std::opt
 void follows(const render_options& o, const std::function<double(double t_s)>& expected,
              double duration_s = 0.1)
 {
-    const auto w = window_of(o, duration_s);
+    const auto w = measure_window(o, duration_s);
     for (std::size_t k = 0; k < w.size(); ++k) {
         if (w[k] >= 0.0) {
             CAPTURE(k);
@@ -85,7 +85,7 @@ TEST_CASE("a line rises and falls evenly")
     });
 }
 
-TEST_CASE("an exponential is through after five time constants")
+TEST_CASE("an exponential ends after five time constants")
 {
     const double all = 1.0 - std::exp(-5.0);
     follows(with(envelope_kind::exponential, 0.02, 0.04), [all](double t) {
@@ -133,7 +133,7 @@ TEST_CASE("bursts that overlap on a tactor keep their envelopes")
     }
 }
 
-TEST_CASE("a ramp as long on both sides has the same bytes as ever")
+TEST_CASE("equal ramps on both sides give the bytes of a single ramp")
 {
     render_options old;
     old.ramp_s = 0.01;
@@ -148,7 +148,7 @@ TEST_CASE("a ramp as long on both sides has the same bytes as ever")
     CHECK(burst_ramp_s(0.0, 0.1, p, with(envelope_kind::tukey, {}, {})) == doctest::Approx(0.025));
 }
 
-TEST_CASE("waves that cross zero nowhere in particular have the ramp of 2 ms")
+TEST_CASE("waves without zero crossings at their ends have the ramp of 2 ms")
 {
     plan p = pieces::make_plan({make_burst(0.0, 0.1, {{0, 1.0}})});
     CHECK(burst_ramp_s(0.0, 0.1, p, {}) == 0.0);
@@ -170,13 +170,13 @@ TEST_CASE("a continuous stroke has the ramp of 2 ms by default where its carrier
         p.curve = tactor::test::make_curve(duration_s, [](double, burst& out) { out.drives = {{0, 1.0}}; });
         render_options o;
         o.level_dbfs = 0.0;
-        // Not the first stroke of the piece, nor at a zero of its own.
+        // Not the first stroke of the piece, nor at a zero of its carrier.
         const score s(row(1), {{p, 0.0117}}, o);
         const auto x = channel(s, 0);
         const std::size_t start = s.starts()[0];
         CHECK(x[start + 48] == doctest::Approx(half)); // the crest in the middle of 2 ms
         CHECK(x[start + 144] == doctest::Approx(-1.0));
-        // It falls as it has risen, to next to nothing in its last frames.
+        // It falls as it has risen, to almost nothing in its last frames.
         if (half < 1.0) {
             double last = 0.0;
             for (std::size_t k = x.size() - 10; k < x.size(); ++k)
@@ -190,7 +190,7 @@ TEST_CASE("a continuous stroke has the ramp of 2 ms by default where its carrier
     }
 }
 
-TEST_CASE("envelopes that are none are refused")
+TEST_CASE("impossible envelopes are refused")
 {
     const plan p = pieces::make_plan({make_burst(0.0, 0.1, {{0, 1.0}})});
     const auto refused = [&](const burst_envelope& e, const std::string& part) {

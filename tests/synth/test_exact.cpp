@@ -50,7 +50,7 @@ std::vector<double> formula(const example& e, std::size_t frames)
     return x;
 }
 
-score score_of(const example& e)
+score make_score(const example& e)
 {
     render_options o;
     o.rate = e.rate;
@@ -94,7 +94,7 @@ std::vector<example> examples()
 TEST_CASE("a burst is the formula to one float ulp")
 {
     for (const example& e : examples()) {
-        const score s = score_of(e);
+        const score s = make_score(e);
         const auto x = formula(e, s.frames());
         const auto bytes = render(s, format_kind::float32);
         std::size_t wrong = 0;
@@ -119,18 +119,18 @@ TEST_CASE("integers are the formula times 2^(bits - 1), rounded")
         std::size_t wrong = 0;
         std::size_t loud = 0;
         for (const example& e : examples()) {
-            const score s = score_of(e);
+            const score s = make_score(e);
             const auto x = formula(e, s.frames());
             const auto bytes = render(s, f);
             for (std::size_t k = 0; k < x.size(); ++k) {
-                const double scaled = x[k] * scale_of(f);
-                const double exact = std::min(std::nearbyint(scaled), scale_of(f) - 1.0);
+                const double scaled = x[k] * full_scale(f);
+                const double exact = std::min(std::nearbyint(scaled), full_scale(f) - 1.0);
                 const auto got = static_cast<double>(integer(bytes, f, 2 * k + 1));
                 // The two sides may fall to either side of a tie, no more.
-                const bool tie =
-                    std::abs(std::abs(scaled - std::floor(scaled)) - 0.5) < 1e-3 * scale_of(f) / 2147483648.0;
+                const bool tie = std::abs(std::abs(scaled - std::floor(scaled)) - 0.5) <
+                                 1e-3 * full_scale(f) / 2147483648.0;
                 wrong += got == exact || (tie && std::abs(got - exact) <= 1.0) ? 0 : 1;
-                loud += std::abs(got) > 0.5 * scale_of(f) ? 1 : 0;
+                loud += std::abs(got) > 0.5 * full_scale(f) ? 1 : 0;
             }
         }
         CAPTURE(to_string(f));
@@ -141,18 +141,18 @@ TEST_CASE("integers are the formula times 2^(bits - 1), rounded")
 
 TEST_CASE("a burst of 17.5 cycles has no ramp, another has 2 ms at each end")
 {
-    const score plain = score_of({0.0, 0.07, 1.0, 250.0, 48000, 0.0, {}, phase_kind::burst});
+    const score plain = make_score({0.0, 0.07, 1.0, 250.0, 48000, 0.0, {}, phase_kind::burst});
     CHECK(plain.frames() == 3360);
     CHECK(channel(plain, 1)[48] == doctest::Approx(1.0));
-    const score ramped = score_of({0.0, 0.0705, 1.0, 250.0, 48000, 0.0, {}, phase_kind::burst});
+    const score ramped = make_score({0.0, 0.0705, 1.0, 250.0, 48000, 0.0, {}, phase_kind::burst});
     CHECK(channel(ramped, 1)[48] == doctest::Approx(0.5));
-    const score told = score_of({0.0, 0.07, 1.0, 250.0, 48000, 0.0, 0.002, phase_kind::burst});
+    const score told = make_score({0.0, 0.07, 1.0, 250.0, 48000, 0.0, 0.002, phase_kind::burst});
     CHECK(channel(told, 1)[48] == doctest::Approx(0.5));
 }
 
 TEST_CASE("a ramp never takes more than half of the burst")
 {
-    const score s = score_of({0.0, 0.01, 1.0, 1000.0, 48000, 0.0, 1.0, phase_kind::burst});
+    const score s = make_score({0.0, 0.01, 1.0, 1000.0, 48000, 0.0, 1.0, phase_kind::burst});
     const auto x = channel(s, 1);
     CHECK(std::abs(x[252]) == doctest::Approx(window(252, 480, 240)).epsilon(1e-6));
     CHECK(std::abs(x[240 + 12]) > 0.9);

@@ -43,7 +43,7 @@ TEST_CASE("full scale does not wrap in any format")
             if (f == format_kind::float32) {
                 CHECK(std::abs(static_cast<double>(sample<float>(bytes, i)) - x[i]) < 1e-6);
             } else {
-                const double want = x[i] > 0.0 ? scale_of(f) - 1.0 : -scale_of(f);
+                const double want = x[i] > 0.0 ? full_scale(f) - 1.0 : -full_scale(f);
                 CHECK(std::abs(static_cast<double>(integer(bytes, f, i)) - want) <=
                       (f == format_kind::s32 ? 1.0 : 0.0));
             }
@@ -60,10 +60,10 @@ TEST_CASE("integers are rounded to the nearest, ties to even")
             continue;
         std::vector<double> x;
         for (int i = -1000; i <= 1000; ++i)
-            x.push_back(0.125 * i / scale_of(f));
+            x.push_back(0.125 * i / full_scale(f));
         const auto bytes = converted(f, x);
         for (std::size_t i = 0; i < x.size(); ++i)
-            CHECK(static_cast<double>(integer(bytes, f, i)) == std::nearbyint(x[i] * scale_of(f)));
+            CHECK(static_cast<double>(integer(bytes, f, i)) == std::nearbyint(x[i] * full_scale(f)));
     }
 }
 
@@ -81,7 +81,7 @@ TEST_CASE("silence has no negative zeros")
     CHECK(sample<std::uint32_t>(bytes, 1) == 0U);
 }
 
-TEST_CASE("whichever channels sound, each sample is in its place and the others are silent")
+TEST_CASE("for any sounding channels, each sample is in its place and the others are silent")
 {
     std::mt19937_64 random(3);
     std::vector<double> x(synth::block_frames);
@@ -111,7 +111,7 @@ TEST_CASE("whichever channels sound, each sample is in its place and the others 
     }
 }
 
-TEST_CASE("the limiter clamps, silences what is no number, and counts")
+TEST_CASE("the limiter clamps, silences non-numbers, and counts")
 {
     const double inf = std::numeric_limits<double>::infinity();
     std::vector<double> x{0.0, 0.4, -0.5, 0.6, -7.0, inf, -inf, std::nan("")};

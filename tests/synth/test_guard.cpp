@@ -22,7 +22,8 @@ namespace {
 
 constexpr unsigned rate = 8000;
 
-/// Bursts (onset, duration) of full scale on the first `tactors` of as many, and silence until `total_s`.
+/// Makes bursts (onset, duration) of full scale on the first `tactors` of as many, and silence until
+/// `total_s`.
 score loud(unsigned tactors, std::vector<std::pair<double, double>> times, double total_s,
            std::optional<drive_limits> limits, double level_dbfs = 0.0)
 {
@@ -65,7 +66,7 @@ drive_limits no_longest(double power_dbfs)
 
 } // namespace
 
-TEST_CASE("what is within the limits has the same bytes with them and without")
+TEST_CASE("a piece within the limits has the same bytes with and without them")
 {
     for (const unsigned tactors : {1U, 3U}) {
         const std::vector<std::pair<double, double>> times{{0.0, 2.5}, {3.0, 2.5}};
@@ -79,7 +80,7 @@ TEST_CASE("what is within the limits has the same bytes with them and without")
            render(loud(9, {{0.0, 1.0}}, 1.0, {}, -12.0), format_kind::s32)));
 }
 
-TEST_CASE("more power than allowed is held down from the first wave on, and without a step")
+TEST_CASE("excess power is held down from the first wave on, without a step")
 {
     for (const unsigned tactors : {4U, 9U, 64U}) {
         const score s = loud(tactors, {{0.1, 0.5}}, 0.7, no_longest(4.771212547196624));
@@ -101,7 +102,7 @@ TEST_CASE("more power than allowed is held down from the first wave on, and with
     }
 }
 
-TEST_CASE("the gain is back a while after the loud part")
+TEST_CASE("the gain recovers a while after the loud part")
 {
     const score s = loud(9, {{0.0, 0.2}, {1.2, 0.1}}, 1.4, no_longest(4.771212547196624));
     plan quiet = make_plan(
@@ -115,7 +116,7 @@ TEST_CASE("the gain is back a while after the loud part")
     CHECK(largest(x, 1.2, 1.3) == doctest::Approx(1.0));
 }
 
-TEST_CASE("a tactor that is driven for five seconds passes, longer than that fades out")
+TEST_CASE("a tactor may be driven for five seconds, then it fades")
 {
     const std::vector<double> five = channel(loud(1, {{1.03, 5.0}}, 8.0, drive_limits{}), 0);
     CHECK((five == channel(loud(1, {{1.03, 5.0}}, 8.0, {}), 0)));
@@ -128,7 +129,7 @@ TEST_CASE("a tactor that is driven for five seconds passes, longer than that fad
     CHECK(largest(x, 13.8, 14.0) == doctest::Approx(1.0));
 }
 
-TEST_CASE("no window of ten seconds has more than five of drive, whatever the pattern")
+TEST_CASE("no window of ten seconds has more than five of drive, for any pattern")
 {
     std::mt19937_64 random(17);
     std::uniform_real_distribution<double> unit(0.0, 1.0);
@@ -157,13 +158,13 @@ TEST_CASE("no window of ten seconds has more than five of drive, whatever the pa
             sum -= i >= 2500 ? sounds[i - 2500] : 0;
             most = std::max(most, sum);
         }
-        // One fade, and each burst has two edges.
+        // A fade, and each burst has two edges.
         CHECK(most * 0.004 < 5.0 + 0.02 + 0.1);
         CHECK(most * 0.004 > 3.5);
     }
 }
 
-TEST_CASE("limits act in the same frames whatever the block sizes")
+TEST_CASE("limits act in the same frames for any block size")
 {
     std::mt19937_64 random(23);
     drive_limits l;
@@ -185,7 +186,7 @@ TEST_CASE("an epoch's end does not give a tactor its time back")
     drive_limits l;
     l.max_drive_s = 0.5;
     l.window_s = 1.0;
-    synth::mixer m(std::vector<double>(1, 1.0), format_kind::float32, 8, synth::guards_of(l, rate));
+    synth::mixer m(std::vector<double>(1, 1.0), format_kind::float32, 8, synth::make_guards(l, rate));
     synth::drive_event e;
     e.length = e.window = rate;
     e.cycles_per_frame = 250.0 / rate;
@@ -200,7 +201,7 @@ TEST_CASE("an epoch's end does not give a tactor its time back")
     CHECK(m.drives_cut() == 1);
 }
 
-TEST_CASE("weak drives do not count, and limits that are none are told")
+TEST_CASE("weak drives do not count, and impossible limits are named")
 {
     CHECK((channel(loud(1, {{0.0, 20.0}}, 20.0, drive_limits{}, -41.0), 0) ==
            channel(loud(1, {{0.0, 20.0}}, 20.0, {}, -41.0), 0)));
@@ -214,12 +215,12 @@ TEST_CASE("weak drives do not count, and limits that are none are told")
         CHECK_THROWS_AS(loud(1, {{0.0, 0.1}}, 0.1, l), error);
 }
 
-TEST_CASE("what is not a number reaches no format")
+TEST_CASE("non-numbers reach no format")
 {
     const double nan = std::numeric_limits<double>::quiet_NaN();
     const double inf = std::numeric_limits<double>::infinity();
     for (const format_kind f : all_formats) {
-        synth::mixer m(std::vector<double>{1.0, 0.5, nan}, f, 64, synth::guards_of({}, 48000));
+        synth::mixer m(std::vector<double>{1.0, 0.5, nan}, f, 64, synth::make_guards({}, 48000));
         for (const double a : {nan, inf, -inf, 1e308, -1e308, 1e200}) {
             for (std::uint32_t c = 0; c < 3; ++c) {
                 synth::drive_event e;
@@ -238,7 +239,7 @@ TEST_CASE("what is not a number reaches no format")
                 const float v = sample<float>(out, i);
                 REQUIRE(std::abs(v) <= (i % 3 == 1 ? 0.5F : i % 3 == 2 ? 0.0F : 1.0F));
             } else {
-                const auto v = std::abs(static_cast<double>(integer(out, f, i))) / scale_of(f);
+                const auto v = std::abs(static_cast<double>(integer(out, f, i))) / full_scale(f);
                 REQUIRE(v <= (i % 3 == 1 ? 0.5 : i % 3 == 2 ? 0.0 : 1.0));
             }
         }

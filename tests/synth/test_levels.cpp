@@ -51,7 +51,7 @@ bool holds(const std::string& text, const std::string& part)
 
 } // namespace
 
-TEST_CASE("the level is -12 dBFS unless told, and gain_db is added to it")
+TEST_CASE("the level is -12 dBFS by default, and gain_db is added to it")
 {
     array a = row(2);
     a.tactors[1].gain_db = -6.0;
@@ -81,7 +81,7 @@ TEST_CASE("a sensation level is above each tactor's threshold, without gain_db")
     CHECK(holds(message([&] { score(a, {{one, {}}}, o); }), "full scale"));
 }
 
-TEST_CASE("polarity turns a channel round")
+TEST_CASE("polarity inverts a channel")
 {
     array a = row(2);
     a.tactors[1].polarity = -1;
@@ -93,7 +93,7 @@ TEST_CASE("polarity turns a channel round")
         REQUIRE(x[k] == -y[k]);
 }
 
-TEST_CASE("levels that cannot be are refused")
+TEST_CASE("impossible levels are refused")
 {
     render_options o;
     for (const double level : {0.1, 1e9, std::nan(""), HUGE_VAL, -HUGE_VAL}) {
@@ -111,7 +111,7 @@ TEST_CASE("levels that cannot be are refused")
     CHECK(message([&] { score(a, {{one, {}}}, {}); }) == "no error");
 }
 
-TEST_CASE("a length that no plan has is refused by its name")
+TEST_CASE("an impossible length is refused by its name")
 {
     plan p = one;
     p.total_s = -1.0;
@@ -121,7 +121,7 @@ TEST_CASE("a length that no plan has is refused by its name")
     CHECK(field_of([&] { score(row(2), p); }) == "stroke_duration_s");
 }
 
-TEST_CASE("a tactor's limit is compared with what the score gives it")
+TEST_CASE("a tactor's limit is compared with the score's level for it")
 {
     array a = row(2);
     a.tactors[1].max_dbfs = -14.0;
@@ -138,7 +138,7 @@ TEST_CASE("a tactor's limit is compared with what the score gives it")
     CHECK(holds(message([&] { score(a, {{one, {}}, {one, 0.03}}, {}); }), "tactor 0"));
 }
 
-TEST_CASE("a sensation level that is too high says threshold and what is missing")
+TEST_CASE("a sensation level that is too high names the threshold and the excess")
 {
     array a = row(2);
     a.tactors[0].threshold_dbfs = -30.0;
@@ -147,9 +147,8 @@ TEST_CASE("a sensation level that is too high says threshold and what is missing
     render_options o;
     o.sl_db = 9.0; // 0.8 of it: 7.06 dB above -6 dBFS
     const std::string text = message([&] { score(a, {{one, {}}}, o); });
-    CHECK(holds(text,
-                "me.toml:9:1: tactor 1 would be driven at 1.062 dBFS, above full scale (0 dBFS): with its "
-                "threshold of -6 dBFS 1.07 dB are missing"));
+    CHECK(holds(text, "me.toml:9:1: tactor 1 would be driven at 1.062 dBFS, above full scale (0 dBFS): with "
+                      "its threshold of -6 dBFS 1.07 dB are missing"));
     CHECK(holds(text, "lower sl_db by 1.07 dB or more"));
     a.tactors[1].max_dbfs = -3.0;
     CHECK(holds(message([&] {
@@ -158,7 +157,7 @@ TEST_CASE("a sensation level that is too high says threshold and what is missing
                 "above its limit of -3 dBFS (max_dbfs): with its threshold of -6 dBFS 4.07 dB are missing"));
 }
 
-TEST_CASE("a sensation level that is too high says the threshold at the stroke's carrier")
+TEST_CASE("a sensation level that is too high names the threshold at the stroke's carrier")
 {
     array a = row(2);
     a.tactors[0].thresholds = {{60.0, -9.6}, {100.0, -1.6}, {250.0, -40.0}};
@@ -185,7 +184,7 @@ TEST_CASE("only tactors that are driven need a threshold")
     CHECK(peak(s, 1) == doctest::Approx(std::pow(10.0, -33.0 / 20.0)));
     CHECK(peak(s, 0) == 0.0);
     CHECK(holds(message([&] { score(a, {{middle, {}}, {one, {}}}, o); }), "tactor 0: has no threshold_dbfs"));
-    // Of a continuous stroke those that its movement comes to.
+    // A continuous stroke drives the tactors on its way.
     plan_options smooth;
     smooth.algorithm = algorithm_kind::continuous;
     smooth.outside = outside_kind::clamp;
@@ -252,7 +251,7 @@ TEST_CASE("a burst of one frame counts, and so does one frame in which two sound
                   }),
                   "tactor 0: would be driven at -5.979 dBFS"));
     }
-    // A ramp begins with a frame of zero: what rounding lets overlap by one is not heard together.
+    // A ramp begins with a frame of zero: an overlap of one frame by rounding is not heard together.
     o.ramp_s = 0.001;
     const double burst_s = 200 * frame_s;
     CHECK(message([&] {
@@ -292,7 +291,7 @@ TEST_CASE("continuous strokes are held to the limits too")
     CHECK(holds(message([&] { score(a, {{bad, {}}}, {}); }), "tactor 3"));
 }
 
-TEST_CASE("what comes to the limit but for the noise of its last digits is let pass")
+TEST_CASE("an excess in the last digits is accepted")
 {
     const auto sum = [](double amplitude) {
         std::vector<placed_plan> all;
@@ -323,7 +322,7 @@ TEST_CASE("a carrier that passes a threshold on its way is held to the limit the
     CHECK(message([&] { score(a, {{p, {}}}, o); }) == "no error");
 }
 
-TEST_CASE("options that cannot be rendered are refused")
+TEST_CASE("impossible render options are refused")
 {
     const auto with = [](auto change) {
         return message([&] {

@@ -50,7 +50,7 @@ TEST_CASE("a marker is at each stroke's first frame, for its length, at full sca
         CHECK((channel(s, c) == channel(two_strokes(plain), c)));
 }
 
-TEST_CASE("markers have the same bytes whatever the blocks, in every format, and two at once are one")
+TEST_CASE("markers have the same bytes for any blocks, in every format, and two at once are one")
 {
     std::mt19937_64 random(2);
     const plan p = make_plan({make_burst(0.0, 0.05, {{0, 1.0}})});

@@ -38,7 +38,7 @@ drive_event make_event(std::uint64_t start, std::uint32_t length, double a = 0.5
     return make_event(start, length, 0, a, a);
 }
 
-/// Bends at its quarters.
+/// A curve that bends at its quarters.
 drive_event make_line(std::uint64_t start, std::uint32_t length, std::uint32_t channel,
                       const std::array<double, 5>& amplitudes)
 {
@@ -77,7 +77,7 @@ bool silent(const std::vector<float>& x)
 
 } // namespace
 
-TEST_CASE("a drive sounds where it was asked for and nowhere else")
+TEST_CASE("a drive sounds at its place and nowhere else")
 {
     mixer m = make_mixer();
     CHECK(m.add(make_event(100, 200)));
@@ -127,7 +127,7 @@ TEST_CASE("a late drive starts in its middle with the right phase and window")
     CHECK(m.size() == 0);
 }
 
-TEST_CASE("the order of adding does not change what is heard")
+TEST_CASE("the order of adding does not change the sound")
 {
     std::mt19937_64 random(2);
     std::vector<drive_event> events;
@@ -162,7 +162,7 @@ TEST_CASE("a full mixer refuses, loses nothing, and takes more when a drive has 
     }
 }
 
-TEST_CASE("drives that are no numbers are silence, and so are channels that are not there")
+TEST_CASE("drives with non-numbers are silence, and so are missing channels")
 {
     const double inf = std::numeric_limits<double>::infinity();
     for (const double bad : {inf, -inf, std::nan("")}) {
@@ -185,7 +185,7 @@ TEST_CASE("drives that are no numbers are silence, and so are channels that are 
     }
 }
 
-TEST_CASE("each channel is held to its limit and what was cut is counted")
+TEST_CASE("each channel is held to its limit, and cuts are counted")
 {
     mixer m(std::vector<double>{0.25, 0.0}, format_kind::s16, 8);
     m.add(make_event(0, 480, 0, 0.5, 0.5));
@@ -203,7 +203,7 @@ TEST_CASE("each channel is held to its limit and what was cut is counted")
     CHECK(m.limited() >= cut + 400);
 }
 
-TEST_CASE("a limit holds whatever is silent at first between those that together are above it")
+TEST_CASE("a limit holds even when a drive of the sum is silent at first")
 {
     mixer m(std::vector<double>{0.25, 0.25}, format_kind::float32, 8);
     m.add(make_event(0, 100, 0, 0.2, 0.2));
@@ -217,7 +217,7 @@ TEST_CASE("a limit holds whatever is silent at first between those that together
     CHECK(m.limited() > 10);
 }
 
-TEST_CASE("no sample is above the limit, whatever begins and ends within a block")
+TEST_CASE("no sample is above the limit for any begins and ends within a block")
 {
     std::mt19937 random(1);
     const auto below = [&](unsigned n) { return static_cast<std::uint32_t>(random() % n); };
@@ -288,7 +288,7 @@ TEST_CASE("a faded score goes to zero without a step and is forgotten")
     }
 }
 
-TEST_CASE("a cut is at once, and fades are refused beyond 256")
+TEST_CASE("a cut is immediate, and fades are refused beyond 256")
 {
     mixer m = make_mixer(600);
     for (std::uint32_t i = 0; i < 300; ++i) {
@@ -357,7 +357,7 @@ TEST_CASE("reset drops everything and counts from 0")
     CHECK_FALSE(silent(take(m, 100)));
 }
 
-TEST_CASE("the limits of an array's channels")
+TEST_CASE("the limits of an array's channels follow its tactors")
 {
     array a = row(3);
     a.tactors[1].max_dbfs = -6.0;

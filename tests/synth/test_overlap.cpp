@@ -15,7 +15,7 @@ using namespace pieces;
 
 namespace {
 
-/// 0.1 s and 0.1 s, overlapping from 0.06 s to 0.1 s, on tactor 0.
+/// Makes two bursts of 0.1 s, overlapping from 0.06 s to 0.1 s, on tactor 0.
 plan two_bursts(overlap_kind join, double a, double b, double a_v = 1.0)
 {
     plan p = make_plan({make_burst(0.0, 0.1, {{0, a}}, a_v), make_burst(0.06, 0.1, {{0, b}}, a_v)});
@@ -23,12 +23,12 @@ plan two_bursts(overlap_kind join, double a, double b, double a_v = 1.0)
     return p;
 }
 
-score score_of(const plan& p, double ramp_s)
+score make_score(const plan& p, double ramp_s)
 {
     render_options o;
     o.level_dbfs = 0.0;
     o.ramp_s = ramp_s;
-    o.phase = phase_kind::burst; // tests of the stroke's: phase.cpp
+    o.phase = phase_kind::burst; // test_phase.cpp has the tests of the stroke's phase
     return {row(2), {{p, {}}}, o};
 }
 
@@ -47,7 +47,7 @@ TEST_CASE("overlapping bursts share one carrier that starts with the first")
                           {overlap_kind::max, 0.6, 0.5, 0.6},
                           {overlap_kind::sum, 0.4, 0.5, 0.9}};
     for (const rule& r : rules) {
-        const score s = score_of(two_bursts(r.join, r.a, r.b), 0.0);
+        const score s = make_score(two_bursts(r.join, r.a, r.b), 0.0);
         const auto x = channel(s, 0);
         REQUIRE(x.size() == 7680);
         for (std::size_t k = 0; k < x.size(); ++k) {
@@ -58,22 +58,22 @@ TEST_CASE("overlapping bursts share one carrier that starts with the first")
     }
 }
 
-TEST_CASE("the largest intensity is that of any that sounds, whichever came last")
+TEST_CASE("the largest intensity is that of any sounding burst, not only of the last")
 {
     for (const bool louder_first : {true, false}) {
         CAPTURE(louder_first);
         plan p =
             make_plan({make_burst(0.0, 0.1, {{0, louder_first ? 0.9 : 0.5}}, louder_first ? 0.95 : 0.5),
                        make_burst(0.0, 0.1, {{0, louder_first ? 0.5 : 0.9}}, louder_first ? 0.5 : 0.95)});
-        const auto x = channel(score_of(p, 0.0), 0);
+        const auto x = channel(make_score(p, 0.0), 0);
         CHECK(x[48] == doctest::Approx(0.95)); // sqrt(0.81 + 0.25) would be more
-        // What a scale has made more of than the intensity may stay so.
+        // An amplitude that a scale raised above the intensity may stay so.
         p.bursts[0].intensity = p.bursts[1].intensity = 0.3;
-        CHECK(channel(score_of(p, 0.0), 0)[48] == doctest::Approx(0.9));
+        CHECK(channel(make_score(p, 0.0), 0)[48] == doctest::Approx(0.9));
     }
 }
 
-TEST_CASE("what is joined falls as finely as it would alone, however slowly it has risen")
+TEST_CASE("a joined burst falls as smoothly as alone, however slowly it has risen")
 {
     plan both = make_plan({make_burst(0.0, 0.1, {{0, 0.6}}), make_burst(0.06, 0.14, {{0, 0.6}})});
     both.overlap = overlap_kind::max;
@@ -93,10 +93,10 @@ TEST_CASE("what is joined falls as finely as it would alone, however slowly it h
     }
 }
 
-TEST_CASE("energy never exceeds the largest intensity that sounds")
+TEST_CASE("energy never exceeds the largest sounding intensity")
 {
     plan p = make_plan({make_burst(0.0, 0.1, {{0, 0.5}}, 0.5), make_burst(0.06, 0.1, {{0, 0.5}}, 0.6)});
-    const auto x = channel(score_of(p, 0.0), 0);
+    const auto x = channel(make_score(p, 0.0), 0);
     CHECK(*std::max_element(x.begin() + 2880, x.begin() + 4800) == doctest::Approx(0.6));
     CHECK(*std::max_element(x.begin() + 4800, x.end()) == doctest::Approx(0.5));
 }
@@ -107,7 +107,7 @@ TEST_CASE("ramps of overlapping bursts go into the joined amplitude, at the defa
         const double a = 0.5;
         const double b = 0.4;
         for (const overlap_kind join : {overlap_kind::energy, overlap_kind::max, overlap_kind::sum}) {
-            const score s = score_of(two_bursts(join, a, b), static_cast<double>(ramp) / 48000.0);
+            const score s = make_score(two_bursts(join, a, b), static_cast<double>(ramp) / 48000.0);
             const auto x = channel(s, 0);
             for (std::int64_t k = 0; k < 7680; ++k) {
                 const double wa = k < 4800 ? a * window(k, 4800, ramp) : 0.0;
@@ -125,8 +125,8 @@ TEST_CASE("only the tactor with the overlap is joined")
 {
     const plan p =
         make_plan({make_burst(0.01, 0.1, {{0, 0.6}, {1, 0.3}}), make_burst(0.06, 0.1, {{0, 0.5}})});
-    const auto joined = channel(score_of(p, 0.0), 0);
-    const auto single = channel(score_of(p, 0.0), 1);
+    const auto joined = channel(make_score(p, 0.0), 0);
+    const auto single = channel(make_score(p, 0.0), 1);
     CHECK(joined[480 + 48] == doctest::Approx(0.6));
     CHECK(single[480 + 48] == doctest::Approx(0.3));
     CHECK(single[480 + 4800] == 0.0);
@@ -136,7 +136,7 @@ TEST_CASE("bursts that touch are not joined, each has its own phase")
 {
     const double hz = 240.0;
     const plan p = make_plan({make_burst(0.0, 0.0710, {{0, 0.6}}), make_burst(0.0710, 0.05, {{0, 0.5}})}, hz);
-    const auto x = channel(score_of(p, 0.0), 0);
+    const auto x = channel(make_score(p, 0.0), 0);
     for (std::size_t k = 0; k < 2400; ++k) {
         REQUIRE(std::abs(x[3408 + k] - 0.5 * std::sin(2.0 * pi * hz * static_cast<double>(k) / 48000.0)) <
                 1e-6);
@@ -148,7 +148,7 @@ TEST_CASE("a long chain of overlaps is one carrier")
     std::vector<burst> bursts;
     for (int i = 0; i < 50; ++i)
         bursts.push_back(make_burst(0.04 * i, 0.1, {{0, 0.3}}));
-    const score s = score_of(make_plan(bursts, 251.0), 0.0);
+    const score s = make_score(make_plan(bursts, 251.0), 0.0);
     const auto x = channel(s, 0);
     for (std::size_t k = 4800; k + 9600 < x.size(); ++k) {
         const std::size_t place = k % 1920;

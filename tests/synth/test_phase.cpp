@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
 // Where the carrier's phase starts: what it does to the spectrum and to the mean, and to the default ramp.
-#include <algorithm>
 #include <cmath>
 #include <complex>
 #include <numeric>
@@ -16,7 +15,7 @@ using namespace pieces;
 
 namespace {
 
-/// Forty bursts of 70 ms in a row on tactor 0, all as strong: 2.8 s.
+/// Makes forty bursts of 70 ms in a row on tactor 0, equally strong: 2.8 s.
 plan row_of_bursts(double carrier_hz = 250.0, double soa_s = 0.07)
 {
     std::vector<burst> bursts;
@@ -32,7 +31,7 @@ render_options full_scale(const render_options& from = {})
     return o;
 }
 
-/// Amplitude of the line at hz in dB; the length must be a whole number of its cycles.
+/// Returns the amplitude of the line at hz in dB; the length must be a whole number of its cycles.
 double line_db(const std::vector<double>& x, double hz, double rate = 48000.0)
 {
     std::complex<double> sum = 0.0;
@@ -76,9 +75,9 @@ TEST_CASE("a restart at each burst splits the line in two and leaves a mean")
     CHECK(mean(x) > 0.01);
 }
 
-TEST_CASE("the carrier counts from its stroke's first frame, wherever that is")
+TEST_CASE("the carrier counts from its stroke's first frame, at any start")
 {
-    // 240 Hz: no burst begins on a crossing but the first, so each sample depends on the count.
+    // 240 Hz: no burst except the first begins on a crossing, so each sample depends on the count.
     const double hz = 240.0;
     plan p = make_plan({make_burst(0.011, 0.1, {{0, 0.6}}), make_burst(0.17, 0.05, {{0, 0.5}})}, hz);
     for (const double start_s : {0.0, 0.2501}) {
@@ -96,7 +95,7 @@ TEST_CASE("the carrier counts from its stroke's first frame, wherever that is")
     }
 }
 
-TEST_CASE("bursts that overlap go on with the stroke's carrier")
+TEST_CASE("overlapping bursts continue the stroke's carrier")
 {
     const double hz = 240.0;
     const plan p = make_plan({make_burst(0.011, 0.1, {{0, 0.6}}), make_burst(0.06, 0.1, {{0, 0.5}})}, hz);
@@ -110,7 +109,7 @@ TEST_CASE("bursts that overlap go on with the stroke's carrier")
     }
 }
 
-TEST_CASE("no ramp where the carrier crosses zero at both ends of a burst, else 2 ms, burst by burst")
+TEST_CASE("a burst has no ramp where the carrier crosses zero at both its ends, else 2 ms")
 {
     // From the stroke's start in half cycles of 2 ms; 0.02 ms is 1 % of one.
     struct example {
@@ -136,7 +135,7 @@ TEST_CASE("no ramp where the carrier crosses zero at both ends of a burst, else 
             const auto first = static_cast<std::size_t>(std::llround(e.onset_s * o.rate));
             const std::size_t quarter = first + 768; // 1 ms, half way up a ramp of 2 ms
             if (quarter + 768 >= x.size())
-                continue; // the shortest ones are only to be taken
+                continue; // the shortest ones only have to be accepted
             CAPTURE(e.onset_s);
             CAPTURE(e.duration_s);
             CAPTURE(static_cast<int>(phase));
@@ -147,7 +146,7 @@ TEST_CASE("no ramp where the carrier crosses zero at both ends of a burst, else 
     }
 }
 
-TEST_CASE("a ramp that was asked for wins in either phase")
+TEST_CASE("an explicit ramp wins in either phase")
 {
     for (const phase_kind phase : {phase_kind::stroke, phase_kind::burst}) {
         render_options o = full_scale();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Where plans lie in a score, and the events that come out of it.
+// Places of plans in a score, and the score's events.
 #include <algorithm>
 #include <cmath>
 
@@ -33,7 +33,7 @@ TEST_CASE("plans follow each other unless they are placed")
     CHECK(s.channels() == 2);
 }
 
-TEST_CASE("strokes one after the other begin at their times, however many there are, at full scale")
+TEST_CASE("strokes in a row begin at their times, however many there are, at full scale")
 {
     render_options o;
     o.level_dbfs = 0.0;
@@ -51,7 +51,7 @@ TEST_CASE("strokes one after the other begin at their times, however many there 
     }
 }
 
-TEST_CASE("a burst that cannot be placed is refused, with what to do")
+TEST_CASE("a burst that cannot be placed is refused with a hint")
 {
     const auto refusal = [](const burst& b) {
         return message_of([&] {
@@ -88,7 +88,7 @@ TEST_CASE("starts count from the start or the end of plans before")
     CHECK_THROWS_AS(score(row(2), {{p, {}}, {p, -0.1, {end, 1}}}), error);
 }
 
-TEST_CASE("a plan that was refused is none that starts count from")
+TEST_CASE("later starts do not count from a refused plan")
 {
     const plan p = make_plan({make_burst(0.0, 0.05, {{0, 0.5}})});
     score_builder made(row(2), {});
@@ -177,7 +177,7 @@ TEST_CASE("spare channels are silent and channels follow the map")
     CHECK(channel(s, 1)[48] == doctest::Approx(0.25 * std::pow(10.0, -0.6)));
 }
 
-TEST_CASE("events come in order of start and cover exactly what sounds")
+TEST_CASE("events come in order of start and cover exactly the sounding frames")
 {
     std::mt19937_64 random(21);
     for (int i = 0; i < tactor::test::rounds(50); ++i) {
@@ -231,7 +231,7 @@ TEST_CASE("a burst of more tactors than an event holds is several events of one 
     CHECK(source.peek() == nullptr);
 }
 
-TEST_CASE("a drive longer than an event goes on in the next without a seam")
+TEST_CASE("a drive longer than an event continues in the next without a seam")
 {
     render_options o;
     o.rate = 768000;

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <complex>
-#include <limits>
 
 #include <doctest/doctest.h>
 
@@ -24,7 +23,7 @@ constexpr double three = 4.771212547196624; ///< channels at full scale, in dB
 
 using signal = std::vector<double>;
 
-/// A voice that rises and falls along a raised cosine, or at once.
+/// Makes a voice that rises and falls along a raised cosine, or at once.
 synth::drive_event voice(double start_s, double length_s, double ramp_s, double hz, std::uint32_t channel,
                          double amplitude, double cycles = 0.0)
 {
@@ -40,15 +39,16 @@ synth::drive_event voice(double start_s, double length_s, double ramp_s, double 
     return e;
 }
 
-synth::guard_settings power_of(double dbfs)
+synth::guard_settings limit_power(double dbfs)
 {
-    return synth::guards_of({.power_dbfs = dbfs, .max_drive_s = 3600.0, .window_s = 10.0}, rate);
+    return synth::make_guards({.power_dbfs = dbfs, .max_drive_s = 3600.0, .window_s = 10.0}, rate);
 }
 
 std::vector<signal> mixed(const std::vector<synth::drive_event>& events, unsigned channels,
                           std::size_t frames, double dbfs)
 {
-    synth::mixer m(std::vector<double>(channels, 1.0), format_kind::float32, events.size(), power_of(dbfs));
+    synth::mixer m(std::vector<double>(channels, 1.0), format_kind::float32, events.size(),
+                   limit_power(dbfs));
     for (const synth::drive_event& e : events)
         REQUIRE(m.add(e));
     std::vector<float> all(frames * channels);
@@ -59,7 +59,7 @@ std::vector<signal> mixed(const std::vector<synth::drive_event>& events, unsigne
     return x;
 }
 
-/// In place; a power of two.
+/// Transforms in place; the length is a power of two.
 void transform(std::vector<std::complex<double>>& a)
 {
     const std::size_t n = a.size();
@@ -85,7 +85,7 @@ void transform(std::vector<std::complex<double>>& a)
     }
 }
 
-/// Energy above 1 kHz against the whole, dB.
+/// Returns the energy above 1 kHz relative to the whole, dB.
 double above_1_khz(const signal& x)
 {
     std::vector<std::complex<double>> a(x.begin(), x.end());
@@ -114,7 +114,7 @@ double greatest_power(const std::vector<signal>& x)
 
 constexpr std::size_t frames = 1 << 16; // 1.37 s
 
-/// Voices at random that rise and fall over `ramp_s` or more.
+/// Makes random voices that rise and fall over `ramp_s` or more.
 std::vector<synth::drive_event> random_voices(std::mt19937_64& random, double ramp_s, bool one_carrier)
 {
     std::uniform_real_distribution<double> unit(0.0, 1.0);
@@ -154,7 +154,7 @@ TEST_CASE("tactors that rise slowly together are held down without a click")
     }
 }
 
-TEST_CASE("what sounds goes on without a click when other tactors begin at once")
+TEST_CASE("sounding tactors continue without a click when others begin at once")
 {
     std::vector<synth::drive_event> all;
     for (std::uint32_t c = 0; c < 3; ++c)
@@ -166,7 +166,7 @@ TEST_CASE("what sounds goes on without a click when other tactors begin at once"
         const std::vector<signal> x = mixed(all, 9, frames, dbfs);
         CHECK(above_1_khz(x[0]) < -75.0);
         CHECK(above_1_khz(x[5]) <
-              above_1_khz(mixed(all, 9, frames, 60.0)[5])); // bursts have edges of their own
+              above_1_khz(mixed(all, 9, frames, 60.0)[5])); // bursts have edges themselves
         CHECK(within(greatest_power(x), dbfs));
         // In the end each has the same.
         const auto largest = [&x](unsigned c) {
@@ -195,7 +195,7 @@ TEST_CASE("random mixes of one carrier or of many are held down without a click"
     }
 }
 
-TEST_CASE("no frame has more power than allowed, however the voices begin")
+TEST_CASE("no frame has more power than allowed, for any start of the voices")
 {
     std::mt19937_64 random(6);
     for (int run = 0; run < 12; ++run) {
@@ -205,13 +205,13 @@ TEST_CASE("no frame has more power than allowed, however the voices begin")
     }
 }
 
-TEST_CASE("the power is held in the same frames whatever the block sizes")
+TEST_CASE("the power is held in the same frames for any block size")
 {
     std::mt19937_64 random(7);
     for (int run = 0; run < tactor::test::rounds(8); ++run) {
         const auto voices = random_voices(random, run % 3 == 0 ? 0.0 : 0.005, run % 2 == 0);
         const auto played = [&](std::size_t largest_block) {
-            synth::guard_settings g = power_of(-12.0);
+            synth::guard_settings g = limit_power(-12.0);
             g.drive_frames = rate / 5;
             g.window_frames = rate / 2;
             synth::mixer m(std::vector<double>(9, 0.4), format_kind::s32, voices.size(), g);
@@ -235,10 +235,10 @@ TEST_CASE("the power is held in the same frames whatever the block sizes")
     }
 }
 
-TEST_CASE("what beats on a tactor keeps its part when others begin in the first frame of a block")
+TEST_CASE("beats on a tactor keep their part when others begin in the first frame of a block")
 {
     constexpr std::size_t begin = std::size_t{20} * 512;
-    // At `begin` a sample of the beat is next to nothing, and its crest is not.
+    // At `begin` a sample of the beat is almost zero, and its crest is not.
     std::vector<synth::drive_event> all{voice(0.0, 1.0, 0.1, 250.0, 0, 0.5),
                                         voice(0.0, 1.0, 0.1, 251.0, 0, 0.5)};
     for (std::uint32_t c = 1; c < 9; ++c) {
@@ -246,7 +246,7 @@ TEST_CASE("what beats on a tactor keeps its part when others begin in the first 
         all.back().start = begin;
     }
     const auto played = [&](std::size_t first) {
-        synth::mixer m(std::vector<double>(9, 1.0), format_kind::s32, all.size(), power_of(three));
+        synth::mixer m(std::vector<double>(9, 1.0), format_kind::s32, all.size(), limit_power(three));
         for (const synth::drive_event& e : all)
             REQUIRE(m.add(e));
         std::vector<std::byte> out(rate / 2 * 9 * 4);
@@ -259,7 +259,7 @@ TEST_CASE("what beats on a tactor keeps its part when others begin in the first 
     CHECK(played(begin - 1) == in_the_middle);
 }
 
-TEST_CASE("few tactors can be given no more than the limit, and are never looked at")
+TEST_CASE("few tactors cannot exceed the limit, and are never checked")
 {
     std::vector<synth::drive_event> all;
     for (std::uint32_t c = 0; c < 3; ++c) {

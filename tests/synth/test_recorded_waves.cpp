@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Recordings as carriers: in cycles, in their own time, along the path; and those of which little or nothing
-// is left.
+// Recordings as carriers: in cycles, in time, along the path; and recordings of which little or nothing is
+// left.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -23,7 +23,7 @@ using namespace pieces;
 
 namespace {
 
-std::vector<float> sine_of(std::size_t samples, double cycles, double amplitude, double offset = 0.0)
+std::vector<float> make_sine(std::size_t samples, double cycles, double amplitude, double offset = 0.0)
 {
     std::vector<float> x(samples);
     for (std::size_t i = 0; i < samples; ++i) {
@@ -40,7 +40,7 @@ std::string refusal(const waveform& w, double hz = 250.0)
 
 } // namespace
 
-TEST_CASE("a recording is the carrier's cycle, without what folds back")
+TEST_CASE("a recording is the carrier's cycle, without aliases")
 {
     // 63 samples with every harmonic, some of them strong.
     std::vector<float> cycle;
@@ -53,7 +53,7 @@ TEST_CASE("a recording is the carrier's cycle, without what folds back")
     }
 }
 
-TEST_CASE("a recording in its own time has its samples at its rate, and its frequencies at another")
+TEST_CASE("a recording in time has its samples at its rate, and its frequencies at another")
 {
     std::vector<float> samples(4801);
     for (std::size_t i = 0; i < samples.size(); ++i)
@@ -66,10 +66,10 @@ TEST_CASE("a recording in its own time has its samples at its rate, and its freq
     for (std::size_t i = 0; i < same.size(); ++i)
         REQUIRE(std::abs(same[i] - gain * (static_cast<double>(samples[i]) - mean)) < 1e-6);
     // 300 Hz for a second at 8 kHz.
-    std::vector<float> tone_of(8000);
-    for (std::size_t i = 0; i < tone_of.size(); ++i)
-        tone_of[i] = static_cast<float>(std::sin(2 * pi * 300.0 * static_cast<double>(i) / 8000.0));
-    const auto x = lines(played(tone(recorded(tone_of, texture_kind::time), 250.0)));
+    std::vector<float> tone_samples(8000);
+    for (std::size_t i = 0; i < tone_samples.size(); ++i)
+        tone_samples[i] = static_cast<float>(std::sin(2 * pi * 300.0 * static_cast<double>(i) / 8000.0));
+    const auto x = lines(played(tone(recorded(tone_samples, texture_kind::time), 250.0)));
     CHECK(strongest(x, 300.0) == doctest::Approx(1.0).epsilon(0.01));
     CHECK(stray_db(x, 1e9, 300.0) < -80.0);
 }
@@ -94,7 +94,7 @@ TEST_CASE("a recording at another rate keeps its level up to 0.95 of its highest
 
 TEST_CASE("a recording along the path follows the target's speed")
 {
-    // One cycle of a sine over 10 mm of a path of 40 mm: 4 cycles, in 1 s and then in 4 s.
+    // A cycle of a sine over 10 mm of a path of 40 mm: 4 cycles, in 1 s and then in 4 s.
     std::vector<float> cycle;
     for (int i = 0; i < 64; ++i)
         cycle.push_back(static_cast<float>(std::sin(2 * pi * i / 64.0)));
@@ -120,15 +120,15 @@ TEST_CASE("a recording along the path follows the target's speed")
     CHECK(at(5.5, 2) < -0.7);           // 37.5 mm
 }
 
-TEST_CASE("a recording sounds alike in whatever unit its samples are")
+TEST_CASE("a recording sounds alike in any unit of its samples")
 {
-    // The second factors reach the ends of what a float can be.
+    // The second factors reach the ends of the range of floats.
     for (const texture_kind texture : {texture_kind::cycle, texture_kind::time}) {
-        const auto as_it_is = played(tone(recorded(sine_of(480, 7.0, 0.75), texture), 250.0, 0.1));
+        const auto as_it_is = played(tone(recorded(make_sine(480, 7.0, 0.75), texture), 250.0, 0.1));
         REQUIRE(greatest(as_it_is) > 0.99);
         for (const double factor : {0x1p-20, 0x1p-120, 0x1p15, 0x1p128}) {
             CAPTURE(factor);
-            std::vector<float> samples = sine_of(480, 7.0, 0.75);
+            std::vector<float> samples = make_sine(480, 7.0, 0.75);
             for (float& v : samples)
                 v = static_cast<float>(factor * static_cast<double>(v));
             const auto x = played(tone(recorded(samples, texture), 250.0, 0.1));
@@ -139,7 +139,7 @@ TEST_CASE("a recording sounds alike in whatever unit its samples are")
     }
 }
 
-TEST_CASE("of the greatest and the least floats there are, nothing becomes infinite or no number")
+TEST_CASE("the greatest and least floats give neither infinities nor non-numbers")
 {
     constexpr float most = std::numeric_limits<float>::max();
     constexpr float least = std::numeric_limits<float>::denorm_min();
@@ -159,31 +159,31 @@ TEST_CASE("of the greatest and the least floats there are, nothing becomes infin
     }
 }
 
-TEST_CASE("a small vibration on a large constant is what is played, at any rate")
+TEST_CASE("a small vibration on a large constant is played without the constant, at any rate")
 {
     for (const double rate_hz : {8000.0, 48000.0, 44100.0}) {
         CAPTURE(rate_hz);
         const auto samples = static_cast<std::size_t>(rate_hz);
-        const auto w = recorded(sine_of(samples, 300.0, 1e-3, 1.0), texture_kind::time, rate_hz);
+        const auto w = recorded(make_sine(samples, 300.0, 1e-3, 1.0), texture_kind::time, rate_hz);
         const auto x = lines(played(tone(w, 250.0)));
         CHECK(strongest(x, 300.0) == doctest::Approx(1.0).epsilon(0.02));
         CHECK(stray_db(x, 1e9, 300.0) < -60.0);
     }
 }
 
-TEST_CASE("a recording of which nothing is left is refused: its rounding is not played in its place")
+TEST_CASE("a recording of which nothing is left is refused, not played as rounding")
 {
     for (const texture_kind texture : {texture_kind::cycle, texture_kind::time, texture_kind::length}) {
         CAPTURE(std::string(to_string(texture)));
         CHECK(has(refusal(recorded({0.0F, 0.0F}, texture)), "silence"));
         CHECK(has(refusal(recorded(std::vector<float>(700, 0.1F), texture)), "silence"));
     }
-    // All of it at half its own rate, which says nothing of its phase, and above half the stream's.
+    // The whole at half its own rate, without a phase, and above half the stream's.
     CHECK(has(refusal(recorded({0.3F, -0.3F, 0.3F, -0.3F}, texture_kind::cycle)),
               "x.wav: nothing of it is left"));
-    CHECK(has(refusal(recorded(sine_of(64, 20.0, 0.5), texture_kind::cycle), 2000.0),
+    CHECK(has(refusal(recorded(make_sine(64, 20.0, 0.5), texture_kind::cycle), 2000.0),
               "x.wav: nothing of it is left"));
-    const auto high = recorded(sine_of(96000, 40000.0, 0.5), texture_kind::time, 96000.0);
+    const auto high = recorded(make_sine(96000, 40000.0, 0.5), texture_kind::time, 96000.0);
     CHECK(has(refusal(high), "x.wav: nothing of it is left"));
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Actuators that need time to start are given more at first.
+// Slow actuators, which get more amplitude at first.
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -65,7 +65,7 @@ std::vector<float> samples(const array& a, const plan& p, const render_options& 
     return samples(score(a, p, o));
 }
 
-// The amplitude of the carrier in each of its half cycles.
+// Returns the carrier's amplitude in each of its half cycles.
 std::vector<double> amplitudes(const std::vector<float>& x)
 {
     std::vector<double> all;
@@ -79,7 +79,7 @@ std::vector<double> amplitudes(const std::vector<float>& x)
     return all;
 }
 
-// How an actuator follows, at the end of each half cycle.
+// Returns the actuator's response at the end of each half cycle.
 std::vector<double> followed(const std::vector<double>& driven, double rise_s)
 {
     const double kept = std::exp(-static_cast<double>(half_cycle) / rate / rise_s);
@@ -121,16 +121,16 @@ TEST_CASE("an actuator reaches the strength of a burst as soon as its limit allo
     }
 }
 
-TEST_CASE("what was not measured is left as it is")
+TEST_CASE("an unmeasured actuator is left as it is")
 {
     const plan p = bursts_at({{0.0, 1.0}, {0.1, 0.5}}, 0.07);
     const auto plain = samples(one_tactor({}), p);
     CHECK(peak(plain) == doctest::Approx(level).epsilon(1e-4));
-    CHECK(samples(one_tactor(0.02, level_dbfs), p) == plain); // nothing is left to its limit
+    CHECK(samples(one_tactor(0.02, level_dbfs), p) == plain); // without any room below its limit
     CHECK(samples(one_tactor(0.02), p) != plain);
 }
 
-TEST_CASE("a burst that follows another needs what is missing only")
+TEST_CASE("a burst that follows another needs only the missing strength")
 {
     const double rise_s = 0.02;
     const auto touching =
@@ -153,7 +153,7 @@ TEST_CASE("a burst that follows another needs what is missing only")
         CHECK(y[k] == doctest::Approx(level).epsilon(1e-3));
 }
 
-TEST_CASE("ramps are compensated as they are")
+TEST_CASE("ramps are compensated unchanged")
 {
     render_options o = options();
     o.ramp_s = 0.01;
@@ -169,7 +169,7 @@ TEST_CASE("ramps are compensated as they are")
     }
 }
 
-TEST_CASE("the limits hold where strokes lie over each other, and levels that fit still do")
+TEST_CASE("the limits hold where strokes overlap, and levels that fit still do")
 {
     const array a = one_tactor(0.03, -3.0);
     const plan p = bursts_at({{0.0, 1.0}, {0.1, 1.0}}, 0.07);
@@ -180,14 +180,14 @@ TEST_CASE("the limits hold where strokes lie over each other, and levels that fi
     CHECK_NOTHROW(score(a, both, loud));
 }
 
-TEST_CASE("bursts shorter than a half cycle, and actuators slower than any burst, are no trouble")
+TEST_CASE("bursts shorter than a half cycle, and actuators slower than any burst, are accepted")
 {
     const plan quick = bursts_at({{0.0, 1.0}, {0.01, 1.0}}, 0.001);
     CHECK(peak(samples(one_tactor(0.02), quick)) <= 1.0F);
     const auto slow = samples(one_tactor(1.0), bursts_at({{0.0, 1.0}}, 0.07));
     const std::vector<double> u = amplitudes(slow);
     for (const double v : u)
-        CHECK(v == doctest::Approx(1.0).epsilon(0.01)); // all that there is, to its end
+        CHECK(v == doctest::Approx(1.0).epsilon(0.01)); // the whole strength, to its end
 }
 
 } // namespace rise_test

@@ -11,7 +11,7 @@ namespace sample_ranges_test {
 
 using namespace tactor::synth;
 
-TEST_CASE("the least and greatest sample of each channel, however many frames come at a time")
+TEST_CASE("the least and greatest sample of each channel do not depend on the block size")
 {
     std::mt19937 random(11);
     std::uniform_real_distribution<float> sample(-1.0F, 1.0F);
@@ -34,7 +34,7 @@ TEST_CASE("the least and greatest sample of each channel, however many frames co
                     low = std::min(low, samples[i]);
                     high = std::max(high, samples[i]);
                 }
-                const auto [least, most] = ranges.of(c);
+                const auto [least, most] = ranges.range_at(c);
                 same = same && least == low && most == high;
             }
             CHECK(same);

@@ -13,8 +13,7 @@ namespace sounding_now_test {
 using namespace tactor;
 using namespace pieces;
 
-TEST_CASE(
-    "what sounds at a frame is as strong as was asked for, whatever its level, and no longer than it sounds")
+TEST_CASE("a sounding stroke has its given strength at each frame, at any level, and none after its end")
 {
     array a = row(3);
     a.tactors[1].gain_db = -6.0;
@@ -41,7 +40,7 @@ TEST_CASE(
         CHECK(levels[1] == doctest::Approx(0.5));
         CHECK(levels[2] == doctest::Approx(1.0));
     }
-    CHECK(now.at(1500)[0] == doctest::Approx(0.45)); // what is over is not found again: as at 3999
+    CHECK(now.at(1500)[0] == doctest::Approx(0.45)); // a past one is not found again: as at 3999
     CHECK(now.at(4000) == std::vector<double>{0.0, 0.0, 0.0});
 }
 

@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: MIT
-// What vibrates has no frequency that it should not have, and keeps within what a sine may do.
+// Waves: no frequencies beyond their own, and no more amplitude than a sine.
 #include <algorithm>
 #include <cmath>
-#include <complex>
-#include <memory>
 #include <string>
 #include <vector>
 
@@ -29,9 +27,9 @@ constexpr waveform_kind shapes[] = {waveform_kind::square, waveform_kind::triang
 
 } // namespace
 
-TEST_CASE("no harmonic folds back at half the rate: aliases are 80 dB down and more")
+TEST_CASE("no harmonic folds back at half the rate: aliases are at least 80 dB down")
 {
-    // None of them divides the rate: what folded back would lie between the harmonics.
+    // None divides the rate: an alias would lie between the harmonics.
     for (const waveform_kind k : shapes) {
         for (const double hz : {20.3, 61.7, 250.7, 441.3, 997.1}) {
             CAPTURE(std::string(to_string(k)));
@@ -58,7 +56,7 @@ TEST_CASE("the harmonics below half the rate are those of the shape")
     }
 }
 
-TEST_CASE("a wave's peak is the amplitude that was asked for")
+TEST_CASE("a wave's peak is the given amplitude")
 {
     std::vector<float> samples{0.0F, 0.1F, 0.3F, -0.2F, 0.05F, -0.1F, 0.2F};
     std::vector<waveform> all{noise(50, 500), noise(100, 110), recorded(samples, texture_kind::cycle),
@@ -74,7 +72,7 @@ TEST_CASE("a wave's peak is the amplitude that was asked for")
     }
 }
 
-TEST_CASE("noise lies between its frequencies, and its seed says which it is")
+TEST_CASE("noise lies between its frequencies and depends on its seed")
 {
     const auto x = lines(played(tone(noise(100, 300), 250.0)));
     const double most = *std::max_element(x.begin(), x.end());
@@ -120,7 +118,7 @@ TEST_CASE("modulation has two sidebands and keeps the peak")
     CHECK(stray < 1e-4 * *std::max_element(y.begin(), y.end()));
 }
 
-TEST_CASE("blocks make no difference to any wave")
+TEST_CASE("block sizes make no difference to any wave")
 {
     std::mt19937_64 random(5);
     std::vector<waveform> all{noise(50, 500), recorded({0.0F, 1.0F, -1.0F, 0.5F}, texture_kind::cycle),
@@ -143,7 +141,7 @@ TEST_CASE("blocks make no difference to any wave")
     }
 }
 
-TEST_CASE("a phase that begins with each burst leaves the stroke's course, modulation and texture alone")
+TEST_CASE("a phase that restarts with each burst leaves the stroke's course, modulation and texture alone")
 {
     // Three bursts on one tactor, and two that are joined, of a stroke that begins late.
     plan p = pieces::make_plan({make_burst(0.0, 0.07, {{0, 1.0}}), make_burst(0.101, 0.07, {{0, 1.0}}),
@@ -201,7 +199,7 @@ TEST_CASE("a phase that begins with each burst leaves the stroke's course, modul
     }
 }
 
-TEST_CASE("the limit on the power counts what a wave really has")
+TEST_CASE("the limit on the power counts the real power of a wave")
 {
     constexpr double three = 2.9999999999;
     for (const waveform_kind k : {waveform_kind::square, waveform_kind::sawtooth, waveform_kind::sine}) {
@@ -221,7 +219,7 @@ TEST_CASE("the limit on the power counts what a wave really has")
         }
         CAPTURE(std::string(to_string(k)));
         CHECK(sum <= three * (1.0 + 1e-3));
-        // Neither is more taken away than must be.
+        // Neither loses more than it must.
         CHECK(sum > (k == waveform_kind::sawtooth ? 1.4 : 2.9));
     }
 }
@@ -276,7 +274,7 @@ TEST_CASE("the phase of a carrier that changes is its integral, to 1e-9 cycles a
     CHECK(worst < 1e-9);
 }
 
-TEST_CASE("a carrier along the path is where its list says, and goes on without a jump")
+TEST_CASE("a carrier along the path follows its list, without a jump")
 {
     stroke s{"", trajectory::timed({{0.0, {0, 0}}, {1.0, {10, 0}}, {3.0, {40, 0}}}), {}, {}, {}};
     s.sound.carrier_profile = {{0.1, 100.0}, {0.5, 200.0}, {1.0, 50.0}};
@@ -295,7 +293,7 @@ TEST_CASE("a carrier along the path is where its list says, and goes on without 
     CHECK(has(message_of([&] { static_cast<void>(make_plan(row(3), s, {})); }), "not a carrier"));
 }
 
-TEST_CASE("waves that cannot be rendered are refused with what to do")
+TEST_CASE("waves that cannot be rendered are refused with a hint")
 {
     const auto refused = [](const waveform& w, const modulation& m, const std::string& part,
                             unsigned at_rate = rate) {

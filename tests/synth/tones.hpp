@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What carriers and waves sound like: a tone of each, and its lines.
+// Spectra of carriers and waves: a tone of each, and its lines.
 #pragma once
 
 #include <algorithm>
@@ -63,7 +63,8 @@ inline std::vector<double> played(const plan& p, double level_dbfs = 0.0, unsign
     return channel(score(row(1), p, o), 0);
 }
 
-/// Amplitude of each line in the middle of a tone, in a window of Blackman and Harris (sidelobes: -92 dB).
+/// Returns the amplitude of each line in the middle of a tone, in a window of Blackman and Harris (sidelobes:
+/// -92 dB).
 inline std::vector<double> lines(const std::vector<double>& x)
 {
     REQUIRE(x.size() >= 2000 + frames);
@@ -81,7 +82,8 @@ inline std::vector<double> lines(const std::vector<double>& x)
     return amplitudes;
 }
 
-/// Amplitude of a sine at a frequency: the window spreads its power over some lines, as 2.0044 of them.
+/// Returns the amplitude of a sine at a frequency: the window spreads its power over lines, as 2.0044 of
+/// them.
 inline double strongest(const std::vector<double>& spectrum, double hz)
 {
     const auto at = static_cast<std::ptrdiff_t>(std::lround(hz / line_hz));
@@ -91,7 +93,7 @@ inline double strongest(const std::vector<double>& spectrum, double hz)
     return std::sqrt(power);
 }
 
-/// The strongest line farther than 8 from every multiple of `hz`, in dB below the strongest of all.
+/// Returns the strongest line farther than 8 from every multiple of `hz`, in dB below the strongest of all.
 inline double stray_db(const std::vector<double>& spectrum, double hz, double offset_hz = 0.0)
 {
     double stray = 0.0;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Captures a PCM and says when each sound began: one line "onset FRAME NANOSECONDS" on standard output for
-// each sound after at least 0.1 s of silence, CLOCK_MONOTONIC of its first sample at the device.
+// Captures a PCM and times each sound: one line "onset FRAME NANOSECONDS" on standard output for each sound
+// after at least 0.1 s of silence, CLOCK_MONOTONIC of its first sample at the device.
 //   capture PCM CHANNELS FILE.raw       S32 at 48 kHz; ends on SIGTERM or SIGINT, or when the card goes
 #include <cerrno>
 #include <csignal>
@@ -49,8 +49,8 @@ snd_pcm_t* open_capture(const char* name, unsigned channels)
     return pcm;
 }
 
-// When frame `frame` of the stream was at the device; `read`: frames read so far.
-long long time_of(snd_pcm_t* pcm, std::uint64_t frame, std::uint64_t read)
+// Returns the time of frame `frame` of the stream at the device; `read`: frames read so far.
+long long frame_time(snd_pcm_t* pcm, std::uint64_t frame, std::uint64_t read)
 {
     snd_pcm_status_t* status = nullptr;
     snd_pcm_status_alloca(&status);
@@ -101,7 +101,7 @@ int main(int argc, char** argv)
                 sound = sound || block[f * channels + c] != 0;
             if (sound && silent >= quiet) {
                 std::printf("onset %llu %lld\n", static_cast<unsigned long long>(read + f),
-                            time_of(pcm, read + f, read + frames));
+                            frame_time(pcm, read + f, read + frames));
                 std::fflush(stdout);
             }
             silent = sound ? 0 : silent + 1;

@@ -4,8 +4,6 @@
 #pragma once
 
 #include <cstdio>
-#include <string>
-#include <string_view>
 
 #include "cli/picture_options.hpp"
 #include "plot/paint/canvas.hpp"
@@ -24,8 +22,5 @@ void print_trials(std::FILE* out, const study::dataset& d);
 /// Means with standard errors and each participant by motion, a panel for each run, as the paper's figures 8
 /// and 9.
 plot::canvas draw_analysis(const study::analysis& a, const picture_options& o);
-
-/// What Park et al. (2016) report of a run of theirs, or nothing.
-std::string_view in_the_paper(std::string_view experiment, std::string_view run);
 
 } // namespace tactor::cli

@@ -3,7 +3,7 @@
 
 #include "cli/analyze/analyze_output.hpp"
 #include "cli/say.hpp"
-#include "study/analysis/cells.hpp"
+#include "study/analysis/analysis.hpp"
 
 namespace tactor::cli {
 namespace {
@@ -80,9 +80,8 @@ void print_trials(std::FILE* out, const study::dataset& d)
                         notes);
     for (const study::run_outline& r : d.experiment.runs)
         text += fmt::format("# {}\n", model_of(r));
-    text +=
-        "participant\trun\ttask\ttrial\tattempt\tmotion\tmethod\torder\tresponse\tchosen\trating\tcorrect\t"
-        "response_time\n";
+    text += "participant\trun\ttask\ttrial\tattempt\tmotion\tmethod\torder\tresponse\tchosen\trating\tcorrect"
+            "\tresponse_time\n";
     for (std::size_t i = 0; i < d.participants.size(); ++i)
         for (std::size_t k = 0; k < d.experiment.runs.size(); ++k) {
             const study::run_outline& r = d.experiment.runs[k];

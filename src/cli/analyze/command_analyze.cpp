@@ -62,14 +62,11 @@ command add_analyze(CLI::App& app)
     add_study_options(*c, o->folder, o->who);
     add_format_option(*c, o->format, {"text", "json", "tsv"},
                       "how to print it; tsv: a line for each trial, for R (default text)");
-    c->add_option_function<std::string>(
-         "-o,--output",
-         [o](const std::string& t) {
-             plot::format_of(t);
-             o->picture.file = t;
-         },
-         "draw it too: means with standard errors, and each participant")
-        ->type_name("FILE.svg|.png|.pdf");
+    add_text(*c, "-o,--output", "FILE.svg|.png|.pdf",
+             "draw it too: means with standard errors, and each participant", [o](const std::string& t) {
+                 plot::format_of(t);
+                 o->picture.file = t;
+             });
     add_picture_options(*c, o->picture, "170, the width of a page");
     c->footer("Example: tactor analyze study --format json -o study.pdf");
     return [o] { return run(*o); };

@@ -8,6 +8,7 @@
 
 #include <tactor/error.hpp>
 
+#include "cli/settings.hpp"
 #include "core/split.hpp"
 
 namespace tactor::cli {
@@ -43,16 +44,11 @@ void parse_excluded(std::string_view text, study::selection& who)
 void add_study_options(CLI::App& command, std::string& folder, study::selection& who)
 {
     command.add_option("DIR", folder, "the folder of the study, as tactor experiment wrote it")->required();
-    command
-        .add_option_function<std::string>(
-            "--participants", [&who](const std::string& t) { who.only = parse_codes("--participants", t); },
-            "only these (default all)")
-        ->type_name("CODES");
-    command
-        .add_option_function<std::string>(
-            "--exclude", [&who](const std::string& t) { parse_excluded(t, who); },
-            "all but these; the report names them with their reasons")
-        ->type_name("CODE[:REASON],...");
+    add_text(command, "--participants", "CODES", "only these (default all)",
+             [&who](const std::string& t) { who.only = parse_codes("--participants", t); });
+    add_text(command, "--exclude", "CODE[:REASON],...",
+             "all but these; the report names them with their reasons",
+             [&who](const std::string& t) { parse_excluded(t, who); });
 }
 
 void make_derivatives(const std::filesystem::path& folder, const std::filesystem::path& file)

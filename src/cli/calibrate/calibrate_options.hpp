@@ -5,12 +5,10 @@
 
 #include <optional>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "cli/input.hpp"
 #include "cli/session/page_options.hpp"
-#include "session/device.hpp"
 #include "study/calibrate/calibration.hpp"
 #include "study/masking/masking_stream.hpp"
 
@@ -36,9 +34,6 @@ struct calibrate_options {
     bool start_asked = false;              ///< a start level above a ceiling is no slip of the defaults then
     bool resume = false;
 };
-
-/// \throws error (bad_input) about an option.
-[[noreturn]] void refuse_setting(std::string_view option, const std::string& why, std::string_view hint);
 
 void add_calibrate_options(CLI::App& command, calibrate_options& into);
 

@@ -16,7 +16,6 @@
 #include "core/words.hpp"
 #include "session/pipes.hpp"
 #include "session/sound_server.hpp"
-#include "study/calibrate/calibration_time.hpp"
 #include "study/calibrate/log.hpp"
 #include "study/calibrate/observer.hpp"
 #include "study/calibrate/person.hpp"
@@ -66,8 +65,7 @@ void print(const study::tactor_threshold& t, double ceiling_dbfs)
     if (missing > 0.0)
         say(stderr,
             "tactor: warning: tactor {}: {} dB above its threshold of {:.2f} dBFS are {:.2f} dB more than it "
-            "may "
-            "have\n",
+            "may have\n",
             t.tactor, paper_sl_db, *t.threshold_dbfs, missing);
 }
 
@@ -93,8 +91,7 @@ int ask_person(study::calibration& c, study::calibration_log& log, const setting
     const alsa_options device = session::device_options(s, o, e, render.channels, render.rate);
     const std::string server = session::settle_server(device.pcm);
     study::person who(device, o, e, render, c.settings(), asked.keypads, open_page(asked.page));
-    if (!server.empty())
-        say(stderr, "tactor: warning: {} ({})\n", session::server_note(server), session::server_cure);
+    session::warn_of_server(server);
     if (!asked.masker.empty()) {
         study::masking_options noise = asked.masking;
         noise.seed = fmt::format("{}/calibrate/{}/noise", c.settings().seed, c.settings().participant);

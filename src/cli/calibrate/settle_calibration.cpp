@@ -11,6 +11,7 @@
 
 #include "cli/calibrate/calibrate_options.hpp"
 #include "cli/say.hpp"
+#include "cli/settings.hpp"
 #include "core/split.hpp"
 #include "study/bids/acq_time.hpp"
 #include "study/experiment/sequence.hpp"
@@ -26,11 +27,11 @@ unsigned tactor_in(std::string_view text, const std::string& all, std::size_t n)
     unsigned i = 0;
     const auto [stop, failed] = std::from_chars(text.data(), text.data() + text.size(), i);
     if (failed == std::errc::invalid_argument || stop != text.data() + text.size())
-        refuse_setting("--tactors", fmt::format("\"{}\" is no list of tactors", all), "as 0,3-5");
+        refuse_option("--tactors", fmt::format("\"{}\" is no list of tactors", all), "as 0,3-5");
     if (failed != std::errc() || i >= n)
-        refuse_setting("--tactors", fmt::format("there is no tactor {}", text),
-                       n == 1 ? std::string("the array has tactor 0 only")
-                              : fmt::format("the array has 0 to {}", n - 1));
+        refuse_option("--tactors", fmt::format("there is no tactor {}", text),
+                      n == 1 ? std::string("the array has tactor 0 only")
+                             : fmt::format("the array has 0 to {}", n - 1));
     return i;
 }
 
@@ -42,12 +43,12 @@ std::vector<unsigned> tactors_in(const std::string& text, std::size_t n)
         const unsigned first = tactor_in(part.substr(0, dash), text, n);
         const unsigned last = dash == part.npos ? first : tactor_in(part.substr(dash + 1), text, n);
         if (last < first)
-            refuse_setting("--tactors", fmt::format("\"{}\" runs backwards", part),
-                           fmt::format("as {}-{}", last, first));
+            refuse_option("--tactors", fmt::format("\"{}\" runs backwards", part),
+                          fmt::format("as {}-{}", last, first));
         for (unsigned i = first; i <= last; ++i) {
             if (std::find(all.begin(), all.end(), i) != all.end())
-                refuse_setting("--tactors", fmt::format("tactor {} is named twice", i),
-                               "each is measured once");
+                refuse_option("--tactors", fmt::format("tactor {} is named twice", i),
+                              "each is measured once");
             all.push_back(i);
         }
     }
@@ -63,7 +64,7 @@ std::string today()
 void check_staircase(const study::calibration_settings& c)
 {
     if (c.staircase.reversals < c.staircase.discard + 2)
-        refuse_setting(
+        refuse_option(
             "--discard",
             fmt::format("of {} reversals {} are discarded", c.staircase.reversals, c.staircase.discard),
             "two at least must be left");
@@ -81,14 +82,14 @@ std::string masker_text(const calibrate_options& o)
 void check_masker(const calibrate_options& o)
 {
     if (o.masker.empty() && !o.of_masker.empty())
-        refuse_setting(o.of_masker.front(), "there is no device for the noise",
-                       "--masker PCM, or leave it out");
+        refuse_option(o.of_masker.front(), "there is no device for the noise",
+                      "--masker PCM, or leave it out");
     const double most = study::greatest_noise_dbfs(o.masking.color);
     if (o.masking.level_dbfs > most)
-        refuse_setting("--masker-dbfs",
-                       fmt::format("{} dBFS, and the peaks of this noise are at full scale from {} dBFS on",
-                                   o.masking.level_dbfs, most),
-                       "less here, and more at the amplifier of the headphones");
+        refuse_option("--masker-dbfs",
+                      fmt::format("{} dBFS, and the peaks of this noise are at full scale from {} dBFS on",
+                                  o.masking.level_dbfs, most),
+                      "less here, and more at the amplifier of the headphones");
 }
 
 // The levels that a tactor may have.
@@ -106,8 +107,7 @@ void tell_of_power(const study::calibration_settings& c, const array& a, const d
     if (!lower.empty())
         say(stderr,
             "tactor: warning: no level is above {:.4g} dBFS, which power_dbfs in [limits] allows, and "
-            "max_dbfs "
-            "does not, of {} {}\n",
+            "max_dbfs does not, of {} {}\n",
             l.power_dbfs, lower.size() == 1 ? "tactor" : "tactors", fmt::join(lower, ", "));
 }
 
@@ -127,7 +127,7 @@ void check_drive_time(const study::calibration_settings& c, const drive_limits& 
     constexpr double rounding_s = 1e-9;
     const double longest_s = longest_drive_s(c, l);
     if (l.max_drive_s < l.window_s && longest_s > l.max_drive_s + rounding_s)
-        refuse_setting(
+        refuse_option(
             "--interval",
             fmt::format("{} of {} s would drive a tactor {:.4g} s in {:.4g} s, and [limits] allow {:.4g} s "
                         "(max_drive_s)",
@@ -139,9 +139,8 @@ void check_drive_time(const study::calibration_settings& c, const drive_limits& 
 void check_carrier(double carrier_hz, unsigned rate)
 {
     if (carrier_hz >= 0.5 * rate)
-        refuse_setting("--carrier",
-                       fmt::format("{} Hz cannot be played at a rate of {} Hz", carrier_hz, rate),
-                       fmt::format("below {} Hz, half the rate", 0.5 * rate));
+        refuse_option("--carrier", fmt::format("{} Hz cannot be played at a rate of {} Hz", carrier_hz, rate),
+                      fmt::format("below {} Hz, half the rate", 0.5 * rate));
 }
 
 } // namespace
@@ -153,15 +152,15 @@ study::calibration_settings settle_calibration(const calibrate_options& o, const
     const array& a = e.tactors;
     const drive_limits limits = session::settle_limits({}, e);
     if (c.method == study::calibration_method::adjustment && !o.of_staircase.empty())
-        refuse_setting(o.of_staircase.front(), "an adjustment does not have that",
-                       "leave it out, or use --method staircase");
+        refuse_option(o.of_staircase.front(), "an adjustment does not have that",
+                      "leave it out, or use --method staircase");
     check_staircase(c);
     check_masker(o);
     check_page_options(o.page, o.simulate.has_value());
     if (const std::string asked = asked_of_stream(s); o.simulate && !asked.empty())
-        refuse_setting(asked, "nothing is played", "leave it out, or --simulate");
+        refuse_option(asked, "nothing is played", "leave it out, or --simulate");
     if (o.simulate && !o.keypads.empty())
-        refuse_setting("--keypad", "nobody is asked", "leave it out, or --simulate");
+        refuse_option("--keypad", "nobody is asked", "leave it out, or --simulate");
     c.masker = masker_text(o);
     c.masker_pcm = o.masker;
     c.carrier_hz = s.plan.carrier_hz;
@@ -176,7 +175,7 @@ study::calibration_settings settle_calibration(const calibrate_options& o, const
     for (const unsigned t : c.tactors) {
         const double ceiling = ceiling_of(a, t, limits);
         if (o.start_asked && c.start_dbfs() > ceiling)
-            refuse_setting(
+            refuse_option(
                 "--start-dbfs",
                 fmt::format("tactor {} may have {:.4g} dBFS at most ({}), and {:.4g} dBFS is the start", t,
                             ceiling, ceiling < a.tactors[t].max_dbfs ? "power_dbfs in [limits]" : "max_dbfs",

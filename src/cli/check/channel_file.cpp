@@ -10,7 +10,6 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include "files/channel_map.hpp"
 #include "files/setup_text.hpp"
 
 namespace tactor::cli {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "cli/check/check_array.hpp"
+#include "cli/check/finding.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: MIT
 // Whether the actuators can make the bursts that are asked for.
 #include <algorithm>
-#include <cmath>
 #include <map>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "cli/check/check_array.hpp"
+#include "cli/check/finding.hpp"
 #include "core/words.hpp"
 #include "plot/sound_text.hpp"
 
@@ -53,20 +52,17 @@ void check_actuators(const array& a, double carrier_hz, double burst_s, bool has
     const std::string burst =
         has_bursts ? fmt::format("bursts of {:.3g} ms", burst_s * 1e3) : std::string("a moving phantom");
     if (const auto erm = of_kind(a, actuator_kind::erm); !erm.empty())
-        into.push_back(warning(
-            "actuators",
-            fmt::format(
-                "{}: an ERM needs about {:.0f} ms to start, too long for {}, and its frequency follows "
-                "its voltage, not the carrier of {:.4g} Hz",
-                who(a, erm), erm_rise_s * 1e3, burst, carrier_hz),
-            "use piezo or voice coil actuators"));
+        into.push_back(warning("actuators",
+                               fmt::format("{}: an ERM needs about {:.0f} ms to start, too long for {}, and "
+                                           "its frequency follows its voltage, not the carrier of {:.4g} Hz",
+                                           who(a, erm), erm_rise_s * 1e3, burst, carrier_hz),
+                               "use piezo or voice coil actuators"));
     if (const auto lra = of_kind(a, actuator_kind::lra); !lra.empty())
         into.push_back(warning(
             "actuators",
-            fmt::format(
-                "{}: an LRA needs over {:.0f} ms to start, much of {}, and works only within about 5 Hz "
-                "of its own resonance; the carrier is {:.4g} Hz",
-                who(a, lra), lra_rise_s * 1e3, burst, carrier_hz),
+            fmt::format("{}: an LRA needs over {:.0f} ms to start, much of {}, and works only within about 5 "
+                        "Hz of its own resonance; the carrier is {:.4g} Hz",
+                        who(a, lra), lra_rise_s * 1e3, burst, carrier_hz),
             "set --carrier to the resonance in its data sheet, or use piezo or voice coil actuators"));
     double slowest_s = 0.0;
     const auto slow = tactors_where(a, [&](const tactor_spec& t) {
@@ -81,12 +77,11 @@ void check_actuators(const array& a, double carrier_hz, double burst_s, bool has
     if (into.size() != before)
         return;
     const bool unknown = !of_kind(a, actuator_kind::unknown).empty();
-    into.push_back(
-        fine("actuators", kinds(a),
-             unknown ? fmt::format("say actuator = \"piezo\", \"voice-coil\", \"lra\" or \"erm\" under "
-                                   "[array]: {} need one that starts within a few ms",
-                                   burst)
-                     : ""));
+    into.push_back(fine("actuators", kinds(a),
+                        unknown ? fmt::format("say actuator = \"piezo\", \"voice-coil\", \"lra\" or \"erm\" "
+                                              "under [array]: {} need one that starts within a few ms",
+                                              burst)
+                                : ""));
 }
 
 // Noise and recordings have no carrier that cycles could be counted of.

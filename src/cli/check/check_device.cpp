@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "cli/check/check_device.hpp"
+#include "cli/check/finding.hpp"
 
 #include <string>
 #include <vector>
@@ -16,10 +16,9 @@ namespace {
 
 finding told_lost(const alsa_options& device, const std::string& lost)
 {
-    return failure("device",
-                   {error_kind::not_available, fmt::format("PCM \"{}\"", device.pcm), lost,
-                    "give each channel one of the device's, at 1, where the PCM is defined (ttable, "
-                    "bindings), or play on the card itself: -D hw:CARD=NAME"});
+    return failure("device", {error_kind::not_available, fmt::format("PCM \"{}\"", device.pcm), lost,
+                              "give each channel one of the device's, at 1, where the PCM is defined "
+                              "(ttable, bindings), or play on the card itself: -D hw:CARD=NAME"});
 }
 
 finding told_open(const alsa_options& device, const session::stream_options& o, const environment& e,
@@ -47,6 +46,27 @@ finding told_open(const alsa_options& device, const session::stream_options& o, 
     return fine("device", found);
 }
 
+std::string line_words(const gpio_line_place& p)
+{
+    return fmt::format("line {}{} of {} ({})", p.line.offset,
+                       p.line.name.empty() ? "" : fmt::format(" \"{}\"", p.line.name), p.label, p.path);
+}
+
+finding check_line(const char* check, const gpio_line_name& name, const line_finder& find)
+{
+    try {
+        const gpio_line_place p = find(name);
+        if (p.line.consumer.empty())
+            return fine(check, line_words(p) + ", free");
+        const bool own = p.line.consumer == "tactor";
+        return {check, level::error, fmt::format("{}: held by \"{}\"", line_words(p), p.line.consumer),
+                own ? "another tactor runs: stop it" : "stop that program, or choose another line",
+                error_kind::not_available};
+    } catch (const error& e) {
+        return failure(check, e);
+    }
+}
+
 } // namespace
 
 finding check_device(const alsa_options& device, const session::stream_options& o, const environment& e,
@@ -66,6 +86,27 @@ finding check_device(const alsa_options& device, const session::stream_options& 
     } catch (const error& failed) {
         return failure("device", failed);
     }
+}
+
+std::vector<finding> check_lines(const setup& config, bool felt, const line_finder& find)
+{
+    std::vector<finding> all;
+    if (!config.amplifier)
+        all.push_back({"amplifier", felt ? level::warning : level::ok,
+                       "no [amplifier]: nothing switches it off",
+                       "wire its enable input to a GPIO line, see tactor-raspberry-pi(7)"});
+    else {
+        finding f = check_line("amplifier", config.amplifier->line, find);
+        if (f.how == level::ok && config.amplifier->active_low)
+            f = warning("amplifier", f.found + ", on when low: a line that floats may switch it on",
+                        "use an amplifier that is on when high, with a pull-down resistor");
+        all.push_back(std::move(f));
+    }
+    if (config.sync && config.sync->out)
+        all.push_back(check_line("sync out", *config.sync->out, find));
+    if (config.sync && config.sync->in)
+        all.push_back(check_line("sync in", *config.sync->in, find));
+    return all;
 }
 
 } // namespace tactor::cli

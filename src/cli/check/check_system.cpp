@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: MIT
-#include "cli/check/check_system.hpp"
+#include "cli/check/system_facts.hpp"
 
 #include <algorithm>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "cli/devices/devices_text.hpp"
 #include "rt/advice.hpp"
 
 namespace tactor::cli {
@@ -87,9 +88,8 @@ finding check_memory(const system_facts& f, const system_needs& n)
 
 finding check_kernel(const system_facts& f)
 {
-    constexpr const char* cure =
-        "boot with preempt=full on the kernel's command line, or a PREEMPT_RT kernel "
-        "(Debian: linux-image-rt)";
+    constexpr const char* cure = "boot with preempt=full on the kernel's command line, or a PREEMPT_RT "
+                                 "kernel (Debian: linux-image-rt)";
     switch (f.preempts) {
     case preemption::realtime:
         return fine("kernel", "PREEMPT_RT");
@@ -117,28 +117,21 @@ finding check_clock(const system_facts& f)
                    "echo performance | sudo tee /sys/devices/system/cpu/cpu*/cpufreq/scaling_governor");
 }
 
-std::string names(const std::vector<process_info>& all)
-{
-    std::vector<std::string> texts;
-    for (const process_info& p : all)
-        texts.push_back(fmt::format("{} (process {})", p.program.empty() ? "a program" : p.program, p.pid));
-    return fmt::format("{}", fmt::join(texts, ", "));
-}
-
 finding check_servers(const system_facts& f, const system_needs& n)
 {
     constexpr const char* rules =
-        "call the card Tactor in the udev rules (70-tactor.rules), which keep them off "
-        "it; for now: systemctl --user stop pipewire.socket pipewire wireplumber "
-        "pulseaudio.socket pulseaudio";
+        "call the card Tactor in the udev rules (70-tactor.rules), which keep them off it; for now: "
+        "systemctl --user stop pipewire.socket pipewire wireplumber pulseaudio.socket pulseaudio";
     if (!n.card)
-        return fine("sound servers", fmt::format("{}; \"{}\" is on no card of this machine",
-                                                 f.servers.empty() ? "none" : names(f.servers), n.pcm));
+        return fine("sound servers",
+                    fmt::format("{}; \"{}\" is on no card of this machine",
+                                f.servers.empty() ? "none" : process_names(f.servers), n.pcm));
     const auto is_server = [&](const process_info& p) {
         return std::any_of(f.servers.begin(), f.servers.end(), [&](const auto& s) { return s.pid == p.pid; });
     };
     if (!n.holders.empty())
-        return warning("sound servers", fmt::format("{} plays on card {}", names(n.holders), n.card->id),
+        return warning("sound servers",
+                       fmt::format("{} plays on card {}", process_names(n.holders), n.card->id),
                        std::any_of(n.holders.begin(), n.holders.end(), is_server)
                            ? std::string(rules)
                            : fmt::format("stop it: kill {}", n.holders.front().pid));
@@ -150,10 +143,11 @@ finding check_servers(const system_facts& f, const system_needs& n)
         return fine("sound servers", "none that would take the card");
     if (n.ignored)
         return fine("sound servers",
-                    fmt::format("{}; udev keeps them off card {}", names(desktop), n.card->id));
+                    fmt::format("{}; udev keeps them off card {}", process_names(desktop), n.card->id));
     return warning(
         "sound servers",
-        fmt::format("{}: may take card {} at any time, and beep on it", names(desktop), n.card->id), rules);
+        fmt::format("{}: may take card {} at any time, and beep on it", process_names(desktop), n.card->id),
+        rules);
 }
 
 // Each that runs, and one where none does.
@@ -167,19 +161,19 @@ std::vector<finding> check_services(const system_facts& f)
             at.push_back(e.at);
             open = open || e.beyond_loopback;
         }
-        const std::string who = names({s.who});
+        const std::string who = process_names({s.who});
         if (!s.may_look)
             all.push_back(fine("service", who + " serves; where it listens its user and root may see",
                                "sudo tactor check"));
         else if (at.empty())
             all.push_back(fine("service", who + " serves, and listens nowhere yet"));
         else if (open)
-            all.push_back(
-                warning("service",
-                        fmt::format("{} listens at {}: other machines can connect, and nothing "
-                                    "that is said is encrypted",
-                                    who, fmt::join(at, ", ")),
-                        "let it listen on 127.0.0.1 and come by ssh -L, or keep others off by a firewall"));
+            all.push_back(warning(
+                "service",
+                fmt::format(
+                    "{} listens at {}: other machines can connect, and nothing that is said is encrypted",
+                    who, fmt::join(at, ", ")),
+                "let it listen on 127.0.0.1 and come by ssh -L, or keep others off by a firewall"));
         else
             all.push_back(fine("service", fmt::format("{} listens at {}", who, fmt::join(at, ", "))));
     }
@@ -206,24 +200,22 @@ std::vector<finding> check_release(const system_facts& f, const system_needs& n)
                                      "where player and holder are killed together outside of it",
                                      found, fmt::join(f.off_units, ", ")),
                          "after such an end: tactor off")};
-        return {warning("GPIO release",
-                        found + ": nothing switches the amplifier off when player and holder are killed "
-                                "together",
-                        cure)};
+        return {warning(
+            "GPIO release",
+            found + ": nothing switches the amplifier off when player and holder are killed together", cure)};
     }
     if (f.releases_outputs)
         return {fine("GPIO release", "lines become inputs when their program ends")};
     if (f.raspberry_pi)
         return {warning("GPIO release",
-                        "this kernel does not say whether lines keep their level when their program "
-                        "ends",
+                        "this kernel does not say whether lines keep their level when their program ends",
                         cure)};
     return {fine("GPIO release",
                  "what becomes of a line whose program was killed is up to its chip: it may stay on when "
                  "player and holder are killed together",
-                 f.off_units.empty() ? "a pull-down resistor at the amplifier's enable input; after such an "
-                                       "end: tactor off"
-                                     : "")};
+                 f.off_units.empty()
+                     ? "a pull-down resistor at the amplifier's enable input; after such an end: tactor off"
+                     : "")};
 }
 
 } // namespace

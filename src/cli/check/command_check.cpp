@@ -7,14 +7,12 @@
 #include <fmt/ranges.h>
 
 #include "cli/check/channel_file.hpp"
-#include "cli/check/check_array.hpp"
-#include "cli/check/check_device.hpp"
-#include "cli/check/check_lines.hpp"
-#include "cli/check/check_output.hpp"
-#include "cli/check/check_system.hpp"
+#include "cli/check/finding.hpp"
+#include "cli/check/system_facts.hpp"
 #include "cli/check/walk_session.hpp"
 #include "cli/commands.hpp"
 #include "cli/say.hpp"
+#include "cli/settings.hpp"
 #include "server/server.hpp"
 #include "session/interrupt.hpp"
 #include "session/sound_server.hpp"
@@ -174,10 +172,9 @@ void add_walk_options(CLI::App& c, check_options& o)
 {
     c.add_flag("--walk", o.walk, "then drive one tactor after the other and ask where each is felt");
     c.add_flag("--auto", o.no_questions, "with --walk: ask nothing");
-    c.add_option_function<std::string>(
-         "-o,--output", [&o](const std::string& t) { o.output = t; },
-         "with --walk: write an array file with the channels as they were felt")
-        ->type_name("FILE.toml");
+    add_text(c, "-o,--output", "FILE.toml",
+             "with --walk: write an array file with the channels as they were felt",
+             [&o](const std::string& t) { o.output = t; });
 }
 
 } // namespace

@@ -1,16 +1,24 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// What `check` finds.
+/// Findings of `check`, what it prints, and its checks of array, device and lines.
 #pragma once
 
+#include <cstddef>
+#include <functional>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
 
 #include <tactor/error.hpp>
+#include <tactor/tactor.hpp>
 
+#include "cli/input.hpp"
 #include "cli/option_words.hpp"
+#include "cli/settings.hpp"
+#include "session/device.hpp"
+#include "session/walk.hpp"
 
 namespace tactor::cli {
 
@@ -49,5 +57,47 @@ std::string findings_text(const std::vector<finding>& all);
 
 /// The exit status: that of bad input before that of a device before any other; 0 without an error.
 int status_of(const std::vector<finding>& all);
+
+/// What a walk with answers came to.
+struct walk_told {
+    const array& tactors;
+    const session::walk_answers& felt;
+    const session::walk_verdict& verdict;
+};
+
+/// For people. `brief`: a walk follows, which leaves out what is as it should be.
+std::string check_text(const std::vector<finding>& all, bool brief);
+
+/// One object of schema tactor-check/1.
+std::string check_json(const std::vector<finding>& all, const std::optional<walk_told>& walked);
+
+/// Finds a line, or throws what find_gpio_line() throws.
+using line_finder = std::function<gpio_line_place(const gpio_line_name&)>;
+
+/// Whether each line is there and free, and where the array is `felt`, whether there is one for its
+/// amplifier. None is requested or driven.
+std::vector<finding> check_lines(const setup& config, bool felt, const line_finder& find);
+
+/// Opens and closes it, but for one that writes a file; nothing sounds. `named`: whether anything names it,
+/// else it is the default.
+finding check_device(const alsa_options& device, const session::stream_options& o, const environment& e,
+                     bool named);
+
+/// Returns the numbers of the tactors for which `take` holds.
+template <class F>
+std::vector<std::size_t> tactors_where(const array& a, F&& take)
+{
+    std::vector<std::size_t> all;
+    for (std::size_t i = 0; i < a.tactors.size(); ++i)
+        if (take(a.tactors[i]))
+            all.push_back(i);
+    return all;
+}
+
+/// Places, channels, levels, actuators, bursts, limits. Looks at values only.
+std::vector<finding> check_array(const settings& s, const environment& e, const drive_limits& l);
+
+/// Actuators against burst length and carrier: the part of check_array() that knows actuators. `rate`: Hz.
+std::vector<finding> check_bursts(const plan_options& p, const array& a, unsigned rate);
 
 } // namespace tactor::cli

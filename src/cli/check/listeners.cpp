@@ -1,35 +1,28 @@
 // SPDX-License-Identifier: MIT
-#include "cli/check/listeners.hpp"
+// Files under /proc: processes, and where running services of this tool can be reached.
+#include "cli/check/system_facts.hpp"
 
+#include <algorithm>
 #include <array>
 #include <bit>
-#include <charconv>
 #include <cstdint>
+#include <fstream>
 #include <map>
-#include <optional>
 #include <sstream>
+#include <system_error>
 
 #include <arpa/inet.h>
 #include <netinet/in.h>
 
 #include <fmt/format.h>
 
-#include "cli/check/proc_files.hpp"
+#include "core/split.hpp"
 
 namespace tactor::cli {
+
 namespace {
 
 namespace fs = std::filesystem;
-
-template <class Number>
-std::optional<Number> number(std::string_view text, int base)
-{
-    Number n = 0;
-    const auto [end, wrong] = std::from_chars(text.data(), text.data() + text.size(), n, base);
-    if (wrong != std::errc() || end != text.data() + text.size())
-        return {};
-    return n;
-}
 
 // Endpoints of all sockets that wait for somebody, by inode.
 using by_inode = std::map<std::string, endpoint>;
@@ -62,7 +55,7 @@ void read_unix(const fs::path& file, by_inode& all)
 {
     constexpr unsigned accepts = 0x10000;
     for (const auto& row : rows_of(file))
-        if ((number<unsigned>(row[3], 16).value_or(0) & accepts) != 0 && !row[7].empty())
+        if ((detail::number_in<unsigned>(row[3], 16).value_or(0) & accepts) != 0 && !row[7].empty())
             all[row[6]] = {row[7], false};
 }
 
@@ -82,11 +75,11 @@ endpoint endpoint_of(std::string_view hexadecimal)
     const std::string_view address = hexadecimal.substr(0, colon);
     if (colon == std::string_view::npos || (address.size() != 8 && address.size() != 32))
         return {};
-    const auto port = number<std::uint16_t>(hexadecimal.substr(colon + 1), 16);
+    const auto port = detail::number_in<std::uint16_t>(hexadecimal.substr(colon + 1), 16);
     // Words of 32 bits, each as this machine has them.
     std::array<std::uint32_t, 4> words{};
     for (std::size_t i = 0; i < address.size() / 8; ++i) {
-        const auto word = number<std::uint32_t>(address.substr(8 * i, 8), 16);
+        const auto word = detail::number_in<std::uint32_t>(address.substr(8 * i, 8), 16);
         if (!word)
             return {};
         words[i] = *word;
@@ -130,6 +123,38 @@ std::vector<listening_service> find_services(const fs::path& root)
         found.push_back(std::move(s));
     }
     return found;
+}
+
+std::vector<fs::path> entries(const fs::path& folder)
+{
+    std::vector<fs::path> all;
+    std::error_code gone;
+    for (fs::directory_iterator i(folder, gone), end; !gone && i != end; i.increment(gone))
+        all.push_back(i->path());
+    std::sort(all.begin(), all.end());
+    return all;
+}
+
+// A process may end meanwhile: what reads stream buffers itself would throw then.
+std::string text_of(const fs::path& file)
+{
+    std::ifstream in(file, std::ios::binary);
+    std::ostringstream text;
+    text << in.rdbuf();
+    std::string s = text.str();
+    while (!s.empty() && (s.back() == '\n' || s.back() == '\0'))
+        s.pop_back();
+    return s;
+}
+
+std::vector<process_folder> processes(const fs::path& root)
+{
+    std::vector<process_folder> all;
+    for (const fs::path& process : entries(root / "proc"))
+        if (const auto pid = detail::number_in<int>(process.filename().string()))
+            all.push_back({*pid, process});
+    std::sort(all.begin(), all.end(), [](const auto& a, const auto& b) { return a.pid < b.pid; });
+    return all;
 }
 
 } // namespace tactor::cli

@@ -4,9 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <fstream>
-#include <iterator>
 #include <set>
-#include <system_error>
 
 #include <grp.h>
 #include <pwd.h>
@@ -16,7 +14,6 @@
 
 #include <fmt/format.h>
 
-#include "cli/check/proc_files.hpp"
 #include "session/own_memory.hpp"
 
 namespace tactor::cli {

@@ -1,19 +1,34 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// What this machine is like, as plain values, so that it can be judged without being it.
+/// This machine as plain values, so that it can be judged without being it.
 #pragma once
 
 #include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
+#include <tactor/alsa.hpp>
 #include <tactor/tactor.hpp>
 
-#include "cli/check/listeners.hpp"
+#include "cli/check/finding.hpp"
 
 namespace tactor::cli {
+
+/// An endpoint: a socket's path, "127.0.0.1:4001", or "osc 127.0.0.1:4002".
+struct endpoint {
+    std::string at = {};
+    bool beyond_loopback = false;
+};
+
+/// A process `tactor serve`.
+struct listening_service {
+    process_info who = {};
+    bool may_look = true; ///< its descriptors may be read: only its user's and root's may
+    std::vector<endpoint> endpoints = {};
+};
 
 /// A file in /dev that a group may open.
 struct device_node {
@@ -58,5 +73,40 @@ system_facts read_system(own_facts own, const std::filesystem::path& root = "/")
 
 /// Whether udev keeps desktop sound servers off a card.
 bool servers_ignore(unsigned card_index, const std::filesystem::path& root = "/");
+
+/// An address as /proc/net/tcp (8 digits) and tcp6 (32) have it, "0100007F:0FA1" with the port; nothing there
+/// (an empty `at`) for what is none.
+endpoint endpoint_of(std::string_view hexadecimal);
+
+/// By process number, from files under `root`/proc. What cannot be read is left out. Blocks shortly.
+std::vector<listening_service> find_services(const std::filesystem::path& root);
+
+/// What the set-up needs of the machine.
+struct system_needs {
+    std::string pcm = {};                   ///< as it will be opened
+    std::optional<card_info> card = {};     ///< that its name says
+    std::vector<process_info> holders = {}; ///< of that card
+    bool ignored = false;                   ///< udev keeps desktop sound servers off that card
+    bool gpio = false;                      ///< [amplifier] or [sync] names a line
+    bool amplifier = false;
+    int priority = player_options{}.priority;
+    bool require_realtime = false;
+};
+
+std::vector<finding> check_system(const system_facts& f, const system_needs& n);
+
+/// In order of name; none for a folder that cannot be read.
+std::vector<std::filesystem::path> entries(const std::filesystem::path& folder);
+
+/// Without the end of the last line; /proc also ends texts with zeros. Empty where it cannot be read.
+std::string text_of(const std::filesystem::path& file);
+
+struct process_folder {
+    int pid = 0;
+    std::filesystem::path path = {};
+};
+
+/// `root`/proc/NUMBER, by number.
+std::vector<process_folder> processes(const std::filesystem::path& root);
 
 } // namespace tactor::cli

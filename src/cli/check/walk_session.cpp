@@ -2,7 +2,6 @@
 #include "cli/check/walk_session.hpp"
 
 #include <cerrno>
-#include <charconv>
 #include <utility>
 #include <vector>
 
@@ -11,6 +10,7 @@
 
 #include "cli/play/live_picture.hpp"
 #include "cli/say.hpp"
+#include "core/split.hpp"
 #include "session/pipes.hpp"
 
 namespace tactor::cli {
@@ -137,10 +137,7 @@ private:
                 throw error(error_kind::runtime, "walk", fmt::format("no answer for tactor {}", i),
                             "answer with a number, n, r, b or q; --auto asks nothing");
             const std::string said = without_blanks(*line);
-            unsigned number = 0;
-            const char* end = said.data() + said.size();
-            const auto read = std::from_chars(said.data(), end, number);
-            if (read.ec == std::errc() && read.ptr == end && number <= last)
+            if (const auto number = detail::number_in<unsigned>(said); number && *number <= last)
                 return answer{number};
             if (said == "n")
                 return answer{};
@@ -178,21 +175,21 @@ piece walk_one(const array& a, unsigned tactor, double carrier_hz)
 }
 
 walk_result walk(const alsa_options& device, const environment& e, const render_options& render,
-                 const walk_options& o, session::stream_source source)
+                 const walk_options& o, const session::stream_source& source)
 {
     if (o.ask)
         session::check_standard_input();
-    session::play_session session(device, o.stream, e, std::move(source));
+    session::play_session session(device, o.stream, e, source);
     walk_result result;
     try {
         result.felt = walker(session, e, render, o).all();
     } catch (const interrupted&) {
         result.signal = session.signal();
     } catch (const error&) {
-        session.end();
+        session.finish().check_amplifier();
         throw;
     }
-    session.end();
+    session.finish().check_amplifier();
     return result;
 }
 

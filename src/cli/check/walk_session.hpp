@@ -32,6 +32,6 @@ piece walk_one(const array& a, unsigned tactor, double carrier_hz);
 /// \throws error: what play throws; runtime when the walk is left before its end, and in the end where a
 /// tactor was not driven to its end and not again.
 walk_result walk(const alsa_options& device, const environment& e, const render_options& render,
-                 const walk_options& o, session::stream_source source = {});
+                 const walk_options& o, const session::stream_source& source = {});
 
 } // namespace tactor::cli

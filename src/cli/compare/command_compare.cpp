@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
-#include <cstdint>
 #include <memory>
 #include <set>
 #include <string_view>
@@ -15,11 +14,12 @@
 #include "cli/input.hpp"
 #include "cli/option_words.hpp"
 #include "cli/picture_options.hpp"
-#include "cli/progress.hpp"
 #include "cli/say.hpp"
+#include "cli/settings.hpp"
+#include "cli/warnings.hpp"
 #include "core/kind_names.hpp"
 #include "core/split.hpp"
-#include "files/plan/compare_json.hpp"
+#include "files/plan/plan_json.hpp"
 #include "plot/compare_figure.hpp"
 #include "plot/paint/output.hpp"
 #include "session/pipes.hpp"
@@ -34,7 +34,7 @@ using detail::comparison_row;
 template <class Enum>
 std::string join_names()
 {
-    return fmt::format("{}", fmt::join(detail::names_of<Enum>(), ","));
+    return fmt::format("{}", fmt::join(detail::kind_names<Enum>(), ","));
 }
 
 // "a,b,c", each once, in the order given.
@@ -65,16 +65,12 @@ struct compare_options {
 
 void add_lists(CLI::App& c, const std::shared_ptr<compare_options>& o)
 {
-    auto* algorithms = c.add_option_function<std::string>(
-        "--algorithms",
-        [o](const std::string& t) { o->choice.algorithms = parse_list<algorithm_kind>("--algorithms", t); },
-        "what to compare (default all three)");
-    algorithms->type_name(join_names<algorithm_kind>());
-    auto* phantoms = c.add_option_function<std::string>(
-        "--phantoms",
-        [o](const std::string& t) { o->choice.phantoms = parse_list<phantom_kind>("--phantoms", t); },
-        "with which phantom models (default that of --phantom)");
-    phantoms->type_name(join_names<phantom_kind>());
+    auto* algorithms = add_text(
+        c, "--algorithms", join_names<algorithm_kind>(), "what to compare (default all three)",
+        [o](const std::string& t) { o->choice.algorithms = parse_list<algorithm_kind>("--algorithms", t); });
+    auto* phantoms = add_text(
+        c, "--phantoms", join_names<phantom_kind>(), "with which phantom models (default that of --phantom)",
+        [o](const std::string& t) { o->choice.phantoms = parse_list<phantom_kind>("--phantoms", t); });
     c.get_option("--algorithm")->description("only this one; see --algorithms")->excludes(algorithms);
     c.get_option("--phantom")->excludes(phantoms);
     add_format_option(c, o->format, {"text", "json", "csv"}, "how to print it (default text)");
@@ -82,15 +78,12 @@ void add_lists(CLI::App& c, const std::shared_ptr<compare_options>& o)
 
 void add_output_options(CLI::App& c, const std::shared_ptr<compare_options>& o)
 {
-    c.add_option_function<std::string>(
-         "-o,--output",
-         [o](const std::string& t) {
-             plot::format_of(t);
-             o->picture.file = t;
-             o->choice.keep_samples = true;
-         },
-         "draw it too: target and prediction on the array, speed over time")
-        ->type_name("FILE.svg|.png|.pdf");
+    add_text(c, "-o,--output", "FILE.svg|.png|.pdf",
+             "draw it too: target and prediction on the array, speed over time", [o](const std::string& t) {
+                 plot::format_of(t);
+                 o->picture.file = t;
+                 o->choice.keep_samples = true;
+             });
     add_picture_options(c, o->picture, "85, one print column");
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "cli/completion/complete.hpp"
+#include "cli/usage.hpp"
 
 #include <algorithm>
 #include <cctype>

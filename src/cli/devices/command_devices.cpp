@@ -1,15 +1,20 @@
 // SPDX-License-Identifier: MIT
+#include <algorithm>
 #include <memory>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "cli/commands.hpp"
 #include "cli/devices/devices_text.hpp"
 #include "cli/input.hpp"
 #include "cli/say.hpp"
+#include "cli/settings.hpp"
+#include "core/words.hpp"
 
 namespace tactor::cli {
+
 namespace {
 
 int list_devices(settings& s, bool as_json)
@@ -22,7 +27,158 @@ int list_devices(settings& s, bool as_json)
     return status_ok;
 }
 
+std::string row(const char* name, const std::string& text)
+{
+    return text.empty() ? "" : wrapped(fmt::format("    {:<10}", name), text);
+}
+
+std::string text_of(const count_range& r, unsigned beyond = no_limit)
+{
+    if (r.least == r.most)
+        return fmt::format("{}", r.least);
+    if (r.most >= beyond)
+        return r.least <= 1 ? "any" : fmt::format("{} or more", r.least);
+    return fmt::format("{} to {}", r.least, r.most);
+}
+
+std::string channels_text(const pcm_abilities& a)
+{
+    std::vector<std::string> counts;
+    for (const count_range& r : a.channels)
+        counts.push_back(text_of(r, max_pcm_channels));
+    return fmt::format("{}", fmt::join(counts, ", "));
+}
+
+std::string rates_text(const pcm_abilities& a)
+{
+    if (a.rates_hz.most == no_limit)
+        return "any";
+    const bool few =
+        a.usual_rates_hz.empty() || (a.usual_rates_hz.size() == 1 && a.rates_hz.least != a.rates_hz.most);
+    return few ? text_of(a.rates_hz) + " Hz" : fmt::format("{} Hz", fmt::join(a.usual_rates_hz, " "));
+}
+
+std::string formats_text(const pcm_abilities& a)
+{
+    std::vector<std::string> names;
+    for (const format_kind f : a.formats)
+        names.emplace_back(to_string(f));
+    return names.empty() ? "none that tactor plays" : fmt::format("{}", fmt::join(names, " "));
+}
+
+std::string sizes_text(const pcm_abilities& a)
+{
+    if (a.period_frames.most == no_limit && a.buffer_frames.most == no_limit)
+        return "any";
+    const auto with_noun = [](const std::string& n, const char* noun) {
+        return fmt::format("{} {}{}", n, noun, n == "1" ? "" : "s");
+    };
+    return fmt::format("{}, {}, buffer {}", with_noun(text_of(a.period_frames), "frame"),
+                       with_noun(text_of(a.periods), "period"), text_of(a.buffer_frames));
+}
+
+std::string pcm_text(const pcm_info& p, const session::device_list& d)
+{
+    std::string s = fmt::format("\n  {}{}\n", p.name,
+                                p.wanted && d.pcm_is_configured ? "   <- the one that is configured" : "");
+    if (!p.description.empty())
+        s += wrapped("    ", p.description);
+    s += row("held by", process_names(p.holders));
+    if (!p.can)
+        return s + row("cannot", p.error);
+    s += p.misfit.empty() ? row("fits", d.array_name) : row("unfit", p.misfit);
+    s += row("channels", channels_text(*p.can));
+    s += row("rates", rates_text(*p.can));
+    s += row("formats", formats_text(*p.can));
+    return s + row("period", sizes_text(*p.can));
+}
+
+std::string pcms_text(const session::device_list& d)
+{
+    const auto is_card = [](const pcm_info& p) { return p.hardware; };
+    std::string s = "Sound cards\n";
+    if (std::none_of(d.pcms.begin(), d.pcms.end(), is_card))
+        s += wrapped("  none; ", "load the card's driver or overlay, or plug it in; a container has to be "
+                                 "given /dev/snd. The PCM null needs no card.");
+    for (const pcm_info& p : d.pcms)
+        if (p.hardware)
+            s += pcm_text(p, d);
+    s += "\nOther PCMs\n";
+    std::string untried;
+    for (const pcm_info& p : d.pcms)
+        if (!p.tried)
+            untried += (untried.empty() ? "" : " ") + p.name;
+        else if (!p.hardware)
+            s += pcm_text(p, d);
+    if (!untried.empty())
+        s += fmt::format("\n{}{}",
+                         wrapped("  ", "Not tried, since to open them may start a card or a sound server (-D "
+                                       "NAME tries one):"),
+                         wrapped("    ", untried));
+    return s;
+}
+
+std::string line_text(const std::string& offset, const gpio_line_info& l, std::size_t width)
+{
+    return fmt::format("    {:>7}  {:<{}}  {:<6}  {}\n", offset, l.name.empty() ? "-" : l.name, width,
+                       l.output ? "output" : "input",
+                       l.consumer.empty() ? "free" : fmt::format("held by {}", l.consumer));
+}
+
+// Lines that differ in nothing but their number share a row.
+std::string lines_text(const std::vector<gpio_line_info>& lines)
+{
+    std::size_t width = 4;
+    for (const gpio_line_info& l : lines)
+        width = std::max(width, l.name.size());
+    std::string s;
+    for (std::size_t i = 0; i < lines.size();) {
+        std::size_t end = i + 1;
+        while (end < lines.size() && lines[i].name.empty() && lines[end].name.empty() &&
+               lines[end].output == lines[i].output && lines[end].consumer == lines[i].consumer)
+            ++end;
+        const unsigned last = lines[end - 1].offset;
+        s += line_text(end - i == 1 ? fmt::format("{}", last) : fmt::format("{}-{}", lines[i].offset, last),
+                       lines[i], width);
+        i = end;
+    }
+    return s;
+}
+
+std::string chips_text(const std::vector<gpio_chip_info>& chips)
+{
+    std::string s = "\nGPIO chips\n";
+    if (chips.empty())
+        s += wrapped("  none; ",
+                     "they are /dev/gpiochip*: load the chip's driver; a container has to be given them. "
+                     "Only [amplifier] and [sync] need one.");
+    for (const gpio_chip_info& c : chips) {
+        if (!c.error.empty()) {
+            s += fmt::format("\n{}", wrapped("  ", c.error));
+            continue;
+        }
+        s += fmt::format("\n  {}   {}, {}\n", c.label, c.path, counted(c.lines.size(), "line"));
+        s += lines_text(c.lines);
+    }
+    return s;
+}
+
 } // namespace
+
+std::string process_names(const std::vector<process_info>& all)
+{
+    std::vector<std::string> names;
+    for (const process_info& p : all)
+        names.push_back(fmt::format("{} (process {})", p.program.empty() ? "a program" : p.program, p.pid));
+    return fmt::format("{}", fmt::join(names, ", "));
+}
+
+std::string devices_text(const session::device_list& d)
+{
+    return fmt::format("{} needs {} channel{} at {} Hz.\n\n", d.array_name, d.wanted.channels,
+                       d.wanted.channels == 1 ? "" : "s", d.wanted.rate) +
+           pcms_text(d) + chips_text(d.chips);
+}
 
 command add_devices(CLI::App& app)
 {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "session/device_list.hpp"
 
@@ -9,5 +10,8 @@ namespace tactor::cli {
 
 /// Returns a list of devices for people, at most 80 columns wide.
 std::string devices_text(const session::device_list& d);
+
+/// Returns "jackd (process 12), a program (process 15)".
+std::string process_names(const std::vector<process_info>& all);
 
 } // namespace tactor::cli

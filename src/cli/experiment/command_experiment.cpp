@@ -9,10 +9,7 @@
 #include <fmt/format.h>
 
 #include "cli/commands.hpp"
-#include "cli/experiment/dry_run.hpp"
 #include "cli/experiment/experiment_options.hpp"
-#include "cli/experiment/noise_check.hpp"
-#include "cli/experiment/power.hpp"
 #include "cli/experiment/real_session.hpp"
 #include "cli/say.hpp"
 #include "cli/warnings.hpp"
@@ -20,7 +17,6 @@
 #include "session/interrupt.hpp"
 #include "study/session/prepared.hpp"
 #include "study/session/session_facts.hpp"
-#include "study/session/simulated_session.hpp"
 #include "study/session/trials.hpp"
 
 namespace tactor::cli {

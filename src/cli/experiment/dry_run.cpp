@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "cli/experiment/dry_run.hpp"
+#include "cli/experiment/experiment_options.hpp"
 
 #include <cstddef>
 #include <string>
@@ -11,9 +11,9 @@
 #include "cli/say.hpp"
 #include "core/sha256.hpp"
 #include "core/words.hpp"
-#include "files/plan/json_values.hpp"
+#include "files/plan/json_value.hpp"
+#include "study/session/prepared.hpp"
 #include "study/session/session_facts.hpp"
-#include "study/session/session_time.hpp"
 #include "study/session/trials.hpp"
 
 namespace tactor::cli {

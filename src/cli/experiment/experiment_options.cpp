@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "cli/experiment/experiment_options.hpp"
 
-#include <charconv>
-
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
@@ -10,25 +8,20 @@
 
 #include "cli/session/page_options.hpp"
 #include "cli/settings.hpp"
+#include "core/split.hpp"
 #include "study/bids/study_folder.hpp"
 
 namespace tactor::cli {
 namespace {
 
-[[noreturn]] void refuse_experiment(std::string_view option, const std::string& why, std::string_view hint)
-{
-    throw error(error_kind::bad_input, option, why, hint);
-}
-
 std::uint64_t seed_in(const std::string& text)
 {
     constexpr std::uint64_t most = (std::uint64_t{1} << 53) - 1;
-    std::uint64_t v = 0;
-    const auto [end, failed] = std::from_chars(text.data(), text.data() + text.size(), v);
-    if (failed != std::errc() || end != text.data() + text.size() || v > most)
-        refuse_experiment("--seed", fmt::format("\"{}\" is no seed", text),
-                          fmt::format("a whole number from 0 to {}", most));
-    return v;
+    const auto v = detail::number_in<std::uint64_t>(text);
+    if (!v || *v > most)
+        refuse_option("--seed", fmt::format("\"{}\" is no seed", text),
+                      fmt::format("a whole number from 0 to {}", most));
+    return *v;
 }
 
 } // namespace
@@ -39,33 +32,31 @@ void add_experiment_options(CLI::App& command, experiment_options& o)
         .add_option("EXPERIMENT", o.definition, "park2016, or a definition: a file, see tactor-experiment(5)")
         ->required()
         ->type_name("");
-    const auto add = [&](const char* name, const char* type, const char* help, auto take) {
-        command.add_option_function<std::string>(name, take, help)->type_name(type);
-    };
-    add("--participant", "CODE", "who takes part: letters and digits", [&o](const std::string& t) {
-        study::check_code(t);
-        o.participant = t;
-    });
+    add_text(command, "--participant", "CODE", "who takes part: letters and digits",
+             [&o](const std::string& t) {
+                 study::check_code(t);
+                 o.participant = t;
+             });
     command
         .add_option("-o,--output", o.folder, "the folder of the study (BIDS), the same for all participants")
         ->type_name("DIR");
     command.add_flag("--resume", o.resume, "go on with the participant's session, at its next trial");
     add_page_options(command, o.page);
     add_keypad_option(command, o.keypads);
-    add("--masker", "PCM", "the definition's masking noise, on a second device, in stereo",
-        [&o](const std::string& t) {
-            if (t.empty())
-                refuse_experiment("--masker", "no device is named", "as hw:CARD=Phones");
-            o.masker = t;
-        });
+    add_text(command, "--masker", "PCM", "the definition's masking noise, on a second device, in stereo",
+             [&o](const std::string& t) {
+                 if (t.empty())
+                     refuse_option("--masker", "no device is named", "as hw:CARD=Phones");
+                 o.masker = t;
+             });
     command.add_flag("--check-noise", o.check_noise,
                      "play the masking noise, and stimuli under it, until its level is right");
     command.add_flag("--allow-sound-server", o.allow_sound_server,
                      "play through a sound server, which may hide xruns, and write down that it was so");
-    add("--seed", "N", "of the order of trials (default: the definition's, else from the code)",
-        [&o](const std::string& t) { o.seed = seed_in(t); });
-    add("--simulate", "SPEC", "nobody is asked: a model answers, as seed=1,sigma=1",
-        [&o](const std::string& t) { o.simulate = study::parse_simulation(t); });
+    add_text(command, "--seed", "N", "of the order of trials (default: the definition's, else from the code)",
+             [&o](const std::string& t) { o.seed = seed_in(t); });
+    add_text(command, "--simulate", "SPEC", "nobody is asked: a model answers, as seed=1,sigma=1",
+             [&o](const std::string& t) { o.simulate = study::parse_simulation(t); });
     command.add_flag("--print", o.print, "print the definition, to be copied and changed");
     command.add_flag("--dry-run", o.dry_run, "check all and list every trial in order, without a sound");
     add_format_option(command, o.format, {"text", "json"},
@@ -75,25 +66,25 @@ void add_experiment_options(CLI::App& command, experiment_options& o)
 void check_experiment_options(const settings& s, const experiment_options& o)
 {
     if (o.check_noise && o.simulate)
-        refuse_experiment("--check-noise", "in a simulated session nobody hears it", "leave one of them out");
+        refuse_option("--check-noise", "in a simulated session nobody hears it", "leave one of them out");
     if (o.check_noise && o.masker.empty())
-        refuse_experiment("--check-noise", "there is no device for the noise", "--masker PCM");
+        refuse_option("--check-noise", "there is no device for the noise", "--masker PCM");
     if (o.format == "json" && !o.dry_run)
-        refuse_experiment("--format", "only --dry-run and --power have one", "leave it out");
+        refuse_option("--format", "only --dry-run and --power have one", "leave it out");
     if (o.resume && (o.print || o.dry_run || o.check_noise))
-        refuse_experiment("--resume", "no session is held", "leave it out");
+        refuse_option("--resume", "no session is held", "leave it out");
     if (const std::string asked = asked_of_stream(s); !asked.empty() && (o.simulate || o.print || o.dry_run))
-        refuse_experiment(asked, "nothing is played", "leave it out");
+        refuse_option(asked, "nothing is played", "leave it out");
     check_page_options(o.page, o.simulate.has_value() && !o.print && !o.dry_run);
     if (o.print || o.dry_run || o.check_noise)
         return;
     if (o.simulate && !o.keypads.empty())
-        refuse_experiment("--keypad", "in a simulated session nobody is asked", "leave one of them out");
+        refuse_option("--keypad", "in a simulated session nobody is asked", "leave one of them out");
     if (o.participant.empty())
-        refuse_experiment("--participant", "it is not said who takes part",
-                          "a code of letters and digits, as P07");
+        refuse_option("--participant", "it is not said who takes part",
+                      "a code of letters and digits, as P07");
     if (o.folder.empty())
-        refuse_experiment("-o", "it is not said where the data go", "the folder of the study");
+        refuse_option("-o", "it is not said where the data go", "the folder of the study");
 }
 
 } // namespace tactor::cli

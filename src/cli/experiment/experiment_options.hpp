@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// What tactor experiment is asked for.
+/// Options of tactor experiment, and what needs no session: --dry-run and --power.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <cstdio>
 #include <optional>
 #include <string>
 #include <vector>
@@ -11,6 +13,7 @@
 #include "cli/session/page_options.hpp"
 #include "cli/settings.hpp"
 #include "study/experiment/simulated.hpp"
+#include "study/session/prepared.hpp"
 
 namespace CLI {
 class App;
@@ -40,5 +43,24 @@ void add_experiment_options(CLI::App& command, experiment_options& o);
 
 /// What goes together and what is missing. \throws error (bad_input).
 void check_experiment_options(const settings& s, const experiment_options& o);
+
+void print_dry_run_text(std::FILE* out, const study::prepared_experiment& p);
+/// Schema tactor-experiment/1.
+void print_dry_run_json(std::FILE* out, const study::prepared_experiment& p);
+
+struct power_options {
+    std::vector<std::size_t> participants = {}; ///< empty: not asked for
+    std::optional<std::size_t> studies = {};    ///< default 200
+};
+
+/// `p` must live as long as the command.
+void add_power_options(CLI::App& command, power_options& p);
+
+/// What goes together and what is missing. \throws error (bad_input).
+void check_power_options(const settings& s, const power_options& p, const experiment_options& o);
+
+/// Prints it; returns the exit status, which is that of a signal where one ended it, with nothing printed.
+/// \throws error (bad_input).
+int tell_power(const study::prepared_experiment& e, const power_options& p, const experiment_options& o);
 
 } // namespace tactor::cli

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: MIT
-#include "cli/experiment/power.hpp"
+#include "cli/experiment/experiment_options.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <optional>
 #include <string_view>
 #include <vector>
@@ -13,8 +12,9 @@
 
 #include <tactor/error.hpp>
 
-#include "cli/progress.hpp"
 #include "cli/say.hpp"
+#include "cli/settings.hpp"
+#include "cli/warnings.hpp"
 #include "core/sha256.hpp"
 #include "core/split.hpp"
 #include "session/interrupt.hpp"
@@ -30,19 +30,13 @@ constexpr std::size_t default_studies = 200;
 constexpr std::size_t most_studies = 1000000;
 constexpr std::size_t most_participants = 1000;
 
-[[noreturn]] void refuse_power(const char* option, std::string_view why, std::string_view hint)
-{
-    throw error(error_kind::bad_input, option, why, hint);
-}
-
 std::size_t count_in(const char* option, std::string_view text, std::size_t least, std::size_t most)
 {
-    std::size_t n = 0;
-    const auto [end, failed] = std::from_chars(text.data(), text.data() + text.size(), n);
-    if (failed != std::errc() || end != text.data() + text.size() || n < least || n > most)
-        refuse_power(option, fmt::format("\"{}\" is no such number", text),
-                     fmt::format("a whole number from {} to {}", least, most));
-    return n;
+    const auto n = detail::number_in<std::size_t>(text);
+    if (!n || *n < least || *n > most)
+        refuse_option(option, fmt::format("\"{}\" is no such number", text),
+                      fmt::format("a whole number from {} to {}", least, most));
+    return *n;
 }
 
 std::vector<std::size_t> participants_in(std::string_view text)
@@ -51,7 +45,7 @@ std::vector<std::size_t> participants_in(std::string_view text)
     for (const std::string_view part : detail::split(text, ',')) {
         all.push_back(count_in("--power", part, 2, most_participants));
         if (std::count(all.begin(), all.end(), all.back()) > 1)
-            refuse_power("--power", fmt::format("{} is said twice", all.back()), "each number once");
+            refuse_option("--power", fmt::format("{} is said twice", all.back()), "each number once");
     }
     return all;
 }
@@ -139,37 +133,32 @@ std::optional<std::vector<study::run_power>> simulate(const study::prepared_expe
 
 void add_power_options(CLI::App& command, power_options& p)
 {
-    command
-        .add_option_function<std::string>(
-            "--power", [&p](const std::string& t) { p.participants = participants_in(t); },
-            "how often the comparison is significant with so many participants, by simulated studies")
-        ->type_name("N[,N...]");
-    command
-        .add_option_function<std::string>(
-            "--studies",
-            [&p](const std::string& t) { p.studies = count_in("--studies", t, 1, most_studies); },
-            fmt::format("--power: how many are simulated (default {})", default_studies))
-        ->type_name("K");
+    add_text(command, "--power", "N[,N...]",
+             "how often the comparison is significant with so many participants, by simulated studies",
+             [&p](const std::string& t) { p.participants = participants_in(t); });
+    add_text(command, "--studies", "K",
+             fmt::format("--power: how many are simulated (default {})", default_studies),
+             [&p](const std::string& t) { p.studies = count_in("--studies", t, 1, most_studies); });
 }
 
 void check_power_options(const settings& s, const power_options& p, const experiment_options& o)
 {
     if (p.participants.empty()) {
         if (p.studies)
-            refuse_power("--studies", "there is no --power", "it says how many studies --power simulates");
+            refuse_option("--studies", "there is no --power", "it says how many studies --power simulates");
         return;
     }
     if (!o.simulate)
-        refuse_power("--power", "it is not said who answers", "--simulate seed=1,sigma=1");
+        refuse_option("--power", "it is not said who answers", "--simulate seed=1,sigma=1");
     const bool session = !o.participant.empty() || !o.folder.empty() || o.resume;
     if (session || o.dry_run || o.print)
-        refuse_power("--power", "it holds no session, and writes nothing",
-                     "leave out --participant, -o, --resume, --dry-run and --print");
+        refuse_option("--power", "it holds no session, and writes nothing",
+                      "leave out --participant, -o, --resume, --dry-run and --print");
     const std::string asked = asked_of_stream(s);
     if (!asked.empty() || o.check_noise || o.page.shown() || !o.masker.empty() || !o.keypads.empty())
-        refuse_power("--power", "nothing is played, and nobody sits there",
-                     fmt::format("leave out --check-noise, --masker, --display, --page, --keypad and {}",
-                                 asked.empty() ? "--verbose" : asked));
+        refuse_option("--power", "nothing is played, and nobody sits there",
+                      fmt::format("leave out --check-noise, --masker, --display, --page, --keypad and {}",
+                                  asked.empty() ? "--verbose" : asked));
 }
 
 int tell_power(const study::prepared_experiment& e, const power_options& p, const experiment_options& o)

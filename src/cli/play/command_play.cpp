@@ -5,19 +5,16 @@
 #include <vector>
 
 #include <CLI/CLI.hpp>
-#include <fmt/format.h>
 
 #include "cli/commands.hpp"
 #include "cli/input.hpp"
 #include "cli/play/live_picture.hpp"
-#include "cli/play/play_live.hpp"
 #include "cli/play/play_options.hpp"
 #include "cli/play/play_report.hpp"
 #include "cli/say.hpp"
-#include "cli/serve/play_remote.hpp"
+#include "cli/settings.hpp"
 #include "cli/warnings.hpp"
 #include "session/play_session.hpp"
-#include "session/sound_server.hpp"
 #include "session/threshold_carrier.hpp"
 
 namespace tactor::cli {
@@ -40,33 +37,22 @@ std::vector<score> make_scores(std::vector<piece>& pieces, const settings& s, co
 
 constexpr const char* wait_hint = "--reopen-s S waits for the device to come back";
 
-// What ends a run before its strokes are through; a kind of its own, for the report comes before it.
-struct broken_off {
-    std::string stroke;
-    std::string why;
-    std::string hint;
-};
-
-// Plays one piece and says when it waits for its trigger. The picture leaves log lines alone.
-stroke_report play_once(session::play_session& session, bool as_json, const array& a, const piece& p,
-                        const score& s)
-{
-    return play_drawn(session, a, p, s, !as_json && !session.asked().verbose, [&] {
-        if (session.asked().arm && !as_json) {
-            say(stdout, "{}: armed\n", shown_name(p.name));
-            flush_output();
-        }
-    });
-}
-
-// Plays one piece, once more where its device went before it began. False when there is no device.
+// Plays one piece, once more where its device went before it began, and says when it waits for its trigger.
+// False when there is no device.
 bool play_piece(session::play_session& session, bool as_json, const array& a, const piece& p, const score& s,
                 stroke_outcome& out)
 {
+    const auto armed = [&] {
+        if (!session.asked().arm || as_json)
+            return;
+        say(stdout, "{}: armed\n", shown_name(p.name));
+        flush_output();
+    };
     for (bool again = false;; again = true) {
         if (session.lost() && !session.reopen())
             return false;
-        out.report = play_once(session, as_json, a, p, s);
+        // The picture leaves log lines alone.
+        out.report = play_drawn(session, a, p, s, !as_json && !session.asked().verbose, armed);
         const bool untouched =
             out.report->state == state_kind::interrupted && out.report->frames == 0 && session.lost();
         if (!untouched || again || !session.waits())
@@ -75,34 +61,33 @@ bool play_piece(session::play_session& session, bool as_json, const array& a, co
 }
 
 // Why the run ends with this stroke. What became of the last is said in the end.
-std::optional<broken_off> judge(const session::play_session& session, const stroke_outcome& out, bool last)
+std::optional<error> judge(const session::play_session& session, const stroke_outcome& out, bool last)
 {
     if (out.report->state != state_kind::interrupted)
         return {};
-    const std::string why = fate(out, session.setup().rate);
+    const auto broken = [&](const char* hint) {
+        return error(error_kind::runtime, shown_name(out.name), fate(out, session.setup().rate), hint);
+    };
     if (session.asked().void_on_xrun)
-        return broken_off{shown_name(out.name), why, "the run is void: --void-on-xrun"};
+        return broken("the run is void: --void-on-xrun");
     if (last)
         return {};
     if (session.lost() && !session.waits())
-        return broken_off{shown_name(out.name), why, wait_hint};
+        return broken(wait_hint);
     say(stderr, "tactor: warning: {}\n", describe(out, session.setup().rate));
     return {};
 }
 
-std::optional<broken_off> play_all(session::play_session& session, bool as_json, const array& a,
-                                   const std::vector<piece>& pieces, const std::vector<score>& scores,
-                                   std::vector<stroke_outcome>& outcomes)
+std::optional<error> play_all(session::play_session& session, bool as_json, const array& a,
+                              const std::vector<piece>& pieces, const std::vector<score>& scores,
+                              std::vector<stroke_outcome>& outcomes)
 {
     for (std::size_t i = 0; i < pieces.size(); ++i) {
         const bool there = play_piece(session, as_json, a, pieces[i], scores[i], outcomes[i]);
         if (!there && session.signal() == 0)
-            return broken_off{shown_name(pieces[i].name), "not played: the device is gone",
-                              session.waits() ? "it did not come back in time" : wait_hint};
-        if (!as_json && outcomes[i].report) {
-            say(stdout, "{}\n", describe(outcomes[i], session.setup().rate));
-            flush_output();
-        }
+            return error(error_kind::runtime, shown_name(pieces[i].name), "not played: the device is gone",
+                         session.waits() ? "it did not come back in time" : wait_hint);
+        tell(outcomes[i], session.setup().rate, as_json);
         if (session.signal() != 0)
             return {};
         if (auto broken = judge(session, outcomes[i], i + 1 == pieces.size()))
@@ -113,48 +98,26 @@ std::optional<broken_off> play_all(session::play_session& session, bool as_json,
 
 int play(settings& s, const play_options& o)
 {
-    const session::stream_options& asked = s.stream;
-    if (asked.live)
+    if (s.stream.live)
         check_live(s);
-    else if (asked.smooth_s)
+    else if (s.stream.smooth_s)
         throw error(error_kind::bad_input, "--smooth", "only points that come one by one are smoothed",
                     "use it with --live, or leave it out");
     if (o.socket)
         return play_remote(s, o);
-    if (asked.live)
+    if (s.stream.live)
         return play_live(s, o);
     const environment e = session::read_environment(s);
     const layout faces(e.tactors);
     auto pieces = open_pieces(s, e, faces);
     const auto scores = make_scores(pieces, s, e, faces, session::settle_render(s, e));
-    if (!session::names_device(s, e))
-        say(stderr, "tactor: no device is configured: playing to \"null\", which nobody feels (-D PCM plays "
-                    "on hardware)\n");
-    const alsa_options device =
-        session::device_options(s, asked, e, scores.front().channels(), scores.front().rate());
-    const std::string server = session::settle_server(device.pcm);
-    session::play_session session(device, asked, e);
-    if (!o.json())
-        say(stdout, "{}\n", describe(session.setup()));
-    flush_output();
-    const std::string warning = session::latency_warning(asked.latency_ms, session.setup());
-    if (!warning.empty())
-        say(stderr, "tactor: warning: {}\n", warning);
-    if (!server.empty())
-        say(stderr, "tactor: warning: {} ({})\n", session::server_note(server), session::server_cure);
-
-    run_report r;
+    std::vector<stroke_outcome> strokes;
     for (std::size_t i = 0; i < pieces.size(); ++i)
-        r.strokes.push_back({pieces[i].name, scores[i].frames()});
-    const auto broken = play_all(session, o.json(), e.tactors, pieces, scores, r.strokes);
-    static_cast<session::run_facts&>(r) = session.finish();
-    if (const auto status = tell_end(session, o.json(), e, r))
-        return *status;
-    if (broken)
-        throw error(error_kind::runtime, broken->stroke, broken->why, broken->hint);
-    if (const auto left = unfinished(r))
-        throw error(*left);
-    return status_ok;
+        strokes.push_back({pieces[i].name, scores[i].frames()});
+    return hold_run(s, e, scores.front().channels(), scores.front().rate(), o.json(), std::move(strokes),
+                    [&](session::play_session& session, std::vector<stroke_outcome>& outcomes) {
+                        return play_all(session, o.json(), e.tactors, pieces, scores, outcomes);
+                    });
 }
 
 } // namespace

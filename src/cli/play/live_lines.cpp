@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cerrno>
-#include <charconv>
 #include <cmath>
 #include <iterator>
 #include <string_view>
@@ -16,6 +15,7 @@
 #include <tactor/error.hpp>
 
 #include "cli/say.hpp"
+#include "core/split.hpp"
 #include "core/words.hpp"
 #include "session/pipes.hpp"
 
@@ -103,10 +103,10 @@ std::optional<timed_point> live_lines::parse(const std::string& line)
             refuse(fmt::format("\"{}\" has a comma that could be a decimal one", words[i]));
         if (i == std::size(v))
             refuse(counted(words.size(), "word"));
-        const char* last = words[i].data() + words[i].size();
-        const auto r = std::from_chars(words[i].data(), last, v[i]);
-        if (r.ec != std::errc() || r.ptr != last || std::isinf(v[i]))
+        const auto number = detail::number_in<double>(words[i]);
+        if (!number || std::isinf(*number))
             refuse(fmt::format("\"{}\" is not a number", words[i]));
+        v[i] = *number;
         lost = lost || std::isnan(v[i]);
         if (std::abs(v[i]) > farthest_mm || (i == 2 && v[i] < 0.0))
             refuse(fmt::format("{} is out of range", words[i]));

@@ -9,14 +9,12 @@
 
 #include <tactor/stroke.hpp>
 
-#include "session/play_session.hpp"
-
 namespace tactor::cli {
 
 /// The pipe's end is the stroke's end: no silence before it is.
 inline constexpr double live_timeout_s = 86400.0;
 
-class live_lines : public session::point_source {
+class live_lines {
 public:
     /// Reads the descriptor without waiting, whatever its mode.
     explicit live_lines(int descriptor) : fd_(descriptor) {}
@@ -24,10 +22,13 @@ public:
     /// Returns the next place that has come, mm, and its intensity; nothing where there is none yet, and at
     /// the end. Skips empty lines and those that begin with #. A line with nan gives the last place at
     /// intensity 0. \throws error (bad_input) with the line.
-    std::optional<timed_point> next() override;
-    void warn_of_held(double intensity) const override;
-    bool over() const noexcept override { return end_ && buffer_.empty(); }
-    int descriptor() const noexcept override { return fd_; }
+    std::optional<timed_point> next();
+    /// Says that the stroke holds the intensity of the newest point at 1.
+    void warn_of_held(double intensity) const;
+    /// Returns true once no more will come, and all that came was given.
+    bool over() const noexcept { return end_ && buffer_.empty(); }
+    /// Readable when something has come.
+    int descriptor() const noexcept { return fd_; }
 
 private:
     bool fill();

@@ -107,10 +107,11 @@ stroke_report play_drawn(session::play_session& session, const array& a, const p
     piece_follower follower(p, s, a);
     const double total_s = static_cast<double>(s.frames()) / s.rate();
     double t_s = 0.0; // stays where it was while the report of the stroke's end is on its way
-    return session.follow([&](const player_position* at) {
-        if (at != nullptr)
-            t_s = static_cast<double>(at->stroke_frame) / s.rate();
+    return session.follow([&] {
+        if (const auto frame = session.stroke_frame())
+            t_s = static_cast<double>(*frame) / s.rate();
         picture.draw(follower.at(t_s), t_s, total_s);
+        return session::look{.most_ms = session::frame_ms};
     });
 }
 

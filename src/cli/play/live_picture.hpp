@@ -9,7 +9,7 @@
 
 #include <tactor/tactor.hpp>
 
-#include "cli/play/instant.hpp"
+#include "cli/play/picture_lines.hpp"
 #include "cli/play/terminal.hpp"
 #include "session/play_session.hpp"
 

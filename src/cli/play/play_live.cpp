@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: MIT
-#include "cli/play/play_live.hpp"
+#include "cli/play/play_options.hpp"
+
+#include <utility>
 
 #include <fmt/format.h>
 #include <unistd.h>
@@ -11,9 +13,30 @@
 #include "cli/play/play_report.hpp"
 #include "cli/say.hpp"
 #include "session/play_session.hpp"
-#include "session/sound_server.hpp"
 
 namespace tactor::cli {
+namespace {
+
+// Plays a stroke that lines move, until they end.
+stroke_report follow_lines(session::play_session& session, const live_options& o, live_lines& lines)
+{
+    live_stroke stroke = session.begin(o);
+    bool begun = false;
+    bool ended = false;
+    return session.follow([&] {
+        while (const auto p = lines.next()) {
+            stroke.to(p->position.x_mm, p->position.y_mm, p->intensity);
+            if (p->intensity > 1.0 && stroke.counts().held == 1)
+                lines.warn_of_held(p->intensity);
+            begun = true;
+        }
+        if (lines.over() && !std::exchange(ended, true))
+            stroke.end();
+        return session::look{.descriptor = lines.over() ? -1 : lines.descriptor(), .drives = begun};
+    });
+}
+
+} // namespace
 
 void check_live(const settings& s)
 {
@@ -43,31 +66,16 @@ int play_live(settings& s, const play_options& o)
     l.render = session::settle_render(s, e);
     l.timeout_s = live_timeout_s;
     l.smooth_s = s.stream.smooth_s.value_or(l.smooth_s);
-    if (!session::names_device(s, e))
-        say(stderr, "tactor: no device is configured: playing to \"null\", which nobody feels (-D PCM plays "
-                    "on hardware)\n");
-    const alsa_options device = session::device_options(s, s.stream, e, l.render.channels, l.render.rate);
-    const std::string between = session::settle_server(device.pcm);
-    if (!between.empty())
-        say(stderr, "tactor: warning: {} ({})\n", session::server_note(between), session::server_cure);
-    session::play_session session(device, s.stream, e);
-    if (!o.json())
-        say(stdout, "{}\n", describe(session.setup()));
-    flush_output();
-    live_lines lines(STDIN_FILENO);
-    run_report r;
-    r.strokes.push_back({"live"});
-    stroke_outcome& out = r.strokes.front();
-    out.report = session.live(l, lines);
-    out.length_frames = out.report->frames;
-    if (!o.json())
-        say(stdout, "{}\n", describe(out, session.setup().rate));
-    static_cast<session::run_facts&>(r) = session.finish();
-    if (const auto status = tell_end(session, o.json(), e, r))
-        return *status;
-    if (const auto left = unfinished(r))
-        throw error(*left);
-    return status_ok;
+    return hold_run(
+        s, e, l.render.channels, l.render.rate, o.json(), {{"live"}},
+        [&](session::play_session& session, std::vector<stroke_outcome>& outcomes) -> std::optional<error> {
+            live_lines lines(STDIN_FILENO);
+            stroke_outcome& out = outcomes.front();
+            out.report = follow_lines(session, l, lines);
+            out.length_frames = out.report->frames;
+            tell(out, session.setup().rate, o.json());
+            return {};
+        });
 }
 
 } // namespace tactor::cli

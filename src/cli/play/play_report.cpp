@@ -2,14 +2,16 @@
 #include "cli/play/play_report.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include <fmt/format.h>
 
 #include <nlohmann/json.hpp>
 
-#include "cli/input.hpp"
-#include "cli/play/play_options.hpp"
+#include "cli/commands.hpp"
+#include "cli/say.hpp"
 #include "core/words.hpp"
+#include "session/sound_server.hpp"
 
 namespace tactor::cli {
 namespace {
@@ -93,6 +95,30 @@ std::string xruns_text(const player_stats& s)
     return fmt::format("{}, the longest {:.1f} ms", s.xruns, *longest * 1e3);
 }
 
+// A short table of the counters.
+void print_table(std::FILE* to, const run_report& r)
+{
+    const player_stats& s = r.stats;
+    fmt::print(to, "xruns           {}\n", xruns_text(s));
+    fmt::print(to, "latest wake-up  {:.3f} ms\n", s.latest_wakeup_s * 1e3);
+    fmt::print(to, "ring low water  {}\n", counted(s.ring_low_water, "drive"));
+    fmt::print(to, "page faults     {}, {} from disk\n", s.minor_faults + s.major_faults, s.major_faults);
+    fmt::print(to, "limited         {}, power in {}, {} cut\n", counted(s.limited_frames, "sample"),
+               counted(s.power_limited_frames, "frame"), counted(s.drives_cut, "drive"));
+    if (s.stalls != 0)
+        fmt::print(to, "stalls          {}, amplifier off in each\n", s.stalls);
+    if (s.off_failures != 0)
+        fmt::print(to, "off refused     {} by the amplifier's line{}\n", counted(s.off_failures, "time"),
+                   s.left_on ? "" : ", off in the end");
+    if (s.sync_pulses + s.sync_missed != 0)
+        fmt::print(to, "sync pulses     {}, {} missed, late by {:.3f} ms, at worst {:.3f} ms\n",
+                   s.sync_pulses, s.sync_missed, s.sync_mean_late_s * 1e3, s.sync_worst_late_s * 1e3);
+    if (r.reopened != 0)
+        fmt::print(to, "reopened        {}\n", r.reopened);
+    fmt::print(to, "real time       {}, memory {}\n", s.realtime ? "yes" : "no",
+               r.locked_memory ? "locked" : "not locked");
+}
+
 } // namespace
 
 std::string fate(const stroke_outcome& s, unsigned rate)
@@ -146,29 +172,6 @@ std::optional<error> unfinished(const run_report& r)
     return error(error_kind::runtime, last->name, why);
 }
 
-void print_table(std::FILE* to, const run_report& r)
-{
-    const player_stats& s = r.stats;
-    fmt::print(to, "xruns           {}\n", xruns_text(s));
-    fmt::print(to, "latest wake-up  {:.3f} ms\n", s.latest_wakeup_s * 1e3);
-    fmt::print(to, "ring low water  {}\n", counted(s.ring_low_water, "drive"));
-    fmt::print(to, "page faults     {}, {} from disk\n", s.minor_faults + s.major_faults, s.major_faults);
-    fmt::print(to, "limited         {}, power in {}, {} cut\n", counted(s.limited_frames, "sample"),
-               counted(s.power_limited_frames, "frame"), counted(s.drives_cut, "drive"));
-    if (s.stalls != 0)
-        fmt::print(to, "stalls          {}, amplifier off in each\n", s.stalls);
-    if (s.off_failures != 0)
-        fmt::print(to, "off refused     {} by the amplifier's line{}\n", counted(s.off_failures, "time"),
-                   s.left_on ? "" : ", off in the end");
-    if (s.sync_pulses + s.sync_missed != 0)
-        fmt::print(to, "sync pulses     {}, {} missed, late by {:.3f} ms, at worst {:.3f} ms\n",
-                   s.sync_pulses, s.sync_missed, s.sync_mean_late_s * 1e3, s.sync_worst_late_s * 1e3);
-    if (r.reopened != 0)
-        fmt::print(to, "reopened        {}\n", r.reopened);
-    fmt::print(to, "real time       {}, memory {}\n", s.realtime ? "yes" : "no",
-               r.locked_memory ? "locked" : "not locked");
-}
-
 void print_json(std::FILE* to, const run_report& r)
 {
     json strokes = json::array();
@@ -181,19 +184,45 @@ void print_json(std::FILE* to, const run_report& r)
     fmt::print(to, "{}\n", all.dump(2, ' ', false, json::error_handler_t::replace));
 }
 
-std::optional<int> tell_end(const session::play_session& session, bool as_json, const session::environment& e,
-                            const run_report& r)
+void tell(const stroke_outcome& s, unsigned rate, bool as_json)
 {
-    session::warn_of_cuts(session::settle_limits(session.asked(), e), r.stats);
-    if (as_json)
-        print_json(stdout, r);
-    else
-        print_table(stdout, r);
-    if (const auto on = session::left_on(r.stats))
-        throw error(*on);
-    if (session.signal() != 0)
-        return session::interrupt::status(session.signal());
-    return std::nullopt;
+    if (!as_json && s.report)
+        say(stdout, "{}\n", describe(s, rate));
+    flush_output();
+}
+
+int hold_run(const settings& s, const environment& e, unsigned channels, unsigned rate, bool as_json,
+             std::vector<stroke_outcome> strokes, const playing& play)
+{
+    session::tell_of_no_device(s, e);
+    const alsa_options device = session::device_options(s, s.stream, e, channels, rate);
+    const std::string server = session::settle_server(device.pcm);
+    session::play_session session(device, s.stream, e);
+    if (!as_json)
+        say(stdout, "{}\n", describe(session.setup()));
+    flush_output();
+    const std::string late = session::latency_warning(s.stream.latency_ms, session.setup());
+    if (!late.empty())
+        say(stderr, "tactor: warning: {}\n", late);
+    session::warn_of_server(server);
+    run_report r;
+    r.strokes = std::move(strokes);
+    const auto broken = play(session, r.strokes);
+    static_cast<session::run_facts&>(r) = session.finish();
+    (as_json ? print_json : print_table)(stdout, r);
+    return judge_run(r, session.signal(), broken);
+}
+
+int judge_run(const run_report& r, int signal, const std::optional<error>& broken)
+{
+    r.check_amplifier();
+    if (signal != 0)
+        return session::interrupt::status(signal);
+    if (broken)
+        throw error(*broken);
+    if (const auto left = unfinished(r))
+        throw error(*left);
+    return status_ok;
 }
 
 } // namespace tactor::cli

@@ -5,13 +5,14 @@
 
 #include <cstdint>
 #include <cstdio>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include <tactor/tactor.hpp>
 
-#include "cli/play/play_options.hpp"
+#include "cli/input.hpp"
 #include "session/play_session.hpp"
 
 namespace tactor::cli {
@@ -39,13 +40,21 @@ std::string describe(const stream_setup& d);
 /// What there is to say in the end of strokes that did not finish; nothing where all of them did.
 std::optional<error> unfinished(const run_report& r);
 
-/// Says how a run went that is finished. Returns the exit status where a signal ended it. \throws error where
-/// an amplifier may be on, before all else.
-std::optional<int> tell_end(const session::play_session& session, bool as_json, const session::environment& e,
-                            const run_report& r);
+/// Says how a stroke ended, on standard output unless that is JSON.
+void tell(const stroke_outcome& s, unsigned rate, bool as_json);
 
-/// A short table of the counters.
-void print_table(std::FILE* to, const run_report& r);
+/// Plays strokes on a session, and puts down what becomes of them. Returns what broke the run off, if
+/// anything did.
+using playing = std::function<std::optional<error>(session::play_session&, std::vector<stroke_outcome>&)>;
+
+/// Opens the device for so many channels at that rate, Hz, plays, ends, and says how that went. Returns the
+/// exit status. \throws error: first of all where the amplifier may be on.
+int hold_run(const settings& s, const environment& e, unsigned channels, unsigned rate, bool as_json,
+             std::vector<stroke_outcome> strokes, const playing& play);
+
+/// Returns the exit status of a run that a signal has ended, 0: none has. \throws error for one that was
+/// broken off or has strokes that did not finish.
+int judge_run(const run_report& r, int signal, const std::optional<error>& broken);
 
 /// One object of schema tactor-play/1.
 void print_json(std::FILE* to, const run_report& r);

@@ -2,7 +2,6 @@
 #include "cli/play/terminal.hpp"
 
 #include <cerrno>
-#include <string_view>
 
 #include <fcntl.h>
 #include <poll.h>

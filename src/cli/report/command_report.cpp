@@ -45,14 +45,11 @@ command add_report(CLI::App& app)
     CLI::App* c = app.add_subcommand("report", "Write what a paper's methods section must say of a study");
     auto o = std::make_shared<report_options>();
     add_study_options(*c, o->folder, o->who);
-    c->add_option_function<std::string>(
-         "-o,--output",
-         [o](const std::string& t) {
-             study::check_report_name(t);
-             o->file = t;
-         },
-         "the file to write, Markdown (default standard output)")
-        ->type_name("FILE.md");
+    add_text(*c, "-o,--output", "FILE.md", "the file to write, Markdown (default standard output)",
+             [o](const std::string& t) {
+                 study::check_report_name(t);
+                 o->file = t;
+             });
     add_force_option(*c, o->force);
     c->footer("Example: tactor report study -o methods.md");
     return [o] { return run(*o); };

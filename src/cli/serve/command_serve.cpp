@@ -2,7 +2,6 @@
 // tactor serve: other programs draw through it.
 #include <algorithm>
 #include <cerrno>
-#include <cmath>
 #include <cstdio>
 #include <cstring>
 #include <memory>
@@ -15,20 +14,17 @@
 
 #include "cli/commands.hpp"
 #include "cli/input.hpp"
-#include "cli/play/play_options.hpp"
 #include "cli/say.hpp"
 #include "cli/serve/owner.hpp"
+#include "cli/settings.hpp"
 #include "core/words.hpp"
-#include "files/plan/json_values.hpp"
+#include "files/plan/json_value.hpp"
 #include "files/plan/plan_json.hpp"
 #include "options/parse_number.hpp"
-#include "rt/advice.hpp"
 #include "rt/clock.hpp"
 #include "server/server.hpp"
 #include "session/device.hpp"
 #include "session/interrupt.hpp"
-#include "session/kept_drive.hpp"
-#include "session/lines.hpp"
 #include "session/log.hpp"
 #include "session/own_memory.hpp"
 #include "session/sound_server.hpp"
@@ -57,18 +53,6 @@ server::planning planning_of(const settings& s, const environment& e, const opti
     p.max_stroke_s = limits.max_stroke_s;
     p.max_strokes = limits.max_strokes;
     return p;
-}
-
-void settle_realtime(const session::stream_options& o)
-{
-    session::limit_runaway_threads();
-    const std::string refused = session::lock_own_memory();
-    session::give_memory_back();
-    const realtime_rights rights = probe_realtime_rights();
-    if (!refused.empty() && o.require_realtime)
-        throw error(error_kind::not_available, "locked memory", refused,
-                    rt::realtime_advice(rights, player_options{}.priority));
-    session::warn_of_rights(rights.priority != 0, refused.empty());
 }
 
 void say_who_may(const server::endpoints& at, const std::string& token, bool has_peers)
@@ -131,24 +115,6 @@ void tell_listening(const server::endpoints& at, const std::string& format)
     std::clearerr(stdout);
 }
 
-server::stream_options stream_of(const alsa_options& device, const session::stream_options& o,
-                                 const environment& e, const std::shared_ptr<session::lent_lines>& lines)
-{
-    server::stream_options s;
-    s.open = [device] { return session::open_device(device); };
-    s.lines = [lines] { return lines->lend(); };
-    s.log = device.log;
-    s.player.limits = session::settle_limits(o, e);
-    s.player.require_realtime = o.require_realtime;
-    s.wished.name = device.pcm;
-    s.wished.channels = device.channels;
-    s.wished.rate = device.rate;
-    s.wished.period_frames = device.period_frames;
-    s.wished.buffer_frames = device.period_frames * device.periods;
-    s.has_amplifier = e.config.amplifier.has_value() && !o.no_gpio;
-    return s;
-}
-
 // To whoever started it: a person, the journal, the line that systemctl status shows.
 std::function<void(server::stream_state, const std::string&)> tell_owner()
 {
@@ -160,8 +126,8 @@ std::function<void(server::stream_state, const std::string&)> tell_owner()
         if (state == server::stream_state::running && lost)
             say(stderr, "tactor: the stream runs{}\n", again ? " again" : "");
         lost = state == server::stream_state::lost || (lost && state != server::stream_state::running);
-        net::notify_manager(fmt::format("STATUS=stream: {}{}{}", server::name_of(state),
-                                        reason.empty() ? "" : ": ", shown(reason)));
+        net::notify_manager(fmt::format("STATUS=stream: {}{}{}", to_string(state), reason.empty() ? "" : ": ",
+                                        shown(reason)));
     };
 }
 
@@ -194,28 +160,20 @@ int serve(settings& s, const serve_options& o)
     const render_options& sound = service.plans.owner.render;
     alsa_options device = session::device_options(s, play, e, sound.channels, sound.rate);
     device.log = log.function();
-    if (!session::names_device(s, e))
-        say(stderr, "tactor: no device is configured: playing to \"null\", which nobody feels (-D PCM plays "
-                    "on hardware)\n");
-    const std::string between = session::settle_server(device.pcm);
-    if (!between.empty())
-        say(stderr, "tactor: warning: {} ({})\n", session::server_note(between), session::server_cure);
+    session::tell_of_no_device(s, e);
+    session::warn_of_server(session::settle_server(device.pcm));
     const bool armed = !play.no_gpio && e.config.sync && e.config.sync->in;
-    const auto lines = std::make_shared<session::lent_lines>(play.no_gpio ? tactor::setup{} : e.config, armed,
-                                                             play.sync_delay_ms * 1e-3);
-    settle_realtime(play);
-    server::stream_options stream = stream_of(device, play, e, lines);
-    session::kept_drive kept(device.pcm, stream.player.limits);
-    stream.driven = [&kept] { return kept.until_now(); };
-    stream.going = [&kept](unsigned channels) { kept.going(channels); };
-    stream.settled = [&kept](const drive_history& h) { kept.settled(h); };
+    server::stream_options stream{session::open_parts(device, play, e, armed)};
+    const bool locked = session::settle_realtime(play.require_realtime);
+    session::give_memory_back();
+    session::warn_of_rights(probe_realtime_rights().priority != 0, locked);
     stream.tactors = service.plans.tactors;
     stream.changed = [&stop, tell = tell_owner()](server::stream_state state, const std::string& reason) {
         if (state == server::stream_state::closing)
             stop.poll(); // from here on it has so long to end
         tell(state, reason);
     };
-    stream.idle_stop_s = serve.idle_stop_s.value_or(0.0);
+    stream.times.idle_stop_s = serve.idle_stop_s.value_or(0.0);
     server::serve(at, std::move(service), std::move(stream), std::move(network), stop.descriptor(),
                   [&] { tell_listening(at, o.format); });
     stop.was_the_last();
@@ -231,13 +189,10 @@ void add_serve_options(CLI::App& c, serve_options& o)
     c.add_option("--osc", o.osc, "take OSC there, over UDP; port 0 takes a free one")
         ->type_name("[HOST:]PORT");
     c.add_option("--http", o.http, "serve a page to draw on, and WebSockets")->type_name("[HOST:]PORT");
-    c.add_option_function<std::string>(
-         "--idle-stop",
-         [&o](const std::string& t) {
-             o.idle_stop_s = options::parse_number("--idle-stop", t, detail::bounds_of::timeout_s, "s");
-         },
-         "stop the stream after so long without a stroke (default: never)")
-        ->type_name("S");
+    add_text(c, "--idle-stop", "S", "stop the stream after so long without a stroke (default: never)",
+             [&o](const std::string& t) {
+                 o.idle_stop_s = options::parse_number("--idle-stop", t, detail::bounds_of::timeout_s, "s");
+             });
 }
 
 } // namespace

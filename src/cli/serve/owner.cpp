@@ -5,14 +5,12 @@
 #include <new>
 #include <string_view>
 
-#include <fmt/format.h>
 #include <grp.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
 
 #include "cli/say.hpp"
 #include "files/plan/plan_json.hpp"
-#include "session/runtime_folder.hpp"
 #include "session/variable.hpp"
 
 namespace tactor::cli {
@@ -92,8 +90,7 @@ void provide_descriptors(const server::service_limits& l)
     if (::setrlimit(RLIMIT_NOFILE, &now) != 0 || now.rlim_cur < wanted)
         say(stderr,
             "tactor: warning: too few descriptors: {} may be open, and {} clients need {}: later ones are "
-            "refused "
-            "(raise ulimit -n, or LimitNOFILE= of the unit)\n",
+            "refused (raise ulimit -n, or LimitNOFILE= of the unit)\n",
             now.rlim_cur, l.max_clients, wanted);
 }
 

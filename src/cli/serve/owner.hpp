@@ -13,16 +13,12 @@
 
 namespace tactor::cli {
 
-struct serve_options {
-    std::optional<std::string> socket;
-    std::optional<std::string> tcp;
-    std::optional<std::string> osc;
-    std::optional<std::string> http;
-    std::optional<double> idle_stop_s;
+/// Options of `tactor serve` alone; of [serve], those that the command line has too.
+struct serve_options : options::serve_settings {
     std::string format = "text";
 };
 
-/// The options over `s`, which the configuration says.
+/// Returns `s`, which the configuration says, with the options over it.
 options::serve_settings settle_serve(const serve_options& o, options::serve_settings s);
 
 /// Where to listen. \throws error (bad_input) where nothing says which socket, and for a network beyond

@@ -1,15 +1,13 @@
 // SPDX-License-Identifier: MIT
-#include "cli/serve/play_remote.hpp"
+#include "cli/play/play_options.hpp"
 
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <set>
 #include <thread>
 #include <utility>
 #include <vector>
 
-#include <fmt/format.h>
 #include <unistd.h>
 
 #include <tactor/stroke.hpp>
@@ -22,7 +20,6 @@
 #include "cli/say.hpp"
 #include "cli/serve/rpc_client.hpp"
 #include "cli/serve/server_words.hpp"
-#include "cli/serve/stroke_text.hpp"
 #include "cli/warnings.hpp"
 #include "session/interrupt.hpp"
 #include "session/pipes.hpp"
@@ -99,7 +96,7 @@ public:
             }
             throw;
         }
-        tell(out);
+        tell(out, report_.device.rate, options_.json());
         judge(out, true);
         return finish();
     }
@@ -162,7 +159,7 @@ private:
                     for (const net::json& k : r["strokes"])
                         cancel(k);
             }
-        tell(out);
+        tell(out, report_.device.rate, options_.json());
         judge(out, last);
     }
 
@@ -216,14 +213,6 @@ private:
         signal_ = server_.signal();
     }
 
-    void tell(const stroke_outcome& out) const
-    {
-        if (options_.json() || !out.report)
-            return;
-        say(stdout, "{}\n", describe(out, report_.device.rate));
-        flush_output();
-    }
-
     void judge(const stroke_outcome& out, bool last)
     {
         if (signal_ != 0 || out.report->state == state_kind::finished)
@@ -252,13 +241,7 @@ private:
             print_json(stdout, report_);
         else
             say(stdout, "xruns           {}\n", report_.stats.xruns);
-        if (signal_ != 0)
-            return session::interrupt::status(signal_);
-        if (broken_)
-            throw error(*broken_);
-        if (const auto left = unfinished(report_))
-            throw error(*left);
-        return status_ok;
+        return judge_run(report_, signal_, broken_);
     }
 
     const play_options& options_;

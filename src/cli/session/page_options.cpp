@@ -9,19 +9,15 @@
 #include <tactor/error.hpp>
 
 #include "cli/say.hpp"
+#include "cli/settings.hpp"
 
 namespace tactor::cli {
 namespace {
 
-[[noreturn]] void refuse_page(std::string_view option, const std::string& why, std::string_view hint)
-{
-    throw error(error_kind::bad_input, option, why, hint);
-}
-
 bool is_page(const std::string& text)
 {
     if (text != "page" && text != "terminal")
-        refuse_page("--display", fmt::format("\"{}\" is not known", text), "page or terminal");
+        refuse_option("--display", fmt::format("\"{}\" is not known", text), "page or terminal");
     return text == "page";
 }
 
@@ -29,15 +25,12 @@ bool is_page(const std::string& text)
 
 void add_page_options(CLI::App& command, page_options& o)
 {
-    const auto add = [&](const char* name, const char* type, const char* help, auto take) {
-        command.add_option_function<std::string>(name, take, help)->type_name(type);
-    };
-    add("--display", "page|terminal",
-        "what the participant sees: a page in a browser, or the terminal (default)",
-        [&o](const std::string& t) { o.on_page = is_page(t); });
-    add("--page", "[HOST:]PORT",
-        "--display page, at this address of this machine (default 127.0.0.1:0, a free port)",
-        [&o](const std::string& t) { o.at = net::parse_host(t, "--page"); });
+    add_text(command, "--display", "page|terminal",
+             "what the participant sees: a page in a browser, or the terminal (default)",
+             [&o](const std::string& t) { o.on_page = is_page(t); });
+    add_text(command, "--page", "[HOST:]PORT",
+             "--display page, at this address of this machine (default 127.0.0.1:0, a free port)",
+             [&o](const std::string& t) { o.at = net::parse_host(t, "--page"); });
 }
 
 void add_keypad_option(CLI::App& command, std::vector<std::string>& into)
@@ -52,10 +45,10 @@ void add_keypad_option(CLI::App& command, std::vector<std::string>& into)
 void check_page_options(const page_options& o, bool simulated)
 {
     if (o.at && !o.on_page.value_or(true))
-        refuse_page("--page", "the participant sees the terminal", "leave out --display, or --page");
+        refuse_option("--page", "the participant sees the terminal", "leave out --display, or --page");
     if (simulated && o.shown())
-        refuse_page(o.at ? "--page" : "--display", "in a simulated session nobody looks at a page",
-                    "leave one of them out");
+        refuse_option(o.at ? "--page" : "--display", "in a simulated session nobody looks at a page",
+                      "leave one of them out");
 }
 
 net::owned_fd open_page(const page_options& o)
@@ -65,7 +58,7 @@ net::owned_fd open_page(const page_options& o)
     const net::host_and_port at = o.at.value_or(net::host_and_port{});
     net::owned_fd fd = net::listen_tcp(at, "--page");
     if (!net::is_loopback(fd.get()))
-        refuse_page(
+        refuse_option(
             "--page",
             fmt::format("{} is not of this machine alone: whoever is on the network could answer", at.host),
             "[127.0.0.1:]PORT, and ssh -L PORT:127.0.0.1:PORT from the participant's machine");

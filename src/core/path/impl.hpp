@@ -4,11 +4,13 @@
 
 #include <cstddef>
 #include <functional>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include <tactor/path.hpp>
 
+#include "core/path/curve_places.hpp"
 #include "core/path/outline.hpp"
 #include "core/path/shape.hpp"
 
@@ -43,6 +45,7 @@ struct path::impl {
         std::size_t segment;
         detail::shape form;
         detail::arc_length measure;
+        std::shared_ptr<const detail::curve_places> places = {}; ///< null: each is computed
     };
 
     std::vector<point> vertices;
@@ -50,7 +53,7 @@ struct path::impl {
     std::vector<measured_curve> curves;
 
     /// Returns the curve of a segment, or null if it is straight.
-    const measured_curve* curve_of(std::size_t segment) const noexcept;
+    const measured_curve* find_curve(std::size_t segment) const noexcept;
 };
 
 } // namespace v0

@@ -40,7 +40,7 @@ public:
     {
         const node& a = nodes_[i];
         const node& b = nodes_[i + 1];
-        const auto* c = path_.curve_of(a.segment);
+        const auto* c = path_.find_curve(a.segment);
         if (c == nullptr)
             return a.s + (b.s - a.s) * (a.off / (a.off - b.off));
         const double t = parameter_on_line(c->form, a.t, b.segment == a.segment ? b.t : 1.0);

@@ -8,8 +8,6 @@
 
 #include <tactor/path.hpp>
 
-#include "core/limits.hpp"
-#include "core/path/number.hpp"
 #include "core/path/shape.hpp"
 
 namespace tactor::detail {
@@ -25,7 +23,7 @@ struct outline {
     std::vector<point> vertices;
     std::vector<curve> curves; ///< by ascending segment
 
-    // These skip segments without length.
+    // Add a segment. Skip segments without length.
     void line(point to);
     void bezier(point c1, point c2, point to);
     void quadratic(point c, point to);

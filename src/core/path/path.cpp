@@ -130,7 +130,7 @@ path::path(std::shared_ptr<const impl> p) noexcept : impl_(std::move(p))
 {
 }
 
-const path::impl::measured_curve* path::impl::curve_of(std::size_t segment) const noexcept
+const path::impl::measured_curve* path::impl::find_curve(std::size_t segment) const noexcept
 {
     const auto c = std::lower_bound(
         curves.begin(), curves.end(), segment,
@@ -154,8 +154,9 @@ point path::at(double s_mm) const noexcept
     const double along = s_mm - p.s[i];
     if (along == 0.0)
         return p.vertices[i];
-    if (const auto* c = p.curve_of(i))
-        return detail::position(c->form, c->measure.parameter(c->form, along));
+    if (const auto* c = p.find_curve(i))
+        return c->places != nullptr ? c->places->at(along)
+                                    : detail::position(c->form, c->measure.parameter(c->form, along));
     return detail::between(p.vertices[i], p.vertices[i + 1], along / (p.s[i + 1] - p.s[i]));
 }
 

@@ -22,7 +22,7 @@ double dot(point a, point b) noexcept
 
 double length(point p) noexcept
 {
-    return hypot_of(p.x_mm, p.y_mm);
+    return portable_hypot(p.x_mm, p.y_mm);
 }
 
 point position_on(const cubic& c, double t) noexcept
@@ -63,7 +63,7 @@ point second_derivative(const elliptic& c, double t) noexcept
     return -c.sweep * c.sweep * (std::cos(angle) * c.u + std::sin(angle) * c.v);
 }
 
-std::vector<double> turns_of(const cubic& c, axis a)
+std::vector<double> find_turns(const cubic& c, axis a)
 {
     const double d0 = coordinate(c.p[1] - c.p[0], a);
     const double d1 = coordinate(c.p[2] - c.p[1], a);
@@ -86,14 +86,14 @@ std::vector<double> at_angles(const elliptic& c, double first, double period)
     }
 }
 
-std::vector<double> turns_of(const elliptic& c, axis a)
+std::vector<double> find_turns(const elliptic& c, axis a)
 {
     return at_angles(c, std::atan2(coordinate(c.v, a), coordinate(c.u, a)), std::numbers::pi);
 }
 
 // Returns the roots of f . s, where f is the first derivative and s the second: a cubic with these Bernstein
-// coefficients. It is monotone between the roots of its own derivative.
-std::vector<double> speed_turns_of(const cubic& c)
+// coefficients. It is monotone between the roots of its derivative.
+std::vector<double> find_speed_turns(const cubic& c)
 {
     const std::array f{c.p[1] - c.p[0], c.p[2] - c.p[1], c.p[3] - c.p[2]};
     const std::array s{f[1] - f[0], f[2] - f[1]};
@@ -128,7 +128,7 @@ std::vector<double> speed_turns_of(const cubic& c)
 }
 
 // Uses |derivative|^2 = |u|^2 sin^2 + |v|^2 cos^2 - u . v sin 2 angle.
-std::vector<double> speed_turns_of(const elliptic& c)
+std::vector<double> find_speed_turns(const elliptic& c)
 {
     return at_angles(c, 0.5 * std::atan2(2.0 * dot(c.u, c.v), dot(c.u, c.u) - dot(c.v, c.v)),
                      0.5 * std::numbers::pi);
@@ -206,12 +206,12 @@ bool is_even(const shape& c) noexcept
 
 std::vector<double> turns(const shape& c, axis a)
 {
-    return inside(std::visit([a](const auto& s) { return turns_of(s, a); }, c));
+    return inside(std::visit([a](const auto& s) { return find_turns(s, a); }, c));
 }
 
 std::vector<double> speed_turns(const shape& c)
 {
-    return inside(std::visit([](const auto& s) { return speed_turns_of(s); }, c));
+    return inside(std::visit([](const auto& s) { return find_speed_turns(s); }, c));
 }
 
 double rough_length(const shape& c) noexcept

@@ -25,7 +25,7 @@ using detail::value_fault;
 constexpr const char* starts = "it starts with M x y";
 
 // Returns the arguments of a command: n is a number, f a flag.
-std::string_view arguments_of(char command) noexcept
+std::string_view argument_kinds(char command) noexcept
 {
     switch (detail::upper(command)) {
     case 'M':
@@ -76,7 +76,7 @@ private:
     {
         const char c = data_[at_];
         const char kind = detail::upper(c);
-        const std::string_view wanted = arguments_of(c);
+        const std::string_view wanted = argument_kinds(c);
         if (wanted.empty() && kind != 'Z')
             fail(fmt::format("{} is not a path command", found()),
                  "the commands are M L H V C S Q T A Z and the same in lower case");

@@ -19,25 +19,25 @@ using visitor = std::function<bool(const trajectory_span&)>;
 
 void along_path(const trajectory::impl& motion, const drawn_path& law, const visitor& visit)
 {
-    const path::impl& way = detail::access::of(law.way);
+    const path::impl& outline = detail::access::of(law.way);
     const double duration_s = motion.duration_s;
-    const double length = way.s.back();
+    const double length = outline.s.back();
     const auto when = [&](double s_mm) { return motion.arrival_s(law, std::min(s_mm, length)); };
     const double steady = motion.gain * law.intensity;
     trajectory_span span;
     span.intensity = steady;
-    auto curve = way.curves.begin();
-    for (std::size_t i = 0; i + 1 < way.vertices.size(); ++i) {
+    auto curve = outline.curves.begin();
+    for (std::size_t i = 0; i + 1 < outline.vertices.size(); ++i) {
         span.from_s = span.to_s;
-        span.to_s = i + 2 == way.vertices.size() ? duration_s : when(way.s[i + 1]);
+        span.to_s = i + 2 == outline.vertices.size() ? duration_s : when(outline.s[i + 1]);
         if (law.moves)
-            span.intensity = steady * law.moves->greatest(way.s[i] / length, way.s[i + 1] / length);
+            span.intensity = steady * law.moves->greatest(outline.s[i] / length, outline.s[i + 1] / length);
         span.curve = nullptr;
         span.time_at = nullptr;
-        if (curve != way.curves.end() && curve->segment == i) {
+        if (curve != outline.curves.end() && curve->segment == i) {
             span.curve = &curve->form;
-            span.time_at = [&way, &when, i, c = &*curve](double parameter) {
-                return when(way.s[i] + c->measure.at(c->form, parameter));
+            span.time_at = [&outline, &when, i, c = &*curve](double parameter) {
+                return when(outline.s[i] + c->measure.at(c->form, parameter));
             };
             ++curve;
         }
@@ -70,17 +70,17 @@ constexpr double last_digits = 1e-12;
 constexpr unsigned finest = 4096;
 
 /// Adds a point. Points with equal times are joined, because a frequency is a difference divided by a time.
-void add(std::vector<way_point>& way, way_point p)
+void add(std::vector<progress_point>& progress, progress_point p)
 {
-    if (way.empty() || p.t_s > way.back().t_s)
-        way.push_back(p);
+    if (progress.empty() || p.t_s > progress.back().t_s)
+        progress.push_back(p);
     else
-        way.back().part = p.part;
+        progress.back().part = p.part;
 }
 
 /// Adds points of a pace between two of its bends, the first excluded: as many as the error allows lines
 /// between them.
-void add_smooth(std::vector<way_point>& way, const pace& p, double from_s, double to_s)
+void add_smooth(std::vector<progress_point>& progress, const pace& p, double from_s, double to_s)
 {
     const auto when = [&](unsigned i) { return std::lerp(from_s, to_s, static_cast<double>(i) / finest); };
     const double error = std::max(straight_enough * (p.part(to_s) - p.part(from_s)), last_digits);
@@ -98,7 +98,7 @@ void add_smooth(std::vector<way_point>& way, const pace& p, double from_s, doubl
         while (step > 1 && !is_straight(when(i), when(i + step)))
             step /= 2;
         i += step;
-        add(way, {when(i), p.part(when(i))});
+        add(progress, {when(i), p.part(when(i))});
         step = std::min(2 * step, finest - i);
     }
 }
@@ -113,24 +113,25 @@ std::vector<double> find_bends(const pace& p, std::span<const double> at)
     return bends;
 }
 
-std::vector<way_point> way_of(const pace& p)
+std::vector<progress_point> trace(const pace& p)
 {
     const std::vector<double> bends = find_bends(p, {});
-    std::vector<way_point> way{{0.0, 0.0}};
+    std::vector<progress_point> progress{{0.0, 0.0}};
     for (std::size_t i = 0; i + 1 < bends.size(); ++i)
-        add_smooth(way, p, bends[i], bends[i + 1]);
-    way.back().part = 1.0;
-    return way;
+        add_smooth(progress, p, bends[i], bends[i + 1]);
+    progress.back().part = 1.0;
+    return progress;
 }
 
 /// Returns the points with one more at each part of `at` that lies between two, assuming constant speed.
-std::vector<way_point> with_points(const std::vector<way_point>& way, std::span<const double> at)
+std::vector<progress_point> with_points(const std::vector<progress_point>& progress,
+                                        std::span<const double> at)
 {
-    std::vector<way_point> out;
+    std::vector<progress_point> out;
     auto next = at.begin();
-    for (const way_point& to : way) {
+    for (const progress_point& to : progress) {
         for (; next != at.end() && !out.empty() && *next < to.part; ++next) {
-            const way_point from = out.back();
+            const progress_point from = out.back();
             if (*next > from.part)
                 add(out, {std::lerp(from.t_s, to.t_s, (*next - from.part) / (to.part - from.part)), *next});
         }
@@ -139,19 +140,19 @@ std::vector<way_point> with_points(const std::vector<way_point>& way, std::span<
     return out;
 }
 
-std::vector<way_point> way_of(const std::vector<timed_point>& points)
+std::vector<progress_point> trace(const std::vector<timed_point>& points)
 {
-    std::vector<way_point> way;
-    way.reserve(points.size());
+    std::vector<progress_point> progress;
+    progress.reserve(points.size());
     double behind_mm = 0.0;
     for (std::size_t i = 0; i < points.size(); ++i) {
         if (i > 0)
             behind_mm += distance_mm(points[i - 1].position, points[i].position);
-        way.push_back({points[i].t_s, behind_mm});
+        progress.push_back({points[i].t_s, behind_mm});
     }
-    for (way_point& w : way)
+    for (progress_point& w : progress)
         w.part = behind_mm > 0.0 ? w.part / behind_mm : 0.0;
-    return way;
+    return progress;
 }
 
 /// Returns the pace of a trajectory, or null if it moves at constant speeds.
@@ -162,22 +163,22 @@ const pace* find_smooth_law(const trajectory& t)
 }
 
 /// Scales the times to the duration of this trajectory, which may differ from its pace's own.
-std::vector<way_point> scale_times(const trajectory& t, const std::vector<way_point>& own)
+std::vector<progress_point> scale_times(const trajectory& t, const std::vector<progress_point>& own)
 {
     const double duration_s = access::of(t).duration_s;
     const double own_s = own.back().t_s;
-    std::vector<way_point> way;
-    way.reserve(own.size());
-    for (const way_point& w : own)
-        add(way, {own_s == duration_s ? w.t_s : w.t_s / own_s * duration_s, w.part});
-    return way;
+    std::vector<progress_point> progress;
+    progress.reserve(own.size());
+    for (const progress_point& w : own)
+        add(progress, {own_s == duration_s ? w.t_s : w.t_s / own_s * duration_s, w.part});
+    return progress;
 }
 
-std::vector<way_point> find_linear_way(const trajectory& t, std::span<const double> at)
+std::vector<progress_point> find_linear_progress(const trajectory& t, std::span<const double> at)
 {
     const trajectory::impl& d = access::of(t);
     if (const auto* timed = std::get_if<timed_points>(&d.law))
-        return scale_times(t, with_points(way_of(*timed->points), at));
+        return scale_times(t, with_points(trace(*timed->points), at));
     return with_points({{0.0, 0.0}, {d.duration_s, 1.0}}, at);
 }
 
@@ -192,38 +193,38 @@ void for_each_span(const trajectory& t, const visitor& visit)
         between_points(*std::get_if<timed_points>(&d.law), d.duration_s, d.gain, visit);
 }
 
-std::vector<way_point> way_over_time(const trajectory& t)
+std::vector<progress_point> progress_over_time(const trajectory& t)
 {
     const pace* smooth = find_smooth_law(t);
-    return smooth != nullptr ? scale_times(t, way_of(*smooth)) : find_linear_way(t, {});
+    return smooth != nullptr ? scale_times(t, trace(*smooth)) : find_linear_progress(t, {});
 }
 
-smooth_way find_smooth_way(const trajectory& t, std::span<const double> at)
+smooth_progress find_smooth_progress(const trajectory& t, std::span<const double> at)
 {
-    smooth_way way;
+    smooth_progress progress;
     if (const pace* p = find_smooth_law(t)) {
         const double duration_s = access::of(t).duration_s;
         std::vector<double> own_s;
         for (const double when_s : find_bends(*p, at)) {
             const double t_s = p->total_s() == duration_s ? when_s : when_s / p->total_s() * duration_s;
-            if (own_s.empty() || t_s > way.points.back().t_s) {
-                way.points.emplace_back();
+            if (own_s.empty() || t_s > progress.points.back().t_s) {
+                progress.points.emplace_back();
                 own_s.emplace_back();
             }
-            way.points.back() = {t_s, p->part(when_s)};
+            progress.points.back() = {t_s, p->part(when_s)};
             own_s.back() = when_s;
         }
-        way.points.back().part = 1.0;
-        way.part = [p, own_s = std::move(own_s)](std::size_t i, double u) {
+        progress.points.back().part = 1.0;
+        progress.part = [p, own_s = std::move(own_s)](std::size_t i, double u) {
             return p->part(std::lerp(own_s[i], own_s[i + 1], u));
         };
-        return way;
+        return progress;
     }
-    way.points = find_linear_way(t, at);
-    way.part = [points = way.points](std::size_t i, double u) {
+    progress.points = find_linear_progress(t, at);
+    progress.part = [points = progress.points](std::size_t i, double u) {
         return std::lerp(points[i].part, points[i + 1].part, u);
     };
-    return way;
+    return progress;
 }
 
 } // namespace tactor::detail

@@ -28,7 +28,7 @@ struct trajectory_span {
 void for_each_span(const trajectory& t, const std::function<bool(const trajectory_span&)>& visit);
 
 /// Part of the path, 0 to 1 by length, that the target has covered at a time.
-struct way_point {
+struct progress_point {
     double t_s = 0.0;
     double part = 0.0;
 };
@@ -36,17 +36,17 @@ struct way_point {
 /// Returns the covered part from time 0 to the duration, times strictly ascending; linear between the points.
 /// On easing or changing speed, points are so dense that the error is at most 1e-4 of the change between two
 /// rests or changes. For a target that never moves, `part` is 0.
-std::vector<way_point> way_over_time(const trajectory& t);
+std::vector<progress_point> progress_over_time(const trajectory& t);
 
 /// Covered part over time, smooth from one point to the next.
-struct smooth_way {
-    std::vector<way_point> points; ///< from 0 to the duration, times strictly ascending
+struct smooth_progress {
+    std::vector<progress_point> points; ///< from 0 to the duration, times strictly ascending
     /// Returns the covered part at a fraction u of the time (0 to 1) from a point to the next. Valid while
     /// the trajectory lives.
     std::function<double(std::size_t point, double u)> part;
 };
 
 /// Returns the covered part with a point where the target reaches each of `at`: parts of the path, ascending.
-smooth_way find_smooth_way(const trajectory& t, std::span<const double> at);
+smooth_progress find_smooth_progress(const trajectory& t, std::span<const double> at);
 
 } // namespace tactor::detail

@@ -93,7 +93,7 @@ void check_duration(double duration_s)
 
 void refuse_one_place()
 {
-    throw error(error_kind::bad_input, "path", "has no length", "duration_s makes it a tap")
+    throw error(error_kind::bad_input, "path", "has no length", "{duration_s} makes it a tap")
         .with_field("duration_s");
 }
 

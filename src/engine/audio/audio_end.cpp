@@ -4,11 +4,11 @@
 
 namespace tactor::engine {
 
-void audio_loop::ask_to_stop() noexcept
+void audio_loop::request_stop() noexcept
 {
-    if (!stop_asked_)
-        stop_asked_ns_ = now_ns_;
-    stop_asked_ = true;
+    if (!stop_requested_)
+        stop_requested_ns_ = now_ns_;
+    stop_requested_ = true;
 }
 
 void audio_loop::finish_when_silent() noexcept
@@ -59,7 +59,7 @@ void audio_loop::close_step(io_kind ready, std::int64_t now) noexcept
 void audio_loop::end() noexcept
 {
     sink_.drop();
-    tell_clock({});
+    publish_clock({});
     phase_ = phase::over;
     // Replaces any other reason, because a person must act on this one.
     if (!link_.amplifier.off.load(std::memory_order_seq_cst)) {
@@ -78,7 +78,7 @@ void audio_loop::obey_amplifier() noexcept
         scores_.mute();
     mutes_ = mutes;
     if (link_.amplifier.failed.load(std::memory_order_acquire) && stop_why_ == reason_kind::none) {
-        ask_to_stop();
+        request_stop();
         stop_why_ = reason_kind::amplifier;
         scores_.stop(state_kind::interrupted, reason_kind::amplifier);
     }

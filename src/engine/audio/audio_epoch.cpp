@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
 // Start, breaks, recovery and end of the stream.
-#include <algorithm>
 #include <cerrno>
 
 #include "engine/audio/audio_loop.hpp"
@@ -55,7 +54,7 @@ io_result audio_loop::begin_epoch() noexcept
     if (const io_kind s = sink_.prepare(); s != io_kind::ok)
         return {s, 0, 0};
     clock_.begin_epoch(offset_);
-    tell_clock(clock_.line());
+    publish_clock(clock_.line());
     std::size_t filled = 0;
     while (filled < setup_.buffer_frames && pending_ == 0) {
         mix_period();
@@ -98,9 +97,9 @@ void audio_loop::broken(io_kind s, int code, std::int64_t now) noexcept
 void audio_loop::silence_all(reason_kind why, int code, std::uint64_t played) noexcept
 {
     note_starts(played);
-    scores_.interrupt(why, code, played, !stop_asked_);
+    scores_.interrupt(why, code, played, !stop_requested_);
     offset_ += mixer_.position();
-    tell_clock({});
+    publish_clock({});
     mixer_.reset();
     pending_ = 0;
     played_ = 0;
@@ -116,9 +115,9 @@ void audio_loop::fall_asleep(int code, std::int64_t now) noexcept
 
 void audio_loop::try_resume(std::int64_t now) noexcept
 {
-    if (stop_asked_)
+    if (stop_requested_)
         return finish(stop_why_, 0);
-    scores_.look_at_wishes(); // this runs in the mix, and there is no mix now
+    scores_.handle_live_requests(); // this runs in the mix, and there is no mix now
     if (sink_.resume() == io_kind::again && now - suspended_ns_ < longest_resume)
         return;
     // Begins a new epoch, resumed or not: the buffer holds frames of strokes that were interrupted.
@@ -127,7 +126,7 @@ void audio_loop::try_resume(std::int64_t now) noexcept
 
 void audio_loop::restart(std::int64_t now) noexcept
 {
-    if (stop_asked_)
+    if (stop_requested_)
         return finish(stop_why_, 0);
     io_result r = begin_epoch();
     while (r.status == io_kind::xrun) {

@@ -85,11 +85,11 @@ void audio_loop::step(io_kind ready, std::int64_t now) noexcept TACTOR_NONBLOCKI
     if (phase_ == phase::running) {
         look_at_position(now);
         scores_.update(played_);
-        if (stop_asked_)
+        if (stop_requested_)
             finish_when_silent();
     }
     // In a long buffer the fade would come after everything that was written before it.
-    if (phase_ == phase::running && stop_asked_ && now - stop_asked_ns_ >= longest_stop_ns)
+    if (phase_ == phase::running && stop_requested_ && now - stop_requested_ns_ >= longest_stop_ns)
         finish(stop_why_, 0, true);
     // Checks both, so that a process that was stopped and continues does not count as a dead device. Accepted
     // frames prove nothing: a stroke whose end never reaches the DAC would wait for ever.
@@ -109,8 +109,8 @@ std::int64_t audio_loop::timeout_ns() const noexcept
     const std::int64_t period =
         std::int64_t{setup_.period_frames} * 1'000'000'000 / std::max<std::int64_t>(setup_.rate, 1);
     const std::int64_t normal = polls_sink() ? 4 * period : period;
-    if (phase_ == phase::running && stop_asked_)
-        return std::min(normal, std::max<std::int64_t>(stop_asked_ns_ + longest_stop_ns - now_ns_, 0));
+    if (phase_ == phase::running && stop_requested_)
+        return std::min(normal, std::max<std::int64_t>(stop_requested_ns_ + longest_stop_ns - now_ns_, 0));
     return phase_ == phase::closing ? std::min(normal, longest_stop_ns) : normal;
 }
 
@@ -126,9 +126,9 @@ void audio_loop::take_requests() noexcept
             scores_.begin_live(r);
             break;
         case request::kind::stop:
-            if (!stop_asked_)
+            if (!stop_requested_)
                 scores_.stop(r.closing);
-            ask_to_stop();
+            request_stop();
             break;
         }
     }
@@ -155,7 +155,7 @@ void audio_loop::take_commands() noexcept
 bool audio_loop::take(const command& c) noexcept
 {
     // The amplifier must be on and settled before anything begins; the ring waits with it.
-    const bool held = !stop_asked_ && !link_.amplifier.ready.load(std::memory_order_acquire);
+    const bool held = !stop_requested_ && !link_.amplifier.ready.load(std::memory_order_acquire);
     switch (c.what) {
     case command::kind::begin:
         if (scores_.called_off(c.score))
@@ -169,9 +169,6 @@ bool audio_loop::take(const command& c) noexcept
     case command::kind::end:
         scores_.end(c.score);
         break;
-    case command::kind::fail:
-        scores_.fail(c.score, c.at);
-        break;
     }
     return true;
 }
@@ -179,8 +176,7 @@ bool audio_loop::take(const command& c) noexcept
 void audio_loop::mix_period() noexcept
 {
     scores_.render_live(setup_.period_frames, offset_, clock_.line());
-    scores_.fade_what_failed(setup_.period_frames);
-    // Drives that wait for space in the mixer are in time.
+    // Drives that wait for space in the mixer are there in time.
     if (link_.commands.size() == 0)
         scores_.fade_what_runs_out(setup_.period_frames);
     mixer_.process(setup_.period_frames, block_.data());
@@ -241,7 +237,7 @@ void audio_loop::look_at_position(std::int64_t now) noexcept
         return;
     played_ = p.played;
     clock_.add(p.time_ns, offset_ + p.played);
-    tell_clock(clock_.line());
+    publish_clock(clock_.line());
     note_starts(played_);
     moved(now);
 }
@@ -266,7 +262,7 @@ void audio_loop::moved(std::int64_t now) noexcept
 }
 
 // Stores in this order, so that a pulse planned with link::clock has its epoch in link::sync_clock.
-void audio_loop::tell_clock(const clock_line& line) noexcept
+void audio_loop::publish_clock(const clock_line& line) noexcept
 {
     link_.sync_clock.store(line);
     link_.clock.store(line);
@@ -287,18 +283,19 @@ void audio_loop::publish() noexcept
 
     // Strokes that begin at a given time wait for the clock of each epoch.
     const bool clocked = clock_.line().valid();
-    const bool news = s.stage != told_stage_ || s.epoch != told_epoch_ || clocked != told_clocked_;
-    told_stage_ = s.stage;
-    told_epoch_ = s.epoch;
-    told_clocked_ = clocked;
+    const bool news =
+        s.stage != reported_stage_ || s.epoch != reported_epoch_ || clocked != reported_clocked_;
+    reported_stage_ = s.stage;
+    reported_epoch_ = s.epoch;
+    reported_clocked_ = clocked;
     // Until strokes may sound, every played frame counts.
     if (options_.amplifier && (news || !link_.amplifier.ready.load(std::memory_order_relaxed)))
         link_.amplifier.wake.signal();
 
-    const bool hungry =
-        link_.feeding.load(std::memory_order_relaxed) && s.written - told_ >= options_.horizon_frames / 8;
+    const bool hungry = link_.feeding.load(std::memory_order_relaxed) &&
+                        s.written - woken_frame_ >= options_.horizon_frames / 8;
     if (hungry)
-        told_ = s.written;
+        woken_frame_ = s.written;
     if (hungry || news || link_.reports.available() != link_.reports.capacity())
         link_.to_control.signal();
 }

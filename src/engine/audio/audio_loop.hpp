@@ -82,9 +82,9 @@ private:
     void close_step(io_kind ready, std::int64_t now) noexcept;
     void end() noexcept;
     void obey_amplifier() noexcept;
-    void ask_to_stop() noexcept;
+    void request_stop() noexcept;
     void finish_when_silent() noexcept;
-    void tell_clock(const clock_line& line) noexcept;
+    void publish_clock(const clock_line& line) noexcept;
     void publish() noexcept;
 
     device sink_;
@@ -100,8 +100,8 @@ private:
     std::size_t pending_from_ = 0;
 
     phase phase_ = phase::idle;
-    bool stop_asked_ = false;
-    std::int64_t stop_asked_ns_ = 0;
+    bool stop_requested_ = false;
+    std::int64_t stop_requested_ns_ = 0;
     reason_kind stop_why_ = reason_kind::none;
     std::uint32_t mutes_ = 0;                 ///< value of link::amplifier.mutes that was obeyed last
     bool end_runs_ = false;                   ///< closing: zeros are written meanwhile
@@ -109,18 +109,18 @@ private:
     int end_code_ = 0;
     std::int64_t now_ns_ = 0;
     std::int64_t closing_ns_ = 0;
-    stream_stage told_stage_ = stream_stage::idle;
-    std::uint64_t told_epoch_ = 0;
-    bool told_clocked_ = false;
-    std::uint64_t stop_frame_ = 0; ///< 0: not silent yet
-    std::uint64_t offset_ = 0;     ///< stream frame at which this epoch began
-    std::uint64_t played_ = 0;     ///< of this epoch
-    std::uint64_t told_ = 0;       ///< stream frame at which the control side was last woken
-    std::int64_t epoch_ns_ = 0;    ///< start time of the DAC
-    std::int64_t moved_ns_ = 0;    ///< time when the position last moved
-    bool fresh_ = false;           ///< the stream has just started, which may have taken longer than a stall
-    unsigned still_steps_ = 0;     ///< wake-ups since then
-    unsigned idle_steps_ = 0;      ///< wake-ups since the position moved or a frame was taken
+    stream_stage reported_stage_ = stream_stage::idle;
+    std::uint64_t reported_epoch_ = 0;
+    bool reported_clocked_ = false;
+    std::uint64_t stop_frame_ = 0;  ///< 0: not silent yet
+    std::uint64_t offset_ = 0;      ///< stream frame at which this epoch began
+    std::uint64_t played_ = 0;      ///< of this epoch
+    std::uint64_t woken_frame_ = 0; ///< stream frame at which the control side was last woken
+    std::int64_t epoch_ns_ = 0;     ///< start time of the DAC
+    std::int64_t moved_ns_ = 0;     ///< time when the position last moved
+    bool fresh_ = false;            ///< the stream has just started, which may have taken longer than a stall
+    unsigned still_steps_ = 0;      ///< wake-ups since then
+    unsigned idle_steps_ = 0;       ///< wake-ups since the position moved or a frame was taken
     std::int64_t suspended_ns_ = 0;
     std::array<std::int64_t, 3> recoveries_{};
     std::size_t recovered_ = 0;

@@ -43,7 +43,7 @@ std::int64_t later(std::int64_t t, double ns) noexcept
 
 } // namespace
 
-std::int64_t clock_line::time_of(std::uint64_t stream_frame) const noexcept
+std::int64_t clock_line::time_at(std::uint64_t stream_frame) const noexcept
 {
     return later(time_ns, frames_between(frame, stream_frame) * ns_per_frame);
 }

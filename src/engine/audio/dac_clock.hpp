@@ -19,7 +19,7 @@ struct clock_line {
 
     bool valid() const noexcept { return ns_per_frame > 0.0; }
     /// Returns the CLOCK_MONOTONIC time at which a frame is (was, will be) at the DAC. Only if valid.
-    std::int64_t time_of(std::uint64_t stream_frame) const noexcept;
+    std::int64_t time_at(std::uint64_t stream_frame) const noexcept;
     /// Returns the frame nearest to a time; 0 for times before the stream. Only if valid.
     std::uint64_t frame_at(std::int64_t time) const noexcept;
 };

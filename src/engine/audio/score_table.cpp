@@ -17,13 +17,13 @@ std::uint64_t frames_until(std::uint64_t at, std::uint64_t base, std::uint64_t l
 
 score_table::entry* score_table::find(ticket t) noexcept
 {
-    entry& e = entries_[place_of(t)];
+    entry& e = entries_[ticket_place(t)];
     return e.used && e.score == t ? &e : nullptr;
 }
 
 bool score_table::called_off(ticket t) noexcept
 {
-    std::uint32_t& waiting = called_off_[place_of(t)];
+    std::uint32_t& waiting = called_off_[ticket_place(t)];
     if (waiting == 0)
         return false;
     --waiting;
@@ -32,7 +32,7 @@ bool score_table::called_off(ticket t) noexcept
 
 void score_table::begin(const command& c, std::uint64_t offset) noexcept
 {
-    entry& e = entries_[place_of(c.score)];
+    entry& e = entries_[ticket_place(c.score)];
     const std::uint64_t next = mixer_.position();
     const std::uint64_t base = c.at > offset ? std::max(c.at - offset, next) : next;
     e = {.score = c.score,
@@ -43,7 +43,7 @@ void score_table::begin(const command& c, std::uint64_t offset) noexcept
          .fade = fade_,
          .used = true};
     ++used_;
-    top_ = std::max(top_, place_of(c.score) + 1);
+    top_ = std::max(top_, ticket_place(c.score) + 1);
     link_.reports.push({.what = report::kind::begun, .score = c.score, .frame = offset + base});
     if (stopping_)
         over(e, stop_state_, stop_reason_, 0, 0); // nothing may begin any more
@@ -100,7 +100,7 @@ void score_table::fade_what_runs_out(std::uint64_t period) noexcept
     const std::uint64_t next = mixer_.position();
     for (std::uint32_t i = 0; i < top_; ++i) {
         entry& e = entries_[i];
-        if (!e.used || !e.open || e.fed || e.fading || e.fade_wanted || e.broken != never)
+        if (!e.used || !e.open || e.fed || e.fading || e.fade_wanted)
             continue;
         if (e.covered >= next + 2 * period) {
             e.ahead = true;
@@ -119,24 +119,6 @@ void score_table::end(ticket t) noexcept
         e->fed = true;
 }
 
-void score_table::fail(ticket t, std::uint64_t at) noexcept
-{
-    if (entry* e = find(t))
-        e->broken = e->base + at;
-}
-
-void score_table::fade_what_failed(std::uint64_t period) noexcept
-{
-    const std::uint64_t next = mixer_.position();
-    for (std::uint32_t i = 0; i < top_; ++i) {
-        entry& e = entries_[i];
-        if (!e.used || e.fading || e.fade_wanted || e.broken >= next + period + fade_)
-            continue;
-        e.fade = static_cast<std::uint32_t>(std::min<std::uint64_t>(fade_, std::max(e.broken, next) - next));
-        want_fade(e, state_kind::interrupted, reason_kind::plan);
-    }
-}
-
 void score_table::cancel(ticket t) noexcept
 {
     entry* e = find(t);
@@ -144,11 +126,11 @@ void score_table::cancel(ticket t) noexcept
         // The score is over, or still in the command ring. Its place shows which, because no ticket is used
         // twice. The ring may stand still for seconds, so a score in it is reported here and dropped when it
         // comes.
-        entry& place = entries_[place_of(t)];
+        entry& place = entries_[ticket_place(t)];
         if (place.score == t)
             return;
         place.score = t;
-        ++called_off_[place_of(t)];
+        ++called_off_[ticket_place(t)];
         link_.reports.push({.what = report::kind::over, .score = t, .state = state_kind::cancelled});
         return;
     }
@@ -236,7 +218,7 @@ void score_table::note_starts(std::uint64_t played, std::uint64_t offset, const 
         if (!e.used || e.started || e.base >= played)
             continue;
         e.started = true;
-        e.started_ns = clock.time_of(offset + e.base);
+        e.started_ns = clock.time_at(offset + e.base);
     }
 }
 
@@ -324,9 +306,8 @@ void score_table::describe(std::uint64_t played, stream_status& s) const noexcep
 bool score_table::being_fed() const noexcept
 {
     const std::uint64_t next = mixer_.position();
-    return std::any_of(entries_.begin(), entries_.begin() + top_, [next](const entry& e) {
-        return e.used && !e.fed && !e.fading && e.broken == never && e.base <= next;
-    });
+    return std::any_of(entries_.begin(), entries_.begin() + top_,
+                       [next](const entry& e) { return e.used && !e.fed && !e.fading && e.base <= next; });
 }
 
 } // namespace tactor::engine

@@ -34,23 +34,18 @@ public:
     /// this is the reason.
     void crowd() noexcept;
     void end(ticket t) noexcept;
-    /// Notes that the plan failed: from frame `at` of the score on there are no more drives.
-    void fail(ticket t, std::uint64_t at) noexcept;
     /// Adds a live stroke. It is silent until its first point has come and fewer than live_voices sound.
     /// There must be a free place.
     void begin_live(const request& r) noexcept;
     /// Ends live strokes whose producer requests it or is silent for too long, and those that last too long.
-    void look_at_wishes() noexcept;
+    void handle_live_requests() noexcept;
     /// Adds the live strokes' drives of the next frames. Called before each mix. `offset` as in begin();
     /// `clock` may be unknown.
     void render_live(std::uint64_t frames, std::uint64_t offset, const clock_line& clock) noexcept;
     /// Fades out scores that would break off within two periods because their next drives have not come.
     /// Called before each mix.
     void fade_what_runs_out(std::uint64_t period) noexcept;
-    /// Fades out scores whose plan failed, so that they are silent where their drives end. Called before each
-    /// mix.
-    void fade_what_failed(std::uint64_t period) noexcept;
-    /// Fades a score out, or ends it at once if it has not begun. Its begin() may still come.
+    /// Fades a score out, or ends it at once if it has not begun. Its begin() may still be to come.
     void cancel(ticket t) noexcept;
     /// Fades everything out. Scores that have not begun end at once, and so do later ones.
     void stop(bool closing) noexcept;
@@ -90,12 +85,11 @@ private:
         stroke_id id = {};
         std::uint64_t base = 0;
         std::uint64_t length = 0;
-        std::uint64_t finish = 0;     ///< frame after which it is over, once played
-        std::uint64_t covered = 0;    ///< end of its drives so far
-        std::uint64_t broken = never; ///< after fail(): frame where its drives end
-        std::uint32_t fade = 0;       ///< length of its final fade, frames
-        bool open = false;            ///< another drive must follow, because it still sounds at `covered`
-        bool ahead = false;           ///< drives came in time before
+        std::uint64_t finish = 0;  ///< over when this frame has been played
+        std::uint64_t covered = 0; ///< end of its drives so far
+        std::uint32_t fade = 0;    ///< frames that its end takes
+        bool open = false;         ///< it would still sound at `covered`: another drive is to follow
+        bool ahead = false;        ///< drives have been there in time
         bool used = false;
         bool fed = false;
         bool fade_wanted = false;
@@ -110,7 +104,7 @@ private:
     };
 
     entry* find(ticket t) noexcept;
-    void look_at_wishes(entry& e) noexcept;
+    void handle_live_requests(entry& e) noexcept;
     void render_live(entry& e, std::uint64_t frames, std::uint64_t offset, const clock_line& clock) noexcept;
     void close_live(entry& e) noexcept;
     reason_kind why_late() const noexcept;

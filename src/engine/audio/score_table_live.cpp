@@ -8,7 +8,7 @@ namespace tactor::engine {
 
 void score_table::begin_live(const request& r) noexcept
 {
-    entry& e = entries_[place_of(r.score)];
+    entry& e = entries_[ticket_place(r.score)];
     e = {.score = r.score,
          .id = r.id,
          .base = never,
@@ -20,22 +20,22 @@ void score_table::begin_live(const request& r) noexcept
          .live = r.voice,
          .voice = r.voice};
     ++used_;
-    top_ = std::max(top_, place_of(r.score) + 1);
+    top_ = std::max(top_, ticket_place(r.score) + 1);
     live_[live_count_++] = &e;
     if (stopping_)
         over(e, stop_state_, stop_reason_, 0, 0);
 }
 
-void score_table::look_at_wishes() noexcept
+void score_table::handle_live_requests() noexcept
 {
     // Goes backwards, because entries behind one that closes move up.
     for (std::size_t i = live_count_; i-- > 0;)
-        look_at_wishes(*live_[i]);
+        handle_live_requests(*live_[i]);
 }
 
 void score_table::render_live(std::uint64_t frames, std::uint64_t offset, const clock_line& clock) noexcept
 {
-    look_at_wishes();
+    handle_live_requests();
     // In order, so that the first to begin sounds first. A stroke that closes now makes way for the next.
     for (std::size_t i = 0; i < live_count_;) {
         entry& e = *live_[i];
@@ -46,19 +46,19 @@ void score_table::render_live(std::uint64_t frames, std::uint64_t offset, const 
     }
 }
 
-void score_table::look_at_wishes(entry& e) noexcept
+void score_table::handle_live_requests(entry& e) noexcept
 {
-    switch (e.live->asked()) {
-    case live_voice::wish::cancel:
+    switch (e.live->requested()) {
+    case live_voice::action::cancel:
         return want_fade(e, state_kind::cancelled, reason_kind::none);
-    case live_voice::wish::fail:
+    case live_voice::action::fail:
         return want_fade(e, state_kind::interrupted, reason_kind::plan);
-    case live_voice::wish::end:
+    case live_voice::action::end:
         if (e.live->has_news() || (e.base == never && e.live->has_point()) ||
             e.live->moves(mixer_.position()))
             return; // the last point before the end counts, too
         break;
-    case live_voice::wish::go_on:
+    case live_voice::action::go_on:
         if (e.live->starved())
             want_fade(e, state_kind::interrupted, reason_kind::starved);
         else if (e.live->lasted(mixer_.position()))

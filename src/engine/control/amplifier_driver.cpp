@@ -25,27 +25,27 @@ void amplifier_driver::update() noexcept
 {
     const std::int64_t now = clock_();
     const stream_status s = link_.amplifier.status.load();
-    hear(s, now);
+    read_status(s, now);
     watch(s, now);
     beat(now);
     amplifier_.handle(amplifier_event::tick, now);
     apply();
-    tell();
+    report_changes();
     updated_ns_ = now;
 }
 
 // Wakes the control side, which writes the log, after a change.
-void amplifier_driver::tell() noexcept
+void amplifier_driver::report_changes() noexcept
 {
     const bool ready = link_.amplifier.ready.load(std::memory_order_relaxed);
     const std::uint64_t events = link_.amplifier.mutes.load(std::memory_order_relaxed) +
                                  link_.count.stalls.load(std::memory_order_relaxed) +
                                  link_.count.off_failures.load(std::memory_order_relaxed);
-    if (std::exchange(told_ready_, ready) != ready || std::exchange(told_events_, events) != events)
+    if (std::exchange(reported_ready_, ready) != ready || std::exchange(reported_events_, events) != events)
         link_.to_control.signal();
 }
 
-void amplifier_driver::hear(const stream_status& s, std::int64_t now) noexcept
+void amplifier_driver::read_status(const stream_status& s, std::int64_t now) noexcept
 {
     const std::uint64_t xruns = link_.count.xruns.load(std::memory_order_acquire);
     for (; xruns_ < xruns; ++xruns_)

@@ -41,11 +41,11 @@ public:
     bool trying() const noexcept { return line_state_ == line_state::refused && !stuck_; }
 
 private:
-    void hear(const stream_status& s, std::int64_t now) noexcept;
+    void read_status(const stream_status& s, std::int64_t now) noexcept;
     void watch(const stream_status& s, std::int64_t now) noexcept;
     void beat(std::int64_t now) noexcept;
     void apply() noexcept;
-    void tell() noexcept;
+    void report_changes() noexcept;
     void switch_on() noexcept;
     void switch_off() noexcept;
     void try_off() noexcept;
@@ -69,8 +69,8 @@ private:
     std::int64_t updated_ns_ = 0;
     std::int64_t beaten_ns_ = 0;
     bool stalled_ = false;
-    bool told_ready_ = false;
-    std::uint64_t told_events_ = 0;
+    bool reported_ready_ = false;
+    std::uint64_t reported_events_ = 0;
 };
 
 /// Thread of an amplifier_driver. The audio thread and time wake it.

@@ -2,7 +2,6 @@
 #include "engine/control/player_impl.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <cstddef>
 #include <iterator>
@@ -41,7 +40,7 @@ constexpr std::int64_t longest_ns = 4'000'000'000'000'000'000;
 /// Returns the identifier of this boot, from which CLOCK_MONOTONIC counts.
 std::string this_boot()
 {
-    const std::string text = rt::text_of("/proc/sys/kernel/random/boot_id");
+    const std::string text = rt::read_file("/proc/sys/kernel/random/boot_id");
     const std::string id = text.substr(0, text.find('\n'));
     return id.empty() ? "unknown" : id;
 }
@@ -70,12 +69,10 @@ public:
     {
         if (at_ == words_.size())
             refuse("a line breaks off");
-        const std::string_view word = words_[at_++];
-        std::int64_t n = 0;
-        const auto [end, failed] = std::from_chars(word.data(), word.data() + word.size(), n);
-        if (failed != std::errc{} || end != word.data() + word.size() || n < -longest_ns || n > longest_ns)
+        const auto n = detail::number_in<std::int64_t>(words_[at_++]);
+        if (!n || *n < -longest_ns || *n > longest_ns)
             refuse("a word is no number");
-        return n;
+        return *n;
     }
     std::string_view word() { return at_ < words_.size() ? words_[at_++] : std::string_view{}; }
     bool over() const noexcept { return at_ == words_.size(); }
@@ -85,7 +82,7 @@ private:
     std::size_t at_ = 0;
 };
 
-synth::drive_history::channel channel_of(numbers& n)
+synth::drive_history::channel read_channel(numbers& n)
 {
     synth::drive_history::channel c;
     c.opens_s = seconds(n.next());
@@ -196,7 +193,7 @@ drive_history drive_history::restore(std::string_view text)
         if (channel < next || channel >= channels)
             refuse("channels are not in order");
         next = channel + 1;
-        h.channels.channels[static_cast<std::size_t>(channel)] = channel_of(line);
+        h.channels.channels[static_cast<std::size_t>(channel)] = read_channel(line);
     }
     if (!ours || h.taken_ns > rt::monotonic_ns())
         return {};

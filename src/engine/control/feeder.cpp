@@ -32,7 +32,8 @@ bool feeder::cancel(stroke_id id)
             continue;
         s.use->cancelled = true;
         s.use->fed = true;
-        link_.requests.push({.what = request::kind::cancel, .score = ticket_of(place), .closing = false});
+        link_.requests.push(
+            {.what = request::kind::cancel, .score = current_ticket(place), .closing = false});
         return true;
     }
     return false;
@@ -72,13 +73,13 @@ bool feeder::admit(std::uint64_t written)
         const auto& [at, t] = *waiting_.begin();
         const bool soon = at <= written + horizon_ / 8;
         const std::uint32_t place = take_slot({.id = t.id,
-                                               .music = t.music,
+                                               .score = t.score,
                                                .due_ns = t.due_ns,
                                                .at = at,
-                                               .source = synth::event_source(t.music)});
+                                               .source = synth::event_source(t.score)});
         try {
             // A score that begins later gets its drives in time, in the common order.
-            hand_over_beginning(*slots_[place].use, ticket_of(place),
+            hand_over_beginning(*slots_[place].use, current_ticket(place),
                                 soon ? std::max<std::size_t>(share, 1) : 0);
         } catch (...) {
             release(slots_[place]); // the score still waits
@@ -104,7 +105,7 @@ void feeder::hand_over_beginning(active& a, ticket t, std::size_t drives)
 {
     batch_.clear();
     batch_.push_back(
-        {.what = command::kind::begin, .score = t, .id = a.id, .at = a.at, .length = a.music->frames()});
+        {.what = command::kind::begin, .score = t, .id = a.id, .at = a.at, .length = a.score->frames()});
     const std::size_t most = std::min(batch_.capacity(), 1 + drives);
     while (batch_.size() < most && !a.fed) {
         const synth::drive_event* e = a.source->peek();
@@ -121,10 +122,7 @@ command feeder::next_command(active& a, ticket t)
 {
     const synth::drive_event* e = a.source->peek();
     if (e == nullptr) {
-        a.failure = a.source->failure(); // comes first, because there may be no memory for it
         a.fed = true;
-        if (!a.failure.empty())
-            return {.what = command::kind::fail, .score = t, .at = a.source->failed_at()};
         return {.what = command::kind::end, .score = t};
     }
     command c{.what = command::kind::drive, .score = t, .drive = *e};
@@ -133,7 +131,7 @@ command feeder::next_command(active& a, ticket t)
     return c;
 }
 
-std::uint64_t feeder::next_start(active& a, std::uint64_t written) noexcept
+std::uint64_t feeder::next_start(active& a, std::uint64_t written)
 {
     const synth::drive_event* e = a.source->peek();
     // Until the audio thread reports where it begins, only this bound is certain.
@@ -156,7 +154,7 @@ void feeder::feed(std::uint64_t written, std::uint64_t horizon)
         next_drive& n = next_.back();
         const std::uint32_t place = in_use_[n.order];
         active& a = *slots_[place].use;
-        link_.commands.push(next_command(a, ticket_of(place)));
+        link_.commands.push(next_command(a, current_ticket(place)));
         if (a.fed) {
             next_.pop_back();
         } else {
@@ -191,7 +189,7 @@ void feeder::handle(const report& r)
 {
     if (r.what == report::kind::stream_over)
         return end_all(r);
-    slot& s = slots_[place_of(r.score)]; // still belongs to this ticket: only its last report releases it
+    slot& s = slots_[ticket_place(r.score)]; // still belongs to this ticket: only its last report releases it
     active& a = *s.use;
     if (r.what != report::kind::begun && ended_)
         ended_(a.id, r.what == report::kind::over && r.frame > 0);
@@ -203,11 +201,11 @@ void feeder::handle(const report& r)
         break;
     case report::kind::returned:
         if (a.cancelled)
-            tell({.id = a.id, .state = state_kind::cancelled, .frames = 0});
+            report_end({.id = a.id, .state = state_kind::cancelled, .frames = 0});
         else if (a.due_ns)
-            timed_.emplace(*a.due_ns, task{a.id, *a.music, a.due_ns});
+            timed_.emplace(*a.due_ns, task{a.id, *a.score, a.due_ns});
         else
-            waiting_.emplace(a.at, task{a.id, *a.music});
+            waiting_.emplace(a.at, task{a.id, *a.score});
         break;
     case report::kind::stream_over:
         return;
@@ -221,9 +219,9 @@ void feeder::end_all(const report& r)
     const reason_kind why = r.why == reason_kind::none && closing_ ? reason_kind::closed : r.why;
     const auto end = [&](stroke_id id, bool cancelled) {
         if (cancelled || why == reason_kind::none)
-            tell({.id = id, .state = state_kind::cancelled});
+            report_end({.id = id, .state = state_kind::cancelled});
         else
-            tell(interrupted(id, why, text(why, r.code)));
+            report_end(interrupted(id, why, text(why, r.code)));
     };
     while (!in_use_.empty()) {
         slot& s = slots_[in_use_.front()];

@@ -93,19 +93,18 @@ public:
 private:
     struct task {
         stroke_id id = {};
-        score music;
+        tactor::score score;
         std::optional<std::int64_t> due_ns{}; ///< requested CLOCK_MONOTONIC
     };
     struct active {
         stroke_id id = {};
-        std::optional<score> music{};
+        std::optional<tactor::score> score{};
         live_voice* voice = nullptr; ///< owned by playing_live_
         std::optional<std::int64_t> due_ns{};
         std::uint64_t at = 0;
         std::uint64_t base = 0;         ///< stream frame of its start, once begun
         std::optional<double> late_s{}; ///< none: the clock was not known when it began
         std::optional<synth::event_source> source{};
-        std::string failure{}; ///< reason why its plan could not be followed to its end
         bool begun = false;
         bool fed = false;
         bool cancelled = false;
@@ -130,17 +129,20 @@ private:
     void look_at_waiting_live(std::uint64_t written);
     void admit_live();
     std::uint32_t take_slot(active a);
-    ticket ticket_of(std::uint32_t place) const noexcept { return place + voices * slots_[place].generation; }
+    ticket current_ticket(std::uint32_t place) const noexcept
+    {
+        return place + voices * slots_[place].generation;
+    }
     bool cancel_waiting(stroke_id id);
     bool waits(stroke_id id) const;
     void begun(active& a, std::uint64_t frame);
     void over(const active& a, const report& r);
-    void tell(stroke_report r);
+    void report_end(stroke_report r);
     void feed(std::uint64_t written, std::uint64_t horizon);
     bool has_room(std::size_t n);
     void hand_over_beginning(active& a, ticket t, std::size_t drives);
     static command next_command(active& a, ticket t);
-    static std::uint64_t next_start(active& a, std::uint64_t written) noexcept;
+    static std::uint64_t next_start(active& a, std::uint64_t written);
     void release(slot& s) noexcept;
     void end_all(const report& r);
 

@@ -67,7 +67,7 @@ std::size_t feeder::fire(std::int64_t time_ns)
     const std::size_t n = armed_.size();
     decltype(timed_) fired; // all or none, if memory runs out
     for (const auto& [id, t] : armed_)
-        fired.emplace(time_ns, task{t.id, t.music, time_ns});
+        fired.emplace(time_ns, task{t.id, t.score, time_ns});
     timed_.merge(fired);
     armed_.clear();
     return n;
@@ -93,15 +93,15 @@ void feeder::look_at_waiting_live(std::uint64_t written)
     for (auto next = waiting_live_.begin(); next != waiting_live_.end();) {
         live_voice& v = *next->second;
         v.wait(frames);
-        const live_voice::wish asked = v.asked();
-        if (asked == live_voice::wish::cancel)
-            tell({.id = next->first, .state = state_kind::cancelled});
-        else if (asked == live_voice::wish::fail)
-            tell(interrupted(next->first, reason_kind::plan, v.failure()));
-        else if (asked == live_voice::wish::end && !v.has_point())
-            tell({.id = next->first, .state = state_kind::finished});
+        const live_voice::action asked = v.requested();
+        if (asked == live_voice::action::cancel)
+            report_end({.id = next->first, .state = state_kind::cancelled});
+        else if (asked == live_voice::action::fail)
+            report_end(interrupted(next->first, reason_kind::plan, v.failure()));
+        else if (asked == live_voice::action::end && !v.has_point())
+            report_end({.id = next->first, .state = state_kind::finished});
         else if (v.starved())
-            tell(interrupted(next->first, reason_kind::starved, text(reason_kind::starved, 0)));
+            report_end(interrupted(next->first, reason_kind::starved, text(reason_kind::starved, 0)));
         else {
             ++next;
             continue;
@@ -118,7 +118,7 @@ void feeder::admit_live()
         live_voice* const voice = next->second.get();
         const std::uint32_t place = take_slot({.id = next->first, .voice = voice, .fed = true});
         link_.requests.push(
-            {.what = request::kind::live, .score = ticket_of(place), .id = next->first, .voice = voice});
+            {.what = request::kind::live, .score = current_ticket(place), .id = next->first, .voice = voice});
         urgent_ = true;
         playing_live_.insert(waiting_live_.extract(next));
     }
@@ -129,7 +129,7 @@ bool feeder::cancel_waiting(stroke_id id)
     if (!waits(id))
         return false;
     // Reports first, because there may be no memory for it.
-    tell({.id = id, .state = state_kind::cancelled, .frames = 0});
+    report_end({.id = id, .state = state_kind::cancelled, .frames = 0});
     const auto live = waiting_live_.find(id);
     if (live != waiting_live_.end()) {
         live->second->close();
@@ -149,15 +149,15 @@ void feeder::begun(active& a, std::uint64_t frame)
 {
     a.begun = true;
     a.base = frame;
-    if (begins_ && a.music)
-        for (const std::uint64_t start : a.music->starts())
+    if (begins_ && a.score)
+        for (const std::uint64_t start : a.score->starts())
             begins_(a.id, frame + start);
     else if (begins_)
         begins_(a.id, frame);
     if (a.due_ns && clock_.valid() && frame >= clock_.first)
-        a.late_s = late(clock_.time_of(frame), *a.due_ns, clock_.ns_per_frame);
-    else if (!a.due_ns && a.at != 0 && frame > a.at && a.music)
-        a.late_s = static_cast<double>(frame - a.at) / a.music->rate();
+        a.late_s = late(clock_.time_at(frame), *a.due_ns, clock_.ns_per_frame);
+    else if (!a.due_ns && a.at != 0 && frame > a.at && a.score)
+        a.late_s = static_cast<double>(frame - a.at) / a.score->rate();
     else if (!a.due_ns)
         a.late_s = 0.0;
     // Comes last: without memory the report is handled again, and no handler must hear it twice.
@@ -167,30 +167,28 @@ void feeder::begun(active& a, std::uint64_t frame)
 
 void feeder::over(const active& a, const report& r)
 {
-    stroke_report told{.id = a.id,
+    stroke_report done{.id = a.id,
                        .state = r.state,
                        .frames = r.frame,
                        .reason = r.why,
-                       .why = r.why != reason_kind::plan ? text(r.why, r.code)
-                              : a.voice != nullptr       ? a.voice->failure()
-                                                         : a.failure,
+                       .why = r.why == reason_kind::plan ? a.voice->failure() : text(r.why, r.code),
                        .late_s = a.late_s.value_or(0.0),
                        .started_ns = {},
                        .delay = {},
                        .held_points = 0};
     if (r.started)
-        told.started_ns = r.started_ns;
+        done.started_ns = r.started_ns;
     if (r.delay.points != 0)
-        told.delay = r.delay;
+        done.delay = r.delay;
     // The clock was not known when it began, or the stream stood still between then and its first sample.
     if (r.started && a.due_ns)
-        if (const double was = late(r.started_ns, *a.due_ns, 1e9 / a.music->rate());
+        if (const double was = late(r.started_ns, *a.due_ns, 1e9 / a.score->rate());
             !a.late_s || was > *a.late_s + clock_right_s)
-            told.late_s = was;
-    tell(std::move(told));
+            done.late_s = was;
+    report_end(std::move(done));
 }
 
-void feeder::tell(stroke_report r)
+void feeder::report_end(stroke_report r)
 {
     for (const live_map* live : {&playing_live_, &waiting_live_})
         if (const auto found = live->find(r.id); found != live->end())

@@ -54,10 +54,9 @@ const array& fitting(const array& a, const stream_setup& s)
                                     a.name, a.tactors[i].channel, s.channels, s.channels == 1 ? "" : "s"),
                         fmt::format("open it with {}; they count from 0", counted(a.channels(), "channel")));
     if (const std::string lost = lost_tactor(a, s.wiring); !lost.empty())
-        throw error(
-            error_kind::not_available, fmt::format("stream on \"{}\"", s.name), lost,
-            "give each channel one of the device's, at 1, where the PCM is defined (ttable, bindings), "
-            "or play on the card itself, hw:CARD=NAME");
+        throw error(error_kind::not_available, fmt::format("stream on \"{}\"", s.name), lost,
+                    "give each channel one of the device's, at 1, where the PCM is defined (ttable, "
+                    "bindings), or play on the card itself, hw:CARD=NAME");
     return a;
 }
 

@@ -36,8 +36,8 @@ void player::impl::close()
     stop(true);
     if (control->is_current()) {
         // A handler destroys the player: this thread does here what it would do after the handler.
-        if (telling != nullptr)
-            tell_watchers(*telling);
+        if (reporting != nullptr)
+            call_watchers(*reporting);
         for (woken(); !all_delivered; woken()) {
             pollfd fd{.fd = link.to_control.fd(), .events = POLLIN, .revents = 0};
             if (::poll(&fd, 1, -1) > 0)
@@ -171,8 +171,8 @@ void player::impl::woken()
     lock.unlock();
     gone.clear();
     news.notify_all();
-    log.tell();
-    tell();
+    log.write();
+    call_handlers();
     if (!done) {
         constexpr timespec soon{.tv_sec = 0, .tv_nsec = 10'000'000};
         ::nanosleep(&soon, nullptr); // other code may free memory
@@ -202,7 +202,7 @@ bool player::impl::take_reports()
         for (auto& first = feed.beginnings(); !first.empty(); first.pop_front()) {
             const std::uint64_t frame = first.front().frame;
             const bool known = clock.valid() && frame >= clock.first;
-            begun.emplace_back(first.front().id, known ? std::optional(clock.time_of(frame)) : std::nullopt);
+            begun.emplace_back(first.front().id, known ? std::optional(clock.time_at(frame)) : std::nullopt);
         }
         std::list<stroke_report>& news_of_strokes = feed.reports();
         for (stroke_report& r : news_of_strokes) {
@@ -214,7 +214,7 @@ bool player::impl::take_reports()
         }
         for (const stroke_report& r : news_of_strokes)
             log.look_at_end(r);
-        untold.splice(untold.end(), news_of_strokes);
+        unreported.splice(unreported.end(), news_of_strokes);
     } catch (const std::bad_alloc&) {
         return false;
     }

@@ -100,7 +100,7 @@ struct player::impl : std::enable_shared_from_this<player::impl> {
     std::map<stroke_id, kept_report> ended;
     std::map<std::uint64_t, stroke_id> by_end; ///< order of `ended`
     std::uint64_t ends = 0;
-    std::list<stroke_report> untold; ///< not yet passed to the handlers
+    std::list<stroke_report> unreported; ///< not yet passed to the handlers
     std::shared_ptr<const report_handler> handler;
     std::list<std::pair<stroke_id, std::optional<std::int64_t>>> begun; ///< not yet passed to its handler
     std::shared_ptr<const begin_handler> on_begun;
@@ -113,9 +113,9 @@ struct player::impl : std::enable_shared_from_this<player::impl> {
     bool stopping = false;
     std::string handler_failed; ///< text of an exception from a handler of the program; empty: none
     int empty_reads = 0;        ///< of the trigger line, control thread
-    const stroke_report* telling = nullptr; ///< report that the handlers get now; control thread
-    std::optional<std::int64_t> unfired;    ///< an edge for which there was no memory; control thread
-    bool all_delivered = false;             ///< the stream is over and the handlers have got everything
+    const stroke_report* reporting = nullptr; ///< report that the handlers get now; control thread
+    std::optional<std::int64_t> unfired;      ///< an edge for which there was no memory; control thread
+    bool all_delivered = false;               ///< the stream is over and the handlers have got everything
 
     engine::stream_log log; ///< control thread, once that runs
 
@@ -135,12 +135,12 @@ private:
     bool pump();
     void check_open() const;
     bool edges();
-    void tell();
-    void tell_beginnings();
-    void tell(const stroke_report& r);
-    void tell_watchers(const stroke_report& r);
+    void call_handlers();
+    void report_beginnings();
+    void call_handlers(const stroke_report& r);
+    void call_watchers(const stroke_report& r);
     template <typename Call>
-    void call(Call&& told) noexcept;
+    void call(Call&& callee) noexcept;
     void give_up(const char* what) noexcept;
 };
 

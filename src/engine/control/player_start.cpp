@@ -22,7 +22,7 @@ inline namespace v0 {
 namespace {
 
 // Returns the frames of a time, 0 to ten minutes. Refuses NaN, too.
-std::uint32_t frames_of(double seconds, unsigned rate, const char* name)
+std::uint32_t to_frames(double seconds, unsigned rate, const char* name)
 {
     if (!(seconds >= 0.0 && seconds <= 600.0))
         throw detail::bad_field(name, fmt::format("{} s", seconds), "give 0 to 600 s");
@@ -33,21 +33,21 @@ std::uint32_t frames_of(double seconds, unsigned rate, const char* name)
 std::uint64_t horizon_frames(const player_options& o, const stream_setup& s)
 {
     const std::uint64_t least = 2 * std::uint64_t{s.buffer_frames} + 4 * std::uint64_t{s.period_frames};
-    return std::max<std::uint64_t>(frames_of(o.horizon_s, s.rate, "horizon_s"), least);
+    return std::max<std::uint64_t>(to_frames(o.horizon_s, s.rate, "horizon_s"), least);
 }
 
 engine::loop_options loop_options(const player_options& o, const drive_history::impl* before,
                                   const stream_setup& s, bool amplifier)
 {
     engine::loop_options l;
-    l.fade_frames = frames_of(o.fade_s, s.rate, "fade_s");
+    l.fade_frames = to_frames(o.fade_s, s.rate, "fade_s");
     l.horizon_frames = horizon_frames(o, s);
     // Long periods make long pauses.
     const std::int64_t periods = 16LL * s.period_frames * 1'000'000'000 / s.rate;
-    const auto asked = std::int64_t{frames_of(o.stall_s, 1'000'000, "stall_s")} * 1000;
+    const auto asked = std::int64_t{to_frames(o.stall_s, 1'000'000, "stall_s")} * 1000;
     l.stall_ns = std::max(periods, asked);
     l.amplifier = amplifier;
-    l.guards = synth::guards_of(o.limits, s.rate);
+    l.guards = synth::make_guards(o.limits, s.rate);
     l.driven = before != nullptr ? before->until_now() : synth::drive_history{};
     return l;
 }
@@ -70,9 +70,9 @@ engine::driver_options driver_options(const player_lines& l, const stream_setup&
 {
     const std::int64_t four_periods = 4LL * s.period_frames * 1'000'000'000 / s.rate;
     engine::driver_options d;
-    d.amplifier.settle_ns = std::int64_t{frames_of(l.settle_s, 1'000'000, "settle_s")} * 1000;
+    d.amplifier.settle_ns = std::int64_t{to_frames(l.settle_s, 1'000'000, "settle_s")} * 1000;
     d.amplifier.proof_frames =
-        std::max<std::uint64_t>(2ULL * s.period_frames, frames_of(l.proof_s, s.rate, "proof_s"));
+        std::max<std::uint64_t>(2ULL * s.period_frames, to_frames(l.proof_s, s.rate, "proof_s"));
     d.watchdog_ns = std::max(d.watchdog_ns, four_periods);
     return d;
 }
@@ -87,10 +87,10 @@ rt::thread_options amplifier_thread_options(const player_options& o)
 // Checks the lines before there are threads that an error would have to stop.
 player_lines checked(player_lines l, unsigned rate)
 {
-    frames_of(l.trigger_delay_s, rate, "trigger_delay_s");
-    frames_of(l.settle_s, rate, "settle_s");
-    frames_of(l.proof_s, rate, "proof_s");
-    frames_of(l.pulse_s, rate, "pulse_s");
+    to_frames(l.trigger_delay_s, rate, "trigger_delay_s");
+    to_frames(l.settle_s, rate, "settle_s");
+    to_frames(l.proof_s, rate, "proof_s");
+    to_frames(l.pulse_s, rate, "pulse_s");
     return l;
 }
 
@@ -167,7 +167,7 @@ void player::impl::start_lines(const player_options& o)
                                .priority = priority(o, 1),
                                .audio = true};
     pulses = std::make_unique<engine::trigger_thread>(
-        link, *lines.sync_out, std::int64_t{frames_of(lines.pulse_s, 1'000'000, "pulse_s")} * 1000, t);
+        link, *lines.sync_out, std::int64_t{to_frames(lines.pulse_s, 1'000'000, "pulse_s")} * 1000, t);
     feed.on_first_frames(
         [this](stroke_id id, std::uint64_t frame) { pulses->add(id, frame, link.clock.load()); },
         [this](stroke_id id, bool was_played) { pulses->forget(id, was_played); });

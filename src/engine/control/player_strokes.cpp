@@ -87,10 +87,10 @@ bool player::impl::on_end(stroke_id id, report_handler done)
 }
 
 template <typename Call>
-void player::impl::call(Call&& told) noexcept
+void player::impl::call(Call&& callee) noexcept
 {
     try {
-        told();
+        callee();
     } catch (const std::exception& e) {
         give_up(e.what());
     } catch (...) {
@@ -100,21 +100,21 @@ void player::impl::call(Call&& told) noexcept
 
 // Calls the handlers, in the control thread and without the mutex. A handler may call the player, and may
 // destroy it; then close() makes the remaining calls before it returns.
-void player::impl::tell()
+void player::impl::call_handlers()
 {
-    tell_beginnings();
+    report_beginnings();
     std::unique_lock lock(mutex);
-    while (!untold.empty()) {
+    while (!unreported.empty()) {
         std::list<stroke_report> one;
-        one.splice(one.end(), untold, untold.begin());
+        one.splice(one.end(), unreported, unreported.begin());
         lock.unlock();
-        tell(one.front());
+        call_handlers(one.front());
         lock.lock();
     }
 }
 
 // Reports beginnings before ends, because a stroke may have begun and ended since the last call.
-void player::impl::tell_beginnings()
+void player::impl::report_beginnings()
 {
     std::unique_lock lock(mutex);
     while (!begun.empty()) {
@@ -129,19 +129,19 @@ void player::impl::tell_beginnings()
     }
 }
 
-void player::impl::tell(const stroke_report& r)
+void player::impl::call_handlers(const stroke_report& r)
 {
     std::unique_lock lock(mutex);
     const auto common = handler;
     lock.unlock();
-    const stroke_report* const before = std::exchange(telling, &r);
+    const stroke_report* const before = std::exchange(reporting, &r);
     if (common != nullptr)
         call([&] { (*common)(r); });
-    tell_watchers(r);
-    telling = before;
+    call_watchers(r);
+    reporting = before;
 }
 
-void player::impl::tell_watchers(const stroke_report& r)
+void player::impl::call_watchers(const stroke_report& r)
 {
     std::unique_lock lock(mutex);
     for (auto own = watchers.extract(r.id); own; own = watchers.extract(r.id)) {

@@ -31,12 +31,12 @@ void stream_log::look(const stream_status& s, std::int64_t now_ns) noexcept
         look_at_stream(s);
         look_at_amplifier(s);
         // Limits act in each period: one line a second is enough.
-        if (now_ns - limits_told_ns_ < rt::ns_per_s && limits_told_ns_ != 0)
+        if (now_ns - limits_logged_ns_ < rt::ns_per_s && limits_logged_ns_ != 0)
             return;
         const std::size_t before = lines_.size();
         look_at_limits();
         if (lines_.size() != before)
-            limits_told_ns_ = now_ns;
+            limits_logged_ns_ = now_ns;
     } catch (...) { // NOLINT(bugprone-empty-catch): no memory, no line
     }
 }
@@ -56,9 +56,8 @@ void stream_log::look_at_stream(const stream_status& s)
     }
     const bool given_up = link_.count.realtime_given_up.load(std::memory_order_relaxed);
     if (given_up && !given_up_)
-        add(log_kind::warning,
-            "the audio thread gave up its real-time priority: it had worked for some 0.1 s without "
-            "a pause (longer periods, or fewer strokes at once, need less)");
+        add(log_kind::warning, "the audio thread gave up its real-time priority: it had worked for some 0.1 "
+                               "s without a pause (longer periods, or fewer strokes at once, need less)");
     given_up_ = given_up;
     const bool asleep = s.stage == stream_stage::suspended;
     if (asleep && !asleep_)
@@ -131,7 +130,7 @@ void stream_log::end(const std::string& why) noexcept
 }
 
 // Writes the lines. The function may destroy the player, which then looks and writes for the last time.
-void stream_log::tell() noexcept
+void stream_log::write() noexcept
 {
     const auto lines = std::exchange(lines_, {});
     for (const auto& [kind, text] : lines) {

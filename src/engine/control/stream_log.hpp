@@ -16,7 +16,8 @@
 
 namespace tactor::engine {
 
-/// Log of the control thread. look() collects under the player's mutex; tell() calls the function without it.
+/// Log of the control thread. look() collects under the player's mutex; write() calls the function without
+/// it.
 class stream_log {
 public:
     stream_log(log_function to, const link& l, const drive_limits& limits)
@@ -34,7 +35,7 @@ public:
     void look_at_end(const stroke_report& r) noexcept;
     /// Notes once that the stream is over, and why. Empty: it was stopped in order.
     void end(const std::string& why) noexcept;
-    void tell() noexcept;
+    void write() noexcept;
 
 private:
     void add(log_kind k, std::string text);
@@ -59,7 +60,7 @@ private:
     std::uint64_t cut_ = 0;
     std::uint64_t limited_ = 0;
     std::uint64_t power_limited_ = 0;
-    std::int64_t limits_told_ns_ = 0;
+    std::int64_t limits_logged_ns_ = 0;
     bool over_ = false;
 };
 

@@ -84,7 +84,7 @@ std::int64_t trigger_thread::step() noexcept
         return line.epoch != 0 ? idle_ns : longest_wait_ns;
     if (!line.valid())
         return no_clock_ns;
-    const std::int64_t due = line.time_of(p->what.frame);
+    const std::int64_t due = line.time_at(p->what.frame);
     const std::int64_t left = due - real_time().now() - pulse_lead_ns;
     if (left > 0)
         return std::min(left, longest_wait_ns);

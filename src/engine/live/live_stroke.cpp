@@ -55,7 +55,7 @@ void check(const live_options& o, unsigned rate)
 }
 
 /// Returns a plan with the members that determine its sound.
-plan heard_of(const plan_options& o)
+plan sound_plan(const plan_options& o)
 {
     if (o.wave.kind == waveform_kind::recording && o.wave.texture == texture_kind::length)
         throw refused("texture", "the length of its path is not known beforehand",
@@ -73,7 +73,7 @@ engine::live_setup live_setup(const stream_setup& s, const live_options& o)
     engine::live_setup l;
     l.channels = s.channels;
     l.cycles_per_frame = o.plan.carrier_hz / s.rate;
-    const plan heard = heard_of(o.plan);
+    const plan heard = sound_plan(o.plan);
     l.sound = synth::make_timbre(heard, s.rate);
     l.envelope = o.render.envelope;
     l.rate = s.rate;
@@ -106,15 +106,15 @@ engine::live_setup live_setup(const stream_setup& s, const live_options& o)
 }
 
 /// Mark of the thread that is in a model, while it lives.
-class asked_now {
+class model_call {
 public:
-    explicit asked_now(std::atomic<std::thread::id>& who) noexcept : who_(who)
+    explicit model_call(std::atomic<std::thread::id>& who) noexcept : who_(who)
     {
         who_.store(std::this_thread::get_id(), std::memory_order_relaxed);
     }
-    ~asked_now() { who_.store({}, std::memory_order_relaxed); }
-    asked_now(const asked_now&) = delete;
-    asked_now& operator=(const asked_now&) = delete;
+    ~model_call() { who_.store({}, std::memory_order_relaxed); }
+    model_call(const model_call&) = delete;
+    model_call& operator=(const model_call&) = delete;
 
 private:
     std::atomic<std::thread::id>& who_;
@@ -159,19 +159,19 @@ bool live_stroke::impl::to(point p, double intensity, std::optional<std::int64_t
     if (stamp < 0)
         throw refused("at_ns", fmt::format("a point at {} ns", stamp),
                       "CLOCK_MONOTONIC, ns, or none for now");
-    if (asking.load(std::memory_order_relaxed) == std::this_thread::get_id())
+    if (model_thread.load(std::memory_order_relaxed) == std::this_thread::get_id())
         throw error(error_kind::runtime, "live stroke",
                     "its phantom model moves it while it is asked about a point",
                     "move it from outside weights()");
     const std::lock_guard lock(mutex);
-    if (voice.closed() || voice.asked() != engine::live_voice::wish::go_on)
+    if (voice.closed() || voice.requested() != engine::live_voice::action::go_on)
         return false;
     const bool inside = faces.contains(p);
     if (!inside && outside == outside_kind::error)
         throw refused("outside", fmt::format("({:.6g}, {:.6g}) is outside the array", p.x_mm, p.y_mm),
-                      "outside = clamp plays the nearest point of the array");
+                      "{outside=clamp} plays the nearest point of the array");
     const bool held = intensity > 1.0 && std::isfinite(intensity);
-    const bool limited = course_of(inside ? p : faces.nearest(p), held ? 1.0 : intensity);
+    const bool limited = write_course(inside ? p : faces.nearest(p), held ? 1.0 : intensity);
     if (!excess.empty()) {
         voice.fail(std::move(excess));
         return false;
@@ -188,16 +188,16 @@ bool live_stroke::impl::to(point p, double intensity, std::optional<std::int64_t
 
 // Writes the course to a place. A model may refuse a point; but after another failure nobody knows what
 // should be felt, so the stroke ends.
-bool live_stroke::impl::course_of(point p, double intensity)
+bool live_stroke::impl::write_course(point p, double intensity)
 {
     const auto failed = [this](std::string_view what) {
         voice.fail(
             fmt::format("phantom model \"{}\" failed: {}", model->name(), what.substr(0, what.find('\n'))));
     };
-    const asked_now now(asking);
+    const model_call now(model_thread);
     excess.clear(); // of a point that was refused
     try {
-        return course_to({p, intensity}, voice.draft());
+        return compute_course({p, intensity}, voice.draft());
     } catch (const error& e) {
         if (e.kind() != error_kind::bad_input)
             failed(e.what());
@@ -213,7 +213,7 @@ bool live_stroke::impl::course_of(point p, double intensity)
     }
 }
 
-bool live_stroke::impl::course_to(const engine::smoothing::place& p, engine::live_course& course)
+bool live_stroke::impl::compute_course(const engine::smoothing::place& p, engine::live_course& course)
 {
     course.start = voice.rendered();
     course.length = 0;
@@ -278,17 +278,17 @@ bool live_stroke::to(double x_mm, double y_mm, double intensity, std::optional<s
 
 void live_stroke::end() noexcept
 {
-    impl_->voice.ask(engine::live_voice::wish::end);
+    impl_->voice.request(engine::live_voice::action::end);
 }
 
 void live_stroke::cancel() noexcept
 {
-    impl_->voice.ask(engine::live_voice::wish::cancel);
+    impl_->voice.request(engine::live_voice::action::cancel);
 }
 
 bool live_stroke::open() const noexcept
 {
-    return !impl_->voice.closed() && impl_->voice.asked() == engine::live_voice::wish::go_on;
+    return !impl_->voice.closed() && impl_->voice.requested() == engine::live_voice::action::go_on;
 }
 
 live_counts live_stroke::counts() const noexcept

@@ -35,9 +35,9 @@ struct live_stroke::impl {
     /// more than the intensity, `excess` says so.
     bool amplitudes_at(point p, double intensity, std::span<double> by_channel);
     /// Writes the amplitudes from the current place to another one. The stroke ends if the model fails.
-    bool course_of(point p, double intensity);
+    bool write_course(point p, double intensity);
     /// Writes the amplitudes from the current place to another one into `course`.
-    bool course_to(const engine::smoothing::place& p, engine::live_course& course);
+    bool compute_course(const engine::smoothing::place& p, engine::live_course& course);
 
     stroke_id id;
     layout faces;
@@ -52,7 +52,7 @@ struct live_stroke::impl {
 
     std::mutex mutex; ///< between producers
     /// Thread that is in the model, which may be the program's: it must not wait for itself there.
-    std::atomic<std::thread::id> asking{};
+    std::atomic<std::thread::id> model_thread{};
     engine::smoothing smooth;
     std::size_t most_knots;
     std::vector<drive> drives;

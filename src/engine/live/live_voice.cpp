@@ -39,19 +39,19 @@ live_voice::live_voice(const live_setup& s)
 {
 }
 
-void live_voice::ask(wish w) noexcept
+void live_voice::request(action w) noexcept
 {
     // The first request counts, with two exceptions: a cancel may still shorten an end, and a failure must be
     // reported.
-    wish now = asked_.load(std::memory_order_relaxed);
-    while (now < w && !asked_.compare_exchange_weak(now, w, std::memory_order_release)) {
+    action now = requested_.load(std::memory_order_relaxed);
+    while (now < w && !requested_.compare_exchange_weak(now, w, std::memory_order_release)) {
     }
 }
 
 void live_voice::fail(std::string why) noexcept
 {
     failure_ = std::move(why);
-    ask(wish::fail);
+    request(action::fail);
 }
 
 void live_voice::wait(std::uint64_t frames) noexcept
@@ -59,7 +59,7 @@ void live_voice::wait(std::uint64_t frames) noexcept
     if (points_.fetch()) {
         has_point_ = true;
         idle_ = 0;
-    } else if (asked() == wish::go_on) {
+    } else if (requested() == action::go_on) {
         idle_ += frames; // after its end the producer owes no more points
     }
 }
@@ -140,7 +140,7 @@ void live_voice::take(std::uint64_t at, const dac_times& t) noexcept
     idle_ = 0;
     if (!t.clock.valid())
         return;
-    count(later_, t.clock.time_of(t.offset + at) - points_.value().at_ns);
+    count(later_, t.clock.time_at(t.offset + at) - points_.value().at_ns);
 }
 
 live_delay live_voice::delay(std::int64_t started_ns) const noexcept

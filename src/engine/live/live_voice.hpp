@@ -66,7 +66,7 @@ std::size_t live_drives(std::size_t channels, unsigned period_frames, unsigned r
 /// period, so no point waits for a plan. All other requests of the producer are a flag.
 class live_voice {
 public:
-    enum class wish : std::uint32_t { go_on, end, cancel, fail };
+    enum class action : std::uint32_t { go_on, end, cancel, fail };
 
     explicit live_voice(const live_setup& s);
 
@@ -84,7 +84,7 @@ public:
     void fail(std::string why) noexcept;
 
     // Any thread.
-    void ask(wish w) noexcept;
+    void request(action w) noexcept;
     std::uint64_t held_points() const noexcept { return held_points_.load(std::memory_order_relaxed); }
     /// Returns why it failed. Only for a caller that knows that it failed.
     const std::string& failure() const noexcept { return failure_; }
@@ -93,7 +93,7 @@ public:
     void close() noexcept { closed_.store(true, std::memory_order_release); }
 
     // Audio thread.
-    wish asked() const noexcept { return asked_.load(std::memory_order_acquire); }
+    action requested() const noexcept { return requested_.load(std::memory_order_acquire); }
     const live_setup& setup() const noexcept { return setup_; }
     bool is_bursts() const noexcept { return setup_.bursts; }
     /// Returns true if a point waits.
@@ -146,7 +146,7 @@ private:
     live_setup setup_;
     rt::triple_buffer<live_course> points_;
     std::atomic<std::uint64_t> rendered_{0};
-    std::atomic<wish> asked_{wish::go_on};
+    std::atomic<action> requested_{action::go_on};
     std::atomic<bool> closed_{false};
     std::atomic<std::uint64_t> held_points_{0};
     std::string failure_;

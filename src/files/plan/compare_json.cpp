@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: MIT
-#include "files/plan/compare_json.hpp"
 
 #include <nlohmann/json.hpp>
 
-#include "files/plan/json_values.hpp"
+#include "files/plan/json_value.hpp"
 #include "files/plan/plan_json.hpp"
 
 namespace tactor::files {

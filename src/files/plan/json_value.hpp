@@ -11,6 +11,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include <tactor/percept.hpp>
+
 #include "core/kind_names.hpp"
 
 namespace tactor::files {
@@ -49,7 +51,7 @@ public:
     std::optional<Kind> kind() const
     {
         const std::optional<std::string> name = text();
-        const std::optional<Kind> k = name ? detail::kind_named<Kind>(*name) : std::nullopt;
+        const std::optional<Kind> k = name ? detail::find_kind<Kind>(*name) : std::nullopt;
         if (name && !k)
             refuse("is \"" + *name + "\", which is not known");
         return k;
@@ -96,5 +98,24 @@ private:
     const char* hint_;
     std::string place_;
 };
+
+template <class T>
+nlohmann::ordered_json or_null(const std::optional<T>& v)
+{
+    return v ? nlohmann::ordered_json(*v) : nlohmann::ordered_json(nullptr);
+}
+
+/// Null where a text is empty.
+inline nlohmann::ordered_json or_null(const std::string& s)
+{
+    return s.empty() ? nlohmann::ordered_json(nullptr) : nlohmann::ordered_json(s);
+}
+
+inline nlohmann::ordered_json tap_json(const tap& t)
+{
+    return {{"onset_s", t.onset_s},       {"target_x_mm", t.target.x_mm}, {"target_y_mm", t.target.y_mm},
+            {"alone_x_mm", t.alone.x_mm}, {"alone_y_mm", t.alone.y_mm},   {"felt_x_mm", t.felt.x_mm},
+            {"felt_y_mm", t.felt.y_mm}};
+}
 
 } // namespace tactor::files

@@ -13,7 +13,6 @@
 
 #include "core/words.hpp"
 #include "files/input_files.hpp"
-#include "files/plan/plan_fit.hpp"
 #include "files/plan/plan_values.hpp"
 
 namespace tactor::files {
@@ -22,7 +21,7 @@ namespace {
 using nlohmann::ordered_json;
 
 constexpr const char* hint = "see tactor-json(5)";
-constexpr const char* how_to_make = "tactor plan STROKE --format json makes one";
+constexpr const char* how_to_make = "{command:plan} makes one";
 
 /// Follows the parser: bursts and samples are taken as they end, and dropped from the document.
 class reader {
@@ -164,7 +163,7 @@ void check_same_array(const std::string& file, const array& made_for, const arra
         throw error(error_kind::bad_input, file,
                     fmt::format("it was planned for the array \"{}\", not for \"{}\": {}", made_for.name,
                                 in_use.name, why),
-                    "plan the stroke for this array, or leave array out: the plan has its own");
+                    "plan the stroke for this array, or {array=none}: the plan has its own");
     };
     if (made_for.tactors.size() != in_use.tactors.size())
         refuse(fmt::format("{} there, {} here", counted(made_for.tactors.size(), "tactor"),

@@ -1,17 +1,14 @@
 // SPDX-License-Identifier: MIT
 #include "files/plan/plan_json.hpp"
 
-#include <cmath>
 #include <cstdint>
-#include <vector>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "files/plan/json_values.hpp"
-#include "files/plan/plan_fit.hpp"
-#include "files/plan/plan_rows.hpp"
+#include "files/plan/json_value.hpp"
 #include "files/plan/plan_sound.hpp"
+#include "files/plan/plan_values.hpp"
 #include "files/plan/row_json.hpp"
 
 namespace tactor::files {

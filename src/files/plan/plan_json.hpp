@@ -7,9 +7,14 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include <nlohmann/json_fwd.hpp>
+
+#include <tactor/array.hpp>
 #include <tactor/tactor.hpp>
+
+#include "percept/compare.hpp"
 
 namespace tactor::files {
 
@@ -38,5 +43,8 @@ nlohmann::ordered_json array_json(const array& a);
 
 /// Returns what a stroke's note means, for people; empty for none.
 std::string note_text(note_kind n);
+
+/// Returns one object of one comparison, a list in an object of several, and a line end.
+std::string comparisons_text(const std::vector<detail::comparison>& all, const array& a);
 
 } // namespace tactor::files

@@ -11,7 +11,7 @@
 #include <fmt/format.h>
 
 #include "core/bounds.hpp"
-#include "files/plan/json_values.hpp"
+#include "files/plan/json_value.hpp"
 
 namespace tactor::files {
 namespace {

@@ -6,6 +6,9 @@
 #include <optional>
 #include <vector>
 
+#include <nlohmann/json.hpp>
+
+#include <tactor/phantom.hpp>
 #include <tactor/tactor.hpp>
 
 #include "files/plan/json_value.hpp"
@@ -22,5 +25,11 @@ placed_plan read_plan(const json_value& f, const array& a, std::vector<burst> bu
 std::optional<compensated_plan> read_compensation(const json_value& plan);
 /// The way of a plan's bursts or samples, or of what moved ones are to be felt as, for pictures.
 stroke read_stroke(const json_value& f, const plan& p, const std::optional<compensated_plan>& moved);
+
+/// x' = a x + c y + e, y' = b x + d y + f, as in SVG.
+nlohmann::ordered_json fit_json(const fitting& f);
+
+/// None where the plan's stroke was not fitted. \throws error (bad_input).
+std::optional<fitting> read_fitting(const json_value& plan);
 
 } // namespace tactor::files

@@ -4,6 +4,7 @@
 /// takes most of the time of a plan.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -46,5 +47,20 @@ private:
         ramp_{",\"ramp_s\":"}, tau_{",\"tau_s\":"}, x_{",\"x_mm\":"}, y_{",\"y_mm\":"},
         intensity_{",\"intensity\":"};
 };
+
+/// Calls row(burst) for each burst; for `continuous`, for each point at which the phantom is
+/// evaluated (each lasts until the next).
+template <class Row>
+void for_each_row(const plan& p, Row&& row)
+{
+    for (const burst& b : p.bursts)
+        row(b);
+    burst b;
+    for (std::uint64_t k = 0; p.curve && k < p.curve->size(); ++k) {
+        p.curve->sample(k, b);
+        b.duration_s = std::min(continuous_step_s, p.stroke_duration_s - b.onset_s);
+        row(b);
+    }
+}
 
 } // namespace tactor::files

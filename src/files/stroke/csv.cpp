@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <optional>
 #include <span>
 #include <utility>
@@ -17,7 +16,7 @@
 #include "core/path/number.hpp"
 #include "core/suggest.hpp"
 #include "core/words.hpp"
-#include "files/stroke/csv_form.hpp"
+#include "files/stroke/parts.hpp"
 #include "files/text_file.hpp"
 
 namespace tactor {
@@ -202,10 +201,9 @@ private:
         if (repeated_ == 1)
             warn(first_repeated_, "repeats the time of the line before, which does not count");
         if (repeated_ > 1)
-            warn(first_repeated_,
-                 fmt::format("repeats the time of the line before, as {} lines do in all; the last of "
-                             "equal times counts",
-                             repeated_));
+            warn(first_repeated_, fmt::format("repeats the time of the line before, as {} lines do in all; "
+                                              "the last of equal times counts",
+                                              repeated_));
         return all;
     }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "files/stroke/csv_form.hpp"
+#include "files/stroke/parts.hpp"
 
 #include <algorithm>
 #include <utility>

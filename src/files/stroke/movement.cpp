@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "files/stroke/parts.hpp"
 
-#include <cmath>
-#include <utility>
 #include <vector>
 
 #include <fmt/format.h>

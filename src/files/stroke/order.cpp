@@ -2,7 +2,6 @@
 #include "files/stroke/parts.hpp"
 
 #include <iterator>
-#include <utility>
 
 #include <fmt/format.h>
 

@@ -74,7 +74,7 @@ void add_timed(lines& out, const trajectory::impl& i, const timed_points& law)
 void add_movement(lines& out, const trajectory::impl& i, const drawn_path& law)
 {
     const pace& p = *law.moves;
-    const movement& m = p.said();
+    const movement& m = p.given();
     const double longer = i.duration_s / p.total_s();
     if (m.easing != easing_kind::linear)
         out.add("easing", to_string(m.easing));
@@ -93,11 +93,11 @@ void add_movement(lines& out, const trajectory::impl& i, const drawn_path& law)
 void add_path(lines& out, const stroke& s, const trajectory::impl& i, const drawn_path& law)
 {
     out.add("path", law.way.svg());
-    const bool varies = law.moves && !law.moves->said().intensity.empty();
+    const bool varies = law.moves && !law.moves->given().intensity.empty();
     const double strength = law.intensity * i.gain;
     double most = strength;
     if (varies) {
-        std::vector<profile_point> points = law.moves->said().intensity;
+        std::vector<profile_point> points = law.moves->given().intensity;
         most = 0.0;
         for (profile_point& p : points)
             most = std::max(most, p.value *= strength);

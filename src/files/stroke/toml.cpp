@@ -5,7 +5,6 @@
 #include <iterator>
 #include <string_view>
 #include <utility>
-#include <variant>
 #include <vector>
 
 #include <fmt/format.h>
@@ -265,7 +264,7 @@ std::vector<stroke> read_strokes(std::string_view text, const std::string& name,
     for (const char* key : {"array", "output", "defaults"})
         if (root.has(key))
             root.fail(key, "this is an array or configuration file, not a stroke",
-                      "give it as array = FILE or config = FILE");
+                      "give it as {array=FILE} or {config=FILE}");
     root.only({"stroke"});
     if (!root.has("stroke"))
         detail::fail_at({name, 0, 0}, "there is no stroke in it", "add [stroke] or [[stroke]]");

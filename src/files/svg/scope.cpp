@@ -20,7 +20,7 @@ constexpr double highest_carrier_hz = 20000.0;
 
 easing_kind easing_of(const svg_document& doc, xml_node n, std::string_view name)
 {
-    if (const auto k = kind_named<easing_kind>(name))
+    if (const auto k = find_kind<easing_kind>(name))
         return *k;
     doc.fail(n, fmt::format("data-easing of {}: {}", svg_document::called(n), quoted(name)),
              "linear, in-out or minimum-jerk");

@@ -3,11 +3,9 @@
 #pragma once
 
 #include <functional>
-#include <optional>
 #include <string_view>
 #include <vector>
 
-#include "core/path/number.hpp"
 #include "core/path/shape.hpp"
 
 namespace tactor::detail {

@@ -38,8 +38,8 @@ void follower::refuse(double t_s) const
     const trajectory& motion = job_.motion.motion;
     const std::string& made_for = job_.motion.made_for;
     const std::string hint =
-        (made_for.empty() ? "" : fmt::format("array = {} is the one it is drawn for, ", made_for)) +
-        "fit_strokes() scales it to the array, outside = clamp plays the nearest point of the array";
+        (made_for.empty() ? "" : fmt::format("{{array={}| is the one it is drawn for, }}", made_for)) +
+        "{fit=true| scales it to the array, }{outside=clamp} plays the nearest point of the array";
     if (inside_s_ < 0.0)
         throw error(error_kind::bad_input, job_.name(),
                     fmt::format("starts outside the array, at {}, and goes {} mm outside",

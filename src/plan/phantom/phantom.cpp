@@ -45,7 +45,7 @@ void check_faces(phantom_kind k, faces_kind f)
     if (f == faces_kind::nearest && k != phantom_kind::inverse_distance)
         throw bad_field("faces",
                         fmt::format("nearest goes with inverse-distance only, not with {}", to_string(k)),
-                        "use faces = delaunay or phantom = inverse-distance");
+                        "use {faces=delaunay} or {phantom=inverse-distance}");
 }
 
 point check_request(const layout& l, point p, double a_v)

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// Axes and line charts.
+/// Axes, line charts, and dimension arrows as on technical drawings.
 #pragma once
 
 #include <string>
@@ -94,5 +94,13 @@ std::vector<spot> simplify(const std::vector<spot>& line, double tolerance);
 
 /// Returns the distance of a point from the segment between two others, pt.
 double distance(spot p, spot a, spot b) noexcept;
+
+/// An arrow from x0 to x1 at y with its label in or beside it; where the arrow would be too short its heads
+/// point at the interval from outside. Thin lines run down to `below` at both ends.
+void draw_dimension(canvas& c, double x0, double x1, double y, double below, const std::string& label,
+                    const mark& m);
+
+/// Slanted lines inside a box, and its rim.
+void draw_hatch(canvas& c, box b, const mark& m);
 
 } // namespace tactor::plot

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "plot/draw/notes.hpp"
 
-#include <algorithm>
 #include <limits>
 #include <string>
 #include <utility>

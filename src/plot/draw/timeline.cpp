@@ -2,7 +2,6 @@
 #include "plot/draw/timeline.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <map>
 #include <string_view>
 

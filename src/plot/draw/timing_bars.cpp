@@ -2,11 +2,10 @@
 #include "plot/draw/timing_bars.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 #include <fmt/format.h>
 
-#include "plot/draw/dimensions.hpp"
+#include "plot/draw/axes.hpp"
 #include "plot/draw/timeline.hpp"
 
 namespace tactor::plot {

@@ -11,6 +11,7 @@ html_theme = "classic"
 html_copy_source = False
 add_module_names = False
 autodoc_typehints = "none"  # sections say them with their units
+autoclass_content = "both"
 autodoc_member_order = "bysource"
 autodoc_default_options = {"members": True}
 napoleon_google_docstring = False

@@ -12,12 +12,13 @@ import typing as _t
 
 from tactor import _tactor
 from tactor._array import Array, Point, Tactor, array_presets
+from tactor._calls import compare, plan
 from tactor._errors import DeviceError, Error, InputError, StreamError
 from tactor._fitting import Fitting, fit_as_asked, fit_strokes
 from tactor._parts import Burst, Conflict, Curve, Drive, Meeting, Percept, PerceptMap, PerceptSample, PhantomModel
 from tactor._path import Path
 from tactor._plan import Plan, load_plan
-from tactor._planning import burst_duration, plan
+from tactor._planning import burst_duration
 from tactor._score import Score
 from tactor._stroke import Stroke, load, parse, stroke_presets, stroke_shapes
 
@@ -26,7 +27,7 @@ if _t.TYPE_CHECKING:
     from tactor._client import Client, RemoteLive, RemoteStroke, Reply
     from tactor._player import Player
     from tactor._ticket import Delay, LiveStroke, Report, Ticket
-    from tactor._tool import Comparison, compare, devices, plot
+    from tactor._tool import Comparison, devices, plot
 
 __version__: str = _tactor.version()
 
@@ -47,7 +48,7 @@ def build_facts() -> str:
 # What not every script needs is loaded when it is first named: a fifth of the time that the import takes.
 _LATER = {
     "Client": "_client", "RemoteLive": "_client", "RemoteStroke": "_client", "Reply": "_client", "Player": "_player", "Delay": "_ticket", "LiveStroke": "_ticket", "Report": "_ticket", "Ticket": "_ticket",
-    "Comparison": "_tool", "compare": "_tool", "devices": "_tool", "plot": "_tool",
+    "Comparison": "_tool", "devices": "_tool", "plot": "_tool",
 }
 
 

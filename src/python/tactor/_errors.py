@@ -4,16 +4,6 @@ from __future__ import annotations
 
 import typing as _t
 
-# The library speaks of its fields; here options have the names of the tool's. Those of the table of options come from the extension.
-_NAMES = {
-    "pitch_x_mm": "pitch_mm", "pitch_y_mm": "pitch_mm", "rests": "pauses", "start_s": "start", "timeout_s": "timeout", "longest_s": "longest",
-    "smooth_s": "smooth", "at_ns": "at_s", "duration of a burst": "burst", "fit_strokes()": "fit=True", "force = true": "force=True",
-    "wider = true leaves": "without channels= it leaves", "tactor devices": "tactor.devices()", "tactor plan STROKE --format json": "Plan.write()",
-    "or name a file": "or Array.from_file() reads one", "sample format": "sample_format",
-    "leave array out: the plan has its own": "give its own, plan.array",
-}
-_FIELDS = {"wave": "waveform"}  # words that stand elsewhere, too
-
 
 class Error(Exception):
     """Base of what the library raises.
@@ -117,20 +107,8 @@ def _again(kind: type[Error], of_system: bool, what: str, why: str, hint: str, f
     return made(what, why, hint, file=file, line=line, column=column, field=field, errno=errno)
 
 
-def _in_python(text: str) -> str:
-    import re
-    from tactor import _tactor
-    text = re.sub(rf"(?<![\w.-])(?:{'|'.join(map(re.escape, _NAMES))})(?![\w.-])", lambda m: _NAMES[m[0]], text)
-    text = re.sub(r"(?<!\S)-D ([\w:=.,]*\w)", r'device="\1"', text)
-    return _tactor.in_python_words(text)  # type: ignore[no-any-return]
-
-
 def made(kind: str, what: str, why: str, hint: str, field: str = "", file: str = "", line: int = 0, column: int = 0,
          errno: int = 0) -> Error:
-    """Makes the exception of a library's error; called by the extension. About a file it speaks in the file's own words."""
-    if not (file or line):
-        what, hint, field = _in_python(what), _in_python(hint), _FIELDS.get(field, _in_python(field))
-    elif field == "force":  # no word of a file, but an argument
-        hint = _in_python(hint)
+    """Makes the exception of a library's error; called by the extension."""
     return _of_system(_KINDS[kind], errno)(what, why, hint, file=file or None, line=line or None, column=column or None, field=field or None,
                                            errno=errno)

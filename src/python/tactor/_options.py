@@ -8,20 +8,6 @@ from tactor import _tactor
 from tactor._array import Array
 from tactor._errors import InputError
 
-if _t.TYPE_CHECKING:
-    _Algorithm = _t.Literal["park2016", "tactile-brush", "continuous"]
-    _Phantom = _t.Literal["inverse-distance", "barycentric", "linear", "log", "gaussian"]
-    _Faces = _t.Literal["delaunay", "nearest"]
-    _Timing = _t.Literal["fixed", "fit"]
-    _Outside = _t.Literal["error", "clamp"]
-    _Overlap = _t.Literal["energy", "max", "sum"]
-    _Phase = _t.Literal["stroke", "burst"]
-    _Compensate = _t.Literal["none", "low-speed"]
-    _Scale = _t.Literal["linear", "sl", "stevens"]
-    _Texture = _t.Literal["cycle", "time", "length"]
-    _Envelope = _t.Literal["raised-cosine", "linear", "exponential", "tukey"]
-
-
 # How a stroke is planned, and how it sounds, which is a score's.
 _PLANNING = frozenset(_tactor.option_names("planning"))
 _SOUNDING = frozenset(_tactor.option_names("sounding"))

@@ -18,7 +18,7 @@ from tactor._stroke import Stroke
 if _t.TYPE_CHECKING:
     import numpy as _np
     from numpy.typing import NDArray as _NDArray
-    from tactor._options import _Faces, _Overlap
+    from tactor._calls import _Faces, _Overlap
 
 
 class Plan(_Value):

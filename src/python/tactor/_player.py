@@ -12,19 +12,16 @@ import weakref
 
 from tactor import _tactor
 from tactor._array import Array
+from tactor._calls import PlayerCalls
 from tactor._checks import _need, _number, _Unique, _whole
 from tactor._errors import InputError
 from tactor._files import encoded
 from tactor._options import _LIVE, settled
-from tactor._parts import PhantomModel
 from tactor._score import Score
 from tactor._ticket import LiveStroke, Report, Ticket, _call, _Held, _Shared
 
 if _t.TYPE_CHECKING:
     from types import TracebackType as _TracebackType
-    from tactor._options import _Algorithm, _Envelope, _Faces, _Outside, _Phantom, _Phase, _Scale, _Texture
-    from tactor._score import _SampleFormat
-    from tactor._ticket import _LogKind
     _At = _t.Literal["now", "armed"]
 
 
@@ -32,37 +29,8 @@ _LATEST_S = 8e9  # of a clock that counts nanoseconds in 64 bits
 _CLOCK = "seconds as time.monotonic() gives them"
 
 
-class Player(_Unique):
+class Player(PlayerCalls, _Unique):
     """Plays scores on a device in real time.
-
-    Parameters
-    ----------
-    device : str
-        An ALSA name as `tactor play -D` takes it: "hw:CARD=Tactor", "null", "file:...".
-    array : Array
-        Gives each channel's limit; one from a file brings what that says of amplifier, lines and limits.
-    rate, period_frames, periods : int, optional
-        Default: the configuration's, else 48000 Hz, 96 frames, 3 periods.
-    channels : int, optional
-        Exact. Default: as many as its file says, else as the array needs: a device that can do only more is given silence in the others.
-    sample_format : str, optional
-        Default: what the device takes.
-    latency : float, optional
-        Length of the device's buffer, s, instead of `period_frames`.
-    config : path-like, optional
-        Configuration; default: the tool's ($TACTOR_CONFIG, the user's, the system's), amplifier and limits included. os.devnull: none.
-    power_dbfs, max_drive_s, drive_window_s : float, optional
-        Limits instead of the configuration's, see tactor.toml(5).
-    no_gpio : bool
-        Leaves the lines of amplifier and triggers alone.
-    require_realtime : bool
-        Fails without real-time priority.
-    sync_delay : float
-        From an edge that triggers to the first sample at the DAC, s.
-    log : callable, optional
-        `log(kind, text)` is told of xruns, recovery, mutes and limits that act, in the player's thread of Python.
-    after : Player, optional
-        The player before on the same array, closed or stopped: what it gave each tactor lately counts.
 
     Raises
     ------
@@ -77,28 +45,24 @@ class Player(_Unique):
     collected or the program ends. In a process that was forked every call raises `StreamError`, and its end leaves stream and amplifier alone.
     """
 
-    def __init__(self, device: str, array: Array, *, rate: int | None = None, period_frames: int | None = None, periods: int | None = None,
-                 channels: int | None = None, sample_format: _SampleFormat | None = None, latency: float | None = None,
-                 config: _t.Union[str, os.PathLike[str], None] = None, power_dbfs: float | None = None, max_drive_s: float | None = None,
-                 drive_window_s: float | None = None, no_gpio: bool = False, require_realtime: bool = False, sync_delay: float = 0.05,
-                 log: _t.Callable[[_LogKind, str], object] | None = None, after: Player | None = None) -> None:
+    live = PlayerCalls.live
+
+    def _open(self, given: dict[str, _t.Any]) -> None:
         self._shared: _Shared | None = None
-        self._array = array
+        device, array, config, log, after = (given.pop(name) for name in ("device", "array", "config", "log", "after"))
+        self._array: Array = array
         _need(array, Array, "array")
         _need(device, str, "device")
         encoded(device, "device")
-        if sample_format is not None:
-            _need(sample_format, str, "sample_format")
+        if given["sample_format"] is not None:
+            _need(given["sample_format"], str, "sample_format")
         if after is not None:
             _need(after, Player, "after")
-        given: dict[str, _t.Any] = {
-            "config": None if config is None else encoded(config, "config"), "array_file": None if array._file is None else encoded(array._file),
-            "rate": rate, "period_frames": period_frames, "periods": periods, "channels": channels, "sample_format": sample_format,
-            "latency_ms": None if latency is None else 1e3 * _number("latency", latency, 0.0001, 10.0, "0.0001 to 10 s"),
-            "power_dbfs": power_dbfs, "max_drive_s": max_drive_s, "drive_window_s": drive_window_s, "no_gpio": bool(no_gpio),
-            "require_realtime": bool(require_realtime), "sync_delay_ms": 1e3 * _number("sync_delay", sync_delay, 0.0, 10.0, "0 to 10 s"),
-            "log": log is not None,
-        }
+        for name, least, hint in (("latency", 0.0001, "0.0001 to 10 s"), ("sync_delay", 0.0, "0 to 10 s")):
+            value = given.pop(name)
+            given[f"{name}_ms"] = None if value is None else 1e3 * _number(name, value, least, 10.0, hint)
+        given.update(config=None if config is None else encoded(config, "config"),
+                     array_file=None if array._file is None else encoded(array._file), log=log is not None)
         driven = _tactor.DriveHistory() if after is None else after._history()
         core = _tactor.Player(array._core, device, given, driven)
         self._setup: dict[str, _t.Any] = core.setup()
@@ -191,51 +155,9 @@ class Player(_Unique):
             return Score._of(score._array, score._plans, {**score._options, "channels": self.channels})._core
         return score._core
 
-    def live(self, *, algorithm: _Algorithm | None = None, phantom: _t.Union[_Phantom, PhantomModel, None] = None, faces: _Faces | None = None, soa: float | None = None,
-             burst: float | None = None, slope: float | None = None, intercept: float | None = None, outside: _Outside | None = None,
-             carrier: float | None = None, waveform: str | None = None, am: _t.Union[float, str, None] = None, noise_seed: int | None = None,
-             texture: _Texture | None = None, intensity_scale: _Scale | None = None, stevens_exponent: float | None = None,
-             phase: _Phase | None = None, ramp: float | None = None, envelope: _Envelope | None = None, attack: float | None = None,
-             release: float | None = None, tukey_part: float | None = None, level_dbfs: float | None = None, sl: float | None = None, timeout: float = 0.5,
-             longest: float | None = None, smooth: float = 0.0) -> LiveStroke:
-        """Begins a stroke that is fed point by point; silent until the first.
-
-        Parameters
-        ----------
-        algorithm : str
-            "continuous" (default), or "park2016": bursts, each SOA one at the newest position.
-        phantom, faces, soa, burst, slope, intercept, carrier, waveform, am, noise_seed, intensity_scale, stevens_exponent, phase, ramp
-            As in `plan`.
-        envelope, attack, release, tukey_part, level_dbfs, sl
-            As in `plan`.
-        texture : str
-            As in `plan`, but for "length": a live stroke has none.
-        outside : str
-            "clamp" (default) or "error".
-        timeout : float
-            A producer that gives no point for so long, s, has failed: it fades out, interrupted.
-        longest : float
-            A stroke that has sounded for so long, s, fades out, interrupted; None: it may go on for ever.
-        smooth : float
-            For points that come in bursts, s, 0 (off) to 1: it moves evenly, and is at each point so long after that came.
-
-        What nobody says is as the array's file says.
-
-        Returns
-        -------
-        LiveStroke
-
-        Raises
-        ------
-        InputError
-            For options that cannot be.
-        StreamError
-            When the stream has ended.
-        """
-        given = dict(locals())
-        for own in ("self", "timeout", "longest", "smooth"):
-            del given[own]
+    def _begin(self, given: dict[str, _t.Any]) -> LiveStroke:
         shared = self._get()
+        timeout, longest, smooth = (given.pop(name) for name in ("timeout", "longest", "smooth"))
         times = (_number("timeout", timeout, 0.001, 86400.0), None if longest is None else _number("longest", longest, 0.001, 86400.0),
                  _number("smooth", smooth, 0.0, 1.0))
         options = settled(self._array, given, _LIVE)

@@ -8,6 +8,7 @@ import typing as _t
 
 from tactor import _tactor
 from tactor._array import Array
+from tactor._calls import ScoreCall
 from tactor._checks import _counted, _need, _number, _Value, _whole
 from tactor._errors import InputError
 from tactor._files import reading
@@ -17,9 +18,7 @@ from tactor._plan import Plan
 if _t.TYPE_CHECKING:
     import numpy as _np
     from numpy.typing import DTypeLike as _DTypeLike, NDArray as _NDArray
-    from tactor._options import _Envelope, _Phase
     _WavFormat = _t.Literal["float", "s16", "s24", "s32"]
-    _SampleFormat = _t.Union[_WavFormat, _t.Literal["s24-4"]]
     _Plans = _t.Union[Plan, _t.Iterable[_t.Union[Plan, "tuple[float | None, Plan]"]]]
 
 
@@ -58,39 +57,8 @@ def placed(plans: _Plans) -> list[tuple[float | None, Plan]]:
     return all_of_them
 
 
-class Score(_Value):
+class Score(ScoreCall, _Value):
     """Plans at a sample rate and at levels: what can be rendered, written and played. Immutable.
-
-    Parameters
-    ----------
-    array : Array
-    plans : Plan, or iterable of Plan or of (float, Plan)
-        A number is the start in seconds; a plan without one starts at its stroke's, or when the plan before it has ended.
-    level_dbfs : float
-        Peak for amplitude 1 (-12), at most 0; a tactor's gain is added.
-    sl : float
-        Instead: dB above each tactor's threshold.
-    rate : int
-        Hz (48000).
-    phase : str
-        The carrier starts with the "stroke" (default) or again with each "burst".
-    ramp : float
-        Raised-cosine ramp inside each burst, s; default: 0 between zero crossings, else 0.002.
-    envelope : str
-        How bursts rise and fall: "raised-cosine" (default), "linear", "exponential", or "tukey", whose ramps are a part of the burst
-        ("tukey:0.3" says the part, too).
-    attack, release : float
-        Times in which each burst rises (default: `ramp`) and falls (default: as it rises), s.
-    tukey_part : float
-        "tukey": both ramps together, of the burst, 0 to 1 (0.5).
-    channels : int
-        Default: as many as the array needs.
-    marker_channel : int
-        A spare channel on which the first frames of each stroke are marked, at full scale.
-    marker_s : float
-        For how long (0.005).
-    power_dbfs, max_drive_s, drive_window_s : float
-        Limits of what the array may be given, as `tactor play` has them; none of them: the piece as it was designed. A player has its own.
 
     Raises
     ------
@@ -109,13 +77,8 @@ class Score(_Value):
 
     __slots__ = ("_core", "_array", "_plans", "_options", "_recipe")
 
-    def __init__(self, array: Array, plans: _Plans, *, level_dbfs: float | None = None, sl: float | None = None, rate: int | None = None,
-                 phase: _Phase | None = None, ramp: float | None = None, envelope: _Envelope | None = None, attack: float | None = None,
-                 release: float | None = None, tukey_part: float | None = None, channels: int | None = None,
-                 marker_channel: int | None = None, marker_s: float | None = None, power_dbfs: float | None = None,
-                 max_drive_s: float | None = None, drive_window_s: float | None = None) -> None:
-        given = dict(locals())
-        del given["self"], given["array"], given["plans"]
+    def _make(self, given: dict[str, _t.Any]) -> None:
+        array, plans = given.pop("array"), given.pop("plans")
         _need(array, Array, "array")
         self._take(array, tuple(placed(plans)), in_parts(given))
 

@@ -17,9 +17,7 @@ from tactor._score import Score, placed
 from tactor._stroke import Stroke
 
 if _t.TYPE_CHECKING:
-    from tactor._options import _Algorithm, _Compensate, _Faces, _Outside, _Overlap, _Phantom, _Scale, _Timing
     from tactor._score import _Plans
-    _Observer = _t.Literal["centroid", "low-speed"]
     _View = _t.Literal["array", "timing", "wave", "both"]
 
 
@@ -76,68 +74,22 @@ def _names(what: str, value: str | _t.Iterable[str] | None, one: _t.Any) -> list
     return names
 
 
-def compare(array: Array, stroke: Stroke, *, algorithms: _t.Union[str, _t.Iterable[_Algorithm], None] = None,
-            phantoms: _t.Union[str, _t.Iterable[_Phantom], None] = None, algorithm: _Algorithm | None = None, phantom: _Phantom | None = None,
-            faces: _Faces | None = None, soa: float | None = None, burst: float | None = None, slope: float | None = None, intercept: float | None = None,
-            duration: float | None = None, speed: float | None = None, timing: _Timing | None = None, min_duration: float | None = None,
-            outside: _Outside | None = None, fit: bool | None = None, fit_margin: float | None = None, snap: bool | None = None, drop_points: bool | None = None,
-            overlap: _Overlap | None = None, carrier: float | None = None, intensity_scale: _Scale | None = None,
-            stevens_exponent: float | None = None, sl: float | None = None, compensate: _Compensate | None = None,
-            observer: _Observer | None = None, sigma_mm: float | None = None, sigma_v_mm_s: float | None = None, spread: int | None = None,
-            spread_seed: int | None = None, spread_sigma: float | None = None, spread_threshold_db: float | None = None,
-            spread_place_mm: float | None = None) -> Comparison:
-    """What algorithms are predicted to feel like on the same stroke: a model, never a measurement.
-
-    Parameters
-    ----------
-    array : Array
-    stroke : Stroke
-    algorithms : iterable of str
-        What to compare; default: all three.
-    phantoms : iterable of str
-        With which phantom models; default: that of `phantom`.
-    algorithm : str
-        Only this one.
-    phantom, faces, soa, burst, slope, intercept, duration, speed, timing, min_duration, outside, fit, fit_margin, snap, drop_points, overlap, carrier, compensate
-        As in `plan`; `phantom` is a built-in one.
-    intensity_scale, stevens_exponent, sl
-        As in `plan`; `sl` is for `intensity_scale="sl"`.
-    observer : str
-        Who is predicted to feel it: "centroid" (default) or "low-speed", who feels quick taps nearer together than they are.
-    sigma_mm, sigma_v_mm_s : float
-        The second one: how well places are known (5 mm), and which speeds are expected (100 mm/s).
-    spread : int
-        What would be felt by so many people, 2 to 100000, who are drawn at random: intervals from 5 to 95 % of them.
-    spread_seed : int
-        Of that draw (1): the same seed draws the same people.
-    spread_sigma : float
-        "low-speed": sigma of each is up to this factor less or more (2).
-    spread_threshold_db, spread_place_mm : float
-        Each tactor's threshold, give or take (6 dB); each tactor is felt within that distance of its place (2 mm).
-
-    Returns
-    -------
-    Comparison
-        A list of dicts. An algorithm that cannot play the stroke says why under "refused".
-
-    Raises
-    ------
-    InputError
-        Where none can play it.
-    """
-    given = {name: value for name, value in locals().items() if value is not None}
+def make_comparison(given: dict[str, _t.Any]) -> Comparison:
+    """The comparison of compare()'s arguments."""
+    options = {name: value for name, value in given.items() if value is not None}
+    array, stroke = given["array"], given["stroke"]
     for name in ("array", "stroke", "algorithms", "phantoms"):
-        given.pop(name, None)
+        options.pop(name, None)
     _need(array, Array, "array")
     _need(stroke, Stroke, "stroke")
-    if hasattr(phantom, "weights"):
+    if hasattr(given["phantom"], "weights"):
         raise InputError("phantom", "a model of your own cannot be compared", "name a built-in one, or ask plan(phantom=...) for its percept()",
                          field="phantom")
-    of = _names("algorithms", algorithms, algorithm), _names("phantoms", phantoms, phantom)
-    if not of[0] and algorithm is None:
+    of = _names("algorithms", given["algorithms"], given["algorithm"]), _names("phantoms", given["phantoms"], given["phantom"])
+    if not of[0] and given["algorithm"] is None:
         of[0].extend(("park2016", "tactile-brush", "continuous"))
-    options = settled(array, given, _PLANNING | {"observer", "sl"})
-    if sl is not None and options.get("intensity_scale") != "sl":
+    options = settled(array, options, _PLANNING | {"observer", "sl"})
+    if given["sl"] is not None and options.get("intensity_scale") != "sl":
         raise InputError("sl", "nothing here uses it", 'say intensity_scale="sl", too', field="sl")
     return Comparison(_tactor.Compared(array._core, stroke._core, options, *of))
 
@@ -194,7 +146,7 @@ def svg_of_plans(plans: _t.Sequence[Plan]) -> str:
 
 def picture_of_stroke(stroke: Stroke) -> str:
     """The way of a stroke on the array that it fits: palm-3x3, where it lies within; else what it needs."""
-    from tactor._planning import plan
+    from tactor._calls import plan
     palm = Array.preset("palm-3x3")
     return _tactor.svg(*_stroke_on(plan(palm, stroke, algorithm="continuous", outside="clamp")))  # type: ignore[no-any-return]
 

@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 
 #include "server/faults.hpp"
-#include "server/osc/senders.hpp"
+#include "server/osc/clients.hpp"
 
 namespace tactor::server {
 namespace {
@@ -69,7 +69,7 @@ void osc_clients::ask(sender& s, const osc_request& r)
     s.asked[id] = {r.address, r.method, r.number};
     service_.receive(
         s.client,
-        net::text_of(
+        net::json_line(
             {{"jsonrpc", "2.0"}, {"id", id}, {"method", r.method}, {"params", net::reply_json(r.params)}}));
 }
 
@@ -177,7 +177,7 @@ void osc_clients::refuse(const endpoint& to, const std::string& address, const s
 
 void osc_clients::refuse(const endpoint& to, const std::string& address, const net::rpc_fault& f)
 {
-    refuse(to, address, net::words_of(f));
+    refuse(to, address, net::fault_text(f));
 }
 
 void osc_clients::look_at(const endpoint& e)

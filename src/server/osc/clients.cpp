@@ -13,7 +13,6 @@
 #include "core/words.hpp"
 #include "server/clock.hpp"
 #include "server/faults.hpp"
-#include "server/osc/senders.hpp"
 
 namespace tactor::server {
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "server/osc/endpoint.hpp"
 
-#include <algorithm>
 #include <chrono>
 #include <new>
 #include <utility>
@@ -77,7 +76,7 @@ void osc_endpoint::take()
     boost::system::error_code failed;
     udp::endpoint from;
     const std::size_t n = socket_.receive_from(asio::buffer(packet_), from, 0, failed);
-    if (!failed && net::is_heard(from.address(), peers_))
+    if (!failed && net::is_accepted(from.address(), peers_))
         try {
             clients_.receive({packet_.data(), n}, from);
         } catch (const std::bad_alloc&) { // NOLINT(bugprone-empty-catch): lost, as it may be on its way

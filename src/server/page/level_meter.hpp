@@ -7,7 +7,6 @@
 #include <atomic>
 #include <cstddef>
 #include <memory>
-#include <span>
 #include <vector>
 
 #include <tactor/sink.hpp>

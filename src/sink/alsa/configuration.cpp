@@ -33,12 +33,12 @@ bool defines_pcms(snd_config_t* top)
 
 configuration parse(const std::string& text)
 {
-    const library_messages said;
+    const library_messages messages;
     snd_config_t* c = nullptr;
     const int code = snd_config_load_string(&c, text.c_str(), text.size());
     if (code < 0)
         detail::throw_caused(error(error_kind::bad_input, "ALSA configuration text",
-                                   with_detail(snd_strerror(code), said.first()),
+                                   with_detail(snd_strerror(code), messages.first()),
                                    "see the ALSA documentation of .asoundrc"),
                              -code);
     return configuration(c);

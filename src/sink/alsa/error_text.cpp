@@ -19,7 +19,7 @@ namespace {
 
 constexpr std::size_t most_names = 12; // of PCMs in one message
 constexpr const char* no_card_hint =
-    "load the card's driver or overlay, or plug it in; tactor devices lists what "
+    "load the card's driver or overlay, or plug it in; {command:devices} lists what "
     "there is; the PCM null needs no card";
 
 std::string thing(const std::string& name)
@@ -47,7 +47,7 @@ error no_card(const std::string& name, const device_name& d, const std::vector<c
     if (cards.empty())
         return {error_kind::not_available, thing(name), "there is no sound card", no_card_hint};
     return {error_kind::not_available, thing(name), fmt::format("there is no card {}", d.card),
-            fmt::format("{}cards: {}; tactor devices lists all", near(d.card, ids(cards)),
+            fmt::format("{}cards: {}; {{command:devices}} lists all", near(d.card, ids(cards)),
                         fmt::join(ids(cards), ", "))};
 }
 
@@ -64,7 +64,7 @@ error no_device(const std::string& name, unsigned device, const card& c, const s
 std::string on_a_card(const surroundings& s)
 {
     const auto cards = sound_cards(s.root);
-    return fmt::format("play on a card: -D hw:CARD={}; tactor devices lists all",
+    return fmt::format("play on a card: {{device=hw:CARD={}}}; {{command:devices}} lists all",
                        cards.empty() ? "NAME" : cards.front().id);
 }
 
@@ -89,7 +89,7 @@ error no_plugin(const std::string& name, const std::string& type, const std::str
     std::string hint;
     if (type == "pipewire")
         hint = "install it: sudo apt install pipewire-alsa";
-    else if (among(bundled, type))
+    else if (contains(bundled, type))
         hint = "install it: sudo apt install libasound2-plugins";
     else
         hint =
@@ -107,14 +107,14 @@ error no_jack(const std::string& name, const surroundings& s)
 // Returns true if the route would end in a card, if there were one. An unknown route probably does.
 bool wants_card(const surroundings& s)
 {
-    return s.route.empty() || among(s.route, "hw");
+    return s.route.empty() || contains(s.route, "hw");
 }
 
 error no_pcm(const std::string& name, const std::string& detail, const surroundings& s)
 {
     if (const std::string type = missing_plugin(detail); !type.empty())
         return no_plugin(name, type, detail, s);
-    if (among(s.route, "jack") && detail.empty())
+    if (contains(s.route, "jack") && detail.empty())
         return no_jack(name, s);
     const auto cards = sound_cards(s.root);
     if (const auto d = named_device(name)) {
@@ -133,14 +133,14 @@ error no_pcm(const std::string& name, const std::string& detail, const surroundi
     if (defined)
         return {error_kind::not_available, thing(name),
                 with_detail("ALSA's configuration defines it, but not all that it refers to", detail),
-                "look at its slave in /etc/asound.conf and ~/.asoundrc; tactor devices lists all"};
+                "look at its slave in /etc/asound.conf and ~/.asoundrc; {command:devices} lists all"};
     std::string hint = near(plain, s.pcms);
     if (hint.empty() && !s.pcms.empty() && s.pcms.size() <= most_names)
         hint = fmt::format("known: {}; ", fmt::join(s.pcms, ", "));
     if (!cards.empty())
         hint += fmt::format("cards: {}; ", fmt::join(ids(cards), ", "));
     return {error_kind::not_available, thing(name), with_detail("no such PCM", detail),
-            hint + "tactor devices lists all"};
+            hint + "{command:devices} lists all"};
 }
 
 bool is_sound_server(const std::string& program)
@@ -225,7 +225,7 @@ error open_error(const std::string& name, int code, const std::string& detail, c
                 tactor::detail::advice_for(-code)};
     default:
         return {error_kind::not_available, thing(name), with_detail(snd_strerror(code), detail),
-                "tactor devices lists the PCMs"};
+                "{command:devices} lists the PCMs"};
     }
 }
 

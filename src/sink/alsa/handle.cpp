@@ -6,7 +6,6 @@
 
 #include "core/refused.hpp"
 #include "sink/alsa/configuration.hpp"
-#include "sink/alsa/devices/names.hpp"
 #include "sink/alsa/devices/route.hpp"
 #include "sink/alsa/error_text.hpp"
 #include "sink/alsa/library_messages.hpp"
@@ -58,7 +57,7 @@ status make_status()
 
 handle open(const alsa_options& o)
 {
-    const library_messages said;
+    const library_messages messages;
     snd_pcm_t* p = nullptr;
     int code = 0;
     surroundings there;
@@ -76,11 +75,11 @@ handle open(const alsa_options& o)
             there = around(c.get(), o.pcm);
     }
     if (code < 0)
-        tactor::detail::throw_caused(open_error(o.pcm, code, said.first(), there), -code);
+        tactor::detail::throw_caused(open_error(o.pcm, code, messages.first(), there), -code);
     handle h(p);
     // Plugins made from other plugins do not always obey the flag of open().
     if (code = snd_pcm_nonblock(h.get(), 1); code < 0)
-        tactor::detail::throw_caused(open_error(o.pcm, code, said.first()), -code);
+        tactor::detail::throw_caused(open_error(o.pcm, code, messages.first()), -code);
     return h;
 }
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "sink/alsa/negotiate.hpp"
 
-#include <cerrno>
 #include <memory>
 #include <new>
 #include <optional>
@@ -13,7 +12,6 @@
 #include "core/refused.hpp"
 #include "core/words.hpp"
 #include "sink/alsa/error_text.hpp"
-#include "sink/alsa/format.hpp"
 #include "sink/alsa/handle.hpp"
 
 namespace tactor::pcm {
@@ -66,7 +64,7 @@ constexpr unsigned most_rate = 768'000;
 constexpr unsigned most_period_frames = 1U << 20;
 constexpr unsigned most_periods = 1024;
 
-std::string asked(const alsa_options& o)
+std::string request_text(const alsa_options& o)
 {
     std::string formats;
     if (o.format)
@@ -122,9 +120,9 @@ error refused(snd_pcm_t* p, const hw_params& space, const alsa_options& o)
     const std::string why =
         s.empty() ? "each alone would do, but not together" : fmt::format("refused: {}", s);
     return error(error_kind::not_available, fmt::format("PCM \"{}\"", o.pcm),
-                 fmt::format("cannot play {}; {}", asked(o), why),
+                 fmt::format("cannot play {}; {}", request_text(o), why),
                  fmt::format("it can do {}{}", describe(space),
-                             holds ? "; wider = true leaves the other channels silent" : ""))
+                             holds ? "; {wider=true} leaves the other channels silent" : ""))
         .with_field(has_channels ? "" : "channels");
 }
 
@@ -191,9 +189,9 @@ stream_setup read_back(const hw_params& h, const alsa_options& o, const fixed& a
     s.batch = snd_pcm_hw_params_is_batch(h.get()) != 0;
     if (s.device_channels != asked_for.channels || s.rate != o.rate || period == 0 || buffer < period)
         throw error(error_kind::not_available, fmt::format("PCM \"{}\"", o.pcm),
-                    fmt::format("asked for {}, it made {} at {} Hz with {} of {} frames of it", asked(o),
-                                counted(s.device_channels, "channel"), s.rate, s.period_frames,
-                                s.buffer_frames),
+                    fmt::format("asked for {}, it made {} at {} Hz with {} of {} frames of it",
+                                request_text(o), counted(s.device_channels, "channel"), s.rate,
+                                s.period_frames, s.buffer_frames),
                     "use the PCM without plugins, e.g. hw:CARD=NAME");
     return s;
 }

@@ -3,11 +3,13 @@
 /// Hardware and software parameters of a PCM.
 #pragma once
 
+#include <array>
 #include <string>
 
 #include <alsa/asoundlib.h>
 
 #include <tactor/alsa.hpp>
+#include <tactor/choices.hpp>
 
 #include "sink/alsa/handle.hpp"
 
@@ -34,5 +36,26 @@ stream_setup negotiate(snd_pcm_t* p, const alsa_options& o);
 /// Sets an explicit start, a stop on the first missing frame, and silence where nothing was written.
 /// \throws error (not_available).
 void set_software(snd_pcm_t* p, const stream_setup& s);
+
+/// In the order in which they are tried: first those that I2S and USB devices carry without loss.
+inline constexpr std::array format_preference{format_kind::s32, format_kind::float32, format_kind::s24_3,
+                                              format_kind::s24_4, format_kind::s16};
+
+constexpr snd_pcm_format_t to_alsa(format_kind f) noexcept
+{
+    switch (f) {
+    case format_kind::float32:
+        return SND_PCM_FORMAT_FLOAT_LE;
+    case format_kind::s16:
+        return SND_PCM_FORMAT_S16_LE;
+    case format_kind::s24_3:
+        return SND_PCM_FORMAT_S24_3LE;
+    case format_kind::s24_4:
+        return SND_PCM_FORMAT_S24_LE;
+    case format_kind::s32:
+        return SND_PCM_FORMAT_S32_LE;
+    }
+    return SND_PCM_FORMAT_UNKNOWN;
+}
 
 } // namespace tactor::pcm

@@ -13,7 +13,7 @@
 #include "core/refused.hpp"
 #include "core/words.hpp"
 #include "sink/alsa/adopt.hpp"
-#include "sink/alsa/devices/wiring.hpp"
+#include "sink/alsa/devices/route.hpp"
 #include "sink/alsa/handle.hpp"
 #include "sink/alsa/library_messages.hpp"
 #include "sink/alsa/negotiate.hpp"

@@ -53,7 +53,7 @@ io_kind pcm_sink::start() noexcept
     return io_kind::ok;
 }
 
-std::int64_t pcm_sink::ns_of(std::uint64_t frames) const noexcept
+std::int64_t pcm_sink::frames_to_ns(std::uint64_t frames) const noexcept
 {
     return static_cast<std::int64_t>(frames) * rt::ns_per_s / setup_.rate;
 }
@@ -146,7 +146,8 @@ io_result pcm_sink::available() noexcept
 void pcm_sink::look(std::int64_t now, snd_pcm_sframes_t available) noexcept
 {
     const std::int64_t at = static_cast<std::int64_t>(written_) - setup_.buffer_frames + available;
-    went_round_ = went_round_ || (on_card_ && at != at_ && now - looked_ns_ >= ns_of(setup_.buffer_frames));
+    went_round_ =
+        went_round_ || (on_card_ && at != at_ && now - looked_ns_ >= frames_to_ns(setup_.buffer_frames));
     looked_ns_ = now;
     at_ = at;
 }
@@ -220,7 +221,7 @@ stream_position pcm_sink::position() noexcept
     // Plugins may leave the stamp empty or use another clock. A card's stamp is mostly that of this call.
     const bool sane = at <= rt::monotonic_ns() && now - at < rt::ns_per_s;
     seen_ns_ = sane ? at : now;
-    dry_ns_ = seen_ns_ + ns_of(queued);
+    dry_ns_ = seen_ns_ + frames_to_ns(queued);
     return {written_, played_, seen_ns_, true};
 }
 

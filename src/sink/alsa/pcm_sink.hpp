@@ -4,7 +4,6 @@
 #pragma once
 
 #include <cstddef>
-#include <optional>
 #include <span>
 #include <vector>
 
@@ -48,7 +47,7 @@ private:
     const std::byte* widen(std::span<const std::byte> frames) noexcept;
     long write_paced(const std::byte* data, std::size_t frames) noexcept;
     bool runs_without_clock() noexcept;
-    std::int64_t ns_of(std::uint64_t frames) const noexcept;
+    std::int64_t frames_to_ns(std::uint64_t frames) const noexcept;
     void look(std::int64_t now, snd_pcm_sframes_t available) noexcept;
 
     handle handle_;

@@ -1,12 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "study/analysis/analysis.hpp"
 
-#include <algorithm>
-
 #include <fmt/format.h>
 
 #include "core/words.hpp"
-#include "study/analysis/cells.hpp"
 
 namespace tactor::study {
 namespace {
@@ -17,7 +14,7 @@ by_motion test_row(const std::vector<cell_values>& all, std::size_t row, std::si
     by_motion b;
     std::vector<double> means;
     for (const cell_values& v : all)
-        means.push_back(average_of(v[row]));
+        means.push_back(mean(v[row]));
     b.all = test_mean(means, against);
     b.all_values = means;
     std::vector<std::optional<double>> p;
@@ -98,7 +95,7 @@ run_analysis analyse_run(const dataset& d, std::size_t which)
     for (std::size_t i = 0; i < d.participants.size(); ++i) {
         const run_data& own = d.data[i][which];
         r.voids += own.voids;
-        std::optional<cell_values> v = values_of(r.run, own.trials);
+        std::optional<cell_values> v = compute_cells(r.run, own.trials);
         if (!v) {
             r.missing.push_back({d.participants[i], own.trials.empty()
                                                         ? "no trial that counts"

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: MIT
-#include "study/analysis/cells.hpp"
+#include "study/analysis/analysis.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include "study/statistics/tests.hpp"
 
@@ -30,7 +29,7 @@ bool last_chosen(const trial& t, const run_outline& run) noexcept
     return (t.response == 1 ? t.method_1 : t.method_2) + 1 == run.methods.size();
 }
 
-std::optional<cell_values> values_of(const run_outline& run, const std::vector<trial>& trials)
+std::optional<cell_values> compute_cells(const run_outline& run, const std::vector<trial>& trials)
 {
     const std::size_t rows = run.task == task_kind::choose ? 1 : run.methods.size();
     cell_values sums(rows, std::vector<double>(run.motions.size(), 0.0));
@@ -54,18 +53,13 @@ double rounding_in(const run_outline& run) noexcept
     return few_digits * (run.task == task_kind::rate ? static_cast<double>(run.scale) : 100.0);
 }
 
-double average_of(const std::vector<double>& row)
-{
-    return std::accumulate(row.begin(), row.end(), 0.0) / static_cast<double>(row.size());
-}
-
 std::optional<double> compared_value(const run_outline& run, const cell_values& cells)
 {
     if (run.task != task_kind::rate)
-        return average_of(cells.back());
+        return mean(cells.back());
     if (cells.size() < 2)
         return {};
-    const double difference = average_of(cells.back()) - average_of(cells.front());
+    const double difference = mean(cells.back()) - mean(cells.front());
     return std::abs(difference) > rounding_in(run) ? difference : 0.0;
 }
 

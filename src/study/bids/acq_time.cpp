@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "study/bids/acq_time.hpp"
 
-#include <charconv>
 #include <ctime>
 
 #include <fmt/format.h>
+
+#include "core/split.hpp"
 
 namespace tactor::study {
 namespace {
@@ -32,12 +33,11 @@ std::optional<std::int64_t> acq_time_ns(const std::string& text)
     if (length != seconds_length + fraction_length ||
         ::strptime(text.c_str(), "%Y-%m-%dT%H:%M:%S.", &utc) != text.c_str() + seconds_length + 1)
         return {};
-    std::int64_t microseconds = 0;
-    const char* end = text.data() + length;
-    const auto read = std::from_chars(text.data() + seconds_length + 1, end, microseconds);
-    if (read.ec != std::errc() || read.ptr != end || microseconds < 0)
+    const auto microseconds = detail::number_in<std::int64_t>(
+        std::string_view(text).substr(seconds_length + 1, fraction_length - 1));
+    if (!microseconds || *microseconds < 0)
         return {};
-    return ::timegm(&utc) * second_ns + microseconds * microsecond_ns;
+    return ::timegm(&utc) * second_ns + *microseconds * microsecond_ns;
 }
 
 std::int64_t utc_now_ns() noexcept

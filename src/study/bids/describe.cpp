@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "study/bids/study_folder.hpp"
 
-#include <array>
 #include <string_view>
 
 #include <fmt/format.h>
@@ -84,9 +83,8 @@ std::optional<bool> says_simulated(const std::string& dataset_description)
 std::string readme_text(const experiment_definition& d, bool simulated)
 {
     return fmt::format(
-        "{}\n\n{}"
-        "This folder was written by tactor experiment (definition: {}). Vibrations moved over the skin, and "
-        "after\n"
+        "{}\n\n{}This folder was written by tactor experiment (definition: {}). Vibrations moved over the "
+        "skin, and after\n"
         "each trial a question was answered; each run is a task of its own, and sub-CODE/beh has a line for "
         "each\n"
         "trial. What the columns mean is in task-NAME_beh.json. The definition, the array, the levels and "

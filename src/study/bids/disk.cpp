@@ -18,7 +18,6 @@
 #include <tactor/error.hpp>
 
 #include "files/output_file.hpp"
-#include "study/data/kept.hpp"
 #include "study/data/text_table.hpp"
 
 namespace tactor::study {

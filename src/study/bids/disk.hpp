@@ -3,6 +3,7 @@
 /// Files that survive a crash at any moment: whole ones, and text at the end of one.
 #pragma once
 
+#include <cerrno>
 #include <cstddef>
 #include <filesystem>
 #include <string_view>
@@ -45,5 +46,15 @@ public:
 private:
     detail::owned_fd fd_;
 };
+
+/// What is kept, and what to do, for an errno.
+constexpr const char* what_is_kept(int code) noexcept
+{
+    if (code == ENOSPC || code == EDQUOT)
+        return "what was answered before is kept; free some space, and --resume goes on";
+    if (code == EROFS)
+        return "what was answered before is kept; make the disk writable again, and --resume goes on";
+    return "what was answered before is kept; --resume goes on";
+}
 
 } // namespace tactor::study

@@ -8,14 +8,13 @@
 #include <functional>
 #include <optional>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include <nlohmann/json.hpp>
 
 #include "study/bids/study_folder.hpp"
 #include "study/data/columns.hpp"
-#include "study/experiment/run_queue.hpp"
+#include "study/experiment/session_flow.hpp"
 #include "study/experiment/stimuli.hpp"
 
 namespace tactor::study {

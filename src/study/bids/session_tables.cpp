@@ -11,7 +11,7 @@
 #include "study/bids/disk.hpp"
 #include "study/bids/session_store.hpp"
 #include "study/data/columns.hpp"
-#include "study/data/session.hpp"
+#include "study/data/outline.hpp"
 #include "study/data/text_table.hpp"
 
 namespace tactor::study {

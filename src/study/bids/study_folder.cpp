@@ -11,7 +11,7 @@
 
 #include "core/words.hpp"
 #include "study/data/dataset.hpp"
-#include "study/data/session.hpp"
+#include "study/data/outline.hpp"
 #include "study/data/text_table.hpp"
 
 namespace tactor::study {

@@ -18,7 +18,6 @@
 #include "files/output_file.hpp"
 #include "files/text_file.hpp"
 #include "study/bids/disk.hpp"
-#include "study/data/kept.hpp"
 #include "study/data/text_table.hpp"
 
 namespace tactor::study {

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
 // What stands in the log, and beside it.
 #include <algorithm>
-#include <charconv>
 #include <cstdint>
 #include <optional>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "core/split.hpp"
 #include "core/words.hpp"
 #include "study/calibrate/log.hpp"
 
@@ -22,22 +22,12 @@ std::string truth(bool b)
     return b ? "true" : "false";
 }
 
-template <typename T>
-std::optional<T> number_in(std::string_view cell)
-{
-    T v{};
-    const auto [stop, code] = std::from_chars(cell.data(), cell.data() + cell.size(), v);
-    if (code != std::errc() || stop != cell.data() + cell.size())
-        return {};
-    return v;
-}
-
 // Whatever the line says: what it should say is compared afterwards.
 calibration_answer answer_in(const text_table& log, std::size_t row)
 {
     const auto number = [&](std::string_view column) {
         const auto cell = log.cell(row, column);
-        return cell ? number_in<double>(*cell) : std::nullopt;
+        return cell ? detail::number_in<double>(*cell) : std::nullopt;
     };
     calibration_answer a;
     const double interval = number("response").value_or(0.0);
@@ -58,8 +48,8 @@ bool is_same(const std::string& expected, std::optional<std::string_view> cell)
         return expected == missing;
     if (expected == *cell || expected == in_small_letters(std::string(*cell)))
         return true;
-    const auto number = number_in<double>(expected);
-    return number && number == number_in<double>(*cell);
+    const auto number = detail::number_in<double>(expected);
+    return number && number == detail::number_in<double>(*cell);
 }
 
 bool is_same(const named_cells& expected, const text_table& log, std::size_t row)

@@ -2,9 +2,9 @@
 #include "study/calibrate/observer.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <numbers>
+#include <set>
 #include <utility>
 
 #include <fmt/format.h>
@@ -15,9 +15,10 @@
 #include "core/words.hpp"
 
 namespace tactor::study {
+
 namespace {
 
-constexpr const char* subject = "simulate";
+constexpr const char* subject = "--simulate";
 constexpr const char* shape = "as seed=1,threshold=-45,spread=2,lapse=0.02";
 
 [[noreturn]] void refuse(const std::string& why, std::string_view hint = shape)
@@ -27,14 +28,13 @@ constexpr const char* shape = "as seed=1,threshold=-45,spread=2,lapse=0.02";
 
 double number(std::string_view key, std::string_view text, double low, double high)
 {
-    double v = 0.0;
-    const auto [stop, code] = std::from_chars(text.data(), text.data() + text.size(), v);
-    if (code != std::errc() || stop != text.data() + text.size())
+    const auto v = detail::number_in<double>(text);
+    if (!v)
         refuse(fmt::format("{}: \"{}\" is not a number", key, text));
-    if (!(v >= low && v <= high))
+    if (!(*v >= low && *v <= high))
         refuse(fmt::format("{} is {}", key, text),
                fmt::format("{} to {}", plain_number(low), plain_number(high)));
-    return v;
+    return *v;
 }
 
 std::uint64_t whole(std::string_view key, std::string_view text)
@@ -73,6 +73,10 @@ void choose_measured(observer_settings& o, const std::vector<unsigned>& measured
         own.push_back(o.thresholds_dbfs[t]);
     o.thresholds_dbfs = std::move(own);
 }
+
+constexpr double answer_s = 1.5; // and the half second before the first interval
+constexpr double before_s = 0.5;
+constexpr double series_s = 20.0; // of an adjustment
 
 } // namespace
 
@@ -144,6 +148,26 @@ calibration_answer observer::adjust(const calibration_trial& t)
             level = to;
         }
     return {.set_dbfs = level};
+}
+
+std::string time_text(const calibration& c)
+{
+    const calibration_settings& s = c.settings();
+    calibration left = c;
+    observer typical({.thresholds_dbfs = {-45.0}}, s);
+    const double trial_s = before_s + 2.0 * s.interval_s + interval_gap_s + answer_s;
+    double seconds = 0.0;
+    std::size_t trials = 0;
+    std::set<unsigned> tactors;
+    for (; !left.done(); ++trials) {
+        const calibration_trial t = left.next();
+        tactors.insert(t.tactor);
+        seconds += t.interval != 0 ? trial_s : series_s;
+        static_cast<void>(left.answer(typical.answer(t)));
+    }
+    const auto minutes = static_cast<std::uint64_t>(std::max(1.0, std::round(seconds / 60.0)));
+    return fmt::format("{}, about {}: some {}", counted(tactors.size(), "tactor"), counted(trials, "trial"),
+                       counted(minutes, "minute"));
 }
 
 } // namespace tactor::study

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// A simulated observer. It tests the chain; it says nothing about people.
+/// A simulated observer, and how long a calibration lasts with one. It tests the chain; it says nothing about
+/// people.
 #pragma once
 
 #include <cstdint>
@@ -45,5 +46,9 @@ private:
     std::vector<unsigned> tactors_;
     random_numbers r_;
 };
+
+/// Returns "9 tactors, about 480 trials: some 30 minutes" for what is left of a calibration: what a simulated
+/// observer needs, with time for the answers.
+std::string time_text(const calibration& c);
 
 } // namespace tactor::study

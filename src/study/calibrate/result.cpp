@@ -7,7 +7,6 @@
 #include <cstring>
 #include <optional>
 #include <string_view>
-#include <system_error>
 #include <utility>
 
 #include <fmt/format.h>
@@ -18,7 +17,6 @@
 #include "files/output_file.hpp"
 #include "files/setup_text.hpp"
 #include "study/bids/disk.hpp"
-#include "study/data/kept.hpp"
 #include "study/data/text_table.hpp"
 
 namespace tactor::study {

@@ -3,8 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <utility>
+
+#include "study/statistics/tests.hpp"
 
 namespace tactor::study {
 namespace {
@@ -22,21 +23,13 @@ double whole_micro_db(double v)
     return std::round(v * 1e6) / 1e6;
 }
 
-double mean(std::span<const double> v)
-{
-    return std::accumulate(v.begin(), v.end(), 0.0) / static_cast<double>(v.size());
-}
-
 } // namespace
 
 reversal_mean mean_of(std::span<const double> reversals_dbfs, std::size_t counted)
 {
     const std::span<const double> v = reversals_dbfs.last(counted);
     reversal_mean m{mean(v)};
-    double squares = 0.0;
-    for (const double x : v)
-        squares += (x - m.mean_dbfs) * (x - m.mean_dbfs);
-    m.sd_db = std::sqrt(squares / static_cast<double>(v.size() - 1));
+    m.sd_db = deviation(v, m.mean_dbfs);
     m.halves_db = std::abs(mean(v.first(v.size() / 2)) - mean(v.last(v.size() / 2)));
     return m;
 }

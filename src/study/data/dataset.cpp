@@ -8,7 +8,7 @@
 
 #include <tactor/error.hpp>
 
-#include "study/data/session.hpp"
+#include "study/data/outline.hpp"
 #include "study/data/text_table.hpp"
 
 namespace tactor::study {

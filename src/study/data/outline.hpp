@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// What the analysis needs of an experiment's definition: who and what there is, in which order.
+/// An experiment as the analysis needs it: who and what there is, in which order.
 #pragma once
 
+#include <filesystem>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -33,5 +34,18 @@ struct experiment_outline {
 
 /// Letters and digits of a run's name (BIDS allows no others in a task's).
 std::string file_name_of(std::string_view run);
+
+struct session_data {
+    bool simulated = false;
+    std::string text; ///< of the experiment, TOML
+    experiment_outline experiment;
+};
+
+/// \throws error (bad_input) with file and, where it has one, line.
+session_data read_session(const std::filesystem::path& file);
+
+/// The description of a run's table. \throws error (bad_input) where it is no JSON object, or describes
+/// another run.
+void check_description(const std::filesystem::path& file, const run_outline& run);
 
 } // namespace tactor::study

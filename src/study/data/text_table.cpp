@@ -2,13 +2,12 @@
 #include "study/data/text_table.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
-#include <fstream>
 #include <utility>
 
 #include <fmt/format.h>
 
+#include "core/split.hpp"
 #include "core/words.hpp"
 #include "files/text_file.hpp"
 
@@ -192,13 +191,11 @@ std::optional<unsigned> text_table::whole(std::size_t row, std::string_view colu
     const auto text = cell(row, column);
     if (!text)
         return {};
-    double v = 0.0; // pandas makes 3.0 of a 3 where another row has none
-    const auto [end, failed] = std::from_chars(text->data(), text->data() + text->size(), v);
-    if (failed != std::errc() || end != text->data() + text->size() || v != std::floor(v) || v < least ||
-        v > most)
+    const auto v = detail::number_in<double>(*text); // pandas makes 3.0 of a 3 where another row has none
+    if (!v || *v != std::floor(*v) || *v < least || *v > most)
         refuse(row, fmt::format("{} is \"{}\"", column, *text),
                fmt::format("a whole number from {} to {}", least, most));
-    return static_cast<unsigned>(v);
+    return static_cast<unsigned>(*v);
 }
 
 std::optional<double> text_table::number(std::size_t row, std::string_view column) const
@@ -206,9 +203,8 @@ std::optional<double> text_table::number(std::size_t row, std::string_view colum
     const auto text = cell(row, column);
     if (!text)
         return {};
-    double v = 0.0;
-    const auto [end, failed] = std::from_chars(text->data(), text->data() + text->size(), v);
-    if (failed != std::errc() || end != text->data() + text->size() || !std::isfinite(v))
+    const auto v = detail::number_in<double>(*text);
+    if (!v || !std::isfinite(*v))
         refuse(row, fmt::format("{} is \"{}\"", column, *text), "a number with a point, or n/a");
     return v;
 }

@@ -11,9 +11,9 @@
 
 #include "files/text_file.hpp"
 #include "files/toml_reader.hpp"
-#include "study/experiment/noise_options.hpp"
 
 namespace tactor::study {
+
 namespace {
 
 namespace fs = std::filesystem;
@@ -226,6 +226,14 @@ experiment_definition load_definition(const std::string& name_or_file)
         return read_definition(shipped_experiment(name_or_file), name_or_file, {});
     const detail::whole_text text = detail::read_text_file(name_or_file, most_bytes_of_text);
     return read_definition(text, name_or_file, fs::path(name_or_file).parent_path());
+}
+
+masking_options noise_of(const masking_definition& m, std::string seed)
+{
+    return {.color = m.noise == noise_kind::pink ? noise_color::pink : noise_color::white,
+            .level_dbfs = m.level_dbfs,
+            .fade_s = m.fade_s,
+            .seed = std::move(seed)};
 }
 
 } // namespace tactor::study

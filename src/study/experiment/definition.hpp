@@ -16,6 +16,7 @@
 
 #include "study/data/outline.hpp"
 #include "study/experiment/page_words.hpp"
+#include "study/masking/masking_stream.hpp"
 
 namespace tactor::detail {
 class toml_table;
@@ -128,5 +129,12 @@ run_definition read_run_outline(const detail::toml_table& t, const experiment_de
 
 /// Returns the experiment that is built in, as it stands among the examples.
 std::string_view park2016_text() noexcept;
+
+/// A hint of the library with the keys of a definition where it names its fields, and without what a
+/// definition cannot say. What reads as a field no more is made no option of, either.
+std::string in_definition_words(std::string_view hint);
+
+/// `m` must ask for one. The same seed gives the same noise.
+masking_options noise_of(const masking_definition& m, std::string seed);
 
 } // namespace tactor::study

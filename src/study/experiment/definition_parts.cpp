@@ -2,6 +2,7 @@
 #include "study/experiment/definition.hpp"
 
 #include <algorithm>
+#include <array>
 #include <utility>
 
 #include <fmt/format.h>
@@ -15,6 +16,7 @@
 #include "options/words.hpp"
 
 namespace tactor::study {
+
 namespace {
 
 using detail::toml_table;
@@ -40,7 +42,7 @@ auto at_key(const toml_table& t, std::string_view key, F make)
     try {
         return make();
     } catch (const error& e) {
-        const error said = options::spell_marks(e, {write_key});
+        const error said = options::spell(e, {write_key});
         throw error(e.kind(), t.where(key), fmt::format("{}: {}", said.subject(), said.why()), said.hint())
             .with_field(key);
     }
@@ -76,6 +78,17 @@ const options::option& find_method_option(const toml_table::said_key& k)
     std::vector<std::string_view> known(names.begin(), names.end());
     known.insert(known.begin(), "name");
     throw detail::unknown_key(k.key_at, k.key, "[[method]]", known);
+}
+
+constexpr std::array own_words{options::own_word{"level_dbfs", "level.dbfs"},
+                               options::own_word{"sl_db", "level.sl_db"}, options::own_word{"fit=true", ""}};
+
+std::string write_choice(const options::option& o, std::string_view value)
+{
+    if (value.empty())
+        return std::string(o.field_name());
+    const char* quote = o.what == options::kind::flag ? "" : "\"";
+    return fmt::format("the method's {}, {}{}{},", options::dashed(o), quote, value, quote);
 }
 
 } // namespace
@@ -128,6 +141,11 @@ method_definition read_method(const toml_table& t)
     }
     at_key(t, "name", [&] { options::settle(w); });
     return {name_in(t, "name"), w.plan, t.where()};
+}
+
+std::string in_definition_words(std::string_view hint)
+{
+    return options::spell(hint, {write_choice, options::in_method, own_words});
 }
 
 } // namespace tactor::study

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "study/experiment/page_dialogue.hpp"
 
-#include <algorithm>
 #include <utility>
 
 namespace tactor::study {

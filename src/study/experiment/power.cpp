@@ -7,7 +7,6 @@
 #include <fmt/format.h>
 
 #include "study/analysis/analysis.hpp"
-#include "study/analysis/cells.hpp"
 #include "study/experiment/sequence.hpp"
 #include "study/statistics/tests.hpp"
 
@@ -120,7 +119,7 @@ std::optional<std::vector<run_power>> simulate_power(const experiment_definition
             std::vector<std::optional<double>> values;
             for (prepared_person& who : people) {
                 answer_all(who.runs[p.run], {s, d, run, stimuli, who.code}, run);
-                const auto cells = values_of(run.outline, who.runs[p.run].trials);
+                const auto cells = compute_cells(run.outline, who.runs[p.run].trials);
                 values.push_back(cells ? compared_value(run.outline, *cells) : std::nullopt);
             }
             for (power_at& at : p.at)

@@ -2,7 +2,6 @@
 #include "study/experiment/sequence.hpp"
 
 #include <algorithm>
-#include <array>
 #include <numeric>
 #include <span>
 

@@ -2,7 +2,6 @@
 #include "study/experiment/simulated.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <limits>
 
@@ -27,11 +26,10 @@ constexpr double least_cost = 1e-3;
 template <class T>
 T simulation_value(std::string_view key, std::string_view text, T low, T high)
 {
-    T v{};
-    const auto [end, code] = std::from_chars(text.data(), text.data() + text.size(), v);
-    if (code != std::errc() || end != text.data() + text.size() || !(v >= low && v <= high))
+    const auto v = detail::number_in<T>(text);
+    if (!v || !(*v >= low && *v <= high))
         refuse_simulation(fmt::format("{} is \"{}\", not {} to {}", key, text, low, high));
-    return v;
+    return *v;
 }
 
 double mean_distance(const std::vector<point>& a, const std::vector<point>& b)

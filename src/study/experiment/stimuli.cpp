@@ -9,8 +9,9 @@
 
 #include <tactor/error.hpp>
 
+#include "core/marks.hpp"
 #include "core/sha256.hpp"
-#include "study/experiment/definition_words.hpp"
+#include "study/experiment/definition.hpp"
 
 namespace tactor::study {
 namespace {
@@ -66,7 +67,7 @@ stimulus stimulus_set::make(const motion_definition& motion, const method_defini
     const auto blame = [&](const error& e) {
         return error(e.kind(), motion.where,
                      fmt::format("motion \"{}\" by method \"{}\" (line {}): {}: {}", motion.name, method.name,
-                                 method.where.line, e.subject(), e.why()),
+                                 method.where.line, detail::plain(e.subject()), e.why()),
                      in_definition_words(e.hint()));
     };
     try {

@@ -223,10 +223,9 @@ std::string apparatus_section(const study_facts& f)
                         }));
     text += arrays_text(f);
     text += "\n### Sound\n\n";
-    text += fmt::format("Sample rate (Hz): {}. Channels: {}. Device: {}. Sound server between tactor and the "
-                        "device: {}.\n",
-                        words_of(f, "rate"), words_of(f, "channels"), words_of(f, "device"),
-                        words_of(f, "sound_server"));
+    text += fmt::format(
+        "Sample rate (Hz): {}. Channels: {}. Device: {}. Sound server between tactor and the device: {}.\n",
+        words_of(f, "rate"), words_of(f, "channels"), words_of(f, "device"), words_of(f, "sound_server"));
     text += "\n### Levels and thresholds\n\n";
     text += fmt::format("Level: {}. Thresholds: {}.\n\n", told(f, level_text), told(f, assumed_text));
     text += thresholds_table(f);

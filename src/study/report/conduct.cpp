@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "study/report/conduct.hpp"
+#include "study/report/sections.hpp"
 
 #include <algorithm>
 #include <set>

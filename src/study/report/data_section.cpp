@@ -3,7 +3,6 @@
 
 #include <fmt/format.h>
 
-#include "core/words.hpp"
 #include "study/report/markdown.hpp"
 #include "study/report/sections.hpp"
 

@@ -15,18 +15,15 @@ namespace {
 using named_text = std::pair<std::string_view, std::string_view>;
 
 constexpr std::array<named_text, 3> algorithms{
-    {{"park2016",
-      "the target's place was sampled once each SOA, and each place got one burst (Park et al. 2016, section "
-      "2.2). With the\nlaw above the duration $d$ of a burst is no longer than the SOA (Eq. 11), so that "
-      "bursts never overlap."},
+    {{"park2016", "the target's place was sampled once each SOA, and each place got one burst (Park et al. "
+                  "2016, section 2.2). With the\nlaw above the duration $d$ of a burst is no longer than the "
+                  "SOA (Eq. 11), so that bursts never overlap."},
      {"tactile-brush",
       "bursts at the path's ends and where it crosses a line of the grid (Tactile Brush, Israr and Poupyrev "
       "2011), where the\ntarget is at $\\tau_0, \\tau_1, \\ldots$ With the law $\\mathrm{SOA} = a\\,d + b$ "
-      "and "
-      "$m_0 = 0$:\n$m_{i+1} = (\\tau_{i+1} - \\tau_i - b + (1 - a)\\,m_i) / (1 + a)$, "
-      "$\\mathrm{onset}_i = \\tau_i - m_i$, $d_i = m_i + m_{i+1}$, and\n$d_i = m_i$ of the last, so that the "
-      "last "
-      "burst ends with the target. Bursts overlap, also on one tactor."},
+      "and $m_0 = 0$:\n$m_{i+1} = (\\tau_{i+1} - \\tau_i - b + (1 - a)\\,m_i) / (1 + a)$, $\\mathrm{onset}_i "
+      "= \\tau_i - m_i$, $d_i = m_i + m_{i+1}$, and\n$d_i = m_i$ of the last, so that the last burst ends "
+      "with the target. Bursts overlap, also on one tactor."},
      {"continuous", "no bursts: the intensities of the phantom model were computed along the path and "
                     "interpolated for each sample."}}};
 
@@ -42,10 +39,9 @@ constexpr std::array<named_text, 5> phantoms{
       "$A_i = b_i A_v$ with $b_i$ the barycentric coordinates of the place in its Delaunay triangle."},
      {"log", "$A_i = \\log_2(1 + b_i)\\,A_v$ with $b_i$ the barycentric coordinates of the place in its "
              "Delaunay triangle."},
-     {"gaussian",
-      "All tactors, $g_i = e^{-d_i^2 / (2 \\sigma^2)}$ with $\\sigma$ of 0.6 times the pitch, "
-      "$A_i$ in proportion to $g_i$ and normalised\nto $\\sum A_i^2 = A_v^2$, without those under "
-      "1 % of the largest (after Yun, Oh and Choi 2019)."}}};
+     {"gaussian", "All tactors, $g_i = e^{-d_i^2 / (2 \\sigma^2)}$ with $\\sigma$ of 0.6 times the pitch, "
+                  "$A_i$ in proportion to $g_i$ and normalised\nto $\\sum A_i^2 = A_v^2$, without those "
+                  "under 1 % of the largest (after Yun, Oh and Choi 2019)."}}};
 
 template <std::size_t N>
 std::string text_of(const std::array<named_text, N>& all, std::string_view name)

@@ -40,16 +40,15 @@ std::string methods_text(const study_facts& f, const dataset& d, const analysis&
 {
     std::string text = fmt::format("# Methods: {}\n\n", title_of(f, d));
     if (a.simulated)
-        text +=
-            fmt::format("> **SIMULATED: nobody was asked.** The answers come from a model ({}). They test "
-                        "the software and say nothing\n> about people.\n\n",
-                        told(f, [](const session_facts& s) {
-                            return plain(s.facts()["simulation"].text().value_or(""));
-                        }));
-    text += fmt::format("{}{} from the files of the study; what they do not say is \"{}\". "
-                        "Lengths are in mm with x to the\nright and y down, levels in dB below full scale "
-                        "(dBFS) unless said otherwise.\n",
-                        mark, version(), not_recorded);
+        text += fmt::format("> **SIMULATED: nobody was asked.** The answers come from a model ({}). They "
+                            "test the software and say nothing\n> about people.\n\n",
+                            told(f, [](const session_facts& s) {
+                                return plain(s.facts()["simulation"].text().value_or(""));
+                            }));
+    text += fmt::format(
+        "{}{} from the files of the study; what they do not say is \"{}\". Lengths are in mm with x to "
+        "the\nright and y down, levels in dB below full scale (dBFS) unless said otherwise.\n",
+        mark, version(), not_recorded);
     text += participants_section(f, a);
     text += apparatus_section(f);
     text += stimuli_section(f);

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <map>
 #include <optional>
@@ -8,8 +7,8 @@
 
 #include <fmt/format.h>
 
+#include "core/split.hpp"
 #include "core/words.hpp"
-#include "study/report/conduct.hpp"
 #include "study/report/markdown.hpp"
 #include "study/report/sections.hpp"
 
@@ -25,13 +24,12 @@ struct age_value {
 
 std::optional<age_value> read_age(const std::string& text)
 {
-    age_value a;
-    a.at_least = text.ends_with('+');
-    const char* end = text.data() + text.size() - (a.at_least ? 1 : 0);
-    const auto [stop, failed] = std::from_chars(text.data(), end, a.years);
-    if (failed != std::errc() || stop != end || !(a.years >= 0.0 && a.years < 200.0))
+    const bool at_least = text.ends_with('+');
+    const auto years =
+        detail::number_in<double>(std::string_view(text).substr(0, text.size() - (at_least ? 1 : 0)));
+    if (!years || !(*years >= 0.0 && *years < 200.0))
         return {};
-    return a;
+    return age_value{*years, at_least};
 }
 
 std::string ages_text(const study_facts& f)

@@ -7,7 +7,6 @@
 
 #include "core/words.hpp"
 #include "study/experiment/sequence.hpp"
-#include "study/report/conduct.hpp"
 #include "study/report/markdown.hpp"
 #include "study/report/sections.hpp"
 
@@ -112,17 +111,15 @@ std::string randomisation(const study_facts& f)
     text +=
         fmt::format("Order of the runs: {}.\n\nSeeds: {}.\n\n", told(f, order_of), told(f, seed_of_session));
     if (own)
-        text += fmt::format(
-            "The order of the runs is a row of a Williams square (Williams 1949), chosen by the "
-            "participant's "
-            "code. In each run\nmotions and methods, or motions and orders of the two methods, come equally "
-            "often "
-            "as far as the number of trials\nallows, in a random order (Fisher-Yates) with no more than {} "
-            "trials of one motion in a row, drawn anew until that is\nso. Random numbers: xoshiro256** "
-            "(Blackman and Vigna 2018), seeded by the SHA-256 of \"seed/experiment/code/run\";\nbounded "
-            "draws "
-            "after Lemire (2019). A void trial comes again at the end of its run, exempt from that.\n\n",
-            most_in_a_row);
+        text +=
+            fmt::format("The order of the runs is a row of a Williams square (Williams 1949), chosen by the "
+                        "participant's code. In each run\nmotions and methods, or motions and orders of the "
+                        "two methods, come equally often as far as the number of trials\nallows, in a random "
+                        "order (Fisher-Yates) with no more than {} trials of one motion in a row, drawn anew "
+                        "until that is\nso. Random numbers: xoshiro256** (Blackman and Vigna 2018), seeded "
+                        "by the SHA-256 of \"seed/experiment/code/run\";\nbounded draws after Lemire (2019). "
+                        "A void trial comes again at the end of its run, exempt from that.\n\n",
+                        most_in_a_row);
     return text;
 }
 

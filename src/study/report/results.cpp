@@ -199,13 +199,12 @@ constexpr std::array<reference, 10> references{
 std::string results_section(const analysis& a)
 {
     std::string text = fmt::format("\n## Results{}\n\n", a.simulated ? " (SIMULATED)" : "");
-    text +=
-        "Each participant's trials become one value for each cell, void ones left out; all means are of "
-        "participants. t tests\nare two-sided; d and d_z with intervals from the noncentral t distribution; "
-        "sign-flip p are exact; p of motions also\nadjusted by Holm (1979). Analyses of variance are of "
-        "repeated measures, each effect against its interaction with\nparticipants; sphericity by Mauchly "
-        "(1940) and Greenhouse and Geisser (1959); eta squared partial and generalised\n(Olejnik and Algina "
-        "2003); pairs of motions by Tukey's studentized range.\n";
+    text += "Each participant's trials become one value for each cell, void ones left out; all means are of "
+            "participants. t tests\nare two-sided; d and d_z with intervals from the noncentral t "
+            "distribution; sign-flip p are exact; p of motions also\nadjusted by Holm (1979). Analyses of "
+            "variance are of repeated measures, each effect against its interaction with\nparticipants; "
+            "sphericity by Mauchly (1940) and Greenhouse and Geisser (1959); eta squared partial and "
+            "generalised\n(Olejnik and Algina 2003); pairs of motions by Tukey's studentized range.\n";
     for (const run_analysis& r : a.runs)
         text += run_results(r, a.simulated);
     if (!a.warnings.empty()) {

@@ -4,9 +4,11 @@
 /// the words and equations (TeX between dollar signs) of stimuli with their sources.
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include <tactor/plan.hpp>
 
@@ -62,5 +64,23 @@ void check_report_name(const std::filesystem::path& file);
 /// that was read as input or, without `force`, one that is no report of tactor; runtime for what the system
 /// refuses.
 void write_report(const std::filesystem::path& file, const std::string& text, bool force);
+
+/// Returns whether and where the target of a run was shown before the first stimulus.
+std::string animation_text(const session_facts& s, std::size_t run);
+
+/// Returns the masking noise that was played, with its device.
+std::string masking_text(const session_facts& s);
+
+/// Returns what the participant saw: a page or a terminal.
+std::string display_text(const session_facts& s);
+
+/// Returns when the participant agreed to the consent text.
+std::string consent_text(const session_facts& s);
+
+/// Returns which tactors were confirmed as felt before the runs, and when.
+std::string walk_text(const session_facts& s);
+
+/// Returns the days on which the session was held, UTC, in order and each once.
+std::vector<std::string> session_days(const session_facts& s);
 
 } // namespace tactor::study

@@ -159,10 +159,9 @@ std::string stimuli_section(const study_facts& f)
 {
     std::string text = "\n## Stimuli\n\n### Carrier and timing\n\n";
     text += fmt::format("Carrier: {}.\n\n", told(f, carrier_text));
-    text +=
-        fmt::format("Timing law (Eq. 1 of Park et al. 2016, from Israr and Poupyrev 2011), the SOA being the "
-                    "time from onset to onset:\n{}.\n",
-                    told(f, law_text));
+    text += fmt::format("Timing law (Eq. 1 of Park et al. 2016, from Israr and Poupyrev 2011), the SOA being "
+                        "the time from onset to onset:\n{}.\n",
+                        told(f, law_text));
     text += "\n### Methods of rendering\n";
     std::vector<std::string> methods;
     for (const session_facts& s : f.sessions)

@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-#include "files/plan/json_values.hpp"
+#include "files/plan/json_value.hpp"
 #include "session/say.hpp"
 #include "study/bids/acq_time.hpp"
 #include "study/session/session_facts.hpp"
@@ -52,10 +52,8 @@ person_session::person_session(const prepared_experiment& p, session_store& stor
 
 void person_session::hold()
 {
-    session::say(
-        stderr,
-        "Keys of the experimenter: r repeats the trial, v makes the one before void, p pauses, g goes "
-        "on, q or Ctrl-C stops.\n");
+    session::say(stderr, "Keys of the experimenter: r repeats the trial, v makes the one before void, p "
+                         "pauses, g goes on, q or Ctrl-C stops.\n");
     do {
         for (session_step s = flow_.next(); s.what != step_kind::over; s = flow_.next())
             step(s);
@@ -110,7 +108,7 @@ void person_session::note_stream()
     if (!begun_)
         return;
     ++stream_;
-    const stream_setup& d = stage_.session().setup();
+    const stream_setup& d = stage_.setup();
     json all = store_.facts().contains("streams") ? store_.facts()["streams"] : json::array();
     all.push_back(
         {{"stream", stream_},
@@ -124,8 +122,8 @@ void person_session::note_stream()
          {"format", std::string(to_string(d.format))},
          {"period_frames", d.period_frames},
          {"buffer_frames", d.buffer_frames},
-         {"realtime", stage_.session().stats().realtime},
-         {"locked_memory", stage_.session().locked_memory()}});
+         {"realtime", stage_.stats().realtime},
+         {"locked_memory", stage_.locked_memory()}});
     store_.note("streams", all);
 }
 

@@ -3,23 +3,43 @@
 /// A session with somebody at a terminal or before a page: takes the steps of a session_flow on the stage.
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <string>
 #include <string_view>
 
 #include <nlohmann/json.hpp>
 
+#include <tactor/array.hpp>
+#include <tactor/stroke.hpp>
+
 #include "study/bids/session_store.hpp"
+#include "study/experiment/page_words.hpp"
 #include "study/experiment/session_flow.hpp"
 #include "study/session/page_screens.hpp"
 #include "study/session/participant_page.hpp"
 #include "study/session/prepared.hpp"
-#include "study/session/run_table.hpp"
 #include "study/session/session_keys.hpp"
 #include "study/session/stage.hpp"
-#include "study/session/target_display.hpp"
+#include "study/session/trials.hpp"
 
 namespace tactor::study {
+
+/// Shows a moving target on a terminal. One thread.
+class target_display {
+public:
+    target_display() = default;
+    virtual ~target_display() = default;
+    target_display(const target_display&) = delete;
+    target_display& operator=(const target_display&) = delete;
+
+    /// Returns whether a target moves there; else a line stands for it.
+    virtual bool moves() const = 0;
+    /// Shows a target. Returns the function that draws it at a time from its start, s; the picture lasts as
+    /// long as that function, and as the three arguments.
+    virtual std::function<void(double t_s)> show(const array& a, const stroke& target,
+                                                 const page_words& words) = 0;
+};
 
 /// What sounds, for the data.
 struct session_devices {

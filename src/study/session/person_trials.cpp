@@ -10,7 +10,7 @@
 #include "session/say.hpp"
 #include "study/bids/acq_time.hpp"
 #include "study/session/person_session.hpp"
-#include "study/session/session_time.hpp"
+#include "study/session/prepared.hpp"
 #include "study/session/trials.hpp"
 
 namespace tactor::study {
@@ -92,7 +92,7 @@ given_stimulus person_session::give(const session_step& s, const planned_trial& 
         g = stage_.give(stimuli, stimulus_lead_s, [&](std::uint64_t) {
             heed();
             if (repeat_ || quit_)
-                stage_.cut();
+                stage_.cancel();
         });
     }
     heed(); // what was pressed too early is no answer

@@ -4,12 +4,12 @@
 
 #include <fmt/format.h>
 
-#include "files/plan/json_values.hpp"
+#include "files/plan/json_value.hpp"
 #include "session/say.hpp"
 #include "session/walk.hpp"
 #include "study/bids/acq_time.hpp"
-#include "study/session/array_walk.hpp"
 #include "study/session/person_session.hpp"
+#include "study/session/prepared.hpp"
 
 namespace tactor::study {
 namespace {

@@ -1,18 +1,28 @@
 // SPDX-License-Identifier: MIT
 #include "study/session/prepared.hpp"
 
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
 #include <optional>
+#include <set>
+#include <string>
+#include <tuple>
 #include <utility>
 
 #include <fmt/format.h>
 
+#include <tactor/error.hpp>
+
 #include "files/plan/plan_json.hpp"
 #include "session/device.hpp"
-#include "study/session/array_walk.hpp"
-#include "study/session/calibration_facts.hpp"
-#include "study/session/limit_check.hpp"
+#include "session/walk.hpp"
+#include "study/experiment/definition.hpp"
+#include "study/session/session_facts.hpp"
+#include "synth/score/drive_room.hpp"
 
 namespace tactor::study {
+
 namespace {
 
 // Returns what `tactor plan --format json` prints of a stroke.
@@ -42,6 +52,100 @@ bool assume_thresholds(array& a, bool nobody_feels)
         a.tactors[i].threshold_dbfs = assumed_threshold_dbfs;
     return true;
 }
+
+constexpr std::size_t block_frames = 4096;
+
+bool sound_alike(const score& a, const score& b)
+{
+    const std::size_t bytes = block_frames * a.channels() * bytes_of(format_kind::float32);
+    std::vector<std::byte> of_a(bytes);
+    std::vector<std::byte> of_b(bytes);
+    renderer one(a, format_kind::float32);
+    renderer other(b, format_kind::float32);
+    for (std::uint64_t at = 0; at < a.frames(); at += block_frames) {
+        one.process(of_a);
+        other.process(of_b);
+        if (of_a != of_b)
+            return false;
+    }
+    return true;
+}
+
+drive_limits without_time(drive_limits l)
+{
+    l.max_drive_s = l.window_s;
+    return l;
+}
+
+void check(const experiment_definition& d, const planned_trial& t, const stimulus_set& stimuli,
+           const drive_limits& l)
+{
+    const score planned = stimuli.make_score(t);
+    if (sound_alike(planned, stimuli.make_score(t, l)))
+        return;
+    const bool of_time = sound_alike(planned, stimuli.make_score(t, without_time(l)));
+    const motion_definition& m = d.motions[t.motion];
+    std::string by = fmt::format("method \"{}\"", d.methods[t.method_1].name);
+    if (t.method_2)
+        by += fmt::format(" and then by \"{}\"", d.methods[*t.method_2].name);
+    throw error(error_kind::bad_input, m.where,
+                fmt::format("motion \"{}\" by {}: {} would change it", m.name, by,
+                            of_time ? fmt::format("[limits] max_drive_s, {} s in {} s for one tactor,",
+                                                  l.max_drive_s, l.window_s)
+                                    : fmt::format("[limits] power_dbfs, {:.4g} dB,", l.power_dbfs)),
+                of_time ? "shorter strokes, or other limits where the actuators bear them"
+                        : "a lower level, or other limits where the actuators bear them");
+}
+
+/// A session without a person or a device, in frames.
+class time_keeper {
+public:
+    time_keeper(const prepared_experiment& p, double answer_s)
+        : p_(p),
+          room_(p.render.channels, session::settle_limits({}, p.where), p.render.rate),
+          answer_s_(answer_s)
+    {
+    }
+
+    run_time run(const run_sequence& s)
+    {
+        const run_definition& r = p_.definition.runs[s.run];
+        const std::uint64_t began = now_;
+        run_time t;
+        for (const auto* trials : {&s.practice, &s.trials})
+            for (const planned_trial& one : *trials)
+                trial(r, one, t);
+        t.total_s = seconds(now_ - began);
+        now_ += frames(r.break_s);
+        return t;
+    }
+
+private:
+    void trial(const run_definition& r, const planned_trial& one, run_time& t)
+    {
+        const score stimuli = p_.stimuli.make_score(one);
+        const double shown_s =
+            r.animation ? p_.definition.motions[one.motion].drawn.motion.duration_s() : 0.0;
+        now_ += frames(p_.definition.rest_s);
+        const std::uint64_t wait = room_.wait(stimuli, now_ + frames(shown_s + stimulus_lead_s)).value_or(0);
+        t.waits += wait > 0 ? 1 : 0;
+        t.waits_s += seconds(wait);
+        now_ += wait + frames(shown_s + stimulus_lead_s);
+        room_.played(stimuli, now_);
+        now_ += stimuli.frames() + frames(answer_s_);
+    }
+
+    double seconds(std::uint64_t n) const { return static_cast<double>(n) / p_.render.rate; }
+    std::uint64_t frames(double s) const
+    {
+        return static_cast<std::uint64_t>(std::llround(s * p_.render.rate));
+    }
+
+    const prepared_experiment& p_;
+    synth::drive_room room_;
+    double answer_s_;
+    std::uint64_t now_ = 0;
+};
 
 } // namespace
 
@@ -89,6 +193,43 @@ prepared_experiment prepare(const session_request& r, session::settings& s)
             std::move(stimuli),
             std::move(warnings),
             std::move(doubts)};
+}
+
+score walk_score(const experiment_definition& d, const array& a, const render_options& o, unsigned tactor)
+{
+    const double carrier_hz = d.methods.front().options.carrier_hz;
+    try {
+        return score(a, session::walk_plan(a, tactor, carrier_hz), o);
+    } catch (const error& e) {
+        throw e.reworded(e.subject(), fmt::format("in the walk before the runs: {}", e.why()),
+                         in_definition_words(e.hint()));
+    }
+}
+
+void check_walk(const experiment_definition& d, const array& a, const render_options& o)
+{
+    for (unsigned i = 0; i < a.tactors.size(); ++i)
+        static_cast<void>(walk_score(d, a, o, i));
+}
+
+void check_limits(const experiment_definition& d, const std::vector<run_sequence>& runs,
+                  const stimulus_set& stimuli, const drive_limits& l)
+{
+    std::set<std::tuple<std::size_t, std::size_t, std::size_t>> seen;
+    for (const run_sequence& r : runs)
+        for (const auto* list : {&r.practice, &r.trials})
+            for (const planned_trial& t : *list)
+                if (seen.insert({t.motion, t.method_1, t.method_2.value_or(t.method_1)}).second)
+                    check(d, t, stimuli, l);
+}
+
+std::vector<run_time> session_times(const prepared_experiment& p, double answer_s)
+{
+    time_keeper keeper(p, answer_s);
+    std::vector<run_time> all;
+    for (const run_sequence& s : p.runs)
+        all.push_back(keeper.run(s));
+    return all;
 }
 
 } // namespace tactor::study

@@ -3,16 +3,20 @@
 
 #include <algorithm>
 
+#include <fmt/format.h>
+
 #include <tactor/version.hpp>
 
 #include "core/sha256.hpp"
-#include "files/plan/json_values.hpp"
+#include "files/plan/json_value.hpp"
 #include "files/plan/plan_sound.hpp"
-#include "study/session/calibration_facts.hpp"
+#include "session/threshold_carrier.hpp"
 
 namespace tactor::study {
+
 namespace {
 
+using files::or_null;
 using json = nlohmann::ordered_json;
 
 json array_facts(const array& a)
@@ -43,11 +47,19 @@ json run_names(const prepared_experiment& p)
     return names;
 }
 
+json tactor_facts(const calibrated_tactor& t)
+{
+    return {{"tactor", t.tactor},
+            {"threshold_dbfs", or_null(t.threshold_dbfs)},
+            {"sd_db", or_null(t.sd_db)},
+            {"trials", t.trials}};
+}
+
 } // namespace
 
 json level_facts(const experiment_definition& d)
 {
-    return {{"sl_db", d.level_dbfs ? json(nullptr) : json(d.sl_db)}, {"dbfs", files::or_null(d.level_dbfs)}};
+    return {{"sl_db", d.level_dbfs ? json(nullptr) : json(d.sl_db)}, {"dbfs", or_null(d.level_dbfs)}};
 }
 
 json masking_facts(const masking_definition& m)
@@ -104,6 +116,40 @@ json describe_session(const prepared_experiment& p, const std::optional<simulati
     j["streams"] = json::array();
     j["date"] = nullptr;
     return j;
+}
+
+std::vector<std::string> calibration_doubts(const std::string& participant, const session::environment& e,
+                                            const stimulus_set& stimuli)
+{
+    if (!e.config.calibration)
+        return {};
+    const calibration_origin& c = *e.config.calibration;
+    std::vector<std::string> doubts;
+    if (c.simulated)
+        doubts.emplace_back("the thresholds were simulated: nobody was asked");
+    if (!participant.empty() && c.participant != participant)
+        doubts.push_back(
+            fmt::format("the thresholds are of participant {}, not {}", c.participant, participant));
+    std::vector<const plan*> plans;
+    for (const stimulus* s : stimuli.all())
+        plans.push_back(&s->plan);
+    if (std::string other = session::other_carrier(e, plans); !other.empty())
+        doubts.push_back(std::move(other));
+    return doubts;
+}
+
+json calibration_facts(const prepared_experiment& p)
+{
+    if (!p.where.config.calibration)
+        return nullptr;
+    const calibration_origin& c = *p.where.config.calibration;
+    json tactors = json::array();
+    for (const calibrated_tactor& t : c.tactors)
+        tactors.push_back(tactor_facts(t));
+    return {{"participant", c.participant}, {"method", c.method},         {"rule", or_null(c.rule)},
+            {"carrier_hz", c.carrier_hz},   {"interval_s", c.interval_s}, {"feedback", or_null(c.feedback)},
+            {"masker", or_null(c.masker)},  {"date", or_null(c.date)},    {"seed", or_null(c.seed)},
+            {"simulated", c.simulated},     {"tactors", tactors},         {"warnings", p.calibration_doubts}};
 }
 
 } // namespace tactor::study

@@ -6,7 +6,6 @@
 #include <cstdint>
 #include <optional>
 
-#include "net/listen.hpp"
 #include "study/session/key_input.hpp"
 #include "study/session/participant_page.hpp"
 #include "study/session/stage.hpp"

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: MIT
-#include "study/session/simulated_session.hpp"
 
 #include <cmath>
 #include <cstdint>

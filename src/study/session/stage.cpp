@@ -12,8 +12,6 @@
 namespace tactor::study {
 namespace {
 
-constexpr int look_ms = 40; // 25 times a second
-
 // A buffer of 40 ms: nothing waits for the noise but its own beginning.
 constexpr unsigned masker_period_frames = 480;
 constexpr unsigned masker_periods = 4;
@@ -22,11 +20,8 @@ constexpr unsigned masker_channels = 2;
 } // namespace
 
 stage::stage(const alsa_options& device, const session::stream_options& o, const session::environment& e,
-             session::stream_source source)
-    : environment_(e),
-      options_(o),
-      session_(device, options_, e, std::move(source)),
-      room_(session_.setup().channels, session::settle_limits(options_, environment_), session_.setup().rate)
+             const session::stream_source& source)
+    : play_session(device, o, e, source), room_(setup().channels, session::settle_limits(o, e), setup().rate)
 {
 }
 
@@ -40,7 +35,7 @@ std::string given_stimulus::fault() const
 double stage::room_s(const score& s, double lead_s) const
 {
     const std::uint64_t at =
-        before_ + session_.position().played + static_cast<std::uint64_t>(std::llround(lead_s * s.rate()));
+        before_ + position().played + static_cast<std::uint64_t>(std::llround(lead_s * s.rate()));
     const std::uint64_t wait = room_.wait(s, at).value_or(0); // it never has room: it will be told as changed
     return static_cast<double>(wait) / s.rate();
 }
@@ -73,8 +68,8 @@ void stage::mask(const std::string& pcm, const masking_options& o)
 
 void stage::check_signal() const
 {
-    if (session_.signal() != 0)
-        throw left{session_.signal()};
+    if (signal() != 0)
+        throw left{signal()};
 }
 
 bool stage::fade_in()
@@ -87,7 +82,7 @@ bool stage::fade_in()
     }
     masker_->fade_in();
     const bool full = masker_->wait_for(masking_state::full, [this](int descriptor, int timeout_ms) {
-        return session_.wait_for(descriptor, timeout_ms);
+        return play_session::wait_for(descriptor, timeout_ms);
     });
     check_signal();
     return full;
@@ -107,19 +102,18 @@ given_stimulus stage::give(const score& s, double lead_s, const watcher& watch)
         return g;
     }
     const unsigned breaks = masker_ ? masker_->breaks() : 0;
-    const player_stats before = session_.stats();
+    const player_stats before = stats();
     // A frame that is known before: where it is late all the same the report says by how much, to the frame.
-    const std::uint64_t at = session_.position().played + session_.setup().buffer_frames +
+    const std::uint64_t at = position().played + setup().buffer_frames +
                              static_cast<std::uint64_t>(std::llround(lead_s * s.rate()));
-    const stroke_report r = session_.play(
-        s,
-        [&](const player_position* where) {
-            if (where != nullptr)
-                watch(where->stroke_frame);
-        },
-        start_at::frame(at));
+    const auto gone = submit(s, start_at::frame(at));
+    const stroke_report r = gone ? *gone : follow([&] {
+        if (const auto frame = stroke_frame())
+            watch(*frame);
+        return session::look{.most_ms = session::frame_ms};
+    });
     check_signal();
-    const player_stats after = session_.stats();
+    const player_stats after = stats();
     g.xruns = static_cast<unsigned>(after.xruns - before.xruns);
     g.limited =
         after.drives_cut != before.drives_cut || after.power_limited_frames != before.power_limited_frames;
@@ -142,30 +136,31 @@ given_stimulus stage::give(const score& s, double lead_s, const watcher& watch)
 
 bool stage::pass(double seconds, const std::function<bool(double)>& watch)
 {
-    const std::uint64_t began = session_.position().played;
+    const std::uint64_t began = position().played;
     for (;;) {
-        const std::uint64_t now = session_.position().played;
-        const double passed_s = static_cast<double>(now - std::min(now, began)) / session_.setup().rate;
+        const std::uint64_t now = position().played;
+        const double passed_s = static_cast<double>(now - std::min(now, began)) / setup().rate;
         if (passed_s >= seconds || !watch(passed_s))
             return true;
-        if (session_.lost())
+        if (lost())
             return false;
         const double left_ms = std::ceil((seconds - passed_s) * 1e3);
-        static_cast<void>(session_.wait_for(-1, static_cast<int>(std::min<double>(look_ms, left_ms))));
+        static_cast<void>(
+            play_session::wait_for(-1, static_cast<int>(std::min<double>(session::frame_ms, left_ms))));
         check_signal();
     }
 }
 
 void stage::wait_for(int descriptor)
 {
-    if (!session_.wait_for(descriptor))
-        throw left{session_.signal()};
+    if (!play_session::wait_for(descriptor))
+        throw left{signal()};
 }
 
 bool stage::reopen()
 {
-    const std::uint64_t passed = session_.position().played;
-    const bool back = session_.reopen();
+    const std::uint64_t passed = position().played;
+    const bool back = play_session::reopen();
     before_ += back ? passed : 0;
     check_signal();
     return back;
@@ -177,7 +172,7 @@ void stage::finish()
         masker_->fade_out();
         masker_->wait_for(masking_state::silent);
     }
-    session_.end();
+    play_session::finish().check_amplifier();
 }
 
 } // namespace tactor::study

@@ -31,8 +31,8 @@ struct given_stimulus {
     std::string fault() const;
 };
 
-/// One thread.
-class stage {
+/// A session, whose signals end it by exceptions. One thread.
+class stage : public session::play_session {
 public:
     /// The reason for leaving a session.
     struct left {
@@ -42,7 +42,7 @@ public:
 
     /// Opens the device. \throws error.
     stage(const alsa_options& device, const session::stream_options& o, const session::environment& e,
-          session::stream_source source = {});
+          const session::stream_source& source = {});
 
     using sink_opener = std::function<std::unique_ptr<sink>()>;
     /// Noise around each stimulus from now on. \throws error as masker, and what the opener throws.
@@ -62,8 +62,6 @@ public:
     /// waited for where it is there already. \throws left; error where the noise's device cannot be opened
     /// again.
     given_stimulus give(const score& s, double lead_s, const watcher& watch);
-    /// Cuts the stimulus off: for the watcher.
-    void cut() { session_.cancel(); }
 
     /// Noise until fade_out(). False where it does not sound. \throws as give().
     bool fade_in();
@@ -78,9 +76,6 @@ public:
     /// Waits for a descriptor. \throws left.
     void wait_for(int descriptor);
 
-    const session::play_session& session() const noexcept { return session_; }
-    /// Whether the device is gone.
-    bool lost() const { return session_.lost(); }
     /// Waits for it. False where it did not come back. \throws left.
     bool reopen();
     /// Ends the streams in silence. \throws error where the amplifier may be on.
@@ -89,9 +84,6 @@ public:
 private:
     void check_signal() const;
 
-    const session::environment& environment_;
-    session::stream_options options_;
-    session::play_session session_;
     sink_opener open_masker_ = {};
     masking_options masking_ = {};
     std::unique_ptr<masker> masker_; ///< null: no noise

@@ -3,10 +3,12 @@
 /// What simulated and real sessions share: lines of trials, and where a session that goes on is.
 #pragma once
 
-#include <string>
+#include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "study/bids/session_store.hpp"
+#include "study/experiment/simulated.hpp"
 #include "study/session/prepared.hpp"
 
 namespace tactor::study {
@@ -23,5 +25,30 @@ run_queue replay(const prepared_experiment& p, const run_sequence& s, const std:
 
 /// Whether all trials of all runs are there. Throws as above.
 bool finished(const prepared_experiment& p, const session_store& store);
+
+/// Lines of one run, with times that count from its first sample at the DAC.
+class run_table {
+public:
+    /// Goes on after what is there. `practice`: the lines before the run, which do not count.
+    run_table(session_store& store, const run_definition& r, bool practice);
+
+    std::size_t rows() const noexcept { return rows_; }
+    /// Settles the onset and writes the line; it is on the disk when this returns. `started_ns` is
+    /// CLOCK_REALTIME at the trial's first frame, or when it was to begin. \throws error (runtime).
+    void add(trial_row& row, std::int64_t started_ns, unsigned rate);
+
+private:
+    session_store& store_;
+    const run_definition& run_;
+    bool practice_;
+    std::size_t rows_ = 0;
+    unsigned first_stream_ = 0;
+    std::optional<std::uint64_t> first_frame_ = {}; ///< of that stream
+    std::optional<std::int64_t> began_ns_ = {};     ///< CLOCK_REALTIME
+};
+
+/// Holds all trials that are left, without a device: a model answers, and it takes no time. Returns the
+/// signal that ended it, or 0. \throws error.
+int simulate_session(const prepared_experiment& p, const simulation& s, session_store& store);
 
 } // namespace tactor::study

@@ -16,19 +16,6 @@
 namespace tactor::study {
 namespace {
 
-double mean_of(std::span<const double> v)
-{
-    return std::accumulate(v.begin(), v.end(), 0.0) / static_cast<double>(v.size());
-}
-
-double sd_of(std::span<const double> v, double mean)
-{
-    double squares = 0.0;
-    for (const double x : v)
-        squares += (x - mean) * (x - mean);
-    return std::sqrt(squares / static_cast<double>(v.size() - 1));
-}
-
 // The noncentrality with which P(T <= t) is `below`: it falls as the noncentrality grows.
 double noncentrality(double t, double df, double below)
 {
@@ -88,6 +75,19 @@ std::vector<share> all_sums(std::span<const double> values, double equal)
 
 } // namespace
 
+double mean(std::span<const double> values)
+{
+    return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
+}
+
+double deviation(std::span<const double> values, double mean)
+{
+    double squares = 0.0;
+    for (const double x : values)
+        squares += (x - mean) * (x - mean);
+    return std::sqrt(squares / static_cast<double>(values.size() - 1));
+}
+
 bool varies(std::span<const double> values, double rounding)
 {
     double largest = 0.0;
@@ -120,7 +120,7 @@ t_test quick_test_mean(std::span<const double> values, double against, double ro
     r.n = values.size();
     if (values.empty())
         return r;
-    r.mean = mean_of(values);
+    r.mean = mean(values);
     if (values.size() < 2)
         return r;
     r.df = static_cast<double>(r.n - 1);
@@ -128,7 +128,7 @@ t_test quick_test_mean(std::span<const double> values, double against, double ro
         r.se = 0.0;
         return r;
     }
-    r.se = sd_of(values, *r.mean) / std::sqrt(static_cast<double>(r.n));
+    r.se = deviation(values, *r.mean) / std::sqrt(static_cast<double>(r.n));
     r.t = (*r.mean - against) / *r.se;
     r.p = p_of_t(*r.t, *r.df);
     return r;
@@ -151,7 +151,7 @@ t_test test_mean(std::span<const double> values, double against, double rounding
     if (!r.t)
         return r;
     const double root_n = std::sqrt(static_cast<double>(r.n));
-    const double sd = sd_of(values, *r.mean);
+    const double sd = deviation(values, *r.mean);
     const double wide = boost::math::quantile(boost::math::students_t_distribution<>(*r.df), 0.975) * *r.se;
     r.ci = interval{*r.mean - wide, *r.mean + wide};
     r.d = (*r.mean - against) / sd;

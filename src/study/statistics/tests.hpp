@@ -15,6 +15,12 @@ namespace tactor::study {
 /// Both ends of a 95 % interval.
 using interval = std::pair<double, double>;
 
+/// Returns the mean of one value or more.
+double mean(std::span<const double> values);
+
+/// Returns the standard deviation (n - 1) of two values or more with this mean.
+double deviation(std::span<const double> values, double mean);
+
 /// A one-sample t test; a paired test is that of the differences against 0. What n = 1 or no variance leaves
 /// undefined is not there; so is all where n = 0.
 struct t_test {

@@ -5,14 +5,12 @@
 
 #include <fmt/format.h>
 
-#include <tactor/error.hpp>
-
 #include "core/refused.hpp"
 #include "synth/mix/mixer.hpp"
 
 namespace tactor::synth {
 
-guard_settings guards_of(const drive_limits& l, unsigned rate)
+guard_settings make_guards(const drive_limits& l, unsigned rate)
 {
     check_limits(l);
     const auto frames = [rate](double s) { return static_cast<std::uint64_t>(std::llround(s * rate)); };

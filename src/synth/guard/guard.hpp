@@ -28,7 +28,7 @@ struct guard_settings {
 /// \throws error (bad_input) for impossible ones.
 void check_limits(const drive_limits& l);
 /// Converts limits to a sample rate. Throws like check_limits().
-guard_settings guards_of(const drive_limits& l, unsigned rate);
+guard_settings make_guards(const drive_limits& l, unsigned rate);
 
 /// Limits n samples to -limit ... limit; NaN becomes 0. Returns the number of changed samples, not counting
 /// rounding noise.

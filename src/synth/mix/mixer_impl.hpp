@@ -151,7 +151,7 @@ struct mixer::impl {
     std::size_t frame_bytes = 0;
     std::vector<strip> strips;
     std::vector<std::uint32_t> sounding;
-    schedule voices;
+    voice_list voices;
     fades fading;
     std::vector<leaver> leaving; ///< since the last pass over the voices
     carrier_block carrier;

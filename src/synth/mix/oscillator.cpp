@@ -13,7 +13,7 @@ namespace tactor::synth {
 namespace {
 
 /// Distributes the bits of a frequency over `rows`: Knuth's multiplicative hash.
-std::size_t row_of(double cycles_per_frame, std::size_t rows) noexcept
+std::size_t hash_row(double cycles_per_frame, std::size_t rows) noexcept
 {
     return static_cast<std::size_t>((std::bit_cast<std::uint64_t>(cycles_per_frame) * 0x9E3779B97F4A7C15U) >>
                                     40) %
@@ -96,7 +96,7 @@ std::size_t oscillator_tables::place_for_new(const std::array<double, places>& k
 
 const oscillator_table& oscillator_tables::get(double cycles_per_frame) noexcept
 {
-    const std::size_t number = row_of(cycles_per_frame, rows);
+    const std::size_t number = hash_row(cycles_per_frame, rows);
     auto& keys = keys_[number];
     for (std::size_t i = 0; i < places; ++i)
         if (keys[i] == cycles_per_frame)

@@ -52,7 +52,7 @@ void sample_ranges::add(const float* samples, std::size_t frames) noexcept
     widen(samples + rows * low_.size(), frames % abreast_, channels_, low_.data(), high_.data());
 }
 
-sample_ranges::range sample_ranges::of(std::size_t channel) const noexcept
+sample_ranges::range sample_ranges::range_at(std::size_t channel) const noexcept
 {
     range all{low_[channel], high_[channel]};
     for (std::size_t i = channel; i < low_.size(); i += channels_) {

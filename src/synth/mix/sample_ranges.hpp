@@ -20,7 +20,7 @@ public:
         float high = 0.0F;
     };
     /// Returns the range of a channel. \pre there was a frame.
-    range of(std::size_t channel) const noexcept;
+    range range_at(std::size_t channel) const noexcept;
 
     /// Begins anew.
     void clear() noexcept;

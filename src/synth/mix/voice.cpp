@@ -50,7 +50,7 @@ bool adds_up(const voice& a, const voice& b) noexcept
     return a.stroke_place == b.stroke_place && (a.sound->is_sine() || a.phase == b.phase);
 }
 
-schedule::schedule(std::size_t capacity) : voices_(capacity)
+voice_list::voice_list(std::size_t capacity) : voices_(capacity)
 {
     free_.reserve(capacity);
     heap_.reserve(capacity);
@@ -58,7 +58,7 @@ schedule::schedule(std::size_t capacity) : voices_(capacity)
     clear();
 }
 
-void schedule::clear() noexcept
+void voice_list::clear() noexcept
 {
     heap_.clear();
     active_.clear();
@@ -68,7 +68,7 @@ void schedule::clear() noexcept
     earliest_end_ = ~std::uint64_t{0};
 }
 
-void schedule::add(voice v) noexcept
+void voice_list::add(voice v) noexcept
 {
     const std::uint32_t slot = free_.back();
     free_.pop_back();
@@ -78,7 +78,7 @@ void schedule::add(voice v) noexcept
     std::push_heap(heap_.begin(), heap_.end(), later);
 }
 
-void schedule::activate(std::uint64_t before) noexcept
+void voice_list::activate(std::uint64_t before) noexcept
 {
     while (!heap_.empty() && heap_.front().start < before) {
         std::pop_heap(heap_.begin(), heap_.end(), later);
@@ -87,7 +87,7 @@ void schedule::activate(std::uint64_t before) noexcept
     }
 }
 
-void schedule::insert(std::uint32_t slot) noexcept
+void voice_list::insert(std::uint32_t slot) noexcept
 {
     // Searches from the end: only a late voice has others after it.
     const voice& v = voices_[slot];
@@ -102,18 +102,18 @@ void schedule::insert(std::uint32_t slot) noexcept
     earliest_end_ = std::min(earliest_end_, v.end);
 }
 
-std::uint64_t schedule::next_start() const noexcept
+std::uint64_t voice_list::next_start() const noexcept
 {
     return heap_.empty() ? ~std::uint64_t{0} : heap_.front().start;
 }
 
-void schedule::retire(std::uint64_t by) noexcept
+void voice_list::retire(std::uint64_t by) noexcept
 {
     if (earliest_end_ <= by)
         forget_active([by](const voice& v) { return v.end <= by; });
 }
 
-void schedule::heapify() noexcept
+void voice_list::heapify() noexcept
 {
     std::make_heap(heap_.begin(), heap_.end(), later);
 }

@@ -107,9 +107,9 @@ voice make_voice(const drive_event& e, std::size_t channels) noexcept;
 
 /// A fixed number of voices. Some wait in a heap; the others sound, always in the order of (start, arrival),
 /// so that sums have the same order whatever the block sizes.
-class schedule {
+class voice_list {
 public:
-    explicit schedule(std::size_t capacity);
+    explicit voice_list(std::size_t capacity);
 
     std::size_t available() const noexcept { return free_.size(); }
     std::size_t size() const noexcept { return voices_.size() - free_.size(); }
@@ -156,7 +156,7 @@ private:
 };
 
 template <class Gone>
-void schedule::forget_active(Gone gone) noexcept
+void voice_list::forget_active(Gone gone) noexcept
 {
     std::size_t kept = 0;
     earliest_end_ = ~std::uint64_t{0};
@@ -172,7 +172,7 @@ void schedule::forget_active(Gone gone) noexcept
 }
 
 template <class Gone>
-void schedule::forget_if(Gone gone) noexcept
+void voice_list::forget_if(Gone gone) noexcept
 {
     forget_active(gone);
     std::size_t kept = 0;

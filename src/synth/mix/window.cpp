@@ -15,7 +15,7 @@ double turns(std::int64_t k, std::uint64_t ramp) noexcept
     return static_cast<double>(k % period) / static_cast<double>(period);
 }
 
-double cycles_of(std::uint64_t ramp) noexcept
+double ramp_cycles(std::uint64_t ramp) noexcept
 {
     return 0.5 / static_cast<double>(ramp);
 }
@@ -41,7 +41,7 @@ void half_cosine(oscillator_tables& tables, std::int64_t first, std::uint64_t ra
 {
     if (p.empty())
         return;
-    const oscillator_table& t = tables.get(cycles_of(ramp));
+    const oscillator_table& t = tables.get(ramp_cycles(ramp));
     for_each_part(first, p.lo, p.hi, [&](const table_part& q) {
         times_cosine(t, sincos_cycles(turns(q.base, ramp)), 0.5, scale, q, out);
     });

@@ -21,7 +21,7 @@ struct burst_window {
     bool operator==(const burst_window&) const = default;
 };
 
-/// These do the same as the functions below, for a burst_window.
+/// Do the same as the functions below, for a burst_window.
 double window_at(std::int64_t k, const burst_window& w) noexcept;
 bool window_is_flat(std::int64_t from, std::int64_t to, const burst_window& w) noexcept;
 void window_block(oscillator_tables& tables, std::int64_t first, const burst_window& w, unsigned lo,

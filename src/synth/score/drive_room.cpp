@@ -49,7 +49,7 @@ bool drive_piece(drive_guard& g, const score& s, std::uint64_t clock)
 } // namespace
 
 drive_room::drive_room(std::size_t channels, const drive_limits& l, unsigned rate)
-    : drive_room(channels, guards_of(l, rate))
+    : drive_room(channels, make_guards(l, rate))
 {
 }
 

@@ -26,7 +26,6 @@ struct event_source::impl {
             free_points.push_back(&p);
         }
         heap.reserve(expanders.size());
-        begin_items();
     }
 
     static bool later(const expander* a, const expander* b) noexcept
@@ -35,8 +34,8 @@ struct event_source::impl {
                                                     : a->item_number() > b->item_number();
     }
 
-    void begin_items() noexcept;
-    void pop() noexcept;
+    void move_on();
+    void begin_items();
     void release(expander* e) noexcept;
 
     std::shared_ptr<const score::impl> piece;
@@ -46,24 +45,22 @@ struct event_source::impl {
     std::vector<control_points*> free_points;
     std::vector<expander*> heap;
     std::size_t next_item = 0;
-    std::string failure;
-    std::uint64_t failed_at = 0;
+    bool popped = false; ///< the first event of the heap
 };
 
 /// Lets every item begin that may have the next event.
-void event_source::impl::begin_items() noexcept
+void event_source::impl::begin_items()
 {
     const std::deque<item>& items = piece->list.items;
     while (next_item < items.size() &&
            (heap.empty() || items[next_item].start <= heap.front()->event().start)) {
-        control_points* p = nullptr;
-        if (items[next_item].kind == item_kind::continuous) {
-            p = free_points.back();
-            free_points.pop_back();
-        }
+        const bool is_continuous = items[next_item].kind == item_kind::continuous;
         expander* e = free_expanders.back();
+        e->begin(*piece, next_item, is_continuous ? free_points.back() : nullptr);
+        ++next_item;
         free_expanders.pop_back();
-        e->begin(*piece, next_item++, p);
+        if (is_continuous)
+            free_points.pop_back();
         if (e->done()) {
             release(e);
             continue;
@@ -73,29 +70,29 @@ void event_source::impl::begin_items() noexcept
     }
 }
 
-void event_source::impl::pop() noexcept
+/// Takes the first event off the heap.
+void event_source::impl::move_on()
 {
+    expander* e = heap.front();
     std::pop_heap(heap.begin(), heap.end(), later);
-    expander* e = heap.back();
-    heap.pop_back();
-    e->advance();
-    if (e->done()) {
-        release(e);
-        return;
+    try {
+        e->advance();
+    } catch (...) { // it still has that event
+        std::push_heap(heap.begin(), heap.end(), later);
+        throw;
     }
-    heap.push_back(e);
-    std::push_heap(heap.begin(), heap.end(), later);
+    popped = false;
+    if (e->done()) {
+        heap.pop_back();
+        release(e);
+    } else {
+        std::push_heap(heap.begin(), heap.end(), later);
+    }
 }
 
-/// Takes an expander back that is done. Where one fails, the whole score ends.
+/// Takes an expander back that is done.
 void event_source::impl::release(expander* e) noexcept
 {
-    if (e->failed()) {
-        failure = std::move(e->points()->failure);
-        failed_at = e->position();
-        heap.clear();
-        next_item = piece->list.items.size();
-    }
     free_expanders.push_back(e);
     if (e->points() != nullptr)
         free_points.push_back(e->points());
@@ -109,27 +106,17 @@ event_source::~event_source() = default;
 event_source::event_source(event_source&&) noexcept = default;
 event_source& event_source::operator=(event_source&&) noexcept = default;
 
-const drive_event* event_source::peek() noexcept
+const drive_event* event_source::peek()
 {
+    if (impl_->popped)
+        impl_->move_on();
+    impl_->begin_items();
     return impl_->heap.empty() ? nullptr : &impl_->heap.front()->event();
-}
-
-const std::string& event_source::failure() const noexcept
-{
-    return impl_->failure;
-}
-
-std::uint64_t event_source::failed_at() const noexcept
-{
-    return impl_->failed_at;
 }
 
 void event_source::pop() noexcept
 {
-    if (!impl_->heap.empty()) {
-        impl_->pop();
-        impl_->begin_items();
-    }
+    impl_->popped = !impl_->heap.empty();
 }
 
 } // namespace tactor::synth

@@ -5,7 +5,6 @@
 
 #include <cstdint>
 #include <memory>
-#include <string>
 
 #include <tactor/render.hpp>
 
@@ -14,7 +13,7 @@
 namespace tactor::synth {
 
 /// Walks through a score in order of start frame. Memory does not grow with the length of what was
-/// walked through; next() does not allocate after the constructor. Control side, one thread at a time.
+/// walked through. Control side, one thread at a time.
 class event_source {
 public:
     explicit event_source(const score& s);
@@ -22,16 +21,11 @@ public:
     event_source(event_source&&) noexcept;
     event_source& operator=(event_source&&) noexcept;
 
-    /// The next event, or nothing at the end; does not move on.
-    const drive_event* peek() noexcept;
-    /// Moves on.
+    /// Returns the next event, or nothing at the end; does not move on. Throws std::bad_alloc where there is
+    /// no memory for a sample of a continuous plan; the event is then there when it is asked for again.
+    const drive_event* peek();
+    /// Moves on from what peek() returned.
     void pop() noexcept;
-
-    /// Why there is no next event although the score has not ended: a plan threw, or gave something that
-    /// cannot be rendered. Empty while all is well.
-    const std::string& failure() const noexcept;
-    /// Frame of the score up to which the failed plan could be followed.
-    std::uint64_t failed_at() const noexcept;
 
 private:
     struct impl;

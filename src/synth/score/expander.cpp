@@ -7,7 +7,7 @@
 
 namespace tactor::synth {
 
-void expander::begin(const score::impl& s, std::size_t item_number, control_points* points) noexcept
+void expander::begin(const score::impl& s, std::size_t item_number, control_points* points)
 {
     score_ = &s;
     item_ = &s.list.items[item_number];
@@ -18,22 +18,16 @@ void expander::begin(const score::impl& s, std::size_t item_number, control_poin
     step_ = 0;
     next_ = 0;
     done_ = false;
-    failing_ = false;
-    failed_ = false;
     if (item_->kind == item_kind::continuous) {
         points_->rows.clear();
+        points_->open = false;
         points_->seen = {};
-        failed_ = !checked_sample(s.plans[item_->plan].plan, 0, s.promised[item_->plan], points_->seen,
-                                  points_->now, points_->failure);
-    }
-    if (failed_) {
-        done_ = true;
-        return;
+        take_sample(0);
     }
     advance();
 }
 
-void expander::advance() noexcept
+void expander::advance()
 {
     switch (item_->kind) {
     case item_kind::burst:
@@ -133,18 +127,14 @@ void expander::marker_event() noexcept
     position_ = item_->end();
 }
 
-void expander::continuous_event() noexcept
+void expander::continuous_event()
 {
-    control_points& c = *points_;
-    while (next_ == c.rows.size()) {
-        const bool told = failed_;
-        if (!told && next_points())
-            continue;
-        if (failed_ && !told)
-            stretch(position_, 0); // what others begin until here comes before the end of all
-        else
+    const control_points& c = *points_;
+    while (c.open || next_ == c.rows.size()) {
+        if (!next_points()) {
             done_ = true;
-        return;
+            return;
+        }
     }
     draw(c.rows[next_++]);
 }

@@ -6,8 +6,6 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <span>
-#include <string>
 #include <vector>
 
 #include "plan/curve_impl.hpp"
@@ -29,26 +27,23 @@ struct control_points {
     std::vector<row> rows; ///< by tactor
     std::array<std::uint16_t, points_per_line> frame{};
     std::size_t count = 0;
-    burst now; ///< the latest of them
+    burst now;         ///< the latest of them
+    bool open = false; ///< more of them are to come
     detail::same_tactors seen;
-    std::string failure; ///< why the plan could not be followed further; empty: it could
 };
 
-/// Gives the events of one item in order of start. Allocates nothing.
+/// Gives the events of one item in order of start. Allocates nothing but what a sample of a continuous plan
+/// needs: begin() and advance() throw std::bad_alloc, and do the rest when they are called again.
 class expander {
 public:
     /// `points` for a continuous item; not to be shared while this expander is in use.
-    void begin(const score::impl& s, std::size_t item_number, control_points* points) noexcept;
+    void begin(const score::impl& s, std::size_t item_number, control_points* points);
 
     bool done() const noexcept { return done_; }
     const drive_event& event() const noexcept { return event_; }
     std::size_t item_number() const noexcept { return number_; }
     control_points* points() const noexcept { return points_; }
-    void advance() noexcept;
-    /// Whether it was done before the item's end because the plan failed: points()->failure says why.
-    bool failed() const noexcept { return failed_; }
-    /// Frame of the score up to which there were events.
-    std::uint64_t position() const noexcept { return position_; }
+    void advance();
 
 private:
     void stretch(std::uint64_t start, std::uint64_t length) noexcept;
@@ -56,9 +51,10 @@ private:
     void draw(const control_points::row& r) noexcept;
     void burst_event() noexcept;
     void joined_event() noexcept;
-    void continuous_event() noexcept;
+    void continuous_event();
     void marker_event() noexcept;
-    bool next_points() noexcept;
+    void take_sample(std::uint64_t step);
+    bool next_points();
 
     const score::impl* score_ = nullptr;
     const item* item_ = nullptr;
@@ -69,8 +65,6 @@ private:
     std::uint64_t step_ = 0;     ///< continuous: number of the latest control point
     std::size_t next_ = 0;       ///< drive, member or row that is next
     bool done_ = true;
-    bool failing_ = false; ///< the plan cannot be followed beyond the latest control point
-    bool failed_ = false;
     drive_event event_;
 };
 
@@ -90,15 +84,5 @@ joined_stretch join_members(const item_member* members, std::size_t count, std::
 
 /// Frame of control point k of a stroke of `length` frames, from its start. Points beyond the end are at it.
 std::uint64_t control_frame(std::uint64_t k, unsigned rate, std::uint64_t length) noexcept;
-
-/// \throws error (bad_input) where a continuous plan drives a tactor that is not there, gives an impossible
-///         amplitude, or is out of order.
-void check_drives(const burst& b, double t_s, std::size_t tactors);
-
-/// Sample k of a continuous plan, in order of tactor. False, with the reason in `failure`, where it cannot be
-/// computed, drives a tactor that is not there, or gives an amplitude that is impossible or above the one
-/// `promised` for the tactor. Allocates only then.
-bool checked_sample(const plan& p, std::uint64_t k, std::span<const double> promised,
-                    detail::same_tactors& seen, burst& out, std::string& failure) noexcept;
 
 } // namespace tactor::synth

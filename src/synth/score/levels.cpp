@@ -26,32 +26,33 @@ double level_db(const array& a, std::size_t i, const render_options& o)
     const double level = o.level_dbfs + t.gain_db;
     if (!(level <= 1e-9)) {
         refuse_tactor(
-            a, i,
+            a, i, o,
             fmt::format(
                 "would be driven at {:.4g} dBFS, above full scale: gain_db = {} on a level of {} dBFS", level,
                 t.gain_db, o.level_dbfs),
-            fmt::format("lower gain_db, or level_dbfs to {:.4g} or less", -t.gain_db));
+            fmt::format("lower gain_db, or {{level_dbfs}} to {:.4g} or less", -t.gain_db));
     }
     return level;
 }
 
 } // namespace
 
-void refuse_tactor(const array& a, std::size_t i, std::string_view why, std::string_view hint)
+void refuse_tactor(const array& a, std::size_t i, const render_options& o, std::string_view why,
+                   std::string_view hint)
 {
     const source_place& at = a.tactors[i].where;
     const std::string name = fmt::format("tactor {}", i);
     if (at.text().empty())
-        throw error(error_kind::bad_input, name, why, hint);
+        throw error(error_kind::bad_input, name, why, hint).with_field(o.sl_db ? "sl_db" : "level_dbfs");
     throw error(error_kind::bad_input, at, fmt::format("{} {}", name, why), hint);
 }
 
 void refuse_unmeasured(const array& a, std::size_t i, const render_options& o)
 {
-    refuse_tactor(a, i,
+    refuse_tactor(a, i, o,
                   fmt::format("has no threshold_dbfs, but a sensation level of {} dB is asked for",
                               o.sl_db.value_or(0.0)),
-                  "measure its detection threshold, or use level_dbfs");
+                  "run {command:calibrate}, or use {level_dbfs}");
 }
 
 std::vector<std::size_t> unmeasured_tactors(const array& a, const render_options& o)

@@ -34,12 +34,13 @@ double threshold_factor(const tactor_spec& t, double hz);
 double tactor_limit(const array& a, std::size_t i);
 
 /// \throws error (bad_input): the tactor's line in the array file and number, why and hint.
-[[noreturn]] void refuse_tactor(const array& a, std::size_t i, std::string_view why, std::string_view hint);
+[[noreturn]] void refuse_tactor(const array& a, std::size_t i, const render_options& o, std::string_view why,
+                                std::string_view hint);
 
 /// Compares the levels that the items ask of each tactor, added up where they sound together, with its limit
 /// and with full scale. For continuous strokes, too, these are bounds, not samples. Returns the greatest
-/// level of each tactor, linear, and stores in the score what its continuous plans may not exceed. Tactors
-/// that nobody measured must not be driven, and have no gain afterwards. \throws error (bad_input) with the
+/// level of each tactor, linear. Tactors that nobody measured must not be driven, and have no gain
+/// afterwards. \throws error (bad_input) with the
 /// tactor's line.
 std::vector<double> check_peaks(score::impl& s, const array& a, const render_options& o);
 

@@ -11,7 +11,7 @@
 
 #include <tactor/error.hpp>
 
-#include "synth/score/continuous_items.hpp"
+#include "synth/score/continuous_peaks.hpp"
 #include "synth/score/expander.hpp"
 #include "synth/score/levels.hpp"
 
@@ -87,8 +87,8 @@ private:
     std::vector<double> factors_;
 };
 
-/// What a continuous item asks of each tactor.
-using continuous_peaks_of = std::function<std::vector<double>(std::size_t number)>;
+/// Amplitudes that a continuous plan asks of each of so many tactors at most.
+using asked_of_each = std::function<std::vector<double>(const plan& p, std::size_t tactors)>;
 
 double joined_peak(const score::impl& s, std::size_t number)
 {
@@ -101,7 +101,7 @@ double joined_peak(const score::impl& s, std::size_t number)
     return peak;
 }
 
-sweep swept(const score::impl& s, const continuous_peaks_of& continuous)
+sweep swept(const score::impl& s, const asked_of_each& continuous)
 {
     sweep all(s.tactors.size());
     const item_list& list = s.list;
@@ -113,9 +113,11 @@ sweep swept(const score::impl& s, const continuous_peaks_of& continuous)
             all.note(it.tactor, it, from, joined_peak(s, i), s.equalised(it.tactor, it.plan, it.start));
             break;
         case item_kind::continuous: {
-            const std::vector<double> peaks = continuous(i);
-            for (std::size_t k = 0; k < peaks.size(); ++k)
-                all.note(k, it, from, peaks[k], s.most_equalised(k, it.plan));
+            const std::vector<double> peaks = continuous(s.plans[it.plan].plan, s.tactors.size());
+            for (std::size_t k = 0; k < peaks.size(); ++k) {
+                const double factor = s.most_equalised(k, it.plan); // at the carrier that needs most
+                all.note(k, it, from, peaks[k] * (std::abs(s.tactors[k].gain) * factor), factor);
+            }
             break;
         }
         case item_kind::marker:
@@ -146,14 +148,14 @@ void check(const array& a, std::size_t i, double peak, double factor, const rend
     const std::string driven = fmt::format("would be driven at {:.4g} dBFS, above {}", in_db(peak), limit);
     const char* raise = limited ? ", or raise max_dbfs" : "";
     if (o.sl_db)
-        refuse_tactor(a, i,
+        refuse_tactor(a, i, o,
                       fmt::format("{}: with its threshold of {:.4g} dBFS {:.2f} dB are missing", driven,
                                   threshold_at(a.tactors[i], reference_hz).value_or(0.0) + in_db(factor),
                                   excess_db),
-                      fmt::format("lower sl_db by {:.2f} dB or more{}", excess_db, raise));
+                      fmt::format("lower {{sl_db}} by {:.2f} dB or more{}", excess_db, raise));
     refuse_tactor(
-        a, i, driven,
-        fmt::format("lower level_dbfs or the tactor's gain_db by {:.2f} dB or more{}", excess_db, raise));
+        a, i, o, driven,
+        fmt::format("lower {{level_dbfs}} or the tactor's gain_db by {:.2f} dB or more{}", excess_db, raise));
 }
 
 /// Whatever drove them after all, nobody would feel it at full scale.
@@ -172,7 +174,6 @@ double in_db(double amplitude)
 
 std::vector<double> check_peaks(score::impl& s, const array& a, const render_options& o)
 {
-    continuous_items continuous(s, a);
     const auto within = [&](const std::vector<double>& peaks) {
         for (std::size_t i = 0; i < peaks.size(); ++i)
             if (!(peaks[i] <= tactor_limit(a, i)))
@@ -181,22 +182,22 @@ std::vector<double> check_peaks(score::impl& s, const array& a, const render_opt
                             [&](std::size_t i) { return peaks[i] > 0.0; });
     };
     // Nearly always the intensities say that all is well, and hours need not be looked through.
-    if (continuous.have_bounds()) {
-        std::vector<double> bounds = swept(s, [&](std::size_t i) { return continuous.bounds(i); }).peaks();
-        if (within(bounds)) {
-            s.promised = continuous.promised();
-            silence_unmeasured(s);
-            return bounds;
-        }
-    }
-    sweep all = swept(s, [&](std::size_t i) { return continuous.peaks(i); });
+    bool exact = true;
+    sweep all = swept(s, [&exact](const plan& p, std::size_t tactors) {
+        std::vector<double> bounds = continuous_bounds(p, tactors);
+        exact = exact && bounds.empty();
+        return bounds.empty() ? continuous_peaks(p, tactors) : bounds;
+    });
     std::vector<double> peaks = all.peaks();
+    if (!exact && !within(peaks)) {
+        all = swept(s, continuous_peaks);
+        peaks = all.peaks();
+    }
     for (const std::size_t i : s.unmeasured)
         if (peaks[i] > 0.0)
             refuse_unmeasured(a, i, o);
     for (std::size_t i = 0; i < peaks.size(); ++i)
         check(a, i, peaks[i], all.factors()[i], o);
-    s.promised = continuous.promised();
     silence_unmeasured(s);
     return peaks;
 }

@@ -2,7 +2,6 @@
 #include "synth/score/score.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <deque>
 #include <functional>
 #include <span>

@@ -80,8 +80,6 @@ struct score::impl {
     std::vector<std::size_t> unmeasured;      ///< see synth::unmeasured_tactors()
     std::vector<tactor_spec> measured;        ///< thresholds by frequency; empty where they do not count
     std::vector<double> limits;               ///< by channel
-    /// By plan and tactor, for continuous plans: greatest amplitude that levels were checked with.
-    std::vector<std::vector<double>> promised;
     /// By tactor: greatest level that it is driven with, linear; 0 where it is not driven. A continuous
     /// stroke counts for all tactors. The boost for a slow actuator's rise is not included.
     std::vector<double> asked;

@@ -66,7 +66,7 @@ void fourier_sum(spectrum& x)
     }
 }
 
-// Bluestein 1970: a sum of any length is a convolution, whose length may be a power of 2.
+// Computes a sum of any length as a convolution, whose length may be a power of 2 (Bluestein 1970).
 spectrum fourier_coefficients(std::span<const float> x, std::size_t count)
 {
     const std::size_t m = x.size();

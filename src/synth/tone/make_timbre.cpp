@@ -36,7 +36,7 @@ std::array<double, 6> integrate(const carrier_point& from, const carrier_point& 
             time_s * -b[3] / 6.0};
 }
 
-std::vector<course_part> course_of(const std::vector<carrier_point>& points, unsigned rate)
+std::vector<course_part> make_course(const std::vector<carrier_point>& points, unsigned rate)
 {
     std::vector<course_part> parts;
     double cycles = 0.0;
@@ -74,7 +74,7 @@ void check_length(const recording& r, unsigned rate)
     const double frames = static_cast<double>(r.samples.size()) * rate / r.rate_hz;
     if (frames > most_loop_frames) {
         throw error(
-            error_kind::bad_input, detail::name_of(r),
+            error_kind::bad_input, detail::recording_name(r),
             fmt::format("it lasts {:.6g} s, which is too long at a rate of {} Hz", frames / rate, rate),
             fmt::format("give at most {:.6g} s", most_loop_frames / rate));
     }
@@ -121,7 +121,7 @@ void fill_in(timbre& t, const plan& p, unsigned rate)
             w.kind == waveform_kind::recording ? recorded_cycle(*w.recorded, harmonics)
                                                : shape_cycle(w.kind, std::min(harmonics, most_harmonics)));
     }
-    t.power = power_of(*t.samples);
+    t.power = wave_power(*t.samples);
 }
 
 bool sound_alike(const plan& a, const plan& b)
@@ -140,7 +140,7 @@ std::shared_ptr<const timbre> make_timbre(const plan& p, unsigned rate)
         return nullptr;
     auto t = std::make_shared<timbre>();
     t->cycles_per_frame = p.carrier_hz / rate;
-    t->course = course_of(p.course, rate);
+    t->course = make_course(p.course, rate);
     if (modulated) {
         t->am_cycles_per_frame = p.am.hz / rate;
         t->am_depth = p.am.depth;

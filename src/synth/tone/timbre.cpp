@@ -84,7 +84,7 @@ void read_loop(const wave_samples& loop, std::int64_t first, unsigned n, double*
 }
 
 /// Computes the second wave, which makes the envelope of all frames equal.
-TACTOR_CLONES void rest_of(double power, unsigned n, double* x) noexcept
+TACTOR_CLONES void complete_envelope(double power, unsigned n, double* x) noexcept
 {
     double* __restrict o = x;
     for (unsigned j = 0; j < n; ++j) {
@@ -186,7 +186,7 @@ void timbre::fill(std::int64_t first, std::int64_t origin, unsigned n, double* o
     else
         follow(*this, first, origin, n, w, out);
     if (w == wave::cosine && !is_sine())
-        rest_of(power, n, out);
+        complete_envelope(power, n, out);
 }
 
 void modulate_block(oscillator_tables& tables, double cycles_per_frame, double depth, std::int64_t first,

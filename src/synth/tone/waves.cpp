@@ -2,7 +2,6 @@
 #include "synth/tone/waves.hpp"
 
 #include <algorithm>
-#include <array>
 #include <bit>
 #include <cmath>
 #include <numeric>
@@ -23,7 +22,7 @@ constexpr std::size_t points_a_period = 32;
 /// Margin for a peak between two points, and for rounding.
 constexpr double above_peak = 1.0 + 2e-5;
 
-double peak_of(const wave_samples& x)
+double find_peak(const wave_samples& x)
 {
     return static_cast<double>(std::accumulate(
         x.begin(), x.end(), 0.0F, [](float most, float v) { return std::max(most, std::abs(v)); }));
@@ -68,9 +67,9 @@ constexpr double least_peak = 1e-5;
 void require_left(double peak, const recording& r)
 {
     if (!(peak >= least_peak)) {
-        throw error(error_kind::bad_input, detail::name_of(r),
+        throw error(error_kind::bad_input, detail::recording_name(r),
                     "nothing of it is left below half its own rate and the stream's",
-                    "give a slower vibration, a lower carrier_hz or a higher rate");
+                    "give a slower vibration, a lower {carrier_hz} or a higher rate");
     }
 }
 
@@ -95,7 +94,7 @@ std::vector<float> unit_samples(const recording& r)
 }
 
 /// Returns the real part of the sum of harmonics, from half a cycle before the start on.
-wave_samples cycle_of(spectrum harmonics)
+wave_samples make_cycle(spectrum harmonics)
 {
     const std::size_t points = harmonics.size();
     for (std::size_t h = 1; h < points; h += 2)
@@ -107,7 +106,7 @@ wave_samples cycle_of(spectrum harmonics)
     return x;
 }
 
-double harmonic_of(waveform_kind shape, std::size_t h)
+double harmonic_amplitude(waveform_kind shape, std::size_t h)
 {
     const auto n = static_cast<double>(h);
     const bool odd = h % 2 == 1;
@@ -198,8 +197,8 @@ wave_samples shape_cycle(waveform_kind shape, std::size_t harmonics)
 {
     spectrum x(points_for(harmonics));
     for (std::size_t h = 1; h <= harmonics; ++h)
-        x[h] = {0.0, -harmonic_of(shape, h)}; // -i exp(i a) has the sine of a
-    wave_samples cycle = cycle_of(std::move(x));
+        x[h] = {0.0, -harmonic_amplitude(shape, h)}; // -i exp(i a) has the sine of a
+    wave_samples cycle = make_cycle(std::move(x));
     scale(cycle, cycle_peak(cycle));
     return cycle;
 }
@@ -212,7 +211,7 @@ wave_samples recorded_cycle(const recording& r, std::size_t harmonics)
     const spectrum c = fourier_coefficients(unit_samples(r), harmonics + 1);
     spectrum x(points_for(harmonics));
     std::copy(c.begin() + 1, c.end(), x.begin() + 1);
-    wave_samples cycle = cycle_of(std::move(x));
+    wave_samples cycle = make_cycle(std::move(x));
     const double peak = cycle_peak(cycle);
     require_left(peak, r);
     scale(cycle, peak);
@@ -235,7 +234,7 @@ wave_samples noise_loop(double low_hz, double high_hz, std::uint64_t seed, unsig
     wave_samples loop(frames);
     std::transform(x.begin(), x.end(), loop.begin(),
                    [](const std::complex<double>& v) { return static_cast<float>(v.real()); });
-    scale(loop, peak_of(loop));
+    scale(loop, find_peak(loop));
     return loop;
 }
 
@@ -249,13 +248,13 @@ wave_samples recorded_loop(const recording& r, unsigned rate)
     const double mean = std::accumulate(x.begin(), x.end(), 0.0) / static_cast<double>(x.size());
     for (float& v : x)
         v = static_cast<float>(static_cast<double>(v) - mean);
-    const double peak = peak_of(x);
+    const double peak = find_peak(x);
     require_left(peak, r);
     scale(x, peak);
     return x;
 }
 
-double power_of(const wave_samples& x) noexcept
+double wave_power(const wave_samples& x) noexcept
 {
     const double sum = std::accumulate(x.begin(), x.end(), 0.0, [](double s, float v) {
         return s + static_cast<double>(v) * static_cast<double>(v);

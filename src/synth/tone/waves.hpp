@@ -36,7 +36,7 @@ wave_samples noise_loop(double low_hz, double high_hz, std::uint64_t seed, unsig
 wave_samples recorded_loop(const recording& r, unsigned rate);
 
 /// Returns twice the mean square, but at least 1.
-double power_of(const wave_samples& x) noexcept;
+double wave_power(const wave_samples& x) noexcept;
 
 using spectrum = std::vector<std::complex<double>>;
 

@@ -74,7 +74,7 @@ private:
     pid_t pid_ = -1;
 };
 
-/// The line is free some time after the holder switched it off.
+/// Waits until the line is free: that is some time after the holder switched it off.
 std::unique_ptr<enable_line> open_when_free()
 {
     const std::int64_t until = now_ns() + 5'000'000'000;
@@ -90,7 +90,7 @@ std::unique_ptr<enable_line> open_when_free()
 
 } // namespace
 
-TEST_CASE("the amplifier is off until told, follows, and is free again at once")
+TEST_CASE("the amplifier is off by default, follows, and is free again at once")
 {
     for (int i = 0; i < 5; ++i) {
         auto amp = open_amplifier(amplifier());
@@ -124,7 +124,7 @@ TEST_CASE("the player keeps no copy of the line, and the holder none of the play
     CHECK_THROWS_AS(open_amplifier(amplifier()), error);
 }
 
-// Looking at the line takes time of its own: the numbers are upper bounds.
+// Reading the line takes time itself: the numbers are upper bounds.
 TEST_CASE("the line is off within 200 ms of the player's end or stop")
 {
     for (const int number : {SIGKILL, SIGTERM, SIGINT, SIGHUP, SIGSTOP}) {
@@ -147,7 +147,7 @@ TEST_CASE("the line is off within 200 ms of the player's end or stop")
     }
 }
 
-TEST_CASE("a holder that was killed leaves the line to the player, which switches it off")
+TEST_CASE("a killed holder leaves the line to the player, which switches it off")
 {
     amplifier_settings s = amplifier();
     const auto amp = open_amplifier(s);

@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Outputs and inputs through the kernel.
-#include <cerrno>
-#include <memory>
 #include <string>
-#include <vector>
 
 #include <poll.h>
 #include <sys/wait.h>
@@ -149,7 +146,7 @@ TEST_CASE("a busy line is named with its holder")
           "GPIO line 3 of " + chip().path() + ": busy: another tactor holds it (stop that one first)");
 }
 
-TEST_CASE("a user who may not open the chip is told so")
+TEST_CASE("a user who may not open the chip gets that reason")
 {
     int ends[2] = {-1, -1};
     REQUIRE(::pipe(ends) == 0);
@@ -172,7 +169,7 @@ TEST_CASE("a user who may not open the chip is told so")
     CHECK(text.find("sudo usermod -aG ") != std::string::npos);
 }
 
-TEST_CASE("an offset beyond the chip and a label that is not there are errors")
+TEST_CASE("an offset beyond the chip and a missing label are errors")
 {
     CHECK(complaint(at(1000)).find("no line 1000") != std::string::npos);
     CHECK(complaint({.chip = "no such label", .offset = 1}).find(listed().label) != std::string::npos);
@@ -201,11 +198,11 @@ TEST_CASE("pulls arrive as edges, stamped by the kernel in CLOCK_MONOTONIC")
     }
 }
 
-TEST_CASE("edges that wait keep the descriptor readable and come in order")
+TEST_CASE("waiting edges keep the descriptor readable and come in order")
 {
     chip().pull(5, false);
     const auto in = open_edges(at(5), edge_kind::both, 0.0);
-    // Pulls that follow each other at once would be one interrupt.
+    // Pulls without a pause would be one interrupt.
     chip().pull(5, true);
     REQUIRE(waits(*in, 5000));
     chip().pull(5, false);
@@ -225,7 +222,7 @@ TEST_CASE("edges that wait keep the descriptor readable and come in order")
     CHECK(!in->read());
 }
 
-TEST_CASE("only the edges asked for arrive, and a burst counts once")
+TEST_CASE("only the requested edges arrive, and a burst counts once")
 {
     for (const bool rising : {true, false}) {
         chip().pull(5, false);
@@ -238,7 +235,7 @@ TEST_CASE("only the edges asked for arrive, and a burst counts once")
         const auto first = in->read();
         REQUIRE(first.has_value());
         CHECK(first->rising == rising);
-        waits(*in, 100); // what bounced
+        waits(*in, 100); // bounces
         CHECK(!in->read());
         CHECK(!in->read());
     }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// The other side of a gpio-sim chip: what the hardware would see and do.
+/// The other side of a gpio-sim chip, in place of the hardware.
 #pragma once
 
 #include <cstdint>
@@ -16,18 +16,18 @@ public:
 
     /// /dev/gpiochipN
     std::string path() const;
-    /// What the line is driven to, or read from its pull.
+    /// Returns the driven value of an output, or the pull of an input.
     int value(unsigned line) const;
-    /// Pulls an input up or down, as a button would.
+    /// Pulls an input up or down, like a button.
     void pull(unsigned line, bool up) const;
-    /// CLOCK_MONOTONIC in ns at which the line was first seen low, by looking all the time.
+    /// Polls a line; returns the CLOCK_MONOTONIC time in ns at which it was first low.
     std::optional<std::int64_t> low_at(unsigned line, std::int64_t within_ms) const;
 
 private:
     std::string folder_;
 };
 
-/// The chip that the program was started for.
+/// Returns the chip that the program was started for.
 const sim_chip& chip();
 
 } // namespace tactor::test

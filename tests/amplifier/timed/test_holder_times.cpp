@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: MIT
-// How soon the line goes off, and that beats keep it on: real processes, real time and the limits that ship.
-// The line's own records are what is measured.
+// Latency of switching off, and beats that keep the line on: real processes, real time and the shipped
+// limits. The line's own records are measured.
 #include <csignal>
-#include <memory>
 
 #include <poll.h>
 
@@ -51,7 +50,7 @@ TEST_CASE("a line that is off needs no beats, one that is on does")
     CHECK((s->time_ns - after) / 1'000'000 < promised_ms(h->pid()));
 }
 
-TEST_CASE("a player that is killed in any way leaves the line off soon")
+TEST_CASE("a player killed in any way leaves the line off soon")
 {
     for (const int number : {SIGKILL, SIGTERM, SIGINT, SIGHUP, SIGABRT, SIGSEGV}) {
         CAPTURE(number);

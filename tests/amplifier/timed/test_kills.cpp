@@ -25,8 +25,8 @@ using namespace tactor::test;
 namespace {
 
 constexpr int beat_ms =
-    10; // the engine's is 40: what is measured after the holder's death has so much less in it
-constexpr std::int64_t promised_off_ms = 1000; // 200 in real time, which not everybody may have
+    10; // the engine's is 40: a measurement after the holder's death includes so much less
+constexpr std::int64_t promised_off_ms = 1000; // 200 in real time, which is not always allowed
 
 #if defined(__SANITIZE_THREAD__)
 constexpr bool finds_forks = false;
@@ -71,7 +71,7 @@ void session(fake_line& line)
 struct tally {
     unsigned kills = 0;
     unsigned left_on = 0;
-    std::int64_t worst_ns = 0; ///< that the line was on after the kill, where it went off
+    std::int64_t worst_ns = 0; ///< time that the line was on after the kill, where it went off
 };
 
 // The line's own records, in order.
@@ -129,8 +129,7 @@ double ms(std::int64_t ns)
 
 } // namespace
 
-TEST_CASE("a player that is killed at any system call leaves the line off" *
-          doctest::skip(no_tracing("player")))
+TEST_CASE("a player killed at any system call leaves the line off" * doctest::skip(no_tracing("player")))
 {
     const tally t = kill_everywhere(party::player);
     std::printf("player killed at %u system calls: off after %.1f ms at worst\n", t.kills, ms(t.worst_ns));
@@ -138,8 +137,7 @@ TEST_CASE("a player that is killed at any system call leaves the line off" *
     CHECK(t.worst_ns < promised_off_ms * 1'000'000);
 }
 
-TEST_CASE("a holder that is killed at any system call leaves the line off" *
-          doctest::skip(no_tracing("holder")))
+TEST_CASE("a holder killed at any system call leaves the line off" * doctest::skip(no_tracing("holder")))
 {
     const tally t = kill_everywhere(party::holder);
     std::printf("holder killed at %u system calls: off after %.1f ms at worst, of which %d until the beat\n",
@@ -148,7 +146,7 @@ TEST_CASE("a holder that is killed at any system call leaves the line off" *
     CHECK(t.worst_ns < promised_off_ms * 1'000'000);
 }
 
-TEST_CASE("both killed at any system call: off, or on as it was, which is the stated exception" *
+TEST_CASE("both killed at any system call leave the line off, or on as it was, the stated exception" *
           doctest::skip(no_tracing("both")))
 {
     const tally t = kill_everywhere(party::both);

@@ -25,7 +25,7 @@ long trace(__ptrace_request what, pid_t pid, long data = 0)
     return ::ptrace(what, pid, nullptr, reinterpret_cast<void*>(data));
 }
 
-// The signal that a stop delivers; 0 for stops of ptrace's own.
+// Returns the signal that a stop delivers; 0 for stops of ptrace itself.
 int delivered(int status)
 {
     const bool own =
@@ -42,7 +42,7 @@ int wait_any(pid_t pid, int& status)
     }
 }
 
-// Stopped in a read() of the descriptor until it is told to go.
+// Returns whether the thread waits in a read() of the descriptor.
 pid_t start(const std::function<void()>& session, int& go)
 {
     std::array<int, 2> ends{};
@@ -142,7 +142,7 @@ void traced_session::note_child(pid_t parent, int event)
     }
 }
 
-bool traced_session::is_of(party who, pid_t pid) const
+bool traced_session::belongs_to(party who, pid_t pid) const
 {
     if (who == party::holder)
         return pid == holder_;
@@ -165,7 +165,7 @@ killed traced_session::kill_at(party counted, unsigned nth, party victim, const 
         if (const int event = status >> 16;
             event == PTRACE_EVENT_FORK || event == PTRACE_EVENT_VFORK || event == PTRACE_EVENT_CLONE)
             note_child(pid, event);
-        if (is_of(counted, pid) && stopped_at_entry(pid, status) && calls++ == nth) {
+        if (belongs_to(counted, pid) && stopped_at_entry(pid, status) && calls++ == nth) {
             k.reached = true;
             before();
             strike(victim, k);
@@ -187,7 +187,7 @@ void traced_session::strike(party victim, killed& k)
         k.anybody = ::kill(holder_, SIGKILL) == 0;
 }
 
-// Whoever lives goes on as it would without us. (Who was killed does not stop any more.)
+// Survivors go on untraced. (A killed one does not stop any more.)
 void traced_session::let_go(pid_t stopped)
 {
     if (trace(PTRACE_DETACH, stopped) == 0)
@@ -213,7 +213,7 @@ void traced_session::let_go(pid_t stopped)
     }
 }
 
-// The player is our child; the holder is nobody's.
+// The player is our child; the holder is not.
 void traced_session::wait_for_all()
 {
     int status = 0;

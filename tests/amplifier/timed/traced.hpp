@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// A player and its holder, run under ptrace up to one system call of one of them, where somebody is killed.
+/// A player and its holder, run under ptrace up to one system call of one of them, at which one or both are
+/// killed.
 #pragma once
 
 #include <cstdint>
@@ -13,21 +14,21 @@ namespace tactor::test {
 
 enum class party { player, holder, both };
 
-/// What came of it.
+/// Outcome of a run.
 struct killed {
     bool reached = false;     ///< the session was long enough to have that system call
-    bool anybody = false;     ///< who was to be killed lived
+    bool anybody = false;     ///< the victim was alive
     std::int64_t time_ns = 0; ///< CLOCK_MONOTONIC
 };
 
-/// Whether processes can be traced here, as they cannot where the kernel forbids it or qemu translates.
+/// Returns whether processes can be traced here; not where the kernel forbids it or qemu translates.
 bool can_trace();
 
-/// One run. `session` is what the player does, in as many threads as it likes, or another program that it
-/// becomes; it forks its holder, which is found by its being a grandchild.
+/// A run. `session` is the player's code, in any number of threads, or another program that it becomes; it
+/// forks its holder, which is recognised as a grandchild.
 class traced_session {
 public:
-    /// From which system call of the player on they are counted.
+    /// The system call of the player from which they are counted.
     enum class counts { all, with_holder };
 
     explicit traced_session(const std::function<void()>& session, counts from = counts::all);
@@ -37,14 +38,14 @@ public:
 
     /// Stops `counted` at the entry of its system call number `nth`, from 0, kills `victim`, lets the others
     /// go untraced, and returns when all have ended.
-    /// `before` is called then, shortly before it kills.
+    /// Calls `before` shortly before the kill.
     killed kill_at(
         party counted, unsigned nth, party victim, const std::function<void()>& before = [] {});
 
 private:
     bool stopped_at_entry(pid_t pid, int status) const;
     void note_child(pid_t parent, int event);
-    bool is_of(party who, pid_t pid) const;
+    bool belongs_to(party who, pid_t pid) const;
     void strike(party victim, killed& k);
     void let_go(pid_t stopped);
     void wait_for_all();

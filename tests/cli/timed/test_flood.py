@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""How soon stop is answered, and how much memory the server holds, while many clients send much."""
+"""Latency of stop, and the server's memory, while many clients send much."""
 import json
 import os
 import resource
@@ -26,8 +26,8 @@ def resident(pid):
         return int(file.read().split()[1]) * os.sysconf("SC_PAGE_SIZE")
 
 
-# In a process of its own, which does not keep the bystander waiting for Python's lock: clients that send as fast as they
-# can; the server may refuse them.
+# In a separate process, which does not keep the bystander waiting for Python's lock: clients that send as fast as they can; the
+# server may refuse them.
 FLOOD = """
 import contextlib, socket, sys, threading
 address, count, close_at_once = sys.argv[1], int(sys.argv[2]), sys.argv[3] == "True"
@@ -53,8 +53,7 @@ for t in all_:
 """
 
 
-# The floor: a server that does nothing else, at the same priority, asked in turn with the other. What its answers take,
-# the machine takes.
+# The floor: an idle server at the same priority, asked in turn with the other. Its latency is that of the machine.
 ECHO = """
 import os, socket, sys
 os.setpriority(os.PRIO_PROCESS, 0, int(sys.argv[2]))
@@ -68,8 +67,8 @@ while data := c.recv(100):
 """
 
 
-def figures_of(waits):
-    """The longest, the one that 99 % are below, and the median."""
+def summarise(waits):
+    """Returns the longest, the one that 99 % are below, and the median."""
     waits = sorted(waits)
     return waits[-1], waits[len(waits) * 99 // 100], waits[len(waits) // 2]
 
@@ -77,7 +76,7 @@ def figures_of(waits):
 @unittest.skipIf(resource.getrlimit(resource.RLIMIT_NOFILE)[1] < 1024, "too few descriptors")
 class Flood(ServeTest):
     def look(self, s, data, close_at_once=True):
-        """How long a bystander waits for stop and for the floor, and the most memory, while CLIENTS send `data`."""
+        """Measures how long a bystander waits for stop and for the floor, and the most memory, while CLIENTS send `data`."""
         bystander = s.client()
         floor = self.floor(os.getpriority(os.PRIO_PROCESS, s.process.pid))
         rest = resident(s.process.pid)
@@ -93,18 +92,18 @@ class Flood(ServeTest):
         self.assertIsNone(s.process.poll())
         mine = bystander.ok("play", **LONG)["stroke"]
         bystander.ok("stop")
-        self.assertEqual(bystander.end_of(mine)["state"], "cancelled")
+        self.assertEqual(bystander.await_end(mine)["state"], "cancelled")
         bystander.close()
         floor.close()
         time.sleep(1.0)
         memory = ((most - rest) / MIB, (resident(s.process.pid) - rest) / MIB)
-        for name, figures in (("stop", figures_of(waits)), ("floor", figures_of(least))):
+        for name, figures in (("stop", summarise(waits)), ("floor", summarise(least))):
             print("{:5} longest {:.4f} s, 99 % {:.4f} s, median {:.4f} s".format(name, *figures))
         print("above rest {:.1f} MiB, afterwards {:.1f} MiB".format(*memory))
-        return figures_of(waits), figures_of(least), memory
+        return summarise(waits), summarise(least), memory
 
     def wait(self, client, question, answer):
-        """How long it takes, in seconds. Nothing else is done meanwhile: this process might have to wait for a processor."""
+        """Measures a stop, in seconds. Does nothing else meanwhile: this process might have to wait for a processor."""
         got = b""
         began = time.monotonic()
         client.sendall(question)
@@ -128,7 +127,7 @@ class Flood(ServeTest):
         return client
 
     def hold(self, s, data, **more):
-        """One round in three may meet a scheduler that leaves the service alone without a processor."""
+        """Tests of which a round in three may meet a scheduler that leaves the service without a processor."""
         beyond = []
         for _ in range(3):
             stop, floor, memory = self.look(s, data, **more)
@@ -136,20 +135,20 @@ class Flood(ServeTest):
             self.assertLess(max(memory) * MIB, ABOVE_REST_BYTES)
         self.assertLess(sorted(beyond)[1], STOP_S)
 
-    def test_messages_that_never_end(self):
+    def test_endless_messages_do_not_delay_stop(self):
         for name, data in (("text", b"x" * MIB), ("an open quote", b'"' + b"x" * (MIB - 1)),
                            ("a path", b'{"jsonrpc":"2.0","id":1,"method":"play","params":{"path":"M 0 0' + b" L 9 9" * 170_000)):
             with self.subTest(name):
                 self.hold(self.serve("--socket", self.dir / f"{name[:3].strip()}.sock"), data[:MIB])
 
-    def test_whole_messages(self):
+    def test_whole_messages_do_not_delay_stop(self):
         points = json.dumps({"jsonrpc": "2.0", "id": 1, "method": "play",
                              "params": {"points": [[i / 1000, 20, 20] for i in range(40_000)]}}).encode() + b"\n"
         self.hold(self.serve(), points, close_at_once=False)
         small = json.dumps({"jsonrpc": "2.0", "id": 1, "method": "status"}).encode() + b"\n"
         self.hold(self.serve("--socket", self.dir / "small.sock"), small * 2000, close_at_once=False)
 
-    def test_in_little_memory(self):
+    def test_floods_need_little_memory(self):
         s = self.serve()
         resource.prlimit(s.process.pid, resource.RLIMIT_AS, (256 * MIB, 256 * MIB))
         self.hold(s, b"x" * MIB)
@@ -174,7 +173,7 @@ class Planning(ServeTest):
         print(f"plan beside 20 of 950 kB: longest {max(waits):.3f} s")
         self.assertLess(max(waits), 0.25)
         for one in many:
-            while b"\n" not in one.buffer: # held against no schema: that takes longer than all the rest
+            while b"\n" not in one.buffer:  # without its schema: checking that takes longer than all the rest
                 one.buffer += one.socket.recv(1 << 20)
             self.assertIn(b'"result"', one.buffer[:100])
 

@@ -6,11 +6,11 @@ from serving import ServeTest
 
 
 class OscTimes(ServeTest):
-    def test_time_tags_say_when_the_first_sample_is_at_the_dac(self):
+    def test_a_time_tag_is_the_time_of_the_first_sample_at_the_dac(self):
         began, period_s = begun_by_a_time_tag(self, self.serve("--osc", "0"))
         began.sort(key=abs)
-        # play and drive to the sample, as far as the two clocks' readings agree; the live stroke to a period, and later where the
-        # machine lets the service wait for its turn.
+        # play and drive to the sample, as far as the two clocks' readings agree; the live stroke to a period, and later where
+        # the service waits for its turn.
         self.assertLess(abs(began[0]), 0.001)
         self.assertLess(abs(began[1]), 0.001)
         self.assertGreater(began[2], -1.5 * period_s - 0.002)

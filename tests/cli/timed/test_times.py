@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What two clocks, or a machine that does nothing else, must agree on: noise over stimuli, strokes in a row, no page fault."""
+"""Properties that need two real clocks or an idle machine: noise over stimuli, strokes in a row, no page fault."""
 import json
 import unittest
 
@@ -11,12 +11,12 @@ from serving import ServeTest
 
 
 class Trials(test_calibrate.CalibrateTest):
-    noise_of, pieces = test_calibrate.Person.noise_of, test_calibrate.Person.pieces
+    read_noise, pieces = test_calibrate.Person.read_noise, test_calibrate.Person.pieces
 
     def test_noise_covers_both_intervals_of_each_trial(self):
         self.refused(1, *test_calibrate.Person.ARGS, "--masker", "raw:noise.raw", "--masker-dbfs", -20, stdin="1\n2\n",
                      says=["trial 3: no answer"])
-        pieces = self.pieces(self.noise_of("noise.raw"))
+        pieces = self.pieces(self.read_noise("noise.raw"))
         # Three trials: half a second before interval 1, two intervals of 50 ms, half a second between.
         self.assertGreaterEqual(sum(pieces), 3 * 109)
         self.assertLessEqual(len(pieces), 3)
@@ -26,18 +26,18 @@ class Trials(test_calibrate.CalibrateTest):
 class Sessions(test_experiment_person.PersonTest):
     noisy, covered = test_experiment_person.Masking.noisy, test_experiment_person.Masking.covered
 
-    def test_noise_around_each_stimulus(self):
+    def test_noise_surrounds_each_stimulus(self):
         self.ok(*self.args("--masker", "raw:noise.raw", definition=self.noisy()), stdin=test_experiment_person.ByLines.ANSWERS)
         pieces = self.covered("noise.raw")
-        # Two tactors of the walk (0.65 s), three pairs and two single stimuli after half a second each; without
-        # answers to wait for, neighbours may run into one.
+        # Two tactors of the walk (0.65 s), three pairs and two single stimuli after half a second each; without answers to wait
+        # for, neighbours may merge.
         least = 2 * 65 + 100 * sum(0.5 + float(r["duration"]) for r in
                                    read_table(self.dir / "study/sourcedata/sub-01/practice.tsv")
                                    + self.rows("01", "pairs") + self.rows("01", "marks"))
         self.assertGreaterEqual(sum(pieces), least - 7)
         self.assertGreaterEqual(min(pieces), 64)
 
-    def test_noise_through_the_run(self):
+    def test_noise_lasts_through_the_run(self):
         self.ok(*self.args("--masker", "raw:noise.raw", definition=self.noisy('while = "run"\n')), stdin=test_experiment_person.ByLines.ANSWERS)
         pieces = self.covered("noise.raw")
         whole = [100 * (float(r["onset"]) + float(r["duration"])) for r in

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""A finger that rests keeps its stroke alive: the program says in time again where it is."""
+"""A finger at rest keeps its stroke alive: the program repeats its place in time."""
 import pathlib
 import sys
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A program that embeds tactor, as small as one can be.
+// A minimal program that embeds tactor.
 #include <cstdio>
 
 #include <tactor/tactor.hpp>

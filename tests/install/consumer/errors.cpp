@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What libtactor throws is caught here, and what is thrown here passes through it.
+// Exceptions across the border: libtactor's are caught here, and this program's pass through it.
 #include <cstdio>
 #include <exception>
 #include <memory>

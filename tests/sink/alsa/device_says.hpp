@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// What drivers of the kernel say, and no plugin can be made to: stands before libasound's functions in this
-/// program.
+/// Answers of kernel drivers that no plugin can give: replaces libasound's functions in this program.
 #pragma once
 
 #include <optional>
@@ -20,7 +19,7 @@ struct device_answers {
     std::optional<snd_pcm_uframes_t> buffer_frames = {};
 };
 
-/// As long as it lives every PCM says this; else what it says itself.
+/// Makes every PCM answer this as long as it lives.
 class device_says {
 public:
     explicit device_says(const device_answers& a);

@@ -10,7 +10,7 @@
 
 namespace tactor::test {
 
-/// A folder with a /proc and a /dev of its own.
+/// A folder with a /proc and a /dev.
 class fake_system {
 public:
     void write(const std::filesystem::path& file, const std::string& text) const { files_.write(file, text); }

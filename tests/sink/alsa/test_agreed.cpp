@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What a device says when it has been asked, and how it is set up then.
+// Set-up of a device: its answers to the request, and the resulting stream.
 #include <string>
 
 #include <alsa/asoundlib.h>
@@ -47,7 +47,7 @@ bool within(const std::string& text, const std::string& part)
 
 } // namespace
 
-TEST_CASE("a device whose position moves by whole periods is known for it, and the log says so")
+TEST_CASE("a device whose position moves by whole periods is recognised, and the log says so")
 {
     for (const bool batch : {false, true}) {
         CAPTURE(batch);
@@ -57,7 +57,7 @@ TEST_CASE("a device whose position moves by whole periods is known for it, and t
     }
 }
 
-TEST_CASE("a device that makes something else of what was set is refused")
+TEST_CASE("a device that changes the set values is refused")
 {
     for (const device_answers& a :
          {device_answers{.channels = 7}, device_answers{.rate = 44100}, device_answers{.period_frames = 0},
@@ -81,16 +81,16 @@ TEST_CASE("a device whose number of periods cannot be set gets a buffer of as ma
     CHECK(a.setup.buffer_frames == 288);
 }
 
-TEST_CASE("the log says what was wished where the device made something else of it")
+TEST_CASE("the log has the requested values where the device changed them")
 {
     CHECK_FALSE(within(agreed({}).log, "wished"));
     has(agreed({}, {.least_period_bytes = 4096}).log, "of 128 frames; 3 of 96 were wished");
-    // A period as it was wished, of a buffer that was not.
+    // The requested period, in another buffer.
     has(agreed({.buffer_frames = 384}).log, "4 of 96 frames; 3 of 96 were wished");
     has(agreed({.period_frames = 144}).log, "2 of 144 frames; 3 of 96 were wished");
 }
 
-TEST_CASE("a stream starts when it is told to, ends with its last frame, and is silent beyond")
+TEST_CASE("a stream starts on request, ends with its last frame, and is silent beyond")
 {
     fake_dac dac;
     const auto s = pcm::adopt(dac.pcm(), eight);

@@ -1,10 +1,7 @@
 // SPDX-License-Identifier: MIT
-// What is said when a PCM cannot be opened, on a system made of files.
+// Messages for PCMs that cannot be opened, on a system made of files.
 #include <cerrno>
-#include <chrono>
-#include <cstdlib>
 #include <filesystem>
-#include <fstream>
 #include <string>
 #include <vector>
 
@@ -64,7 +61,7 @@ TEST_CASE("a busy device names the programs that play on it, found by their desc
     has(s.says("mine", -EBUSY), "mpd (process 812), aplay (process 901)");
 }
 
-TEST_CASE("a busy device names the program of another user, which only the driver tells")
+TEST_CASE("a busy device names the program of another user, which only the driver knows")
 {
     const fake_system s;
     s.two_cards();
@@ -78,13 +75,13 @@ TEST_CASE("a busy device names the program of another user, which only the drive
     CHECK(text.find("kill") == std::string::npos);
 }
 
-TEST_CASE("a sound server that is not there is named, and what to do without one")
+TEST_CASE("a missing sound server is named, with an alternative")
 {
     const fake_system s;
     const std::string none = s.says("default", -EHOSTDOWN);
     has(none, "a sound server (PipeWire, PulseAudio), which is not there");
     has(none, "systemctl --user start pipewire-pulse");
-    has(none, "-D hw:CARD=NAME");
+    has(none, "device = hw:CARD=NAME");
     CHECK(none.find("Host is down") == std::string::npos);
     s.two_cards();
     for (const int code : {-EHOSTDOWN, -ECONNREFUSED})
@@ -92,7 +89,7 @@ TEST_CASE("a sound server that is not there is named, and what to do without one
     CHECK(s.says("default", -EHOSTDOWN).find("hw:CARD=NAME") == std::string::npos);
 }
 
-TEST_CASE("a plugin of ALSA's that is missing is named with its package")
+TEST_CASE("a missing plugin of ALSA's is named with its package")
 {
     const fake_system s;
     const auto missing = [&](const std::string& type) {
@@ -106,7 +103,7 @@ TEST_CASE("a plugin of ALSA's that is missing is named with its package")
         return text;
     };
     for (const char* type : {"pulse", "jack", "oss", "usb_stream", "a52", "speex", "upmix", "vdownmix"})
-        has(missing(type), "sudo apt install libasound2-plugins; or play on a card: -D hw:CARD=NAME");
+        has(missing(type), "sudo apt install libasound2-plugins; or play on a card: device = hw:CARD=NAME");
     has(s.leads({}, -ENOENT, "Cannot open shared library libasound_module_conf_pulse.so (none)"),
         "sudo apt install libasound2-plugins");
     has(missing("pipewire"), "sudo apt install pipewire-alsa;");
@@ -114,7 +111,7 @@ TEST_CASE("a plugin of ALSA's that is missing is named with its package")
     has(unknown, "is the type pulze in its definition misspelt? Else install what has that file");
     CHECK(unknown.find("apt") == std::string::npos);
     s.two_cards();
-    has(missing("pulse"), "-D hw:CARD=Headphones");
+    has(missing("pulse"), "device = hw:CARD=Headphones");
     try {
         static_cast<void>(open_alsa({.pcm = "t", .channels = 1, .config_text = "pcm.t { type nobodys }"}));
         FAIL("it opened");
@@ -130,13 +127,13 @@ TEST_CASE("JACK without its server is named, whose plugin only says that there i
     const std::string text = s.leads({"plug", "jack"}, -ENOENT);
     has(text, "it leads to JACK, whose server does not run");
     has(text, "jackd");
-    has(text, "-D hw:CARD=NAME");
+    has(text, "device = hw:CARD=NAME");
     CHECK(text.find("there is no sound card") == std::string::npos);
     for (const int code : {-ECONNREFUSED, -EHOSTDOWN})
         has(s.leads({"pipewire"}, code), "a sound server (PipeWire, PulseAudio), which is not there");
 }
 
-TEST_CASE("without a card that is said only of what leads to one")
+TEST_CASE("a missing card is reported only for PCMs that lead to one")
 {
     const fake_system s;
     for (const std::vector<std::string>& route : {std::vector<std::string>{}, {"hw"}, {"plug", "dmix", "hw"}})
@@ -146,13 +143,13 @@ TEST_CASE("without a card that is said only of what leads to one")
     CHECK(text.find("there is no sound card") == std::string::npos);
 }
 
-TEST_CASE("a busy device with nobody to be seen still says what to do")
+TEST_CASE("a busy device without a visible holder still has a hint")
 {
     const fake_system s;
     has(s.says("hw:0", -EBUSY), "fuser");
 }
 
-TEST_CASE("an unknown card lists those that there are")
+TEST_CASE("an unknown card lists the existing ones")
 {
     const fake_system s;
     s.two_cards();
@@ -174,7 +171,7 @@ TEST_CASE("an unknown device of a card lists the ones that play")
     has(text, "0, 3");
 }
 
-TEST_CASE("without any card that is said, and that null needs none")
+TEST_CASE("on a machine without cards the message says so, and that null needs none")
 {
     const fake_system s;
     for (const char* name : {"hw:CARD=Tactor", "default", "hw:0,0"}) {
@@ -195,7 +192,7 @@ TEST_CASE("an unknown PCM names a near one, or all when they are few")
     has(s.says("xyz", -ENOENT), "cards: Headphones, DAC8x");
 }
 
-TEST_CASE("a PCM that is defined, and what it refers to is not, is no slip of its own name")
+TEST_CASE("a PCM whose definition refers to a missing one is not reported as misspelt")
 {
     const fake_system s;
     s.two_cards();
@@ -212,7 +209,7 @@ TEST_CASE("a PCM that is defined, and what it refers to is not, is no slip of it
     }
 }
 
-TEST_CASE("twelve names are all proposed, and more are too many")
+TEST_CASE("up to twelve names are all proposed, more are not")
 {
     const fake_system s;
     s.two_cards();
@@ -222,7 +219,7 @@ TEST_CASE("twelve names are all proposed, and more are too many")
     CHECK(s.says("something", -ENOENT, names).find("known") == std::string::npos);
 }
 
-TEST_CASE("names that are defined in a configuration text are those that are proposed")
+TEST_CASE("names defined in a configuration text are proposed")
 {
     try {
         static_cast<void>(
@@ -233,7 +230,7 @@ TEST_CASE("names that are defined in a configuration text are those that are pro
     }
 }
 
-TEST_CASE("no permission says which group to join, and how")
+TEST_CASE("a missing permission names the group to join, and how")
 {
     const fake_system s;
     has(s.says("hw:0", -EACCES), "sudo usermod -aG audio $USER");
@@ -245,7 +242,7 @@ TEST_CASE("no permission says which group to join, and how")
         has(s.says("hw:0", -EPERM), "usermod -aG " + (group.empty() ? "audio" : group) + " $USER");
 }
 
-TEST_CASE("a lost PCM is tried again after twice as long each time, up to 5 s, until the wait is given up")
+TEST_CASE("a lost PCM is retried after twice as long each time, up to 5 s, until the wait is given up")
 {
     alsa_options o{.pcm = "gone", .channels = 1, .config_text = "pcm.other { type null }"};
     std::vector<double> waits;
@@ -257,7 +254,7 @@ TEST_CASE("a lost PCM is tried again after twice as long each time, up to 5 s, u
     CHECK(waits == std::vector<double>{0.1, 0.2, 0.4, 0.8, 1.6, 3.2, 5.0, 5.0, 5.0, 5.0});
 }
 
-TEST_CASE("a PCM that is back is opened after the first wait, and a wrong request is no reason to wait")
+TEST_CASE("a PCM that is back is opened after the first wait, and a wrong request does not wait")
 {
     alsa_options o{.pcm = "back", .channels = 1, .config_text = "pcm.back { type null }"};
     int waits = 0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The list of PCMs on a system made of files, and what a PCM can do on the fake DAC.
+// The list of PCMs on a system made of files, and properties of a PCM on the fake DAC.
 #include "sink/alsa/devices/cards.hpp"
 
 #include <algorithm>
@@ -74,7 +74,7 @@ TEST_CASE("each device has its own holders")
     CHECK(holders[0].program == "pipewire");
 }
 
-TEST_CASE("the wanted PCM is found by whatever name it has, and listed where nothing else lists it")
+TEST_CASE("the wanted PCM is found under any of its names, and listed where nothing else lists it")
 {
     const test::fake_system s;
     s.two_cards();
@@ -84,7 +84,7 @@ TEST_CASE("the wanted PCM is found by whatever name it has, and listed where not
         CHECK(named(all, "hw:CARD=DAC8x,DEV=3").wanted);
         CHECK(std::count_if(all.begin(), all.end(), [](const pcm_info& p) { return p.wanted; }) == 1);
     }
-    // What converts is another PCM, on the same device.
+    // A converting PCM is another PCM, on the same device.
     CHECK(named(pcm::list(s.root(), alsa_options{.pcm = "plughw:2,3", .channels = 8}), "plughw:2,3").wanted);
     const auto all = pcm::list(s.root(), alsa_options{.pcm = "nowhere", .channels = 8});
     CHECK(all.back().name == "nowhere");
@@ -92,13 +92,13 @@ TEST_CASE("the wanted PCM is found by whatever name it has, and listed where not
     CHECK_FALSE(all.back().opened);
 }
 
-TEST_CASE("numbers that no PCM can have are refused")
+TEST_CASE("impossible numbers of a PCM are refused")
 {
     CHECK_THROWS_WITH_AS(list_pcms(alsa_options{.channels = 0}), doctest::Contains("channels out of range"),
                          error);
 }
 
-TEST_CASE("what a PCM can do is told without configuring it")
+TEST_CASE("a PCM's properties are found without configuring it")
 {
     test::fake_dac dac({.least_channels = 2, .most_channels = 64});
     pcm_info p;

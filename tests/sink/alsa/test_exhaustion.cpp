@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// ALSA's configuration where descriptors run out: what could not be read is not kept for read.
+// ALSA's configuration without descriptors: unread parts do not count as read.
 #include <cerrno>
 #include <cstdlib>
 #include <string>
@@ -22,8 +22,8 @@ using namespace tactor;
 
 namespace {
 
-// A configuration as the system's: a file that loads the user's, if it can, which includes another. Not read
-// yet.
+// A configuration like the system's, not read yet: a file that loads the user's, if it can, which includes
+// another.
 class own_configuration {
 public:
     own_configuration()
@@ -60,7 +60,7 @@ alsa_options of(const char* pcm)
     return {.pcm = pcm, .channels = 9};
 }
 
-// Whether a call did not want for descriptors.
+// Returns false where a call failed for want of descriptors.
 template <typename Call>
 bool answers(Call call)
 {
@@ -99,7 +99,7 @@ TEST_CASE("a PCM that could not be opened for want of descriptors opens when the
     }
 }
 
-TEST_CASE("who waits for a lost PCM is told of a want of descriptors")
+TEST_CASE("waiting for a lost PCM reports a want of descriptors")
 {
     const test::descriptors_left none(0);
     CHECK_THROWS_WITH_AS(
@@ -107,7 +107,7 @@ TEST_CASE("who waits for a lost PCM is told of a want of descriptors")
         doctest::Contains("Too many open files"), error);
 }
 
-TEST_CASE("what asks for names without descriptors says so, and leaves nothing broken behind")
+TEST_CASE("queries of names without descriptors say so, and leave nothing broken behind")
 {
     for (unsigned n = 0; n < 10; ++n) {
         CAPTURE(n);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What libasound says is heard where it is asked for, and nowhere else.
+// Messages of libasound: heard where asked for, and nowhere else.
 #include <cstdarg>
 
 #include <alsa/asoundlib.h>
@@ -26,7 +26,7 @@ TEST_CASE("the host program keeps its handlers of libasound's messages")
     const auto own = [](const char*, int, const char*, int, const char*, va_list) { ++heard; };
     const snd_local_error_handler_t before = pcm::set_local_handler(own);
     fails();
-    { // What is said is the error's detail, not the host's, and in between its own calls are its own.
+    { // These messages are the error's detail, not the host's, and in between its own calls are its own.
         const auto sink = open_alsa({.pcm = "null", .channels = 1});
         CHECK(heard == 0);
         snd_pcm_t* p = nullptr;
@@ -37,7 +37,7 @@ TEST_CASE("the host program keeps its handlers of libasound's messages")
     CHECK(restored);
 }
 
-TEST_CASE("messages within messages are the inner one's, and the outer one goes on")
+TEST_CASE("nested listeners hear the inner messages, and the outer one continues")
 {
     const pcm::library_messages outer;
     {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What a PCM is asked for, what it makes of it, and what is said when it cannot.
+// Negotiation with a PCM: the request, the result, and the message when it fails.
 #include <cerrno>
 #include <cstddef>
 #include <cstdint>
@@ -28,7 +28,7 @@ using namespace tactor;
 
 namespace {
 
-// Two devices of four channels as one of exactly eight.
+// Two devices of four channels joined to exactly eight.
 std::string eight_channels()
 {
     std::string s = "pcm.n { type null }\n"
@@ -60,7 +60,7 @@ struct failure {
 };
 
 template <typename F>
-failure failure_of(F f)
+failure catch_failure(F f)
 {
     try {
         f();
@@ -73,12 +73,12 @@ failure failure_of(F f)
 
 failure failure_of_open(const alsa_options& o)
 {
-    return failure_of([&] { static_cast<void>(open_alsa(o)); });
+    return catch_failure([&] { static_cast<void>(open_alsa(o)); });
 }
 
 } // namespace
 
-TEST_CASE("null takes what is asked, in the first format of the preference")
+TEST_CASE("null takes the request, in the first format of the preference")
 {
     alsa_options o;
     o.channels = 9;
@@ -91,7 +91,7 @@ TEST_CASE("null takes what is asked, in the first format of the preference")
     CHECK(s->setup().buffer_frames == 288);
 }
 
-TEST_CASE("a format that is asked for is the format that is used")
+TEST_CASE("a requested format is used")
 {
     for (const format_kind f :
          {format_kind::float32, format_kind::s16, format_kind::s24_3, format_kind::s24_4, format_kind::s32}) {
@@ -112,7 +112,7 @@ TEST_CASE("a device of exactly eight channels takes eight, and says so when aske
     CHECK(e.says("channels 8, rates any Hz, formats s32 float"));
 }
 
-TEST_CASE("where more will do, the fewest channels that hold the stream are taken")
+TEST_CASE("the fewest channels that hold the stream are taken")
 {
     alsa_options o = configured(eight_channels(), 5);
     CHECK(failure_of_open(o).says("refused: channels"));
@@ -138,7 +138,7 @@ TEST_CASE("a card of 2, 8 or 16 channels and no other takes 16 for nine")
     CHECK(pcm::adopt(dac.pcm(), o)->setup().device_channels == 16);
 }
 
-TEST_CASE("the channels that a stream leaves are silent, whatever was in its memory")
+TEST_CASE("channels beyond the stream's are silent, whatever was in their memory")
 {
     test::fake_dac dac({.least_channels = 16, .most_channels = 16});
     alsa_options o;
@@ -164,7 +164,7 @@ TEST_CASE("the channels that a stream leaves are silent, whatever was in its mem
     }
 }
 
-TEST_CASE("a format that the device does not have is refused by name")
+TEST_CASE("a missing format is refused by name")
 {
     alsa_options o = configured(only_s16);
     // A linear plugin converts among integers, which NO_AUTO_FORMAT does not stop: its owner asked for it.
@@ -188,7 +188,7 @@ TEST_CASE("plug neither resamples nor mixes channels behind the user's back")
     CHECK(open_alsa(o)->setup().rate == 44100);
 }
 
-TEST_CASE("a PCM that does not exist is said to be none")
+TEST_CASE("an unknown PCM is reported as unknown")
 {
     for (const char* name : {"no-such-pcm", "hw:CARD=NoSuchCard", "hw:31", "", "null:1,2,3,4"}) {
         CAPTURE(name);
@@ -234,7 +234,7 @@ TEST_CASE("configuration text that ALSA cannot read is bad input")
     CHECK(failure_of_open(configured("pcm.t { type no_such_type }")).kind == error_kind::not_available);
 }
 
-TEST_CASE("numbers that no PCM has are bad input")
+TEST_CASE("impossible numbers of a PCM are bad input")
 {
     const auto with = [](auto change) {
         alsa_options o;
@@ -252,7 +252,7 @@ TEST_CASE("numbers that no PCM has are bad input")
         alsa_options o = {.pcm = "null", .channels = 9, .rate = rate, .period_frames = least};
         CHECK_NOTHROW(pcm::check(o));
         --o.period_frames;
-        const failure e = failure_of([&] { pcm::check(o); });
+        const failure e = catch_failure([&] { pcm::check(o); });
         CHECK(e.kind == error_kind::bad_input);
         CHECK(e.says(fmt::format("{} frames a period out of range (give {} to 1048576)", least - 1, least)));
     }
@@ -261,7 +261,7 @@ TEST_CASE("numbers that no PCM has are bad input")
     CHECK(with([](alsa_options& o) { o.periods = 4'000'000'000; }) == error_kind::bad_input);
 }
 
-TEST_CASE("each number that a PCM can have passes, and the next one does not")
+TEST_CASE("each possible number of a PCM passes, and the next one does not")
 {
     const auto least_and_most = [](auto member, unsigned least, unsigned most) {
         alsa_options o{.channels = 9};
@@ -295,17 +295,17 @@ TEST_CASE("a device of a card: formats in order of preference, rate and channels
     CHECK(open({.formats = {SND_PCM_FORMAT_S16_LE, SND_PCM_FORMAT_S24_LE}}, o).format == format_kind::s24_4);
     CHECK(open({.formats = {SND_PCM_FORMAT_S16_LE}}, o).format == format_kind::s16);
 
-    const failure nothing = failure_of([&] { open({.formats = {SND_PCM_FORMAT_U8}}, o); });
+    const failure nothing = catch_failure([&] { open({.formats = {SND_PCM_FORMAT_U8}}, o); });
     CHECK(nothing.says("refused: format"));
     CHECK(nothing.says("none that tactor plays"));
     o.channels = 65;
     o.rate = 44100;
-    const failure e = failure_of([&] { open({}, o); });
+    const failure e = catch_failure([&] { open({}, o); });
     CHECK(e.says("refused: channels, rate"));
     CHECK(e.says("channels 1 to 64, rates 48000 Hz, formats s32 float s16"));
 }
 
-TEST_CASE("a device that rounds the period says what it made of it")
+TEST_CASE("a device that rounds the period reports its value")
 {
     test::fake_dac dac({.least_period_bytes = 4096});
     alsa_options o;
@@ -329,7 +329,7 @@ TEST_CASE("an adopted PCM is closed with its sink, and when it does not fit")
     CHECK(other.closed());
 }
 
-TEST_CASE("errors of opening come with advice")
+TEST_CASE("errors of opening come with hints")
 {
     CHECK(std::string(pcm::open_error("x", -EBUSY, "").what()).find("another program") != std::string::npos);
     CHECK(std::string(pcm::open_error("x", -EACCES, "").what()).find("group audio") != std::string::npos);

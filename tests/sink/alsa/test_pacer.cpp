@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Devices without a clock get one.
+// Devices without a clock, which get one.
 #include <random>
 #include <span>
 
@@ -32,7 +32,7 @@ TEST_CASE("a virtual queue plays at its rate, without drift over a week")
     }
 }
 
-TEST_CASE("when the deadline comes the period fits, and not before")
+TEST_CASE("at the deadline the period fits, and not before")
 {
     std::mt19937_64 random(1);
     for (int round = 0; round < 200; ++round) {
@@ -93,7 +93,7 @@ TEST_CASE("the timer becomes readable when a period fits")
 
 namespace {
 
-// Writes `frames` frames through whatever paces the device; how many periods it took at most.
+// Writes `frames` frames through the device's pacer; returns the most periods at a time.
 std::uint64_t write_all(sink& s, std::uint64_t frames)
 {
     REQUIRE(s.prepare() == io_kind::ok);
@@ -141,7 +141,7 @@ TEST_CASE("null, file, plug and multi of nulls are found to have no clock, and a
         const std::int64_t begun = rt::monotonic_ns();
         const std::uint64_t wakes = write_all(*s, 288 + 20 * 96);
         CHECK(wakes == 20);
-        // 20 periods take 40 ms, and the first is not waited for in full.
+        // 20 periods take 40 ms, and the first is not awaited in full.
         CHECK(rt::monotonic_ns() - begun > 36'000'000);
         s->drop();
     }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Names of PCMs that others chose: which are names of devices, and what they lead to.
+// Names of PCMs chosen by others: recognising names of devices, and following the rest.
 #include <string>
 
 #include <alsa/asoundlib.h>
@@ -19,7 +19,7 @@ using types = std::vector<std::string>;
 
 namespace {
 
-// As a system and a user define them.
+// Definitions of a system and a user.
 constexpr const char* definitions = R"(
 pcm.hw { @args [ CARD DEV ] @args.CARD { type string default "0" } @args.DEV { type integer default 0 } type hw card $CARD device $DEV }
 pcm.plug { @args [ SLAVE ] @args.SLAVE { type string } type plug slave.pcm $SLAVE }
@@ -74,7 +74,7 @@ TEST_CASE("names of devices are plain")
     }
 }
 
-TEST_CASE("names that say more than a device are not plain, and the reason is said")
+TEST_CASE("names with more than a device are not plain, and have a reason")
 {
     const auto why = [](std::string_view name) { return pcm::not_plain(name); };
     for (const char* name : {"file:'|id > X; cat >/dev/null',raw",
@@ -130,7 +130,7 @@ TEST_CASE("names that say more than a device are not plain, and the reason is sa
     has(why(std::string(201, 'a')), "200 bytes");
 }
 
-TEST_CASE("the route of a name is what ALSA would go through, by whatever spelling")
+TEST_CASE("the route of a name is ALSA's, in any spelling")
 {
     const configuration route;
     CHECK(route("hw:CARD=Tactor,DEV=1") == types{"hw"});
@@ -145,7 +145,7 @@ TEST_CASE("the route of a name is what ALSA would go through, by whatever spelli
         CHECK(pcm::unsafe_type(route(name)) == "file");
         CHECK(pcm::lasting_type(route(name)) == "file");
     }
-    // What only recording goes through does nothing.
+    // Definitions for recording only do nothing.
     CHECK(route("heard") == types{"asym", "null"});
     CHECK(route("hinted") == types{"null"});
     CHECK(pcm::find_route(nullptr, "hw:0").empty());
@@ -161,19 +161,19 @@ TEST_CASE("a definition that leads to itself, or doubles at each step, ends and 
     }
 }
 
-TEST_CASE("a type that nobody knows is not safe, and sound servers are named")
+TEST_CASE("an unknown type is not safe, and sound servers are named")
 {
     const configuration route;
     CHECK(pcm::unsafe_type(route("odd")) == "ladspa");
     CHECK(pcm::unsafe_type(route("desk")) == "");
-    CHECK(pcm::server_of(route("desk")) == "PipeWire");
+    CHECK(pcm::find_server(route("desk")) == "PipeWire");
     CHECK(pcm::lasting_type(route("desk")) == "pipewire");
-    CHECK(pcm::server_of(route("palm")) == "");
-    CHECK(pcm::server_of({"plug", "jack"}) == "JACK");
-    CHECK(pcm::server_of({"pulse"}) == "PulseAudio");
+    CHECK(pcm::find_server(route("palm")) == "");
+    CHECK(pcm::find_server({"plug", "jack"}) == "JACK");
+    CHECK(pcm::find_server({"pulse"}) == "PulseAudio");
 }
 
-TEST_CASE("a name that others chose is refused with the reason, before it is opened")
+TEST_CASE("an unsafe name chosen by others is refused with the reason, before it is opened")
 {
     CHECK(complaint("null") == "");
     CHECK(complaint("plug:null") == "");
@@ -181,7 +181,7 @@ TEST_CASE("a name that others chose is refused with the reason, before it is ope
     CHECK(complaint("nobody-defines-this") == "");
     has(complaint("file:'|id > X',raw"),
         "PCM 'file:'|id > X',raw': more than the name of a device: ' may not");
-    // Harmless to look at, but ALSA defines it as a file.
+    // It looks harmless, but ALSA defines it as a file.
     has(complaint("file:victim,raw"), "it writes a file or starts a command");
     has(complaint("tee:hw"), "it writes");
     CHECK(route_of("file:x").writes);

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A card's buffer is a ring: a stream that nobody looked at for a whole one has run dry, whatever the kernel
-// says.
+// A card's buffer as a ring: a stream unattended for a whole ring has run dry, whatever the kernel says.
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -40,7 +39,7 @@ struct stream {
         REQUIRE(out->write(silence).frames == out->setup().buffer_frames);
         REQUIRE(out->start() == io_kind::ok);
     }
-    // For as long as the buffer lasts at the rate.
+    // Waits as long as the buffer lasts at the rate.
     void pass() const
     {
         const std::int64_t until =
@@ -69,11 +68,11 @@ TEST_CASE("a card whose position moved, unseen for a whole buffer, has had an xr
     CHECK(s.out->available().status == io_kind::ok); // it stands still
     s.pass();
     s.dac.advance(96);
-    CHECK(s.out->position().valid); // who looks first does not hide it
+    CHECK(s.out->position().valid); // an earlier read does not hide it
     CHECK(s.out->available().status == io_kind::xrun);
 }
 
-TEST_CASE("what has no ring of a card is believed")
+TEST_CASE("a device without a ring is believed")
 {
     stream s(false);
     s.pass();
@@ -81,7 +80,7 @@ TEST_CASE("what has no ring of a card is believed")
     CHECK(s.out->available().status == io_kind::ok);
 }
 
-TEST_CASE("what plays on a card of the kernel's, the first one too, has a ring")
+TEST_CASE("cards of the kernel, the first one too, have a ring")
 {
     for (const int card : {-1, 0, 3}) {
         CAPTURE(card);

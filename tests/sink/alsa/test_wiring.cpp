@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Which channels of the device a PCM's channels reach: by its definition, and what libasound makes of it.
+// Wiring: the device channels that a PCM's channels reach, by its definition and by libasound.
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
@@ -17,7 +17,7 @@
 
 #include "folder.hpp"
 #include "has.hpp"
-#include "sink/alsa/devices/wiring.hpp"
+#include "sink/alsa/devices/route.hpp"
 #include "sink/alsa/handle.hpp"
 #include "sink/alsa/negotiate.hpp"
 
@@ -71,7 +71,7 @@ stream_wiring defined(const std::string& name, unsigned n)
 
 } // namespace
 
-TEST_CASE("what hands its channels on has nothing to say")
+TEST_CASE("a plugin that passes its channels on changes nothing")
 {
     for (const char* name :
          {"null", "hw:0", "hw:CARD=Tactor,DEV=3", "plug:null", "plug:'hw:0,1'", "unbound"}) {
@@ -82,7 +82,7 @@ TEST_CASE("what hands its channels on has nothing to say")
     }
 }
 
-TEST_CASE("tables and bindings say which channels of the device are reached, through whatever is between")
+TEST_CASE("tables and bindings define the reached channels of the device, through any plugins between")
 {
     const channels swapped{{1}, {0}, {2}, {}};
     for (const char* name : {"swapped", "above", "plug:swapped", "both", "alias", "over"}) {
@@ -101,7 +101,7 @@ TEST_CASE("tables and bindings say which channels of the device are reached, thr
     CHECK(defined("same", 2).outputs == channels{{7}, {7}}); // one device on two ways
 }
 
-TEST_CASE("tables change levels, and what is below -60 dB is not reached")
+TEST_CASE("tables change levels, and below -60 dB nothing is reached")
 {
     const auto through = [](const std::string& table) {
         return wired("pcm.n { type null } pcm.h { type route slave.pcm n ttable { 0.0 0.5 1.1 1 } }"
@@ -122,7 +122,7 @@ TEST_CASE("tables change levels, and what is below -60 dB is not reached")
     CHECK(soft.level_by == "type softvol");
 }
 
-TEST_CASE("what is not understood is told, and nothing is said of the channels")
+TEST_CASE("unknown definitions are reported, and give no channels")
 {
     const auto hidden = [](const std::string& name) {
         const stream_wiring w = defined(name, 4);
@@ -153,7 +153,7 @@ TEST_CASE("definitions that lead to themselves, or to more than anyone has, end"
 
 namespace {
 
-// Chains of plugins by chance, over devices that write what they get into files.
+// Random chains of plugins over devices that write their input into files.
 class chance {
 public:
     chance(unsigned seed, const folder& here, unsigned n) : random_(seed), here_(here), channels_(n) {}
@@ -233,7 +233,8 @@ private:
     std::vector<std::string> files_ = {};
 };
 
-// One frame for each channel with a sample in that channel only: which samples of the devices it reached.
+// Plays a frame for each channel with a sample in that channel only; returns the samples of the devices that
+// it reached.
 channels heard(const alsa_options& o, const folder& here, const std::vector<std::string>& files)
 {
     {
@@ -262,7 +263,7 @@ channels heard(const alsa_options& o, const folder& here, const std::vector<std:
 
 } // namespace
 
-TEST_CASE("what is read in the configuration is what libasound does, for chains of plugins by chance")
+TEST_CASE("for random chains of plugins the wiring is that of libasound")
 {
     constexpr unsigned n = 4;
     unsigned crossed = 0;

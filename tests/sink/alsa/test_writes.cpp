@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What comes of writing to a PCM.
+// Results of writing to a PCM.
 #include <cerrno>
 #include <cstddef>
 #include <span>

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "sink/wav/wav.hpp"
 
-#include <array>
-
 #include <doctest/doctest.h>
 
 #include <tactor/error.hpp>
@@ -42,7 +40,7 @@ TEST_CASE("integer samples have the plain header of 44 bytes")
     CHECK(number(s, 40, 4) == 1001 * 27);
 }
 
-TEST_CASE("what is not integer PCM has the size of its extension and a fact chunk")
+TEST_CASE("formats other than integer PCM have the size of their extension and a fact chunk")
 {
     const std::string s = wav::header(format_kind::float32, container::wave, 2, 48000, 500);
     REQUIRE(s.size() == 58);
@@ -72,7 +70,7 @@ TEST_CASE("RF64 has its sizes in 64 bits")
     CHECK(number(s, s.size() - 4, 4) == 0xFFFFFFFF);
 }
 
-TEST_CASE("what a header cannot say is bad input")
+TEST_CASE("values that a header cannot hold are bad input")
 {
     const auto kind = [](format_kind f, unsigned channels) {
         try {

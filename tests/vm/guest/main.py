@@ -11,13 +11,13 @@ HERE = pathlib.Path(__file__).parent
 sys.path.insert(0, str(HERE))
 from stalls import Stalls  # noqa: E402
 
-# How often a test is tried of which the guest stood still each time.
+# Number of tries of a test during which the guest stood still each time.
 ATTEMPTS = 3
 
 
 class Timed(unittest.TextTestResult):
-    """Says how long each test took, and how long the guest stood still meanwhile: under emulation that is worth knowing.
-    A card runs dry where its processor is taken away: a test that failed then has told nothing, and is tried again."""
+    """Prints the time of each test, and how long the guest stood still meanwhile. A card runs dry where its processor is
+    taken away: a test that failed then shows nothing, and is tried again."""
 
     stalls = None
     attempt = 0
@@ -44,17 +44,17 @@ class Timed(unittest.TextTestResult):
 
 
 def whole(test):
-    """Of a part of a test, the test."""
+    """Returns the test of a part of a test."""
     return getattr(test, "test_case", test)
 
 
-def tests_of(suite):
+def flatten(suite):
     for t in suite:
-        yield from tests_of(t) if isinstance(t, unittest.TestSuite) else (t,)
+        yield from flatten(t) if isinstance(t, unittest.TestSuite) else (t,)
 
 
 def run(tests):
-    """What failed and what was skipped."""
+    """Returns the failed and skipped tests."""
     failed, skipped = [], []
     for Timed.attempt in range(1, ATTEMPTS + 1):
         result = unittest.TextTestRunner(stream=sys.stdout, verbosity=2, resultclass=Timed).run(unittest.TestSuite(tests))
@@ -72,7 +72,7 @@ def run(tests):
 def main():
     Timed.stalls = Stalls()
     names = sys.argv[3:] or sorted(p.stem for p in HERE.glob("test_*.py"))
-    tests = [t for n in names for t in tests_of(unittest.defaultTestLoader.loadTestsFromModule(importlib.import_module(n)))]
+    tests = [t for n in names for t in flatten(unittest.defaultTestLoader.loadTestsFromModule(importlib.import_module(n)))]
     failed, skipped = run(tests)
     for test, why in skipped:
         print(f"SKIPPED: {test}: {why}")

@@ -12,7 +12,7 @@ import unittest
 ROOT = pathlib.Path(sys.argv[1])
 BUILD = pathlib.Path(sys.argv[2])
 TOOL = BUILD / "src/cli/tactor"
-# Where what is tested was built in a root of its own, it runs there.
+# A build in a separate root runs there.
 INSIDE = os.environ.get("TACTOR_VM_ROOT", "")
 ENTER = ["chroot", INSIDE] if INSIDE else []
 RATE = 48000
@@ -33,7 +33,7 @@ def wait_for(condition, what, seconds=20.0):
         time.sleep(0.002)
 
 
-# What captures: a test that fails half-way leaves the card to the next one.
+# Captures: a test that fails half-way leaves the card to the next one.
 CAPTURING = []
 
 
@@ -42,7 +42,7 @@ class Capture:
 
     def __init__(self, folder, channels, sample_format, subdevice=0):
         self.path = folder / f"capture{subdevice}.raw"
-        self.path.unlink(missing_ok=True)  # of a recording before: whether it is there says that this one runs
+        self.path.unlink(missing_ok=True)  # of a recording before: its existence shows that this one runs
         self.frame_bytes = channels * {"S16_LE": 2, "S32_LE": 4}[sample_format]
         self.process = subprocess.Popen(
             ["arecord", "-q", "-D", BACK.format(subdevice), "-t", "raw", "-f", sample_format, "-c", str(channels),
@@ -72,7 +72,7 @@ class Card:
 
     @staticmethod
     def pull_out():
-        """Waits in the kernel until who plays has closed the card: not in this process."""
+        """Waits in the kernel until the player has closed the card: not in this process."""
         return subprocess.Popen(["sh", "-c", f"echo {Card.DEVICE} > {Card.DRIVER}/unbind"])
 
 
@@ -109,7 +109,7 @@ class GpioSim:
 
 
 def until(process, words, seconds=120.0):
-    """Reads what a process prints up to these words, letter by letter; ends it when they do not come."""
+    """Reads a process's output up to these words, letter by letter; ends it when they do not come."""
     watchdog = threading.Timer(seconds, process.kill)
     watchdog.start()
     said = ""
@@ -167,7 +167,7 @@ periods = {PERIODS}
 
 
 class AmplifierTest(RigTest):
-    """An array whose amplifier hangs on line 2 of a chip of its own."""
+    """Writes an array whose amplifier is on line 2 of another chip."""
     LINE = 2
     LIMIT_S = 1.0 if INSIDE else 0.2  # other lanes run beside that of another Debian
 

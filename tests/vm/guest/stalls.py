@@ -1,14 +1,14 @@
 # SPDX-License-Identifier: MIT
-"""Tells when the whole guest stood still, because its host gave the emulated processors no time."""
+"""Detects when the whole guest stood still, because its host gave the emulated processors no time."""
 import os
 import time
 
-# Looked at this often; a processor that comes so much later than that was taken away.
+# Period of the checks; a processor that comes so much later was taken away.
 EVERY_S, LATE_S = 0.005, 0.02
 
 
 class Stalls:
-    """A process above all others that does nothing but sleep and wake up."""
+    """A process above all others that only sleeps and wakes up."""
 
     def __init__(self):
         self.told, told = os.pipe()
@@ -34,7 +34,8 @@ class Stalls:
             os._exit(0)
 
     def longest(self):
-        """Since the last question, in seconds; 0 for none, and where no process may stand above all others."""
+        """Returns the time since the last question, in seconds; 0 for none, and where no process may have the highest
+        priority."""
         time.sleep(2 * EVERY_S)  # one that is not over yet
         try:
             return max(map(float, os.read(self.told, 65536).split()), default=0.0)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The amplifier's line through everything that can end a player."""
+"""The amplifier's line through every end of a player."""
 import os
 import signal
 import time

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""tactor check and its walk on a real kernel: what is found on a card and its lines, free and in use."""
+"""tactor check and its walk on a real kernel: findings about a card and its lines, free and in use."""
 import json
 import signal
 import subprocess
@@ -20,7 +20,7 @@ class Check(RigTest):
         self.assertEqual(r.returncode, status, r.stdout + r.stderr)
         return {f["check"]: f for f in json.loads(r.stdout)["findings"]}
 
-    def test_free_and_in_use(self):
+    def test_findings_of_a_free_and_a_used_card(self):
         found = self.check(0)
         print(self.tool("check", "--array", self.array).stdout)
         self.assertIn("9 channels, 48000 Hz", found["device"]["found"])
@@ -28,7 +28,7 @@ class Check(RigTest):
         self.assertEqual(found["sync out"]["level"], "ok")
         self.assertEqual(found["sound servers"]["level"], "ok")
         self.assertEqual(found["kernel"]["found"], "PREEMPT_RT")
-        # Nothing was driven.
+        # The check drives nothing.
         self.assertEqual((self.sim.value(1), self.sim.value(2)), (0, 0))
 
         # An xrun of the emulated machine ends one stroke, not the run.

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""tactor devices on a real kernel: a card, who holds it, a GPIO chip, who holds its lines."""
+"""tactor devices on a real kernel: a card with its holder, a GPIO chip with the holders of its lines."""
 import json
 import signal
 
@@ -13,7 +13,7 @@ class Devices(RigTest):
         told = json.loads(r.stdout)
         return {p["name"]: p for p in told["pcms"]}, {c["label"]: c for c in told["gpio_chips"]}
 
-    def test_a_card_says_what_it_can_do_and_stays_unconfigured(self):
+    def test_a_card_gives_its_properties_and_stays_unconfigured(self):
         pcms, _ = self.devices("--array", self.grid())
         card = pcms["hw:CARD=Loopback,DEV=0"]
         print(self.tool("devices").stdout)
@@ -23,10 +23,10 @@ class Devices(RigTest):
         self.assertIn("s32", card["can"]["formats"])
         self.assertLessEqual(card["can"]["period_frames"]["min"], PERIOD)
         self.assertEqual(sum(name.startswith("hw:CARD=Loopback") for name in pcms), 2)
-        # What would start the card is named only.
+        # PCMs that would start the card are named only.
         self.assertTrue(all(not p["tried"] for n, p in pcms.items() if n.startswith(("dmix", "sysdefault"))))
 
-    def test_who_plays_and_who_holds_a_line_is_told(self):
+    def test_players_and_holders_of_lines_are_named(self):
         sim = GpioSim(names=[(3, "AMP")])
         self.addCleanup(sim.close)
         array = self.grid(extra=f'[amplifier]\nline = {{ chip = "{sim.label}", offset = 3 }}\n')

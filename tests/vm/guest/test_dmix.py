@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Two players share a card through ALSA's dmix, which is what it is for."""
+"""Two players that share a card through ALSA's dmix."""
 import array
 
 from rig import RATE, Capture, RigTest
@@ -9,7 +9,7 @@ PERIOD, PERIODS = 480, 32
 
 
 def peaks(data, channels):
-    """Largest magnitude of each channel of 32-bit samples."""
+    """Returns the largest magnitude of each channel of 32-bit samples."""
     samples = array.array("i", data)
     return [max((abs(v) for v in samples[c::channels]), default=0) for c in range(channels)]
 
@@ -30,7 +30,7 @@ pcm.shared {{
         self.mixer()
         palm = self.grid()
         capture = Capture(self.dir, 9, "S32_LE")
-        # Along opposite edges of the palm: each has three channels of its own.
+        # Along opposite edges of the palm: each has three separate channels.
         players = [self.start("play", "--path", path, "--duration", "3", "--array", palm, "-D", "shared",
                               "--sample-format", "s32", "--period-frames", str(PERIOD), "--periods", str(PERIODS))
                    for path in ("M 0 0 L 40 0", "M 0 40 L 40 40")]

@@ -42,7 +42,7 @@ trials = 2
 
 class Experiment(RigTest):
     def side_by_side(self):
-        """The array's stream and the noise's, on channels of one card: sample by sample beside each other."""
+        """Configures the array's stream and the noise's on channels of one card, sample by sample in parallel."""
         stream = """pcm.{name} {{
     type dshare
     ipc_key 20160409
@@ -111,7 +111,7 @@ class Experiment(RigTest):
             self.assertEqual(at % (4 * NOISE), 0)
             self.assertEqual(int(row["frame_2"]) - int(row["frame_1"]), len(first) // (4 * NOISE) + round(GAP_S * RATE))
             after = at + len(pair)
-            # White noise has hardly a sample of nothing.
+            # White noise has hardly a zero sample.
             under = noise[at // (4 * NOISE) * 8:after // (4 * NOISE) * 8]
             self.assertLess(sum(under[i:i + 4] == bytes(4) for i in range(0, len(under), 4)), 3)
         print(f"pairs: {len(rows)} of {len(pair) // (4 * NOISE)} frames with a gap of {round(GAP_S * RATE)}, byte by byte, under noise")

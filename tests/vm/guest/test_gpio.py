@@ -7,7 +7,7 @@ from rig import BUILD, ENTER, INSIDE, GpioSim, RigTest
 
 
 class Gpio(RigTest):
-    def test_the_library_is_the_one_that_is_meant(self):
+    def test_the_library_has_the_expected_version(self):
         facts = self.tool("--version").stdout
         print(facts)
         if INSIDE:  # Debian 13's

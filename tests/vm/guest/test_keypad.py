@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Answers from an input device of the kernel's: held, heard, lost."""
+"""Answers from an input device of the kernel: held, heard, lost."""
 import errno
 import fcntl
 import os
@@ -41,7 +41,7 @@ class Pad:
         self.fd = None
 
 
-@unittest.skipIf(INSIDE, "the root of the other Debian has no /dev/input of its own")
+@unittest.skipIf(INSIDE, "the root of the other Debian has no /dev/input")
 class Keypad(RigTest):
     def setUp(self):
         super().setUp()
@@ -53,7 +53,7 @@ class Keypad(RigTest):
                           "--keypad", self.pad.device, *args)
 
     def held(self):
-        """Whether somebody has it to himself."""
+        """Returns whether a process has it exclusively."""
         fd = os.open(self.pad.device, os.O_RDONLY)
         try:
             fcntl.ioctl(fd, 0x40044590, 1)
@@ -63,7 +63,7 @@ class Keypad(RigTest):
             os.close(fd)
         return False
 
-    def test_a_session_on_keys_of_two_devices_which_nobody_else_gets(self):
+    def test_a_session_takes_keys_of_two_devices_exclusively(self):
         self.assertFalse(self.held())
         second = Pad(keys=[KEYS["enter"]])
         self.addCleanup(second.unplug)
@@ -82,7 +82,7 @@ class Keypad(RigTest):
         self.assertRaises(BlockingIOError, os.read, other, 24)
         self.assertFalse(self.held())
 
-    def test_what_was_pressed_before_the_question_is_no_answer(self):
+    def test_a_key_before_the_question_is_no_answer(self):
         p = self.calibrate()
         until(p, "Any key begins")
         self.pad.press("2")
@@ -106,7 +106,7 @@ class Keypad(RigTest):
         self.assertIn(device, said)
         self.assertIn("--resume", said)
 
-    def test_one_that_is_held_or_answers_nothing_is_refused(self):
+    def test_a_held_or_unsuitable_keypad_is_refused(self):
         fd = os.open(self.pad.device, os.O_RDONLY)
         self.addCleanup(os.close, fd)
         fcntl.ioctl(fd, 0x40044590, 1)

@@ -12,7 +12,7 @@ MAY_BE_ON = "tactor: amplifier: its line cannot be switched off"
 
 
 def holders():
-    """The processes that hold an amplifier's line for a player."""
+    """Returns the processes that hold an amplifier's line for a player."""
     found = []
     for process in filter(str.isdigit, os.listdir("/proc")):
         try:
@@ -54,13 +54,13 @@ class LineLost(AmplifierTest):
         self.assertEqual(p.returncode, status, err)
         return err
 
-    def holder_of(self):
+    def find_holder(self):
         # A listing of /proc may miss one while others come and go.
         found = wait_for(holders, "a holder is there")
         self.assertEqual(len(found), 1, found)
         return found[0]
 
-    def test_a_chip_that_is_removed_while_the_line_is_on_is_an_error_that_says_so(self):
+    def test_a_chip_removed_while_the_line_is_on_is_an_error_that_says_so(self):
         p = self.playing()
         self.gpio.close()
         p.send_signal(signal.SIGINT)
@@ -70,9 +70,9 @@ class LineLost(AmplifierTest):
         self.assertEqual(r.returncode, 3, r.stderr)
         self.assertIn(self.gpio.label, r.stderr)
 
-    def test_a_line_that_another_program_took_after_the_holder_died_is_left_to_it_and_said_to_be_on(self):
+    def test_a_line_taken_by_another_program_after_the_holder_s_death_is_left_to_it_and_reported_on(self):
         p = self.playing()
-        holder = self.holder_of()
+        holder = self.find_holder()
         os.kill(p.pid, signal.SIGSTOP)  # or it would be faster
         wait_for(lambda: stands_still(p.pid), "all threads of the player are stopped")
         os.kill(holder, signal.SIGKILL)
@@ -95,7 +95,7 @@ class LineLost(AmplifierTest):
 
     def test_a_stopped_holder_loses_the_line_to_the_player(self):
         p = self.playing()
-        os.kill(self.holder_of(), signal.SIGSTOP)
+        os.kill(self.find_holder(), signal.SIGSTOP)
         # Ten beats, each 40 ms and the emulated machine's lateness, are not answered.
         self.off_within("SIGSTOP of the holder", 1.5)
         self.assertIn("the amplifier was off", self.ended(p, 1))
@@ -104,7 +104,7 @@ class LineLost(AmplifierTest):
 
     def test_a_killed_holder_loses_the_line_to_the_player(self):
         p = self.playing()
-        os.kill(self.holder_of(), signal.SIGKILL)
+        os.kill(self.find_holder(), signal.SIGKILL)
         self.off_within("SIGKILL of the holder")
         self.assertIn("the amplifier was off", self.ended(p, 1))
 
@@ -117,10 +117,10 @@ class LineLost(AmplifierTest):
         p.wait(20)
 
     def test_both_killed_the_line_is_as_the_chip_leaves_it(self):
-        # Floating, this line is high: a stand-in for chips that keep what was driven.
+        # Floating, this line is high: a stand-in for chips that keep their last state.
         p = self.playing()
         self.gpio.pull(self.LINE, True)
-        holder = self.holder_of()
+        holder = self.find_holder()
         os.kill(p.pid, signal.SIGKILL)
         os.kill(holder, signal.SIGKILL)
         p.wait(20)

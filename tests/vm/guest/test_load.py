@@ -36,10 +36,10 @@ class Load(AmplifierTest):
         cut = [s for s in played if s["state"] != "finished"]
         self.assertEqual(len(played), strokes)
         self.assertLess(len(cut), strokes, err)
-        # Each xrun is told, with its length, and ends the stroke that it falls into; nothing else ends one.
+        # Each xrun is reported with its length, and ends its stroke; nothing else ends one.
         for s in cut:
             self.assertEqual((s["state"], s["reason"]), ("interrupted", "device: xrun: the device ran dry"), s)
         self.assertLessEqual(len(cut), counters["xruns"], err)
         self.assertEqual(len(counters["xrun_s"]), counters["xruns"])
-        # The amplifier goes off where the stream stands still for long, and whenever it shall.
+        # The amplifier goes off where the stream stands still for long, and at the end.
         self.assertEqual((counters["off_failures"], counters["left_on"]), (0, False))

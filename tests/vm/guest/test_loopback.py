@@ -18,7 +18,7 @@ def wav_data(path):
 
 
 def difference(heard, data, frame):
-    """Where they begin to differ, and what follows: so many frames too few, too many, or other ones."""
+    """Returns the first difference, and its kind: frames missing, repeated, or others."""
     at = next((n for n in range(0, len(data), frame) if heard[n:n + frame] != data[n:n + frame]), None)
     if at is None:
         return ""
@@ -37,7 +37,7 @@ class Loopback(RigTest):
     tried_again = False
 
     def record(self, channels, name, alsa_name, stroke, array):
-        """What arrived, and bytes in a frame of it; none where it says nothing."""
+        """Returns the received bytes, and the bytes in a frame; none for silence."""
         capture = Capture(self.dir, channels, alsa_name)
         played = self.tool("play", *stroke, "--array", array, "--sample-format", name, "--format", "json")
         got = capture.stop()

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""tactor serve on a card that goes away, and through what can end it: who is told what, and when the amplifier is off."""
+"""tactor serve on a card that goes away, and at each possible end: messages to clients, and the amplifier's state."""
 import json
 import os
 import signal
@@ -12,7 +12,7 @@ LONG = {"path": "M 0 0 L 40 40", "options": {"duration": 60, "algorithm": "conti
 
 
 class Client:
-    """One connection; what it is told is kept."""
+    """A connection; keeps its messages."""
 
     def __init__(self, path):
         self.socket = socket.socket(socket.AF_UNIX)
@@ -32,7 +32,7 @@ class Client:
             self.told.append(m)
 
     def hear(self, method, **params):
-        """Waits for a notification that says so; true when it came, false when the connection ended before."""
+        """Waits for such a notification; true when it came, false when the connection ended before."""
         while True:
             for m in self.told:
                 if m["method"] == method and params.items() <= m["params"].items():
@@ -42,8 +42,8 @@ class Client:
                 return False
             self.told.append(json.loads(line))
 
-    def end_of(self, number):
-        """How a stroke ended."""
+    def await_end(self, number):
+        """Returns the end of a stroke."""
         while True:
             for m in self.told:
                 if m["method"] == "stroke" and m["params"]["stroke"] == number and m["params"]["state"] in ENDS:
@@ -103,7 +103,7 @@ class Service(AmplifierTest):
         self.off_within("SIGKILL of the service", self.LIMIT_S + 0.2)
         p.wait(20)
         self.assertFalse(c.hear("stroke", state="finished"))
-        again = self.serve()  # the socket of the one before is no hindrance
+        again = self.serve()  # the socket of the one before is no obstacle
         self.sounding(self.client())
         again.send_signal(signal.SIGTERM)
         self.assertEqual(again.wait(30), 0)
@@ -115,8 +115,8 @@ class Service(AmplifierTest):
         os.kill(p.pid, signal.SIGSTOP)
         self.off_within("SIGSTOP of the service", self.LIMIT_S + 0.2)
         os.kill(p.pid, signal.SIGCONT)
-        # What was heard of it since is not known: it is told as broken off, and the next one plays.
-        self.assertEqual(c.end_of(number), "interrupted")
+        # Its sound since then is unknown: it is reported as interrupted, and the next one plays.
+        self.assertEqual(c.await_end(number), "interrupted")
         self.sounding(c)
         p.send_signal(signal.SIGTERM)
         self.assertEqual(p.wait(30), 0)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Sync pulses and start triggers against what was captured."""
+"""Sync pulses and start triggers against the captured sound."""
 import json
 import subprocess
 import threading
@@ -36,7 +36,7 @@ class Onsets:
 
 
 class Watch:
-    """Notes between which two looks a line rises: about a millisecond under emulation, more where others get the time."""
+    """Returns the two clock readings between which a line rises: a millisecond apart under emulation, more under load."""
 
     def __init__(self, gpio, offset):
         self.gpio, self.offset, self.rises, self.ended = gpio, offset, [], False
@@ -79,13 +79,13 @@ class Sync(RigTest):
         self.assertEqual(counters["sync_pulses"] + counters["sync_missed"], strokes)
         self.assertLessEqual(counters["sync_missed"], 4)
         self.assertEqual(len(pulses), counters["sync_pulses"])
-        # Strokes that follow each other without a gap of 0.1 s are one sound: compare each onset with the nearest pulse.
+        # Strokes without a gap of 0.1 s are one sound: compare each onset with the nearest pulse.
         nearest = [min(pulses, key=lambda p, h=h: abs(p[1] - h)) for h in heard]
         least, most = ([(p[end] - h) / 1e6 for p, h in zip(nearest, heard)] for end in (0, 1))
         print(f"sync pulse after onset, ms: n {len(heard)}, between {min(least):.2f} and {max(most):.2f}")
         self.assertGreaterEqual(len(heard), 1)
-        # How late a busy host lets a pulse be is told by the counters; that they tell the truth is held here, as well as a
-        # card that moves by jiffies of 4 ms can.
+        # The counters give the lateness of a pulse on a busy host; this checks them as well as a card that moves by jiffies of
+        # 4 ms can.
         self.assertGreater(min(most), -10)
         self.assertLess(max(least), counters["sync_worst_late_s"] * 1e3 + 10)
 

@@ -17,7 +17,7 @@ class Unplug(RigTest):
         self.array = self.grid(extra=f'[amplifier]\nline = {{ chip = "{self.gpio.label}", offset = {LINE} }}\n')
 
     def sounding(self):
-        """A second of the stream has been played: the stroke has begun."""
+        """Waits until a second of the stream has been played: the stroke has begun."""
         status = pathlib.Path("/proc/asound/Loopback/pcm0p/sub0/status").read_text()
         return any(int(line.split(":")[1]) > 48000 for line in status.splitlines() if line.startswith("hw_ptr"))
 

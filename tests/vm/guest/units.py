@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The units of `tactor serve` under systemd: what starts the service, what ends it, and what is so in between."""
+"""The units of `tactor serve` under systemd: start, end, and the state in between."""
 import json
 import os
 import pathlib
@@ -33,7 +33,7 @@ def shows(name, unit="tactor.service"):
 
 
 def said(*args):
-    """What the journal has of the service, oldest first: (priority, text)."""
+    """Returns the service's entries of the journal, oldest first: (priority, text)."""
     lines = run("journalctl", "-o", "json", "-u", "tactor.service", *args).splitlines()
     return [(int(entry["PRIORITY"]), entry["MESSAGE"]) for entry in map(json.loads, lines)]
 
@@ -50,7 +50,7 @@ def setUpModule():
     run("systemd-sysusers")
     run("modprobe", "irq_sim")
     run("modprobe", "gpio-sim")
-    # The card gets its name as the rule's own example has it.
+    # The card gets the name of the rule's own example.
     ours = RULES.read_text().replace("sndrpihifiberry", "Loopback").replace('#SUBSYSTEM=="sound", KERNEL=="card[0-9]*", ATTR{id}',
                                                                          'SUBSYSTEM=="sound", KERNEL=="card[0-9]*", ATTR{id}')
     pathlib.Path("/etc/udev/rules.d/70-tactor.rules").write_text(ours)
@@ -70,7 +70,7 @@ periods = {PERIODS}
 [amplifier]
 line = {{ chip = "{Units.gpio.label}", offset = {LINE} }}
 """)
-    # The emulated machine stands still at times, and what does not come to rest in that time would be ended for it.
+    # The emulated machine stands still at times, and systemd would end a unit that does not settle in that time.
     own = pathlib.Path("/etc/systemd/system/tactor.service.d")
     own.mkdir(exist_ok=True)
     (own / "slow.conf").write_text("[Service]\nLimitRTTIME=infinity\n")
@@ -78,7 +78,7 @@ line = {{ chip = "{Units.gpio.label}", offset = {LINE} }}
 
 
 class Units(unittest.TestCase):
-    """In the order of their names: the first begins on a machine that has never seen a sound card."""
+    """Runs in the order of names: the first test begins on a machine that has never seen a sound card."""
     gpio = None
 
     def setUp(self):
@@ -101,7 +101,7 @@ class Units(unittest.TestCase):
         return c
 
     def playing(self, path=SOCKET):
-        """A client that has the stream's events, and its stroke, which sounds."""
+        """Makes a client that has the stream's events, and its sounding stroke."""
         c = self.client(path)
         c.call("subscribe", events=["stream"])
         wait_for(lambda: c.call("status")["stream"]["state"] == "running", "the stream runs")
@@ -117,7 +117,7 @@ class Units(unittest.TestCase):
         wait_for(lambda: not self.on(), f"the amplifier is off after {after}", seconds)
 
     def comes_back(self, c, pid):
-        """The client is cut off with no word that its stroke was played; the next one draws, of a new process."""
+        """Checks that the client is cut off without an end of its stroke, and that the next one draws through a new process."""
         self.assertFalse(c.hear("stroke", state="finished"))
         again, _ = self.playing()
         self.assertNotEqual(main_pid(), pid)
@@ -153,7 +153,7 @@ class Units(unittest.TestCase):
         self.assertEqual(main_pid(), pid)
         self.assertEqual(shows("StatusText"), "stream: running")
 
-    def test_3_what_the_journal_has_of_it(self):
+    def test_3_the_journal_has_its_events(self):
         lost = [priority for priority, text in said() if "the stream is lost: " in text]
         self.assertEqual(set(lost), {4})
         again = [priority for priority, text in said() if "the stream runs again" in text]
@@ -171,7 +171,7 @@ class Units(unittest.TestCase):
         self.comes_back(c, pid)
 
     def test_5_all_its_processes_are_killed(self):
-        # Left alone, this line is high: a stand-in for chips that keep what was driven.
+        # Left alone, this line is high: a stand-in for chips that keep their last state.
         c, _ = self.playing()
         pid = main_pid()
         self.gpio.pull(LINE, True)
@@ -194,7 +194,7 @@ class Units(unittest.TestCase):
     def test_7_it_is_stopped_and_the_card_starts_it(self):
         c, number = self.playing()
         systemctl("stop", "tactor.service", "tactor.socket")
-        self.assertEqual(c.end_of(number), "cancelled")
+        self.assertEqual(c.await_end(number), "cancelled")
         self.assertFalse(c.hear("nothing more"))
         self.off("stop")
         self.assertEqual(shows("Result"), "success")
@@ -210,11 +210,11 @@ class Units(unittest.TestCase):
         run("systemd-analyze", "security", "--offline=true", "--threshold=20", UNITS / "system/tactor.service")
         run("systemd-analyze", "security", "--offline=true", "--threshold=30", UNITS / "user/tactor.service")
 
-    def test_9_one_users_own(self):
+    def test_9_a_user_s_own_service(self):
         systemctl("stop", "tactor.service", "tactor.socket")
         run("useradd", "--groups", "audio,gpio", "--create-home", "maker")
         uid = run("id", "-u", "maker").strip()
-        place = f"/run/user/{uid}"  # systemd takes what it mounts over files from there
+        place = f"/run/user/{uid}"  # systemd unmounts its files from there
         run("systemd-run", "--unit=maker", "-p", "User=maker", "-p", "Delegate=yes", "-p", f"RuntimeDirectory=user/{uid}", "-p", "Type=notify",
             "-E", f"XDG_RUNTIME_DIR={place}", "/usr/lib/systemd/systemd", "--user", "--unit=sockets.target")
 

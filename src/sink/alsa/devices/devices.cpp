@@ -6,12 +6,9 @@
 #include <fmt/format.h>
 
 #include "core/suggest.hpp"
-#include "sink/alsa/devices/names.hpp"
 #include "sink/alsa/devices/plain_name.hpp"
 #include "sink/alsa/devices/route.hpp"
-#include "sink/alsa/devices/wiring.hpp"
 #include "sink/alsa/error_text.hpp"
-#include "sink/alsa/format.hpp"
 #include "sink/alsa/handle.hpp"
 #include "sink/alsa/library_messages.hpp"
 #include "sink/alsa/negotiate.hpp"
@@ -87,7 +84,7 @@ std::vector<count_range> channels(snd_pcm_t* pcm, const hw_params& p)
 }
 
 /// Returns the abilities of a configuration space from which open_alsa() would choose. Configures nothing.
-pcm_abilities abilities_of(snd_pcm_t* p, const hw_params& space)
+pcm_abilities read_abilities(snd_pcm_t* p, const hw_params& space)
 {
     pcm_abilities a;
     a.channels = channels(p, space);
@@ -192,7 +189,7 @@ void look_at(snd_pcm_t* pcm, const std::optional<alsa_options>& wanted, pcm_info
 {
     const library_messages silent;
     const hw_params space = configuration_space(pcm, into.name);
-    into.can = abilities_of(pcm, space);
+    into.can = read_abilities(pcm, space);
     into.opened = true;
     if (wanted)
         into.misfit = misfit(pcm, space, *wanted);
@@ -230,7 +227,7 @@ tactor::pcm_route tactor::route_of(const std::string& pcm)
     pcm_route r;
     r.types = pcm::find_route(pcm);
     r.writes = pcm::writes(r.types);
-    r.server = pcm::server_of(r.types);
+    r.server = pcm::find_server(r.types);
     return r;
 }
 

@@ -5,8 +5,8 @@
 #include <grp.h>
 #include <sys/stat.h>
 
+#include "core/split.hpp"
 #include "sink/alsa/devices/cards.hpp"
-#include "sink/alsa/devices/system_files.hpp"
 
 namespace tactor::pcm {
 namespace {
@@ -20,8 +20,8 @@ std::optional<which_device> playback_node(const std::string& name)
     if (name.rfind("pcmC", 0) != 0 || name.back() != 'p' || d == name.npos)
         return {};
     const std::string_view n = name;
-    const auto card = number<unsigned>(n.substr(4, d - 4));
-    const auto device = number<unsigned>(n.substr(d + 1, n.size() - d - 2));
+    const auto card = detail::number_in<unsigned>(n.substr(4, d - 4));
+    const auto device = detail::number_in<unsigned>(n.substr(d + 1, n.size() - d - 2));
     if (!card || !device)
         return {};
     return which_device{card, device};
@@ -32,9 +32,9 @@ bool meets(const which_device& wanted, unsigned card, unsigned device)
     return wanted.card.value_or(card) == card && wanted.device.value_or(device) == device;
 }
 
-std::string program_of(const fs::path& process)
+std::string program_name(const fs::path& process)
 {
-    const auto lines = lines_of(process / "comm");
+    const auto lines = read_lines(process / "comm");
     return lines.empty() ? "" : trimmed(lines.front());
 }
 
@@ -56,12 +56,12 @@ bool holds_playback(const fs::path& process, const which_device& wanted)
 void add_owners(const fs::path& proc, const fs::path& device, std::map<int, std::string>& into)
 {
     for (const fs::path& sub : entries(device)) {
-        const auto thread = number<int>(field(sub / "status", "owner_pid"));
+        const auto thread = detail::number_in<int>(field(sub / "status", "owner_pid"));
         if (!thread)
             continue;
-        const auto process = number<int>(field(proc / std::to_string(*thread) / "status", "Tgid"));
+        const auto process = detail::number_in<int>(field(proc / std::to_string(*thread) / "status", "Tgid"));
         const int pid = process.value_or(*thread);
-        into[pid] = program_of(proc / std::to_string(pid));
+        into[pid] = program_name(proc / std::to_string(pid));
     }
 }
 
@@ -70,14 +70,15 @@ void add_all_owners(const fs::path& proc, const which_device& wanted, std::map<i
 {
     for (const fs::path& folder : entries(proc / "asound")) {
         const std::string card = folder.filename().string();
-        const auto index = card.rfind("card", 0) == 0 ? number<unsigned>(card.substr(4)) : std::nullopt;
+        const auto index =
+            card.rfind("card", 0) == 0 ? detail::number_in<unsigned>(card.substr(4)) : std::nullopt;
         if (!index)
             continue;
         for (const fs::path& device : entries(folder)) {
             const std::string pcm = device.filename().string();
             if (pcm.rfind("pcm", 0) != 0 || pcm.back() != 'p')
                 continue;
-            const auto d = number<unsigned>(std::string_view(pcm).substr(3, pcm.size() - 4));
+            const auto d = detail::number_in<unsigned>(std::string_view(pcm).substr(3, pcm.size() - 4));
             if (d && meets(wanted, *index, *d))
                 add_owners(proc, device, into);
         }
@@ -91,9 +92,9 @@ std::vector<holder> playback_holders(const system_root& root, const which_device
     std::map<int, std::string> found;
     add_all_owners(root / "proc", wanted, found);
     for (const fs::path& process : entries(root / "proc")) {
-        const auto pid = number<int>(process.filename().string());
+        const auto pid = detail::number_in<int>(process.filename().string());
         if (pid && !found.contains(*pid) && holds_playback(process, wanted))
-            found[*pid] = program_of(process);
+            found[*pid] = program_name(process);
     }
     std::vector<holder> holders;
     for (const auto& [pid, program] : found)

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: MIT
-#include "sink/alsa/devices/names.hpp"
 
 #include <algorithm>
 #include <cstdlib>

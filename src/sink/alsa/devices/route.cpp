@@ -38,7 +38,7 @@ public:
         if (snd_config_get_string(definition, &other) >= 0 && other != nullptr)
             this->name(base, other, depth + 1);
         else
-            definition_of(definition, depth + 1, false);
+            add_definition(definition, depth + 1, false);
     }
 
     types found() && { return std::move(found_); }
@@ -54,23 +54,23 @@ private:
     }
 
     // Adds the plugins of a definition. `slaves`: each member names a slave.
-    void definition_of(snd_config_t* definition, int depth, bool slaves)
+    void add_definition(snd_config_t* definition, int depth, bool slaves)
     {
         each_member(definition, [&](const std::string& id, snd_config_t* member) {
-            const char* said = nullptr;
+            const char* text = nullptr;
             if (id == "capture" || id == "hint")
                 return;
             if (snd_config_get_type(member) == SND_CONFIG_TYPE_COMPOUND) {
                 if (!full(depth))
-                    definition_of(member, depth, id == "slaves");
-            } else if (snd_config_get_string(member, &said) < 0 || said == nullptr)
+                    add_definition(member, depth, id == "slaves");
+            } else if (snd_config_get_string(member, &text) < 0 || text == nullptr)
                 return;
             else if (id == "type")
-                found_.emplace_back(said);
+                found_.emplace_back(text);
             else if (id == "pcm")
-                name("pcm", said, depth);
+                name("pcm", text, depth);
             else if (slaves || id == "slave" || id == "playback")
-                name("pcm_slave", said, depth);
+                name("pcm_slave", text, depth);
         });
     }
 
@@ -99,15 +99,15 @@ std::vector<std::string> find_route(const std::string& name)
 std::string unsafe_type(const std::vector<std::string>& route)
 {
     const auto bad = std::find_if_not(route.begin(), route.end(), [](const std::string& t) {
-        return among(harmless, t) || among(lasting, t);
+        return contains(harmless, t) || contains(lasting, t);
     });
     return bad == route.end() ? "" : *bad;
 }
 
 std::string lasting_type(const std::vector<std::string>& route)
 {
-    const auto bad =
-        std::find_if_not(route.begin(), route.end(), [](const std::string& t) { return among(harmless, t); });
+    const auto bad = std::find_if_not(route.begin(), route.end(),
+                                      [](const std::string& t) { return contains(harmless, t); });
     return bad == route.end() ? "" : *bad;
 }
 
@@ -116,7 +116,7 @@ bool writes(const std::vector<std::string>& route)
     return std::find(route.begin(), route.end(), "file") != route.end();
 }
 
-std::string server_of(const std::vector<std::string>& route)
+std::string find_server(const std::vector<std::string>& route)
 {
     constexpr std::array<std::pair<std::string_view, const char*>, 3> servers{
         {{"pipewire", "PipeWire"}, {"pulse", "PulseAudio"}, {"jack", "JACK"}}};

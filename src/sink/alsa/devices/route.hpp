@@ -10,6 +10,9 @@
 
 #include <alsa/asoundlib.h>
 
+#include <tactor/alsa.hpp>
+#include <tactor/sink.hpp>
+
 namespace tactor::pcm {
 
 /// Calls `visit` for each member of a compound, with its name. Does nothing for other nodes.
@@ -31,7 +34,7 @@ void each_member(snd_config_t* compound, Visit visit)
 inline constexpr int deepest = 8;
 
 template <typename Names>
-bool among(const Names& names, std::string_view type)
+bool contains(const Names& names, std::string_view type)
 {
     return std::find(names.begin(), names.end(), type) != names.end();
 }
@@ -57,6 +60,26 @@ std::string lasting_type(const std::vector<std::string>& route);
 bool writes(const std::vector<std::string>& route);
 
 /// Returns "PipeWire", "PulseAudio" or "JACK" if the route ends in one, else empty.
-std::string server_of(const std::vector<std::string>& route);
+std::string find_server(const std::vector<std::string>& route);
+
+struct known_name {
+    std::string name = {};
+    std::string description = {}; ///< one line; may be empty
+};
+
+/// Every PCM for playback that the configuration names and that needs no argument: those with a hint as
+/// ALSA lists them, then the others.
+std::vector<known_name> known_names();
+
+/// All PCMs that a configuration defines under `pcm`, those that need arguments too; as hints for a mistyped
+/// name.
+std::vector<std::string> defined_pcms(snd_config_t* top);
+
+/// Finds the wiring of the first `channels` of a PCM that is opened with `device_channels`, none of them
+/// converted, as open() does.
+stream_wiring find_wiring(snd_config_t* top, const std::string& name, unsigned channels,
+                          unsigned device_channels);
+/// Finds the wiring of the options' channels, by their text or the system's configuration.
+stream_wiring find_wiring(const alsa_options& o, unsigned device_channels);
 
 } // namespace tactor::pcm

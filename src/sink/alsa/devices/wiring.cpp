@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: MIT
-#include "sink/alsa/devices/wiring.hpp"
 
 #include <algorithm>
 #include <array>
@@ -8,8 +7,6 @@
 #include <map>
 #include <memory>
 #include <optional>
-#include <string_view>
-#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -48,11 +45,11 @@ snd_config_t* member(snd_config_t* compound, const char* id)
 
 std::string text(snd_config_t* value)
 {
-    char* said = nullptr;
-    if (value == nullptr || snd_config_get_ascii(value, &said) < 0 || said == nullptr)
+    char* text = nullptr;
+    if (value == nullptr || snd_config_get_ascii(value, &text) < 0 || text == nullptr)
         return {};
-    const std::unique_ptr<char, deleter<std::free>> freed(said);
-    return said;
+    const std::unique_ptr<char, deleter<std::free>> freed(text);
+    return text;
 }
 
 // Reads a number as libasound does: any base, and no other text. Returns most_channels for a number that no
@@ -116,11 +113,11 @@ private:
             return of_multi(definition, channels, depth);
         if (type == "route" || (type == "plug" && member(definition, "ttable") != nullptr))
             return of_table(definition, channels, depth);
-        if (among(binding, type) && member(definition, "bindings") != nullptr)
+        if (contains(binding, type) && member(definition, "bindings") != nullptr)
             return of_bindings(definition, channels, depth);
         if (type == "softvol")
             level_by_ = "type softvol";
-        if (among(straight, type) || among(binding, type))
+        if (contains(straight, type) || contains(binding, type))
             return slave(member(definition, "slave"), channels, depth);
         throw hidden{type.empty() ? "a definition without a type" : fmt::format("type {}", type)};
     }
@@ -147,10 +144,10 @@ private:
         snd_config_t* pcm = definition == nullptr ? nullptr : member(definition, "pcm");
         if (pcm == nullptr)
             throw hidden{"a slave that is not defined"};
-        long said = 0;
+        long count = 0;
         if (snd_config_t* n = member(definition, "channels");
-            n != nullptr && snd_config_get_integer(n, &said) >= 0)
-            channels = static_cast<unsigned>(std::clamp(said, 0L, long{most_channels}));
+            n != nullptr && snd_config_get_integer(n, &count) >= 0)
+            channels = static_cast<unsigned>(std::clamp(count, 0L, long{most_channels}));
         return at(pcm, channels, depth + 1);
     }
 

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: MIT
+#include "core/marks.hpp"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+namespace tactor::detail {
+namespace {
+
+constexpr std::string_view command = "command:";
+constexpr std::string_view letters = "abcdefghijklmnopqrstuvwxyz_";
+
+// Reads a text between braces.
+std::optional<mark> read(std::string_view text) noexcept
+{
+    const std::string_view inside = text.substr(1, text.size() - 2);
+    mark m;
+    m.text = text;
+    m.setting = inside.substr(0, inside.find('|'));
+    m.clause = inside.substr(std::min(m.setting.size() + 1, inside.size()));
+    const std::size_t named = m.setting.starts_with(command) ? command.size() : 0;
+    m.name = m.setting.substr(0, std::min(m.setting.find_first_not_of(letters, named), m.setting.size()));
+    const std::string_view rest = m.setting.substr(m.name.size());
+    if (m.name.size() == named || (!rest.empty() && rest.front() != '='))
+        return std::nullopt;
+    m.value = rest.substr(rest.empty() ? 0 : 1);
+    return m;
+}
+
+} // namespace
+
+std::optional<mark> find_mark(std::string_view text) noexcept
+{
+    for (std::size_t begin = text.find('{'); begin != text.npos; begin = text.find('{', begin + 1)) {
+        const std::size_t end = text.find('}', begin);
+        if (end == text.npos)
+            break;
+        if (const auto m = read(text.substr(begin, end + 1 - begin)))
+            return m;
+    }
+    return std::nullopt;
+}
+
+std::string_view command_name(const mark& m) noexcept
+{
+    return m.name.substr(m.name.starts_with(command) ? command.size() : m.name.size());
+}
+
+std::string plain(const mark& m)
+{
+    if (m.setting == "fit=true") // no option of a plan, but a function
+        return "fit_strokes()";
+    if (!command_name(m).empty())
+        return fmt::format("tactor {}", command_name(m));
+    return m.value.empty() ? std::string(m.name) : fmt::format("{} = {}", m.name, m.value);
+}
+
+std::string plain(std::string_view marked)
+{
+    return write_marks(marked, [](const mark& m) { return plain(m).append(m.clause); });
+}
+
+} // namespace tactor::detail

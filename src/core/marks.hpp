@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: MIT
+/// \file
+/// Marks in hints: names that each front end writes as its users know them.
+///
+/// {soa_s} is an option by its field or name, {timing=fit} what sets it, {command:devices} a command of the
+/// tool. {fit=true| scales it, } has a clause behind it, which a front end without that option leaves out.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace tactor::detail {
+
+struct mark {
+    std::string_view text;    ///< all of it, braces included
+    std::string_view setting; ///< what names it: "soa_s", "timing=fit", "command:devices"
+    std::string_view name;    ///< "timing"
+    std::string_view value;   ///< "fit"; empty: none
+    std::string_view clause;  ///< text behind it
+};
+
+/// Finds the first mark. Other braces are none.
+[[nodiscard]] std::optional<mark> find_mark(std::string_view text) noexcept;
+
+/// Returns the command that a mark names; empty: it names none.
+[[nodiscard]] std::string_view command_name(const mark& m) noexcept;
+
+/// Replaces each mark by what `write` returns for it.
+template <class Write>
+std::string write_marks(std::string_view text, Write write)
+{
+    std::string out;
+    for (auto m = find_mark(text); m; m = find_mark(text)) {
+        const auto begin = static_cast<std::size_t>(m->text.data() - text.data());
+        out.append(text.substr(0, begin)).append(write(*m));
+        text.remove_prefix(begin + m->text.size());
+    }
+    return out.append(text);
+}
+
+/// Returns a mark as the library's own users know it: "soa_s", "timing = fit".
+[[nodiscard]] std::string plain(const mark& m);
+/// Returns a text with all marks so, and with their clauses.
+[[nodiscard]] std::string plain(std::string_view marked);
+
+} // namespace tactor::detail

@@ -1,0 +1,194 @@
+// SPDX-License-Identifier: MIT
+#include "session/device_stream.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <cstddef>
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include "session/device.hpp"
+
+namespace tactor::session {
+
+void add_stats(player_stats& sum, const player_stats& more)
+{
+    constexpr std::ptrdiff_t most_xrun_lengths = 64; // as player_stats::xrun_s has of one stream
+    const bool first = sum.periods == 0;
+    sum.ring_low_water = first ? more.ring_low_water : std::min(sum.ring_low_water, more.ring_low_water);
+    sum.realtime = more.realtime && (first || sum.realtime);
+    using count = std::uint64_t player_stats::*;
+    for (const count c :
+         {&player_stats::periods, &player_stats::frames, &player_stats::xruns, &player_stats::limited_frames,
+          &player_stats::power_limited_frames, &player_stats::drives_cut, &player_stats::stalls,
+          &player_stats::off_failures, &player_stats::sync_missed, &player_stats::minor_faults,
+          &player_stats::major_faults})
+        sum.*c += more.*c;
+    sum.left_on = more.left_on; // a later player may have switched it off
+    const auto pulses = static_cast<double>(sum.sync_pulses + more.sync_pulses);
+    if (pulses > 0.0)
+        sum.sync_mean_late_s = (sum.sync_mean_late_s * static_cast<double>(sum.sync_pulses) +
+                                more.sync_mean_late_s * static_cast<double>(more.sync_pulses)) /
+                               pulses;
+    sum.sync_pulses += more.sync_pulses;
+    sum.sync_worst_late_s = std::max(sum.sync_worst_late_s, more.sync_worst_late_s);
+    sum.latest_wakeup_s = std::max(sum.latest_wakeup_s, more.latest_wakeup_s);
+    sum.xrun_s.insert(sum.xrun_s.end(), more.xrun_s.begin(), more.xrun_s.end());
+    if (std::ssize(sum.xrun_s) > most_xrun_lengths) // the newest are kept
+        sum.xrun_s.erase(sum.xrun_s.begin(), sum.xrun_s.end() - most_xrun_lengths);
+}
+
+stream_parts open_parts(const alsa_options& device, const stream_options& o, const environment& e, bool arm)
+{
+    stream_parts p;
+    p.open = [device] { return open_device(device); };
+    p.lines = lent_lines(open_lines(o, e, arm));
+    p.tactors = e.tactors;
+    p.player.limits = settle_limits(o, e);
+    p.player.require_realtime = o.require_realtime;
+    p.player.log = device.log;
+    p.kept = kept_drive(device.pcm, p.player.limits);
+    p.wished.name = device.pcm;
+    p.wished.channels = device.channels;
+    p.wished.rate = device.rate;
+    p.wished.period_frames = device.period_frames;
+    p.wished.buffer_frames = device.period_frames * device.periods;
+    return p;
+}
+
+struct device_stream::outcome {
+    bool closes = false;
+    std::unique_ptr<tactor::player> player = {}; ///< that was opened, or is to be closed
+    std::exception_ptr failure = {};
+    std::string why = {};
+    player_stats last = {};
+    std::optional<drive_history> driven = {}; ///< none: what is kept goes on counting
+    std::atomic<bool> done = false;
+};
+
+device_stream::device_stream(stream_parts p)
+    : stream_policy(p.times), parts_(std::move(p)), setup_(parts_.wished)
+{
+    parts_.lines.on_switch([this] { news_.signal(); });
+    parts_.player.log = [this, log = parts_.player.log](log_kind k, std::string_view text) {
+        if (log)
+            log(k, text);
+        news_.signal();
+    };
+}
+
+void device_stream::finish() noexcept
+{
+    try {
+        outcome_.reset(); // its player calls back
+        end();
+        step();
+        work_here();
+    } catch (const std::exception&) { // NOLINT(bugprone-empty-catch): what is kept counts too much then
+    }
+}
+
+std::optional<device_stream::time> device_stream::step(time now)
+{
+    if (outcome_ != nullptr && outcome_->done)
+        settle();
+    if (player_ != nullptr)
+        if (const auto end = player_->ended())
+            ended(end->reason == reason_kind::none ? "the stream was stopped" : end->why);
+    due_ = stream_policy::step(now);
+    if (player_ != nullptr) {
+        mute(amplifier() == amplifier_state::muted);
+        if (is_busy())
+            parts_.kept.going(setup_.channels);
+    }
+    return again();
+}
+
+std::function<void()> device_stream::work()
+{
+    const act a = std::exchange(due_, act::nothing);
+    if (a == act::nothing)
+        return {};
+    begin();
+    outcome_ = std::make_shared<outcome>();
+    outcome_->closes = a == act::close;
+    outcome_->player = std::move(player_);
+    if (outcome_->closes)
+        return [o = outcome_.get()] { close(*o); };
+    parts_.player.driven = parts_.kept.until_now();
+    return [this, o = outcome_.get(), proof_s = proves() ? parts_.times.proof_s : 0.0] { open(*o, proof_s); };
+}
+
+bool device_stream::work_here()
+{
+    const auto todo = work();
+    if (!todo)
+        return false;
+    todo();
+    step();
+    return true;
+}
+
+void device_stream::open(outcome& o, double proof_s)
+{
+    try {
+        auto p = std::make_unique<player>(parts_.open(), parts_.tactors, parts_.player,
+                                          parts_.lines.lend(proof_s));
+        p->on_begin([this, number = number_ + 1](stroke_id id, std::optional<std::int64_t> at_ns) {
+            if (parts_.begun)
+                parts_.begun(number, id, at_ns);
+            news_.signal();
+        });
+        p->on_report([this, number = number_ + 1](const stroke_report& r) {
+            if (parts_.ended)
+                parts_.ended(number, r);
+            news_.signal();
+        });
+        o.player = std::move(p);
+    } catch (const std::exception& e) {
+        o.failure = std::current_exception();
+        o.why = e.what();
+    }
+    o.done = true;
+}
+
+void device_stream::close(outcome& o)
+{
+    o.player->stop();
+    o.last = o.player->stats();
+    try {
+        o.driven = o.player->history();
+    } catch (const error&) { // NOLINT(bugprone-empty-catch): what is kept counts too much then
+    }
+    o.player.reset(); // reports what is left; it holds the device and borrows the lines
+    o.done = true;
+}
+
+void device_stream::settle()
+{
+    const auto o = std::exchange(outcome_, nullptr);
+    if (o->closes) {
+        add_stats(before_, o->last);
+        if (o->driven)
+            parts_.kept.settled(*o->driven);
+        return closed(o->last.left_on);
+    }
+    failure_ = o->failure;
+    if (failure_ != nullptr)
+        return failed(o->why);
+    player_ = std::move(o->player);
+    ++number_;
+    setup_ = player_->setup();
+    opened();
+}
+
+player_stats device_stream::stats() const
+{
+    player_stats all = before_;
+    if (player_ != nullptr)
+        add_stats(all, player_->stats());
+    return all;
+}
+
+} // namespace tactor::session

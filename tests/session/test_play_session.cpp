@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: MIT
+// A run whose device is lost and comes back, on devices whose clock the test has.
+#include "session/play_session.hpp"
+
+#include <atomic>
+#include <functional>
+#include <list>
+#include <memory>
+#include <mutex>
+#include <optional>
+
+#include <doctest/doctest.h>
+
+#include "clock_runner.hpp"
+#include "fake_dac.hpp"
+#include "player_support.hpp"
+#include "scores.hpp"
+#include "sink/alsa/adopt.hpp"
+
+namespace play_session_test {
+
+using namespace tactor;
+using namespace tactor::test;
+
+namespace {
+
+/// A line that goes on and never off again.
+class stuck_line final : public enable_line {
+public:
+    explicit stuck_line(std::atomic<bool>& on) : on_(on) {}
+    bool set(bool on) noexcept override
+    {
+        on_ = on_ || on;
+        return on;
+    }
+
+private:
+    std::atomic<bool>& on_;
+};
+
+/// A run on a new card each time that its device is opened.
+struct run {
+    std::list<fake_dac> cards;
+    std::list<running_clock> clocks;
+    std::function<void()> before_open = [] {};
+    std::atomic<bool> amplifier_on = false;
+    session::environment where;
+    std::optional<session::play_session> session;
+
+    explicit run(double reopen_s, bool stuck = false)
+    {
+        where.tactors = palm();
+        where.config.limits.emplace();
+        where.config.limits->max_drive_s = 0.5;
+        where.config.limits->window_s = 3600.0; // of a clock that runs as fast as it can
+        session::stream_options o;
+        o.reopen_s = reopen_s;
+        session.emplace(nine(), o, where, [this, stuck](session::stream_parts& p) {
+            p.open = [this] {
+                before_open();
+                clocks.clear();
+                cards.emplace_back();
+                auto s = pcm::adopt(cards.back().pcm(), nine());
+                clocks.emplace_back(cards.back());
+                return s;
+            };
+            if (stuck) // elsewhere none: it would be switched off where a machine is slow
+                p.lines = session::lent_lines({.amplifier = std::make_unique<stuck_line>(amplifier_on)});
+            p.player = patient(p.player.limits);
+            p.player.realtime = false;
+            p.kept = {};
+            p.times.retry_s = 0.001;
+            p.times.proof_s = 0.001;
+        });
+    }
+    ~run()
+    {
+        session.reset();
+        clocks.clear();
+    }
+
+    stroke_report play(double seconds)
+    {
+        const auto ended = session->submit(tone(seconds));
+        return ended ? *ended : session->follow();
+    }
+    // While the clock runs: a device that stands still is not asked any more whether it is there.
+    void unplug()
+    {
+        cards.back().disconnect();
+        while (!session->lost())
+            session->wait_for(-1, 1);
+        clocks.clear();
+    }
+};
+
+} // namespace
+
+TEST_CASE("drive time and counters go on over a device that was lost")
+{
+    run r(60.0);
+    CHECK(r.play(0.3).state == state_kind::finished);
+    const player_stats before = r.session->stats();
+    r.unplug();
+    CHECK(r.session->reopen());
+    CHECK_FALSE(r.session->lost());
+    CHECK(r.cards.size() == 2);
+    CHECK(r.session->stats().frames >= before.frames);
+    CHECK(r.play(0.3).state == state_kind::finished);
+    const session::run_facts all = r.session->finish();
+    CHECK(all.reopened == 1);
+    CHECK(all.stats.drives_cut == 1); // 0.6 s of 0.5 s
+    CHECK(all.stats.frames > before.frames);
+    CHECK_FALSE(all.stats.left_on);
+}
+
+TEST_CASE("a device that is not waited for stays lost")
+{
+    run r(0.0);
+    r.unplug();
+    CHECK_FALSE(r.session->reopen());
+    CHECK(r.session->lost());
+    CHECK(r.cards.size() == 1);
+}
+
+TEST_CASE("a device that does not come back is given up when the time is over")
+{
+    run r(0.05);
+    r.unplug();
+    int tries = 0;
+    r.before_open = [&] {
+        ++tries;
+        throw error(error_kind::not_available, "card", "it is not there");
+    };
+    CHECK_FALSE(r.session->reopen());
+    CHECK(tries >= 1);
+    CHECK(r.session->position().played == 0);
+    CHECK(r.session->finish().reopened == 0);
+}
+
+TEST_CASE("a device that can never be opened is not waited for")
+{
+    run r(3600.0);
+    r.unplug();
+    r.before_open = [] { throw error(error_kind::bad_input, "card", "it has two channels"); };
+    CHECK_THROWS_AS(r.session->reopen(), error);
+}
+
+TEST_CASE("with an amplifier that may be on, a lost device is not opened again")
+{
+    run r(3600.0, true);
+    while (!r.amplifier_on)
+        r.session->wait_for(-1, 1);
+    r.unplug();
+    CHECK_FALSE(r.session->reopen());
+    CHECK(r.cards.size() == 1);
+    const session::run_facts all = r.session->finish();
+    CHECK(all.stats.left_on);
+    CHECK_THROWS_AS(all.check_amplifier(), error);
+}
+
+} // namespace play_session_test

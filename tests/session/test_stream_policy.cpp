@@ -1,0 +1,308 @@
+// SPDX-License-Identifier: MIT
+// Decisions of a stream's policy, without a device and without a clock.
+#include "session/stream_policy.hpp"
+
+#include <optional>
+#include <vector>
+
+#include <doctest/doctest.h>
+
+namespace stream_policy_test {
+
+using namespace tactor::session;
+using act = stream_policy::act;
+
+namespace {
+
+/// A policy, and what its owner does: an hour of it takes no time.
+struct owner {
+    stream_policy policy;
+    double now_s = 0.0;
+
+    explicit owner(const stream_times& t = {}) : policy(t) {}
+
+    static stream_policy::time at(double s)
+    {
+        return stream_policy::time{} +
+               std::chrono::round<stream_policy::time::duration>(std::chrono::duration<double>(s));
+    }
+    act step() { return policy.step(at(now_s)); }
+    /// Waits until the policy has something to do; nothing: it waits for ever. Returns how long it took, s.
+    std::optional<double> wait_for(act a)
+    {
+        const double began_s = now_s;
+        while (step() != a) {
+            if (!policy.again())
+                return {};
+            now_s = std::chrono::duration<double>(policy.again()->time_since_epoch()).count();
+        }
+        return now_s - began_s;
+    }
+    void open()
+    {
+        REQUIRE(step() == act::open);
+        policy.begin();
+        policy.opened();
+    }
+    void close(bool left_on = false)
+    {
+        REQUIRE(step() == act::close);
+        policy.begin();
+        policy.closed(left_on);
+    }
+    void lose()
+    {
+        policy.ended("it is gone");
+        close();
+    }
+};
+
+} // namespace
+
+TEST_CASE("the device is opened at once, and runs")
+{
+    owner o;
+    CHECK(o.policy.state() == stream_state::lost);
+    CHECK_FALSE(o.policy.proves());
+    o.open();
+    CHECK(o.policy.state() == stream_state::running);
+    CHECK(o.step() == act::nothing);
+    CHECK_FALSE(o.policy.again());
+}
+
+TEST_CASE("while the device is opened or closed nothing else is done")
+{
+    owner o;
+    CHECK(o.step() == act::open);
+    CHECK(o.step() == act::open); // not begun yet
+    o.policy.begin();
+    CHECK(o.step() == act::nothing);
+    CHECK_FALSE(o.policy.is_out());
+    o.policy.end();
+    CHECK(o.step() == act::nothing);
+    CHECK_FALSE(o.policy.is_over());
+    o.policy.opened();
+    CHECK(o.policy.state() == stream_state::closing);
+    o.close();
+    CHECK(o.policy.is_over());
+}
+
+TEST_CASE("pauses before a lost device is tried again double from 0.1 s to 5 s, for ever")
+{
+    owner o;
+    o.open();
+    o.lose();
+    CHECK(o.policy.state() == stream_state::lost);
+    CHECK(o.policy.reason() == "it is gone");
+    for (const double pause_s : {0.1, 0.2, 0.4, 0.8, 1.6, 3.2, 5.0, 5.0, 5.0}) {
+        CHECK(o.policy.proves());
+        CHECK(o.wait_for(act::open) == doctest::Approx(pause_s));
+        o.policy.begin();
+        o.policy.failed("not there");
+        CHECK(o.policy.reason() == "not there");
+    }
+    o.now_s += 86400.0;
+    CHECK(o.wait_for(act::open));
+}
+
+TEST_CASE("a device that opens and then fails is tried less and less often, and is never running")
+{
+    owner o;
+    o.open();
+    o.lose();
+    for (const double pause_s : {0.1, 0.2, 0.4, 0.8, 1.6, 3.2, 5.0, 5.0}) {
+        CHECK(o.wait_for(act::open) == doctest::Approx(pause_s));
+        o.open();
+        CHECK(o.step() == act::nothing);
+        o.now_s += 0.9;
+        CHECK(o.step() == act::nothing);
+        CHECK(o.policy.state() == stream_state::lost);
+        o.lose();
+    }
+}
+
+TEST_CASE("a lost device is running when it has held for a second, and the pauses begin anew")
+{
+    owner o;
+    o.open();
+    o.lose();
+    for (int i = 0; i < 3; ++i) {
+        CHECK(o.wait_for(act::open));
+        o.policy.begin();
+        o.policy.failed("not there");
+    }
+    CHECK(o.wait_for(act::open));
+    o.open();
+    CHECK(o.step() == act::nothing);
+    CHECK(o.policy.again() == owner::at(o.now_s + 1.0));
+    o.now_s += 1.0;
+    CHECK(o.step() == act::nothing);
+    CHECK(o.policy.state() == stream_state::running);
+    CHECK(o.policy.reason().empty());
+    o.lose();
+    CHECK(o.wait_for(act::open) == doctest::Approx(0.1));
+}
+
+TEST_CASE("a device that is not waited for is given up at once")
+{
+    owner o({.wait_s = 0.0});
+    o.open();
+    o.lose();
+    CHECK_FALSE(o.wait_for(act::open));
+    CHECK(o.policy.is_over());
+    CHECK(o.policy.is_out());
+}
+
+TEST_CASE("a device is waited for as long as is asked for, with a last attempt then; each loss anew")
+{
+    owner o({.wait_s = 2.0});
+    o.open();
+    for (int i = 0; i < 2; ++i) {
+        o.lose();
+        CHECK(o.wait_for(act::open));
+        o.open();
+        CHECK(o.step() == act::nothing);
+        o.now_s += 1.0;
+        CHECK(o.step() == act::nothing);
+        REQUIRE(o.policy.state() == stream_state::running);
+    }
+    o.lose();
+    const double lost_s = o.now_s;
+    std::vector<double> tries_s;
+    while (o.wait_for(act::open)) {
+        tries_s.push_back(o.now_s - lost_s);
+        o.policy.begin();
+        o.policy.failed("not there");
+    }
+    REQUIRE(tries_s.size() == 5);
+    CHECK(tries_s[3] == doctest::Approx(1.5));
+    CHECK(tries_s[4] == doctest::Approx(2.0));
+    CHECK(o.policy.is_over());
+}
+
+TEST_CASE("while the amplifier may be on the device is never opened again, whoever waits")
+{
+    for (const bool idle : {false, true}) {
+        CAPTURE(idle);
+        owner o({.idle_stop_s = 10.0});
+        o.open();
+        if (idle)
+            CHECK(o.wait_for(act::close));
+        else
+            o.policy.ended("it is gone");
+        o.policy.wake();
+        o.close(true);
+        CHECK_FALSE(o.wait_for(act::open));
+        CHECK(o.policy.is_over());
+        CHECK(o.policy.is_out());
+        CHECK(o.policy.state() == stream_state::lost);
+        CHECK(o.policy.reason().find("the amplifier may be on") != std::string::npos);
+    }
+}
+
+TEST_CASE("an idle stream closes, and opens for the next stroke without proof")
+{
+    owner o({.idle_stop_s = 10.0});
+    o.open();
+    CHECK(o.wait_for(act::close) == doctest::Approx(10.0));
+    CHECK(o.policy.state() == stream_state::idle);
+    o.close();
+    CHECK_FALSE(o.wait_for(act::open));
+    CHECK_FALSE(o.policy.is_out());
+    o.policy.wake();
+    CHECK_FALSE(o.policy.proves());
+    o.open();
+    CHECK(o.policy.state() == stream_state::running);
+}
+
+TEST_CASE("strokes keep a stream from being idle, which begins when the last has ended")
+{
+    owner o({.idle_stop_s = 10.0});
+    o.open();
+    CHECK(o.step() == act::nothing);
+    o.now_s = 9.0;
+    o.policy.set_busy(true);
+    for (; o.now_s < 100.0; o.now_s += 0.5) {
+        CHECK(o.step() == act::nothing);
+        CHECK(o.policy.again() == owner::at(o.now_s + 0.5)); // drive time is kept
+    }
+    o.policy.set_busy(false);
+    CHECK(o.wait_for(act::close) == doctest::Approx(10.0));
+}
+
+TEST_CASE("a stroke that comes while the device is being closed is not forgotten")
+{
+    owner o({.idle_stop_s = 10.0});
+    o.open();
+    CHECK(o.wait_for(act::close));
+    o.policy.begin();
+    CHECK_FALSE(o.policy.is_out());
+    o.policy.wake();
+    o.policy.closed(false);
+    CHECK(o.step() == act::open);
+}
+
+TEST_CASE("a stroke that waits hears of the first attempt that fails")
+{
+    owner o({.idle_stop_s = 10.0});
+    o.open();
+    CHECK(o.wait_for(act::close));
+    o.close();
+    o.policy.wake();
+    CHECK(o.step() == act::open);
+    o.policy.begin();
+    CHECK_FALSE(o.policy.is_out());
+    o.policy.failed("not there");
+    CHECK(o.policy.is_out());
+    CHECK(o.wait_for(act::open) == doctest::Approx(0.1));
+}
+
+TEST_CASE("drive time is kept while a device that was lost has yet to prove itself")
+{
+    owner o;
+    o.open();
+    o.lose();
+    CHECK(o.wait_for(act::open));
+    o.open();
+    o.policy.set_busy(true);
+    CHECK(o.step() == act::nothing);
+    CHECK(o.policy.again() == owner::at(o.now_s + 0.5));
+}
+
+TEST_CASE("a stream is muted only while it runs")
+{
+    owner o;
+    o.policy.mute(true);
+    CHECK(o.policy.state() == stream_state::lost);
+    o.open();
+    o.policy.mute(true);
+    CHECK(o.policy.state() == stream_state::muted);
+    o.policy.mute(false);
+    CHECK(o.policy.state() == stream_state::running);
+    CHECK(o.policy.reason().empty());
+    o.policy.ended("it is gone");
+    o.policy.mute(true);
+    CHECK(o.policy.state() == stream_state::lost);
+}
+
+TEST_CASE("after the end nothing is opened, whatever happens")
+{
+    owner lost;
+    lost.open();
+    lost.lose();
+    lost.policy.end();
+    owner runs;
+    runs.open();
+    runs.policy.end();
+    runs.close();
+    for (owner* o : {&lost, &runs}) {
+        o->policy.wake();
+        o->policy.set_busy(true);
+        o->now_s += 86400.0;
+        CHECK_FALSE(o->wait_for(act::open));
+        CHECK(o->policy.is_over());
+        CHECK(o->policy.state() == stream_state::closing);
+    }
+}
+
+} // namespace stream_policy_test
