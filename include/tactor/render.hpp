@@ -164,10 +164,11 @@ public:
     renderer(renderer&&) noexcept;
     renderer& operator=(renderer&&) noexcept;
 
-    /// Fills `out` with the next interleaved frames, as many as it has space for, and goes on; silence after
-    /// the end. Allocates nothing but what samples of a continuous stroke need.
-    /// \throws error (bad_input) where `out` is no whole number of frames (channels * bytes_of(format));
-    ///         std::bad_alloc where position() says how far it came, and the next call goes on from there.
+    /// Fills `out` with the next interleaved frames, as many as fit, and with silence after the end.
+    /// Allocates only for samples of continuous strokes. \throws error (bad_input) unless `out` is a whole
+    /// number of frames (channels * bytes_of(format));
+    ///         std::bad_alloc if memory runs out. The frames before position() are then complete, and the
+    ///         next call continues at position().
     void process(std::span<std::byte> out);
 
     /// Returns the number of the next frame.
@@ -181,12 +182,12 @@ private:
 /// Called between blocks with the finished and all frames. Returns false to give up.
 using wav_progress = std::function<bool(std::uint64_t done, std::uint64_t all)>;
 
-/// Renders a score to a WAV file (RF64 above 4 GB) in bounded memory. Writes to a temporary name in
-/// the same folder, which becomes `file` when complete; on failure, or when `progress` gives up,
-/// nothing is left behind and an existing `file` stays as it was. Blocks on the file system.
-/// \returns false when `progress` gave up.
-/// \throws error: bad_input for a format that WAV cannot hold (s24_4) and a folder that does not exist;
-///         runtime for what the file system refuses.
+/// Renders a score to a WAV file (RF64 above 4 GB) in bounded memory. Writes to a temporary name in the same
+/// folder and renames it to `file` when it is complete. On failure, or if `progress` gives up, it leaves
+/// nothing behind and an existing `file` unchanged. Blocks on the file system.
+/// \returns false if `progress` gave up.
+/// \throws error: bad_input for a format that WAV cannot hold (s24_4) and for a folder that does not exist;
+///         runtime for errors of the file system.
 TACTOR_API bool write_wav(const score& s, format_kind f, const std::filesystem::path& file,
                           const wav_progress& progress = {});
 

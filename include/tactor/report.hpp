@@ -50,7 +50,7 @@ enum class reason_kind {
     muted,     ///< the amplifier was off
     amplifier, ///< the amplifier's line cannot be switched
     left_on,   ///< the amplifier's line cannot be switched off: it may be on
-    plan,      ///< of a live stroke: a model of one's own failed, or gave more than was asked for
+    plan,      ///< live strokes: a custom phantom model failed, or gave more than the intensity
     handler,   ///< one of the program's handlers threw
 };
 TACTOR_KIND(reason_kind);

@@ -32,7 +32,7 @@ struct command {
     kind what = kind::begin;
     ticket score = 0;
     stroke_id id = {};          ///< begin
-    std::uint64_t at = 0;       ///< begin: frame of the stream; one that is over means now
+    std::uint64_t at = 0;       ///< begin: frame of the stream; a past one means now
     std::uint64_t length = 0;   ///< begin: frames
     synth::drive_event drive{}; ///< drive: frames count from the start of the score; `score` is the ticket
 };

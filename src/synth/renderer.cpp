@@ -30,7 +30,7 @@ namespace tactor {
 inline namespace v0 {
 
 struct renderer::impl {
-    /// Room for what sounds at once, and for what begins in the block meanwhile.
+    /// Makes a mixer with space for the drives that sound at once and for those that begin in the block.
     impl(const score& s, format_kind f)
         : source(s),
           mix(detail::access::of(s).limits, f, detail::access::of(s).open_events + 256,
@@ -44,7 +44,7 @@ struct renderer::impl {
         return s.guards ? synth::make_guards(*s.guards, s.rate) : synth::guard_settings{};
     }
 
-    /// Hands over what starts before a frame. Returns the frame up to which nothing is missing.
+    /// Hands over the drives that start before a frame. Returns the frame up to which none is missing.
     std::uint64_t feed(std::uint64_t until)
     {
         for (const synth::drive_event* e = source.peek(); e != nullptr && e->start < until;

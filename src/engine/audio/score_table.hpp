@@ -45,7 +45,7 @@ public:
     /// Fades out scores that would break off within two periods because their next drives have not come.
     /// Called before each mix.
     void fade_what_runs_out(std::uint64_t period) noexcept;
-    /// Fades a score out, or ends it at once if it has not begun. Its begin() may still be to come.
+    /// Fades a score out, or ends it at once if it has not begun. Its begin() may still come.
     void cancel(ticket t) noexcept;
     /// Fades everything out. Scores that have not begun end at once, and so do later ones.
     void stop(bool closing) noexcept;
@@ -85,11 +85,11 @@ private:
         stroke_id id = {};
         std::uint64_t base = 0;
         std::uint64_t length = 0;
-        std::uint64_t finish = 0;  ///< over when this frame has been played
+        std::uint64_t finish = 0;  ///< frame after which it is over, once played
         std::uint64_t covered = 0; ///< end of its drives so far
-        std::uint32_t fade = 0;    ///< frames that its end takes
-        bool open = false;         ///< it would still sound at `covered`: another drive is to follow
-        bool ahead = false;        ///< drives have been there in time
+        std::uint32_t fade = 0;    ///< length of its final fade, frames
+        bool open = false;         ///< another drive must follow, because it still sounds at `covered`
+        bool ahead = false;        ///< drives came in time before
         bool used = false;
         bool fed = false;
         bool fade_wanted = false;
