@@ -3,7 +3,7 @@
 
 * Times are seconds as double, called ..._s; instants of a clock are ns as int64, called ..._ns. No ..._ms, no chrono.
 * Closed sets are enumerations called ..._kind, each with TACTOR_KIND, which declares to_string(), from_string() and
-  values_of(), from name to value and back in tests/engine/test_kinds.cpp.
+  all_values(), from name to value and back in tests/engine/test_kinds.cpp.
 * Nothing is made from an impl in public, and nobody gets at one: no public data().
 * Classes with virtual functions cannot be copied.
 * A function that has a result is [[nodiscard]]: to drop it is a mistake (to_string() and its kin apart; write_wav(), whose

@@ -120,13 +120,13 @@ struct pcm_route {
 
 /// Looks up the name of a PCM. Opens nothing, and does not throw for names that are not defined. Blocks for
 /// some milliseconds (ALSA reads its configuration). Any thread, but one at a time.
-[[nodiscard]] TACTOR_API pcm_route route_of(const std::string& pcm);
+[[nodiscard]] TACTOR_API pcm_route read_route(const std::string& pcm);
 
 /// Returns the channels of the device that a PCM reaches if it is opened with `channels` channels. Reads
 /// ALSA's configuration and follows tables, bindings and everything else that passes channels on. Blocks for
 /// some milliseconds, opens nothing, and does not throw for names that are not defined. Any thread, but one
 /// at a time.
-[[nodiscard]] TACTOR_API stream_wiring wiring_of(const std::string& pcm, unsigned channels);
+[[nodiscard]] TACTOR_API stream_wiring read_wiring(const std::string& pcm, unsigned channels);
 
 /// Checks the name of a PCM that somebody else has chosen, for example in an array file. Such names are
 /// dangerous: open_alsa() takes any ALSA name, and "file:'|COMMAND',raw" runs the command.
@@ -134,7 +134,7 @@ struct pcm_route {
 /// A name passes if it has only letters, digits, "_", "-", and ":", "," and "=" where ALSA's own names have
 /// them ("hw:CARD=Tactor,DEV=0", "plug:'hw:0,1'"), and if ALSA's configuration defines it as a device. The
 /// route may go through conversions, mixers and sound servers, but not through a file or an unknown type. A
-/// name that is not defined passes, and cannot be opened. Blocks as route_of() does.
+/// name that is not defined passes, and cannot be opened. Blocks as read_route() does.
 /// \throws error (bad_input) that says what is wrong with the name.
 TACTOR_API void require_device_name(const std::string& pcm);
 
@@ -147,7 +147,7 @@ struct card_info {
 
 /// Finds the card to which the name of a PCM refers, as in "hw:CARD=Tactor" or "plughw:1,0". Returns nothing
 /// if there is no such card. Blocks shortly (/proc). Any thread.
-[[nodiscard]] TACTOR_API std::optional<card_info> card_of(const std::string& pcm);
+[[nodiscard]] TACTOR_API std::optional<card_info> read_card(const std::string& pcm);
 
 /// Lists the processes that have a playback device of this card open. Of other users' processes it lists only
 /// those that the driver reports. Blocks shortly (/proc). Any thread.

@@ -34,16 +34,16 @@ template <typename Kind>
 
 /// Returns all values, in the order of their declaration, for menus and loops.
 template <typename Kind>
-[[nodiscard]] std::span<const Kind> values_of() noexcept = delete;
+[[nodiscard]] std::span<const Kind> all_values() noexcept = delete;
 
 } // namespace v0
 } // namespace tactor
 
 /// Declares the name functions of an enumeration, in its own namespace: to_string(), which returns "unknown"
-/// for a number that is no value of it, from_string<>() and values_of<>().
+/// for a number that is no value of it, from_string<>() and all_values<>().
 #define TACTOR_KIND(Kind)                                                                                    \
     TACTOR_API std::string_view to_string(Kind k) noexcept;                                                  \
     template <>                                                                                              \
     TACTOR_API Kind from_string<Kind>(std::string_view name);                                                \
     template <>                                                                                              \
-    TACTOR_API std::span<const Kind> values_of<Kind>() noexcept
+    TACTOR_API std::span<const Kind> all_values<Kind>() noexcept

@@ -118,7 +118,7 @@ enum class format_kind {
 };
 
 /// Returns the number of bytes of one sample.
-[[nodiscard]] TACTOR_API std::size_t bytes_of(format_kind f) noexcept;
+[[nodiscard]] TACTOR_API std::size_t sample_bytes(format_kind f) noexcept;
 
 TACTOR_KIND(format_kind);
 

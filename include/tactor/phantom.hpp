@@ -134,7 +134,7 @@ struct fitted_strokes {
 
 /// Fits each stroke with a stroke::fit: alone, or together with the others of its group. The returned strokes
 /// have no stroke::fit. Throws as above.
-[[nodiscard]] TACTOR_API std::vector<stroke> fit_as_asked(std::vector<stroke> strokes, const layout& l);
+[[nodiscard]] TACTOR_API std::vector<stroke> apply_fits(std::vector<stroke> strokes, const layout& l);
 
 } // namespace v0
 } // namespace tactor

@@ -86,7 +86,7 @@ struct placed_plan {
 
 /// Returns the start of each plan in s.
 /// \throws error (bad_input) if one would start before the score.
-[[nodiscard]] TACTOR_API std::vector<double> starts_of(std::span<const placed_plan> plans);
+[[nodiscard]] TACTOR_API std::vector<double> start_times_s(std::span<const placed_plan> plans);
 
 /// Plans at a sample rate and at levels, in frames and channels. Immutable and cheap to copy. A move is a
 /// copy, so a moved-from score keeps its value.
@@ -166,7 +166,7 @@ public:
 
     /// Fills `out` with the next interleaved frames, as many as fit, and with silence after the end.
     /// Allocates only for samples of continuous strokes. \throws error (bad_input) unless `out` is a whole
-    /// number of frames (channels * bytes_of(format));
+    /// number of frames (channels * sample_bytes(format));
     ///         std::bad_alloc if memory runs out. The frames before position() are then complete, and the
     ///         next call continues at position().
     void process(std::span<std::byte> out);

@@ -48,14 +48,14 @@ struct limit_settings {
 
 /// A value of a table whose names only the program knows: [defaults], [serve]. The program checks names and
 /// values.
-struct said_value {
+struct written_value {
     std::string name = {}; ///< as written in the file
     std::variant<std::monostate, bool, double, std::string> said = {};
     bool in_list = false;      ///< an entry of a list
     source_place at = {};      ///< of the value
     source_place name_at = {}; ///< of the name
 
-    friend bool operator==(const said_value& a, const said_value& b)
+    friend bool operator==(const written_value& a, const written_value& b)
     {
         return a.name == b.name && a.said == b.said && a.in_list == b.in_list;
     }
@@ -97,9 +97,9 @@ struct setup {
     std::optional<limit_settings> limits = {};
     std::optional<calibration_origin> calibration = {};
     /// [defaults]: each name once; values of an included file come first.
-    std::vector<said_value> defaults = {};
+    std::vector<written_value> defaults = {};
     /// [serve]: in the order of the file.
-    std::vector<said_value> serve = {};
+    std::vector<written_value> serve = {};
 };
 
 /// Reads an array or configuration file. May block on the file system.

@@ -49,7 +49,7 @@ struct stream_setup {
     stream_wiring wiring = {}; ///< map behind this stream
 
     /// Returns the number of bytes of one frame.
-    [[nodiscard]] std::size_t frame_bytes() const noexcept { return channels * bytes_of(format); }
+    [[nodiscard]] std::size_t frame_bytes() const noexcept { return channels * sample_bytes(format); }
 };
 
 /// Outcome of a call on a sink. A plain value, because the audio thread does not throw.

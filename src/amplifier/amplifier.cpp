@@ -3,58 +3,58 @@
 
 #include <algorithm>
 
-namespace tactor::engine {
+namespace tactor::amplifier {
 
-void amplifier::handle(amplifier_event e, std::int64_t now, amplifier_frames at) noexcept
+void sequence::handle(event e, std::int64_t now, played_frames at) noexcept
 {
     if (state_ == state::ended)
         return;
     switch (e) {
-    case amplifier_event::started:
+    case event::started:
         at_ = {};
         proof_from_ = 0;
         if (state_ == state::stopped)
             state_ = state::proving;
         break;
-    case amplifier_event::moved:
+    case event::moved:
         at_ = at;
         break;
-    case amplifier_event::switched:
+    case event::switched:
         if (state_ == state::switching) {
             state_ = state::settling;
             settled_at_ = now + options_.settle_ns;
         }
         break;
-    case amplifier_event::xrun:
+    case event::xrun:
         count_xrun(now);
         break;
-    case amplifier_event::suspended:
+    case event::suspended:
         state_ = state::stopped;
         break;
-    case amplifier_event::stalled:
+    case event::stalled:
         stalled_ = true;
         prove();
         break;
-    case amplifier_event::recovered:
+    case event::recovered:
         stalled_ = false;
         prove();
         break;
-    case amplifier_event::lapsed:
+    case event::lapsed:
         prove();
         break;
-    case amplifier_event::silent:
-    case amplifier_event::lost:
-    case amplifier_event::failed:
+    case event::silent:
+    case event::lost:
+    case event::failed:
         state_ = state::ended;
         return;
-    case amplifier_event::tick:
+    case event::tick:
         break;
     }
     look(now);
 }
 
 // Switches off; on again when the DAC has shown that it runs.
-void amplifier::prove() noexcept
+void sequence::prove() noexcept
 {
     if (state_ != state::stopped)
         state_ = state::proving;
@@ -62,7 +62,7 @@ void amplifier::prove() noexcept
 }
 
 // Counts an xrun and mutes after too many. A mute pops too, so a single xrun of a few periods does not mute.
-void amplifier::count_xrun(std::int64_t now) noexcept
+void sequence::count_xrun(std::int64_t now) noexcept
 {
     if (xruns_ == 0 || now - first_xrun_ >= options_.calm_ns) {
         first_xrun_ = now;
@@ -76,7 +76,7 @@ void amplifier::count_xrun(std::int64_t now) noexcept
     }
 }
 
-void amplifier::look(std::int64_t now) noexcept
+void sequence::look(std::int64_t now) noexcept
 {
     const std::uint64_t from = std::max(proof_from_, at_.sounds_until);
     if (state_ == state::proving && !stalled_ && now >= muted_until_ && at_.played >= from &&
@@ -86,7 +86,7 @@ void amplifier::look(std::int64_t now) noexcept
         state_ = state::ready;
 }
 
-std::optional<std::int64_t> amplifier::deadline() const noexcept
+std::optional<std::int64_t> sequence::deadline() const noexcept
 {
     if (state_ == state::settling)
         return settled_at_;
@@ -95,4 +95,4 @@ std::optional<std::int64_t> amplifier::deadline() const noexcept
     return std::nullopt;
 }
 
-} // namespace tactor::engine
+} // namespace tactor::amplifier

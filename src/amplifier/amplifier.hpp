@@ -6,16 +6,16 @@
 #include <cstdint>
 #include <optional>
 
-namespace tactor::engine {
+namespace tactor::amplifier {
 
-struct amplifier_options {
+struct sequence_options {
     std::int64_t settle_ns = 10'000'000;  ///< turn-on time of the amplifier, spent in silence
     std::uint64_t proof_frames = 192;     ///< frames that the DAC must play before it counts as running
     std::int64_t calm_ns = 1'000'000'000; ///< most_xruns within it mute; that long without one unmutes
     unsigned most_xruns = 2;              ///< number of xruns within calm_ns that mutes
 };
 
-enum class amplifier_event {
+enum class event {
     started,   ///< the DAC started, with silence
     moved,     ///< the DAC played on, to `at`
     switched,  ///< the line has followed line() to on
@@ -31,7 +31,7 @@ enum class amplifier_event {
 };
 
 /// Frames of an epoch of the stream.
-struct amplifier_frames {
+struct played_frames {
     std::uint64_t played = 0;       ///< frames at the DAC
     std::uint64_t sounds_until = 0; ///< written frames from here on are silent, unless a stroke begins
 };
@@ -40,12 +40,12 @@ struct amplifier_frames {
 /// the line goes on; zeros for settle_ns; strokes. After a mute the same again, once the frames written
 /// before it are over. At the end silence, off, and only then the stop of the DAC. A class-D amplifier pops
 /// if it is enabled without a running bit clock, and if the DAC stops while it is enabled.
-class amplifier {
+class sequence {
 public:
-    explicit amplifier(const amplifier_options& o) noexcept : options_(o) {}
+    explicit sequence(const sequence_options& o) noexcept : options_(o) {}
 
     /// Processes an event. `now`: CLOCK_MONOTONIC, ns, never less than before.
-    void handle(amplifier_event e, std::int64_t now, amplifier_frames at = {}) noexcept;
+    void handle(event e, std::int64_t now, played_frames at = {}) noexcept;
 
     /// Returns the value that the line must have.
     bool line() const noexcept { return state_ == state::switching || state_ >= state::settling; }
@@ -64,10 +64,10 @@ private:
     void count_xrun(std::int64_t now) noexcept;
     void look(std::int64_t now) noexcept;
 
-    amplifier_options options_;
+    sequence_options options_;
     state state_ = state::stopped;
     bool stalled_ = false;
-    amplifier_frames at_ = {};
+    played_frames at_ = {};
     std::uint64_t proof_from_ = 0; ///< start of the count of proof_frames
     std::int64_t settled_at_ = 0;
     std::int64_t muted_until_ = INT64_MIN;
@@ -75,4 +75,4 @@ private:
     unsigned xruns_ = 0;
 };
 
-} // namespace tactor::engine
+} // namespace tactor::amplifier

@@ -16,7 +16,7 @@
 #include "core/split.hpp"
 #include "rt/system_files.hpp"
 
-namespace tactor::gpio {
+namespace tactor::amplifier {
 namespace {
 
 std::optional<unsigned> chip_number(const std::string& name)
@@ -138,14 +138,14 @@ std::string find_holder(const located_line& l)
     return l.offset < c.info.lines.size() ? c.info.lines[l.offset].consumer : std::string();
 }
 
-} // namespace tactor::gpio
+} // namespace tactor::amplifier
 
 std::vector<tactor::gpio_chip_info> tactor::list_gpio()
 {
     std::vector<gpio_chip_info> out;
-    for (gpio::chip& c : gpio::read_chips()) {
+    for (amplifier::chip& c : amplifier::read_chips()) {
         if (c.code != 0)
-            c.info.error = gpio::advice(c);
+            c.info.error = amplifier::advice(c);
         out.push_back(std::move(c.info));
     }
     return out;
@@ -153,5 +153,5 @@ std::vector<tactor::gpio_chip_info> tactor::list_gpio()
 
 tactor::gpio_line_place tactor::find_gpio_line(const gpio_line_name& line)
 {
-    return gpio::look_up(line);
+    return amplifier::look_up(line);
 }

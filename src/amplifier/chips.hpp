@@ -13,7 +13,7 @@
 
 #include "amplifier/line.hpp"
 
-namespace tactor::gpio {
+namespace tactor::amplifier {
 
 /// An existing line: chips[chip].info.lines[offset].
 struct line_place {
@@ -56,4 +56,4 @@ std::vector<chip> read_chips();
 /// Returns the holder of a line now; empty if there is none or it is not known.
 std::string find_holder(const located_line& l);
 
-} // namespace tactor::gpio
+} // namespace tactor::amplifier

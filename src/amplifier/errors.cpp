@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-namespace tactor::gpio {
+namespace tactor::amplifier {
 namespace {
 
 std::string words(int code)
@@ -94,4 +94,4 @@ error request_error(const gpio_line_name& l, int code, const std::string& holder
     }
 }
 
-} // namespace tactor::gpio
+} // namespace tactor::amplifier

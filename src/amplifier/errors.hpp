@@ -10,7 +10,7 @@
 
 #include "amplifier/line.hpp"
 
-namespace tactor::gpio {
+namespace tactor::amplifier {
 
 /// Returns the name of the line that failed: "setup.toml:3:1: GPIO line 17 of pinctrl-rp1".
 std::string thing(const gpio_line_name& l);
@@ -24,4 +24,4 @@ error open_error(const gpio_line_name& l, const chip& c);
 /// Returns the error of a line that the kernel refused. `holder`: the consumer that the kernel names.
 error request_error(const gpio_line_name& l, int code, const std::string& holder);
 
-} // namespace tactor::gpio
+} // namespace tactor::amplifier

@@ -12,7 +12,7 @@
 #include "core/refused.hpp"
 #include "core/suggest.hpp"
 
-namespace tactor::gpio {
+namespace tactor::amplifier {
 namespace {
 
 constexpr std::size_t most_listed = 12;
@@ -163,4 +163,4 @@ line_place find_line(std::span<const chip> chips, const gpio_line_name& wanted)
     return find_named(chips.subspan(i, 1), wanted, i);
 }
 
-} // namespace tactor::gpio
+} // namespace tactor::amplifier

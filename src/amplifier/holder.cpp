@@ -20,7 +20,7 @@
 #include "core/refused.hpp"
 #include "rt/clock.hpp"
 
-namespace tactor::gpio {
+namespace tactor::amplifier {
 namespace {
 
 int open_pidfd(pid_t pid) noexcept
@@ -257,4 +257,4 @@ std::unique_ptr<holder_link> start_holder(const held_line& line, std::function<b
     return std::make_unique<holder_link>(ours.release(), hello.pid, std::move(rescue), limits);
 }
 
-} // namespace tactor::gpio
+} // namespace tactor::amplifier

@@ -15,7 +15,7 @@
 
 #include "amplifier/holder_process.hpp"
 
-namespace tactor::gpio {
+namespace tactor::amplifier {
 
 /// The line that the holder takes over.
 struct held_line {
@@ -64,4 +64,4 @@ private:
 std::unique_ptr<holder_link> start_holder(const held_line& line, std::function<bool()> rescue,
                                           const holder_limits& limits = {});
 
-} // namespace tactor::gpio
+} // namespace tactor::amplifier

@@ -14,7 +14,7 @@
 
 #include "rt/clock.hpp"
 
-namespace tactor::gpio {
+namespace tactor::amplifier {
 namespace {
 
 // Above the audio threads (65) and the kernel's interrupt threads (50). The holder sleeps except for a few
@@ -180,4 +180,4 @@ void run_holder(const holder_job& job) noexcept
     ::_exit(0);
 }
 
-} // namespace tactor::gpio
+} // namespace tactor::amplifier

@@ -7,7 +7,7 @@
 
 #include <cstdint>
 
-namespace tactor::gpio {
+namespace tactor::amplifier {
 
 /// Times that the player and the holder wait for each other. Programs use the defaults. Tests that do not
 /// test time wait longer.
@@ -54,4 +54,4 @@ struct holder_job {
 /// Runs the holder in the forked process, and ends that process.
 [[noreturn]] void run_holder(const holder_job& job) noexcept;
 
-} // namespace tactor::gpio
+} // namespace tactor::amplifier

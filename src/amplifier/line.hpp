@@ -12,7 +12,7 @@
 
 #include <tactor/lines.hpp>
 
-namespace tactor::gpio {
+namespace tactor::amplifier {
 
 /// Consumer name of tactor's lines, which other programs see.
 inline constexpr const char* consumer = "tactor";
@@ -98,4 +98,4 @@ private:
     std::optional<std::int64_t> last_ns_ = {};
 };
 
-} // namespace tactor::gpio
+} // namespace tactor::amplifier

@@ -4,7 +4,7 @@
 
 #include "amplifier/line.hpp"
 
-namespace tactor::gpio {
+namespace tactor::amplifier {
 
 bool built_in() noexcept
 {
@@ -29,4 +29,4 @@ requested<edge_input> request_input(const input_request&)
     return {nullptr, ENOSYS};
 }
 
-} // namespace tactor::gpio
+} // namespace tactor::amplifier

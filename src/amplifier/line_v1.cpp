@@ -15,7 +15,7 @@
 #include "rt/clock.hpp"
 #include "rt/system_files.hpp"
 
-namespace tactor::gpio {
+namespace tactor::amplifier {
 namespace {
 
 /// Owner of a chip. Closing the chip also releases its lines.
@@ -171,4 +171,4 @@ requested<edge_input> request_input(const input_request& r)
     return {std::make_unique<input_line>(std::move(c), fd), 0};
 }
 
-} // namespace tactor::gpio
+} // namespace tactor::amplifier

@@ -10,7 +10,7 @@
 
 #include "core/owned.hpp"
 
-namespace tactor::gpio {
+namespace tactor::amplifier {
 namespace {
 
 using detail::deleter;
@@ -173,4 +173,4 @@ requested<edge_input> request_input(const input_request& r)
     return {std::make_unique<input_line>(std::move(h), std::move(buffer)), 0};
 }
 
-} // namespace tactor::gpio
+} // namespace tactor::amplifier

@@ -13,7 +13,7 @@
 #include "amplifier/line.hpp"
 #include "core/refused.hpp"
 
-namespace tactor::gpio {
+namespace tactor::amplifier {
 namespace {
 
 class own_output final : public enable_line {
@@ -72,12 +72,12 @@ bool set_output(void* line, bool on) noexcept
 }
 
 } // namespace
-} // namespace tactor::gpio
+} // namespace tactor::amplifier
 
 namespace tactor {
 inline namespace v0 {
 
-using namespace gpio;
+using namespace amplifier;
 
 enable_line::~enable_line() = default;
 edge_input::~edge_input() = default;

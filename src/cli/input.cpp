@@ -52,7 +52,7 @@ stroke stroke_of_path(const settings& s, const std::string& data)
 std::vector<stroke> fitted_as_asked(std::vector<stroke> strokes, const layout& faces, const std::string& file)
 {
     try {
-        return fit_as_asked(std::move(strokes), faces);
+        return apply_fits(std::move(strokes), faces);
     } catch (const error& e) {
         if (e.field() != "margin_mm")
             throw;

@@ -16,7 +16,7 @@ template <typename Kind>
 std::vector<std::string_view> kind_names()
 {
     std::vector<std::string_view> names;
-    for (const Kind k : values_of<Kind>())
+    for (const Kind k : all_values<Kind>())
         names.push_back(to_string(k));
     return names;
 }
@@ -25,7 +25,7 @@ std::vector<std::string_view> kind_names()
 template <typename Kind>
 std::optional<Kind> find_kind(std::string_view name)
 {
-    for (const Kind k : values_of<Kind>())
+    for (const Kind k : all_values<Kind>())
         if (to_string(k) == name)
             return k;
     return std::nullopt;

@@ -82,7 +82,7 @@ private:
         return Kind##_names.kind(name);                                                                      \
     }                                                                                                        \
     template <>                                                                                              \
-    std::span<const Kind> values_of<Kind>() noexcept                                                         \
+    std::span<const Kind> all_values<Kind>() noexcept                                                        \
     {                                                                                                        \
         return Kind##_names.kinds();                                                                         \
     }                                                                                                        \

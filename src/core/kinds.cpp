@@ -25,7 +25,7 @@ TACTOR_KIND_NAMES(io_kind, "state of a sink", {ok, "ok"}, {again, "again"}, {xru
 TACTOR_KIND_NAMES(log_kind, "kind of log line", {debug, "debug"}, {info, "info"}, {warning, "warning"},
                   {error, "error"});
 
-std::size_t bytes_of(format_kind f) noexcept
+std::size_t sample_bytes(format_kind f) noexcept
 {
     switch (f) {
     case format_kind::s16:

@@ -85,7 +85,7 @@ bool waveform_names_file(std::string_view text) noexcept
 waveform parse_waveform(std::string_view text, const std::filesystem::path& folder)
 {
     waveform w;
-    for (const waveform_kind k : values_of<waveform_kind>())
+    for (const waveform_kind k : all_values<waveform_kind>())
         if (text == to_string(k) && k != waveform_kind::noise && k != waveform_kind::recording) {
             w.kind = k;
             return w;

@@ -32,7 +32,7 @@ std::optional<double> seconds(std::optional<double> ms)
     return ms ? std::optional(*ms * 1e-3) : std::nullopt;
 }
 
-said_value said_at(const toml_table& t, const toml_table::said_key& e, const toml::node& n, bool in_list)
+written_value said_at(const toml_table& t, const toml_table::said_key& e, const toml::node& n, bool in_list)
 {
     return {std::string(e.key), t.plain(n, e.key), in_list, t.where(n), e.key_at};
 }
@@ -145,7 +145,7 @@ void read_defaults(const toml_table& root, setup& out)
     if (!t)
         return;
     for (const toml_table::said_key& e : t->entries()) {
-        std::erase_if(out.defaults, [&e](const said_value& d) { return d.name == e.key; });
+        std::erase_if(out.defaults, [&e](const written_value& d) { return d.name == e.key; });
         out.defaults.push_back(said_at(*t, e, *e.value, false));
     }
 }

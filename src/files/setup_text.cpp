@@ -105,7 +105,7 @@ std::string calibrated_text(const calibrated_tactor& t)
     return s + fmt::format("trials = {}\n", t.trials);
 }
 
-std::string value_text(const said_value& d)
+std::string value_text(const written_value& d)
 {
     if (const auto* text = std::get_if<std::string>(&d.said))
         return toml_string(*text);
@@ -143,7 +143,7 @@ std::string besides_text(const setup& besides)
         s += limits_text(*besides.limits);
     if (!besides.defaults.empty())
         s += "\n[defaults]\n";
-    for (const said_value& d : besides.defaults)
+    for (const written_value& d : besides.defaults)
         s += fmt::format("{} = {}\n", d.name, value_text(d));
     return s;
 }

@@ -24,12 +24,12 @@
 namespace tactor::options {
 namespace {
 
-[[noreturn]] void fail(const said_value& d, const std::string& why, std::string_view hint)
+[[noreturn]] void fail(const written_value& d, const std::string& why, std::string_view hint)
 {
     throw error(error_kind::bad_input, d.at, why, hint).with_field(d.name);
 }
 
-std::string text_of(const said_value& d)
+std::string text_of(const written_value& d)
 {
     const auto* text = std::get_if<std::string>(&d.said);
     if (text == nullptr)
@@ -39,7 +39,7 @@ std::string text_of(const said_value& d)
     return *text;
 }
 
-double number_of(const said_value& d, detail::bounds b, bool whole)
+double number_of(const written_value& d, detail::bounds b, bool whole)
 {
     const auto* v = std::get_if<double>(&d.said);
     if (v == nullptr || (whole && *v != std::floor(*v)))
@@ -68,7 +68,7 @@ bool is_address(std::string_view text)
 }
 
 // "127.0.0.1:4001", or a bare 4001.
-std::string address_of(const said_value& d)
+std::string address_of(const written_value& d)
 {
     if (std::holds_alternative<double>(d.said))
         return plain_number(number_of(d, {0.0, 65535.0}, true));
@@ -80,7 +80,7 @@ std::string address_of(const said_value& d)
 }
 
 // Which of them are near is seen when they send.
-std::string prefix_of(const said_value& d)
+std::string prefix_of(const written_value& d)
 {
     std::string text = text_of(d);
     if (!detail::prefix_bits(text))
@@ -98,7 +98,7 @@ struct key {
     std::string_view name;
     std::variant<text_place, list_place, number_place, count_place> to;
     detail::bounds allowed = {};
-    std::string (*read_text)(const said_value&) = text_of;
+    std::string (*read_text)(const written_value&) = text_of;
 };
 
 constexpr double most = std::numeric_limits<int>::max();
@@ -127,7 +127,7 @@ const std::array keys{
     key{"max_all_unfinished_bytes", &serve_settings::max_all_unfinished_bytes, {65536, most}},
 };
 
-const key& find_key(const said_value& d)
+const key& find_key(const written_value& d)
 {
     const auto found =
         std::find_if(keys.begin(), keys.end(), [&d](const key& k) { return k.name == d.name; });
@@ -139,7 +139,7 @@ const key& find_key(const said_value& d)
     throw detail::unknown_key(d.name_at, d.name, "[serve]", known);
 }
 
-void take(serve_settings& s, const key& k, const said_value& d)
+void take(serve_settings& s, const key& k, const written_value& d)
 {
     const auto* list = std::get_if<list_place>(&k.to);
     if ((list != nullptr) != d.in_list)
@@ -157,11 +157,11 @@ void take(serve_settings& s, const key& k, const said_value& d)
 
 } // namespace
 
-serve_settings read_serve(const std::vector<said_value>& said)
+serve_settings read_serve(const std::vector<written_value>& said)
 {
     serve_settings s;
-    const said_value* kept = nullptr;
-    for (const said_value& d : said) {
+    const written_value* kept = nullptr;
+    for (const written_value& d : said) {
         const key& k = find_key(d);
         take(s, k, d);
         if (k.name == "kept_clients")

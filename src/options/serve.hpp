@@ -37,6 +37,6 @@ struct serve_settings {
 };
 
 /// Reads and checks setup::serve. \throws error (bad_input) with file, line and column.
-[[nodiscard]] serve_settings read_serve(const std::vector<said_value>& said);
+[[nodiscard]] serve_settings read_serve(const std::vector<written_value>& said);
 
 } // namespace tactor::options

@@ -43,7 +43,7 @@ std::string needed(const wishes& w, const option& o)
     return "add " + all;
 }
 
-const option& find_default(const said_value& d)
+const option& find_default(const written_value& d)
 {
     const option* o = find(d.name);
     if (o != nullptr && (o->where & in_defaults) != 0)
@@ -54,9 +54,9 @@ const option& find_default(const said_value& d)
 }
 
 // Refuses a pair in one file. What an included file says of the other counts no more.
-void refuse_both(const setup& says, const said_value& d, const option* rival)
+void refuse_both(const setup& says, const written_value& d, const option* rival)
 {
-    for (const said_value& other : says.defaults)
+    for (const written_value& other : says.defaults)
         if (rival != nullptr && find(other.name) == rival && other.at.file == d.at.file &&
             std::pair(other.at.line, other.at.column) < std::pair(d.at.line, d.at.column))
             throw error(error_kind::bad_input, d.at,
@@ -108,7 +108,7 @@ void give(wishes& w, const option& o, const value& v)
 std::vector<said_default> read_defaults(const setup& says)
 {
     std::vector<said_default> all;
-    for (const said_value& d : says.defaults) {
+    for (const written_value& d : says.defaults) {
         const option& o = find_default(d);
         refuse_both(says, d, find_rival(o));
         const auto* text = std::get_if<std::string>(&d.said);

@@ -149,7 +149,7 @@ compensated_plan make_compensated_plan(const array& a, const layout& l, const st
                                        const plan_options& o, const low_speed_observer& m)
 {
     if (s.fit)
-        return make_compensated_plan(a, l, fit_as_asked({s}, l).front(), o, m);
+        return make_compensated_plan(a, l, apply_fits({s}, l).front(), o, m);
     const plan_options chosen = detail::chosen(o, s.choices);
     if (chosen.algorithm == algorithm_kind::continuous)
         throw detail::bad_field("algorithm",

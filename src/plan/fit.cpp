@@ -220,7 +220,7 @@ fitted_strokes fit_strokes(const std::vector<stroke>& strokes, const layout& l, 
     return all;
 }
 
-std::vector<stroke> fit_as_asked(std::vector<stroke> strokes, const layout& l)
+std::vector<stroke> apply_fits(std::vector<stroke> strokes, const layout& l)
 {
     std::vector<std::vector<std::size_t>> pictures;
     std::map<unsigned, std::size_t> of_group;

@@ -153,7 +153,7 @@ plan planned(const array& a, const layout& l, const stroke& s, const plan_option
              const detail::burst_taker& take)
 {
     if (s.fit)
-        return planned(a, l, fit_as_asked({s}, l).front(), common, take);
+        return planned(a, l, apply_fits({s}, l).front(), common, take);
     const plan_options o = detail::chosen(common, s.choices);
     check_chosen(o, s);
     if (l.places().size() != a.tactors.size())

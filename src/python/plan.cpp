@@ -195,8 +195,8 @@ asked_stroke stroke_as_asked(const stroke& s, const layout& faces, const wishes&
     if (s.fit && s.fit->group != 0)
         throw error(error_kind::bad_input, fmt::format("stroke \"{}\"", s.name),
                     "it is fitted together with others of its group",
-                    "give fit_as_asked() all strokes of the file, and what it returns here");
-    asked_stroke a{fit_as_asked({s}, faces).front()};
+                    "give apply_fits() all strokes of the file, and what it returns here");
+    asked_stroke a{apply_fits({s}, faces).front()};
     // As the tool does it: times count where the stroke ends up.
     if (w.fit) {
         fitted_strokes f = fit_strokes({a.drawn}, faces, w.fit_margin_mm);

@@ -142,7 +142,7 @@ class block_renderer {
 public:
     block_renderer(const score& s, const std::string& format)
         : renderer_(s, from_string<format_kind>(format)),
-          frame_(s.channels() * bytes_of(from_string<format_kind>(format)))
+          frame_(s.channels() * sample_bytes(from_string<format_kind>(format)))
     {
     }
 

@@ -148,11 +148,11 @@ waveform get_waveform(reader& r)
         return values[i];
     };
     waveform v;
-    v.kind = kind_of(values_of<waveform_kind>());
+    v.kind = kind_of(all_values<waveform_kind>());
     v.low_hz = r.get<double>();
     v.high_hz = r.get<double>();
     v.seed = r.get<std::uint64_t>();
-    v.texture = kind_of(values_of<texture_kind>());
+    v.texture = kind_of(all_values<texture_kind>());
     v.texture_mm = r.get<double>();
     if (r.get<char>() != 0) {
         recording samples;

@@ -354,8 +354,8 @@ void bind_stroke(py::module_& m)
         const fitted_strokes f = fit_strokes(strokes, on.faces(), margin_mm);
         return py::make_tuple(f.strokes, pair(f.placed.from), pair(f.placed.to), f.placed.scale);
     });
-    m.def("fit_as_asked", [](const std::vector<stroke>& strokes, const array_handle& on) {
-        return fit_as_asked(strokes, on.faces());
+    m.def("apply_fits", [](const std::vector<stroke>& strokes, const array_handle& on) {
+        return apply_fits(strokes, on.faces());
     });
 }
 

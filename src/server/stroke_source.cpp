@@ -172,7 +172,7 @@ void check_level(const planning& with, const options::wishes& s, double intensit
 
 std::vector<double> planned::starts_s() const
 {
-    return starts_of(plans);
+    return start_times_s(plans);
 }
 
 double planned::total_s() const
@@ -209,7 +209,7 @@ planned make_planned(const planning& with, const layout& faces, const json& para
         if (source == "stroke")
             p.name = p.strokes.front().name;
         few_enough(with, p.strokes.size());
-        p.strokes = fit_as_asked(std::move(p.strokes), faces);
+        p.strokes = apply_fits(std::move(p.strokes), faces);
         place_strokes(with, s, p.strokes);
         const auto between = [&] {
             if (checks.go_on)

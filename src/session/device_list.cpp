@@ -70,7 +70,7 @@ void look_behind(const array& a, alsa_options wanted, pcm_info& p)
     if (!p.opened)
         return;
     if (p.misfit.empty()) {
-        p.misfit = lost_tactor(a, wiring_of(p.name, wanted.channels));
+        p.misfit = lost_tactor(a, read_wiring(p.name, wanted.channels));
         return;
     }
     wanted.pcm = p.name;

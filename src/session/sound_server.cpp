@@ -15,7 +15,7 @@ namespace tactor::session {
 
 std::string settle_server(const std::string& pcm)
 {
-    std::string server = route_of(pcm).server;
+    std::string server = read_route(pcm).server;
     // Channels have no places to PipeWire's ALSA plugin beyond those of loudspeakers: it would mix nine of
     // them down to what it takes the card for, as a rule to two.
     if (server == "PipeWire")
@@ -25,7 +25,7 @@ std::string settle_server(const std::string& pcm)
 
 bool is_felt(const std::string& pcm)
 {
-    const std::vector<std::string> types = route_of(pcm).types;
+    const std::vector<std::string> types = read_route(pcm).types;
     const auto ends_in = [&types](const char* type) {
         return std::find(types.begin(), types.end(), type) != types.end();
     };
@@ -51,7 +51,7 @@ std::vector<device_note> wiring_notes(const array& a, const stream_setup& s)
                        "set the coefficient to 1 where the PCM is defined (ttable), or play on "
                        "the card itself, -D hw:CARD=NAME"});
     const std::string& between = s.wiring.hidden_by;
-    if (!between.empty() && route_of(s.name).server.empty())
+    if (!between.empty() && read_route(s.name).server.empty())
         all.push_back(
             {fmt::format("whether each tactor has a channel of the device to itself is not known: {} "
                          "is between",

@@ -35,7 +35,7 @@ struct renderer::impl {
         : source(s),
           mix(detail::access::of(s).limits, f, detail::access::of(s).open_events + 256,
               guards(detail::access::of(s))),
-          frame_bytes(s.channels() * bytes_of(f))
+          frame_bytes(s.channels() * sample_bytes(f))
     {
     }
 

@@ -55,7 +55,7 @@ fake_line::~fake_line()
     ::close(state_.fd);
 }
 
-gpio::held_line fake_line::held()
+amplifier::held_line fake_line::held()
 {
     return {&set, &state_, {state_.fd}};
 }
@@ -81,7 +81,7 @@ std::optional<switched> fake_line::next(int timeout_ms) const
     return s;
 }
 
-player::player(fake_line& line, const gpio::holder_limits& limits, const body& b,
+player::player(fake_line& line, const amplifier::holder_limits& limits, const body& b,
                const std::function<void()>& before)
 {
     const auto ends = make_pipe();
@@ -94,7 +94,7 @@ player::player(fake_line& line, const gpio::holder_limits& limits, const body& b
         [&]() noexcept { // nothing may escape into the test's loop
             die_quietly();
             before();
-            auto h = gpio::start_holder(
+            auto h = amplifier::start_holder(
                 line.held(), [] { return true; }, limits);
             tell(h->pid());
             if (h->set(true))
@@ -132,7 +132,7 @@ std::int64_t player::signal(int number) const
     return t;
 }
 
-void keep_beating(gpio::holder_link& h, const std::function<void(int)>&)
+void keep_beating(amplifier::holder_link& h, const std::function<void(int)>&)
 {
     for (;;) {
         ::poll(nullptr, 0, 50);
@@ -140,7 +140,7 @@ void keep_beating(gpio::holder_link& h, const std::function<void(int)>&)
     }
 }
 
-void keep_beating_with_a_child(gpio::holder_link& h, const std::function<void(int)>& tell)
+void keep_beating_with_a_child(amplifier::holder_link& h, const std::function<void(int)>& tell)
 {
     const pid_t other = ::fork();
     if (other == 0)

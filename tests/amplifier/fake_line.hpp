@@ -19,7 +19,7 @@ inline constexpr int hangs_ms = 300'000;
 
 /// Limits for tests without timing: however busy the machine is, no side gives the other up, and a line that
 /// goes off meanwhile did not lapse.
-inline constexpr gpio::holder_limits patient{
+inline constexpr amplifier::holder_limits patient{
     .silence_ms = 86'400'000, .answer_ms = hangs_ms, .start_ms = hangs_ms, .unanswered = 1'000'000};
 
 /// Returns CLOCK_MONOTONIC in ns.
@@ -37,7 +37,7 @@ public:
     fake_line(const fake_line&) = delete;
     fake_line& operator=(const fake_line&) = delete;
 
-    gpio::held_line held();
+    amplifier::held_line held();
     /// Blocks until the line is switched, or for that long.
     std::optional<switched> next(int timeout_ms = hangs_ms) const;
     /// Makes switching on fail from now on. Call before the holder starts.
@@ -62,11 +62,11 @@ private:
 class player {
 public:
     /// Code of the process once the line is on; it can send the test numbers.
-    using body = std::function<void(gpio::holder_link&, const std::function<void(int)>& tell)>;
+    using body = std::function<void(amplifier::holder_link&, const std::function<void(int)>& tell)>;
 
     /// Starts the process, which calls `before` first. Blocks until the line is on.
     player(
-        fake_line& line, const gpio::holder_limits& limits, const body& b,
+        fake_line& line, const amplifier::holder_limits& limits, const body& b,
         const std::function<void()>& before = [] {});
     ~player();
     player(const player&) = delete;
@@ -86,11 +86,11 @@ private:
 };
 
 /// Beats every 50 ms for ever.
-void keep_beating(gpio::holder_link& h, const std::function<void(int)>& tell);
+void keep_beating(amplifier::holder_link& h, const std::function<void(int)>& tell);
 
 /// The same, with another process that has all of the player's descriptors: sends its number, and waits to be
 /// killed.
-void keep_beating_with_a_child(gpio::holder_link& h, const std::function<void(int)>& tell);
+void keep_beating_with_a_child(amplifier::holder_link& h, const std::function<void(int)>& tell);
 
 /// For a new process: no core file, and none of the handlers with which doctest reports a crash.
 void die_quietly();

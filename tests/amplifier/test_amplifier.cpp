@@ -9,9 +9,9 @@
 
 namespace amplifier_test {
 
-using tactor::engine::amplifier;
-using tactor::engine::amplifier_options;
-using event = tactor::engine::amplifier_event;
+using tactor::amplifier::sequence;
+using tactor::amplifier::sequence_options;
+using event = tactor::amplifier::event;
 
 namespace {
 
@@ -26,7 +26,7 @@ struct row {
     std::uint64_t sounds_until = 0;
 };
 
-amplifier_options options()
+sequence_options options()
 {
     return {.settle_ns = 10 * ms, .proof_frames = 192, .calm_ns = 1000 * ms, .most_xruns = 2};
 }
@@ -34,7 +34,7 @@ amplifier_options options()
 // The line follows at once.
 void run(const std::vector<row>& table)
 {
-    amplifier a(options());
+    sequence a(options());
     for (std::size_t i = 0; i < table.size(); ++i) {
         const row& r = table[i];
         const bool before = a.line();
@@ -156,7 +156,7 @@ TEST_CASE("amplifier: one that went off by itself comes back in order")
 
 TEST_CASE("amplifier: deadlines are the times at which a tick changes something")
 {
-    amplifier a(options());
+    sequence a(options());
     a.handle(event::started, 0);
     CHECK_FALSE(a.deadline());
     a.handle(event::moved, 5 * ms, {.played = 192});
@@ -174,7 +174,7 @@ TEST_CASE("amplifier: for any events, ready implies on, on comes after two perio
 {
     std::mt19937_64 random(7);
     for (int run = 0; run < 2000; ++run) {
-        amplifier a(options());
+        sequence a(options());
         std::int64_t now = 0;
         std::uint64_t played = 0;
         bool stopped = true;

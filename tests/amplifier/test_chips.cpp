@@ -28,15 +28,15 @@ TEST_CASE("chips are listed by number, each once")
         f.write(name);
     fs::create_symlink("gpiochip0", f / "gpiochip4");
     const auto at = [&](const char* name) { return (f / name).string(); };
-    CHECK(tactor::gpio::chip_paths(f.path()) ==
+    CHECK(tactor::amplifier::chip_paths(f.path()) ==
           std::vector{at("gpiochip0"), at("gpiochip2"), at("gpiochip10")});
-    CHECK(tactor::gpio::chip_paths(f / "nowhere").empty());
+    CHECK(tactor::amplifier::chip_paths(f / "nowhere").empty());
 }
 
 TEST_CASE("a file's group has a name, a missing file's is the usual one")
 {
-    CHECK(tactor::gpio::find_group("/dev/null") == "root");
-    CHECK(tactor::gpio::find_group("/nowhere") == "gpio");
+    CHECK(tactor::amplifier::find_group("/dev/null") == "root");
+    CHECK(tactor::amplifier::find_group("/nowhere") == "gpio");
 }
 
 TEST_CASE("a file that is no GPIO chip is not opened")
@@ -45,12 +45,12 @@ TEST_CASE("a file that is no GPIO chip is not opened")
     f.write("gpiochip0");
     for (const std::string& path :
          {(f / "gpiochip0").string(), std::string("/dev/null"), f.path().string()}) {
-        const tactor::gpio::chip c = tactor::gpio::read_chip(path);
+        const tactor::amplifier::chip c = tactor::amplifier::read_chip(path);
         CHECK(c.code != 0);
         CHECK(c.info.path == path);
         CHECK(c.info.lines.empty());
     }
-    CHECK(tactor::gpio::read_chip("/nowhere").code == ENOENT);
+    CHECK(tactor::amplifier::read_chip("/nowhere").code == ENOENT);
 }
 
 TEST_CASE("a pipe, file or socket named as a chip is never opened")
@@ -66,7 +66,7 @@ TEST_CASE("a pipe, file or socket named as a chip is never opened")
     for (const char* name : {"file", "pipe", "socket"}) {
         CAPTURE(name);
         const std::string path = (f / name).string();
-        CHECK(tactor::gpio::not_a_chip(path) == ENOTTY);
+        CHECK(tactor::amplifier::not_a_chip(path) == ENOTTY);
         std::string said;
         try {
             static_cast<void>(tactor::find_gpio_line({.chip = path, .offset = 0}));

@@ -8,7 +8,7 @@
 
 namespace debounce_test {
 
-using tactor::gpio::debounce;
+using tactor::amplifier::debounce;
 
 namespace {
 

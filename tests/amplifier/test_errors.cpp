@@ -22,7 +22,7 @@ std::string refusal(int code, const std::string& holder)
 {
     gpio_line_name l{.chip = "pinctrl-rp1", .offset = 17};
     l.where = {"palm.toml", 12, 1};
-    const error e = gpio::request_error(l, code, holder);
+    const error e = amplifier::request_error(l, code, holder);
     CHECK(e.kind() == error_kind::not_available);
     return e.what();
 }
@@ -47,7 +47,7 @@ TEST_CASE("a busy line is named with its holder")
                                        "it (stop that program, or choose another line)");
     CHECK(refusal(EBUSY, "tactor") ==
           "palm.toml:12:1: GPIO line 17 of pinctrl-rp1: busy: another tactor holds it (stop that one first)");
-    CHECK(refusal(EBUSY, gpio::nameless_consumer) ==
+    CHECK(refusal(EBUSY, amplifier::nameless_consumer) ==
           "palm.toml:12:1: GPIO line 17 of pinctrl-rp1: busy: the kernel holds it (a driver or overlay uses "
           "the pin; choose another line)");
     CHECK(refusal(EBUSY, "").find("busy: the kernel holds it") != std::string::npos);
@@ -62,11 +62,11 @@ TEST_CASE("a missing ability of the chip is reported as such")
 
 TEST_CASE("a listed chip that cannot be opened has a hint")
 {
-    gpio::chip c;
+    amplifier::chip c;
     c.info.path = "/dev/gpiochip0";
     c.code = EACCES;
     c.group = "gpio";
-    CHECK(gpio::advice(c) ==
+    CHECK(amplifier::advice(c) ==
           "no permission to open /dev/gpiochip0 (sudo usermod -aG gpio $USER, then log in again)");
 }
 

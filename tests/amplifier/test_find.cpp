@@ -13,8 +13,8 @@
 namespace find_test {
 
 using tactor::gpio_line_name;
-using tactor::gpio::chip;
-using tactor::gpio::find_line;
+using tactor::amplifier::chip;
+using tactor::amplifier::find_line;
 
 namespace {
 

@@ -39,9 +39,9 @@ bool never()
     return false;
 }
 
-std::unique_ptr<gpio::holder_link> start(fake_line& line, std::function<bool()> rescue = never)
+std::unique_ptr<amplifier::holder_link> start(fake_line& line, std::function<bool()> rescue = never)
 {
-    return gpio::start_holder(line.held(), std::move(rescue), patient);
+    return amplifier::start_holder(line.held(), std::move(rescue), patient);
 }
 
 std::string next_record(const fake_line& line)
@@ -73,9 +73,9 @@ TEST_CASE("the line follows the commands and ends off, and the holder ends with 
 TEST_CASE("a line goes off when its player is silent, which notices and may switch on again")
 {
     fake_line line;
-    gpio::holder_limits limits = patient;
+    amplifier::holder_limits limits = patient;
     limits.silence_ms = 100;
-    const auto h = gpio::start_holder(line.held(), never, limits);
+    const auto h = amplifier::start_holder(line.held(), never, limits);
     CHECK(h->beat());
     for (int i = 0; i < 3; ++i) {
         const std::int64_t before = now_ns();
@@ -199,9 +199,9 @@ TEST_CASE("a holder that hangs loses the line to the player")
 {
     fake_line line;
     int rescues = 0;
-    gpio::holder_limits limits = patient;
+    amplifier::holder_limits limits = patient;
     limits.answer_ms = 10'000;
-    const auto h = gpio::start_holder(
+    const auto h = amplifier::start_holder(
         line.held(), [&] { return ++rescues > 0; }, limits);
     const int holder = open_pidfd(h->pid());
     CHECK(h->set(true));
@@ -216,9 +216,9 @@ TEST_CASE("a holder that does not answer beats is given up")
 {
     fake_line line;
     int rescues = 0;
-    gpio::holder_limits limits = patient;
-    limits.unanswered = gpio::holder_limits{}.unanswered;
-    const auto h = gpio::start_holder(
+    amplifier::holder_limits limits = patient;
+    limits.unanswered = amplifier::holder_limits{}.unanswered;
+    const auto h = amplifier::start_holder(
         line.held(), [&] { return ++rescues > 0; }, limits);
     ::kill(h->pid(), SIGSTOP);
     int beats = 0;

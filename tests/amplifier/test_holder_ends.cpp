@@ -66,7 +66,7 @@ TEST_CASE("a player killed in any way leaves the line off")
 TEST_CASE("a player that exits without a word leaves the line off")
 {
     fake_line line;
-    const player p(line, patient, [](gpio::holder_link&, const auto&) { ::_exit(3); });
+    const player p(line, patient, [](amplifier::holder_link&, const auto&) { ::_exit(3); });
     check_off(line);
 }
 

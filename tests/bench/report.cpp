@@ -105,7 +105,7 @@ private:
             const double ns = time(row.name());
             if (ns == 0.0)
                 continue;
-            const std::size_t bytes = block * row.channels * bytes_of(row.format);
+            const std::size_t bytes = block * row.channels * sample_bytes(row.format);
             std::printf("%8u %8u %-11s %-7s %10.0f %10s %10s %10s %8.3f\n", row.channels, row.strokes,
                         row.strokes == 0 ? "silence"
                         : row.continuous ? "continuous"

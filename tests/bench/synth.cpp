@@ -56,7 +56,7 @@ private:
 
 void mix(benchmark::State& state, const events& e, unsigned channels, format_kind f)
 {
-    std::vector<std::byte> out(bench::block * channels * bytes_of(f));
+    std::vector<std::byte> out(bench::block * channels * sample_bytes(f));
     player p(e, channels, f);
     for (auto _ : state) {
         p.process(out.data());

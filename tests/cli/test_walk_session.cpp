@@ -77,7 +77,7 @@ walk_result stumble(bool ask)
     render_options r;
     r.channels = 2;
     const auto source = [&](session::stream_parts& p) {
-        p.open = [&] { return pcm::adopt(dac.pcm(), device); };
+        p.open = [&] { return alsa::adopt(dac.pcm(), device); };
         p.player = patient(p.player.limits);
         p.player.realtime = false;
     };

@@ -42,7 +42,7 @@ movement random_movement(std::mt19937_64& random)
 {
     std::uniform_real_distribution<double> any(0.0, 1.0);
     movement m;
-    m.easing = values_of<easing_kind>()[random() % 3];
+    m.easing = all_values<easing_kind>()[random() % 3];
     const auto parts = [&] {
         std::vector<double> all;
         for (double p = 0.3 * any(random); p <= 1.0; p += 0.05 + 0.4 * any(random))
@@ -86,7 +86,7 @@ TEST_CASE("minimum jerk is its polynomial, and in-out its parabola's integral")
 
 TEST_CASE("an easing and its inverse are exact at both ends and symmetric")
 {
-    for (const easing_kind k : values_of<easing_kind>()) {
+    for (const easing_kind k : all_values<easing_kind>()) {
         const trajectory t = trajectory::along(line, {.duration_s = 1.0, .easing = k});
         CHECK(t.position(0.5).x_mm == doctest::Approx(20.0).epsilon(1e-15));
         for (const double x : {1e-9, 1e-3, 7.0, 19.999, 20.0, 33.0, 40.0 - 1e-9}) {
@@ -147,7 +147,7 @@ TEST_CASE("a rest takes its time, and each stretch between rests goes from rest 
 TEST_CASE("intensity follows the part of the path, for any movement")
 {
     const std::vector<profile_point> ramp{{0.25, 0.2}, {0.75, 1.0}};
-    for (const easing_kind k : values_of<easing_kind>()) {
+    for (const easing_kind k : all_values<easing_kind>()) {
         const trajectory t = trajectory::along(line, {.duration_s = 1.0, .easing = k, .intensity = ramp}, 0.5)
                                  .with_intensity(0.5);
         for (int i = 0; i <= 50; ++i) {

@@ -30,7 +30,7 @@ call_table device_calls()
 {
     using enum call_kind;
     const gpio_line_name line{.name = "no-such-line"};
-    const call_kind looks = gpio::built_in() ? opens : plain;
+    const call_kind looks = amplifier::built_in() ? opens : plain;
     return {
         {"open_alsa", [] { return open_alsa(nine()); }, opens_ends},
         {"open_alsa, of a card", [] { return open_alsa({.pcm = "hw:0", .channels = 2}); }, opens_ends},
@@ -41,11 +41,11 @@ call_table device_calls()
         {"reopen_alsa, never", [] { return reopen_alsa(nine(), {}); }},
         {"list_pcms", [] { return list_pcms(); }, opens_ends},
         {"list_pcms, that suit", [] { return list_pcms(nine()); }, opens_ends},
-        {"route_of", [] { return route_of("null"); }, opens_ends},
-        {"wiring_of", [] { return wiring_of("null", 2); }, opens_ends},
+        {"read_route", [] { return read_route("null"); }, opens_ends},
+        {"read_wiring", [] { return read_wiring("null", 2); }, opens_ends},
         {"require_device_name", [] { require_device_name("null"); }, opens_ends},
         {"require_device_name, of a command", [] { require_device_name("file:'|true',raw"); }},
-        {"card_of", [] { return card_of("hw:0"); }, opens},
+        {"read_card", [] { return read_card("hw:0"); }, opens},
         {"card_holders", [] { return card_holders(0); }, opens},
         {"list_gpio", [] { return list_gpio(); }, opens},
         {"find_gpio_line", [line] { return find_gpio_line(line); }, looks},

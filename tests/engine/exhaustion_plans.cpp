@@ -70,7 +70,7 @@ call_table plan_calls(const call_things& t)
         {"make_plan, outside", [&t, outside] { return make_plan(t.a, t.l, outside, {}); }},
         {"make_plan, fitted", [&t, fitted] { return make_plan(t.a, t.l, fitted, {}); }},
         {"fit_strokes", [&t] { return fit_strokes({t.s}, t.l); }},
-        {"fit_as_asked", [&t, fitted] { return fit_as_asked({fitted}, t.l); }},
+        {"apply_fits", [&t, fitted] { return apply_fits({fitted}, t.l); }},
         {"predict_percept", [&t] { return predict_percept(t.a, t.s, t.p); }},
         {"follow_percept", [&t, who] { follow_percept(t.a, t.s, t.p, who, [](const percept_sample&) {}); }},
         {"follow_percept, of too few tactors",
@@ -101,8 +101,8 @@ call_table sound_calls(const call_things& t)
     const auto rendered_by = std::make_shared<renderer>(*sound, format_kind::s16);
     const auto builder = std::make_shared<score_builder>(t.a, render_options{});
     return {
-        {"starts_of", [plans] { return starts_of(plans); }},
-        {"starts_of, before the piece", [early] { return starts_of(early); }},
+        {"start_times_s", [plans] { return start_times_s(plans); }},
+        {"start_times_s, before the piece", [early] { return start_times_s(early); }},
         {"score::score", [&t, plans] { return score(t.a, plans); }},
         {"score::score", [&t] { return score(t.a, t.p); }},
         {"score::score, continuous", [&t, sine] { return score(t.a, sine); }},

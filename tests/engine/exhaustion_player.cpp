@@ -30,7 +30,7 @@ struct fresh {
         clock.reset();
         dac = std::make_unique<fake_dac>();
         clock = std::make_unique<running_clock>(*dac);
-        out = pcm::adopt(dac->pcm(), nine());
+        out = alsa::adopt(dac->pcm(), nine());
     }
     void make_player()
     {

@@ -45,9 +45,9 @@ call_table value_calls(const call_things& t)
     const auto motion = trajectory::along(line, 1.0);
     const auto wave = waveform{.kind = waveform_kind::recording, .recorded = some_recording()};
     const auto same_wave = waveform{.kind = waveform_kind::recording, .recorded = some_recording()};
-    said_value said;
+    written_value said;
     said.said = std::string("a text that is longer than a short one");
-    const said_value same_said = said;
+    const written_value same_said = said;
     const curve c(0.002, three_samples());
     const curve same_c(0.002, three_samples());
     const error e(error_kind::runtime, "what", "why");
@@ -136,7 +136,7 @@ call_table value_calls(const call_things& t)
              c.at(0.0015, b);
          }},
         {"curve::operator==", [c, same_c] { return c == same_c; }},
-        {"said_value::operator==", [said, same_said] { return said == same_said; }},
+        {"written_value::operator==", [said, same_said] { return said == same_said; }},
         {"waveform::operator==", [wave, same_wave] { return wave == same_wave; }},
         {"waveform_text", [wave] { return waveform_text(wave); }},
         {"parse_modulation", [] { return parse_modulation("20:0.5"); }},

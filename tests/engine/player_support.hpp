@@ -34,7 +34,7 @@ struct dac_holder {
 /// A player on a fake DAC, whose clock stands still until a running_clock moves it.
 struct dac_player : dac_holder, player {
     explicit dac_player(const player_options& o = patient(), player_lines lines = {})
-        : player(pcm::adopt(dac.pcm(), nine()), palm(), o, std::move(lines))
+        : player(alsa::adopt(dac.pcm(), nine()), palm(), o, std::move(lines))
     {
     }
 };
@@ -46,7 +46,7 @@ struct clock_holder : dac_holder {
 /// A player on a fake DAC whose clock runs.
 struct clocked_player : clock_holder, player {
     explicit clocked_player(const player_options& o = patient(), player_lines lines = {})
-        : player(pcm::adopt(dac.pcm(), nine()), palm(), o, std::move(lines))
+        : player(alsa::adopt(dac.pcm(), nine()), palm(), o, std::move(lines))
     {
     }
 };

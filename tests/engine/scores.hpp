@@ -61,7 +61,7 @@ inline score tone(double seconds, unsigned tactor = 0)
 /// Renders a score offline, in one call.
 inline std::vector<std::byte> rendered(const score& s, format_kind f)
 {
-    std::vector<std::byte> out(s.frames() * s.channels() * bytes_of(f));
+    std::vector<std::byte> out(s.frames() * s.channels() * sample_bytes(f));
     renderer(s, f).process(out);
     return out;
 }

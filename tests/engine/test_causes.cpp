@@ -82,7 +82,7 @@ int cause_of_start(io_result said)
 {
     fake_dac dac;
     return system_cause(
-        [&] { const player p(std::make_unique<broken_sink>(pcm::adopt(dac.pcm(), nine()), said), palm()); });
+        [&] { const player p(std::make_unique<broken_sink>(alsa::adopt(dac.pcm(), nine()), said), palm()); });
 }
 
 } // namespace

@@ -104,7 +104,7 @@ EXHAUSTING_TEST_CASE(
         REQUIRE(n < 20);
         fake_dac dac;
         const running_clock clock(dac);
-        std::unique_ptr<sink> out = pcm::adopt(dac.pcm(), nine());
+        std::unique_ptr<sink> out = alsa::adopt(dac.pcm(), nine());
         const auto before = open_descriptors();
         bool played = false;
         const std::string said = with_descriptors(n, [&] {

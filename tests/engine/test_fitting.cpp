@@ -77,7 +77,7 @@ std::string complaint(const array& a, const score& s)
 {
     fake_dac dac;
     const running_clock clock(dac);
-    player p(pcm::adopt(dac.pcm(), nine()), a, patient());
+    player p(alsa::adopt(dac.pcm(), nine()), a, patient());
     try {
         const auto r = p.wait(p.submit(s));
         REQUIRE(r);

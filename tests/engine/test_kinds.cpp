@@ -20,7 +20,7 @@ TEST_CASE_TEMPLATE("every value of an enumeration has a name that leads back to 
                    texture_kind, timing_kind, wait_kind, waveform_kind)
 {
     std::set<std::string> names;
-    for (const Kind k : values_of<Kind>()) {
+    for (const Kind k : all_values<Kind>()) {
         const std::string name(to_string(k));
         CHECK(names.insert(name).second);
         CHECK(from_string<Kind>(name) == k);

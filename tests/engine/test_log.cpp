@@ -132,7 +132,7 @@ TEST_CASE("a player logs its start and its end, and survives a log that throws")
                 throw std::runtime_error("log");
         };
         {
-            player p(pcm::adopt(dac.pcm(), nine()), palm(), o);
+            player p(alsa::adopt(dac.pcm(), nine()), palm(), o);
             CHECK(told.count("info stream on \"null\" runs: 9 channels at 48000 Hz, 3 of 96 frames") == 1);
             const stroke_id id = p.submit(tone(0.1));
             const running_clock clock(dac);

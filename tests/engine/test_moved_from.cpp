@@ -187,7 +187,7 @@ TEST_CASE("a player takes its sink and lines, and the moved-from ones can be use
 {
     fake_dac dac;
     const running_clock clock(dac);
-    std::unique_ptr<sink> out = pcm::adopt(dac.pcm(), nine());
+    std::unique_ptr<sink> out = alsa::adopt(dac.pcm(), nine());
     player_lines lines;
     player p(std::move(out), palm(), patient(), std::move(lines));
     CHECK_THROWS_AS(player(std::move(out), palm(), patient(), std::move(lines)), error);

@@ -273,7 +273,7 @@ COUNTING_TEST_CASE("a renderer without memory goes on where it was")
     const stroke drawn{"", trajectory::timed({{0.0, {3.0, 2.0}}, {0.2, {37.0, 31.0}}})};
     const score s(palm(), make_plan(palm(), drawn, o));
     renderer r(s, format_kind::s32);
-    const std::size_t frame = s.channels() * bytes_of(format_kind::s32);
+    const std::size_t frame = s.channels() * sample_bytes(format_kind::s32);
     std::vector<std::byte> out(s.frames() * frame);
     unsigned refused = 0;
     while (r.position() < s.frames()) {

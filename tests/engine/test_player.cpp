@@ -51,7 +51,7 @@ TEST_CASE("with threads the bytes are the renderer's, and the report comes once"
     std::mutex mutex;
     const score s = random_score(1, 8);
     {
-        player p(pcm::adopt(dac.pcm(), nine()), palm(), patient());
+        player p(alsa::adopt(dac.pcm(), nine()), palm(), patient());
         CHECK(p.setup().channels == 9);
         CHECK(p.setup().has_clock);
         p.on_report([&](const stroke_report& r) {
@@ -107,7 +107,7 @@ TEST_CASE("a player destroyed while strokes sound reports them as interrupted")
     const running_clock clock(dac);
     std::vector<stroke_report> told;
     {
-        player p(pcm::adopt(dac.pcm(), nine()), palm(), patient());
+        player p(alsa::adopt(dac.pcm(), nine()), palm(), patient());
         p.on_report([&](const stroke_report& r) { told.push_back(r); });
         p.submit(tone(endless_s));
         p.submit(tone(endless_s), start_at::frame(4'000'000'000));
@@ -225,7 +225,7 @@ TEST_CASE("a device that does not start and a missing sink are errors")
 {
     fake_dac broken;
     broken.fail_start(-EIO);
-    CHECK_THROWS_AS(player(pcm::adopt(broken.pcm(), nine()), palm()), error);
+    CHECK_THROWS_AS(player(alsa::adopt(broken.pcm(), nine()), palm()), error);
     CHECK(broken.closed());
     CHECK_THROWS_AS(player(nullptr, palm()), error);
 }
@@ -238,7 +238,7 @@ TEST_CASE("a required real-time priority that is refused is an error; otherwise 
     const running_clock clock(dac);
     bool realtime = true;
     try {
-        const player p(pcm::adopt(dac.pcm(), nine()), palm(), o);
+        const player p(alsa::adopt(dac.pcm(), nine()), palm(), o);
         CHECK(p.stats().realtime);
     } catch (const error& e) {
         CHECK(e.kind() == error_kind::not_available);
@@ -246,7 +246,7 @@ TEST_CASE("a required real-time priority that is refused is an error; otherwise 
     }
     fake_dac other;
     const running_clock other_clock(other);
-    const player p(pcm::adopt(other.pcm(), nine()), palm(), patient());
+    const player p(alsa::adopt(other.pcm(), nine()), palm(), patient());
     CHECK(p.stats().realtime == realtime);
 }
 
@@ -289,7 +289,7 @@ private:
 TEST_CASE("a player's set-up is that of the start, whatever the audio thread finds out later")
 {
     fake_dac dac;
-    auto changing = std::make_unique<changing_sink>(pcm::adopt(dac.pcm(), nine()));
+    auto changing = std::make_unique<changing_sink>(alsa::adopt(dac.pcm(), nine()));
     const stream_setup& own = changing->setup();
     player p(std::move(changing), palm(), patient());
     CHECK_FALSE(p.setup().has_clock);

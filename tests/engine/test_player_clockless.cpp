@@ -75,7 +75,7 @@ TEST_CASE("a file PCM receives silence, the renderer's bytes without a gap, sile
             p.stop();
             CHECK(p.stats().xruns == 0);
         }
-        const std::size_t frame = 9 * bytes_of(f);
+        const std::size_t frame = 9 * sample_bytes(f);
         std::vector<std::byte> all = read_file(file);
         CHECK(all.size() % frame == 0);
         for (const score& s : {a, b}) {

@@ -197,7 +197,7 @@ TEST_CASE("impossible options of the player are errors that name their field")
         fake_dac dac;
         try {
             const running_clock clock(dac);
-            const player p(pcm::adopt(dac.pcm(), nine()), palm(), o, std::move(lines));
+            const player p(alsa::adopt(dac.pcm(), nine()), palm(), o, std::move(lines));
         } catch (const error& e) {
             refused_field = e.subject();
             return e.kind() == error_kind::bad_input && dac.closed();

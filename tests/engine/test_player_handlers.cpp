@@ -67,7 +67,7 @@ std::string refused_trigger(int fd, int code = 0)
     player_lines lines;
     lines.trigger = std::make_unique<odd_input>(fd);
     try {
-        const player p(pcm::adopt(dac.pcm(), nine()), palm(), patient(), std::move(lines));
+        const player p(alsa::adopt(dac.pcm(), nine()), palm(), patient(), std::move(lines));
     } catch (const error& e) {
         CHECK(e.kind() == error_kind::bad_input);
         CHECK(e.os_code() == code);
@@ -89,7 +89,7 @@ TEST_CASE(
         std::atomic<bool> submitted{false};
         std::atomic<bool> gone{false};
         std::vector<stroke_report> told;
-        auto p = std::make_unique<player>(pcm::adopt(dac.pcm(), nine()), palm(), patient());
+        auto p = std::make_unique<player>(alsa::adopt(dac.pcm(), nine()), palm(), patient());
         const auto destroy = [&](const stroke_report& r) {
             told.push_back(r);
             if (p == nullptr)
@@ -129,7 +129,7 @@ TEST_CASE("a handler may destroy a player whose device is gone, or one that was 
         const running_clock clock(dac);
         std::atomic<bool> submitted{false};
         std::atomic<bool> gone{false};
-        auto p = std::make_unique<player>(pcm::adopt(dac.pcm(), nine()), palm(), patient());
+        auto p = std::make_unique<player>(alsa::adopt(dac.pcm(), nine()), palm(), patient());
         p->on_report([&](const stroke_report&) {
             wait_for(submitted);
             if (!unplugged)
@@ -155,7 +155,7 @@ TEST_CASE("a handler that destroys the player: the stroke's other handlers are c
     std::atomic<bool> submitted{false};
     std::atomic<bool> gone{false};
     int others = 0;
-    auto p = std::make_unique<player>(pcm::adopt(dac.pcm(), nine()), palm(), patient());
+    auto p = std::make_unique<player>(alsa::adopt(dac.pcm(), nine()), palm(), patient());
     p->on_report([&](const stroke_report&) {
         wait_for(submitted);
         p.reset();

@@ -121,7 +121,7 @@ TEST_CASE("several producers of every kind at once: each stroke ends exactly onc
     std::vector<int> ends(2000, 0);
     stroke_id most;
     {
-        player p(pcm::adopt(dac.pcm(), nine()), palm(), patient());
+        player p(alsa::adopt(dac.pcm(), nine()), palm(), patient());
         std::mutex mutex;
         p.on_report([&](const stroke_report& r) {
             const std::lock_guard lock(mutex);
@@ -175,7 +175,7 @@ TEST_CASE("a live stroke outlives its player")
     const running_clock clock(dac);
     std::optional<live_stroke> left;
     {
-        player p(pcm::adopt(dac.pcm(), nine()), palm(), patient());
+        player p(alsa::adopt(dac.pcm(), nine()), palm(), patient());
         left = p.begin({.timeout_s = 86400.0});
         CHECK(left->to(1.0, 1.0));
     }

@@ -160,7 +160,7 @@ TEST_CASE("a device without descriptors in an xrun, such as dmix, is not asked a
 {
     fake_dac dac;
     dac.hide_descriptors_in_xrun();
-    const auto s = pcm::adopt(dac.pcm(), nine());
+    const auto s = alsa::adopt(dac.pcm(), nine());
     std::vector<std::byte> silence(288 * s->setup().frame_bytes());
     REQUIRE(s->prepare() == io_kind::ok);
     REQUIRE(s->write(silence).frames == 288);

@@ -180,7 +180,7 @@ TEST_CASE("a GPIO line is a chip and an offset, or a name, each line once")
     CHECK(complaint(with("offset = 27", "offset = 17")) ==
           "t.toml:18:7: the line is in use at t.toml:13:8 (give each purpose a GPIO line of its own)");
     CHECK(complaint(with("falling", "fall")) == "t.toml:20:33: edge is 'fall' (did you mean 'falling'?)");
-    for (const pull_kind k : values_of<pull_kind>())
+    for (const pull_kind k : all_values<pull_kind>())
         CHECK(read(with("pull = \"up\"", fmt::format("pull = \"{}\"", to_string(k)))).sync->pull == k);
     CHECK(complaint(with("\"up\"", "\"sideways\"")) ==
           "t.toml:20:70: pull is 'sideways' (known values: as-is, none, up, down)");
@@ -194,10 +194,10 @@ TEST_CASE("[defaults] hands on flags, numbers and texts with their places")
 {
     const setup s =
         read("[defaults]\nsoa = 0.06\nnoise-seed = 9007199254740992\nsnap = true\nphantom = \"log\"\n");
-    CHECK(s.defaults == std::vector<said_value>{{"soa", 0.06, false, {}, {}},
-                                                {"noise-seed", 9007199254740992.0, {}, {}},
-                                                {"snap", true, {}, {}},
-                                                {"phantom", "log", {}, {}}});
+    CHECK(s.defaults == std::vector<written_value>{{"soa", 0.06, false, {}, {}},
+                                                   {"noise-seed", 9007199254740992.0, {}, {}},
+                                                   {"snap", true, {}, {}},
+                                                   {"phantom", "log", {}, {}}});
     CHECK(s.defaults[1].at.text() == "t.toml:3:14");
     CHECK(s.defaults[1].name_at.text() == "t.toml:3:1");
     CHECK(complaint("[defaults]\nsoa = []\n") ==

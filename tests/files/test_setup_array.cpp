@@ -175,7 +175,7 @@ TEST_CASE("wrong types and ranges are reported at the value")
     CHECK(complaint(one + "polarity = true\n") == "palm.toml:4:12: polarity is true (give a number)");
     CHECK(complaint(one + "actuator = \"peizo\"\n") ==
           "palm.toml:4:12: actuator is 'peizo' (did you mean 'piezo'?)");
-    for (const actuator_kind k : values_of<actuator_kind>()) {
+    for (const actuator_kind k : all_values<actuator_kind>()) {
         const std::string line = fmt::format("actuator = \"{}\"\n", to_string(k));
         if (k == actuator_kind::unknown)
             CHECK(complaint(one + line) ==

@@ -101,7 +101,7 @@ speed = 70
     CHECK(s.output.pcm_at.text() == (f / "arrays/arm.toml").string() + ":5:7");
     CHECK(s.output.channels == 10u);
     CHECK(s.defaults ==
-          std::vector<said_value>{{"soa", 0.06, false, {}, {}}, {"speed", 70.0, false, {}, {}}});
+          std::vector<written_value>{{"soa", 0.06, false, {}, {}}, {"speed", 70.0, false, {}, {}}});
 
     const setup named =
         load_setup(f.write("named.toml", "[array]\nname = \"left\"\nfile = \"arrays/arm.toml\"\n"));

@@ -182,7 +182,7 @@ TEST_CASE("a stroke may be planned in its own way")
     CHECK(s.fit == stroke_fit{2.0});
     CHECK(parse_all(one + line(1, "fit = true"))[0].fit == stroke_fit{});
     CHECK(parse_all(one + line(1))[0].choices == stroke_choices{});
-    for (const algorithm_kind k : values_of<algorithm_kind>())
+    for (const algorithm_kind k : all_values<algorithm_kind>())
         CHECK(
             parse_all(one + line(1, fmt::format("algorithm = \"{}\"", to_string(k))))[0].choices.algorithm ==
             k);

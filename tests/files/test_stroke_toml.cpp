@@ -153,7 +153,7 @@ TEST_CASE("values out of range are reported at the value")
           "w.toml:3:11: texture is 'weave' (known values: cycle, time, length)");
     CHECK(complaint(path + "texture_mm = 20") == "w.toml:3:14: [stroke] has texture_mm, which nothing uses "
                                                  "(add waveform = \"FILE.wav\" and texture = \"length\")");
-    for (const texture_kind k : values_of<texture_kind>())
+    for (const texture_kind k : all_values<texture_kind>())
         CHECK(complaint(path + fmt::format("texture = \"{}\"", to_string(k))) ==
               "w.toml:3:11: [stroke] has texture, which nothing uses (add waveform = \"FILE.wav\")");
     CHECK(complaint(path + "name = 3") == "w.toml:3:8: name is 3 (give a string in quotes)");

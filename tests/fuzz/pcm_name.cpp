@@ -16,7 +16,7 @@ using namespace tactor;
 
 namespace {
 
-using configuration = std::unique_ptr<snd_config_t, pcm::deleter<snd_config_delete>>;
+using configuration = std::unique_ptr<snd_config_t, alsa::deleter<snd_config_delete>>;
 
 // What can be spelt into: the stock definitions that take names, files and commands.
 configuration stock()
@@ -49,7 +49,7 @@ void check_tree(snd_config_t* top, snd_config_t* node, const std::string& id, in
         if (id == "pcm" && depth < 4 && snd_config_search_definition(top, "pcm", said, &next) >= 0)
             check_tree(top, configuration(next).get(), "", depth + 1);
     }
-    pcm::each_member(node, [&](const std::string& of, snd_config_t* m) { check_tree(top, m, of, depth); });
+    alsa::each_member(node, [&](const std::string& of, snd_config_t* m) { check_tree(top, m, of, depth); });
 }
 
 } // namespace
@@ -57,21 +57,21 @@ void check_tree(snd_config_t* top, snd_config_t* node, const std::string& id, in
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size)
 {
     static const configuration top = stock();
-    const pcm::library_messages silent;
+    const alsa::library_messages silent;
     const std::string name(fuzz::text_of(data, size));
-    if (!pcm::not_plain(name).empty())
+    if (!alsa::not_plain(name).empty())
         return 0;
     HOLDS(name.find('\0') == name.npos && name.size() <= 200);
-    const auto route = pcm::find_route(top.get(), name);
+    const auto route = alsa::find_route(top.get(), name);
     snd_config_t* definition = nullptr;
     if (snd_config_search_definition(top.get(), "pcm", name.c_str(), &definition) < 0) {
         HOLDS(route.empty());
         return 0;
     }
-    const stream_wiring w = pcm::find_wiring(top.get(), name, 9, 9);
+    const stream_wiring w = alsa::find_wiring(top.get(), name, 9, 9);
     HOLDS(w.outputs.empty() || w.hidden_by.empty());
     const configuration owned(definition);
-    if (pcm::unsafe_type(route).empty())
+    if (alsa::unsafe_type(route).empty())
         check_tree(top.get(), definition, "", 0);
     return 0;
 }

@@ -297,7 +297,7 @@ TEST_CASE("moved bursts keep the phantom and the scale of their plan")
     stroke s = preset_stroke("park2016-3");
     s.motion = trajectory::timed({{0.0, {5.0, 20.0}, 0.5}, {1.0, {35.0, 20.0}, 0.5}});
     s.choices.phantom = phantom_kind::barycentric;
-    for (const scale_kind k : values_of<scale_kind>()) {
+    for (const scale_kind k : all_values<scale_kind>()) {
         plan_options o;
         o.scale = {.kind = k, .sl_db = 30.0};
         const compensated_plan p = make_compensated_plan(palm, layout(palm), s, o, {});
@@ -341,7 +341,7 @@ TEST_CASE("a fitted stroke is compensated at its fitted place")
     stroke s = preset_stroke("park2016-1");
     s.fit = stroke_fit{12.0};
     const compensated_plan p = make_compensated_plan(palm, layout(palm), s, {}, {});
-    const stroke fitted = fit_as_asked({s}, layout(palm)).front();
+    const stroke fitted = apply_fits({s}, layout(palm)).front();
     for (const tap& t : p.taps)
         CHECK(distance_mm(t.target, fitted.motion.position(t.onset_s)) < 1e-9);
 }

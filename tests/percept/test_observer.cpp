@@ -278,7 +278,7 @@ TEST_CASE("the description of its numbers names model, parameters and purpose")
     for (const char* word : {"low-speed", "Goldreich", "7.5 mm", "120 mm/s", "taps", "nobody has fitted"})
         CHECK(text.find(word) != std::string::npos);
     CHECK(from_string<observer_kind>("low-speed") == observer_kind::low_speed);
-    CHECK(values_of<observer_kind>().size() == 2);
+    CHECK(all_values<observer_kind>().size() == 2);
 }
 
 } // namespace observer_test

@@ -211,7 +211,7 @@ TEST_CASE("strokes ask for a fit alone, or together")
                               along("M 7 7 L 9 7", 1.0)};
     asked[0].fit = asked[2].fit = stroke_fit{5.0, 3};
     asked[3].fit = asked[4].fit = stroke_fit{};
-    const std::vector<stroke> s = fit_as_asked(asked, l);
+    const std::vector<stroke> s = apply_fits(asked, l);
     const auto goes = [&](std::size_t i, point from, point to) {
         return distance_mm(s[i].motion.position(0.0), from) < 1e-9 &&
                distance_mm(s[i].motion.position(1.0), to) < 1e-9;

@@ -153,7 +153,7 @@ TEST_CASE("a stroke that asks for a fit is fitted")
     const plan p = make_plan(palm, s);
     CHECK(p.bursts.front().position.x_mm == doctest::Approx(2.0));
     CHECK(p.bursts.back().position.x_mm == doctest::Approx(38.0));
-    const std::vector<stroke> both = fit_as_asked({s, along("M 0 0 H 10", 1.0)}, layout(palm));
+    const std::vector<stroke> both = apply_fits({s, along("M 0 0 H 10", 1.0)}, layout(palm));
     CHECK_FALSE(both[0].fit);
     CHECK(both[1].motion.length_mm() == 10.0);
     CHECK(make_plan(palm, both[0]) == p);

@@ -226,7 +226,7 @@ TEST_CASE("only inverse-distance takes faces")
     const stroke s = preset_stroke("park2016-1");
     for (const phantom_kind k :
          {phantom_kind::barycentric, phantom_kind::linear, phantom_kind::log, phantom_kind::gaussian})
-        for (const algorithm_kind by : values_of<algorithm_kind>()) {
+        for (const algorithm_kind by : all_values<algorithm_kind>()) {
             const plan_options o{.algorithm = by, .phantom = k, .faces = faces_kind::nearest};
             const std::string said = message_of([&] { static_cast<void>(make_plan(a, s, o)); });
             CHECK(has(said, "faces: nearest goes with inverse-distance only, not with "));

@@ -25,7 +25,7 @@ error: Error
 error_kind: InputError
 faces_kind: Plan.faces
 find_grid: Array.grid_lines
-fit_as_asked: fit_as_asked
+apply_fits: apply_fits
 fit_strokes: fit_strokes
 fitted_strokes: fit_strokes
 fitting: Fitting
@@ -104,7 +104,7 @@ start_at: Player.submit
 start_kind: Player.submit
 start_anchor: Stroke.start
 start_from_kind: Stroke.start_from
-starts_of: Score.starts
+start_times_s: Score.starts
 state_kind: Report.state
 reason_kind: Report.reason
 stream_end: Player.ended
@@ -113,7 +113,7 @@ wait_result: Ticket.wait
 stream_setup: Player.setup
 stream_wiring: Player
 lost_tactor: Player
-wiring_of: Player
+read_wiring: Player
 wiring_warnings: Player
 stroke: Stroke
 stroke_choices: Stroke.choices
@@ -144,14 +144,14 @@ write_wav: Score.write
 
 # C++ names without a Python one, with the reason.
 HAS_NOT = {
-    "to_string values_of from_string": "closed sets are str",
+    "to_string all_values from_string": "closed sets are str",
     "error_category make_error_code": "exceptions have classes",
     "distance_mm": "math.dist",
     "same_place_mm continuous_step_s percept_step_s percept_window_s longest_percept_s default_speed_mm_s no_limit": "constants of the model, in the documents",
     "describe least_sigma_mm most_sigma_mm least_sigma_v_mm_s most_sigma_v_mm_s": "words and bounds, which messages say",
     "felt_places compensate compensated_places": "compare(observer=...) and plan(compensate=...) ask them of plans",
     "burst_ramp_s": "in the record of each burst: Plan.to_dict()",
-    "bytes_of": "the dtype's itemsize",
+    "sample_bytes": "the dtype's itemsize",
     "resolve_start_s": "Score does it for its plans",
     "parse_envelope envelope_text": "envelope and tukey_part of a Score",
     "parse_waveform waveform_names_file waveform_text parse_modulation recording load_recording": "plan(waveform=..., am=...) read texts and files",
@@ -164,9 +164,9 @@ HAS_NOT = {
     "enable_line edge_input gpio_edge gpio_line_name gpio_line_place find_gpio_line player_lines amplifier_settings sync_settings edge_kind pull_kind":
         "lines are the configuration's; a player opens them",
     "reopen_alsa": "make a Player again, after=",
-    "route_of pcm_route require_device_name card_of card_info card_holders count_range": "what devices and Player look at themselves",
+    "read_route pcm_route require_device_name read_card card_info card_holders count_range": "what devices and Player look at themselves",
     "probe_realtime_rights realtime_rights": "Player.stats()['realtime'], and `tactor check`",
-    "parse_setup said_value": "Array.from_file reads files",
+    "parse_setup written_value": "Array.from_file reads files",
     "wav_progress": "Ctrl-C gives up",
 }
 
@@ -189,7 +189,7 @@ def test_each_public_name_has_its_python_one_or_a_reason(root):
     names = public_names(root)
     assert len(names) > 100
     assert names - set(has) - has_not == set(), "neither in HAS nor in HAS_NOT"
-    assert (set(has) | has_not) - names - {"values_of", "from_string", "to_string"} == set(), "no longer a C++ name"
+    assert (set(has) | has_not) - names - {"all_values", "from_string", "to_string"} == set(), "no longer a C++ name"
     for where in has.values():
         thing = tactor
         for part in where.split("."):

@@ -246,11 +246,11 @@ def test_a_group_is_fitted_together(tmp_path, palm, tool):
                     '[[stroke]]\npath = "M 1 2 L 30 40"\n')
     strokes = tactor.load(file)
     for take in (tactor.plan, tactor.compare):
-        with pytest.raises(tactor.InputError, match="fit_as_asked"):
+        with pytest.raises(tactor.InputError, match="apply_fits"):
             take(palm, strokes[0])
-    fitted = tactor.fit_as_asked(strokes, palm)
+    fitted = tactor.apply_fits(strokes, palm)
     assert fitted[2] == strokes[2] and fitted[0].position(0) == pytest.approx((5.0, 5.0)) and fitted[1].position(10) == pytest.approx((20.0, 35.0))
-    assert tactor.fit_as_asked(fitted, palm) == fitted
+    assert tactor.apply_fits(fitted, palm) == fitted
     printed = json.loads(tool("plan", file, "--format", "json"))["plans"]
     for plan, other in zip([tactor.plan(palm, s) for s in fitted], printed):
         assert [(b["x_mm"], b["y_mm"]) for b in other["bursts"]] == [tuple(b.position) for b in plan.bursts]

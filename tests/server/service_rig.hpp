@@ -215,7 +215,7 @@ private:
         alsa_options o;
         o.channels = 9;
         o.format = format_kind::s32;
-        std::unique_ptr<sink> s = pcm::adopt(card.pcm(), o);
+        std::unique_ptr<sink> s = alsa::adopt(card.pcm(), o);
         clocks.emplace_back(card, captures);
         return s;
     }

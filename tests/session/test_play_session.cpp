@@ -60,7 +60,7 @@ struct run {
                 before_open();
                 clocks.clear();
                 cards.emplace_back();
-                auto s = pcm::adopt(cards.back().pcm(), nine());
+                auto s = alsa::adopt(cards.back().pcm(), nine());
                 clocks.emplace_back(cards.back());
                 return s;
             };

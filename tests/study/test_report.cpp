@@ -117,9 +117,9 @@ TEST_CASE("options are reported where they matter")
     o.profile.slope = 0.4;
     CHECK(method_options(o) == "$\\mathrm{SOA} = 0.4\\,d + 0.0473\\,\\mathrm{s}$ with burst duration $d$");
     CHECK(has(algorithm_text("mine"), "not one of tactor's own"));
-    for (const algorithm_kind a : values_of<algorithm_kind>())
+    for (const algorithm_kind a : all_values<algorithm_kind>())
         CHECK(algorithm_text(to_string(a)) != algorithm_text("mine"));
-    for (const phantom_kind p : values_of<phantom_kind>())
+    for (const phantom_kind p : all_values<phantom_kind>())
         CHECK(phantom_text(to_string(p)) != phantom_text("mine"));
 }
 

@@ -77,7 +77,7 @@ struct set_up {
     static session::stream_source source(fake_dac& d)
     {
         return [&d](session::stream_parts& p) {
-            p.open = [&d] { return pcm::adopt(d.pcm(), nine()); };
+            p.open = [&d] { return alsa::adopt(d.pcm(), nine()); };
             p.player = patient(p.player.limits);
             p.player.realtime = false;
         };
@@ -272,7 +272,7 @@ TEST_CASE("noise that stands still makes it void; noise whose device is gone is 
     const auto open = [&] {
         headphones.push_back(std::make_unique<fake_dac>());
         fake_dac& d = *headphones.back();
-        auto sink = pcm::adopt(d.pcm(), {.channels = 2, .period_frames = 480, .periods = 4});
+        auto sink = alsa::adopt(d.pcm(), {.channels = 2, .period_frames = 480, .periods = 4});
         clocks.push_back(std::make_unique<running_clock>(d, running_clock::capture_kind::kept));
         return sink;
     };

@@ -33,7 +33,7 @@ public:
     fake_dac& operator=(const fake_dac&) = delete;
     ~fake_dac();
 
-    /// The PCM, for tactor::pcm::adopt() to own.
+    /// The PCM, for tactor::alsa::adopt() to own.
     snd_pcm_t* pcm() noexcept
     {
         taken_ = true;

@@ -97,7 +97,7 @@ inline tactor::plan make_random(std::mt19937_64& random, unsigned tactors, unsig
 template <class Next>
 std::vector<std::byte> render(const tactor::score& s, tactor::format_kind f, Next next, std::size_t frames)
 {
-    const std::size_t frame_bytes = s.channels() * tactor::bytes_of(f);
+    const std::size_t frame_bytes = s.channels() * tactor::sample_bytes(f);
     std::vector<std::byte> out(frames * frame_bytes, std::byte{0x55});
     tactor::renderer r(s, f);
     for (std::size_t done = 0; done < frames;) {

@@ -36,7 +36,7 @@ COUNTING_TEST_CASE("rendering allocates nothing")
         std::vector<std::byte> out(500 * s.channels() * 4);
         const count_allocations count;
         for (std::size_t n = 1; r.position() < s.frames() + 1000; n = n % 500 + 1)
-            r.process(std::span(out).first(n * s.channels() * bytes_of(f)));
+            r.process(std::span(out).first(n * s.channels() * sample_bytes(f)));
         CHECK(count.calls() == 0);
     }
 }

@@ -21,11 +21,11 @@ namespace {
 
 std::vector<std::byte> converted(format_kind f, const std::vector<double>& x)
 {
-    std::vector<std::byte> out(x.size() * bytes_of(f));
+    std::vector<std::byte> out(x.size() * sample_bytes(f));
     for (std::size_t i = 0; i < x.size(); i += 64) {
         const auto n = static_cast<unsigned>(std::min<std::size_t>(64, x.size() - i));
         const synth::channel_samples one[] = {{0, x.data() + i, 1.0}};
-        synth::interleave(f, one, 1, n, out.data() + i * bytes_of(f));
+        synth::interleave(f, one, 1, n, out.data() + i * sample_bytes(f));
     }
     return out;
 }
@@ -95,7 +95,7 @@ TEST_CASE("for any sounding channels, each sample is in its place and the others
         for (std::uint32_t c = 0; c < channels; ++c)
             if (random() % 2 == 0)
                 sounding.push_back({c, x.data() + c, 0.1 * (c + 1)});
-        std::vector<std::byte> out(n * channels * bytes_of(f) + 16, std::byte{0x55});
+        std::vector<std::byte> out(n * channels * sample_bytes(f) + 16, std::byte{0x55});
         synth::interleave(f, sounding, channels, n, out.data());
         std::vector<std::byte> want(out.size(), std::byte{0x55});
         std::fill(want.begin(), want.end() - 16, std::byte{});
@@ -104,7 +104,7 @@ TEST_CASE("for any sounding channels, each sample is in its place and the others
                 const auto one = converted(f, {c.gain * c.x[k]});
                 std::copy(one.begin(), one.end(),
                           want.begin() +
-                              static_cast<std::ptrdiff_t>((k * channels + c.channel) * bytes_of(f)));
+                              static_cast<std::ptrdiff_t>((k * channels + c.channel) * sample_bytes(f)));
             }
         }
         REQUIRE(out == want);
@@ -130,9 +130,9 @@ TEST_CASE("sample formats have names and sizes")
         CHECK(from_string<format_kind>(to_string(f)) == f);
     CHECK(from_string<format_kind>("s24") == format_kind::s24_3);
     CHECK(from_string<format_kind>("s24-4") == format_kind::s24_4);
-    CHECK(bytes_of(format_kind::s24_3) == 3);
-    CHECK(bytes_of(format_kind::s24_4) == 4);
-    CHECK(bytes_of(format_kind::s16) == 2);
+    CHECK(sample_bytes(format_kind::s24_3) == 3);
+    CHECK(sample_bytes(format_kind::s24_4) == 4);
+    CHECK(sample_bytes(format_kind::s16) == 2);
     CHECK_THROWS_AS(from_string<format_kind>("s25"), error);
     CHECK_THROWS_AS(from_string<format_kind>(""), error);
 }

@@ -232,7 +232,7 @@ TEST_CASE("non-numbers reach no format")
                 m.add(e);
             }
         }
-        std::vector<std::byte> out(480 * 3 * bytes_of(f));
+        std::vector<std::byte> out(480 * 3 * sample_bytes(f));
         m.process(480, out.data());
         for (std::size_t i = 0; i < 480 * 3; ++i) {
             if (f == format_kind::float32) {

@@ -44,7 +44,7 @@ TEST_CASE("strokes in a row begin at their times, however many there are, at ful
         std::vector<placed_plan> plans(1000, placed_plan{p, {}});
         plans.push_back({p, 0.0, {start_from_kind::end, 1}});
         const score s(row(1), plans, o);
-        const std::vector<double> starts_s = starts_of(plans);
+        const std::vector<double> starts_s = start_times_s(plans);
         for (std::size_t i = 0; i < plans.size(); ++i)
             REQUIRE(s.starts()[i] == synth::frame_at(starts_s[i], 48000));
         CHECK(std::abs(static_cast<double>(s.starts().back()) - 1000.0 * frames) <= 0.51);
@@ -80,7 +80,7 @@ TEST_CASE("starts count from the start or the end of plans before")
                                          {p, 0.5, {end, 99}}};
     const score s(row(2), plans);
     CHECK((s.starts() == std::vector<std::uint64_t>{4800, 5280, 14880, 18240, 18240, 6240, 44640}));
-    const std::vector<double> seconds = starts_of(plans);
+    const std::vector<double> seconds = start_times_s(plans);
     for (std::size_t i = 0; i < plans.size(); ++i) {
         CHECK(std::llround(seconds[i] * 48000.0) == static_cast<long long>(s.starts()[i]));
         CHECK(s.plans()[i].anchor == plans[i].anchor);
@@ -107,7 +107,7 @@ TEST_CASE("strokes that are planned while they are placed have the samples of th
     first.motion = first.motion.with_duration(150.0); // more bursts than are handed over at once
     second.start_s = 0.35;
     second.sound.carrier_hz = 180.0;
-    for (const algorithm_kind algorithm : values_of<algorithm_kind>()) {
+    for (const algorithm_kind algorithm : all_values<algorithm_kind>()) {
         plan_options how;
         how.algorithm = algorithm;
         how.profile.max_soa_s = 0.2;

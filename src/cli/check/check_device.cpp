@@ -72,8 +72,8 @@ finding check_line(const char* check, const gpio_line_name& name, const line_fin
 finding check_device(const alsa_options& device, const session::stream_options& o, const environment& e,
                      bool named)
 {
-    if (route_of(device.pcm).writes) {
-        const std::string lost = lost_tactor(e.tactors, wiring_of(device.pcm, device.channels));
+    if (read_route(device.pcm).writes) {
+        const std::string lost = lost_tactor(e.tactors, read_wiring(device.pcm, device.channels));
         return lost.empty()
                    ? warning("device",
                              fmt::format("{}: not opened, for that would empty its file or start its command",

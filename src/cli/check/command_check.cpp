@@ -35,7 +35,7 @@ void check_machine(const setup& config, const alsa_options& device, const sessio
 {
     system_needs n;
     n.pcm = device.pcm;
-    n.card = card_of(device.pcm);
+    n.card = read_card(device.pcm);
     if (n.card) {
         n.holders = card_holders(n.card->index);
         n.ignored = servers_ignore(n.card->index);

@@ -41,7 +41,7 @@ std::string join_names()
 template <class Enum>
 std::vector<Enum> parse_list(const char* option, std::string_view text)
 {
-    const auto known = values_of<Enum>();
+    const auto known = all_values<Enum>();
     std::vector<Enum> list;
     for (const std::string_view name : detail::split(text, ',')) {
         const auto v = std::find_if(known.begin(), known.end(), [&](Enum e) { return to_string(e) == name; });
@@ -127,7 +127,7 @@ int run(settings& s, const compare_options& asked, bool one_algorithm)
 {
     const environment e = session::read_environment(s);
     comparison_choice choice = asked.choice;
-    const auto every = values_of<algorithm_kind>();
+    const auto every = all_values<algorithm_kind>();
     if (one_algorithm)
         choice.algorithms = {s.plan.algorithm};
     else if (choice.algorithms.empty())

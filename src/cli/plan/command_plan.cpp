@@ -84,7 +84,7 @@ void print_one(std::FILE* out, const std::string& title, const stroke& s, const 
 // Both write as they go: a plan of an hour needs no document in memory.
 void print_text(std::FILE* out, const piece& p, const environment& e, const render_options& sound)
 {
-    const auto starts = starts_of(p.plans);
+    const auto starts = start_times_s(p.plans);
     if (p.fit)
         say(out, "{}", fit_note(*p.fit));
     for (std::size_t i = 0; i < p.plans.size(); ++i) {
@@ -97,7 +97,7 @@ void print_text(std::FILE* out, const piece& p, const environment& e, const rend
 void print_csv(std::FILE* out, const piece& p, const environment& e)
 {
     fmt::print(out, "stroke,start_s,onset_s,duration_s,tau_s,x_mm,y_mm,tactor,channel,amplitude\n");
-    const auto starts = starts_of(p.plans);
+    const auto starts = start_times_s(p.plans);
     for (std::size_t i = 0; i < p.plans.size(); ++i) {
         files::for_each_row(p.plans[i].plan, [&](const burst& b) {
             const std::string tau = b.tau_s ? fmt::format("{}", *b.tau_s) : "";

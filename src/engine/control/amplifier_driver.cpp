@@ -28,7 +28,7 @@ void amplifier_driver::update() noexcept
     read_status(s, now);
     watch(s, now);
     beat(now);
-    amplifier_.handle(amplifier_event::tick, now);
+    amplifier_.handle(amplifier::event::tick, now);
     apply();
     report_changes();
     updated_ns_ = now;
@@ -49,24 +49,24 @@ void amplifier_driver::read_status(const stream_status& s, std::int64_t now) noe
 {
     const std::uint64_t xruns = link_.count.xruns.load(std::memory_order_acquire);
     for (; xruns_ < xruns; ++xruns_)
-        amplifier_.handle(amplifier_event::xrun, now);
+        amplifier_.handle(amplifier::event::xrun, now);
     // Reports a suspend also if the system slept and woke between two looks, and while it sleeps, whatever
     // came before.
     const std::uint64_t suspends = link_.count.suspends.load(std::memory_order_acquire);
     if (std::exchange(suspends_, suspends) != suspends || s.stage == stream_stage::suspended)
-        amplifier_.handle(amplifier_event::suspended, now);
+        amplifier_.handle(amplifier::event::suspended, now);
     if (s.epoch != epoch_) {
         epoch_ = s.epoch;
-        amplifier_.handle(amplifier_event::started, now);
+        amplifier_.handle(amplifier::event::started, now);
     }
     if (s.stage == stream_stage::running) {
         // Until the audio thread has seen the mute, frames that it wrote earlier still sound.
         const bool heard = s.mutes == link_.amplifier.mutes.load(std::memory_order_relaxed);
-        amplifier_.handle(amplifier_event::moved, now,
+        amplifier_.handle(amplifier::event::moved, now,
                           {.played = s.epoch_played, .sounds_until = heard ? s.sounds_until : UINT64_MAX});
     }
     if (link_.amplifier.ending.load(std::memory_order_seq_cst))
-        amplifier_.handle(amplifier_event::silent, now);
+        amplifier_.handle(amplifier::event::silent, now);
 }
 
 // Measures how long the audio thread stood still. Time in which this thread did not run either (SIGSTOP, a
@@ -78,7 +78,7 @@ void amplifier_driver::watch(const stream_status& s, std::int64_t now) noexcept
         periods_ = periods;
         idle_ns_ = 0;
         if (std::exchange(stalled_, false))
-            amplifier_.handle(amplifier_event::recovered, now);
+            amplifier_.handle(amplifier::event::recovered, now);
         return;
     }
     idle_ns_ += std::min(now - updated_ns_, 2 * options_.beat_ns);
@@ -86,7 +86,7 @@ void amplifier_driver::watch(const stream_status& s, std::int64_t now) noexcept
         return;
     stalled_ = true;
     link_.count.stalls.fetch_add(1, std::memory_order_relaxed);
-    amplifier_.handle(amplifier_event::stalled, now);
+    amplifier_.handle(amplifier::event::stalled, now);
 }
 
 void amplifier_driver::beat(std::int64_t now) noexcept
@@ -98,7 +98,7 @@ void amplifier_driver::beat(std::int64_t now) noexcept
         return;
     // The line went off by itself or was lost. apply() switches it off in either case.
     link_.count.stalls.fetch_add(1, std::memory_order_relaxed);
-    amplifier_.handle(amplifier_event::lapsed, now);
+    amplifier_.handle(amplifier::event::lapsed, now);
 }
 
 void amplifier_driver::apply() noexcept
@@ -125,7 +125,7 @@ void amplifier_driver::switch_on() noexcept
     link_.amplifier.off.store(false, std::memory_order_seq_cst);
     if (link_.amplifier.ending.load(std::memory_order_seq_cst)) {
         link_.amplifier.off.store(true, std::memory_order_seq_cst);
-        amplifier_.handle(amplifier_event::silent, clock_());
+        amplifier_.handle(amplifier::event::silent, clock_());
         return;
     }
     line_state_ = line_state::on;
@@ -135,7 +135,7 @@ void amplifier_driver::switch_on() noexcept
     }
     const std::int64_t now = clock_();
     beaten_ns_ = now;
-    amplifier_.handle(amplifier_event::switched, now);
+    amplifier_.handle(amplifier::event::switched, now);
 }
 
 void amplifier_driver::switch_off() noexcept
@@ -172,12 +172,12 @@ void amplifier_driver::fail() noexcept
 {
     link_.amplifier.failed.store(true, std::memory_order_release);
     link_.to_audio.signal();
-    amplifier_.handle(amplifier_event::failed, clock_());
+    amplifier_.handle(amplifier::event::failed, clock_());
 }
 
 void amplifier_driver::close() noexcept
 {
-    amplifier_.handle(amplifier_event::silent, clock_());
+    amplifier_.handle(amplifier::event::silent, clock_());
     apply();
     if (stuck_)
         try_off(); // for the last time

@@ -16,7 +16,7 @@
 namespace tactor::engine {
 
 struct driver_options {
-    amplifier_options amplifier{};
+    amplifier::sequence_options amplifier{};
     std::int64_t beat_ns = 40'000'000;      ///< the holder waits for 150 ms
     std::int64_t watchdog_ns = 100'000'000; ///< time without a period after which the audio thread is stalled
     std::int64_t retry_ns = 10'000'000;     ///< between two tries to switch off
@@ -55,7 +55,7 @@ private:
     enable_line& line_;
     driver_options options_;
     std::function<std::int64_t()> clock_;
-    amplifier amplifier_;
+    amplifier::sequence amplifier_;
     enum class line_state { off, on, refused }; // refused: the line should be off, and may be on
     line_state line_state_ = line_state::off;
     bool stuck_ = false;          ///< refused for persist_ns

@@ -189,7 +189,7 @@ json array_json(const array& a)
 
 void write_plans(const plan_record& r, const text_sink& out)
 {
-    const auto starts = starts_of(r.plans);
+    const auto starts = start_times_s(r.plans);
     const auto write = [&](std::size_t i) {
         write_plan(out, {r.strokes[i], r.plans[i].plan, starts[i], !r.plans[i].start_s, r.samples.starts()[i],
                          r.tactors, r.samples, r.fit, r.moved.empty() ? nullptr : &r.moved[i], r.options});

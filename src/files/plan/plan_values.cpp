@@ -236,7 +236,7 @@ stroke read_stroke(const json_value& f, const plan& p, const std::optional<compe
     s.sound.wave = p.wave;
     s.sound.am = p.am;
     const auto note = drawn["note"].text();
-    for (const note_kind n : values_of<note_kind>())
+    for (const note_kind n : all_values<note_kind>())
         if (note == note_text(n))
             s.note = n;
     return s;

@@ -154,7 +154,7 @@ void add_choices(lines& out, const stroke& s)
     if (s.choices.level_db != 0.0)
         out.add("level_db", s.choices.level_db);
     if (s.fit && s.fit->group != 0)
-        refuse(s, "it is fitted together with others of its group", "fit_as_asked() fits them");
+        refuse(s, "it is fitted together with others of its group", "apply_fits() fits them");
     if (s.fit) {
         out.append("fit", "true");
         out.add("fit_margin_mm", s.fit->margin_mm);

@@ -37,7 +37,7 @@ public:
 private:
     void place()
     {
-        t_.starts_s = starts_of(scene_.plans);
+        t_.starts_s = start_times_s(scene_.plans);
         for (std::size_t i = 0; i < scene_.plans.size(); ++i) {
             const plan& p = scene_.plans[i].plan;
             t_.total_s = std::max(t_.total_s, t_.starts_s[i] + p.total_s);

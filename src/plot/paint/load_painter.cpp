@@ -71,12 +71,12 @@ const painter_module& painter()
 
 std::string to_png(const canvas& c, unsigned dpi)
 {
-    return bytes_of(painter().to_png(c, dpi));
+    return painted_bytes(painter().to_png(c, dpi));
 }
 
 std::string to_pdf(const canvas& c)
 {
-    return bytes_of(painter().to_pdf(c));
+    return painted_bytes(painter().to_pdf(c));
 }
 
 } // namespace tactor::plot

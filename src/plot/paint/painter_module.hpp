@@ -30,7 +30,7 @@ struct painter_module {
 };
 
 /// \throws error, std::bad_alloc
-inline std::string bytes_of(painting p)
+inline std::string painted_bytes(painting p)
 {
     if (p.no_memory)
         throw std::bad_alloc();

@@ -14,7 +14,7 @@ from tactor import _tactor
 from tactor._array import Array, Point, Tactor, array_presets
 from tactor._calls import compare, plan
 from tactor._errors import DeviceError, Error, InputError, StreamError
-from tactor._fitting import Fitting, fit_as_asked, fit_strokes
+from tactor._fitting import Fitting, apply_fits, fit_strokes
 from tactor._parts import Burst, Conflict, Curve, Drive, Meeting, Percept, PerceptMap, PerceptSample, PhantomModel
 from tactor._path import Path
 from tactor._plan import Plan, load_plan
@@ -35,7 +35,7 @@ __all__ = [
     "Array", "Burst", "Client", "Comparison", "Conflict", "Curve", "Delay", "DeviceError", "Drive", "Error", "Fitting", "InputError", "LiveStroke",
     "Meeting", "Path", "Percept", "PerceptMap", "PerceptSample", "PhantomModel", "Plan", "Player", "Point", "RemoteLive",
     "RemoteStroke", "Reply", "Report", "Score", "StreamError", "Stroke", "Tactor", "Ticket",
-    "array_presets", "build_facts", "burst_duration", "compare", "devices", "fit_as_asked", "fit_strokes", "load", "load_plan", "parse", "plan", "plot",
+    "array_presets", "build_facts", "burst_duration", "compare", "devices", "apply_fits", "fit_strokes", "load", "load_plan", "parse", "plan", "plot",
     "stroke_presets", "stroke_shapes",
 ]
 

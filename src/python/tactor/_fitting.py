@@ -43,7 +43,7 @@ def fit_strokes(strokes: _t.Sequence[Stroke], array: Array, margin_mm: float = 0
     return [Stroke._of(s) for s in fitted], Fitting(Point(*origin), Point(*to), scale)
 
 
-def fit_as_asked(strokes: _t.Sequence[Stroke], array: Array) -> list[Stroke]:
+def apply_fits(strokes: _t.Sequence[Stroke], array: Array) -> list[Stroke]:
     """Strokes as their file asks for them to be fitted (`fit`), those of a group as one picture. `plan` does it for a stroke alone.
 
     Parameters
@@ -63,7 +63,7 @@ def fit_as_asked(strokes: _t.Sequence[Stroke], array: Array) -> list[Stroke]:
         For a margin that leaves no space.
     """
     _need(array, Array, "array")
-    return [Stroke._of(s) for s in _tactor.fit_as_asked(_cores(strokes), array._core)]
+    return [Stroke._of(s) for s in _tactor.apply_fits(_cores(strokes), array._core)]
 
 
 def _cores(strokes: _t.Any) -> list[_t.Any]:

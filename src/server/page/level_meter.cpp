@@ -66,7 +66,7 @@ private:
     void look(const std::byte* data, std::size_t frames) noexcept
     {
         const stream_setup& s = inner_->setup();
-        const std::size_t step = bytes_of(s.format);
+        const std::size_t step = sample_bytes(s.format);
         const std::size_t channels = std::min<std::size_t>(s.channels, peaks_->size());
         for (std::size_t c = 0; c < channels; ++c) {
             float most = 0.0F;

@@ -9,10 +9,10 @@
 
 #include <tactor/alsa.hpp>
 
-namespace tactor::pcm {
+namespace tactor::alsa {
 
 /// Configures `p` and owns it; closes it on failure, too. Throws as open_alsa() does; `o.pcm` is only a name.
 /// `as_card`: treats its clock as a card's, which never stops for this process.
 std::unique_ptr<sink> adopt(snd_pcm_t* p, const alsa_options& o, bool as_card = false);
 
-} // namespace tactor::pcm
+} // namespace tactor::alsa

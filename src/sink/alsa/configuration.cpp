@@ -12,7 +12,7 @@
 #include "sink/alsa/error_text.hpp"
 #include "sink/alsa/library_messages.hpp"
 
-namespace tactor::pcm {
+namespace tactor::alsa {
 namespace {
 
 // Returns the negative errno if no file can be opened, else 0. Trying one is enough: if libasound has one
@@ -75,4 +75,4 @@ system_configuration::~system_configuration()
         snd_config_unref(top_);
 }
 
-} // namespace tactor::pcm
+} // namespace tactor::alsa

@@ -10,7 +10,7 @@
 
 #include "core/owned.hpp"
 
-namespace tactor::pcm {
+namespace tactor::alsa {
 
 using configuration = std::unique_ptr<snd_config_t, detail::deleter<snd_config_delete>>;
 
@@ -41,4 +41,4 @@ private:
     int refused_;
 };
 
-} // namespace tactor::pcm
+} // namespace tactor::alsa

@@ -14,7 +14,7 @@
 #include "core/suggest.hpp"
 #include "sink/alsa/devices/route.hpp"
 
-namespace tactor::pcm {
+namespace tactor::alsa {
 namespace {
 
 constexpr std::size_t most_names = 12; // of PCMs in one message
@@ -234,4 +234,4 @@ error call_error(const std::string& name, const char* call, int code)
     return {error_kind::not_available, thing(name), fmt::format("{} failed: {}", call, snd_strerror(code))};
 }
 
-} // namespace tactor::pcm
+} // namespace tactor::alsa

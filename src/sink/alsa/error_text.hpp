@@ -10,7 +10,7 @@
 
 #include "sink/alsa/devices/cards.hpp"
 
-namespace tactor::pcm {
+namespace tactor::alsa {
 
 /// Returns "text (detail)", or "text" without a detail.
 std::string with_detail(const std::string& text, const std::string& detail);
@@ -28,4 +28,4 @@ error open_error(const std::string& name, int code, const std::string& detail, c
 /// Returns the error of a call that should have succeeded.
 error call_error(const std::string& name, const char* call, int code);
 
-} // namespace tactor::pcm
+} // namespace tactor::alsa

@@ -10,7 +10,7 @@
 #include "sink/alsa/error_text.hpp"
 #include "sink/alsa/library_messages.hpp"
 
-namespace tactor::pcm {
+namespace tactor::alsa {
 namespace {
 
 // With SND_PCM_NONBLOCK a busy device gives an error at once instead of an endless wait.
@@ -83,4 +83,4 @@ handle open(const alsa_options& o)
     return h;
 }
 
-} // namespace tactor::pcm
+} // namespace tactor::alsa

@@ -12,7 +12,7 @@
 #include "core/owned.hpp"
 #include "sink/alsa/library_messages.hpp"
 
-namespace tactor::pcm {
+namespace tactor::alsa {
 
 inline constexpr unsigned most_channels = max_pcm_channels;
 
@@ -41,4 +41,4 @@ status make_status();
 /// \throws error as open_alsa() does.
 handle open(const alsa_options& o);
 
-} // namespace tactor::pcm
+} // namespace tactor::alsa

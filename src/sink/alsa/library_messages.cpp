@@ -5,7 +5,7 @@
 #include <cstdio>
 #include <utility>
 
-namespace tactor::pcm {
+namespace tactor::alsa {
 namespace {
 
 thread_local library_messages* innermost = nullptr;
@@ -36,4 +36,4 @@ std::string library_messages::first() const
     return s;
 }
 
-} // namespace tactor::pcm
+} // namespace tactor::alsa

@@ -12,7 +12,7 @@
 
 #include <alsa/asoundlib.h>
 
-namespace tactor::pcm {
+namespace tactor::alsa {
 
 /// Calls snd_lib_error_set_local(), which alsa-lib 1.2.8 declares without extern "C".
 snd_local_error_handler_t set_local_handler(snd_local_error_handler_t h) __asm__("snd_lib_error_set_local");
@@ -56,4 +56,4 @@ private:
     library_messages* outer_;
 };
 
-} // namespace tactor::pcm
+} // namespace tactor::alsa

@@ -14,7 +14,7 @@
 #include "sink/alsa/error_text.hpp"
 #include "sink/alsa/handle.hpp"
 
-namespace tactor::pcm {
+namespace tactor::alsa {
 namespace {
 
 // Formats a range. Software PCMs report 1073741823 channels or 4294967295 Hz, which means no limit.
@@ -273,4 +273,4 @@ void set_software(snd_pcm_t* p, const stream_setup& s)
     must(snd_pcm_sw_params(p, w.get()), "snd_pcm_sw_params");
 }
 
-} // namespace tactor::pcm
+} // namespace tactor::alsa

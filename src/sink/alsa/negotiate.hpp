@@ -13,7 +13,7 @@
 
 #include "sink/alsa/handle.hpp"
 
-namespace tactor::pcm {
+namespace tactor::alsa {
 
 /// Checks the options.
 /// \throws error (bad_input) for numbers that no PCM can have.
@@ -58,4 +58,4 @@ constexpr snd_pcm_format_t to_alsa(format_kind f) noexcept
     return SND_PCM_FORMAT_UNKNOWN;
 }
 
-} // namespace tactor::pcm
+} // namespace tactor::alsa

@@ -19,7 +19,7 @@
 #include "sink/alsa/negotiate.hpp"
 #include "sink/alsa/pcm_sink.hpp"
 
-namespace tactor::pcm {
+namespace tactor::alsa {
 namespace {
 
 bool is_on_card(snd_pcm_t* p)
@@ -67,16 +67,16 @@ std::unique_ptr<sink> adopt(snd_pcm_t* p, const alsa_options& o, bool as_card)
     return configure(std::move(h), o, false, as_card);
 }
 
-} // namespace tactor::pcm
+} // namespace tactor::alsa
 
 namespace tactor {
 inline namespace v0 {
 
 std::unique_ptr<sink> open_alsa(const alsa_options& o)
 {
-    pcm::check(o);
-    pcm::handle h = pcm::open(o);
-    return pcm::configure(std::move(h), o, true, false);
+    alsa::check(o);
+    alsa::handle h = alsa::open(o);
+    return alsa::configure(std::move(h), o, true, false);
 }
 
 std::unique_ptr<sink> reopen_alsa(const alsa_options& o, const std::function<bool(double)>& pause)

@@ -8,13 +8,13 @@
 
 #include "rt/clock.hpp"
 
-namespace tactor::pcm {
+namespace tactor::alsa {
 
 pcm_sink::pcm_sink(handle h, stream_setup s, bool on_card)
     : handle_(std::move(h)),
       setup_(std::move(s)),
       wide_(setup_.device_channels > setup_.channels
-                ? std::size_t{setup_.buffer_frames} * setup_.device_channels * bytes_of(setup_.format)
+                ? std::size_t{setup_.buffer_frames} * setup_.device_channels * sample_bytes(setup_.format)
                 : 0),
       status_(make_status()),
       pacer_(setup_.rate, setup_.buffer_frames, setup_.period_frames),
@@ -170,7 +170,7 @@ const std::byte* pcm_sink::widen(std::span<const std::byte> frames) noexcept
     if (wide_.empty())
         return frames.data();
     const std::size_t own = setup_.frame_bytes();
-    const std::size_t wide = std::size_t{setup_.device_channels} * bytes_of(setup_.format);
+    const std::size_t wide = std::size_t{setup_.device_channels} * sample_bytes(setup_.format);
     for (std::size_t f = 0; f < frames.size() / own; ++f)
         std::copy_n(&frames[f * own], own, &wide_[f * wide]);
     return wide_.data();
@@ -272,4 +272,4 @@ io_kind of_error(long code, int state) noexcept
     }
 }
 
-} // namespace tactor::pcm
+} // namespace tactor::alsa

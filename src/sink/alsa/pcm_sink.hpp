@@ -15,7 +15,7 @@
 #include "sink/alsa/handle.hpp"
 #include "sink/pacer.hpp"
 
-namespace tactor::pcm {
+namespace tactor::alsa {
 
 /// A sink that writes with snd_pcm_writei(). If start() shows that a device has no clock, a timer paces it.
 ///
@@ -75,4 +75,4 @@ io_kind of_state(int state) noexcept;
 /// Returns the meaning of a negative return value in a state.
 io_kind of_error(long code, int state) noexcept;
 
-} // namespace tactor::pcm
+} // namespace tactor::alsa

@@ -34,12 +34,12 @@ std::vector<pcm_info> list_pcms(const std::optional<alsa_options>&)
     throw without("devices");
 }
 
-pcm_route route_of(const std::string&)
+pcm_route read_route(const std::string&)
 {
     return {};
 }
 
-stream_wiring wiring_of(const std::string&, unsigned)
+stream_wiring read_wiring(const std::string&, unsigned)
 {
     return {};
 }
@@ -47,12 +47,12 @@ stream_wiring wiring_of(const std::string&, unsigned)
 // Checks only the form of a name, because no name leads to a device.
 void require_device_name(const std::string& pcm)
 {
-    if (const std::string why = pcm::not_plain(pcm); !why.empty())
+    if (const std::string why = alsa::not_plain(pcm); !why.empty())
         throw error(error_kind::bad_input, fmt::format("PCM \"{}\"", pcm), why,
                     "an array file can only name a device, such as hw:CARD=Tactor");
 }
 
-std::optional<card_info> card_of(const std::string&)
+std::optional<card_info> read_card(const std::string&)
 {
     return {};
 }

@@ -32,7 +32,7 @@ bool is_float(format_kind f)
 std::string fewer_bytes(format_kind f, unsigned channels)
 {
     for (const format_kind other : {format_kind::s24_3, format_kind::s16})
-        if (bytes_of(other) < bytes_of(f) && channels * bytes_of(other) <= most_frame_bytes)
+        if (sample_bytes(other) < sample_bytes(f) && channels * sample_bytes(other) <= most_frame_bytes)
             return fmt::format("{{sample_format={}}} holds them", to_string(other));
     return "use fewer";
 }
@@ -43,7 +43,7 @@ void check_format(format_kind f, unsigned channels)
         throw detail::bad_field("sample_format", fmt::format("a WAV file cannot hold {}", to_string(f)),
                                 "use float, s16, s24 or s32");
     }
-    const std::size_t most = most_frame_bytes / bytes_of(f);
+    const std::size_t most = most_frame_bytes / sample_bytes(f);
     if (channels > most) {
         throw detail::bad_field(
             "channels",
@@ -69,7 +69,7 @@ std::string chunk(std::string_view name, const std::string& content)
 
 std::string format_chunk(format_kind f, unsigned channels, unsigned rate)
 {
-    const auto bytes = static_cast<unsigned>(bytes_of(f));
+    const auto bytes = static_cast<unsigned>(sample_bytes(f));
     const std::uint64_t frame = std::uint64_t{channels} * bytes;
     std::string s = number(is_float(f) ? float_tag : integer_tag, 2) + number(channels, 2) + number(rate, 4) +
                     number(rate * frame, 4) + number(frame, 2) + number(8ULL * bytes, 2);
@@ -87,7 +87,7 @@ bool write(const score& s, format_kind f, const std::filesystem::path& file, con
     std::uint64_t done = 0;
     const auto go_on = [&] { return !progress || progress(done, s.frames()); };
     detail::output_file to(file, go_on);
-    const std::size_t frame_bytes = s.channels() * bytes_of(f);
+    const std::size_t frame_bytes = s.channels() * sample_bytes(f);
     const std::uint64_t at_once = std::clamp<std::uint64_t>(block_bytes / frame_bytes, 1, most_block_frames);
     std::vector<std::byte> block(at_once * frame_bytes);
     renderer r(s, f);
@@ -111,7 +111,7 @@ std::string header(format_kind f, container c, unsigned channels, unsigned rate,
 {
     check_format(f, channels);
     const bool large = c == container::rf64;
-    const std::uint64_t data = frames * channels * bytes_of(f);
+    const std::uint64_t data = frames * channels * sample_bytes(f);
     std::string chunks = format_chunk(f, channels, rate);
     if (is_float(f))
         chunks += chunk("fact", number(large ? elsewhere : frames, 4));
@@ -130,7 +130,7 @@ inline namespace v0 {
 
 bool write_wav(const score& s, format_kind f, const std::filesystem::path& file, const wav_progress& progress)
 {
-    return wav::write(s, f, file, wav::container_for(s.frames(), s.channels() * bytes_of(f)), progress);
+    return wav::write(s, f, file, wav::container_for(s.frames(), s.channels() * sample_bytes(f)), progress);
 }
 
 } // namespace v0

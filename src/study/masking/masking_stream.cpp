@@ -115,14 +115,13 @@ void masking_stream::make_block(std::size_t frames, bool on) noexcept
         const double gain = next_gain(on);
         samples_[i] = gain > 0.0 ? gain * noise_.next() : 0.0;
     }
-    const std::size_t sample_bytes = bytes_of(sink_.setup().format);
+    const std::size_t bytes = sample_bytes(sink_.setup().format);
     const std::array<synth::channel_samples, 1> mono{{{.channel = 0, .x = samples_.data()}}};
     synth::interleave(sink_.setup().format, mono, 1, static_cast<unsigned>(frames), block_.data());
     // Spread from the last frame on: none is overwritten before it is read.
     for (std::size_t i = frames; i-- > 0;)
         for (std::size_t c = sink_.setup().channels; c-- > 0;)
-            std::copy_n(block_.data() + i * sample_bytes, sample_bytes,
-                        block_.data() + i * frame_bytes_ + c * sample_bytes);
+            std::copy_n(block_.data() + i * bytes, bytes, block_.data() + i * frame_bytes_ + c * bytes);
 }
 
 double masking_stream::next_gain(bool on) noexcept

@@ -57,7 +57,7 @@ constexpr std::size_t block_frames = 4096;
 
 bool sound_alike(const score& a, const score& b)
 {
-    const std::size_t bytes = block_frames * a.channels() * bytes_of(format_kind::float32);
+    const std::size_t bytes = block_frames * a.channels() * sample_bytes(format_kind::float32);
     std::vector<std::byte> of_a(bytes);
     std::vector<std::byte> of_b(bytes);
     renderer one(a, format_kind::float32);

@@ -159,7 +159,7 @@ const char* taken()
 void interleave(format_kind f, std::span<const channel_samples> sounding, std::size_t channels, unsigned n,
                 std::byte* out) noexcept
 {
-    const std::size_t sample = bytes_of(f);
+    const std::size_t sample = sample_bytes(f);
     const std::size_t stride = channels * sample;
     if (sounding.size() < channels)
         std::memset(out, 0, n * stride);

@@ -115,7 +115,7 @@ struct mixer::impl {
         samples.reserve(strips.size());
         leaving.reserve(most_leaving);
         carriers.reserve(power.on() ? capacity : 0);
-        frame_bytes = strips.size() * bytes_of(format);
+        frame_bytes = strips.size() * sample_bytes(format);
     }
 
     static double reach(std::span<const double> limits) noexcept

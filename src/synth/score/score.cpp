@@ -309,7 +309,7 @@ score::score(const array& a, std::vector<placed_plan> plans, const render_option
     *this = b.take();
 }
 
-std::vector<double> starts_of(std::span<const placed_plan> plans)
+std::vector<double> start_times_s(std::span<const placed_plan> plans)
 {
     detail::start_times times;
     for (const placed_plan& p : plans) {

@@ -152,7 +152,7 @@ TEST_CASE("a killed holder leaves the line to the player, which switches it off"
     amplifier_settings s = amplifier();
     const auto amp = open_amplifier(s);
     CHECK(amp->set(true));
-    const pid_t holder = dynamic_cast<gpio::holder_link&>(*amp).pid();
+    const pid_t holder = dynamic_cast<amplifier::holder_link&>(*amp).pid();
     const int end = open_pidfd(holder);
     ::kill(holder, SIGKILL);
     CHECK(ends(end));

@@ -131,8 +131,8 @@ TEST_CASE("switching does not touch the heap")
 
 TEST_CASE("the request's descriptor is known, so that the holder can keep it alone")
 {
-    const auto other = gpio::request_output({chip().path(), 4, false});
-    const auto r = gpio::request_output({chip().path(), 3, false});
+    const auto other = amplifier::request_output({chip().path(), 4, false});
+    const auto r = amplifier::request_output({chip().path(), 3, false});
     REQUIRE(r.line);
     REQUIRE(other.line);
     CHECK(r.line->descriptor() >= 0);

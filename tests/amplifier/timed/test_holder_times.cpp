@@ -16,7 +16,7 @@ using namespace tactor::test;
 
 namespace {
 
-constexpr gpio::holder_limits shipped;
+constexpr amplifier::holder_limits shipped;
 
 void check_off(const fake_line& line, std::int64_t since_ns, std::int64_t within_ms)
 {
@@ -31,7 +31,7 @@ void check_off(const fake_line& line, std::int64_t since_ns, std::int64_t within
 TEST_CASE("a line that is off needs no beats, one that is on does")
 {
     fake_line line;
-    const auto h = gpio::start_holder(line.held(), [] { return false; });
+    const auto h = amplifier::start_holder(line.held(), [] { return false; });
     CHECK(!line.next(2 * shipped.silence_ms).has_value());
     CHECK(h->beat());
     CHECK(h->set(true));
@@ -64,7 +64,7 @@ TEST_CASE("a player killed in any way leaves the line off soon")
 TEST_CASE("a player that is stopped leaves the line off, learns of it, and may switch on again")
 {
     fake_line line;
-    const player p(line, shipped, [](gpio::holder_link& h, const std::function<void(int)>& tell) {
+    const player p(line, shipped, [](amplifier::holder_link& h, const std::function<void(int)>& tell) {
         while (h.beat())
             ::poll(nullptr, 0, 50);
         tell(h.beat() ? 1 : 0);

@@ -46,10 +46,10 @@ bool no_tracing(const char* who)
 
 void session(fake_line& line)
 {
-    const gpio::held_line own = line.held();
-    std::unique_ptr<gpio::holder_link> h;
+    const amplifier::held_line own = line.held();
+    std::unique_ptr<amplifier::holder_link> h;
     try {
-        h = gpio::start_holder(own, [&own] { return own.set(own.line, false); });
+        h = amplifier::start_holder(own, [&own] { return own.set(own.line, false); });
     } catch (const error&) {
         return; // killed before it said that it is there
     }

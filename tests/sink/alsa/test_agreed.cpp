@@ -36,7 +36,7 @@ agreement agreed(const device_answers& a, const test::fake_dac_options& d = {}, 
     agreement made;
     o.log = [&](log_kind, std::string_view text) { made.log += std::string(text) + "\n"; };
     const device_says it(a);
-    made.setup = pcm::adopt(dac.pcm(), o)->setup();
+    made.setup = alsa::adopt(dac.pcm(), o)->setup();
     return made;
 }
 
@@ -93,8 +93,8 @@ TEST_CASE("the log has the requested values where the device changed them")
 TEST_CASE("a stream starts on request, ends with its last frame, and is silent beyond")
 {
     fake_dac dac;
-    const auto s = pcm::adopt(dac.pcm(), eight);
-    const pcm::sw_params w = pcm::make_sw_params();
+    const auto s = alsa::adopt(dac.pcm(), eight);
+    const alsa::sw_params w = alsa::make_sw_params();
     REQUIRE(snd_pcm_sw_params_current(dac.pcm(), w.get()) == 0);
     snd_pcm_uframes_t boundary = 0;
     REQUIRE(snd_pcm_sw_params_get_boundary(w.get(), &boundary) == 0);

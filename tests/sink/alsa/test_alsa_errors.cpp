@@ -35,9 +35,9 @@ struct fake_system : test::fake_system {
 
 private:
     static std::string says(const std::string& pcm, int code, const std::string& detail,
-                            const pcm::surroundings& there)
+                            const alsa::surroundings& there)
     {
-        const error e = pcm::open_error(pcm, code, detail, there);
+        const error e = alsa::open_error(pcm, code, detail, there);
         CHECK(e.kind() == error_kind::not_available);
         return e.what();
     }
@@ -235,7 +235,7 @@ TEST_CASE("a missing permission names the group to join, and how")
     const fake_system s;
     has(s.says("hw:0", -EACCES), "sudo usermod -aG audio $USER");
     s.write("dev/snd/pcmC0D0p", ""); // a node of the group that runs this test
-    const std::string group = pcm::playback_group(s.root());
+    const std::string group = alsa::playback_group(s.root());
     if (group == "root")
         has(s.says("hw:0", -EPERM), "root's alone");
     else
@@ -269,7 +269,7 @@ TEST_CASE("a PCM that is back is opened after the first wait, and a wrong reques
 TEST_CASE("the card and the device in an ALSA name")
 {
     const auto is = [](const char* name, const std::string& card, unsigned device) {
-        const auto d = pcm::named_device(name);
+        const auto d = alsa::named_device(name);
         INFO(name);
         REQUIRE(d);
         CHECK(d->card == card);
@@ -281,7 +281,7 @@ TEST_CASE("the card and the device in an ALSA name")
     is("plughw:1,2,0", "1", 2);
     is("surround71:CARD=PCH,DEV=0", "PCH", 0);
     for (const char* name : {"null", "default", "raw:/tmp/x", "", ":", "file:hw"})
-        CHECK_FALSE(pcm::named_device(name));
+        CHECK_FALSE(alsa::named_device(name));
 }
 
 } // namespace alsa_errors_test

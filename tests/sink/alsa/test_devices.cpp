@@ -30,7 +30,7 @@ TEST_CASE("each playback device of each card is listed by its card's id, cards f
 {
     const test::fake_system s;
     s.two_cards();
-    const auto all = pcm::list(s.root(), {});
+    const auto all = alsa::list(s.root(), {});
     REQUIRE(all.size() > 3);
     CHECK(all[0].name == "hw:CARD=Headphones,DEV=0");
     CHECK(all[0].description == "bcm2835 Headphones");
@@ -51,7 +51,7 @@ TEST_CASE("a card's device that cannot be opened says why and stays in the list"
     const test::fake_system s;
     s.write("proc/asound/cards", " 7 [NoSuchCard     ]: none - none\n");
     s.write("proc/asound/pcm", "07-00: x : : playback 1\n");
-    const auto all = pcm::list(s.root(), {});
+    const auto all = alsa::list(s.root(), {});
     const pcm_info& p = named(all, "hw:CARD=NoSuchCard,DEV=0");
     CHECK(p.tried);
     CHECK_FALSE(p.opened);
@@ -66,7 +66,7 @@ TEST_CASE("each device has its own holders")
     s.two_cards();
     s.process(812, "pipewire", "/dev/snd/pcmC2D3p");
     s.process(900, "arecord", "/dev/snd/pcmC2D0c");
-    const auto all = pcm::list(s.root(), {});
+    const auto all = alsa::list(s.root(), {});
     CHECK(named(all, "hw:CARD=DAC8x,DEV=0").holders.empty());
     const auto& holders = named(all, "hw:CARD=DAC8x,DEV=3").holders;
     REQUIRE(holders.size() == 1);
@@ -80,13 +80,13 @@ TEST_CASE("the wanted PCM is found under any of its names, and listed where noth
     s.two_cards();
     for (const char* name : {"hw:2,3", "hw:DAC8x,3", "hw:CARD=DAC8x,DEV=3", "hw:CARD=2,DEV=3"}) {
         CAPTURE(name);
-        const auto all = pcm::list(s.root(), alsa_options{.pcm = name, .channels = 8});
+        const auto all = alsa::list(s.root(), alsa_options{.pcm = name, .channels = 8});
         CHECK(named(all, "hw:CARD=DAC8x,DEV=3").wanted);
         CHECK(std::count_if(all.begin(), all.end(), [](const pcm_info& p) { return p.wanted; }) == 1);
     }
     // A converting PCM is another PCM, on the same device.
-    CHECK(named(pcm::list(s.root(), alsa_options{.pcm = "plughw:2,3", .channels = 8}), "plughw:2,3").wanted);
-    const auto all = pcm::list(s.root(), alsa_options{.pcm = "nowhere", .channels = 8});
+    CHECK(named(alsa::list(s.root(), alsa_options{.pcm = "plughw:2,3", .channels = 8}), "plughw:2,3").wanted);
+    const auto all = alsa::list(s.root(), alsa_options{.pcm = "nowhere", .channels = 8});
     CHECK(all.back().name == "nowhere");
     CHECK(all.back().wanted);
     CHECK_FALSE(all.back().opened);
@@ -102,7 +102,7 @@ TEST_CASE("a PCM's properties are found without configuring it")
 {
     test::fake_dac dac({.least_channels = 2, .most_channels = 64});
     pcm_info p;
-    pcm::look_at(dac.pcm(), alsa_options{.channels = 9}, p);
+    alsa::look_at(dac.pcm(), alsa_options{.channels = 9}, p);
     REQUIRE(p.can.has_value());
     REQUIRE(p.can->channels.size() == 1);
     CHECK(p.can->channels[0].least == 2);
@@ -122,7 +122,7 @@ TEST_CASE("a PCM's properties are found without configuring it")
     for (const alsa_options& o : {alsa_options{.channels = 65}, alsa_options{.channels = 9, .rate = 44100},
                                   alsa_options{.channels = 9, .format = format_kind::s24_4}}) {
         pcm_info other;
-        pcm::look_at(dac.pcm(), o, other);
+        alsa::look_at(dac.pcm(), o, other);
         CHECK(other.opened);
         CHECK(other.misfit.find("refused: ") != std::string::npos);
     }
@@ -133,7 +133,7 @@ TEST_CASE("channel counts with gaps stay apart")
 {
     test::fake_dac dac({.channel_counts = {2, 3, 8}});
     pcm_info p;
-    pcm::look_at(dac.pcm(), alsa_options{.channels = 5}, p);
+    alsa::look_at(dac.pcm(), alsa_options{.channels = 5}, p);
     REQUIRE(p.can->channels.size() == 2);
     CHECK(p.can->channels[0].least == 2);
     CHECK(p.can->channels[0].most == 3);

@@ -115,12 +115,12 @@ TEST_CASE("queries of names without descriptors say so, and leave nothing broken
         {
             const test::descriptors_left few(n);
             // Its files are open at the same time: one and the one that it names.
-            CHECK(answers([] { CHECK(route_of("mine").types.size() == 2); }) == (n >= 2));
-            CHECK(answers([] { static_cast<void>(wiring_of("mine", 9)); }) == (n >= 2));
+            CHECK(answers([] { CHECK(read_route("mine").types.size() == 2); }) == (n >= 2));
+            CHECK(answers([] { static_cast<void>(read_wiring("mine", 9)); }) == (n >= 2));
             CHECK(answers([] { require_device_name("mine"); }) == (n >= 2));
             CHECK(answers([] { static_cast<void>(list_pcms()); }) == (n >= 2));
         }
-        CHECK(route_of("mine").types == std::vector<std::string>{"plug", "null"});
+        CHECK(read_route("mine").types == std::vector<std::string>{"plug", "null"});
         CHECK(open_alsa(of("mine"))->setup().channels == 9);
     }
 }
@@ -130,7 +130,7 @@ TEST_CASE("a configuration that another part of the program could not read is re
     const own_configuration fresh;
     {
         const test::descriptors_left none(0);
-        const pcm::library_messages silent;
+        const alsa::library_messages silent;
         snd_config_update();
     }
     CHECK(open_alsa(of("mine"))->setup().channels == 9);

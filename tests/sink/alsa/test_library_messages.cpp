@@ -24,7 +24,7 @@ TEST_CASE("the host program keeps its handlers of libasound's messages")
 
     static unsigned heard = 0;
     const auto own = [](const char*, int, const char*, int, const char*, va_list) { ++heard; };
-    const snd_local_error_handler_t before = pcm::set_local_handler(own);
+    const snd_local_error_handler_t before = alsa::set_local_handler(own);
     fails();
     { // These messages are the error's detail, not the host's, and in between its own calls are its own.
         const auto sink = open_alsa({.pcm = "null", .channels = 1});
@@ -33,15 +33,15 @@ TEST_CASE("the host program keeps its handlers of libasound's messages")
         CHECK(snd_pcm_open(&p, "no-such-pcm", SND_PCM_STREAM_PLAYBACK, 0) < 0);
         CHECK(heard != 0);
     }
-    const bool restored = pcm::set_local_handler(before) == static_cast<snd_local_error_handler_t>(own);
+    const bool restored = alsa::set_local_handler(before) == static_cast<snd_local_error_handler_t>(own);
     CHECK(restored);
 }
 
 TEST_CASE("nested listeners hear the inner messages, and the outer one continues")
 {
-    const pcm::library_messages outer;
+    const alsa::library_messages outer;
     {
-        const pcm::library_messages inner;
+        const alsa::library_messages inner;
         SNDERR("one");
         SNDERR("two");
         CHECK(inner.first() == "one");

@@ -135,7 +135,7 @@ TEST_CASE("a card of 2, 8 or 16 channels and no other takes 16 for nine")
     alsa_options o;
     o.channels = 9;
     o.wider = true;
-    CHECK(pcm::adopt(dac.pcm(), o)->setup().device_channels == 16);
+    CHECK(alsa::adopt(dac.pcm(), o)->setup().device_channels == 16);
 }
 
 TEST_CASE("channels beyond the stream's are silent, whatever was in their memory")
@@ -145,7 +145,7 @@ TEST_CASE("channels beyond the stream's are silent, whatever was in their memory
     o.channels = 3;
     o.format = format_kind::s16;
     o.wider = true;
-    const auto s = pcm::adopt(dac.pcm(), o);
+    const auto s = alsa::adopt(dac.pcm(), o);
     REQUIRE(s->prepare() == io_kind::ok);
     std::vector<std::int16_t> frames;
     for (std::int16_t v = 1; v <= 3 * 288; ++v)
@@ -250,9 +250,9 @@ TEST_CASE("impossible numbers of a PCM are bad input")
     for (const auto& [rate, least] : {std::pair(8000U, 1U), std::pair(48'000U, 3U), std::pair(60'000U, 3U),
                                       std::pair(60'001U, 4U), std::pair(768'000U, 39U)}) {
         alsa_options o = {.pcm = "null", .channels = 9, .rate = rate, .period_frames = least};
-        CHECK_NOTHROW(pcm::check(o));
+        CHECK_NOTHROW(alsa::check(o));
         --o.period_frames;
-        const failure e = catch_failure([&] { pcm::check(o); });
+        const failure e = catch_failure([&] { alsa::check(o); });
         CHECK(e.kind == error_kind::bad_input);
         CHECK(e.says(fmt::format("{} frames a period out of range (give {} to 1048576)", least - 1, least)));
     }
@@ -267,11 +267,11 @@ TEST_CASE("each possible number of a PCM passes, and the next one does not")
         alsa_options o{.channels = 9};
         for (const unsigned fine : {least, most}) {
             o.*member = fine;
-            CHECK_NOTHROW(pcm::check(o));
+            CHECK_NOTHROW(alsa::check(o));
         }
         for (const unsigned beyond : {least - 1, most + 1}) {
             o.*member = beyond;
-            CHECK_THROWS_WITH_AS(pcm::check(o),
+            CHECK_THROWS_WITH_AS(alsa::check(o),
                                  doctest::Contains(fmt::format("give {} to {}", least, most).c_str()), error);
         }
     };
@@ -286,7 +286,7 @@ TEST_CASE("a device of a card: formats in order of preference, rate and channels
     const auto open = [](const test::fake_dac_options& d, alsa_options o) {
         test::fake_dac dac(d);
         o.pcm = "card";
-        return pcm::adopt(dac.pcm(), o)->setup();
+        return alsa::adopt(dac.pcm(), o)->setup();
     };
     alsa_options o;
     o.channels = 8;
@@ -310,7 +310,7 @@ TEST_CASE("a device that rounds the period reports its value")
     test::fake_dac dac({.least_period_bytes = 4096});
     alsa_options o;
     o.channels = 8;
-    const stream_setup s = pcm::adopt(dac.pcm(), o)->setup();
+    const stream_setup s = alsa::adopt(dac.pcm(), o)->setup();
     CHECK(s.period_frames == 128);
     CHECK(s.buffer_frames % s.period_frames == 0);
     CHECK(s.buffer_frames >= 2 * s.period_frames);
@@ -321,21 +321,21 @@ TEST_CASE("an adopted PCM is closed with its sink, and when it does not fit")
     test::fake_dac dac;
     alsa_options o;
     o.channels = 8;
-    pcm::adopt(dac.pcm(), o).reset();
+    alsa::adopt(dac.pcm(), o).reset();
     CHECK(dac.closed());
     test::fake_dac other;
     o.channels = 65;
-    CHECK_THROWS_AS(pcm::adopt(other.pcm(), o), error);
+    CHECK_THROWS_AS(alsa::adopt(other.pcm(), o), error);
     CHECK(other.closed());
 }
 
 TEST_CASE("errors of opening come with hints")
 {
-    CHECK(std::string(pcm::open_error("x", -EBUSY, "").what()).find("another program") != std::string::npos);
-    CHECK(std::string(pcm::open_error("x", -EACCES, "").what()).find("group audio") != std::string::npos);
-    CHECK(std::string(pcm::open_error("x", -ENOENT, "").what()).find("tactor devices") != std::string::npos);
-    CHECK(std::string(pcm::open_error("x", -ENODEV, "why").what()).find("why") != std::string::npos);
-    CHECK(pcm::open_error("x", -EIO, "").kind() == error_kind::not_available);
+    CHECK(std::string(alsa::open_error("x", -EBUSY, "").what()).find("another program") != std::string::npos);
+    CHECK(std::string(alsa::open_error("x", -EACCES, "").what()).find("group audio") != std::string::npos);
+    CHECK(std::string(alsa::open_error("x", -ENOENT, "").what()).find("tactor devices") != std::string::npos);
+    CHECK(std::string(alsa::open_error("x", -ENODEV, "why").what()).find("why") != std::string::npos);
+    CHECK(alsa::open_error("x", -EIO, "").kind() == error_kind::not_available);
 }
 
 } // namespace negotiate_test

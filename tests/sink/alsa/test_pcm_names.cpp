@@ -46,7 +46,7 @@ struct configuration {
     ~configuration() { snd_config_delete(top); }
     configuration(const configuration&) = delete;
     configuration& operator=(const configuration&) = delete;
-    types operator()(const std::string& name) const { return pcm::find_route(top, name); }
+    types operator()(const std::string& name) const { return alsa::find_route(top, name); }
 };
 
 std::string complaint(const std::string& name)
@@ -70,13 +70,13 @@ TEST_CASE("names of devices are plain")
           "plug:SLAVE=hw:0", "plug:'hw:1,3'", "plug:SLAVE='hw:CARD=Tactor,DEV=0'", "sysdefault:CARD=2",
           "surround71:CARD=A_b-C", "pulse:alsa_output.usb-Acme_DAC-00.pro-output-0"}) {
         CAPTURE(name);
-        CHECK(pcm::not_plain(name) == "");
+        CHECK(alsa::not_plain(name) == "");
     }
 }
 
 TEST_CASE("names with more than a device are not plain, and have a reason")
 {
-    const auto why = [](std::string_view name) { return pcm::not_plain(name); };
+    const auto why = [](std::string_view name) { return alsa::not_plain(name); };
     for (const char* name : {"file:'|id > X; cat >/dev/null',raw",
                              "file:FILE=/home/me/x",
                              "tee:hw:0,'|sh'",
@@ -141,14 +141,14 @@ TEST_CASE("the route of a name is ALSA's, in any spelling")
     for (const char* name :
          {"record", "alias", "both", "behind", "pair", "plug:record", "file:x", "file:FILE=x,FORMAT=wav"}) {
         CAPTURE(name);
-        CHECK(pcm::writes(route(name)));
-        CHECK(pcm::unsafe_type(route(name)) == "file");
-        CHECK(pcm::lasting_type(route(name)) == "file");
+        CHECK(alsa::writes(route(name)));
+        CHECK(alsa::unsafe_type(route(name)) == "file");
+        CHECK(alsa::lasting_type(route(name)) == "file");
     }
     // Definitions for recording only do nothing.
     CHECK(route("heard") == types{"asym", "null"});
     CHECK(route("hinted") == types{"null"});
-    CHECK(pcm::find_route(nullptr, "hw:0").empty());
+    CHECK(alsa::find_route(nullptr, "hw:0").empty());
 }
 
 TEST_CASE("a definition that leads to itself, or doubles at each step, ends and is not safe")
@@ -156,7 +156,7 @@ TEST_CASE("a definition that leads to itself, or doubles at each step, ends and 
     const configuration route;
     for (const char* name : {"round", "wide"}) {
         CAPTURE(name);
-        CHECK(pcm::unsafe_type(route(name)) == "?");
+        CHECK(alsa::unsafe_type(route(name)) == "?");
         CHECK(route(name).size() < 200);
     }
 }
@@ -164,13 +164,13 @@ TEST_CASE("a definition that leads to itself, or doubles at each step, ends and 
 TEST_CASE("an unknown type is not safe, and sound servers are named")
 {
     const configuration route;
-    CHECK(pcm::unsafe_type(route("odd")) == "ladspa");
-    CHECK(pcm::unsafe_type(route("desk")) == "");
-    CHECK(pcm::find_server(route("desk")) == "PipeWire");
-    CHECK(pcm::lasting_type(route("desk")) == "pipewire");
-    CHECK(pcm::find_server(route("palm")) == "");
-    CHECK(pcm::find_server({"plug", "jack"}) == "JACK");
-    CHECK(pcm::find_server({"pulse"}) == "PulseAudio");
+    CHECK(alsa::unsafe_type(route("odd")) == "ladspa");
+    CHECK(alsa::unsafe_type(route("desk")) == "");
+    CHECK(alsa::find_server(route("desk")) == "PipeWire");
+    CHECK(alsa::lasting_type(route("desk")) == "pipewire");
+    CHECK(alsa::find_server(route("palm")) == "");
+    CHECK(alsa::find_server({"plug", "jack"}) == "JACK");
+    CHECK(alsa::find_server({"pulse"}) == "PulseAudio");
 }
 
 TEST_CASE("an unsafe name chosen by others is refused with the reason, before it is opened")
@@ -184,9 +184,9 @@ TEST_CASE("an unsafe name chosen by others is refused with the reason, before it
     // It looks harmless, but ALSA defines it as a file.
     has(complaint("file:victim,raw"), "it writes a file or starts a command");
     has(complaint("tee:hw"), "it writes");
-    CHECK(route_of("file:x").writes);
-    CHECK_FALSE(route_of("plug:null").writes);
-    CHECK(route_of("plug:null").server == "");
+    CHECK(read_route("file:x").writes);
+    CHECK_FALSE(read_route("plug:null").writes);
+    CHECK(read_route("plug:null").server == "");
 }
 
 } // namespace pcm_names_test

@@ -23,7 +23,7 @@ namespace {
 
 // A stream that runs, with a full buffer.
 struct stream {
-    explicit stream(bool as_card) : out(pcm::adopt(dac.pcm(), options(), as_card)) { start(); }
+    explicit stream(bool as_card) : out(alsa::adopt(dac.pcm(), options(), as_card)) { start(); }
 
     static alsa_options options()
     {

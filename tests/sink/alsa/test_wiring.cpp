@@ -30,7 +30,7 @@ namespace {
 
 stream_wiring wired(const std::string& text, const std::string& name, unsigned n)
 {
-    return pcm::find_wiring({.pcm = name, .channels = n, .config_text = text}, n);
+    return alsa::find_wiring({.pcm = name, .channels = n, .config_text = text}, n);
 }
 
 constexpr const char* definitions = R"(
@@ -238,9 +238,9 @@ private:
 channels heard(const alsa_options& o, const folder& here, const std::vector<std::string>& files)
 {
     {
-        const pcm::library_messages silent;
-        const pcm::handle h = pcm::open(o);
-        static_cast<void>(pcm::negotiate(h.get(), o));
+        const alsa::library_messages silent;
+        const alsa::handle h = alsa::open(o);
+        static_cast<void>(alsa::negotiate(h.get(), o));
         REQUIRE(snd_pcm_prepare(h.get()) >= 0);
         std::vector<std::int16_t> frames(std::size_t{o.channels} * o.channels);
         for (unsigned c = 0; c < o.channels; ++c)
@@ -273,7 +273,7 @@ TEST_CASE("for random chains of plugins the wiring is that of libasound")
         const alsa_options o{
             .pcm = "t", .channels = n, .format = format_kind::s16, .config_text = made.text()};
         INFO(o.config_text);
-        const stream_wiring w = pcm::find_wiring(o, o.channels);
+        const stream_wiring w = alsa::find_wiring(o, o.channels);
         CHECK(w.hidden_by == "");
         channels expected = w.outputs;
         for (unsigned c = 0; expected.size() < n; ++c)

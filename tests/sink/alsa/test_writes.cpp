@@ -20,7 +20,7 @@ using namespace tactor;
 
 TEST_CASE("every result of a write has its meaning")
 {
-    using pcm::of_error;
+    using alsa::of_error;
     CHECK(of_error(-EAGAIN, SND_PCM_STATE_RUNNING) == io_kind::again);
     CHECK(of_error(-EINTR, SND_PCM_STATE_RUNNING) == io_kind::again);
     CHECK(of_error(-EPIPE, SND_PCM_STATE_XRUN) == io_kind::xrun);
@@ -44,7 +44,7 @@ TEST_CASE("a full device that has not been started takes nothing and says so")
     test::fake_dac dac;
     alsa_options o;
     o.channels = 2;
-    const auto s = pcm::adopt(dac.pcm(), o);
+    const auto s = alsa::adopt(dac.pcm(), o);
     REQUIRE(s->prepare() == io_kind::ok);
     const std::vector<std::byte> silence(1000 * 8);
     const auto ten_frames = std::span(silence).first(10 * s->setup().frame_bytes());

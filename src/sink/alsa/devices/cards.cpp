@@ -6,7 +6,7 @@
 #include "core/split.hpp"
 #include "rt/system_files.hpp"
 
-namespace tactor::pcm {
+namespace tactor::alsa {
 
 namespace {
 
@@ -142,4 +142,4 @@ std::vector<fs::path> entries(const fs::path& folder)
     return all;
 }
 
-} // namespace tactor::pcm
+} // namespace tactor::alsa

@@ -14,7 +14,7 @@
 
 #include <tactor/alsa.hpp>
 
-namespace tactor::pcm {
+namespace tactor::alsa {
 
 /// Folder that contains /proc and /dev; another one in tests.
 using system_root = std::filesystem::path;
@@ -83,4 +83,4 @@ std::string field(const std::filesystem::path& file, std::string_view key);
 /// What is in a folder, in no order.
 std::vector<std::filesystem::path> entries(const std::filesystem::path& folder);
 
-} // namespace tactor::pcm
+} // namespace tactor::alsa

@@ -13,7 +13,7 @@
 #include "sink/alsa/library_messages.hpp"
 #include "sink/alsa/negotiate.hpp"
 
-namespace tactor::pcm {
+namespace tactor::alsa {
 namespace {
 
 constexpr unsigned usual_rates[] = {8000,  11025, 12000, 16000,  22050,  24000,  32000,  44100,  48000,
@@ -213,53 +213,53 @@ std::vector<pcm_info> list(const system_root& root, const std::optional<alsa_opt
     return all;
 }
 
-} // namespace tactor::pcm
+} // namespace tactor::alsa
 
 std::vector<tactor::pcm_info> tactor::list_pcms(const std::optional<alsa_options>& wanted)
 {
     if (wanted)
-        pcm::check(*wanted);
-    return pcm::list("/", wanted);
+        alsa::check(*wanted);
+    return alsa::list("/", wanted);
 }
 
-tactor::pcm_route tactor::route_of(const std::string& pcm)
+tactor::pcm_route tactor::read_route(const std::string& pcm)
 {
     pcm_route r;
-    r.types = pcm::find_route(pcm);
-    r.writes = pcm::writes(r.types);
-    r.server = pcm::find_server(r.types);
+    r.types = alsa::find_route(pcm);
+    r.writes = alsa::writes(r.types);
+    r.server = alsa::find_server(r.types);
     return r;
 }
 
-tactor::stream_wiring tactor::wiring_of(const std::string& pcm, unsigned channels)
+tactor::stream_wiring tactor::read_wiring(const std::string& pcm, unsigned channels)
 {
-    return pcm::find_wiring({.pcm = pcm, .channels = channels}, channels);
+    return alsa::find_wiring({.pcm = pcm, .channels = channels}, channels);
 }
 
 void tactor::require_device_name(const std::string& pcm)
 {
     constexpr const char* hint = "give the name of a device, such as hw:CARD=Tactor";
     const auto thing = [&pcm] { return fmt::format("PCM {}", detail::quoted(pcm)); };
-    if (const std::string why = pcm::not_plain(pcm); !why.empty())
+    if (const std::string why = alsa::not_plain(pcm); !why.empty())
         throw error(error_kind::bad_input, thing(), fmt::format("more than the name of a device: {}", why),
                     hint);
-    const std::vector<std::string> route = pcm::find_route(pcm);
-    if (pcm::writes(route))
+    const std::vector<std::string> route = alsa::find_route(pcm);
+    if (alsa::writes(route))
         throw error(error_kind::bad_input, thing(), "it writes a file or starts a command", hint);
-    if (const std::string type = pcm::unsafe_type(route); !type.empty())
+    if (const std::string type = alsa::unsafe_type(route); !type.empty())
         throw error(error_kind::bad_input, thing(),
                     fmt::format("ALSA's configuration defines it as more than a device: type {}", type),
                     hint);
 }
 
-std::optional<tactor::card_info> tactor::card_of(const std::string& pcm)
+std::optional<tactor::card_info> tactor::read_card(const std::string& pcm)
 {
-    const auto d = pcm::named_device(pcm);
-    const auto c = d ? pcm::find_card(pcm::sound_cards("/"), d->card) : std::nullopt;
+    const auto d = alsa::named_device(pcm);
+    const auto c = d ? alsa::find_card(alsa::sound_cards("/"), d->card) : std::nullopt;
     return c ? std::optional(card_info{c->index, c->id, c->name}) : std::nullopt;
 }
 
 std::vector<tactor::process_info> tactor::card_holders(unsigned card_index)
 {
-    return pcm::processes(pcm::playback_holders("/", {card_index, {}}));
+    return alsa::processes(alsa::playback_holders("/", {card_index, {}}));
 }

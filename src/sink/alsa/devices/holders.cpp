@@ -8,7 +8,7 @@
 #include "core/split.hpp"
 #include "sink/alsa/devices/cards.hpp"
 
-namespace tactor::pcm {
+namespace tactor::alsa {
 namespace {
 
 namespace fs = std::filesystem;
@@ -114,4 +114,4 @@ std::string playback_group(const system_root& root)
     return {};
 }
 
-} // namespace tactor::pcm
+} // namespace tactor::alsa

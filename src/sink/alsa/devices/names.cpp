@@ -10,7 +10,7 @@
 #include "sink/alsa/handle.hpp"
 #include "sink/alsa/library_messages.hpp"
 
-namespace tactor::pcm {
+namespace tactor::alsa {
 namespace {
 
 using hints = std::unique_ptr<void*, deleter<snd_device_name_free_hint>>;
@@ -79,4 +79,4 @@ std::vector<known_name> known_names()
     return names;
 }
 
-} // namespace tactor::pcm
+} // namespace tactor::alsa

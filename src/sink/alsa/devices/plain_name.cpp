@@ -5,7 +5,7 @@
 
 #include <fmt/format.h>
 
-namespace tactor::pcm {
+namespace tactor::alsa {
 namespace {
 
 constexpr std::size_t longest = 200; // bytes; a card's id has 15
@@ -81,4 +81,4 @@ std::string not_plain(std::string_view name)
     return name.substr(0, plug.size()) == plug ? slave_name(name.substr(plug.size())) : simple_name(name);
 }
 
-} // namespace tactor::pcm
+} // namespace tactor::alsa

@@ -6,7 +6,7 @@
 #include <string>
 #include <string_view>
 
-namespace tactor::pcm {
+namespace tactor::alsa {
 
 /// Returns why this text is more than the name of a device; empty if it is not. Names are
 ///
@@ -18,4 +18,4 @@ namespace tactor::pcm {
 /// braces, quoted text, escapes. Looks only at the text; find_route() finds what a name leads to.
 std::string not_plain(std::string_view name);
 
-} // namespace tactor::pcm
+} // namespace tactor::alsa

@@ -11,7 +11,7 @@
 #include "sink/alsa/handle.hpp"
 #include "sink/alsa/library_messages.hpp"
 
-namespace tactor::pcm {
+namespace tactor::alsa {
 namespace {
 
 using types = std::vector<std::string>;
@@ -126,4 +126,4 @@ std::string find_server(const std::vector<std::string>& route)
     return {};
 }
 
-} // namespace tactor::pcm
+} // namespace tactor::alsa

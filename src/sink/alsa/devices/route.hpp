@@ -13,7 +13,7 @@
 #include <tactor/alsa.hpp>
 #include <tactor/sink.hpp>
 
-namespace tactor::pcm {
+namespace tactor::alsa {
 
 /// Calls `visit` for each member of a compound, with its name. Does nothing for other nodes.
 template <typename Visit>
@@ -82,4 +82,4 @@ stream_wiring find_wiring(snd_config_t* top, const std::string& name, unsigned c
 /// Finds the wiring of the options' channels, by their text or the system's configuration.
 stream_wiring find_wiring(const alsa_options& o, unsigned device_channels);
 
-} // namespace tactor::pcm
+} // namespace tactor::alsa

@@ -16,7 +16,7 @@
 #include "sink/alsa/handle.hpp"
 #include "sink/alsa/library_messages.hpp"
 
-namespace tactor::pcm {
+namespace tactor::alsa {
 namespace {
 
 constexpr int most_definitions = 64;         // of one PCM; also stops definitions that double at each step
@@ -272,4 +272,4 @@ stream_wiring find_wiring(const alsa_options& o, unsigned device_channels)
     return find_wiring(parse(o.config_text).get(), o.pcm, o.channels, device_channels);
 }
 
-} // namespace tactor::pcm
+} // namespace tactor::alsa
