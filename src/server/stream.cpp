@@ -26,7 +26,7 @@ try {
 } // namespace
 
 stream::stream(boost::asio::io_context& io, stream_options o)
-    : device_stream(make_parts(*this, o)),
+    : device_stream(make_parts(*this, static_cast<const session::stream_parts&>(o))),
       io_(io),
       changed_(std::move(o.changed)),
       refused_(std::move(o.refused)),

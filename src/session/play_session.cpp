@@ -191,7 +191,7 @@ bool play_session::reopen()
 run_facts play_session::finish()
 {
     stream_.finish();
-    const run_facts r{setup(), stats(), reopened_, locked_};
+    run_facts r{setup(), stats(), reopened_, locked_};
     const drive_limits l = settle_limits(options_, environment_);
     if (r.stats.drives_cut != 0)
         fmt::print(

@@ -3,6 +3,8 @@
 
 #include <cmath>
 
+#include "core/limits.hpp"
+
 namespace tactor::detail {
 namespace {
 

@@ -12,6 +12,7 @@
 #include <tactor/error.hpp>
 
 #include "core/access.hpp"
+#include "core/limits.hpp"
 #include "core/path/impl.hpp"
 
 namespace tactor {

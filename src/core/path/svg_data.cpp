@@ -10,6 +10,7 @@
 
 #include <tactor/error.hpp>
 
+#include "core/limits.hpp"
 #include "core/path/impl.hpp"
 #include "core/path/svg_pen.hpp"
 #include "core/suggest.hpp"
