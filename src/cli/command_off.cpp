@@ -61,10 +61,11 @@ int switch_off(settings& s)
 
 command add_off(CLI::App& app)
 {
-    CLI::App* c = app.add_subcommand("off", "Switch the amplifier of [amplifier] off");
+    CLI::App* c = app.add_subcommand("off", "Switch the amplifier off");
     auto s = std::make_shared<settings>();
     add_options(*c, *s, options::on_off);
-    c->footer("Example: tactor off --config tactor.toml");
+    c->footer("tactor off --config tactor.toml\n"
+              "tactor off --array palm.toml");
     return [s] { return run_with(*s, [&] { return switch_off(*s); }); };
 }
 

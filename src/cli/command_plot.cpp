@@ -30,11 +30,11 @@ constexpr std::array views{figure_view::array, figure_view::timing, figure_view:
 
 void add_plot_options(CLI::App& c, plot_settings& p)
 {
-    c.add_option("-o,--output", p.picture.file, "the file to write")
+    c.add_option("-o,--output", p.picture.file, "picture to write")
         ->type_name("FILE.svg|.png|.pdf")
         ->required();
     add_text(c, "--view", "array|timing|wave|both",
-             "what is shown: the array, who plays when, the samples, or the first two (default both)",
+             "show the array, the bursts over time, the samples, or the first two (default both)",
              [&p](const std::string& t) {
                  p.view = views[choose("--view", t, {"array", "timing", "wave", "both"})];
              });
@@ -75,13 +75,15 @@ int draw(settings& s, const plot_settings& p)
 
 command add_plot(CLI::App& app)
 {
-    CLI::App* c = app.add_subcommand("plot", "Draw the array, the path, the bursts and who plays when");
+    CLI::App* c = app.add_subcommand("plot", "Draw the array, the path and the bursts over time");
     auto s = std::make_shared<settings>();
     auto p = std::make_shared<plot_settings>();
     add_strokes(*c, *s);
     add_options(*c, *s, options::on_plot);
     add_plot_options(*c, *p);
-    c->footer("Example: tactor plot park2016-3 -o park2016-3.pdf");
+    c->footer("tactor plot park2016-3 -o park2016-3.pdf\n"
+              "tactor plot --shape eight --duration 3 --view array -o eight.svg\n"
+              "tactor plot park2016-1 --view wave --width 170 -o wave.png");
     return [s, p] { return run_with(*s, [&] { return draw(*s, *p); }); };
 }
 

@@ -106,7 +106,9 @@ command add_render(CLI::App& app)
     c->add_option("-o,--output", *file, "the file to write; - is standard output")
         ->type_name("FILE.wav")
         ->required();
-    c->footer("Example: tactor render --path \"M 0 10 L 40 30\" --speed 80 -o stroke.wav");
+    c->footer("tactor render park2016-3 -o stroke.wav\n"
+              "tactor render --path \"M 0 10 L 40 30\" --speed 80 -o line.wav\n"
+              "tactor render --shape circle --duration 2 --sample-format s16 -o circle.wav");
     return [s, file] { return run_with(*s, [&] { return render(*s, *file); }); };
 }
 

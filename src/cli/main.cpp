@@ -110,11 +110,15 @@ int run(const std::vector<std::string>& given)
         fmt::print("{}", describe_option(*asked_option(given[1])));
         return status_ok;
     }
+    if (given.empty()) {
+        say_error("tactor: command line: no command (tactor --help lists them)\n\n{}", first_steps());
+        return status_usage;
+    }
     CLI::App app("Draws on skin: moving tactile strokes over sparse arrays of tactors.", "tactor");
-    app.set_version_flag("--version", version_text);
+    use_help_pages(app);
+    app.set_version_flag("--version", version_text, "print version, build and libraries and exit");
     app.require_subcommand(1);
-    app.footer(
-        "Example: tactor play park2016-3        tactor help COMMAND says more, as does tactor help OPTION.");
+    app.footer("tactor plan park2016-1\ntactor help play\ntactor help soa");
     // To describe all options of all commands takes as long as to plan a stroke: of a command that is
     // named, its own.
     const auto named = std::find_if(commands.begin(), commands.end(),

@@ -12,6 +12,7 @@ namespace tactor::cli {
 
 void add_picture_options(CLI::App& command, picture_options& into, const std::string& usual_width)
 {
+    begin_group(command, "Picture");
     add_text(command, "--width", "MM", fmt::format("width of the picture (default {})", usual_width),
              [&into](const std::string& t) {
                  into.width_mm =
@@ -21,8 +22,9 @@ void add_picture_options(CLI::App& command, picture_options& into, const std::st
         into.dpi =
             static_cast<unsigned>(options::parse_whole("--dpi", t, {plot::least_dpi, plot::most_dpi}, "dpi"));
     });
-    command.add_option("--title", into.title, "title of the picture, or none to leave the heading out")
+    command.add_option("--title", into.title, "title of the picture; none leaves the heading out")
         ->type_name("TEXT|none");
+    begin_group(command);
     add_force_option(command, into.force);
 }
 

@@ -34,6 +34,11 @@ void add_one(CLI::App& command, settings& into, const options::option& o)
 
 } // namespace
 
+void begin_group(CLI::App& command, const std::string& heading)
+{
+    command.option_defaults()->group(heading);
+}
+
 void add_force_option(CLI::App& command, bool& into)
 {
     command.add_flag("--force", into, "replace a file that tactor did not write; never one that is read");

@@ -42,6 +42,9 @@ void require_device(CLI::App& command);
 /// Runs a command: an error about a value of [defaults] names its place there.
 int run_with(const settings& s, const std::function<int()>& act);
 
+/// Lists the command's own options that are added next under this heading, of which --help has the names.
+void begin_group(CLI::App& command, const std::string& heading = "Options");
+
 /// --format: one of `names`, of which the first is the default. `into` must live as long as the command.
 void add_format_option(CLI::App& command, std::string& into, const std::vector<std::string>& names,
                        const std::string& help);

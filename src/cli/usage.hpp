@@ -18,6 +18,12 @@ class ParseError;
 
 namespace tactor::cli {
 
+/// Makes --help fit a screen and adds --help-all, for all commands that are added later.
+void use_help_pages(CLI::App& app);
+
+/// Returns the lines with the commands to try first.
+std::string first_steps();
+
 /// Returns what there is to know of an option: values, where it may be given and under which name.
 std::string describe_option(const options::option& o);
 

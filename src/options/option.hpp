@@ -47,6 +47,7 @@ enum place : std::uint64_t {
     through_server = 1 << 19, ///< play --socket takes it, though no client sends it
     in_stroke = 1 << 20,      ///< a stroke file has a key of the field's name
     in_player = 1 << 21,      ///< Python's Player()
+    shown_first = 1 << 22,    ///< --help explains it; most people need it
 };
 
 /// A value on its way from a front end: nothing, a flag, a number (whole ones, too), or a text or choice.

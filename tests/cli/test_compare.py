@@ -426,7 +426,7 @@ class Refusals(CompareTest):
         self.refused(2, "compare", "park2016-1", "--format", "xml", says=["xml", "csv"])
         self.refused(2, "compare", "park2016-1", "--soa", "0.08", says=["0.0473", "0.07"])
         self.refused(2, "compare", "park2016-1", "--duration", "3601", says=["3601", "3600"])
-        self.assertIn("Example: tactor compare", self.ok("compare", "--help").stdout)
+        self.assertIn("Examples:\n  tactor compare", self.ok("compare", "--help").stdout)
 
 
 if __name__ == "__main__":

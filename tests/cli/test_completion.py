@@ -61,7 +61,7 @@ class Completion(ToolTest):
 
     def test_commands_and_options_are_those_of_help(self):
         def of_help(*command):
-            text = self.ok(*command, "--help").stdout
+            text = self.ok(*command, "--help-all" if command else "--help").stdout
             options = {n for names in re.findall(r"^  (-\S+)", text, re.M) for n in names.split(",")}
             return options, set(re.findall(r"^  (\w+) ", text.partition("Subcommands:")[2], re.M))
 
@@ -171,7 +171,7 @@ class Completion(ToolTest):
         r = subprocess.run(["fish", "--no-config", "-c", f"source {SCRIPTS}/tactor.fish; complete -C 'tactor pl'"],
                            env=self.env, cwd=self.dir, capture_output=True, text=True, check=False)
         self.assertEqual([line.split("\t")[0] for line in r.stdout.splitlines()], ["plan", "play", "plot"])
-        self.assertIn("plan\tPrint the schedule", r.stdout)
+        self.assertIn("plan\tPrint which tactor plays when", r.stdout)
 
 
 if __name__ == "__main__":

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Bad input: a clear error, the right exit status, nothing half written."""
 import os
+import re
 import subprocess
 
 from harness import TOOL, ToolTest, main
@@ -9,19 +10,34 @@ from harness import TOOL, ToolTest, main
 class CommandLine(ToolTest):
     def test_help_has_an_example_for_every_command(self):
         for command in ((), ("plan",), ("render",), ("play",)):
-            self.assertIn("Example: tactor ", self.ok(*command, "--help").stdout)
+            self.assertIn("Examples:\n  tactor ", self.ok(*command, "--help").stdout)
 
     def test_help_is_a_command_too(self):
         self.assertEqual(self.ok("help").stdout, self.ok("--help").stdout)
         self.assertEqual(self.ok("help", "help").stdout, self.ok("--help").stdout)
-        self.assertIn("tactor help COMMAND", self.ok("help").stdout)
+        self.assertIn("tactor help play", self.ok("help").stdout)
         for command in ("plan", "play", "experiment"):
             self.assertEqual(self.ok("help", command).stdout, self.ok(command, "--help").stdout)
         self.refused(2, "help", "plam", says=["plam", "did you mean plan?"])
 
+    def test_without_arguments_it_says_what_to_try(self):
+        says = self.refused(2).stderr
+        self.assertTrue(says.startswith("tactor: command line: no command (tactor --help lists them)\n"), says)
+        tries = re.findall(r"^  tactor (.*?)  ", says, re.M)
+        self.assertEqual([t.split()[0] for t in tries], ["plan", "plot", "serve"])
+        for words in tries[:2]:
+            self.ok(*words.split())
+
+    def test_help_fits_a_screen_and_help_all_describes_the_rest(self):
+        for command in ("plan", "play", "calibrate", "experiment", "compare", "check", "serve", "devices"):
+            short, whole = (self.ok(command, option).stdout for option in ("--help", "--help-all"))
+            self.assertLessEqual(len(short.splitlines()), 45, command)
+            self.assertEqual(set(re.findall(r"--[a-z][a-z-]+", whole)) - set(re.findall(r"--[a-z][a-z-]+", short)), {"--help"}, command)
+            described = re.findall(r"^  (?:-\w,)?(--[a-z-]+)", whole, re.M)
+            self.assertEqual(len(described), len(set(described)), command)
+
     def test_a_missing_argument_is_named_with_a_hint(self):
-        for args, says in (((), "tactor: command line: no command (tactor --help lists them)\n"),
-                           (("render", "park2016-1"), "tactor: --output: this option is missing (say --output FILE.wav; tactor render --help)\n"),
+        for args, says in ((("render", "park2016-1"), "tactor: --output: this option is missing (say --output FILE.wav; tactor render --help)\n"),
                            (("render", "park2016-1", "-o"), "tactor: --output: its value is missing (say --output FILE.wav; tactor render --help)\n"),
                            (("plan", "park2016-1", "--soa"), "tactor: --soa: its value is missing (say --soa S; tactor plan --help)\n"),
                            (("plan", "park2016-1", "--soa", "0.07", "--soa", "0.07"), "tactor: --soa: it is given more than once (give it once)\n"),

@@ -56,7 +56,7 @@ class Options(ToolTest):
 
     def list_options(self, command):
         """Returns the names in the groups of the table, as --help lists them."""
-        text = self.ok(command, "--help").stdout
+        text = self.ok(command, "--help-all").stdout
         parts = re.split(r"^(\w[\w ]*):$", text, flags=re.M)
         inside = "".join(body for title, body in zip(parts[1::2], parts[2::2]) if title in GROUPS)
         return set(re.findall(r"^  (?:-\w,)?--([a-z][a-z-]*)", inside, re.M))

@@ -57,18 +57,20 @@ int run(const analyze_options& o)
 
 command add_analyze(CLI::App& app)
 {
-    CLI::App* c = app.add_subcommand("analyze", "Print the statistics of a study, as the paper has them");
+    CLI::App* c = app.add_subcommand("analyze", "Print the statistics of a study");
     auto o = std::make_shared<analyze_options>();
     add_study_options(*c, o->folder, o->who);
     add_format_option(*c, o->format, {"text", "json", "tsv"},
-                      "how to print it; tsv: a line for each trial, for R (default text)");
+                      "format of the output; tsv has a line for each trial, for R (default text)");
     add_text(*c, "-o,--output", "FILE.svg|.png|.pdf",
-             "draw it too: means with standard errors, and each participant", [o](const std::string& t) {
+             "also draw means with standard errors, and each participant", [o](const std::string& t) {
                  plot::format_of(t);
                  o->picture.file = t;
              });
     add_picture_options(*c, o->picture, "170, the width of a page");
-    c->footer("Example: tactor analyze study --format json -o study.pdf");
+    c->footer("tactor analyze study\n"
+              "tactor analyze study --format json -o study.pdf\n"
+              "tactor analyze study --exclude 07:illness");
     return [o] { return run(*o); };
 }
 

@@ -43,11 +43,11 @@ void parse_excluded(std::string_view text, study::selection& who)
 
 void add_study_options(CLI::App& command, std::string& folder, study::selection& who)
 {
-    command.add_option("DIR", folder, "the folder of the study, as tactor experiment wrote it")->required();
-    add_text(command, "--participants", "CODES", "only these (default all)",
+    command.add_option("DIR", folder, "folder of the study, as tactor experiment wrote it")->required();
+    add_text(command, "--participants", "CODES", "participants to include (default all)",
              [&who](const std::string& t) { who.only = parse_codes("--participants", t); });
     add_text(command, "--exclude", "CODE[:REASON],...",
-             "all but these; the report names them with their reasons",
+             "participants to leave out; the report names them with their reasons",
              [&who](const std::string& t) { parse_excluded(t, who); });
 }
 

@@ -199,13 +199,15 @@ int calibrate(settings& s, calibrate_options& o)
 
 command add_calibrate(CLI::App& app)
 {
-    CLI::App* c = app.add_subcommand("calibrate", "Measure what a participant just feels, tactor by tactor");
+    CLI::App* c = app.add_subcommand("calibrate", "Measure a participant's threshold at each tactor");
     auto s = std::make_shared<settings>();
     auto o = std::make_shared<calibrate_options>();
     add_calibrate_options(*c, *o);
     add_options(*c, *s, options::on_calibrate);
     require_device(*c);
-    c->footer("Example: tactor calibrate --participant P07 -o P07.toml -D hw:CARD=Tactor");
+    c->footer("tactor calibrate --participant P07 -o P07.toml -D hw:CARD=Tactor\n"
+              "tactor calibrate --participant P07 -o P07.toml -D hw:CARD=Tactor --resume\n"
+              "tactor calibrate --participant S01 -o S01.toml --simulate threshold=-45,seed=1");
     return [s, o] { return run_with(*s, [&] { return calibrate(*s, *o); }); };
 }
 

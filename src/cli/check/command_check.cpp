@@ -170,10 +170,10 @@ int check(settings& s, const check_options& o)
 
 void add_walk_options(CLI::App& c, check_options& o)
 {
-    c.add_flag("--walk", o.walk, "then drive one tactor after the other and ask where each is felt");
-    c.add_flag("--auto", o.no_questions, "with --walk: ask nothing");
+    c.add_flag("--walk", o.walk, "then drive each tactor in turn and ask where it is felt");
+    c.add_flag("--auto", o.no_questions, "with --walk: ask no questions");
     add_text(c, "-o,--output", "FILE.toml",
-             "with --walk: write an array file with the channels as they were felt",
+             "with --walk: array file to write, with the channels as they were felt",
              [&o](const std::string& t) { o.output = t; });
 }
 
@@ -187,7 +187,9 @@ command add_check(CLI::App& app)
     add_options(*c, *s, options::on_check);
     add_walk_options(*c, *o);
     add_format_option(*c, o->format, {"text", "json"}, "how to print it (default text)");
-    c->footer("Example: tactor check --array palm-2x4 --walk -o palm-felt.toml");
+    c->footer("tactor check -D hw:CARD=Tactor\n"
+              "tactor check --array palm-2x4 --walk -o palm-felt.toml -D hw:CARD=Tactor\n"
+              "tactor check --format json");
     return [s, o] { return run_with(*s, [&] { return check(*s, *o); }); };
 }
 

@@ -66,20 +66,20 @@ struct compare_options {
 void add_lists(CLI::App& c, const std::shared_ptr<compare_options>& o)
 {
     auto* algorithms = add_text(
-        c, "--algorithms", join_names<algorithm_kind>(), "what to compare (default all three)",
+        c, "--algorithms", join_names<algorithm_kind>(), "algorithms to compare (default all three)",
         [o](const std::string& t) { o->choice.algorithms = parse_list<algorithm_kind>("--algorithms", t); });
     auto* phantoms = add_text(
-        c, "--phantoms", join_names<phantom_kind>(), "with which phantom models (default that of --phantom)",
+        c, "--phantoms", join_names<phantom_kind>(), "phantom models to compare (default: that of --phantom)",
         [o](const std::string& t) { o->choice.phantoms = parse_list<phantom_kind>("--phantoms", t); });
     c.get_option("--algorithm")->description("only this one; see --algorithms")->excludes(algorithms);
     c.get_option("--phantom")->excludes(phantoms);
-    add_format_option(c, o->format, {"text", "json", "csv"}, "how to print it (default text)");
+    add_format_option(c, o->format, {"text", "json", "csv"}, "format of the output (default text)");
 }
 
 void add_output_options(CLI::App& c, const std::shared_ptr<compare_options>& o)
 {
     add_text(c, "-o,--output", "FILE.svg|.png|.pdf",
-             "draw it too: target and prediction on the array, speed over time", [o](const std::string& t) {
+             "also draw target and prediction on the array, and speed over time", [o](const std::string& t) {
                  plot::format_of(t);
                  o->picture.file = t;
                  o->choice.keep_samples = true;
@@ -176,8 +176,7 @@ int run(settings& s, const compare_options& asked, bool one_algorithm)
 
 command add_compare(CLI::App& app)
 {
-    CLI::App* c =
-        app.add_subcommand("compare", "Print what algorithms are predicted to feel like, side by side");
+    CLI::App* c = app.add_subcommand("compare", "Compare predictions of what algorithms feel like");
     auto s = std::make_shared<settings>();
     auto asked = std::make_shared<compare_options>();
     add_strokes(*c, *s);
@@ -187,7 +186,9 @@ command add_compare(CLI::App& app)
         "file (.toml, .csv, .svg), or - for such a file on standard input; no plan: it is planned here");
     add_lists(*c, asked);
     add_output_options(*c, asked);
-    c->footer("Example: tactor compare park2016-3 --phantoms inverse-distance,barycentric");
+    c->footer("tactor compare park2016-3\n"
+              "tactor compare park2016-3 --phantoms inverse-distance,barycentric\n"
+              "tactor compare --shape line --observer low-speed -o line.svg");
     const CLI::Option* algorithm = c->get_option("--algorithm");
     return [s, asked, algorithm] {
         return run_with(*s, [&] { return run(*s, *asked, algorithm->count() != 0); });

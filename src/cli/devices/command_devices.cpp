@@ -182,12 +182,14 @@ std::string devices_text(const session::device_list& d)
 
 command add_devices(CLI::App& app)
 {
-    CLI::App* c = app.add_subcommand("devices", "List PCMs, what they can do, and GPIO lines");
+    CLI::App* c = app.add_subcommand("devices", "List sound devices with their abilities, and GPIO lines");
     auto s = std::make_shared<settings>();
     auto format = std::make_shared<std::string>();
     add_options(*c, *s, options::on_devices);
     add_format_option(*c, *format, {"text", "json"}, "how to print it (default text)");
-    c->footer("Example: tactor devices --array palm-2x4");
+    c->footer("tactor devices\n"
+              "tactor devices --array palm-2x4\n"
+              "tactor devices --format json");
     return [s, format] { return run_with(*s, [&] { return list_devices(*s, *format == "json"); }); };
 }
 

@@ -105,8 +105,7 @@ int run(const experiment_options& o, const power_options& power, settings& s)
 
 command add_experiment(CLI::App& app)
 {
-    CLI::App* c =
-        app.add_subcommand("experiment", "Hold an experiment with a participant, or a simulated one");
+    CLI::App* c = app.add_subcommand("experiment", "Run an experiment with a participant or a simulated one");
     auto s = std::make_shared<settings>();
     auto o = std::make_shared<experiment_options>();
     auto power = std::make_shared<power_options>();
@@ -114,7 +113,9 @@ command add_experiment(CLI::App& app)
     add_power_options(*c, *power);
     add_options(*c, *s, options::on_experiment);
     require_device(*c);
-    c->footer("Example: tactor experiment park2016 --participant 01 -o trial --simulate seed=1,sigma=1");
+    c->footer("tactor experiment park2016 --dry-run\n"
+              "tactor experiment park2016 --participant 01 -o trial --simulate seed=1,sigma=1\n"
+              "tactor experiment park2016 --participant P07 -o pilot --array P07.toml -D hw:CARD=Tactor");
     return [s, o, power] { return run_with(*s, [&] { return run(*o, *power, *s); }); };
 }
 

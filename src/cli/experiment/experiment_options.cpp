@@ -32,35 +32,35 @@ void add_experiment_options(CLI::App& command, experiment_options& o)
         .add_option("EXPERIMENT", o.definition, "park2016, or a definition: a file, see tactor-experiment(5)")
         ->required()
         ->type_name("");
-    add_text(command, "--participant", "CODE", "who takes part: letters and digits",
+    add_text(command, "--participant", "CODE", "the participant: letters and digits",
              [&o](const std::string& t) {
                  study::check_code(t);
                  o.participant = t;
              });
-    command
-        .add_option("-o,--output", o.folder, "the folder of the study (BIDS), the same for all participants")
+    command.add_option("-o,--output", o.folder, "folder of the study (BIDS), the same for all participants")
         ->type_name("DIR");
-    command.add_flag("--resume", o.resume, "go on with the participant's session, at its next trial");
+    command.add_flag("--resume", o.resume, "continue the participant's session at its next trial");
     add_page_options(command, o.page);
     add_keypad_option(command, o.keypads);
-    add_text(command, "--masker", "PCM", "the definition's masking noise, on a second device, in stereo",
+    add_text(command, "--masker", "PCM",
+             "play the definition's masking noise on this second device, in stereo",
              [&o](const std::string& t) {
                  if (t.empty())
                      refuse_option("--masker", "no device is named", "as hw:CARD=Phones");
                  o.masker = t;
              });
     command.add_flag("--check-noise", o.check_noise,
-                     "play the masking noise, and stimuli under it, until its level is right");
+                     "play the masking noise with stimuli until its level is right");
     command.add_flag("--allow-sound-server", o.allow_sound_server,
-                     "play through a sound server, which may hide xruns, and write down that it was so");
-    add_text(command, "--seed", "N", "of the order of trials (default: the definition's, else from the code)",
+                     "allow a sound server, which may hide xruns; the data record it");
+    add_text(command, "--seed", "N",
+             "seed of the order of trials (default: the definition's, else from the code)",
              [&o](const std::string& t) { o.seed = seed_in(t); });
-    add_text(command, "--simulate", "SPEC", "nobody is asked: a model answers, as seed=1,sigma=1",
+    add_text(command, "--simulate", "SPEC", "let a model answer: seed=1,sigma=1",
              [&o](const std::string& t) { o.simulate = study::parse_simulation(t); });
-    command.add_flag("--print", o.print, "print the definition, to be copied and changed");
-    command.add_flag("--dry-run", o.dry_run, "check all and list every trial in order, without a sound");
-    add_format_option(command, o.format, {"text", "json"},
-                      "--dry-run, --power: how to print it (default text)");
+    command.add_flag("--print", o.print, "print the definition, to copy and change it");
+    command.add_flag("--dry-run", o.dry_run, "check everything and list each trial in order, without sound");
+    add_format_option(command, o.format, {"text", "json"}, "format of --dry-run and --power (default text)");
 }
 
 void check_experiment_options(const settings& s, const experiment_options& o)

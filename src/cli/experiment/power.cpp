@@ -133,12 +133,14 @@ std::optional<std::vector<study::run_power>> simulate(const study::prepared_expe
 
 void add_power_options(CLI::App& command, power_options& p)
 {
+    begin_group(command, "Power");
     add_text(command, "--power", "N[,N...]",
-             "how often the comparison is significant with so many participants, by simulated studies",
+             "print how often simulated studies of N participants find a significant difference",
              [&p](const std::string& t) { p.participants = participants_in(t); });
     add_text(command, "--studies", "K",
-             fmt::format("--power: how many are simulated (default {})", default_studies),
+             fmt::format("--power: number of simulated studies (default {})", default_studies),
              [&p](const std::string& t) { p.studies = count_in("--studies", t, 1, most_studies); });
+    begin_group(command);
 }
 
 void check_power_options(const settings& s, const power_options& p, const experiment_options& o)

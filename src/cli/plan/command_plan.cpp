@@ -137,13 +137,15 @@ int print_plan(settings& s, const std::string& format)
 
 command add_plan(CLI::App& app)
 {
-    CLI::App* c = app.add_subcommand("plan", "Print the schedule: who plays when, how strongly");
+    CLI::App* c = app.add_subcommand("plan", "Print which tactor plays when, and how strongly");
     auto s = std::make_shared<settings>();
     auto format = std::make_shared<std::string>("text");
     add_strokes(*c, *s);
     add_options(*c, *s, options::on_plan);
-    add_format_option(*c, *format, {"text", "json", "csv"}, "how to print it (default text)");
-    c->footer("Example: tactor plan park2016-1 --format json");
+    add_format_option(*c, *format, {"text", "json", "csv"}, "format of the output (default text)");
+    c->footer("tactor plan park2016-1\n"
+              "tactor plan --shape circle --duration 2\n"
+              "tactor plan park2016-1 --format json");
     return [s, format] { return run_with(*s, [&] { return print_plan(*s, *format); }); };
 }
 

@@ -124,14 +124,16 @@ int play(settings& s, const play_options& o)
 
 command add_play(CLI::App& app)
 {
-    CLI::App* c = app.add_subcommand("play", "Play on the array");
+    CLI::App* c = app.add_subcommand("play", "Play strokes on the array");
     auto s = std::make_shared<settings>();
     auto o = std::make_shared<play_options>();
     add_strokes(*c, *s);
     add_options(*c, *s, options::on_play);
-    c->add_option("--socket", o->socket, "play through the server that listens there")->type_name("PATH");
-    add_format_option(*c, o->format, {"text", "json"}, "what is told of the run (default text)");
-    c->footer("Example: tactor play park2016-3 -D hw:CARD=Tactor");
+    c->add_option("--socket", o->socket, "play through the server at this socket")->type_name("PATH");
+    add_format_option(*c, o->format, {"text", "json"}, "format of the report (default text)");
+    c->footer("tactor play park2016-3 -D hw:CARD=Tactor\n"
+              "tactor play --shape circle --duration 2 --level-dbfs -20 -D null\n"
+              "tactor play park2016-1 park2016-3 --log play.log -D null");
     return [s, o] { return run_with(*s, [&] { return play(*s, *o); }); };
 }
 

@@ -42,16 +42,18 @@ int run(const report_options& o)
 
 command add_report(CLI::App& app)
 {
-    CLI::App* c = app.add_subcommand("report", "Write what a paper's methods section must say of a study");
+    CLI::App* c = app.add_subcommand("report", "Write the methods section of a study's paper");
     auto o = std::make_shared<report_options>();
     add_study_options(*c, o->folder, o->who);
-    add_text(*c, "-o,--output", "FILE.md", "the file to write, Markdown (default standard output)",
+    add_text(*c, "-o,--output", "FILE.md", "Markdown file to write (default: standard output)",
              [o](const std::string& t) {
                  study::check_report_name(t);
                  o->file = t;
              });
     add_force_option(*c, o->force);
-    c->footer("Example: tactor report study -o methods.md");
+    c->footer("tactor report study\n"
+              "tactor report study -o methods.md\n"
+              "tactor report study --exclude 07:illness");
     return [o] { return run(*o); };
 }
 

@@ -185,11 +185,12 @@ void add_serve_options(CLI::App& c, serve_options& o)
     c.add_option("--socket", o.socket,
                  "Unix socket (default: tactor.sock in RUNTIME_DIRECTORY, else in XDG_RUNTIME_DIR)")
         ->type_name("PATH");
-    c.add_option("--tcp", o.tcp, "listen there too; port 0 takes a free one")->type_name("[HOST:]PORT");
-    c.add_option("--osc", o.osc, "take OSC there, over UDP; port 0 takes a free one")
+    c.add_option("--tcp", o.tcp, "also listen at this TCP port; 0 takes a free one")
         ->type_name("[HOST:]PORT");
-    c.add_option("--http", o.http, "serve a page to draw on, and WebSockets")->type_name("[HOST:]PORT");
-    add_text(c, "--idle-stop", "S", "stop the stream after so long without a stroke (default: never)",
+    c.add_option("--osc", o.osc, "take OSC at this UDP port; 0 takes a free one")->type_name("[HOST:]PORT");
+    c.add_option("--http", o.http, "serve a page to draw on, and WebSockets, at this port")
+        ->type_name("[HOST:]PORT");
+    add_text(c, "--idle-stop", "S", "stop the stream after this time without a stroke (default: never)",
              [&o](const std::string& t) {
                  o.idle_stop_s = options::parse_number("--idle-stop", t, detail::bounds_of::timeout_s, "s");
              });
@@ -199,13 +200,16 @@ void add_serve_options(CLI::App& c, serve_options& o)
 
 command add_serve(CLI::App& app)
 {
-    CLI::App* c = app.add_subcommand("serve", "Own the array; other programs draw through it");
+    CLI::App* c = app.add_subcommand("serve", "Own the array and let other programs draw through it");
     auto s = std::make_shared<settings>();
     auto o = std::make_shared<serve_options>();
     add_serve_options(*c, *o);
     add_options(*c, *s, options::on_serve);
-    add_format_option(*c, o->format, {"text", "json"}, "how it says where it listens (default text)");
-    c->footer("Example: tactor serve --tcp 4001 -D hw:CARD=Tactor");
+    add_format_option(*c, o->format, {"text", "json"},
+                      "format of the lines that say where it listens (default text)");
+    c->footer("tactor serve --http 4003 -D null\n"
+              "tactor serve --tcp 4001 -D hw:CARD=Tactor\n"
+              "tactor serve --osc 4002 --idle-stop 60 -D hw:CARD=Tactor");
     return [s, o] { return run_with(*s, [&] { return serve(*s, *o); }); };
 }
 

@@ -109,12 +109,14 @@ int until_interrupted(F ask)
 
 command add_status(CLI::App& app)
 {
-    CLI::App* c = app.add_subcommand("status", "Say what the server does");
+    CLI::App* c = app.add_subcommand("status", "Print what the server does");
     auto o = std::make_shared<status_options>();
     add_socket(*c, o->socket);
-    c->add_flag("--watch", o->watch, "go on with what changes, line by line");
-    add_format_option(*c, o->format, {"text", "json"}, "how to print it (default text)");
-    c->footer("Example: tactor status --format json");
+    c->add_flag("--watch", o->watch, "print each change on a line until Ctrl-C");
+    add_format_option(*c, o->format, {"text", "json"}, "format of the output (default text)");
+    c->footer("tactor status\n"
+              "tactor status --watch\n"
+              "tactor status --format json");
     return [o] { return until_interrupted([&](session::interrupt& stop) { return status(*o, stop); }); };
 }
 
@@ -123,7 +125,8 @@ command add_stop(CLI::App& app)
     CLI::App* c = app.add_subcommand("stop", "Fade out all strokes of the server");
     auto o = std::make_shared<status_options>();
     add_socket(*c, o->socket);
-    c->footer("Example: tactor stop");
+    c->footer("tactor stop\n"
+              "tactor stop --socket /run/tactor/tactor.sock");
     return [o] {
         return until_interrupted([&](session::interrupt& stop) {
             rpc_client(o->socket, stop).call("stop");

@@ -26,17 +26,18 @@ bool is_page(const std::string& text)
 void add_page_options(CLI::App& command, page_options& o)
 {
     add_text(command, "--display", "page|terminal",
-             "what the participant sees: a page in a browser, or the terminal (default)",
+             "show the participant a page in a browser, or the terminal (default)",
              [&o](const std::string& t) { o.on_page = is_page(t); });
     add_text(command, "--page", "[HOST:]PORT",
-             "--display page, at this address of this machine (default 127.0.0.1:0, a free port)",
+             "show the page at this address of this machine (default 127.0.0.1:0, a free port)",
              [&o](const std::string& t) { o.at = net::parse_host(t, "--page"); });
 }
 
 void add_keypad_option(CLI::App& command, std::vector<std::string>& into)
 {
     command
-        .add_option("--keypad", into, "answers from this input device too, which no other program gets then")
+        .add_option("--keypad", into,
+                    "also take answers from this input device, and keep them from other programs")
         ->type_name("DEVICE")
         ->expected(1)
         ->take_all();
