@@ -45,77 +45,78 @@ def plan(array: Array, stroke: Stroke, *, duration: float | None = None, speed: 
     array : Array
     stroke : Stroke
     duration : float
-        Time of each stroke; default: the file's or preset's. 0.001 to 86400 s.
+        Duration of each stroke (default: the file's or preset's). 0.001 to 86400 s.
     speed : float
-        Speed instead of a time (default 60 where nothing says one). 0.001 to 100000 mm/s.
+        Speed of each stroke, in place of its duration (default 60 where nothing gives one). 0.001 to 100000 mm/s.
     outside : str
-        Paths that leave the array: refuse, or move to its edge (default error). One of "error", "clamp".
+        Refuse paths that leave the array, or move them to its edge (default error). One of "error", "clamp".
     fit : bool
-        Scale and centre what is drawn on the array.
+        Scale and centre the strokes on the array.
     fit_margin : float
-        fit: distance kept from the array's edge (default 0). 0 to 1000000 mm.
+        fit: distance from the array's edge (default 0). 0 to 1000000 mm.
     algorithm : str
-        Who plays when (default park2016). One of "park2016", "tactile-brush", "continuous".
+        Method that chooses the tactors and the times (default park2016). One of "park2016", "tactile-brush", "continuous".
     phantom : str
-        How strongly (default inverse-distance). One of "inverse-distance", "barycentric", "linear", "log", "gaussian".
+        Model that shares the intensity among tactors (default inverse-distance). One of "inverse-distance", "barycentric", "linear", "log",
+        "gaussian".
     faces : str
-        inverse-distance: three tactors round the point, or the closest three (default delaunay). One of "delaunay", "nearest".
+        inverse-distance: the three tactors around the point, or the three closest (default delaunay). One of "delaunay", "nearest".
     soa : float
-        Onset to onset of two bursts (default 0.07). Above 0.0473 to 0.07 s by the usual timing law; see burst for others.
+        Time from the onset of a burst to the onset of the next (default 0.07). Above 0.0473 to 0.07 s by the usual timing law; see burst for
+        others.
     burst : float
-        Duration of each burst (default: what the timing law gives for the SOA). 0.0001 to 10 s.
+        Duration of each burst (default: from the SOA by the timing law). 0.0001 to 10 s.
     slope : float
         Slope of the timing law SOA = A duration + S (default 0.32). 0.01 to 0.99.
     intercept : float
         Intercept of the timing law (default 0.0473). 0.001 to 10 s.
     timing : str
-        SOA as given, or fitted to end with the path (default fixed). One of "fixed", "fit".
+        Keep the SOA, or fit it so that the bursts end with the path (default fixed). One of "fixed", "fit".
     min_duration : float
         timing fit: shortest burst (default 0.02). 0.0001 to 10 s.
     snap : bool
         tactile-brush: move a start or end onto the grid.
     drop_points : bool
-        tactile-brush: leave crossings out until the timing is possible.
+        tactile-brush: drop crossings until the timing is possible.
     overlap : str
-        Bursts that overlap on one tactor (default energy). One of "energy", "max", "sum".
+        Intensity of bursts that overlap on one tactor (default energy). One of "energy", "max", "sum".
     compensate : str
-        Move bursts so that the low-speed observer feels the target. One of "none", "low-speed".
+        Move bursts so that the low-speed observer feels the target (default none). One of "none", "low-speed".
     sigma_mm : float
-        low-speed: how well places are known (default 5). 0.001 to 1000 mm.
+        low-speed: uncertainty of a place on the skin (default 5). 0.001 to 1000 mm.
     sigma_v_mm_s : float
-        low-speed: which speeds are expected (default 100). 0.001 to 1000000 mm/s.
+        low-speed: spread of the speeds that are expected (default 100). 0.001 to 1000000 mm/s.
     carrier : float
         Frequency of the vibration (default 250). 1 to 384000 Hz.
     waveform : str
-        What vibrates (default sine): a shape at the carrier's frequency, noise between two, or samples. As
+        Shape at the carrier's frequency, noise between two frequencies, or recording (default sine). As
         "sine|square|triangle|sawtooth|noise:LO-HI|FILE.wav".
     am : float or str
         Amplitude modulation, depth 0 to 1 (default: none; depth 1). As "HZ[:DEPTH]".
     noise_seed : int
-        noise: which (default 1). 0 to 9007199254740992.
+        noise: seed of its samples (default 1). 0 to 9007199254740992.
     texture : str
-        FILE.wav: the carrier's cycle (default), in its own time, or laid along the path. One of "cycle", "time", "length".
+        FILE.wav: play it as the carrier's cycle (default), in its own time, or along the path. One of "cycle", "time", "length".
     texture_mm : float
-        texture="length": so much of the path has the whole file (default: all of it). 0 to 1000000 mm.
+        texture="length": length of path for the whole file (default: the whole path). 0 to 1000000 mm.
     phase : str
-        Carrier starts with the stroke (default) or again with each burst. One of "stroke", "burst".
+        Start the carrier with the stroke (default), or again with each burst. One of "stroke", "burst".
     ramp : float
         Raised-cosine ramp inside each burst (default: 0 between zero crossings, else 0.002). 0 to 10 s.
     envelope : str
-        How a burst rises and falls (default raised-cosine; tukey: by a part of it, default 0.5). As
-        "raised-cosine|linear|exponential|tukey[:PART]".
+        Rise and fall of a burst (default raised-cosine; tukey: PART of the burst, default 0.5). As "raised-cosine|linear|exponential|tukey[:PART]".
     attack : float
-        Time in which each burst rises (default: what ramp says). 0 to 10 s.
+        Time in which each burst rises (default: ramp). 0 to 10 s.
     release : float
-        Time in which it falls (default: that in which it rises). 0 to 10 s.
+        Time in which each burst falls (default: the time in which it rises). 0 to 10 s.
     tukey_part : float
         envelope tukey: part of the burst in which it rises and falls (default 0.5). 0 to 1.
     level_dbfs : float
-        Peak of the carrier for intensity 1 (default -12). -200 to 0 dBFS.
+        Peak of the carrier at intensity 1 (default -12). -200 to 0 dBFS.
     sl : float
-        instead: dB above each tactor's threshold. -60 to 100 dB SL.
+        Level above each tactor's threshold, in place of dBFS. -60 to 100 dB SL.
     intensity_scale : str
-        What an intensity of one half is: of the amplitude (default), of sl in dB, of what is felt. One of "linear", "sl", "stevens".
+        Scale of intensities: amplitude (default), dB of sl, or felt strength. One of "linear", "sl", "stevens".
     stevens_exponent : float
         Felt = amplitude^E (default 0.6, at 250 Hz; 0.95 at 60 Hz: Stevens 1968). 0.1 to 3.
     rate : int
@@ -166,17 +167,17 @@ def compare(array: Array, stroke: Stroke, *, algorithms: _t.Union[str, _t.Iterab
     overlap, compensate, sigma_mm, sigma_v_mm_s, carrier, sl, intensity_scale, stevens_exponent
         As in `plan`.
     observer : str
-        Who is predicted to feel it (default centroid). One of "centroid", "low-speed".
+        Model that predicts what is felt (default centroid). One of "centroid", "low-speed".
     spread : int
-        Intervals of what so many people would feel, drawn at random. 2 to 100000.
+        Show what this many people would feel, drawn at random. 2 to 100000.
     spread_seed : int
-        spread: of the draw (default 1). 0 to 4294967295.
+        spread: seed of the draw (default 1). 0 to 4294967295.
     spread_sigma : float
-        spread: low-speed's sigma by up to this factor (default 2). 1 to 100.
+        spread: factor by which people's low-speed sigma differs (default 2). 1 to 100.
     spread_threshold_db : float
-        spread: each threshold give or take (default 6). 0 to 60 dB.
+        spread: range of thresholds, plus and minus (default 6). 0 to 60 dB.
     spread_place_mm : float
-        spread: each tactor's place within (default 2). 0 to 1000 mm.
+        spread: range of each tactor's place (default 2). 0 to 1000 mm.
 
     Returns
     -------
@@ -214,15 +215,15 @@ class ScoreCall:
         channels : int
             Channels of the stream (default: the configuration's, else what the array needs). 1 to 1024 channels.
         marker_channel : int
-            Spare channel on which each stroke's first frames are marked. 0 to 1023.
+            Spare channel that marks each stroke's first frames. 0 to 1023.
         marker_s : float
-            Length of that mark (default 0.005). 0.000001 to 10 s.
+            Duration of the mark (default 0.005). 0.000001 to 10 s.
         power_dbfs : float
-            Greatest power of all tactors together, above one channel's full scale (default 4.77). -120 to 60 dB.
+            Limit on the power of all tactors together, above one channel's full scale (default 4.77). -120 to 60 dB.
         max_drive_s : float
-            Longest time that one tactor is driven within the window (default 5). 0.1 to 3600 s.
+            Limit on the time that one tactor is driven within the window (default 5). 0.1 to 3600 s.
         drive_window_s : float
-            The window of max_drive_s (default 10). 0.1 to 3600 s.
+            Window of max_drive_s (default 10). 0.1 to 3600 s.
 
         Without any limit on power and drive time the piece is as it was designed: a player has its own.
         """
@@ -261,27 +262,27 @@ class PlayerCalls:
         rate
             As in `plan`.
         sample_format : str
-            samples (render: float; play: what the device takes). One of "float", "s16", "s24", "s24-4", "s32".
+            Format of the samples (render: float; play: the device's). One of "float", "s16", "s24", "s24-4", "s32".
         channels : int
             Channels of the stream (default: the configuration's, else what the array needs). 1 to 1024 channels.
         no_gpio : bool
             Leave the lines of [amplifier] and [sync] alone.
         power_dbfs : float
-            Greatest power of all tactors together, above one channel's full scale (default 4.77). -120 to 60 dB.
+            Limit on the power of all tactors together, above one channel's full scale (default 4.77). -120 to 60 dB.
         max_drive_s : float
-            Longest time that one tactor is driven within the window (default 5). 0.1 to 3600 s.
+            Limit on the time that one tactor is driven within the window (default 5). 0.1 to 3600 s.
         drive_window_s : float
-            The window of max_drive_s (default 10). 0.1 to 3600 s.
+            Window of max_drive_s (default 10). 0.1 to 3600 s.
         latency : float
-            Length of the device's buffer: periods x period. 0.0001 to 10 s.
+            Length of the device's buffer (periods x period). 0.0001 to 10 s.
         period_frames : int
-            instead: frames in a period (default: the configuration's, else 96). 1 to 1048576 frames.
+            Frames in a period, in place of latency_ms (default: the configuration's, else 96). 1 to 1048576 frames.
         periods : int
             Periods in the buffer (default: the configuration's, else 3). 2 to 1024 periods.
         require_realtime : bool
             Fail without real-time priority and locked memory.
         sync_delay : float
-            From the edge to the stroke's first sample at the DAC (default 0.05). 0 to 10 s.
+            Time from the edge to the stroke's first sample at the DAC (default 0.05). 0 to 10 s.
         """
         given = dict(locals())
         del given["self"]
