@@ -2,12 +2,14 @@
 # SPDX-License-Identifier: MIT
 """Makes the site: the guide, a gallery whose pictures the tool draws, the manuals, JSON Schemas and the C++ reference.
 
-Usage: make_site.py SOURCE_ROOT OUTPUT VERSION TOOL SCHEMAS_FOLDER DOXYGEN DOXYFILE HTML_FOLDER
+Usage: make_site.py SOURCE_ROOT OUTPUT VERSION TOOL SCHEMAS_FOLDER DOXYGEN DOXYFILE XML_FOLDER
 
-Pages go through Sphinx with MyST and furo, manuals through mandoc; DOXYGEN makes HTML_FOLDER by DOXYFILE. Needs no network.
+Pages go through Sphinx with MyST and furo, manuals through mandoc, the public headers through Doxygen and breathe. The reference
+of the Python package is there if Python can import tactor. Needs no network.
 A warning of Sphinx or mandoc, or a link that leads nowhere, is an error, exit status 1.
 """
 import html
+import importlib.util
 import os
 import pathlib
 import re
@@ -16,6 +18,8 @@ import shutil
 import subprocess
 import sys
 
+import cpp_pages
+
 # Presets that the gallery shows beside the files of examples, with their options.
 PRESETS = [("park2016-1", ""), ("park2016-2", ""), ("park2016-3", ""), ("park2016-4", ""), ("wave-2x4", "--array palm-2x4"), ("round-2x4", "--array palm-2x4")]
 SHAPES = ["line", "circle", "eight", "spiral"]
@@ -23,7 +27,7 @@ SHAPES = ["line", "circle", "eight", "spiral"]
 ON_ARRAY = {"arm-line-4": '--path "M 0 0 L 120 0"', "lra-row-3": '--path "M 0 0 H 60" --sl 12 --carrier 170'}
 SECTIONS = {"Start": ["start", "how-to", "study", "files", "cpp", "python", "trouble"],
             "Understand": ["method", "predictions", "safety", "performance", "parts", "compared", "architecture", "glossary"],
-            "Reference": ["manuals", "schemas", "gallery", "CONTRIBUTING", "tests/lanes/README", "SECURITY", "NEWS"]}
+            "Reference": ["manuals", "cpp-reference", "python-reference/index", "schemas", "gallery", "CONTRIBUTING", "tests/lanes/README", "SECURITY", "NEWS"]}
 
 
 def on_the_site(text, root):
@@ -102,10 +106,12 @@ def stage_pages(root, stage, tool, schemas, reference):
         f"* [{s.name}](schemas/{s.name})" for s in sorted(schemas.glob("*.json"))) + "\n"
     texts["gallery"] = gallery(root, stage, tool)
     shutil.copytree(schemas, stage / "schemas", ignore=lambda _, names: [n for n in names if not n.endswith(".json")])
-    shutil.copytree(reference, stage / "reference/cpp")
-    texts["index"] += "\nDoxygen makes the <a href=\"cpp/index.html\">reference of the C++ interface</a>.\n"
+    headers = cpp_pages.write_pages(reference, stage)
+    texts["cpp-reference"] = "# C++ interface\n\n```{toctree}\n" + "\n".join(headers) + "\n```\n"
+    if importlib.util.find_spec("tactor"):
+        shutil.copytree(root / "src/python/reference", stage / "python-reference", ignore=shutil.ignore_patterns("conf.py"))
     for title, names in SECTIONS.items():
-        texts["index"] += "\n```{toctree}\n:hidden:\n:caption: " + title + "\n\n" + "\n".join(names) + "\n```\n"
+        texts["index"] += "\n```{toctree}\n:hidden:\n:caption: " + title + "\n\n" + "\n".join(n for n in names if n in texts or (stage / f"{n}.rst").exists() or n.startswith("tests/")) + "\n```\n"
     for name, text in texts.items():
         (stage / f"{name}.md").write_text(with_manuals(on_the_site(text, root), pages), encoding="utf-8")
     lanes = stage / "tests/lanes"
@@ -118,8 +124,6 @@ def broken_links(site):
     """Links of the site's pages that lead nowhere within it."""
     bad = []
     for page in site.rglob("*.html"):
-        if (site / "cpp") in page.parents:
-            continue
         for link in re.findall(r'(?:href|src)="([^"#?]+)', page.read_text(encoding="utf-8")):
             link = html.unescape(link)
             if not re.match(r"[a-z]+:", link) and not (page.parent / link).exists():
@@ -130,13 +134,14 @@ def broken_links(site):
 def main():
     root, out, schemas = (pathlib.Path(sys.argv[i]).resolve() for i in (1, 2, 5))
     version, tool = sys.argv[3], pathlib.Path(sys.argv[4]).resolve()
+    shutil.rmtree(sys.argv[8], ignore_errors=True)
     subprocess.run(sys.argv[6:8], check=True)
     stage = out / "pages"
     shutil.rmtree(out, ignore_errors=True)
     stage.mkdir(parents=True)
     stage_pages(root, stage, tool, schemas, pathlib.Path(sys.argv[8]))
     shutil.copy(root / "man/site/conf.py", stage)
-    made = subprocess.run(["sphinx-build", "-W", "--keep-going", "-q", "-b", "html", stage, out / "html"], check=False, env=os.environ | {"TACTOR_VERSION": version})
+    made = subprocess.run(["sphinx-build", "-W", "--keep-going", "-q", "-b", "html", stage, out / "html"], check=False, env=os.environ | {"TACTOR_VERSION": version, "TACTOR_SOURCE": str(root), "TACTOR_XML": str(pathlib.Path(sys.argv[8]).resolve())})
     bad = broken_links(out / "html") if made.returncode == 0 else ["sphinx-build found faults, see above"]
     print(*bad, sep="\n")
     sys.exit(1 if bad else 0)
