@@ -27,7 +27,7 @@ def list_members(folder):
         found[pathlib.Path(place.get("file")).name].append((int(place.get("line")), element.get("kind"), name, arguments))
 
     for member in space.iter("memberdef"):
-        if not member.findtext("name").startswith("operator"):
+        if not re.match(r"operator|.*<", member.findtext("name")):  # all_values<...> stands once for all
             add(member, f"tactor::{member.findtext('name')}", re.sub(r" noexcept|\s*=\s*(delete|default)", "", member.findtext("argsstring") or ""))
     for inner in space.findall("innerclass"):
         if inner.text.count("::") == 1:
