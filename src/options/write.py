@@ -42,7 +42,7 @@ if _t.TYPE_CHECKING:
 PLAN = '''
 
 def plan({signature}) -> Plan:
-    """Plans a stroke on an array. Options are the tool's, see tactor(1); None is its default.
+    """Plans a stroke on an array. Options are the tool's, see tactor-options(7); None is its default.
 
     Parameters
     ----------

@@ -46,7 +46,7 @@ NOT_RUN = {
     "cp -r examples/debian": "the lane tests/lanes/deb does it",
     "dpkg-buildpackage": "the lane tests/lanes/deb does it",
     "grep . /sys/module/pinctrl": "needs the kernel of a Raspberry Pi",
-    "tactor off --config tactor.toml": "needs the GPIO line of an amplifier: the suite cli-off runs it as far as that",
+    "tactor off": "needs the GPIO line of an amplifier: the suite cli-off runs it as far as that",
     "tactor stop": "needs a server: the suite cli-remote runs it",
     "tactor status": "needs a server: the suite cli-remote runs it",
     "tactor play park2016-3 --socket": "needs a server: the suite cli-remote runs it",
@@ -77,7 +77,9 @@ INSTEAD = dict.fromkeys(["README.md", *(f"man/guide/{page.name}" for page in GUI
 # Files that documents name and that are in the sources.
 FILES = {
     "man/guide/study.md": {"felt.toml": "examples/arrays/palm-measured.toml"},
-    "man/tactor.1": {"palm.toml": "examples/arrays/palm-measured.toml", "curve.toml": "examples/strokes/curve.toml"},
+    "man/tactor-check.1": {"palm.toml": "examples/arrays/palm-measured.toml"},
+    "man/tactor-options.7": {"palm.toml": "examples/arrays/palm-measured.toml"},
+    "man/tactor-play.1": {"palm.toml": "examples/arrays/palm-measured.toml", "curve.toml": "examples/strokes/curve.toml"},
     "man/tactor.toml.5": {"arrays/palm.toml": "examples/arrays/palm-measured.toml"},
 }
 # Answers for --walk: all is wired correctly.
