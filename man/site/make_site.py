@@ -49,11 +49,33 @@ def with_manuals(text, pages):
     return "".join(part if i % 2 else re.sub(r"\b([a-z][\w.-]*)\((\d)\)", linked, part) for i, part in enumerate(parts))
 
 
+def find_page(folder, name, section):
+    """The page of a manual, None if there is none; tactor-serve describes two more commands."""
+    name = {"tactor-status": "tactor-serve", "tactor-stop": "tactor-serve"}.get(name, name)
+    page = folder / f"{name}.{section}"
+    return page if page.exists() else None
+
+
+def list_manuals(folder):
+    """The list of manuals by section, each with its description."""
+    text = ["# Manuals", ""]
+    for section, title in {"1": "Commands", "7": "Options, the service, a Raspberry Pi", "5": "Files", "3": "Library"}.items():
+        text += [f"## {title}", ""]
+        for page in sorted(folder.glob(f"*.{section}"), key=lambda page: page.stem):
+            what = re.search(r"^\.Nd (.*)", page.read_text(encoding="utf-8"), re.M)[1]
+            text.append(f"* [{page.stem}({section})](manual/{page.name}.md): {what}")
+        text.append("")
+    return "\n".join(text)
+
+
 def manual(page):
     text = subprocess.run(["mandoc", "-Thtml", "-Wwarning,stop", "-Ofragment", page], check=True, capture_output=True, text=True).stdout
     # The page's name is its heading; the lines at the top and the end of a printed page are not needed.
     text = re.sub(r'<table class="(?:head|foot)">.*?</table>', "", text, flags=re.S)
     text = re.sub(r"<(/?)h([12])\b", lambda h: f"<{h[1]}h{int(h[2]) + 1}", text)
+    # Links to manuals of the site; other manuals have no address.
+    text = re.sub(r'<a class="Xr">(([\w.-]+)\((\d)\))</a>',
+                  lambda x: f'<a class="Xr" href="{to.name}.html">{x[1]}</a>' if (to := find_page(page.parent, x[2], x[3])) else x[1], text)
     name, section = page.stem, page.suffix[1:]
     return f"# {name}({section})\n\n```{{raw}} html\n{text}\n```\n"
 
@@ -101,7 +123,7 @@ def stage_pages(root, stage, tool, schemas, reference):
         (stage / "manual" / f"{page.name}.md").write_text(manual(page), encoding="utf-8")
     texts = {page.stem: page.read_text(encoding="utf-8") for page in (root / "man/guide").glob("*.md")}
     texts |= {name: (root / f"{name}.md").read_text(encoding="utf-8") for name in ("CONTRIBUTING", "SECURITY", "NEWS")}
-    texts["manuals"] = "# Manuals\n\n" + "\n".join(f"* [{p}](manual/{p}.md)" for p in sorted(pages)) + "\n"
+    texts["manuals"] = list_manuals(root / "man")
     texts["schemas"] = "# JSON Schemas\n\ntactor-json(5) explains each field.\n\n" + "\n".join(
         f"* [{s.name}](schemas/{s.name})" for s in sorted(schemas.glob("*.json"))) + "\n"
     texts["gallery"] = gallery(root, stage, tool)

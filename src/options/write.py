@@ -3,13 +3,17 @@
 
 * src/python/tactor/_calls.py: signatures and docstrings of the calls that take options; the modules around do the work.
 * $defs/options of the protocol's schema.
+* In man: heads and ranges of options, and the options that commands share (write_manual.py).
 
-tests/python/test_written.py holds both current.
+tests/python/test_written.py holds all of them current.
 """
+import functools
 import json
 import pathlib
 import re
 import textwrap
+
+import write_manual
 
 from tactor import _tactor
 
@@ -38,7 +42,7 @@ if _t.TYPE_CHECKING:
 PLAN = '''
 
 def plan({signature}) -> Plan:
-    """Plans a stroke on an array. Options are the tool's, see tactor(1); None is its default.
+    """Plans a stroke on an array. Options are the tool's, see tactor-options(7); None is its default.
 
     Parameters
     ----------
@@ -295,6 +299,7 @@ def schema(text):
 
 SRC = pathlib.Path(__file__).parents[1]
 WRITTEN = {SRC / "python/tactor/_calls.py": lambda text: calls(), SRC / "cli/schemas/tactor-protocol-1.schema.json": schema}
+WRITTEN |= {page: functools.partial(write_manual.written, page.name, rows=ROWS) for page in (SRC.parent / "man").glob("*.[1-8]")}
 
 if __name__ == "__main__":
     for file, write in WRITTEN.items():

@@ -78,7 +78,9 @@ INSTEAD = dict.fromkeys(["README.md", *(f"man/guide/{page.name}" for page in GUI
 # Files that documents name and that are in the sources.
 FILES = {
     "man/guide/study.md": {"felt.toml": "examples/arrays/palm-measured.toml"},
-    "man/tactor.1": {"palm.toml": "examples/arrays/palm-measured.toml", "curve.toml": "examples/strokes/curve.toml"},
+    "man/tactor-check.1": {"palm.toml": "examples/arrays/palm-measured.toml"},
+    "man/tactor-options.7": {"palm.toml": "examples/arrays/palm-measured.toml"},
+    "man/tactor-play.1": {"palm.toml": "examples/arrays/palm-measured.toml", "curve.toml": "examples/strokes/curve.toml"},
     "man/tactor.toml.5": {"arrays/palm.toml": "examples/arrays/palm-measured.toml"},
 }
 # Answers for --walk: all is wired correctly.

@@ -1,39 +1,43 @@
 # SPDX-License-Identifier: MIT
-"""The options of --help and those of tactor(1) are the same, command by command.
+"""Each command has a page with the options of its --help, and with examples.
 
-An option in the section OPTIONS belongs to the commands that its text names in the form ".Cm plot , compare :", or that
-its subsection names in "All of these are of"; where none is named, to every command that takes a STROKE.
+The section OPTIONS lists options of the command as items; those that other commands share stand under "Common options".
 """
 import re
 import subprocess
 
 from harness import ROOT, ToolTest, main
 
-MAN = (ROOT / "man/tactor.1").read_text(encoding="utf-8")
+# Commands that are described in the page of another one, in subsections of their own.
+WITHIN = {"status": "serve", "stop": "serve"}
+SECTIONS = ["NAME", "SYNOPSIS", "DESCRIPTION", "OPTIONS", "FILES", "EXIT STATUS", "EXAMPLES", "SEE ALSO"]
 
 
-def section(title):
-    return re.search(rf'^\.Sh {title}\n(.*?)(?=^\.Sh )', MAN, re.M | re.S)[1]
+def read_page(name):
+    return (ROOT / "man" / name).read_text(encoding="utf-8")
 
 
-def command_names(text, commands):
-    """Returns the commands in all lines such as ".Cm plan , compare :" of a text."""
-    lists = re.findall(r"^\.Cm ((?:\w+ , )*\w+) :", text, re.M)
-    return {name for names in lists for name in names.split(" , ")} & set(commands)
+def find_page(command):
+    return read_page(f"tactor-{WITHIN.get(command, command)}.1")
 
 
-def man_options(commands):
-    """Maps an option to the commands that take it; empty: all that take a STROKE."""
-    options = {}
-    for subsection in re.split(r"^\.Ss ", section("OPTIONS"), flags=re.M):
-        intro, *entries = re.split(r"^\.It ", subsection, flags=re.M)
-        of_all = re.search(r"^All of these are of\n\.Cm ((?:\w+ , )*\w+)", intro, re.M)
-        for entry in entries:
-            head, _, body = entry.partition("\n")
-            takers = command_names(body, commands) | (set(of_all[1].split(" , ")) if of_all else set())
-            for name in re.findall(r"(?:Fl|,) (-[\w-]+|[a-zA-Z](?= ))", head):
-                options["-" + name] = options.get("-" + name, set()) | takers
-    return options
+def section(page, title):
+    return re.search(rf"^\.Sh {title}\n(.*?)(?=^\.Sh |\Z)", page, re.M | re.S)[1]
+
+
+def options_in(text):
+    common = "".join(re.findall(r'^\.\\" Common options.*\n((?:.*\n)*?)\.El', text, re.M))
+    heads = re.findall(r"^\.It .*", text, re.M) + re.findall(r"^\.Fl .*", common, re.M)
+    return {"-" + name for head in heads for name in re.findall(r"(?:Fl|,) (-[\w-]+|[a-zA-Z](?= |$))", head)}
+
+
+def man_options(command):
+    """Returns the options of a command: those in subsections that name another one are not its own."""
+    first, *others = re.split(r"^\.Ss ", section(find_page(command), "OPTIONS"), flags=re.M)
+    named = {other.splitlines()[0].removeprefix("tactor "): other for other in others if other.startswith("tactor ")}
+    if command in named:
+        return options_in(named[command])
+    return options_in(first + "".join(other for other in others if not other.startswith("tactor ")))
 
 
 class Manual(ToolTest):
@@ -47,25 +51,18 @@ class Manual(ToolTest):
         self.assertGreaterEqual(len(found), 5)
         return found
 
-    def test_each_command_has_its_options_in_the_manual_and_no_others(self):
-        commands = self.commands()
-        manual = man_options(commands)
-        self.assertGreater(len(manual), 35)
-        for command in commands:
-            text, helped = self.read_help(command)
-            takes_strokes = re.search(r"^  STROKE", text, re.M) is not None
-            named = {o for o, takers in manual.items() if command in takers}
-            common = {o for o, takers in manual.items() if not takers}
-            self.assertEqual(helped - named - common, set(), f"{command} --help has what the manual does not say")
-            self.assertEqual((named | (common if takes_strokes else set())) - helped - {"--version"}, set(),
-                             f"the manual says of {command} what --help does not")
+    def test_each_command_has_its_options_in_its_page_and_no_others(self):
+        for command in self.commands():
+            self.assertEqual(man_options(command), self.read_help(command)[1] - {"-h", "--help", "--help-all"}, command)
 
-    def test_commands_with_a_separate_page_have_their_options_there(self):
-        for command in ("calibrate", "experiment", "analyze", "report"):
-            page = (ROOT / f"man/tactor-{command}.1").read_text(encoding="utf-8")
-            described = {"-" + name for head in re.findall(r"^\.It (.*)", page, re.M)
-                         for name in re.findall(r"(?:Fl|,) (-[\w-]+|[a-zA-Z](?= ))", head)}
-            self.assertEqual(self.read_help(command)[1] - {"-h", "--help", "--help-all"}, described, command)
+    def test_the_page_of_a_command_has_all_sections_and_three_examples(self):
+        for command in self.commands():
+            page = find_page(command)
+            with self.subTest(command):
+                self.assertEqual([title for title in re.findall(r"^\.Sh (.*)", page, re.M) if title in SECTIONS], SECTIONS)
+                self.assertIn(f".Nm tactor-{command}", section(page, "NAME"))
+                self.assertIn(f".Nm tactor\n.Cm {command}\n", section(page, "SYNOPSIS"))
+                self.assertGreaterEqual(len(re.findall(r"^\.Dl .*\btactor ", section(page, "EXAMPLES"), re.M)), 3)
 
     def test_a_plan_is_a_stroke_of_the_commands_that_take_one(self):
         self.write("plan.json", self.ok("plan", "park2016-1", "--format", "json").stdout)
@@ -74,15 +71,11 @@ class Manual(ToolTest):
             taken = self.run_tool(command, "plan.json", *more).returncode == 0
             self.assertEqual(".json: a plan" in " ".join(self.read_help(command)[0].split()), taken, command)
 
-    def test_options_of_all_commands_are_in_the_manual(self):
-        _, helped = self.read_help()
-        self.assertEqual(helped, {"-h", "--help", "--help-all", "--version"})
-
-    def test_each_command_is_in_synopsis_and_description(self):
-        commands = self.commands()
-        self.assertEqual(set(re.findall(r"^\.Nm\n\.Cm (\w+)", section("SYNOPSIS"), re.M)), set(commands))
-        described = re.search(r"^\.Ss Commands\n(.*?)^\.Ss ", MAN, re.M | re.S)[1]
-        self.assertEqual(set(re.findall(r"^\.It Cm (\w+)", described, re.M)), set(commands))
+    def test_the_overview_has_the_options_of_the_tool_and_each_command(self):
+        page = read_page("tactor.1")
+        self.assertEqual(options_in(section(page, "OPTIONS")), self.read_help()[1])
+        listed = re.findall(r"^\.It Cm (\w+)\n.*\n\.Xr tactor-(\w+) 1", section(page, "COMMANDS"), re.M)
+        self.assertEqual(sorted(listed), sorted((command, command) for command in self.commands()))
 
     def test_each_command_ends_its_help_with_an_example_that_parses(self):
         for command in self.commands():
@@ -112,7 +105,7 @@ class Ranges(ToolTest):
         return tuple(parse_number(n) for n in re.search(self.RANGE, text).groups())
 
     def test_an_option_its_key_and_the_manual_agree(self):
-        page = (ROOT / "man/tactor.toml.5").read_text(encoding="utf-8")
+        page = read_page("tactor.toml.5")
         table = re.search(r"^\[defaults\]\tunit\tvalues\n(.*?)^\.TE", page, re.M | re.S)[1]
         keys = [(key, said) for key, said in re.findall(r"^([\w-]+)\t.*\tT\{\n(.*)\nT\}$", table, re.M) if re.match(self.RANGE, said)]
         self.assertGreaterEqual(len(keys), 17)

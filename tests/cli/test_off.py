@@ -27,7 +27,7 @@ class Off(ToolTest):
 
     def test_the_shown_example_has_an_amplifier(self):
         example = re.search(r"^Examples:\n  tactor (.*)", self.ok("off", "--help").stdout, re.M)[1]
-        self.assertIn(f"\n.Dl tactor {example}\n", (ROOT / "man/tactor.1").read_text(encoding="utf-8"))
+        self.assertIn(f"\n.Dl tactor {example}\n", (ROOT / "man/tactor-off.1").read_text(encoding="utf-8"))
         self.write("tactor.toml", (ROOT / "examples/tactor.toml").read_bytes())
         self.refused(3, *example.split(), says=["pinctrl-rp1"])
 

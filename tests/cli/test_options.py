@@ -48,18 +48,36 @@ IN_STROKE = {"duration", "speed", "carrier", "algorithm", "phantom", "faces", "s
 # - drive (one tactor) is for finding wires from a program; a person has check --walk.
 
 
+def options_of_the_manual():
+    """Maps each group of tactor-options(7) to its options, and these to head and text without macros."""
+    section = (ROOT / "man/tactor-options.7").read_text(encoding="utf-8").partition("\n.Sh OPTIONS\n")[2].partition("\n.Sh ")[0]
+    parts = re.split(r"^\.Ss (.*)$", section, flags=re.M)
+    groups = {}
+    for title, body in zip(parts[1::2], parts[2::2]):
+        if title in GROUPS:
+            entries = re.findall(r"^\.It Fl (?:\w , )?-([a-z-]+) ?(.*)\n((?:(?!\.It |\.El$).*\n)*)", body, re.M)
+            groups[title] = {name: (head, plain(text)) for name, head, text in entries}
+    return groups
+
+
+def plain(text):
+    words = re.sub(r"\b(?:Cm|Ar|Ns|Pq) ", "", re.sub(r"\bFl -", "--", re.sub(r"^\.(?=[A-Z])", "", text, flags=re.M)))
+    return re.sub(r" (?=[.,;])", "", " ".join(words.split()))
+
+
 class Options(ToolTest):
     @classmethod
     def setUpClass(cls):
         super().setUpClass()
         cls.told = {}
 
+    def list_groups(self, command):
+        """Maps each group of the table to the names in it, as --help lists them."""
+        parts = re.split(r"^(\w[\w ]*):$", self.ok(command, "--help-all").stdout, flags=re.M)
+        return {title: re.findall(r"^  (?:-\w,)?--([a-z][a-z-]*)", body, re.M) for title, body in zip(parts[1::2], parts[2::2]) if title in GROUPS}
+
     def list_options(self, command):
-        """Returns the names in the groups of the table, as --help lists them."""
-        text = self.ok(command, "--help-all").stdout
-        parts = re.split(r"^(\w[\w ]*):$", text, flags=re.M)
-        inside = "".join(body for title, body in zip(parts[1::2], parts[2::2]) if title in GROUPS)
-        return set(re.findall(r"^  (?:-\w,)?--([a-z][a-z-]*)", inside, re.M))
+        return set().union(*self.list_groups(command).values())
 
     def about(self, name):
         if name not in self.told:
@@ -77,13 +95,26 @@ class Options(ToolTest):
             said = self.about(name)["Commands"].split(", ")
             self.assertEqual(said, [c for c in COMMANDS if name in takes[c]], name)
 
-    def test_the_manual_has_each_option(self):
-        page = (ROOT / "man/tactor.1").read_text(encoding="utf-8")
-        for name in self.every():
-            self.assertRegex(page, rf"(?m)^\.(It|Fl|Op|Pq)?.*\bFl (\w , )?-{name}\b", name)
-            form = self.ok("help", name).stdout.partition("\n")[0].partition(" ")[2]
-            if re.fullmatch(r"[a-z0-9-]+(\|[a-z0-9-]+)+", form):
-                self.assertIn(f"-{name} Cm {form.replace('|', ' | ')}\n", page)
+    def test_the_manual_lists_each_option_in_its_group_in_the_order_of_help(self):
+        page = options_of_the_manual()
+        self.assertEqual(sorted(name for group in page.values() for name in group), self.every())
+        for command in COMMANDS:
+            for group, names in self.list_groups(command).items():
+                self.assertEqual([name for name in page[group] if name in names], names, f"{command}: {group}")
+
+    def test_the_manual_has_the_values_range_default_and_commands_of_each_option(self):
+        for name, (head, body) in {k: v for group in options_of_the_manual().values() for k, v in group.items()}.items():
+            with self.subTest(name):
+                title, help_line = self.ok("help", name).stdout.splitlines()[:2]
+                form = title.partition(" ")[2]
+                if re.fullmatch(r"[a-z0-9-]+(\|[a-z0-9-]+)+", form):
+                    self.assertEqual(head, f"Cm {form.replace('|', ' | ')}")
+                self.assertEqual(bool(head), bool(form))
+                self.assertIn(f"Commands: {self.about(name)['Commands']}.", body)
+                if "Range" in self.about(name):
+                    self.assertIn(f"Range: {self.about(name)['Range']}.", body)
+                if usual := re.search(r"\(default:? ([^);]+)", help_line):
+                    self.assertIn(f"Default: {usual[1]}.", body)
 
     def test_a_client_has_each_option_or_there_is_a_reason(self):
         schema = json.loads((ROOT / "src/cli/schemas/tactor-protocol-1.schema.json").read_text(encoding="utf-8"))

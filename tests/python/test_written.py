@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: MIT
 """Files that are written from the table of options are current, and have each option."""
-import importlib.util
+import importlib
 import inspect
 import pathlib
 import re
+import sys
 
 import pytest
 
@@ -14,15 +15,12 @@ pytestmark = pytest.mark.unsanitized
 
 @pytest.fixture(scope="module")
 def writer():
-    file = pathlib.Path(__file__).resolve().parents[2] / "src/options/write.py"
-    spec = importlib.util.spec_from_file_location("write", file)
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module
+    sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "src/options"))
+    return importlib.import_module("write")
 
 
 def test_written_files_are_current(writer):
-    assert len(writer.WRITTEN) == 2
+    assert {"_calls.py", "tactor-protocol-1.schema.json", "tactor-options.7", "tactor-play.1"} <= {file.name for file in writer.WRITTEN}
     for file, write in writer.WRITTEN.items():
         text = file.read_text(encoding="utf-8")
         assert text == write(text), f"{file.name}: run python3 src/options/write.py, where tactor can be imported"

@@ -38,7 +38,7 @@ def plan(array: Array, stroke: Stroke, *, duration: float | None = None, speed: 
          phase: _Phase | None = None, ramp: float | None = None, envelope: str | None = None, attack: float | None = None,
          release: float | None = None, tukey_part: float | None = None, level_dbfs: float | None = None, sl: float | None = None,
          intensity_scale: _IntensityScale | None = None, stevens_exponent: float | None = None, rate: int | None = None) -> Plan:
-    """Plans a stroke on an array. Options are the tool's, see tactor(1); None is its default.
+    """Plans a stroke on an array. Options are the tool's, see tactor-options(7); None is its default.
 
     Parameters
     ----------
