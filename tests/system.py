@@ -68,10 +68,12 @@ def bad_packages(root):
                  if not line.startswith("#"))
     wanted = set(" ".join(lists[n] for n in ("library", "tool", "python-build")).split()) - {"dpkg-dev", "g++", "ninja-build", "pkg-config"}
     control = (root / "examples/debian/control").read_text(encoding="utf-8")
-    depends = re.search(r"^Build-Depends:\n((?: .*\n)+)", control, re.M)[1]
-    named = {line.strip().split(" ")[0] for line in depends.replace(",", "").splitlines()}
-    if named - {"debhelper-compat", "dh-sequence-installsysusers", "dh-sequence-python3", "pkgconf"} != wanted:
-        yield f"examples/debian/control: Build-Depends differ from tests/packages: {sorted(named ^ wanted)}"
+    helpers = {"debhelper-compat", "dh-sequence-installsysusers", "dh-sequence-python3", "dh-sequence-sphinxdoc", "pkgconf"}
+    for field, packages in (("Build-Depends", wanted), ("Build-Depends-Indep", set(lists["docs"].split()))):
+        depends = re.search(rf"^{field}:\n((?: .*\n)+)", control, re.M)[1]
+        named = {line.strip().split(" ")[0] for line in depends.replace(",", "").splitlines()} - helpers
+        if named != packages:
+            yield f"examples/debian/control: {field} differ from tests/packages: {sorted(named ^ packages)}"
     version = re.search(r"^  version: '(.*)'", (root / "meson.build").read_text(encoding="utf-8"), re.M)[1]
     if not (root / "examples/debian/changelog").read_text(encoding="utf-8").startswith(f"tactor ({version}) "):
         yield f"examples/debian/changelog: not {version}, the version in meson.build"

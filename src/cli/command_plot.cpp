@@ -24,6 +24,7 @@ using plot::figure_view;
 struct plot_settings {
     picture_options picture;
     figure_view view = figure_view::both;
+    bool animated = false;
 };
 
 constexpr std::array views{figure_view::array, figure_view::timing, figure_view::wave, figure_view::both};
@@ -38,6 +39,7 @@ void add_plot_options(CLI::App& c, plot_settings& p)
              [&p](const std::string& t) {
                  p.view = views[choose("--view", t, {"array", "timing", "wave", "both"})];
              });
+    c.add_flag("--animate", p.animated, "SVG: light up the tactors that play, again and again, in real time");
     add_picture_options(c, p.picture, "85, one print column");
 }
 
@@ -52,7 +54,11 @@ std::string name_of(const piece& p)
 int draw(settings& s, const plot_settings& p)
 {
     const picture_options& o = p.picture;
-    plot::format_of(o.file); // before the work
+    const plot::file_format format = plot::format_of(o.file); // before the work
+    if (p.animated && format != plot::file_format::svg)
+        refuse_option("--animate", "only SVG can move", "name a file .svg");
+    if (p.animated && p.view == figure_view::wave)
+        refuse_option("--animate", "the waveform does not move", "leave out --view wave");
     const environment e = session::read_environment(s);
     const piece q = plan_one_piece(s, e);
     plot::check_output(o.file, o.force);
@@ -62,7 +68,7 @@ int draw(settings& s, const plot_settings& p)
         sound = make_score(q, e, session::settle_render(s, e));
     const plot::canvas picture = plot::draw_figure(
         {e.tactors, o.choose_title(name_of(q)), q.strokes, q.plans, sound ? &*sound : nullptr, q.moved},
-        {p.view, o.width_mm, o.has_title()});
+        {p.view, o.width_mm, o.has_title(), p.animated});
     session::tell_of_pipe_to_write(o.file);
     plot::save(picture, o.file, o.dpi, o.force);
     say_warnings(collect_warnings(q.plans));

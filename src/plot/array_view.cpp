@@ -22,6 +22,8 @@ constexpr std::size_t always_shown = 24;
 constexpr double close_pitch = 24.0; // of tactors on the page, pt
 constexpr double taller = 0.3;       // of the width
 constexpr std::size_t few_paths = 20;
+constexpr double places_per_s = 30.0; // of the target in an animated picture
+constexpr double most_places = 600.0;
 
 // How fine the marks are: the more bursts, the finer.
 struct fineness {
@@ -71,6 +73,8 @@ public:
         draw_tactors(canvas_, frame_, scene_.tactors, looks, taken_);
         draw_dots();
         draw_felt();
+        if (canvas_.loop_s > 0.0)
+            draw_playing();
         draw_path_marks(canvas_, scene_, time_, frame_, fine_.dot, taken_);
         add_note(draw_tactor_labels(canvas_, frame_, scene_.tactors, looks, taken_));
         if (time_.several())
@@ -288,6 +292,37 @@ private:
             for (std::size_t i = 0; i < way.size(); i += stride_)
                 canvas_.circle(way[i], radius, {.fill = white, .stroke = vermilion, .width = 0.5},
                                {.kind = "felt-at"});
+        }
+    }
+
+    // In an animated picture: discs on the tactors that play, and the target on its way.
+    void draw_playing()
+    {
+        const group all(canvas_, {.id = "playing"});
+        const auto add = [&](double from_s, double to_s, spot at, double radius, const style& look,
+                             const char* kind, std::vector<spot> places = {}) {
+            canvas_.moving_circle(at, radius, look,
+                                  {from_s / canvas_.loop_s, to_s / canvas_.loop_s, std::move(places)},
+                                  {.kind = kind});
+        };
+        const double instant_s = time_.sample_s * static_cast<double>(stride_);
+        for (std::size_t i = 0; i < time_.bursts.size(); i += time_.sampled ? stride_ : 1) {
+            const shown_burst& b = time_.bursts[i];
+            for (const drive& d : b.what->drives)
+                add(b.from_s, b.to_s > b.from_s ? b.to_s : b.from_s + instant_s,
+                    frame_(scene_.tactors.tactors[d.tactor].position), frame_.radius,
+                    {.fill = with_alpha(vermilion, 0.75 * d.amplitude / time_.peak)}, "plays");
+        }
+        for (std::size_t i = 0; i < scene_.strokes.size(); ++i) {
+            const trajectory& motion = scene_.strokes[i].motion;
+            const double duration = motion.duration_s();
+            const double steps = std::clamp(std::ceil(duration * places_per_s), 1.0, most_places);
+            std::vector<spot> places;
+            for (double k = 0.0; k <= steps; ++k)
+                places.push_back(frame_(motion.position(duration * k / steps)));
+            const spot first = places.front();
+            add(time_.starts_s[i], time_.starts_s[i] + duration, first, 1.3 * fine_.dot,
+                {.fill = white, .stroke = ink, .width = 0.9}, "target", std::move(places));
         }
     }
 

@@ -7,6 +7,8 @@
 
 #include <fmt/format.h>
 
+#include <tactor/error.hpp>
+
 #include "core/words.hpp"
 #include "plot/draw/array_frame.hpp"
 #include "plot/draw/axes.hpp"
@@ -102,6 +104,7 @@ drawn draw_within(const scene& s, const timeline& t, const figure_options& o, co
     drawn d;
     canvas& c = d.picture;
     c.width = o.width_mm * pt_per_mm;
+    c.loop_s = o.animated ? t.total_s + loop_pause_s : 0.0;
     const std::vector<std::string> parts = details(s, t);
     const bool with_array = o.view == figure_view::array || o.view == figure_view::both;
     c.title = fmt::format("{} on {}", clean(s.name), clean(s.tactors.name));
@@ -142,6 +145,11 @@ canvas draw_figure(const scene& s, const figure_options& o)
 {
     constexpr double least_array = 0.35; // of the page
     const timeline t = make_timeline(s);
+    if (o.animated && !t.sampled && t.bursts.size() > most_animated_bursts)
+        throw error(error_kind::bad_input, "picture",
+                    fmt::format("{} bursts are more than the {} of an animated picture", t.bursts.size(),
+                                most_animated_bursts),
+                    "draw a part of the stroke, or a still picture");
     drawn d = draw_within(s, t, o, {});
     const double page = page_height(d.picture.width);
     if (d.picture.height > page) {

@@ -14,13 +14,18 @@ struct figure_options {
     figure_view view = figure_view::both;
     double width_mm = 85.0; ///< one print column
     bool heading = true;    ///< the name and the facts above the picture
+    bool animated = false;  ///< SVG: tactors light up while they play, again and again, in real time
 };
+
+/// Most bursts of an animated picture.
+inline constexpr std::size_t most_animated_bursts = 2000;
 
 inline constexpr double least_width_mm = 60.0;
 inline constexpr double most_width_mm = 1000.0;
 
 /// Draws a scene. The height follows from the content; it is at most 247 mm, or of a picture wider than 170
-/// mm in that proportion to it. \throws error (bad_input), for the waveform, see draw_wave_view().
+/// mm in that proportion to it. \throws error (bad_input): for the waveform, see
+/// draw_wave_view(); for more bursts than an animated picture can have.
 canvas draw_figure(const scene& s, const figure_options& o);
 
 /// Most bursts that are drawn; of more, and where they would lie on each other, every n-th is.

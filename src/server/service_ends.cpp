@@ -4,7 +4,6 @@
 #include <cmath>
 #include <utility>
 
-#include "server/clock.hpp"
 #include "server/service_impl.hpp"
 
 namespace tactor::server {

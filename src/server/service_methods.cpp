@@ -8,7 +8,6 @@
 
 #include <tactor/stroke.hpp>
 
-#include "server/clock.hpp"
 #include "server/service_impl.hpp"
 
 namespace tactor::server {

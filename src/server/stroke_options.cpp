@@ -10,7 +10,6 @@
 
 #include "options/check.hpp"
 #include "options/settle.hpp"
-#include "server/clock.hpp"
 #include "server/faults.hpp"
 
 namespace tactor::server {

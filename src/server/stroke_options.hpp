@@ -3,6 +3,7 @@
 /// The parameters `options` and `start` of a request.
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <optional>
 
@@ -10,6 +11,20 @@
 #include "options/wishes.hpp"
 
 namespace tactor::server {
+
+/// Converts a time, ns, to the seconds that messages have.
+inline double seconds(std::int64_t ns) noexcept
+{
+    return static_cast<double>(ns) * 1e-9;
+}
+
+/// Returns the time of day, ns since 1970.
+inline std::int64_t unix_ns() noexcept
+{
+    return std::chrono::duration_cast<std::chrono::nanoseconds>(
+               std::chrono::system_clock::now().time_since_epoch())
+        .count();
+}
 
 /// Strokes that are planned ahead know more options than live ones.
 enum class options_for { planned, live };

@@ -16,7 +16,6 @@
 #include <tactor/stroke.hpp>
 
 #include "net/rpc.hpp"
-#include "server/planning_work.hpp"
 #include "server/stroke_options.hpp"
 
 namespace tactor::server {
@@ -50,6 +49,17 @@ struct planned {
 /// The one parameter of these that says what is drawn: "stroke", "path", "points", "toml", "csv" or "svg".
 /// \throws fault_error for none or several.
 const char* source_of(const net::json& params);
+
+/// Work of planning strokes. Exact for park2016 and continuous, an upper bound for tactile-brush.
+struct planning_work {
+    double bursts = 0.0;
+    double samples = 0.0; ///< of continuous strokes
+    double steps = 0.0;   ///< in time: some 2 to 5 us each
+};
+
+/// Estimates the work from durations and options; none for an SOA that the planner refuses.
+planning_work estimate_work(const std::vector<stroke>& strokes, const options::wishes& s,
+                            const layout& faces);
 
 /// Calls from within make_planned(); each may throw.
 struct planning_checks {

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
 """Files of tactor plot: formats, sizes, refusals, and pictures that change only on purpose."""
+import json
 import os
 import re
 import struct
@@ -166,6 +167,50 @@ class Refusals(PlotTest):
         return mask
 
 
+class Animated(PlotTest):
+    def lit(self, element):
+        """Returns when a circle is seen, s in the loop: (loop, from, to)."""
+        change = next(a for a in element.iter(NS + "animate") if a.get("attributeName") == "opacity")
+        self.assertEqual((element.get("opacity"), change.get("calcMode"), change.get("repeatCount")), ("0", "discrete", "indefinite"))
+        loop = float(change.get("dur").removesuffix("s"))
+        times, shown = ([float(v) for v in change.get(name).split(";")] for name in ("keyTimes", "values"))
+        self.assertEqual(times[0], 0.0)
+        self.assertEqual(shown, [1.0, 0.0] if len(times) == 2 else [0.0, 1.0, 0.0])
+        return loop, times[-2] * loop, times[-1] * loop
+
+    def test_tactors_light_up_while_they_play(self):
+        svg = self.svg("park2016-1", "--animate")
+        plan = json.loads(self.ok("plan", "park2016-1", "--format", "json").stdout)
+        want = [(d["tactor"], b["onset_s"], b["onset_s"] + b["duration_s"]) for b in plan["bursts"] for d in b["drives"]]
+        discs = svg.all("plays")
+        self.assertEqual(len(discs), len(want))
+        end = max(to for _, _, to in want)
+        for disc, (tactor, start, stop) in zip(discs, want):
+            loop, lit, dark = self.lit(disc)
+            self.near(loop, end + 0.8, 1e-4)
+            self.near(lit, start, 1e-4)
+            self.near(dark, stop, 1e-4)
+            place = plan["array"]["tactors"][tactor]
+            for at, want_at in zip((number(disc, "cx"), number(disc, "cy")), svg.place(place["x_mm"], place["y_mm"])):
+                self.near(at, want_at, 0.01)
+
+    def test_the_target_moves_and_a_still_picture_has_none_of_it(self):
+        svg = self.svg("wave-2x4", "--array", "palm-2x4", "--animate", "--algorithm", "continuous")
+        self.assertEqual(len(svg.all("target")), 1)
+        self.assertEqual(len(svg.all("now")), 1)
+        moves = [a for a in svg.all("target")[0].iter(NS + "animate") if a.get("attributeName") == "cx"]
+        self.assertEqual(len(moves[0].get("keyTimes").split(";")), len(moves[0].get("values").split(";")))
+        self.assertGreater(len(moves[0].get("values").split(";")), 60)
+        self.assertGreater(len(svg.all("plays")), 10)
+        self.assertNotIn("animate", (self.dir / "still.svg").read_text() if self.ok("plot", "park2016-1", "-o", "still.svg") else "")
+
+    def test_what_cannot_move_is_refused(self):
+        for more in (("-o", "a.png"), ("-o", "a.pdf"), ("-o", "a.svg", "--view", "wave")):
+            self.refused(2, "plot", "park2016-1", "--animate", *more, says=["--animate"])
+        self.refused(2, "plot", "--path", "M 0 0 L 40 40", "--duration", "200", "--animate", "-o", "a.svg", says=["2000", "draw a part"])
+        self.assertEqual(list(self.dir.glob("a.*")), [])
+
+
 class Goldens(PlotTest):
     """Pictures that change only on purpose: run with TACTOR_UPDATE_GOLDEN=1 to accept the present ones."""
 
@@ -183,7 +228,7 @@ class Goldens(PlotTest):
             self.near(float(a), float(b), 0.011)
 
     def test_the_picture_of_the_readme(self):
-        self.check_golden(ROOT / "examples/park2016-3.svg", "park2016-3")
+        self.check_golden(ROOT / "examples/park2016-3.svg", "park2016-3", "--animate")
 
     def test_the_picture_of_the_readme_that_eases(self):
         self.check_golden(ROOT / "examples/reach.svg", str(ROOT / "examples/strokes/reach.toml"))

@@ -135,6 +135,11 @@ void draw_time_strip(canvas& c, box where)
                {.fill = ordered((i + 0.5) / steps)});
     }
     c.rect(where, {.stroke = ink, .width = 0.4});
+    const spot start{where.x, where.y + where.height / 2.0};
+    if (c.loop_s > loop_pause_s)
+        c.moving_circle(start, 0.6 * where.height, {.fill = white, .stroke = ink, .width = 0.9},
+                        {0.0, 1.0 - loop_pause_s / c.loop_s, {start, {where.right(), start.y}}},
+                        {.kind = "now"});
 }
 
 } // namespace tactor::plot

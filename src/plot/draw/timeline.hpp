@@ -64,7 +64,7 @@ timeline make_timeline(const scene& s);
 /// Returns a stroke's name without " (2 of 3)", which repeats have in files; empty for what is no repeat.
 std::string find_repeated_name(const std::string& name);
 
-/// Draws a strip of the colours of time, over x.
+/// Draws a strip of the colours of time, over x; in an animated picture a mark moves over it.
 void draw_time_strip(canvas& c, box where);
 
 /// Returns the colour of a burst: of its time in the piece where there is one stroke, of its stroke where

@@ -75,6 +75,8 @@ struct box {
 
 inline constexpr double pt_per_mm = 72.0 / 25.4;
 
+inline constexpr double loop_pause_s = 0.8; ///< of an animated picture, before it begins again
+
 struct style {
     std::optional<colour> fill = {};
     std::optional<colour> stroke = {};
@@ -100,6 +102,14 @@ struct mark {
     std::string kind = {};
     std::string title = {};
     std::vector<std::pair<std::string, std::string>> data = {};
+};
+
+/// Part of an animated picture's loop in which something is seen, and its way meanwhile. SVG only: the other
+/// formats leave out what has one.
+struct animation {
+    double from = 0.0;             ///< fraction of the loop, 0 to 1
+    double to = 1.0;               ///< above `from`
+    std::vector<spot> places = {}; ///< passed at even intervals; empty: it stays
 };
 
 namespace item {
@@ -129,6 +139,7 @@ struct circle {
     double radius = 0.0;
     style s;
     mark m;
+    std::optional<animation> moves;
 };
 struct text {
     spot at; ///< on the baseline
@@ -145,6 +156,7 @@ struct canvas {
 
     double width = 0.0;  ///< pt
     double height = 0.0; ///< pt
+    double loop_s = 0.0; ///< of an animated picture, its pause included; 0: it stands still
     std::string title = {};
     std::string description = {};
     std::vector<element> elements = {};
@@ -162,7 +174,11 @@ struct canvas {
     void rect(box b, const style& s, mark m = {}) { elements.emplace_back(item::rect{b, s, std::move(m)}); }
     void circle(spot centre, double radius, const style& s, mark m = {})
     {
-        elements.emplace_back(item::circle{centre, radius, s, std::move(m)});
+        elements.emplace_back(item::circle{centre, radius, s, std::move(m), {}});
+    }
+    void moving_circle(spot centre, double radius, const style& s, animation moves, mark m = {})
+    {
+        elements.emplace_back(item::circle{centre, radius, s, std::move(m), std::move(moves)});
     }
     void text(spot at, std::string string, const text_style& s, mark m = {})
     {

@@ -57,6 +57,8 @@ public:
     }
     void operator()(const item::circle& o) const
     {
+        if (o.moves)
+            return;
         cairo_new_sub_path(cr_);
         cairo_arc(cr_, o.centre.x, o.centre.y, o.radius, 0.0, 2.0 * std::numbers::pi);
         cairo_close_path(cr_);

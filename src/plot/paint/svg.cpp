@@ -59,6 +59,7 @@ public:
         add("<title id=\"title\">{}</title>\n<desc id=\"desc\">{}</desc>\n", escaped(c.title),
             escaped(c.description));
         add("<rect width=\"{}\" height=\"{}\" fill=\"#fff\"/>\n", coordinate(c.width), coordinate(c.height));
+        loop_s_ = c.loop_s;
         for (const canvas::element& e : c.elements)
             std::visit(*this, e);
         return out_ + "</svg>\n";
@@ -90,7 +91,10 @@ public:
     {
         add("<circle cx=\"{}\" cy=\"{}\" r=\"{}\"{}{}", coordinate(o.centre.x), coordinate(o.centre.y),
             coordinate(o.radius), paint(o.s), marks(o.m));
-        close("circle", o.m);
+        if (o.moves)
+            add(" opacity=\"0\">{}{}</circle>\n", title(o.m), animations(*o.moves));
+        else
+            close("circle", o.m);
     }
     void operator()(const item::text& t)
     {
@@ -112,6 +116,37 @@ private:
     void add(fmt::format_string<Args...> text, Args&&... args)
     {
         fmt::format_to(std::back_inserter(out_), text, std::forward<Args>(args)...);
+    }
+
+    // Times are fractions of the loop, which begins anew with the first value.
+    std::string animate(std::string_view attribute, std::string_view how, const std::string& times,
+                        const std::string& values) const
+    {
+        return fmt::format("<animate attributeName=\"{}\" dur=\"{:.6g}s\" repeatCount=\"indefinite\"{} "
+                           "keyTimes=\"{}\" values=\"{}\"/>",
+                           attribute, loop_s_, how, times, values);
+    }
+
+    std::string animations(const animation& a) const
+    {
+        const bool first = a.from <= 0.0;
+        std::string all =
+            animate("opacity", " calcMode=\"discrete\"",
+                    fmt::format("{}{:.6g}", first ? "0;" : fmt::format("0;{:.6g};", a.from), a.to),
+                    first ? "1;0" : "0;1;0");
+        if (a.places.size() < 2)
+            return all;
+        std::string times = first ? "" : "0;";
+        std::string x = first ? "" : coordinate(a.places.front().x) + ";";
+        std::string y = first ? "" : coordinate(a.places.front().y) + ";";
+        for (std::size_t i = 0; i < a.places.size(); ++i) {
+            const double u = static_cast<double>(i) / static_cast<double>(a.places.size() - 1);
+            times += fmt::format("{:.6g};", a.from + u * (a.to - a.from));
+            x += coordinate(a.places[i].x) + ";";
+            y += coordinate(a.places[i].y) + ";";
+        }
+        return all + animate("cx", "", times + "1", x + coordinate(a.places.back().x)) +
+               animate("cy", "", times + "1", y + coordinate(a.places.back().y));
     }
 
     void close(std::string_view element, const mark& m)
@@ -160,6 +195,7 @@ private:
     }
 
     std::string out_;
+    double loop_s_ = 0.0;
 };
 
 } // namespace

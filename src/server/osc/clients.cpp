@@ -11,7 +11,6 @@
 #include <tactor/error.hpp>
 
 #include "core/words.hpp"
-#include "server/clock.hpp"
 #include "server/faults.hpp"
 
 namespace tactor::server {

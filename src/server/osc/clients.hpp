@@ -15,14 +15,42 @@
 #include <string_view>
 
 #include <boost/asio/io_context.hpp>
+#include <boost/asio/ip/address.hpp>
 #include <boost/asio/ip/udp.hpp>
 
 #include "net/osc.hpp"
-#include "server/error_allowance.hpp"
 #include "server/osc/request.hpp"
 #include "server/service.hpp"
 
 namespace tactor::server {
+
+/// Limit on the errors that an address is sent in any second: a forger of an address cannot bury it in them.
+class error_allowance {
+public:
+    static constexpr std::size_t most = 10;
+    static constexpr std::size_t most_addresses = 1024;
+    static constexpr std::int64_t span_ns = 1'000'000'000;
+
+    /// Returns true if one more may be sent now, and counts it.
+    bool take(const boost::asio::ip::address& to, std::int64_t now_ns)
+    {
+        if (sent_.size() >= most_addresses && !sent_.contains(to))
+            std::erase_if(sent_, [&](const auto& s) { return s.second.back() + span_ns <= now_ns; });
+        if (sent_.size() >= most_addresses && !sent_.contains(to))
+            return false;
+        std::deque<std::int64_t>& times = sent_[to];
+        if (times.size() == most) {
+            if (times.front() + span_ns > now_ns)
+                return false;
+            times.pop_front();
+        }
+        times.push_back(now_ns);
+        return true;
+    }
+
+private:
+    std::map<boost::asio::ip::address, std::deque<std::int64_t>> sent_; ///< when, the oldest first
+};
 
 /// Each address and port is a client of its own for as long as something of it goes on: strokes, answers that
 /// are owed, messages for later, a subscription. Then it is forgotten.

@@ -8,8 +8,6 @@
 #include <boost/asio/buffer.hpp>
 #include <sys/socket.h>
 
-#include "server/clock.hpp"
-
 namespace tactor::server {
 namespace {
 
