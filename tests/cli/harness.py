@@ -13,8 +13,11 @@ import tempfile
 import time
 import unittest
 
+from messages import Messages
+
 TOOL = pathlib.Path(sys.argv[1]).resolve()
 ROOT = pathlib.Path(sys.argv[2]).resolve()
+MESSAGES = Messages(ROOT / "tests/cli/messages" / f"{pathlib.Path(sys.argv[0]).stem.removeprefix('test_')}.txt", {ROOT: "SOURCE", TOOL: "tactor"})
 
 # With a sanitizer the tool is twenty times slower and uses more memory. (Meson sets ASAN_OPTIONS for every test.)
 SANITIZED = os.environ.get("TACTOR_SANITIZE", "none") != "none"
@@ -99,12 +102,13 @@ class ToolTest(unittest.TestCase):
         return result
 
     def refused(self, status, *args, says=(), **more):
-        """Runs the tool; it must fail with this status and one line of error that has all these texts."""
+        """Runs the tool; it must fail with this status and with the error that messages/ holds, which has all these texts."""
         result = self.run_tool(*args, **more)
         self.assertEqual(result.returncode, status, f"{args}: {result.stdout[:300]} {result.stderr}")
         self.assertTrue(result.stderr.startswith("tactor: "), result.stderr)
         for text in says:
             self.assertIn(text, result.stderr)
+        self.assertEqual(MESSAGES.check(self.id().removeprefix("__main__."), args, result.stderr, {self.dir: "DIR"}), "")
         return result
 
     def plan(self, *args, **more):
@@ -155,6 +159,7 @@ def main():
         unittest.defaultTestLoader.loadTestsFromModule(sys.modules["__main__"]))
     for test, why in result.skipped:
         print(f"SKIPPED: {test}: {why}")
+    MESSAGES.write({test.id().removeprefix("__main__.") for test, _ in result.skipped})
     failed = len(result.failures) + len(result.errors)
     print(f"{result.testsRun - failed - len(result.skipped)} passed, {failed} failed, {len(result.skipped)} skipped")
     sys.exit(1 if failed or not result.testsRun else 0)

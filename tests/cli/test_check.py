@@ -50,7 +50,7 @@ class Check(ToolTest):
         self.assertFalse((self.dir / "out.raw").exists())
 
     def test_a_device_that_is_not_available_is_status_3(self):
-        r = self.refused(3, "check", "-D", "nowhere", says=["device: PCM \"nowhere\""])
+        r = self.refused(3, "check", "-D", "nowhere")
         self.assertRegex(r.stdout, r"(?m)^error    device +PCM \"nowhere\"")
         _, found = self.check("-D", "eight", status=3)
         self.assertIn("9 channels", found["device"]["found"])
@@ -62,7 +62,7 @@ class Check(ToolTest):
         self.assertIn("bad.toml:2", found["array"]["found"])
         self.assertIn("pitch_mm", found["array"]["cure"])
         self.assertIn("real time", found)
-        self.refused(2, "check", "--array", "palm-9x9", says=["palm-9x9"])
+        self.refused(2, "check", "--array", "palm-9x9")
 
     def test_a_missing_array_is_named_once(self):
         r = self.run_tool("check", "--array", "palm-3x4")

@@ -120,9 +120,9 @@ class Devices(ToolTest):
         self.assertEqual("none; they are /dev/gpiochip*" in text, not told["gpio_chips"])
 
     def test_wrong_usage_is_refused(self):
-        self.refused(2, "devices", "--format", "csv", says=["--format", "text, json"])
-        self.refused(2, "devices", "--array", "palm-9x9", says=["palm-9x9"])
-        self.refused(2, "devices", "park2016-1", says=["park2016-1"])
+        self.refused(2, "devices", "--format", "csv")
+        self.refused(2, "devices", "--array", "palm-9x9")
+        self.refused(2, "devices", "park2016-1")
 
 
 if __name__ == "__main__":

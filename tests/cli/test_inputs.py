@@ -154,7 +154,7 @@ class Foreign(ExperimentTest):
         ours = (self.dir / "p.svg").read_text(encoding="utf-8")
         edited = ours.replace('encoding="UTF-8"?>', 'encoding="UTF-8" standalone="no"?>\n<!-- Created with Inkscape -->', 1)
         self.write("p.svg", edited)
-        self.refused(2, "plot", "park2016-1", "-o", "p.svg", says=["--force"])
+        self.refused(2, "plot", "park2016-1", "-o", "p.svg")
         self.assertEqual((self.dir / "p.svg").read_text(encoding="utf-8"), edited)
 
 

