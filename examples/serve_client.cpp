@@ -31,7 +31,7 @@ std::string call(stream& server, const std::string& method, const std::string& p
     return line;
 }
 
-std::string stroke_of(const std::string& reply)
+std::string find_stroke(const std::string& reply)
 {
     const std::size_t at = reply.find(R"("stroke":)") + 9;
     return reply.substr(at, reply.find_first_not_of("0123456789", at) - at);
@@ -58,10 +58,10 @@ try {
     if (!server)
         throw std::runtime_error(path + ": " + server.error().message());
     const std::string played =
-        stroke_of(call(server, "play", R"({"stroke":"park2016-1","options":{"duration":0.7}})"));
+        find_stroke(call(server, "play", R"({"stroke":"park2016-1","options":{"duration":0.7}})"));
     std::printf("park2016-1: %s\n", wait(server, played).c_str());
 
-    const std::string live = stroke_of(call(server, "begin", R"({"timeout_s":60})"));
+    const std::string live = find_stroke(call(server, "begin", R"({"timeout_s":60})"));
     for (int i = 0; i < 100; ++i) {
         const double angle = 2.0 * std::numbers::pi * i / 100;
         server << R"({"jsonrpc":"2.0","method":"to","params":{"stroke":)" << live << R"(,"x_mm":)"

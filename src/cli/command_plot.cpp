@@ -43,8 +43,8 @@ void add_plot_options(CLI::App& c, plot_settings& p)
     add_picture_options(c, p.picture, "85, one print column");
 }
 
-// Of what is drawn: a stroke's own name, or that of the file that holds several.
-std::string name_of(const piece& p)
+// Returns a stroke's own name, or that of the file that holds several.
+std::string choose_name(const piece& p)
 {
     if (p.strokes.size() == 1 && !p.strokes[0].name.empty())
         return p.strokes[0].name;
@@ -67,7 +67,7 @@ int draw(settings& s, const plot_settings& p)
     if (p.view == figure_view::wave)
         sound = make_score(q, e, session::settle_render(s, e));
     const plot::canvas picture = plot::draw_figure(
-        {e.tactors, o.choose_title(name_of(q)), q.strokes, q.plans, sound ? &*sound : nullptr, q.moved},
+        {e.tactors, o.choose_title(choose_name(q)), q.strokes, q.plans, sound ? &*sound : nullptr, q.moved},
         {p.view, o.width_mm, o.has_title(), p.animated});
     session::tell_of_pipe_to_write(o.file);
     plot::save(picture, o.file, o.dpi, o.force);

@@ -28,7 +28,7 @@ bool ends_in_wav(const fs::path& file)
     return in_small_letters(file.extension().string()) == ".wav";
 }
 
-// Whether a file begins as one that may be replaced does: with nothing, or as a WAV file.
+// Returns true for a file that may be replaced: an empty one, or a WAV file.
 bool holds_wav(const fs::path& file)
 {
     std::array<char, 12> head{};

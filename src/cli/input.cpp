@@ -90,7 +90,7 @@ std::string only_argument(const settings& s)
     return arguments.front();
 }
 
-// Which of several strokes it is about, said once: the planner knows its name, but not its number.
+// Adds the number of the stroke that an error is about: the planner knows only its name.
 error in_piece(const error& x, const std::string& argument, std::size_t number, const std::string& name)
 {
     if (x.place().line != 0)
@@ -108,7 +108,7 @@ bool is_option(const std::string& argument)
     return argument.starts_with("--");
 }
 
-// The name of an argument's only stroke that has none of its own.
+// Returns the name of an argument's only stroke where the file gives none.
 std::string default_name(const std::string& argument)
 {
     if (is_option(argument))

@@ -14,13 +14,13 @@
 
 namespace tactor::cli {
 
-/// One piece: what one STROKE argument makes.
+/// A piece: the strokes and plans of one STROKE argument.
 struct piece {
     std::string name;
     std::vector<stroke> strokes;
     std::vector<placed_plan> plans;
     std::optional<fitting> fit = {}; ///< what --fit did
-    /// What --compensate did to each plan; empty without it. The plans themselves are moved to `plans`.
+    /// Results of --compensate for each plan; empty without it. The plans themselves are in `plans`.
     std::vector<compensated_plan> moved = {};
     bool from_plan = false; ///< the argument is a plan, which knows its stroke's name
 };

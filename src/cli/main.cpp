@@ -31,7 +31,7 @@
 namespace tactor::cli {
 namespace {
 
-int status_of(error_kind kind)
+int exit_status_for(error_kind kind)
 {
     switch (kind) {
     case error_kind::bad_input:
@@ -148,10 +148,10 @@ int run(const std::vector<std::string>& given)
     return status_usage;
 }
 
-// As if SIGPIPE had ended it, and as quietly: who reads only the first lines (| head) wants no more.
+// The status that SIGPIPE would give. A reader of the first lines (| head) needs no message.
 constexpr int status_unread = 128 + SIGPIPE;
 
-// What was printed must have arrived: a full disk is a failure, not a shorter plan.
+// Reports output that did not arrive: a full disk is a failure, not a shorter plan.
 int unprinted(int code)
 {
     if (code == EPIPE)
@@ -164,7 +164,7 @@ int unprinted(int code)
     return status_failed;
 }
 
-// What was written to standard output as to a file (-o -) has no other reader.
+// Returns true where the reader of a file written to standard output (-o -) is gone.
 bool is_unread(const tactor::error& e)
 {
     return e.os_code() == EPIPE && session::is_standard_output(std::string(e.subject()));
@@ -178,8 +178,8 @@ int flushed(int status)
     return unprinted(output_error() != 0 ? output_error() : errno);
 }
 
-// Where one was closed, the next file that is opened would get its number, and what is printed go there.
-// Written to or read from, these fail as a closed one does.
+// Opens /dev/null for each standard file that is closed: the next opened file would get its number, and the
+// output. Reading or writing it fails, as with a closed one.
 void hold_standard_files() noexcept
 {
     for (const int fd : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
@@ -205,7 +205,7 @@ int main(int argc, char** argv)
             return status_unread;
         const tactor::error said = in_options(e);
         say_error("tactor: {}{}\n", said.subject().empty() ? R"("")" : "", said.what()); // an empty name
-        return status_of(e.kind());
+        return exit_status_for(e.kind());
     } catch (const std::system_error& e) {
         if (std::ferror(stdout) != 0) // of fmt::print
             return unprinted(output_error() != 0 ? output_error() : e.code().value());

@@ -52,15 +52,15 @@ std::string nearest_option(const std::string& given, const std::vector<std::stri
     return "--" + like;
 }
 
-std::string help_of(const CLI::App& app, const CLI::App& command)
+std::string help_command(const CLI::App& app, const CLI::App& command)
 {
     return "tactor " + (&command == &app ? "" : command.get_name() + " ") + "--help";
 }
 
-// What has to be there and is not.
+// Returns the error for a missing command, argument or option.
 error missing(const CLI::App& app, const CLI::App& command)
 {
-    const std::string help = help_of(app, command);
+    const std::string help = help_command(app, command);
     if (&command == &app)
         return {error_kind::bad_input, "command line", "no command", help + " lists them"};
     const auto options = command.get_options();
@@ -82,18 +82,18 @@ error miscounted(const CLI::App& app, const CLI::App& command, const std::string
     const std::string name = said.substr(0, said.find_first_of(": "));
     const CLI::Option* o = command.get_option_no_throw(name);
     if (o == nullptr)
-        return {error_kind::bad_input, "command line", said, help_of(app, command)};
+        return {error_kind::bad_input, "command line", said, help_command(app, command)};
     if (o->count() > 1)
         return {error_kind::bad_input, name, "it is given more than once", "give it once"};
     return {error_kind::bad_input, name, "its value is missing",
-            fmt::format("say {} {}; {}", name, o->get_type_name(), help_of(app, command))};
+            fmt::format("say {} {}; {}", name, o->get_type_name(), help_command(app, command))};
 }
 
 error unknown(const CLI::App& app, const CLI::App& command)
 {
     const auto left = app.remaining(true);
     const std::string given = left.empty() ? "" : left.front();
-    const std::string help = help_of(app, command) + " lists them";
+    const std::string help = help_command(app, command) + " lists them";
     if (given.starts_with('-')) {
         const std::string name = given.substr(0, given.find('='));
         const std::string like = nearest_option(name, option_names(command));
@@ -177,7 +177,7 @@ error usage_error(const CLI::App& app, const CLI::ParseError& e)
         return missing(app, command);
     if (dynamic_cast<const CLI::ArgumentMismatch*>(&e) != nullptr)
         return miscounted(app, command, e.what());
-    return {error_kind::bad_input, "command line", e.what(), help_of(app, command)};
+    return {error_kind::bad_input, "command line", e.what(), help_command(app, command)};
 }
 
 } // namespace tactor::cli

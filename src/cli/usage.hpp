@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// What main() makes of the options: complaints in the tool's words, and what a shell may offer while a
-/// command line is typed, so that nothing is written down twice.
+/// Pages of help, errors of the command line, and a shell's completion, all from the options as declared.
 #pragma once
 
 #include <string>

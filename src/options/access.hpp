@@ -28,7 +28,7 @@ template <class T>
 void put_value(T& into, const value& v)
 {
     using plain = typename without_optional<T>::type;
-    if (std::holds_alternative<std::monostate>(v)) { // nothing is said any more
+    if (std::holds_alternative<std::monostate>(v)) { // back to no value
         if constexpr (!std::is_same_v<plain, T>)
             into.reset();
         return;

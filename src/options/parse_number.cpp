@@ -16,8 +16,8 @@
 namespace tactor::options {
 namespace {
 
-// What one of a unit is in the option's own; 0 where it is none of its kind.
-double factor_of(std::string_view given, const std::string& unit)
+// Returns one of the given unit in the option's own; 0 for another kind of unit.
+double unit_factor(std::string_view given, const std::string& unit)
 {
     struct entry {
         const char* unit;
@@ -59,7 +59,7 @@ std::string without_unit(const std::string& text, double v, std::string_view res
                    : "";
     }
     rest.remove_prefix(std::min(rest.find_first_not_of(' '), rest.size()));
-    const double meant = v * factor_of(rest, unit);
+    const double meant = v * unit_factor(rest, unit);
     if (meant == 0.0 || !b.holds(meant))
         return {};
     return fmt::format("give {} without a unit, as {}", unit == "s" ? "seconds" : unit, plain_number(meant));

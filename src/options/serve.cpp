@@ -29,7 +29,7 @@ namespace {
     throw error(error_kind::bad_input, d.at, why, hint).with_field(d.name);
 }
 
-std::string text_of(const written_value& d)
+std::string read_text_value(const written_value& d)
 {
     const auto* text = std::get_if<std::string>(&d.said);
     if (text == nullptr)
@@ -39,7 +39,7 @@ std::string text_of(const written_value& d)
     return *text;
 }
 
-double number_of(const written_value& d, detail::bounds b, bool whole)
+double read_number(const written_value& d, detail::bounds b, bool whole)
 {
     const auto* v = std::get_if<double>(&d.said);
     if (v == nullptr || (whole && *v != std::floor(*v)))
@@ -68,21 +68,21 @@ bool is_address(std::string_view text)
 }
 
 // "127.0.0.1:4001", or a bare 4001.
-std::string address_of(const written_value& d)
+std::string read_address(const written_value& d)
 {
     if (std::holds_alternative<double>(d.said))
-        return plain_number(number_of(d, {0.0, 65535.0}, true));
-    std::string text = text_of(d);
+        return plain_number(read_number(d, {0.0, 65535.0}, true));
+    std::string text = read_text_value(d);
     if (!is_address(text))
         fail(d, fmt::format("\"{}\" is no address", text),
              "[HOST:]PORT, such as 4001, \"0.0.0.0:4001\" or \"[::1]:4001\"; port 0 takes a free one");
     return text;
 }
 
-// Which of them are near is seen when they send.
-std::string prefix_of(const written_value& d)
+// Returns a range of addresses; each sender is compared with it later.
+std::string read_prefix(const written_value& d)
 {
-    std::string text = text_of(d);
+    std::string text = read_text_value(d);
     if (!detail::prefix_bits(text))
         fail(d, fmt::format("\"{}\" is neither an address nor a prefix", text),
              "such as 192.168.1.7, 192.168.1.0/24 or fd00::/8");
@@ -98,19 +98,19 @@ struct key {
     std::string_view name;
     std::variant<text_place, list_place, number_place, count_place> to;
     detail::bounds allowed = {};
-    std::string (*read_text)(const written_value&) = text_of;
+    std::string (*read_text)(const written_value&) = read_text_value;
 };
 
 constexpr double most = std::numeric_limits<int>::max();
 
 const std::array keys{
     key{"socket", &serve_settings::socket},
-    key{"tcp", &serve_settings::tcp, {}, address_of},
-    key{"osc", &serve_settings::osc, {}, address_of},
-    key{"http", &serve_settings::http, {}, address_of},
+    key{"tcp", &serve_settings::tcp, {}, read_address},
+    key{"osc", &serve_settings::osc, {}, read_address},
+    key{"http", &serve_settings::http, {}, read_address},
     key{"token_file", &serve_settings::token_file},
     key{"allow_hosts", &serve_settings::allow_hosts},
-    key{"osc_peers", &serve_settings::osc_peers, {}, prefix_of},
+    key{"osc_peers", &serve_settings::osc_peers, {}, read_prefix},
     key{"max_level_dbfs", &serve_settings::max_level_dbfs, detail::bounds_of::level_dbfs},
     key{"idle_stop_s", &serve_settings::idle_stop_s, detail::bounds_of::timeout_s},
     key{"max_clients", &serve_settings::max_clients, {1, 100'000}},
@@ -150,9 +150,9 @@ void take(serve_settings& s, const key& k, const written_value& d)
     else if (const auto* text = std::get_if<text_place>(&k.to))
         s.*(*text) = k.read_text(d);
     else if (const auto* number = std::get_if<number_place>(&k.to))
-        s.*(*number) = number_of(d, k.allowed, false);
+        s.*(*number) = read_number(d, k.allowed, false);
     else
-        s.*std::get<count_place>(k.to) = static_cast<unsigned>(number_of(d, k.allowed, true));
+        s.*std::get<count_place>(k.to) = static_cast<unsigned>(read_number(d, k.allowed, true));
 }
 
 } // namespace

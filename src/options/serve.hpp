@@ -11,7 +11,7 @@
 
 namespace tactor::options {
 
-/// What a service listens on and allows. Values that are not given are the service's defaults.
+/// Addresses and limits of a service. An absent value is the service's default.
 struct serve_settings {
     std::optional<std::string> socket = {}; ///< path of the Unix socket
     std::optional<std::string> tcp = {};    ///< "[HOST:]PORT", as for osc and http

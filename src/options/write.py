@@ -208,7 +208,7 @@ def in_seconds(row):
             "range": f"{float(low) / 1e3:g} to {float(high) / 1e3:g} s"}
 
 
-def type_of(row, own_phantom):
+def name_type(row, own_phantom):
     if row["name"] == "phantom" and own_phantom:
         return f"_t.Union[{literal(row)}, PhantomModel, None]"
     if row["kind"] == "choice":
@@ -237,7 +237,7 @@ def entry(row, indent):
 
 
 def entries(rows, indent):
-    """Parameters of these rows; those of plan() are told of there."""
+    """Parameters of these rows; plan() describes its own."""
     told = [r["name"] for r in rows if "plan" in r["places"]]
     lines = textwrap.wrap(", ".join(told), WIDTH - 20)
     as_in_plan = [textwrap.indent(f"{line.removesuffix(',')}\n    As in `plan`.", " " * indent) for line in lines]
@@ -246,7 +246,7 @@ def entries(rows, indent):
 
 def call(template, rows, before=(), after=(), own_phantom=False, told=entries):
     """A template with the signature and the parameters of these rows."""
-    parts = [*before, *(f"{r['name']}: {type_of(r, own_phantom)} = None" for r in rows), *after]
+    parts = [*before, *(f"{r['name']}: {name_type(r, own_phantom)} = None" for r in rows), *after]
     start, end = next(line for line in template.splitlines() if "{signature}" in line).split("{signature}")
     lines = [start]
     for part in [f"{p}, " for p in parts[:-1]] + [parts[-1]]:
@@ -280,7 +280,7 @@ def calls():
     ))
 
 
-def schema_of(row):
+def make_schema(row):
     if row["kind"] == "choice":
         return {"enum": row["choices"]}
     if row["kind"] == "bool":
@@ -293,7 +293,7 @@ def schema_of(row):
 
 def schema(text):
     """The text of the protocol's schema with the options of this table."""
-    options = ",\n".join(f'        "{r["name"]}": {json.dumps(schema_of(r))}' for r in ROWS if "client" in r["places"])
+    options = ",\n".join(f'        "{r["name"]}": {json.dumps(make_schema(r))}' for r in ROWS if "client" in r["places"])
     return re.sub(r'("options": \{\n      "type": "object",.*?"properties": \{\n).*?(\n      \})', lambda m: m[1] + options + m[2], text, count=1, flags=re.S)
 
 

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""What it costs to start: processor time of short commands, beside that of `aplay --version`, in one run.
+"""Measures the processor time of short commands and of `aplay --version` in one run.
 
 Usage: start.py TOOL [ROUNDS]      e.g. tests/bench/start.py build/src/cli/tactor
 The commands take turns, so that what else the machine does disturbs all of them; the median of each counts.

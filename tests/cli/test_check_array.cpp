@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What `check` says of arrays, levels and actuators.
+// Findings of `check` about arrays, levels and actuators.
 #include "cli/check/finding.hpp"
 #include "session/device.hpp"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What `check` finds on machines made of files, and how it judges them.
+// Findings of `check` on machines made of files.
 #include "cli/check/system_facts.hpp"
 
 #include <algorithm>

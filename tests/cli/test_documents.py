@@ -29,7 +29,7 @@ pcm.hw {
 }
 """
 GUIDE = sorted((ROOT / "man/guide").glob("*.md"))
-# What is run, by how it begins. What is neither here nor below fails.
+# Beginnings of commands that are run. A command that is neither here nor below fails.
 RUN = ("tactor ", "build/src/cli/tactor ", "man -l man/", "python3 -m jsonschema ", "printf ")
 # Commands, by how they begin, that are not run here, and why.
 NOT_RUN = {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What must hold of anything that a reader or a planner accepts, whatever the input. The one exception they
-// may throw is tactor::error; anything else, and a HOLDS that does not, is a finding.
+// Rules for anything that a reader or a planner accepts, whatever the input. The only exception they may
+// throw is tactor::error; any other, and a HOLDS that fails, is a finding.
 #pragma once
 
 #include <cstddef>

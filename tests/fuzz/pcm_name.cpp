@@ -18,7 +18,7 @@ namespace {
 
 using configuration = std::unique_ptr<snd_config_t, alsa::deleter<snd_config_delete>>;
 
-// What can be spelt into: the stock definitions that take names, files and commands.
+// Returns the stock definitions that take names, files and commands.
 configuration stock()
 {
     constexpr const char* text =

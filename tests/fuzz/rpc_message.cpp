@@ -198,7 +198,7 @@ public:
 
 private:
     static constexpr unsigned inputs_a_look = 64; // a look takes as long as a short message
-    // Of 4 ms of the device's time each, and at least 1 ms of other threads' time.
+    // Each is 4 ms of the device's time, and at least 1 ms of other threads' time.
     static constexpr int most_steps_to_end = 20'000;
 
     void tell_what_hangs(server::client_number c)

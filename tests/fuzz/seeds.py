@@ -39,7 +39,7 @@ def wav_files():
         yield kind + b"\xff\xff\xff\xffWAVE" + before + b"fmt " + struct.pack("<I", 16) + in_four_bytes + b"data" + struct.pack("<I", size) + bytes(range(64))
 
 
-# What tests make of parts: a line of each is a seed of its own.
+# Inputs that tests make of parts: each line is a seed.
 def rpc_seeds():
     stroke = '{"path":"M 0 0 L 40 40","options":{"algorithm":"continuous","duration":0.01}'
     calls = ['"hello"', '"status"', '"stop"', '"fire"', f'"play","params":{stroke}}}', f'"play","params":{stroke},"start":"armed"}}',

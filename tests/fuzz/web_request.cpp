@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What a browser sends: a request, or after one that asks for a WebSocket its frames. Through a pair of
-// sockets, which is all that is between the input and the connection.
+// A browser's request, or the frames of a WebSocket after one that asks for it, through a pair of sockets.
 #include <algorithm>
 #include <memory>
 #include <string>

@@ -171,7 +171,7 @@ TEST_CASE("marks are spelled, other braces stay")
     CHECK(speech("") == "");
 }
 
-TEST_CASE("a front end has words of its own, and leaves out what it has not")
+TEST_CASE("a front end uses its own words, and leaves out what it lacks")
 {
     constexpr std::array own{own_word{"fit=true", ""}, own_word{"array", "<array:{}>"},
                              own_word{"wave", "<w>"}};

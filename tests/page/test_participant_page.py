@@ -113,7 +113,7 @@ class ParticipantPage(BrowserTest, ExperimentTest):
         for _ in (0, 1):
             ask = self.click(p, "walk", 1, ask)
         ask = self.click(p, "introduce", 1, ask)
-        # The target's place in each frame, beside that of the plan's time.
+        # The target's place in each frame, and the place at the plan's time.
         p.until("state.screen === 'target' && document.querySelector('#dot')")
         self.assertGreater(p.value("document.querySelector('#dot').getBoundingClientRect().width"), 4)
         seen = p.value("""new Promise(done => { const all = [];

@@ -7,7 +7,7 @@
 namespace tactor::cli {
 namespace {
 
-plot::bar_series bars_of(const std::string& name, const study::by_motion& b)
+plot::bar_series make_bars(const std::string& name, const study::by_motion& b)
 {
     plot::bar_series s{name};
     for (std::size_t m = 0; m < b.motion.size(); ++m)
@@ -16,7 +16,7 @@ plot::bar_series bars_of(const std::string& name, const study::by_motion& b)
     return s;
 }
 
-plot::bar_panel panel_of(const study::run_analysis& r)
+plot::bar_panel make_panel(const study::run_analysis& r)
 {
     plot::bar_panel p;
     p.title = fmt::format("{} (n = {})", r.run.name, r.n);
@@ -25,7 +25,7 @@ plot::bar_panel panel_of(const study::run_analysis& r)
     switch (r.run.task) {
     case study::task_kind::choose:
         p.y_title = fmt::format("{} chosen (%)", r.run.methods.back());
-        p.series.push_back(bars_of("", r.cells[0]));
+        p.series.push_back(make_bars("", r.cells[0]));
         p.level = 50.0;
         p.y_to = 100.0;
         return p;
@@ -41,7 +41,7 @@ plot::bar_panel panel_of(const study::run_analysis& r)
         break;
     }
     for (std::size_t m = 0; m < r.run.methods.size(); ++m)
-        p.series.push_back(bars_of(r.run.methods[m], r.cells[m]));
+        p.series.push_back(make_bars(r.run.methods[m], r.cells[m]));
     return p;
 }
 
@@ -57,7 +57,7 @@ plot::canvas draw_analysis(const study::analysis& a, const picture_options& o)
     f.across = a.simulated ? "simulated" : "";
     for (const study::run_analysis& r : a.runs)
         if (r.n != 0)
-            f.panels.push_back(panel_of(r));
+            f.panels.push_back(make_panel(r));
     return plot::draw_bars_of(f);
 }
 

@@ -55,7 +55,7 @@ json means_json(const study::by_motion& b, const std::vector<std::string>& motio
     return j;
 }
 
-// Of a factor with one level there is no effect.
+// Null for a factor with one level, which has no effect.
 json effect_json(const study::effect& e, std::size_t levels)
 {
     if (levels < 2)

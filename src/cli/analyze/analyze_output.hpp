@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// What `tactor analyze` prints and draws, from values.
+/// Output of `tactor analyze`, from values.
 #pragma once
 
 #include <cstdio>
@@ -11,7 +11,7 @@
 
 namespace tactor::cli {
 
-/// All write to `out`. JSON is of schema tactor-analysis/1.
+/// These write to `out`. JSON has the schema tactor-analysis/1.
 void print_analysis_text(std::FILE* out, const study::analysis& a);
 void print_analysis_json(std::FILE* out, const study::analysis& a);
 

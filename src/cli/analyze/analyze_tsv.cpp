@@ -24,7 +24,7 @@ std::string in_quotes(std::string_view text)
 
 // The model of a run. People differ in what is asked about, too: without its slope for each of them, such a
 // difference passes for an effect of all. Nothing of the stimuli is taken to be a sample.
-std::string model_of(const study::run_outline& r)
+std::string write_model(const study::run_outline& r)
 {
     const char* motion = r.motions.size() > 1 ? "motion" : "1";
     const char* people = r.task != task_kind::choose && r.methods.size() > 1 ? "(1 + method | participant)"
@@ -79,7 +79,7 @@ void print_trials(std::FILE* out, const study::dataset& d)
                         "colClasses = c(participant = \"character\"))\n",
                         notes);
     for (const study::run_outline& r : d.experiment.runs)
-        text += fmt::format("# {}\n", model_of(r));
+        text += fmt::format("# {}\n", write_model(r));
     text += "participant\trun\ttask\ttrial\tattempt\tmotion\tmethod\torder\tresponse\tchosen\trating\tcorrect"
             "\tresponse_time\n";
     for (std::size_t i = 0; i < d.participants.size(); ++i)

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// What the commands that read a study have in common: its folder, who is looked at, where results go.
+/// Options of the commands that read a study: its folder, its participants, the output.
 #pragma once
 
 #include <filesystem>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// What `calibrate` is asked for.
+/// Options of `calibrate`.
 #pragma once
 
 #include <optional>
@@ -40,7 +40,7 @@ void add_calibrate_options(CLI::App& command, calibrate_options& into);
 /// Output and log have names that go with each other. \throws error (bad_input).
 void settle_names(calibrate_options& o);
 
-/// What is measured, on this array, within its limits. \throws error (bad_input).
+/// Returns the settings for this array, within its limits. \throws error (bad_input).
 study::calibration_settings settle_calibration(const calibrate_options& o, const settings& s,
                                                const environment& e);
 

@@ -26,8 +26,8 @@ namespace {
 
 constexpr double paper_sl_db = 7.0; // Park et al. 2016
 
-// What the array's own file says besides it; a configuration is read anyway when its array is replaced, but
-// for the channels.
+// Returns the other contents of the array's own file. A configuration is read anyway when its array is
+// replaced, but for the channels.
 setup said_besides(const environment& e)
 {
     setup s;
@@ -38,7 +38,7 @@ setup said_besides(const environment& e)
     return s;
 }
 
-std::string head_of(const study::calibration_settings& s)
+std::string make_head(const study::calibration_settings& s)
 {
     std::string t = fmt::format("# Thresholds of {} at {} Hz in intervals of {} s (tactor calibrate).\n",
                                 s.participant, s.carrier_hz, s.interval_s);
@@ -69,7 +69,7 @@ void print(const study::tactor_threshold& t, double ceiling_dbfs)
             t.tactor, paper_sl_db, *t.threshold_dbfs, missing);
 }
 
-// All trials that are left; each is in the log before the next.
+// Asks the trials that are left; each is in the log before the next.
 template <typename Who, typename Told>
 void ask(study::calibration& c, study::calibration_log& log, Who& who, const Told& told)
 {
@@ -105,7 +105,7 @@ int ask_person(study::calibration& c, study::calibration_log& log, const setting
     return why.signal;
 }
 
-// Of tactors that are not measured now; they would pass for this session's.
+// Warns of thresholds that are not measured now: they would pass for this session's.
 void tell_of_others(const environment& e, const study::calibration_settings& s)
 {
     const auto& earlier = e.config.calibration;
@@ -128,7 +128,7 @@ int write_result(const calibrate_options& o, const environment& e, const setup& 
                  const study::calibration& c)
 {
     const array a = study::with_thresholds(e.tactors, e.config.calibration, c.settings(), c.thresholds());
-    study::write_new_output(o.output, head_of(c.settings()) + study::array_text(a, besides) +
+    study::write_new_output(o.output, make_head(c.settings()) + study::array_text(a, besides) +
                                           study::calibration_text(c.settings(), c.thresholds()));
     say(stdout, "{}{}\n", c.settings().participant,
         c.settings().simulate.empty() ? "" : ": SIMULATED, nobody was asked");

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What `calibrate` measures on an array, and whether that can be.
+// Settings of `calibrate` on an array, and their limits.
 #include <algorithm>
 #include <charconv>
 #include <cmath>
@@ -70,7 +70,7 @@ void check_staircase(const study::calibration_settings& c)
             "two at least must be left");
 }
 
-// As the files say it.
+// Returns the masker in the files' words.
 std::string masker_text(const calibrate_options& o)
 {
     if (o.masker.empty())
@@ -93,7 +93,7 @@ void check_masker(const calibrate_options& o)
 }
 
 // The levels that a tactor may have.
-double ceiling_of(const array& a, std::size_t tactor, const drive_limits& l)
+double find_ceiling(const array& a, std::size_t tactor, const drive_limits& l)
 {
     return std::min({0.0, a.tactors[tactor].max_dbfs, l.power_dbfs - power_margin_db});
 }
@@ -111,8 +111,8 @@ void tell_of_power(const study::calibration_settings& c, const array& a, const d
             l.power_dbfs, lower.size() == 1 ? "tactor" : "tactors", fmt::join(lower, ", "));
 }
 
-// How long a tactor is driven in any window at most: of a staircase in one trial, before which there may be a
-// pause, of an adjustment in its steady pulses.
+// Returns the longest time that a tactor is driven in any window: in one trial of a staircase, before which
+// there may be a pause, or in the steady pulses of an adjustment.
 double longest_drive_s(const study::calibration_settings& c, const drive_limits& l)
 {
     if (c.method == study::calibration_method::staircase)
@@ -173,7 +173,7 @@ study::calibration_settings settle_calibration(const calibrate_options& o, const
         std::iota(c.tactors.begin(), c.tactors.end(), 0U);
     }
     for (const unsigned t : c.tactors) {
-        const double ceiling = ceiling_of(a, t, limits);
+        const double ceiling = find_ceiling(a, t, limits);
         if (o.start_asked && c.start_dbfs() > ceiling)
             refuse_option(
                 "--start-dbfs",

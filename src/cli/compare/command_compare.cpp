@@ -87,7 +87,7 @@ void add_output_options(CLI::App& c, const std::shared_ptr<compare_options>& o)
     add_picture_options(c, o->picture, "85, one print column");
 }
 
-// Why strokes that no algorithm can play are refused. All reasons but the last are printed, each once.
+// Returns the last reason why no algorithm can play the strokes, and prints the others, each once.
 error why_refused(const std::vector<comparison>& all, const piece& p)
 {
     std::vector<error> reasons;

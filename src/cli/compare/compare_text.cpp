@@ -78,7 +78,7 @@ void print_row(std::FILE* out, const comparison_row& r, bool by_taps)
                figure(r.felt.intensity_cv), 100.0 * r.felt.silent_share, 100.0 * r.felt.shared_share);
 }
 
-// What a plan warns of is mostly the same for all phantom models.
+// Prints each warning once: most are the same for all phantom models.
 void print_warnings(std::FILE* out, std::string_view before, const comparison& c)
 {
     std::set<std::string> said;

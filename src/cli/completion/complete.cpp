@@ -57,7 +57,7 @@ bool is_word(std::string_view s)
 }
 
 // ":files" for "FILE", "FILE.wav" and "FILE.svg|.png|.pdf".
-std::string files_of(const std::string& type)
+std::string file_kinds(const std::string& type)
 {
     std::string all = ":files";
     for (const std::string_view part : detail::split(type, '|'))
@@ -88,7 +88,7 @@ void offer_values(lines& out, const CLI::Option& o, const std::string& typed, co
     } else if (type == "FILE") {
         out.push_back(array_files);
     } else if (starts_with(type, "FILE")) {
-        out.push_back(files_of(type));
+        out.push_back(file_kinds(type));
     } else if (type.find(',') != std::string::npos) {
         std::vector<std::string_view> values = detail::split(type, ',');
         std::vector<std::string_view> given = detail::split(typed, ',');

@@ -32,7 +32,7 @@ std::string row(const char* name, const std::string& text)
     return text.empty() ? "" : wrapped(fmt::format("    {:<10}", name), text);
 }
 
-std::string text_of(const count_range& r, unsigned beyond = no_limit)
+std::string range_text(const count_range& r, unsigned beyond = no_limit)
 {
     if (r.least == r.most)
         return fmt::format("{}", r.least);
@@ -45,7 +45,7 @@ std::string channels_text(const pcm_abilities& a)
 {
     std::vector<std::string> counts;
     for (const count_range& r : a.channels)
-        counts.push_back(text_of(r, max_pcm_channels));
+        counts.push_back(range_text(r, max_pcm_channels));
     return fmt::format("{}", fmt::join(counts, ", "));
 }
 
@@ -55,7 +55,7 @@ std::string rates_text(const pcm_abilities& a)
         return "any";
     const bool few =
         a.usual_rates_hz.empty() || (a.usual_rates_hz.size() == 1 && a.rates_hz.least != a.rates_hz.most);
-    return few ? text_of(a.rates_hz) + " Hz" : fmt::format("{} Hz", fmt::join(a.usual_rates_hz, " "));
+    return few ? range_text(a.rates_hz) + " Hz" : fmt::format("{} Hz", fmt::join(a.usual_rates_hz, " "));
 }
 
 std::string formats_text(const pcm_abilities& a)
@@ -73,8 +73,8 @@ std::string sizes_text(const pcm_abilities& a)
     const auto with_noun = [](const std::string& n, const char* noun) {
         return fmt::format("{} {}{}", n, noun, n == "1" ? "" : "s");
     };
-    return fmt::format("{}, {}, buffer {}", with_noun(text_of(a.period_frames), "frame"),
-                       with_noun(text_of(a.periods), "period"), text_of(a.buffer_frames));
+    return fmt::format("{}, {}, buffer {}", with_noun(range_text(a.period_frames), "frame"),
+                       with_noun(range_text(a.periods), "period"), range_text(a.buffer_frames));
 }
 
 std::string pcm_text(const pcm_info& p, const session::device_list& d)

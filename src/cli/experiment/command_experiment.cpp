@@ -22,7 +22,7 @@
 namespace tactor::cli {
 namespace {
 
-std::size_t trials_of(const study::prepared_experiment& p)
+std::size_t describe_trials(const study::prepared_experiment& p)
 {
     std::size_t n = 0;
     for (const study::run_sequence& s : p.runs)
@@ -71,8 +71,8 @@ int hold_session(const study::prepared_experiment& p, const experiment_options& 
                 o.folder);
         return session::interrupt::status(why.signal);
     }
-    say(stdout, "{}: {} in {}, in {}\n", who, counted(trials_of(p), "trial"), counted(p.runs.size(), "run"),
-        o.folder);
+    say(stdout, "{}: {} in {}, in {}\n", who, counted(describe_trials(p), "trial"),
+        counted(p.runs.size(), "run"), o.folder);
     return status_ok;
 }
 

@@ -41,7 +41,7 @@ struct experiment_options {
 /// `o` must live as long as the command.
 void add_experiment_options(CLI::App& command, experiment_options& o);
 
-/// What goes together and what is missing. \throws error (bad_input).
+/// Checks that options go together and none is missing. \throws error (bad_input).
 void check_experiment_options(const settings& s, const experiment_options& o);
 
 void print_dry_run_text(std::FILE* out, const study::prepared_experiment& p);
@@ -56,7 +56,7 @@ struct power_options {
 /// `p` must live as long as the command.
 void add_power_options(CLI::App& command, power_options& p);
 
-/// What goes together and what is missing. \throws error (bad_input).
+/// Checks that options go together and none is missing. \throws error (bad_input).
 void check_power_options(const settings& s, const power_options& p, const experiment_options& o);
 
 /// Prints it; returns the exit status, which is that of a signal where one ended it, with nothing printed.

@@ -68,7 +68,7 @@ void warn_of_null(const std::string& pcm)
             pcm);
 }
 
-// What the shipped definition says in their place would be in the data for good.
+// Warns of the authors of the shipped definition, which would stay in the data.
 void warn_of_authors(const study::prepared_experiment& p)
 {
     const std::vector<std::string>& said = p.definition.authors;
@@ -199,8 +199,8 @@ std::unique_ptr<study::stage> open_stage(const study::prepared_experiment& p, co
     auto there = std::make_unique<study::stage>(device, how, p.where);
     if (!o.masker.empty())
         there->mask(o.masker,
-                    study::noise_of(p.definition.masking,
-                                    fmt::format("{}/{}/{}/noise", p.seed, p.definition.name, p.participant)));
+                    study::noise_of(p.definition.masking, fmt::format("{}/{}/{}/noise", p.seed,
+                                                                        p.definition.name, p.participant)));
     return there;
 }
 

@@ -16,9 +16,9 @@
 
 namespace tactor::cli {
 
-/// Refuses what the data would not be worth the time for: no device, a sound server in between that nobody
-/// allowed, noise without a device for it or the other way round, more answers than keys. Warns of a device
-/// that nobody feels. Returns the sound servers in between. \throws error (bad_input).
+/// Refuses what would spoil the data: no device, a sound server in between without --allow-sound-server,
+/// noise without a device for it or the other way round, more answers than keys. Warns of a device that plays
+/// to nothing. Returns the sound servers in between. \throws error (bad_input).
 study::sound_servers check_real_session(const study::prepared_experiment& p, const experiment_options& o,
                                         const settings& s);
 
@@ -26,8 +26,8 @@ study::sound_servers check_real_session(const study::prepared_experiment& p, con
 std::unique_ptr<study::stage> open_stage(const study::prepared_experiment& p, const experiment_options& o,
                                          const settings& s);
 
-/// All trials that are left, with a person at the terminal or, where `listening` is a socket, before a page.
-/// Returns why it was left. \throws error.
+/// Runs the trials that are left, with a person at the terminal or, where `listening` is a socket, at a page.
+/// Returns why the session ended. \throws error.
 study::stage::left hold_real_session(const study::prepared_experiment& p, const experiment_options& o,
                                      const settings& s, const study::sound_servers& between,
                                      net::owned_fd listening, study::session_store& store);

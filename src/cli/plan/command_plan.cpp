@@ -24,7 +24,7 @@ namespace tactor::cli {
 
 namespace {
 
-// What --fit did to places; several strokes share it.
+// Returns a line on what --fit did to places; several strokes share it.
 std::string fit_note(const fitting& f)
 {
     return fmt::format(

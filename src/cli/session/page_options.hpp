@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// What the participant sees: --display and --page of a command.
+/// The options --display and --page, for what the participant sees.
 #pragma once
 
 #include <optional>
@@ -28,11 +28,10 @@ void add_page_options(CLI::App& command, page_options& o);
 /// --keypad of a command, as often as there are any.
 void add_keypad_option(CLI::App& command, std::vector<std::string>& into);
 
-/// What goes together. \throws error (bad_input).
+/// Checks that the options go together. \throws error (bad_input).
 void check_page_options(const page_options& o, bool simulated);
 
-/// The socket of the participant's page, whose address is said; none where there is to be none. \throws
-/// error.
+/// Opens the socket of the participant's page and prints its address; none without a page. \throws error.
 net::owned_fd open_page(const page_options& o);
 
 } // namespace tactor::cli

@@ -169,7 +169,7 @@ periods = {PERIODS}
 class AmplifierTest(RigTest):
     """Writes an array whose amplifier is on line 2 of another chip."""
     LINE = 2
-    LIMIT_S = 1.0 if INSIDE else 0.2  # other lanes run beside that of another Debian
+    LIMIT_S = 1.0 if INSIDE else 0.2  # other lanes run beside the lane of another Debian
 
     def setUp(self):
         super().setUp()
