@@ -13,7 +13,7 @@
 namespace tactor::session {
 namespace {
 
-// What others wrote into a file must not do more than say which device.
+// Returns the PCM's name. One from an array file, which others may have written, can only name a device.
 std::string pcm_name(const settings& s, const output_settings& out)
 {
     if (s.pcm || !out.pcm)
@@ -92,7 +92,7 @@ double latency_ms(const stream_setup& s)
 
 std::string latency_warning(std::optional<double> asked_ms, const stream_setup& made)
 {
-    // Rounding to whole frames is no news.
+    // Rounding to whole frames is not worth a sentence.
     constexpr double tolerance = 1.05;
     if (!asked_ms || latency_ms(made) <= *asked_ms * tolerance + 1e3 / made.rate)
         return {};

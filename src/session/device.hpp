@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// The PCM that a session plays on: which, how it is opened, and what may be given to the array on it.
+/// The PCM that a session plays on: its name, its opening, and the limits of the array on it.
 #pragma once
 
 #include <memory>
@@ -13,10 +13,10 @@
 
 namespace tactor::session {
 
-/// Returns whether anything says which PCM to play on.
+/// Returns true if anything names a PCM to play on.
 bool names_device(const settings& s, const environment& e);
 
-/// Says on standard error that "null" is played to where nothing says which PCM.
+/// Says on standard error that the session plays to "null", if nothing names a PCM.
 void tell_of_no_device(const settings& s, const environment& e);
 
 /// Returns the PCM as it is to be opened for so many channels at that rate, Hz; "null" where nothing names
@@ -24,13 +24,13 @@ void tell_of_no_device(const settings& s, const environment& e);
 alsa_options device_options(const settings& s, const stream_options& asked, const environment& e,
                             unsigned channels, unsigned rate);
 
-/// Returns `l` with what is asked for instead.
+/// Returns `l` with the options in place of its values.
 drive_limits limits_over(const stream_options& asked, drive_limits l);
 
-/// Returns the limits that hold: the options, else [limits], else the defaults.
+/// Returns the limits: the options, else [limits], else the defaults.
 drive_limits settle_limits(const stream_options& o, const environment& e);
 
-/// Returns a sentence where the device makes more latency than was asked for; else nothing.
+/// Returns a sentence if the device makes more latency than the option allows; else nothing.
 std::string latency_warning(std::optional<double> asked_ms, const stream_setup& made);
 
 /// Returns the time that the buffer holds, ms.

@@ -68,9 +68,9 @@ public:
     player* current() const noexcept { return player_.get(); }
     /// Number of the player, from 1; of the last one where there is none.
     std::uint64_t number() const noexcept { return number_; }
-    /// Why the latest opening failed; null: it did not.
+    /// Reason why the latest opening failed; null: it did not.
     const std::exception_ptr& failure() const noexcept { return failure_; }
-    /// Setup of the device, as it was last.
+    /// Latest setup of the device.
     const stream_setup& setup() const noexcept { return setup_; }
     /// Counters of all players.
     player_stats stats() const;

@@ -41,7 +41,7 @@ std::string find_config(const settings& s)
     return {};
 }
 
-// An array file may bring its own output, amplifier and sync: they belong to that array.
+// Takes output, amplifier and sync from an array file, because they belong to its array.
 void use_array_file(setup& config, const setup& file)
 {
     config.array = file.array;
@@ -65,7 +65,7 @@ void use_array_file(setup& config, const setup& file)
     prefer(config.limits, file.limits);
 }
 
-// It can be read only once, and what it holds is known by its first character.
+// Reads standard input, once. The first character shows if it is a plan.
 void read_standard_input(const settings& s, environment& e)
 {
     constexpr const char* name = "standard input";
@@ -87,7 +87,7 @@ void read_standard_input(const settings& s, environment& e)
     e.plans.emplace("-", files::read_plans(text, name));
 }
 
-// The plans among the STROKE arguments, and what is given on standard input.
+// Reads the plans among the STROKE arguments, and standard input.
 void read_given(const settings& s, environment& e)
 {
     if (std::find(s.strokes.begin(), s.strokes.end(), "-") != s.strokes.end())
@@ -101,7 +101,7 @@ void read_given(const settings& s, environment& e)
     }
 }
 
-// The first plan among the STROKE arguments; null for none.
+// Returns the first plan among the STROKE arguments; null for none.
 const files::plan_file* first_plan(const settings& s, const environment& e)
 {
     const auto planned = std::find_if(s.strokes.begin(), s.strokes.end(), [&](const std::string& argument) {
@@ -110,8 +110,8 @@ const files::plan_file* first_plan(const settings& s, const environment& e)
     return planned == s.strokes.end() ? nullptr : &e.plans.at(*planned);
 }
 
-// How a plan was rendered is how it is, where no option says otherwise: no [defaults] does.
-void use_sound_of(const files::plan_file& f, settings& s)
+// Renders a plan as it was rendered before, unless an option differs; [defaults] do not count.
+void use_plan_sound(const files::plan_file& f, settings& s)
 {
     options::wishes kept;
     kept.render = f.render;
@@ -123,8 +123,8 @@ void use_sound_of(const files::plan_file& f, settings& s)
     s.render.marker_s = f.render.marker_s;
 }
 
-// What the array file of the plan said when it was made counts with its array.
-array use_array_of(const files::plan_file& f, environment& e)
+// Returns the plan's array, with the settings that its array file had when the plan was made.
+array use_plan_array(const files::plan_file& f, environment& e)
 {
     e.plan_channels = f.render.channels;
     return f.tactors;
@@ -146,7 +146,7 @@ array find_array(settings& s, environment& e)
     if (!s.array_name) {
         e.array_file = config.array ? e.config_name : "";
         if (const files::plan_file* f = first_plan(s, e); f != nullptr && !config.array)
-            return use_array_of(*f, e);
+            return use_plan_array(*f, e);
         return config.array ? *config.array : preset_array("palm-3x3");
     }
     if (is_preset(array_presets(), *s.array_name)) {
@@ -200,7 +200,7 @@ environment read_environment(settings& s)
     read_given(s, e);
     e.tactors = find_array(s, e);
     if (const files::plan_file* f = first_plan(s, e))
-        use_sound_of(*f, s);
+        use_plan_sound(*f, s);
     options::settle(s);
     check_sync_channel(e);
     return e;

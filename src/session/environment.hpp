@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// What holds before any stroke is read: configuration, array, rate, channels and limits.
+/// Settings before any stroke is read: configuration, array, rate, channels and limits.
 #pragma once
 
 #include <map>
@@ -18,7 +18,7 @@ namespace tactor::session {
 
 using options::stream_options;
 
-/// Strokes, and options of strokes, plans, sound and the device: what a user asks for, before any file is
+/// Strokes, and options of strokes, plans, sound and the device, as the user gave them before any file is
 /// read.
 struct settings : options::wishes {
     std::vector<std::string> strokes = {}; ///< STROKE arguments
@@ -42,10 +42,10 @@ struct environment {
 /// \throws error.
 environment read_environment(settings& s);
 
-/// Whether it is the name of one of these.
+/// Returns true if `name` is one of these.
 bool is_preset(const std::vector<std::string>& presets, const std::string& name);
 
-/// Rate and channel count from the options, the configuration, then the defaults.
+/// Settles rate and channel count: the options, else the configuration, else the defaults.
 render_options settle_render(const settings& s, const environment& e);
 
 } // namespace tactor::session

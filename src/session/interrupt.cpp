@@ -15,7 +15,7 @@ namespace {
 
 volatile std::sig_atomic_t ending_signal = 0;
 
-// In a signal's handler: calls of the system only.
+// Runs in a signal's handler: makes system calls only.
 extern "C" void end_now(int)
 {
     constexpr char text[] = "tactor: the device does not answer: ended all the same\n";

@@ -23,9 +23,9 @@ public:
     /// `grace_s` to end by itself: then it is ended with that signal's status, since a device may hang for
     /// good in the library that drives it. The amplifier's holder switches off when the program is gone.
     int poll() noexcept;
-    /// Whatever else comes is nothing more to this process, which has heard that it is to end and ends.
+    /// Ignores all further signals: this process is already ending.
     void was_the_last() noexcept { last_ = true; }
-    /// Exit status for a signal: 128 + its number.
+    /// Returns the exit status for a signal: 128 + its number.
     static int status(int signal) noexcept { return 128 + signal; }
 
 private:

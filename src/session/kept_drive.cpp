@@ -97,7 +97,7 @@ drive_history history_in(std::string_view text)
     }
 }
 
-/// Whether a process runs; what cannot be found out counts as no.
+/// Returns true if a process is known to run.
 bool runs(std::string_view pid)
 {
     std::ifstream file(fmt::format("/proc/{}/stat", pid));
@@ -132,7 +132,7 @@ void kept_drive::take_up_killed()
     for (const auto& entry : std::filesystem::directory_iterator(folder_, ignored)) {
         const std::string file = entry.path().filename().string();
         const std::string pid = file.starts_with(going_) ? file.substr(going_.size()) : "";
-        // Where each run is process 1 of its container, the one before had this one's number.
+        // In a container each run is process 1, so the run before had this one's number.
         const bool own = pid == std::to_string(::getpid());
         if (pid.empty() || pid.find_first_not_of("0123456789") != std::string::npos ||
             (own ? !ahead_.empty() : runs(pid)))

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// For how long a device's channels were driven lately, kept in the user's runtime folder from one run to the
-/// next: the longest drive does not begin anew with each process.
+/// Recent drive time of a device's channels, kept in the user's runtime folder from one run to the next, so
+/// that the longest drive does not begin anew with each process.
 #pragma once
 
 #include <cstdint>
@@ -12,25 +12,25 @@
 
 namespace tactor::session {
 
-/// In the folder `tactor` there, files that are replaced as a whole: `driven-NAME` of each device has how it
-/// was; `going-NAME-PID` what a process may drive as long as it lives, which counts once it was killed. A
-/// torn one counts as none. What cannot be kept is warned of once, and played all the same. One thread.
+/// Drive time in the folder `tactor` there, in files that are replaced as a whole. `driven-NAME` has the
+/// history of each device; `going-NAME-PID` the channels that a living process may drive, which count once it
+/// was killed. A torn file counts as missing. Warns once if it cannot keep the time, and playing goes on. One
+/// thread.
 class kept_drive {
 public:
-    /// Keeps it for this run alone.
+    /// Keeps drive time for this run alone.
     kept_drive() = default;
-    /// Where there is no runtime folder of the user's own nothing is kept from run to run. Without a limit
-    /// there is nothing to count: then it is kept until when the array was driven, not for how long in
-    /// between.
+    /// Keeps drive time of a device from run to run, if the user has a runtime folder. Without a limit it
+    /// keeps the time until which the array was driven, not the drive time before.
     kept_drive(std::string_view device, const drive_limits& l);
 
-    /// What the array was given until now, by this run, those before, and others meanwhile: for a stream that
-    /// is about to be opened.
+    /// Returns the drive of the array until now, by this run, those before, and others meanwhile, for a
+    /// stream that opens next.
     drive_history until_now();
-    /// To be called each second while so many channels may be driven: should this process be killed, they
-    /// count as driven until 2 s after the last call at most. Seldom writes.
+    /// Notes that so many channels may be driven; call it each second. If this process is killed, they count
+    /// as driven until 2 s after the last call at most. Seldom writes.
     void going(unsigned channels);
-    /// How it was in truth, once the stream is over. Writes nothing where nothing was driven.
+    /// Writes the true history once the stream is over. Writes nothing if nothing was driven.
     void settled(const drive_history& h);
 
 private:

@@ -31,7 +31,7 @@ std::string time_text()
                        t.tm_mday, t.tm_hour, t.tm_min, t.tm_sec, now.tv_nsec / 1'000'000);
 }
 
-// Whether a text begins as our lines do.
+// Returns true if a text begins like a line of this log.
 bool is_log(std::string_view text)
 {
     constexpr std::string_view form = "dddd-dd-ddTdd:dd:dd.dddZ ";
@@ -51,7 +51,7 @@ bool may_be_appended_to(int fd)
     return n == 0 || (n > 0 && is_log({begin.data(), static_cast<std::size_t>(n)}));
 }
 
-// Half a line, where nobody else has written since: the next log would begin in it.
+// Cuts off half a line, in which the next log would begin, if nobody else has written since.
 void take_back(int fd, ssize_t written)
 {
     const off_t end = ::lseek(fd, 0, SEEK_CUR);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// --verbose and --log FILE: what the library says of its own doing, a line each.
+/// --verbose and --log FILE: the library's log, a line for each entry.
 #pragma once
 
 #include <string>
@@ -14,14 +14,14 @@ namespace tactor::session {
 /// "2026-03-01T09:30:00.125Z warning xrun 1: ...": UTC, kind, text. Outlives the player that writes to it.
 class session_log {
 public:
-    /// To standard error where `verbose`, in the journal with its level and time instead; appended to a file
-    /// unless its name is empty. \throws error: bad_input for a name that is a link, no regular file, or a
+    /// Writes to standard error if `verbose`, or to the journal with level and time; appends to a file unless
+    /// its name is empty. \throws error: bad_input for a name that is a link, no regular file, or a
     /// file that holds something else; runtime for what the system refuses.
     session_log(bool verbose, std::string file);
     session_log(const session_log&) = delete;
     session_log& operator=(const session_log&) = delete;
 
-    /// Empty where nobody wants to know.
+    /// Empty without --verbose and --log.
     log_function function();
 
 private:

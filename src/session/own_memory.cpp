@@ -36,8 +36,8 @@ std::uint64_t mapped_bytes()
     return pages * static_cast<std::uint64_t>(sysconf(_SC_PAGESIZE));
 }
 
-/// What the audio thread runs in; `self` is the program's own file, which has the library within. Of the
-/// other libraries only what is used takes memory; those pages are locked when they come.
+/// Returns true for memory that the audio thread runs in; `self` is the program's own file, which contains
+/// the library. Other libraries use memory only for the pages in use, which are locked when they come.
 bool is_needed(std::string_view mapped, std::string_view self)
 {
     if (mapped.empty() || mapped == "[heap]" || mapped == "[stack]" || mapped == self)
@@ -76,7 +76,7 @@ std::string lock_own_memory()
             return fmt::format("{} MiB must be allowed, a reserve of {} included, and {} MiB are",
                                (wanted + (1U << 20) - 1) >> 20, reserve_bytes >> 20, *most >> 20);
     }
-    // One heap that never shrinks: what was locked once stays, and no arena of 64 MiB is charged.
+    // Keeps one heap that never shrinks: locked memory stays, and no arena of 64 MiB counts.
     mallopt(M_TRIM_THRESHOLD, -1);
     mallopt(M_MMAP_MAX, 0);
     mallopt(M_ARENA_MAX, 1);
@@ -93,7 +93,7 @@ void limit_runaway_threads()
     rlimit l{};
     if (getrlimit(RLIMIT_RTTIME, &l) != 0)
         return;
-    // What is stricter already stays. The amplifier's holder outlives either signal.
+    // Keeps stricter limits. The amplifier's holder outlives either signal.
     l.rlim_max = std::min(l.rlim_max, hard_us);
     l.rlim_cur = std::min({l.rlim_cur, soft_us, l.rlim_max});
     setrlimit(RLIMIT_RTTIME, &l);

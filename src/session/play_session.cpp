@@ -133,7 +133,7 @@ stroke_report play_session::follow(const std::function<look()>& each)
     const std::shared_ptr<void> at_rest(nullptr, [this](void*) { stream_.set_busy(false); });
     for (;;) {
         if (const auto report = p.wait(playing_, 0.0)) {
-            // That the device is gone is told after the strokes that it interrupted.
+            // The loss of the device is reported after the strokes that it interrupted.
             if (report->state == state_kind::interrupted)
                 wait_for(-1, settled_ms);
             return *report;

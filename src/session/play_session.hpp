@@ -18,18 +18,18 @@
 
 namespace tactor::session {
 
-/// Facts of a run to report in its end, but for its strokes.
+/// Facts of a run for the report at its end, without its strokes.
 struct run_facts {
     stream_setup device = {};
     player_stats stats = {}; ///< of all players of the run together
     unsigned reopened = 0;
     bool locked_memory = false;
 
-    /// \throws error where the amplifier may be on.
+    /// \throws error if the amplifier may be on.
     void check_amplifier() const;
 };
 
-/// Time between two looks of what draws a stroke while it is played: 25 a second.
+/// Time between two looks of a drawing at a stroke that plays: 25 a second.
 inline constexpr int frame_ms = 40;
 
 /// Changes the parts of a stream: tests have devices of their own.
@@ -51,11 +51,11 @@ public:
     play_session& operator=(const play_session&) = delete;
 
     const stream_setup& setup() const noexcept { return stream_.setup(); }
-    /// Options that the constructor was given.
+    /// Options of the constructor.
     const stream_options& asked() const noexcept { return options_; }
 
     /// Hands a score to the stream. With stream_options::arm it waits for the trigger instead of `start`.
-    /// Returns a report where the stream has ended, else nothing. \throws error.
+    /// Returns a report if the stream has ended, else nothing. \throws error.
     std::optional<stroke_report> submit(const score& s, start_at start = start_at::now());
     /// Begins a stroke that points move. \throws error.
     live_stroke begin(const live_options& o);
@@ -69,16 +69,17 @@ public:
 
     /// Returns true if the device is gone, or failed: nothing can be played until reopen().
     bool lost() const { return stream_.current() == nullptr || stream_.current()->ended().has_value(); }
-    /// Returns true if a lost device is waited for.
+    /// Returns true while it waits for a lost device.
     bool waits() const noexcept { return options_.reopen_s > 0.0; }
-    /// Waits for the device, for as long as stream_options::reopen_s. False when it did not come back, or a
-    /// signal came, or the amplifier may be on. \throws error (bad_input) for a device that cannot be opened.
+    /// Waits for the device, up to stream_options::reopen_s. Returns false if it did not come back, a signal
+    /// came, or the amplifier may be on. \throws error (bad_input) for a device that cannot be opened.
     bool reopen();
 
-    /// Waits until a descriptor (none: -1) can be read, or the time is over. False when a signal has come.
+    /// Waits until a descriptor (none: -1) can be read, or the time is over. Returns false if a signal has
+    /// come.
     bool wait_for(int descriptor, int timeout_ms = -1, int also = -1);
 
-    /// Where the stream is; of its own numbering, from 0 after each opening.
+    /// Position of the stream in frames, from 0 after each opening.
     player_position position() const;
     /// Counters of all streams up to now.
     player_stats stats() const { return stream_.stats(); }
@@ -92,7 +93,7 @@ public:
 
 private:
     stream_parts make_parts(alsa_options device, const stream_source& source);
-    /// Logs why the device could not be opened, if so. \throws error (bad_input) where it never can be.
+    /// Logs why the device could not be opened, if so. \throws error (bad_input) if it never can be.
     void check_failure();
 
     stream_options options_;

@@ -14,7 +14,7 @@
 namespace tactor::session {
 namespace {
 
-// Of UTF-8, the C1 controls are C2 80 to C2 9F.
+// Finds C1 controls, which are C2 80 to C2 9F in UTF-8.
 bool starts_c1(std::string_view s, std::size_t at)
 {
     return s[at] == '\xC2' && at + 1 < s.size() && (static_cast<unsigned char>(s[at + 1]) & 0xE0U) == 0x80U;
@@ -37,7 +37,7 @@ std::string escaped(std::string_view text, bool lines)
     return out;
 }
 
-// What begins a line for the journal: sd-daemon(3).
+// Returns the prefix of a line for the journal: sd-daemon(3).
 std::string_view journal_level(log_kind k)
 {
     switch (k) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// What people read: text that cannot steer their terminal.
+/// Text for people, which cannot control their terminal.
 #pragma once
 
 #include <cstdio>
@@ -14,7 +14,7 @@
 
 namespace tactor::session {
 
-/// A name from a file or the command line as a terminal may get it: control characters, which could move its
+/// Returns a name from a file or the command line for a terminal: control characters, which could move its
 /// cursor or worse, become escapes such as \x1b or \n.
 std::string shown(std::string_view name);
 
@@ -30,13 +30,13 @@ void flush_output();
 /// Returns the errno of the first write to standard output by these that failed, else 0.
 int output_error();
 
-/// Whether systemd reads what is written there, for its journal.
+/// Returns true if systemd reads this stream for its journal.
 bool goes_to_journal(std::FILE* to);
 
-/// The same on standard output, and at once: somebody sits before it.
+/// Prints text on standard output at once, because somebody reads along.
 void show(std::string_view text);
 
-/// Shows each line of a text; also where no terminal wraps them, they break at words.
+/// Shows each line of a text, broken at words even without a terminal.
 void show_lines(std::string_view text);
 
 template <typename... T>
@@ -45,7 +45,7 @@ void say(std::FILE* to, fmt::format_string<T...> format, T&&... values)
     say_text(to, fmt::format(format, std::forward<T>(values)...));
 }
 
-/// On standard error, what ends the program.
+/// Says on standard error why the program ends.
 template <typename... T>
 void say_error(fmt::format_string<T...> format, T&&... values)
 {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// Sound servers between the tool and the card, and where there is neither.
+/// Sound servers between the tool and the card, and PCMs without a card.
 #pragma once
 
 #include <string>
@@ -11,32 +11,32 @@
 
 namespace tactor::session {
 
-/// The sound server that playing on a PCM goes through; empty: none. PipeWire is asked to give each channel
-/// to the output of its number, not to mix: in the environment of this process, where nothing is said there
-/// yet. Before there are threads, and before the PCM is opened.
+/// Returns the sound server between this process and a PCM; empty: none. Sets PipeWire's variable of this
+/// process, if it is unset, so that each channel goes to the output of its number without mixing. Call it
+/// before there are threads and before the PCM is opened.
 std::string settle_server(const std::string& pcm);
 
 /// Hint for a sound server in the way.
 inline constexpr const char* server_cure =
     "-D hw:CARD=NAME plays on the card itself; tactor devices lists them";
 
-/// Warns on standard error of the sound server in between; not where there is none.
+/// Warns on standard error of the sound server in between, if there is one.
 void warn_of_server(const std::string& server, const char* cure = server_cure);
 
-/// Whether anybody may feel what is played on a PCM: it does not end in one of type null alone.
+/// Returns true if anybody may feel a PCM: it does not end in PCMs of type null alone.
 bool is_felt(const std::string& pcm);
 
-/// What a server in between may do.
+/// Returns the effects that a server in between may have.
 std::string server_note(const std::string& server);
 
-/// Something about a stream that is felt, or may be, and what to do about it.
+/// A remark about a stream that is or may be felt, and a hint.
 struct device_note {
     std::string text;
     const char* cure;
 };
 
-/// Notes about the ways that the stream's channels go: levels that ALSA's configuration changes, and ways
-/// that are not known (but not those through a server, of which server_note() tells).
+/// Lists notes about the routes of the stream's channels: levels that ALSA's configuration changes, and
+/// unknown routes (except those through a server: server_note()).
 std::vector<device_note> wiring_notes(const array& a, const stream_setup& s);
 
 } // namespace tactor::session

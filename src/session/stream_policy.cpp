@@ -10,7 +10,7 @@ namespace tactor::session {
 namespace {
 
 constexpr double longest_pause_s = 5.0;
-constexpr double renewed_s = 0.5; // how often drive time is kept while strokes go on
+constexpr double renewed_s = 0.5; // interval of keeping drive time while strokes go on
 
 stream_policy::time later(stream_policy::time t, double s)
 {
@@ -34,7 +34,7 @@ stream_policy::act stream_policy::step(time now)
     return phase_ == phase::open ? step_open(now) : phase_ == phase::shut ? step_shut(now) : act::nothing;
 }
 
-// The time begins with the first question.
+// Time begins with the first call.
 bool stream_policy::is_due(time now, double after_s)
 {
     again_ = due_ = due_.value_or(later(now, after_s));
@@ -61,7 +61,7 @@ stream_policy::act stream_policy::step_open(time now)
 {
     if (broken_ || closing_)
         return act::close;
-    // That it opens proves little: a full disk or a loose cable shows with the first periods.
+    // An opening proves little: a full disk or a loose cable shows with the first periods.
     if (proves_ && is_due(now, times_.proof_s))
         run();
     if (!proves_ && !busy_ && times_.idle_stop_s > 0.0 && is_due(now, times_.idle_stop_s)) {
@@ -139,7 +139,7 @@ void stream_policy::end()
 
 void stream_policy::set(stream_state s, std::string reason)
 {
-    if (state_ == stream_state::closing) // nothing is said after that
+    if (state_ == stream_state::closing) // the last state
         return;
     state_ = s;
     reason_ = std::move(reason);

@@ -12,11 +12,11 @@
 namespace tactor::session {
 namespace {
 
-// The carrier of a plan that is farthest from this one.
+// Returns the carrier of a plan that is farthest from this one.
 double farthest(const plan& p, double hz)
 {
     const auto away = [hz](double f) { return std::abs(f - hz); };
-    // Of a recording along the path the course says how often it comes round.
+    // For a recording along the path the course has the rate of its repetition.
     if (p.course.empty() || p.wave.kind == waveform_kind::recording)
         return p.carrier_hz;
     return std::max_element(

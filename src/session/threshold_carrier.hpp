@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// Whether thresholds hold at the carriers that are played.
+/// Warnings about plans at other carriers than the thresholds.
 #pragma once
 
 #include <span>
@@ -13,11 +13,11 @@
 
 namespace tactor::session {
 
-/// Of an array whose [calibration] says at which carrier a threshold holds that stands alone: what is to be
-/// said where a plan has another. Empty: nothing.
+/// Returns a sentence if a plan has another carrier than [calibration], to which a single threshold of the
+/// array belongs; else nothing.
 std::string other_carrier(const environment& e, std::span<const plan* const> plans);
 
-/// Says it once of all that is played, where levels are above thresholds.
+/// Says this once about all plans, if levels are above thresholds.
 void tell_of_other_carrier(const environment& e, const render_options& r, std::span<const score> scores);
 
 } // namespace tactor::session

@@ -51,7 +51,7 @@ std::vector<placed_plan> walk_plans(const array& a, double carrier_hz)
 walk_verdict judge(const array& a, const walk_answers& felt)
 {
     walk_verdict v;
-    std::vector<std::vector<std::size_t>> driven(a.tactors.size()); // what was driven when this one was felt
+    std::vector<std::vector<std::size_t>> driven(a.tactors.size()); // tactors driven when this one was felt
     for (std::size_t i = 0; i < felt.size(); ++i)
         if (felt[i])
             driven[*felt[i]].push_back(i);

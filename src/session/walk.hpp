@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// The wiring walk: one tactor after another, and what the answers say of the channel map.
+/// The wiring walk: one tactor after another, and the channel map that the answers give.
 #pragma once
 
 #include <optional>
@@ -17,7 +17,8 @@ plan walk_plan(const array& a, unsigned tactor, double carrier_hz);
 /// Returns walk_plan() for all tactors, one after the other.
 std::vector<placed_plan> walk_plans(const array& a, double carrier_hz);
 
-/// Where each tactor's channel was felt, by tactor: the number of a tactor, or nothing where it was not felt.
+/// Places at which each tactor's channel was felt, by tactor: the number of a tactor, or nothing if it was
+/// not felt.
 using walk_answers = std::vector<std::optional<unsigned>>;
 
 struct walk_verdict {

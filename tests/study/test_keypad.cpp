@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Which keys of an input device answer what. A device itself: tests/vm/guest/test_keypad.py.
+// Answers of an input device's keys. For a device itself see tests/vm/guest/test_keypad.py.
 #include "study/session/key_input.hpp"
 
 #include <map>
@@ -12,21 +12,21 @@
 namespace keypad_test {
 
 using namespace tactor;
-using study::answer_of_key;
+using study::find_answer;
 
 TEST_CASE("keys of a keyboard, a number block, a button box and a joystick answer 1 to 9")
 {
     const int block[] = {KEY_KP1, KEY_KP2, KEY_KP3, KEY_KP4, KEY_KP5, KEY_KP6, KEY_KP7, KEY_KP8, KEY_KP9};
     for (int i = 0; i < 9; ++i)
         for (const int code : {KEY_1 + i, block[i], BTN_0 + i, BTN_TRIGGER + i})
-            CHECK(study::answer_of_key(static_cast<std::uint16_t>(code)) == static_cast<char>('1' + i));
+            CHECK(study::find_answer(static_cast<std::uint16_t>(code)) == static_cast<char>('1' + i));
 }
 
 TEST_CASE("an adjustment uses signs or arrows, and most keys answer nothing")
 {
     std::map<char, unsigned> of;
     for (unsigned code = 0; code <= 0xFFFF; ++code)
-        if (const auto c = study::answer_of_key(static_cast<std::uint16_t>(code)))
+        if (const auto c = study::find_answer(static_cast<std::uint16_t>(code)))
             ++of[*c];
     CHECK(of == std::map<char, unsigned>{{'+', 2},
                                          {'-', 3},
@@ -43,10 +43,10 @@ TEST_CASE("an adjustment uses signs or arrows, and most keys answer nothing")
                                          {'7', 4},
                                          {'8', 4},
                                          {'9', 4}});
-    CHECK(study::answer_of_key(KEY_UP) == '+');
-    CHECK(study::answer_of_key(KEY_LEFT) == '<');
-    CHECK(study::answer_of_key(KEY_ENTER) == 'a');
-    CHECK(study::answer_of_key(KEY_0) == 'n');
+    CHECK(study::find_answer(KEY_UP) == '+');
+    CHECK(study::find_answer(KEY_LEFT) == '<');
+    CHECK(study::find_answer(KEY_ENTER) == 'a');
+    CHECK(study::find_answer(KEY_0) == 'n');
 }
 
 TEST_CASE("missing keypads and other files are refused")

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "study/experiment/power.hpp"
+#include "study/experiment/simulated.hpp"
 
 #include <string>
 

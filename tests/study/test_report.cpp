@@ -8,7 +8,6 @@
 #include "files/plan/json_value.hpp"
 #include "has.hpp"
 #include "message_of.hpp"
-#include "study/report/markdown.hpp"
 #include "study/report/sections.hpp"
 
 namespace tactor::study::test_report {
@@ -90,7 +89,7 @@ TEST_CASE("carriers are reported as they were")
 {
     const auto carrier = [](const ordered& stroke) {
         const ordered plan = {{"stroke", stroke}};
-        return carrier_of({plan, file, "it was changed"});
+        return describe_carrier({plan, file, "it was changed"});
     };
     CHECK(carrier({{"carrier_hz", 250.0}}) == "sine of 250 Hz");
     CHECK(carrier({{"carrier_hz", 250.0}, {"waveform", "noise:100-300"}, {"noise_seed", 7}}) ==

@@ -121,7 +121,7 @@ const study::stage::watcher nobody = [](std::uint64_t) {};
 
 } // namespace
 
-TEST_CASE("both stimuli of a pair are where they are said to be, the gap between them exact to the frame")
+TEST_CASE("both stimuli of a pair are at their reported frames, the gap between them exact to the frame")
 {
     set_up s;
     const auto d = study::read_definition(pairs, "pairs.toml", {});
@@ -155,7 +155,7 @@ TEST_CASE("both stimuli of a pair are where they are said to be, the gap between
     s.there.finish();
 }
 
-TEST_CASE("a frame that is said is right even where there was no time for it")
+TEST_CASE("a reported frame is right even without time for it")
 {
     set_up s;
     const score music = random_score(3, 4);

@@ -105,11 +105,12 @@ TEST_CASE("a participant right at the floor has no threshold")
 TEST_CASE("mean, deviation and halves of the counted reversals")
 {
     const std::vector<double> r{-40, -10, -30, -20, -31, -29, -32, -28};
-    const reversal_mean m = mean_of(r, 4);
+    const reversal_mean m = average_reversals(r, 4);
     CHECK(m.mean_dbfs == -30.0);
     CHECK(m.sd_db == doctest::Approx(std::sqrt(10.0 / 3.0)));
     CHECK(m.halves_db == 0.0);
-    CHECK(mean_of(r, 6).halves_db == doctest::Approx(std::abs((-30 - 20 - 31) / 3.0 + (29 + 32 + 28) / 3.0)));
+    CHECK(average_reversals(r, 6).halves_db ==
+          doctest::Approx(std::abs((-30 - 20 - 31) / 3.0 + (29 + 32 + 28) / 3.0)));
 }
 
 // Reports whether the threshold is there and the trials above it run.
@@ -132,7 +133,7 @@ TEST_CASE("an odd number of counted reversals drops the earliest")
     staircase s({.reversals = 11, .discard = 4});
     turn(s, 11, 0.0);
     REQUIRE(checking(s));
-    CHECK(s.threshold()->mean_dbfs == mean_of(s.reversals_dbfs(), 6).mean_dbfs);
+    CHECK(s.threshold()->mean_dbfs == average_reversals(s.reversals_dbfs(), 6).mean_dbfs);
 }
 
 TEST_CASE(
@@ -143,7 +144,7 @@ TEST_CASE(
     REQUIRE(checking(s));
     CHECK(s.reversals_dbfs().size() == most_reversals);
     CHECK(s.threshold()->halves_db > 2.0);
-    CHECK(s.threshold()->mean_dbfs == mean_of(s.reversals_dbfs(), 8).mean_dbfs);
+    CHECK(s.threshold()->mean_dbfs == average_reversals(s.reversals_dbfs(), 8).mean_dbfs);
 
     // For any setting.
     for (const auto& [reversals, discard] : {std::pair{9U, 2U}, std::pair{20U, 4U}, std::pair{6U, 4U}}) {
@@ -152,15 +153,15 @@ TEST_CASE(
         REQUIRE(checking(other));
         REQUIRE(other.reversals_dbfs().size() > reversals);
         CHECK(other.threshold()->mean_dbfs ==
-              mean_of(other.reversals_dbfs(),
-                      std::min<std::size_t>(8, (other.reversals_dbfs().size() - discard) / 2 * 2))
+              average_reversals(other.reversals_dbfs(),
+                                std::min<std::size_t>(8, (other.reversals_dbfs().size() - discard) / 2 * 2))
                   .mean_dbfs);
     }
 
     staircase steady({});
     turn(steady, 24, 0.0);
     CHECK(steady.reversals_dbfs().size() == 12);
-    CHECK(steady.threshold()->mean_dbfs == mean_of(steady.reversals_dbfs(), 8).mean_dbfs);
+    CHECK(steady.threshold()->mean_dbfs == average_reversals(steady.reversals_dbfs(), 8).mean_dbfs);
 
     staircase once({});
     std::vector<double> halves;
@@ -169,7 +170,7 @@ TEST_CASE(
         const double aim = once.reversals_dbfs().size() < 8 ? -20.0 : -26.0;
         if (once.answer(once.level_dbfs() > aim) && once.reversals_dbfs().size() >= 12 &&
             once.reversals_dbfs().size() % 2 == 0)
-            halves.push_back(mean_of(once.reversals_dbfs(), 8).halves_db);
+            halves.push_back(average_reversals(once.reversals_dbfs(), 8).halves_db);
     }
     CHECK(halves.size() >= 2);
     for (std::size_t i = 0; i < halves.size(); ++i)

@@ -9,7 +9,7 @@
 #include "cli/analyze/analyze_output.hpp"
 #include "cli/say.hpp"
 #include "core/words.hpp"
-#include "study/analysis/number_text.hpp"
+#include "study/analysis/analysis.hpp"
 
 namespace tactor::cli {
 

@@ -109,7 +109,7 @@ int ask_person(study::calibration& c, study::calibration_log& log, const setting
 void tell_of_others(const environment& e, const study::calibration_settings& s)
 {
     const auto& earlier = e.config.calibration;
-    if (!earlier || !study::of_others(*earlier, s))
+    if (!earlier || !study::is_foreign(*earlier, s))
         return;
     const std::vector<tactor_spec>& all = e.tactors.tactors;
     std::vector<std::size_t> left;

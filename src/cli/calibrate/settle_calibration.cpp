@@ -13,7 +13,7 @@
 #include "cli/say.hpp"
 #include "cli/settings.hpp"
 #include "core/split.hpp"
-#include "study/bids/acq_time.hpp"
+#include "study/bids/study_folder.hpp"
 #include "study/experiment/sequence.hpp"
 
 namespace tactor::cli {
@@ -185,7 +185,7 @@ study::calibration_settings settle_calibration(const calibrate_options& o, const
     }
     tell_of_power(c, a, limits);
     c.simulate = o.simulate.value_or("");
-    c.seed = o.seed.value_or(static_cast<std::uint32_t>(study::seed_of(c.participant)));
+    c.seed = o.seed.value_or(static_cast<std::uint32_t>(study::default_seed(c.participant)));
     c.date = today();
     return c;
 }

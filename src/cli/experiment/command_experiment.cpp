@@ -16,7 +16,6 @@
 #include "core/words.hpp"
 #include "session/interrupt.hpp"
 #include "study/session/prepared.hpp"
-#include "study/session/session_facts.hpp"
 #include "study/session/trials.hpp"
 
 namespace tactor::cli {

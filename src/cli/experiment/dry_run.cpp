@@ -13,7 +13,6 @@
 #include "core/words.hpp"
 #include "files/plan/json_value.hpp"
 #include "study/session/prepared.hpp"
-#include "study/session/session_facts.hpp"
 #include "study/session/trials.hpp"
 
 namespace tactor::cli {

@@ -19,7 +19,7 @@
 #include "core/split.hpp"
 #include "session/interrupt.hpp"
 #include "study/analysis/analysis.hpp"
-#include "study/experiment/power.hpp"
+#include "study/experiment/simulated.hpp"
 
 namespace tactor::cli {
 namespace {

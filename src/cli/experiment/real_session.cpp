@@ -198,9 +198,9 @@ std::unique_ptr<study::stage> open_stage(const study::prepared_experiment& p, co
     const alsa_options device = session::device_options(s, how, p.where, p.render.channels, p.render.rate);
     auto there = std::make_unique<study::stage>(device, how, p.where);
     if (!o.masker.empty())
-        there->mask(o.masker,
-                    study::noise_of(p.definition.masking, fmt::format("{}/{}/{}/noise", p.seed,
-                                                                        p.definition.name, p.participant)));
+        there->mask(o.masker, study::noise_options(
+                                  p.definition.masking,
+                                  fmt::format("{}/{}/{}/noise", p.seed, p.definition.name, p.participant)));
     return there;
 }
 

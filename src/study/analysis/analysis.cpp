@@ -1,14 +1,18 @@
 // SPDX-License-Identifier: MIT
 #include "study/analysis/analysis.hpp"
 
+#include <algorithm>
+#include <cmath>
+
 #include <fmt/format.h>
 
 #include "core/words.hpp"
+#include "study/statistics/tests.hpp"
 
 namespace tactor::study {
 namespace {
 
-// The values of everybody in one row of cells, by motion, and their means over motions.
+// Tests all participants' values in one row of cells, by motion, and their means over motions.
 by_motion test_row(const std::vector<cell_values>& all, std::size_t row, std::size_t motions, double against)
 {
     by_motion b;
@@ -30,8 +34,8 @@ by_motion test_row(const std::vector<cell_values>& all, std::size_t row, std::si
     return b;
 }
 
-cell_table table_of(const std::vector<cell_values>& all, std::size_t from_row, std::size_t rows,
-                    std::size_t motions)
+cell_table lay_out_cells(const std::vector<cell_values>& all, std::size_t from_row, std::size_t rows,
+                         std::size_t motions)
 {
     cell_table t;
     t.first_levels = rows;
@@ -45,7 +49,7 @@ cell_table table_of(const std::vector<cell_values>& all, std::size_t from_row, s
     return t;
 }
 
-std::vector<comparison> pairs_of(const by_motion& b, const effect& e)
+std::vector<comparison> compare_motions(const by_motion& b, const effect& e)
 {
     std::vector<double> means;
     for (const t_test& t : b.motion) {
@@ -64,9 +68,10 @@ void analyse_values(run_analysis& r, const std::vector<cell_values>& all)
         r.cells.push_back(test_row(all, row, motions, chance(r.run)));
     if (r.run.task == task_kind::identify)
         return;
-    r.effects = repeated_measures(table_of(all, 0, rows, motions));
+    r.effects = repeated_measures(lay_out_cells(all, 0, rows, motions));
     for (std::size_t row = 0; row < rows; ++row)
-        r.pairs.push_back(pairs_of(r.cells[row], repeated_measures(table_of(all, row, 1, motions)).second));
+        r.pairs.push_back(
+            compare_motions(r.cells[row], repeated_measures(lay_out_cells(all, row, 1, motions)).second));
     if (r.run.task == task_kind::choose || rows < 2)
         return;
     std::vector<double> differences;
@@ -130,67 +135,68 @@ void warn_of_people(analysis& a, const run_analysis& r, const dataset& d, std::s
     }
 }
 
-// What is null in the figures, and why.
+// Says why figures are missing.
 void warn_of_figures(analysis& a, const run_analysis& r)
 {
-    const auto warn = [&](const std::string& what, const t_test& t) {
-        if (t.n > 1 && !t.t)
-            a.warnings.push_back(
-                fmt::format("{}: {}: no variance over participants, so no t test", r.run.name, what));
-        if (t.n > 1 && t.t && !t.d_ci)
-            a.warnings.push_back(
-                fmt::format("{}: {}: the effect is too large for an interval", r.run.name, what));
-        if (t.n > 1 && !t.p_signflip)
-            a.warnings.push_back(
-                fmt::format("{}: {}: too many participants for the exact test", r.run.name, what));
+    const auto warn = [&](std::string_view figure, std::string_view why) {
+        a.warnings.push_back(fmt::format("{}: {}: {}", r.run.name, figure, why));
     };
-    const auto warn_of_cell = [&](const std::string& what, const t_test& t) {
+    const auto warn_of_test = [&](std::string_view figure, const t_test& t) {
+        if (t.n < 2)
+            return;
+        if (!t.t)
+            warn(figure, "no variance over participants, so no t test");
+        else if (!t.d_ci)
+            warn(figure, "the effect is too large for an interval");
+        if (!t.p_signflip)
+            warn(figure, "too many participants for the exact test");
+    };
+    const auto warn_of_cell = [&](const std::string& figure, const t_test& t) {
         if (r.run.task != task_kind::rate)
-            warn(what, t);
+            warn_of_test(figure, t);
         else if (t.n > 1 && !t.ci)
-            a.warnings.push_back(
-                fmt::format("{}: {}: no variance over participants, so no interval", r.run.name, what));
+            warn(figure, "no variance over participants, so no interval");
     };
     for (std::size_t row = 0; row < r.cells.size(); ++row) {
-        const std::string of = r.run.task == task_kind::choose ? "" : r.run.methods[row] + ", ";
-        warn_of_cell(of + "all", r.cells[row].all);
+        const std::string method = r.run.task == task_kind::choose ? "" : r.run.methods[row] + ", ";
+        warn_of_cell(method + "all", r.cells[row].all);
         for (std::size_t m = 0; m < r.cells[row].motion.size(); ++m)
-            warn_of_cell(of + r.run.motions[m], r.cells[row].motion[m]);
+            warn_of_cell(method + r.run.motions[m], r.cells[row].motion[m]);
     }
-    warn("first interval", r.first_interval);
-    warn("methods", r.paired);
+    warn_of_test("first interval", r.first_interval);
+    warn_of_test("methods", r.paired);
     for (const auto& [name, e] : {std::pair<const char*, const effect&>{"method", r.effects.first},
                                   {"motion", r.effects.second},
                                   {"method:motion", r.effects.interaction}}) {
         if (e.ms_error && !e.f)
-            a.warnings.push_back(fmt::format("{}: {}: the error has no variance, so no F", r.run.name, name));
+            warn(name, "the error has no variance, so no F");
         else if (e.epsilon_gg && !e.mauchly_w)
-            a.warnings.push_back(
-                fmt::format("{}: {}: too few participants, or too little variance, for Mauchly's test",
-                            r.run.name, name));
+            warn(name, "too few participants, or too little variance, for Mauchly's test");
     }
     for (std::size_t row = 0; row < r.pairs.size(); ++row)
         if (!r.pairs[row].empty() && !r.pairs[row][0].q && r.n > 1)
-            a.warnings.push_back(
-                fmt::format("{}: {}: the error has no variance, so no Tukey", r.run.name,
-                            r.run.task == task_kind::choose ? "motion" : r.run.methods[row]));
+            warn(r.run.task == task_kind::choose ? "motion" : r.run.methods[row],
+                 "the error has no variance, so no Tukey");
     if (r.n == 1)
         a.warnings.push_back(r.run.name + ": one participant: tests need two");
+}
+
+// Returns the value of a trial in its cell: a rating, or per cent.
+double score_trial(const trial& t, const run_outline& run)
+{
+    if (run.task == task_kind::rate)
+        return t.response;
+    const bool hit = run.task == task_kind::choose ? last_chosen(t, run) : t.response == t.motion;
+    return hit ? 100.0 : 0.0;
 }
 
 } // namespace
 
 double chance(const run_outline& run) noexcept
 {
-    switch (run.task) {
-    case task_kind::choose:
-        return 50.0;
-    case task_kind::rate:
-        return 0.0;
-    case task_kind::identify:
-        break;
-    }
-    return 100.0 / static_cast<double>(run.motions.size());
+    return run.task == task_kind::choose ? 50.0
+           : run.task == task_kind::rate ? 0.0
+                                         : 100.0 / static_cast<double>(run.motions.size());
 }
 
 analysis analyse(const dataset& d)
@@ -207,6 +213,52 @@ analysis analyse(const dataset& d)
         warn_of_figures(a, a.runs.back());
     }
     return a;
+}
+
+bool last_chosen(const trial& t, const run_outline& run) noexcept
+{
+    return (t.response == 1 ? t.method_1 : t.method_2) + 1 == run.methods.size();
+}
+
+std::optional<cell_values> compute_cells(const run_outline& run, const std::vector<trial>& trials)
+{
+    const std::size_t rows = run.task == task_kind::choose ? 1 : run.methods.size();
+    cell_values sums(rows, std::vector<double>(run.motions.size(), 0.0));
+    std::vector<std::vector<std::size_t>> counts(rows, std::vector<std::size_t>(run.motions.size(), 0));
+    for (const trial& t : trials) {
+        const std::size_t row = run.task == task_kind::choose ? 0 : t.method_1;
+        sums[row][t.motion] += score_trial(t, run);
+        ++counts[row][t.motion];
+    }
+    for (std::size_t i = 0; i < rows; ++i)
+        for (std::size_t j = 0; j < run.motions.size(); ++j) {
+            if (counts[i][j] == 0)
+                return {};
+            sums[i][j] /= static_cast<double>(counts[i][j]);
+        }
+    return sums;
+}
+
+double rounding_in(const run_outline& run) noexcept
+{
+    return few_digits * (run.task == task_kind::rate ? static_cast<double>(run.scale) : 100.0);
+}
+
+std::optional<double> compared_value(const run_outline& run, const cell_values& cells)
+{
+    if (run.task != task_kind::rate)
+        return mean(cells.back());
+    if (cells.size() < 2)
+        return {};
+    const double difference = mean(cells.back()) - mean(cells.front());
+    return std::abs(difference) > rounding_in(run) ? difference : 0.0;
+}
+
+double first_chosen(const std::vector<trial>& trials)
+{
+    const auto first =
+        std::count_if(trials.begin(), trials.end(), [](const trial& t) { return t.response == 1; });
+    return 100.0 * static_cast<double>(first) / static_cast<double>(trials.size());
 }
 
 } // namespace tactor::study

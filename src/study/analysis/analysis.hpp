@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// What a study says: means, tests and effect sizes, run by run, as values.
+/// The results of a study: means, tests and effect sizes, run by run, as values; and their texts.
 #pragma once
 
 #include <cstddef>
@@ -9,11 +9,12 @@
 #include <vector>
 
 #include "study/data/dataset.hpp"
+#include "study/data/outline.hpp"
 #include "study/statistics/tests.hpp"
 
 namespace tactor::study {
 
-/// Something measured for each motion; "all" is of the participants' unweighted means over motions.
+/// A measure for each motion; "all" is about the participants' unweighted means over motions.
 struct by_motion {
     t_test all = {};
     std::vector<t_test> motion = {};
@@ -55,31 +56,55 @@ struct analysis {
     std::vector<std::string> warnings = {};
 };
 
-/// The per cent that guessing gives.
+/// Returns the per cent that guessing gives.
 double chance(const run_outline& run) noexcept;
 
 analysis analyse(const dataset& d);
 
-/// By row (method; of choose there is one) and motion.
+/// Values by row (method; one row for choose) and motion.
 using cell_values = std::vector<std::vector<double>>;
 
-/// A participant's values in a run: choose: per cent in which the last method was chosen; rate: the mean
-/// rating; identify: per cent correct. Nothing where a cell has no trial.
+/// Returns a participant's values in a run: choose: per cent in which the last method was chosen; rate: the
+/// mean rating; identify: per cent correct. Nothing if a cell has no trial.
 std::optional<cell_values> compute_cells(const run_outline& run, const std::vector<trial>& trials);
 
-/// What rounding may leave of 0 where values of a run are compared.
+/// Returns the largest difference of a run's values that rounding may leave of 0.
 double rounding_in(const run_outline& run) noexcept;
 
-/// What the main comparison of a run tests, of one participant. choose: per cent in which the last method was
-/// chosen, against 50; rate: the last method's mean less the first's, against 0, nothing where there is one
-/// method; identify: per cent correct by the last method, against chance. What rounding leaves of no
-/// difference is 0.
+/// Returns a participant's value in the main comparison of a run. choose: per cent in which the last method
+/// was chosen, against 50; rate: the last method's mean less the first's, against 0, nothing for one method;
+/// identify: per cent correct by the last method, against chance. Sets to 0 what rounding leaves of 0.
 std::optional<double> compared_value(const run_outline& run, const cell_values& cells);
 
-/// Per cent of trials in which the first interval was chosen; of choose, with at least one trial.
+/// Returns the per cent of trials of choose, one or more, in which the first interval was chosen.
 double first_chosen(const std::vector<trial>& trials);
 
-/// Whether a trial of choose was answered with the last method.
+/// Returns true if a trial of choose was answered with the last method.
 bool last_chosen(const trial& t, const run_outline& run) noexcept;
+
+std::string value_text(std::optional<double> v, int decimals = 2);
+
+/// Returns "<.001" or "0.012".
+std::string p_text(std::optional<double> p);
+
+/// Returns "p < 0.001" or "p = 0.012".
+std::string p_clause(std::optional<double> p);
+
+/// Returns "1.20 ... 3.40".
+std::string interval_text(const std::optional<interval>& i);
+
+/// Limits of a mean of per cents, and of a run's values: per cents or ratings.
+inline constexpr interval per_cents{0.0, 100.0};
+interval possible_values(const run_outline& run);
+
+/// Returns the same within the possible values: an interval from t knows no bounds.
+std::string interval_text(const std::optional<interval>& i, const interval& possible);
+
+/// Returns "t(11) = 6.84, p < 0.001" for a test that has a t.
+std::string t_text(const t_test& t);
+
+/// Returns F with its degrees of freedom, p, both eta squared and the tests of sphericity, for an effect that
+/// has an F.
+std::string effect_text(const effect& e);
 
 } // namespace tactor::study

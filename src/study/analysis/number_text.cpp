@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "study/analysis/number_text.hpp"
+#include "study/analysis/analysis.hpp"
 
 #include <algorithm>
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "study/bids/study_folder.hpp"
 
+#include <ctime>
 #include <string_view>
 
 #include <fmt/format.h>
@@ -8,6 +9,7 @@
 
 #include <tactor/version.hpp>
 
+#include "core/split.hpp"
 #include "study/data/columns.hpp"
 
 namespace tactor::study {
@@ -18,14 +20,9 @@ using ordered = nlohmann::ordered_json;
 constexpr const char* simulated_note = "SIMULATED: nobody was asked. The answers come from a model; they "
                                        "test the software and say nothing about people.";
 
-// How a data set says what wrote it.
+// Texts by which a data set says what wrote it.
 constexpr std::string_view held_by = "tactor experiment";
 constexpr std::string_view simulated_by = "tactor experiment --simulate";
-
-std::string description_text(const ordered& j)
-{
-    return j.dump(2, ' ', false, ordered::error_handler_t::replace) + "\n";
-}
 
 ordered column_json(std::string_view description, std::string_view units = {})
 {
@@ -37,16 +34,17 @@ ordered column_json(std::string_view description, std::string_view units = {})
 
 std::string response_meaning(const run_definition& r)
 {
-    switch (r.outline.task) {
-    case task_kind::choose:
+    if (r.outline.task == task_kind::choose)
         return "Which of the two stimuli was chosen, 1 or 2";
-    case task_kind::rate:
+    if (r.outline.task == task_kind::rate)
         return fmt::format("The rating, 1 to {}", r.outline.scale);
-    case task_kind::identify:
-        break;
-    }
     return "The motion that was named";
 }
+
+constexpr std::int64_t second_ns = 1000000000;
+constexpr std::int64_t microsecond_ns = 1000;
+constexpr std::size_t seconds_length = 19; // 2026-11-21T14:03:00
+constexpr std::size_t fraction_length = 7;
 
 } // namespace
 
@@ -60,7 +58,7 @@ std::string dataset_text(const experiment_definition& d, bool simulated)
                          {"Version", std::string(version())},
                          {"Description", simulated ? fmt::format("{}. {}", simulated_by, simulated_note)
                                                    : std::string(held_by)}}};
-    return description_text(j);
+    return json_text(j);
 }
 
 std::optional<bool> says_simulated(const std::string& dataset_description)
@@ -106,7 +104,7 @@ std::string participants_text(bool simulated)
     j["sex"]["Levels"] = {{"F", "female"}, {"M", "male"}, {"O", "other"}};
     j["handedness"] = column_json("Hand that the participant prefers");
     j["handedness"]["Levels"] = {{"R", "right"}, {"L", "left"}, {"A", "both"}};
-    return description_text(j);
+    return json_text(j);
 }
 
 std::string task_text(const run_definition& r, bool simulated)
@@ -123,7 +121,37 @@ std::string task_text(const run_definition& r, bool simulated)
     for (const trial_column& c : trial_columns)
         j[std::string(c.name)] = column_json(c.meaning.empty() ? response_meaning(r) : c.meaning, c.unit);
     j["void"]["Levels"] = {{"true", "does not count"}, {"false", "counts"}};
-    return description_text(j);
+    return json_text(j);
+}
+
+std::string acq_time_text(std::int64_t utc_ns)
+{
+    const std::time_t t = utc_ns / second_ns;
+    std::tm utc{};
+    ::gmtime_r(&t, &utc);
+    return fmt::format("{:04}-{:02}-{:02}T{:02}:{:02}:{:02}.{:06}Z", utc.tm_year + 1900, utc.tm_mon + 1,
+                       utc.tm_mday, utc.tm_hour, utc.tm_min, utc.tm_sec, utc_ns % second_ns / microsecond_ns);
+}
+
+std::optional<std::int64_t> acq_time_ns(const std::string& text)
+{
+    std::tm utc{};
+    const std::size_t length = text.size() - (text.ends_with('Z') ? 1 : 0);
+    if (length != seconds_length + fraction_length ||
+        ::strptime(text.c_str(), "%Y-%m-%dT%H:%M:%S.", &utc) != text.c_str() + seconds_length + 1)
+        return {};
+    const auto microseconds = detail::number_in<std::int64_t>(
+        std::string_view(text).substr(seconds_length + 1, fraction_length - 1));
+    if (!microseconds || *microseconds < 0)
+        return {};
+    return ::timegm(&utc) * second_ns + *microseconds * microsecond_ns;
+}
+
+std::int64_t utc_now_ns() noexcept
+{
+    timespec now{};
+    ::clock_gettime(CLOCK_REALTIME, &now);
+    return now.tv_sec * second_ns + now.tv_nsec;
 }
 
 } // namespace tactor::study

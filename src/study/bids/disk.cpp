@@ -14,6 +14,7 @@
 #include <unistd.h>
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include <tactor/error.hpp>
 
@@ -38,7 +39,7 @@ detail::owned_fd opened(const fs::path& file, int flags)
     return fd;
 }
 
-// 0, or an errno.
+// Returns 0 or an errno.
 int write_all(int fd, std::string_view text, bool synced)
 {
     while (!text.empty()) {
@@ -52,6 +53,11 @@ int write_all(int fd, std::string_view text, bool synced)
 }
 
 } // namespace
+
+std::string json_text(const nlohmann::ordered_json& j)
+{
+    return j.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+}
 
 void write_whole(const fs::path& file, std::string_view text)
 {

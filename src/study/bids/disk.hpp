@@ -6,11 +6,17 @@
 #include <cerrno>
 #include <cstddef>
 #include <filesystem>
+#include <string>
 #include <string_view>
+
+#include <nlohmann/json_fwd.hpp>
 
 #include "core/owned.hpp"
 
 namespace tactor::study {
+
+/// Returns the text of a JSON file, indented; bytes that are not UTF-8 are replaced.
+std::string json_text(const nlohmann::ordered_json& j);
 
 /// Writes a file beside its name, dot-named, and gives it the name when it is on the disk. \throws error.
 void write_whole(const std::filesystem::path& file, std::string_view text);
@@ -19,35 +25,35 @@ void write_whole(const std::filesystem::path& file, std::string_view text);
 /// nothing of it is left. \throws error (runtime).
 void append_text(const std::filesystem::path& file, std::string_view text, bool synced = true);
 
-/// Cuts a file at a byte. What follows is on the disk before, beside the file, as NAME.cut-1 or the next
-/// number that is free; returns that name. \throws error (runtime).
+/// Cuts a file at a byte, after it has brought the rest to the disk beside the file, as NAME.cut-1 or the
+/// next number that is free; returns that name. \throws error (runtime).
 std::filesystem::path cut_file(const std::filesystem::path& file, std::size_t at);
 
-/// Whether anything has this name, be it a link that leads nowhere.
+/// Returns true if anything has this name, be it a link that leads nowhere.
 bool there(const std::filesystem::path& p) noexcept;
 
-/// Makes a folder, where it is not there, in one that is. \throws error (runtime).
+/// Makes a folder in one that is there, unless it is there already. \throws error (runtime).
 void make_folder(const std::filesystem::path& folder);
 
-/// Whether a file can be written under this name, when its folders will have been made: tried with another
-/// name of that length. \throws error: bad_input for a name that cannot be, runtime for what the system
-/// refuses.
+/// Tries another name of the same length, to find out if a file can be written under this name once its
+/// folders are made. \throws error: bad_input for an impossible name, runtime for what the system refuses.
 void try_to_write(const std::filesystem::path& file);
 
-/// Removes what a crash left of write_whole() in a folder.
+/// Removes the files that a crash in write_whole() left in a folder.
 void remove_leftovers(const std::filesystem::path& folder) noexcept;
 
-/// Holds a folder against other processes, as long as it lives.
+/// Keeps other processes out of a folder as long as it lives.
 class folder_lock {
 public:
-    /// \throws error (bad_input) where another has it, (runtime) for what the system refuses.
+    /// Locks the folder. \throws error: bad_input if another process has it, runtime for what the system
+    /// refuses.
     explicit folder_lock(const std::filesystem::path& folder);
 
 private:
     detail::owned_fd fd_;
 };
 
-/// What is kept, and what to do, for an errno.
+/// Returns a hint for an errno: what is kept, and what to do.
 constexpr const char* what_is_kept(int code) noexcept
 {
     if (code == ENOSPC || code == EDQUOT)

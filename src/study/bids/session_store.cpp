@@ -18,11 +18,11 @@ namespace {
 namespace fs = std::filesystem;
 using ordered = nlohmann::ordered_json;
 
-// What says when and with what a session was held, not what was held.
+// Facts about when and with which device a session was held; all others must stay as they were.
 constexpr std::array<std::string_view, 7> may_differ{
     "date", "versions", "device", "streams", "sound_server", "masker_sound_server", "walk"};
 
-// A card may have another name by now; that there was one, and noise from it, is how the session was held.
+// A card may have another name by now, but noise from a card must stay noise from a card.
 bool is_as_begun(const std::string& key, const ordered& began, const ordered& now)
 {
     if (key == "masker")
@@ -30,20 +30,15 @@ bool is_as_begun(const std::string& key, const ordered& began, const ordered& no
     return began == now || std::find(may_differ.begin(), may_differ.end(), key) != may_differ.end();
 }
 
-// Enough for a trial's line and the tables that it may have to make.
+// Room for a trial's line and the tables that it may have to make.
 constexpr std::size_t reserved_bytes = std::size_t{64} << 10;
 
-// The first holds these, and each gives up a place for a file's name: a disk or a quota may be out of those,
-// too. The first answer of all takes two folders and three tables.
+// The first file has these bytes. Each gives up the place of a file's name, because a disk or a quota may run
+// out of those, too: the first answer of all needs two folders and three tables.
 constexpr std::array<const char*, 5> reserved{".reserve", ".reserve-2", ".reserve-3", ".reserve-4",
                                               ".reserve-5"};
 
-std::string session_text(const ordered& j)
-{
-    return j.dump(2, ' ', false, ordered::error_handler_t::replace) + "\n";
-}
-
-// A value, where it is short enough to be shown.
+// Returns a value as text, if it is short enough to be shown.
 std::string brief(const ordered& j, const std::string& key)
 {
     const std::string text = j.contains(key) ? j[key].dump() : "nothing";
@@ -53,14 +48,11 @@ std::string brief(const ordered& j, const std::string& key)
 
 std::string new_table(const named_cells& cells)
 {
-    std::string header;
-    for (const auto& [column, text] : cells)
-        header += fmt::format("{}{}", header.empty() ? "" : "\t", column);
-    return text_table("", header + "\n").with_line(cells);
+    return text_table("", header_line(cells)).with_line(cells);
 }
 
-// A table that somebody changed in the middle of a session, and that cannot be read any more, takes an answer
-// nevertheless: in the order of a new one.
+// Returns what to append for a line. A table that cannot be read any more, because somebody changed it in the
+// middle of a session, takes an answer nevertheless: in the order of a new table.
 std::string text_behind(const fs::path& table, const named_cells& cells)
 {
     try {
@@ -75,10 +67,7 @@ std::string text_behind(const fs::path& table, const named_cells& cells)
 } // namespace
 
 session_store::session_store(study_folder& folder, std::string code, const ordered& facts, bool resume)
-    : folder_(folder),
-      code_(std::move(code)),
-      facts_(facts),
-      source_(folder.path() / "sourcedata" / ("sub-" + code_))
+    : folder_(folder), code_(std::move(code)), facts_(facts), source_(folder.path() / source_path(code_))
 {
     settle(resume);
 }
@@ -128,7 +117,7 @@ void session_store::try_to_write(const std::vector<run_definition>& runs) const
 {
     folder_.try_to_write(code_);
     for (const run_definition& r : runs)
-        study::try_to_write(table_of(r));
+        study::try_to_write(table(r));
     study::try_to_write(source_ / "session.json");
 }
 
@@ -145,46 +134,44 @@ void session_store::begin(const std::vector<const stimulus*>& stimuli)
             write_whole(file, s->text);
     }
     if (!resumed_)
-        write_whole(source_ / "session.json", session_text(facts_));
+        write_whole(source_ / "session.json", json_text(facts_));
     folder_.describe();
 }
 
 std::vector<fs::path> session_store::missing(const std::vector<const stimulus*>& stimuli) const
 {
-    std::vector<fs::path> all = folder_.files_of(code_);
+    std::vector<fs::path> all = folder_.list_files(code_);
     for (const stimulus* s : stimuli)
         all.push_back(source_ / "plans" / (s->hash + ".json"));
     std::erase_if(all, [](const fs::path& p) { return there(p); });
     return all;
 }
 
-fs::path session_store::table_of(const run_definition& r) const
+fs::path session_store::table(const run_definition& r) const
 {
-    return folder_.path() / ("sub-" + code_) / "beh" /
-           fmt::format("sub-{}_task-{}_beh.tsv", code_, r.outline.file_name);
+    return folder_.path() / table_path(code_, r.outline);
 }
 
 std::string session_store::scan_name(const run_definition& r) const
 {
-    return "beh/" + table_of(r).filename().string();
+    return "beh/" + table(r).filename().string();
 }
 
 std::vector<trial_row> session_store::rows(const run_definition& r) const
 {
-    const fs::path table = table_of(r);
-    if (!there(table))
+    if (!there(table(r)))
         return {};
-    const text_table t = read_trials(table);
+    const text_table t = read_trials(table(r));
     read_run(t, r.outline); // refuses what the analysis would refuse
     return read_rows(t);
 }
 
 std::vector<trial_row> session_store::practice_rows(const run_definition& r) const
 {
-    const fs::path table = source_ / "practice.tsv";
-    if (!there(table))
+    const fs::path practice = source_ / "practice.tsv";
+    if (!there(practice))
         return {};
-    const text_table t = read_trials(table);
+    const text_table t = read_trials(practice);
     std::vector<trial_row> all = read_rows(t);
     std::vector<trial_row> own;
     for (std::size_t i = 0; i < t.rows(); ++i)
@@ -195,38 +182,37 @@ std::vector<trial_row> session_store::practice_rows(const run_definition& r) con
 
 void session_store::append(const run_definition& r, const trial_row& row, const std::string& acq_time)
 {
-    const fs::path table = table_of(r);
+    const fs::path file = table(r);
     keeping([&] {
-        if (there(table)) {
-            append_text(table, text_behind(table, cells_of(row)));
+        if (there(file)) {
+            append_text(file, text_behind(file, make_cells(row)));
             return;
         }
-        const fs::path own = folder_.path() / ("sub-" + code_);
-        make_folder(own);
-        make_folder(own / "beh");
+        make_folder(file.parent_path().parent_path());
+        make_folder(file.parent_path());
         folder_.add_participant(code_);
         folder_.add_scan(code_, scan_name(r), acq_time);
-        write_whole(table, new_table(cells_of(row)));
+        write_whole(file, new_table(make_cells(row)));
     });
 }
 
 void session_store::append_practice(const run_definition& r, const trial_row& row)
 {
-    const fs::path table = source_ / "practice.tsv";
-    named_cells cells = cells_of(row);
+    const fs::path practice = source_ / "practice.tsv";
+    named_cells cells = make_cells(row);
     cells.insert(cells.begin(), {"run", r.outline.name});
     keeping([&] {
-        if (there(table))
-            append_text(table, text_behind(table, cells));
+        if (there(practice))
+            append_text(practice, text_behind(practice, cells));
         else
-            write_whole(table, new_table(cells));
+            write_whole(practice, new_table(cells));
     });
 }
 
 void session_store::make_last_void(const run_definition& r)
 {
-    const text_table t(table_of(r));
-    keeping([&] { write_whole(table_of(r), t.with_cells(t.rows() - 1, {{"void", "true"}})); });
+    const text_table t(table(r));
+    keeping([&] { write_whole(table(r), t.with_cells(t.rows() - 1, {{"void", "true"}})); });
 }
 
 std::optional<std::string> session_store::acq_time(const run_definition& r) const
@@ -237,10 +223,10 @@ std::optional<std::string> session_store::acq_time(const run_definition& r) cons
 void session_store::note(const std::string& key, const ordered& value)
 {
     facts_[key] = value;
-    write_whole(source_ / "session.json", session_text(facts_));
+    write_whole(source_ / "session.json", json_text(facts_));
 }
 
-// Room on the disk that is given up for an answer which would be lost otherwise.
+// Takes room on the disk, to give it up for an answer that would be lost otherwise.
 void session_store::reserve()
 {
     for (const char* name : reserved)

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// One participant's session on the disk: what it began with, its stimuli, and its trials, each of which is
-/// there before the next begins.
+/// A participant's session on the disk: the facts that it began with, its stimuli, and its trials, each of
+/// which is there before the next begins.
 #pragma once
 
 #include <filesystem>
@@ -21,52 +21,52 @@ namespace tactor::study {
 
 class session_store {
 public:
-    /// `facts` is what session.json will say. Of a session that is there, all must be alike but what
-    /// `may_differ` lists.
-    /// \throws error: bad_input where there is a session of this participant (and not `resume`), or it began
-    ///         otherwise; runtime for what the system refuses.
+    /// Settles a new session, or with `resume` one that is there. `facts` go into session.json; those of a
+    /// session that is there must be the same, except the ones that `may_differ` lists.
+    /// \throws error: bad_input if there is a session of this participant (and not `resume`), or it began
+    ///         with other facts; runtime for what the system refuses.
     session_store(study_folder& folder, std::string code, const nlohmann::ordered_json& facts, bool resume);
     ~session_store();
     session_store(const session_store&) = delete;
     session_store& operator=(const session_store&) = delete;
 
-    /// Whether there will be a place for each answer, before anybody is asked: tries each name that is to be
-    /// written. \throws as study::try_to_write().
+    /// Makes sure, before anybody answers, that there will be a place for each answer: tries each name that
+    /// the session will write. \throws as study::try_to_write().
     void try_to_write(const std::vector<run_definition>& runs) const;
 
-    /// Writes session.json, where it is not there, and each plan under its hash, and what is of the study.
+    /// Writes session.json and the files of the study unless they are there, and each plan under its hash.
     void begin(const std::vector<const stimulus*>& stimuli);
 
-    /// What there should be of a session that has ended, and is not. Its tables apart.
+    /// Lists the files that a session which has ended should have and lacks, except its tables.
     std::vector<std::filesystem::path> missing(const std::vector<const stimulus*>& stimuli) const;
-    /// Reads all tables, of these runs in their order, as the analysis does. \throws error (bad_input) with
-    /// file and line; or where a run has no table and a later one has.
+    /// Reads the tables of these runs, in their order, as the analysis does. \throws error (bad_input) with
+    /// file and line, and if a run has no table and a later one has.
     void check_tables(const std::vector<const run_definition*>& runs) const;
-    /// \throws error (bad_input) where a table's last line is cut off.
+    /// Refuses tables whose last line is cut off. \throws error (bad_input).
     void refuse_cut_lines(const std::vector<const run_definition*>& runs) const;
-    /// Cuts off what a crash left of a last line, and keeps it beside the table; adds participant and runs to
-    /// their lists where they are missing there. Returns what it did, a sentence each. After check_tables().
-    /// \throws error (runtime).
+    /// Cuts off what a crash left of a last line and keeps it beside the table; adds participant and runs to
+    /// their lists if they are missing there. Returns a sentence for each thing it did. Call it after
+    /// check_tables(). \throws error (runtime).
     std::vector<std::string> mend(const std::vector<const run_definition*>& runs);
 
-    /// Whether this session goes on with one that was begun.
+    /// Returns true if this session goes on with one that was begun.
     bool resumed() const noexcept { return resumed_; }
     /// Returns true if anything of the session is on the disk.
     bool begun() const { return resumed_ || begun_; }
 
-    /// The lines of a run's table so far; and those of the practice before it.
+    /// Reads the lines of a run's table so far, or those of the practice before it.
     std::vector<trial_row> rows(const run_definition& r) const;
     std::vector<trial_row> practice_rows(const run_definition& r) const;
 
-    /// Adds a line; it is on the disk when this returns. The first of a run makes the table, and enters
-    /// participant and run into their lists; `acq_time` is of the run's first sample.
-    /// \throws error (runtime): where the disk is full, after the line was written to what was kept for it.
+    /// Adds a line; it is on the disk when this returns. The first of a run makes the table and enters
+    /// participant and run into their lists; `acq_time` is the time of the run's first sample.
+    /// \throws error (runtime): if the disk is full, after the line was written into the reserved room.
     void append(const run_definition& r, const trial_row& row, const std::string& acq_time);
     void append_practice(const run_definition& r, const trial_row& row);
 
     /// Makes the run's last trial void, in a file written whole. \throws error (runtime).
     void make_last_void(const run_definition& r);
-    /// What append() was told of the run's first sample; nothing before it was.
+    /// Returns the time of the run's first sample; nothing before append().
     std::optional<std::string> acq_time(const run_definition& r) const;
 
     /// Rewrites session.json with this key changed.
@@ -74,7 +74,7 @@ public:
     const nlohmann::ordered_json& facts() const noexcept { return facts_; }
 
 private:
-    std::filesystem::path table_of(const run_definition& r) const;
+    std::filesystem::path table(const run_definition& r) const;
     std::string scan_name(const run_definition& r) const;
     void settle(bool resume);
     void reserve();

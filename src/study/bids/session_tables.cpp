@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The tables of a session that goes on: whether they can be read, and what is mended in them.
+// Tables of a session that goes on: checks and repairs.
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -23,11 +23,11 @@ void session_store::check_tables(const std::vector<const run_definition*>& runs)
     folder_.check_lists(code_);
     const run_definition* lost = nullptr;
     for (const run_definition* r : runs) {
-        check_description(folder_.description_of(*r), r->outline);
-        if (!there(table_of(*r)))
+        check_description(folder_.path() / description_path(r->outline), r->outline);
+        if (!there(table(*r)))
             lost = lost == nullptr ? r : lost;
         else if (lost != nullptr)
-            throw error(error_kind::bad_input, table_of(*lost).string(),
+            throw error(error_kind::bad_input, table(*lost).string(),
                         fmt::format("it is missing, and the run {} came after it", r->outline.name),
                         "put it back: its trials would be asked once more");
         rows(*r);
@@ -38,29 +38,29 @@ void session_store::check_tables(const std::vector<const run_definition*>& runs)
 void session_store::refuse_cut_lines(const std::vector<const run_definition*>& runs) const
 {
     for (const run_definition* r : runs)
-        if (there(table_of(*r)))
-            if (const text_table t = read_trials(table_of(*r)); t.cut_at())
+        if (there(table(*r)))
+            if (const text_table t = read_trials(table(*r)); t.cut_at())
                 t.refuse_cut("complete it, or delete it: the session is finished");
 }
 
 std::vector<std::string> session_store::mend(const std::vector<const run_definition*>& runs)
 {
     std::vector<std::string> done;
-    const auto cut = [&](const fs::path& table) {
-        const auto at = read_trials(table).cut_at();
+    const auto cut = [&](const fs::path& file) {
+        const auto at = read_trials(file).cut_at();
         if (at)
             done.push_back(fmt::format("{}: its last line was cut off: what is left of it is in {}",
-                                       table.string(), cut_file(table, *at).string()));
+                                       file.string(), cut_file(file, *at).string()));
         return at.has_value();
     };
     const bool lost_people = !there(folder_.path() / "participants.tsv");
-    const bool lost_scans = !there(folder_.scans_of(code_));
+    const bool lost_scans = !there(folder_.scans(code_));
     bool added = false;
     bool entered = false;
     for (const run_definition* r : runs) {
-        if (!there(table_of(*r)))
+        if (!there(table(*r)))
             continue;
-        if (cut(table_of(*r)))
+        if (cut(table(*r)))
             folder_.ignore_cut_lines();
         added = folder_.add_participant(code_) || added;
         if (!acq_time(*r)) {
@@ -76,9 +76,9 @@ std::vector<std::string> session_store::mend(const std::vector<const run_definit
     if (added)
         say_lost(lost_people, folder_.path() / "participants.tsv", "sub-" + code_);
     if (entered)
-        say_lost(lost_scans, folder_.scans_of(code_), "a run");
-    if (const fs::path table = source_ / "practice.tsv"; there(table))
-        cut(table);
+        say_lost(lost_scans, folder_.scans(code_), "a run");
+    if (const fs::path practice = source_ / "practice.tsv"; there(practice))
+        cut(practice);
     return done;
 }
 

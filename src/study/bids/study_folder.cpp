@@ -19,8 +19,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// What is hidden does not count: a file manager's, or what a crash left; nor does sourcedata, which is all
-// that there is of a session whose begin was broken off.
+// Hidden files of a file manager or a crash do not count. Nor does sourcedata, which is all that a session
+// whose beginning was broken off leaves.
 bool has_other_things(const fs::path& folder)
 {
     std::error_code failed;
@@ -32,7 +32,7 @@ bool has_other_things(const fs::path& folder)
     return false;
 }
 
-// Whether it was not there before.
+// Makes the folder; returns false if it was there.
 bool made(const fs::path& folder)
 {
     if (folder.empty())
@@ -57,7 +57,7 @@ text_table read_or_begin(const fs::path& file, const char* header)
     return there(file) ? text_table(file) : text_table(file, std::string(header));
 }
 
-// The row with this cell, if any.
+// Returns the row with this cell, if any.
 std::optional<std::size_t> find_row(const text_table& t, std::string_view column, std::string_view text)
 {
     for (std::size_t row = 0; row < t.rows(); ++row)
@@ -70,7 +70,7 @@ std::optional<std::size_t> find_row(const text_table& t, std::string_view column
 
 void check_code(const std::string& code)
 {
-    if (code.empty() || file_name_of(code) != code)
+    if (code.empty() || make_file_name(code) != code)
         throw error(error_kind::bad_input, "--participant", fmt::format("\"{}\" is no code", code),
                     "letters and digits only, as P07");
 }
@@ -136,10 +136,10 @@ void study_folder::refuse_others(const experiment_definition& d, bool simulated)
 void study_folder::try_to_write(const std::string& code) const
 {
     for (const run_definition& r : definition_.runs)
-        if (const fs::path file = description_of(r); !there(file))
+        if (const fs::path file = description(r); !there(file))
             study::try_to_write(file);
     study::try_to_write(folder_ / "participants.tsv");
-    study::try_to_write(scans_of(code));
+    study::try_to_write(scans(code));
 }
 
 std::string study_folder::alike(const std::string& code) const
@@ -154,14 +154,14 @@ std::string study_folder::alike(const std::string& code) const
     return {};
 }
 
-std::vector<fs::path> study_folder::files_of(const std::string& code) const
+std::vector<fs::path> study_folder::list_files(const std::string& code) const
 {
     std::vector<fs::path> all;
     for (const char* name : {"dataset_description.json", "README", "participants.json", "participants.tsv"})
         all.push_back(folder_ / name);
     for (const run_definition& r : definition_.runs)
-        all.push_back(description_of(r));
-    all.push_back(scans_of(code));
+        all.push_back(description(r));
+    all.push_back(scans(code));
     return all;
 }
 
@@ -171,20 +171,20 @@ void study_folder::describe() const
         if (!there(file))
             write_whole(file, text);
     };
-    // First: by it the folder is known.
+    // First, because it makes the folder known as a study's.
     put(folder_ / "dataset_description.json", dataset_text(definition_, simulated_));
     put(folder_ / "README", readme_text(definition_, simulated_));
     put(folder_ / "participants.json", participants_text(simulated_));
     for (const run_definition& r : definition_.runs)
-        put(description_of(r), task_text(r, simulated_));
+        put(description(r), task_text(r, simulated_));
 }
 
-fs::path study_folder::description_of(const run_definition& r) const
+fs::path study_folder::description(const run_definition& r) const
 {
-    return folder_ / fmt::format("task-{}_beh.json", r.outline.file_name);
+    return folder_ / description_path(r.outline);
 }
 
-fs::path study_folder::scans_of(const std::string& code) const
+fs::path study_folder::scans(const std::string& code) const
 {
     return folder_ / ("sub-" + code) / fmt::format("sub-{}_scans.tsv", code);
 }
@@ -192,9 +192,9 @@ fs::path study_folder::scans_of(const std::string& code) const
 void study_folder::check_lists(const std::string& code) const
 {
     read_participants(read_or_begin(folder_ / "participants.tsv", new_participants));
-    const text_table scans = read_or_begin(scans_of(code), new_scans);
-    scans.need_column("filename");
-    scans.need_column("acq_time");
+    const text_table t = read_or_begin(scans(code), new_scans);
+    t.need_column("filename");
+    t.need_column("acq_time");
 }
 
 bool study_folder::add_participant(const std::string& code)
@@ -211,7 +211,7 @@ bool study_folder::add_participant(const std::string& code)
 std::optional<std::string> study_folder::scan_time(const std::string& code,
                                                    const std::string& file_name) const
 {
-    const text_table t = read_or_begin(scans_of(code), new_scans);
+    const text_table t = read_or_begin(scans(code), new_scans);
     const auto row = find_row(t, "filename", file_name);
     if (!row)
         return {};
@@ -221,7 +221,7 @@ std::optional<std::string> study_folder::scan_time(const std::string& code,
 void study_folder::add_scan(const std::string& code, const std::string& file_name,
                             const std::string& acq_time)
 {
-    const fs::path file = scans_of(code);
+    const fs::path file = scans(code);
     const text_table t = read_or_begin(file, new_scans);
     const named_cells cells{{"filename", file_name}, {"acq_time", acq_time}};
     const auto row = find_row(t, "filename", file_name);

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// The folder of a study (BIDS), as it is written: what is of the study, and the lists of people and runs.
+/// The folder of a study (BIDS), as tactor writes it: its descriptions, and the lists of people and runs.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -13,17 +14,17 @@
 
 namespace tactor::study {
 
-/// Letters and digits. \throws error (bad_input) for any other code of a participant.
+/// Checks that a participant's code is letters and digits. \throws error (bad_input).
 void check_code(const std::string& code);
 
-/// Holds the folder, alone, as long as it lives. One thread.
+/// A study's folder, locked as long as this lives. One thread.
 class study_folder {
 public:
-    /// Makes the folder, or takes one that is a study's. `d` must live as long. One that was made and is
-    /// empty at the end is removed.
-    /// \throws error: bad_input where the folder has other things in it, another session is running in it, or
-    ///         somebody in it had another experiment, or was real where this is simulated, or the other way
-    ///         round; runtime for what the system refuses.
+    /// Makes the folder, or takes one that is a study's. `d` must live as long. The destructor removes a
+    /// folder that this made, if it is empty.
+    /// \throws error: bad_input if the folder has other things in it, another session is running in it,
+    ///         somebody in it had another experiment, or real and simulated sessions would meet; runtime for
+    ///         what the system refuses.
     study_folder(std::filesystem::path folder, const experiment_definition& d, bool simulated);
     ~study_folder();
     study_folder(const study_folder&) = delete;
@@ -31,42 +32,42 @@ public:
 
     const std::filesystem::path& path() const noexcept { return folder_; }
 
-    /// What differs from the sessions that are there and is allowed to, a sentence each.
+    /// Sentences about allowed differences from the sessions that are there.
     const std::vector<std::string>& warnings() const noexcept { return warnings_; }
 
-    std::filesystem::path description_of(const run_definition& r) const;
-    std::filesystem::path scans_of(const std::string& code) const;
+    std::filesystem::path description(const run_definition& r) const;
+    std::filesystem::path scans(const std::string& code) const;
 
-    /// Tries whether what is of the study, and lists a participant, can be written. \throws as
+    /// Tries to write the descriptions of the study and the lists that name a participant. \throws as
     /// study::try_to_write().
     void try_to_write(const std::string& code) const;
 
-    /// Writes what is of the study where it is not there yet: dataset_description.json, README,
-    /// participants.json, a description of each run's table. Where there is a session.json already, which
-    /// says what the folder is of. \throws error (runtime).
+    /// Writes the descriptions that are not there yet: dataset_description.json, README, participants.json,
+    /// one of each run's tables. Call it after session.json is written. \throws error (runtime).
     void describe() const;
 
-    /// Somebody who is here already and whose code differs from this one in capitals only; empty for nobody.
+    /// Returns the participant whose code differs from this one in capitals only; empty for nobody.
     std::string alike(const std::string& code) const;
 
-    /// What is there of the study when a session of this participant has ended, plans and tables but for
-    /// those of the whole study apart.
-    std::vector<std::filesystem::path> files_of(const std::string& code) const;
+    /// Lists the files that should be there when a session of this participant has ended: descriptions and
+    /// lists, without plans and trials.
+    std::vector<std::filesystem::path> list_files(const std::string& code) const;
 
-    /// Reads participants.tsv and sub-CODE_scans.tsv, where they are there. \throws error (bad_input) with
-    /// file and line: see read_participants().
+    /// Reads participants.tsv and sub-CODE_scans.tsv, if they are there. \throws error (bad_input) with file
+    /// and line: see read_participants().
     void check_lists(const std::string& code) const;
 
-    /// Adds a line to participants.tsv, with n/a in what it asks besides. Returns false where there is one.
+    /// Adds a line to participants.tsv, with n/a in its other columns. Returns false if there is one.
     bool add_participant(const std::string& code);
 
-    /// Enters a run's table, whose name counts from sub-CODE on, into sub-CODE_scans.tsv, or its time anew.
+    /// Enters a run's table, named relative to sub-CODE, into sub-CODE_scans.tsv; replaces the time of one
+    /// that is there.
     void add_scan(const std::string& code, const std::string& file_name, const std::string& acq_time);
 
-    /// The time that add_scan() entered for a table; nothing where there is none.
+    /// Returns the time that add_scan() entered for a table, if any.
     std::optional<std::string> scan_time(const std::string& code, const std::string& file_name) const;
 
-    /// Tells programs that read BIDS, by .bidsignore, to leave alone what cut_file() keeps.
+    /// Writes into .bidsignore that programs which read BIDS ignore the files of cut_file().
     void ignore_cut_lines() const;
 
 private:
@@ -80,12 +81,12 @@ private:
     std::vector<std::string> warnings_ = {};
 };
 
-// The texts of the files that describe a study. Each says so where nobody was asked.
+// Texts of the files that describe a study. Each says it if the study is simulated.
 
 /// Returns dataset_description.json.
 std::string dataset_text(const experiment_definition& d, bool simulated);
-/// Reads from a dataset_description.json whether the study is simulated; nothing where tactor experiment did
-/// not write it.
+/// Returns true if a dataset_description.json is of a simulated study; nothing if tactor experiment did not
+/// write it.
 std::optional<bool> says_simulated(const std::string& dataset_description);
 /// Returns README.
 std::string readme_text(const experiment_definition& d, bool simulated);
@@ -93,5 +94,14 @@ std::string readme_text(const experiment_definition& d, bool simulated);
 std::string participants_text(bool simulated);
 /// Returns task-NAME_beh.json.
 std::string task_text(const run_definition& r, bool simulated);
+
+/// Returns "2026-11-21T14:03:00.123456Z": UTC, whole microseconds, from ns since 1970.
+std::string acq_time_text(std::int64_t utc_ns);
+
+/// Reads such a text, with or without the Z. Returns nothing for any other text.
+std::optional<std::int64_t> acq_time_ns(const std::string& text);
+
+/// Returns CLOCK_REALTIME, ns.
+std::int64_t utc_now_ns() noexcept;
 
 } // namespace tactor::study

@@ -16,7 +16,7 @@ random_numbers numbers_for(const calibration_settings& s, const std::string& par
     return random_numbers(fmt::format("{}/calibrate/{}/{}", s.seed, s.participant, part));
 }
 
-staircase_options stairs_of(const calibration_settings& s, std::size_t place)
+staircase_options settle_stairs(const calibration_settings& s, std::size_t place)
 {
     staircase_options o = s.staircase;
     o.ceiling_dbfs = s.ceilings_dbfs[place];
@@ -45,7 +45,7 @@ void calibration::begin_tactor()
     if (done())
         return;
     intervals_ = numbers_for(settings_, fmt::format("{}", settings_.tactors[place_]));
-    stairs_ = staircase(stairs_of(settings_, place_));
+    stairs_ = staircase(settle_stairs(settings_, place_));
     series_dbfs_.clear();
 }
 
@@ -121,7 +121,7 @@ void calibration::after_series(const calibration_answer& a, calibration_record& 
                        .end = a.set_dbfs ? staircase_end::felt : staircase_end::not_felt,
                        .trials = series_dbfs_.size() + (a.set_dbfs ? 0 : 1)};
     if (a.set_dbfs) {
-        const reversal_mean m = mean_of(series_dbfs_, series_dbfs_.size());
+        const reversal_mean m = average_reversals(series_dbfs_, series_dbfs_.size());
         t.threshold_dbfs = m.mean_dbfs;
         t.sd_db = m.sd_db;
     }

@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// A calibration of several tactors: which trial comes next, what an answer makes of it, and the thresholds.
-/// No clock, no device: the same settings and answers give the same trials.
+/// A calibration of several tactors: the next trial, the effect of an answer, and the thresholds. Uses no
+/// clock and no device: the same settings and answers give the same trials.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "study/calibrate/staircase.hpp"
@@ -16,11 +17,15 @@
 namespace tactor::study {
 
 enum class calibration_method { staircase, adjustment };
+constexpr std::string_view to_string(calibration_method m) noexcept
+{
+    return m == calibration_method::staircase ? "staircase" : "adjustment";
+}
 
-/// Pause between the intervals of a trial, ramps at their ends, s.
+/// Pause between the intervals of a trial, and ramps at their ends, s.
 inline constexpr double interval_gap_s = 0.5;
 inline constexpr double interval_ramp_s = 0.020;
-/// Of each tactor by adjustment.
+/// Series for each tactor by adjustment.
 inline constexpr unsigned adjustment_series = 6;
 
 struct calibration_settings {
@@ -43,7 +48,7 @@ struct calibration_settings {
     double start_dbfs() const noexcept { return staircase.start_dbfs; } ///< at most each tactor's ceiling
 };
 
-/// "1up3down" or "1up2down".
+/// Returns "1up3down" or "1up2down".
 std::string rule_name(const calibration_settings& s);
 
 struct calibration_trial {
@@ -55,7 +60,7 @@ struct calibration_trial {
     bool practice = false;
 };
 
-/// What was answered: of a staircase's trial `interval`, of an adjustment the level set.
+/// An answer: to a staircase's trial `interval`, to an adjustment the level set.
 struct calibration_answer {
     unsigned interval = 0;
     std::optional<double> set_dbfs = {}; ///< nothing: not felt at any level
@@ -90,11 +95,11 @@ public:
     explicit calibration(calibration_settings s);
 
     bool done() const noexcept { return place_ == settings_.tactors.size(); }
-    /// What comes next. Not when done().
+    /// Returns the next trial. Not when done().
     const calibration_trial& next() const noexcept { return trial_; }
-    /// The answer to it.
+    /// Takes the answer to next().
     calibration_record answer(const calibration_answer& a);
-    /// Of the tactors that are through.
+    /// Thresholds of the tactors that are measured.
     const std::vector<tactor_threshold>& thresholds() const noexcept { return thresholds_; }
     const calibration_settings& settings() const noexcept { return settings_; }
 

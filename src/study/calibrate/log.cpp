@@ -1,21 +1,28 @@
 // SPDX-License-Identifier: MIT
 #include "study/calibrate/log.hpp"
 
+#include <algorithm>
 #include <cerrno>
+#include <cstdint>
 #include <cstring>
+#include <optional>
 #include <system_error>
 #include <utility>
 
 #include <fcntl.h>
-#include <fmt/format.h>
-#include <nlohmann/json.hpp>
 #include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
 #include <tactor/error.hpp>
 
+#include "core/split.hpp"
+#include "core/words.hpp"
 #include "files/output_file.hpp"
+#include "files/plan/json_value.hpp"
 #include "files/text_file.hpp"
 #include "study/bids/disk.hpp"
 #include "study/data/text_table.hpp"
@@ -24,9 +31,9 @@ namespace tactor::study {
 namespace {
 
 namespace fs = std::filesystem;
-using nlohmann::ordered_json; // differences are told in the order of the options
+using nlohmann::ordered_json; // messages list differences in the order of the options
 
-// What somebody else wrote is no beginning: it is neither taken nor replaced.
+// Refuses what another program wrote: it is neither used nor replaced.
 ordered_json parse_settings(const fs::path& file, const calibration_settings& s)
 {
     ordered_json j = ordered_json::parse(read_file(file), nullptr, false);
@@ -40,7 +47,7 @@ ordered_json parse_settings(const fs::path& file, const calibration_settings& s)
     return j;
 }
 
-// The date is that of the beginning, and a device may be another; all else must be alike.
+// Takes the date of the beginning; another device is allowed, all else must be the same.
 void take_beginning(const fs::path& file, calibration_settings& s)
 {
     const ordered_json began = parse_settings(file, s);
@@ -56,10 +63,7 @@ void take_beginning(const fs::path& file, calibration_settings& s)
 
 std::string new_log()
 {
-    std::string header;
-    for (const auto& [column, cell] : log_cells({}))
-        header += fmt::format("{}{}", header.empty() ? "" : "\t", column);
-    return header + '\n';
+    return header_line(log_cells({}));
 }
 
 bool lacks_header(const std::string& log)
@@ -68,10 +72,54 @@ bool lacks_header(const std::string& log)
     return log.size() + 1 < header.size() && header.starts_with(log);
 }
 
-// What a user can name wrongly; all else the system refuses.
+// Returns true for an errno that a wrong name causes; the system refuses for all others.
 bool bad_name(int code)
 {
     return code == ENOENT || code == ENOTDIR || code == EISDIR || code == ELOOP || code == ENAMETOOLONG;
+}
+
+const std::string not_there = "n/a";
+constexpr double most_frame = 9e15; // a double counts them up to there
+
+std::string truth(bool b)
+{
+    return b ? "true" : "false";
+}
+
+// Reads any answer of a line; replay() compares it afterwards with what the line should say.
+calibration_answer answer_in(const text_table& log, std::size_t row)
+{
+    const auto number = [&](std::string_view column) {
+        const auto cell = log.cell(row, column);
+        return cell ? detail::number_in<double>(*cell) : std::nullopt;
+    };
+    calibration_answer a;
+    const double interval = number("response").value_or(0.0);
+    a.interval = interval == 1.0 ? 1 : interval == 2.0 ? 2 : 0;
+    if (log.cell(row, "response") == "set")
+        a.set_dbfs = number("level_dbfs");
+    a.response_time_s = number("response_time_s");
+    const double frame = number("onset_frame").value_or(-1.0);
+    if (frame >= 0.0 && frame < most_frame)
+        a.onset_frame = static_cast<std::uint64_t>(frame);
+    return a;
+}
+
+// Other programs write numbers with more or fewer digits and truths in capitals.
+bool is_same(const std::string& expected, std::optional<std::string_view> cell)
+{
+    if (!cell)
+        return expected == not_there;
+    if (expected == *cell || expected == in_small_letters(std::string(*cell)))
+        return true;
+    const auto number = detail::number_in<double>(expected);
+    return number && number == detail::number_in<double>(*cell);
+}
+
+bool is_same(const named_cells& expected, const text_table& log, std::size_t row)
+{
+    return std::all_of(expected.begin(), expected.end(),
+                       [&](const auto& c) { return is_same(c.second, log.cell(row, c.first)); });
 }
 
 } // namespace
@@ -115,7 +163,7 @@ calibration_log::~calibration_log()
     remove_empty();
 }
 
-// Locked: nobody else writes them.
+// The lock keeps others from writing them.
 void calibration_log::remove_empty() const noexcept
 {
     if (!made_ || lines_.rows() > 0)
@@ -125,7 +173,7 @@ void calibration_log::remove_empty() const noexcept
     fs::remove(file_, ignored);
 }
 
-// O_NONBLOCK: somebody's pipe is not waited for.
+// O_NONBLOCK: does not wait for somebody's pipe.
 void calibration_log::open()
 {
     fd_ =
@@ -146,7 +194,7 @@ void calibration_log::settle(bool resume, calibration_settings& s)
     const fs::path beginning = settings_file(file_);
     const bool begun = there(beginning);
     lines_ = read_lines();
-    // One in which nothing was answered, as where the device was not there, is begun anew.
+    // A log without answers, left for example by a missing device, begins anew.
     if (!resume && lines_.rows() > 0)
         throw error(error_kind::bad_input, file_.string(), "there is such a file already",
                     "--resume goes on with the session that it is of; another needs other names");
@@ -156,16 +204,16 @@ void calibration_log::settle(bool resume, calibration_settings& s)
         throw error(error_kind::bad_input, beginning.string(),
                     "it is missing, which says how the log was begun", "begin another, with another log");
     } else {
-        const std::string said = settings_text(s);
+        const std::string text = settings_text(s);
         detail::output_file out(beginning, {}, detail::owner_kind::program);
-        out.write(said.data(), static_cast<std::int64_t>(said.size()));
+        out.write(text.data(), static_cast<std::int64_t>(text.size()));
         out.commit();
     }
     if (synced_)
         detail::sync_folder(file_.parent_path()); // the log has a name that must last, too
 }
 
-// A log whose header is cut off has no line; nor has an empty one.
+// Reads no line of an empty log or one whose header is cut off.
 text_table calibration_log::read_lines() const
 {
     const std::string text = read_file(file_);
@@ -201,6 +249,64 @@ void calibration_log::append(const calibration_record& r)
 {
     append_text(file_, lines_.line(log_cells(r)), synced_);
     made_ = false;
+}
+
+named_cells log_cells(const calibration_record& r)
+{
+    const calibration_trial& t = r.trial;
+    return {{"trial", fmt::format("{}", t.number)},
+            {"tactor", fmt::format("{}", t.tactor)},
+            {"level_dbfs", fmt::format("{}", t.level_dbfs)},
+            {"interval", t.interval != 0 ? fmt::format("{}", t.interval) : not_there},
+            {"response", r.response},
+            {"correct", r.correct ? truth(*r.correct) : not_there},
+            {"reversal", truth(r.reversal)},
+            {"practice", truth(t.practice)},
+            {"response_time_s", r.response_time_s ? fmt::format("{:.3f}", *r.response_time_s) : not_there},
+            {"onset_frame", r.onset_frame ? fmt::format("{}", *r.onset_frame) : not_there}};
+}
+
+std::string settings_text(const calibration_settings& s)
+{
+    const bool stairs = s.method == calibration_method::staircase;
+    const auto if_stairs = [&](nlohmann::ordered_json v) { return stairs ? std::move(v) : nullptr; };
+    const nlohmann::ordered_json j{{"participant", s.participant},
+                                   {"method", std::string(to_string(s.method))},
+                                   {"rule", if_stairs(rule_name(s))},
+                                   {"tactors", s.tactors},
+                                   {"max_dbfs", s.ceilings_dbfs},
+                                   {"carrier_hz", s.carrier_hz},
+                                   {"interval_s", s.interval_s},
+                                   {"start_dbfs", s.start_dbfs()},
+                                   {"steps_db", if_stairs(s.staircase.steps_db)},
+                                   {"reversals", if_stairs(s.staircase.reversals)},
+                                   {"discard", if_stairs(s.staircase.discard)},
+                                   {"feedback", if_stairs(s.feedback)},
+                                   {"practice", if_stairs(s.practice)},
+                                   {"masker", s.masker.empty() ? "none" : s.masker},
+                                   {"masker_pcm", s.masker.empty() ? "none" : s.masker_pcm},
+                                   {"seed", s.seed},
+                                   {"simulate", files::or_null(s.simulate)},
+                                   {"array_sha256", s.array},
+                                   {"date", s.date}};
+    return json_text(j);
+}
+
+void replay(calibration& c, const calibration_log& log, observer* simulated)
+{
+    const text_table& lines = log.lines();
+    for (std::size_t row = 0; row < lines.rows(); ++row) {
+        if (c.done())
+            lines.refuse(row, "the session ends before this line",
+                         "the log is not of this session; begin another, with another log");
+        const calibration_trial trial = c.next();
+        const calibration_answer own =
+            simulated != nullptr ? simulated->answer(trial) : answer_in(lines, row);
+        const bool possible = trial.interval == 0 || own.interval == 1 || own.interval == 2;
+        if (!possible || !is_same(log_cells(c.answer(own)), lines, row))
+            lines.refuse(row, "this is not how the session went",
+                         "the log was changed, or is not of this session; begin another, with another log");
+    }
 }
 
 } // namespace tactor::study

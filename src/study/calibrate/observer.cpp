@@ -59,7 +59,7 @@ void take(observer_settings& o, std::string_view key, std::string_view value)
         refuse(fmt::format("\"{}\" is not known", key));
 }
 
-// Of a list for all tactors of the array those of the measured.
+// Keeps the entries of the measured tactors, if the list has one for each tactor of the array.
 void choose_measured(observer_settings& o, const std::vector<unsigned>& measured, std::size_t all)
 {
     const std::size_t n = o.thresholds_dbfs.size();
@@ -74,7 +74,7 @@ void choose_measured(observer_settings& o, const std::vector<unsigned>& measured
     o.thresholds_dbfs = std::move(own);
 }
 
-constexpr double answer_s = 1.5; // and the half second before the first interval
+constexpr double usual_answer_s = 1.5; // from the last interval on
 constexpr double before_s = 0.5;
 constexpr double series_s = 20.0; // of an adjustment
 
@@ -117,7 +117,7 @@ observer::observer(observer_settings o, const calibration_settings& s)
 {
 }
 
-double observer::threshold_of(unsigned tactor) const
+double observer::find_threshold(unsigned tactor) const
 {
     if (o_.thresholds_dbfs.size() == 1)
         return o_.thresholds_dbfs.front();
@@ -129,14 +129,14 @@ calibration_answer observer::answer(const calibration_trial& t)
 {
     if (t.interval == 0)
         return adjust(t);
-    const bool right = r_.unit() < right_at(o_, threshold_of(t.tactor), t.level_dbfs);
+    const bool right = r_.unit() < right_at(o_, find_threshold(t.tactor), t.level_dbfs);
     return {.interval = right ? t.interval : 3 - t.interval};
 }
 
 // Goes by 2 dB until it is near to what it feels as the threshold this time, then by half a dB.
 calibration_answer observer::adjust(const calibration_trial& t)
 {
-    const double aim = threshold_of(t.tactor) + o_.spread_db * r_.normal();
+    const double aim = find_threshold(t.tactor) + o_.spread_db * r_.normal();
     if (aim > t.ceiling_dbfs)
         return {};
     double level = t.level_dbfs;
@@ -155,7 +155,7 @@ std::string time_text(const calibration& c)
     const calibration_settings& s = c.settings();
     calibration left = c;
     observer typical({.thresholds_dbfs = {-45.0}}, s);
-    const double trial_s = before_s + 2.0 * s.interval_s + interval_gap_s + answer_s;
+    const double trial_s = before_s + 2.0 * s.interval_s + interval_gap_s + usual_answer_s;
     double seconds = 0.0;
     std::size_t trials = 0;
     std::set<unsigned> tactors;

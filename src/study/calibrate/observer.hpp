@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// A simulated observer, and how long a calibration lasts with one. It tests the chain; it says nothing about
+/// A simulated observer, and the length of a calibration with one. It tests the chain; it says nothing about
 /// people.
 #pragma once
 
@@ -22,16 +22,16 @@ struct observer_settings {
     std::optional<std::uint64_t> seed = {};   ///< none: the session's
 };
 
-/// "seed=1,threshold=-45,spread=2,lapse=0.02"; threshold=-45,-50,... is a list. `measured` are the tactors
-/// that are measured, of `all` that the array has: a list has as many entries as the one or the other.
-/// \throws error (bad_input) naming simulate.
+/// Reads "seed=1,threshold=-45,spread=2,lapse=0.02"; threshold=-45,-50,... is a list. `measured` are the
+/// tactors that are measured, of `all` that the array has: a list has as many entries as the one or the
+/// other. \throws error (bad_input) naming simulate.
 observer_settings parse_observer(std::string_view text, const std::vector<unsigned>& measured,
                                  std::size_t all);
 
-/// How likely a right answer is: 0.5 + (0.5 - lapse) Phi((level - threshold) / spread).
+/// Returns the chance of a right answer: 0.5 + (0.5 - lapse) Phi((level - threshold) / spread).
 double right_at(const observer_settings& o, double threshold_dbfs, double level_dbfs);
 
-/// Answers trials in the order in which they are asked; one that resumes must be asked them all again.
+/// Answers trials in order. One that resumes must answer all of them again.
 class observer {
 public:
     observer(observer_settings o, const calibration_settings& s);
@@ -39,7 +39,7 @@ public:
     calibration_answer answer(const calibration_trial& t);
 
 private:
-    double threshold_of(unsigned tactor) const;
+    double find_threshold(unsigned tactor) const;
     calibration_answer adjust(const calibration_trial& t);
 
     observer_settings o_;

@@ -17,13 +17,8 @@ constexpr double lead_s = 0.5; // from the answer before to interval 1, so that 
 constexpr int most_attempts = 5;
 constexpr const char* go_on = "what was answered is kept; --resume goes on";
 
-// What each of them stands for is in the order of the keys.
+// In the order of adjust_screen()'s choices.
 constexpr const char* level_keys = "-<>+an";
-
-page_screen choose_screen()
-{
-    return {.name = "question", .question = "Which one vibrated?", .choices = {"", ""}, .keys = "12"};
-}
 
 page_screen adjust_screen()
 {
@@ -51,8 +46,8 @@ person::person(const alsa_options& device, const session::stream_options& o, con
     render_.sl_db = 0.0;
 }
 
-// The level in dBFS is what the tactor gets, as with --sl: no gain is added. So it is a threshold, and 0 dB
-// above it.
+// Sets the level as the tactor's threshold and plays 0 dB above it, because a sensation level (--sl) adds no
+// gain: the tactor gets this level in dBFS.
 score person::trial_score(unsigned tactor, double level_dbfs, double onset_s, double total_s) const
 {
     array a = environment_.tactors;
@@ -74,7 +69,7 @@ score person::trial_score(unsigned tactor, double level_dbfs, double onset_s, do
     return score(a, std::move(p), render_);
 }
 
-// One that is cut off would tell which interval it was.
+// A stimulus that a limit cuts off would give away its interval.
 void person::make_room(const score& s)
 {
     const double wait_s = stage_.room_s(s, 0.0);
@@ -132,7 +127,7 @@ void person::on_page(page_screen s)
         page_->show(std::move(s));
 }
 
-// Before a page the terminal is the experimenter's, who has Ctrl-C.
+// With a page the terminal is the experimenter's, who has Ctrl-C.
 std::optional<std::string> person::said()
 {
     if (!page_)
@@ -185,7 +180,7 @@ calibration_answer person::choose(const calibration_trial& t)
     show_until(2); // where the process was too slow to look
     noise.reset();
     keys_.forget();
-    on_page(choose_screen());
+    on_page({.name = "question", .question = "Which one vibrated?", .choices = {"", ""}, .keys = "12"});
     session::show(" which? ");
     for (;;) {
         const std::string answered = wait_for_answer(t);
@@ -203,7 +198,7 @@ calibration_answer person::choose(const calibration_trial& t)
     }
 }
 
-// True where the keys say that this series is over.
+// Returns true if the keys end this series.
 bool person::change_level(const std::string& keys, const calibration_trial& t, double& level_dbfs,
                           std::optional<calibration_answer>& out) const
 {

@@ -61,7 +61,7 @@ std::string calibration_text(const calibration_settings& s, const std::vector<ta
 {
     const bool stairs = s.method == calibration_method::staircase;
     std::string t = fmt::format("\n[calibration]\nparticipant = {}\nmethod = \"{}\"\n",
-                                detail::toml_string(s.participant), stairs ? "staircase" : "adjustment");
+                                detail::toml_string(s.participant), to_string(s.method));
     if (stairs)
         t += fmt::format("rule = \"{}\"\n", rule_name(s));
     t += fmt::format("carrier_hz = {}\ninterval_s = {}\n", s.carrier_hz, s.interval_s);
@@ -96,21 +96,20 @@ void write_new_output(const std::filesystem::path& file, const std::string& text
 
 void check_finished(const std::filesystem::path& file, const calibration_settings& s)
 {
-    read_file(file); // an error of its own for what is no file
+    read_file(file); // refuses what is no file
     const auto said = load_setup(file).calibration;
-    const bool staircase = s.method == calibration_method::staircase;
     std::vector<unsigned> tactors;
     if (said)
         for (const calibrated_tactor& t : said->tactors)
             tactors.push_back(t.tactor);
-    if (!said || of_others(*said, s) || said->method != (staircase ? "staircase" : "adjustment") ||
+    if (!said || is_foreign(*said, s) || said->method != to_string(s.method) ||
         said->carrier_hz != s.carrier_hz || said->interval_s != s.interval_s || said->seed != s.seed ||
         said->date != s.date || tactors != s.tactors)
         throw error(error_kind::bad_input, file.string(), "it is not what this session came to",
                     "choose another name: it is not overwritten");
 }
 
-bool of_others(const calibration_origin& earlier, const calibration_settings& s)
+bool is_foreign(const calibration_origin& earlier, const calibration_settings& s)
 {
     return earlier.participant != s.participant || earlier.simulated == s.simulate.empty();
 }
@@ -118,10 +117,10 @@ bool of_others(const calibration_origin& earlier, const calibration_settings& s)
 array with_thresholds(array a, const std::optional<calibration_origin>& earlier,
                       const calibration_settings& s, const std::vector<tactor_threshold>& thresholds)
 {
-    const bool foreign = earlier && of_others(*earlier, s);
+    const bool foreign = earlier && is_foreign(*earlier, s);
     const bool goes_on = earlier && !foreign;
     const bool elsewhere = goes_on && earlier->carrier_hz != s.carrier_hz;
-    // [calibration] is this one's now: whose thresholds these are, and at which carrier one alone is.
+    // [calibration] is about this session now: its participant, and the carrier of a single threshold.
     for (tactor_spec& t : a.tactors) {
         if (foreign) {
             t.threshold_dbfs.reset();
@@ -161,10 +160,10 @@ std::vector<doubtful_threshold> find_doubtful(const array& a, const calibration_
     const double median = find_median(felt).value_or(0.0);
     std::vector<doubtful_threshold> doubtful;
     for (unsigned i = 0; i < all.size(); ++i) {
-        const auto own = std::find_if(measured.begin(), measured.end(),
-                                      [i](const tactor_threshold& t) { return t.tactor == i; });
         if (!all[i])
             continue;
+        const auto own = std::find_if(measured.begin(), measured.end(),
+                                      [i](const tactor_threshold& t) { return t.tactor == i; });
         if (const double above = *all[i] - median; above > most_above_median_db)
             doubtful.push_back(
                 {i, fmt::format("it is {:.1f} dB above the median of the array's ({:.1f} dBFS)", above,

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// What a calibration comes to: an array file with its thresholds.
+/// The result of a calibration: an array file with its thresholds.
 #pragma once
 
 #include <filesystem>
@@ -18,27 +18,26 @@ namespace tactor::study {
 
 using detail::array_text;
 
-/// The tables [calibration] and [[calibration.tactor]].
+/// Returns the tables [calibration] and [[calibration.tactor]].
 std::string calibration_text(const calibration_settings& s, const std::vector<tactor_threshold>& thresholds);
 
-/// Whether a new file can be made there; what is written for that does not stay.
-/// \throws error: bad_input for a file that is there already or a folder that is not, runtime where the
-/// system
-///         refuses.
+/// Checks that a new file can be made there; leaves nothing behind.
+/// \throws error: bad_input for a file that is there already or a folder that is not, runtime for what the
+///         system refuses.
 void check_new_output(const std::filesystem::path& file);
 
-/// Whether an array file is what a session came to. \throws error (bad_input) with the file's name.
+/// Checks that an array file is the result of a session. \throws error (bad_input) with the file's name.
 void check_finished(const std::filesystem::path& file, const calibration_settings& s);
 
 /// Writes it whole or not at all. Throws as above.
 void write_new_output(const std::filesystem::path& file, const std::string& text);
 
-/// Whether an earlier calibration is somebody else's, or only one of them was simulated.
-bool of_others(const calibration_origin& earlier, const calibration_settings& s);
+/// Returns true if an earlier calibration is somebody else's, or only one of the two was simulated.
+bool is_foreign(const calibration_origin& earlier, const calibration_settings& s);
 
-/// The array with the thresholds measured. What the same participant's earlier calibration found at other
-/// carriers stays, in lists by frequency; what others' found goes, of all tactors; what else a tactor had
-/// that is measured here gives way. Of a tactor that was not felt there is none at this carrier.
+/// Returns the array with the measured thresholds. Thresholds of the same participant at other carriers stay,
+/// in lists by frequency; those of others go, at all tactors; a measured tactor loses any other threshold
+/// that it had. A tactor that was not felt has none at this carrier.
 array with_thresholds(array a, const std::optional<calibration_origin>& earlier,
                       const calibration_settings& s, const std::vector<tactor_threshold>& thresholds);
 

@@ -17,15 +17,9 @@ constexpr std::size_t most_staircases = 2;
 constexpr double check_db = 6.0; // above and below the threshold
 constexpr double halves_may_differ_db = 2.0;
 
-// Steps of 0.1 dB add up to what people would write.
-double whole_micro_db(double v)
-{
-    return std::round(v * 1e6) / 1e6;
-}
-
 } // namespace
 
-reversal_mean mean_of(std::span<const double> reversals_dbfs, std::size_t counted)
+reversal_mean average_reversals(std::span<const double> reversals_dbfs, std::size_t counted)
 {
     const std::span<const double> v = reversals_dbfs.last(counted);
     reversal_mean m{mean(v)};
@@ -53,8 +47,8 @@ bool staircase::answer(bool right)
     return turned;
 }
 
-// Steps down at each right answer until the first reversal. Three for a step would take so many trials that
-// a lapse on the way is likely; it would end the large steps far above the threshold.
+// Steps down at each right answer until the first reversal. Three answers a step would need so many trials
+// that a lapse on the way is likely, which would end the large steps far above the threshold.
 bool staircase::step(bool right)
 {
     const unsigned for_down = run_.reversals.empty() ? 1 : o_.right_for_down;
@@ -70,7 +64,8 @@ bool staircase::step(bool right)
 
 void staircase::go_to(double level_dbfs)
 {
-    level_ = std::clamp(whole_micro_db(level_dbfs), floor_dbfs, o_.ceiling_dbfs);
+    const double rounded = std::round(level_dbfs * 1e6) / 1e6; // steps of 0.1 dB add up to decimal numbers
+    level_ = std::clamp(rounded, floor_dbfs, o_.ceiling_dbfs);
 }
 
 // A step that the ceiling blocks has a direction all the same.
@@ -109,45 +104,32 @@ void staircase::settle()
     // Two more at a time, so that the number asked for and this one are both even or both odd.
     if ((all.size() - o_.reversals) % 2 != 0)
         return;
-    const reversal_mean m = mean_of(all, counted);
+    const reversal_mean m = average_reversals(all, counted);
     if (m.halves_db > halves_may_differ_db && all.size() + 2 <= most_reversals)
         return;
     run_.threshold = m;
     go_to(m.mean_dbfs + check_db);
 }
 
+// Below the threshold half of all guesses are right. Somebody who is right there more often feels it: a lapse
+// held the staircase above, and it runs once more.
 void staircase::check(bool right)
 {
-    if (run_.above.given < check_count)
-        check_above(right);
-    else
-        check_below(right);
-}
-
-void staircase::check_above(bool right)
-{
-    run_.above.right += right ? 1 : 0;
-    if (++run_.above.given < check_count)
+    const bool above = run_.above.given < check_count;
+    check_trials& trials = above ? run_.above : run_.below;
+    trials.right += right ? 1 : 0;
+    if (++trials.given < check_count)
         return;
-    if (run_.above.right < enough)
-        end_ = staircase_end::not_felt;
-    else
+    if (above && trials.right >= enough) {
         go_to(run_.threshold->mean_dbfs - check_db);
-}
-
-// Below, guesses are right half the time: who is always right there feels it, and a lapse held the staircase
-// above.
-void staircase::check_below(bool right)
-{
-    run_.below.right += right ? 1 : 0;
-    if (++run_.below.given < check_count)
-        return;
-    if (run_.below.right < too_many_below || staircases_ == most_staircases) {
+    } else if (above) {
+        end_ = staircase_end::not_felt;
+    } else if (trials.right < too_many_below || staircases_ == most_staircases) {
         end_ = staircase_end::felt;
-        return;
+    } else {
+        run_ = {};
+        ++staircases_;
     }
-    run_ = {};
-    ++staircases_;
 }
 
 } // namespace tactor::study

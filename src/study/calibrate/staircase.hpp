@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// One tactor's adaptive staircase (Levitt 1971), as a pure machine: a level out, an answer in.
+/// The adaptive staircase of a tactor (Levitt 1971), as a pure machine: a level out, an answer in.
 #pragma once
 
 #include <cstddef>
@@ -10,13 +10,13 @@
 
 namespace tactor::study {
 
-/// Below this nothing is left of a sample of 24 bits.
+/// Lowest level: below it nothing is left of a sample of 24 bits.
 inline constexpr double floor_dbfs = -144.0;
-/// What a rule may reach before its threshold is taken as it is.
+/// Reversals after which the threshold stands as it is.
 inline constexpr std::size_t most_reversals = 24;
 
-/// Check trials above the threshold, and below it. So many right ones below say that it is too high; of
-/// guesses, 11 in 1024 series are.
+/// Check trials above the threshold, and as many below it; and right ones below it that show that it is too
+/// high. Guesses reach that in 11 of 1024 series.
 inline constexpr std::size_t check_count = 10;
 inline constexpr std::size_t too_many_below = 9;
 
@@ -35,13 +35,14 @@ enum class staircase_end {
     below_range, ///< right at floor_dbfs: by something else than what the skin feels
 };
 
-/// Mean and standard deviation (n - 1) of what counts of the reversals, an even number of the last ones.
+/// Mean and standard deviation (n - 1) of the reversals that count, an even number of the last ones.
 struct reversal_mean {
     double mean_dbfs = 0.0;
     double sd_db = 0.0;
     double halves_db = 0.0; ///< how far the means of the halves are apart
 };
-reversal_mean mean_of(std::span<const double> reversals_dbfs, std::size_t counted);
+/// Averages the last `counted` reversals.
+reversal_mean average_reversals(std::span<const double> reversals_dbfs, std::size_t counted);
 
 /// A tactor's measurement: a staircase, check trials above its threshold, check trials below it. Where the
 /// trials below are right the staircase runs once more, from there.
@@ -49,22 +50,22 @@ class staircase {
 public:
     explicit staircase(staircase_options o);
 
-    /// Of the next trial; check trials included.
+    /// Returns the level of the next trial; check trials included.
     double level_dbfs() const noexcept { return level_; }
     std::optional<staircase_end> end() const noexcept { return end_; }
-    /// The answer to the trial at level_dbfs(). True where it turned the direction.
+    /// Takes the answer to the trial at level_dbfs(). Returns true if it turned the direction.
     bool answer(bool right);
 
     /// Trials of both staircases, and their check trials.
     std::size_t trials() const noexcept { return trials_; }
     /// Staircases begun: 1 or 2.
     std::size_t staircases() const noexcept { return staircases_; }
-    /// Reversals of the last staircase, as all that follows.
+    /// Reversals of the last staircase. The functions below are about that one, too.
     const std::vector<double>& reversals_dbfs() const noexcept { return run_.reversals; }
-    /// Right answers to the check trials above and below the threshold; nothing where there were none.
+    /// Right answers to the check trials above and below the threshold; nothing before there were any.
     std::optional<std::size_t> check_right() const noexcept { return run_.above.right_answers(); }
     std::optional<std::size_t> check_below_right() const noexcept { return run_.below.right_answers(); }
-    /// Where the reversals say it is; of what was not felt too, if it came so far.
+    /// Threshold by the reversals; also of a tactor that was not felt, if it came so far.
     std::optional<reversal_mean> threshold() const noexcept { return run_.threshold; }
 
 private:
@@ -94,8 +95,6 @@ private:
     void note_at_floor(bool right);
     void settle();
     void check(bool right);
-    void check_above(bool right);
-    void check_below(bool right);
     void go_to(double level_dbfs);
 
     staircase_options o_;

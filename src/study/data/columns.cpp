@@ -8,7 +8,7 @@
 namespace tactor::study {
 namespace {
 
-constexpr unsigned most = 1000000000;
+constexpr unsigned most_count = 1000000000;
 constexpr std::size_t sha256_digits = 64;
 
 std::string written(const std::string& text)
@@ -34,7 +34,7 @@ std::string written(const std::optional<T>& v)
     return v ? written(*v) : "n/a";
 }
 
-// Cells of a column, read by the type of the member that they go to.
+// Reads a cell of a column by the type of the member that it goes to.
 struct cell_reader {
     const text_table& table;
     std::size_t row;
@@ -44,8 +44,11 @@ struct cell_reader {
     void into(bool& v) const { v = table.truth(row, column.name); }
     void into(std::optional<double>& v) const { v = table.number(row, column.name); }
     void into(double& v) const { v = table.number(row, column.name).value_or(v); }
-    void into(std::optional<unsigned>& v) const { v = table.whole(row, column.name, column.least, most); }
-    void into(unsigned& v) const { v = table.whole(row, column.name, column.least, most).value_or(v); }
+    void into(std::optional<unsigned>& v) const
+    {
+        v = table.whole(row, column.name, column.least, most_count);
+    }
+    void into(unsigned& v) const { v = table.whole(row, column.name, column.least, most_count).value_or(v); }
     void into(std::optional<std::uint64_t>& v) const
     {
         const std::optional<double> frame = table.number(row, column.name);
@@ -81,7 +84,7 @@ const std::array<trial_column, 17> trial_columns{{
     {"plan_2", "SHA-256 of the second stimulus' plan", "", &trial_row::plan_2},
 }};
 
-named_cells cells_of(const trial_row& r)
+named_cells make_cells(const trial_row& r)
 {
     named_cells cells;
     for (const trial_column& c : trial_columns)

@@ -52,7 +52,7 @@ struct trial_column {
 extern const std::array<trial_column, 17> trial_columns;
 
 /// Returns the cells of a row, in the order of a new table.
-named_cells cells_of(const trial_row& r);
+named_cells make_cells(const trial_row& r);
 
 /// Reads all columns of all lines. \throws error (bad_input) with file and line.
 std::vector<trial_row> read_rows(const text_table& t);
@@ -60,7 +60,7 @@ std::vector<trial_row> read_rows(const text_table& t);
 /// Tests whether a crash cut the table's last line within its last cell, a plan.
 bool is_cut_in_plan(const text_table& t);
 
-/// Reads a table of trials; a last line that a crash cut off is none of its rows. \throws error (bad_input)
+/// Reads a table of trials; a last line that a crash cut off is no row of it. \throws error (bad_input)
 /// with file and line.
 text_table read_trials(const std::filesystem::path& table);
 

@@ -18,16 +18,16 @@ namespace fs = std::filesystem;
 
 constexpr std::string_view prefix = "sub-";
 
-// The code of "sub-CODE", which becomes a part of paths; empty where it is none.
-std::string_view code_of(std::string_view id)
+// Returns the code of "sub-CODE", which becomes a part of paths; empty if it is none.
+std::string_view read_code(std::string_view id)
 {
     if (!id.starts_with(prefix))
         return {};
     id.remove_prefix(prefix.size());
-    return file_name_of(id) == id ? id : std::string_view{};
+    return make_file_name(id) == id ? id : std::string_view{};
 }
 
-// Data of somebody who is not in the list would be left out without a word.
+// Refuses data of somebody who is not in the list: the analysis would pass over them in silence.
 void refuse_strangers(const fs::path& folder, const std::vector<std::string>& known)
 {
     for (const fs::path& path : list_folder(folder)) {
@@ -84,8 +84,8 @@ std::vector<left_out> excluded(const std::vector<std::string>& known,
     return all;
 }
 
-std::size_t place_of(const text_table& t, std::size_t row, std::string_view column,
-                     const std::vector<std::string>& known)
+std::size_t find_place(const text_table& t, std::size_t row, std::string_view column,
+                       const std::vector<std::string>& known)
 {
     const std::string_view name = t.need(row, column);
     const auto at = std::find(known.begin(), known.end(), name);
@@ -95,7 +95,7 @@ std::size_t place_of(const text_table& t, std::size_t row, std::string_view colu
     return static_cast<std::size_t>(at - known.begin());
 }
 
-unsigned rating_of(const text_table& t, std::size_t row, unsigned scale)
+unsigned read_rating(const text_table& t, std::size_t row, unsigned scale)
 {
     const auto response = t.whole(row, "response", 1, scale);
     const auto rating = t.whole(row, "rating", 1, scale);
@@ -109,31 +109,26 @@ unsigned rating_of(const text_table& t, std::size_t row, unsigned scale)
 trial read_trial(const text_table& t, std::size_t row, const run_outline& run)
 {
     trial r;
-    r.motion = place_of(t, row, "motion", run.motions);
-    r.method_1 = place_of(t, row, "method_1", run.methods);
+    r.motion = find_place(t, row, "motion", run.motions);
+    r.method_1 = find_place(t, row, "method_1", run.methods);
     r.response_time_s = t.number(row, "response_time");
-    switch (run.task) {
-    case task_kind::choose: {
-        r.method_2 = place_of(t, row, "method_2", run.methods);
+    if (run.task == task_kind::rate) {
+        r.response = read_rating(t, row, run.scale);
+    } else if (run.task == task_kind::identify) {
+        r.response = static_cast<unsigned>(find_place(t, row, "response", run.motions));
+    } else {
+        r.method_2 = find_place(t, row, "method_2", run.methods);
         if (r.method_1 == r.method_2)
             t.refuse(row, "both stimuli are of one method", "choose compares two");
         const auto response = t.whole(row, "response", 1, 2);
         if (!response)
             t.refuse(row, "there is no response", "a trial that counts has one");
         r.response = *response;
-        break;
-    }
-    case task_kind::rate:
-        r.response = rating_of(t, row, run.scale);
-        break;
-    case task_kind::identify:
-        r.response = static_cast<unsigned>(place_of(t, row, "response", run.motions));
-        break;
     }
     return r;
 }
 
-// A session that lacks trials can go on; one that has them all never needs to.
+// A session that lacks trials can go on; one that has them all never needs to go on.
 run_data read_whole_run(const fs::path& file, const run_outline& run)
 {
     const text_table t(file, last_line::may_be_cut);
@@ -151,9 +146,8 @@ public:
 
     void add(const std::string& code)
     {
-        const std::string sub = std::string(prefix) + code;
-        const fs::path file = fs::path("sourcedata") / sub / "session.json";
-        const fs::path beh = fs::path(sub) / "beh";
+        const fs::path file = source_path(code) / "session.json";
+        const fs::path beh = fs::path(std::string(prefix) + code) / "beh";
         const bool has_tables = is_there(folder_, beh);
         if (!is_there(folder_, file) && !has_tables) {
             set_.participants.push_back(code); // in the list, but not here yet
@@ -163,11 +157,11 @@ public:
         take_session(code, read_session(folder_ / file));
         std::vector<run_data> runs;
         for (const run_outline& run : set_.experiment.runs) {
-            const fs::path table = beh / fmt::format("{}_task-{}_beh.tsv", sub, run.file_name);
+            const fs::path table = table_path(code, run);
             runs.push_back(is_there(folder_, table) ? read_whole_run(folder_ / table, run) : run_data{});
         }
         if (has_tables)
-            refuse_unknown_tables(folder_ / beh, sub);
+            refuse_unknown_tables(folder_ / beh, code);
         set_.participants.push_back(code);
         set_.data.push_back(std::move(runs));
     }
@@ -180,7 +174,7 @@ public:
         for (std::vector<run_data>& runs : set_.data)
             runs.resize(set_.experiment.runs.size());
         for (const run_outline& run : set_.experiment.runs)
-            check_description(folder_ / fmt::format("task-{}_beh.json", run.file_name), run);
+            check_description(folder_ / description_path(run), run);
         return std::move(set_);
     }
 
@@ -208,16 +202,16 @@ private:
                 first_, code));
     }
 
-    // A table that no run of the experiment has would be left out without a word.
-    void refuse_unknown_tables(const fs::path& beh, const std::string& sub) const
+    // Refuses a table of no run: the analysis would pass over it in silence.
+    void refuse_unknown_tables(const fs::path& beh, const std::string& code) const
     {
         for (const fs::path& path : list_folder(beh)) {
             const std::string name = path.filename().string();
-            const auto of_run = [&](const run_outline& r) {
-                return name == fmt::format("{}_task-{}_beh.tsv", sub, r.file_name);
+            const auto is_its_table = [&](const run_outline& r) {
+                return path.filename() == table_path(code, r).filename();
             };
             if (!name.starts_with('.') && name.ends_with("_beh.tsv") &&
-                std::none_of(set_.experiment.runs.begin(), set_.experiment.runs.end(), of_run))
+                std::none_of(set_.experiment.runs.begin(), set_.experiment.runs.end(), is_its_table))
                 throw error(error_kind::bad_input, path.string(), "it is of no run of the experiment",
                             "move it away");
         }
@@ -236,7 +230,7 @@ std::vector<std::string> read_participants(const text_table& t)
     t.need_column("participant_id");
     std::vector<std::string> all;
     for (std::size_t i = 0; i < t.rows(); ++i) {
-        const std::string_view code = code_of(t.need(i, "participant_id"));
+        const std::string_view code = read_code(t.need(i, "participant_id"));
         if (code.empty())
             t.refuse(i, "this is no participant_id", "sub- and letters and digits");
         if (std::find(all.begin(), all.end(), code) != all.end())

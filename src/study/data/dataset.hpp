@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// A study's folder (BIDS) as values. What is read, and nothing else:
+/// A study's folder (BIDS) as values. The analysis reads these files and nothing else:
 ///
 ///   participants.tsv                          participant_id: who takes part, in this order
 ///   sub-CODE/beh/sub-CODE_task-NAME_beh.tsv   the trials; columns trial attempt motion method_1 method_2
@@ -53,7 +53,7 @@ struct dataset {
     std::vector<std::string> warnings = {};
 };
 
-/// Who is looked at; codes with or without sub-.
+/// Participants to analyse; codes with or without sub-.
 struct selection {
     std::vector<std::string> only = {}; ///< empty: all
     std::vector<std::string> without = {};

@@ -17,13 +17,29 @@ std::string_view to_string(task_kind t) noexcept
     return t == task_kind::choose ? "choose" : t == task_kind::rate ? "rate" : "identify";
 }
 
-std::string file_name_of(std::string_view run)
+std::string make_file_name(std::string_view run)
 {
     std::string name;
     for (const char c : run)
         if ((c >= '0' && c <= '9') || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'))
             name += c;
     return name;
+}
+
+std::filesystem::path source_path(std::string_view code)
+{
+    return std::filesystem::path("sourcedata") / fmt::format("sub-{}", code);
+}
+
+std::filesystem::path table_path(std::string_view code, const run_outline& run)
+{
+    return std::filesystem::path(fmt::format("sub-{}", code)) / "beh" /
+           fmt::format("sub-{}_task-{}_beh.tsv", code, run.file_name);
+}
+
+std::filesystem::path description_path(const run_outline& run)
+{
+    return fmt::format("task-{}_beh.json", run.file_name);
 }
 
 session_data read_session(const std::filesystem::path& file)
@@ -45,7 +61,7 @@ void check_description(const std::filesystem::path& file, const run_outline& run
         return;
     const nlohmann::ordered_json j = files::read_object(read_file(file), file.string());
     const auto at = j.find("TaskName");
-    if (at != j.end() && (!at->is_string() || file_name_of(at->get<std::string>()) != run.file_name))
+    if (at != j.end() && (!at->is_string() || make_file_name(at->get<std::string>()) != run.file_name))
         throw error(error_kind::bad_input, file.string(), fmt::format("its TaskName is not \"{}\"", run.name),
                     "the name of the run, or its letters and digits");
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// An experiment as the analysis needs it: who and what there is, in which order.
+/// An experiment as the analysis needs it: its runs, motions and methods in their order.
 #pragma once
 
 #include <filesystem>
@@ -32,8 +32,17 @@ struct experiment_outline {
     friend bool operator==(const experiment_outline&, const experiment_outline&) = default;
 };
 
-/// Letters and digits of a run's name (BIDS allows no others in a task's).
-std::string file_name_of(std::string_view run);
+/// Returns the letters and digits of a run's name (BIDS allows no others in a task's).
+std::string make_file_name(std::string_view run);
+
+// Paths in a study's folder; `code` is the participant's, without sub-.
+
+/// Returns sourcedata/sub-CODE.
+std::filesystem::path source_path(std::string_view code);
+/// Returns the path of a run's trials: sub-CODE/beh/sub-CODE_task-NAME_beh.tsv.
+std::filesystem::path table_path(std::string_view code, const run_outline& run);
+/// Returns the path of what describes a run's tables: task-NAME_beh.json.
+std::filesystem::path description_path(const run_outline& run);
 
 struct session_data {
     bool simulated = false;
@@ -41,11 +50,11 @@ struct session_data {
     experiment_outline experiment;
 };
 
-/// \throws error (bad_input) with file and, where it has one, line.
+/// Reads a session.json. \throws error (bad_input) with file and, where it has one, line.
 session_data read_session(const std::filesystem::path& file);
 
-/// The description of a run's table. \throws error (bad_input) where it is no JSON object, or describes
-/// another run.
+/// Checks the description of a run's table, if it is there. \throws error (bad_input) if it is no JSON object
+/// or describes another run.
 void check_description(const std::filesystem::path& file, const run_outline& run);
 
 } // namespace tactor::study

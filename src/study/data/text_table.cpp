@@ -64,7 +64,7 @@ bool is_there(const std::filesystem::path& study, const std::filesystem::path& b
         throw error(error_kind::bad_input, at.string(), why,
                     "mend it, or leave its participant out with --exclude");
     };
-    const auto kind_of = [&refuse](const fs::path& p, auto ask) {
+    const auto look = [&refuse](const fs::path& p, auto ask) {
         std::error_code failed;
         const fs::file_status s = ask(p, failed);
         if (failed && s.type() != fs::file_type::not_found)
@@ -73,12 +73,12 @@ bool is_there(const std::filesystem::path& study, const std::filesystem::path& b
     };
     using ask = fs::file_status (*)(const fs::path&, std::error_code&);
     for (const fs::path& part : below) {
-        if (at != study && kind_of(at, static_cast<ask>(fs::status)) != fs::file_type::directory)
+        if (at != study && look(at, static_cast<ask>(fs::status)) != fs::file_type::directory)
             refuse("it is no folder");
         at /= part;
-        if (kind_of(at, static_cast<ask>(fs::symlink_status)) == fs::file_type::not_found)
+        if (look(at, static_cast<ask>(fs::symlink_status)) == fs::file_type::not_found)
             return false;
-        if (kind_of(at, static_cast<ask>(fs::status)) == fs::file_type::not_found)
+        if (look(at, static_cast<ask>(fs::status)) == fs::file_type::not_found)
             refuse("it is a link to nothing");
     }
     return true;
@@ -94,6 +94,14 @@ std::vector<std::filesystem::path> list_folder(const std::filesystem::path& fold
         throw error(error_kind::bad_input, folder.string(), failed.message(),
                     "it must be readable as a whole");
     return all;
+}
+
+std::string header_line(const named_cells& cells)
+{
+    std::string header;
+    for (const auto& [column, text] : cells)
+        header += fmt::format("{}{}", header.empty() ? "" : "\t", column);
+    return header + "\n";
 }
 
 text_table::text_table(const std::filesystem::path& file, last_line end)

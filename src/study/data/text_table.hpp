@@ -48,20 +48,23 @@ bool is_plain_text(std::string_view text) noexcept;
 /// A trial is a line of some 200 bytes: more than this is no table of ours.
 inline constexpr std::size_t most_bytes = std::size_t{64} << 20;
 
-/// The bytes of a regular file; a pipe or a device in a study's folder is refused, not waited for.
-/// \throws error (bad_input) naming it.
+/// Returns the bytes of a regular file; refuses a pipe or a device in a study's folder without waiting for
+/// it. \throws error (bad_input) naming it.
 std::string read_file(const std::filesystem::path& file, std::size_t most = most_bytes);
 
-/// Whether something of a study is there. \throws error (bad_input) for what is there and cannot be reached:
-/// a link to nothing, a folder that may not be searched, a part of the path that is no folder. It would be
-/// taken for data that never were.
+/// Returns true if something of a study is there. \throws error (bad_input) for what is there and cannot be
+/// reached, because it would count as data that never were: a link to nothing, a folder that may not be
+/// searched, a part of the path that is no folder.
 bool is_there(const std::filesystem::path& study, const std::filesystem::path& below);
 
-/// What is in a folder, in no order. \throws error (bad_input) where it cannot be read.
+/// Lists a folder, in no order. \throws error (bad_input) if it cannot be read.
 std::vector<std::filesystem::path> list_folder(const std::filesystem::path& folder);
 
 /// Cells by the names of their columns.
 using named_cells = std::vector<std::pair<std::string_view, std::string>>;
+
+/// Returns the first line of a new table with these columns.
+std::string header_line(const named_cells& cells);
 
 /// Says whether a table's last line may be one that a crash cut off.
 enum class last_line { whole, may_be_cut };

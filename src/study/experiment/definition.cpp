@@ -2,6 +2,7 @@
 #include "study/experiment/definition.hpp"
 
 #include <algorithm>
+#include <array>
 #include <utility>
 
 #include <fmt/format.h>
@@ -13,7 +14,6 @@
 #include "files/toml_reader.hpp"
 
 namespace tactor::study {
-
 namespace {
 
 namespace fs = std::filesystem;
@@ -22,11 +22,11 @@ using detail::toml_table;
 constexpr std::size_t most_bytes_of_text = std::size_t{1} << 20;
 
 struct extent {
-    const fs::path* folder = nullptr; ///< of the files that the array and the motions name; none: left out
-    bool outline_only = false;        ///< of what others wrote: all else is passed over
+    const fs::path* folder = nullptr; ///< of files that the array and the motions name; null: leave them out
+    bool outline_only = false;        ///< pass over all else, as other programs may write it
 };
 
-// A name among the files beside the definition, unless it is a preset's.
+// Returns a preset's name, or the file beside the definition.
 std::string array_in(const toml_table& t, const fs::path& folder)
 {
     std::string text = *t.text("array");
@@ -97,7 +97,7 @@ masking_definition read_masking(const toml_table& root)
     m.noise = noise == "white" ? noise_kind::white : noise == "pink" ? noise_kind::pink : noise_kind::none;
     m.level_dbfs = t->number("level_dbfs", detail::bounds_of::masker_dbfs).value_or(m.level_dbfs);
     if (m.noise != noise_kind::none) {
-        const double most = greatest_noise_dbfs(noise_of(m, {}).color);
+        const double most = greatest_noise_dbfs(noise_options(m, {}).color);
         if (m.level_dbfs > most)
             t->fail("level_dbfs",
                     fmt::format("level_dbfs is {}, and the peaks of {} noise are at full scale from {} on",
@@ -172,6 +172,44 @@ experiment_definition definition_in(std::string_view toml, const std::string& na
     return d;
 }
 
+constexpr std::array english{
+    page_word{"language", "en"},
+    page_word{"agree", "Do you agree?"},
+    page_word{"yes", "Yes"},
+    page_word{"no", "No"},
+    page_word{"walk", "Each place vibrates once, in turn."},
+    page_word{"felt", "Did you feel it?"},
+    page_word{"again", "Once more"},
+    page_word{"back", "The one before"},
+    page_word{"begin", "Begin"},
+    page_word{"practice", "Practice"},
+    page_word{"part", "Part"},
+    page_word{"target", "Watch how it moves."},
+    page_word{"stimulus", "Attend to your hand."},
+    page_word{"rest", "A break"},
+    page_word{"pause", "A pause"},
+    page_word{"wait", "One moment, please."},
+    page_word{"over", "That was all. Thank you."},
+    page_word{"elsewhere", "This session goes on in another window."},
+    page_word{"offline", "There is no connection. Please tell the experimenter."},
+    page_word{"full_screen", "Full screen"},
+    // On a terminal only.
+    page_word{"or", "or"},
+    page_word{"to", "to"},
+    page_word{"any_key_begins", "Any key begins."},
+    page_word{"any_key_ends", "Any key ends."},
+    page_word{"trial", "Trial"},
+    page_word{"repeated", "again"},
+    page_word{"later", "Once more, later."},
+    page_word{"no_answer", "That is no answer"},
+};
+
+std::size_t find_word(std::string_view key)
+{
+    const auto has_key = [&](const page_word& w) { return w.key == key; };
+    return static_cast<std::size_t>(std::find_if(english.begin(), english.end(), has_key) - english.begin());
+}
+
 } // namespace
 
 std::string_view to_string(noise_kind k) noexcept
@@ -228,12 +266,33 @@ experiment_definition load_definition(const std::string& name_or_file)
     return read_definition(text, name_or_file, fs::path(name_or_file).parent_path());
 }
 
-masking_options noise_of(const masking_definition& m, std::string seed)
+masking_options noise_options(const masking_definition& m, std::string seed)
 {
     return {.color = m.noise == noise_kind::pink ? noise_color::pink : noise_color::white,
             .level_dbfs = m.level_dbfs,
             .fade_s = m.fade_s,
             .seed = std::move(seed)};
+}
+
+std::span<const page_word> page_words_in_english()
+{
+    return english;
+}
+
+page_words::page_words()
+{
+    for (const page_word& w : english)
+        texts_.emplace_back(w.english);
+}
+
+const std::string& page_words::operator[](std::string_view key) const
+{
+    return texts_.at(find_word(key));
+}
+
+void page_words::set(std::string_view key, std::string text)
+{
+    texts_.at(find_word(key)) = std::move(text);
 }
 
 } // namespace tactor::study

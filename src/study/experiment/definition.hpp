@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -15,7 +16,6 @@
 #include <tactor/stroke.hpp>
 
 #include "study/data/outline.hpp"
-#include "study/experiment/page_words.hpp"
 #include "study/masking/masking_stream.hpp"
 
 namespace tactor::detail {
@@ -26,6 +26,28 @@ namespace tactor::study {
 
 enum class noise_kind { none, white, pink };
 std::string_view to_string(noise_kind k) noexcept;
+
+/// A text of the participant's page or terminal besides the definition's questions.
+struct page_word {
+    std::string_view key;
+    std::string_view english;
+};
+
+/// Returns all of them in English, for a definition that does not give them.
+std::span<const page_word> page_words_in_english();
+
+/// [page] of a definition: the words in the participant's language.
+class page_words {
+public:
+    page_words();
+
+    /// \pre `key` is one of page_words_in_english().
+    const std::string& operator[](std::string_view key) const;
+    void set(std::string_view key, std::string text);
+
+private:
+    std::vector<std::string> texts_; // in the same order
+};
 
 /// [masking]: noise from loudspeakers or headphones, so that nobody hears the array.
 struct masking_definition {
@@ -71,7 +93,7 @@ struct experiment_definition {
     double sl_db = 7.0;                     ///< above each tactor's threshold
     double gap_s = 1.0;                     ///< choose: from the first stimulus' end to the second's begin
     double rest_s = 0.0;                    ///< before each trial
-    std::optional<std::uint64_t> seed = {}; ///< none: seed_of(code)
+    std::optional<std::uint64_t> seed = {}; ///< none: default_seed(code)
     std::string consent = {};
     std::vector<std::string> authors = {};
     masking_definition masking = {};
@@ -89,24 +111,24 @@ struct experiment_definition {
 experiment_definition read_definition(std::string_view toml, const std::string& name,
                                       const std::filesystem::path& folder);
 
-/// Reads a text that was read once, as a session keeps it: without the array, and of the motions, whose files
-/// may be elsewhere by now, only the names. \throws error (bad_input).
+/// Reads the text that a session keeps: without the array, and with the names of the motions only, because
+/// their files may be elsewhere by now. \throws error (bad_input).
 experiment_definition read_design(std::string_view toml, const std::string& name);
 
-/// Reads only what the analysis needs, with the same bounds; passes over all else, as other programs may
-/// write it. \throws error (bad_input).
+/// Reads only what the analysis needs, with the same bounds; passes over all else, which other programs may
+/// write differently. \throws error (bad_input).
 experiment_outline read_outline(std::string_view toml, const std::string& name);
 
 /// Returns what the analysis needs of a definition.
 experiment_outline make_outline(const experiment_definition& d);
 
-/// The definitions that are built in: park2016.
+/// Lists the definitions that are built in: park2016.
 const std::vector<std::string>& shipped_experiments();
 
-/// The text of one. \throws error (bad_input) that lists them.
+/// Returns the text of a definition that is built in. \throws error (bad_input) that lists them.
 std::string_view shipped_experiment(std::string_view name);
 
-/// One that is built in, or a file. \throws error (bad_input).
+/// Loads a definition that is built in, or a file. \throws error (bad_input).
 experiment_definition load_definition(const std::string& name_or_file);
 
 /// Reads a text of one line that can stand in a table. \throws error (bad_input).
@@ -115,7 +137,7 @@ std::string name_in(const detail::toml_table& t, std::string_view key);
 /// Reads a list of texts, empty where there is none. \throws error (bad_input) for more than `most`.
 std::vector<std::string> texts_in(const detail::toml_table& t, std::string_view key, std::size_t most);
 
-/// Reads [[motion]]: a stroke from a preset, path data or a file, in the time that is asked for.
+/// Reads [[motion]]: a stroke from a preset, path data or a file, with its duration or speed.
 motion_definition read_motion(const detail::toml_table& t, const std::filesystem::path& folder);
 
 /// Reads [[method]]: options of a plan.
@@ -130,11 +152,11 @@ run_definition read_run_outline(const detail::toml_table& t, const experiment_de
 /// Returns the experiment that is built in, as it stands among the examples.
 std::string_view park2016_text() noexcept;
 
-/// A hint of the library with the keys of a definition where it names its fields, and without what a
-/// definition cannot say. What reads as a field no more is made no option of, either.
+/// Returns a hint of the library with a definition's keys in place of fields, without options that a
+/// definition cannot set.
 std::string in_definition_words(std::string_view hint);
 
-/// `m` must ask for one. The same seed gives the same noise.
-masking_options noise_of(const masking_definition& m, std::string seed);
+/// Returns the options of the noise that `m` asks for. The same seed gives the same noise.
+masking_options noise_options(const masking_definition& m, std::string seed);
 
 } // namespace tactor::study

@@ -8,26 +8,12 @@ namespace {
 
 using ordered = nlohmann::ordered_json;
 
-ordered path_json(const std::vector<point>& path)
-{
-    ordered all = ordered::array();
-    for (const point& p : path)
-        all.push_back({p.x_mm, p.y_mm});
-    return all;
-}
-
-ordered progress_json(const page_progress& w)
-{
-    return {
-        {"run", w.run}, {"runs", w.runs}, {"practice", w.practice}, {"trial", w.trial}, {"trials", w.trials}};
-}
-
 std::string message_text(const ordered& j)
 {
     return j.dump(-1, ' ', false, ordered::error_handler_t::replace);
 }
 
-// Of a whole number; 0 for anything else.
+// Returns a member that is a whole number; 0 for anything else.
 std::uint64_t whole_number(const ordered& j, const char* key)
 {
     const auto found = j.find(key);
@@ -46,9 +32,14 @@ std::string page_dialogue::state(std::int64_t now_ns) const
     if (!screen_.choices.empty())
         j["choices"] = screen_.choices;
     if (screen_.where)
-        j["progress"] = progress_json(*screen_.where);
+        j["progress"] = {{"run", screen_.where->run},
+                         {"runs", screen_.where->runs},
+                         {"practice", screen_.where->practice},
+                         {"trial", screen_.where->trial},
+                         {"trials", screen_.where->trials}};
     if (screen_.path.size() > 1)
-        j["path"] = path_json(screen_.path);
+        for (const point& p : screen_.path)
+            j["path"].push_back({p.x_mm, p.y_mm});
     if (screen_.lasts_s > 0.0) {
         j["lasts_s"] = screen_.lasts_s;
         j["passed_s"] = static_cast<double>(now_ns - since_ns_) * 1e-9;
@@ -86,7 +77,7 @@ page_dialogue::heard page_dialogue::hear(visitor from, std::string_view text, st
     if (choice == 0)
         return {.understood = false};
     if (theirs_ != from)
-        return h; // it has been told
+        return h; // the page knows that another one took its place
     if (!open_ || whole_number(said, "ask") != asked_ || choice > screen_.keys.size()) {
         h.replies.push_back({from, state(now_ns)});
         return h;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// What the participant's pages are sent, and which of their answers counts: a value, without a socket, a
-/// clock or a thread.
+/// The messages to the participant's pages, and the answers that count: a value, without a socket, a clock or
+/// a thread.
 #pragma once
 
 #include <cstdint>
@@ -16,7 +16,7 @@
 
 namespace tactor::study {
 
-/// Where in the session it is.
+/// Place in the session.
 struct page_progress {
     std::size_t run = 0; ///< from 1
     std::size_t runs = 0;
@@ -25,14 +25,13 @@ struct page_progress {
     std::size_t trials = 0;
 };
 
-/// What the participant sees. Nothing in it says by which method a motion is rendered.
+/// Content of the participant's screen. Nothing in it says by which method a motion is rendered.
 struct page_screen {
     std::string name = "wait"; ///< of consent, walk, introduce, target, stimulus, question, rest, pause, over
     std::string text = {};
     std::string question = {};
-    std::vector<std::string> choices = {}; ///< what can be answered; may be without words: their numbers are
-                                           ///< shown
-    std::string keys = {};                 ///< for each choice what it stands for
+    std::vector<std::string> choices = {}; ///< possible answers; the page shows the number of an empty one
+    std::string keys = {};                 ///< a key for each choice
     std::vector<point> path = {};          ///< the target, at equal parts of its time
     double lasts_s = 0.0;                  ///< of target and rest
     std::optional<page_progress> where = {};
@@ -48,10 +47,10 @@ public:
         bool last = false; ///< the connection ends behind it
     };
 
-    /// `facts` are what a page is told once, when it comes.
+    /// `facts` are sent to each page once, when it comes.
     explicit page_dialogue(nlohmann::ordered_json facts) : facts_(std::move(facts)) {}
 
-    /// A new screen; `now_ns` is of the clock that hear() has, too. What was asked before is not any more.
+    /// Shows a new screen and drops the open question; `now_ns` is from the same clock as in hear().
     std::vector<message> show(page_screen s, std::int64_t now_ns);
 
     struct heard {
@@ -59,14 +58,15 @@ public:
         std::vector<message> replies = {};
         std::optional<char> answer = {}; ///< the key of what was asked; each question has one at most
     };
-    /// A page says {"hello":true}, and is the participant's from then on; or {"ask":N,"answer":CHOICE}.
+    /// Takes a message. A page that says {"hello":true} is the participant's from then on;
+    /// {"ask":N,"answer":CHOICE} answers.
     heard hear(visitor from, std::string_view text, std::int64_t now_ns);
 
-    /// A key of a keypad, for who looks at the page: what a choice stands for, or its number.
+    /// Takes a key of a keypad for the page: that of a choice, or its number.
     heard press(char key, std::int64_t now_ns);
 
     void leave(visitor v);
-    /// Whether there is a page that shows what is shown.
+    /// Returns true if a page shows the screen.
     bool is_watched() const noexcept { return theirs_.has_value(); }
 
 private:

@@ -20,8 +20,8 @@ bool is_digit(char c)
     return c >= '0' && c <= '9';
 }
 
-// What a run's trials are of: for each motion each method, or each order of the two.
-std::vector<planned_trial> cells_of(const run_definition& r)
+// Lists the cells of a run: each motion by each method, or by each order of the two.
+std::vector<planned_trial> list_cells(const run_definition& r)
 {
     std::vector<planned_trial> cells;
     for (const std::size_t motion : r.motions) {
@@ -36,10 +36,10 @@ std::vector<planned_trial> cells_of(const run_definition& r)
     return cells;
 }
 
-// n different cells: motions as often as each other as far as n allows, and so the others. The cells of one
-// motion stand together.
-std::vector<planned_trial> some_of(const std::vector<planned_trial>& cells, std::size_t motions,
-                                   std::size_t n, random_numbers& r)
+// Draws n different cells, with each motion, and each method or order, equally often as far as n allows. In
+// `cells` those of one motion stand together.
+std::vector<planned_trial> draw_cells(const std::vector<planned_trial>& cells, std::size_t motions,
+                                      std::size_t n, random_numbers& r)
 {
     const std::size_t kinds = cells.size() / motions;
     std::vector<std::size_t> first(motions);
@@ -58,12 +58,12 @@ std::vector<planned_trial> some_of(const std::vector<planned_trial>& cells, std:
 
 std::vector<planned_trial> balanced(const run_definition& run, std::size_t n, random_numbers& r)
 {
-    const std::vector<planned_trial> cells = cells_of(run);
+    const std::vector<planned_trial> cells = list_cells(run);
     std::vector<planned_trial> all;
     while (all.size() + cells.size() <= n)
         all.insert(all.end(), cells.begin(), cells.end());
     if (all.size() < n) {
-        const auto rest = some_of(cells, run.motions.size(), n - all.size(), r);
+        const auto rest = draw_cells(cells, run.motions.size(), n - all.size(), r);
         all.insert(all.end(), rest.begin(), rest.end());
     }
     return all;
@@ -82,7 +82,7 @@ bool too_many_in_a_row(const std::vector<planned_trial>& trials)
 
 } // namespace
 
-std::uint64_t seed_of(std::string_view code)
+std::uint64_t default_seed(std::string_view code)
 {
     const detail::sha256_digest d = detail::sha256(code);
     return std::uint64_t{d[0]} << 24 | std::uint64_t{d[1]} << 16 | std::uint64_t{d[2]} << 8 | d[3];
@@ -91,7 +91,7 @@ std::uint64_t seed_of(std::string_view code)
 std::vector<std::size_t> run_order(std::size_t n, std::string_view code)
 {
     const std::size_t rows = n % 2 == 0 ? n : 2 * n;
-    std::size_t row = seed_of(code) % rows;
+    std::size_t row = default_seed(code) % rows;
     if (!code.empty() && is_digit(code.back())) {
         std::size_t digits = code.size();
         while (digits > 0 && is_digit(code[digits - 1]))

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// What a session with somebody does next, given what has happened: a value, without a device, a clock or a
+/// The next step of a session with a person, by what has happened: a value, without a device, a clock or a
 /// display.
 #pragma once
 
@@ -54,7 +54,7 @@ private:
     bool last_counts_ = false;
 };
 
-/// What is to be done.
+/// Kind of the next step.
 enum class step_kind {
     consent,   ///< the text is shown: agree()
     walk,      ///< a tactor is driven: felt()
@@ -77,10 +77,10 @@ struct session_step {
     friend bool operator==(const session_step&, const session_step&) = default;
 };
 
-/// What is said of a tactor of the walk.
+/// Answer about a tactor of the walk.
 enum class walk_answer { felt, not_felt, again, back };
 
-/// A run, where the session begins or goes on.
+/// A run at the place where the session begins or goes on.
 struct flow_run {
     unsigned practice = 0;  ///< trials that do not count
     unsigned practised = 0; ///< how many of them are over
@@ -88,12 +88,12 @@ struct flow_run {
     bool rest = false; ///< a break follows, unless it is the last
 };
 
-/// So many trials in a row that were void by themselves make a pause: somebody must look.
+/// Number of void trials in a row that makes a pause, so that somebody looks.
 inline constexpr unsigned most_void_in_row = 5;
 
 class session_flow {
 public:
-    /// Runs that are through are passed over. `tactors` are walked over first.
+    /// Passes over runs that are done. A walk over `tactors` comes first.
     session_flow(std::vector<flow_run> runs, bool consent, unsigned tactors);
 
     session_step next() const;
@@ -101,21 +101,21 @@ public:
     void agree(bool yes);
     void felt(walk_answer a);
     void go_on();
-    /// A trial is over, and on the disk.
+    /// Takes a trial that is over and on the disk.
     void took(bool is_void);
 
-    /// The experimenter: the last trial that counted does not, and comes again at the end of its run, whose
-    /// place in the order is `void_run` before this is called. False where none can be made void: there was
-    /// none in this session, it is void already, or the next run has begun.
+    /// Makes the last trial that counted void: it comes again at the end of its run, which is void_run()
+    /// before this call. Returns false if none can be made void: there was none in this session, it is void
+    /// already, or the next run has begun.
     bool void_last();
     std::size_t void_run() const noexcept { return last_run_; }
-    /// The experimenter: a pause comes before the next trial.
+    /// Puts a pause before the next trial.
     void pause() noexcept { paused_ = true; }
 
 private:
     enum class place { introduce, trials, rest };
 
-    /// To the next run with trials left, if the present one has none.
+    /// Goes to the next run with trials left, if the present one has none.
     void leave_done_run(bool rest);
 
     std::vector<flow_run> runs_;

@@ -1,16 +1,20 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// Simulated observers: they answer by what a plan is predicted to feel like, and noise. They test the chain;
-/// they say nothing about people.
+/// Simulated observers, who answer by the predicted percept of a plan and noise, and the power of studies
+/// with them. They test the chain; they say nothing about people.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <functional>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "study/experiment/definition.hpp"
 #include "study/experiment/stimuli.hpp"
+#include "study/statistics/tests.hpp"
 
 namespace tactor::study {
 
@@ -22,7 +26,7 @@ struct simulation {
     friend bool operator==(const simulation&, const simulation&) = default;
 };
 
-/// "seed=1,sigma=1", or less. \throws error (bad_input).
+/// Reads "seed=1,sigma=1", or less. \throws error (bad_input).
 simulation parse_simulation(std::string_view text);
 std::string to_text(const simulation& s);
 
@@ -30,14 +34,14 @@ struct simulated_answer {
     bool is_void = false;
     unsigned response =
         0; ///< choose: 1 or 2; rate: the rating; identify: a place in the definition's motions
-    unsigned response_time_ms = 0; ///< drawn for the columns' sake: a model of nothing
+    unsigned response_time_ms = 0; ///< drawn to fill the column: no model of people
 };
 
-/// Of one run. Stateless: a trial's answer depends on its place and attempt alone, so that a session that
-/// goes on is the one that was broken off.
+/// An observer in one run. Stateless: a trial's answer depends on its place and attempt alone, so that a
+/// session that goes on is the one that was broken off.
 class simulated_observer {
 public:
-    /// \throws error (bad_input) where nothing is predicted to be felt, or to move.
+    /// \throws error (bad_input) if a stimulus is predicted not to be felt, or not to move.
     simulated_observer(const simulation& s, const experiment_definition& d, const run_definition& r,
                        const stimulus_set& stimuli, std::string_view code);
 
@@ -55,5 +59,39 @@ private:
     double mean_ = 0.0;                            ///< of -ln cost, over the cells
     std::vector<std::vector<point>> targets_ = {}; ///< identify
 };
+
+struct power_request {
+    simulation observer = {};
+    std::vector<std::size_t> participants = {}; ///< numbers of them, each 2 or more
+    std::size_t studies = 200;
+    std::optional<std::uint64_t> seed = {}; ///< of the orders; none: the definition's, or the codes'
+};
+
+/// Level of significance: a smaller p is significant.
+inline constexpr double significant_p = 0.05;
+
+/// Outcomes of studies with so many participants.
+struct power_at {
+    std::size_t participants = 0;
+    std::size_t significant = 0; ///< studies with p < 0.05, two-sided
+    std::size_t for_last = 0;    ///< of these, those in which the last method was better
+    std::size_t untested = 0;    ///< without a test: nobody differed from anybody
+    double power = 0.0;          ///< significant, of all studies
+    interval ci = {};            ///< of it, binomial
+};
+
+struct run_power {
+    std::size_t run = 0; ///< its place in the definition
+    /// In the order asked for; empty where there is nothing to compare: ratings of one method.
+    std::vector<power_at> at = {};
+};
+
+/// Simulates studies and tests each. Study k (from 0) has the participants 01, 02, ... whose observers have
+/// the seed of `observer` plus k. A study of n has the first n participants of a larger one. Void trials come
+/// again. Calls `go_on` before each study, and returns nothing if it returns false. \throws error (bad_input)
+/// as simulated_observer and make_run() do.
+std::optional<std::vector<run_power>> simulate_power(const experiment_definition& d,
+                                                     const stimulus_set& stimuli, const power_request& r,
+                                                     const std::function<bool()>& go_on);
 
 } // namespace tactor::study

@@ -18,8 +18,9 @@ namespace {
 
 constexpr double longest_stimulus_s = 600.0;
 
-// At equal parts of the target's time; where nothing is felt, what was felt last, and at first what is next.
-std::vector<point> path_of(const std::vector<percept_sample>& samples)
+// Returns the felt places at equal parts of the target's time. While nothing is felt, the last place counts,
+// and before the first one that.
+std::vector<point> sample_path(const std::vector<percept_sample>& samples)
 {
     std::vector<point> felt;
     std::optional<point> last;
@@ -82,7 +83,7 @@ stimulus stimulus_set::make(const motion_definition& motion, const method_defini
         s.hash = detail::sha256_text(s.text);
         const std::vector<percept_sample> samples = predict_percept(a, drawn, s.plan);
         s.felt = summarise(samples);
-        s.felt_path = path_of(samples);
+        s.felt_path = sample_path(samples);
         for (const std::string& w : s.plan.warnings) {
             const std::string said =
                 fmt::format("motion \"{}\" by method \"{}\": {}", motion.name, method.name, w);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// The stimuli of an experiment: each motion by each method that a run asks for, planned and held against the
-/// array's limits before anybody sits down.
+/// The stimuli of an experiment: each motion by each method that a run asks for, planned and compared with
+/// the array's limits before the session.
 #pragma once
 
 #include <cstdint>
@@ -29,10 +29,10 @@ struct stimulus {
     std::vector<point> felt_path = {}; ///< predicted, at equal parts of the time
 };
 
-/// Equal parts in which movements are compared.
+/// Number of equal parts in which movements are compared.
 inline constexpr std::size_t path_parts = 100;
 
-/// Where the target is at 0, 1, ... path_parts parts of its time.
+/// Returns the target's places at 0, 1, ... path_parts parts of its time.
 std::vector<point> target_path(const stroke& s);
 
 /// Writes a plan down as tactor-plan/1.
@@ -40,22 +40,22 @@ using plan_writer = std::function<std::string(const stroke&, const plan&, const 
 
 class stimulus_set {
 public:
-    /// Plans, predicts and checks all; the warnings are the planner's, each once.
+    /// Plans, predicts and checks all stimuli; keeps each warning of the planner once.
     /// \throws error (bad_input) with the motion's or method's line: it cannot be planned, or a level is too
     ///         high.
     stimulus_set(const experiment_definition& d, const array& a, const render_options& o,
                  const plan_writer& write);
 
-    /// Planned because a run asks for it.
+    /// Returns a stimulus that a run asks for.
     const stimulus& at(std::size_t motion, std::size_t method) const;
-    /// All of them.
+    /// Lists all stimuli.
     std::vector<const stimulus*> all() const;
     const std::vector<std::string>& warnings() const noexcept { return warnings_; }
 
-    /// Frames from the trial's first to its last, the gap included, and of the second stimulus' begin.
+    /// Return the frames of a trial, the gap included, and the frame at which the second stimulus begins.
     std::uint64_t frames(const planned_trial& t) const;
     std::uint64_t second(const planned_trial& t) const;
-    /// Both stimuli as one score, to the frame; a renderer holds it to the limits, where there are any.
+    /// Returns both stimuli in one score, exact to the frame. A renderer applies the limits, if any.
     score make_score(const planned_trial& t, const std::optional<drive_limits>& limits = {}) const;
 
 private:

@@ -12,7 +12,7 @@
 namespace tactor::study {
 namespace {
 
-constexpr int look_ms = 20;          // a stream that stands still is looked at so often
+constexpr int look_ms = 20;          // interval of looks at a stream that stands still
 constexpr int masking_priority = 60; // below the array's audio thread
 
 masking_options checked(const masking_options& o)
@@ -53,7 +53,7 @@ masker::~masker()
 void masker::want(bool on) noexcept
 {
     on_ = on;
-    // What was before does not hold any more, also before the thread has looked.
+    // The old state is over, also before the thread has looked.
     if (ended_ == io_kind::ok)
         state_ = masking_state::fading;
     wake_.signal();
@@ -106,7 +106,7 @@ void masker::run() noexcept
             return;
         }
         const masking_state is = stream_.state();
-        // What was wanted of it meanwhile is not done yet.
+        // A state other than the wanted one is not final, if the wish has changed meanwhile.
         if (is != (on ? masking_state::silent : masking_state::full) && state_.exchange(is) != is)
             told_.signal();
     }

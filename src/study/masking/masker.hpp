@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// Masking noise in a thread of its own, for a calibration or an experiment.
+/// Masking noise in a separate thread, for a calibration or an experiment.
 #pragma once
 
 #include <atomic>
@@ -23,24 +23,24 @@ namespace tactor::study {
 class masker {
 public:
     /// Starts the stream. \throws error: bad_input for a level above greatest_noise_dbfs(), runtime when the
-    /// stream does not start; std::system_error where there is no thread or descriptor to be had.
+    /// stream does not start; std::system_error if the system has no thread or descriptor left.
     masker(std::unique_ptr<sink> s, const masking_options& o);
-    /// Cuts what sounds: fade_out() and wait_for(masking_state::silent) before.
+    /// Cuts the sound: call fade_out() and wait_for(masking_state::silent) before.
     ~masker();
     masker(const masker&) = delete;
     masker& operator=(const masker&) = delete;
 
     void fade_in() noexcept { want(true); }
     void fade_out() noexcept { want(false); }
-    /// Waits for a descriptor to be readable, or a time; false where somebody does not want to wait any more.
+    /// Waits for a descriptor to be readable, or a time; returns false to give up.
     using waiter = std::function<bool(int descriptor, int timeout_ms)>;
-    /// Blocks until that is at the DAC. False where the device has failed, takes masking_options::patience_s
-    /// longer than the fade, or the waiter gave up.
+    /// Blocks until that state is at the DAC. Returns false if the device has failed, takes
+    /// masking_options::patience_s longer than the fade, or the waiter gave up.
     bool wait_for(masking_state s, const waiter& wait = poll_descriptor);
 
-    /// How often the stream stood still: where it differs after a stimulus, noise did not cover it.
+    /// Number of times that the stream stood still: noise did not cover a stimulus during which it changed.
     unsigned breaks() const noexcept { return breaks_; }
-    /// Why the stream has ended; `ok` while it goes on.
+    /// Reason for the end of the stream; `ok` while it goes on.
     io_kind ended() const noexcept { return ended_; }
     const stream_setup& setup() const noexcept { return stream_.setup(); }
 

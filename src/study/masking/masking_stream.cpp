@@ -158,7 +158,7 @@ double greatest_noise_dbfs(noise_color c) noexcept
 
 noise::noise(noise_color c, double level_dbfs, std::string_view seed)
     : color_(c),
-      gain_(amplitude(level_dbfs) * std::numbers::sqrt3), // what is uniform between -1 and 1 has 1 / sqrt 3
+      gain_(amplitude(level_dbfs) * std::numbers::sqrt3), // a uniform number between -1 and 1 has 1 / sqrt 3
       r_(seed)
 {
     if (c == noise_color::white)

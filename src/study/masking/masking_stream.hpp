@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// Noise on a device of its own, faded in and out, one wake-up at a time: no thread and no clock.
+/// Noise on a separate device, faded in and out, one wake-up at a time: no thread and no clock.
 #pragma once
 
 #include <array>
@@ -22,16 +22,16 @@ enum class noise_color {
     pink,  ///< the same power in every octave
 };
 
-/// The greatest level, dBFS, at which it is not cut: white noise is uniform, pink noise has peaks, which
-/// above full scale (15 dB above this level, once in minutes) are cut there.
+/// Returns the greatest level, dBFS, without clipping. White noise is uniform; pink noise has peaks, which
+/// are clipped at full scale (15 dB above this level, once in minutes).
 double greatest_noise_dbfs(noise_color c) noexcept;
 
-/// Levels are roots of the mean square, in dB below that of a full-scale square.
+/// Noise of one colour. Levels are roots of the mean square, in dB below that of a full-scale square.
 class noise {
 public:
     noise(noise_color c, double level_dbfs, std::string_view seed);
 
-    /// The next sample, -1 to 1. Does not block or allocate.
+    /// Returns the next sample, -1 to 1. Does not block or allocate.
     double next() noexcept;
 
 private:
@@ -52,22 +52,22 @@ struct masking_options {
     double patience_s = 5.0; ///< masker: so much longer than the fade may take
 };
 
-/// What is at the DAC.
+/// Sound at the DAC.
 enum class masking_state { silent, fading, full };
 
-/// All channels get the same. After the constructor nothing allocates, locks or throws.
+/// A stream of noise, the same on each channel. Only the constructor allocates, locks or throws.
 class masking_stream {
 public:
     masking_stream(sink& s, const masking_options& o);
 
     /// Prepares the sink, fills its buffer and starts it.
     io_kind begin() noexcept;
-    /// Writes what there is space for. `ready` is what the sink made of its descriptors. An xrun is counted
-    /// and the stream begun again, from silence. `ok`, or why it has ended.
+    /// Fills the free space. `ready` is the sink's reading of its descriptors. Counts an xrun and begins the
+    /// stream again, from silence. Returns `ok`, or the reason for its end.
     io_kind step(io_kind ready, bool on) noexcept;
 
     masking_state state() noexcept;
-    /// How often the stream stood still.
+    /// Number of times that the stream stood still.
     unsigned breaks() const noexcept { return breaks_; }
     const stream_setup& setup() const noexcept { return sink_.setup(); }
 

@@ -9,13 +9,12 @@
 #include <tactor/phantom.hpp>
 
 #include "core/words.hpp"
-#include "study/report/markdown.hpp"
 #include "study/report/sections.hpp"
 
 namespace tactor::study {
 namespace {
 
-std::string spacing_of(const std::vector<double>& lines)
+std::string spacing_text(const std::vector<double>& lines)
 {
     std::vector<double> gaps;
     for (std::size_t i = 1; i < lines.size(); ++i)
@@ -23,7 +22,7 @@ std::string spacing_of(const std::vector<double>& lines)
     return range_text(gaps);
 }
 
-// Rows and columns where there are some, else how near neighbours are.
+// Describes rows and columns, or the distance of neighbours if there is no grid.
 std::string layout_text(const array& a)
 {
     const auto grid = find_grid(a);
@@ -34,13 +33,13 @@ std::string layout_text(const array& a)
     const std::size_t rows = grid->y_mm.size();
     std::string text = fmt::format("in {} and {}", counted(rows, "row"), counted(columns, "column"));
     if (columns > 1)
-        text += fmt::format(", {} mm from column to column", spacing_of(grid->x_mm));
+        text += fmt::format(", {} mm from column to column", spacing_text(grid->x_mm));
     if (rows > 1)
-        text += fmt::format("{} {} mm from row to row", columns > 1 ? " and" : ",", spacing_of(grid->y_mm));
+        text += fmt::format("{} {} mm from row to row", columns > 1 ? " and" : ",", spacing_text(grid->y_mm));
     return text + ", centre to centre";
 }
 
-std::string actuators_of(const array& a)
+std::string actuators_text(const array& a)
 {
     std::set<std::string> kinds;
     for (const tactor_spec& t : a.tactors)
@@ -64,7 +63,7 @@ std::string array_table(const array& a)
     return text;
 }
 
-// Each array that was used, once, with those who felt it where there are several.
+// Makes a table of each array; names the participants if there are several.
 std::string arrays_text(const study_facts& f)
 {
     std::map<std::string, std::vector<std::string>> tables;
@@ -94,7 +93,7 @@ bool needs_thresholds(const session_facts& s)
     return !s.facts()["level"]["dbfs"].there();
 }
 
-// Returns true if a session has a threshold.
+// Returns true if a session has a threshold or needs one.
 bool has_thresholds(const session_facts& s)
 {
     const std::vector<json_value> all = s.facts()["thresholds_dbfs"].list();
@@ -113,7 +112,7 @@ std::string assumed_text(const session_facts& s)
                     : "from the array file, none assumed";
 }
 
-// One threshold, or those at several frequencies.
+// Returns a threshold, or those at several frequencies.
 std::string threshold_text(const json_value& t)
 {
     if (!t.there())
@@ -131,7 +130,7 @@ std::string threshold_text(const json_value& t)
     return all;
 }
 
-// Of one tactor's thresholds, where each is one number.
+// Returns mean and standard deviation of one tactor's thresholds.
 std::string mean_and_sd(const std::vector<double>& v)
 {
     const t_test t = quick_test_mean(v, 0.0);
@@ -141,7 +140,7 @@ std::string mean_and_sd(const std::vector<double>& v)
                  : fmt::format("{:.2f} ({:.2f})", *t.mean, *t.se * std::sqrt(static_cast<double>(v.size())));
 }
 
-// A row for each participant, and mean and standard deviation of each tactor's.
+// Makes a row for each participant, and one with mean and standard deviation for each tactor.
 std::string thresholds_table(const study_facts& f)
 {
     std::size_t most = 0;
@@ -175,7 +174,7 @@ std::string thresholds_table(const study_facts& f)
     return text + table_row(summary);
 }
 
-// How the thresholds were measured; what another program wrote, as it stands.
+// Describes the measurement of the thresholds; repeats what another program wrote.
 std::string origin_text(const session_facts& s)
 {
     if (!s.document.contains("calibration"))
@@ -202,7 +201,7 @@ std::string origin_text(const session_facts& s)
     return text;
 }
 
-std::string words_of(const study_facts& f, const char* key)
+std::string fact_text(const study_facts& f, const char* key)
 {
     return told(f, [&](const session_facts& s) {
         const json_value said = s.facts()[key];
@@ -216,16 +215,17 @@ std::string apparatus_section(const study_facts& f)
 {
     std::string text = "\n## Apparatus\n\n### Array\n\n";
     text += fmt::format("Array: {}.\n", told(f, [](const session_facts& s) {
-                            return s.tactors ? fmt::format("{}: {} {}; actuators: {}", plain(s.tactors->name),
-                                                           counted(s.tactors->tactors.size(), "tactor"),
-                                                           layout_text(*s.tactors), actuators_of(*s.tactors))
-                                             : "";
+                            return s.tactors
+                                       ? fmt::format("{}: {} {}; actuators: {}", plain(s.tactors->name),
+                                                     counted(s.tactors->tactors.size(), "tactor"),
+                                                     layout_text(*s.tactors), actuators_text(*s.tactors))
+                                       : "";
                         }));
     text += arrays_text(f);
     text += "\n### Sound\n\n";
     text += fmt::format(
         "Sample rate (Hz): {}. Channels: {}. Device: {}. Sound server between tactor and the device: {}.\n",
-        words_of(f, "rate"), words_of(f, "channels"), words_of(f, "device"), words_of(f, "sound_server"));
+        fact_text(f, "rate"), fact_text(f, "channels"), fact_text(f, "device"), fact_text(f, "sound_server"));
     text += "\n### Levels and thresholds\n\n";
     text += fmt::format("Level: {}. Thresholds: {}.\n\n", told(f, level_text), told(f, assumed_text));
     text += thresholds_table(f);

@@ -7,14 +7,12 @@
 
 #include <fmt/format.h>
 
-#include "study/report/markdown.hpp"
-
 namespace tactor::study {
 namespace {
 
 using named_text = std::pair<std::string_view, std::string_view>;
 
-constexpr std::array<named_text, 3> algorithms{
+constexpr std::array<named_text, 3> known_algorithms{
     {{"park2016", "the target's place was sampled once each SOA, and each place got one burst (Park et al. "
                   "2016, section 2.2). With the\nlaw above the duration $d$ of a burst is no longer than the "
                   "SOA (Eq. 11), so that bursts never overlap."},
@@ -27,7 +25,7 @@ constexpr std::array<named_text, 3> algorithms{
      {"continuous", "no bursts: the intensities of the phantom model were computed along the path and "
                     "interpolated for each sample."}}};
 
-constexpr std::array<named_text, 5> phantoms{
+constexpr std::array<named_text, 5> known_phantoms{
     {{"inverse-distance",
       "On the line between two tactors, at distances $d_1$ and $d_2$ (Eq. 2 of Park et al. 2016):\n"
       "$A_1 = \\sqrt{d_2 / (d_1 + d_2)}\\,A_v$, $A_2 = \\sqrt{d_1 / (d_1 + d_2)}\\,A_v$. Elsewhere the three "
@@ -44,7 +42,7 @@ constexpr std::array<named_text, 5> phantoms{
                   "under 1 % of the largest (after Yun, Oh and Choi 2019)."}}};
 
 template <std::size_t N>
-std::string text_of(const std::array<named_text, N>& all, std::string_view name)
+std::string find_text(const std::array<named_text, N>& all, std::string_view name)
 {
     for (const auto& [known, text] : all)
         if (known == name)
@@ -96,15 +94,15 @@ std::string method_options(const plan_options& o)
 
 std::string algorithm_text(std::string_view name)
 {
-    return text_of(algorithms, name);
+    return find_text(known_algorithms, name);
 }
 
 std::string phantom_text(std::string_view name)
 {
-    return text_of(phantoms, name);
+    return find_text(known_phantoms, name);
 }
 
-std::string carrier_of(const json_value& plan)
+std::string describe_carrier(const json_value& plan)
 {
     const json_value s = plan["stroke"];
     const std::string wave = s["waveform"].text().value_or("sine");
@@ -128,7 +126,7 @@ std::string carrier_of(const json_value& plan)
     return text;
 }
 
-std::string envelope_of(const json_value& plan)
+std::string describe_envelope(const json_value& plan)
 {
     const json_value e = plan["render"]["envelope"];
     if (!e.there())
@@ -143,7 +141,7 @@ std::string envelope_of(const json_value& plan)
     return text;
 }
 
-std::string rise_of(const json_value& plan)
+std::string describe_rise(const json_value& plan)
 {
     std::string all;
     for (const json_value& t : plan["array"]["tactors"].list())

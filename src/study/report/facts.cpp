@@ -54,7 +54,7 @@ std::optional<array> array_in(const json_value& a)
     return all;
 }
 
-std::vector<planned_stimulus> stimuli_of(const session_facts& s, const fs::path& plans)
+std::vector<planned_stimulus> read_stimuli(const session_facts& s, const fs::path& plans)
 {
     std::vector<planned_stimulus> all;
     for (const json_value& one : s.facts()["stimuli"].list()) {
@@ -71,7 +71,7 @@ std::vector<planned_stimulus> stimuli_of(const session_facts& s, const fs::path&
     return all;
 }
 
-// The hash that a trial must name for a stimulus of its.
+// Checks that a trial names the hash of its stimulus.
 void check_plan(const text_table& t, std::size_t row, const session_facts& s, const char* method,
                 const char* plan)
 {
@@ -86,7 +86,7 @@ void check_plan(const text_table& t, std::size_t row, const session_facts& s, co
                  "it was changed");
 }
 
-// Adds what a run's table says to the session.
+// Adds the void trials and openings of the device in a run's table.
 void add_table(const fs::path& folder, const fs::path& table, session_facts& s)
 {
     void_count& c = s.voids.emplace_back();
@@ -118,10 +118,10 @@ void add_table(const fs::path& folder, const fs::path& table, session_facts& s)
     }
 }
 
-session_facts session_of(const fs::path& folder, const std::string& code, const experiment_outline& outline)
+session_facts read_session_facts(const fs::path& folder, const std::string& code,
+                                 const experiment_outline& outline)
 {
-    const std::string sub = "sub-" + code;
-    const fs::path source = folder / "sourcedata" / sub;
+    const fs::path source = folder / source_path(code);
     const fs::path file = source / "session.json";
     session_facts s;
     s.code = code;
@@ -134,9 +134,9 @@ session_facts session_of(const fs::path& folder, const std::string& code, const 
     if (s.facts()["schema"].text() == own_schema)
         s.design = read_design(text, s.file + ": experiment.text");
     s.tactors = array_in(s.facts()["array"]);
-    s.stimuli = stimuli_of(s, source / "plans");
+    s.stimuli = read_stimuli(s, source / "plans");
     for (const run_outline& r : outline.runs)
-        add_table(folder, fs::path(sub) / "beh" / fmt::format("{}_task-{}_beh.tsv", sub, r.file_name), s);
+        add_table(folder, table_path(code, r), s);
     return s;
 }
 
@@ -163,8 +163,8 @@ study_facts read_facts(const fs::path& folder, const dataset& d)
     study_facts f;
     f.people = read_people(folder, d.participants);
     for (const std::string& code : d.participants)
-        if (is_there(folder, fs::path("sourcedata") / ("sub-" + code) / "session.json"))
-            f.sessions.push_back(session_of(folder, code, d.experiment));
+        if (is_there(folder, source_path(code) / "session.json"))
+            f.sessions.push_back(read_session_facts(folder, code, d.experiment));
     return f;
 }
 

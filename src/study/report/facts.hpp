@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// What a study's files say beside the answers: how each session was held, and who took part.
+/// Facts in a study's files besides the answers: each session's circumstances, and the participants.
 #pragma once
 
 #include <cstddef>
@@ -22,7 +22,7 @@ namespace tactor::study {
 
 using files::json_value;
 
-/// Hint where a file is not as a session wrote it.
+/// Hint for a file that differs from what a session wrote.
 inline constexpr const char* changed_file = "it was changed";
 
 /// A stimulus that a session lists, with its plan (schema tactor-plan/1).
@@ -36,8 +36,8 @@ struct planned_stimulus {
     json_value facts() const { return {plan, file, changed_file}; }
 };
 
-/// Void trials of a run, how many of them were given again, in how many the sound had gaps, and of how many
-/// nobody knows.
+/// Counts of a run's void trials: all, those that came again, those with gaps in the sound, and those of
+/// which no file says it.
 struct void_count {
     std::size_t voids = 0;
     std::size_t again = 0;
@@ -47,15 +47,15 @@ struct void_count {
     friend bool operator==(const void_count&, const void_count&) = default;
 };
 
-/// Sessions that tactor experiment held say so.
+/// Schema of the sessions that tactor experiment held.
 inline constexpr std::string_view own_schema = "tactor-session/1";
 
 struct session_facts {
     std::string code;
     std::string file; ///< session.json
     nlohmann::ordered_json document;
-    /// What the definition says, defaults included; only where tactor held the session: other programs may
-    /// have other defaults.
+    /// The definition with its defaults; only if tactor held the session: other programs may have other
+    /// defaults.
     std::optional<experiment_definition> design = {};
     std::string definition_hash; ///< SHA-256 of its text
     std::optional<array> tactors = {};
@@ -79,10 +79,10 @@ struct study_facts {
     std::vector<participant> people = {};     ///< who was selected, those without a session too
 };
 
-/// Of those whom `d` has, which was read from the same folder.
-/// \throws error (bad_input) with the file: a value of another type; a definition or a plan that is not there
-///         or does not have its SHA-256 any more; a trial whose stimulus is another than its plan's hash
-///         says.
+/// Reads the facts about the participants of `d`, which was read from the same folder.
+/// \throws error (bad_input) with the file: a value of another type; a definition or a plan that is missing
+///         or does not have its SHA-256 any more; a trial whose stimulus is not the one that its plan's hash
+///         names.
 study_facts read_facts(const std::filesystem::path& folder, const dataset& d);
 
 } // namespace tactor::study

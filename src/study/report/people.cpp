@@ -3,20 +3,20 @@
 #include <cmath>
 #include <map>
 #include <optional>
+#include <set>
 #include <utility>
 
 #include <fmt/format.h>
 
 #include "core/split.hpp"
 #include "core/words.hpp"
-#include "study/report/markdown.hpp"
 #include "study/report/sections.hpp"
 
 namespace tactor::study {
 namespace {
 
-// An age in years. BIDS writes ages from 89 on as "89+", so that nobody is known by them: those count as what
-// they are at least.
+// An age in years. BIDS writes ages from 89 on as "89+", so that nobody can be recognised: those count as the
+// least that they are.
 struct age_value {
     double years = 0.0;
     bool at_least = false;
@@ -64,7 +64,7 @@ std::string ages_text(const study_facts& f)
     return text + others;
 }
 
-// How many said what, in a column.
+// Counts the values of a column.
 std::string counts_text(const study_facts& f, std::optional<std::string> participant::*column)
 {
     std::map<std::string, unsigned> counts;
@@ -76,6 +76,20 @@ std::string counts_text(const study_facts& f, std::optional<std::string> partici
     for (const auto& [said, n] : counts)
         all += fmt::format("{}{} {}", all.empty() ? "" : ", ", n, said);
     return all;
+}
+
+// Returns the days on which a session was held, UTC, in order and each once.
+std::vector<std::string> session_days(const session_facts& s)
+{
+    std::set<std::string> days;
+    const auto add = [&](const std::string& time) {
+        if (!time.empty())
+            days.insert(time.substr(0, time.find('T')));
+    };
+    add(s.facts()["date"].words());
+    for (const json_value& one : s.facts()["streams"].list())
+        add(one["opened"].words());
+    return {days.begin(), days.end()};
 }
 
 std::string dates_text(const study_facts& f)
@@ -90,7 +104,7 @@ std::string dates_text(const study_facts& f)
     return *first == *last ? plain(*first) : fmt::format("{} to {}", plain(*first), plain(*last));
 }
 
-// Sessions that were broken off, and went on on another day.
+// Names sessions that were broken off and went on on another day.
 std::string long_sessions_text(const study_facts& f)
 {
     std::string text;

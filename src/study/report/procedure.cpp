@@ -1,44 +1,168 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
 #include <map>
+#include <set>
 #include <utility>
+#include <vector>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "core/words.hpp"
 #include "study/experiment/sequence.hpp"
-#include "study/report/markdown.hpp"
 #include "study/report/sections.hpp"
 
 namespace tactor::study {
 namespace {
 
-const run_definition* run_of(const session_facts& s, std::size_t run)
+constexpr const char* nobody = "none: the session was simulated";
+
+bool is_own(const session_facts& s)
+{
+    return s.facts()["schema"].text() == own_schema;
+}
+
+bool is_simulated(const session_facts& s)
+{
+    return s.facts()["simulated"].truth().value_or(false);
+}
+
+// Calls `say` for each opening of the device in which a trial of these runs counts, or for all openings if
+// none does. Names the openings if their texts differ.
+template <class F>
+std::string over_streams(const session_facts& s, const std::set<unsigned>& used, const F& say)
+{
+    sayings said;
+    for (const json_value& one : s.facts()["streams"].list()) {
+        const std::string number = one["stream"].words();
+        if (!used.empty() && std::none_of(used.begin(), used.end(),
+                                          [&](unsigned n) { return fmt::format("{}", n) == number; }))
+            continue;
+        std::string text = say(one);
+        add_saying(said, text.empty() ? not_recorded : std::move(text), number);
+    }
+    if (said.size() == 1)
+        return said.front().first == not_recorded ? "" : said.front().first;
+    std::string all;
+    for (const auto& [text, numbers] : said)
+        all += fmt::format("{}{} ({} {} of the device)", all.empty() ? "" : ", ", text,
+                           numbers.size() == 1 ? "opening" : "openings", fmt::join(numbers, ", "));
+    return all;
+}
+
+std::set<unsigned> all_streams(const session_facts& s)
+{
+    std::set<unsigned> all;
+    for (const std::set<unsigned>& of_run : s.streams)
+        all.insert(of_run.begin(), of_run.end());
+    return all;
+}
+
+std::string noise_words(const json_value& m)
+{
+    return fmt::format("{} noise of {} dBFS (root mean square), faded over {} s, {}",
+                       plain(m["noise"].need_text()), digits(m["level_dbfs"].need_number()),
+                       digits(m["fade_s"].need_number()),
+                       m["while"].need_text() == "run" ? "through each run" : "while stimuli played");
+}
+
+// Describes the noise in an opening of the device. Sessions of older versions name the noise's device alone.
+std::string masker_words(const json_value& stream, const json_value& asked)
+{
+    if (!stream["masker"].there())
+        return "none";
+    const json_value noise = stream["masking"].there() ? stream["masking"] : asked;
+    return noise.there() ? fmt::format("{}, from {}", noise_words(noise), plain(stream["masker"].words()))
+                         : "";
+}
+
+std::string animation_text(const session_facts& s, std::size_t run)
+{
+    if (!s.design)
+        return "";
+    if (!s.design->runs.at(run).animation)
+        return "no";
+    constexpr const char* asked = " (the definition asks for it)";
+    if (is_simulated(s))
+        return std::string(nobody) + asked;
+    const std::string shown = over_streams(s, s.streams.at(run), [](const json_value& one) -> std::string {
+        const std::string display = one["display"].words();
+        return display == "page"                         ? "yes, on the page"
+               : display == "terminal with animation"    ? "yes, on the terminal"
+               : display == "terminal without animation" ? "no, the terminal could not show it"
+                                                         : "";
+    });
+    return (shown.empty() ? std::string(not_recorded) : shown) + (shown.starts_with("yes") ? "" : asked);
+}
+
+std::string masking_text(const session_facts& s)
+{
+    const json_value asked = s.facts()["masking"];
+    if (!is_own(s))
+        return asked.there() ? noise_words(asked) : "";
+    const std::string wanted =
+        asked.there() ? fmt::format(" (the definition asks for {})", noise_words(asked)) : "";
+    if (is_simulated(s))
+        return nobody + wanted;
+    const std::string played =
+        over_streams(s, all_streams(s), [&](const json_value& one) { return masker_words(one, asked); });
+    if (played.empty())
+        return asked.there() ? not_recorded + wanted : "none";
+    return played + (played.starts_with("none") ? wanted : "");
+}
+
+std::string display_text(const session_facts& s)
+{
+    if (is_simulated(s))
+        return nobody;
+    return over_streams(s, all_streams(s),
+                        [](const json_value& one) { return plain(one["display"].words()); });
+}
+
+std::string consent_text(const session_facts& s)
+{
+    if (is_simulated(s))
+        return nobody;
+    if (const auto at = s.facts()["consent"].text())
+        return "given on " + plain(*at);
+    return s.design && s.design->consent.empty() ? "not asked for by the definition" : "";
+}
+
+std::string walk_text(const session_facts& s)
+{
+    if (is_simulated(s))
+        return nobody;
+    std::set<std::string> felt;
+    std::string last;
+    for (const json_value& one : s.facts()["walk"].list()) {
+        felt.insert(one["tactor"].words());
+        last = one["asked"].words();
+    }
+    return felt.empty() ? "" : fmt::format("{}, the last on {}", counted(felt.size(), "tactor"), plain(last));
+}
+
+const run_definition* find_run(const session_facts& s, std::size_t run)
 {
     return s.design ? &s.design->runs.at(run) : nullptr;
 }
 
-// What the definition says of a run.
+// Returns a fact about a run from the definitions.
 template <class F>
-std::string of_run(const study_facts& f, std::size_t run, const F& say)
+std::string run_fact(const study_facts& f, std::size_t run, const F& say)
 {
     return told(f, [&](const session_facts& s) {
-        const run_definition* r = run_of(s, run);
+        const run_definition* r = find_run(s, run);
         return r == nullptr ? std::string() : std::string(say(*r));
     });
 }
 
 std::string task_text(const run_outline& r)
 {
-    switch (r.task) {
-    case task_kind::choose:
+    if (r.task == task_kind::choose)
         return fmt::format("two stimuli of one motion, by {} and by {}, one after the other; one was chosen",
                            plain(r.methods[0]), plain(r.methods[1]));
-    case task_kind::rate:
+    if (r.task == task_kind::rate)
         return fmt::format("one stimulus ({}), rated from 1 to {}", plain_list(r.methods), r.scale);
-    case task_kind::identify:
-        break;
-    }
     return fmt::format("one stimulus ({}); one of {} was named", plain_list(r.methods),
                        counted(r.motions.size(), "motion"));
 }
@@ -47,27 +171,27 @@ std::string run_text(const study_facts& f, const run_outline& o, std::size_t run
 {
     std::string text = fmt::format("\n**{}** ({}): {}. Motions: {}.\n", plain(o.name), to_string(o.task),
                                    task_text(o), plain_list(o.motions));
-    text +=
-        fmt::format("- Attribute: {}\n", of_run(f, run, [](const run_definition& r) { return r.attribute; }));
+    text += fmt::format("- Attribute: {}\n",
+                        run_fact(f, run, [](const run_definition& r) { return r.attribute; }));
     text += fmt::format("- Question: {}\n",
-                        of_run(f, run, [](const run_definition& r) { return plain(r.question); }));
+                        run_fact(f, run, [](const run_definition& r) { return plain(r.question); }));
     text += fmt::format("- Animation of the target before the first stimulus: {}\n",
                         told(f, [&](const session_facts& s) { return animation_text(s, run); }));
     text +=
         fmt::format("- Trials: {}; practice trials before, which do not count: {}\n",
                     o.trials == 0 ? std::string(not_recorded) : fmt::format("{}", o.trials),
-                    of_run(f, run, [](const run_definition& r) { return fmt::format("{}", r.practice); }));
+                    run_fact(f, run, [](const run_definition& r) { return fmt::format("{}", r.practice); }));
     if (o.task == task_kind::rate)
-        text += fmt::format("- Labels of the scale: {}\n", of_run(f, run, [](const run_definition& r) {
+        text += fmt::format("- Labels of the scale: {}\n", run_fact(f, run, [](const run_definition& r) {
                                 return r.labels.empty() ? std::string("none") : plain_list(r.labels);
                             }));
-    text += fmt::format("- Break after the run: {}\n", of_run(f, run, [](const run_definition& r) {
+    text += fmt::format("- Break after the run: {}\n", run_fact(f, run, [](const run_definition& r) {
                             return r.break_s > 0.0 ? digits(r.break_s) + " s" : std::string("none");
                         }));
     return text;
 }
 
-// How often each cell came, of the trials that count.
+// Returns the range of the numbers of trials that count in a cell.
 std::string cells_text(const dataset& d, std::size_t run)
 {
     std::vector<double> counts;
@@ -89,7 +213,7 @@ std::string cells_text(const dataset& d, std::size_t run)
                        range_text(counts));
 }
 
-std::string order_of(const session_facts& s)
+std::string order_text(const session_facts& s)
 {
     std::vector<std::string> runs;
     for (const json_value& one : s.facts()["order"].list())
@@ -97,19 +221,13 @@ std::string order_of(const session_facts& s)
     return plain_list(runs);
 }
 
-// The session file's numbers are whole: as digits() they would lose some of theirs.
-std::string seed_of_session(const session_facts& s)
-{
-    return plain(s.facts()["seed"].words());
-}
-
 std::string randomisation(const study_facts& f)
 {
     const bool own = std::any_of(f.sessions.begin(), f.sessions.end(),
                                  [](const session_facts& s) { return s.design.has_value(); });
     std::string text = "\n### Order and randomisation\n\n";
-    text +=
-        fmt::format("Order of the runs: {}.\n\nSeeds: {}.\n\n", told(f, order_of), told(f, seed_of_session));
+    text += fmt::format("Order of the runs: {}.\n\nSeeds: {}.\n\n", told(f, order_text),
+                        told(f, [](const session_facts& s) { return plain(s.facts()["seed"].words()); }));
     if (own)
         text +=
             fmt::format("The order of the runs is a row of a Williams square (Williams 1949), chosen by the "

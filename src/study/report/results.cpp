@@ -5,14 +5,13 @@
 #include <fmt/format.h>
 
 #include "core/words.hpp"
-#include "study/analysis/number_text.hpp"
-#include "study/report/markdown.hpp"
+#include "study/analysis/analysis.hpp"
 #include "study/report/sections.hpp"
 
 namespace tactor::study {
 namespace {
 
-// Lines of a run's results, each of which says where nobody was asked.
+// Lines of a run's results, each marked if the study is simulated.
 class results {
 public:
     explicit results(bool simulated) : mark_(simulated ? "(simulated) " : "") {}
@@ -50,7 +49,7 @@ std::string mean_text(const t_test& t, const char* unit, const interval& possibl
     return mean_text(t, unit, interval_text(t.ci, possible));
 }
 
-// Of a mean against a number; "not tested" says why there is nothing.
+// Describes a test of a mean against a number, or says that there is none.
 std::string test_text(const t_test& t, const char* d)
 {
     std::string text = t.t ? t_text(t) : "no t test (too few participants, or no variance)";
@@ -153,21 +152,16 @@ std::string run_results(const run_analysis& a, bool simulated)
         r.line(fmt::format("sub-{} is left out: {}.", l.participant, l.why));
     if (a.n == 0)
         return text + r.text();
-    switch (a.run.task) {
-    case task_kind::choose:
+    if (a.run.task == task_kind::choose)
         choose(r, a);
-        break;
-    case task_kind::rate:
+    else if (a.run.task == task_kind::rate)
         rate(r, a);
-        break;
-    case task_kind::identify:
+    else
         identify(r, a);
-        break;
-    }
     return text + r.text();
 }
 
-/// A paper, and the word by which the text names what is taken from it.
+/// A paper, and the word in the text that refers to it.
 struct reference {
     std::string_view mark;
     std::string_view text;

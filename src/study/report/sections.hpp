@@ -1,13 +1,17 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// What a paper's methods section must say of a study, as Markdown: its sections, each with its heading, and
-/// the words and equations (TeX between dollar signs) of stimuli with their sources.
+/// The methods section of a paper about a study, as Markdown: its sections, each with its heading, the words
+/// and equations (TeX between dollar signs) of stimuli with their sources, and sentences about facts that may
+/// differ between participants.
 #pragma once
 
 #include <cstddef>
 #include <filesystem>
+#include <functional>
+#include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include <tactor/plan.hpp>
@@ -39,48 +43,58 @@ std::string timing_law(const timing_profile& p);
 /// Returns the options that are not the default, in words; "the defaults".
 std::string method_options(const plan_options& o);
 
-/// Describes an algorithm or a phantom model by its name in a plan. One that is not known is called the
-/// user's own.
+/// Describes an algorithm or a phantom model by its name in a plan; calls an unknown one the user's own.
 std::string algorithm_text(std::string_view name);
 std::string phantom_text(std::string_view name);
 
 /// Returns "a sine of 250 Hz, amplitude-modulated at ..." for a plan (schema tactor-plan/1).
-std::string carrier_of(const json_value& plan);
+std::string describe_carrier(const json_value& plan);
 
 /// Returns the shape of its bursts but for the ramps' length: "raised-cosine ramps".
-std::string envelope_of(const json_value& plan);
+std::string describe_envelope(const json_value& plan);
 
-/// Says how long actuators take to move and what is done about it; empty where none takes time.
-std::string rise_of(const json_value& plan);
+/// Returns the rise times of actuators and the remedy; empty if none takes time.
+std::string describe_rise(const json_value& plan);
 
-/// Writes the whole text. `a` is of `d`, and `f` of the folder that `d` was read from. Every number is from
-/// its files.
+/// Writes the whole text. `a` analyses `d`, and `f` is from the same folder as `d`. Every number is from its
+/// files.
 std::string methods_text(const study_facts& f, const dataset& d, const analysis& a);
 
 /// Checks that a name is one for a text in Markdown: it ends in .md. \throws error (bad_input).
 void check_report_name(const std::filesystem::path& file);
 
 /// Writes it whole, or nothing. \throws error: bad_input for the name, a folder that does not exist, a file
-/// that was read as input or, without `force`, one that is no report of tactor; runtime for what the system
-/// refuses.
+/// that was read as input or, without `force`, a file that is no report of tactor; runtime for what the
+/// system refuses.
 void write_report(const std::filesystem::path& file, const std::string& text, bool force);
 
-/// Returns whether and where the target of a run was shown before the first stimulus.
-std::string animation_text(const session_facts& s, std::size_t run);
+/// Returns a name or text from a file on one line, with Markdown's own characters escaped.
+std::string plain(std::string_view text);
 
-/// Returns the masking noise that was played, with its device.
-std::string masking_text(const session_facts& s);
+/// Returns several, with commas between.
+std::string plain_list(const std::vector<std::string>& names);
 
-/// Returns what the participant saw: a page or a terminal.
-std::string display_text(const session_facts& s);
+/// Returns a number with six digits, more than any device of this field has.
+std::string digits(double v);
 
-/// Returns when the participant agreed to the consent text.
-std::string consent_text(const session_facts& s);
+/// Returns "sub-01, sub-02".
+std::string subjects(std::span<const std::string> codes);
 
-/// Returns which tactors were confirmed as felt before the runs, and when.
-std::string walk_text(const session_facts& s);
+/// Return a line of a table, and a table's head with the line under it.
+std::string table_row(const std::vector<std::string>& cells);
+std::string table_head(const std::vector<std::string>& cells);
 
-/// Returns the days on which the session was held, UTC, in order and each once.
-std::vector<std::string> session_days(const session_facts& s);
+/// Texts in the order in which they first came, each with the sessions that say it.
+using sayings = std::vector<std::pair<std::string, std::vector<std::string>>>;
+void add_saying(sayings& all, std::string text, const std::string& who);
+
+/// Returns the text of all sessions, or each text with the sessions that say it if they differ. An empty text
+/// reads "not recorded".
+std::string told(const study_facts& f, const std::function<std::string(const session_facts&)>& say);
+
+/// Returns the least and the largest value, or the only one; "not recorded" for none.
+std::string range_text(const std::vector<double>& values);
+
+inline constexpr const char* not_recorded = "not recorded";
 
 } // namespace tactor::study

@@ -6,7 +6,6 @@
 #include <fmt/ranges.h>
 
 #include "core/words.hpp"
-#include "study/report/markdown.hpp"
 #include "study/report/sections.hpp"
 
 namespace tactor::study {
@@ -14,8 +13,8 @@ namespace {
 
 using numbers = std::vector<double>;
 
-// A number of each burst of a plan.
-numbers of_bursts(const planned_stimulus& p, const char* key)
+// Returns a number of each burst of a plan.
+numbers burst_numbers(const planned_stimulus& p, const char* key)
 {
     numbers all;
     for (const json_value& b : p.facts()["bursts"].list())
@@ -24,7 +23,7 @@ numbers of_bursts(const planned_stimulus& p, const char* key)
     return all;
 }
 
-// Different values over the plans of a session, as text.
+// Lists the different values in the plans of a session.
 template <class F>
 std::string over_plans(const session_facts& s, const F& value)
 {
@@ -41,15 +40,16 @@ std::string carrier_text(const session_facts& s)
         return "";
     numbers ramps;
     for (const planned_stimulus& p : s.stimuli)
-        for (const double r : of_bursts(p, "ramp_s"))
+        for (const double r : burst_numbers(p, "ramp_s"))
             ramps.push_back(r);
     const std::string phase = over_plans(s, [](const json_value& p) { return p["render"]["phase"].words(); });
-    std::string text = fmt::format("{}; {}; {} of {} s at both ends of a burst", over_plans(s, carrier_of),
-                                   phase == "stroke"  ? "the phase ran on through each stimulus"
-                                   : phase == "burst" ? "the phase began anew with each burst"
-                                                      : "the phase differed between stimuli",
-                                   over_plans(s, envelope_of), range_text(ramps));
-    if (const std::string rise = over_plans(s, rise_of); !rise.empty())
+    std::string text =
+        fmt::format("{}; {}; {} of {} s at both ends of a burst", over_plans(s, describe_carrier),
+                    phase == "stroke"  ? "the phase ran on through each stimulus"
+                    : phase == "burst" ? "the phase began anew with each burst"
+                                       : "the phase differed between stimuli",
+                    over_plans(s, describe_envelope), range_text(ramps));
+    if (const std::string rise = over_plans(s, describe_rise); !rise.empty())
         text += "; " + rise;
     return text;
 }
@@ -64,8 +64,8 @@ std::string law_text(const session_facts& s)
     return fmt::format("{}", fmt::join(laws, " and "));
 }
 
-// The names of what a key has in the plans of a method, in the order of the sessions.
-std::vector<std::string> kinds_of(const study_facts& f, const std::string& method, const char* key)
+// Lists the values of a key in the plans of a method (empty: of all), in the order of the sessions.
+std::vector<std::string> list_kinds(const study_facts& f, const std::string& method, const char* key)
 {
     std::vector<std::string> kinds;
     for (const session_facts& s : f.sessions)
@@ -88,20 +88,20 @@ std::string options_text(const session_facts& s, const std::string& method)
 
 std::string method_text(const study_facts& f, const std::string& method)
 {
-    const std::vector<std::string> algorithms = kinds_of(f, method, "algorithm");
+    const std::vector<std::string> algorithms = list_kinds(f, method, "algorithm");
     std::string text = fmt::format("\n**{}.** ", plain(method));
     if (algorithms.empty())
         return text + "Its algorithm is not recorded.\n";
     for (const std::string& a : algorithms)
         text += fmt::format("Algorithm {}: {}\n", plain(a), algorithm_text(a));
-    text += fmt::format("Phantom model: {}. Options: {}.\n", plain_list(kinds_of(f, method, "phantom")),
+    text += fmt::format("Phantom model: {}. Options: {}.\n", plain_list(list_kinds(f, method, "phantom")),
                         told(f, [&](const session_facts& s) { return options_text(s, method); }));
     return text;
 }
 
 std::string bursts_cell(const planned_stimulus& p)
 {
-    const numbers durations = of_bursts(p, "duration_s");
+    const numbers durations = burst_numbers(p, "duration_s");
     return durations.empty() ? "continuous"
                              : fmt::format("{} of {} s", durations.size(), range_text(durations));
 }
@@ -118,7 +118,7 @@ std::string plan_row(const planned_stimulus& p)
                       "`" + p.hash + "`"});
 }
 
-// Every plan once; whose it is, where not everybody's.
+// Makes a row for each plan; names the sessions that have it, if not all do.
 std::string plans_table(const study_facts& f)
 {
     sayings rows;
@@ -170,7 +170,7 @@ std::string stimuli_section(const study_facts& f)
                 methods.push_back(p.method);
     for (const std::string& m : methods)
         text += method_text(f, m);
-    for (const std::string& kind : kinds_of(f, "", "phantom"))
+    for (const std::string& kind : list_kinds(f, "", "phantom"))
         text += fmt::format("\n**Phantom model {}.** {}\n", plain(kind), phantom_text(kind));
     text += "\n### Motions and plans\n";
     return text + plans_table(f) + notes_text(f);

@@ -5,6 +5,8 @@
 #include <cerrno>
 #include <cstddef>
 #include <cstring>
+#include <string>
+#include <string_view>
 #include <utility>
 
 #include <fcntl.h>
@@ -16,13 +18,13 @@
 
 #include <tactor/error.hpp>
 
+#include "rt/clock.hpp"
 #include "session/pipes.hpp"
 
 namespace tactor::study {
-
 namespace {
 
-// All in one, for who waits for one. A file is always ready, and cannot be waited for.
+// Puts all descriptors into one, so that a caller can wait for it. A file is always ready and stays out.
 detail::owned_fd open_any(const std::list<keypad>& keypads, int besides)
 {
     detail::owned_fd any(::epoll_create1(EPOLL_CLOEXEC));
@@ -53,6 +55,31 @@ constexpr key others[] = {{KEY_KP1, '1'}, {KEY_KP2, '2'},    {KEY_KP3, '3'},    
                           {KEY_0, 'n'},   {KEY_KP0, 'n'}};
 
 constexpr std::uint16_t digit_keys = 9;
+
+std::optional<operator_key> find_operator_key(char c)
+{
+    // In the order of operator_key.
+    const std::size_t at = std::string_view("rvpgq").find(c);
+    return at != std::string_view::npos ? std::optional(static_cast<operator_key>(at)) : std::nullopt;
+}
+
+unsigned digit(char c)
+{
+    return c >= '1' && c <= '9' ? static_cast<unsigned>(c - '0') : 0;
+}
+
+std::optional<session_key> read_key(const std::optional<std::string>& said)
+{
+    if (!said)
+        return {};
+    session_key k{.at_ns = rt::monotonic_ns()};
+    if (said->size() != 1)
+        return k;
+    k.character = said->front();
+    k.asked = find_operator_key(k.character);
+    k.answer = digit(k.character);
+    return k;
+}
 
 } // namespace
 
@@ -109,7 +136,7 @@ void key_input::fill()
 void key_input::end()
 {
     ended_ = true;
-    if (any_) // it would be ready for ever
+    if (any_) // an ended input would be ready for ever
         static_cast<void>(::epoll_ctl(any_.get(), EPOLL_CTL_DEL, STDIN_FILENO, nullptr));
 }
 
@@ -141,9 +168,9 @@ std::optional<std::string> key_input::typed()
     return said;
 }
 
-std::optional<char> answer_of_key(std::uint16_t code) noexcept
+std::optional<char> find_answer(std::uint16_t code) noexcept
 {
-    // Keys in a row; a button box is a joystick to the kernel, or has buttons without a purpose.
+    // Keys in a row. To the kernel a button box is a joystick, or has buttons without a purpose.
     for (const std::uint16_t first : {std::uint16_t{KEY_1}, std::uint16_t{BTN_0}, std::uint16_t{BTN_TRIGGER}})
         if (code >= first && code < first + digit_keys)
             return static_cast<char>('1' + (code - first));
@@ -173,7 +200,7 @@ void keypad::hold()
     bool any = false;
     for (std::size_t code = 0; code <= KEY_MAX; ++code)
         any = any ||
-              ((keys[code / 8] >> (code % 8) & 1U) != 0 && answer_of_key(static_cast<std::uint16_t>(code)));
+              ((keys[code / 8] >> (code % 8) & 1U) != 0 && find_answer(static_cast<std::uint16_t>(code)));
     if (!any)
         throw error(error_kind::bad_input, device_, "it has no key that answers anything",
                     "a keypad, a button box, or buttons with the codes of the digits");
@@ -195,8 +222,45 @@ std::optional<char> keypad::next()
                         "what was answered is kept; --resume goes on");
         // 1: pressed; 0 and 2: let go, and repeated.
         if (e.type == EV_KEY && e.value == 1)
-            if (const auto answer = answer_of_key(e.code))
+            if (const auto answer = find_answer(e.code))
                 return answer;
+    }
+}
+
+session_keys::session_keys(stage& s, const answering& with)
+    : stage_(s), page_(with.page), input_(with.keypads, page_ == nullptr ? -1 : page_->descriptor())
+{
+}
+
+void session_keys::drop_pressed()
+{
+    while (input_.pressed())
+        ;
+}
+
+std::optional<session_key> session_keys::poll()
+{
+    if (page_ == nullptr)
+        return read_key(input_.next());
+    while (const auto key = input_.pressed())
+        page_->press(*key);
+    while (const auto k = read_key(input_.typed()))
+        if (k->asked)
+            return session_key{.asked = k->asked, .at_ns = k->at_ns};
+    if (const auto a = page_->poll())
+        return session_key{a->key, {}, digit(a->key), a->at_ns};
+    return {};
+}
+
+session_key session_keys::wait()
+{
+    for (;;) {
+        if (const auto k = poll())
+            return *k;
+        if (page_ == nullptr && input_.ended())
+            throw error(error_kind::runtime, "the session", "there is no answer any more",
+                        "what was answered is kept; --resume goes on");
+        stage_.wait_for(input_.descriptor());
     }
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// Answers on standard input, keys of a terminal or lines, and from keypads where there are some.
+/// Answers on standard input, keys of a terminal or lines, and from keypads; and the keys of a session: the
+/// participant's answers and the experimenter's commands.
 #pragma once
 
 #include <cstdint>
@@ -13,28 +14,30 @@
 #include <unistd.h>
 
 #include "core/owned.hpp"
+#include "study/session/participant_page.hpp"
+#include "study/session/stage.hpp"
 
 namespace tactor::study {
 
-/// What a key of an input device (its code in linux/input-event-codes.h) answers, as the key of a terminal: 1
-/// to 9, of the digits, the keypad, a button box or a joystick; + - > < or the arrows; a or Enter, n or 0.
-/// Nothing for others.
-std::optional<char> answer_of_key(std::uint16_t code) noexcept;
+/// Returns the answer of an input device's key (a code of linux/input-event-codes.h) as a terminal's key: 1
+/// to 9 for digits, a keypad, a button box or a joystick; + - > < or the arrows; a or Enter, n or 0. Returns
+/// nothing for other keys.
+std::optional<char> find_answer(std::uint16_t code) noexcept;
 
-/// While it lives no other program gets its keys. One thread.
+/// A keypad, whose keys no other program gets while this lives. One thread.
 class keypad {
 public:
-    /// Of a name such as /dev/input/by-id/...-event-kbd. \throws error (not_available) where it is not there,
-    /// may not be read or is held by somebody; (bad_input) where it is no input device, or has no key that
+    /// Opens a device such as /dev/input/by-id/...-event-kbd. \throws error: not_available if it is missing,
+    /// may not be read or belongs to another program; bad_input if it is no input device or has no key that
     /// answers.
     explicit keypad(std::string device);
     keypad(const keypad&) = delete;
     keypad& operator=(const keypad&) = delete;
 
-    /// Can be read when next() may have something.
+    /// Readable when next() may have something.
     int descriptor() const noexcept { return descriptor_.get(); }
-    /// The next key that was pressed and answers something. Does not wait. \throws error (runtime) where it
-    /// is gone.
+    /// Returns the next pressed key that answers something. Does not wait. \throws error (runtime) if the
+    /// device is gone.
     std::optional<char> next();
 
 private:
@@ -44,31 +47,32 @@ private:
     detail::owned_fd descriptor_;
 };
 
-/// While it lives the terminal gives each key at once and shows none; a signal's keys stay what they are.
+/// Keys from standard input and keypads. While this lives a terminal gives each key at once and shows none;
+/// keys of signals stay as they are.
 class key_input {
 public:
-    /// And from these keypads. `besides`: another descriptor that whoever waits wants to be woken by; -1:
-    /// none. \throws error as keypad.
+    /// Opens the keypads. `besides`: another descriptor that makes descriptor() readable; -1: none. \throws
+    /// error as keypad.
     explicit key_input(const std::vector<std::string>& keypads = {}, int besides = -1);
     ~key_input();
     key_input(const key_input&) = delete;
     key_input& operator=(const key_input&) = delete;
 
     bool is_terminal() const noexcept { return terminal_; }
-    /// Whether keys come as they are pressed.
+    /// Returns true if keys come as they are pressed.
     bool has_keys() const noexcept { return terminal_ || !keypads_.empty(); }
-    /// Can be read when next() may have something, or what is besides can be.
+    /// Readable when next() may have something or `besides` is readable.
     int descriptor() const noexcept { return any_ ? any_.get() : STDIN_FILENO; }
-    /// Of keys: what was pressed up to now is not an answer to what comes.
+    /// Drops the keys that were pressed up to now; lines stay.
     void forget();
-    /// The next key, or the next line without blanks; nothing where there is none yet. Does not wait.
-    /// \throws error (runtime) where it cannot be read.
+    /// Returns the next key, or the next line without blanks; nothing if there is none yet. Does not wait.
+    /// \throws error (runtime) if it cannot be read.
     std::optional<std::string> next();
-    /// The same of the keypads alone.
+    /// Returns the next key of the keypads alone.
     std::optional<char> pressed();
-    /// The same of standard input alone.
+    /// Returns the next key or line of standard input alone.
     std::optional<std::string> typed();
-    /// Whether there is nothing more to come.
+    /// Returns true if nothing more can come.
     bool ended() const noexcept { return ended_ && text_.empty() && keypads_.empty(); }
 
 private:
@@ -76,11 +80,57 @@ private:
     void end();
 
     std::list<keypad> keypads_;
-    detail::owned_fd any_; ///< an epoll of all, where standard input is not all there is
+    detail::owned_fd any_; ///< an epoll of all, if standard input is not alone
     termios before_{};     // before terminal_, whose initializer fills it
     bool terminal_;
     std::string text_ = {};
     bool ended_ = false;
+};
+
+/// The experimenter's keys.
+enum class operator_key {
+    repeat,    ///< r: this trial does not count, and comes again
+    void_last, ///< v: the one before does not
+    pause,     ///< p: before the next trial
+    go_on,     ///< g: ends a pause or a break
+    quit,      ///< q: as Ctrl-C
+};
+
+struct session_key {
+    char character = 0;
+    std::optional<operator_key> asked = {};
+    unsigned answer = 0;    ///< 1 to 9, or 0
+    std::int64_t at_ns = 0; ///< CLOCK_MONOTONIC
+};
+
+/// The participant's ways to answer besides the terminal.
+struct answering {
+    participant_page* page = nullptr;
+    std::vector<std::string> keypads = {}; ///< devices
+};
+
+/// Keys of terminal, keypads and page. With a page (none: null) the participant's keys are the page's, and
+/// standard input has only the experimenter's.
+class session_keys {
+public:
+    /// Opens the keypads. \throws error as keypad.
+    session_keys(stage& s, const answering& with);
+
+    bool is_terminal() const noexcept { return input_.is_terminal(); }
+    /// Returns true if keys count before a question: lines without a page do not.
+    bool come_early() const noexcept { return is_terminal() || page_ != nullptr; }
+    /// Returns the next key or line, if any; also an unknown one that may be the participant's.
+    std::optional<session_key> poll();
+    /// Waits for a key. \throws stage::left; error (runtime) if nothing more can come.
+    session_key wait();
+
+    /// Drops keys that were pressed on a keypad up to now.
+    void drop_pressed();
+
+private:
+    stage& stage_;
+    participant_page* page_;
+    key_input input_;
 };
 
 } // namespace tactor::study

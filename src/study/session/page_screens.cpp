@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "study/session/page_screens.hpp"
+#include "study/session/person_session.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -9,7 +9,7 @@
 namespace tactor::study {
 namespace {
 
-// Straight between them, nobody sees the difference.
+// Points of a path on the page: nobody sees the straight lines between them.
 constexpr double points_per_s = 200.0;
 constexpr double most_points = 4000.0;
 
@@ -26,12 +26,7 @@ std::vector<point> sample_way(const stroke& target, const array& a)
     return way;
 }
 
-const run_definition& run_of(const prepared_experiment& p, const session_step& s)
-{
-    return p.definition.runs[p.runs[s.run].run];
-}
-
-// Texts of the answers, empty where their number says all.
+// Lists the texts of the answers, empty if a number is enough.
 std::vector<std::string> label_choices(const prepared_experiment& p, const run_definition& r)
 {
     std::vector<std::string> all(choices_in(r));
@@ -54,7 +49,7 @@ page_progress where_is(const prepared_experiment& p, const session_step& s)
             s.practice ? run.practice.size() : run.trials.size()};
 }
 
-// A text for each step of the scale, or for its ends.
+// Returns the steps of the scale with their labels, or its ends.
 std::string scale_text(const page_words& w, const run_definition& r)
 {
     const unsigned last = r.outline.scale;
@@ -78,27 +73,17 @@ std::string scale_text(const page_words& w, const run_definition& r)
 
 unsigned choices_in(const run_definition& r)
 {
-    switch (r.outline.task) {
-    case task_kind::choose:
-        return 2;
-    case task_kind::rate:
-        return r.outline.scale;
-    case task_kind::identify:
-        break;
-    }
-    return static_cast<unsigned>(r.motions.size());
+    return r.outline.task == task_kind::choose ? 2
+           : r.outline.task == task_kind::rate ? r.outline.scale
+                                               : static_cast<unsigned>(r.motions.size());
 }
 
 std::string choices_text(const experiment_definition& d, const run_definition& r)
 {
-    switch (r.outline.task) {
-    case task_kind::choose:
+    if (r.outline.task == task_kind::choose)
         return fmt::format("1 {} 2", d.page["or"]);
-    case task_kind::rate:
+    if (r.outline.task == task_kind::rate)
         return scale_text(d.page, r);
-    case task_kind::identify:
-        break;
-    }
     std::string text;
     for (std::size_t i = 0; i < r.motions.size(); ++i)
         text += fmt::format("{}{} {}", i == 0 ? "" : ", ", i + 1, d.motions[r.motions[i]].name);
@@ -139,7 +124,7 @@ page_screen walk_screen(const prepared_experiment& p, unsigned tactor, bool aske
 page_screen introduce_screen(const prepared_experiment& p, const session_step& s)
 {
     page_screen shown{.name = "introduce",
-                      .question = run_of(p, s).question,
+                      .question = p.run_at(s.run).question,
                       .choices = {p.definition.page["begin"]},
                       .keys = " "};
     shown.where = where_is(p, s);
@@ -151,7 +136,7 @@ page_screen introduce_screen(const prepared_experiment& p, const session_step& s
 page_screen rest_screen(const prepared_experiment& p, const session_step& s)
 {
     page_screen shown = idle_screen(p, "rest");
-    shown.lasts_s = run_of(p, s).break_s;
+    shown.lasts_s = p.run_at(s.run).break_s;
     return shown;
 }
 
@@ -173,7 +158,7 @@ page_screen stimulus_screen(const prepared_experiment& p, const session_step& s)
 
 page_screen question_screen(const prepared_experiment& p, const session_step& s)
 {
-    const run_definition& r = run_of(p, s);
+    const run_definition& r = p.run_at(s.run);
     page_screen shown{.name = "question", .question = r.question, .choices = label_choices(p, r)};
     for (std::size_t i = 0; i < shown.choices.size(); ++i)
         shown.keys += static_cast<char>('1' + i);

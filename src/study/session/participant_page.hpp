@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// The participant's page: what it shows, and the answers that come from it.
+/// The participant's page: its screens, and the answers from it.
 #pragma once
 
 #include <cstdint>
@@ -13,30 +13,30 @@
 #include "net/listen.hpp"
 #include "net/page_server.hpp"
 #include "rt/event_fd.hpp"
+#include "study/experiment/definition.hpp"
 #include "study/experiment/page_dialogue.hpp"
-#include "study/experiment/page_words.hpp"
 
 namespace tactor::study {
 
 struct page_answer {
-    char key = 0;           ///< what the choice stands for
-    std::int64_t at_ns = 0; ///< CLOCK_MONOTONIC of when it came
+    char key = 0;           ///< of the choice
+    std::int64_t at_ns = 0; ///< CLOCK_MONOTONIC at its arrival
 };
 
-/// The sockets are served by a thread of their own; these functions are the session's.
+/// The page's server. A separate thread serves the sockets; these functions are for the session's thread.
 class participant_page {
 public:
-    /// `listening` is a TCP socket. Signals must be blocked already.
+    /// Serves pages on `listening`, a TCP socket. Signals must be blocked already.
     participant_page(const page_words& words, const array& a, net::owned_fd listening);
 
-    /// Whatever was asked before is not any more, and an answer that nobody took is forgotten.
+    /// Shows a screen; drops the open question, and an answer that nobody took.
     void show(page_screen s);
-    /// A keypad's key: an answer as the page's own, by what a choice stands for, or by its number. Others,
-    /// and what nobody sees, count nothing.
+    /// Takes a keypad's key as an answer from the page: the key of a choice, or its number. Ignores others,
+    /// and all keys while nobody sees the page.
     void press(char key);
-    /// Whether somebody has the page before them.
+    /// Returns true if somebody has the page open.
     bool is_watched();
-    /// The answer to what is asked, where there is one.
+    /// Returns the answer to the open question, if any.
     std::optional<page_answer> poll();
     /// Readable while there is an answer.
     int descriptor() const noexcept { return told_.fd(); }

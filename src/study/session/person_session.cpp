@@ -8,8 +8,8 @@
 
 #include "files/plan/json_value.hpp"
 #include "session/say.hpp"
-#include "study/bids/acq_time.hpp"
-#include "study/session/session_facts.hpp"
+#include "study/bids/study_folder.hpp"
+#include "study/session/prepared.hpp"
 #include "study/session/trials.hpp"
 
 namespace tactor::study {
@@ -19,7 +19,7 @@ using json = nlohmann::ordered_json;
 
 constexpr const char* resume_hint = "what was answered is kept; --resume goes on";
 
-// Where the session is, for the flow.
+// Makes the flow at the place where the session is.
 session_flow make_flow(const prepared_experiment& p, const session_store& store)
 {
     std::vector<flow_run> runs;
@@ -97,12 +97,7 @@ void person_session::step(const session_step& s)
     }
 }
 
-const run_definition& person_session::run_of(const session_step& s) const
-{
-    return p_.definition.runs[p_.runs[s.run].run];
-}
-
-// Each opening of the device is counted.
+// Counts an opening of the device and writes it down.
 void person_session::note_stream()
 {
     if (!begun_)
@@ -140,7 +135,7 @@ void person_session::find_device()
 void person_session::introduce(const session_step& s)
 {
     begin_store();
-    const run_definition& r = run_of(s);
+    const run_definition& r = p_.run_at(s.run);
     practice_.emplace(store_, r, true);
     table_.emplace(store_, r, false);
     const page_words& w = p_.definition.page;
@@ -151,12 +146,12 @@ void person_session::introduce(const session_step& s)
         session::show(page_ != nullptr ? "The participant begins, or g.\n" : w["any_key_begins"] + "\n");
         wait_for_any_key();
     }
-    // Asked for meanwhile: the last trial of the run before.
+    // The experimenter may have made the last trial of the run before void meanwhile.
     if (flow_.next() == s)
         flow_.go_on();
 }
 
-// Ends, too, when the experimenter has changed what comes next.
+// Waits for a key, or until the experimenter has changed the next step.
 void person_session::wait_for_any_key()
 {
     const session_step now = flow_.next();
@@ -170,14 +165,14 @@ void person_session::wait_for_any_key()
     }
 }
 
-// Lines are answers to what is asked next; only keys come early.
-void person_session::heed()
+// Leaves lines alone: they answer the next question. Only keys come early.
+bool person_session::heed()
 {
     keys_.drop_pressed();
     while (keys_.come_early()) {
         const auto k = keys_.poll();
         if (!k)
-            return;
+            break;
         if (k->asked == operator_key::repeat)
             repeat_ = true;
         else if (k->asked == operator_key::quit)
@@ -185,6 +180,7 @@ void person_session::heed()
         else if (k->asked)
             obey(*k->asked);
     }
+    return !repeat_ && !quit_;
 }
 
 void person_session::obey(operator_key k)
@@ -206,7 +202,7 @@ void person_session::obey(operator_key k)
 
 void person_session::rest(const session_step& s)
 {
-    const double break_s = run_of(s).break_s;
+    const double break_s = p_.run_at(s.run).break_s;
     session::show(fmt::format("\n{}: {:.0f} s\n", p_.definition.page["rest"], break_s));
     on_page(rest_screen(p_, s));
     bool ended = false;

@@ -14,12 +14,12 @@
 #include <tactor/stroke.hpp>
 
 #include "study/bids/session_store.hpp"
-#include "study/experiment/page_words.hpp"
+#include "study/experiment/definition.hpp"
+#include "study/experiment/page_dialogue.hpp"
 #include "study/experiment/session_flow.hpp"
-#include "study/session/page_screens.hpp"
+#include "study/session/key_input.hpp"
 #include "study/session/participant_page.hpp"
 #include "study/session/prepared.hpp"
-#include "study/session/session_keys.hpp"
 #include "study/session/stage.hpp"
 #include "study/session/trials.hpp"
 
@@ -41,7 +41,7 @@ public:
                                                  const page_words& words) = 0;
 };
 
-/// What sounds, for the data.
+/// Devices of a session, for its data.
 struct session_devices {
     std::string pcm;
     std::string masker = {}; ///< empty: none
@@ -57,8 +57,9 @@ public:
     person_session(const prepared_experiment& p, session_store& store, stage& s, const answering& with,
                    target_display& display, session_devices devices);
 
-    /// All that is left of the session. \throws stage::left; error: runtime where nobody agreed, a tactor was
-    /// not felt, there is no answer any more, the device did not come back, or the system refuses to write.
+    /// Holds the rest of the session. \throws stage::left; error (runtime): the participant did not agree or
+    /// did not feel a tactor, no answer can come any more, the device did not come back, or the system
+    /// refuses to write.
     void hold();
 
 private:
@@ -70,35 +71,34 @@ private:
     void trial(const session_step& s);
     void rest(const session_step& s);
     void pause();
-    /// False where the last trial was made void, so that there is more to do.
+    /// Returns false if the last trial was made void, so that the session goes on.
     bool end();
 
     struct asked_answer {
         unsigned choice = 0; ///< 0: the experimenter repeats the trial
         double time_s = 0.0;
     };
-    /// Lets the definition's rest pass. False where the device is gone.
+    /// Lets the definition's rest pass. Returns false if the device is gone.
     bool rest_before(const session_step& s);
-    /// Waits until no tactor would be driven for too long. False where the device is gone.
+    /// Waits until the limits allow the drive time. Returns false if the device is gone.
     bool make_room(const session_step& s, const planned_trial& t, const score& stimuli);
-    /// Shows the target. Why the trial is void by now, or nothing.
+    /// Shows the target. Returns the reason if that made the trial void.
     std::string animate(const session_step& s, const planned_trial& t);
     given_stimulus give(const session_step& s, const planned_trial& t);
     asked_answer ask(const session_step& s, const given_stimulus& g);
     void write(const session_step& s, const trial_row& row, std::int64_t started_ns);
 
-    /// Where there is a page: the participant sees this.
+    /// Shows the participant a screen, if there is a page.
     void on_page(page_screen s);
-    /// The experimenter's keys while something plays, and what they ask for at any time.
-    void heed();
+    /// Takes the experimenter's keys while something plays. Returns false if the trial has to end.
+    bool heed();
     void obey(operator_key k);
     void void_last();
     void wait_for_any_key();
     void find_device();
     void note_stream();
 
-    const run_definition& run_of(const session_step& s) const;
-    const planned_trial& trial_of(const session_step& s) const;
+    const planned_trial& find_trial(const session_step& s) const;
 
     const prepared_experiment& p_;
     session_store& store_;
@@ -113,9 +113,27 @@ private:
     nlohmann::ordered_json walked_ = nlohmann::ordered_json::array();
     unsigned stream_ = 0;
     std::string agreed_at_ = {}; ///< time of the yes; empty: not asked
-    bool begun_ = false;         ///< the store is
-    bool repeat_ = false;        ///< asked for while the stimulus plays
+    bool begun_ = false;         ///< of the store
+    bool repeat_ = false;        ///< wanted while the stimulus plays
     bool quit_ = false;
 };
+
+/// Returns the possible answers in a run: "1 (not at all) to 5 (exactly)".
+std::string choices_text(const experiment_definition& d, const run_definition& r);
+
+/// Returns how many answers there are.
+unsigned choices_in(const run_definition& r);
+
+/// Makes a screen without a question; `key` is that of its text in page_words.
+page_screen idle_screen(const prepared_experiment& p, std::string_view key);
+page_screen consent_screen(const prepared_experiment& p);
+/// Makes the screen while a tactor is driven or, with `asked`, the question about it.
+page_screen walk_screen(const prepared_experiment& p, unsigned tactor, bool asked);
+page_screen introduce_screen(const prepared_experiment& p, const session_step& s);
+page_screen rest_screen(const prepared_experiment& p, const session_step& s);
+/// Make the screens of a trial: its target, its stimuli, its question.
+page_screen target_screen(const prepared_experiment& p, const session_step& s, const stroke& target);
+page_screen stimulus_screen(const prepared_experiment& p, const session_step& s);
+page_screen question_screen(const prepared_experiment& p, const session_step& s);
 
 } // namespace tactor::study

@@ -1,21 +1,28 @@
 // SPDX-License-Identifier: MIT
-// A person's trials: the target, the stimuli, the question, the line.
+// Steps with a person: consent, the walk over the array, and trials with target, stimuli and question.
 #include <algorithm>
 #include <csignal>
 #include <utility>
 
 #include <fmt/format.h>
 
+#include "files/plan/json_value.hpp"
 #include "rt/clock.hpp"
 #include "session/say.hpp"
-#include "study/bids/acq_time.hpp"
+#include "session/walk.hpp"
+#include "study/bids/study_folder.hpp"
 #include "study/session/person_session.hpp"
 #include "study/session/prepared.hpp"
 #include "study/session/trials.hpp"
 
 namespace tactor::study {
+namespace {
 
-const planned_trial& person_session::trial_of(const session_step& s) const
+using json = nlohmann::ordered_json;
+
+} // namespace
+
+const planned_trial& person_session::find_trial(const session_step& s) const
 {
     const run_sequence& run = p_.runs[s.run];
     return s.practice ? run.practice[s.which.trial - 1] : run.trials[s.which.trial - 1];
@@ -29,10 +36,7 @@ std::string person_session::animate(const session_step& s, const planned_trial& 
     if (page_ != nullptr) {
         page_->show(target_screen(p_, s, target));
         const bool began = page_->is_watched();
-        const bool passed = stage_.pass(duration_s, [&](double) {
-            heed();
-            return !repeat_ && !quit_;
-        });
+        const bool passed = stage_.pass(duration_s, [&](double) { return heed(); });
         if (!passed)
             return gone;
         return (began && page_->is_watched()) || repeat_ || quit_ ? "" : "the target moved on no page";
@@ -40,9 +44,9 @@ std::string person_session::animate(const session_step& s, const planned_trial& 
     const auto draw = display_.show(p_.where.tactors, target, p_.definition.page);
     draw(0.0);
     const bool passed = stage_.pass(duration_s, [&](double at_s) {
-        heed();
+        const bool goes_on = heed();
         draw(std::min(at_s, duration_s));
-        return !repeat_ && !quit_;
+        return goes_on;
     });
     return passed ? "" : gone;
 }
@@ -52,17 +56,14 @@ bool person_session::rest_before(const session_step& s)
     if (p_.definition.rest_s == 0.0)
         return true;
     on_page(stimulus_screen(p_, s));
-    return stage_.pass(p_.definition.rest_s, [&](double) {
-        heed();
-        return !repeat_ && !quit_;
-    });
+    return stage_.pass(p_.definition.rest_s, [&](double) { return heed(); });
 }
 
-// Before the target is shown, which the stimulus follows at once.
+// Waits before the target, because the stimulus follows it at once.
 bool person_session::make_room(const session_step& s, const planned_trial& t, const score& stimuli)
 {
     double ahead_s = stimulus_lead_s;
-    if (run_of(s).animation)
+    if (p_.run_at(s.run).animation)
         ahead_s += p_.definition.motions[t.motion].drawn.motion.duration_s();
     bool told = false;
     return stage_.make_room(stimuli, ahead_s, [&](double) {
@@ -70,8 +71,7 @@ bool person_session::make_room(const session_step& s, const planned_trial& t, co
             on_page(idle_screen(p_, "wait"));
             session::show(p_.definition.page["wait"] + " ");
         }
-        heed();
-        return !repeat_ && !quit_;
+        return heed();
     });
 }
 
@@ -80,7 +80,7 @@ given_stimulus person_session::give(const session_step& s, const planned_trial& 
     const score stimuli = p_.stimuli.make_score(t);
     if (!rest_before(s) || !make_room(s, t, stimuli))
         return {.flaw = "the device is gone"};
-    if (run_of(s).animation)
+    if (p_.run_at(s.run).animation)
         if (std::string flaw = animate(s, t); !flaw.empty())
             return {.flaw = std::move(flaw)};
     on_page(stimulus_screen(p_, s));
@@ -90,12 +90,11 @@ given_stimulus person_session::give(const session_step& s, const planned_trial& 
         if (!p_.definition.masking.through_run)
             noise.emplace(stage_);
         g = stage_.give(stimuli, stimulus_lead_s, [&](std::uint64_t) {
-            heed();
-            if (repeat_ || quit_)
+            if (!heed())
                 stage_.cancel();
         });
     }
-    heed(); // what was pressed too early is no answer
+    heed(); // drops keys that were pressed too early
     if (quit_)
         throw stage::left{SIGINT, experimenter};
     if (std::exchange(repeat_, false))
@@ -107,8 +106,8 @@ given_stimulus person_session::give(const session_step& s, const planned_trial& 
 
 void person_session::trial(const session_step& s)
 {
-    const run_definition& r = run_of(s);
-    const planned_trial& t = trial_of(s);
+    const run_definition& r = p_.run_at(s.run);
+    const planned_trial& t = find_trial(s);
     const page_words& w = p_.definition.page;
     session::show(fmt::format("\n{} {}/{}{}: ", w[s.practice ? "practice" : "trial"], s.which.trial,
                               s.practice ? p_.runs[s.run].practice.size() : p_.runs[s.run].trials.size(),
@@ -150,7 +149,7 @@ void person_session::write(const session_step& s, const trial_row& row, std::int
 
 person_session::asked_answer person_session::ask(const session_step& s, const given_stimulus& g)
 {
-    const run_definition& r = run_of(s);
+    const run_definition& r = p_.run_at(s.run);
     on_page(question_screen(p_, s));
     const std::string choices = choices_text(p_.definition, r);
     session::show(fmt::format("{} {}: ", r.question, choices));
@@ -175,13 +174,90 @@ void person_session::void_last()
         session::say(stderr, "tactor: there is no trial before this one that can be made void\n");
         return;
     }
-    const run_definition& r = p_.definition.runs[p_.runs[flow_.void_run()].run];
+    const run_definition& r = p_.run_at(flow_.void_run());
     store_.make_last_void(r);
     const trial_row row = store_.rows(r).back();
     table_.emplace(store_, r, false);
     practice_.emplace(store_, r, true);
     session::say(stderr, "tactor: {}: trial {} is void: the experimenter says so\n", r.outline.name,
                  row.trial);
+}
+
+void person_session::ask_consent()
+{
+    const page_words& w = p_.definition.page;
+    on_page(consent_screen(p_));
+    session::show_lines(p_.definition.consent + "\n");
+    session::show(fmt::format("{} y {}, n {}: ", w["agree"], w["yes"], w["no"]));
+    for (;;) {
+        const session_key k = keys_.wait();
+        if (k.asked == operator_key::quit)
+            obey(*k.asked);
+        if (k.character != 'y' && k.character != 'n')
+            continue;
+        session::show(k.character == 'y' ? w["yes"] + "\n\n" : w["no"] + "\n");
+        if (k.character == 'y')
+            agreed_at_ = acq_time_text(utc_now_ns());
+        return flow_.agree(k.character == 'y');
+    }
+}
+
+void person_session::walk(unsigned tactor)
+{
+    const array& a = p_.where.tactors;
+    const page_words& w = p_.definition.page;
+    if (tactor == 0) {
+        session::show_lines(w["walk"] + "\n");
+        session::show(session::numbered_map(a) + "\n");
+    }
+    on_page(walk_screen(p_, tactor, false));
+    const score s = walk_score(p_.definition, a, p_.render, tactor);
+    const given_stimulus g = [&] {
+        const noise_around noise(stage_);
+        return stage_.give(s, 0.0, [](std::uint64_t) {});
+    }();
+    if (!g.flaw.empty()) {
+        session::say(stderr, "tactor: tactor {}: {}\n", tactor, g.flaw);
+        find_device();
+    }
+    on_page(walk_screen(p_, tactor, true));
+    session::show(fmt::format("{}: {} y {}, n {}, r {}{}: ", tactor, w["felt"], w["yes"], w["no"], w["again"],
+                              tactor > 0 ? ", b " + w["back"] : ""));
+    for (;;) {
+        const session_key k = keys_.wait();
+        if (k.asked == operator_key::quit)
+            obey(*k.asked);
+        if (k.character == '\0' || std::string("ynrb").find(k.character) == std::string::npos ||
+            (k.character == 'b' && tactor == 0))
+            continue;
+        session::show(fmt::format("{}\n", k.character));
+        if (k.character == 'y')
+            walked_.push_back({{"tactor", tactor}, {"asked", acq_time_text(utc_now_ns())}});
+        return flow_.felt(k.character == 'y'   ? walk_answer::felt
+                          : k.character == 'n' ? walk_answer::not_felt
+                          : k.character == 'r' ? walk_answer::again
+                                               : walk_answer::back);
+    }
+}
+
+// Begins after consent and walk: a participant who did not agree, or did not feel a tactor, leaves no data.
+void person_session::begin_store()
+{
+    if (std::exchange(begun_, true))
+        return;
+    const std::string now = acq_time_text(utc_now_ns());
+    store_.begin(p_.stimuli.all());
+    if (store_.facts()["date"].is_null()) // new, or it ended before the date was written
+        store_.note("date", now);
+    if (!agreed_at_.empty())
+        store_.note("consent", agreed_at_);
+    json walks = store_.facts().value("walk", json::array()); // a session that goes on is walked again
+    for (const json& one : walked_)
+        walks.push_back(one);
+    store_.note("walk", walks);
+    store_.note("sound_server", files::or_null(devices_.between.array));
+    store_.note("masker_sound_server", files::or_null(devices_.between.masker));
+    note_stream();
 }
 
 } // namespace tactor::study

@@ -18,14 +18,13 @@
 #include "session/device.hpp"
 #include "session/walk.hpp"
 #include "study/experiment/definition.hpp"
-#include "study/session/session_facts.hpp"
 #include "synth/score/drive_room.hpp"
 
 namespace tactor::study {
 
 namespace {
 
-// Returns what `tactor plan --format json` prints of a stroke.
+// Returns a stroke's plan as `tactor plan --format json` prints it.
 std::string plan_text(const session::environment& e, const render_options& o, const stroke& s, const plan& p,
                       const score& sounds)
 {
@@ -33,8 +32,8 @@ std::string plan_text(const session::environment& e, const render_options& o, co
     return files::plans_text({{&s, 1}, {&one, 1}, {}, nullptr, e.tactors, sounds, o});
 }
 
-// -40 dBFS where nobody measured, at no frequency, and nobody feels it. A real session needs what was
-// measured.
+// Sets thresholds that nobody measured at any frequency, in a session that nobody feels. Returns true if it
+// set any. A real session needs measured ones.
 bool assume_thresholds(array& a, bool nobody_feels)
 {
     std::vector<std::size_t> missing;
@@ -71,19 +70,15 @@ bool sound_alike(const score& a, const score& b)
     return true;
 }
 
-drive_limits without_time(drive_limits l)
-{
-    l.max_drive_s = l.window_s;
-    return l;
-}
-
 void check(const experiment_definition& d, const planned_trial& t, const stimulus_set& stimuli,
            const drive_limits& l)
 {
     const score planned = stimuli.make_score(t);
     if (sound_alike(planned, stimuli.make_score(t, l)))
         return;
-    const bool of_time = sound_alike(planned, stimuli.make_score(t, without_time(l)));
+    drive_limits without_time = l;
+    without_time.max_drive_s = l.window_s;
+    const bool of_time = sound_alike(planned, stimuli.make_score(t, without_time));
     const motion_definition& m = d.motions[t.motion];
     std::string by = fmt::format("method \"{}\"", d.methods[t.method_1].name);
     if (t.method_2)
@@ -97,7 +92,7 @@ void check(const experiment_definition& d, const planned_trial& t, const stimulu
                         : "a lower level, or other limits where the actuators bear them");
 }
 
-/// A session without a person or a device, in frames.
+/// A session without a person or a device, counted in frames.
 class time_keeper {
 public:
     time_keeper(const prepared_experiment& p, double answer_s)
@@ -163,13 +158,14 @@ prepared_experiment prepare(const session_request& r, session::settings& s)
         render.sl_db = d.sl_db;
     // --dry-run needs no participant.
     const std::string code = r.participant.empty() ? "01" : r.participant;
-    const std::uint64_t seed = r.seed.value_or(d.seed.value_or(seed_of(code)));
+    const std::uint64_t seed = r.seed.value_or(d.seed.value_or(default_seed(code)));
     auto runs = make_sequence(d, code, seed);
     stimulus_set stimuli(d, e.tactors, render, [&](const stroke& k, const plan& p, const score& sounds) {
         return plan_text(e, render, k, p, sounds);
     });
     if (r.who != audience::observer)
-        check_walk(d, e.tactors, render);
+        for (unsigned i = 0; i < e.tactors.tactors.size(); ++i)
+            static_cast<void>(walk_score(d, e.tactors, render, i));
     check_limits(d, runs, stimuli, session::settle_limits({}, e));
     std::vector<std::string> doubts;
     if (!d.level_dbfs)
@@ -204,12 +200,6 @@ score walk_score(const experiment_definition& d, const array& a, const render_op
         throw e.reworded(e.subject(), fmt::format("in the walk before the runs: {}", e.why()),
                          in_definition_words(e.hint()));
     }
-}
-
-void check_walk(const experiment_definition& d, const array& a, const render_options& o)
-{
-    for (unsigned i = 0; i < a.tactors.size(); ++i)
-        static_cast<void>(walk_score(d, a, o, i));
 }
 
 void check_limits(const experiment_definition& d, const std::vector<run_sequence>& runs,

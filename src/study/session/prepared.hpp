@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// An experiment on an array, for a participant: all that can be settled and checked before anybody sits
-/// down.
+/// An experiment on an array, for a participant: all that can be settled and checked before the session.
 #pragma once
 
 #include <cstddef>
@@ -10,24 +9,27 @@
 #include <string>
 #include <vector>
 
+#include <nlohmann/json.hpp>
+
 #include <tactor/array.hpp>
 #include <tactor/render.hpp>
 
 #include "session/environment.hpp"
 #include "study/experiment/definition.hpp"
 #include "study/experiment/sequence.hpp"
+#include "study/experiment/simulated.hpp"
 #include "study/experiment/stimuli.hpp"
 
 namespace tactor::study {
 
-/// Who feels what a session plays.
+/// Kind of participant.
 enum class audience {
     person,
     observer, ///< a simulated one
     nobody,   ///< a dry run
 };
 
-/// A session that is asked for.
+/// Request for a session.
 struct session_request {
     std::string definition;                 ///< a name that is built in, or a file
     std::string participant = {};           ///< empty only of a dry run
@@ -35,7 +37,7 @@ struct session_request {
     audience who = audience::person;
 };
 
-/// Between the program and its cards; empty: none.
+/// Sound servers between the program and its cards; empty: none.
 struct sound_servers {
     std::string array = {};
     std::string masker = {};
@@ -53,40 +55,54 @@ struct prepared_experiment {
     stimulus_set stimuli;
     std::vector<std::string> warnings;
     std::vector<std::string> calibration_doubts; ///< of the warnings, those about the thresholds' origin
+
+    /// Returns the run at a place in the session's order.
+    const run_definition& run_at(std::size_t place) const { return definition.runs[runs[place].run]; }
 };
 
-/// The threshold that is taken where nobody measured one, and nobody feels anything.
+/// Threshold of an unmeasured tactor in a session that nobody feels.
 inline constexpr double assumed_threshold_dbfs = -40.0;
 
 /// Settles a session. \throws error (bad_input): the definition, array or configuration is wrong, a stimulus
-/// cannot be planned
-///         or played; there are no thresholds and somebody is to feel it.
+/// cannot be planned or played, or a session with a person has no thresholds.
 prepared_experiment prepare(const session_request& r, session::settings& s);
 
-/// A tactor by itself, at the carrier of the definition's first method. \throws error (bad_input) where its
-/// level is too high, in the definition's words.
+/// Makes the score of one tactor at the carrier of the definition's first method. \throws error (bad_input)
+/// if its level is too high, in the definition's words.
 score walk_score(const experiment_definition& d, const array& a, const render_options& o, unsigned tactor);
 
-/// Tries all of them. Throws as above.
-void check_walk(const experiment_definition& d, const array& a, const render_options& o);
-
-/// Each trial that there is, practice too, must sound as planned on an array that has rested.
-/// \throws error (bad_input) with the motion's line for one that a limit would change: it would be void
-///         whenever it comes.
+/// Checks that each trial, practice too, sounds as planned on an array that has rested.
+/// \throws error (bad_input) with the motion's line for a trial that a limit would change: it would always be
+///         void.
 void check_limits(const experiment_definition& d, const std::vector<run_sequence>& runs,
                   const stimulus_set& stimuli, const drive_limits& l);
 
-/// Time from what was shown before to the first frame of a stimulus, so that nobody is surprised, s.
+/// Time from the screen before to the first frame of a stimulus, so that it surprises nobody, s.
 inline constexpr double stimulus_lead_s = 0.5;
 
 struct run_time {
     double total_s = 0.0;  ///< practice included, the break after the run not
-    double waits_s = 0.0;  ///< of total_s: waiting until no tactor would be driven for too long
+    double waits_s = 0.0;  ///< part of total_s: waits for the limits of drive time
     std::size_t waits = 0; ///< trials that wait
 };
 
 /// Returns the time of each run in the session's order. Each answer takes `answer_s`, the device adds no
 /// latency, and the array has rested before.
 std::vector<run_time> session_times(const prepared_experiment& p, double answer_s);
+
+/// Returns the facts that session.json has before a session begins.
+nlohmann::ordered_json describe_session(const prepared_experiment& p,
+                                        const std::optional<simulation>& simulate, const std::string& masker);
+
+/// Return parts of these facts: the level; the definition's noise, null for none; each stimulus with its
+/// hash; the calibration, null for none.
+nlohmann::ordered_json level_facts(const experiment_definition& d);
+nlohmann::ordered_json masking_facts(const masking_definition& m);
+nlohmann::ordered_json stimulus_facts(const prepared_experiment& p);
+nlohmann::ordered_json calibration_facts(const prepared_experiment& p);
+
+/// Lists doubts about the calibration of a session whose level is above the thresholds.
+std::vector<std::string> calibration_doubts(const std::string& participant, const session::environment& e,
+                                            const stimulus_set& stimuli);
 
 } // namespace tactor::study

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "study/session/session_facts.hpp"
+#include "study/session/prepared.hpp"
 
 #include <algorithm>
 
@@ -32,27 +32,6 @@ json array_facts(const array& a)
                            {"threshold_dbfs", files::threshold_json(t)},
                            {"actuator", std::string(to_string(t.actuator))}});
     return {{"name", a.name}, {"tactors", tactors}};
-}
-
-json experiment_facts(const experiment_definition& d)
-{
-    return {{"name", d.name}, {"sha256", detail::sha256_text(d.text)}, {"text", d.text}};
-}
-
-json run_names(const prepared_experiment& p)
-{
-    json names = json::array();
-    for (const run_sequence& r : p.runs)
-        names.push_back(p.definition.runs[r.run].outline.name);
-    return names;
-}
-
-json tactor_facts(const calibrated_tactor& t)
-{
-    return {{"tactor", t.tactor},
-            {"threshold_dbfs", or_null(t.threshold_dbfs)},
-            {"sd_db", or_null(t.sd_db)},
-            {"trials", t.trials}};
 }
 
 } // namespace
@@ -93,22 +72,26 @@ json describe_session(const prepared_experiment& p, const std::optional<simulati
     json thresholds = json::array();
     for (const tactor_spec& t : p.where.tactors.tactors)
         thresholds.push_back(files::threshold_json(t));
+    json order = json::array();
+    for (const run_sequence& r : p.runs)
+        order.push_back(p.definition.runs[r.run].outline.name);
+    const experiment_definition& d = p.definition;
     json j{{"schema", "tactor-session/1"}, {"participant", p.participant}};
     j["simulated"] = simulate.has_value();
     j["simulation"] = simulate ? json(to_text(*simulate)) : json(nullptr);
     j["seed"] = p.seed;
-    j["order"] = run_names(p);
-    j["level"] = level_facts(p.definition);
+    j["order"] = order;
+    j["level"] = level_facts(d);
     j["array"] = array_facts(p.where.tactors);
     j["thresholds_dbfs"] = thresholds;
     j["thresholds_assumed"] = p.assumed;
     j["calibration"] = calibration_facts(p);
     j["rate"] = p.render.rate;
     j["channels"] = p.render.channels;
-    j["masking"] = masking_facts(p.definition.masking);
+    j["masking"] = masking_facts(d.masking);
     j["masker"] = simulate || masker.empty() ? json(nullptr) : json(masker);
     j["stimuli"] = stimulus_facts(p);
-    j["experiment"] = experiment_facts(p.definition);
+    j["experiment"] = {{"name", d.name}, {"sha256", detail::sha256_text(d.text)}, {"text", d.text}};
     j["versions"] = {{"tactor", std::string(version())}, {"build", std::string(build_facts())}};
     j["device"] = simulate ? json(nullptr) : json(p.pcm);
     j["sound_server"] = nullptr;
@@ -145,7 +128,10 @@ json calibration_facts(const prepared_experiment& p)
     const calibration_origin& c = *p.where.config.calibration;
     json tactors = json::array();
     for (const calibrated_tactor& t : c.tactors)
-        tactors.push_back(tactor_facts(t));
+        tactors.push_back({{"tactor", t.tactor},
+                           {"threshold_dbfs", or_null(t.threshold_dbfs)},
+                           {"sd_db", or_null(t.sd_db)},
+                           {"trials", t.trials}});
     return {{"participant", c.participant}, {"method", c.method},         {"rule", or_null(c.rule)},
             {"carrier_hz", c.carrier_hz},   {"interval_s", c.interval_s}, {"feedback", or_null(c.feedback)},
             {"masker", or_null(c.masker)},  {"date", or_null(c.date)},    {"seed", or_null(c.seed)},

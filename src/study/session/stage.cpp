@@ -12,7 +12,7 @@
 namespace tactor::study {
 namespace {
 
-// A buffer of 40 ms: nothing waits for the noise but its own beginning.
+// A buffer of 40 ms: only the beginning of the noise has to wait for it.
 constexpr unsigned masker_period_frames = 480;
 constexpr unsigned masker_periods = 4;
 constexpr unsigned masker_channels = 2;
@@ -36,7 +36,7 @@ double stage::room_s(const score& s, double lead_s) const
 {
     const std::uint64_t at =
         before_ + position().played + static_cast<std::uint64_t>(std::llround(lead_s * s.rate()));
-    const std::uint64_t wait = room_.wait(s, at).value_or(0); // it never has room: it will be told as changed
+    const std::uint64_t wait = room_.wait(s, at).value_or(0); // without room: give() reports it as limited
     return static_cast<double>(wait) / s.rate();
 }
 
@@ -77,7 +77,7 @@ bool stage::fade_in()
     if (!masker_)
         return true;
     if (masker_->ended() != io_kind::ok) {
-        masker_.reset(); // it holds the device
+        masker_.reset(); // it has the device open
         masker_ = std::make_unique<masker>(open_masker_(), masking_);
     }
     masker_->fade_in();
@@ -103,7 +103,7 @@ given_stimulus stage::give(const score& s, double lead_s, const watcher& watch)
     }
     const unsigned breaks = masker_ ? masker_->breaks() : 0;
     const player_stats before = stats();
-    // A frame that is known before: where it is late all the same the report says by how much, to the frame.
+    // A frame that is known before. If the stimulus is late all the same, the report says by how many frames.
     const std::uint64_t at = position().played + setup().buffer_frames +
                              static_cast<std::uint64_t>(std::llround(lead_s * s.rate()));
     const auto gone = submit(s, start_at::frame(at));

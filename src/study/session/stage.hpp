@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// Where stimuli are given to somebody: the array, and the noise that hides its sound.
+/// The devices that give stimuli to a person: the array, and the noise that hides its sound.
 #pragma once
 
 #include <cstdint>
@@ -17,21 +17,21 @@
 
 namespace tactor::study {
 
-/// How a stimulus was given.
+/// Record of a stimulus that was given.
 struct given_stimulus {
-    std::string flaw = {};                         ///< why it was not as planned; empty: it was
+    std::string flaw = {};                         ///< deviation from the plan; empty: none
     std::optional<std::uint64_t> first_frame = {}; ///< of the stream; none: it never sounded
     std::uint64_t frames = 0;                      ///< of it that were played
     std::int64_t started_ns = 0;                   ///< CLOCK_MONOTONIC of its first frame at the DAC
     std::int64_t ended_ns = 0;                     ///< and of its last
-    unsigned xruns = 0;                            ///< since it was asked for
+    unsigned xruns = 0;                            ///< since the request
     bool limited = false;                          ///< limits of the array changed it
 
-    /// Why it does not count: its flaw, or that it was limited; empty: it does.
+    /// Returns the reason why it does not count: its flaw, or that it was limited; empty: it counts.
     std::string fault() const;
 };
 
-/// A session, whose signals end it by exceptions. One thread.
+/// A session on the array that a signal ends by an exception. One thread.
 class stage : public session::play_session {
 public:
     /// The reason for leaving a session.
@@ -45,40 +45,39 @@ public:
           const session::stream_source& source = {});
 
     using sink_opener = std::function<std::unique_ptr<sink>()>;
-    /// Noise around each stimulus from now on. \throws error as masker, and what the opener throws.
+    /// Plays noise around each stimulus from now on. \throws error as masker, and what the opener throws.
     void mask(sink_opener open, const masking_options& o);
-    /// On the PCM of this name, in stereo.
+    /// Plays it on the PCM of this name, in stereo.
     void mask(const std::string& pcm, const masking_options& o);
 
-    /// How long a score that is to begin so long from now has to wait, so that no tactor is driven for longer
-    /// than the limits allow, with what was given here before.
+    /// Returns how long a score that is to begin in `lead_s` has to wait, so that no tactor is driven for
+    /// longer than the limits allow, together with the stimuli before.
     double room_s(const score& s, double lead_s) const;
-    /// Lets so much of the stream's time pass. As pass().
+    /// Lets that time pass, as pass().
     bool make_room(const score& s, double lead_s, const std::function<bool(double passed_s)>& watch);
 
-    /// Told some 25 times a second at which of its frames the stimulus is.
+    /// Called some 25 times a second with the stimulus' current frame.
     using watcher = std::function<void(std::uint64_t stimulus_frame)>;
-    /// Plays a score, under noise where there is to be some, which goes on after it; the noise's begin is not
-    /// waited for where it is there already. \throws left; error where the noise's device cannot be opened
-    /// again.
+    /// Plays a score. Masking noise, if any, sounds before it and goes on after it. \throws left; error if
+    /// the noise's device cannot be opened again.
     given_stimulus give(const score& s, double lead_s, const watcher& watch);
 
-    /// Noise until fade_out(). False where it does not sound. \throws as give().
+    /// Begins noise until fade_out(). Returns false if it does not sound. \throws as give().
     bool fade_in();
     void fade_out() noexcept;
 
-    /// Why the noise has ended; `ok` while it goes on, and where there is none.
+    /// Reason for the end of the noise; `ok` while it goes on, and without noise.
     io_kind noise_ended() const noexcept { return masker_ ? masker_->ended() : io_kind::ok; }
 
-    /// Lets so much of the stream's time pass; the watcher is told how much has, and returns false to end it
-    /// before. False where the stream has ended meanwhile. \throws left.
+    /// Lets so much of the stream's time pass; the watcher gets the time passed and returns false to stop
+    /// early. Returns false if the stream has ended meanwhile. \throws left.
     bool pass(double seconds, const std::function<bool(double passed_s)>& watch);
     /// Waits for a descriptor. \throws left.
     void wait_for(int descriptor);
 
-    /// Waits for it. False where it did not come back. \throws left.
+    /// Waits for the device to come back. Returns false if it did not. \throws left.
     bool reopen();
-    /// Ends the streams in silence. \throws error where the amplifier may be on.
+    /// Ends the streams in silence. \throws error if the amplifier may be on.
     void finish();
 
 private:
@@ -88,10 +87,11 @@ private:
     masking_options masking_ = {};
     std::unique_ptr<masker> masker_; ///< null: no noise
     synth::drive_room room_;
-    std::uint64_t before_ = 0; ///< frames of the streams before this one; what lay between them did not pass
+    std::uint64_t before_ =
+        0; ///< frames of the streams before this one; the time between them does not count
 };
 
-/// Ends the noise, whatever ends the trial.
+/// Guard that ends the noise, however the trial ends.
 class noise_around {
 public:
     explicit noise_around(stage& s) : stage_(s) {}
@@ -103,8 +103,8 @@ private:
     stage& stage_;
 };
 
-/// Runs what is held on a stage (or on somebody who has one) and ends its streams, whatever ends it. Returns
-/// why it was left. \throws what `held` throws, but stage::left.
+/// Calls `held`, which uses a stage (or a person, who has one), and ends its streams in each case. Returns
+/// the reason for leaving. \throws what `held` throws, except stage::left.
 template <typename Stage, typename Held>
 [[nodiscard]] stage::left until_left(Stage& s, const Held& held)
 {

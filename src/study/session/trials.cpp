@@ -2,13 +2,127 @@
 #include "study/session/trials.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <cstdint>
 #include <vector>
 
 #include <fmt/format.h>
 
-#include "study/bids/acq_time.hpp"
+#include "session/interrupt.hpp"
+#include "study/bids/study_folder.hpp"
 
 namespace tactor::study {
+namespace {
+
+constexpr double pause_s = 0.5; // from an answer to what comes next
+
+// Begin of a simulated session's clock: the year 2000, because its trials have no real time.
+constexpr std::int64_t epoch_ns = 946684800LL * 1000000000LL;
+
+class simulated_session {
+public:
+    simulated_session(const prepared_experiment& p, const simulation& s, session_store& store)
+        : p_(p), simulation_(s), store_(store)
+    {
+    }
+
+    int hold()
+    {
+        for (const run_sequence& s : p_.runs)
+            if (const int signal = run(s))
+                return signal;
+        return 0;
+    }
+
+private:
+    std::uint64_t frames(double seconds) const
+    {
+        return static_cast<std::uint64_t>(std::llround(seconds * p_.render.rate));
+    }
+
+    std::int64_t utc_ns(std::uint64_t frame) const
+    {
+        const std::uint64_t rate = p_.render.rate;
+        const auto microseconds = frame / rate * 1000000 + frame % rate * 1000000 / rate;
+        return epoch_ns + static_cast<std::int64_t>(microseconds) * 1000;
+    }
+
+    // Sets the clock after a trial from its line alone: a session that goes on has nothing else.
+    void pass(const trial_row& row)
+    {
+        now_ = row.frame_1.value_or(now_) + frames(row.duration_s) +
+               frames(row.response_time_s.value_or(0.0)) + frames(pause_s);
+    }
+
+    trial_row play(const run_definition& r, const planned_trial& t, const pending_trial& which,
+                   const simulated_observer& who, bool practice)
+    {
+        if (r.animation)
+            now_ += frames(p_.definition.motions[t.motion].drawn.motion.duration_s());
+        const simulated_answer a = who.answer(t, which.trial, which.attempt, practice);
+        trial_row row = planned_row(p_, t, which);
+        row.stream = 1;
+        row.frame_1 = now_;
+        if (t.method_2)
+            row.frame_2 = now_ + p_.stimuli.second(t);
+        row.is_void = a.is_void;
+        row.xruns = a.is_void ? 1 : 0;
+        if (!a.is_void) {
+            set_response(row, p_, r, a.response);
+            row.response_time_s = a.response_time_ms * 1e-3;
+        }
+        return row;
+    }
+
+    void add(run_table& table, trial_row& row)
+    {
+        table.add(row, utc_ns(now_), p_.render.rate);
+        pass(row);
+    }
+
+    void practise(const run_sequence& s, const simulated_observer& who)
+    {
+        const run_definition& r = p_.definition.runs[s.run];
+        for (const trial_row& row : store_.practice_rows(r))
+            pass(row);
+        run_table table(store_, r, true);
+        while (table.rows() < s.practice.size()) {
+            const std::size_t at = table.rows();
+            trial_row row = play(r, s.practice[at], {static_cast<unsigned>(at + 1), 1}, who, true);
+            add(table, row);
+        }
+    }
+
+    int run(const run_sequence& s)
+    {
+        const run_definition& r = p_.definition.runs[s.run];
+        const simulated_observer who(simulation_, p_.definition, r, p_.stimuli, p_.participant);
+        practise(s, who);
+        const std::vector<trial_row> rows = store_.rows(r);
+        for (const trial_row& row : rows)
+            pass(row);
+        run_queue queue = replay(p_, s, rows);
+        run_table table(store_, r, false);
+        while (!queue.done()) {
+            if (const int signal = stop_.poll())
+                return signal;
+            const pending_trial next = queue.next();
+            trial_row row = play(r, s.trials[next.trial - 1], next, who, false);
+            add(table, row);
+            queue.take(row.is_void);
+        }
+        now_ += frames(r.break_s);
+        return 0;
+    }
+
+    const prepared_experiment& p_;
+    const simulation& simulation_;
+    session_store& store_;
+    session::interrupt stop_;
+    std::uint64_t now_ = 0; ///< frame of the virtual stream
+};
+
+} // namespace
 
 trial_row planned_row(const prepared_experiment& p, const planned_trial& t, const pending_trial& which)
 {
@@ -85,7 +199,7 @@ void run_table::add(trial_row& row, std::int64_t started_ns, unsigned rate)
         first_frame_ = row.frame_1;
         began_ns_ = started_ns;
     }
-    // Exact within a stream; over the gap between two of them by the clock of the day.
+    // Exact within a stream; by the clock of the day over the gap between two streams.
     if (row.frame_1 && first_frame_ && row.stream == first_stream_)
         row.onset_s = static_cast<double>(*row.frame_1 - *first_frame_) / rate;
     else if (row.frame_1 && began_ns_)
@@ -94,6 +208,11 @@ void run_table::add(trial_row& row, std::int64_t started_ns, unsigned rate)
         store_.append_practice(run_, row);
     else
         store_.append(run_, row, acq_time_text(began_ns_.value_or(started_ns)));
+}
+
+int simulate_session(const prepared_experiment& p, const simulation& s, session_store& store)
+{
+    return simulated_session(p, s, store).hold();
 }
 
 } // namespace tactor::study

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// What simulated and real sessions share: lines of trials, and where a session that goes on is.
+/// Parts of simulated and real sessions: lines of trials, and the place of a session that goes on.
 #pragma once
 
 #include <cstdint>
@@ -13,28 +13,28 @@
 
 namespace tactor::study {
 
-/// A line of a trial, as far as the plan of the session says it.
+/// Returns a trial's line, as far as the plan of the session determines it.
 trial_row planned_row(const prepared_experiment& p, const planned_trial& t, const pending_trial& which);
 
-/// What an answer is in the columns response and rating.
+/// Writes an answer into the columns response and rating.
 void set_response(trial_row& row, const prepared_experiment& p, const run_definition& r, unsigned response);
 
-/// What is left of a run after the lines that are there. \throws error (bad_input) for lines that are not of
-/// this session.
+/// Returns the rest of a run after the lines that are there. \throws error (bad_input) for lines that are not
+/// of this session.
 run_queue replay(const prepared_experiment& p, const run_sequence& s, const std::vector<trial_row>& rows);
 
-/// Whether all trials of all runs are there. Throws as above.
+/// Returns true if all trials of all runs are there. Throws as above.
 bool finished(const prepared_experiment& p, const session_store& store);
 
 /// Lines of one run, with times that count from its first sample at the DAC.
 class run_table {
 public:
-    /// Goes on after what is there. `practice`: the lines before the run, which do not count.
+    /// Goes on after the lines that are there. `practice`: the lines before the run, which do not count.
     run_table(session_store& store, const run_definition& r, bool practice);
 
     std::size_t rows() const noexcept { return rows_; }
-    /// Settles the onset and writes the line; it is on the disk when this returns. `started_ns` is
-    /// CLOCK_REALTIME at the trial's first frame, or when it was to begin. \throws error (runtime).
+    /// Sets the onset and writes the line; it is on the disk when this returns. `started_ns` is
+    /// CLOCK_REALTIME at the trial's first frame, or at its planned begin. \throws error (runtime).
     void add(trial_row& row, std::int64_t started_ns, unsigned rate);
 
 private:
@@ -47,8 +47,8 @@ private:
     std::optional<std::int64_t> began_ns_ = {};     ///< CLOCK_REALTIME
 };
 
-/// Holds all trials that are left, without a device: a model answers, and it takes no time. Returns the
-/// signal that ended it, or 0. \throws error.
+/// Holds the rest of a session without a device: a model answers, and no time passes. Returns the signal that
+/// ended it, or 0. \throws error.
 int simulate_session(const prepared_experiment& p, const simulation& s, session_store& store);
 
 } // namespace tactor::study

@@ -13,7 +13,7 @@ namespace {
 
 using matrix = std::vector<std::vector<double>>;
 
-// Columns (here: rows) that are orthonormal, and orthogonal to the mean: Helmert's.
+// Returns Helmert's contrasts as rows: orthonormal, and orthogonal to the mean.
 matrix contrasts(std::size_t levels)
 {
     matrix c;
@@ -47,7 +47,7 @@ matrix kronecker(const matrix& a, const matrix& b)
     return c;
 }
 
-// The sums of squares of an effect, and the cross products of what participants differ in it.
+// The sums of squares of an effect, and the cross products of the participants' differences.
 struct parts {
     double effect = 0.0;
     double error = 0.0;
@@ -83,7 +83,7 @@ parts project(const cell_table& t, const matrix& c)
     return s;
 }
 
-// Sums of squares up to this are what rounding leaves of 0.
+// Returns the largest sum of squares that rounding leaves of 0.
 double nothing(const cell_table& t)
 {
     double largest = 0.0;
@@ -125,7 +125,7 @@ effect judge(const parts& s, const cell_table& t, double all_error)
     return e;
 }
 
-double trace(const std::vector<std::vector<double>>& m)
+double trace(const matrix& m)
 {
     double sum = 0.0;
     for (std::size_t i = 0; i < m.size(); ++i)
@@ -133,12 +133,12 @@ double trace(const std::vector<std::vector<double>>& m)
     return sum;
 }
 
-// Of a symmetric matrix that has no negative eigenvalues, by Cholesky; 0 where one is 0.
-double determinant(std::vector<std::vector<double>> m)
+// Returns the determinant of a symmetric matrix without negative eigenvalues, by Cholesky; 0 if one is 0.
+double determinant(matrix m)
 {
     double product = 1.0;
     for (std::size_t k = 0; k < m.size(); ++k) {
-        // The largest that is left comes first, so that what remains of a singular matrix is rounding alone.
+        // The largest that is left comes first, so that only rounding remains of a singular matrix.
         std::size_t best = k;
         for (std::size_t i = k; i < m.size(); ++i)
             best = m[i][i] > m[best][best] ? i : best;
@@ -183,7 +183,7 @@ anova repeated_measures(const cell_table& t)
     return {judge(a, t, all_error), judge(b, t, all_error), judge(ab, t, all_error)};
 }
 
-double greenhouse_geisser(const std::vector<std::vector<double>>& cross)
+double greenhouse_geisser(const matrix& cross)
 {
     double squares = 0.0;
     for (const auto& row : cross)
@@ -193,19 +193,18 @@ double greenhouse_geisser(const std::vector<std::vector<double>>& cross)
     return std::min(1.0, sum * sum / (static_cast<double>(cross.size()) * squares)); // but for rounding
 }
 
-std::optional<mauchly_test> mauchly(const std::vector<std::vector<double>>& cross, std::size_t df,
-                                    std::size_t cells)
+std::optional<mauchly_test> mauchly(const matrix& cross, std::size_t df, std::size_t cells)
 {
     if (df < cross.size())
         return {};
     const auto p = static_cast<double>(cross.size());
     const auto n = static_cast<double>(df);
-    std::vector<std::vector<double>> scaled = cross;
+    matrix scaled = cross;
     for (auto& row : scaled)
         for (double& v : row)
             v *= p / trace(cross);
     const double w = std::min(1.0, determinant(std::move(scaled)));
-    // What is singular has a w of rounding errors, some 1e-16.
+    // A singular matrix has a w of rounding errors, some 1e-16.
     if (w < 1e-13)
         return {};
     const double rho = 1.0 - (2.0 * p * p + p + 2.0) / (6.0 * p * n);

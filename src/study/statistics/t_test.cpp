@@ -16,7 +16,7 @@
 namespace tactor::study {
 namespace {
 
-// The noncentrality with which P(T <= t) is `below`: it falls as the noncentrality grows.
+// Returns the noncentrality with which P(T <= t) is `below`: P falls as the noncentrality grows.
 double noncentrality(double t, double df, double below)
 {
     const auto off = [&](double delta) {
@@ -44,7 +44,7 @@ struct share {
 
 constexpr std::size_t most_sums = std::size_t{1} << 20;
 
-// All sums of the values with either sign, in order, equal ones as one; empty where they are too many.
+// Lists the sums of the values with either sign, in order and each once; empty if there are too many.
 std::vector<share> all_sums(std::span<const double> values, double equal)
 {
     std::vector<share> sums{{0.0, 1.0}};
@@ -191,7 +191,7 @@ std::optional<double> sign_flip_p(std::span<const double> values)
     const std::vector<share> second = all_sums(values.subspan(values.size() / 2), 1e-12 * all);
     if (first.empty() || second.empty())
         return {};
-    // As many sums are at or above |observed| as at or below -|observed|: signs come in opposites.
+    // The count at or above |observed| is the count at or below -|observed|: signs come in opposites.
     const double limit = std::abs(observed) - 1e-9 * all;
     if (limit <= 0.0)
         return 1.0;

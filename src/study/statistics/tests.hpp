@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// The tests that studies report: t tests with what goes with them, analysis of variance, pairwise
-/// comparisons, and exact tests and intervals.
+/// The tests that studies report: t tests with effect sizes, analysis of variance, pairwise comparisons,
+/// and exact tests and intervals.
 #pragma once
 
 #include <cstddef>
@@ -21,8 +21,8 @@ double mean(std::span<const double> values);
 /// Returns the standard deviation (n - 1) of two values or more with this mean.
 double deviation(std::span<const double> values, double mean);
 
-/// A one-sample t test; a paired test is that of the differences against 0. What n = 1 or no variance leaves
-/// undefined is not there; so is all where n = 0.
+/// A one-sample t test; a paired test is that of the differences against 0. Figures that n = 0, n = 1 or no
+/// variance leaves undefined are missing.
 struct t_test {
     std::size_t n = 0;
     std::optional<double> mean = {};
@@ -36,7 +36,7 @@ struct t_test {
     std::optional<interval> d_ci = {};     ///< from the noncentral t distribution
 };
 
-/// Parts of the numbers that rounding may leave of nothing, where they were added up.
+/// Part of the largest of some numbers that rounding may leave of 0 in their sum.
 inline constexpr double few_digits = 1e-12;
 
 /// Returns true if the values differ by more than what rounding makes of equal ones: some digits of the
@@ -56,8 +56,7 @@ double p_of_t(double t, double df);
 /// (mean - against) / se. Nothing where t is beyond what can be computed (some 1e4).
 std::optional<interval> noncentrality_interval(double t, double df);
 
-/// Returns p values adjusted by Holm (1979), in the order given; those that are not there neither count nor
-/// get one.
+/// Returns p values adjusted by Holm (1979), in the order given; missing ones do not count and stay missing.
 std::vector<std::optional<double>> holm(const std::vector<std::optional<double>>& p);
 
 /// Returns the p of Fisher's exact test of differences: the share of all 2^n choices of signs with which the
@@ -78,8 +77,8 @@ struct cell_table {
     std::size_t second_levels = 1;
 };
 
-/// One effect against its own interaction with participants. What is not defined is not there: everything
-/// with less than two participants or two levels, and where the error has no variance.
+/// An effect against its interaction with participants. Undefined figures are missing: all with less than two
+/// participants or two levels, and those that need an error with variance.
 struct effect {
     double df1 = 0.0;
     double df2 = 0.0;
@@ -115,7 +114,7 @@ struct mauchly_test {
     double p;
 };
 
-/// Computes Mauchly's test (1940), whether the differences between levels vary alike, with the correction to
+/// Computes Mauchly's test (1940) of equal variance of the differences between levels, with the correction to
 /// the second order that R has, in mauchly.test() and in car: one of its terms counts all `cells` of the
 /// design, not the contrasts. `df`: participants - 1. Nothing where df is less than the number of contrasts,
 /// or the matrix is singular.
