@@ -1,12 +1,17 @@
 // SPDX-License-Identifier: MIT
+#include <algorithm>
 #include <cstdint>
 #include <limits>
+#include <span>
 #include <tuple>
 #include <utility>
 
 #include <fmt/format.h>
 
 #include "core/asked_pace.hpp"
+#include "core/words.hpp"
+#include "files/plan/plan_file.hpp"
+#include "files/plan/plan_json.hpp"
 #include "python/plan_handle.hpp"
 
 namespace tactor::python {
@@ -40,6 +45,20 @@ plan_handle planned(const std::shared_ptr<array_handle>& on, const stroke& given
     const without_lock free;
     work();
     return p;
+}
+
+// A property that reads a member of the plan.
+template <class T>
+auto member(T tactor::plan::*m)
+{
+    return [m](const plan_handle& p) -> const T& { return p.plan().*m; };
+}
+
+// The name of a member that is of a closed set.
+template <class T>
+auto member_name(T tactor::plan::*m)
+{
+    return [m](const plan_handle& p) { return std::string(to_string(p.plan().*m)); };
 }
 
 // A column of the bursts as they lie in memory.
@@ -182,13 +201,51 @@ py::dict summary(const plan_handle& p)
         const without_lock free;
         s = summarise(p.on->value(), p.drawn, p.plan());
     }
-    using namespace py::literals;
     return py::dict("rms_error_mm"_a = s.rms_error_mm, "largest_error_mm"_a = s.largest_error_mm,
                     "speed_cv"_a = s.speed_cv, "intensity_cv"_a = s.intensity_cv,
                     "silent_share"_a = s.silent_share, "shared_share"_a = s.shared_share);
 }
 
 } // namespace
+
+render_options settled(const array& a, render_options o)
+{
+    const unsigned marker = o.marker_channel ? *o.marker_channel + 1 : 0;
+    if (o.channels == 0)
+        o.channels = std::max(a.channels(), marker);
+    return o;
+}
+
+std::string json_of(const plan_handle& p)
+{
+    const without_lock free;
+    const array& tactors = p.on->value();
+    const render_options sound = settled(tactors, p.sound);
+    const score samples(tactors, std::vector{p.placed}, sound);
+    const std::span<const compensated_plan> moved(p.moved ? &*p.moved : nullptr, p.moved ? 1 : 0);
+    return files::plans_text(
+        {{&p.drawn, 1}, {&p.placed, 1}, moved, p.fit ? &*p.fit : nullptr, tactors, samples, sound});
+}
+
+plan_handle plan_from_json(const std::string& text, const std::string& named)
+{
+    const without_lock free;
+    files::plan_file f = files::read_plans(text, named);
+    if (f.plans.size() != 1)
+        throw error(error_kind::bad_input, named, "there are " + counted(f.plans.size(), "plan") + " in it",
+                    "take one of its \"plans\"");
+    plan_handle p{std::make_shared<array_handle>(std::move(f.tactors)), std::move(f.strokes.front()),
+                  std::move(f.plans.front()), f.fit};
+    if (!f.moved.empty())
+        p.moved = std::move(f.moved.front());
+    p.sound = f.render;
+    return p;
+}
+
+void check_same_array(const plan_handle& p, const array& in_use)
+{
+    files::check_same_array("plan", p.on->value(), in_use);
+}
 
 asked_stroke stroke_as_asked(const stroke& s, const layout& faces, const wishes& w)
 {
@@ -243,21 +300,17 @@ void bind_plan(py::module_& m)
         .def_property_readonly("recipe", &recipe_of)
         .def_property_readonly("array", [](const plan_handle& p) { return p.on; })
         .def_property_readonly("stroke", [](const plan_handle& p) { return p.drawn; })
-        .def_property_readonly("algorithm", [](const plan_handle& p) { return p.plan().algorithm; })
-        .def_property_readonly("phantom", [](const plan_handle& p) { return p.plan().phantom; })
-        .def_property_readonly("faces",
-                               [](const plan_handle& p) { return std::string(to_string(p.plan().faces)); })
-        .def_property_readonly("overlap",
-                               [](const plan_handle& p) { return std::string(to_string(p.plan().overlap)); })
+        .def_property_readonly("algorithm", member(&tactor::plan::algorithm))
+        .def_property_readonly("phantom", member(&tactor::plan::phantom))
+        .def_property_readonly("faces", member_name(&tactor::plan::faces))
+        .def_property_readonly("overlap", member_name(&tactor::plan::overlap))
         .def_property_readonly("start_s", [](const plan_handle& p) { return p.placed.start_s; })
-        .def_property_readonly("stroke_duration_s",
-                               [](const plan_handle& p) { return p.plan().stroke_duration_s; })
-        .def_property_readonly("stroke_length_mm",
-                               [](const plan_handle& p) { return p.plan().stroke_length_mm; })
-        .def_property_readonly("carrier_hz", [](const plan_handle& p) { return p.plan().carrier_hz; })
-        .def_property_readonly("soa_s", [](const plan_handle& p) { return p.plan().soa_s; })
-        .def_property_readonly("total_s", [](const plan_handle& p) { return p.plan().total_s; })
-        .def_property_readonly("warnings", [](const plan_handle& p) { return p.plan().warnings; })
+        .def_property_readonly("stroke_duration_s", member(&tactor::plan::stroke_duration_s))
+        .def_property_readonly("stroke_length_mm", member(&tactor::plan::stroke_length_mm))
+        .def_property_readonly("carrier_hz", member(&tactor::plan::carrier_hz))
+        .def_property_readonly("soa_s", member(&tactor::plan::soa_s))
+        .def_property_readonly("total_s", member(&tactor::plan::total_s))
+        .def_property_readonly("warnings", member(&tactor::plan::warnings))
         .def_property_readonly("conflicts",
                                [](const plan_handle& p) {
                                    std::vector<std::tuple<unsigned, double, double>> all;
@@ -280,13 +333,16 @@ void bind_plan(py::module_& m)
                                                    "marker_channel"_a = p.sound.marker_channel);
                                })
         .def_property_readonly("continuous", [](const plan_handle& p) { return p.plan().curve.has_value(); })
-        .def("onsets",
-             [](const py::object& s) { return column(s, [](const burst& b) { return &b.onset_s; }); })
-        .def("durations",
-             [](const py::object& s) { return column(s, [](const burst& b) { return &b.duration_s; }); })
-        .def("intensities",
-             [](const py::object& s) { return column(s, [](const burst& b) { return &b.intensity; }); })
-        .def("positions", &positions)
+        .def_property_readonly(
+            "onsets",
+            [](const py::object& s) { return column(s, [](const burst& b) { return &b.onset_s; }); })
+        .def_property_readonly(
+            "durations",
+            [](const py::object& s) { return column(s, [](const burst& b) { return &b.duration_s; }); })
+        .def_property_readonly(
+            "intensities",
+            [](const py::object& s) { return column(s, [](const burst& b) { return &b.intensity; }); })
+        .def_property_readonly("positions", &positions)
         .def("taus", &taus)
         .def("amplitudes", &amplitudes)
         .def("rows", &rows)

@@ -6,9 +6,8 @@ import os
 import typing as _t
 
 from tactor import _tactor
-from tactor._checks import _counted, _floats, _need, _number, _place, _shown, _Value, _whole
+from tactor._checks import _counted, _floats, _Member, _need, _number, _place, reading, _shown, _Value, _whole
 from tactor._errors import InputError
-from tactor._files import reading
 
 if _t.TYPE_CHECKING:
     import numpy as _np
@@ -83,7 +82,7 @@ class Array(_Value):
     _tactors: tuple[Tactor, ...]
 
     def __init__(self, name: str, tactors: _t.Iterable[Tactor]) -> None:
-        self._take(_core_of(name, tactors))
+        self._take(_make_core(name, tactors))
 
     def _take(self, core: _t.Any, file: str | None = None, besides: str = "", origin: str = "") -> None:
         self._core = core
@@ -149,40 +148,19 @@ class Array(_Value):
         """An array of places [(x_mm, y_mm), ...]; channels are counted from 0 in this order."""
         return cls(name, [Tactor(Point(x, y), i) for i, (x, y) in enumerate(_places("points", points).tolist())])
 
-    @property
-    def name(self) -> str:
-        """Name, for plans and pictures."""
-        return self._core.name  # type: ignore[no-any-return]
-
-    @property
-    def positions(self) -> _NDArray[_np.float64]:
-        """Places, shape (n, 2), mm; a view that cannot be written."""
-        return self._core.positions  # type: ignore[no-any-return]
-
-    @property
-    def channels(self) -> int:
-        """Channels that the map needs, the highest and one."""
-        return self._core.channels  # type: ignore[no-any-return]
+    name: _Member[str] = _Member("name", "Name, for plans and pictures.")
+    positions: _Member[_NDArray[_np.float64]] = _Member("positions", "Places, shape (n, 2), mm; a view that cannot be written.")
+    channels: _Member[int] = _Member("channels", "Channels that the map needs, the highest and one.")
 
     @property
     def tactors(self) -> tuple[Tactor, ...]:
         """The tactors by number."""
         return self._tactors
 
-    @property
-    def faces(self) -> list[list[int]]:
-        """Delaunay faces as numbers of tactors in order round each; none where all are in one line."""
-        return self._core.faces  # type: ignore[no-any-return]
-
-    @property
-    def pitch_mm(self) -> float:
-        """Median distance from a tactor to its nearest neighbour; 0 for a single one."""
-        return self._core.pitch_mm  # type: ignore[no-any-return]
-
-    @property
-    def grid_lines(self) -> tuple[list[float], list[float]] | None:
-        """The x of the columns and the y of the rows, mm, where the tactors form a rectangular grid; else None."""
-        return self._core.grid_lines()  # type: ignore[no-any-return]
+    faces: _Member[list[list[int]]] = _Member("faces", "Delaunay faces as numbers of tactors in order round each; none where all are in one line.")
+    pitch_mm: _Member[float] = _Member("pitch_mm", "Median distance from a tactor to its nearest neighbour; 0 for a single one.")
+    grid_lines: _Member[tuple[list[float], list[float]] | None] = _Member(
+        "grid_lines", "The x of the columns and the y of the rows, mm, where the tactors form a rectangular grid; else None.")
 
     def contains(self, point: _t.Sequence[float]) -> bool:
         """Whether a place is in the hull of the tactors, its edge included."""
@@ -299,18 +277,18 @@ class Array(_Value):
         InputError
             For another number of values than tactors, and as `Array` does.
         """
-        made = self._tactors if tactors is None else _tactors_of(tactors)
-        made = _with_each(made, "channel", "channels", channels)
-        made = _with_each(made, "gain_db", "gains", gains)
-        made = _with_each(made, "max_dbfs", "max_dbfs", max_dbfs)
-        made = _with_each(made, "polarity", "polarities", polarities)
+        made = self._tactors if tactors is None else _checked_tactors(tactors)
+        for field, what, values in (("channel", "channels", channels), ("gain_db", "gains", gains), ("max_dbfs", "max_dbfs", max_dbfs),
+                                    ("polarity", "polarities", polarities)):
+            if values is not None:
+                made = tuple(t._replace(**{field: value}) for t, value in zip(made, _each(what, values, len(made))))
         if thresholds is not None:
             made = tuple(t._replace(threshold_dbfs=None, thresholds=()) for t in made)
             for i, one in enumerate(_each("thresholds", thresholds, len(made))):
                 listed = hasattr(one, "__len__") and not isinstance(one, str)
                 made = (*made[:i], made[i]._replace(**{"thresholds" if listed else "threshold_dbfs": one}), *made[i + 1:])
         origin = self._origin if tactors is None and thresholds is None else ""
-        return Array._of(_core_of(self.name if name is None else name, made), self._file, self._besides, origin)
+        return Array._of(_make_core(self.name if name is None else name, made), self._file, self._besides, origin)
 
     def write(self, file: str | os.PathLike[str]) -> None:
         """Writes an array file that `from_file` and the tool read, with all that `replace` keeps. It needs no other file.
@@ -387,15 +365,15 @@ def _row(t: Tactor) -> tuple[_t.Any, ...]:
             level("threshold_dbfs"), _whole("polarity", t.polarity, -1, 1, "1 or -1"), t.actuator, thresholds, level("rise_s"))
 
 
-def _tactors_of(tactors: _t.Iterable[Tactor]) -> tuple[Tactor, ...]:
+def _checked_tactors(tactors: _t.Iterable[Tactor]) -> tuple[Tactor, ...]:
     tactors = tuple(tactors)
     for t in tactors:
         _need(t, Tactor, "tactors")
     return tactors
 
 
-def _core_of(name: str, tactors: _t.Iterable[Tactor]) -> _t.Any:
-    tactors = _tactors_of(tactors)
+def _make_core(name: str, tactors: _t.Iterable[Tactor]) -> _t.Any:
+    tactors = _checked_tactors(tactors)
     _need(name, str, "name")
     return _tactor.Array(name, [_row(t) for t in tactors])
 
@@ -413,14 +391,8 @@ def _each(what: str, values: _t.Any, count: int) -> list[_t.Any]:
     return all_of_them
 
 
-def _with_each(tactors: tuple[Tactor, ...], field: str, what: str, values: _t.Any) -> tuple[Tactor, ...]:
-    if values is None:
-        return tactors
-    return tuple(t._replace(**{field: value}) for t, value in zip(tactors, _each(what, values, len(tactors))))
-
-
 def _array_again(name: str, tactors: tuple[Tactor, ...], file: str | None, besides: str, origin: str) -> Array:
-    return Array._of(_core_of(name, tactors), file, besides, origin)
+    return Array._of(_make_core(name, tactors), file, besides, origin)
 
 
 def array_presets() -> list[str]:

@@ -2,11 +2,13 @@
 """What is wrong with an argument."""
 from __future__ import annotations
 
+import contextlib
 import math
 import operator
+import os
 import typing as _t
 
-from tactor._errors import InputError
+from tactor._errors import Error, InputError
 
 
 def _floats(what: str, values: _t.Any) -> _t.Any:
@@ -99,6 +101,45 @@ def _need(value: object, kind: type, what: str) -> None:
 
 def _counted(n: int, noun: str) -> str:
     return f"{n} {noun}" if n == 1 else f"{n} {noun}s"
+
+
+def encoded(name: str | os.PathLike[str], what: str = "file") -> bytes:
+    """A name as the system takes it, which ends at a zero byte."""
+    as_bytes = os.fsencode(name)
+    if b"\0" in as_bytes:
+        raise InputError(what, f"{os.fspath(name)!r} has a zero byte in it", "no file or device is called so", field=what)
+    return as_bytes
+
+
+@contextlib.contextmanager
+def reading(file: str | os.PathLike[str]) -> _t.Iterator[bytes]:
+    """Gives the name as the extension takes it; an error within says the file, whether or not it knows the line."""
+    name = os.fspath(file)
+    try:
+        yield encoded(name)
+    except Error as e:
+        if e.file is None:
+            e._name_file(name)
+        raise
+
+
+_M = _t.TypeVar("_M")
+
+
+class _Member(property, _t.Generic[_M]):
+    # A property that reads a member of the extension's object, which is in _core. No docstring: each has its own.
+
+    def __init__(self, name: str, doc: str) -> None:
+        super().__init__(operator.attrgetter("_core." + name))
+        self.__doc__ = doc
+
+    if _t.TYPE_CHECKING:
+        @_t.overload
+        def __get__(self, instance: None, owner: type) -> _Member[_M]: ...
+        @_t.overload
+        def __get__(self, instance: object, owner: type | None = None) -> _M: ...
+        def __get__(self, instance: object, owner: type | None = None) -> _t.Any: ...
+        def __set__(self, instance: object, value: _t.NoReturn) -> None: ...
 
 
 class _Value:

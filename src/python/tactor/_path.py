@@ -6,7 +6,7 @@ import typing as _t
 
 from tactor import _tactor
 from tactor._array import Point
-from tactor._checks import _floats, _need, _number, _place, _Stated
+from tactor._checks import _floats, _Member, _need, _number, _place, _Stated
 
 if _t.TYPE_CHECKING:
     import numpy as _np
@@ -46,15 +46,8 @@ class Path(_Stated):
         angles = _number("from_deg", from_deg), _number("sweep_deg", sweep_deg)
         return cls._of(_tactor.Path.arc(*_place("centre", centre), _number("radius_mm", radius_mm), *angles))
 
-    @property
-    def length_mm(self) -> float:
-        """Length, to a micrometre."""
-        return self._core.length_mm  # type: ignore[no-any-return]
-
-    @property
-    def data(self) -> str:
-        """SVG path data of the curve."""
-        return self._core.data()  # type: ignore[no-any-return]
+    length_mm: _Member[float] = _Member("length_mm", "Length, to a micrometre.")
+    data: _Member[str] = _Member("data", "SVG path data of the curve.")
 
     @_t.overload
     def at(self, s_mm: float) -> Point: ...

@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 import collections.abc as _abc
+import functools
 import os
 import typing as _t
 
 from tactor import _tactor
 from tactor._array import Array, Point
-from tactor._checks import _Value
+from tactor._checks import _Member, _need, reading, _Value
 from tactor._errors import Error, InputError
-from tactor._files import reading
-from tactor._options import _SOUNDING, check_used, settled
+from tactor._options import _PLANNING_AND_SOUNDING, _SOUNDING, check_used, settled
 from tactor._parts import Burst, Conflict, Curve, Drive, Frozen, Meeting, Percept
 from tactor._stroke import Stroke
 
@@ -72,9 +72,8 @@ class Plan(_Value):
     @classmethod
     def _read(cls, text: str, name: str) -> Plan:
         """A plan of JSON; `name` stands for it in messages."""
-        from tactor._records import check_keys
         core = _tactor.Plan.from_json(text, name)
-        check_keys(text, name)
+        _check_keys(text, name)
         return cls._of(core, recorded=True)
 
     def write(self, file: str | os.PathLike[str]) -> None:
@@ -120,60 +119,17 @@ class Plan(_Value):
         """The stroke as it was planned, fitted and timed."""
         return Stroke._of(self._core.stroke)
 
-    @property
-    def algorithm(self) -> str:
-        """Name of the planner."""
-        return self._core.algorithm  # type: ignore[no-any-return]
-
-    @property
-    def phantom(self) -> str:
-        """Name of the phantom model."""
-        return self._core.phantom  # type: ignore[no-any-return]
-
-    @property
-    def faces(self) -> _Faces:
-        """Which three tactors "inverse-distance" took."""
-        return self._core.faces  # type: ignore[no-any-return]
-
-    @property
-    def overlap(self) -> _Overlap:
-        """How bursts that overlap on one tactor are joined."""
-        return self._core.overlap  # type: ignore[no-any-return]
-
-    @property
-    def start(self) -> float | None:
-        """Seconds from the start of a piece; None is when the plan before it has ended."""
-        return self._core.start_s  # type: ignore[no-any-return]
-
-    @property
-    def stroke_duration(self) -> float:
-        """Time of the stroke, s."""
-        return self._core.stroke_duration_s  # type: ignore[no-any-return]
-
-    @property
-    def stroke_length_mm(self) -> float:
-        """Length of the stroke."""
-        return self._core.stroke_length_mm  # type: ignore[no-any-return]
-
-    @property
-    def carrier(self) -> float:
-        """Frequency of the vibration, Hz."""
-        return self._core.carrier_hz  # type: ignore[no-any-return]
-
-    @property
-    def soa(self) -> float | None:
-        """Onset to onset of two bursts, s; None where they have none in common."""
-        return self._core.soa_s  # type: ignore[no-any-return]
-
-    @property
-    def total(self) -> float:
-        """End of the last sound, s."""
-        return self._core.total_s  # type: ignore[no-any-return]
-
-    @property
-    def warnings(self) -> list[str]:
-        """What was odd and taken nevertheless."""
-        return self._core.warnings  # type: ignore[no-any-return]
+    algorithm: _Member[str] = _Member("algorithm", "Name of the planner.")
+    phantom: _Member[str] = _Member("phantom", "Name of the phantom model.")
+    faces: _Member[_Faces] = _Member("faces", 'Which three tactors "inverse-distance" took.')
+    overlap: _Member[_Overlap] = _Member("overlap", "How bursts that overlap on one tactor are joined.")
+    start: _Member[float | None] = _Member("start_s", "Seconds from the start of a piece; None is when the plan before it has ended.")
+    stroke_duration: _Member[float] = _Member("stroke_duration_s", "Time of the stroke, s.")
+    stroke_length_mm: _Member[float] = _Member("stroke_length_mm", "Length of the stroke.")
+    carrier: _Member[float] = _Member("carrier_hz", "Frequency of the vibration, Hz.")
+    soa: _Member[float | None] = _Member("soa_s", "Onset to onset of two bursts, s; None where they have none in common.")
+    total: _Member[float] = _Member("total_s", "End of the last sound, s.")
+    warnings: _Member[list[str]] = _Member("warnings", "What was odd and taken nevertheless.")
 
     @property
     def conflicts(self) -> list[Conflict]:
@@ -202,25 +158,10 @@ class Plan(_Value):
         """Shape (bursts, tactors), linear; 0 where a tactor does not sound."""
         return self._keep("amplitudes", self._core.amplitudes)  # type: ignore[no-any-return]
 
-    @property
-    def onsets(self) -> _NDArray[_np.float64]:
-        """Shape (bursts,), s."""
-        return self._core.onsets()  # type: ignore[no-any-return]
-
-    @property
-    def durations(self) -> _NDArray[_np.float64]:
-        """Shape (bursts,), s."""
-        return self._core.durations()  # type: ignore[no-any-return]
-
-    @property
-    def positions(self) -> _NDArray[_np.float64]:
-        """Shape (bursts, 2), mm."""
-        return self._core.positions()  # type: ignore[no-any-return]
-
-    @property
-    def intensities(self) -> _NDArray[_np.float64]:
-        """Shape (bursts,), linear."""
-        return self._core.intensities()  # type: ignore[no-any-return]
+    onsets: _Member[_NDArray[_np.float64]] = _Member("onsets", "Shape (bursts,), s.")
+    durations: _Member[_NDArray[_np.float64]] = _Member("durations", "Shape (bursts,), s.")
+    positions: _Member[_NDArray[_np.float64]] = _Member("positions", "Shape (bursts, 2), mm.")
+    intensities: _Member[_NDArray[_np.float64]] = _Member("intensities", "Shape (bursts,), linear.")
 
     @property
     def taus(self) -> _NDArray[_np.float64]:
@@ -295,10 +236,33 @@ class Plan(_Value):
 
     def _repr_svg_(self) -> str:
         from tactor._tool import svg_of_plans
-        return svg_of_plans([self])
+        return svg_of_plans(self)
 
     def __reduce__(self) -> tuple[_t.Callable[..., _t.Any], tuple[_t.Any, ...]]:
         return _plan_again, (self._core.json(), self._core.stroke.state(), self._array, self._recorded, self._asked)
+
+
+def make_plan(given: dict[str, _t.Any]) -> Plan:
+    """The plan of plan()'s arguments."""
+    options = dict(given)
+    array, stroke = options.pop("array"), options.pop("stroke")
+    _need(array, Array, "array")
+    _need(stroke, Stroke, "stroke")
+    options = settled(array, options, _PLANNING_AND_SOUNDING)
+    asked = {name: options[name] for name in _SOUNDING if options.get(name) is not None}
+    return Plan._of(_tactor.Plan(array._core, stroke._core, options), array, asked=asked)
+
+
+def burst_duration(*, soa: float | None = None, burst: float | None = None, slope: float | None = None,
+                   intercept: float | None = None) -> float:
+    """Duration of park2016's bursts in seconds: `burst`, or what the timing law gives for the SOA.
+
+    Raises
+    ------
+    InputError
+        For an SOA out of bounds.
+    """
+    return _tactor.burst_duration(dict(soa=soa, burst=burst, slope=slope, intercept=intercept))  # type: ignore[no-any-return]
 
 
 def load_plan(file: str | os.PathLike[str]) -> Plan:
@@ -329,6 +293,43 @@ def _plain(value: _t.Any) -> _t.Any:
     if hasattr(value, "tolist"):
         return value.tolist()
     raise TypeError(f"there is a {type(value).__name__} in it")
+
+
+def _check_keys(text: str, name: str) -> None:
+    """Refuses keys that no plan has; `text` is JSON that was read as a plan, `name` stands for it in messages."""
+    import json
+    record = json.loads(text)
+    plans = record.get("plans")
+    for plan in plans if isinstance(plans, list) else [record]:
+        _check_members(plan, _schema(), "", name)
+
+
+@functools.lru_cache(None)
+def _schema() -> dict[str, _t.Any]:
+    import json
+    with open(os.path.join(os.path.dirname(__file__), "tactor-plan-1.schema.json"), encoding="utf-8") as file:
+        return json.load(file)  # type: ignore[no-any-return]
+
+
+def _check_members(value: _t.Any, schema: dict[str, _t.Any], place: str, name: str) -> None:
+    if isinstance(value, list):
+        for i, entry in enumerate(value):
+            _check_members(entry, schema.get("items", {}), f"{place}[{i}]", name)
+        return
+    known = schema.get("properties")
+    if not isinstance(value, dict) or known is None:
+        return
+    for key, entry in value.items():
+        at = f"{place}.{key}" if place else key
+        if key not in known:
+            raise InputError(f"{name}: {at}", "no plan has this key", _nearest(key, known), file=name, field=at)
+        _check_members(entry, known[key], at, name)
+
+
+def _nearest(key: str, known: _t.Iterable[str]) -> str:
+    import difflib
+    near = difflib.get_close_matches(key, known, 1)
+    return f"did you mean '{near[0]}'?" if near else "see tactor-json(5)"
 
 
 def _plan_again(text: str, stroke: bytes, array: Array, recorded: bool, asked: dict[str, _t.Any]) -> Plan:

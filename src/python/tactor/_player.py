@@ -13,9 +13,8 @@ import weakref
 from tactor import _tactor
 from tactor._array import Array
 from tactor._calls import PlayerCalls
-from tactor._checks import _need, _number, _Unique, _whole
+from tactor._checks import encoded, _need, _number, _Unique, _whole
 from tactor._errors import InputError
-from tactor._files import encoded
 from tactor._options import _LIVE, settled
 from tactor._score import Score
 from tactor._ticket import LiveStroke, Report, Ticket, _call, _Held, _Shared

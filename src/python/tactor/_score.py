@@ -9,9 +9,8 @@ import typing as _t
 from tactor import _tactor
 from tactor._array import Array
 from tactor._calls import ScoreCall
-from tactor._checks import _counted, _need, _number, _Value, _whole
+from tactor._checks import _counted, _Member, _need, _number, reading, _Value, _whole
 from tactor._errors import InputError
-from tactor._files import reading
 from tactor._options import in_parts
 from tactor._plan import Plan
 
@@ -105,30 +104,16 @@ class Score(ScoreCall, _Value):
         """The plans, in the order given."""
         return tuple(p for _, p in self._plans)
 
-    @property
-    def frames(self) -> int:
-        """Length."""
-        return self._core.frames  # type: ignore[no-any-return]
-
-    @property
-    def channels(self) -> int:
-        """Samples of a frame."""
-        return self._core.channels  # type: ignore[no-any-return]
-
-    @property
-    def rate(self) -> int:
-        """Hz."""
-        return self._core.rate  # type: ignore[no-any-return]
+    frames: _Member[int] = _Member("frames", "Length.")
+    channels: _Member[int] = _Member("channels", "Samples of a frame.")
+    rate: _Member[int] = _Member("rate", "Hz.")
 
     @property
     def duration(self) -> float:
         """Length, s."""
         return self.frames / self.rate
 
-    @property
-    def starts(self) -> list[int]:
-        """First frame of each plan."""
-        return self._core.starts  # type: ignore[no-any-return]
+    starts: _Member[list[int]] = _Member("starts", "First frame of each plan.")
 
     def render(self, dtype: _DTypeLike = "float32", *, start: int = 0, frames: int | None = None,
                out: _NDArray[_t.Any] | None = None) -> _NDArray[_t.Any]:
@@ -241,8 +226,4 @@ class Score(ScoreCall, _Value):
                 f"{self.duration:.6g} s>")
 
     def __reduce__(self) -> tuple[_t.Callable[..., _t.Any], tuple[_t.Any, ...]]:
-        return _score_again, (self._array, self._plans, self._options)
-
-
-def _score_again(array: Array, plans: tuple[tuple[float | None, Plan], ...], options: dict[str, _t.Any]) -> Score:
-    return Score._of(array, plans, options)
+        return Score._of, (self._array, self._plans, self._options)

@@ -7,9 +7,8 @@ import typing as _t
 
 from tactor import _tactor
 from tactor._array import Array, Point
-from tactor._checks import _floats, _need, _number, _Stated
+from tactor._checks import _floats, _Member, _need, _number, reading, _Stated
 from tactor._errors import InputError
-from tactor._files import reading
 from tactor._path import Path
 
 if _t.TYPE_CHECKING:
@@ -157,60 +156,19 @@ class Stroke(_Stated):
         _need(name, str, "name")
         return cls._of(_tactor.Stroke.shape(name))
 
-    @property
-    def name(self) -> str:
-        """Name; may be empty."""
-        return self._core.name  # type: ignore[no-any-return]
-
-    @property
-    def duration(self) -> float:
-        """Time from start to end, s."""
-        return self._core.duration_s  # type: ignore[no-any-return]
-
-    @property
-    def length_mm(self) -> float:
-        """Length of the way."""
-        return self._core.length_mm  # type: ignore[no-any-return]
-
-    @property
-    def start(self) -> float | None:
-        """Seconds from where `start_from` says; None is when the stroke before it has ended."""
-        return self._core.start_s  # type: ignore[no-any-return]
-
-    @property
-    def start_from(self) -> _StartFrom:
-        """From where `start` counts, as a file says it. The start of the "piece", or the "start" or "end" of strokes before."""
-        return self._core.start_from  # type: ignore[no-any-return]
-
-    @property
-    def choices(self) -> dict[str, str | float]:
-        """Options of `plan` that a file gives this stroke (algorithm, phantom, faces, soa, burst), which win over those of the call."""
-        return self._core.choices  # type: ignore[no-any-return]
-
-    @property
-    def level_db(self) -> float:
-        """How much stronger a file says it is than the others."""
-        return self._core.level_db  # type: ignore[no-any-return]
-
-    @property
-    def carrier(self) -> float | None:
-        """Its own carrier, Hz; None is the plan's."""
-        return self._core.carrier_hz  # type: ignore[no-any-return]
-
-    @property
-    def speed(self) -> float | None:
-        """The speed, mm/s, from which its time follows; None where a time was given."""
-        return self._core.speed_mm_s  # type: ignore[no-any-return]
-
-    @property
-    def note(self) -> _Note:
-        """What must be said of it."""
-        return self._core.note  # type: ignore[no-any-return]
-
-    @property
-    def warnings(self) -> list[str]:
-        """What was odd about the input and taken nevertheless."""
-        return self._core.warnings  # type: ignore[no-any-return]
+    name: _Member[str] = _Member("name", "Name; may be empty.")
+    duration: _Member[float] = _Member("duration_s", "Time from start to end, s.")
+    length_mm: _Member[float] = _Member("length_mm", "Length of the way.")
+    start: _Member[float | None] = _Member("start_s", "Seconds from where `start_from` says; None is when the stroke before it has ended.")
+    start_from: _Member[_StartFrom] = _Member(
+        "start_from", 'From where `start` counts, as a file says it. The start of the "piece", or the "start" or "end" of strokes before.')
+    choices: _Member[dict[str, str | float]] = _Member(
+        "choices", "Options of `plan` that a file gives this stroke (algorithm, phantom, faces, soa, burst), which win over those of the call.")
+    level_db: _Member[float] = _Member("level_db", "How much stronger a file says it is than the others.")
+    carrier: _Member[float | None] = _Member("carrier_hz", "Its own carrier, Hz; None is the plan's.")
+    speed: _Member[float | None] = _Member("speed_mm_s", "The speed, mm/s, from which its time follows; None where a time was given.")
+    note: _Member[_Note] = _Member("note", "What must be said of it.")
+    warnings: _Member[list[str]] = _Member("warnings", "What was odd about the input and taken nevertheless.")
 
     @_t.overload
     def position(self, t: float) -> Point: ...
@@ -280,7 +238,6 @@ class Stroke(_Stated):
 
     def fitted(self, array: Array, margin_mm: float = 0.0) -> Stroke:
         """The same shape, as large as the array has space for and in its middle; see `fit_strokes`."""
-        from tactor._fitting import fit_strokes
         return fit_strokes([self], array, margin_mm)[0][0]
 
     def __repr__(self) -> str:
@@ -289,6 +246,68 @@ class Stroke(_Stated):
     def _repr_svg_(self) -> str:
         from tactor._tool import picture_of_stroke
         return picture_of_stroke(self)
+
+
+class Fitting(_t.NamedTuple):
+    """Where a picture was put: `origin` became `to`, and all distances are `scale` times what they were."""
+
+    origin: Point
+    to: Point
+    scale: float
+
+
+def fit_strokes(strokes: _t.Sequence[Stroke], array: Array, margin_mm: float = 0.0) -> tuple[list[Stroke], Fitting]:
+    """Moves and scales strokes, all alike as one picture, so that it is as large as the array has space for.
+
+    Parameters
+    ----------
+    strokes : sequence of Stroke
+    array : Array
+    margin_mm : float
+        Distance kept from the array's edge.
+
+    Returns
+    -------
+    tuple
+        The strokes, and where the picture was put.
+
+    Raises
+    ------
+    InputError
+        For a margin that leaves no space.
+    """
+    _need(array, Array, "array")
+    fitted, origin, to, scale = _tactor.fit_strokes(_cores(strokes), array._core, _number("margin_mm", margin_mm))
+    return [Stroke._of(s) for s in fitted], Fitting(Point(*origin), Point(*to), scale)
+
+
+def apply_fits(strokes: _t.Sequence[Stroke], array: Array) -> list[Stroke]:
+    """Strokes as their file asks for them to be fitted (`fit`), those of a group as one picture. `plan` does it for a stroke alone.
+
+    Parameters
+    ----------
+    strokes : sequence of Stroke
+        As `load` gives them; what asks for nothing stays.
+    array : Array
+
+    Returns
+    -------
+    list of Stroke
+        In the same order; they ask for nothing more.
+
+    Raises
+    ------
+    InputError
+        For a margin that leaves no space.
+    """
+    _need(array, Array, "array")
+    return [Stroke._of(s) for s in _tactor.apply_fits(_cores(strokes), array._core)]
+
+
+def _cores(strokes: _t.Any) -> list[_t.Any]:
+    for s in strokes:
+        _need(s, Stroke, "strokes")
+    return [s._core for s in strokes]
 
 
 def load(file: str | os.PathLike[str]) -> list[Stroke]:

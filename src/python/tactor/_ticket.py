@@ -10,7 +10,7 @@ import typing as _t
 import warnings
 import weakref
 
-from tactor._checks import _number, _Unique
+from tactor._checks import _Member, _number, _Unique
 
 if _t.TYPE_CHECKING:
     import asyncio
@@ -272,10 +272,7 @@ class LiveStroke(Ticket):
         """No more points come: fades out, or plays its last burst to the end."""
         self._core.end()
 
-    @property
-    def open(self) -> bool:
-        """Whether it can still be fed."""
-        return self._core.open  # type: ignore[no-any-return]
+    open: _Member[bool] = _Member("open", "Whether it can still be fed.")
 
     @property
     def counts(self) -> dict[str, int]:

@@ -8,9 +8,8 @@ import typing as _t
 
 from tactor import _tactor
 from tactor._array import Array
-from tactor._checks import _need, _number, _shown, _whole
+from tactor._checks import encoded, _need, _number, reading, _shown, _whole
 from tactor._errors import InputError
-from tactor._files import encoded, reading
 from tactor._options import _PLANNING, settled
 from tactor._plan import Plan
 from tactor._score import Score, placed
@@ -138,22 +137,15 @@ def plot(plans: _Plans, file: str | os.PathLike[str], *, view: _View = "both", w
                              bool(force))
 
 
-def svg_of_plans(plans: _t.Sequence[Plan]) -> str:
-    """An SVG document of plans."""
-    array, all_of_them, name, score = _picture(plans, "both")
-    return _tactor.svg(array, all_of_them, name, score, "both", 85.0)  # type: ignore[no-any-return]
+def svg_of_plans(plans: _Plans, view: str = "both") -> str:
+    """Draws plans as an SVG document."""
+    return _tactor.svg(*_picture(plans, view), view, 85.0)  # type: ignore[no-any-return]
 
 
 def picture_of_stroke(stroke: Stroke) -> str:
     """The way of a stroke on the array that it fits: palm-3x3, where it lies within; else what it needs."""
     from tactor._calls import plan
-    palm = Array.preset("palm-3x3")
-    return _tactor.svg(*_stroke_on(plan(palm, stroke, algorithm="continuous", outside="clamp")))  # type: ignore[no-any-return]
-
-
-def _stroke_on(p: Plan) -> tuple[_t.Any, ...]:
-    array, all_of_them, name, score = _picture(p, "array")
-    return array, all_of_them, name, score, "array", 85.0
+    return svg_of_plans(plan(Array.preset("palm-3x3"), stroke, algorithm="continuous", outside="clamp"), "array")
 
 
 def devices(array: Array | None = None, *, device: str | None = None, rate: int | None = None,
