@@ -63,12 +63,7 @@ array read_included(const toml_table& table, const setup_source& source, located
     if (std::filesystem::exists(file, ignored) && !std::filesystem::is_directory(file, ignored) &&
         !std::filesystem::is_regular_file(file, ignored))
         table.fail("file", fmt::format("{} is not a regular file", file.string()), "name an array file");
-    whole_text text;
-    try {
-        text = read_text_file(file, max_setup_bytes);
-    } catch (const error& e) {
-        table.fail("file", e.what(), {});
-    }
+    const whole_text text = table.at_key("file", [&] { return read_text_file(file, max_setup_bytes); });
     setup_source next{file.string(), file.parent_path(), source.opened};
     next.opened.push_back(full);
     out = read_setup(text, next);
@@ -189,14 +184,10 @@ array read_base(const toml_table& table, std::string_view base, const setup_sour
     if (base == "file")
         return read_included(table, source, out);
     const std::string name = *table.text("preset");
-    try {
-        array a = preset_array(name);
-        for (tactor_spec& t : a.tactors)
-            t.where = table.where("preset");
-        return a;
-    } catch (const error& e) {
-        table.fail("preset", e.what(), {});
-    }
+    array a = table.at_key("preset", [&] { return preset_array(name); });
+    for (tactor_spec& t : a.tactors)
+        t.where = table.where("preset");
+    return a;
 }
 
 } // namespace

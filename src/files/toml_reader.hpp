@@ -105,6 +105,17 @@ public:
     /// The one of `keys` that is there. \throws error for none or more than one.
     std::string_view one_of(std::initializer_list<std::string_view> keys) const;
 
+    /// Returns make(). What that refuses is refused at the key.
+    template <class F>
+    auto at_key(std::string_view key, F make) const
+    {
+        try {
+            return make();
+        } catch (const error& e) {
+            fail(key, e.what(), {});
+        }
+    }
+
     [[noreturn]] void fail(std::string_view why, std::string_view hint = {}) const;
     [[noreturn]] void fail(std::string_view key, std::string_view why, std::string_view hint) const;
 

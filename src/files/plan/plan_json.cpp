@@ -7,7 +7,6 @@
 #include <nlohmann/json.hpp>
 
 #include "files/plan/json_value.hpp"
-#include "files/plan/plan_sound.hpp"
 #include "files/plan/plan_values.hpp"
 #include "files/plan/row_json.hpp"
 

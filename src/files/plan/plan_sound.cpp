@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "files/plan/plan_sound.hpp"
+#include "files/plan/plan_values.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -10,7 +10,6 @@
 
 #include "core/kind_names.hpp"
 #include "files/plan/plan_json.hpp"
-#include "files/plan/plan_sound.hpp"
 
 namespace tactor::files {
 

@@ -32,4 +32,18 @@ nlohmann::ordered_json fit_json(const fitting& f);
 /// None where the plan's stroke was not fitted. \throws error (bad_input).
 std::optional<fitting> read_fitting(const json_value& plan);
 
+/// Sound and envelope in the JSON of a plan, which names no defaults. Puts them into the member "stroke".
+void put_sound(nlohmann::ordered_json& stroke, const plan& p);
+/// The member "render.envelope".
+nlohmann::ordered_json envelope_json(const burst_envelope& e);
+
+/// "threshold_dbfs" of a tactor: a level, a list of [Hz, dBFS], or null.
+nlohmann::ordered_json threshold_json(const tactor_spec& t);
+void take_threshold(const json_value& t, tactor_spec& into);
+
+/// Back from "stroke". Reads the WAV file that it names. \throws error (bad_input).
+void take_sound(const json_value& stroke, plan& p);
+/// Back from "render".
+burst_envelope read_envelope(const json_value& render);
+
 } // namespace tactor::files

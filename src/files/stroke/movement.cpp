@@ -130,12 +130,10 @@ trajectory along_as_told(const toml_table& t, std::string_view kind, const path&
             *m.duration_s += r.time_s;
     if (!m.rests.empty())
         key = "pauses";
-    try {
+    return t.at_key(key, [&] {
         return told.key.empty() ? trajectory::along(way, *seconds, told.intensity)
                                 : trajectory::along(way, m, told.intensity);
-    } catch (const error& e) {
-        t.fail(key, e.what(), {});
-    }
+    });
 }
 
 std::optional<double> kept_speed(const told_pace& told, double length_mm)

@@ -193,13 +193,10 @@ stroke placed(const toml_table& t, stroke s)
     const double y = mirror == "y" ? -scale : scale;
     const affine m{x * turn.cosine, x * turn.sine,       -y * turn.sine,
                    y * turn.cosine, from.x_mm + by.x_mm, from.y_mm + by.y_mm};
-    try {
-        s.motion = moved(s.motion, from, m, {}, [&] { return std::string(first); });
-        if (s.speed_mm_s && s.motion.length_mm() > 0.0)
-            s.motion = s.motion.with_speed(*s.speed_mm_s);
-    } catch (const error& e) {
-        t.fail(first, e.what(), {});
-    }
+    s.motion = t.at_key(first, [&] {
+        const trajectory there = moved(s.motion, from, m, {}, [&] { return std::string(first); });
+        return s.speed_mm_s && there.length_mm() > 0.0 ? there.with_speed(*s.speed_mm_s) : there;
+    });
     return s;
 }
 

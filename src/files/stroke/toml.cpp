@@ -37,17 +37,6 @@ constexpr double day_s = detail::longest_stroke_s;
 constexpr bounds anywhere{-max_mm, max_mm};
 constexpr unsigned deepest_group = 8;
 
-// What geometry refuses, with the place in the file.
-template <class F>
-auto at_key(const toml_table& t, std::string_view key, F make)
-{
-    try {
-        return make();
-    } catch (const error& e) {
-        t.fail(key, e.what(), {});
-    }
-}
-
 path read_points(const toml_table& t)
 {
     std::vector<point> points;
@@ -58,7 +47,7 @@ path read_points(const toml_table& t)
         t.numbers(entry, "a point", 2, 2, xy);
         points.push_back({xy[0], xy[1]});
     }
-    return at_key(t, "points", [&] { return path::polyline(points); });
+    return t.at_key("points", [&] { return path::polyline(points); });
 }
 
 path read_arc(const toml_table& t)
@@ -69,7 +58,7 @@ path read_arc(const toml_table& t)
     const double radius = a.need(a.number("radius_mm", {0.0, max_mm, true}), "radius_mm");
     const double from = a.need(a.number("from_deg", {-3600.0, 3600.0}), "from_deg");
     const double sweep = a.need(a.number("sweep_deg", {-360.0, 360.0}), "sweep_deg");
-    return at_key(t, "arc", [&] { return path::arc(centre, radius, from, sweep); });
+    return t.at_key("arc", [&] { return path::arc(centre, radius, from, sweep); });
 }
 
 timed_point read_timed_point(const toml_table& t, const toml::node& entry, double intensity)
@@ -102,7 +91,7 @@ trajectory read_timed(const toml_table& t, double intensity)
                             "put the points in order of time, each time once");
         points.push_back(p);
     }
-    return at_key(t, "timed", [&] { return trajectory::timed(std::move(points)); });
+    return t.at_key("timed", [&] { return trajectory::timed(std::move(points)); });
 }
 
 // A movement that has its own time, in the time that the file asks for.
@@ -112,7 +101,7 @@ trajectory paced(const toml_table& t, const told_pace& p, trajectory own)
     if (!seconds)
         return own;
     const char* key = p.speed_mm_s ? "speed_mm_s" : "duration_s";
-    return at_key(t, key, [&] { return own.with_duration(*seconds); });
+    return t.at_key(key, [&] { return own.with_duration(*seconds); });
 }
 
 // Timed points are where they are when they are.
@@ -172,7 +161,7 @@ stroke read_drawn(const toml_table& t, std::string name)
     }
     if (kind == "preset") {
         const std::string preset = *t.text("preset");
-        stroke s = at_key(t, kind, [&] { return preset_stroke(preset); });
+        stroke s = t.at_key(kind, [&] { return preset_stroke(preset); });
         name = s.name;
         std::string made_for = s.made_for;
         s = described(preset_as_told(t, asked, s.motion), s.note);
@@ -184,7 +173,7 @@ stroke read_drawn(const toml_table& t, std::string name)
     const path way = kind == "points" ? read_points(t)
                      : kind == "arc"
                          ? read_arc(t)
-                         : at_key(t, kind, [&, data = *t.text("path")] { return path::from_svg(data); });
+                         : t.at_key(kind, [&, data = *t.text("path")] { return path::from_svg(data); });
     stroke s = described(detail::along_as_told(t, kind, way, asked, {}));
     s.speed_mm_s = detail::kept_speed(asked, way.length_mm());
     s.usual_pace = !asked.duration_s && !s.speed_mm_s;
@@ -200,7 +189,7 @@ detail::entry read_one(const toml_table& t, std::string name, folder_of_file fol
     stroke s = detail::levelled(t, detail::chosen(t, read_drawn(t, std::move(name))));
     detail::read_sound(t, folder, s);
     if (t.boolean("reverse").value_or(false)) {
-        s.motion = at_key(t, "reverse", [&] { return s.motion.reversed(); });
+        s.motion = t.at_key("reverse", [&] { return s.motion.reversed(); });
         s.sound.carrier_profile = detail::from_the_end(s.sound.carrier_profile);
     }
     detail::entry e;
