@@ -32,7 +32,7 @@ constexpr int moment_ms = 20;
 /// Room for the suffix within the 255 bytes of a name.
 constexpr std::size_t longest_stem = 200;
 
-fs::path folder_of(const fs::path& p)
+fs::path parent_folder(const fs::path& p)
 {
     return p.parent_path().empty() ? fs::path(".") : p.parent_path();
 }
@@ -40,7 +40,7 @@ fs::path folder_of(const fs::path& p)
 /// N of /dev/fd/N or /proc/self/fd/N, or -1.
 int descriptor_in(const fs::path& p)
 {
-    const std::string folder = folder_of(p).string();
+    const std::string folder = parent_folder(p).string();
     if (folder != "/dev/fd" && folder != "/proc/self/fd")
         return -1;
     return number_in<int>(p.filename().string()).value_or(-1);
@@ -66,7 +66,7 @@ fs::path follow_links(const fs::path& asked)
     std::error_code ignored;
     fs::path p = asked;
     for (int i = 0; i < 40 && descriptor_in(p) < 0 && fs::is_symlink(fs::symlink_status(p, ignored)); ++i) {
-        if (is_shared(folder_of(p))) {
+        if (is_shared(parent_folder(p))) {
             refuse(asked,
                    fmt::format("{}is a link in a folder that others can write to",
                                p == asked ? "" : p.string() + " "),
@@ -136,7 +136,7 @@ output_file::output_file(const fs::path& file, patience go_on, owner_kind writer
         open_directly();
         return;
     }
-    const fs::path folder = folder_of(target_);
+    const fs::path folder = parent_folder(target_);
     if (!fs::is_directory(folder, failed)) {
         refuse(asked_, fmt::format("the folder \"{}\" does not exist", folder.string()),
                "make it first, or name another", ENOENT);
@@ -196,7 +196,7 @@ void output_file::open_beside()
     const std::string stem = target_.filename().string().substr(0, longest_stem);
     std::random_device seed;
     for (int i = 0; i < attempts; ++i) {
-        temporary_ = folder_of(target_) / fmt::format(".{}.{:08x}.part", stem, seed());
+        temporary_ = parent_folder(target_) / fmt::format(".{}.{:08x}.part", stem, seed());
         fd_ = owned_fd(::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666));
         if (fd_) {
             keep_owner_and_rights();
@@ -288,7 +288,7 @@ void output_file::commit()
     if (::rename(temporary_.c_str(), target_.c_str()) != 0)
         fail(errno);
     temporary_.clear();
-    sync_folder(folder_of(target_));
+    sync_folder(parent_folder(target_));
 }
 
 } // namespace tactor::detail

@@ -34,7 +34,7 @@ array read_grid(const toml_table& grid)
             grid.fail("pitch_mm", fmt::format("pitch_mm has {}", counted(xy->size(), "number")),
                       "give one, or [x, y]");
         for (const toml::node& n : *xy)
-            pitch.push_back(grid.number_of(n, "pitch_mm", positive));
+            pitch.push_back(grid.to_number(n, "pitch_mm", positive));
     } else {
         pitch.assign(2, *grid.number("pitch_mm", positive));
     }

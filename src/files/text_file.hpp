@@ -69,6 +69,6 @@ std::string_view without_mark(std::string_view text) noexcept;
 std::string stem(const std::string& name);
 
 /// Returns line and column of an offset.
-source_place place_of(std::string_view text, std::size_t offset, const std::string& name);
+source_place find_place(std::string_view text, std::size_t offset, const std::string& name);
 
 } // namespace tactor::detail

@@ -103,7 +103,7 @@ toml::table parse_toml(std::string_view text, const std::string& name)
     } catch (const toml::parse_error& e) {
         const auto& at = e.source().begin;
         if (const auto open = open_string(text)) {
-            const source_place begin = place_of(text, *open, name);
+            const source_place begin = find_place(text, *open, name);
             const std::string three(3, text[*open]);
             if (begin.line <= at.line)
                 fail_at(begin, "this text has no closing quote",

@@ -89,7 +89,7 @@ public:
     /// A flag, a number or a text. Whole numbers that a double does not hold are none.
     std::variant<std::monostate, bool, double, std::string> plain(const toml::node& n,
                                                                   std::string_view called) const;
-    double number_of(const toml::node& n, std::string_view called, bounds b) const;
+    double to_number(const toml::node& n, std::string_view called, bounds b) const;
     /// v, which stands at n, if it is within b.
     double within(const toml::node& n, std::string_view called, double v, bounds b) const;
 

@@ -158,7 +158,7 @@ double hz_between(const carrier_point& from, const carrier_point& to, double u)
     return straight + u * (1.0 - u) * (b[0] + u * (b[1] + u * (b[2] + u * b[3])));
 }
 
-std::vector<carrier_point> course_of(const stroke& s, const waveform& w)
+std::vector<carrier_point> make_course(const stroke& s, const waveform& w)
 {
     check_profile(s.sound.carrier_profile);
     if (w.kind == waveform_kind::recording && w.texture == texture_kind::length)

@@ -46,7 +46,7 @@ struct curve_access {
 namespace tactor::detail {
 
 /// Number of samples of a stroke.
-std::uint64_t samples_of(double duration_s) noexcept;
+std::uint64_t count_samples(double duration_s) noexcept;
 double sample_time_s(std::uint64_t k, double duration_s) noexcept;
 
 /// Position, intensity and drives of one of them.

@@ -52,7 +52,7 @@ public:
         for (const point p : corners_)
             most = std::max(most, dot(out, p));
         for (const detail::shape& c : curves_) {
-            const auto frame = detail::frame_of(c);
+            const auto frame = detail::control_frame(c);
             if (std::none_of(frame.begin(), frame.end(), [&](point p) { return dot(out, p) > most; }))
                 continue;
             for (const double t : detail::turns_towards(c, out))
@@ -86,7 +86,7 @@ point centre_of_gravity(const std::vector<point>& hull)
 }
 
 /// The direction of an array in one line; nothing where it is wider.
-std::optional<point> line_of(const layout::impl& l, std::pair<point, point> ends)
+std::optional<point> find_line(const layout::impl& l, std::pair<point, point> ends)
 {
     const double length = distance_mm(ends.first, ends.second);
     const point along = length > 0.0 ? 1.0 / length * (ends.second - ends.first) : point{1.0, 0.0};
@@ -162,7 +162,7 @@ fitting fit_to_hull(const picture& drawn, const layout::impl& l, double margin_m
               {}};
     const bool rests = drawn.rests();
     double narrowest = std::numeric_limits<double>::infinity();
-    for (const detail::beyond& side : detail::sides_of(l)) {
+    for (const detail::beyond& side : detail::hull_sides(l)) {
         const double space = side.reach - dot(side.out, f.to);
         narrowest = std::min(narrowest, space);
         const double reach = rests ? 0.0 : drawn.reach(side.out) - dot(side.out, f.from);
@@ -178,14 +178,14 @@ fitting fit_to_hull(const picture& drawn, const layout::impl& l, double margin_m
 
 fitting find_fit(const picture& drawn, const layout::impl& l, double margin_mm)
 {
-    const auto ends = detail::ends_of(l.points);
-    if (const auto along = line_of(l, ends))
+    const auto ends = detail::find_ends(l.points);
+    if (const auto along = find_line(l, ends))
         return fit_to_line(drawn, l, ends, *along, margin_mm);
     return fit_to_hull(drawn, l, margin_mm);
 }
 
 /// The fitting as it maps places whose origin is `from` already.
-affine map_of(const fitting& f)
+affine make_map(const fitting& f)
 {
     const point d = f.line.value_or(point{});
     if (f.line)
@@ -210,7 +210,7 @@ fitted_strokes fit_strokes(const std::vector<stroke>& strokes, const layout& l, 
     all.placed = find_fit(picture(strokes), detail::access::of(l), margin_mm);
     if (all.placed.line)
         check_along(strokes, all.placed);
-    const affine map = map_of(all.placed);
+    const affine map = make_map(all.placed);
     for (stroke& s : all.strokes) {
         s.motion = detail::moved(s.motion, all.placed.from, map, all.placed.line,
                                  [&] { return fmt::format("stroke \"{}\" as fitted", s.name); });

@@ -69,7 +69,7 @@ void check_burst_count(const job& j, double bursts);
 
 /// The user's own model, or the one that is named. \throws error (bad_input) where it does not go with
 /// `faces`.
-std::shared_ptr<const phantom_model> model_of(const layout& l, const plan_options& o);
+std::shared_ptr<const phantom_model> choose_model(const layout& l, const plan_options& o);
 /// The faces that the algorithm takes.
 faces_kind faces_used(const plan_options& o);
 
@@ -105,7 +105,7 @@ private:
 };
 
 /// Returns plan::course of a stroke that is played with a waveform.
-std::vector<carrier_point> course_of(const stroke& s, const waveform& w);
+std::vector<carrier_point> make_course(const stroke& s, const waveform& w);
 
 /// Returns the frequency at a part of the time, 0 to 1, from a point of a course to the next.
 double hz_between(const carrier_point& from, const carrier_point& to, double u);

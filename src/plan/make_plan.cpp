@@ -162,7 +162,7 @@ plan planned(const array& a, const layout& l, const stroke& s, const plan_option
             fmt::format("has {} and the array {}", counted(l.places().size(), "tactor"), a.tactors.size()),
             "build the layout from the same array");
     detail::burst_count bursts;
-    const detail::job j{a, l, s, o, detail::model_of(l, o), bursts, take};
+    const detail::job j{a, l, s, o, detail::choose_model(l, o), bursts, take};
     plan p;
     p.warnings = s.warnings;
     p.algorithm = to_string(o.algorithm);
@@ -178,7 +178,7 @@ plan planned(const array& a, const layout& l, const stroke& s, const plan_option
     p.am = s.sound.am.value_or(o.am);
     validate(p.wave);
     validate(p.am);
-    p.course = detail::course_of(s, p.wave);
+    p.course = detail::make_course(s, p.wave);
     switch (o.algorithm) {
     case algorithm_kind::park2016:
         detail::plan_park(j, p);
@@ -234,7 +234,7 @@ void pass_on(const job& j, plan& p)
     }
 }
 
-std::shared_ptr<const phantom_model> model_of(const layout& l, const plan_options& o)
+std::shared_ptr<const phantom_model> choose_model(const layout& l, const plan_options& o)
 {
     if (!o.custom_phantom) {
         check_faces(o.phantom, o.faces); // where the algorithm does not use them, too

@@ -93,8 +93,8 @@ private:
 };
 
 /// A look at doubles that belong to `owner`; NumPy may read, not write.
-inline py::array_t<double> view_of(std::vector<py::ssize_t> shape, std::vector<py::ssize_t> strides,
-                                   const double* first, py::handle owner)
+inline py::array_t<double> make_view(std::vector<py::ssize_t> shape, std::vector<py::ssize_t> strides,
+                                     const double* first, py::handle owner)
 {
     py::array_t<double> a(std::move(shape), std::move(strides), first, owner);
     a.attr("flags").attr("writeable") = false;

@@ -119,7 +119,7 @@ void refuse_rivals(const py::dict& given)
 void take_phantom(wishes& w, const option& o, py::handle v, std::size_t tactors)
 {
     if (py::hasattr(v, "weights"))
-        w.plan.custom_phantom = model_of(py::reinterpret_borrow<py::object>(v), tactors);
+        w.plan.custom_phantom = wrap_model(py::reinterpret_borrow<py::object>(v), tactors);
     else
         options::put(w, o, read_handle(o, v));
 }

@@ -42,6 +42,6 @@ py::dict default_values(const setup& says);
 error in_keywords(const error& e);
 
 /// A Python object that says which tactors make a phantom: name, and weights(x_mm, y_mm, intensity).
-std::shared_ptr<const phantom_model> model_of(const py::object& own, std::size_t tactors);
+std::shared_ptr<const phantom_model> wrap_model(const py::object& own, std::size_t tactors);
 
 } // namespace tactor::python

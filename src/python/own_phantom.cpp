@@ -51,7 +51,7 @@ private:
 
 } // namespace
 
-std::shared_ptr<const phantom_model> model_of(const py::object& own, std::size_t tactors)
+std::shared_ptr<const phantom_model> wrap_model(const py::object& own, std::size_t tactors)
 {
     return std::make_shared<const own_phantom>(own, tactors);
 }

@@ -68,7 +68,7 @@ py::array_t<double> column(const py::object& self, const Member& of)
     const auto& bursts = self.cast<const plan_handle&>().plan().bursts;
     if (bursts.empty())
         return given({});
-    return view_of({static_cast<py::ssize_t>(bursts.size())}, {sizeof(burst)}, of(bursts.front()), self);
+    return make_view({static_cast<py::ssize_t>(bursts.size())}, {sizeof(burst)}, of(bursts.front()), self);
 }
 
 py::array_t<double> positions(const py::object& self)
@@ -76,8 +76,8 @@ py::array_t<double> positions(const py::object& self)
     const auto& bursts = self.cast<const plan_handle&>().plan().bursts;
     if (bursts.empty())
         return given({}, 2);
-    return view_of({static_cast<py::ssize_t>(bursts.size()), 2}, {sizeof(burst), sizeof(double)},
-                   &bursts.front().position.x_mm, self);
+    return make_view({static_cast<py::ssize_t>(bursts.size()), 2}, {sizeof(burst), sizeof(double)},
+                     &bursts.front().position.x_mm, self);
 }
 
 py::array_t<double> amplitudes(const plan_handle& p)
@@ -99,7 +99,7 @@ py::array_t<double> taus(const plan_handle& p)
     return given(std::move(all));
 }
 
-py::list drives_of(const burst& b)
+py::list list_drives(const burst& b)
 {
     py::list drives;
     for (const drive& d : b.drives)
@@ -112,7 +112,7 @@ py::list rows(const plan_handle& p)
     py::list all;
     for (const burst& b : p.plan().bursts)
         all.append(py::make_tuple(b.onset_s, b.duration_s, py::make_tuple(b.position.x_mm, b.position.y_mm),
-                                  b.intensity, drives_of(b)));
+                                  b.intensity, list_drives(b)));
     return all;
 }
 
@@ -216,7 +216,7 @@ render_options settled(const array& a, render_options o)
     return o;
 }
 
-std::string json_of(const plan_handle& p)
+std::string write_json(const plan_handle& p)
 {
     const without_lock free;
     const array& tactors = p.on->value();
@@ -291,13 +291,13 @@ void bind_plan(py::module_& m)
                 p.on = on;
                 return p;
             })
-        .def("json", &json_of)
+        .def("json", &write_json)
         .def("same",
              [](const plan_handle& a, const plan_handle& b) {
                  return a.plan() == b.plan() && a.placed.anchor == b.placed.anchor;
              })
         .def("sounds_like", [](const plan_handle& a, const plan_handle& b) { return a.plan() == b.plan(); })
-        .def_property_readonly("recipe", &recipe_of)
+        .def_property_readonly("recipe", &plan_recipe)
         .def_property_readonly("array", [](const plan_handle& p) { return p.on; })
         .def_property_readonly("stroke", [](const plan_handle& p) { return p.drawn; })
         .def_property_readonly("algorithm", member(&tactor::plan::algorithm))

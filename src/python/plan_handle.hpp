@@ -29,7 +29,7 @@ struct plan_handle {
 };
 
 /// The tool's tactor-plan/1 object as text, and back. \throws error.
-std::string json_of(const plan_handle& p);
+std::string write_json(const plan_handle& p);
 /// `named`: what stands for it in messages.
 plan_handle plan_from_json(const std::string& text, const std::string& named);
 
@@ -48,7 +48,7 @@ render_options settled(const array& a, render_options o);
 
 /// Everything that decides how the plan sounds where nobody says otherwise, as values that Python compares
 /// and hashes.
-py::tuple recipe_of(const plan_handle& p);
+py::tuple plan_recipe(const plan_handle& p);
 
 /// \throws error (bad_input) where the plan is for tactors elsewhere or on other channels.
 void check_same_array(const plan_handle& p, const array& in_use);

@@ -38,7 +38,7 @@ std::shared_ptr<player_handle> open(const std::shared_ptr<array_handle>& on, con
     return std::make_shared<player_handle>(on->value(), w);
 }
 
-py::tuple tuple_of(const stroke_report& r)
+py::tuple report_tuple(const stroke_report& r)
 {
     const py::object started = r.started_ns
                                    ? py::object(py::float_(static_cast<double>(*r.started_ns) * 1e-9))
@@ -61,7 +61,7 @@ py::object next_event(player_handle& h)
     if (!e)
         return py::none();
     if (const auto* r = std::get_if<stroke_report>(&*e))
-        return tuple_of(*r);
+        return report_tuple(*r);
     const auto& l = std::get<log_line>(*e);
     return py::make_tuple(l.kind, l.text);
 }
@@ -86,7 +86,7 @@ std::uint32_t submit(const player_handle& h, const score& s, const std::string& 
     return h.use([&](player& p) { return p.submit(s, start).number; });
 }
 
-py::dict stats_of(const player_handle& h)
+py::dict stats_dict(const player_handle& h)
 {
     player_stats s;
     {
@@ -103,7 +103,7 @@ py::dict stats_of(const player_handle& h)
                     "realtime"_a = s.realtime, "xrun_s"_a = s.xrun_s);
 }
 
-py::dict setup_of(const player_handle& h)
+py::dict setup_dict(const player_handle& h)
 {
     const stream_setup& s = h.setup();
     return py::dict("name"_a = s.name, "channels"_a = s.channels,
@@ -112,7 +112,7 @@ py::dict setup_of(const player_handle& h)
                     "buffer_frames"_a = s.buffer_frames, "batch"_a = s.batch, "has_clock"_a = s.has_clock);
 }
 
-py::dict position_of(const player_handle& h)
+py::dict position_dict(const player_handle& h)
 {
     const player_position p = h.use([](player& q) { return q.position(); });
     const py::object which = p.stroke ? py::object(py::int_(p.stroke->number)) : py::object(py::none());
@@ -214,9 +214,9 @@ void bind_player(py::module_& m)
         .def("refuse_child", &player_handle::refuse_child)
         .def_property_readonly("closed", &player_handle::closed)
         .def_property_readonly("forked", &player_handle::forked)
-        .def("stats", &stats_of)
-        .def("setup", &setup_of)
-        .def("position", &position_of);
+        .def("stats", &stats_dict)
+        .def("setup", &setup_dict)
+        .def("position", &position_dict);
     bind_live(m);
 }
 

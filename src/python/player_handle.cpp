@@ -110,7 +110,7 @@ bool player_handle::closed() const
     return open_->stream == nullptr;
 }
 
-std::optional<std::string> player_handle::ended_of(const player& p)
+std::optional<std::string> player_handle::end_reason(const player& p)
 {
     const auto end = p.ended();
     return end ? std::optional(end->why) : std::nullopt;
@@ -127,7 +127,7 @@ std::optional<std::string> player_handle::ended() const
 {
     refuse_child();
     const std::shared_lock lock(open_->mutex);
-    return open_->stream != nullptr ? ended_of(*open_->stream) : open_->last.ended;
+    return open_->stream != nullptr ? end_reason(*open_->stream) : open_->last.ended;
 }
 
 drive_history player_handle::history() const
@@ -157,7 +157,7 @@ void player_handle::close()
         const std::unique_lock lock(open_->mutex);
         ended = std::move(open_->stream);
         if (ended != nullptr)
-            open_->last = {ended->stats(), ended_of(*ended), ended->history()};
+            open_->last = {ended->stats(), end_reason(*ended), ended->history()};
     }
     ended.reset();
     {

@@ -134,7 +134,7 @@ private:
         std::optional<std::string> ended = {};
         drive_history history = {};
     };
-    static std::optional<std::string> ended_of(const player& p);
+    static std::optional<std::string> end_reason(const player& p);
 
     // All that a forked process must not touch, not even to destroy it.
     struct open_state {

@@ -30,7 +30,7 @@ bool says(const py::dict& options, const char* name)
     return options.contains(name) && !options[name].is_none();
 }
 
-render_options sound_of(const plan_handle& p, const py::dict& said)
+render_options settle_sound(const plan_handle& p, const py::dict& said)
 {
     wishes w;
     w.render = p.sound;
@@ -75,7 +75,7 @@ void check_alike(const render_options& a, const render_options& b)
                          std::to_string(*b.marker_channel));
 }
 
-double level_of(const render_options& o)
+double level_db(const render_options& o)
 {
     return o.sl_db.value_or(o.level_dbfs);
 }
@@ -91,7 +91,7 @@ render_options joined(std::span<const render_options> sounds)
             all.marker_channel = o.marker_channel;
             all.marker_s = o.marker_s;
         }
-        if (level_of(o) > level_of(all)) {
+        if (level_db(o) > level_db(all)) {
             all.level_dbfs = o.level_dbfs;
             all.sl_db = o.sl_db;
         }
@@ -119,8 +119,8 @@ py::tuple make_score(const array_handle& on, const std::vector<score_part>& plan
     std::vector<double> levels;
     for (const auto& [start_s, p, said] : plans) {
         check_same_array(*p, on.value());
-        sounds.push_back(sound_of(*p, said));
-        levels.push_back(level_of(sounds.back()));
+        sounds.push_back(settle_sound(*p, said));
+        levels.push_back(level_db(sounds.back()));
     }
     const render_options common = settled(on.value(), joined(sounds));
     const auto made = [&] {
@@ -128,9 +128,9 @@ py::tuple make_score(const array_handle& on, const std::vector<score_part>& plan
         std::vector<placed_plan> all;
         for (std::size_t i = 0; i < plans.size(); ++i) {
             all.push_back(std::get<1>(plans[i])->at(std::get<0>(plans[i])));
-            if (levels[i] != level_of(common))
+            if (levels[i] != level_db(common))
                 all.back().plan = detail::scaled(std::move(all.back().plan),
-                                                 std::pow(10.0, (levels[i] - level_of(common)) / 20.0));
+                                                 std::pow(10.0, (levels[i] - level_db(common)) / 20.0));
         }
         return score(on.value(), std::move(all), common);
     }();
@@ -195,9 +195,9 @@ void write(const score& s, const std::string& file, const std::string& format)
 
 } // namespace
 
-py::tuple recipe_of(const plan_handle& p)
+py::tuple plan_recipe(const plan_handle& p)
 {
-    return recipe(settled(p.on->value(), p.sound)) + py::make_tuple(level_of(p.sound));
+    return recipe(settled(p.on->value(), p.sound)) + py::make_tuple(level_db(p.sound));
 }
 
 void bind_score(py::module_& m)

@@ -36,7 +36,7 @@ array_handle make_array(const std::string& name, const std::vector<tactor_row>& 
     return array_handle(std::move(a));
 }
 
-std::vector<tactor_row> rows_of(const array_handle& h)
+std::vector<tactor_row> list_rows(const array_handle& h)
 {
     std::vector<tactor_row> rows;
     for (const tactor_spec& t : h.value().tactors) {
@@ -123,15 +123,15 @@ void bind_array(py::module_& m)
                     })
         .def_property_readonly("name", [](const array_handle& h) { return h.value().name; })
         .def_property_readonly("channels", [](const array_handle& h) { return h.value().channels(); })
-        .def_property_readonly("rows", &rows_of)
+        .def_property_readonly("rows", &list_rows)
         .def("text", [](const array_handle& h) { return detail::array_text(h.value()); })
         .def_property_readonly("positions",
                                [](const py::object& self) {
                                    const auto& t = self.cast<const array_handle&>().value().tactors;
                                    constexpr auto bytes = static_cast<py::ssize_t>(sizeof(double));
-                                   return view_of({static_cast<py::ssize_t>(t.size()), 2},
-                                                  {sizeof(tactor_spec), bytes}, &t.front().position.x_mm,
-                                                  self);
+                                   return make_view({static_cast<py::ssize_t>(t.size()), 2},
+                                                    {sizeof(tactor_spec), bytes}, &t.front().position.x_mm,
+                                                    self);
                                })
         .def_property_readonly("faces", [](const array_handle& h) { return h.faces().faces(); })
         .def_property_readonly("pitch_mm", [](const array_handle& h) { return h.faces().pitch_mm(); })
@@ -215,7 +215,7 @@ stroke along(const std::string& name, const path& p, std::optional<double> durat
 }
 
 // As TOML; a preset by its name, which keeps its note.
-std::string text_of(const stroke& s)
+std::string stroke_toml(const stroke& s)
 {
     for (const std::string& name : stroke_presets())
         if (name == s.name && write_state(preset_stroke(name)) == write_state(s))
@@ -251,7 +251,7 @@ stroke moving(const std::string& name, const path& p, std::optional<double> dura
 }
 
 // Named as the options of a plan.
-py::dict choices_of(const stroke& s)
+py::dict choices_dict(const stroke& s)
 {
     py::dict d;
     if (s.choices.algorithm)
@@ -317,7 +317,7 @@ void bind_stroke(py::module_& m)
         .def_readonly("start_s", &stroke::start_s)
         .def_property_readonly("start_from",
                                [](const stroke& s) { return std::string(to_string(s.anchor.from)); })
-        .def_property_readonly("choices", &choices_of)
+        .def_property_readonly("choices", &choices_dict)
         .def_property_readonly("carrier_hz", [](const stroke& s) { return s.sound.carrier_hz; })
         .def_property_readonly("level_db", [](const stroke& s) { return s.choices.level_db; })
         .def_readonly("speed_mm_s", &stroke::speed_mm_s)
@@ -338,7 +338,7 @@ void bind_stroke(py::module_& m)
                      out.push_back(s.motion.intensity(t.data()[i]));
                  return given(std::move(out));
              })
-        .def("text", &text_of)
+        .def("text", &stroke_toml)
         .def("meets_x", [](const stroke& s, double x) { return s.motion.meets_x(x); })
         .def("meets_y", [](const stroke& s, double y) { return s.motion.meets_y(y); });
     m.def("stroke_presets", [] { return stroke_presets(); });

@@ -113,7 +113,7 @@ struct turned {
 };
 
 // Quarter turns are exact.
-turned turn_of(double degrees)
+turned make_turn(double degrees)
 {
     const double quarters = degrees / 90.0;
     if (quarters == std::floor(quarters)) {
@@ -185,7 +185,7 @@ stroke placed(const toml_table& t, stroke s)
         return s;
     }
     const double scale = t.number("scale", {0.0, largest_scale, true}).value_or(1.0);
-    const turned turn = turn_of(t.number("rotate_deg", {-most_degrees, most_degrees}).value_or(0.0));
+    const turned turn = make_turn(t.number("rotate_deg", {-most_degrees, most_degrees}).value_or(0.0));
     const std::string mirror = t.choice("mirror", {"x", "y"}).value_or("");
     const point by = t.place("translate_mm").value_or(point{});
     const point from = about.value_or(point{});

@@ -68,10 +68,10 @@ timed_point read_timed_point(const toml_table& t, const toml::node& entry, doubl
         detail::fail_at(t.where(entry), fmt::format("a timed point is {}", detail::shown(entry)),
                         "give [t_s, x_mm, y_mm] or [t_s, x_mm, y_mm, intensity]");
     timed_point p;
-    p.t_s = t.number_of((*a)[0], "t_s", {0.0, day_s});
-    p.position = {t.number_of((*a)[1], "x_mm", anywhere), t.number_of((*a)[2], "y_mm", anywhere)};
+    p.t_s = t.to_number((*a)[0], "t_s", {0.0, day_s});
+    p.position = {t.to_number((*a)[1], "x_mm", anywhere), t.to_number((*a)[2], "y_mm", anywhere)};
     p.intensity =
-        intensity * (a->size() == 4 ? t.number_of((*a)[3], "intensity", {0.0, detail::max_intensity}) : 1.0);
+        intensity * (a->size() == 4 ? t.to_number((*a)[3], "intensity", {0.0, detail::max_intensity}) : 1.0);
     return p;
 }
 
@@ -124,7 +124,7 @@ trajectory preset_as_told(const toml_table& t, const told_pace& p, const traject
 }
 
 template <class... Lists>
-std::vector<std::string_view> keys_of(const Lists&... lists)
+std::vector<std::string_view> join_keys(const Lists&... lists)
 {
     std::vector<std::string_view> all;
     (all.insert(all.end(), std::begin(lists), std::end(lists)), ...);
@@ -184,8 +184,9 @@ stroke read_drawn(const toml_table& t, std::string name)
 
 detail::entry read_one(const toml_table& t, std::string name, folder_of_file folder)
 {
-    t.only(keys_of(drawing_keys, placed_keys, detail::movement_keys, detail::order_keys, detail::choice_keys,
-                   detail::sound_keys, std::array<std::string_view, 2>{"stroke", "reverse"}));
+    t.only(join_keys(drawing_keys, placed_keys, detail::movement_keys, detail::order_keys,
+                     detail::choice_keys, detail::sound_keys,
+                     std::array<std::string_view, 2>{"stroke", "reverse"}));
     stroke s = detail::levelled(t, detail::chosen(t, read_drawn(t, std::move(name))));
     detail::read_sound(t, folder, s);
     if (t.boolean("reverse").value_or(false)) {
@@ -212,8 +213,8 @@ detail::entry read_all(const std::vector<toml_table>& tables, detail::sequence::
 // Strokes that are placed, made weaker and repeated as one.
 detail::entry read_group(const toml_table& t, const std::string& name, folder_of_file folder, unsigned depth)
 {
-    t.only(keys_of(placed_keys, detail::order_keys,
-                   std::array<std::string_view, 4>{"stroke", "level_db", "fit", "fit_margin_mm"}));
+    t.only(join_keys(placed_keys, detail::order_keys,
+                     std::array<std::string_view, 4>{"stroke", "level_db", "fit", "fit_margin_mm"}));
     if (depth == deepest_group)
         t.fail("stroke", "groups in groups too deep", fmt::format("at most {}", deepest_group));
     const std::vector<toml_table> inside = t.tables("stroke");

@@ -26,13 +26,13 @@ struct beyond {
 
 /// The sides of the hull. Where all tactors are in one line, the hull is that line: its two sides and two
 /// ends.
-std::vector<beyond> sides_of(const layout::impl& l);
+std::vector<beyond> hull_sides(const layout::impl& l);
 
 /// Two tactors as far apart as any in a line, and nearly so elsewhere.
-std::pair<point, point> ends_of(const std::vector<point>& points);
+std::pair<point, point> find_ends(const std::vector<point>& points);
 
 /// Corners of a convex figure round a curve.
-std::array<point, 4> frame_of(const shape& form);
+std::array<point, 4> control_frame(const shape& form);
 
 /// Parameters, ascending, at which a curve turns round as seen from a side.
 std::vector<double> turns_towards(const shape& form, point out);

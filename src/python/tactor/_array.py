@@ -94,7 +94,7 @@ class Array(_Value):
                               for x, y, *rest, thresholds, rise_s in core.rows)
 
     @classmethod
-    def _of(cls, core: _t.Any, file: str | None = None, besides: str = "", origin: str = "") -> Array:
+    def _wrap(cls, core: _t.Any, file: str | None = None, besides: str = "", origin: str = "") -> Array:
         made = cls.__new__(cls)
         made._take(core, file, besides, origin)
         return made
@@ -103,7 +103,7 @@ class Array(_Value):
     def preset(cls, name: str) -> Array:
         """A built-in array: "palm-3x3" or "palm-2x4" (`array_presets`)."""
         _need(name, str, "name")
-        return cls._of(_tactor.Array.preset(name))
+        return cls._wrap(_tactor.Array.preset(name))
 
     @classmethod
     def from_file(cls, path: str | os.PathLike[str]) -> Array:
@@ -122,7 +122,7 @@ class Array(_Value):
             setup = _tactor.Setup.load(name)
             if setup.array is None:
                 raise InputError(os.fspath(path), "says no [array]", "see tactor.toml(5)")
-        return cls._of(setup.array, os.path.abspath(path), setup.besides(), setup.origin())
+        return cls._wrap(setup.array, os.path.abspath(path), setup.besides(), setup.origin())
 
     @classmethod
     def grid(cls, name: str, rows: int, columns: int, pitch_mm: float | tuple[float, float]) -> Array:
@@ -141,7 +141,7 @@ class Array(_Value):
             x = y = pitch_mm
         _need(name, str, "name")
         n, m = (_whole(what, count, 1, 16384, "1 to 16384 tactors") for what, count in (("rows", rows), ("columns", columns)))
-        return cls._of(_tactor.Array.grid(name, n, m, _number("pitch_mm", x), _number("pitch_mm", y)))
+        return cls._wrap(_tactor.Array.grid(name, n, m, _number("pitch_mm", x), _number("pitch_mm", y)))
 
     @classmethod
     def from_points(cls, points: _ArrayLike, name: str = "points") -> Array:
@@ -288,7 +288,7 @@ class Array(_Value):
                 listed = hasattr(one, "__len__") and not isinstance(one, str)
                 made = (*made[:i], made[i]._replace(**{"thresholds" if listed else "threshold_dbfs": one}), *made[i + 1:])
         origin = self._origin if tactors is None and thresholds is None else ""
-        return Array._of(_make_core(self.name if name is None else name, made), self._file, self._besides, origin)
+        return Array._wrap(_make_core(self.name if name is None else name, made), self._file, self._besides, origin)
 
     def write(self, file: str | os.PathLike[str]) -> None:
         """Writes an array file that `from_file` and the tool read, with all that `replace` keeps. It needs no other file.
@@ -392,7 +392,7 @@ def _each(what: str, values: _t.Any, count: int) -> list[_t.Any]:
 
 
 def _array_again(name: str, tactors: tuple[Tactor, ...], file: str | None, besides: str, origin: str) -> Array:
-    return Array._of(_make_core(name, tactors), file, besides, origin)
+    return Array._wrap(_make_core(name, tactors), file, besides, origin)
 
 
 def array_presets() -> list[str]:

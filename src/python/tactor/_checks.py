@@ -165,7 +165,7 @@ class _Stated(_Value):
     _core: _t.Any
 
     @classmethod
-    def _of(cls: type[_S], core: _t.Any) -> _S:
+    def _wrap(cls: type[_S], core: _t.Any) -> _S:
         made = cls.__new__(cls)
         made._core = core
         return made
@@ -183,7 +183,7 @@ class _Stated(_Value):
 
 
 def _again(kind: type[_S], core: _t.Any, state: bytes) -> _S:
-    return kind._of(core.from_state(state))
+    return kind._wrap(core.from_state(state))
 
 
 class _Unique:

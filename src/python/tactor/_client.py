@@ -10,7 +10,7 @@ import threading
 import typing as _t
 
 from tactor._checks import _need, _number, _shown, _Unique, _whole
-from tactor._errors import _KINDS, DeviceError, Error, InputError, StreamError, _of_system
+from tactor._errors import _KINDS, DeviceError, Error, InputError, StreamError, _system_kind
 from tactor._path import Path
 from tactor._stroke import Stroke
 from tactor._ticket import Report, _Awaited
@@ -191,7 +191,7 @@ class _Connection:
             self.socket.connect(path)
         except OSError as e:
             self.socket.close()
-            raise _of_system(DeviceError, e.errno or 0)(
+            raise _system_kind(DeviceError, e.errno or 0)(
                 path, os.strerror(e.errno or 0), "start one: tactor serve", file=path, errno=e.errno or 0) from None
         self.path = path
         self.owner = os.getpid()

@@ -33,18 +33,18 @@ class Path(_Stated):
     def svg(cls, data: str) -> Path:
         """SVG path data in millimetres: "M 0 10 C 20 -5 20 45 40 30"."""
         _need(data, str, "data")
-        return cls._of(_tactor.Path.svg(data))
+        return cls._wrap(_tactor.Path.svg(data))
 
     @classmethod
     def polyline(cls, points: _ArrayLike) -> Path:
         """Straight lines from point to point, shape (n, 2), mm."""
-        return cls._of(_tactor.Path.polyline(_floats("points", points)))
+        return cls._wrap(_tactor.Path.polyline(_floats("points", points)))
 
     @classmethod
     def arc(cls, centre: _t.Sequence[float], radius_mm: float, from_deg: float, sweep_deg: float) -> Path:
         """A circular arc; angles from the x axis towards the y axis (clockwise on a screen), a sweep of at most 360 degrees."""
         angles = _number("from_deg", from_deg), _number("sweep_deg", sweep_deg)
-        return cls._of(_tactor.Path.arc(*_place("centre", centre), _number("radius_mm", radius_mm), *angles))
+        return cls._wrap(_tactor.Path.arc(*_place("centre", centre), _number("radius_mm", radius_mm), *angles))
 
     length_mm: _Member[float] = _Member("length_mm", "Length, to a micrometre.")
     data: _Member[str] = _Member("data", "SVG path data of the curve.")

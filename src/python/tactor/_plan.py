@@ -40,10 +40,10 @@ class Plan(_Value):
         raise TypeError("use tactor.plan() or Plan.from_dict()")
 
     @classmethod
-    def _of(cls, core: _t.Any, array: Array | None = None, recorded: bool = False, asked: dict[str, _t.Any] | None = None) -> Plan:
+    def _wrap(cls, core: _t.Any, array: Array | None = None, recorded: bool = False, asked: dict[str, _t.Any] | None = None) -> Plan:
         made = cls.__new__(cls)
         made._core = core
-        made._array = array if array is not None else Array._of(core.array)
+        made._array = array if array is not None else Array._wrap(core.array)
         made._recorded = recorded
         made._asked = asked or {}
         made._kept = {}
@@ -74,7 +74,7 @@ class Plan(_Value):
         """A plan of JSON; `name` stands for it in messages."""
         core = _tactor.Plan.from_json(text, name)
         _check_keys(text, name)
-        return cls._of(core, recorded=True)
+        return cls._wrap(core, recorded=True)
 
     def write(self, file: str | os.PathLike[str]) -> None:
         """Writes the plan as `tactor plan --format json` does: a record of every sample, for `load_plan` and the tool.
@@ -117,7 +117,7 @@ class Plan(_Value):
     @property
     def stroke(self) -> Stroke:
         """The stroke as it was planned, fitted and timed."""
-        return Stroke._of(self._core.stroke)
+        return Stroke._wrap(self._core.stroke)
 
     algorithm: _Member[str] = _Member("algorithm", "Name of the planner.")
     phantom: _Member[str] = _Member("phantom", "Name of the phantom model.")
@@ -250,7 +250,7 @@ def make_plan(given: dict[str, _t.Any]) -> Plan:
     _need(stroke, Stroke, "stroke")
     options = settled(array, options, _PLANNING_AND_SOUNDING)
     asked = {name: options[name] for name in _SOUNDING if options.get(name) is not None}
-    return Plan._of(_tactor.Plan(array._core, stroke._core, options), array, asked=asked)
+    return Plan._wrap(_tactor.Plan(array._core, stroke._core, options), array, asked=asked)
 
 
 def burst_duration(*, soa: float | None = None, burst: float | None = None, slope: float | None = None,
@@ -333,4 +333,4 @@ def _nearest(key: str, known: _t.Iterable[str]) -> str:
 
 
 def _plan_again(text: str, stroke: bytes, array: Array, recorded: bool, asked: dict[str, _t.Any]) -> Plan:
-    return Plan._of(_tactor.Plan.from_parts(text, _tactor.Stroke.from_state(stroke), array._core), array, recorded, asked)
+    return Plan._wrap(_tactor.Plan.from_parts(text, _tactor.Stroke.from_state(stroke), array._core), array, recorded, asked)

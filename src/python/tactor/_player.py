@@ -151,7 +151,7 @@ class Player(PlayerCalls, _Unique):
 
     def _fitting(self, score: Score) -> _t.Any:
         if score.channels < self.channels and score.rate == self.rate:
-            return Score._of(score._array, score._plans, {**score._options, "channels": self.channels})._core
+            return Score._wrap(score._array, score._plans, {**score._options, "channels": self.channels})._core
         return score._core
 
     def _begin(self, given: dict[str, _t.Any]) -> LiveStroke:

@@ -25,7 +25,7 @@ _FORMATS = {"float32": "float", "int16": "s16", "int32": "s32"}
 _dtypes: dict[str, _t.Any] = {}  # of these names, for NumPy takes its time for each
 
 
-def _format_of(dtype: _DTypeLike) -> str:
+def _find_format(dtype: _DTypeLike) -> str:
     """Name of a type that can be rendered, which then stands in _dtypes."""
     name = dtype if isinstance(dtype, str) else ""
     if name not in _dtypes:
@@ -89,7 +89,7 @@ class Score(ScoreCall, _Value):
             array._core, [(start, p._core, p._sound_on(array, options)) for start, p in plans])
 
     @classmethod
-    def _of(cls, array: Array, plans: tuple[tuple[float | None, Plan], ...], options: dict[str, _t.Any]) -> Score:
+    def _wrap(cls, array: Array, plans: tuple[tuple[float | None, Plan], ...], options: dict[str, _t.Any]) -> Score:
         made = cls.__new__(cls)
         made._take(array, plans, options)
         return made
@@ -139,7 +139,7 @@ class Score(ScoreCall, _Value):
         InputError
             For another type, and for an array that does not fit.
         """
-        name = _format_of(dtype if out is None else out.dtype)
+        name = _find_format(dtype if out is None else out.dtype)
         first = _whole("start", start, 0, 1 << 62)
         count = max(self.frames - first, 0) if frames is None and out is None else \
             len(_t.cast(_t.Any, out)) if frames is None else _whole("frames", frames, 0, 1 << 40)
@@ -174,7 +174,7 @@ class Score(ScoreCall, _Value):
         InputError
             For another type or number.
         """
-        name = _format_of(dtype)
+        name = _find_format(dtype)
         return self._blocks(name, _whole("frames", frames, 1, 1 << 24))
 
     def _blocks(self, name: str, frames: int) -> _t.Iterator[_NDArray[_t.Any]]:
@@ -226,4 +226,4 @@ class Score(ScoreCall, _Value):
                 f"{self.duration:.6g} s>")
 
     def __reduce__(self) -> tuple[_t.Callable[..., _t.Any], tuple[_t.Any, ...]]:
-        return Score._of, (self._array, self._plans, self._options)
+        return Score._wrap, (self._array, self._plans, self._options)

@@ -114,7 +114,7 @@ class Stroke(_Stated):
             core = _tactor.Stroke.moving(
                 name, path._core, duration, speed if one_speed else None, intensity if one_intensity else 1.0, easing,
                 _profile("speed", () if one_speed else speed), _profile("intensity", () if one_intensity else intensity), _pauses(pauses))
-        return cls._of(core.same_as(*placing))
+        return cls._wrap(core.same_as(*placing))
 
     @classmethod
     def timed(cls, t: _ArrayLike, x: _ArrayLike, y: _ArrayLike, intensity: _ArrayLike | None = None, *, name: str = "timed",
@@ -142,19 +142,19 @@ class Stroke(_Stated):
         if columns[3].size not in (1, count) or columns[3].ndim != 1:
             raise InputError("intensity", f"it has the shape {columns[3].shape}, not ({count},)", "one for each point, or one for all")
         columns[3] = np.broadcast_to(columns[3], (count,))
-        return cls._of(_tactor.Stroke.timed(name, np.column_stack(columns)).same_as(*placing))
+        return cls._wrap(_tactor.Stroke.timed(name, np.column_stack(columns)).same_as(*placing))
 
     @classmethod
     def preset(cls, name: str) -> Stroke:
         """A built-in stroke: "park2016-1" ... "park2016-4", "wave-2x4", "round-2x4" (`stroke_presets`)."""
         _need(name, str, "name")
-        return cls._of(_tactor.Stroke.preset(name))
+        return cls._wrap(_tactor.Stroke.preset(name))
 
     @classmethod
     def shape(cls, name: str) -> Stroke:
         """A "tap", "line", "circle", "eight" or "spiral", as large as the array for which it is planned (`stroke_shapes`)."""
         _need(name, str, "name")
-        return cls._of(_tactor.Stroke.shape(name))
+        return cls._wrap(_tactor.Stroke.shape(name))
 
     name: _Member[str] = _Member("name", "Name; may be empty.")
     duration: _Member[float] = _Member("duration_s", "Time from start to end, s.")
@@ -200,19 +200,19 @@ class Stroke(_Stated):
 
     def with_duration(self, duration: float) -> Stroke:
         """The same movement in another time, s, pauses included."""
-        return self._of(self._core.with_duration(_number("duration", duration)))
+        return self._wrap(self._core.with_duration(_number("duration", duration)))
 
     def with_speed(self, speed: float) -> Stroke:
         """The same movement at another mean speed, mm/s; pauses along a path stay as long as they are."""
-        return self._of(self._core.with_speed(_number("speed", speed)))
+        return self._wrap(self._core.with_speed(_number("speed", speed)))
 
     def reversed(self) -> Stroke:
         """The same movement played backwards."""
-        return self._of(self._core.reversed())
+        return self._wrap(self._core.reversed())
 
     def with_intensity(self, factor: float) -> Stroke:
         """The same movement with every intensity times a factor."""
-        return self._of(self._core.with_intensity(_number("factor", factor)))
+        return self._wrap(self._core.with_intensity(_number("factor", factor)))
 
     def write(self, file: str | os.PathLike[str]) -> None:
         """Writes a stroke file in TOML that `load` and the tool read.
@@ -278,7 +278,7 @@ def fit_strokes(strokes: _t.Sequence[Stroke], array: Array, margin_mm: float = 0
     """
     _need(array, Array, "array")
     fitted, origin, to, scale = _tactor.fit_strokes(_cores(strokes), array._core, _number("margin_mm", margin_mm))
-    return [Stroke._of(s) for s in fitted], Fitting(Point(*origin), Point(*to), scale)
+    return [Stroke._wrap(s) for s in fitted], Fitting(Point(*origin), Point(*to), scale)
 
 
 def apply_fits(strokes: _t.Sequence[Stroke], array: Array) -> list[Stroke]:
@@ -301,7 +301,7 @@ def apply_fits(strokes: _t.Sequence[Stroke], array: Array) -> list[Stroke]:
         For a margin that leaves no space.
     """
     _need(array, Array, "array")
-    return [Stroke._of(s) for s in _tactor.apply_fits(_cores(strokes), array._core)]
+    return [Stroke._wrap(s) for s in _tactor.apply_fits(_cores(strokes), array._core)]
 
 
 def _cores(strokes: _t.Any) -> list[_t.Any]:
@@ -324,14 +324,14 @@ def load(file: str | os.PathLike[str]) -> list[Stroke]:
         With file, line and column.
     """
     with reading(file) as name:
-        return [Stroke._of(s) for s in _tactor.Stroke.load(name)]
+        return [Stroke._wrap(s) for s in _tactor.Stroke.load(name)]
 
 
 def parse(text: str, name: str = "text") -> list[Stroke]:
     """Strokes of what a stroke file would say: SVG, CSV or TOML, told apart by how it begins."""
     _need(text, str, "text")
     _need(name, str, "name")
-    return [Stroke._of(s) for s in _tactor.Stroke.parse(text, name)]
+    return [Stroke._wrap(s) for s in _tactor.Stroke.parse(text, name)]
 
 
 def stroke_presets() -> list[str]:

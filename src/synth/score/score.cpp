@@ -34,7 +34,7 @@ using synth::item_kind;
 constexpr unsigned most_channels = 16384; // of an array; no PCM has so many
 constexpr double latest_start_s = 1e6;
 
-unsigned channels_of(const array& a, const render_options& o)
+unsigned settle_channels(const array& a, const render_options& o)
 {
     const unsigned needed = a.channels();
     const unsigned channels = o.channels == 0 ? needed : o.channels;
@@ -206,7 +206,7 @@ struct score_builder::impl {
         s->rate = o.rate;
         s->phase = o.phase;
         s->envelope = o.envelope;
-        s->channels = channels_of(a, o);
+        s->channels = settle_channels(a, o);
         check_marker(a, o, s->channels);
         if (o.limits)
             synth::check_limits(*o.limits);
