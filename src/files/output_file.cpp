@@ -27,7 +27,7 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr int attempts = 100;
-/// Between two questions whether to go on waiting.
+/// Time between two questions whether to go on waiting.
 constexpr int moment_ms = 20;
 /// Room for the suffix within the 255 bytes of a name.
 constexpr std::size_t longest_stem = 200;
@@ -51,7 +51,7 @@ int descriptor_in(const fs::path& p)
     throw error(error_kind::bad_input, source_place{file.string()}, why, hint).with_os_code(code);
 }
 
-/// Where anybody may put a link, what it points to is not what the user meant.
+/// Returns true for a folder in which anybody may put a link: the user may not have meant its target.
 bool is_shared(const fs::path& folder)
 {
     struct stat s {};
@@ -59,8 +59,8 @@ bool is_shared(const fs::path& folder)
            (s.st_mode & (S_IWOTH | S_IWGRP)) != 0;
 }
 
-/// The file that a chain of links names, so that the link stays and what it points to is replaced; a
-/// descriptor's name is not followed any further.
+/// Returns the file that a chain of links names, so that the link stays and its target is replaced. Stops at
+/// a descriptor's name.
 fs::path follow_links(const fs::path& asked)
 {
     std::error_code ignored;
@@ -146,8 +146,7 @@ output_file::output_file(const fs::path& file, patience go_on, owner_kind writer
     open_beside();
 }
 
-// A pipe's other end may be anybody's: it is waited for with poll(), not with O_NONBLOCK, which they would
-// share.
+// Waits for a pipe with poll(), not with O_NONBLOCK, which the process at its other end would share.
 void output_file::open_descriptor(int descriptor, owner_kind writer)
 {
     directly_ = true;
@@ -158,7 +157,7 @@ void output_file::open_descriptor(int descriptor, owner_kind writer)
     refuse_input(s, asked_, writer);
 }
 
-// Non-blocking: a pipe that nobody reads would keep the program for ever.
+// Non-blocking: a pipe without a reader would stop the program for ever.
 void output_file::open_directly()
 {
     directly_ = true;
@@ -210,8 +209,8 @@ void output_file::open_beside()
     fail(code);
 }
 
-// As far as the system allows: only root may give files away. The owner first, since that may take rights
-// away.
+// Does as much as the system allows: only root may give files away. Sets the owner first, since that may
+// take rights away.
 void output_file::keep_owner_and_rights() noexcept
 {
     constexpr mode_t rights = 0777;

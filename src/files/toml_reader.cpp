@@ -46,7 +46,7 @@ std::string shown(const toml::node& n)
         return fmt::format("{}", i->get());
     if (const auto* f = n.as_floating_point()) {
         std::string text = fmt::format("{}", f->get());
-        // Where a whole number is wanted, 2.0 is none.
+        // 2.0 is no whole number: a message about one must show that.
         return text.find_first_not_of("-0123456789") == std::string::npos ? text + ".0" : text;
     }
     if (const auto* b = n.as_boolean())

@@ -106,7 +106,7 @@ std::vector<std::size_t> order_of_going(const std::vector<double>& tau_s)
     return order;
 }
 
-/// What is left, ascending, of n places when the first `gone` of `order` have gone.
+/// Returns the places, ascending, that remain of n when the first `gone` of `order` have gone.
 std::vector<std::size_t> remaining_after(std::size_t n, const std::vector<std::size_t>& order,
                                          std::size_t gone)
 {

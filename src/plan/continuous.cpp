@@ -122,7 +122,7 @@ private:
     intensity_scale scale_;
 };
 
-// What a model of the user's own does is asked once, so that the plan is a value.
+// Asks the user's model once for each sample, so that the plan is a value.
 curve asked(const job& j)
 {
     const followed f(j);

@@ -21,7 +21,7 @@ namespace tactor::detail {
 
 namespace {
 
-/// How often a recording comes round that lies along the path: the faster the target, the oftener.
+/// Returns the rate at which a recording along the path repeats. It rises with the target's speed.
 std::vector<carrier_point> texture_course(const trajectory& motion, double texture_mm)
 {
     const double rounds = texture_mm > 0.0 ? motion.length_mm() / texture_mm : 1.0;

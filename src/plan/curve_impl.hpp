@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// What is behind a curve: samples, or the stroke that they are computed from.
+/// Contents of a curve: samples, or the stroke from which they are computed.
 #pragma once
 
 #include <cstddef>
@@ -21,8 +21,8 @@ struct curve::impl {
     impl(const impl&) = delete;
     impl& operator=(const impl&) = delete;
 
-    /// As curve::sample(). `seen` belongs to the reader, and to this curve: it makes reading faster if
-    /// samples that are near each other are read one after the other.
+    /// Does what curve::sample() does. `seen` belongs to the reader and to this curve. It makes reading
+    /// faster if the reader takes neighbouring samples one after the other.
     void sample(std::uint64_t k, detail::same_tactors& seen, burst& out) const;
 
     /// Position, intensity and drives of sample k, which is there.
@@ -45,11 +45,11 @@ struct curve_access {
 
 namespace tactor::detail {
 
-/// Number of samples of a stroke.
+/// Returns the number of samples of a stroke.
 std::uint64_t count_samples(double duration_s) noexcept;
 double sample_time_s(std::uint64_t k, double duration_s) noexcept;
 
-/// Position, intensity and drives of one of them.
+/// Reads position, intensity and drives of one sample.
 void read(const curve_samples& all, std::size_t i, burst& out);
 
 /// Returns the plan with all its amplitudes and intensities times a factor, above 0. Samples of a curve are

@@ -34,7 +34,7 @@ using detail::operator*;
 /// Lower than this part of the pitch, an array is a line: places that were measured are never quite in one.
 constexpr double thin_by_pitch = 0.1;
 
-/// All that is drawn, for the question how far it goes.
+/// Everything that is drawn; measures its extent.
 class picture {
 public:
     explicit picture(const std::vector<stroke>& strokes)
@@ -85,7 +85,7 @@ point centre_of_gravity(const std::vector<point>& hull)
     return hull[0] + (1.0 / all) * sum;
 }
 
-/// The direction of an array in one line; nothing where it is wider.
+/// Returns the direction of an array in one line; nothing for a wider array.
 std::optional<point> find_line(const layout::impl& l, std::pair<point, point> ends)
 {
     const double length = distance_mm(ends.first, ends.second);
@@ -117,7 +117,7 @@ std::optional<point> find_line(const layout::impl& l, std::pair<point, point> en
                 "turn it, or use an array with two rows");
 }
 
-/// One of several would be left without a length, and nobody would feel where it was to go.
+/// Refuses strokes of which one would lose its length: people could no longer feel its direction.
 void check_along(const std::vector<stroke>& strokes, const fitting& f)
 {
     for (std::size_t i = 0; i < strokes.size(); ++i) {
@@ -184,7 +184,7 @@ fitting find_fit(const picture& drawn, const layout::impl& l, double margin_mm)
     return fit_to_hull(drawn, l, margin_mm);
 }
 
-/// The fitting as it maps places whose origin is `from` already.
+/// Returns the fitting as a map of places whose origin is `from` already.
 affine make_map(const fitting& f)
 {
     const point d = f.line.value_or(point{});

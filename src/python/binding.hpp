@@ -92,7 +92,7 @@ private:
     mutable std::unique_ptr<const layout> faces_;
 };
 
-/// A look at doubles that belong to `owner`; NumPy may read, not write.
+/// Returns a view of doubles that belong to `owner`; NumPy may read, not write.
 inline py::array_t<double> make_view(std::vector<py::ssize_t> shape, std::vector<py::ssize_t> strides,
                                      const double* first, py::handle owner)
 {
@@ -101,12 +101,12 @@ inline py::array_t<double> make_view(std::vector<py::ssize_t> shape, std::vector
     return a;
 }
 
-/// Doubles that go over to NumPy without a copy, rows of `columns` (0: a plain row), not to be written.
+/// Gives doubles to NumPy without a copy, in rows of `columns` (0: a plain row); they cannot be written.
 py::array_t<double> given(std::vector<double> values, std::size_t columns = 0);
 
-/// Ctrl-C, asked for where the lock is not held: throws what Python's handler raised.
+/// Checks for Ctrl-C without the lock: throws what Python's handler raised.
 void check_signals();
-/// Python's error is this one. With the interpreter's lock.
+/// Sets Python's error. With the interpreter's lock.
 void set_error(const error& marked);
 
 /// Writes paths and strokes as bytes, for pickles and for comparing: the same bytes, the same value.

@@ -11,7 +11,7 @@ import subprocess
 import sys
 import sysconfig
 
-# What is needed, Debian's package, and the option that does without it: a name of pkg-config's, or a header.
+# Needed things (a name of pkg-config's, or a header), Debian's package, and the option to build without.
 LIBRARIES = (
     ("Boost", "libboost-dev", None, None, "boost/asio.hpp"),
     ("fmt", "libfmt-dev", None, "fmt", "fmt/format.h"),

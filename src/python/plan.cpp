@@ -254,7 +254,7 @@ asked_stroke stroke_as_asked(const stroke& s, const layout& faces, const wishes&
                     "it is fitted together with others of its group",
                     "give apply_fits() all strokes of the file, and what it returns here");
     asked_stroke a{apply_fits({s}, faces).front()};
-    // As the tool does it: times count where the stroke ends up.
+    // The tool does the same: times count for the fitted stroke.
     if (w.fit) {
         fitted_strokes f = fit_strokes({a.drawn}, faces, w.fit_margin_mm);
         a.drawn = std::move(f.strokes.front());

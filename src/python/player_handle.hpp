@@ -38,7 +38,7 @@ public:
         {
             const std::lock_guard lock(mutex_);
             if (std::holds_alternative<log_line>(e) && waiting_.size() >= most_waiting)
-                return; // a log that nobody reads; reports are as many as there are strokes
+                return; // an unread log; reports are as many as there are strokes
             waiting_.push_back(std::move(e));
         }
         there_.notify_one();
@@ -75,7 +75,7 @@ private:
     bool closed_ = false;
 };
 
-/// What Player() was asked for. Nothing given: the configuration's, then the tool's defaults.
+/// Arguments of Player(). For missing ones the configuration counts, then the tool's defaults.
 struct player_wishes {
     std::string pcm = {};
     std::optional<std::string> config = {};
@@ -85,7 +85,7 @@ struct player_wishes {
     bool wants_log = false;
 };
 
-/// Returns the configuration that applies, for this array instead of its own; null: for its own. Fills in
+/// Returns the configuration that applies, with this array; null: with the configuration's. Fills in
 /// rate and format from [defaults] where `s` has none. \throws error.
 session::environment read_environment(session::settings& s, const array* a);
 
@@ -136,7 +136,7 @@ private:
     };
     static std::optional<std::string> end_reason(const player& p);
 
-    // All that a forked process must not touch, not even to destroy it.
+    // State that a forked process must not touch, not even to destroy it.
     struct open_state {
         mutable std::shared_mutex mutex;
         session::lent_lines lines;

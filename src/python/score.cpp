@@ -22,7 +22,7 @@ namespace {
 // Frames between two looks for Ctrl-C: some 10 ms of work.
 constexpr std::uint64_t frames_at_once = 1 << 18;
 
-// A plan, its start, and what is said of its sound beside what it was made with.
+// A plan, its start, and options of its sound besides those that it was made with.
 using score_part = std::tuple<std::optional<double>, const plan_handle*, py::dict>;
 
 bool says(const py::dict& options, const char* name)

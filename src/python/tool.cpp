@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What the tool computes, draws and lists, by its own code.
+// Functions of the tool, by its code: comparisons, pictures, devices.
 #include <optional>
 #include <string>
 #include <utility>

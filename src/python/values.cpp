@@ -214,7 +214,7 @@ stroke along(const std::string& name, const path& p, std::optional<double> durat
     return s;
 }
 
-// As TOML; a preset by its name, which keeps its note.
+// Writes TOML; a preset by its name, which keeps its note.
 std::string stroke_toml(const stroke& s)
 {
     for (const std::string& name : stroke_presets())

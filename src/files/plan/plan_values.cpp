@@ -219,7 +219,7 @@ stroke read_stroke(const json_value& f, const plan& p, const std::optional<compe
         add(b.tau_s.value_or(b.onset_s), b);
         last = b;
     }
-    // For a picture; as many as one can tell apart.
+    // For a picture: no more points than people can tell apart.
     const std::uint64_t step = p.curve ? 1 + p.curve->size() / most_way_points : 1;
     for (std::uint64_t k = 0; p.curve && k < p.curve->size(); k += step) {
         p.curve->sample(k, last);

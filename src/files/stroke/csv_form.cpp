@@ -33,7 +33,7 @@ bool is_number(std::string_view s)
 
 void refuse_lone_cr(std::string_view text, const std::string& name)
 {
-    // CR before LF, or at the end of the text, is no line end of its own.
+    // CR before LF, or at the end of the text, ends no line.
     std::string_view first = text.substr(0, text.find('\n'));
     while (!first.empty() && first.back() == '\r')
         first.remove_suffix(1);
@@ -42,7 +42,7 @@ void refuse_lone_cr(std::string_view text, const std::string& name)
                     "save it with line ends of Unix, or convert it: tr '\\r' '\\n' < OLD > NEW");
 }
 
-/// Separators other than commas in a line of names or numbers, as words; empty for none.
+/// Returns the word for separators other than commas in a line of names or numbers; empty for none.
 std::string_view separators(std::string_view line)
 {
     if (line.find(',') != std::string_view::npos && line.find(';') == std::string_view::npos)

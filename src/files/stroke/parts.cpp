@@ -19,7 +19,7 @@
 namespace tactor::detail {
 namespace {
 
-// What the library refuses, with the place in the file.
+// Returns make(). What the library refuses, it refuses with the place in the file.
 template <class F>
 auto said_at(const toml_table& t, std::string_view key, F make)
 {

@@ -25,7 +25,7 @@ namespace tactor {
 inline namespace v0 {
 namespace {
 
-/// Where a file's recordings are looked for; nothing for text that is no file's.
+/// Folder in which a file's recordings are; null for text that is no file's.
 using folder_of_file = const std::filesystem::path*;
 
 using detail::bounds;
@@ -94,7 +94,7 @@ trajectory read_timed(const toml_table& t, double intensity)
     return t.at_key("timed", [&] { return trajectory::timed(std::move(points)); });
 }
 
-// A movement that has its own time, in the time that the file asks for.
+// Returns a movement that has its own time in the time that the file gives.
 trajectory paced(const toml_table& t, const told_pace& p, trajectory own)
 {
     const auto seconds = p.time_for(own.length_mm());
@@ -104,7 +104,7 @@ trajectory paced(const toml_table& t, const told_pace& p, trajectory own)
     return t.at_key(key, [&] { return own.with_duration(*seconds); });
 }
 
-// Timed points are where they are when they are.
+// Refuses other movements for timed points.
 void refuse_uneven(const toml_table& t, const told_pace& p)
 {
     if (!p.key.empty())
@@ -114,7 +114,7 @@ void refuse_uneven(const toml_table& t, const told_pace& p)
             "leave it out, or give the path as points");
 }
 
-// A preset's path, if the file moves along it in another way.
+// Returns a preset's movement, or the one along its path that the file gives.
 trajectory preset_as_told(const toml_table& t, const told_pace& p, const trajectory& own)
 {
     if (p.key.empty())
@@ -136,7 +136,7 @@ constexpr std::array<std::string_view, 9> drawing_keys{
 constexpr std::array<std::string_view, 7> placed_keys{"name",         "start_s", "scale",   "rotate_deg",
                                                       "translate_mm", "mirror",  "about_mm"};
 
-// The stroke where it is drawn.
+// Reads a stroke before it is placed.
 stroke read_drawn(const toml_table& t, std::string name)
 {
     const std::string_view kind =
@@ -210,7 +210,7 @@ detail::entry read_all(const std::vector<toml_table>& tables, detail::sequence::
     return std::move(all).take();
 }
 
-// Strokes that are placed, made weaker and repeated as one.
+// Reads strokes that are placed, made weaker and repeated together.
 detail::entry read_group(const toml_table& t, const std::string& name, folder_of_file folder, unsigned depth)
 {
     t.only(join_keys(placed_keys, detail::order_keys,

@@ -75,7 +75,8 @@ private:
                 visit(c, s);
     }
 
-    // What is not named here draws nothing by itself: defs, symbol, clipPath, mask, marker, pattern, text ...
+    // Ignores elements that draw nothing by themselves: defs, symbol, clipPath, mask, marker, pattern, text
+    // ...
     void visit(xml_node n, scope s)
     {
         if (++elements_ > most_elements || ++s.depth > deepest)
@@ -191,7 +192,7 @@ private:
             vertices_ += o.vertices.size();
             if (vertices_ > most_vertices)
                 doc_.fail(n, "too many points", "simplify the drawing");
-            // Where it stands in the file is looked up for complaints only: that reads all before it.
+            // Looks the place up only for an error: that reads the whole file before it.
             const auto what = [&] { return fmt::format("{}: {}", doc_.where(n).text(), doc_.called(n)); };
             paths.push_back(detail::make_path(mapped(std::move(o), s.to_mm), what));
         }
@@ -207,7 +208,7 @@ private:
         return trajectory::along(p, movement{.duration_s = duration_s, .easing = s.easing}, intensity);
     }
 
-    // Of the lines that ask for it the widest has intensity 1.
+    // Gives the widest of the lines that ask for it intensity 1.
     void weigh_widths()
     {
         double widest = 0.0;

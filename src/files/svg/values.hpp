@@ -15,14 +15,14 @@ inline constexpr double max_user_units = 1e9;
 
 inline constexpr double mm_per_px = 25.4 / 96.0;
 
-/// What lengths are relative to.
+/// Reference of relative lengths.
 struct svg_viewport {
     double width = 100.0;  ///< 100 % across, user units
     double height = 100.0; ///< 100 % down
     double per_mm = 1.0;   ///< user units in a millimetre
 };
 
-/// Which 100 % a length means.
+/// Side to which the percentage of a length refers.
 enum class svg_extent { width, height, diagonal };
 
 struct svg_length {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// Which tactors a point belongs to (rendering model, section 4). Tactors go by rank.
+/// Tactors to which a point belongs (rendering model, section 4). Tactors go by rank.
 #pragma once
 
 #include <array>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// What a layout knows. Inside, tactors go by rank, their order by row and then by column, so that
-/// nothing depends on the order in which a file lists them.
+/// Contents of a layout. Inside, tactors go by rank: by row, then by column. So the order in which a file
+/// lists them does not matter.
 #pragma once
 
 #include <atomic>
@@ -63,7 +63,7 @@ struct layout::impl {
     /// The one face that holds p, if p keeps clear of its edges. Looks only at the face of the point before;
     /// if it returns none, faces_at() must be asked.
     std::optional<unsigned> clear_face(point p) const noexcept;
-    /// Whether p keeps clear of all segments between the tactors of a face too.
+    /// Returns true if p also keeps clear of all segments between the tactors of a face.
     bool clear_of_diagonals(unsigned face, point p) const noexcept;
     bool face_holds(unsigned face, point p, double margin_mm) const;
 

@@ -43,7 +43,7 @@ def build_facts() -> str:
     return _tactor.build_facts()  # type: ignore[no-any-return]
 
 
-# What not every script needs is loaded when it is first named: a fifth of the time that the import takes.
+# Names that few scripts need are loaded when they are first used: they take a fifth of the import's time.
 _LATER = {
     "Client": "_client", "RemoteLive": "_client", "RemoteStroke": "_client", "Reply": "_client", "Player": "_player", "Delay": "_ticket", "LiveStroke": "_ticket", "Report": "_ticket", "Ticket": "_ticket",
     "Comparison": "_tool", "devices": "_tool", "plot": "_tool",

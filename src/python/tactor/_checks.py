@@ -47,7 +47,7 @@ def _is_plain(value: _t.Any) -> bool:
 
 
 def _number(what: str, value: _t.Any, least: float = -math.inf, most: float = math.inf, hint: str = "", finite: bool = True) -> float:
-    """A number between bounds; what it is called is said where it is none."""
+    """Returns a number between bounds; refuses all else by the name `what`."""
     if not hint and math.isfinite(least):
         hint = f"{least:g} to {most:g}" if math.isfinite(most) else f"{least:g} or more"
     try:

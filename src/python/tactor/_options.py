@@ -8,7 +8,7 @@ from tactor import _tactor
 from tactor._array import Array
 from tactor._errors import InputError
 
-# How a stroke is planned, and how it sounds, which is a score's.
+# Options that plan a stroke, and those of its sound, which are a score's.
 _PLANNING = frozenset(_tactor.option_names("planning"))
 _SOUNDING = frozenset(_tactor.option_names("sounding"))
 _PLANNING_AND_SOUNDING = _PLANNING | _SOUNDING
@@ -45,7 +45,7 @@ def in_parts(given: dict[str, _t.Any]) -> dict[str, _t.Any]:
 
 
 def check_used(given: dict[str, _t.Any], options: dict[str, _t.Any], place: str = "plan") -> None:
-    """Refuses what is given although nothing of all that is said uses it. `place`: the function that has it, "plan" or "compare"."""
+    """Refuses given options that nothing uses. `options`: all that are set; `place`: the function that has them, "plan" or "compare"."""
     _tactor.check_used([name for name, value in given.items() if value is not None], options, place)
 
 
@@ -58,7 +58,7 @@ def _completed(setup: _t.Any, given: dict[str, _t.Any], known: frozenset[str]) -
     for name, value in setup.defaults.items():
         rival = {"speed": "duration", "sl": "level_dbfs", "level_dbfs": "sl"}.get(name)
         if name in known and not says(name) and not (rival is not None and given.get(rival) is not None):
-            # What a stroke says itself comes before a file's speed.
+            # A stroke's own speed comes before a file's.
             options["usual_speed" if name == "speed" else name] = value
     kind, _, part = str(options.get("envelope") or "").partition(":")
     if part and given.get("envelope") is None:  # tukey:PART, as the tool takes it

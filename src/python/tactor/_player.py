@@ -192,7 +192,7 @@ class Player(PlayerCalls, _Unique):
         shared = self._get()
         held = self._held
         shared.held = lambda: held  # collected, it is still told how its strokes ended
-        with shared.closing:  # who comes second finds it closed
+        with shared.closing:  # a second caller finds it closed
             shared.core.close()
         _open.discard(self)
         if threading.current_thread() is not shared.thread:

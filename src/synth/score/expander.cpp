@@ -60,7 +60,7 @@ void expander::stretch(std::uint64_t start, std::uint64_t length) noexcept
     event_.ramp_position = start - item_->start;
     event_.window = item_->length;
     event_.ramp = item_->ramp;
-    // What is joined has its members' envelopes already.
+    // Joined bursts have their members' envelopes already.
     event_.release = item_->kind == item_kind::joined
                          ? 0
                          : release_frames(score_->envelope, score_->rate, item_->length, item_->ramp);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// How strongly each tactor is driven, and whether it may be.
+/// Levels of the tactors, and their limits.
 #pragma once
 
 #include <string_view>
@@ -21,7 +21,7 @@ double in_db(double amplitude);
 /// \throws error (bad_input) for levels over full scale.
 std::vector<tactor_level> tactor_levels(const array& a, const render_options& o);
 
-/// Those without a threshold where the level is above it.
+/// Returns the tactors without a threshold if the level is in dB SL.
 std::vector<std::size_t> unmeasured_tactors(const array& a, const render_options& o);
 
 /// \throws error (bad_input): the tactor has no threshold.

@@ -25,7 +25,7 @@ struct change {
     double by;
     std::size_t tactor;
 
-    /// Of two changes of a tactor at one frame the one downwards comes first.
+    /// Orders by frame. At the same frame, changes downwards come first.
     bool operator>(const change& c) const { return std::tie(frame, by) > std::tie(c.frame, c.by); }
 };
 

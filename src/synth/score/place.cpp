@@ -47,7 +47,7 @@ void check(const burst& b, std::size_t number, std::size_t tactors)
     }
 }
 
-/// The most that bursts which overlap come to: A_v, or what an intensity scale has made of it.
+/// Returns the most that overlapping bursts add up to: A_v, or what an intensity scale has made of it.
 double greatest_sum(const burst& b)
 {
     const double energy =
@@ -73,7 +73,7 @@ stretch find_stretch(const burst& b, unsigned rate)
 /// The latest bursts of one tactor of which each overlaps with one before it. They arrive by start.
 class run {
 public:
-    /// Whether the burst goes on with the run; if not, another one begins with it.
+    /// Returns true if the burst continues the run; if not, it begins another one.
     bool takes(const stretch& s)
     {
         constexpr double touch_s = 1e-9;

@@ -11,11 +11,11 @@
 
 namespace tactor::synth {
 
-/// How far a burst has brought its actuator, by the model of a first-order lag (1 - e^(-t / rise_s) of a
+/// Strength that an actuator reaches in a burst, by the model of a first-order lag (1 - e^(-t / rise_s) of a
 /// steady vibration after t).
 class lag {
 public:
-    /// Of bursts that rise in `attack` frames and fall in `release`; `rise` in frames, above 0.
+    /// Prepares for bursts that rise in `attack` frames and fall in `release`; `rise` in frames, above 0.
     lag(double rise, std::uint32_t attack, std::uint32_t release, envelope_kind shape);
 
     /// The part of a strength that is left after so many frames.

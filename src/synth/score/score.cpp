@@ -98,7 +98,7 @@ void check_marker(const array& a, const render_options& o, unsigned channels)
     }
 }
 
-/// One at the start of each plan; none makes the piece longer.
+/// Places a marker at the start of each plan. Markers do not make the score longer.
 void place_markers(score::impl& s, std::uint64_t length, unsigned channel)
 {
     for (std::size_t i = 0; i < s.starts.size(); ++i) {

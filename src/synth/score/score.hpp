@@ -55,7 +55,7 @@ struct item {
 };
 static_assert(sizeof(item) == 40);
 
-/// All items of a score by start, and what they refer to.
+/// Items of a score by start, and what they refer to.
 struct item_list {
     // Deques grow without being copied: a copy would take half as much memory again.
     std::deque<item> items;

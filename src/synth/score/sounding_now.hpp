@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// How strongly each tactor is driven at one time, for pictures of what plays.
+/// Drive of each tactor at one time, for pictures of what plays.
 #pragma once
 
 #include <cstdint>
