@@ -223,15 +223,13 @@ void check_used(const std::vector<std::string>& names, const py::dict& all, cons
     options::settle(w);
 }
 
-given_options player_options_in(const py::dict& given)
+void give_player_options(wishes& into, const py::dict& given)
 {
-    given_options all;
     for (const option& o : options::all()) {
         const py::str name(o.name.data(), o.name.size());
         if ((o.where & options::in_player) != 0 && given.contains(name) && !given[name].is_none())
-            all.emplace_back(&o, read_handle(o, given[name]));
+            options::give(into, o, read_handle(o, given[name]));
     }
-    return all;
 }
 
 std::vector<std::string> option_names(const std::string& which)

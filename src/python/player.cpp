@@ -27,15 +27,15 @@ void take(const py::dict& given, const char* name, std::optional<T>& into)
 std::shared_ptr<player_handle> open(const std::shared_ptr<array_handle>& on, const std::string& pcm,
                                     const py::dict& given, const drive_history& driven)
 {
-    player_wishes w;
-    w.pcm = pcm;
-    w.driven = driven;
-    take(given, "config", w.config);
-    take(given, "array_file", w.array_file);
-    w.given = player_options_in(given);
-    w.wants_log = given["log"].cast<bool>();
+    session::settings s;
+    s.place = options::in_player;
+    s.pcm = pcm;
+    take(given, "config", s.config_file);
+    take(given, "array_file", s.array_name);
+    give_player_options(s, given);
+    const auto wants_log = given["log"].cast<bool>();
     const without_lock free;
-    return std::make_shared<player_handle>(on->value(), w);
+    return std::make_shared<player_handle>(on->value(), std::move(s), driven, wants_log);
 }
 
 py::tuple report_tuple(const stroke_report& r)

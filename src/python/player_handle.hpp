@@ -75,16 +75,6 @@ private:
     bool closed_ = false;
 };
 
-/// Arguments of Player(). For missing ones the configuration counts, then the tool's defaults.
-struct player_wishes {
-    std::string pcm = {};
-    std::optional<std::string> config = {};
-    std::optional<std::string> array_file = {};
-    given_options given = {}; ///< checked
-    drive_history driven = {};
-    bool wants_log = false;
-};
-
 /// Returns the configuration that applies, with this array; null: with the configuration's. Fills in
 /// rate and format from [defaults] where `s` has none. \throws error.
 session::environment read_environment(session::settings& s, const array* a);
@@ -93,8 +83,9 @@ session::environment read_environment(session::settings& s, const array* a);
 /// of the parent's is touched when it ends.
 class player_handle {
 public:
-    /// Without the interpreter's lock. \throws error.
-    player_handle(const array& a, const player_wishes& w);
+    /// Opens the device. What `s` does not set is the configuration's, then the tool's default; `driven` is
+    /// the history of the player before. Without the interpreter's lock. \throws error.
+    player_handle(const array& a, session::settings s, const drive_history& driven, bool wants_log);
     ~player_handle();
     player_handle(const player_handle&) = delete;
     player_handle& operator=(const player_handle&) = delete;

@@ -38,10 +38,10 @@ def in_parts(given: dict[str, _t.Any]) -> dict[str, _t.Any]:
         return given
     if given.get("tukey_part") is not None:
         raise InputError("envelope", f'there are "{envelope}" and tukey_part', "give the part once", field="envelope")
-    part = _value(envelope[len("tukey:"):])
-    if not isinstance(part, float):
-        raise InputError("envelope", f'"{envelope}" is not known', "tukey:PART, such as tukey:0.3", field="envelope")
-    return {**given, "envelope": "tukey", "tukey_part": part}
+    try:
+        return {**given, "envelope": "tukey", "tukey_part": float(envelope[len("tukey:"):])}
+    except ValueError:
+        raise InputError("envelope", f'"{envelope}" is not known', "tukey:PART, such as tukey:0.3", field="envelope") from None
 
 
 def check_used(given: dict[str, _t.Any], options: dict[str, _t.Any], place: str = "plan") -> None:
@@ -64,7 +64,7 @@ def _completed(setup: _t.Any, given: dict[str, _t.Any], known: frozenset[str]) -
     if part and given.get("envelope") is None:  # tukey:PART, as the tool takes it
         options["envelope"] = kind
         if not says("tukey_part"):
-            options["tukey_part"] = _value(part)
+            options["tukey_part"] = float(part)
     if "rate" in known:
         if setup.rate is not None and not says("rate"):
             options["rate"] = setup.rate
@@ -74,12 +74,3 @@ def _completed(setup: _t.Any, given: dict[str, _t.Any], known: frozenset[str]) -
             options["marker_channel"], pulse_s = setup.marker
             options["marker_s"] = given["marker_s"] if given.get("marker_s") is not None else pulse_s
     return options
-
-
-def _value(text: str) -> _t.Any:
-    if text in ("true", "false"):
-        return text == "true"
-    try:
-        return float(text)
-    except ValueError:
-        return text
