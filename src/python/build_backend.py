@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What pip builds the package with: meson-python, after a look at what this machine lacks.
+"""The build backend of pip: meson-python, after a look at what this machine lacks.
 
 Meson stops at the first library that it does not find, under a page of pip's own words. This names all of them in one line.
 """

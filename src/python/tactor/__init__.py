@@ -39,7 +39,7 @@ __all__ = [
 
 
 def build_facts() -> str:
-    """What a bug report should say of this library: how and with what it was built."""
+    """Returns the build facts of the library, for bug reports."""
     return _tactor.build_facts()  # type: ignore[no-any-return]
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Arrays: where the tactors are."""
+"""Arrays of tactors and their places."""
 from __future__ import annotations
 
 import os
@@ -26,7 +26,7 @@ class Point(_t.NamedTuple):
 
 
 class Tactor(_t.NamedTuple):
-    """One vibrating actuator of an array.
+    """A vibrating actuator of an array.
 
     Parameters
     ----------
@@ -62,7 +62,7 @@ class Tactor(_t.NamedTuple):
 
 
 class Array(_Value):
-    """Where the tactors are and how each is driven. Immutable.
+    """The tactors: their places, and how each is driven. Immutable.
 
     Made by `preset`, `from_file`, `grid`, `from_points` or of a name and a sequence of `Tactor`.
 
@@ -78,7 +78,7 @@ class Array(_Value):
     _file: str | None
     _besides: str  # [output], [amplifier], [sync], [limits] and [defaults] of its file, as TOML
     _origin: str  # [calibration], the same way
-    _setup: _t.Any  # what they say, once somebody asks
+    _setup: _t.Any  # these tables, once they are needed
     _tactors: tuple[Tactor, ...]
 
     def __init__(self, name: str, tactors: _t.Iterable[Tactor]) -> None:
@@ -101,7 +101,7 @@ class Array(_Value):
 
     @classmethod
     def preset(cls, name: str) -> Array:
-        """A built-in array: "palm-3x3" or "palm-2x4" (`array_presets`)."""
+        """Returns a built-in array: "palm-3x3" or "palm-2x4" (`array_presets`)."""
         _need(name, str, "name")
         return cls._wrap(_tactor.Array.preset(name))
 
@@ -126,7 +126,7 @@ class Array(_Value):
 
     @classmethod
     def grid(cls, name: str, rows: int, columns: int, pitch_mm: float | tuple[float, float]) -> Array:
-        """A rectangular grid; tactor and channel `row * columns + column`, the first at (0, 0).
+        """Makes a rectangular grid; tactor and channel `row * columns + column`, the first at (0, 0).
 
         Parameters
         ----------
@@ -145,7 +145,7 @@ class Array(_Value):
 
     @classmethod
     def from_points(cls, points: _ArrayLike, name: str = "points") -> Array:
-        """An array of places [(x_mm, y_mm), ...]; channels are counted from 0 in this order."""
+        """Makes an array of places [(x_mm, y_mm), ...]; channels count from 0 in this order."""
         return cls(name, [Tactor(Point(x, y), i) for i, (x, y) in enumerate(_places("points", points).tolist())])
 
     name: _Member[str] = _Member("name", "Name, for plans and pictures.")
@@ -163,11 +163,11 @@ class Array(_Value):
         "grid_lines", "The x of the columns and the y of the rows, mm, where the tactors form a rectangular grid; else None.")
 
     def contains(self, point: _t.Sequence[float]) -> bool:
-        """Whether a place is in the hull of the tactors, its edge included."""
+        """Returns True for a place in the hull of the tactors, its edge included."""
         return self._core.contains(*_place("point", point))  # type: ignore[no-any-return]
 
     def nearest(self, point: _t.Sequence[float]) -> Point:
-        """The place of the hull that is nearest to one."""
+        """Returns the place of the hull that is nearest to a place."""
         return Point(*self._core.nearest(*_place("point", point)))
 
     @_t.overload
@@ -177,7 +177,7 @@ class Array(_Value):
     def weights(self, point: _NDArray[_np.float64] | _t.Sequence[_t.Sequence[float]], phantom: str = "inverse-distance",
                 intensity: float = 1.0, *, faces: str = "delaunay") -> _NDArray[_np.float64]: ...
     def weights(self, point: _t.Any, phantom: str = "inverse-distance", intensity: float = 1.0, *, faces: str = "delaunay") -> _t.Any:
-        """Which tactors make a phantom at a place, and how strongly.
+        """Returns the tactors that make a phantom at a place, with their amplitudes.
 
         Parameters
         ----------
@@ -210,7 +210,7 @@ class Array(_Value):
         return {i: amplitude for i, amplitude in enumerate(row) if amplitude > 0.0}
 
     def percept_map(self, step_mm: float = 1.0, phantom: str = "inverse-distance", *, faces: str = "delaunay") -> _PerceptMap:
-        """What is predicted to be felt of phantoms all over the array.
+        """Predicts how phantoms feel all over the array.
 
         Parameters
         ----------
@@ -250,7 +250,7 @@ class Array(_Value):
     def replace(self, *, name: str | None = None, tactors: _t.Iterable[Tactor] | None = None, channels: _t.Iterable[int] | None = None,
                 gains: _EachTactor = None, max_dbfs: _EachTactor = None, thresholds: _Thresholds = None,
                 polarities: _t.Iterable[int] | None = None) -> Array:
-        """The same array but for what is given; what its file says of [output], [amplifier], [sync], [limits] and [defaults] stays.
+        """Returns the array with the given changes; the [output], [amplifier], [sync], [limits] and [defaults] of its file stay.
 
         Parameters
         ----------
@@ -310,7 +310,7 @@ class Array(_Value):
             _tactor.write_text(to, self._core.text() + self._besides + self._origin)
 
     def _settings(self) -> _t.Any:
-        """What its file says beside the array; None where it says nothing."""
+        """Returns the other tables of its file; None if there are none."""
         if self._setup is None and self._besides:
             self._setup = _tactor.Setup.parse(self._besides)
         return self._setup
@@ -351,7 +351,7 @@ def _places(what: str, points: _t.Any) -> _t.Any:
 
 
 def _row(t: Tactor) -> tuple[_t.Any, ...]:
-    """A tactor as the extension takes it."""
+    """Returns a tactor as the extension takes it."""
     def level(name: str) -> float | None:
         value = getattr(t, name)
         return None if value is None else _number(name, value)
@@ -379,7 +379,7 @@ def _make_core(name: str, tactors: _t.Iterable[Tactor]) -> _t.Any:
 
 
 def _each(what: str, values: _t.Any, count: int) -> list[_t.Any]:
-    """One value for each tactor: of an iterable its members, else the same for all."""
+    """Returns a value for each tactor: the members of an iterable, else the same for all."""
     if isinstance(values, (str, bytes)):
         raise InputError(what, f"{_shown(values)} is no list", "give one for each tactor", field=what)
     try:
@@ -396,5 +396,5 @@ def _array_again(name: str, tactors: tuple[Tactor, ...], file: str | None, besid
 
 
 def array_presets() -> list[str]:
-    """Names of the built-in arrays."""
+    """Returns the names of the built-in arrays."""
     return _tactor.array_presets()  # type: ignore[no-any-return]

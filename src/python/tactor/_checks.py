@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What is wrong with an argument."""
+"""Checks of arguments, and bases of the classes."""
 from __future__ import annotations
 
 import contextlib
@@ -12,7 +12,7 @@ from tactor._errors import Error, InputError
 
 
 def _floats(what: str, values: _t.Any) -> _t.Any:
-    """Numbers as an array of float64; refuses what would lose something on the way, as complex numbers, times and masks do."""
+    """Returns numbers as an array of float64; refuses those that would lose something, as complex numbers, times and masks do."""
     import numpy as np
     try:
         raw: _t.Any = values if isinstance(values, np.ma.MaskedArray) else np.asarray(values)
@@ -27,7 +27,7 @@ def _floats(what: str, values: _t.Any) -> _t.Any:
 
 
 def _are_plain(array: _t.Any) -> bool:
-    """Whether an array has real numbers alone."""
+    """Returns True for an array of real numbers alone."""
     if array.dtype.kind == "O":
         return all(not isinstance(v, (str, bytes, bool, complex)) and _is_plain(v) for v in array.flat)
     return array.dtype.kind in "iuf" and not _is_masked(array)
@@ -39,7 +39,7 @@ def _is_masked(array: _t.Any) -> bool:
 
 
 def _is_plain(value: _t.Any) -> bool:
-    """False for what has a type of NumPy's that is no real number: complex numbers, times, truths, texts, masked and several values."""
+    """Returns False for NumPy's types that are no real number: complex numbers, times, truths, texts, masked and several values."""
     dtype = getattr(value, "dtype", None)
     if dtype is None:
         return True
@@ -64,7 +64,7 @@ def _number(what: str, value: _t.Any, least: float = -math.inf, most: float = ma
 
 
 def _whole(what: str, value: _t.Any, least: int, most: int, hint: str = "") -> int:
-    """A whole number between bounds; 48000.0 is one, too."""
+    """Returns a whole number between bounds; 48000.0 is one, too."""
     hint = hint or f"a whole number from {least} to {most}"
     number = _number(what, value, least, most, hint)
     if number != int(number):
@@ -76,7 +76,7 @@ def _whole(what: str, value: _t.Any, least: int, most: int, hint: str = "") -> i
 
 
 def _place(what: str, value: _t.Any) -> tuple[float, float]:
-    """(x_mm, y_mm)"""
+    """Returns (x_mm, y_mm)."""
     try:
         x, y = value
     except (TypeError, ValueError):
@@ -93,7 +93,7 @@ def _shown(value: object) -> str:
 
 
 def _need(value: object, kind: type, what: str) -> None:
-    """Says which argument is of another type; where it were passed on, nobody would know its name."""
+    """Refuses an argument of another type by its name, which the extension does not know."""
     if not isinstance(value, kind):
         article = "an" if kind.__name__[0] in "AEIOU" else "a"
         raise TypeError(f"{what}: {article} {kind.__name__} is wanted, not {type(value).__name__}")
@@ -104,7 +104,7 @@ def _counted(n: int, noun: str) -> str:
 
 
 def encoded(name: str | os.PathLike[str], what: str = "file") -> bytes:
-    """A name as the system takes it, which ends at a zero byte."""
+    """Returns a name as the system takes it; refuses zero bytes, which would end it."""
     as_bytes = os.fsencode(name)
     if b"\0" in as_bytes:
         raise InputError(what, f"{os.fspath(name)!r} has a zero byte in it", "no file or device is called so", field=what)
@@ -143,7 +143,7 @@ class _Member(property, _t.Generic[_M]):
 
 
 class _Value:
-    """What cannot change: a copy of it is itself."""
+    """A value that cannot change: a copy of it is itself."""
 
     __slots__ = ()
 
@@ -187,7 +187,7 @@ def _again(kind: type[_S], core: _t.Any, state: bytes) -> _S:
 
 
 class _Unique:
-    """What is there once, as a device is: two of it would close each other."""
+    """A thing that is there once, as a device is: two of it would close each other."""
 
     __slots__ = ()
 

@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: MIT
-"""What goes wrong, as exceptions."""
+"""Errors as exceptions."""
 from __future__ import annotations
 
 import typing as _t
 
 
 class Error(Exception):
-    """Base of what the library raises.
+    """Base of the library's errors.
 
     Where a call of the system failed it is also an `OSError` with its errno: a missing file is an `InputError` and a
     `FileNotFoundError`, a full disk a `StreamError` and an `OSError`.
@@ -76,14 +76,14 @@ class DeviceError(Error, OSError):
 
 
 class StreamError(Error, RuntimeError):
-    """What failed while it ran: the stream, a disk that is full."""
+    """A failure at run time: of the stream, of a full disk."""
 
 
 _KINDS: dict[str, type[Error]] = {"bad-input": InputError, "not-available": DeviceError, "runtime": StreamError}
 
 
 def _system_kind(kind: type[Error], errno: int) -> type[Error]:
-    """The class of that kind that is also what Python raises for an errno; the kind itself for none."""
+    """Returns the class of that kind that is also what Python raises for an errno; the kind itself for none."""
     base = type(OSError(errno, "")) if errno else kind
     if issubclass(kind, base):
         return kind
@@ -96,7 +96,7 @@ _system_classes: dict[tuple[type, type], type[Error]] = {}
 
 
 def _named_kind(e: Error) -> type[Error]:
-    """The class that has a name, of one that _system_kind() has made."""
+    """Returns the named class of one that _system_kind() has made."""
     kind = type(e)
     return kind.__mro__[1] if kind in _system_classes.values() else kind
 

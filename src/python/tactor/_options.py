@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What a plan and its sound can be asked for."""
+"""Options of a plan and of its sound."""
 from __future__ import annotations
 
 import typing as _t
@@ -20,9 +20,9 @@ _NOTHING: _t.Mapping[str, _t.Any] = {}
 
 
 def settled(array: Array, given: dict[str, _t.Any], known: frozenset[str], before: _t.Mapping[str, _t.Any] = _NOTHING) -> dict[str, _t.Any]:
-    """Options, and for what they do not say the [defaults] and [output] of the array's file, as the tool has it.
+    """Completes options with the [defaults] and [output] of the array's file, as the tool does.
 
-    None says nothing. What nothing would use is refused; in a file it may stand for other strokes. `before`: what a plan says already.
+    None sets nothing. Refuses options that nothing uses; in a file they may be for other strokes. `before`: options of a plan.
     """
     given = in_parts(given)
     setup = array._settings()
@@ -32,7 +32,7 @@ def settled(array: Array, given: dict[str, _t.Any], known: frozenset[str], befor
 
 
 def in_parts(given: dict[str, _t.Any]) -> dict[str, _t.Any]:
-    """The tool's envelope "tukey:PART" as the two options that it is."""
+    """Splits the tool's envelope "tukey:PART" into its two options."""
     envelope = given.get("envelope")
     if not isinstance(envelope, str) or not envelope.startswith("tukey:"):
         return given

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What plans are made of."""
+"""Parts of plans."""
 from __future__ import annotations
 
 import math
@@ -16,7 +16,7 @@ if _t.TYPE_CHECKING:
 
 
 class PhantomModel(_t.Protocol):
-    """What a model of your own looks like: `plan(array, stroke, phantom=model)`."""
+    """A model of your own: `plan(array, stroke, phantom=model)`."""
 
     def weights(self, x_mm: float, y_mm: float, intensity: float) -> _t.Mapping[int, float]:
         """Amplitudes by tactor, finite and not below 0, that make a phantom of an intensity at a place in the hull.
@@ -27,7 +27,7 @@ class PhantomModel(_t.Protocol):
 
 
 def ask_model(model: _t.Any, name: str, x_mm: float, y_mm: float, intensity: float, tactors: int) -> list[tuple[int, float]]:
-    """Tactors and amplitudes above 0 that a model gives, in order of tactor; called by the extension."""
+    """Returns the tactors and amplitudes above 0 that a model gives, in order of tactor; called by the extension."""
     said = model.weights(x_mm, y_mm, intensity)
     if not hasattr(said, "items"):
         raise _refused_answer(name, f"it returned {_shown(said)}")
@@ -86,7 +86,7 @@ class Frozen(list[_T]):
 
 
 class Drive(_t.NamedTuple):
-    """One tactor's part in a burst: linear amplitude, where 1 is the intensity asked for."""
+    """The part of a tactor in a burst: linear amplitude, where 1 is the requested intensity."""
 
     tactor: int
     amplitude: float
@@ -118,7 +118,7 @@ class Meeting(_t.NamedTuple):
 
 
 class PerceptSample(_t.NamedTuple):
-    """One instant of what is predicted to be felt: a model, never a measurement.
+    """An instant of a predicted percept: a model, never a measurement.
 
     `felt` is the centre of energy of the tactors that sound, None while none does; `speed` (mm/s) is smoothed over 0.1 s.
     """
@@ -195,7 +195,7 @@ class Curve(_Columns):
 
 
 class Percept(_Columns):
-    """What is predicted to be felt of a plan, sampled each millisecond: a model, never a measurement. Immutable.
+    """The predicted percept of a plan, sampled each millisecond: a model, never a measurement. Immutable.
 
     Also a sequence of `PerceptSample`.
 
@@ -252,7 +252,7 @@ class Percept(_Columns):
 
 
 class PerceptMap(_Columns):
-    """What is predicted to be felt of a phantom at each place of a grid over an array: a model, never a measurement. Immutable.
+    """The predicted percept of a phantom at each place of a grid over an array: a model, never a measurement. Immutable.
 
     Attributes
     ----------

@@ -54,7 +54,7 @@ class Path(_Stated):
     @_t.overload
     def at(self, s_mm: _t.Sequence[float] | _NDArray[_np.float64]) -> _NDArray[_np.float64]: ...
     def at(self, s_mm: _t.Any) -> _t.Any:
-        """The point at an arc length, clamped to 0 ... length; of an array of lengths the points, shape (n, 2)."""
+        """Returns the point at an arc length, clamped to 0 ... length; of an array of lengths the points, shape (n, 2)."""
         if isinstance(s_mm, (int, float)) and -1e300 < s_mm < 1e300:
             return Point(*self._core.at(s_mm))
         lengths = _floats("s_mm", s_mm)
@@ -63,11 +63,11 @@ class Path(_Stated):
         return self._core.at_all(lengths.ravel())
 
     def meets_x(self, x_mm: float) -> list[float]:
-        """Arc lengths, ascending, at which the path meets the line x = x_mm, touching included."""
+        """Returns the arc lengths, ascending, at which the path meets the line x = x_mm, touching included."""
         return self._core.meets_x(_number("x_mm", x_mm))  # type: ignore[no-any-return]
 
     def meets_y(self, y_mm: float) -> list[float]:
-        """The same for the line y = y_mm."""
+        """Does the same for the line y = y_mm."""
         return self._core.meets_y(_number("y_mm", y_mm))  # type: ignore[no-any-return]
 
     def __repr__(self) -> str:

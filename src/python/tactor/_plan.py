@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Plans: who plays, when, and how strongly."""
+"""Plans: tactors, times and amplitudes."""
 from __future__ import annotations
 
 import collections.abc as _abc
@@ -22,10 +22,10 @@ if _t.TYPE_CHECKING:
 
 
 class Plan(_Value):
-    """Who plays, when, and how strongly: bursts or, of a continuous stroke, a curve. Immutable.
+    """The tactors, times and amplitudes of a stroke: bursts or, of a continuous stroke, a curve. Immutable.
 
-    Made by `tactor.plan` or `from_dict`. Arrays are looks at the plan's memory, which cannot be written; those of other shapes than
-    it has are made when they are first asked for.
+    Made by `tactor.plan` or `from_dict`. Arrays are read-only views of the plan's memory; those of other shapes are made at their
+    first use.
     """
 
     __slots__ = ("_core", "_array", "_recorded", "_asked", "_kept")
@@ -51,7 +51,7 @@ class Plan(_Value):
 
     @classmethod
     def from_dict(cls, d: _t.Mapping[str, _t.Any]) -> Plan:
-        """A plan of a tactor-plan/1 object, as `to_dict` or `tactor plan --format json` gives it.
+        """Reads a plan from a tactor-plan/1 object, as `to_dict` or `tactor plan --format json` gives it.
 
         Raises
         ------
@@ -71,7 +71,7 @@ class Plan(_Value):
 
     @classmethod
     def _read(cls, text: str, name: str) -> Plan:
-        """A plan of JSON; `name` stands for it in messages."""
+        """Reads a plan from JSON; `name` stands for it in messages."""
         core = _tactor.Plan.from_json(text, name)
         _check_keys(text, name)
         return cls._wrap(core, recorded=True)
@@ -99,7 +99,7 @@ class Plan(_Value):
             _tactor.write_text(to, self._core.json())
 
     def to_dict(self) -> dict[str, _t.Any]:
-        """The tactor-plan/1 object, as `tactor plan --format json` prints it: a record of every sample.
+        """Returns the tactor-plan/1 object, as `tactor plan --format json` prints it: a record of every sample.
 
         Raises
         ------
@@ -122,18 +122,18 @@ class Plan(_Value):
     algorithm: _Member[str] = _Member("algorithm", "Name of the planner.")
     phantom: _Member[str] = _Member("phantom", "Name of the phantom model.")
     faces: _Member[_Faces] = _Member("faces", 'Which three tactors "inverse-distance" took.')
-    overlap: _Member[_Overlap] = _Member("overlap", "How bursts that overlap on one tactor are joined.")
+    overlap: _Member[_Overlap] = _Member("overlap", "Rule for bursts that overlap on the same tactor.")
     start: _Member[float | None] = _Member("start_s", "Seconds from the start of a piece; None is when the plan before it has ended.")
     stroke_duration: _Member[float] = _Member("stroke_duration_s", "Time of the stroke, s.")
     stroke_length_mm: _Member[float] = _Member("stroke_length_mm", "Length of the stroke.")
     carrier: _Member[float] = _Member("carrier_hz", "Frequency of the vibration, Hz.")
     soa: _Member[float | None] = _Member("soa_s", "Onset to onset of two bursts, s; None where they have none in common.")
     total: _Member[float] = _Member("total_s", "End of the last sound, s.")
-    warnings: _Member[list[str]] = _Member("warnings", "What was odd and taken nevertheless.")
+    warnings: _Member[list[str]] = _Member("warnings", "Oddities that were accepted.")
 
     @property
     def conflicts(self) -> list[Conflict]:
-        """Where bursts overlap on one tactor."""
+        """Overlaps of bursts on the same tactor."""
         return self._keep("conflicts", lambda: Frozen(Conflict(*c) for c in self._core.conflicts))  # type: ignore[no-any-return]
 
     @property
@@ -170,11 +170,11 @@ class Plan(_Value):
 
     @property
     def compensation(self) -> dict[str, _t.Any] | None:
-        """What `compensate` did, as in the record (observer, residuals and taps); None without it."""
+        """The effect of `compensate`, as in the record (observer, residuals and taps); None without it."""
         return self.to_dict().get("compensation")
 
     def percept(self) -> Percept:
-        """What is predicted to be felt at 0, 1, 2 ... ms: a model, never a measurement.
+        """Predicts the percept at 0, 1, 2 ... ms: a model, never a measurement.
 
         Returns
         -------
@@ -187,11 +187,11 @@ class Plan(_Value):
         return self._keep("percept", made)  # type: ignore[no-any-return]
 
     def percept_summary(self) -> dict[str, float | None]:
-        """How far the prediction is from the target: rms_error_mm, largest_error_mm, speed_cv, intensity_cv, silent_share, shared_share."""
+        """Compares prediction and target: rms_error_mm, largest_error_mm, speed_cv, intensity_cv, silent_share, shared_share."""
         return self._core.summary()  # type: ignore[no-any-return]
 
     def to_pandas(self) -> _t.Any:
-        """A pandas DataFrame with a row for each burst (or sample) and a column `tactor_N` for each tactor's amplitude."""
+        """Returns a pandas DataFrame with a row for each burst (or sample) and a column `tactor_N` for each tactor's amplitude."""
         import pandas  # type: ignore
         c = self.curve
         columns: dict[str, _t.Any]
@@ -206,8 +206,8 @@ class Plan(_Value):
         return pandas.DataFrame(columns)
 
     def _sound_on(self, array: Array, given: dict[str, _t.Any]) -> dict[str, _t.Any]:
-        """Options of a score on that array, where `given` wins. The plan has taken over what its own array's file says, and a record
-        says all; elsewhere the other array's file says what the plan leaves open."""
+        """Returns the options of a score on that array, where `given` wins. A record has all; a plan has the options of its own array's
+        file. On another array that array's file completes them."""
         sound = self._core.sound
         if self._recorded or self._array is array or self._array == array:
             check_used(given, {**sound, **{name: value for name, value in given.items() if value is not None}})
@@ -243,7 +243,7 @@ class Plan(_Value):
 
 
 def make_plan(given: dict[str, _t.Any]) -> Plan:
-    """The plan of plan()'s arguments."""
+    """Makes the plan of plan()'s arguments."""
     options = dict(given)
     array, stroke = options.pop("array"), options.pop("stroke")
     _need(array, Array, "array")
@@ -255,7 +255,7 @@ def make_plan(given: dict[str, _t.Any]) -> Plan:
 
 def burst_duration(*, soa: float | None = None, burst: float | None = None, slope: float | None = None,
                    intercept: float | None = None) -> float:
-    """Duration of park2016's bursts in seconds: `burst`, or what the timing law gives for the SOA.
+    """Returns the duration of park2016's bursts in seconds: `burst`, or what the timing law gives for the SOA.
 
     Raises
     ------
@@ -287,7 +287,7 @@ def load_plan(file: str | os.PathLike[str]) -> Plan:
 
 
 def _plain(value: _t.Any) -> _t.Any:
-    """What JSON does not know: other mappings, and numbers and arrays of NumPy."""
+    """Converts values that JSON does not know: other mappings, and numbers and arrays of NumPy."""
     if isinstance(value, _abc.Mapping):
         return dict(value)
     if hasattr(value, "tolist"):

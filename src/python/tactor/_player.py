@@ -76,7 +76,7 @@ class Player(PlayerCalls, _Unique):
 
     @property
     def setup(self) -> dict[str, _t.Any]:
-        """What was agreed on with the device (name, channels, device_channels, rate, format, period_frames, buffer_frames, batch, has_clock)."""
+        """The setup of the device (name, channels, device_channels, rate, format, period_frames, buffer_frames, batch, has_clock)."""
         return dict(self._setup)
 
     @property
@@ -91,7 +91,7 @@ class Player(PlayerCalls, _Unique):
 
     @property
     def closed(self) -> bool:
-        """Whether it was closed."""
+        """True once it was closed."""
         return self._get().core.closed  # type: ignore[no-any-return]
 
     def play(self, score: Score, at: _At = "now", *, at_s: float | None = None, delay: float | None = None,
@@ -167,24 +167,24 @@ class Player(PlayerCalls, _Unique):
         return stroke
 
     def fire(self, at_s: float | None = None) -> int:
-        """Starts all armed strokes, now or at a time of CLOCK_MONOTONIC; how many there were."""
+        """Starts all armed strokes, now or at a time of CLOCK_MONOTONIC; returns their number."""
         return self._get().core.fire(time.monotonic() if at_s is None else _number("at_s", at_s, -_LATEST_S, _LATEST_S, _CLOCK))  # type: ignore[no-any-return]
 
     def stop(self, *_: object) -> None:
-        """Fades everything out and stops the stream. What that ends counts as cancelled. Ignores its arguments, such as the event of a button."""
+        """Fades everything out and stops the stream. Strokes that this ends count as cancelled. Ignores its arguments, such as the event of a button."""
         self._get().core.stop()
 
     @property
     def ended(self) -> str | None:
-        """Why the stream has ended; empty where `stop` or `close` ended it in order, None while it goes on."""
+        """The reason for the end of the stream; empty after `stop` or `close`, None while it goes on."""
         return self._get().core.ended()  # type: ignore[no-any-return]
 
     def stats(self) -> dict[str, _t.Any]:
-        """Counters since it was opened, after `close` those of the end: periods, frames, xruns, limited_frames, power_limited_frames, drives_cut, stalls, realtime, ..."""
+        """Returns the counters since it was opened, after `close` those of the end: periods, frames, xruns, limited_frames, power_limited_frames, drives_cut, stalls, realtime, ..."""
         return self._get().core.stats()  # type: ignore[no-any-return]
 
     def position(self) -> dict[str, _t.Any]:
-        """Where the stream is: running, played (frame at the DAC), stroke (number of the newest that sounds, or None), stroke_frame."""
+        """Returns the place in the stream: running, played (frame at the DAC), stroke (number of the newest that sounds, or None), stroke_frame."""
         return self._get().core.position()  # type: ignore[no-any-return]
 
     def close(self) -> None:

@@ -42,7 +42,7 @@ def _find_format(dtype: _DTypeLike) -> str:
 
 
 def placed(plans: _Plans) -> list[tuple[float | None, Plan]]:
-    """Plans with the times at which they start."""
+    """Returns plans with the times at which they start."""
     if isinstance(plans, Plan):
         return [(plans.start, plans)]
     if not isinstance(plans, _abc.Iterable):
@@ -117,7 +117,7 @@ class Score(ScoreCall, _Value):
 
     def render(self, dtype: _DTypeLike = "float32", *, start: int = 0, frames: int | None = None,
                out: _NDArray[_t.Any] | None = None) -> _NDArray[_t.Any]:
-        """The samples, the same as `tactor render` writes.
+        """Renders the samples, the same as `tactor render` writes.
 
         Parameters
         ----------
@@ -155,7 +155,7 @@ class Score(ScoreCall, _Value):
         return out
 
     def blocks(self, frames: int, dtype: _DTypeLike = "float32") -> _t.Iterator[_NDArray[_t.Any]]:
-        """The samples block by block, so that a long score need not be in memory.
+        """Renders the samples block by block, so that a long score need not be in memory.
 
         Parameters
         ----------
@@ -186,7 +186,7 @@ class Score(ScoreCall, _Value):
             yield block
 
     def to_numpy(self) -> _NDArray[_np.float32]:
-        """The same as `render()`."""
+        """Does the same as `render()`."""
         return self.render()
 
     def write(self, file: str | os.PathLike[str], sample_format: _WavFormat = "float") -> None:
@@ -218,7 +218,7 @@ class Score(ScoreCall, _Value):
         return hash(self._sounds())
 
     def _sounds(self) -> tuple[_t.Any, ...]:
-        """What decides on the samples, but for the plans' bursts and curves."""
+        """Returns all that decides on the samples, but for the plans' bursts and curves."""
         return self._array.tactors, tuple(self.starts), self.frames, self._recipe
 
     def __repr__(self) -> str:

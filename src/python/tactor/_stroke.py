@@ -21,7 +21,7 @@ if _t.TYPE_CHECKING:
 
 
 def _profile(name: str, points: _t.Any) -> _t.Any:
-    """(part, value) as a table of two columns."""
+    """Returns (part, value) as a table of two columns."""
     table = _floats(name, points)
     if table.size == 0:
         return table.reshape(-1, 2)
@@ -31,7 +31,7 @@ def _profile(name: str, points: _t.Any) -> _t.Any:
 
 
 def _pauses(pauses: _t.Any) -> _t.Any:
-    """(part, seconds) or (part, seconds, intensity) as a table of three columns."""
+    """Returns (part, seconds) or (part, seconds, intensity) as a table of three columns."""
     rows = []
     for row in pauses:
         if not hasattr(row, "__len__") or len(row) not in (2, 3):
@@ -41,7 +41,7 @@ def _pauses(pauses: _t.Any) -> _t.Any:
 
 
 def _is_one(value: _t.Any) -> bool:
-    """Whether it is one number, not a list of them."""
+    """Returns True for a number, False for a list of them."""
     return not hasattr(value, "__len__") or getattr(value, "ndim", 1) == 0
 
 
@@ -146,13 +146,13 @@ class Stroke(_Stated):
 
     @classmethod
     def preset(cls, name: str) -> Stroke:
-        """A built-in stroke: "park2016-1" ... "park2016-4", "wave-2x4", "round-2x4" (`stroke_presets`)."""
+        """Returns a built-in stroke: "park2016-1" ... "park2016-4", "wave-2x4", "round-2x4" (`stroke_presets`)."""
         _need(name, str, "name")
         return cls._wrap(_tactor.Stroke.preset(name))
 
     @classmethod
     def shape(cls, name: str) -> Stroke:
-        """A "tap", "line", "circle", "eight" or "spiral", as large as the array for which it is planned (`stroke_shapes`)."""
+        """Returns a "tap", "line", "circle", "eight" or "spiral", as large as the array for which it is planned (`stroke_shapes`)."""
         _need(name, str, "name")
         return cls._wrap(_tactor.Stroke.shape(name))
 
@@ -164,18 +164,18 @@ class Stroke(_Stated):
         "start_from", 'From where `start` counts, as a file says it. The start of the "piece", or the "start" or "end" of strokes before.')
     choices: _Member[dict[str, str | float]] = _Member(
         "choices", "Options of `plan` that a file gives this stroke (algorithm, phantom, faces, soa, burst), which win over those of the call.")
-    level_db: _Member[float] = _Member("level_db", "How much stronger a file says it is than the others.")
+    level_db: _Member[float] = _Member("level_db", "Its level in a file, relative to the other strokes.")
     carrier: _Member[float | None] = _Member("carrier_hz", "Its own carrier, Hz; None is the plan's.")
     speed: _Member[float | None] = _Member("speed_mm_s", "The speed, mm/s, from which its time follows; None where a time was given.")
-    note: _Member[_Note] = _Member("note", "What must be said of it.")
-    warnings: _Member[list[str]] = _Member("warnings", "What was odd about the input and taken nevertheless.")
+    note: _Member[_Note] = _Member("note", "A note on its origin.")
+    warnings: _Member[list[str]] = _Member("warnings", "Oddities of the input that were accepted.")
 
     @_t.overload
     def position(self, t: float) -> Point: ...
     @_t.overload
     def position(self, t: _t.Sequence[float] | _NDArray[_np.float64]) -> _NDArray[_np.float64]: ...
     def position(self, t: _t.Any) -> _t.Any:
-        """Where the target is at a time in seconds, clamped to 0 ... duration; of an array of n times the places, shape (n, 2), mm."""
+        """Returns the target's place at a time in seconds, clamped to 0 ... duration; of an array of n times the places, shape (n, 2), mm."""
         if _is_one(t):
             return Point(*self._core.position(_number("t", t, finite=False)))
         return self._core.positions(_times(t))
@@ -185,33 +185,33 @@ class Stroke(_Stated):
     @_t.overload
     def intensity(self, t: _t.Sequence[float] | _NDArray[_np.float64]) -> _NDArray[_np.float64]: ...
     def intensity(self, t: _t.Any) -> _t.Any:
-        """How strong the target is at a time in seconds, clamped to 0 ... duration; of an array of n times all, shape (n,), linear."""
+        """Returns the target's intensity at a time in seconds, clamped to 0 ... duration; of an array of n times all, shape (n,), linear."""
         if _is_one(t):
             return self._core.intensity(_number("t", t, finite=False))
         return self._core.intensities(_times(t))
 
     def meets_x(self, x_mm: float) -> list[float]:
-        """Times, ascending, at which the target meets the line x = x_mm."""
+        """Returns the times, ascending, at which the target meets the line x = x_mm."""
         return self._core.meets_x(_number("x_mm", x_mm))  # type: ignore[no-any-return]
 
     def meets_y(self, y_mm: float) -> list[float]:
-        """The same for the line y = y_mm."""
+        """Does the same for the line y = y_mm."""
         return self._core.meets_y(_number("y_mm", y_mm))  # type: ignore[no-any-return]
 
     def with_duration(self, duration: float) -> Stroke:
-        """The same movement in another time, s, pauses included."""
+        """Returns the same movement in another time, s, pauses included."""
         return self._wrap(self._core.with_duration(_number("duration", duration)))
 
     def with_speed(self, speed: float) -> Stroke:
-        """The same movement at another mean speed, mm/s; pauses along a path stay as long as they are."""
+        """Returns the same movement at another mean speed, mm/s; pauses along a path stay as long as they are."""
         return self._wrap(self._core.with_speed(_number("speed", speed)))
 
     def reversed(self) -> Stroke:
-        """The same movement played backwards."""
+        """Returns the same movement played backwards."""
         return self._wrap(self._core.reversed())
 
     def with_intensity(self, factor: float) -> Stroke:
-        """The same movement with every intensity times a factor."""
+        """Returns the same movement with every intensity times a factor."""
         return self._wrap(self._core.with_intensity(_number("factor", factor)))
 
     def write(self, file: str | os.PathLike[str]) -> None:
@@ -237,7 +237,7 @@ class Stroke(_Stated):
             _tactor.write_text(to, self._core.text())
 
     def fitted(self, array: Array, margin_mm: float = 0.0) -> Stroke:
-        """The same shape, as large as the array has space for and in its middle; see `fit_strokes`."""
+        """Returns the same shape, as large as the array has space for and in its middle; see `fit_strokes`."""
         return fit_strokes([self], array, margin_mm)[0][0]
 
     def __repr__(self) -> str:
@@ -249,7 +249,7 @@ class Stroke(_Stated):
 
 
 class Fitting(_t.NamedTuple):
-    """Where a picture was put: `origin` became `to`, and all distances are `scale` times what they were."""
+    """The new place of a picture: `origin` became `to`, and all distances are `scale` times what they were."""
 
     origin: Point
     to: Point
@@ -257,7 +257,7 @@ class Fitting(_t.NamedTuple):
 
 
 def fit_strokes(strokes: _t.Sequence[Stroke], array: Array, margin_mm: float = 0.0) -> tuple[list[Stroke], Fitting]:
-    """Moves and scales strokes, all alike as one picture, so that it is as large as the array has space for.
+    """Moves and scales strokes together, so that they are as large as the array has space for.
 
     Parameters
     ----------
@@ -282,18 +282,18 @@ def fit_strokes(strokes: _t.Sequence[Stroke], array: Array, margin_mm: float = 0
 
 
 def apply_fits(strokes: _t.Sequence[Stroke], array: Array) -> list[Stroke]:
-    """Strokes as their file asks for them to be fitted (`fit`), those of a group as one picture. `plan` does it for a stroke alone.
+    """Fits strokes as their file asks (`fit`), those of a group together. `plan` does it for a stroke alone.
 
     Parameters
     ----------
     strokes : sequence of Stroke
-        As `load` gives them; what asks for nothing stays.
+        As `load` gives them; a stroke that asks for no fit stays.
     array : Array
 
     Returns
     -------
     list of Stroke
-        In the same order; they ask for nothing more.
+        In the same order; they ask for no fit.
 
     Raises
     ------
@@ -328,17 +328,17 @@ def load(file: str | os.PathLike[str]) -> list[Stroke]:
 
 
 def parse(text: str, name: str = "text") -> list[Stroke]:
-    """Strokes of what a stroke file would say: SVG, CSV or TOML, told apart by how it begins."""
+    """Reads strokes from the text of a stroke file: SVG, CSV or TOML, which its beginning tells."""
     _need(text, str, "text")
     _need(name, str, "name")
     return [Stroke._wrap(s) for s in _tactor.Stroke.parse(text, name)]
 
 
 def stroke_presets() -> list[str]:
-    """Names of the built-in strokes."""
+    """Returns the names of the built-in strokes."""
     return _tactor.stroke_presets()  # type: ignore[no-any-return]
 
 
 def stroke_shapes() -> list[str]:
-    """Names for `Stroke.shape`."""
+    """Returns the names for `Stroke.shape`."""
     return _tactor.stroke_shapes()  # type: ignore[no-any-return]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What the tool computes, draws and lists."""
+"""Comparisons, pictures and devices, as the tool has them."""
 from __future__ import annotations
 
 import collections.abc as _abc
@@ -25,7 +25,7 @@ def _size(width: float, dpi: int) -> tuple[float, int]:
 
 
 class Comparison(list[dict[str, _t.Any]]):
-    """What algorithms are predicted to feel like: a dict for each algorithm with each phantom model, as the `results` of
+    """The predicted percepts of algorithms: a dict for each algorithm with each phantom model, as the `results` of
     `tactor compare --format json`.
 
     Attributes
@@ -55,7 +55,7 @@ class Comparison(list[dict[str, _t.Any]]):
 
 
 def _names(what: str, value: str | _t.Iterable[str] | None, one: _t.Any) -> list[str]:
-    """A list of names; empty where the one that may be given in its place counts."""
+    """Returns a list of names; empty if its option for a single name counts."""
     if value is None:
         return []
     if one is not None:
@@ -74,7 +74,7 @@ def _names(what: str, value: str | _t.Iterable[str] | None, one: _t.Any) -> list
 
 
 def make_comparison(given: dict[str, _t.Any]) -> Comparison:
-    """The comparison of compare()'s arguments."""
+    """Makes the comparison of compare()'s arguments."""
     options = {name: value for name, value in given.items() if value is not None}
     array, stroke = given["array"], given["stroke"]
     for name in ("array", "stroke", "algorithms", "phantoms"):
@@ -143,14 +143,14 @@ def svg_of_plans(plans: _Plans, view: str = "both") -> str:
 
 
 def picture_of_stroke(stroke: Stroke) -> str:
-    """The way of a stroke on the array that it fits: palm-3x3, where it lies within; else what it needs."""
+    """Draws a stroke on palm-3x3."""
     from tactor._calls import plan
     return svg_of_plans(plan(Array.preset("palm-3x3"), stroke, algorithm="continuous", outside="clamp"), "array")
 
 
 def devices(array: Array | None = None, *, device: str | None = None, rate: int | None = None,
             config: str | os.PathLike[str] | None = None) -> dict[str, _t.Any]:
-    """PCMs, what they can do, and GPIO lines, as `tactor devices --format json` prints them: a tactor-devices/1 object.
+    """Lists PCMs, what they can do, and GPIO lines, as `tactor devices --format json` prints them: a tactor-devices/1 object.
 
     Parameters
     ----------
