@@ -15,19 +15,17 @@ namespace tactor::python {
 
 using options::wishes;
 
-/// Takes what `given` says; None is as good as nothing. `tactors` is how many an own phantom model may name.
-/// \throws error (bad_input) for names that are not known, and for values that cannot be.
-void take_options(wishes& into, const py::dict& given, std::size_t tactors);
-
-/// Refuses those of `names` that nothing uses when `all` options are as given. `place` is a function that has
-/// them: "plan" or "compare". \throws error (bad_input).
-void check_used(const std::vector<std::string>& names, const py::dict& all, const std::string& place);
+/// Takes the options `given`; None sets nothing. For those that are not given the [defaults] of `file` count,
+/// and its rate, channels and marker where a score has them. `into.place`: who is asked; rows that
+/// `into.given` has already keep their values. `tactors` is how many an own phantom model may name.
+/// \throws error (bad_input) for values that cannot be, and for options that nothing uses.
+void take_options(wishes& into, const py::dict& given, std::size_t tactors, const setup* file = nullptr);
 
 /// Takes the options of a player among `given`. \throws error (bad_input).
 void give_player_options(wishes& into, const py::dict& given);
 
-/// Returns the names of options: "planning", "sounding", "live", or all that take_options() knows.
-std::vector<std::string> option_names(const std::string& which);
+/// Returns the names of all options that take_options() knows.
+std::vector<std::string> option_names();
 
 /// Returns the rows of the table, for src/options/write.py.
 py::list option_rows();

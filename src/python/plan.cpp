@@ -20,14 +20,21 @@ namespace {
 using namespace py::literals;
 
 plan_handle planned(const std::shared_ptr<array_handle>& on, const stroke& given_stroke,
-                    const py::dict& options)
+                    const py::dict& options, const setup* file)
 {
     wishes w;
-    take_options(w, options, on->value().tactors.size());
+    w.place = options::in_plan | options::in_score;
+    take_options(w, options, on->value().tactors.size(), file);
     const layout& faces = on->faces();
     asked_stroke asked = stroke_as_asked(given_stroke, faces, w);
     plan_handle p{on, std::move(asked.drawn), {}, asked.fit};
     p.sound = w.render;
+    for (const options::option& o : options::all()) {
+        const bool is_sound = (o.where & options::in_plan) != 0 && (o.where & options::planning) == 0;
+        const bool is_set = w.gives(o) || w.in_file.contains(index(o)) || (o.name == "rate" && w.rate);
+        if (is_sound && is_set)
+            p.asked.emplace_back(o.name);
+    }
     p.placed.start_s = p.drawn.start_s;
     p.placed.anchor = p.drawn.anchor;
     const auto work = [&] {
@@ -266,11 +273,11 @@ asked_stroke stroke_as_asked(const stroke& s, const layout& faces, const wishes&
 
 void bind_plan(py::module_& m)
 {
-    m.def("option_names", &option_names, py::arg("which") = "");
+    m.def("option_names", &option_names);
     m.def("option_rows", &option_rows);
-    m.def("check_used", &check_used);
     m.def("burst_duration", [](const py::dict& options) {
         wishes w;
+        w.place = options::in_plan;
         take_options(w, options, 0);
         return burst_duration_s(w.plan);
     });
@@ -278,19 +285,20 @@ void bind_plan(py::module_& m)
     py::class_<plan_handle>(m, "Plan")
         .def(py::init(&planned))
         .def_static("from_json", &plan_from_json)
-        .def_static(
-            "from_parts",
-            [](const std::string& text, const stroke& drawn, const std::shared_ptr<array_handle>& on) {
-                plan_handle p = plan_from_json(text, "plan");
-                check_same_array(p, on->value());
-                p.drawn = drawn;
-                if (drawn.anchor != start_anchor{}) { // which a record does not know
-                    p.placed.start_s = drawn.start_s;
-                    p.placed.anchor = drawn.anchor;
-                }
-                p.on = on;
-                return p;
-            })
+        .def_static("from_parts",
+                    [](const std::string& text, const stroke& drawn, const std::shared_ptr<array_handle>& on,
+                       std::vector<std::string> asked) {
+                        plan_handle p = plan_from_json(text, "plan");
+                        check_same_array(p, on->value());
+                        p.drawn = drawn;
+                        if (drawn.anchor != start_anchor{}) { // which a record does not know
+                            p.placed.start_s = drawn.start_s;
+                            p.placed.anchor = drawn.anchor;
+                        }
+                        p.on = on;
+                        p.asked = std::move(asked);
+                        return p;
+                    })
         .def("json", &write_json)
         .def("same",
              [](const plan_handle& a, const plan_handle& b) {
@@ -326,12 +334,7 @@ void bind_plan(py::module_& m)
                                    return all;
                                })
         .def_property_readonly("size", [](const plan_handle& p) { return p.plan().bursts.size(); })
-        .def_property_readonly("sound",
-                               [](const plan_handle& p) {
-                                   return py::dict("envelope"_a =
-                                                       std::string(to_string(p.sound.envelope.kind)),
-                                                   "marker_channel"_a = p.sound.marker_channel);
-                               })
+        .def_readonly("asked", &plan_handle::asked)
         .def_property_readonly("continuous", [](const plan_handle& p) { return p.plan().curve.has_value(); })
         .def_property_readonly(
             "onsets",

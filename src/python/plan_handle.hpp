@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "python/binding.hpp"
 #include "python/options.hpp"
@@ -19,6 +20,7 @@ struct plan_handle {
     std::optional<fitting> fit = {};
     std::optional<compensated_plan> moved = {}; ///< without its plan, which is in `placed`
     render_options sound = {};                  ///< how it sounds where nobody says otherwise
+    std::vector<std::string> asked = {};        ///< names of the options of that which were set
 
     /// Returns the plan placed at `start_s`. Its own start counts from its stroke's anchor.
     placed_plan at(std::optional<double> start_s) const

@@ -139,11 +139,16 @@ struct live_handle {
 };
 
 live_handle begin(const std::shared_ptr<player_handle>& h, const array_handle& on, const py::dict& options,
-                  double timeout_s, std::optional<double> longest_s, double smooth_s)
+                  double timeout_s, std::optional<double> longest_s, double smooth_s, const setup* file)
 {
     wishes w;
+    w.place = options::live;
     w.plan = live_options{}.plan;
-    take_options(w, options, on.value().tactors.size());
+    setup said = file != nullptr ? *file : setup();
+    std::erase_if(said.defaults, [](const written_value& d) { // as in the tool
+        return d.name == "algorithm" || d.name == "outside";
+    });
+    take_options(w, options, on.value().tactors.size(), &said);
     const without_lock free;
     return {h, h->use([&](player& p) {
                 return p.begin({.plan = w.plan,

@@ -22,21 +22,20 @@ namespace {
 // Frames between two looks for Ctrl-C: some 10 ms of work.
 constexpr std::uint64_t frames_at_once = 1 << 18;
 
-// A plan, its start, and options of its sound besides those that it was made with.
-using score_part = std::tuple<std::optional<double>, const plan_handle*, py::dict>;
+// A plan, its start, true if it was made for another array, and this array's file for what it leaves open.
+using score_part = std::tuple<std::optional<double>, const plan_handle*, bool, const setup*>;
 
-bool says(const py::dict& options, const char* name)
-{
-    return options.contains(name) && !options[name].is_none();
-}
-
-render_options settle_sound(const plan_handle& p, const py::dict& said)
+render_options settle_sound(const plan_handle& p, const py::dict& given, bool elsewhere, const setup* file)
 {
     wishes w;
+    w.place = options::in_score;
     w.render = p.sound;
-    take_options(w, said, 0);
+    if (elsewhere)
+        for (const std::string& name : p.asked)
+            w.given.set(index(*options::find(name)));
+    take_options(w, given, 0, file);
     // A plan that was recorded says how many channels it had without a marker.
-    if (w.render.marker_channel && w.render.channels != 0 && !says(said, "channels"))
+    if (w.render.marker_channel && w.render.channels != 0 && !w.channels)
         w.render.channels = std::max(w.render.channels, *w.render.marker_channel + 1);
     return w.render;
 }
@@ -111,15 +110,15 @@ py::tuple recipe(const render_options& o)
 }
 
 // Each plan keeps its level; what they have in common is the score's.
-py::tuple make_score(const array_handle& on, const std::vector<score_part>& plans)
+py::tuple make_score(const array_handle& on, const std::vector<score_part>& plans, const py::dict& given)
 {
     if (plans.empty())
         throw error(error_kind::bad_input, "plans", "there are none", "give at least one");
     std::vector<render_options> sounds;
     std::vector<double> levels;
-    for (const auto& [start_s, p, said] : plans) {
+    for (const auto& [start_s, p, elsewhere, file] : plans) {
         check_same_array(*p, on.value());
-        sounds.push_back(settle_sound(*p, said));
+        sounds.push_back(settle_sound(*p, given, elsewhere, file));
         levels.push_back(level_db(sounds.back()));
     }
     const render_options common = settled(on.value(), joined(sounds));

@@ -164,14 +164,7 @@ void bind_array(py::module_& m)
                                    return s.array ? std::optional<array_handle>(std::in_place, *s.array)
                                                   : std::nullopt;
                                })
-        .def_property_readonly("defaults", &default_values)
-        .def_property_readonly("rate", [](const setup& s) { return s.output.rate; })
-        .def_property_readonly("channels", [](const setup& s) { return s.output.channels; })
-        .def_property_readonly("marker", [](const setup& s) -> std::optional<std::pair<unsigned, double>> {
-            if (s.sync && s.sync->channel)
-                return std::pair(*s.sync->channel, s.sync->pulse_s);
-            return {};
-        });
+        .def_property_readonly("defaults", &default_values);
 }
 
 void bind_path(py::module_& m)

@@ -9,9 +9,8 @@ import typing as _t
 
 from tactor import _tactor
 from tactor._array import Array, Point
-from tactor._checks import _Member, _need, reading, _Value
+from tactor._checks import _Member, _need, reading, _split_envelope, _Value
 from tactor._errors import Error, InputError
-from tactor._options import _PLANNING_AND_SOUNDING, _SOUNDING, check_used, settled
 from tactor._parts import Burst, Conflict, Curve, Drive, Frozen, Meeting, Percept
 from tactor._stroke import Stroke
 
@@ -28,24 +27,22 @@ class Plan(_Value):
     first use.
     """
 
-    __slots__ = ("_core", "_array", "_recorded", "_asked", "_kept")
+    __slots__ = ("_core", "_array", "_recorded", "_kept")
 
     _core: _t.Any
     _array: Array
     _recorded: bool
-    _asked: dict[str, _t.Any]  # how it is to sound, as far as somebody said
     _kept: dict[str, _t.Any]
 
     def __init__(self) -> None:
         raise TypeError("use tactor.plan() or Plan.from_dict()")
 
     @classmethod
-    def _wrap(cls, core: _t.Any, array: Array | None = None, recorded: bool = False, asked: dict[str, _t.Any] | None = None) -> Plan:
+    def _wrap(cls, core: _t.Any, array: Array | None = None, recorded: bool = False) -> Plan:
         made = cls.__new__(cls)
         made._core = core
         made._array = array if array is not None else Array._wrap(core.array)
         made._recorded = recorded
-        made._asked = asked or {}
         made._kept = {}
         return made
 
@@ -205,16 +202,11 @@ class Plan(_Value):
         columns |= {f"tactor_{i}": amplitudes[:, i] for i in range(amplitudes.shape[1])}
         return pandas.DataFrame(columns)
 
-    def _sound_on(self, array: Array, given: dict[str, _t.Any]) -> dict[str, _t.Any]:
-        """Returns the options of a score on that array, where `given` wins. A record has all; a plan has the options of its own array's
-        file. On another array that array's file completes them."""
-        sound = self._core.sound
-        if self._recorded or self._array is array or self._array == array:
-            check_used(given, {**sound, **{name: value for name, value in given.items() if value is not None}})
-            return given
-        rivals = {"level_dbfs", "sl"} if given.get("level_dbfs") is not None or given.get("sl") is not None else set()
-        asked = {name: value for name, value in self._asked.items() if given.get(name) is None and name not in rivals}
-        return settled(array, {**given, **asked}, _SOUNDING, sound)
+    def _place_on(self, array: Array) -> tuple[bool, _t.Any]:
+        """Returns True if it was made for another array, and then the other tables of that array's file, which say what the plan leaves
+        open. A record says all, and a plan has taken over what its own array's file says."""
+        elsewhere = not (self._recorded or self._array is array or self._array == array)
+        return elsewhere, array._settings() if elsewhere else None
 
     def _keep(self, name: str, make: _t.Callable[[], _t.Any]) -> _t.Any:
         if name not in self._kept:
@@ -239,18 +231,16 @@ class Plan(_Value):
         return svg_of_plans(self)
 
     def __reduce__(self) -> tuple[_t.Callable[..., _t.Any], tuple[_t.Any, ...]]:
-        return _plan_again, (self._core.json(), self._core.stroke.state(), self._array, self._recorded, self._asked)
+        return _plan_again, (self._core.json(), self._core.stroke.state(), self._array, self._recorded, self._core.asked)
 
 
 def make_plan(given: dict[str, _t.Any]) -> Plan:
     """Makes the plan of plan()'s arguments."""
-    options = dict(given)
+    options = _split_envelope(given)
     array, stroke = options.pop("array"), options.pop("stroke")
     _need(array, Array, "array")
     _need(stroke, Stroke, "stroke")
-    options = settled(array, options, _PLANNING_AND_SOUNDING)
-    asked = {name: options[name] for name in _SOUNDING if options.get(name) is not None}
-    return Plan._wrap(_tactor.Plan(array._core, stroke._core, options), array, asked=asked)
+    return Plan._wrap(_tactor.Plan(array._core, stroke._core, options, array._settings()), array)
 
 
 def burst_duration(*, soa: float | None = None, burst: float | None = None, slope: float | None = None,
@@ -332,5 +322,5 @@ def _nearest(key: str, known: _t.Iterable[str]) -> str:
     return f"did you mean '{near[0]}'?" if near else "see tactor-json(5)"
 
 
-def _plan_again(text: str, stroke: bytes, array: Array, recorded: bool, asked: dict[str, _t.Any]) -> Plan:
-    return Plan._wrap(_tactor.Plan.from_parts(text, _tactor.Stroke.from_state(stroke), array._core), array, recorded, asked)
+def _plan_again(text: str, stroke: bytes, array: Array, recorded: bool, asked: list[str]) -> Plan:
+    return Plan._wrap(_tactor.Plan.from_parts(text, _tactor.Stroke.from_state(stroke), array._core, asked), array, recorded)

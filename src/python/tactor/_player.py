@@ -13,9 +13,8 @@ import weakref
 from tactor import _tactor
 from tactor._array import Array
 from tactor._calls import PlayerCalls
-from tactor._checks import encoded, _need, _number, _Unique, _whole
+from tactor._checks import encoded, _need, _number, _split_envelope, _Unique, _whole
 from tactor._errors import InputError
-from tactor._options import _LIVE, settled
 from tactor._score import Score
 from tactor._ticket import LiveStroke, Report, Ticket, _call, _Held, _Shared
 
@@ -159,9 +158,8 @@ class Player(PlayerCalls, _Unique):
         timeout, longest, smooth = (given.pop(name) for name in ("timeout", "longest", "smooth"))
         times = (_number("timeout", timeout, 0.001, 86400.0), None if longest is None else _number("longest", longest, 0.001, 86400.0),
                  _number("smooth", smooth, 0.0, 1.0))
-        options = settled(self._array, given, _LIVE)
         with shared.lock:
-            core = shared.core.live(self._array._core, options, *times)
+            core = shared.core.live(self._array._core, _split_envelope(given), *times, self._array._settings())
             stroke = LiveStroke(shared, core)
             self._held.tickets[stroke.id] = stroke
         return stroke

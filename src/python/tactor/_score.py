@@ -9,9 +9,8 @@ import typing as _t
 from tactor import _tactor
 from tactor._array import Array
 from tactor._calls import ScoreCall
-from tactor._checks import _counted, _Member, _need, _number, reading, _Value, _whole
+from tactor._checks import _counted, _Member, _need, _number, reading, _split_envelope, _Value, _whole
 from tactor._errors import InputError
-from tactor._options import in_parts
 from tactor._plan import Plan
 
 if _t.TYPE_CHECKING:
@@ -79,14 +78,14 @@ class Score(ScoreCall, _Value):
     def _make(self, given: dict[str, _t.Any]) -> None:
         array, plans = given.pop("array"), given.pop("plans")
         _need(array, Array, "array")
-        self._take(array, tuple(placed(plans)), in_parts(given))
+        self._take(array, tuple(placed(plans)), _split_envelope(given))
 
     def _take(self, array: Array, plans: tuple[tuple[float | None, Plan], ...], options: dict[str, _t.Any]) -> None:
         self._array = array
         self._plans = plans
         self._options = options
         self._core, self._recipe = _tactor.make_score(
-            array._core, [(start, p._core, p._sound_on(array, options)) for start, p in plans])
+            array._core, [(start, p._core, *p._place_on(array)) for start, p in plans], options)
 
     @classmethod
     def _wrap(cls, array: Array, plans: tuple[tuple[float | None, Plan], ...], options: dict[str, _t.Any]) -> Score:

@@ -10,7 +10,6 @@ from tactor import _tactor
 from tactor._array import Array
 from tactor._checks import encoded, _need, _number, reading, _shown, _whole
 from tactor._errors import InputError
-from tactor._options import _PLANNING, settled
 from tactor._plan import Plan
 from tactor._score import Score, placed
 from tactor._stroke import Stroke
@@ -87,10 +86,7 @@ def make_comparison(given: dict[str, _t.Any]) -> Comparison:
     of = _names("algorithms", given["algorithms"], given["algorithm"]), _names("phantoms", given["phantoms"], given["phantom"])
     if not of[0] and given["algorithm"] is None:
         of[0].extend(("park2016", "tactile-brush", "continuous"))
-    options = settled(array, options, _PLANNING | {"observer", "sl"})
-    if given["sl"] is not None and options.get("intensity_scale") != "sl":
-        raise InputError("sl", "nothing here uses it", 'say intensity_scale="sl", too', field="sl")
-    return Comparison(_tactor.Compared(array._core, stroke._core, options, *of))
+    return Comparison(_tactor.Compared(array._core, stroke._core, options, *of, array._settings()))
 
 
 def _picture(plans: _Plans, view: str) -> tuple[_t.Any, list[tuple[float | None, _t.Any]], str, _t.Any]:
