@@ -40,7 +40,8 @@ std::size_t next_line(std::string_view text, std::size_t i)
     return end == text.npos ? text.size() : end + 1;
 }
 
-// The entry that speaks of a tactor: by its number, or by its place in the file where there is no grid.
+// Returns the entry that speaks of a tactor: by its number, or by its place in the file where there is no
+// grid.
 const toml::table* find_entry(const toml::table& document, std::size_t tactor, bool numbered)
 {
     const toml::array* entries = document["tactor"].as_array();

@@ -37,7 +37,7 @@ fs::path parent_folder(const fs::path& p)
     return p.parent_path().empty() ? fs::path(".") : p.parent_path();
 }
 
-/// N of /dev/fd/N or /proc/self/fd/N, or -1.
+/// Returns N of /dev/fd/N or /proc/self/fd/N, or -1.
 int descriptor_in(const fs::path& p)
 {
     const std::string folder = parent_folder(p).string();
@@ -157,7 +157,7 @@ void output_file::open_descriptor(int descriptor, owner_kind writer)
     refuse_input(s, asked_, writer);
 }
 
-// Non-blocking: a pipe without a reader would stop the program for ever.
+// Opens without blocking: a pipe without a reader would stop the program for ever.
 void output_file::open_directly()
 {
     directly_ = true;

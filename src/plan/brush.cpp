@@ -69,8 +69,8 @@ bool possible(double part_s)
     return part_s >= -slack_s;
 }
 
-/// Interior virtual tactors in the order in which they go: the one with the smallest gap, the first of
-/// equals.
+/// Returns the interior virtual tactors in the order in which they go: the one with the smallest gap, the
+/// first of equals.
 std::vector<std::size_t> order_of_going(const std::vector<double>& tau_s)
 {
     const std::size_t n = tau_s.size();

@@ -48,7 +48,7 @@ constexpr int most_halvings = 12;
 /// The frequency between two points of a way, u from 0 to 1.
 using frequency = std::function<double(double u)>;
 
-/// A course of the fifth degree through a frequency from `from` to `to`: at both ends and four places
+/// Returns a course of the fifth degree through a frequency from `from` to `to`: at both ends and four places
 /// between them (Chebyshev's), and with the same mean.
 std::array<double, 4> find_bend(const frequency& hz, double from_hz, double to_hz)
 {

@@ -25,10 +25,11 @@ struct curve::impl {
     /// faster if the reader takes neighbouring samples one after the other.
     void sample(std::uint64_t k, detail::same_tactors& seen, burst& out) const;
 
-    /// Position, intensity and drives of sample k, which is there.
+    /// Fills in position, intensity and drives of sample k, which is there.
     virtual void fill(std::uint64_t k, detail::same_tactors& seen, burst& out) const = 0;
-    /// The movement that bounds what so many tactors get, and no others get anything: none is given more than
-    /// its intensity, which is linear between the trajectory's points. Null where that is not known.
+    /// Returns the movement that bounds what so many tactors get, and no others get anything: none is given
+    /// more than its intensity, which is linear between the trajectory's points. Null where that is not
+    /// known.
     virtual const trajectory* bounds(std::size_t /*tactors*/) const noexcept { return nullptr; }
 
     const double duration_s;

@@ -45,7 +45,7 @@ public:
         corners_ = detail::convex_hull(std::move(all));
     }
 
-    /// Greatest dot(out, p) of its points.
+    /// Returns the greatest dot(out, p) of its points.
     double reach(point out) const
     {
         double most = -std::numeric_limits<double>::infinity();

@@ -45,7 +45,7 @@ struct job {
     const burst_taker& take;                 ///< empty: all bursts stay in the plan
     mutable std::vector<drive> scratch = {}; ///< for the drives of a burst, until their number is known
 
-    /// For messages: stroke "name".
+    /// Returns stroke "name", for messages.
     std::string name() const;
 };
 
@@ -56,7 +56,7 @@ plan plan_in_pieces(const array& a, const layout& l, const stroke& s, const plan
 /// Counts the plan's bursts, and hands them over where they are not kept.
 void pass_on(const job& j, plan& p);
 
-/// The algorithms; each fills in its own part of the plan.
+/// Plan by an algorithm; each fills in its own part of the plan.
 void plan_park(const job& j, plan& out);
 void plan_brush(const job& j, plan& out);
 void plan_continuous(const job& j, plan& out);
@@ -78,7 +78,7 @@ void check_intensity(double a_v);
 /// Drives from a model. \throws error (bad_input) when a model of the user's own breaks its contract.
 void drives_at(const phantom_model& m, const layout& l, point p, double a_v, std::vector<drive>& out);
 
-/// A burst at a place with its drives; the intensity is the stroke's at t_s.
+/// Returns a burst at a place with its drives; the intensity is the stroke's at t_s.
 burst make_burst(const job& j, double onset_s, double duration_s, point p, double t_s);
 
 /// Returns the times in which two or more bursts sound on one tactor, by time and then by tactor. `bursts`
@@ -97,7 +97,7 @@ public:
 
 private:
     [[noreturn]] void refuse(double t_s) const;
-    /// The greatest distance of the target from the hull from then on, at 2000 places.
+    /// Returns the greatest distance of the target from the hull from then on, at 2000 places.
     double farthest_outside_mm(double from_s) const;
 
     const job& job_;

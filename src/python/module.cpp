@@ -48,7 +48,7 @@ void translate(std::exception_ptr p)
 
 } // namespace
 
-// The classes are Python's, and so is what makes one of them.
+// Makes an error in Python, where the classes are.
 void set_error(const error& marked)
 {
     const error e = in_keywords(marked);

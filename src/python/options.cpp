@@ -36,7 +36,7 @@ std::string shown(py::handle v)
     }
 }
 
-// No complex number and no time of NumPy's, which would lose a part of what they say.
+// Returns false for complex numbers and times of NumPy's, which would lose a part.
 bool is_plain(py::handle v)
 {
     return py::module_::import("tactor._checks").attr("_is_plain")(v).cast<bool>();
@@ -181,7 +181,7 @@ constexpr std::array own_words{options::own_word{"command:devices", "tactor.devi
 
 constexpr options::spelling by_python{.write = write_keyword, .own = own_words};
 
-// A player has its limits with the stream, a score with the samples.
+// Settles rate, channels and limits of a score. A player has its limits with the stream.
 void settle_score(wishes& w)
 {
     render_options& r = w.render;

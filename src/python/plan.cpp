@@ -54,21 +54,21 @@ plan_handle planned(const std::shared_ptr<array_handle>& on, const stroke& given
     return p;
 }
 
-// A property that reads a member of the plan.
+// Returns a property that reads a member of the plan.
 template <class T>
 auto member(T tactor::plan::*m)
 {
     return [m](const plan_handle& p) -> const T& { return p.plan().*m; };
 }
 
-// The name of a member that is of a closed set.
+// Returns a property that reads the name of a member of a closed set.
 template <class T>
 auto member_name(T tactor::plan::*m)
 {
     return [m](const plan_handle& p) { return std::string(to_string(p.plan().*m)); };
 }
 
-// A column of the bursts as they lie in memory.
+// Returns a column of the bursts as they lie in memory.
 template <class Member>
 py::array_t<double> column(const py::object& self, const Member& of)
 {
@@ -123,7 +123,7 @@ py::list rows(const plan_handle& p)
     return all;
 }
 
-// t, positions, intensities and amplitudes of all samples; None where there is no curve.
+// Returns t, positions, intensities and amplitudes of all samples; None if there is no curve.
 py::object samples(const plan_handle& p)
 {
     if (!p.plan().curve)

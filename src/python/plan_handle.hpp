@@ -32,7 +32,7 @@ struct plan_handle {
 
 /// Writes the tool's tactor-plan/1 object, and reads it. \throws error.
 std::string write_json(const plan_handle& p);
-/// `named`: what stands for it in messages.
+/// Reads a plan; `named` stands for it in messages.
 plan_handle plan_from_json(const std::string& text, const std::string& named);
 
 /// A stroke as it was asked for.
@@ -41,7 +41,7 @@ struct asked_stroke {
     std::optional<fitting> fit = {}; ///< of the options
 };
 
-/// Fitted as its file and the options ask for it, and as long or fast. \throws error (bad_input) where it is
+/// Returns a stroke fitted and timed as its file and the options ask. \throws error (bad_input) where it is
 /// part of a group that is fitted as a single picture.
 asked_stroke stroke_as_asked(const stroke& s, const layout& faces, const wishes& w);
 

@@ -16,7 +16,7 @@ namespace {
 using namespace py::literals;
 using free_call = py::call_guard<without_lock>;
 
-// A number or nothing, of the keyword arguments that were given.
+// Takes a keyword argument, if it is given.
 template <class T>
 void take(const py::dict& given, const char* name, std::optional<T>& into)
 {

@@ -44,7 +44,7 @@ public:
         there_.notify_one();
     }
 
-    /// No more are to come; what waits is still given.
+    /// Ends the queue: no more events come. next() still gives those that wait.
     void close()
     {
         {
@@ -105,12 +105,13 @@ public:
         return std::forward<F>(f)(*open_->stream);
     }
 
-    /// The player's; once it is closed, those of its end. \throws error in a forked process.
+    /// Return the player's; once it is closed, those of its end. \throws error in a forked process.
     player_stats stats() const;
     std::optional<std::string> ended() const;
     drive_history history() const;
 
-    /// False where the stroke has ended, as all have once it is closed. \throws error in a forked process.
+    /// Returns false if the stroke has ended, as all have once it is closed. \throws error in a forked
+    /// process.
     bool cancel(stroke_id id) const;
     /// Fades out, stops and closes; all strokes have been reported then. Once more: nothing.
     void close();

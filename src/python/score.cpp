@@ -52,7 +52,7 @@ std::string value_text(const std::optional<double>& d)
     return d ? plain_number(*d) : "none";
 }
 
-// A score has these once.
+// Refuses sounds that differ in what a score has once.
 void check_alike(const render_options& a, const render_options& b)
 {
     if (a.rate != b.rate)
@@ -79,7 +79,7 @@ double level_db(const render_options& o)
     return o.sl_db.value_or(o.level_dbfs);
 }
 
-// The sound of them all, at the level of the loudest.
+// Returns the sound of them all, at the level of the loudest.
 render_options joined(std::span<const render_options> sounds)
 {
     render_options all = sounds.front();
@@ -109,7 +109,7 @@ py::tuple recipe(const render_options& o)
                           limits, o.sl_db.has_value());
 }
 
-// Each plan keeps its level; what they have in common is the score's.
+// Makes a score. Each plan keeps its level; the rest is common to them.
 py::tuple make_score(const array_handle& on, const std::vector<score_part>& plans, const py::dict& given)
 {
     if (plans.empty())

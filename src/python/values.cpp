@@ -76,7 +76,7 @@ py::tuple pair(point p)
     return py::make_tuple(p.x_mm, p.y_mm);
 }
 
-// The place that `find` gives for each number, as an (n, 2) array.
+// Returns the place that `find` gives for each number, as an (n, 2) array.
 template <class F>
 py::array_t<double> places(const numbers& all, F&& find)
 {
@@ -88,7 +88,7 @@ py::array_t<double> places(const numbers& all, F&& find)
     return given(std::move(out), 2);
 }
 
-// Whole or not at all.
+// Writes a file whole or not at all.
 void write_text(const std::string& file, const std::string& text)
 {
     const without_lock free;
@@ -243,7 +243,7 @@ stroke moving(const std::string& name, const path& p, std::optional<double> dura
     return s;
 }
 
-// Named as the options of a plan.
+// Returns a stroke's options by the names of plan()'s.
 py::dict choices_dict(const stroke& s)
 {
     py::dict d;

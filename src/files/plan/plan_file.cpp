@@ -101,8 +101,8 @@ private:
     plan_file read_;
 };
 
-// "[json.exception.parse_error.101] parse error at line 1, column 2: syntax error ..." without the library's
-// part.
+// Returns "[json.exception.parse_error.101] parse error at line 1, column 2: syntax error ..." without the
+// library's part.
 std::string said(const std::string& what)
 {
     const std::size_t at = what.find("line ");

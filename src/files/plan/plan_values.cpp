@@ -38,7 +38,7 @@ burst read_place(const json_value& f)
     return b;
 }
 
-// A built-in model shares the intensity out and adds nothing to it.
+// Refuses amplitudes above the intensity: a built-in model shares it out and adds nothing.
 void check_amplitudes(const json_value& f, const std::string& name, const plan& p, const burst& b)
 {
     constexpr double rounding = 1e-9;

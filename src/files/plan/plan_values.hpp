@@ -32,7 +32,7 @@ nlohmann::ordered_json fit_json(const fitting& f);
 /// Reads the fitting of the plan's stroke, if it was fitted. \throws error (bad_input).
 std::optional<fitting> read_fitting(const json_value& plan);
 
-/// Sound and envelope in the JSON of a plan, which names no defaults. Puts them into the member "stroke".
+/// Puts the sound into the member "stroke", which names no defaults.
 void put_sound(nlohmann::ordered_json& stroke, const plan& p);
 /// Writes the member "render.envelope".
 nlohmann::ordered_json envelope_json(const burst_envelope& e);

@@ -112,7 +112,7 @@ struct turned {
     double sine = 0.0;
 };
 
-// Quarter turns are exact.
+// Returns a turn; quarter turns are exact.
 turned make_turn(double degrees)
 {
     const double quarters = degrees / 90.0;

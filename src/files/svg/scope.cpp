@@ -44,7 +44,7 @@ affine own_transform(const svg_document& doc, xml_node n, const svg_viewport& v)
 
 constexpr double no_look = std::numeric_limits<double>::quiet_NaN();
 
-// A number from 0 to 1, or a percentage of it; beyond counts as the bound, as CSS has it.
+// Returns a number from 0 to 1, or a percentage of it; beyond counts as the bound, as CSS has it.
 double read_opacity(std::string_view text)
 {
     try {

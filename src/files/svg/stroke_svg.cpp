@@ -104,7 +104,7 @@ private:
             note_hidden(n);
     }
 
-    // SVG viewers draw one child of a switch.
+    // Notes features that are not followed. SVG viewers draw one child of a switch.
     void note_unfollowed(xml_node n) const
     {
         for (const char* what : {"clip-path", "mask"})
@@ -121,14 +121,14 @@ private:
                detail::is_svg_shape(tag);
     }
 
-    // The first: named where nothing draws.
+    // Keeps the first hidden element, to name it if nothing draws.
     void note_hidden(xml_node n)
     {
         if (!hidden_)
             hidden_ = n;
     }
 
-    // A nested svg, or a symbol that `sized` uses.
+    // Draws a nested svg, or a symbol that `sized` uses.
     void frame(xml_node n, xml_node sized, scope s, point corner)
     {
         const auto side = [&](const char* attribute, svg_extent e, double whole) {
@@ -219,7 +219,7 @@ private:
                 strokes_[stroke].motion = strokes_[stroke].motion.with_intensity(width / widest);
     }
 
-    // A duration is that of the whole shape: its subpaths share it by their lengths.
+    // Adds a shape. Its subpaths share its duration by their lengths.
     void add(xml_node n, const scope& s, const std::vector<path>& paths)
     {
         const auto duration = doc_.number(n, "data-duration-s", 1e-6, detail::longest_stroke_s);

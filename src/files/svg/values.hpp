@@ -57,7 +57,7 @@ svg_view_box parse_svg_view_box(std::string_view text);
 svg_aspect parse_svg_aspect(std::string_view text);
 /// Reads a two-dimensional transform in SVG's or CSS's syntax. A px is a user unit, as in browsers.
 affine parse_svg_transform(std::string_view text, const svg_viewport& v);
-/// transform-origin, in user units.
+/// Reads transform-origin, in user units.
 point parse_svg_origin(std::string_view text, const svg_viewport& v);
 
 /// Maps a view box into a frame.

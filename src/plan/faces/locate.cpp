@@ -10,7 +10,7 @@ namespace {
 
 using detail::turn;
 
-/// Binary search for the wedge of a convex polygon that p is in, seen from its first corner.
+/// Searches for the wedge of a convex polygon that p is in, seen from its first corner.
 bool inside(const std::vector<point>& hull, point p)
 {
     if (hull.size() < 3)

@@ -63,7 +63,7 @@ std::vector<double> turns_towards(const shape& form, point out)
     return turns(mapped(form, outwards_is_x), axis::x);
 }
 
-// Andrew's monotone chain.
+// Uses Andrew's monotone chain.
 std::vector<point> convex_hull(std::vector<point> points)
 {
     std::sort(points.begin(), points.end(),

@@ -40,8 +40,8 @@ private:
 /// those two.
 class model_of_three : public phantom_model {
 public:
-    /// The three tactors that it takes at p and around it; returns how far around, mm. 0 where it does not
-    /// take three at p, or where p is on the border between two choices.
+    /// Finds the three tactors that it takes at p and around it. Returns the distance around, mm; 0 if it
+    /// does not take three at p, or if p is on the border between two choices.
     virtual double three_around(point p, rank_triple& three) const = 0;
     /// Returns what weights() gives the three, in their order, within that disc.
     virtual std::array<double, 3> amplitudes(const rank_triple& three, point p, double a_v) const = 0;
@@ -55,7 +55,7 @@ public:
     virtual std::array<double, 2> amplitudes_of_two(const rank_pair& two, point p, double a_v) const;
 };
 
-/// The drives that weights() gives at p, which `seen` holds; a_v > 0.
+/// Computes the drives that weights() gives at p, which `seen` holds; a_v > 0.
 void drives_of_same(const model_of_three& m, const layout& l, const same_tactors& seen, point p, double a_v,
                     std::vector<drive>& out);
 

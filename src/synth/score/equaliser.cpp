@@ -12,7 +12,7 @@ inline namespace v0 {
 
 namespace {
 
-/// The carrier of a plan at a time of it.
+/// Returns the carrier of a plan at a time of it.
 double hz_at(const plan& p, double t_s)
 {
     // For a recording along the path the course holds its repetition rate.

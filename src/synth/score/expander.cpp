@@ -139,7 +139,7 @@ void expander::continuous_event()
     draw(c.rows[next_++]);
 }
 
-/// A tactor between the control points, up to where it has come down to zero.
+/// Draws a tactor between the control points, up to where it has come down to zero.
 void expander::draw(const control_points::row& r) noexcept
 {
     const control_points& c = *points_;

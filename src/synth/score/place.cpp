@@ -213,7 +213,7 @@ private:
         members.clear();
     }
 
-    /// The drives that are in no run, burst by burst, in order of tactor.
+    /// Appends the drives that are in no run, burst by burst, in order of tactor.
     void append_bursts()
     {
         std::vector<drive> single;

@@ -135,7 +135,7 @@ void check_start(double start_s)
     }
 }
 
-/// Greatest sum of `weight` over the items that are open at once; they arrive by start.
+/// Returns the greatest sum of `weight` over the items that are open at once; they arrive by start.
 template <class End, class Weight>
 std::size_t most_open(const std::deque<item>& items, End end, Weight weight)
 {
@@ -221,8 +221,8 @@ struct score_builder::impl {
 
     std::uint32_t number() const noexcept { return static_cast<std::uint32_t>(s->plans.size()); }
 
-    /// Frame at which the next plan starts. That of its time also where it follows another: what rounding
-    /// took from the end of each would add up.
+    /// Returns the frame at which the next plan starts. That of its time also where it follows another: what
+    /// rounding took from the end of each would add up.
     std::uint64_t start(std::optional<double> start_s, const start_anchor& anchor)
     {
         const double at_s = times.start(start_s, anchor);
