@@ -273,7 +273,7 @@ void toml_table::numbers(const toml::node& entry, std::string_view called, std::
         out.push_back(to_number(n, called, {-max_mm, max_mm}));
 }
 
-std::string_view toml_table::one_of(std::initializer_list<std::string_view> keys) const
+std::string_view toml_table::one_of(std::span<const std::string_view> keys) const
 {
     std::string_view found;
     for (const std::string_view k : keys) {

@@ -103,7 +103,11 @@ public:
     }
 
     /// Returns the one of `keys` that is there. \throws error for none or more than one.
-    std::string_view one_of(std::initializer_list<std::string_view> keys) const;
+    std::string_view one_of(std::span<const std::string_view> keys) const;
+    std::string_view one_of(std::initializer_list<std::string_view> keys) const
+    {
+        return one_of(std::span(keys.begin(), keys.size()));
+    }
 
     /// Returns make(). Adds the key and its place to an error of it.
     template <class F>

@@ -29,15 +29,6 @@ std::vector<drive> read_drives(const json_value& f)
     return drives;
 }
 
-burst read_place(const json_value& f)
-{
-    burst b;
-    b.position = {f["x_mm"].need_number(), f["y_mm"].need_number()};
-    b.intensity = f["intensity"].need_number();
-    b.drives = read_drives(f);
-    return b;
-}
-
 // Refuses amplitudes above the intensity: a built-in model shares it out and adds nothing.
 void check_amplitudes(const json_value& f, const std::string& name, const plan& p, const burst& b)
 {
@@ -88,18 +79,22 @@ constexpr std::uint64_t most_way_points = 10000;
 
 } // namespace
 
+burst read_sample(const json_value& f)
+{
+    burst b;
+    b.position = {f["x_mm"].need_number(), f["y_mm"].need_number()};
+    b.intensity = f["intensity"].need_number();
+    b.drives = read_drives(f);
+    return b;
+}
+
 burst read_burst(const json_value& f)
 {
-    burst b = read_place(f);
+    burst b = read_sample(f);
     b.onset_s = f["onset_s"].need_number();
     b.duration_s = f["duration_s"].need_number();
     b.tau_s = f["tau_s"].number();
     return b;
-}
-
-burst read_sample(const json_value& f)
-{
-    return read_place(f);
 }
 
 array read_array(const json_value& plan)

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Stroke files in TOML: [stroke] or [[stroke]].
+#include <algorithm>
 #include <array>
 #include <filesystem>
 #include <iterator>
@@ -131,17 +132,17 @@ std::vector<std::string_view> join_keys(const Lists&... lists)
     return all;
 }
 
-constexpr std::array<std::string_view, 9> drawing_keys{
-    "path", "points", "timed", "arc", "preset", "duration_s", "speed_mm_s", "intensity", "carrier_hz"};
+constexpr std::array<std::string_view, 5> kinds{"path", "points", "timed", "arc", "preset"};
+constexpr std::array<std::string_view, 4> drawing_keys{"duration_s", "speed_mm_s", "intensity", "carrier_hz"};
 constexpr std::array<std::string_view, 7> placed_keys{"name",         "start_s", "scale",   "rotate_deg",
                                                       "translate_mm", "mirror",  "about_mm"};
 
 // Reads a stroke before it is placed.
 stroke read_drawn(const toml_table& t, std::string name)
 {
-    const std::string_view kind =
-        t.has("stroke") ? t.one_of({"path", "points", "timed", "arc", "preset", "stroke"}) // says it has two
-                        : t.one_of({"path", "points", "timed", "arc", "preset"});
+    if (t.has("stroke"))
+        t.one_of(join_keys(kinds, std::array<std::string_view, 1>{"stroke"})); // refuses two
+    const std::string_view kind = t.one_of(kinds);
     const told_pace asked = detail::read_pace(t);
     const auto carrier = t.number("carrier_hz", detail::bounds_of::carrier_hz);
 
@@ -184,7 +185,7 @@ stroke read_drawn(const toml_table& t, std::string name)
 
 detail::entry read_one(const toml_table& t, std::string name, folder_of_file folder)
 {
-    t.only(join_keys(drawing_keys, placed_keys, detail::movement_keys, detail::order_keys,
+    t.only(join_keys(kinds, drawing_keys, placed_keys, detail::movement_keys, detail::order_keys,
                      detail::choice_keys, detail::sound_keys,
                      std::array<std::string_view, 2>{"stroke", "reverse"}));
     stroke s = detail::levelled(t, detail::chosen(t, read_drawn(t, std::move(name))));
@@ -239,8 +240,8 @@ detail::entry read_group(const toml_table& t, const std::string& name, folder_of
 
 detail::entry read_entry(const toml_table& t, const std::string& name, folder_of_file folder, unsigned depth)
 {
-    const bool group = t.has("stroke") && !t.has("path") && !t.has("points") && !t.has("timed") &&
-                       !t.has("arc") && !t.has("preset");
+    const bool group = t.has("stroke") && std::none_of(kinds.begin(), kinds.end(),
+                                                       [&t](std::string_view k) { return t.has(k); });
     return group ? read_group(t, name, folder, depth) : read_one(t, name, folder);
 }
 
