@@ -21,7 +21,7 @@ struct edit {
 };
 
 // toml++ counts lines and characters from 1.
-std::size_t offset_of(std::string_view text, const toml::source_position& at)
+std::size_t find_offset(std::string_view text, const toml::source_position& at)
 {
     std::size_t i = 0;
     for (unsigned line = 1; line < at.line && i < text.size(); ++i)
@@ -40,8 +40,9 @@ std::size_t next_line(std::string_view text, std::size_t i)
     return end == text.npos ? text.size() : end + 1;
 }
 
-// The entry that speaks of a tactor: by its number, or by its place in the file where there is no grid.
-const toml::table* entry_of(const toml::table& document, std::size_t tactor, bool numbered)
+// Returns the entry that speaks of a tactor: by its number, or by its place in the file where there is no
+// grid.
+const toml::table* find_entry(const toml::table& document, std::size_t tactor, bool numbered)
 {
     const toml::array* entries = document["tactor"].as_array();
     if (entries == nullptr)
@@ -59,9 +60,9 @@ const toml::table* entry_of(const toml::table& document, std::size_t tactor, boo
 edit change(std::string_view text, const toml::table& entry, unsigned channel)
 {
     if (const toml::node* said = entry.get("channel"))
-        return {offset_of(text, said->source().begin), offset_of(text, said->source().end),
+        return {find_offset(text, said->source().begin), find_offset(text, said->source().end),
                 fmt::format("{}", channel)};
-    const std::size_t begin = offset_of(text, entry.source().begin);
+    const std::size_t begin = find_offset(text, entry.source().begin);
     if (entry.is_inline())
         return {begin + 1, begin + 1, fmt::format(" channel = {},", channel)};
     const std::size_t line = next_line(text, begin);
@@ -88,7 +89,7 @@ std::string edited(const std::string& text, const std::string& name, const array
     for (std::size_t i = 0; i < channels.size(); ++i) {
         if (now.tactors[i].channel == channels[i])
             continue;
-        if (const toml::table* entry = entry_of(document, i, numbered))
+        if (const toml::table* entry = find_entry(document, i, numbered))
             edits.push_back(change(text, *entry, channels[i]));
         else
             added += fmt::format("\n[[tactor]]\ntactor = {}\nchannel = {}\n", i, channels[i]);

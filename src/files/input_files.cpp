@@ -28,7 +28,7 @@ struct input {
 
     bool is(const struct stat& s) const noexcept { return device == s.st_dev && inode == s.st_ino; }
 
-    /// False for a file that is gone: a file system gives its number to the next one.
+    /// Returns false for a file that is gone: a file system gives its number to the next one.
     bool is_still(const fs::path& name) const noexcept
     {
         struct stat now {};

@@ -27,20 +27,20 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr int attempts = 100;
-/// Between two questions whether to go on waiting.
+/// Time between two questions whether to go on waiting.
 constexpr int moment_ms = 20;
 /// Room for the suffix within the 255 bytes of a name.
 constexpr std::size_t longest_stem = 200;
 
-fs::path folder_of(const fs::path& p)
+fs::path parent_folder(const fs::path& p)
 {
     return p.parent_path().empty() ? fs::path(".") : p.parent_path();
 }
 
-/// N of /dev/fd/N or /proc/self/fd/N, or -1.
+/// Returns N of /dev/fd/N or /proc/self/fd/N, or -1.
 int descriptor_in(const fs::path& p)
 {
-    const std::string folder = folder_of(p).string();
+    const std::string folder = parent_folder(p).string();
     if (folder != "/dev/fd" && folder != "/proc/self/fd")
         return -1;
     return number_in<int>(p.filename().string()).value_or(-1);
@@ -51,7 +51,7 @@ int descriptor_in(const fs::path& p)
     throw error(error_kind::bad_input, source_place{file.string()}, why, hint).with_os_code(code);
 }
 
-/// Where anybody may put a link, what it points to is not what the user meant.
+/// Returns true for a folder in which anybody may put a link: the user may not have meant its target.
 bool is_shared(const fs::path& folder)
 {
     struct stat s {};
@@ -59,14 +59,14 @@ bool is_shared(const fs::path& folder)
            (s.st_mode & (S_IWOTH | S_IWGRP)) != 0;
 }
 
-/// The file that a chain of links names, so that the link stays and what it points to is replaced; a
-/// descriptor's name is not followed any further.
+/// Returns the file that a chain of links names, so that the link stays and its target is replaced. Stops at
+/// a descriptor's name.
 fs::path follow_links(const fs::path& asked)
 {
     std::error_code ignored;
     fs::path p = asked;
     for (int i = 0; i < 40 && descriptor_in(p) < 0 && fs::is_symlink(fs::symlink_status(p, ignored)); ++i) {
-        if (is_shared(folder_of(p))) {
+        if (is_shared(parent_folder(p))) {
             refuse(asked,
                    fmt::format("{}is a link in a folder that others can write to",
                                p == asked ? "" : p.string() + " "),
@@ -136,7 +136,7 @@ output_file::output_file(const fs::path& file, patience go_on, owner_kind writer
         open_directly();
         return;
     }
-    const fs::path folder = folder_of(target_);
+    const fs::path folder = parent_folder(target_);
     if (!fs::is_directory(folder, failed)) {
         refuse(asked_, fmt::format("the folder \"{}\" does not exist", folder.string()),
                "make it first, or name another", ENOENT);
@@ -146,8 +146,7 @@ output_file::output_file(const fs::path& file, patience go_on, owner_kind writer
     open_beside();
 }
 
-// A pipe's other end may be anybody's: it is waited for with poll(), not with O_NONBLOCK, which they would
-// share.
+// Waits for a pipe with poll(), not with O_NONBLOCK, which the process at its other end would share.
 void output_file::open_descriptor(int descriptor, owner_kind writer)
 {
     directly_ = true;
@@ -158,7 +157,7 @@ void output_file::open_descriptor(int descriptor, owner_kind writer)
     refuse_input(s, asked_, writer);
 }
 
-// Non-blocking: a pipe that nobody reads would keep the program for ever.
+// Opens without blocking: a pipe without a reader would stop the program for ever.
 void output_file::open_directly()
 {
     directly_ = true;
@@ -196,7 +195,7 @@ void output_file::open_beside()
     const std::string stem = target_.filename().string().substr(0, longest_stem);
     std::random_device seed;
     for (int i = 0; i < attempts; ++i) {
-        temporary_ = folder_of(target_) / fmt::format(".{}.{:08x}.part", stem, seed());
+        temporary_ = parent_folder(target_) / fmt::format(".{}.{:08x}.part", stem, seed());
         fd_ = owned_fd(::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666));
         if (fd_) {
             keep_owner_and_rights();
@@ -210,8 +209,8 @@ void output_file::open_beside()
     fail(code);
 }
 
-// As far as the system allows: only root may give files away. The owner first, since that may take rights
-// away.
+// Does as much as the system allows: only root may give files away. Sets the owner first, since that may
+// take rights away.
 void output_file::keep_owner_and_rights() noexcept
 {
     constexpr mode_t rights = 0777;
@@ -288,7 +287,7 @@ void output_file::commit()
     if (::rename(temporary_.c_str(), target_.c_str()) != 0)
         fail(errno);
     temporary_.clear();
-    sync_folder(folder_of(target_));
+    sync_folder(parent_folder(target_));
 }
 
 } // namespace tactor::detail

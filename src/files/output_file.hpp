@@ -36,8 +36,7 @@ public:
 
     /// Waits for a reader where `file` is a pipe without one. `writer`: who owns what is written.
     /// \throws error: bad_input for an empty name, one that is a folder's, a folder that is missing, a link
-    /// in a sticky
-    ///         folder, or a file that was read as input; runtime for what the system refuses.
+    ///         in a sticky folder, or a file that was read as input; runtime for what the system refuses.
     explicit output_file(const std::filesystem::path& file, patience go_on = {},
                          owner_kind writer = owner_kind::user);
     ~output_file();
@@ -48,16 +47,16 @@ public:
     /// written.
     std::int64_t write(const void* data, std::int64_t bytes);
 
-    /// errno of the first write that failed, or 0.
+    /// Returns errno of the first write that failed, or 0.
     int failure() const noexcept { return failure_; }
-    /// Whether `go_on` said false.
+    /// Returns true once `go_on` returned false.
     bool given_up() const noexcept { return given_up_; }
-    /// Nothing failed, and nobody gave up.
+    /// Returns true if nothing failed, and nobody gave up.
     bool good() const noexcept { return failure_ == 0 && !given_up_; }
     /// Brings the file to the disk and gives it its name. \throws error (runtime): a write failed before,
     /// this did, or it was given up.
     void commit();
-    /// \throws error (runtime) with the file's name, for an errno.
+    /// Refuses an errno. \throws error (runtime) with the file's name.
     [[noreturn]] void fail(int code) const;
 
 private:

@@ -81,18 +81,23 @@ constexpr preset presets[] = {
     {"palm-2x4", 2, 4, 20.0}, // as many tactors as an eight-channel card drives
 };
 
+template <class... Lists>
+std::vector<std::string> collect_names(const Lists&... lists)
+{
+    std::vector<std::string> all;
+    const auto add = [&all](const auto& list) {
+        for (const auto& entry : list)
+            all.emplace_back(entry.name);
+    };
+    (add(lists), ...);
+    return all;
+}
+
 } // namespace
 
 const std::vector<std::string>& stroke_presets()
 {
-    static const std::vector<std::string> names = [] {
-        std::vector<std::string> all;
-        for (const motion& m : motions)
-            all.emplace_back(m.name);
-        for (const drawing& d : drawings)
-            all.emplace_back(d.name);
-        return all;
-    }();
+    static const std::vector<std::string> names = collect_names(motions, drawings);
     return names;
 }
 
@@ -116,12 +121,7 @@ stroke preset_stroke(std::string_view name)
 
 const std::vector<std::string>& stroke_shapes()
 {
-    static const std::vector<std::string> names = [] {
-        std::vector<std::string> all;
-        for (const shape& s : shapes)
-            all.emplace_back(s.name);
-        return all;
-    }();
+    static const std::vector<std::string> names = collect_names(shapes);
     return names;
 }
 
@@ -145,12 +145,7 @@ stroke shape_stroke(std::string_view name)
 
 const std::vector<std::string>& array_presets()
 {
-    static const std::vector<std::string> names = [] {
-        std::vector<std::string> all;
-        for (const preset& p : presets)
-            all.emplace_back(p.name);
-        return all;
-    }();
+    static const std::vector<std::string> names = collect_names(presets);
     return names;
 }
 

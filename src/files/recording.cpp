@@ -24,7 +24,7 @@ namespace {
 constexpr std::size_t max_file_bytes = std::size_t{64} << 20;
 constexpr std::string_view noise_prefix = "noise:";
 
-waveform noise_of(std::string_view band)
+waveform parse_noise(std::string_view band)
 {
     waveform w;
     w.kind = waveform_kind::noise;
@@ -91,7 +91,7 @@ waveform parse_waveform(std::string_view text, const std::filesystem::path& fold
             return w;
         }
     if (text.starts_with(noise_prefix)) {
-        w = noise_of(text.substr(noise_prefix.size()));
+        w = parse_noise(text.substr(noise_prefix.size()));
         validate(w);
         return w;
     }

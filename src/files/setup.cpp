@@ -15,7 +15,7 @@ std::string place_note(const source_place& at)
     return at.line != 0 ? fmt::format(" ({})", at.text()) : std::string();
 }
 
-// A channel count that the map, or the marker, does not fit in.
+// Refuses a channel count in which the map, or the marker, does not fit.
 void check_channels(const located_setup& s)
 {
     const auto& count = s.said.output.channels;
@@ -59,7 +59,7 @@ bool same_line(const gpio_line_name& a, const gpio_line_name& b)
     return a.chip == b.chip && a.offset == b.offset && a.name == b.name;
 }
 
-// One GPIO line cannot serve two purposes.
+// Refuses a GPIO line that serves two purposes.
 void check_lines(const setup& s)
 {
     std::vector<const gpio_line_name*> lines;

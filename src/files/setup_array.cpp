@@ -34,7 +34,7 @@ array read_grid(const toml_table& grid)
             grid.fail("pitch_mm", fmt::format("pitch_mm has {}", counted(xy->size(), "number")),
                       "give one, or [x, y]");
         for (const toml::node& n : *xy)
-            pitch.push_back(grid.number_of(n, "pitch_mm", positive));
+            pitch.push_back(grid.to_number(n, "pitch_mm", positive));
     } else {
         pitch.assign(2, *grid.number("pitch_mm", positive));
     }
@@ -45,7 +45,7 @@ array read_grid(const toml_table& grid)
     }
 }
 
-// The array of another file; what that file says besides holds here too, unless this one says other.
+// Reads the array of another file. The other tables of that file hold here too, unless this file has them.
 array read_included(const toml_table& table, const setup_source& source, located_setup& out)
 {
     const std::filesystem::path file = source.folder / *table.text("file");
@@ -58,17 +58,11 @@ array read_included(const toml_table& table, const setup_source& source, located
                    "break the circle of files");
     if (source.opened.size() == longest_chain)
         table.fail("file", "a chain of too many files", fmt::format("at most {}", longest_chain));
-    // Nobody waits for a pipe that someone else's file names, and a device may take being opened for a
-    // command.
+    // Opening a pipe that someone else's file names could block, and a device may take it for a command.
     if (std::filesystem::exists(file, ignored) && !std::filesystem::is_directory(file, ignored) &&
         !std::filesystem::is_regular_file(file, ignored))
         table.fail("file", fmt::format("{} is not a regular file", file.string()), "name an array file");
-    whole_text text;
-    try {
-        text = read_text_file(file, max_setup_bytes);
-    } catch (const error& e) {
-        table.fail("file", e.what(), {});
-    }
+    const whole_text text = table.at_key("file", [&] { return read_text_file(file, max_setup_bytes); });
     setup_source next{file.string(), file.parent_path(), source.opened};
     next.opened.push_back(full);
     out = read_setup(text, next);
@@ -78,7 +72,7 @@ array read_included(const toml_table& table, const setup_source& source, located
     return *std::exchange(out.said.array, std::nullopt);
 }
 
-// Without a word it is unknown; nobody says so.
+// Reads the kind of actuator. A missing one is unknown, which no file can say.
 std::optional<actuator_kind> read_actuator(const toml_table& t)
 {
     std::vector<std::string_view> known = kind_names<actuator_kind>();
@@ -87,7 +81,7 @@ std::optional<actuator_kind> read_actuator(const toml_table& t)
     return name ? find_kind<actuator_kind>(*name) : std::nullopt;
 }
 
-// One level, or [[Hz, dBFS], ...] in order of frequency.
+// Reads a level, or [[Hz, dBFS], ...] in order of frequency.
 void read_threshold(const toml_table& entry, tactor_spec& t)
 {
     const toml::node* node = entry.node("threshold_dbfs");
@@ -132,7 +126,7 @@ void read_tactor(const toml_table& entry, tactor_spec& t)
     t.actuator = read_actuator(entry).value_or(t.actuator);
 }
 
-// Without a grid: each entry is a tactor and says where it is.
+// Reads entries without a grid: each is a tactor and says where it is.
 void append_tactors(const std::vector<toml_table>& entries, array& a)
 {
     for (const toml_table& e : entries) {
@@ -152,7 +146,7 @@ void append_tactors(const std::vector<toml_table>& entries, array& a)
     }
 }
 
-// With a grid, a preset or a file: an entry adds to the tactor it names.
+// Reads entries beside a grid, a preset or a file: each adds to the tactor that it names.
 void adjust_tactors(const std::vector<toml_table>& entries, std::string_view base, array& a)
 {
     std::vector<const toml_table*> said(a.tactors.size());
@@ -189,14 +183,10 @@ array read_base(const toml_table& table, std::string_view base, const setup_sour
     if (base == "file")
         return read_included(table, source, out);
     const std::string name = *table.text("preset");
-    try {
-        array a = preset_array(name);
-        for (tactor_spec& t : a.tactors)
-            t.where = table.where("preset");
-        return a;
-    } catch (const error& e) {
-        table.fail("preset", e.what(), {});
-    }
+    array a = table.at_key("preset", [&] { return preset_array(name); });
+    for (tactor_spec& t : a.tactors)
+        t.where = table.where("preset");
+    return a;
 }
 
 } // namespace

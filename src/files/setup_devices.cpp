@@ -56,7 +56,7 @@ calibrated_tactor read_tactor(const toml_table& t, std::vector<const toml_table*
         t.whole(key, 0, any_number);
     if (const toml::array* all = t.list("reversals_dbfs", "levels"))
         for (const toml::node& n : *all)
-            t.number_of(n, "reversals_dbfs", any_level_db);
+            t.to_number(n, "reversals_dbfs", any_level_db);
     return r;
 }
 

@@ -15,7 +15,7 @@ std::string line_text(const gpio_line_name& l)
     return fmt::format("chip = {}, offset = {}", toml_string(l.chip), l.offset.value_or(0));
 }
 
-// The file says milliseconds. 15 digits: the number that was divided.
+// Writes milliseconds. 15 digits give the number that was divided.
 std::string ms(double s)
 {
     return fmt::format("{:.15g}", s * 1e3);

@@ -13,30 +13,30 @@
 
 namespace tactor::detail {
 
-/// A TOML string in double quotes.
+/// Returns a TOML string in double quotes.
 std::string toml_string(std::string_view s);
 
-/// The tables [array] and [[tactor]], which say all of an array.
+/// Writes the tables [array] and [[tactor]], which hold a whole array.
 std::string array_text(const array& a);
 
-/// The tables [output], [amplifier], [sync], [limits] and [defaults]. Two setups with the same text drive an
-/// array alike.
+/// Writes the tables [output], [amplifier], [sync], [limits] and [defaults]. Two setups with the same text
+/// drive an array alike.
 std::string besides_text(const setup& besides);
 
-/// An array file with both. It needs no other file.
+/// Writes an array file with both. It needs no other file.
 std::string array_text(const array& a, const setup& besides);
 
-/// The tables [calibration] and [[calibration.tactor]].
+/// Writes the tables [calibration] and [[calibration.tactor]].
 std::string origin_text(const calibration_origin& o);
 
 /// Writes the table [stroke]. It has no place for warnings, the note and a start that counts from another
 /// stroke.
 /// \throws error (bad_input) for what no file can say: an intensity above 1 along a path, a stroke of a
-///         group that is fitted as one picture.
+///         group that is fitted as a single picture.
 std::string stroke_text(const stroke& s);
 
-/// The text of an array or configuration file with other channels, one for each tactor in order; all else in
-/// it stays as it is, comments too. May block on the file system.
+/// Returns the text of an array or configuration file with other channels, one for each tactor in order. The
+/// rest stays as it is, comments too. May block on the file system.
 /// \throws error (bad_input): what load_setup() throws; no array in the file; a wrong number of channels;
 ///         channels that the file cannot have (two alike, more than [output] says). The text itself is
 ///         checked: what it says is what was asked for.

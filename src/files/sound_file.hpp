@@ -33,7 +33,7 @@ struct wav_parts {
 /// Finds format and samples. \throws error (bad_input) with `name`.
 wav_parts find_wav_parts(std::string_view file, const std::string& name);
 
-/// The first `most` samples of one channel, integers as fractions of full scale, by libsndfile.
+/// Returns the first `most` samples of one channel, integers as fractions of full scale, by libsndfile.
 /// \throws error: bad_input with `name`; not_available where libsndfile is missing.
 std::vector<float> decode_wav(const wav_parts& parts, std::size_t most, const std::string& name);
 

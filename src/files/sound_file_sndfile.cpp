@@ -98,7 +98,7 @@ int raw_format(const wav_format& f)
     return SF_FORMAT_RAW | SF_ENDIAN_LITTLE | samples;
 }
 
-/// The three lower bytes of each four.
+/// Returns the three lower bytes of each four.
 std::string lower_bytes(std::string_view samples)
 {
     std::string s;

@@ -127,7 +127,7 @@ std::string stem(const std::string& name)
     return std::filesystem::path(name).stem().string();
 }
 
-source_place place_of(std::string_view text, std::size_t offset, const std::string& name)
+source_place find_place(std::string_view text, std::size_t offset, const std::string& name)
 {
     const std::string_view before = text.substr(0, std::min(offset, text.size()));
     const std::size_t line_start = before.rfind('\n') + 1; // 0 where there is none

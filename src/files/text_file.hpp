@@ -31,12 +31,12 @@ private:
     std::size_t size_ = 0;
 };
 
-/// All that a descriptor gives, up to its end. Needs little more memory than what it returns.
+/// Reads a descriptor up to its end. Needs little more memory than what it returns.
 /// \throws error (bad_input) with `name` when it cannot be read or gives more than `max_bytes`.
 whole_text read_text(int descriptor, std::string_view name, std::size_t max_bytes);
 
-/// The bytes of a file, which no output replaces from then on (files/input_files.hpp); pipes and devices are
-/// read up to `max_bytes` as well.
+/// Reads the bytes of a file. No output replaces that file from then on (files/input_files.hpp). Also reads
+/// pipes and devices, up to `max_bytes`.
 /// \throws error (bad_input) naming the file when it is missing, a folder, not readable or longer.
 whole_text read_text_file(const std::filesystem::path& file, std::size_t max_bytes,
                           owner_kind owner = owner_kind::user);
@@ -45,11 +45,11 @@ whole_text read_text_file(const std::filesystem::path& file, std::size_t max_byt
 inline constexpr std::string_view text_kinds_hint =
     "strokes are TOML, CSV or SVG, arrays and configurations TOML; sound is for waveform = \"FILE.wav\"";
 
-/// \throws error (bad_input) that says what it is where it begins as sound, a picture or an archive do: it
-/// would be refused anyway, and in words about bytes.
+/// Refuses text that begins as sound, a picture or an archive does. \throws error (bad_input) that says
+/// which: a reader's own error would be about bytes.
 void refuse_other_kind(std::string_view text, const std::string& name,
                        std::string_view hint = text_kinds_hint);
-/// The same, and where it is UTF-16, as some editors save text.
+/// Refuses that, and UTF-16, as some editors save text.
 void refuse_no_text(std::string_view text, const std::string& name, std::string_view hint = text_kinds_hint);
 
 /// Longest stroke file: ten million timed points with all their digits; more is the wrong file.
@@ -69,6 +69,6 @@ std::string_view without_mark(std::string_view text) noexcept;
 std::string stem(const std::string& name);
 
 /// Returns line and column of an offset.
-source_place place_of(std::string_view text, std::size_t offset, const std::string& name);
+source_place find_place(std::string_view text, std::size_t offset, const std::string& name);
 
 } // namespace tactor::detail

@@ -21,7 +21,7 @@ bool bare(char c) noexcept
            c == '-' || c == ' ' || c == '\t';
 }
 
-// Behind the string that begins at i, or the end of the text.
+// Returns the offset behind the string that begins at i, or the end of the text.
 std::size_t after_string(std::string_view t, std::size_t i)
 {
     const char quote = t[i];
@@ -32,7 +32,7 @@ std::size_t after_string(std::string_view t, std::size_t i)
             ++i;
         else if (t.compare(i, end.size(), end) == 0) {
             i += end.size();
-            // A multi-line string may end in up to two quotes of its own.
+            // A multi-line string may itself end in up to two quotes.
             for (unsigned own = 0; multiline && own < 2 && i < t.size() && t[i] == quote; ++own)
                 ++i;
             return i;
@@ -73,7 +73,7 @@ void refuse_deep_keys(std::string_view t, const std::string& name)
     }
 }
 
-// Where the first string begins that its line, or of three quotes the text, does not end.
+// Returns the start of the first string without an end: on its line, or with three quotes in the text.
 std::optional<std::size_t> open_string(std::string_view t)
 {
     for (std::size_t i = 0; i < t.size();) {
@@ -103,7 +103,7 @@ toml::table parse_toml(std::string_view text, const std::string& name)
     } catch (const toml::parse_error& e) {
         const auto& at = e.source().begin;
         if (const auto open = open_string(text)) {
-            const source_place begin = place_of(text, *open, name);
+            const source_place begin = find_place(text, *open, name);
             const std::string three(3, text[*open]);
             if (begin.line <= at.line)
                 fail_at(begin, "this text has no closing quote",

@@ -25,7 +25,7 @@ std::string type_name(const toml::node& n)
     return n.is_boolean() ? "a boolean" : n.is_string() ? "a string" : "a number";
 }
 
-std::string text_of(bounds b)
+std::string bounds_text(bounds b)
 {
     return b.above_low ? fmt::format("more than {}, at most {}", b.low, b.high)
                        : fmt::format("{} to {}", b.low, b.high);
@@ -46,7 +46,7 @@ std::string shown(const toml::node& n)
         return fmt::format("{}", i->get());
     if (const auto* f = n.as_floating_point()) {
         std::string text = fmt::format("{}", f->get());
-        // Where a whole number is wanted, 2.0 is none.
+        // 2.0 is no whole number: a message about one must show that.
         return text.find_first_not_of("-0123456789") == std::string::npos ? text + ".0" : text;
     }
     if (const auto* b = n.as_boolean())
@@ -143,7 +143,7 @@ std::variant<std::monostate, bool, double, std::string> toml_table::plain(const 
     return *n.value<double>();
 }
 
-double toml_table::number_of(const toml::node& n, std::string_view called, bounds b) const
+double toml_table::to_number(const toml::node& n, std::string_view called, bounds b) const
 {
     if (!n.is_number())
         wrong_type(called, n, "a number");
@@ -154,14 +154,15 @@ double toml_table::within(const toml::node& n, std::string_view called, double v
 {
     const bool inside = v <= b.high && (b.above_low ? v > b.low : v >= b.low);
     if (!std::isfinite(v) || !inside)
-        fail_at(where(n), fmt::format("{} is {}", called, v), fmt::format("allowed: {}", text_of(b)), called);
+        fail_at(where(n), fmt::format("{} is {}", called, v), fmt::format("allowed: {}", bounds_text(b)),
+                called);
     return v;
 }
 
 std::optional<double> toml_table::number(std::string_view key, bounds b) const
 {
     const toml::node* n = node(key);
-    return n ? std::optional(number_of(*n, key, b)) : std::nullopt;
+    return n ? std::optional(to_number(*n, key, b)) : std::nullopt;
 }
 
 std::optional<unsigned> toml_table::whole(std::string_view key, unsigned low, unsigned high) const
@@ -269,10 +270,10 @@ void toml_table::numbers(const toml::node& entry, std::string_view called, std::
                                  : fmt::format("a list of {} to {} numbers", least, most));
     out.clear();
     for (const toml::node& n : *a)
-        out.push_back(number_of(n, called, {-max_mm, max_mm}));
+        out.push_back(to_number(n, called, {-max_mm, max_mm}));
 }
 
-std::string_view toml_table::one_of(std::initializer_list<std::string_view> keys) const
+std::string_view toml_table::one_of(std::span<const std::string_view> keys) const
 {
     std::string_view found;
     for (const std::string_view k : keys) {

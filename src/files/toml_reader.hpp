@@ -26,13 +26,13 @@ namespace tactor::detail {
 /// \throws error (bad_input) with file, line and column.
 toml::table parse_toml(std::string_view text, const std::string& name);
 
-/// One table of a document. Refers to the document and to the name: both must outlive it.
+/// A table of a document. Refers to the document and to the name: both must outlive it.
 class toml_table {
 public:
-    /// `title` is how messages call the table, e.g. "[output]".
+    /// `title` stands for the table in messages, e.g. "[output]".
     toml_table(const toml::table& t, std::string title, const std::string& file);
 
-    /// \throws error for a key that is not among these, naming the nearest.
+    /// Refuses other keys than these. \throws error that names the nearest.
     void only(std::span<const std::string_view> known) const;
     void only(std::initializer_list<std::string_view> known) const { only({known.begin(), known.size()}); }
 
@@ -42,7 +42,7 @@ public:
         const toml::node* value = nullptr;
         source_place key_at;
     };
-    /// All, in the order of the file.
+    /// Returns the keys in the order of the file.
     std::vector<said_key> entries() const;
 
     bool has(std::string_view key) const;
@@ -53,7 +53,7 @@ public:
     source_place where(std::string_view key) const; ///< where the value of a key begins
     source_place where(const toml::node& n) const;
 
-    /// Values; nothing where the key is missing. All throw error for a wrong type or range.
+    /// Return the value; nothing if the key is missing. All throw error for a wrong type or range.
     std::optional<double> number(std::string_view key, bounds b) const;
     std::optional<unsigned> whole(std::string_view key, unsigned low, unsigned high) const;
     std::optional<unsigned> whole(std::string_view key, bounds b) const
@@ -67,7 +67,7 @@ public:
     {
         return choice(key, std::span(of.begin(), of.size()));
     }
-    /// A value of a closed set, by its name.
+    /// Reads a value of a closed set, by its name.
     template <class Kind>
     std::optional<Kind> kind(std::string_view key) const
     {
@@ -76,24 +76,24 @@ public:
     }
     /// `shape` shows a wrong value's author how it is written.
     std::optional<toml_table> table(std::string_view key, std::string title, std::string_view shape) const;
-    /// An array of tables, [[key]]; none is an empty list.
+    /// Returns an array of tables, [[key]]; an empty list if there is none.
     std::vector<toml_table> tables(std::string_view key) const;
     const toml::array* list(std::string_view key, std::string_view of_what) const;
     const toml::node* node(std::string_view key) const;
 
-    /// [x, y] in mm within max_mm.
+    /// Reads [x, y] in mm, within max_mm.
     std::optional<point> place(std::string_view key) const;
-    /// The numbers of one list entry, into `out`; how many must be in least ... most.
+    /// Reads the numbers of a list entry into `out`; their count must be in least ... most.
     void numbers(const toml::node& entry, std::string_view called, std::size_t least, std::size_t most,
                  std::vector<double>& out) const;
-    /// A flag, a number or a text. Whole numbers that a double does not hold are none.
+    /// Reads a flag, a number or a text. Refuses whole numbers that a double does not hold.
     std::variant<std::monostate, bool, double, std::string> plain(const toml::node& n,
                                                                   std::string_view called) const;
-    double number_of(const toml::node& n, std::string_view called, bounds b) const;
-    /// v, which stands at n, if it is within b.
+    double to_number(const toml::node& n, std::string_view called, bounds b) const;
+    /// Returns v, which stands at n, if it is within b.
     double within(const toml::node& n, std::string_view called, double v, bounds b) const;
 
-    /// What must be there. \throws error saying that the key is missing.
+    /// Returns a value that must be there. \throws error that says the key is missing.
     template <class T>
     T need(std::optional<T> value, std::string_view key) const
     {
@@ -102,8 +102,23 @@ public:
         return *std::move(value);
     }
 
-    /// The one of `keys` that is there. \throws error for none or more than one.
-    std::string_view one_of(std::initializer_list<std::string_view> keys) const;
+    /// Returns the one of `keys` that is there. \throws error for none or more than one.
+    std::string_view one_of(std::span<const std::string_view> keys) const;
+    std::string_view one_of(std::initializer_list<std::string_view> keys) const
+    {
+        return one_of(std::span(keys.begin(), keys.size()));
+    }
+
+    /// Returns make(). Adds the key and its place to an error of it.
+    template <class F>
+    auto at_key(std::string_view key, F make) const
+    {
+        try {
+            return make();
+        } catch (const error& e) {
+            fail(key, e.what(), {});
+        }
+    }
 
     [[noreturn]] void fail(std::string_view why, std::string_view hint = {}) const;
     [[noreturn]] void fail(std::string_view key, std::string_view why, std::string_view hint) const;
@@ -117,7 +132,7 @@ private:
     const std::string* file_;
 };
 
-/// A value as a message shows it: 12.5, 'text', "a list".
+/// Returns a value as a message shows it: 12.5, 'text', "a list".
 std::string shown(const toml::node& n);
 
 [[noreturn]] void fail_at(const source_place& at, std::string_view why, std::string_view hint = {},

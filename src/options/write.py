@@ -66,7 +66,7 @@ def plan({signature}) -> Plan:
     of Goldreich 2007. What says how the plan sounds counts for a `Score` that says nothing else.
     """
     given = dict(locals())
-    from tactor._planning import make_plan
+    from tactor._plan import make_plan
     return make_plan(given)
 '''
 

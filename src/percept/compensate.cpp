@@ -42,8 +42,8 @@ point mean_point(const std::vector<point>& corners)
 std::vector<detail::beyond> ends_or_sides(const layout::impl& l)
 {
     if (!l.hull.empty())
-        return detail::sides_of(l);
-    const auto [first, last] = detail::ends_of(l.points);
+        return detail::hull_sides(l);
+    const auto [first, last] = detail::find_ends(l.points);
     const double length = distance_mm(first, last);
     if (!(length > 0.0))
         return {};
@@ -61,7 +61,7 @@ std::vector<detail::beyond> ends_or_sides(const layout::impl& l)
 // Moves targets onto the line of the tactors, because there is no choice across it.
 std::vector<point> onto_line(const layout::impl& l, std::vector<point> targets)
 {
-    const auto [first, last] = detail::ends_of(l.points);
+    const auto [first, last] = detail::find_ends(l.points);
     const double length = distance_mm(first, last);
     const point along{(last.x_mm - first.x_mm) / length, (last.y_mm - first.y_mm) / length};
     for (point& p : targets) {
@@ -169,7 +169,7 @@ compensated_plan make_compensated_plan(const array& a, const layout& l, const st
         }
     const compensated_places places = compensate(l, m, onsets_s, targets);
     std::erase(r.plan.warnings, missed_warning(l, r.plan)); // counted again for the moved bursts
-    const std::shared_ptr<const phantom_model> model = detail::model_of(l, chosen);
+    const std::shared_ptr<const phantom_model> model = detail::choose_model(l, chosen);
     for (std::size_t i = 0; i < felt.size(); ++i) {
         burst& b = *felt[i];
         b.position = places.played[i];

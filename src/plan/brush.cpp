@@ -16,7 +16,7 @@
 namespace tactor::detail {
 namespace {
 
-std::vector<double> times_of(const std::vector<meeting>& points)
+std::vector<double> meeting_times(const std::vector<meeting>& points)
 {
     std::vector<double> tau;
     for (const meeting& m : points)
@@ -42,7 +42,7 @@ std::vector<double> times_of(const std::vector<meeting>& points)
 /// Leaves places out until the timing is possible, and reports them.
 std::vector<meeting> drop_points(const job& j, const std::vector<meeting>& points, plan& out)
 {
-    const std::vector<std::size_t> keep = thin_out(j.options.profile, times_of(points));
+    const std::vector<std::size_t> keep = thin_out(j.options.profile, meeting_times(points));
     std::vector<meeting> left;
     for (std::size_t i = 0, k = 0; i < points.size(); ++i) {
         const bool kept = k < keep.size() && keep[k] == i;
@@ -69,8 +69,8 @@ bool possible(double part_s)
     return part_s >= -slack_s;
 }
 
-/// Interior virtual tactors in the order in which they go: the one with the smallest gap, the first of
-/// equals.
+/// Returns the interior virtual tactors in the order in which they go: the one with the smallest gap, the
+/// first of equals.
 std::vector<std::size_t> order_of_going(const std::vector<double>& tau_s)
 {
     const std::size_t n = tau_s.size();
@@ -106,8 +106,9 @@ std::vector<std::size_t> order_of_going(const std::vector<double>& tau_s)
     return order;
 }
 
-/// What is left, ascending, of n places when the first `gone` of `order` have gone.
-std::vector<std::size_t> left_of(std::size_t n, const std::vector<std::size_t>& order, std::size_t gone)
+/// Returns the places, ascending, that remain of n when the first `gone` of `order` have gone.
+std::vector<std::size_t> remaining_after(std::size_t n, const std::vector<std::size_t>& order,
+                                         std::size_t gone)
 {
     std::vector<bool> out(n, false);
     for (std::size_t k = 0; k < gone; ++k)
@@ -131,7 +132,7 @@ void plan_brush(const job& j, plan& out)
     std::vector<meeting> points = virtual_tactors(j, *grid);
     if (j.options.drop_points)
         points = drop_points(j, points, out);
-    const std::vector<double> tau = times_of(points);
+    const std::vector<double> tau = meeting_times(points);
     const std::vector<double> before = parts_s(j.options.profile, tau);
     if (before.empty())
         refuse(j, tau);
@@ -183,7 +184,7 @@ std::vector<std::size_t> thin_out(const timing_profile& p, const std::vector<dou
     const std::vector<std::size_t> order = order_of_going(tau_s);
     const auto works = [&](std::size_t gone) {
         std::vector<double> tau;
-        for (const std::size_t i : left_of(tau_s.size(), order, gone))
+        for (const std::size_t i : remaining_after(tau_s.size(), order, gone))
             tau.push_back(tau_s[i]);
         return !parts_s(p, tau).empty();
     };
@@ -199,7 +200,7 @@ std::vector<std::size_t> thin_out(const timing_profile& p, const std::vector<dou
         else
             few = half + 1;
     }
-    return left_of(tau_s.size(), order, many);
+    return remaining_after(tau_s.size(), order, many);
 }
 
 } // namespace tactor::detail

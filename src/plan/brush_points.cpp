@@ -40,7 +40,7 @@ point nearest_on_grid(const grid_lines& g, point p)
     return distance_mm(p, on_column) <= distance_mm(p, on_row) ? on_column : on_row;
 }
 
-/// All crossings in path order; places exactly on their lines.
+/// Finds the crossings in path order. Each is exactly on its line.
 std::vector<virtual_tactor> crossings(const job& j, const grid_lines& g)
 {
     const trajectory& motion = j.motion.motion;
@@ -68,7 +68,7 @@ public:
     }
     point at(double t_s) const { return held(job_.motion.motion.position(t_s)); }
 
-    /// One place, from which the target does not move in between.
+    /// Returns true for two at one place that the target does not leave in between.
     bool same(const virtual_tactor& a, const virtual_tactor& b) const
     {
         if (distance_mm(a.place, b.place) > same_place_mm)

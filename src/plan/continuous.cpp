@@ -27,7 +27,7 @@ namespace {
 void turns_seen(const shape& form, const std::vector<beyond>& sides, std::vector<double>& turns_at)
 {
     turns_at.clear();
-    const std::array<point, 4> frame = frame_of(form);
+    const std::array<point, 4> frame = control_frame(form);
     for (const beyond& s : sides) {
         const bool within =
             std::all_of(frame.begin(), frame.end(), [&](point p) { return dot(s.out, p) <= s.reach; });
@@ -45,7 +45,7 @@ void turns_seen(const shape& form, const std::vector<beyond>& sides, std::vector
 /// that says where the path leaves the array first.
 void check_inside(const job& j)
 {
-    const std::vector<beyond> sides = sides_of(detail::access::of(j.faces));
+    const std::vector<beyond> sides = hull_sides(detail::access::of(j.faces));
     std::vector<double> turns_at;
     follower target(j);
     target.at(0.0);
@@ -122,7 +122,7 @@ private:
     intensity_scale scale_;
 };
 
-// What a model of the user's own does is asked once, so that the plan is a value.
+// Asks the user's model once for each sample, so that the plan is a value.
 curve asked(const job& j)
 {
     const followed f(j);

@@ -21,7 +21,7 @@ namespace tactor::detail {
 
 namespace {
 
-/// How often a recording comes round that lies along the path: the faster the target, the oftener.
+/// Returns the rate at which a recording along the path repeats. It rises with the target's speed.
 std::vector<carrier_point> texture_course(const trajectory& motion, double texture_mm)
 {
     const double rounds = texture_mm > 0.0 ? motion.length_mm() / texture_mm : 1.0;
@@ -48,7 +48,7 @@ constexpr int most_halvings = 12;
 /// The frequency between two points of a way, u from 0 to 1.
 using frequency = std::function<double(double u)>;
 
-/// A course of the fifth degree through a frequency from `from` to `to`: at both ends and four places
+/// Returns a course of the fifth degree through a frequency from `from` to `to`: at both ends and four places
 /// between them (Chebyshev's), and with the same mean.
 std::array<double, 4> find_bend(const frequency& hz, double from_hz, double to_hz)
 {
@@ -158,7 +158,7 @@ double hz_between(const carrier_point& from, const carrier_point& to, double u)
     return straight + u * (1.0 - u) * (b[0] + u * (b[1] + u * (b[2] + u * b[3])));
 }
 
-std::vector<carrier_point> course_of(const stroke& s, const waveform& w)
+std::vector<carrier_point> make_course(const stroke& s, const waveform& w)
 {
     check_profile(s.sound.carrier_profile);
     if (w.kind == waveform_kind::recording && w.texture == texture_kind::length)

@@ -63,7 +63,7 @@ std::shared_ptr<const curve::impl> checked(double duration_s, curve_samples s)
         throw error(error_kind::bad_input, "curve", fmt::format("it lasts {:g} s", duration_s),
                     fmt::format("more than 0 and at most {:g} s", detail::longest_stroke_s))
             .with_field("duration_s");
-    const std::uint64_t size = detail::samples_of(duration_s);
+    const std::uint64_t size = detail::count_samples(duration_s);
     if (s.positions.size() != size || s.intensities.size() != size || s.ends.size() != size)
         throw error(error_kind::bad_input, "curve",
                     fmt::format("{} positions, {} intensities and {} ends of drives", s.positions.size(),
@@ -112,7 +112,7 @@ void curve_samples::add(const burst& b)
     ends.push_back(drives.size());
 }
 
-curve::impl::impl(double duration) : duration_s(duration), size(detail::samples_of(duration))
+curve::impl::impl(double duration) : duration_s(duration), size(detail::count_samples(duration))
 {
 }
 
@@ -164,7 +164,7 @@ private:
 
 } // namespace
 
-std::uint64_t samples_of(double duration_s) noexcept
+std::uint64_t count_samples(double duration_s) noexcept
 {
     return static_cast<std::uint64_t>(std::ceil(duration_s / continuous_step_s - same_step)) + 1;
 }

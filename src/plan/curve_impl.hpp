@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// What is behind a curve: samples, or the stroke that they are computed from.
+/// Contents of a curve: samples, or the stroke from which they are computed.
 #pragma once
 
 #include <cstddef>
@@ -21,14 +21,15 @@ struct curve::impl {
     impl(const impl&) = delete;
     impl& operator=(const impl&) = delete;
 
-    /// As curve::sample(). `seen` belongs to the reader, and to this curve: it makes reading faster if
-    /// samples that are near each other are read one after the other.
+    /// Does what curve::sample() does. `seen` belongs to the reader and to this curve. It makes reading
+    /// faster if the reader takes neighbouring samples one after the other.
     void sample(std::uint64_t k, detail::same_tactors& seen, burst& out) const;
 
-    /// Position, intensity and drives of sample k, which is there.
+    /// Fills in position, intensity and drives of sample k, which is there.
     virtual void fill(std::uint64_t k, detail::same_tactors& seen, burst& out) const = 0;
-    /// The movement that bounds what so many tactors get, and no others get anything: none is given more than
-    /// its intensity, which is linear between the trajectory's points. Null where that is not known.
+    /// Returns the movement that bounds what so many tactors get, and no others get anything: none is given
+    /// more than its intensity, which is linear between the trajectory's points. Null where that is not
+    /// known.
     virtual const trajectory* bounds(std::size_t /*tactors*/) const noexcept { return nullptr; }
 
     const double duration_s;
@@ -45,11 +46,11 @@ struct curve_access {
 
 namespace tactor::detail {
 
-/// Number of samples of a stroke.
-std::uint64_t samples_of(double duration_s) noexcept;
+/// Returns the number of samples of a stroke.
+std::uint64_t count_samples(double duration_s) noexcept;
 double sample_time_s(std::uint64_t k, double duration_s) noexcept;
 
-/// Position, intensity and drives of one of them.
+/// Reads position, intensity and drives of one sample.
 void read(const curve_samples& all, std::size_t i, burst& out);
 
 /// Returns the plan with all its amplitudes and intensities times a factor, above 0. Samples of a curve are

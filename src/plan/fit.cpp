@@ -34,7 +34,7 @@ using detail::operator*;
 /// Lower than this part of the pitch, an array is a line: places that were measured are never quite in one.
 constexpr double thin_by_pitch = 0.1;
 
-/// All that is drawn, for the question how far it goes.
+/// Everything that is drawn; measures its extent.
 class picture {
 public:
     explicit picture(const std::vector<stroke>& strokes)
@@ -45,14 +45,14 @@ public:
         corners_ = detail::convex_hull(std::move(all));
     }
 
-    /// Greatest dot(out, p) of its points.
+    /// Returns the greatest dot(out, p) of its points.
     double reach(point out) const
     {
         double most = -std::numeric_limits<double>::infinity();
         for (const point p : corners_)
             most = std::max(most, dot(out, p));
         for (const detail::shape& c : curves_) {
-            const auto frame = detail::frame_of(c);
+            const auto frame = detail::control_frame(c);
             if (std::none_of(frame.begin(), frame.end(), [&](point p) { return dot(out, p) > most; }))
                 continue;
             for (const double t : detail::turns_towards(c, out))
@@ -85,8 +85,8 @@ point centre_of_gravity(const std::vector<point>& hull)
     return hull[0] + (1.0 / all) * sum;
 }
 
-/// The direction of an array in one line; nothing where it is wider.
-std::optional<point> line_of(const layout::impl& l, std::pair<point, point> ends)
+/// Returns the direction of an array in one line; nothing for a wider array.
+std::optional<point> find_line(const layout::impl& l, std::pair<point, point> ends)
 {
     const double length = distance_mm(ends.first, ends.second);
     const point along = length > 0.0 ? 1.0 / length * (ends.second - ends.first) : point{1.0, 0.0};
@@ -117,7 +117,7 @@ std::optional<point> line_of(const layout::impl& l, std::pair<point, point> ends
                 "turn it, or use an array with two rows");
 }
 
-/// One of several would be left without a length, and nobody would feel where it was to go.
+/// Refuses strokes of which one would lose its length: people could no longer feel its direction.
 void check_along(const std::vector<stroke>& strokes, const fitting& f)
 {
     for (std::size_t i = 0; i < strokes.size(); ++i) {
@@ -162,7 +162,7 @@ fitting fit_to_hull(const picture& drawn, const layout::impl& l, double margin_m
               {}};
     const bool rests = drawn.rests();
     double narrowest = std::numeric_limits<double>::infinity();
-    for (const detail::beyond& side : detail::sides_of(l)) {
+    for (const detail::beyond& side : detail::hull_sides(l)) {
         const double space = side.reach - dot(side.out, f.to);
         narrowest = std::min(narrowest, space);
         const double reach = rests ? 0.0 : drawn.reach(side.out) - dot(side.out, f.from);
@@ -178,14 +178,14 @@ fitting fit_to_hull(const picture& drawn, const layout::impl& l, double margin_m
 
 fitting find_fit(const picture& drawn, const layout::impl& l, double margin_mm)
 {
-    const auto ends = detail::ends_of(l.points);
-    if (const auto along = line_of(l, ends))
+    const auto ends = detail::find_ends(l.points);
+    if (const auto along = find_line(l, ends))
         return fit_to_line(drawn, l, ends, *along, margin_mm);
     return fit_to_hull(drawn, l, margin_mm);
 }
 
-/// The fitting as it maps places whose origin is `from` already.
-affine map_of(const fitting& f)
+/// Returns the fitting as a map of places whose origin is `from` already.
+affine make_map(const fitting& f)
 {
     const point d = f.line.value_or(point{});
     if (f.line)
@@ -210,7 +210,7 @@ fitted_strokes fit_strokes(const std::vector<stroke>& strokes, const layout& l, 
     all.placed = find_fit(picture(strokes), detail::access::of(l), margin_mm);
     if (all.placed.line)
         check_along(strokes, all.placed);
-    const affine map = map_of(all.placed);
+    const affine map = make_map(all.placed);
     for (stroke& s : all.strokes) {
         s.motion = detail::moved(s.motion, all.placed.from, map, all.placed.line,
                                  [&] { return fmt::format("stroke \"{}\" as fitted", s.name); });

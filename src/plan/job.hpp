@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// One stroke that is being planned, and the parts that all algorithms share.
+/// The stroke that is being planned, and the parts that all algorithms share.
 #pragma once
 
 #include <cstddef>
@@ -34,7 +34,7 @@ using burst_taker = std::function<void(const plan& so_far, std::span<const burst
 /// Bursts that are handed over at once where they are not kept.
 inline constexpr std::size_t bursts_at_once = 1024;
 
-/// What the algorithms work on; lives as long as make_plan().
+/// Input of the algorithms; lives as long as make_plan().
 struct job {
     const array& tactors;
     const layout& faces;
@@ -45,7 +45,7 @@ struct job {
     const burst_taker& take;                 ///< empty: all bursts stay in the plan
     mutable std::vector<drive> scratch = {}; ///< for the drives of a burst, until their number is known
 
-    /// For messages: stroke "name".
+    /// Returns stroke "name", for messages.
     std::string name() const;
 };
 
@@ -56,7 +56,7 @@ plan plan_in_pieces(const array& a, const layout& l, const stroke& s, const plan
 /// Counts the plan's bursts, and hands them over where they are not kept.
 void pass_on(const job& j, plan& p);
 
-/// The algorithms; each fills in its own part of the plan.
+/// Plan by an algorithm; each fills in its own part of the plan.
 void plan_park(const job& j, plan& out);
 void plan_brush(const job& j, plan& out);
 void plan_continuous(const job& j, plan& out);
@@ -67,10 +67,9 @@ inline constexpr double most_bursts = 10e6;
 /// \throws error (bad_input) when there are too many.
 void check_burst_count(const job& j, double bursts);
 
-/// The user's own model, or the one that is named. \throws error (bad_input) where it does not go with
-/// `faces`.
-std::shared_ptr<const phantom_model> model_of(const layout& l, const plan_options& o);
-/// The faces that the algorithm takes.
+/// Returns the user's own model, or the named one. \throws error (bad_input) if it does not go with `faces`.
+std::shared_ptr<const phantom_model> choose_model(const layout& l, const plan_options& o);
+/// Returns the kind of faces that the algorithm takes.
 faces_kind faces_used(const plan_options& o);
 
 /// \throws error (bad_input) for what is no amplitude of a phantom.
@@ -79,10 +78,11 @@ void check_intensity(double a_v);
 /// Drives from a model. \throws error (bad_input) when a model of the user's own breaks its contract.
 void drives_at(const phantom_model& m, const layout& l, point p, double a_v, std::vector<drive>& out);
 
-/// A burst at a place with its drives; the intensity is the stroke's at t_s.
+/// Returns a burst at a place with its drives; the intensity is the stroke's at t_s.
 burst make_burst(const job& j, double onset_s, double duration_s, point p, double t_s);
 
-/// Where two or more bursts sound on one tactor, by time and then by tactor. `bursts` by onset.
+/// Returns the times in which two or more bursts sound on one tactor, by time and then by tactor. `bursts`
+/// are ordered by onset.
 std::vector<conflict> find_conflicts(const std::vector<burst>& bursts);
 
 /// Places along the stroke, kept in the array as the user wants it.
@@ -90,14 +90,14 @@ class follower {
 public:
     explicit follower(const job& j) : job_(j) {}
 
-    /// Where the target is, or with `clamp` the point of the hull nearest to it. With `error`, the times
-    /// asked for must not decrease.
+    /// Returns the target's position, or with `clamp` the point of the hull nearest to it. With `error`, the
+    /// times must not decrease from call to call.
     /// \throws error (bad_input) that says where the path leaves the array.
     point at(double t_s);
 
 private:
     [[noreturn]] void refuse(double t_s) const;
-    /// The greatest distance of the target from the hull from then on, at 2000 places.
+    /// Returns the greatest distance of the target from the hull from then on, at 2000 places.
     double farthest_outside_mm(double from_s) const;
 
     const job& job_;
@@ -105,7 +105,7 @@ private:
 };
 
 /// Returns plan::course of a stroke that is played with a waveform.
-std::vector<carrier_point> course_of(const stroke& s, const waveform& w);
+std::vector<carrier_point> make_course(const stroke& s, const waveform& w);
 
 /// Returns the frequency at a part of the time, 0 to 1, from a point of a course to the next.
 double hz_between(const carrier_point& from, const carrier_point& to, double u);

@@ -22,13 +22,13 @@ namespace {
 
 // Durations beyond this are outside the data from which Eq. (1) was fitted (Israr and Poupyrev 2011).
 constexpr double longest_fitted_s = 0.160;
-// What travels less of the distance between two tactors is hardly felt to move (Remache-Vinueza,
+// Part of the distance between two tactors. People hardly feel a movement over less (Remache-Vinueza,
 // Trujillo-Leon and Vidal-Verdu, Displays 2024).
 constexpr double least_travel = 0.2;
 // The longest side of a face without a warning, in pitches. Along a diagonal of a grid of 20 x 20 mm gaussian
 // is 1.2 mm RMS off, of 20 x 24 mm 2.5, of 20 x 28 mm 4.2, of 20 x 40 mm 9.
 constexpr double widest_face = 1.15;
-// Durations are said to the millisecond: nearer than half of one is the law's.
+// Messages show durations in milliseconds: a difference of less than half a millisecond does not count.
 constexpr double law_tolerance_s = 0.0005;
 
 void count(const layout& l, const plan& p, detail::burst_count& c)
@@ -68,7 +68,7 @@ void warn_of_short_bursts(const detail::burst_count& c, plan& p)
                         1e3 / p.carrier_hz, p.carrier_hz, c.shortest_s * 1e3));
 }
 
-/// What rests is not meant to move.
+/// Warns of a stroke that hardly moves. A stroke that rests is not meant to.
 void warn_of_short_travel(double pitch_mm, plan& p)
 {
     if (p.stroke_length_mm > 0.0 && p.stroke_length_mm < least_travel * pitch_mm * (1.0 - 1e-9))
@@ -109,7 +109,7 @@ void warn_of_missing_samples(plan& p)
                                          counted(r->samples.size() + r->missing, "sample")));
 }
 
-/// Where the duration that was asked for is not the one that belongs to the SOA, or is not used.
+/// Warns if the requested duration does not belong to the SOA, or is not used.
 void warn_of_own_duration(const plan_options& o, const detail::burst_count& c, plan& p)
 {
     if (!o.burst_s)
@@ -131,7 +131,7 @@ void warn_of_own_duration(const plan_options& o, const detail::burst_count& c, p
                         seconds_text(law.slope * d + law.intercept_s, 4)));
 }
 
-/// Whether an SOA or burst that cannot be is the stroke's own doing.
+/// Returns true if the stroke itself sets the impossible SOA or burst.
 bool is_own(const error& e, const stroke_choices& c)
 {
     return (e.field() == "soa_s" && c.soa_s) || (e.field() == "burst_s" && (c.burst_s || c.soa_s));
@@ -162,7 +162,7 @@ plan planned(const array& a, const layout& l, const stroke& s, const plan_option
             fmt::format("has {} and the array {}", counted(l.places().size(), "tactor"), a.tactors.size()),
             "build the layout from the same array");
     detail::burst_count bursts;
-    const detail::job j{a, l, s, o, detail::model_of(l, o), bursts, take};
+    const detail::job j{a, l, s, o, detail::choose_model(l, o), bursts, take};
     plan p;
     p.warnings = s.warnings;
     p.algorithm = to_string(o.algorithm);
@@ -178,7 +178,7 @@ plan planned(const array& a, const layout& l, const stroke& s, const plan_option
     p.am = s.sound.am.value_or(o.am);
     validate(p.wave);
     validate(p.am);
-    p.course = detail::course_of(s, p.wave);
+    p.course = detail::make_course(s, p.wave);
     switch (o.algorithm) {
     case algorithm_kind::park2016:
         detail::plan_park(j, p);
@@ -234,7 +234,7 @@ void pass_on(const job& j, plan& p)
     }
 }
 
-std::shared_ptr<const phantom_model> model_of(const layout& l, const plan_options& o)
+std::shared_ptr<const phantom_model> choose_model(const layout& l, const plan_options& o)
 {
     if (!o.custom_phantom) {
         check_faces(o.phantom, o.faces); // where the algorithm does not use them, too

@@ -7,7 +7,7 @@
 
 namespace tactor::detail {
 
-/// Eq. (1) solved for the duration, and Eq. (11): a burst never outlasts its SOA. No check of bounds.
+/// Solves Eq. (1) for the duration, with Eq. (11): a burst never outlasts its SOA. No check of bounds.
 double law_duration_s(const timing_profile& p, double soa_s);
 
 /// \throws error (bad_input) for a law that no SOA can follow.
@@ -16,10 +16,10 @@ void check_profile(const timing_profile& p);
 /// \throws error (bad_input) for what the chosen algorithm cannot use.
 void check_options(const plan_options& o);
 
-/// The common options, but for what the stroke chooses.
+/// Returns the common options, but for what the stroke chooses.
 plan_options chosen(plan_options common, const stroke_choices& c);
 
-/// The frequency, if it is one. \throws error (bad_input)
+/// Returns the frequency, if it is one. \throws error (bad_input)
 double check_carrier(double hz);
 
 } // namespace tactor::detail

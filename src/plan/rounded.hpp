@@ -12,12 +12,12 @@ namespace tactor::detail {
 /// Times nearer than this are one time, s.
 inline constexpr double same_time_s = 1e-9;
 
-/// In seconds, to the nanosecond, not below t; "1.2345".
+/// Returns t in seconds, to the nanosecond, rounded up; "1.2345".
 std::string seconds_up(double t_s);
-/// Not above t.
+/// Returns t rounded down.
 std::string seconds_down(double t_s);
 
-/// "(40.000, 0.000) mm".
+/// Returns "(40.000, 0.000) mm".
 std::string place(point p);
 
 } // namespace tactor::detail

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What pip builds the package with: meson-python, after a look at what this machine lacks.
+"""The build backend of pip: meson-python, after a look at what this machine lacks.
 
 Meson stops at the first library that it does not find, under a page of pip's own words. This names all of them in one line.
 """
@@ -11,7 +11,7 @@ import subprocess
 import sys
 import sysconfig
 
-# What is needed, Debian's package, and the option that does without it: a name of pkg-config's, or a header.
+# Needed things (a name of pkg-config's, or a header), Debian's package, and the option to build without.
 LIBRARIES = (
     ("Boost", "libboost-dev", None, None, "boost/asio.hpp"),
     ("fmt", "libfmt-dev", None, "fmt", "fmt/format.h"),

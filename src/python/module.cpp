@@ -16,8 +16,8 @@ py::array_t<double> given(std::vector<double> values, std::size_t columns)
     constexpr auto bytes = static_cast<py::ssize_t>(sizeof(double));
     const py::capsule owner(kept.release(), [](void* p) { delete static_cast<std::vector<double>*>(p); });
     if (columns == 0)
-        return view_of({size}, {bytes}, first, owner);
-    return view_of({size / width, width}, {width * bytes, bytes}, first, owner);
+        return make_view({size}, {bytes}, first, owner);
+    return make_view({size / width, width}, {width * bytes, bytes}, first, owner);
 }
 
 void check_signals()
@@ -48,7 +48,7 @@ void translate(std::exception_ptr p)
 
 } // namespace
 
-// The classes are Python's, and so is what makes one of them.
+// Makes an error in Python, where the classes are.
 void set_error(const error& marked)
 {
     const error e = in_keywords(marked);

@@ -21,8 +21,6 @@ using options::option;
 using namespace py::literals;
 
 constexpr std::uint64_t of_python = options::in_plan | options::in_score | options::in_compare;
-// [defaults] speed, which a stroke's own wins over.
-constexpr const char* usual_speed = "usual_speed";
 
 [[noreturn]] void refuse(std::string_view name, const std::string& why, const std::string& hint = {})
 {
@@ -38,7 +36,7 @@ std::string shown(py::handle v)
     }
 }
 
-// No complex number and no time of NumPy's, which would lose a part of what they say.
+// Returns false for complex numbers and times of NumPy's, which would lose a part.
 bool is_plain(py::handle v)
 {
     return py::module_::import("tactor._checks").attr("_is_plain")(v).cast<bool>();
@@ -119,29 +117,38 @@ void refuse_rivals(const py::dict& given)
 void take_phantom(wishes& w, const option& o, py::handle v, std::size_t tactors)
 {
     if (py::hasattr(v, "weights"))
-        w.plan.custom_phantom = model_of(py::reinterpret_borrow<py::object>(v), tactors);
+        w.plan.custom_phantom = wrap_model(py::reinterpret_borrow<py::object>(v), tactors);
     else
         options::put(w, o, read_handle(o, v));
 }
 
-void take(wishes& w, const std::string& name, py::handle v, std::size_t tactors)
+std::vector<std::pair<const option*, py::handle>> find_given(const py::dict& given)
 {
-    if (name == usual_speed) {
-        w.usual_speed_mm_s = number(*options::find("speed"), v);
-        return;
+    std::vector<std::pair<const option*, py::handle>> found;
+    for (const auto& [key, value] : given) {
+        const auto name = key.cast<std::string>();
+        const option* o = options::find(name);
+        if (value.is_none())
+            continue;
+        if (o == nullptr || o->name != name || (o->where & of_python) == 0)
+            throw py::type_error(fmt::format("there is no option '{}'", name));
+        found.emplace_back(o, value);
     }
-    const option* o = options::find(name);
-    if (o == nullptr || o->name != name || (o->where & of_python) == 0)
-        throw py::type_error(fmt::format("there is no option '{}'", name));
-    if (name == "phantom")
-        take_phantom(w, *o, v, tactors);
-    else
-        options::put(w, *o, read_handle(*o, v));
-    // A file may say it for other strokes: then it is not refused where nothing uses it.
-    if ((o->where & options::in_defaults) != 0)
-        w.in_file.insert_or_assign(index(*o), source_place());
-    else
-        w.given.set(index(*o));
+    return found;
+}
+
+// Fills in rate, channels and marker of the array's file.
+void apply_output(wishes& w, const setup& file)
+{
+    if (!w.rate && !w.gives("rate"))
+        w.rate = file.output.rate;
+    if (!w.gives("channels"))
+        w.channels = file.output.channels;
+    if (w.gives("marker_channel") || !file.sync || !file.sync->channel)
+        return;
+    w.render.marker_channel = file.sync->channel;
+    if (!w.gives("marker_s"))
+        w.render.marker_s = file.sync->pulse_s;
 }
 
 std::string write_keyword(const option& o, std::string_view value)
@@ -174,7 +181,7 @@ constexpr std::array own_words{options::own_word{"command:devices", "tactor.devi
 
 constexpr options::spelling by_python{.write = write_keyword, .own = own_words};
 
-// A player has its limits with the stream, a score with the samples.
+// Settles rate, channels and limits of a score. A player has its limits with the stream.
 void settle_score(wishes& w)
 {
     render_options& r = w.render;
@@ -208,67 +215,42 @@ py::dict manual_entry(const option& o)
 
 } // namespace
 
-void take_options(wishes& into, const py::dict& given, std::size_t tactors)
+void take_options(wishes& into, const py::dict& given, std::size_t tactors, const setup* file)
 {
     refuse_rivals(given);
-    into.place = of_python;
+    const auto all = find_given(given);
+    for (const auto& [o, value] : all)
+        into.given.set(index(*o));
+    if (file != nullptr)
+        options::apply_defaults(into, *file);
+    if (file != nullptr && (into.place & options::in_score) != 0)
+        apply_output(into, *file);
     if (given.contains("level_dbfs") && !given["level_dbfs"].is_none())
         into.render.sl_db.reset();
-    for (const auto& [key, value] : given)
-        if (!value.is_none())
-            take(into, key.cast<std::string>(), value, tactors);
+    for (const auto& [o, value] : all)
+        if (o->name == "phantom")
+            take_phantom(into, *o, value, tactors);
+        else
+            options::put(into, *o, read_handle(*o, value));
     options::settle(into);
     settle_score(into);
 }
 
-void check_used(const std::vector<std::string>& names, const py::dict& all, const std::string& place)
+void give_player_options(wishes& into, const py::dict& given)
 {
-    wishes w;
-    w.place = place == "compare" ? options::in_compare : options::in_plan | options::in_score;
-    for (const auto& [key, value] : all) {
-        const auto name = key.cast<std::string>();
-        const option* o = options::find(name);
-        if (value.is_none() || o == nullptr || name == "phantom")
-            continue;
-        const options::value v = read_handle(*o, value);
-        const auto* said = std::get_if<std::string>(&v);
-        if (name == "waveform" && waveform_names_file(*said))
-            w.plan.wave.kind = waveform_kind::recording; // it is read later
-        else
-            options::put(w, *o, v);
-    }
-    for (const std::string& name : names)
-        if (const option* o = options::find(name))
-            w.given.set(index(*o));
-    options::settle(w);
-}
-
-given_options player_options_in(const py::dict& given)
-{
-    given_options all;
     for (const option& o : options::all()) {
         const py::str name(o.name.data(), o.name.size());
         if ((o.where & options::in_player) != 0 && given.contains(name) && !given[name].is_none())
-            all.emplace_back(&o, read_handle(o, given[name]));
+            options::give(into, o, read_handle(o, given[name]));
     }
-    return all;
 }
 
-std::vector<std::string> option_names(const std::string& which)
+std::vector<std::string> option_names()
 {
     std::vector<std::string> names;
-    for (const option& o : options::all()) {
-        const bool plans = (o.where & options::planning) != 0;
-        const bool in_plan = (o.where & options::in_plan) != 0;
-        const bool wanted = which == "planning"   ? plans && (o.where & of_python) != 0
-                            : which == "sounding" ? in_plan && !plans
-                            : which == "live"     ? in_plan && (o.where & options::live) != 0
-                                                  : (o.where & of_python) != 0;
-        if (wanted)
+    for (const option& o : options::all())
+        if ((o.where & of_python) != 0)
             names.emplace_back(o.name);
-    }
-    if (which.empty())
-        names.emplace_back(usual_speed);
     return names;
 }
 

@@ -14,7 +14,7 @@ public:
           name_(py::hasattr(model_, "name")
                     ? py::str(model_.attr("name")).cast<std::string>()
                     : py::str(py::type::of(model_).attr("__name__")).cast<std::string>()),
-          answer_(py::module_::import("tactor._own_phantom").attr("answer")),
+          answer_(py::module_::import("tactor._parts").attr("ask_model")),
           tactors_(tactors)
     {
     }
@@ -51,7 +51,7 @@ private:
 
 } // namespace
 
-std::shared_ptr<const phantom_model> model_of(const py::object& own, std::size_t tactors)
+std::shared_ptr<const phantom_model> wrap_model(const py::object& own, std::size_t tactors)
 {
     return std::make_shared<const own_phantom>(own, tactors);
 }

@@ -1,12 +1,17 @@
 // SPDX-License-Identifier: MIT
+#include <algorithm>
 #include <cstdint>
 #include <limits>
+#include <span>
 #include <tuple>
 #include <utility>
 
 #include <fmt/format.h>
 
 #include "core/asked_pace.hpp"
+#include "core/words.hpp"
+#include "files/plan/plan_file.hpp"
+#include "files/plan/plan_json.hpp"
 #include "python/plan_handle.hpp"
 
 namespace tactor::python {
@@ -15,14 +20,21 @@ namespace {
 using namespace py::literals;
 
 plan_handle planned(const std::shared_ptr<array_handle>& on, const stroke& given_stroke,
-                    const py::dict& options)
+                    const py::dict& options, const setup* file)
 {
     wishes w;
-    take_options(w, options, on->value().tactors.size());
+    w.place = options::in_plan | options::in_score;
+    take_options(w, options, on->value().tactors.size(), file);
     const layout& faces = on->faces();
     asked_stroke asked = stroke_as_asked(given_stroke, faces, w);
     plan_handle p{on, std::move(asked.drawn), {}, asked.fit};
     p.sound = w.render;
+    for (const options::option& o : options::all()) {
+        const bool is_sound = (o.where & options::in_plan) != 0 && (o.where & options::planning) == 0;
+        const bool is_set = w.gives(o) || w.in_file.contains(index(o)) || (o.name == "rate" && w.rate);
+        if (is_sound && is_set)
+            p.asked.emplace_back(o.name);
+    }
     p.placed.start_s = p.drawn.start_s;
     p.placed.anchor = p.drawn.anchor;
     const auto work = [&] {
@@ -42,14 +54,28 @@ plan_handle planned(const std::shared_ptr<array_handle>& on, const stroke& given
     return p;
 }
 
-// A column of the bursts as they lie in memory.
+// Returns a property that reads a member of the plan.
+template <class T>
+auto member(T tactor::plan::*m)
+{
+    return [m](const plan_handle& p) -> const T& { return p.plan().*m; };
+}
+
+// Returns a property that reads the name of a member of a closed set.
+template <class T>
+auto member_name(T tactor::plan::*m)
+{
+    return [m](const plan_handle& p) { return std::string(to_string(p.plan().*m)); };
+}
+
+// Returns a column of the bursts as they lie in memory.
 template <class Member>
 py::array_t<double> column(const py::object& self, const Member& of)
 {
     const auto& bursts = self.cast<const plan_handle&>().plan().bursts;
     if (bursts.empty())
         return given({});
-    return view_of({static_cast<py::ssize_t>(bursts.size())}, {sizeof(burst)}, of(bursts.front()), self);
+    return make_view({static_cast<py::ssize_t>(bursts.size())}, {sizeof(burst)}, of(bursts.front()), self);
 }
 
 py::array_t<double> positions(const py::object& self)
@@ -57,8 +83,8 @@ py::array_t<double> positions(const py::object& self)
     const auto& bursts = self.cast<const plan_handle&>().plan().bursts;
     if (bursts.empty())
         return given({}, 2);
-    return view_of({static_cast<py::ssize_t>(bursts.size()), 2}, {sizeof(burst), sizeof(double)},
-                   &bursts.front().position.x_mm, self);
+    return make_view({static_cast<py::ssize_t>(bursts.size()), 2}, {sizeof(burst), sizeof(double)},
+                     &bursts.front().position.x_mm, self);
 }
 
 py::array_t<double> amplitudes(const plan_handle& p)
@@ -80,7 +106,7 @@ py::array_t<double> taus(const plan_handle& p)
     return given(std::move(all));
 }
 
-py::list drives_of(const burst& b)
+py::list list_drives(const burst& b)
 {
     py::list drives;
     for (const drive& d : b.drives)
@@ -93,11 +119,11 @@ py::list rows(const plan_handle& p)
     py::list all;
     for (const burst& b : p.plan().bursts)
         all.append(py::make_tuple(b.onset_s, b.duration_s, py::make_tuple(b.position.x_mm, b.position.y_mm),
-                                  b.intensity, drives_of(b)));
+                                  b.intensity, list_drives(b)));
     return all;
 }
 
-// t, positions, intensities and amplitudes of all samples; None where there is no curve.
+// Returns t, positions, intensities and amplitudes of all samples; None if there is no curve.
 py::object samples(const plan_handle& p)
 {
     if (!p.plan().curve)
@@ -182,13 +208,51 @@ py::dict summary(const plan_handle& p)
         const without_lock free;
         s = summarise(p.on->value(), p.drawn, p.plan());
     }
-    using namespace py::literals;
     return py::dict("rms_error_mm"_a = s.rms_error_mm, "largest_error_mm"_a = s.largest_error_mm,
                     "speed_cv"_a = s.speed_cv, "intensity_cv"_a = s.intensity_cv,
                     "silent_share"_a = s.silent_share, "shared_share"_a = s.shared_share);
 }
 
 } // namespace
+
+render_options settled(const array& a, render_options o)
+{
+    const unsigned marker = o.marker_channel ? *o.marker_channel + 1 : 0;
+    if (o.channels == 0)
+        o.channels = std::max(a.channels(), marker);
+    return o;
+}
+
+std::string write_json(const plan_handle& p)
+{
+    const without_lock free;
+    const array& tactors = p.on->value();
+    const render_options sound = settled(tactors, p.sound);
+    const score samples(tactors, std::vector{p.placed}, sound);
+    const std::span<const compensated_plan> moved(p.moved ? &*p.moved : nullptr, p.moved ? 1 : 0);
+    return files::plans_text(
+        {{&p.drawn, 1}, {&p.placed, 1}, moved, p.fit ? &*p.fit : nullptr, tactors, samples, sound});
+}
+
+plan_handle plan_from_json(const std::string& text, const std::string& named)
+{
+    const without_lock free;
+    files::plan_file f = files::read_plans(text, named);
+    if (f.plans.size() != 1)
+        throw error(error_kind::bad_input, named, "there are " + counted(f.plans.size(), "plan") + " in it",
+                    "take one of its \"plans\"");
+    plan_handle p{std::make_shared<array_handle>(std::move(f.tactors)), std::move(f.strokes.front()),
+                  std::move(f.plans.front()), f.fit};
+    if (!f.moved.empty())
+        p.moved = std::move(f.moved.front());
+    p.sound = f.render;
+    return p;
+}
+
+void check_same_array(const plan_handle& p, const array& in_use)
+{
+    files::check_same_array("plan", p.on->value(), in_use);
+}
 
 asked_stroke stroke_as_asked(const stroke& s, const layout& faces, const wishes& w)
 {
@@ -197,7 +261,7 @@ asked_stroke stroke_as_asked(const stroke& s, const layout& faces, const wishes&
                     "it is fitted together with others of its group",
                     "give apply_fits() all strokes of the file, and what it returns here");
     asked_stroke a{apply_fits({s}, faces).front()};
-    // As the tool does it: times count where the stroke ends up.
+    // The tool does the same: times count for the fitted stroke.
     if (w.fit) {
         fitted_strokes f = fit_strokes({a.drawn}, faces, w.fit_margin_mm);
         a.drawn = std::move(f.strokes.front());
@@ -209,11 +273,11 @@ asked_stroke stroke_as_asked(const stroke& s, const layout& faces, const wishes&
 
 void bind_plan(py::module_& m)
 {
-    m.def("option_names", &option_names, py::arg("which") = "");
+    m.def("option_names", &option_names);
     m.def("option_rows", &option_rows);
-    m.def("check_used", &check_used);
     m.def("burst_duration", [](const py::dict& options) {
         wishes w;
+        w.place = options::in_plan;
         take_options(w, options, 0);
         return burst_duration_s(w.plan);
     });
@@ -221,43 +285,40 @@ void bind_plan(py::module_& m)
     py::class_<plan_handle>(m, "Plan")
         .def(py::init(&planned))
         .def_static("from_json", &plan_from_json)
-        .def_static(
-            "from_parts",
-            [](const std::string& text, const stroke& drawn, const std::shared_ptr<array_handle>& on) {
-                plan_handle p = plan_from_json(text, "plan");
-                check_same_array(p, on->value());
-                p.drawn = drawn;
-                if (drawn.anchor != start_anchor{}) { // which a record does not know
-                    p.placed.start_s = drawn.start_s;
-                    p.placed.anchor = drawn.anchor;
-                }
-                p.on = on;
-                return p;
-            })
-        .def("json", &json_of)
+        .def_static("from_parts",
+                    [](const std::string& text, const stroke& drawn, const std::shared_ptr<array_handle>& on,
+                       std::vector<std::string> asked) {
+                        plan_handle p = plan_from_json(text, "plan");
+                        check_same_array(p, on->value());
+                        p.drawn = drawn;
+                        if (drawn.anchor != start_anchor{}) { // which a record does not know
+                            p.placed.start_s = drawn.start_s;
+                            p.placed.anchor = drawn.anchor;
+                        }
+                        p.on = on;
+                        p.asked = std::move(asked);
+                        return p;
+                    })
+        .def("json", &write_json)
         .def("same",
              [](const plan_handle& a, const plan_handle& b) {
                  return a.plan() == b.plan() && a.placed.anchor == b.placed.anchor;
              })
         .def("sounds_like", [](const plan_handle& a, const plan_handle& b) { return a.plan() == b.plan(); })
-        .def_property_readonly("recipe", &recipe_of)
+        .def_property_readonly("recipe", &plan_recipe)
         .def_property_readonly("array", [](const plan_handle& p) { return p.on; })
         .def_property_readonly("stroke", [](const plan_handle& p) { return p.drawn; })
-        .def_property_readonly("algorithm", [](const plan_handle& p) { return p.plan().algorithm; })
-        .def_property_readonly("phantom", [](const plan_handle& p) { return p.plan().phantom; })
-        .def_property_readonly("faces",
-                               [](const plan_handle& p) { return std::string(to_string(p.plan().faces)); })
-        .def_property_readonly("overlap",
-                               [](const plan_handle& p) { return std::string(to_string(p.plan().overlap)); })
+        .def_property_readonly("algorithm", member(&tactor::plan::algorithm))
+        .def_property_readonly("phantom", member(&tactor::plan::phantom))
+        .def_property_readonly("faces", member_name(&tactor::plan::faces))
+        .def_property_readonly("overlap", member_name(&tactor::plan::overlap))
         .def_property_readonly("start_s", [](const plan_handle& p) { return p.placed.start_s; })
-        .def_property_readonly("stroke_duration_s",
-                               [](const plan_handle& p) { return p.plan().stroke_duration_s; })
-        .def_property_readonly("stroke_length_mm",
-                               [](const plan_handle& p) { return p.plan().stroke_length_mm; })
-        .def_property_readonly("carrier_hz", [](const plan_handle& p) { return p.plan().carrier_hz; })
-        .def_property_readonly("soa_s", [](const plan_handle& p) { return p.plan().soa_s; })
-        .def_property_readonly("total_s", [](const plan_handle& p) { return p.plan().total_s; })
-        .def_property_readonly("warnings", [](const plan_handle& p) { return p.plan().warnings; })
+        .def_property_readonly("stroke_duration_s", member(&tactor::plan::stroke_duration_s))
+        .def_property_readonly("stroke_length_mm", member(&tactor::plan::stroke_length_mm))
+        .def_property_readonly("carrier_hz", member(&tactor::plan::carrier_hz))
+        .def_property_readonly("soa_s", member(&tactor::plan::soa_s))
+        .def_property_readonly("total_s", member(&tactor::plan::total_s))
+        .def_property_readonly("warnings", member(&tactor::plan::warnings))
         .def_property_readonly("conflicts",
                                [](const plan_handle& p) {
                                    std::vector<std::tuple<unsigned, double, double>> all;
@@ -273,20 +334,18 @@ void bind_plan(py::module_& m)
                                    return all;
                                })
         .def_property_readonly("size", [](const plan_handle& p) { return p.plan().bursts.size(); })
-        .def_property_readonly("sound",
-                               [](const plan_handle& p) {
-                                   return py::dict("envelope"_a =
-                                                       std::string(to_string(p.sound.envelope.kind)),
-                                                   "marker_channel"_a = p.sound.marker_channel);
-                               })
+        .def_readonly("asked", &plan_handle::asked)
         .def_property_readonly("continuous", [](const plan_handle& p) { return p.plan().curve.has_value(); })
-        .def("onsets",
-             [](const py::object& s) { return column(s, [](const burst& b) { return &b.onset_s; }); })
-        .def("durations",
-             [](const py::object& s) { return column(s, [](const burst& b) { return &b.duration_s; }); })
-        .def("intensities",
-             [](const py::object& s) { return column(s, [](const burst& b) { return &b.intensity; }); })
-        .def("positions", &positions)
+        .def_property_readonly(
+            "onsets",
+            [](const py::object& s) { return column(s, [](const burst& b) { return &b.onset_s; }); })
+        .def_property_readonly(
+            "durations",
+            [](const py::object& s) { return column(s, [](const burst& b) { return &b.duration_s; }); })
+        .def_property_readonly(
+            "intensities",
+            [](const py::object& s) { return column(s, [](const burst& b) { return &b.intensity; }); })
+        .def_property_readonly("positions", &positions)
         .def("taus", &taus)
         .def("amplitudes", &amplitudes)
         .def("rows", &rows)

@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "python/binding.hpp"
 #include "python/options.hpp"
@@ -19,8 +20,9 @@ struct plan_handle {
     std::optional<fitting> fit = {};
     std::optional<compensated_plan> moved = {}; ///< without its plan, which is in `placed`
     render_options sound = {};                  ///< how it sounds where nobody says otherwise
+    std::vector<std::string> asked = {};        ///< names of the options of that which were set
 
-    /// As it is placed at `start_s`: its own start counts from where its stroke says.
+    /// Returns the plan placed at `start_s`. Its own start counts from its stroke's anchor.
     placed_plan at(std::optional<double> start_s) const
     {
         return {placed.plan, start_s, start_s == placed.start_s ? placed.anchor : start_anchor{}};
@@ -28,9 +30,9 @@ struct plan_handle {
     const tactor::plan& plan() const noexcept { return placed.plan; }
 };
 
-/// The tool's tactor-plan/1 object as text, and back. \throws error.
-std::string json_of(const plan_handle& p);
-/// `named`: what stands for it in messages.
+/// Writes the tool's tactor-plan/1 object, and reads it. \throws error.
+std::string write_json(const plan_handle& p);
+/// Reads a plan; `named` stands for it in messages.
 plan_handle plan_from_json(const std::string& text, const std::string& named);
 
 /// A stroke as it was asked for.
@@ -39,18 +41,17 @@ struct asked_stroke {
     std::optional<fitting> fit = {}; ///< of the options
 };
 
-/// Fitted as its file and the options ask for it, and as long or fast. \throws error (bad_input) where it is
-/// one of a group that is fitted as one picture.
+/// Returns a stroke fitted and timed as its file and the options ask. \throws error (bad_input) where it is
+/// part of a group that is fitted as a single picture.
 asked_stroke stroke_as_asked(const stroke& s, const layout& faces, const wishes& w);
 
-/// As many channels as the array and the marker need, where nobody says how many.
+/// Fills in the channels that the array and the marker need, if no number is given.
 render_options settled(const array& a, render_options o);
 
-/// Everything that decides how the plan sounds where nobody says otherwise, as values that Python compares
-/// and hashes.
-py::tuple recipe_of(const plan_handle& p);
+/// Returns all that decides how the plan sounds by itself, as values that Python compares and hashes.
+py::tuple plan_recipe(const plan_handle& p);
 
-/// \throws error (bad_input) where the plan is for tactors elsewhere or on other channels.
+/// Compares arrays. \throws error (bad_input) if the plan is for tactors elsewhere or on other channels.
 void check_same_array(const plan_handle& p, const array& in_use);
 
 } // namespace tactor::python

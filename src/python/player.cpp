@@ -16,7 +16,7 @@ namespace {
 using namespace py::literals;
 using free_call = py::call_guard<without_lock>;
 
-// A number or nothing, of the keyword arguments that were given.
+// Takes a keyword argument, if it is given.
 template <class T>
 void take(const py::dict& given, const char* name, std::optional<T>& into)
 {
@@ -27,18 +27,18 @@ void take(const py::dict& given, const char* name, std::optional<T>& into)
 std::shared_ptr<player_handle> open(const std::shared_ptr<array_handle>& on, const std::string& pcm,
                                     const py::dict& given, const drive_history& driven)
 {
-    player_wishes w;
-    w.pcm = pcm;
-    w.driven = driven;
-    take(given, "config", w.config);
-    take(given, "array_file", w.array_file);
-    w.given = player_options_in(given);
-    w.wants_log = given["log"].cast<bool>();
+    session::settings s;
+    s.place = options::in_player;
+    s.pcm = pcm;
+    take(given, "config", s.config_file);
+    take(given, "array_file", s.array_name);
+    give_player_options(s, given);
+    const auto wants_log = given["log"].cast<bool>();
     const without_lock free;
-    return std::make_shared<player_handle>(on->value(), w);
+    return std::make_shared<player_handle>(on->value(), std::move(s), driven, wants_log);
 }
 
-py::tuple tuple_of(const stroke_report& r)
+py::tuple report_tuple(const stroke_report& r)
 {
     const py::object started = r.started_ns
                                    ? py::object(py::float_(static_cast<double>(*r.started_ns) * 1e-9))
@@ -61,7 +61,7 @@ py::object next_event(player_handle& h)
     if (!e)
         return py::none();
     if (const auto* r = std::get_if<stroke_report>(&*e))
-        return tuple_of(*r);
+        return report_tuple(*r);
     const auto& l = std::get<log_line>(*e);
     return py::make_tuple(l.kind, l.text);
 }
@@ -86,7 +86,7 @@ std::uint32_t submit(const player_handle& h, const score& s, const std::string& 
     return h.use([&](player& p) { return p.submit(s, start).number; });
 }
 
-py::dict stats_of(const player_handle& h)
+py::dict stats_dict(const player_handle& h)
 {
     player_stats s;
     {
@@ -103,7 +103,7 @@ py::dict stats_of(const player_handle& h)
                     "realtime"_a = s.realtime, "xrun_s"_a = s.xrun_s);
 }
 
-py::dict setup_of(const player_handle& h)
+py::dict setup_dict(const player_handle& h)
 {
     const stream_setup& s = h.setup();
     return py::dict("name"_a = s.name, "channels"_a = s.channels,
@@ -112,7 +112,7 @@ py::dict setup_of(const player_handle& h)
                     "buffer_frames"_a = s.buffer_frames, "batch"_a = s.batch, "has_clock"_a = s.has_clock);
 }
 
-py::dict position_of(const player_handle& h)
+py::dict position_dict(const player_handle& h)
 {
     const player_position p = h.use([](player& q) { return q.position(); });
     const py::object which = p.stroke ? py::object(py::int_(p.stroke->number)) : py::object(py::none());
@@ -139,11 +139,16 @@ struct live_handle {
 };
 
 live_handle begin(const std::shared_ptr<player_handle>& h, const array_handle& on, const py::dict& options,
-                  double timeout_s, std::optional<double> longest_s, double smooth_s)
+                  double timeout_s, std::optional<double> longest_s, double smooth_s, const setup* file)
 {
     wishes w;
+    w.place = options::live;
     w.plan = live_options{}.plan;
-    take_options(w, options, on.value().tactors.size());
+    setup said = file != nullptr ? *file : setup();
+    std::erase_if(said.defaults, [](const written_value& d) { // as in the tool
+        return d.name == "algorithm" || d.name == "outside";
+    });
+    take_options(w, options, on.value().tactors.size(), &said);
     const without_lock free;
     return {h, h->use([&](player& p) {
                 return p.begin({.plan = w.plan,
@@ -214,9 +219,9 @@ void bind_player(py::module_& m)
         .def("refuse_child", &player_handle::refuse_child)
         .def_property_readonly("closed", &player_handle::closed)
         .def_property_readonly("forked", &player_handle::forked)
-        .def("stats", &stats_of)
-        .def("setup", &setup_of)
-        .def("position", &position_of);
+        .def("stats", &stats_dict)
+        .def("setup", &setup_dict)
+        .def("position", &position_dict);
     bind_live(m);
 }
 

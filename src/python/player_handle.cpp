@@ -6,24 +6,11 @@
 
 #include <unistd.h>
 
-#include "options/settle.hpp"
 #include "session/device.hpp"
 #include "session/sound_server.hpp"
 
 namespace tactor::python {
 namespace {
-
-session::settings make_settings(const player_wishes& w)
-{
-    session::settings s;
-    s.place = options::in_player;
-    s.config_file = w.config;
-    s.array_name = w.array_file;
-    s.pcm = w.pcm;
-    for (const auto& [o, v] : w.given)
-        options::give(s, *o, v);
-    return s;
-}
 
 bool same_map(const array& a, const array& b)
 {
@@ -49,15 +36,14 @@ session::environment read_environment(session::settings& s, const array* a)
     return e;
 }
 
-player_handle::player_handle(const array& a, const player_wishes& w)
+player_handle::player_handle(const array& a, session::settings s, const drive_history& driven, bool wants_log)
     : owner_(::getpid()), events_(std::make_shared<event_queue>()), open_(std::make_unique<open_state>())
 {
-    session::settings s = make_settings(w);
     const session::environment e = read_environment(s, &a);
     const render_options sound = session::settle_render(s, e);
     alsa_options device = session::device_options(s, s.stream, e, sound.channels, sound.rate);
     const auto events = events_;
-    if (w.wants_log)
+    if (wants_log)
         device.log = [events](log_kind k, std::string_view text) {
             events->put(log_line{std::string(to_string(k)), std::string(text)});
         };
@@ -68,7 +54,7 @@ player_handle::player_handle(const array& a, const player_wishes& w)
     player_options o;
     o.limits = session::settle_limits(s.stream, e);
     o.require_realtime = s.stream.require_realtime;
-    o.driven = w.driven;
+    o.driven = driven;
     o.log = device.log;
     open_->stream = std::make_unique<player>(session::open_device(device), a, o, open_->lines.lend());
     open_->stream->on_report([events](const stroke_report& r) { events->put(r); });
@@ -110,7 +96,7 @@ bool player_handle::closed() const
     return open_->stream == nullptr;
 }
 
-std::optional<std::string> player_handle::ended_of(const player& p)
+std::optional<std::string> player_handle::end_reason(const player& p)
 {
     const auto end = p.ended();
     return end ? std::optional(end->why) : std::nullopt;
@@ -127,7 +113,7 @@ std::optional<std::string> player_handle::ended() const
 {
     refuse_child();
     const std::shared_lock lock(open_->mutex);
-    return open_->stream != nullptr ? ended_of(*open_->stream) : open_->last.ended;
+    return open_->stream != nullptr ? end_reason(*open_->stream) : open_->last.ended;
 }
 
 drive_history player_handle::history() const
@@ -157,7 +143,7 @@ void player_handle::close()
         const std::unique_lock lock(open_->mutex);
         ended = std::move(open_->stream);
         if (ended != nullptr)
-            open_->last = {ended->stats(), ended_of(*ended), ended->history()};
+            open_->last = {ended->stats(), end_reason(*ended), ended->history()};
     }
     ended.reset();
     {

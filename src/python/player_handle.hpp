@@ -3,32 +3,79 @@
 /// A player as the tool's `play` opens it: configuration, lines and limits included.
 #pragma once
 
+#include <condition_variable>
+#include <deque>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <shared_mutex>
 #include <string>
+#include <utility>
+#include <variant>
 
 #include <sys/types.h>
 
 #include "python/binding.hpp"
-#include "python/events.hpp"
 #include "python/options.hpp"
 #include "session/device.hpp"
 #include "session/lines.hpp"
 
 namespace tactor::python {
 
-/// What Player() was asked for. Nothing given: the configuration's, then the tool's defaults.
-struct player_wishes {
-    std::string pcm = {};
-    std::optional<std::string> config = {};
-    std::optional<std::string> array_file = {};
-    given_options given = {}; ///< checked
-    drive_history driven = {};
-    bool wants_log = false;
+struct log_line {
+    std::string kind;
+    std::string text;
 };
 
-/// Returns the configuration that applies, for this array instead of its own; null: for its own. Fills in
+using event = std::variant<stroke_report, log_line>;
+
+/// Events of a player on their way to a thread of Python's. The player's threads leave them here and never
+/// wait for the interpreter.
+class event_queue {
+public:
+    void put(event e)
+    {
+        {
+            const std::lock_guard lock(mutex_);
+            if (std::holds_alternative<log_line>(e) && waiting_.size() >= most_waiting)
+                return; // an unread log; reports are as many as there are strokes
+            waiting_.push_back(std::move(e));
+        }
+        there_.notify_one();
+    }
+
+    /// Ends the queue: no more events come. next() still gives those that wait.
+    void close()
+    {
+        {
+            const std::lock_guard lock(mutex_);
+            closed_ = true;
+        }
+        there_.notify_all();
+    }
+
+    /// Waits for the next one; none once it is closed and empty.
+    std::optional<event> next()
+    {
+        std::unique_lock lock(mutex_);
+        there_.wait(lock, [this] { return closed_ || !waiting_.empty(); });
+        if (waiting_.empty())
+            return {};
+        event e = std::move(waiting_.front());
+        waiting_.pop_front();
+        return e;
+    }
+
+private:
+    static constexpr std::size_t most_waiting = 4096;
+
+    std::mutex mutex_;
+    std::condition_variable there_;
+    std::deque<event> waiting_;
+    bool closed_ = false;
+};
+
+/// Returns the configuration that applies, with this array; null: with the configuration's. Fills in
 /// rate and format from [defaults] where `s` has none. \throws error.
 session::environment read_environment(session::settings& s, const array* a);
 
@@ -36,8 +83,9 @@ session::environment read_environment(session::settings& s, const array* a);
 /// of the parent's is touched when it ends.
 class player_handle {
 public:
-    /// Without the interpreter's lock. \throws error.
-    player_handle(const array& a, const player_wishes& w);
+    /// Opens the device. What `s` does not set is the configuration's, then the tool's default; `driven` is
+    /// the history of the player before. Without the interpreter's lock. \throws error.
+    player_handle(const array& a, session::settings s, const drive_history& driven, bool wants_log);
     ~player_handle();
     player_handle(const player_handle&) = delete;
     player_handle& operator=(const player_handle&) = delete;
@@ -57,12 +105,13 @@ public:
         return std::forward<F>(f)(*open_->stream);
     }
 
-    /// The player's; once it is closed, those of its end. \throws error in a forked process.
+    /// Return the player's; once it is closed, those of its end. \throws error in a forked process.
     player_stats stats() const;
     std::optional<std::string> ended() const;
     drive_history history() const;
 
-    /// False where the stroke has ended, as all have once it is closed. \throws error in a forked process.
+    /// Returns false if the stroke has ended, as all have once it is closed. \throws error in a forked
+    /// process.
     bool cancel(stroke_id id) const;
     /// Fades out, stops and closes; all strokes have been reported then. Once more: nothing.
     void close();
@@ -77,9 +126,9 @@ private:
         std::optional<std::string> ended = {};
         drive_history history = {};
     };
-    static std::optional<std::string> ended_of(const player& p);
+    static std::optional<std::string> end_reason(const player& p);
 
-    // All that a forked process must not touch, not even to destroy it.
+    // State that a forked process must not touch, not even to destroy it.
     struct open_state {
         mutable std::shared_mutex mutex;
         session::lent_lines lines;

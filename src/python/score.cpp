@@ -22,21 +22,20 @@ namespace {
 // Frames between two looks for Ctrl-C: some 10 ms of work.
 constexpr std::uint64_t frames_at_once = 1 << 18;
 
-// A plan, its start, and what is said of its sound beside what it was made with.
-using score_part = std::tuple<std::optional<double>, const plan_handle*, py::dict>;
+// A plan, its start, true if it was made for another array, and this array's file for what it leaves open.
+using score_part = std::tuple<std::optional<double>, const plan_handle*, bool, const setup*>;
 
-bool says(const py::dict& options, const char* name)
-{
-    return options.contains(name) && !options[name].is_none();
-}
-
-render_options sound_of(const plan_handle& p, const py::dict& said)
+render_options settle_sound(const plan_handle& p, const py::dict& given, bool elsewhere, const setup* file)
 {
     wishes w;
+    w.place = options::in_score;
     w.render = p.sound;
-    take_options(w, said, 0);
+    if (elsewhere)
+        for (const std::string& name : p.asked)
+            w.given.set(index(*options::find(name)));
+    take_options(w, given, 0, file);
     // A plan that was recorded says how many channels it had without a marker.
-    if (w.render.marker_channel && w.render.channels != 0 && !says(said, "channels"))
+    if (w.render.marker_channel && w.render.channels != 0 && !w.channels)
         w.render.channels = std::max(w.render.channels, *w.render.marker_channel + 1);
     return w.render;
 }
@@ -53,7 +52,7 @@ std::string value_text(const std::optional<double>& d)
     return d ? plain_number(*d) : "none";
 }
 
-// A score has these once.
+// Refuses sounds that differ in what a score has once.
 void check_alike(const render_options& a, const render_options& b)
 {
     if (a.rate != b.rate)
@@ -75,12 +74,12 @@ void check_alike(const render_options& a, const render_options& b)
                          std::to_string(*b.marker_channel));
 }
 
-double level_of(const render_options& o)
+double level_db(const render_options& o)
 {
     return o.sl_db.value_or(o.level_dbfs);
 }
 
-// The sound of them all, at the level of the loudest.
+// Returns the sound of them all, at the level of the loudest.
 render_options joined(std::span<const render_options> sounds)
 {
     render_options all = sounds.front();
@@ -91,7 +90,7 @@ render_options joined(std::span<const render_options> sounds)
             all.marker_channel = o.marker_channel;
             all.marker_s = o.marker_s;
         }
-        if (level_of(o) > level_of(all)) {
+        if (level_db(o) > level_db(all)) {
             all.level_dbfs = o.level_dbfs;
             all.sl_db = o.sl_db;
         }
@@ -110,17 +109,17 @@ py::tuple recipe(const render_options& o)
                           limits, o.sl_db.has_value());
 }
 
-// Each plan keeps its level; what they have in common is the score's.
-py::tuple make_score(const array_handle& on, const std::vector<score_part>& plans)
+// Makes a score. Each plan keeps its level; the rest is common to them.
+py::tuple make_score(const array_handle& on, const std::vector<score_part>& plans, const py::dict& given)
 {
     if (plans.empty())
         throw error(error_kind::bad_input, "plans", "there are none", "give at least one");
     std::vector<render_options> sounds;
     std::vector<double> levels;
-    for (const auto& [start_s, p, said] : plans) {
+    for (const auto& [start_s, p, elsewhere, file] : plans) {
         check_same_array(*p, on.value());
-        sounds.push_back(sound_of(*p, said));
-        levels.push_back(level_of(sounds.back()));
+        sounds.push_back(settle_sound(*p, given, elsewhere, file));
+        levels.push_back(level_db(sounds.back()));
     }
     const render_options common = settled(on.value(), joined(sounds));
     const auto made = [&] {
@@ -128,9 +127,9 @@ py::tuple make_score(const array_handle& on, const std::vector<score_part>& plan
         std::vector<placed_plan> all;
         for (std::size_t i = 0; i < plans.size(); ++i) {
             all.push_back(std::get<1>(plans[i])->at(std::get<0>(plans[i])));
-            if (levels[i] != level_of(common))
+            if (levels[i] != level_db(common))
                 all.back().plan = detail::scaled(std::move(all.back().plan),
-                                                 std::pow(10.0, (levels[i] - level_of(common)) / 20.0));
+                                                 std::pow(10.0, (levels[i] - level_db(common)) / 20.0));
         }
         return score(on.value(), std::move(all), common);
     }();
@@ -195,9 +194,9 @@ void write(const score& s, const std::string& file, const std::string& format)
 
 } // namespace
 
-py::tuple recipe_of(const plan_handle& p)
+py::tuple plan_recipe(const plan_handle& p)
 {
-    return recipe(settled(p.on->value(), p.sound)) + py::make_tuple(level_of(p.sound));
+    return recipe(settled(p.on->value(), p.sound)) + py::make_tuple(level_db(p.sound));
 }
 
 void bind_score(py::module_& m)

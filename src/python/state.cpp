@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-#include "python/state.hpp"
-
+// Paths and strokes as bytes.
+#include <concepts>
 #include <cstdint>
 #include <cstring>
 #include <memory>
@@ -14,6 +14,7 @@
 #include "core/path/impl.hpp"
 #include "core/path/outline.hpp"
 #include "core/trajectory/impl.hpp"
+#include "python/binding.hpp"
 
 namespace tactor::python {
 namespace {
@@ -24,80 +25,82 @@ namespace {
                 "make it anew with this version of tactor");
 }
 
+/// Appends values: those with members() by these, closed sets by their names, all else as it lies in memory.
 class writer {
 public:
+    template <class... T>
+    void operator()(const T&... values)
+    {
+        (put(values), ...);
+    }
+    std::string take() { return std::move(bytes_); }
+
+private:
     template <class T>
     void put(const T& v)
     {
-        static_assert(std::is_trivially_copyable_v<T>);
-        const std::size_t at = bytes_.size();
-        bytes_.resize(at + sizeof v);
-        std::memcpy(bytes_.data() + at, &v, sizeof v);
+        if constexpr (requires { members(*this, v); }) {
+            members(*this, v);
+        } else if constexpr (std::is_enum_v<T>) {
+            put(std::string(to_string(v)));
+        } else {
+            static_assert(std::is_trivially_copyable_v<T>);
+            bytes_.append(reinterpret_cast<const char*>(&v), sizeof v);
+        }
     }
-    void text(std::string_view t)
+    void put(const std::string& text)
     {
-        put(std::uint64_t{t.size()});
-        bytes_ += t;
+        put(std::uint64_t{text.size()});
+        bytes_ += text;
     }
     template <class T>
-    void all(const std::vector<T>& list)
+    void put(const std::vector<T>& list)
     {
         put(std::uint64_t{list.size()});
         for (const T& v : list)
             put(v);
     }
-    void maybe(const std::optional<double>& v)
+    template <class T>
+    void put(const std::optional<T>& v)
     {
         put(v.has_value());
-        put(v.value_or(0.0));
+        if (v)
+            put(*v);
     }
-    std::string take() { return std::move(bytes_); }
+    void put(const std::shared_ptr<const recording>& samples)
+    {
+        put(samples != nullptr);
+        if (samples)
+            put(*samples);
+    }
 
-private:
     std::string bytes_;
 };
 
+/// Reads values in the order of a writer.
 class reader {
 public:
     explicit reader(std::string_view bytes) : left_(bytes) {}
 
+    template <class... T>
+    void operator()(T&... values)
+    {
+        (get(values), ...);
+    }
     template <class T>
-    T get()
+    T next()
     {
         T v{};
-        if (left_.size() < sizeof v)
-            refuse();
-        std::memcpy(&v, left_.data(), sizeof v);
-        left_.remove_prefix(sizeof v);
+        get(v);
         return v;
     }
-    // Of things that take so many bytes each.
+    /// Reads a number of things that take at least so many bytes each.
     std::size_t count(std::size_t bytes_each)
     {
-        const auto n = get<std::uint64_t>();
+        const auto n = next<std::uint64_t>();
         if (n > left_.size() / bytes_each)
             refuse();
         return static_cast<std::size_t>(n);
-    }
-    template <class T>
-    std::vector<T> all()
-    {
-        std::vector<T> list(count(sizeof(T)));
-        for (T& v : list)
-            v = get<T>();
-        return list;
-    }
-    std::string text()
-    {
-        const std::string_view t = left_.substr(0, count(1));
-        left_.remove_prefix(t.size());
-        return std::string(t);
-    }
-    std::optional<double> maybe()
-    {
-        const bool there = get<char>() != 0;
-        const double v = get<double>();
-        return there ? std::optional(v) : std::nullopt;
     }
     void end() const
     {
@@ -106,192 +109,181 @@ public:
     }
 
 private:
+    template <class T>
+    void get(T& v)
+    {
+        if constexpr (requires { members(*this, v); }) {
+            members(*this, v);
+        } else if constexpr (std::is_enum_v<T>) {
+            v = from_string<T>(next<std::string>());
+        } else {
+            if (left_.size() < sizeof v)
+                refuse();
+            std::memcpy(&v, left_.data(), sizeof v);
+            left_.remove_prefix(sizeof v);
+        }
+    }
+    void get(bool& v) { v = next<char>() != 0; }
+    void get(std::string& text)
+    {
+        text = left_.substr(0, count(1));
+        left_.remove_prefix(text.size());
+    }
+    template <class T>
+    void get(std::vector<T>& list)
+    {
+        list.resize(count(std::is_trivially_copyable_v<T> ? sizeof(T) : 1));
+        for (T& v : list)
+            get(v);
+    }
+    template <class T>
+    void get(std::optional<T>& v)
+    {
+        if (next<bool>())
+            get(v.emplace());
+    }
+    void get(std::shared_ptr<const recording>& samples)
+    {
+        if (next<bool>())
+            samples = std::make_shared<const recording>(next<recording>());
+    }
+
     std::string_view left_;
 };
 
-void put(writer& w, const path& p)
+template <class T, class Value>
+concept either = std::same_as<std::remove_const_t<T>, Value>;
+
+template <class Io>
+void members(Io& io, either<recording> auto& r)
+{
+    io(r.file, r.rate_hz, r.samples, r.sha256, r.missing);
+}
+
+template <class Io>
+void members(Io& io, either<waveform> auto& w)
+{
+    io(w.kind, w.low_hz, w.high_hz, w.seed, w.texture, w.texture_mm, w.recorded);
+}
+
+template <class Io>
+void members(Io& io, either<movement> auto& m)
+{
+    io(m.easing, m.speed_mm_s, m.intensity, m.rests);
+}
+
+template <class Io>
+void members(Io& io, either<stroke_fit> auto& f)
+{
+    io(f.margin_mm, f.group);
+}
+
+void members(writer& w, const path& p)
 {
     const path::impl& i = detail::access::of(p);
-    w.all(i.vertices);
-    w.put(std::uint64_t{i.curves.size()});
+    w(i.vertices, std::uint64_t{i.curves.size()});
     for (const auto& c : i.curves) {
-        w.put(std::uint64_t{c.segment});
-        w.put(static_cast<char>(c.form.index()));
-        std::visit([&w](const auto& form) { w.put(form); }, c.form);
+        w(std::uint64_t{c.segment}, static_cast<char>(c.form.index()));
+        std::visit([&w](const auto& form) { w(form); }, c.form);
     }
-}
-
-void put(writer& w, const waveform& v)
-{
-    w.put(static_cast<char>(v.kind));
-    w.put(v.low_hz);
-    w.put(v.high_hz);
-    w.put(v.seed);
-    w.put(static_cast<char>(v.texture));
-    w.put(v.texture_mm);
-    w.put(v.recorded != nullptr);
-    if (v.recorded) {
-        w.text(v.recorded->file);
-        w.put(v.recorded->rate_hz);
-        w.all(v.recorded->samples);
-        w.text(v.recorded->sha256);
-        w.put(v.recorded->missing);
-    }
-}
-
-waveform get_waveform(reader& r)
-{
-    const auto kind_of = [&r](auto values) {
-        const auto i = static_cast<std::size_t>(r.get<unsigned char>());
-        if (i >= values.size())
-            refuse();
-        return values[i];
-    };
-    waveform v;
-    v.kind = kind_of(all_values<waveform_kind>());
-    v.low_hz = r.get<double>();
-    v.high_hz = r.get<double>();
-    v.seed = r.get<std::uint64_t>();
-    v.texture = kind_of(all_values<texture_kind>());
-    v.texture_mm = r.get<double>();
-    if (r.get<char>() != 0) {
-        recording samples;
-        samples.file = r.text();
-        samples.rate_hz = r.get<double>();
-        samples.samples = r.all<float>();
-        samples.sha256 = r.text();
-        samples.missing = r.get<std::uint64_t>();
-        v.recorded = std::make_shared<const recording>(std::move(samples));
-    }
-    validate(v);
-    return v;
 }
 
 path get_path(reader& r)
 {
     detail::outline o;
-    o.vertices = r.all<point>();
+    r(o.vertices);
     if (o.vertices.size() < 2)
         refuse();
     for (std::size_t n = r.count(sizeof(detail::elliptic)); n > 0; --n) {
-        const auto segment = r.get<std::uint64_t>();
+        const auto segment = r.next<std::uint64_t>();
         const bool ascends = o.curves.empty() || segment > o.curves.back().segment;
         if (segment + 1 >= o.vertices.size() || !ascends)
             refuse();
-        const bool is_cubic = r.get<char>() == 0;
+        const bool is_cubic = r.next<char>() == 0;
         o.curves.push_back(
             {static_cast<std::size_t>(segment),
-             is_cubic ? detail::shape(r.get<detail::cubic>()) : detail::shape(r.get<detail::elliptic>())});
+             is_cubic ? detail::shape(r.next<detail::cubic>()) : detail::shape(r.next<detail::elliptic>())});
     }
     return detail::make_path(std::move(o), [] { return "pickle"; });
 }
 
-void put(writer& w, const movement& m, double moving_s)
+void members(writer& w, const trajectory& m)
 {
-    w.put(moving_s);
-    w.text(to_string(m.easing));
-    w.all(m.speed_mm_s);
-    w.all(m.intensity);
-    w.all(m.rests);
+    const trajectory::impl& i = detail::access::of(m);
+    w(static_cast<char>(i.law.index()), i.duration_s, i.gain);
+    if (const auto* drawn = std::get_if<detail::drawn_path>(&i.law)) {
+        w(drawn->intensity, drawn->way, drawn->moves != nullptr);
+        if (drawn->moves)
+            w(drawn->moves->moving_s(), drawn->moves->given());
+    } else {
+        w(*std::get<detail::timed_points>(i.law).points);
+    }
 }
 
 std::shared_ptr<const detail::pace> get_pace(reader& r)
 {
-    const double moving_s = r.get<double>();
-    movement m;
-    m.easing = from_string<easing_kind>(r.text());
-    m.speed_mm_s = r.all<profile_point>();
-    m.intensity = r.all<profile_point>();
-    m.rests = r.all<rest>();
+    const auto moving_s = r.next<double>();
+    auto m = r.next<movement>();
     detail::check_movement(m);
     detail::check_duration(moving_s);
     return std::make_shared<const detail::pace>(std::move(m), moving_s);
 }
 
-void put(writer& w, const trajectory& m)
+trajectory get_drawn(reader& r, double duration_s)
 {
-    const trajectory::impl& i = detail::access::of(m);
-    w.put(static_cast<char>(i.law.index()));
-    w.put(i.duration_s);
-    w.put(i.gain);
-    if (const auto* drawn = std::get_if<detail::drawn_path>(&i.law)) {
-        w.put(drawn->intensity);
-        put(w, drawn->way);
-        w.put(drawn->moves != nullptr);
-        if (drawn->moves)
-            put(w, drawn->moves->given(), drawn->moves->moving_s());
-        return;
-    }
-    const auto& points = *std::get<detail::timed_points>(i.law).points;
-    w.all(points);
+    const auto intensity = r.next<double>();
+    detail::check_intensity("pickle", intensity);
+    const path way = get_path(r);
+    if (!r.next<bool>())
+        return trajectory::along(way, duration_s, intensity);
+    detail::check_duration(duration_s);
+    detail::drawn_path law{way, intensity, get_pace(r)};
+    return detail::access::make<trajectory>(
+        std::make_shared<const trajectory::impl>(trajectory::impl{std::move(law), duration_s, 1.0}));
 }
 
-trajectory get_trajectory(reader& r)
+void members(reader& r, trajectory& m)
 {
-    const bool even = r.get<char>() == 0;
-    const double duration_s = r.get<double>();
-    const double gain = r.get<double>();
-    const auto made = [&] {
-        if (even) {
-            const double intensity = r.get<double>();
-            detail::check_intensity("pickle", intensity);
-            const path way = get_path(r);
-            if (r.get<char>() == 0)
-                return trajectory::along(way, duration_s, intensity);
-            detail::check_duration(duration_s);
-            detail::drawn_path law{way, intensity, get_pace(r)};
-            return detail::access::make<trajectory>(
-                std::make_shared<const trajectory::impl>(trajectory::impl{std::move(law), duration_s, 1.0}));
-        }
-        const trajectory own = trajectory::timed(r.all<timed_point>());
-        return own.duration_s() == duration_s ? own : own.with_duration(duration_s);
-    }();
-    // Times a factor: one, unless it was taken several times.
-    return gain == 1.0 ? made : made.with_intensity(gain);
+    const bool is_drawn = r.next<char>() == 0;
+    const auto duration_s = r.next<double>();
+    const auto gain = r.next<double>();
+    m = is_drawn ? get_drawn(r, duration_s) : trajectory::timed(r.next<std::vector<timed_point>>());
+    if (!is_drawn && m.duration_s() != duration_s)
+        m = m.with_duration(duration_s);
+    if (gain != 1.0) // one factor, unless the stroke was made stronger or weaker several times
+        m = m.with_intensity(gain);
+}
+
+template <class Io>
+void members(Io& io, either<stroke> auto& s)
+{
+    io(s.name, s.motion, s.start_s, s.anchor.from, s.anchor.back, s.speed_mm_s, s.usual_pace);
+    io(s.choices.algorithm, s.choices.phantom, s.choices.faces, s.choices.soa_s, s.choices.burst_s,
+       s.choices.level_db, s.fit);
+    io(s.sound.carrier_hz, s.sound.wave, s.sound.am, s.sound.carrier_profile, s.note, s.warnings);
+}
+
+template <class T>
+std::string write(const T& v)
+{
+    writer w;
+    w(v);
+    return w.take();
 }
 
 } // namespace
 
-std::string state_of(const path& p)
+std::string write_state(const path& p)
 {
-    writer w;
-    put(w, p);
-    return w.take();
+    return write(p);
 }
 
-std::string state_of(const stroke& s)
+std::string write_state(const stroke& s)
 {
-    writer w;
-    w.text(s.name);
-    put(w, s.motion);
-    w.maybe(s.start_s);
-    w.maybe(s.sound.carrier_hz);
-    w.maybe(s.speed_mm_s);
-    w.put(s.usual_pace);
-    w.text(to_string(s.anchor.from));
-    w.put(s.anchor.back);
-    w.text(s.choices.algorithm ? to_string(*s.choices.algorithm) : "");
-    w.text(s.choices.phantom ? to_string(*s.choices.phantom) : "");
-    w.text(s.choices.faces ? to_string(*s.choices.faces) : "");
-    w.maybe(s.choices.soa_s);
-    w.maybe(s.choices.burst_s);
-    w.put(s.choices.level_db);
-    w.maybe(s.fit ? std::optional(s.fit->margin_mm) : std::nullopt);
-    w.put(s.fit ? s.fit->group : 0U);
-    w.put(s.sound.wave.has_value());
-    if (s.sound.wave)
-        put(w, *s.sound.wave);
-    w.put(s.sound.am.has_value());
-    w.put(s.sound.am.value_or(modulation{}));
-    w.all(s.sound.carrier_profile);
-    w.text(to_string(s.note));
-    w.put(std::uint64_t{s.warnings.size()});
-    for (const std::string& t : s.warnings)
-        w.text(t);
-    return w.take();
+    return write(s);
 }
 
-path path_from(std::string_view state)
+path read_path(std::string_view state)
 {
     reader r(state);
     path p = get_path(r);
@@ -299,40 +291,13 @@ path path_from(std::string_view state)
     return p;
 }
 
-stroke stroke_from(std::string_view state)
+stroke read_stroke(std::string_view state)
 {
     reader r(state);
-    stroke s{r.text(), get_trajectory(r)}; // braces: in this order
-    s.start_s = r.maybe();
-    s.sound.carrier_hz = r.maybe();
-    s.speed_mm_s = r.maybe();
-    s.usual_pace = r.get<bool>();
-    s.anchor.from = from_string<start_from_kind>(r.text());
-    s.anchor.back = r.get<unsigned>();
-    if (const std::string name = r.text(); !name.empty())
-        s.choices.algorithm = from_string<algorithm_kind>(name);
-    if (const std::string name = r.text(); !name.empty())
-        s.choices.phantom = from_string<phantom_kind>(name);
-    if (const std::string name = r.text(); !name.empty())
-        s.choices.faces = from_string<faces_kind>(name);
-    s.choices.soa_s = r.maybe();
-    s.choices.burst_s = r.maybe();
-    s.choices.level_db = r.get<double>();
-    const auto margin_mm = r.maybe();
-    const auto group = r.get<unsigned>();
-    if (margin_mm)
-        s.fit = stroke_fit{*margin_mm, group};
-    if (r.get<char>() != 0)
-        s.sound.wave = get_waveform(r);
-    const bool modulated = r.get<char>() != 0;
-    const auto am = r.get<modulation>();
-    if (modulated)
-        s.sound.am = am;
-    s.sound.carrier_profile = r.all<carrier_part>();
-    s.note = from_string<note_kind>(r.text());
-    for (std::size_t n = r.count(1); n > 0; --n)
-        s.warnings.push_back(r.text());
+    auto s = r.next<stroke>();
     r.end();
+    if (s.sound.wave)
+        validate(*s.sound.wave);
     return s;
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What the tool computes, draws and lists, by its own code.
+// Functions of the tool, by its code: comparisons, pictures, devices.
 #include <optional>
 #include <string>
 #include <utility>
@@ -34,10 +34,15 @@ std::vector<Enum> parse_kinds(const std::vector<std::string>& names, Enum only)
 }
 
 compared compare(const std::shared_ptr<array_handle>& on, const stroke& s, const py::dict& options,
-                 const std::vector<std::string>& algorithms, const std::vector<std::string>& phantoms)
+                 const std::vector<std::string>& algorithms, const std::vector<std::string>& phantoms,
+                 const setup* file)
 {
     wishes w;
-    take_options(w, options, on->value().tactors.size());
+    w.place = options::in_compare;
+    take_options(w, options, on->value().tactors.size(), file);
+    if (w.gives("sl") && w.plan.scale.kind != scale_kind::sl)
+        throw error(error_kind::bad_input, "sl", "nothing here uses it", "say intensity_scale=\"sl\", too")
+            .with_field("sl");
     const layout& faces = on->faces();
     const stroke target = stroke_as_asked(s, faces, w).drawn;
     const without_lock free;

@@ -15,7 +15,6 @@
 #include "options/settle.hpp"
 #include "python/binding.hpp"
 #include "python/options.hpp"
-#include "python/state.hpp"
 
 namespace tactor::python {
 namespace {
@@ -37,7 +36,7 @@ array_handle make_array(const std::string& name, const std::vector<tactor_row>& 
     return array_handle(std::move(a));
 }
 
-std::vector<tactor_row> rows_of(const array_handle& h)
+std::vector<tactor_row> list_rows(const array_handle& h)
 {
     std::vector<tactor_row> rows;
     for (const tactor_spec& t : h.value().tactors) {
@@ -51,20 +50,25 @@ std::vector<tactor_row> rows_of(const array_handle& h)
     return rows;
 }
 
-using number_rows = py::array_t<double, py::array::c_style | py::array::forcecast>;
-using number_list = number_rows;
+using numbers = py::array_t<double, py::array::c_style | py::array::forcecast>;
 
-// Places from an (n, 2) array.
-std::vector<point> points_of(const number_rows& a)
+// Makes a value of each row of an array.
+template <class Make>
+auto read_rows(const numbers& a, Make make)
+{
+    std::vector<decltype(make(a.data()))> rows;
+    for (py::ssize_t i = 0; i < a.shape(0); ++i)
+        rows.push_back(make(a.data(i)));
+    return rows;
+}
+
+// Reads places from an (n, 2) array.
+std::vector<point> read_points(const numbers& a)
 {
     if (a.ndim() != 2 || a.shape(1) != 2)
         throw error(error_kind::bad_input, "points", "they are no list of (x, y)",
                     "give [(x_mm, y_mm), ...] or an array of shape (n, 2)");
-    const auto v = a.unchecked<2>();
-    std::vector<point> points;
-    for (py::ssize_t i = 0; i < a.shape(0); ++i)
-        points.push_back({v(i, 0), v(i, 1)});
-    return points;
+    return read_rows(a, [](const double* r) { return point{r[0], r[1]}; });
 }
 
 py::tuple pair(point p)
@@ -72,19 +76,19 @@ py::tuple pair(point p)
     return py::make_tuple(p.x_mm, p.y_mm);
 }
 
-// The place that `find` gives for each number, as an (n, 2) array.
+// Returns the place that `find` gives for each number, as an (n, 2) array.
 template <class F>
-py::array_t<double> places(const number_list& numbers, F&& find)
+py::array_t<double> places(const numbers& all, F&& find)
 {
     std::vector<double> out;
-    for (py::ssize_t i = 0; i < numbers.size(); ++i) {
-        const point p = find(numbers.data()[i]);
+    for (py::ssize_t i = 0; i < all.size(); ++i) {
+        const point p = find(all.data()[i]);
         out.insert(out.end(), {p.x_mm, p.y_mm});
     }
     return given(std::move(out), 2);
 }
 
-// Whole or not at all.
+// Writes a file whole or not at all.
 void write_text(const std::string& file, const std::string& text)
 {
     const without_lock free;
@@ -119,24 +123,25 @@ void bind_array(py::module_& m)
                     })
         .def_property_readonly("name", [](const array_handle& h) { return h.value().name; })
         .def_property_readonly("channels", [](const array_handle& h) { return h.value().channels(); })
-        .def_property_readonly("rows", &rows_of)
+        .def_property_readonly("rows", &list_rows)
         .def("text", [](const array_handle& h) { return detail::array_text(h.value()); })
         .def_property_readonly("positions",
                                [](const py::object& self) {
                                    const auto& t = self.cast<const array_handle&>().value().tactors;
                                    constexpr auto bytes = static_cast<py::ssize_t>(sizeof(double));
-                                   return view_of({static_cast<py::ssize_t>(t.size()), 2},
-                                                  {sizeof(tactor_spec), bytes}, &t.front().position.x_mm,
-                                                  self);
+                                   return make_view({static_cast<py::ssize_t>(t.size()), 2},
+                                                    {sizeof(tactor_spec), bytes}, &t.front().position.x_mm,
+                                                    self);
                                })
         .def_property_readonly("faces", [](const array_handle& h) { return h.faces().faces(); })
         .def_property_readonly("pitch_mm", [](const array_handle& h) { return h.faces().pitch_mm(); })
-        .def("grid_lines",
-             [](const array_handle& h) -> std::optional<std::pair<std::vector<double>, std::vector<double>>> {
-                 if (auto g = find_grid(h.value()))
-                     return std::pair(std::move(g->x_mm), std::move(g->y_mm));
-                 return {};
-             })
+        .def_property_readonly(
+            "grid_lines",
+            [](const array_handle& h) -> std::optional<std::pair<std::vector<double>, std::vector<double>>> {
+                if (auto g = find_grid(h.value()))
+                    return std::pair(std::move(g->x_mm), std::move(g->y_mm));
+                return {};
+            })
         .def("contains",
              [](const array_handle& h, double x, double y) {
                  return h.faces().contains({x, y});
@@ -159,43 +164,34 @@ void bind_array(py::module_& m)
                                    return s.array ? std::optional<array_handle>(std::in_place, *s.array)
                                                   : std::nullopt;
                                })
-        .def_property_readonly("defaults", &default_values)
-        .def_property_readonly("rate", [](const setup& s) { return s.output.rate; })
-        .def_property_readonly("channels", [](const setup& s) { return s.output.channels; })
-        .def_property_readonly("marker", [](const setup& s) -> std::optional<std::pair<unsigned, double>> {
-            if (s.sync && s.sync->channel)
-                return std::pair(*s.sync->channel, s.sync->pulse_s);
-            return {};
-        });
+        .def_property_readonly("defaults", &default_values);
 }
 
 void bind_path(py::module_& m)
 {
     py::class_<path>(m, "Path")
         .def_static("svg", [](const std::string& data) { return path::from_svg(data); })
-        .def_static("polyline", [](const number_rows& a) { return path::polyline(points_of(a)); })
+        .def_static("polyline", [](const numbers& a) { return path::polyline(read_points(a)); })
         .def_static("arc",
                     [](double x, double y, double radius, double from, double sweep) {
                         return path::arc({x, y}, radius, from, sweep);
                     })
-        .def_static("from_state", [](const py::bytes& b) { return path_from(std::string(b)); })
-        .def("state", [](const path& p) { return py::bytes(state_of(p)); })
-        .def("data", &path::svg)
+        .def_static("from_state", [](const py::bytes& b) { return read_path(std::string(b)); })
+        .def("state", [](const path& p) { return py::bytes(write_state(p)); })
+        .def_property_readonly("data", &path::svg)
         .def_property_readonly("length_mm", &path::length_mm)
         .def("at", [](const path& p, double s) { return pair(p.at(s)); })
-        .def("at_all", [](const path& p,
-                          const number_list& all) { return places(all, [&](double s) { return p.at(s); }); })
+        .def("at_all",
+             [](const path& p, const numbers& all) { return places(all, [&](double s) { return p.at(s); }); })
         .def("meets_x", &path::meets_x)
         .def("meets_y", &path::meets_y);
 }
 
-stroke timed(const std::string& name, const number_rows& rows)
+stroke timed(const std::string& name, const numbers& rows)
 {
-    const auto v = rows.unchecked<2>();
-    std::vector<timed_point> points;
-    for (py::ssize_t i = 0; i < rows.shape(0); ++i)
-        points.push_back({v(i, 0), {v(i, 1), v(i, 2)}, v(i, 3)});
-    return {name, trajectory::timed(std::move(points))};
+    return {name, trajectory::timed(read_rows(rows, [](const double* r) {
+                return timed_point{r[0], {r[1], r[2]}, r[3]};
+            }))};
 }
 
 stroke along(const std::string& name, const path& p, std::optional<double> duration_s,
@@ -211,36 +207,32 @@ stroke along(const std::string& name, const path& p, std::optional<double> durat
     return s;
 }
 
-// As TOML; a preset by its name, which keeps its note.
-std::string text_of(const stroke& s)
+// Writes TOML; a preset by its name, which keeps its note.
+std::string stroke_toml(const stroke& s)
 {
     for (const std::string& name : stroke_presets())
-        if (name == s.name && state_of(preset_stroke(name)) == state_of(s))
+        if (name == s.name && write_state(preset_stroke(name)) == write_state(s))
             return "[stroke]\npreset = " + detail::toml_string(name) + "\n";
     return detail::stroke_text(s);
 }
 
-std::vector<profile_point> profile_of(const number_rows& r)
+std::vector<profile_point> read_profile(const numbers& rows)
 {
-    const auto v = r.unchecked<2>();
-    std::vector<profile_point> points;
-    for (py::ssize_t i = 0; i < r.shape(0); ++i)
-        points.push_back({v(i, 0), v(i, 1)});
-    return points;
+    return read_rows(rows, [](const double* r) { return profile_point{r[0], r[1]}; });
 }
 
 // Tables of two columns, of the rests of three; those of speed and intensity without rows: even.
 stroke moving(const std::string& name, const path& p, std::optional<double> duration_s,
               std::optional<double> speed_mm_s, double intensity, const std::string& easing,
-              const number_rows& speeds, const number_rows& intensities, const number_rows& rests)
+              const numbers& speeds, const numbers& intensities, const numbers& rests)
 {
-    movement m{duration_s, from_string<easing_kind>(easing), profile_of(speeds), profile_of(intensities), {}};
-    const auto v = rests.unchecked<2>();
+    movement m{duration_s, from_string<easing_kind>(easing), read_profile(speeds), read_profile(intensities),
+               read_rows(rests, [](const double* r) {
+                   return rest{r[0], r[1], r[2]};
+               })};
     double resting_s = 0.0;
-    for (py::ssize_t i = 0; i < rests.shape(0); ++i) {
-        m.rests.push_back({v(i, 0), v(i, 1), v(i, 2)});
-        resting_s += v(i, 1);
-    }
+    for (const rest& r : m.rests)
+        resting_s += r.time_s;
     const bool usual = !duration_s && !speed_mm_s && m.speed_mm_s.empty();
     if (m.speed_mm_s.empty() && speed_mm_s)
         m.speed_mm_s = {{0.0, *speed_mm_s}};
@@ -251,8 +243,8 @@ stroke moving(const std::string& name, const path& p, std::optional<double> dura
     return s;
 }
 
-// Named as the options of a plan.
-py::dict choices_of(const stroke& s)
+// Returns a stroke's options by the names of plan()'s.
+py::dict choices_dict(const stroke& s)
 {
     py::dict d;
     if (s.choices.algorithm)
@@ -279,52 +271,46 @@ void bind_stroke(py::module_& m)
         .def_static("load", [](const std::string& file) { return load_strokes(file); })
         .def_static("parse", [](const std::string& text,
                                 const std::string& name) { return parse_strokes(text, name); })
-        .def_static("from_state", [](const py::bytes& b) { return stroke_from(std::string(b)); })
-        .def("state", [](const stroke& s) { return py::bytes(state_of(s)); })
+        .def_static("from_state", [](const py::bytes& b) { return read_stroke(std::string(b)); })
+        .def("state", [](const stroke& s) { return py::bytes(write_state(s)); })
         .def("same_as",
-             [](const stroke& s, const std::string& name, std::optional<double> start_s,
+             [](stroke s, const std::string& name, std::optional<double> start_s,
                 std::optional<double> carrier_hz) {
-                 stroke t = s;
-                 t.name = name;
-                 t.start_s = start_s;
-                 t.sound.carrier_hz = carrier_hz;
-                 return t;
+                 s.name = name;
+                 s.start_s = start_s;
+                 s.sound.carrier_hz = carrier_hz;
+                 return s;
              })
         .def("with_duration",
-             [](const stroke& s, double duration_s) {
-                 stroke t = s;
-                 t.motion = s.motion.with_duration(duration_s);
-                 t.speed_mm_s.reset();
-                 t.usual_pace = false;
-                 return t;
+             [](stroke s, double duration_s) {
+                 s.motion = s.motion.with_duration(duration_s);
+                 s.speed_mm_s.reset();
+                 s.usual_pace = false;
+                 return s;
              })
         .def("with_speed",
-             [](const stroke& s, double speed_mm_s) {
-                 stroke t = s;
-                 t.motion = s.motion.with_speed(speed_mm_s);
-                 t.speed_mm_s = speed_mm_s;
-                 t.usual_pace = false;
-                 return t;
+             [](stroke s, double speed_mm_s) {
+                 s.motion = s.motion.with_speed(speed_mm_s);
+                 s.speed_mm_s = speed_mm_s;
+                 s.usual_pace = false;
+                 return s;
              })
         .def("reversed",
-             [](const stroke& s) {
-                 stroke t = s;
-                 t.motion = s.motion.reversed();
-                 t.sound.carrier_profile = detail::from_the_end(s.sound.carrier_profile);
-                 return t;
+             [](stroke s) {
+                 s.motion = s.motion.reversed();
+                 s.sound.carrier_profile = detail::from_the_end(s.sound.carrier_profile);
+                 return s;
              })
         .def("with_intensity",
-             [](const stroke& s, double factor) {
-                 stroke t = s;
-                 t.motion = s.motion.with_intensity(factor);
-                 return t;
+             [](stroke s, double factor) {
+                 s.motion = s.motion.with_intensity(factor);
+                 return s;
              })
         .def_readonly("name", &stroke::name)
         .def_readonly("start_s", &stroke::start_s)
         .def_property_readonly("start_from",
                                [](const stroke& s) { return std::string(to_string(s.anchor.from)); })
-        .def_property_readonly("start_back", [](const stroke& s) { return s.anchor.back; })
-        .def_property_readonly("choices", &choices_of)
+        .def_property_readonly("choices", &choices_dict)
         .def_property_readonly("carrier_hz", [](const stroke& s) { return s.sound.carrier_hz; })
         .def_property_readonly("level_db", [](const stroke& s) { return s.choices.level_db; })
         .def_readonly("speed_mm_s", &stroke::speed_mm_s)
@@ -335,17 +321,17 @@ void bind_stroke(py::module_& m)
         .def("position", [](const stroke& s, double t) { return pair(s.motion.position(t)); })
         .def("intensity", [](const stroke& s, double t) { return s.motion.intensity(t); })
         .def("positions",
-             [](const stroke& s, const number_list& all) {
+             [](const stroke& s, const numbers& all) {
                  return places(all, [&](double t) { return s.motion.position(t); });
              })
         .def("intensities",
-             [](const stroke& s, const number_list& t) {
+             [](const stroke& s, const numbers& t) {
                  std::vector<double> out;
                  for (py::ssize_t i = 0; i < t.size(); ++i)
                      out.push_back(s.motion.intensity(t.data()[i]));
                  return given(std::move(out));
              })
-        .def("text", &text_of)
+        .def("text", &stroke_toml)
         .def("meets_x", [](const stroke& s, double x) { return s.motion.meets_x(x); })
         .def("meets_y", [](const stroke& s, double y) { return s.motion.meets_y(y); });
     m.def("stroke_presets", [] { return stroke_presets(); });

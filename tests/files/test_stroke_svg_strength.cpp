@@ -38,7 +38,7 @@ TEST_CASE("the widest of the lines with strength by width has intensity 1")
     // With what the shape says, and as wide as its transform makes it.
     CHECK(intensities(by_width, "<path d=\"M 0 0 H 9\" stroke-width=\"4\" data-intensity=\"0.5\"/><path "
                                 "d=\"M 0 0 H 9\" transform=\"scale(2)\"/>") == std::vector<double>{0.5, 0.5});
-    // One shape does not ask.
+    // A shape that does not ask.
     CHECK(intensities(by_width,
                       "<path d=\"M 0 0 H 9\" stroke-width=\"4\"/><path d=\"M 0 0 H 9\" "
                       "stroke-width=\"9\" data-intensity-from=\"none\"/>") == std::vector<double>{1.0, 1.0});

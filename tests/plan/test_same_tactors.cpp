@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Who follows a target gets what who asks anew gets, to the bit, and mostly need not ask.
+// A reader that follows a target gets the same bits as one that asks anew, and mostly need not ask.
 #include <vector>
 
 #include <doctest/doctest.h>

@@ -122,7 +122,7 @@ inline plan some_curve(dice& d, unsigned tactors, unsigned rate)
 {
     const double length_s = std::max(some_length(d, rate), 1e-4);
     curve_samples all;
-    const std::uint64_t count = detail::samples_of(length_s);
+    const std::uint64_t count = detail::count_samples(length_s);
     for (std::uint64_t k = 0; k < count; ++k) {
         burst b;
         for (unsigned t = 0; t < tactors; ++t)

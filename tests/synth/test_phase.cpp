@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Where the carrier's phase starts: what it does to the spectrum and to the mean, and to the default ramp.
+// The start of the carrier's phase: its effect on the spectrum, on the mean and on the default ramp.
 #include <cmath>
 #include <complex>
 #include <numeric>

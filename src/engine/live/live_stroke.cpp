@@ -135,7 +135,7 @@ live_stroke::impl::impl(stroke_id number, const array& a, const layout& l, const
                         const live_options& o)
     : id(number),
       faces(l),
-      model(detail::model_of(l, o.plan)),
+      model(detail::choose_model(l, o.plan)),
       outside(o.plan.outside),
       scale(o.plan.scale),
       levels(live_levels(a, o.render)),

@@ -58,7 +58,7 @@ json people_json(const comparison& c)
             {"parts", {0.05, 0.95}}};
 }
 
-// What the low-speed observer adds.
+// Adds the members of the low-speed observer.
 void add_taps(json& j, const comparison_row& r, bool by_taps)
 {
     const bool predicted = by_taps && r.unpredicted.empty();

@@ -40,13 +40,13 @@ public:
     json_value operator[](const std::string& key) const;
     /// This value, where its object has it; it may be null. \throws error (bad_input).
     const json_value& need_member() const;
-    /// The members of a list; none where it is not there.
+    /// Returns the members of a list; none where it is not there.
     std::vector<json_value> list() const;
 
     std::optional<double> number() const;
     std::optional<std::string> text() const;
     std::optional<bool> truth() const;
-    /// A value of a closed set, by its name.
+    /// Returns a value of a closed set, by its name.
     template <class Kind>
     std::optional<Kind> kind() const
     {
@@ -70,7 +70,8 @@ public:
     std::vector<json_value> need_list() const;
     std::vector<double> need_numbers() const;
 
-    /// Any value in words: members of objects and lists with commas between; empty where it is not there.
+    /// Returns any value in words: members of objects and lists with commas between; empty where it is not
+    /// there.
     std::string words() const;
 
     /// \throws error (bad_input) with file and place. An empty hint is that of the file.
@@ -105,7 +106,7 @@ nlohmann::ordered_json or_null(const std::optional<T>& v)
     return v ? nlohmann::ordered_json(*v) : nlohmann::ordered_json(nullptr);
 }
 
-/// Null where a text is empty.
+/// Returns null for an empty text.
 inline nlohmann::ordered_json or_null(const std::string& s)
 {
     return s.empty() ? nlohmann::ordered_json(nullptr) : nlohmann::ordered_json(s);

@@ -53,7 +53,7 @@ public:
 private:
     std::string key(std::size_t depth) const { return depth < keys_.size() ? keys_[depth] : ""; }
 
-    // A burst or a sample, so deep in a plan.
+    // Takes a burst or a sample, so deep in a plan.
     bool take(std::size_t deep, std::size_t top, const ordered_json& j)
     {
         const bool is_burst = deep == 2 && key(top + 1) == "bursts";
@@ -65,7 +65,7 @@ private:
         return is_burst || is_sample;
     }
 
-    // False: it is done with.
+    // Returns false for a plan that is taken.
     bool end_plan(const ordered_json& j, bool whole)
     {
         const json_value all(j, file_, hint);
@@ -101,8 +101,8 @@ private:
     plan_file read_;
 };
 
-// "[json.exception.parse_error.101] parse error at line 1, column 2: syntax error ..." without the library's
-// part.
+// Returns "[json.exception.parse_error.101] parse error at line 1, column 2: syntax error ..." without the
+// library's part.
 std::string said(const std::string& what)
 {
     const std::size_t at = what.find("line ");
@@ -110,7 +110,7 @@ std::string said(const std::string& what)
                                    : what.substr(at);
 }
 
-// Of a stream or of a text.
+// Reads a stream or a text.
 template <class Input>
 plan_file read_from(Input&& in, const std::string& name)
 {

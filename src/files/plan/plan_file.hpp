@@ -12,7 +12,7 @@
 
 namespace tactor::files {
 
-/// What a file with one plan or several says (schemas tactor-plan/1 and tactor-plans/1).
+/// Contents of a file with one plan or several (schemas tactor-plan/1 and tactor-plans/1).
 struct plan_file {
     std::vector<stroke> strokes; ///< as far as plans tell: where their bursts or samples are
     std::vector<placed_plan> plans;
@@ -22,19 +22,19 @@ struct plan_file {
     render_options render; ///< with rate, channels and marker
 };
 
-/// Whether a STROKE argument names such a file: by its extension, .json.
+/// Returns true if a STROKE argument names such a file: if its extension is .json.
 bool is_plan_file(const std::string& argument);
 
 /// Reads burst by burst, so that the text is never in memory. Blocks on the file system.
 /// \throws error (bad_input) with the line and column, or the field.
 plan_file load_plans(const std::string& file);
-/// The same of what a program holds; `name` stands for it in messages.
+/// Reads a text that is in memory; `name` stands for it in messages.
 plan_file read_plans(std::string_view text, const std::string& name);
 
-/// Whether a text can be plans only: no stroke file begins with a brace.
+/// Returns true if a text can only be plans: no stroke file begins with a brace.
 bool holds_plans(std::string_view text) noexcept;
 
-/// \throws error (bad_input) where places, channels or polarities differ from those that the plans are for.
+/// Compares arrays. \throws error (bad_input) where places, channels or polarities differ.
 void check_same_array(const std::string& file, const array& made_for, const array& in_use);
 
 } // namespace tactor::files

@@ -7,7 +7,6 @@
 #include <nlohmann/json.hpp>
 
 #include "files/plan/json_value.hpp"
-#include "files/plan/plan_sound.hpp"
 #include "files/plan/plan_values.hpp"
 #include "files/plan/row_json.hpp"
 
@@ -30,7 +29,8 @@ struct record {
     const render_options& options;
 };
 
-// The peak of a tactor's channel at amplitude 1; null where a threshold is missing, and nothing drives it.
+// Returns the peak of a tactor's channel at amplitude 1; null where a threshold is missing: nothing drives
+// it.
 json peak_dbfs(const tactor_spec& t, double carrier_hz, const render_options& o)
 {
     if (!o.sl_db)
@@ -39,7 +39,7 @@ json peak_dbfs(const tactor_spec& t, double carrier_hz, const render_options& o)
     return threshold ? json(*threshold + *o.sl_db) : json(nullptr);
 }
 
-// What turns the plan into samples.
+// Writes the options that turn the plan into samples.
 json render_json(const record& r)
 {
     const render_options& o = r.options;
@@ -65,7 +65,7 @@ json render_json(const record& r)
     return j;
 }
 
-// One object without its rows: they are streamed between head and tail.
+// Writes an object without its rows: they are streamed between head and tail.
 json head_json(const record& r)
 {
     const stroke& s = r.drawn;
@@ -129,13 +129,13 @@ json tail_json(const record& r)
     return j;
 }
 
-// On one line; file names may be no UTF-8.
+// Writes a value on one line; file names may be no UTF-8.
 std::string one_line(const json& j)
 {
     return j.dump(-1, ' ', false, json::error_handler_t::replace);
 }
 
-// The members of an object without its braces, so that objects can be joined.
+// Returns the members of an object without its braces, so that objects can be joined.
 std::string members(const json& j)
 {
     const std::string text = one_line(j);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "files/plan/plan_sound.hpp"
+#include "files/plan/plan_values.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -20,7 +20,7 @@ using json = nlohmann::ordered_json;
 
 constexpr double most_bend_hz = 1e7;
 
-// Whoever plays the plan may be elsewhere.
+// Names a file by its whole path: the plan may be played in another folder.
 std::string name_waveform(const waveform& w)
 {
     std::string text = waveform_text(w);
@@ -107,7 +107,7 @@ void take_threshold(const json_value& t, tactor_spec& into)
 
 namespace {
 
-// Other samples would sound under the plan's name.
+// Refuses a recording that has changed: other samples would sound under the plan's name.
 void check_recording(const json_value& said, const recording& r)
 {
     if (said["sha256"].need_text() != r.sha256 ||

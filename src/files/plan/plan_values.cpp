@@ -10,7 +10,6 @@
 
 #include "core/kind_names.hpp"
 #include "files/plan/plan_json.hpp"
-#include "files/plan/plan_sound.hpp"
 
 namespace tactor::files {
 
@@ -30,16 +29,7 @@ std::vector<drive> read_drives(const json_value& f)
     return drives;
 }
 
-burst read_place(const json_value& f)
-{
-    burst b;
-    b.position = {f["x_mm"].need_number(), f["y_mm"].need_number()};
-    b.intensity = f["intensity"].need_number();
-    b.drives = read_drives(f);
-    return b;
-}
-
-// A built-in model shares the intensity out and adds nothing to it.
+// Refuses amplitudes above the intensity: a built-in model shares it out and adds nothing.
 void check_amplitudes(const json_value& f, const std::string& name, const plan& p, const burst& b)
 {
     constexpr double rounding = 1e-9;
@@ -89,18 +79,22 @@ constexpr std::uint64_t most_way_points = 10000;
 
 } // namespace
 
+burst read_sample(const json_value& f)
+{
+    burst b;
+    b.position = {f["x_mm"].need_number(), f["y_mm"].need_number()};
+    b.intensity = f["intensity"].need_number();
+    b.drives = read_drives(f);
+    return b;
+}
+
 burst read_burst(const json_value& f)
 {
-    burst b = read_place(f);
+    burst b = read_sample(f);
     b.onset_s = f["onset_s"].need_number();
     b.duration_s = f["duration_s"].need_number();
     b.tau_s = f["tau_s"].number();
     return b;
-}
-
-burst read_sample(const json_value& f)
-{
-    return read_place(f);
 }
 
 array read_array(const json_value& plan)
@@ -220,7 +214,7 @@ stroke read_stroke(const json_value& f, const plan& p, const std::optional<compe
         add(b.tau_s.value_or(b.onset_s), b);
         last = b;
     }
-    // For a picture; as many as one can tell apart.
+    // For a picture: no more points than people can tell apart.
     const std::uint64_t step = p.curve ? 1 + p.curve->size() / most_way_points : 1;
     for (std::uint64_t k = 0; p.curve && k < p.curve->size(); k += step) {
         p.curve->sample(k, last);

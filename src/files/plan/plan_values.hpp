@@ -16,20 +16,34 @@
 namespace tactor::files {
 
 burst read_burst(const json_value& f);
-/// A point of a continuous stroke.
+/// Reads a point of a continuous stroke.
 burst read_sample(const json_value& f);
 array read_array(const json_value& plan);
 render_options read_render(const json_value& plan);
 placed_plan read_plan(const json_value& f, const array& a, std::vector<burst> bursts, curve_samples samples);
-/// What --compensate did, without the plan; none where it was not asked for.
+/// Reads the compensation without its plan, if the plan has one.
 std::optional<compensated_plan> read_compensation(const json_value& plan);
-/// The way of a plan's bursts or samples, or of what moved ones are to be felt as, for pictures.
+/// Reads the path of a plan's bursts or samples, or the target of compensated ones, for pictures.
 stroke read_stroke(const json_value& f, const plan& p, const std::optional<compensated_plan>& moved);
 
-/// x' = a x + c y + e, y' = b x + d y + f, as in SVG.
+/// Writes a fitting as x' = a x + c y + e, y' = b x + d y + f, as in SVG.
 nlohmann::ordered_json fit_json(const fitting& f);
 
-/// None where the plan's stroke was not fitted. \throws error (bad_input).
+/// Reads the fitting of the plan's stroke, if it was fitted. \throws error (bad_input).
 std::optional<fitting> read_fitting(const json_value& plan);
+
+/// Puts the sound into the member "stroke", which names no defaults.
+void put_sound(nlohmann::ordered_json& stroke, const plan& p);
+/// Writes the member "render.envelope".
+nlohmann::ordered_json envelope_json(const burst_envelope& e);
+
+/// Write and read "threshold_dbfs" of a tactor: a level, a list of [Hz, dBFS], or null.
+nlohmann::ordered_json threshold_json(const tactor_spec& t);
+void take_threshold(const json_value& t, tactor_spec& into);
+
+/// Reads the sound from "stroke", and the WAV file that it names. \throws error (bad_input).
+void take_sound(const json_value& stroke, plan& p);
+/// Reads the envelope from "render".
+burst_envelope read_envelope(const json_value& render);
 
 } // namespace tactor::files

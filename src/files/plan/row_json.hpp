@@ -33,9 +33,9 @@ class row_json {
 public:
     explicit row_json(const array& a) : array_(a), tactors_(a.tactors.size()) {}
 
-    /// A burst.
+    /// Appends a burst.
     void append(std::string& out, const burst& b, double ramp_s);
-    /// A point of a continuous stroke.
+    /// Appends a point of a continuous stroke.
     void append_sample(std::string& out, const burst& b);
 
 private:

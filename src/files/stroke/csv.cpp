@@ -67,7 +67,7 @@ private:
     static constexpr std::string_view header_hint =
         "the first line names the columns: t_s,x_mm,y_mm,intensity";
 
-    // The next line with something on it, into line_.
+    // Reads the next line with something on it into line_.
     bool next_line()
     {
         while (!rest_.empty()) {
@@ -156,7 +156,8 @@ private:
         header_line_ = line_number_;
     }
 
-    // Touch screens give several places the time of one report: the last is where the finger is.
+    // Adds a point. Touch screens give several places the time of one report: the last is where the finger
+    // is.
     void add(const timed_point& p)
     {
         if (points_.empty() || p.t_s != points_.back().t_s) {
@@ -170,7 +171,7 @@ private:
             first_repeated_ = line_number_;
     }
 
-    // From the last place to the next one the touch is lifted.
+    // Adds a point. Behind a gap the touch is lifted from the last place to this one.
     void add_behind_gap(const timed_point& p)
     {
         constexpr double at_once_s = 1e-6;
@@ -207,7 +208,7 @@ private:
         return all;
     }
 
-    // None for a line in which a tracker had lost what it follows.
+    // Returns none for a line in which a tracker had lost its target.
     std::optional<timed_point> row()
     {
         split();

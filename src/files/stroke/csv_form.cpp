@@ -33,16 +33,16 @@ bool is_number(std::string_view s)
 
 void refuse_lone_cr(std::string_view text, const std::string& name)
 {
-    // CR before LF, or at the end of the text, is no line end of its own.
+    // CR before LF, or at the end of the text, ends no line.
     std::string_view first = text.substr(0, text.find('\n'));
     while (!first.empty() && first.back() == '\r')
         first.remove_suffix(1);
     if (const std::size_t at = first.find('\r'); at != std::string_view::npos)
-        refuse_form(place_of(text, at, name), "its lines end in CR alone",
+        refuse_form(find_place(text, at, name), "its lines end in CR alone",
                     "save it with line ends of Unix, or convert it: tr '\\r' '\\n' < OLD > NEW");
 }
 
-/// Separators other than commas in a line of names or numbers, as words; empty for none.
+/// Returns the word for separators other than commas in a line of names or numbers; empty for none.
 std::string_view separators(std::string_view line)
 {
     if (line.find(',') != std::string_view::npos && line.find(';') == std::string_view::npos)
@@ -79,12 +79,12 @@ void refuse_other_form(std::string_view text, const std::string& name)
         // The form shows in the line's first bytes: a line may be as long as the file.
         const std::string_view line = without_blanks(text.substr(at, std::min(end - at, longest_look)));
         if (line.starts_with('#') && line.find(first_column) != std::string_view::npos)
-            comment = place_of(text, at, name);
+            comment = find_place(text, at, name);
         if (line.empty() || line.starts_with('#')) {
             at = end + 1;
             continue;
         }
-        const source_place here = place_of(text, at, name);
+        const source_place here = find_place(text, at, name);
         if (const std::string_view words = separators(line); !words.empty())
             refuse_form(here, fmt::format("{} separate its columns", words),
                         words == "semicolons"

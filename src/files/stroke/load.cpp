@@ -15,7 +15,7 @@ namespace tactor {
 inline namespace v0 {
 namespace {
 
-// The first line with something on it that is not a comment.
+// Returns the first line with something on it that is not a comment.
 std::string_view first_line(std::string_view text)
 {
     while (!text.empty()) {
@@ -31,7 +31,8 @@ std::string_view first_line(std::string_view text)
     return {};
 }
 
-// A header that forgets t_s is still one: TOML has no line with a comma and without '=' at its top.
+// Returns true for a header, also one that forgets t_s: TOML has no line with a comma and without '=' at its
+// top.
 bool looks_like_csv(std::string_view line)
 {
     return line.find_first_of("=[{") == std::string_view::npos &&

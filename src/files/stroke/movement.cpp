@@ -37,7 +37,7 @@ public:
             if (!entry || entry->size() < least || entry->size() > most)
                 fail_at(table_.where(node), fmt::format("an entry of {} is {}", key_, shown(node)),
                         fmt::format("give {}", shape_));
-            const double part = table_.number_of((*entry)[0], "the part of the path", a_part);
+            const double part = table_.to_number((*entry)[0], "the part of the path", a_part);
             if (!(part > before))
                 fail_at(table_.where(node),
                         fmt::format("the part {} of {} does not come after {}", part, key_, before),
@@ -58,7 +58,7 @@ std::vector<profile_point> read_profile(const toml_table& t, std::string_view ke
 {
     std::vector<profile_point> points;
     part_list(t, key, "[[part, value], ...]").each(2, 2, [&](double part, const toml::array& entry) {
-        points.push_back({part, t.number_of(entry[1], key, values)});
+        points.push_back({part, t.to_number(entry[1], key, values)});
     });
     return points;
 }
@@ -68,9 +68,9 @@ std::vector<rest> read_pauses(const toml_table& t)
     std::vector<rest> rests;
     part_list(t, "pauses", "[[part, seconds], ...] or [[part, seconds, intensity], ...]")
         .each(2, 3, [&](double part, const toml::array& entry) {
-            const double time = t.number_of(entry[1], "a pause", {0.0, longest_stroke_s, true});
+            const double time = t.to_number(entry[1], "a pause", {0.0, longest_stroke_s, true});
             const double intensity =
-                entry.size() == 3 ? t.number_of(entry[2], "the intensity of a pause", {0.0, 1.0}) : 1.0;
+                entry.size() == 3 ? t.to_number(entry[2], "the intensity of a pause", {0.0, 1.0}) : 1.0;
             rests.push_back({part, time, intensity});
         });
     return rests;
@@ -130,12 +130,10 @@ trajectory along_as_told(const toml_table& t, std::string_view kind, const path&
             *m.duration_s += r.time_s;
     if (!m.rests.empty())
         key = "pauses";
-    try {
+    return t.at_key(key, [&] {
         return told.key.empty() ? trajectory::along(way, *seconds, told.intensity)
                                 : trajectory::along(way, m, told.intensity);
-    } catch (const error& e) {
-        t.fail(key, e.what(), {});
-    }
+    });
 }
 
 std::optional<double> kept_speed(const told_pace& told, double length_mm)

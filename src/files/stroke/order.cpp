@@ -12,19 +12,14 @@ namespace {
 
 constexpr unsigned most_repeats = 10'000;
 
-unsigned count_of(std::size_t strokes)
-{
-    return static_cast<unsigned>(strokes); // at most most_strokes
-}
-
 void start(stroke& s, double start_s, start_from_kind from, std::size_t back)
 {
     s.start_s = start_s;
-    s.anchor = {from, count_of(back)};
+    s.anchor = {from, static_cast<unsigned>(back)}; // at most most_strokes
 }
 
-/// After the last `back` strokes. When the one before has ended is said without a number, which is exact to
-/// the frame.
+/// Places a stroke after the last `back` strokes. Right after the last one it gets no number: that is exact
+/// to the frame.
 void follow(stroke& s, double wait_s, std::size_t back)
 {
     if (wait_s == 0.0 && back == 1) {

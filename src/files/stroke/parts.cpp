@@ -19,7 +19,7 @@
 namespace tactor::detail {
 namespace {
 
-// What the library refuses, with the place in the file.
+// Returns make(). What the library refuses, it refuses with the place in the file.
 template <class F>
 auto said_at(const toml_table& t, std::string_view key, F make)
 {
@@ -112,8 +112,8 @@ struct turned {
     double sine = 0.0;
 };
 
-// Quarter turns are exact.
-turned turn_of(double degrees)
+// Returns a turn; quarter turns are exact.
+turned make_turn(double degrees)
 {
     const double quarters = degrees / 90.0;
     if (quarters == std::floor(quarters)) {
@@ -185,7 +185,7 @@ stroke placed(const toml_table& t, stroke s)
         return s;
     }
     const double scale = t.number("scale", {0.0, largest_scale, true}).value_or(1.0);
-    const turned turn = turn_of(t.number("rotate_deg", {-most_degrees, most_degrees}).value_or(0.0));
+    const turned turn = make_turn(t.number("rotate_deg", {-most_degrees, most_degrees}).value_or(0.0));
     const std::string mirror = t.choice("mirror", {"x", "y"}).value_or("");
     const point by = t.place("translate_mm").value_or(point{});
     const point from = about.value_or(point{});
@@ -193,13 +193,10 @@ stroke placed(const toml_table& t, stroke s)
     const double y = mirror == "y" ? -scale : scale;
     const affine m{x * turn.cosine, x * turn.sine,       -y * turn.sine,
                    y * turn.cosine, from.x_mm + by.x_mm, from.y_mm + by.y_mm};
-    try {
-        s.motion = moved(s.motion, from, m, {}, [&] { return std::string(first); });
-        if (s.speed_mm_s && s.motion.length_mm() > 0.0)
-            s.motion = s.motion.with_speed(*s.speed_mm_s);
-    } catch (const error& e) {
-        t.fail(first, e.what(), {});
-    }
+    s.motion = t.at_key(first, [&] {
+        const trajectory there = moved(s.motion, from, m, {}, [&] { return std::string(first); });
+        return s.speed_mm_s && there.length_mm() > 0.0 ? there.with_speed(*s.speed_mm_s) : there;
+    });
     return s;
 }
 

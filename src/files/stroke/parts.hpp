@@ -34,7 +34,7 @@ struct entry {
 /// Strokes one after the other as the keys start_s and start_from of their tables say.
 class sequence {
 public:
-    /// Of a group, whose strokes count from its start, or of the whole piece.
+    /// Strokes of a group, which count from its start, or of the whole file.
     enum class of { group, piece };
     explicit sequence(of what) noexcept : whole_piece_(what == of::piece) {}
 
@@ -81,7 +81,8 @@ struct told_pace {
 /// Reads duration, speed, intensity, easing and pauses.
 told_pace read_pace(const toml_table& t);
 
-/// Returns a stroke along a path as told; `own_s` is the time of what has one and is told none.
+/// Returns a movement along a path at the pace that the file gives; `own_s` is the time of a preset, for a
+/// file that gives none.
 trajectory along_as_told(const toml_table& t, std::string_view kind, const path& way, const told_pace& told,
                          std::optional<double> own_s);
 

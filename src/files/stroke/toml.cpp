@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Stroke files in TOML: [stroke] or [[stroke]].
+#include <algorithm>
 #include <array>
 #include <filesystem>
 #include <iterator>
@@ -25,7 +26,7 @@ namespace tactor {
 inline namespace v0 {
 namespace {
 
-/// Where a file's recordings are looked for; nothing for text that is no file's.
+/// Folder in which a file's recordings are; null for text that is no file's.
 using folder_of_file = const std::filesystem::path*;
 
 using detail::bounds;
@@ -37,17 +38,6 @@ constexpr double day_s = detail::longest_stroke_s;
 constexpr bounds anywhere{-max_mm, max_mm};
 constexpr unsigned deepest_group = 8;
 
-// What geometry refuses, with the place in the file.
-template <class F>
-auto at_key(const toml_table& t, std::string_view key, F make)
-{
-    try {
-        return make();
-    } catch (const error& e) {
-        t.fail(key, e.what(), {});
-    }
-}
-
 path read_points(const toml_table& t)
 {
     std::vector<point> points;
@@ -58,7 +48,7 @@ path read_points(const toml_table& t)
         t.numbers(entry, "a point", 2, 2, xy);
         points.push_back({xy[0], xy[1]});
     }
-    return at_key(t, "points", [&] { return path::polyline(points); });
+    return t.at_key("points", [&] { return path::polyline(points); });
 }
 
 path read_arc(const toml_table& t)
@@ -69,7 +59,7 @@ path read_arc(const toml_table& t)
     const double radius = a.need(a.number("radius_mm", {0.0, max_mm, true}), "radius_mm");
     const double from = a.need(a.number("from_deg", {-3600.0, 3600.0}), "from_deg");
     const double sweep = a.need(a.number("sweep_deg", {-360.0, 360.0}), "sweep_deg");
-    return at_key(t, "arc", [&] { return path::arc(centre, radius, from, sweep); });
+    return t.at_key("arc", [&] { return path::arc(centre, radius, from, sweep); });
 }
 
 timed_point read_timed_point(const toml_table& t, const toml::node& entry, double intensity)
@@ -79,10 +69,10 @@ timed_point read_timed_point(const toml_table& t, const toml::node& entry, doubl
         detail::fail_at(t.where(entry), fmt::format("a timed point is {}", detail::shown(entry)),
                         "give [t_s, x_mm, y_mm] or [t_s, x_mm, y_mm, intensity]");
     timed_point p;
-    p.t_s = t.number_of((*a)[0], "t_s", {0.0, day_s});
-    p.position = {t.number_of((*a)[1], "x_mm", anywhere), t.number_of((*a)[2], "y_mm", anywhere)};
+    p.t_s = t.to_number((*a)[0], "t_s", {0.0, day_s});
+    p.position = {t.to_number((*a)[1], "x_mm", anywhere), t.to_number((*a)[2], "y_mm", anywhere)};
     p.intensity =
-        intensity * (a->size() == 4 ? t.number_of((*a)[3], "intensity", {0.0, detail::max_intensity}) : 1.0);
+        intensity * (a->size() == 4 ? t.to_number((*a)[3], "intensity", {0.0, detail::max_intensity}) : 1.0);
     return p;
 }
 
@@ -102,20 +92,20 @@ trajectory read_timed(const toml_table& t, double intensity)
                             "put the points in order of time, each time once");
         points.push_back(p);
     }
-    return at_key(t, "timed", [&] { return trajectory::timed(std::move(points)); });
+    return t.at_key("timed", [&] { return trajectory::timed(std::move(points)); });
 }
 
-// A movement that has its own time, in the time that the file asks for.
+// Returns a movement that has its own time in the time that the file gives.
 trajectory paced(const toml_table& t, const told_pace& p, trajectory own)
 {
     const auto seconds = p.time_for(own.length_mm());
     if (!seconds)
         return own;
     const char* key = p.speed_mm_s ? "speed_mm_s" : "duration_s";
-    return at_key(t, key, [&] { return own.with_duration(*seconds); });
+    return t.at_key(key, [&] { return own.with_duration(*seconds); });
 }
 
-// Timed points are where they are when they are.
+// Refuses other movements for timed points.
 void refuse_uneven(const toml_table& t, const told_pace& p)
 {
     if (!p.key.empty())
@@ -125,7 +115,7 @@ void refuse_uneven(const toml_table& t, const told_pace& p)
             "leave it out, or give the path as points");
 }
 
-// A preset's path, if the file moves along it in another way.
+// Returns a preset's movement, or the one along its path that the file gives.
 trajectory preset_as_told(const toml_table& t, const told_pace& p, const trajectory& own)
 {
     if (p.key.empty())
@@ -135,24 +125,24 @@ trajectory preset_as_told(const toml_table& t, const told_pace& p, const traject
 }
 
 template <class... Lists>
-std::vector<std::string_view> keys_of(const Lists&... lists)
+std::vector<std::string_view> join_keys(const Lists&... lists)
 {
     std::vector<std::string_view> all;
     (all.insert(all.end(), std::begin(lists), std::end(lists)), ...);
     return all;
 }
 
-constexpr std::array<std::string_view, 9> drawing_keys{
-    "path", "points", "timed", "arc", "preset", "duration_s", "speed_mm_s", "intensity", "carrier_hz"};
+constexpr std::array<std::string_view, 5> kinds{"path", "points", "timed", "arc", "preset"};
+constexpr std::array<std::string_view, 4> drawing_keys{"duration_s", "speed_mm_s", "intensity", "carrier_hz"};
 constexpr std::array<std::string_view, 7> placed_keys{"name",         "start_s", "scale",   "rotate_deg",
                                                       "translate_mm", "mirror",  "about_mm"};
 
-// The stroke where it is drawn.
+// Reads a stroke before it is placed.
 stroke read_drawn(const toml_table& t, std::string name)
 {
-    const std::string_view kind =
-        t.has("stroke") ? t.one_of({"path", "points", "timed", "arc", "preset", "stroke"}) // says it has two
-                        : t.one_of({"path", "points", "timed", "arc", "preset"});
+    if (t.has("stroke"))
+        t.one_of(join_keys(kinds, std::array<std::string_view, 1>{"stroke"})); // refuses two
+    const std::string_view kind = t.one_of(kinds);
     const told_pace asked = detail::read_pace(t);
     const auto carrier = t.number("carrier_hz", detail::bounds_of::carrier_hz);
 
@@ -172,7 +162,7 @@ stroke read_drawn(const toml_table& t, std::string name)
     }
     if (kind == "preset") {
         const std::string preset = *t.text("preset");
-        stroke s = at_key(t, kind, [&] { return preset_stroke(preset); });
+        stroke s = t.at_key(kind, [&] { return preset_stroke(preset); });
         name = s.name;
         std::string made_for = s.made_for;
         s = described(preset_as_told(t, asked, s.motion), s.note);
@@ -184,7 +174,7 @@ stroke read_drawn(const toml_table& t, std::string name)
     const path way = kind == "points" ? read_points(t)
                      : kind == "arc"
                          ? read_arc(t)
-                         : at_key(t, kind, [&, data = *t.text("path")] { return path::from_svg(data); });
+                         : t.at_key(kind, [&, data = *t.text("path")] { return path::from_svg(data); });
     stroke s = described(detail::along_as_told(t, kind, way, asked, {}));
     s.speed_mm_s = detail::kept_speed(asked, way.length_mm());
     s.usual_pace = !asked.duration_s && !s.speed_mm_s;
@@ -195,12 +185,13 @@ stroke read_drawn(const toml_table& t, std::string name)
 
 detail::entry read_one(const toml_table& t, std::string name, folder_of_file folder)
 {
-    t.only(keys_of(drawing_keys, placed_keys, detail::movement_keys, detail::order_keys, detail::choice_keys,
-                   detail::sound_keys, std::array<std::string_view, 2>{"stroke", "reverse"}));
+    t.only(join_keys(kinds, drawing_keys, placed_keys, detail::movement_keys, detail::order_keys,
+                     detail::choice_keys, detail::sound_keys,
+                     std::array<std::string_view, 2>{"stroke", "reverse"}));
     stroke s = detail::levelled(t, detail::chosen(t, read_drawn(t, std::move(name))));
     detail::read_sound(t, folder, s);
     if (t.boolean("reverse").value_or(false)) {
-        s.motion = at_key(t, "reverse", [&] { return s.motion.reversed(); });
+        s.motion = t.at_key("reverse", [&] { return s.motion.reversed(); });
         s.sound.carrier_profile = detail::from_the_end(s.sound.carrier_profile);
     }
     detail::entry e;
@@ -220,11 +211,11 @@ detail::entry read_all(const std::vector<toml_table>& tables, detail::sequence::
     return std::move(all).take();
 }
 
-// Strokes that are placed, made weaker and repeated as one.
+// Reads strokes that are placed, made weaker and repeated together.
 detail::entry read_group(const toml_table& t, const std::string& name, folder_of_file folder, unsigned depth)
 {
-    t.only(keys_of(placed_keys, detail::order_keys,
-                   std::array<std::string_view, 4>{"stroke", "level_db", "fit", "fit_margin_mm"}));
+    t.only(join_keys(placed_keys, detail::order_keys,
+                     std::array<std::string_view, 4>{"stroke", "level_db", "fit", "fit_margin_mm"}));
     if (depth == deepest_group)
         t.fail("stroke", "groups in groups too deep", fmt::format("at most {}", deepest_group));
     const std::vector<toml_table> inside = t.tables("stroke");
@@ -249,8 +240,8 @@ detail::entry read_group(const toml_table& t, const std::string& name, folder_of
 
 detail::entry read_entry(const toml_table& t, const std::string& name, folder_of_file folder, unsigned depth)
 {
-    const bool group = t.has("stroke") && !t.has("path") && !t.has("points") && !t.has("timed") &&
-                       !t.has("arc") && !t.has("preset");
+    const bool group = t.has("stroke") && std::none_of(kinds.begin(), kinds.end(),
+                                                       [&t](std::string_view k) { return t.has(k); });
     return group ? read_group(t, name, folder, depth) : read_one(t, name, folder);
 }
 

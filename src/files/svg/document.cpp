@@ -21,7 +21,7 @@ svg_document::svg_document(std::string_view text, const std::string& name)
         throw std::bad_alloc();
     if (!r) {
         const auto offset = static_cast<std::size_t>(r.offset > 0 ? r.offset : 0);
-        throw error(error_kind::bad_input, place_of(text_, offset, name_), r.description(),
+        throw error(error_kind::bad_input, find_place(text_, offset, name_), r.description(),
                     "the file is not well-formed XML");
     }
     if (svg_tag(root()) != "svg")
@@ -55,7 +55,7 @@ source_place svg_document::where(pugi::xml_node n) const
     const auto offset = n.offset_debug();
     if (offset < 0)
         return {name_, 0, 0};
-    return place_of(text_, static_cast<std::size_t>(offset), name_);
+    return find_place(text_, static_cast<std::size_t>(offset), name_);
 }
 
 std::string svg_document::called(pugi::xml_node n)
@@ -79,7 +79,8 @@ void svg_document::fail(pugi::xml_node n, pugi::xml_attribute a, const value_fau
     const bool here =
         std::less_equal<>{}(buffer_.data(), value) && std::less<>{}(value, buffer_.data() + buffer_.size());
     const source_place at =
-        here ? place_of(text_, static_cast<std::size_t>(value - buffer_.data()) + f.offset, name_) : where(n);
+        here ? find_place(text_, static_cast<std::size_t>(value - buffer_.data()) + f.offset, name_)
+             : where(n);
     throw error(error_kind::bad_input, at, fmt::format("{} of {}: {}", a.name(), called(n), f.why), f.hint)
         .with_field(a.name());
 }

@@ -32,12 +32,12 @@ public:
 
     source_place where(pugi::xml_node n) const;
 
-    /// "<path> 'left'".
+    /// Returns "<path> 'left'" for messages.
     static std::string called(pugi::xml_node n);
 
     [[noreturn]] void fail(pugi::xml_node n, std::string_view why, std::string_view hint) const;
 
-    /// What `parse` makes of an attribute's text; nothing where it is missing.
+    /// Returns `parse` of an attribute's text; nothing if it is missing.
     template <class F>
     auto read(pugi::xml_node n, const char* attribute, F parse) const
         -> std::optional<decltype(parse(std::string_view{}))>
@@ -68,7 +68,7 @@ public:
         }
     }
 
-    /// The text of a property of svg_properties; empty where it is not set.
+    /// Returns the text of a property of svg_properties; empty if it is not set.
     std::string_view property(pugi::xml_node n, std::string_view name) const;
 
     /// Remembers that something of an element is not followed: once for each `what`.
@@ -76,11 +76,11 @@ public:
     /// Names features that are not followed, with places.
     std::vector<std::string> warnings() const;
 
-    /// A length in user units.
+    /// Reads a length in user units.
     double length(pugi::xml_node n, const char* attribute, const svg_viewport& v, svg_extent e,
                   double otherwise = 0.0) const;
 
-    /// A number from low to high.
+    /// Reads a number from low to high.
     std::optional<double> number(pugi::xml_node n, const char* attribute, double low, double high) const;
 
 private:
@@ -102,7 +102,7 @@ private:
     mutable std::map<std::string, note_count> notes_;
 };
 
-/// Element name without the prefix "svg:".
+/// Returns the element's name without the prefix "svg:".
 std::string_view svg_tag(pugi::xml_node n);
 
 /// Returns true for the tags that svg_shape() takes.

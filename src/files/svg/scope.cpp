@@ -18,7 +18,7 @@ using pugi::xml_node;
 
 constexpr double highest_carrier_hz = 20000.0;
 
-easing_kind easing_of(const svg_document& doc, xml_node n, std::string_view name)
+easing_kind read_easing(const svg_document& doc, xml_node n, std::string_view name)
 {
     if (const auto k = find_kind<easing_kind>(name))
         return *k;
@@ -44,7 +44,7 @@ affine own_transform(const svg_document& doc, xml_node n, const svg_viewport& v)
 
 constexpr double no_look = std::numeric_limits<double>::quiet_NaN();
 
-// A number from 0 to 1, or a percentage of it; beyond counts as the bound, as CSS has it.
+// Returns a number from 0 to 1, or a percentage of it; beyond counts as the bound, as CSS has it.
 double read_opacity(std::string_view text)
 {
     try {
@@ -126,7 +126,7 @@ void inherit_svg(const svg_document& doc, xml_node n, svg_scope& s)
     if (const auto v = doc.number(n, "data-intensity", 0.0, max_intensity))
         s.intensity = *v;
     if (const auto easing = n.attribute("data-easing"))
-        s.easing = easing_of(doc, n, easing.value());
+        s.easing = read_easing(doc, n, easing.value());
     inherit_svg_look(doc, n, s.viewport, s.look);
     if (const auto v = doc.number(n, "data-carrier-hz", 1.0, highest_carrier_hz))
         s.carrier_hz = v;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What an SVG element inherits from those round it; the look of a line as its intensity, where the drawing
-// asks.
+// Properties that an SVG element inherits from those round it, and the look of a line as its intensity, if
+// the drawing asks for that.
 #pragma once
 
 #include <optional>
@@ -43,18 +43,18 @@ struct svg_scope {
     unsigned uses = 0;  ///< of these, <use>
 };
 
-/// A document with a size in physical units is as large as it says. In any other, one user unit is one
-/// millimetre and coordinates are as they stand.
+/// Returns the scope of the root. A document with a size in physical units is as large as it says. In any
+/// other, one user unit is one millimetre and coordinates are as they stand.
 svg_scope svg_root_scope(const svg_document& doc);
 
-/// Inside an element that has this view box: the box fills width x height (user units) from `corner`.
+/// Enters an element with a view box: the box fills width x height (user units) from `corner`.
 void enter_svg_box(const svg_document& doc, pugi::xml_node n, svg_scope& s, const svg_view_box& box,
                    point corner, double width, double height);
 
-/// What the element's own attributes change: transform, visibility and data-...
+/// Applies the element's own attributes: transform, visibility and data-...
 void inherit_svg(const svg_document& doc, pugi::xml_node n, svg_scope& s);
 
-/// display is "none".
+/// Returns true if display is "none".
 bool svg_hidden(const svg_document& doc, pugi::xml_node n);
 
 } // namespace tactor::detail

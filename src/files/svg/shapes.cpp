@@ -36,7 +36,7 @@ struct element {
         return v;
     }
 
-    // Radii of rect and ellipse may be "auto": as the other.
+    // Reads a radius of rect or ellipse; nothing for "auto", which is the other radius.
     std::optional<double> radius(const char* attribute, svg_extent e) const
     {
         const std::string_view text = node.attribute(attribute).value();
@@ -85,7 +85,7 @@ std::vector<outline> points(const element& e, bool closed)
     return {std::move(o)};
 }
 
-// From three o'clock clockwise, as SVG has it.
+// Draws from three o'clock clockwise, as SVG has it.
 std::vector<outline> ellipse(const element& e, double rx, double ry)
 {
     if (rx == 0.0 || ry == 0.0)
@@ -96,7 +96,7 @@ std::vector<outline> ellipse(const element& e, double rx, double ry)
     return {std::move(o)};
 }
 
-// From the left end of the upper side clockwise.
+// Draws from the left end of the upper side clockwise.
 std::vector<outline> rectangle(const element& e)
 {
     const double left = e.x("x");

@@ -75,7 +75,8 @@ private:
                 visit(c, s);
     }
 
-    // What is not named here draws nothing by itself: defs, symbol, clipPath, mask, marker, pattern, text ...
+    // Ignores elements that draw nothing by themselves: defs, symbol, clipPath, mask, marker, pattern, text
+    // ...
     void visit(xml_node n, scope s)
     {
         if (++elements_ > most_elements || ++s.depth > deepest)
@@ -103,7 +104,7 @@ private:
             note_hidden(n);
     }
 
-    // SVG viewers draw one child of a switch.
+    // Notes features that are not followed. SVG viewers draw one child of a switch.
     void note_unfollowed(xml_node n) const
     {
         for (const char* what : {"clip-path", "mask"})
@@ -120,14 +121,14 @@ private:
                detail::is_svg_shape(tag);
     }
 
-    // The first: named where nothing draws.
+    // Keeps the first hidden element, to name it if nothing draws.
     void note_hidden(xml_node n)
     {
         if (!hidden_)
             hidden_ = n;
     }
 
-    // A nested svg, or a symbol that `sized` uses.
+    // Draws a nested svg, or a symbol that `sized` uses.
     void frame(xml_node n, xml_node sized, scope s, point corner)
     {
         const auto side = [&](const char* attribute, svg_extent e, double whole) {
@@ -191,7 +192,7 @@ private:
             vertices_ += o.vertices.size();
             if (vertices_ > most_vertices)
                 doc_.fail(n, "too many points", "simplify the drawing");
-            // Where it stands in the file is looked up for complaints only: that reads all before it.
+            // Looks the place up only for an error: that reads the whole file before it.
             const auto what = [&] { return fmt::format("{}: {}", doc_.where(n).text(), doc_.called(n)); };
             paths.push_back(detail::make_path(mapped(std::move(o), s.to_mm), what));
         }
@@ -207,7 +208,7 @@ private:
         return trajectory::along(p, movement{.duration_s = duration_s, .easing = s.easing}, intensity);
     }
 
-    // Of the lines that ask for it the widest has intensity 1.
+    // Gives the widest of the lines that ask for it intensity 1.
     void weigh_widths()
     {
         double widest = 0.0;
@@ -218,7 +219,7 @@ private:
                 strokes_[stroke].motion = strokes_[stroke].motion.with_intensity(width / widest);
     }
 
-    // A duration is that of the whole shape: its subpaths share it by their lengths.
+    // Adds a shape. Its subpaths share its duration by their lengths.
     void add(xml_node n, const scope& s, const std::vector<path>& paths)
     {
         const auto duration = doc_.number(n, "data-duration-s", 1e-6, detail::longest_stroke_s);

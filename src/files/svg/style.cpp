@@ -34,7 +34,7 @@ std::string without_comments(std::string_view css)
     return s;
 }
 
-/// The first of `ends` outside quotes and round brackets, from `at` on, or the text's end.
+/// Returns the first of `ends` outside quotes and round brackets, from `at` on, or the text's end.
 std::size_t find_outside(std::string_view s, std::string_view ends, std::size_t at)
 {
     char quote = '\0';
@@ -57,7 +57,7 @@ std::size_t find_outside(std::string_view s, std::string_view ends, std::size_t 
     return s.size();
 }
 
-/// Behind the block that opens at `open`, with the blocks in it.
+/// Returns the offset behind the block that opens at `open`, with the blocks in it.
 std::size_t behind_block(std::string_view css, std::size_t open)
 {
     unsigned depth = 0;

@@ -30,12 +30,12 @@ public:
 
     void add(pugi::xml_node style);
 
-    /// The value of a property of svg_properties for an element: of its attribute, the sheet's rules and its
-    /// style, the one that counts by CSS; without blanks and !important, empty for none. \throws value_fault
-    /// for a sheet that matches without end.
+    /// Returns the value of a property of svg_properties for an element: of its attribute, the sheet's rules
+    /// and its style, the one that counts by CSS; without blanks and !important, empty for none. \throws
+    /// value_fault for a sheet that matches without end.
     std::string_view value(pugi::xml_node n, std::string_view property) const;
 
-    /// Each is named once.
+    /// Returns the rules that are not followed, each once.
     const std::vector<skipped>& not_followed() const noexcept { return skipped_; }
 
 private:

@@ -71,7 +71,7 @@ double in_user_units(double value, std::string_view unit, const svg_viewport& v,
     return l.in == svg_length::unit::mm ? l.value / mm_per_px : l.user_units(v, e);
 }
 
-/// The unit of a function's numbers.
+/// Returns the unit of a function's numbers.
 double with_unit(std::string_view name, double value, std::string_view unit, std::size_t index,
                  const svg_viewport& v)
 {

@@ -24,7 +24,7 @@ double number_at(std::string_view text, std::size_t& at)
     return *v;
 }
 
-// The rest of the text without the blanks round it.
+// Returns the rest of the text without the blanks round it.
 std::string_view word_at(std::string_view text, std::size_t at)
 {
     skip_blanks(text, at);

@@ -15,14 +15,14 @@ inline constexpr double max_user_units = 1e9;
 
 inline constexpr double mm_per_px = 25.4 / 96.0;
 
-/// What lengths are relative to.
+/// Reference of relative lengths.
 struct svg_viewport {
     double width = 100.0;  ///< 100 % across, user units
     double height = 100.0; ///< 100 % down
     double per_mm = 1.0;   ///< user units in a millimetre
 };
 
-/// Which 100 % a length means.
+/// Side to which the percentage of a length refers.
 enum class svg_extent { width, height, diagonal };
 
 struct svg_length {
@@ -57,7 +57,7 @@ svg_view_box parse_svg_view_box(std::string_view text);
 svg_aspect parse_svg_aspect(std::string_view text);
 /// Reads a two-dimensional transform in SVG's or CSS's syntax. A px is a user unit, as in browsers.
 affine parse_svg_transform(std::string_view text, const svg_viewport& v);
-/// transform-origin, in user units.
+/// Reads transform-origin, in user units.
 point parse_svg_origin(std::string_view text, const svg_viewport& v);
 
 /// Maps a view box into a frame.

@@ -16,7 +16,7 @@ struct box {
     point high;
 };
 
-/// The smallest box round some points (at least one).
+/// Returns the smallest box round some points (at least one).
 box box_around(const std::vector<point>& points);
 
 /// Immutable grid of square cells over boxes (at least one), about as many cells as boxes. An item is its
@@ -28,7 +28,7 @@ public:
     /// Replaces `out` by the items whose boxes come within `margin_mm` of p, ascending.
     void near(point p, double margin_mm, std::vector<unsigned>& out) const;
 
-    /// The item with the least distance(item), of equals the first. `distance` may not be less than
+    /// Returns the item with the least distance(item), of equals the first. `distance` may not be less than
     /// the distance to the item's box.
     unsigned nearest(point p, const std::function<double(unsigned)>& distance) const;
 

@@ -19,10 +19,10 @@ struct bordering {
     unsigned triangle;
 };
 
-/// The edges of all triangles, so sorted that the two borders of one edge are neighbours.
+/// Returns the edges of all triangles, so sorted that the two borders of one edge are neighbours.
 std::vector<bordering> borders(const std::vector<triangle>& triangles);
 
-/// Delaunay triangles of points that are not all in one line, each with positive turn(). Slivers on
+/// Returns Delaunay triangles of points that are not all in one line, each with positive turn(). Slivers on
 /// the hull that are thinner than same_place_mm are left out: the points are in line there.
 /// \throws error (bad_input) where two points are too near to each other for the extent of them all.
 std::vector<triangle> delaunay(const std::vector<point>& points);
@@ -32,7 +32,7 @@ std::vector<triangle> delaunay(const std::vector<point>& points);
 std::vector<std::vector<unsigned>> join_cocircular(const std::vector<point>& points,
                                                    const std::vector<triangle>& triangles);
 
-/// Whether four points lie on one circle once each may move by same_place_mm.
+/// Returns true if four points lie on one circle when each may move by same_place_mm.
 bool cocircular(const std::array<point, 4>& p);
 
 } // namespace tactor::detail

@@ -89,7 +89,7 @@ public:
     seen_tactor* begin() noexcept { return many_.empty() ? few_.data() : many_.data(); }
     seen_tactor* end() noexcept { return begin() + size_; }
 
-    /// The closest tactor for which `allowed` holds, of ties the lowest; null if there is none.
+    /// Returns the closest tactor for which `allowed` holds, of ties the lowest; null if there is none.
     template <class Allowed>
     const seen_tactor* closest(const Allowed& allowed)
     {

@@ -34,7 +34,7 @@ unsigned apex(const triangle& t, const bordering& edge)
     return *std::find_if(t.begin(), t.end(), [&](unsigned v) { return v != edge.low && v != edge.high; });
 }
 
-/// The border of a group of triangles as one ring; empty where it is not one ring.
+/// Returns the border of a group of triangles; empty if that is not a single ring.
 std::vector<unsigned> outline(const std::vector<triangle>& group)
 {
     std::map<std::pair<unsigned, unsigned>, bool> inner;

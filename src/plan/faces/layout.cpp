@@ -66,7 +66,7 @@ rings segments(const std::vector<unsigned>& order)
     return s;
 }
 
-std::vector<box> boxes_of(const rings& faces, const std::vector<point>& points)
+std::vector<box> make_boxes(const rings& faces, const std::vector<point>& points)
 {
     std::vector<box> boxes;
     std::vector<point> corners;
@@ -79,7 +79,7 @@ std::vector<box> boxes_of(const rings& faces, const std::vector<point>& points)
     return boxes;
 }
 
-std::vector<box> boxes_of(const std::vector<std::pair<point, point>>& edges)
+std::vector<box> make_boxes(const std::vector<std::pair<point, point>>& edges)
 {
     std::vector<box> boxes;
     for (const auto& [a, b] : edges)
@@ -87,7 +87,7 @@ std::vector<box> boxes_of(const std::vector<std::pair<point, point>>& edges)
     return boxes;
 }
 
-std::vector<box> boxes_of(const std::vector<point>& points)
+std::vector<box> make_boxes(const std::vector<point>& points)
 {
     std::vector<box> boxes;
     for (const point& p : points)
@@ -145,9 +145,9 @@ layout::impl layout::impl::build(const array& a)
             for (const unsigned v : f)
                 by_index.back().push_back(order[v]);
         }
-    box_index face_index(boxes_of(faces, points));
-    box_index rim_index(boxes_of(rim));
-    box_index tactor_index(boxes_of(points));
+    box_index face_index(make_boxes(faces, points));
+    box_index rim_index(make_boxes(rim));
+    box_index tactor_index(make_boxes(points));
     const double pitch = median_pitch(faces, points);
     const box all = detail::box_around(points);
     // Faces may lap over each other by the grain of the sites from which they were made.

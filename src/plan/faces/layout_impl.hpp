@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// What a layout knows. Inside, tactors go by rank, their order by row and then by column, so that
-/// nothing depends on the order in which a file lists them.
+/// Contents of a layout. Inside, tactors go by rank: by row, then by column. So the order in which a file
+/// lists them does not matter.
 #pragma once
 
 #include <atomic>
@@ -60,14 +60,14 @@ struct layout::impl {
 
     /// Replaces `out` by the faces that hold p within same_place_mm; never none. p must be in the hull.
     void faces_at(point p, std::vector<unsigned>& out) const;
-    /// The one face that holds p, if p keeps clear of its edges. Looks only at the face of the point before;
-    /// if it returns none, faces_at() must be asked.
+    /// Returns the one face that holds p, if p keeps clear of its edges. Looks only at the face of the point
+    /// before; if it returns none, faces_at() must be asked.
     std::optional<unsigned> clear_face(point p) const noexcept;
-    /// Whether p keeps clear of all segments between the tactors of a face too.
+    /// Returns true if p also keeps clear of all segments between the tactors of a face.
     bool clear_of_diagonals(unsigned face, point p) const noexcept;
     bool face_holds(unsigned face, point p, double margin_mm) const;
 
-    /// Rank of the tactor nearest to p.
+    /// Returns the rank of the tactor nearest to p.
     unsigned nearest_tactor(point p) const;
     bool in_hull(point p) const;
     point nearest_in_hull(point p) const;

@@ -10,7 +10,7 @@ namespace {
 
 using detail::turn;
 
-/// Binary search for the wedge of a convex polygon that p is in, seen from its first corner.
+/// Searches for the wedge of a convex polygon that p is in, seen from its first corner.
 bool inside(const std::vector<point>& hull, point p)
 {
     if (hull.size() < 3)
@@ -25,7 +25,7 @@ bool inside(const std::vector<point>& hull, point p)
     return turn(*(after - 1), *after, p) >= 0.0 && (after != last || turn(*last, hull.front(), p) >= 0.0);
 }
 
-/// Whether p is to the side of y from x as seen along a, b, and farther than `clear` from that line.
+/// Returns true if p is on the side of y from x as seen along a, b, and farther than `clear` from that line.
 bool is_clear(point a, point b, point p, double clear_mm) noexcept
 {
     const double area = turn(a, b, p);

@@ -12,13 +12,13 @@
 
 namespace tactor::detail {
 
-/// Twice the signed area of the triangle a, b, c: > 0 where c lies to the side of y from x.
+/// Returns twice the signed area of the triangle a, b, c: > 0 where c lies to the side of y from x.
 inline double turn(point a, point b, point c) noexcept
 {
     return (b.x_mm - a.x_mm) * (c.y_mm - a.y_mm) - (b.y_mm - a.y_mm) * (c.x_mm - a.x_mm);
 }
 
-/// The point of the segment a, b that is nearest to p.
+/// Returns the point of the segment a, b that is nearest to p.
 inline point nearest_on_segment(point a, point b, point p) noexcept
 {
     const double dx = b.x_mm - a.x_mm;
@@ -39,7 +39,7 @@ inline double segment_distance_mm(point a, point b, point p) noexcept
     return length_mm(p, nearest_on_segment(a, b, p));
 }
 
-/// Distance of p from the triangle a, b, c, where turn(a, b, c) >= 0; 0 inside.
+/// Returns the distance of p from the triangle a, b, c, where turn(a, b, c) >= 0; 0 inside.
 inline double triangle_distance_mm(point a, point b, point c, point p) noexcept
 {
     if (turn(a, b, p) >= 0.0 && turn(b, c, p) >= 0.0 && turn(c, a, p) >= 0.0)

@@ -26,13 +26,13 @@ point farthest_from(point p, const std::vector<point>& points)
 
 } // namespace
 
-std::pair<point, point> ends_of(const std::vector<point>& points)
+std::pair<point, point> find_ends(const std::vector<point>& points)
 {
     const point first = farthest_from(points.front(), points);
     return {first, farthest_from(first, points)};
 }
 
-std::vector<beyond> sides_of(const layout::impl& l)
+std::vector<beyond> hull_sides(const layout::impl& l)
 {
     std::vector<beyond> sides;
     if (!l.hull.empty()) {
@@ -40,7 +40,7 @@ std::vector<beyond> sides_of(const layout::impl& l)
             sides.push_back(beyond_edge(a, b));
         return sides;
     }
-    const auto [first, last] = ends_of(l.points);
+    const auto [first, last] = find_ends(l.points);
     const point along = first == last ? point{1.0, 0.0} : 1.0 / distance_mm(first, last) * (last - first);
     const point across{along.y_mm, -along.x_mm};
     for (const point out : {along, across})
@@ -49,7 +49,7 @@ std::vector<beyond> sides_of(const layout::impl& l)
     return sides;
 }
 
-std::array<point, 4> frame_of(const shape& form)
+std::array<point, 4> control_frame(const shape& form)
 {
     if (const auto* b = std::get_if<cubic>(&form))
         return b->p;
@@ -63,7 +63,7 @@ std::vector<double> turns_towards(const shape& form, point out)
     return turns(mapped(form, outwards_is_x), axis::x);
 }
 
-// Andrew's monotone chain.
+// Uses Andrew's monotone chain.
 std::vector<point> convex_hull(std::vector<point> points)
 {
     std::sort(points.begin(), points.end(),

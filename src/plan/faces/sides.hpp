@@ -24,17 +24,17 @@ struct beyond {
     double reach = 0.0;
 };
 
-/// The sides of the hull. Where all tactors are in one line, the hull is that line: its two sides and two
-/// ends.
-std::vector<beyond> sides_of(const layout::impl& l);
+/// Returns the sides of the hull. If all tactors are in one line, the hull is that line: its two sides and
+/// two ends.
+std::vector<beyond> hull_sides(const layout::impl& l);
 
-/// Two tactors as far apart as any in a line, and nearly so elsewhere.
-std::pair<point, point> ends_of(const std::vector<point>& points);
+/// Returns two tactors that are as far apart as any, in a line; elsewhere nearly so.
+std::pair<point, point> find_ends(const std::vector<point>& points);
 
-/// Corners of a convex figure round a curve.
-std::array<point, 4> frame_of(const shape& form);
+/// Returns the corners of a convex figure round a curve.
+std::array<point, 4> control_frame(const shape& form);
 
-/// Parameters, ascending, at which a curve turns round as seen from a side.
+/// Returns the parameters, ascending, at which a curve turns round as seen from a side.
 std::vector<double> turns_towards(const shape& form, point out);
 
 /// Returns the corners of the convex hull, with positive turn; two for points in one line, none for a single

@@ -20,7 +20,7 @@ double distance(const layout& l, unsigned rank, point p)
     return length_mm(p, access::of(l).points[rank]);
 }
 
-/// Eq. (2).
+/// Computes Eq. (2).
 std::array<double, 2> share_of_two(const layout& l, const rank_pair& two, point p, double a_v)
 {
     const double d1 = distance(l, two.first, p);
@@ -28,7 +28,7 @@ std::array<double, 2> share_of_two(const layout& l, const rank_pair& two, point 
     return {std::sqrt(d2 / (d1 + d2)) * a_v, std::sqrt(d1 / (d1 + d2)) * a_v};
 }
 
-/// Eq. (10).
+/// Computes Eq. (10).
 std::array<double, 3> share_of_three(const std::array<double, 3>& distances_mm, double a_v)
 {
     std::array<double, 3> parts{};

@@ -13,7 +13,7 @@
 namespace tactor::detail {
 
 std::shared_ptr<const phantom_model> make_inverse_distance(const layout& l);
-/// Inverse distance for the three tactors closest to the point, instead of those of its face.
+/// Makes inverse distance for the three tactors closest to the point, instead of those of its face.
 std::shared_ptr<const phantom_model> make_nearest_three(const layout& l);
 /// `k`: barycentric, linear or log.
 std::shared_ptr<const phantom_model> make_on_triangle(phantom_kind k, const layout& l);

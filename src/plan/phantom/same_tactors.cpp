@@ -14,7 +14,7 @@ namespace {
 // On a border, where no disc is, the neighbours mostly have none either.
 constexpr unsigned not_asked = 16;
 
-// What is so much nearer to a segment than it must be to count as on it is so for every formula's rounding.
+// Distance at which a point counts as on a segment whatever the rounding of the formula.
 constexpr double surely_on_mm = 0.5 * same_place_mm;
 
 template <std::size_t N>
@@ -120,7 +120,7 @@ double free_along_mm(const layout::impl& l, const std::vector<unsigned>& faces, 
                     least = std::min(least, segment_distance_mm(a, l.points[ring[k]], p));
         }
     }
-    // What counts as on the others reaches so far, and what counts as on this one.
+    // Less the reach of the other segments' tolerance, and of this one's.
     return (least - 3.0 * same_place_mm - l.clear_mm) * (1.0 - 1e-9);
 }
 

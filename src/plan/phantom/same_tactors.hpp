@@ -13,8 +13,8 @@
 
 namespace tactor::detail {
 
-/// Where a model takes the same tactors: three in a disc, or three or two on what of a segment between
-/// tactors lies in a disc. Belongs to one reader.
+/// Region in which a model takes the same tactors: three in a disc, or two or three on the part of a segment
+/// between tactors that lies in a disc. Belongs to one reader.
 struct same_tactors {
     point centre = {};
     double radius_mm = 0.0;                    ///< 0: nothing is known
@@ -40,34 +40,35 @@ private:
 /// those two.
 class model_of_three : public phantom_model {
 public:
-    /// The three tactors that it takes at p and around it; returns how far around, mm. 0 where it does not
-    /// take three at p, or where p is on the border between two choices.
+    /// Finds the three tactors that it takes at p and around it. Returns the distance around, mm; 0 if it
+    /// does not take three at p, or if p is on the border between two choices.
     virtual double three_around(point p, rank_triple& three) const = 0;
-    /// What weights() gives them, in their order, within that disc.
+    /// Returns what weights() gives the three, in their order, within that disc.
     virtual std::array<double, 3> amplitudes(const rank_triple& three, point p, double a_v) const = 0;
 
-    /// How many tactors it takes, and which, at p, which is on the segment between the two `on` and on no
-    /// tactor: those two, or three; 0 where others may come a little farther along it. `faces` hold p.
+    /// Returns the number of tactors that the model takes at p: 2 (those of `on`) or 3; 0 if it may take
+    /// others a little farther along. p is on the segment between the two `on` and on no tactor. `faces`
+    /// hold p.
     virtual unsigned taken_along(const std::vector<unsigned>& faces, rank_pair on, point p,
                                  rank_triple& taken) const = 0;
-    /// What weights() gives to two, within that.
+    /// Returns what weights() gives two, on that part of the segment.
     virtual std::array<double, 2> amplitudes_of_two(const rank_pair& two, point p, double a_v) const;
 };
 
-/// The drives that weights() gives at p, which `seen` holds; a_v > 0.
+/// Computes the drives that weights() gives at p, which `seen` holds; a_v > 0.
 void drives_of_same(const model_of_three& m, const layout& l, const same_tactors& seen, point p, double a_v,
                     std::vector<drive>& out);
 
 /// Makes `seen` a disc around p, or a part of the segment that p is on, if there is one; p is in the array.
 void look_around(const model_of_three& m, const layout& l, point p, same_tactors& seen);
 
-/// How far p may move until it comes near a line through two tactors of the face; p keeps clear of all these
-/// lines. With `by_distance` also: until it comes near a place where the order of its tactors' distances
-/// changes. Not above 0: it may not move.
+/// Returns the distance, mm, that p may move before it comes near a line through two tactors of the face; p
+/// keeps clear of all these lines. With `by_distance` also before it comes near a place where the order of
+/// its tactors' distances changes. 0 or less: it may not move.
 double free_mm(const layout::impl& l, unsigned face, point p, bool by_distance);
 
-/// How far p, which is on a segment between two tactors and on no other segment of the faces that hold it,
-/// may move along it until it comes near another one. Not above 0: it may not.
+/// Returns the distance, mm, that p may move along its segment before it comes near another one. p is on a
+/// segment between two tactors and on no other segment of the faces that hold it. 0 or less: it may not move.
 double free_along_mm(const layout::impl& l, const std::vector<unsigned>& faces, rank_pair on, point p);
 
 } // namespace tactor::detail

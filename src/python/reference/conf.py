@@ -21,5 +21,5 @@ default_role = "code"  # as the docstrings have it
 
 
 def setup(app):
-    # Fields of named tuples are told of in their classes.
+    # The docstrings of named tuples describe their fields.
     app.connect("autodoc-skip-member", lambda app, what, name, member, skip, options: True if type(member).__name__ == "_tuplegetter" else None)

@@ -14,13 +14,11 @@ from tactor import _tactor
 from tactor._array import Array, Point, Tactor, array_presets
 from tactor._calls import compare, plan
 from tactor._errors import DeviceError, Error, InputError, StreamError
-from tactor._fitting import Fitting, apply_fits, fit_strokes
 from tactor._parts import Burst, Conflict, Curve, Drive, Meeting, Percept, PerceptMap, PerceptSample, PhantomModel
 from tactor._path import Path
-from tactor._plan import Plan, load_plan
-from tactor._planning import burst_duration
+from tactor._plan import Plan, burst_duration, load_plan
 from tactor._score import Score
-from tactor._stroke import Stroke, load, parse, stroke_presets, stroke_shapes
+from tactor._stroke import Fitting, Stroke, apply_fits, fit_strokes, load, parse, stroke_presets, stroke_shapes
 
 if _t.TYPE_CHECKING:
     from tactor import lsl as lsl
@@ -41,11 +39,11 @@ __all__ = [
 
 
 def build_facts() -> str:
-    """What a bug report should say of this library: how and with what it was built."""
+    """Returns the build facts of the library, for bug reports."""
     return _tactor.build_facts()  # type: ignore[no-any-return]
 
 
-# What not every script needs is loaded when it is first named: a fifth of the time that the import takes.
+# Names that few scripts need are loaded when they are first used: they take a fifth of the import's time.
 _LATER = {
     "Client": "_client", "RemoteLive": "_client", "RemoteStroke": "_client", "Reply": "_client", "Player": "_player", "Delay": "_ticket", "LiveStroke": "_ticket", "Report": "_ticket", "Ticket": "_ticket",
     "Comparison": "_tool", "devices": "_tool", "plot": "_tool",

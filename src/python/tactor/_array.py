@@ -1,14 +1,13 @@
 # SPDX-License-Identifier: MIT
-"""Arrays: where the tactors are."""
+"""Arrays of tactors and their places."""
 from __future__ import annotations
 
 import os
 import typing as _t
 
 from tactor import _tactor
-from tactor._checks import _counted, _floats, _need, _number, _place, _shown, _Value, _whole
+from tactor._checks import _counted, _floats, _Member, _need, _number, _place, reading, _shown, _Value, _whole
 from tactor._errors import InputError
-from tactor._files import reading
 
 if _t.TYPE_CHECKING:
     import numpy as _np
@@ -27,7 +26,7 @@ class Point(_t.NamedTuple):
 
 
 class Tactor(_t.NamedTuple):
-    """One vibrating actuator of an array.
+    """A vibrating actuator of an array.
 
     Parameters
     ----------
@@ -63,7 +62,7 @@ class Tactor(_t.NamedTuple):
 
 
 class Array(_Value):
-    """Where the tactors are and how each is driven. Immutable.
+    """The tactors: their places, and how each is driven. Immutable.
 
     Made by `preset`, `from_file`, `grid`, `from_points` or of a name and a sequence of `Tactor`.
 
@@ -79,11 +78,11 @@ class Array(_Value):
     _file: str | None
     _besides: str  # [output], [amplifier], [sync], [limits] and [defaults] of its file, as TOML
     _origin: str  # [calibration], the same way
-    _setup: _t.Any  # what they say, once somebody asks
+    _setup: _t.Any  # these tables, once they are needed
     _tactors: tuple[Tactor, ...]
 
     def __init__(self, name: str, tactors: _t.Iterable[Tactor]) -> None:
-        self._take(_core_of(name, tactors))
+        self._take(_make_core(name, tactors))
 
     def _take(self, core: _t.Any, file: str | None = None, besides: str = "", origin: str = "") -> None:
         self._core = core
@@ -95,16 +94,16 @@ class Array(_Value):
                               for x, y, *rest, thresholds, rise_s in core.rows)
 
     @classmethod
-    def _of(cls, core: _t.Any, file: str | None = None, besides: str = "", origin: str = "") -> Array:
+    def _wrap(cls, core: _t.Any, file: str | None = None, besides: str = "", origin: str = "") -> Array:
         made = cls.__new__(cls)
         made._take(core, file, besides, origin)
         return made
 
     @classmethod
     def preset(cls, name: str) -> Array:
-        """A built-in array: "palm-3x3" or "palm-2x4" (`array_presets`)."""
+        """Returns a built-in array: "palm-3x3" or "palm-2x4" (`array_presets`)."""
         _need(name, str, "name")
-        return cls._of(_tactor.Array.preset(name))
+        return cls._wrap(_tactor.Array.preset(name))
 
     @classmethod
     def from_file(cls, path: str | os.PathLike[str]) -> Array:
@@ -123,11 +122,11 @@ class Array(_Value):
             setup = _tactor.Setup.load(name)
             if setup.array is None:
                 raise InputError(os.fspath(path), "says no [array]", "see tactor.toml(5)")
-        return cls._of(setup.array, os.path.abspath(path), setup.besides(), setup.origin())
+        return cls._wrap(setup.array, os.path.abspath(path), setup.besides(), setup.origin())
 
     @classmethod
     def grid(cls, name: str, rows: int, columns: int, pitch_mm: float | tuple[float, float]) -> Array:
-        """A rectangular grid; tactor and channel `row * columns + column`, the first at (0, 0).
+        """Makes a rectangular grid; tactor and channel `row * columns + column`, the first at (0, 0).
 
         Parameters
         ----------
@@ -142,54 +141,33 @@ class Array(_Value):
             x = y = pitch_mm
         _need(name, str, "name")
         n, m = (_whole(what, count, 1, 16384, "1 to 16384 tactors") for what, count in (("rows", rows), ("columns", columns)))
-        return cls._of(_tactor.Array.grid(name, n, m, _number("pitch_mm", x), _number("pitch_mm", y)))
+        return cls._wrap(_tactor.Array.grid(name, n, m, _number("pitch_mm", x), _number("pitch_mm", y)))
 
     @classmethod
     def from_points(cls, points: _ArrayLike, name: str = "points") -> Array:
-        """An array of places [(x_mm, y_mm), ...]; channels are counted from 0 in this order."""
+        """Makes an array of places [(x_mm, y_mm), ...]; channels count from 0 in this order."""
         return cls(name, [Tactor(Point(x, y), i) for i, (x, y) in enumerate(_places("points", points).tolist())])
 
-    @property
-    def name(self) -> str:
-        """Name, for plans and pictures."""
-        return self._core.name  # type: ignore[no-any-return]
-
-    @property
-    def positions(self) -> _NDArray[_np.float64]:
-        """Places, shape (n, 2), mm; a view that cannot be written."""
-        return self._core.positions  # type: ignore[no-any-return]
-
-    @property
-    def channels(self) -> int:
-        """Channels that the map needs, the highest and one."""
-        return self._core.channels  # type: ignore[no-any-return]
+    name: _Member[str] = _Member("name", "Name, for plans and pictures.")
+    positions: _Member[_NDArray[_np.float64]] = _Member("positions", "Places, shape (n, 2), mm; a view that cannot be written.")
+    channels: _Member[int] = _Member("channels", "Channels that the map needs, the highest and one.")
 
     @property
     def tactors(self) -> tuple[Tactor, ...]:
         """The tactors by number."""
         return self._tactors
 
-    @property
-    def faces(self) -> list[list[int]]:
-        """Delaunay faces as numbers of tactors in order round each; none where all are in one line."""
-        return self._core.faces  # type: ignore[no-any-return]
-
-    @property
-    def pitch_mm(self) -> float:
-        """Median distance from a tactor to its nearest neighbour; 0 for a single one."""
-        return self._core.pitch_mm  # type: ignore[no-any-return]
-
-    @property
-    def grid_lines(self) -> tuple[list[float], list[float]] | None:
-        """The x of the columns and the y of the rows, mm, where the tactors form a rectangular grid; else None."""
-        return self._core.grid_lines()  # type: ignore[no-any-return]
+    faces: _Member[list[list[int]]] = _Member("faces", "Delaunay faces as numbers of tactors in order round each; none where all are in one line.")
+    pitch_mm: _Member[float] = _Member("pitch_mm", "Median distance from a tactor to its nearest neighbour; 0 for a single one.")
+    grid_lines: _Member[tuple[list[float], list[float]] | None] = _Member(
+        "grid_lines", "The x of the columns and the y of the rows, mm, where the tactors form a rectangular grid; else None.")
 
     def contains(self, point: _t.Sequence[float]) -> bool:
-        """Whether a place is in the hull of the tactors, its edge included."""
+        """Returns True for a place in the hull of the tactors, its edge included."""
         return self._core.contains(*_place("point", point))  # type: ignore[no-any-return]
 
     def nearest(self, point: _t.Sequence[float]) -> Point:
-        """The place of the hull that is nearest to one."""
+        """Returns the place of the hull that is nearest to a place."""
         return Point(*self._core.nearest(*_place("point", point)))
 
     @_t.overload
@@ -199,7 +177,7 @@ class Array(_Value):
     def weights(self, point: _NDArray[_np.float64] | _t.Sequence[_t.Sequence[float]], phantom: str = "inverse-distance",
                 intensity: float = 1.0, *, faces: str = "delaunay") -> _NDArray[_np.float64]: ...
     def weights(self, point: _t.Any, phantom: str = "inverse-distance", intensity: float = 1.0, *, faces: str = "delaunay") -> _t.Any:
-        """Which tactors make a phantom at a place, and how strongly.
+        """Returns the tactors that make a phantom at a place, with their amplitudes.
 
         Parameters
         ----------
@@ -232,7 +210,7 @@ class Array(_Value):
         return {i: amplitude for i, amplitude in enumerate(row) if amplitude > 0.0}
 
     def percept_map(self, step_mm: float = 1.0, phantom: str = "inverse-distance", *, faces: str = "delaunay") -> _PerceptMap:
-        """What is predicted to be felt of phantoms all over the array.
+        """Predicts how phantoms feel all over the array.
 
         Parameters
         ----------
@@ -272,7 +250,7 @@ class Array(_Value):
     def replace(self, *, name: str | None = None, tactors: _t.Iterable[Tactor] | None = None, channels: _t.Iterable[int] | None = None,
                 gains: _EachTactor = None, max_dbfs: _EachTactor = None, thresholds: _Thresholds = None,
                 polarities: _t.Iterable[int] | None = None) -> Array:
-        """The same array but for what is given; what its file says of [output], [amplifier], [sync], [limits] and [defaults] stays.
+        """Returns the array with the given changes; the [output], [amplifier], [sync], [limits] and [defaults] of its file stay.
 
         Parameters
         ----------
@@ -299,18 +277,18 @@ class Array(_Value):
         InputError
             For another number of values than tactors, and as `Array` does.
         """
-        made = self._tactors if tactors is None else _tactors_of(tactors)
-        made = _with_each(made, "channel", "channels", channels)
-        made = _with_each(made, "gain_db", "gains", gains)
-        made = _with_each(made, "max_dbfs", "max_dbfs", max_dbfs)
-        made = _with_each(made, "polarity", "polarities", polarities)
+        made = self._tactors if tactors is None else _checked_tactors(tactors)
+        for field, what, values in (("channel", "channels", channels), ("gain_db", "gains", gains), ("max_dbfs", "max_dbfs", max_dbfs),
+                                    ("polarity", "polarities", polarities)):
+            if values is not None:
+                made = tuple(t._replace(**{field: value}) for t, value in zip(made, _each(what, values, len(made))))
         if thresholds is not None:
             made = tuple(t._replace(threshold_dbfs=None, thresholds=()) for t in made)
             for i, one in enumerate(_each("thresholds", thresholds, len(made))):
                 listed = hasattr(one, "__len__") and not isinstance(one, str)
                 made = (*made[:i], made[i]._replace(**{"thresholds" if listed else "threshold_dbfs": one}), *made[i + 1:])
         origin = self._origin if tactors is None and thresholds is None else ""
-        return Array._of(_core_of(self.name if name is None else name, made), self._file, self._besides, origin)
+        return Array._wrap(_make_core(self.name if name is None else name, made), self._file, self._besides, origin)
 
     def write(self, file: str | os.PathLike[str]) -> None:
         """Writes an array file that `from_file` and the tool read, with all that `replace` keeps. It needs no other file.
@@ -332,7 +310,7 @@ class Array(_Value):
             _tactor.write_text(to, self._core.text() + self._besides + self._origin)
 
     def _settings(self) -> _t.Any:
-        """What its file says beside the array; None where it says nothing."""
+        """Returns the other tables of its file; None if there are none."""
         if self._setup is None and self._besides:
             self._setup = _tactor.Setup.parse(self._besides)
         return self._setup
@@ -373,7 +351,7 @@ def _places(what: str, points: _t.Any) -> _t.Any:
 
 
 def _row(t: Tactor) -> tuple[_t.Any, ...]:
-    """A tactor as the extension takes it."""
+    """Returns a tactor as the extension takes it."""
     def level(name: str) -> float | None:
         value = getattr(t, name)
         return None if value is None else _number(name, value)
@@ -387,21 +365,21 @@ def _row(t: Tactor) -> tuple[_t.Any, ...]:
             level("threshold_dbfs"), _whole("polarity", t.polarity, -1, 1, "1 or -1"), t.actuator, thresholds, level("rise_s"))
 
 
-def _tactors_of(tactors: _t.Iterable[Tactor]) -> tuple[Tactor, ...]:
+def _checked_tactors(tactors: _t.Iterable[Tactor]) -> tuple[Tactor, ...]:
     tactors = tuple(tactors)
     for t in tactors:
         _need(t, Tactor, "tactors")
     return tactors
 
 
-def _core_of(name: str, tactors: _t.Iterable[Tactor]) -> _t.Any:
-    tactors = _tactors_of(tactors)
+def _make_core(name: str, tactors: _t.Iterable[Tactor]) -> _t.Any:
+    tactors = _checked_tactors(tactors)
     _need(name, str, "name")
     return _tactor.Array(name, [_row(t) for t in tactors])
 
 
 def _each(what: str, values: _t.Any, count: int) -> list[_t.Any]:
-    """One value for each tactor: of an iterable its members, else the same for all."""
+    """Returns a value for each tactor: the members of an iterable, else the same for all."""
     if isinstance(values, (str, bytes)):
         raise InputError(what, f"{_shown(values)} is no list", "give one for each tactor", field=what)
     try:
@@ -413,16 +391,10 @@ def _each(what: str, values: _t.Any, count: int) -> list[_t.Any]:
     return all_of_them
 
 
-def _with_each(tactors: tuple[Tactor, ...], field: str, what: str, values: _t.Any) -> tuple[Tactor, ...]:
-    if values is None:
-        return tactors
-    return tuple(t._replace(**{field: value}) for t, value in zip(tactors, _each(what, values, len(tactors))))
-
-
 def _array_again(name: str, tactors: tuple[Tactor, ...], file: str | None, besides: str, origin: str) -> Array:
-    return Array._of(_core_of(name, tactors), file, besides, origin)
+    return Array._wrap(_make_core(name, tactors), file, besides, origin)
 
 
 def array_presets() -> list[str]:
-    """Names of the built-in arrays."""
+    """Returns the names of the built-in arrays."""
     return _tactor.array_presets()  # type: ignore[no-any-return]

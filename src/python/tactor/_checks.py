@@ -1,16 +1,18 @@
 # SPDX-License-Identifier: MIT
-"""What is wrong with an argument."""
+"""Checks of arguments, and bases of the classes."""
 from __future__ import annotations
 
+import contextlib
 import math
 import operator
+import os
 import typing as _t
 
-from tactor._errors import InputError
+from tactor._errors import Error, InputError
 
 
 def _floats(what: str, values: _t.Any) -> _t.Any:
-    """Numbers as an array of float64; refuses what would lose something on the way, as complex numbers, times and masks do."""
+    """Returns numbers as an array of float64; refuses those that would lose something, as complex numbers, times and masks do."""
     import numpy as np
     try:
         raw: _t.Any = values if isinstance(values, np.ma.MaskedArray) else np.asarray(values)
@@ -25,7 +27,7 @@ def _floats(what: str, values: _t.Any) -> _t.Any:
 
 
 def _are_plain(array: _t.Any) -> bool:
-    """Whether an array has real numbers alone."""
+    """Returns True for an array of real numbers alone."""
     if array.dtype.kind == "O":
         return all(not isinstance(v, (str, bytes, bool, complex)) and _is_plain(v) for v in array.flat)
     return array.dtype.kind in "iuf" and not _is_masked(array)
@@ -37,7 +39,7 @@ def _is_masked(array: _t.Any) -> bool:
 
 
 def _is_plain(value: _t.Any) -> bool:
-    """False for what has a type of NumPy's that is no real number: complex numbers, times, truths, texts, masked and several values."""
+    """Returns False for NumPy's types that are no real number: complex numbers, times, truths, texts, masked and several values."""
     dtype = getattr(value, "dtype", None)
     if dtype is None:
         return True
@@ -45,7 +47,7 @@ def _is_plain(value: _t.Any) -> bool:
 
 
 def _number(what: str, value: _t.Any, least: float = -math.inf, most: float = math.inf, hint: str = "", finite: bool = True) -> float:
-    """A number between bounds; what it is called is said where it is none."""
+    """Returns a number between bounds; refuses all else by the name `what`."""
     if not hint and math.isfinite(least):
         hint = f"{least:g} to {most:g}" if math.isfinite(most) else f"{least:g} or more"
     try:
@@ -62,7 +64,7 @@ def _number(what: str, value: _t.Any, least: float = -math.inf, most: float = ma
 
 
 def _whole(what: str, value: _t.Any, least: int, most: int, hint: str = "") -> int:
-    """A whole number between bounds; 48000.0 is one, too."""
+    """Returns a whole number between bounds; 48000.0 is one, too."""
     hint = hint or f"a whole number from {least} to {most}"
     number = _number(what, value, least, most, hint)
     if number != int(number):
@@ -74,7 +76,7 @@ def _whole(what: str, value: _t.Any, least: int, most: int, hint: str = "") -> i
 
 
 def _place(what: str, value: _t.Any) -> tuple[float, float]:
-    """(x_mm, y_mm)"""
+    """Returns (x_mm, y_mm)."""
     try:
         x, y = value
     except (TypeError, ValueError):
@@ -91,18 +93,70 @@ def _shown(value: object) -> str:
 
 
 def _need(value: object, kind: type, what: str) -> None:
-    """Says which argument is of another type; where it were passed on, nobody would know its name."""
+    """Refuses an argument of another type by its name, which the extension does not know."""
     if not isinstance(value, kind):
         article = "an" if kind.__name__[0] in "AEIOU" else "a"
         raise TypeError(f"{what}: {article} {kind.__name__} is wanted, not {type(value).__name__}")
+
+
+def _split_envelope(given: dict[str, _t.Any]) -> dict[str, _t.Any]:
+    """Splits the tool's envelope "tukey:PART" into its two options."""
+    envelope = given.get("envelope")
+    if not isinstance(envelope, str) or not envelope.startswith("tukey:"):
+        return given
+    if given.get("tukey_part") is not None:
+        raise InputError("envelope", f'there are "{envelope}" and tukey_part', "give the part once", field="envelope")
+    try:
+        return {**given, "envelope": "tukey", "tukey_part": float(envelope[len("tukey:"):])}
+    except ValueError:
+        raise InputError("envelope", f'"{envelope}" is not known', "tukey:PART, such as tukey:0.3", field="envelope") from None
 
 
 def _counted(n: int, noun: str) -> str:
     return f"{n} {noun}" if n == 1 else f"{n} {noun}s"
 
 
+def encoded(name: str | os.PathLike[str], what: str = "file") -> bytes:
+    """Returns a name as the system takes it; refuses zero bytes, which would end it."""
+    as_bytes = os.fsencode(name)
+    if b"\0" in as_bytes:
+        raise InputError(what, f"{os.fspath(name)!r} has a zero byte in it", "no file or device is called so", field=what)
+    return as_bytes
+
+
+@contextlib.contextmanager
+def reading(file: str | os.PathLike[str]) -> _t.Iterator[bytes]:
+    """Gives the name as the extension takes it; an error within says the file, whether or not it knows the line."""
+    name = os.fspath(file)
+    try:
+        yield encoded(name)
+    except Error as e:
+        if e.file is None:
+            e._name_file(name)
+        raise
+
+
+_M = _t.TypeVar("_M")
+
+
+class _Member(property, _t.Generic[_M]):
+    # A property that reads a member of the extension's object, which is in _core. No docstring: each has its own.
+
+    def __init__(self, name: str, doc: str) -> None:
+        super().__init__(operator.attrgetter("_core." + name))
+        self.__doc__ = doc
+
+    if _t.TYPE_CHECKING:
+        @_t.overload
+        def __get__(self, instance: None, owner: type) -> _Member[_M]: ...
+        @_t.overload
+        def __get__(self, instance: object, owner: type | None = None) -> _M: ...
+        def __get__(self, instance: object, owner: type | None = None) -> _t.Any: ...
+        def __set__(self, instance: object, value: _t.NoReturn) -> None: ...
+
+
 class _Value:
-    """What cannot change: a copy of it is itself."""
+    """A value that cannot change: a copy of it is itself."""
 
     __slots__ = ()
 
@@ -124,7 +178,7 @@ class _Stated(_Value):
     _core: _t.Any
 
     @classmethod
-    def _of(cls: type[_S], core: _t.Any) -> _S:
+    def _wrap(cls: type[_S], core: _t.Any) -> _S:
         made = cls.__new__(cls)
         made._core = core
         return made
@@ -142,11 +196,11 @@ class _Stated(_Value):
 
 
 def _again(kind: type[_S], core: _t.Any, state: bytes) -> _S:
-    return kind._of(core.from_state(state))
+    return kind._wrap(core.from_state(state))
 
 
 class _Unique:
-    """What is there once, as a device is: two of it would close each other."""
+    """A thing that is there once, as a device is: two of it would close each other."""
 
     __slots__ = ()
 

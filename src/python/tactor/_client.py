@@ -10,7 +10,7 @@ import threading
 import typing as _t
 
 from tactor._checks import _need, _number, _shown, _Unique, _whole
-from tactor._errors import _KINDS, DeviceError, Error, InputError, StreamError, _of_system
+from tactor._errors import _KINDS, DeviceError, Error, InputError, StreamError, _system_kind
 from tactor._path import Path
 from tactor._stroke import Stroke
 from tactor._ticket import Report, _Awaited
@@ -23,7 +23,7 @@ _HELLO_S = 10.0
 
 
 class Reply(_Awaited[_t.Any]):
-    """What a `Client` was asked for. It was sent at once; the answer can be awaited, or waited for by `wait`.
+    """The reply to a request of a `Client`, which was sent at once. Await it, or call `wait`.
 
     Both give the result, or raise what the service refused it with: `InputError`, `DeviceError` or `StreamError` with its words.
     """
@@ -34,7 +34,7 @@ class Reply(_Awaited[_t.Any]):
         self._convert = convert
 
     def done(self) -> bool:
-        """Whether the answer is there."""
+        """Returns True once the answer is there."""
         return self._done
 
     def wait(self, timeout: float | None = None) -> _t.Any:
@@ -92,7 +92,7 @@ class RemoteStroke(Reply):
         self._left: set[int] = set()
         self._wish: str | None = None
         self.warnings: list[str] = []
-        """What was odd and taken nevertheless; there once the service has answered."""
+        """Oddities that were accepted; there once the service has answered."""
 
     @property
     def id(self) -> int | None:
@@ -101,7 +101,7 @@ class RemoteStroke(Reply):
 
     @property
     def report(self) -> Report | None:
-        """How it ended; None as long as it has not."""
+        """The report of its end; None until then."""
         return self._result
 
     def cancel(self) -> None:
@@ -162,7 +162,7 @@ class RemoteLive(RemoteStroke):
         self._client.tell("to", stroke=self._numbers[0], **point)
 
     def end(self) -> None:
-        """No more points come."""
+        """Ends it: no more points come."""
         self._later("end")
 
     def __enter__(self) -> RemoteLive:
@@ -191,7 +191,7 @@ class _Connection:
             self.socket.connect(path)
         except OSError as e:
             self.socket.close()
-            raise _of_system(DeviceError, e.errno or 0)(
+            raise _system_kind(DeviceError, e.errno or 0)(
                 path, os.strerror(e.errno or 0), "start one: tactor serve", file=path, errno=e.errno or 0) from None
         self.path = path
         self.owner = os.getpid()
@@ -204,7 +204,7 @@ class _Connection:
         self.thread.start()
 
     def tell(self, method: str, **params: _t.Any) -> None:
-        """Sends what is not answered."""
+        """Sends a message that gets no answer."""
         self._send({"jsonrpc": "2.0", "method": method, "params": params})
 
     def ask(self, reply: Reply, method: str, params: dict[str, _t.Any]) -> None:
@@ -280,7 +280,7 @@ def _refused(error: dict[str, _t.Any]) -> Error:
 
 
 def _connected(socket: str | os.PathLike[str] | None) -> _Connection:
-    """To the service at that socket, or to the first that listens: the user's, then the system's."""
+    """Connects to the service at that socket, or to the first that listens: the user's, then the system's."""
     if socket is not None:
         return _Connection(os.fspath(socket))
     folder = os.environ.get("XDG_RUNTIME_DIR")
@@ -298,7 +298,7 @@ def _connected(socket: str | os.PathLike[str] | None) -> _Connection:
 class Client(_Unique):
     """Draws through `tactor serve`, with or without asyncio: tactor-protocol(7).
 
-    What is asked for is sent at once; what a method returns can be awaited, or waited for by its `wait`::
+    Requests are sent at once. Await what a method returns, or call its `wait`::
 
         async with tactor.Client() as c:
             await c.play(stroke)
@@ -328,16 +328,16 @@ class Client(_Unique):
 
     @property
     def hello(self) -> dict[str, _t.Any]:
-        """What the service said of itself (protocol, version, array, stream, presets, clock and max_level_dbfs)."""
+        """The service's greeting (protocol, version, array, stream, presets, clock and max_level_dbfs)."""
         return dict(self._hello)
 
     @property
     def closed(self) -> bool:
-        """Whether it was closed, or the service has gone."""
+        """True once it was closed, or the service has gone."""
         return self._get().gone
 
     def call(self, method: str, **params: _t.Any) -> Reply:
-        """Any method of the protocol, with its parameters; gives its result as JSON has it."""
+        """Calls any method of the protocol, with its parameters; gives its result as JSON has it."""
         _need(method, str, "method")
         return self._ask(Reply(self._get(), lambda result: result), method, params)
 
@@ -431,7 +431,7 @@ class Client(_Unique):
         return self._ask(Reply(self._get(), lambda result: result["count"]), "fire", {})
 
     def status(self) -> Reply:
-        """How the service is: a dict with stream, amplifier, clients, strokes and limits."""
+        """Asks for the state of the service: a dict with stream, amplifier, clients, strokes and limits."""
         return self.call("status")
 
     def close(self) -> None:
@@ -479,7 +479,7 @@ def _drawn(stroke: _t.Any) -> dict[str, str]:
 
 
 def _said(options: dict[str, _t.Any]) -> dict[str, _t.Any]:
-    """Options that say something, in JSON's types."""
+    """Returns the options that are set, in JSON's types."""
     said = {}
     for name, value in options.items():
         if value is None:

@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: MIT
-"""What goes wrong, as exceptions."""
+"""Errors as exceptions."""
 from __future__ import annotations
 
 import typing as _t
 
 
 class Error(Exception):
-    """Base of what the library raises.
+    """Base of the library's errors.
 
     Where a call of the system failed it is also an `OSError` with its errno: a missing file is an `InputError` and a
     `FileNotFoundError`, a full disk a `StreamError` and an `OSError`.
@@ -63,7 +63,7 @@ class Error(Exception):
         return f"{text} ({self.hint})" if self.hint else text
 
     def __reduce__(self) -> tuple[_t.Callable[..., _t.Any], tuple[_t.Any, ...]]:
-        kind = _kind_of(self)
+        kind = _named_kind(self)
         return _again, (kind, kind is not type(self), self.what, self.why, self.hint, self.file, self.line, self.column, self.field, self.errno)
 
 
@@ -76,14 +76,14 @@ class DeviceError(Error, OSError):
 
 
 class StreamError(Error, RuntimeError):
-    """What failed while it ran: the stream, a disk that is full."""
+    """A failure at run time: of the stream, of a full disk."""
 
 
 _KINDS: dict[str, type[Error]] = {"bad-input": InputError, "not-available": DeviceError, "runtime": StreamError}
 
 
-def _of_system(kind: type[Error], errno: int) -> type[Error]:
-    """The class of that kind that is also what Python raises for an errno; the kind itself for none."""
+def _system_kind(kind: type[Error], errno: int) -> type[Error]:
+    """Returns the class of that kind that is also what Python raises for an errno; the kind itself for none."""
     base = type(OSError(errno, "")) if errno else kind
     if issubclass(kind, base):
         return kind
@@ -95,20 +95,20 @@ def _of_system(kind: type[Error], errno: int) -> type[Error]:
 _system_classes: dict[tuple[type, type], type[Error]] = {}
 
 
-def _kind_of(e: Error) -> type[Error]:
-    """The class that has a name, of one that _of_system() has made."""
+def _named_kind(e: Error) -> type[Error]:
+    """Returns the named class of one that _system_kind() has made."""
     kind = type(e)
     return kind.__mro__[1] if kind in _system_classes.values() else kind
 
 
 def _again(kind: type[Error], of_system: bool, what: str, why: str, hint: str, file: str | None, line: int | None, column: int | None,
            field: str | None, errno: int) -> Error:
-    made = _of_system(kind, errno) if of_system else kind
+    made = _system_kind(kind, errno) if of_system else kind
     return made(what, why, hint, file=file, line=line, column=column, field=field, errno=errno)
 
 
 def made(kind: str, what: str, why: str, hint: str, field: str = "", file: str = "", line: int = 0, column: int = 0,
          errno: int = 0) -> Error:
     """Makes the exception of a library's error; called by the extension."""
-    return _of_system(_KINDS[kind], errno)(what, why, hint, file=file or None, line=line or None, column=column or None, field=field or None,
+    return _system_kind(_KINDS[kind], errno)(what, why, hint, file=file or None, line=line or None, column=column or None, field=field or None,
                                            errno=errno)

@@ -1,11 +1,14 @@
 # SPDX-License-Identifier: MIT
-"""What plans are made of."""
+"""Parts of plans."""
 from __future__ import annotations
 
+import math
+import operator
 import typing as _t
 
 from tactor._array import Point
-from tactor._checks import _Value
+from tactor._checks import _shown, _Value
+from tactor._errors import InputError
 
 if _t.TYPE_CHECKING:
     import numpy as _np
@@ -13,7 +16,7 @@ if _t.TYPE_CHECKING:
 
 
 class PhantomModel(_t.Protocol):
-    """What a model of your own looks like: `plan(array, stroke, phantom=model)`."""
+    """A model of your own: `plan(array, stroke, phantom=model)`."""
 
     def weights(self, x_mm: float, y_mm: float, intensity: float) -> _t.Mapping[int, float]:
         """Amplitudes by tactor, finite and not below 0, that make a phantom of an intensity at a place in the hull.
@@ -21,6 +24,49 @@ class PhantomModel(_t.Protocol):
         Its name in plans is the attribute `name`, or that of its class.
         """
         ...
+
+
+def ask_model(model: _t.Any, name: str, x_mm: float, y_mm: float, intensity: float, tactors: int) -> list[tuple[int, float]]:
+    """Returns the tactors and amplitudes above 0 that a model gives, in order of tactor; called by the extension."""
+    said = model.weights(x_mm, y_mm, intensity)
+    if not hasattr(said, "items"):
+        raise _refused_answer(name, f"it returned {_shown(said)}")
+    drives = []
+    for one in said.items():
+        if not isinstance(one, tuple) or len(one) != 2:
+            raise _refused_answer(name, f"its items() have {_shown(one)}")
+        drives.append((_answered_tactor(name, one[0], tactors), _answered_amplitude(name, *one)))
+    drives.sort()
+    for (tactor, _), (following, _) in zip(drives, drives[1:]):
+        if tactor == following:
+            raise _refused_answer(name, f"it drives tactor {tactor} twice")
+    return [drive for drive in drives if drive[1] > 0.0]
+
+
+def _answered_tactor(name: str, key: _t.Any, tactors: int) -> int:
+    try:
+        tactor = operator.index(key)
+    except TypeError:
+        raise _refused_answer(name, f"it drives tactor {_shown(key)}, which is no whole number") from None
+    if not 0 <= tactor < tactors:
+        raise _refused_answer(name, f"it drives tactor {_shown(tactor)} of {tactors}")
+    return tactor
+
+
+def _answered_amplitude(name: str, key: _t.Any, value: _t.Any) -> float:
+    amplitude = -1.0
+    if not isinstance(value, (str, bytes, bytearray)):
+        try:
+            amplitude = float(value)
+        except (TypeError, ValueError, OverflowError):
+            pass
+    if not 0.0 <= amplitude < math.inf:
+        raise _refused_answer(name, f"tactor {_shown(key)} has the amplitude {_shown(value)}")
+    return amplitude
+
+
+def _refused_answer(name: str, why: str) -> InputError:
+    return InputError(f"phantom {name}", why, "weights() returns a dict of tactor and amplitude, which is finite and not below 0")
 
 
 _T = _t.TypeVar("_T")
@@ -40,7 +86,7 @@ class Frozen(list[_T]):
 
 
 class Drive(_t.NamedTuple):
-    """One tactor's part in a burst: linear amplitude, where 1 is the intensity asked for."""
+    """The part of a tactor in a burst: linear amplitude, where 1 is the requested intensity."""
 
     tactor: int
     amplitude: float
@@ -72,7 +118,7 @@ class Meeting(_t.NamedTuple):
 
 
 class PerceptSample(_t.NamedTuple):
-    """One instant of what is predicted to be felt: a model, never a measurement.
+    """An instant of a predicted percept: a model, never a measurement.
 
     `felt` is the centre of energy of the tactors that sound, None while none does; `speed` (mm/s) is smoothed over 0.1 s.
     """
@@ -149,7 +195,7 @@ class Curve(_Columns):
 
 
 class Percept(_Columns):
-    """What is predicted to be felt of a plan, sampled each millisecond: a model, never a measurement. Immutable.
+    """The predicted percept of a plan, sampled each millisecond: a model, never a measurement. Immutable.
 
     Also a sequence of `PerceptSample`.
 
@@ -206,7 +252,7 @@ class Percept(_Columns):
 
 
 class PerceptMap(_Columns):
-    """What is predicted to be felt of a phantom at each place of a grid over an array: a model, never a measurement. Immutable.
+    """The predicted percept of a phantom at each place of a grid over an array: a model, never a measurement. Immutable.
 
     Attributes
     ----------

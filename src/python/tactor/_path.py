@@ -6,7 +6,7 @@ import typing as _t
 
 from tactor import _tactor
 from tactor._array import Point
-from tactor._checks import _floats, _need, _number, _place, _Stated
+from tactor._checks import _floats, _Member, _need, _number, _place, _Stated
 
 if _t.TYPE_CHECKING:
     import numpy as _np
@@ -33,35 +33,28 @@ class Path(_Stated):
     def svg(cls, data: str) -> Path:
         """SVG path data in millimetres: "M 0 10 C 20 -5 20 45 40 30"."""
         _need(data, str, "data")
-        return cls._of(_tactor.Path.svg(data))
+        return cls._wrap(_tactor.Path.svg(data))
 
     @classmethod
     def polyline(cls, points: _ArrayLike) -> Path:
         """Straight lines from point to point, shape (n, 2), mm."""
-        return cls._of(_tactor.Path.polyline(_floats("points", points)))
+        return cls._wrap(_tactor.Path.polyline(_floats("points", points)))
 
     @classmethod
     def arc(cls, centre: _t.Sequence[float], radius_mm: float, from_deg: float, sweep_deg: float) -> Path:
         """A circular arc; angles from the x axis towards the y axis (clockwise on a screen), a sweep of at most 360 degrees."""
         angles = _number("from_deg", from_deg), _number("sweep_deg", sweep_deg)
-        return cls._of(_tactor.Path.arc(*_place("centre", centre), _number("radius_mm", radius_mm), *angles))
+        return cls._wrap(_tactor.Path.arc(*_place("centre", centre), _number("radius_mm", radius_mm), *angles))
 
-    @property
-    def length_mm(self) -> float:
-        """Length, to a micrometre."""
-        return self._core.length_mm  # type: ignore[no-any-return]
-
-    @property
-    def data(self) -> str:
-        """SVG path data of the curve."""
-        return self._core.data()  # type: ignore[no-any-return]
+    length_mm: _Member[float] = _Member("length_mm", "Length, to a micrometre.")
+    data: _Member[str] = _Member("data", "SVG path data of the curve.")
 
     @_t.overload
     def at(self, s_mm: float) -> Point: ...
     @_t.overload
     def at(self, s_mm: _t.Sequence[float] | _NDArray[_np.float64]) -> _NDArray[_np.float64]: ...
     def at(self, s_mm: _t.Any) -> _t.Any:
-        """The point at an arc length, clamped to 0 ... length; of an array of lengths the points, shape (n, 2)."""
+        """Returns the point at an arc length, clamped to 0 ... length; of an array of lengths the points, shape (n, 2)."""
         if isinstance(s_mm, (int, float)) and -1e300 < s_mm < 1e300:
             return Point(*self._core.at(s_mm))
         lengths = _floats("s_mm", s_mm)
@@ -70,11 +63,11 @@ class Path(_Stated):
         return self._core.at_all(lengths.ravel())
 
     def meets_x(self, x_mm: float) -> list[float]:
-        """Arc lengths, ascending, at which the path meets the line x = x_mm, touching included."""
+        """Returns the arc lengths, ascending, at which the path meets the line x = x_mm, touching included."""
         return self._core.meets_x(_number("x_mm", x_mm))  # type: ignore[no-any-return]
 
     def meets_y(self, y_mm: float) -> list[float]:
-        """The same for the line y = y_mm."""
+        """Does the same for the line y = y_mm."""
         return self._core.meets_y(_number("y_mm", y_mm))  # type: ignore[no-any-return]
 
     def __repr__(self) -> str:

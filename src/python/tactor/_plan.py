@@ -1,17 +1,16 @@
 # SPDX-License-Identifier: MIT
-"""Plans: who plays, when, and how strongly."""
+"""Plans: tactors, times and amplitudes."""
 from __future__ import annotations
 
 import collections.abc as _abc
+import functools
 import os
 import typing as _t
 
 from tactor import _tactor
 from tactor._array import Array, Point
-from tactor._checks import _Value
+from tactor._checks import _Member, _need, reading, _split_envelope, _Value
 from tactor._errors import Error, InputError
-from tactor._files import reading
-from tactor._options import _SOUNDING, check_used, settled
 from tactor._parts import Burst, Conflict, Curve, Drive, Frozen, Meeting, Percept
 from tactor._stroke import Stroke
 
@@ -22,36 +21,34 @@ if _t.TYPE_CHECKING:
 
 
 class Plan(_Value):
-    """Who plays, when, and how strongly: bursts or, of a continuous stroke, a curve. Immutable.
+    """The tactors, times and amplitudes of a stroke: bursts or, of a continuous stroke, a curve. Immutable.
 
-    Made by `tactor.plan` or `from_dict`. Arrays are looks at the plan's memory, which cannot be written; those of other shapes than
-    it has are made when they are first asked for.
+    Made by `tactor.plan` or `from_dict`. Arrays are read-only views of the plan's memory; those of other shapes are made at their
+    first use.
     """
 
-    __slots__ = ("_core", "_array", "_recorded", "_asked", "_kept")
+    __slots__ = ("_core", "_array", "_recorded", "_kept")
 
     _core: _t.Any
     _array: Array
     _recorded: bool
-    _asked: dict[str, _t.Any]  # how it is to sound, as far as somebody said
     _kept: dict[str, _t.Any]
 
     def __init__(self) -> None:
         raise TypeError("use tactor.plan() or Plan.from_dict()")
 
     @classmethod
-    def _of(cls, core: _t.Any, array: Array | None = None, recorded: bool = False, asked: dict[str, _t.Any] | None = None) -> Plan:
+    def _wrap(cls, core: _t.Any, array: Array | None = None, recorded: bool = False) -> Plan:
         made = cls.__new__(cls)
         made._core = core
-        made._array = array if array is not None else Array._of(core.array)
+        made._array = array if array is not None else Array._wrap(core.array)
         made._recorded = recorded
-        made._asked = asked or {}
         made._kept = {}
         return made
 
     @classmethod
     def from_dict(cls, d: _t.Mapping[str, _t.Any]) -> Plan:
-        """A plan of a tactor-plan/1 object, as `to_dict` or `tactor plan --format json` gives it.
+        """Reads a plan from a tactor-plan/1 object, as `to_dict` or `tactor plan --format json` gives it.
 
         Raises
         ------
@@ -71,11 +68,10 @@ class Plan(_Value):
 
     @classmethod
     def _read(cls, text: str, name: str) -> Plan:
-        """A plan of JSON; `name` stands for it in messages."""
-        from tactor._records import check_keys
+        """Reads a plan from JSON; `name` stands for it in messages."""
         core = _tactor.Plan.from_json(text, name)
-        check_keys(text, name)
-        return cls._of(core, recorded=True)
+        _check_keys(text, name)
+        return cls._wrap(core, recorded=True)
 
     def write(self, file: str | os.PathLike[str]) -> None:
         """Writes the plan as `tactor plan --format json` does: a record of every sample, for `load_plan` and the tool.
@@ -100,7 +96,7 @@ class Plan(_Value):
             _tactor.write_text(to, self._core.json())
 
     def to_dict(self) -> dict[str, _t.Any]:
-        """The tactor-plan/1 object, as `tactor plan --format json` prints it: a record of every sample.
+        """Returns the tactor-plan/1 object, as `tactor plan --format json` prints it: a record of every sample.
 
         Raises
         ------
@@ -118,66 +114,23 @@ class Plan(_Value):
     @property
     def stroke(self) -> Stroke:
         """The stroke as it was planned, fitted and timed."""
-        return Stroke._of(self._core.stroke)
+        return Stroke._wrap(self._core.stroke)
 
-    @property
-    def algorithm(self) -> str:
-        """Name of the planner."""
-        return self._core.algorithm  # type: ignore[no-any-return]
-
-    @property
-    def phantom(self) -> str:
-        """Name of the phantom model."""
-        return self._core.phantom  # type: ignore[no-any-return]
-
-    @property
-    def faces(self) -> _Faces:
-        """Which three tactors "inverse-distance" took."""
-        return self._core.faces  # type: ignore[no-any-return]
-
-    @property
-    def overlap(self) -> _Overlap:
-        """How bursts that overlap on one tactor are joined."""
-        return self._core.overlap  # type: ignore[no-any-return]
-
-    @property
-    def start(self) -> float | None:
-        """Seconds from the start of a piece; None is when the plan before it has ended."""
-        return self._core.start_s  # type: ignore[no-any-return]
-
-    @property
-    def stroke_duration(self) -> float:
-        """Time of the stroke, s."""
-        return self._core.stroke_duration_s  # type: ignore[no-any-return]
-
-    @property
-    def stroke_length_mm(self) -> float:
-        """Length of the stroke."""
-        return self._core.stroke_length_mm  # type: ignore[no-any-return]
-
-    @property
-    def carrier(self) -> float:
-        """Frequency of the vibration, Hz."""
-        return self._core.carrier_hz  # type: ignore[no-any-return]
-
-    @property
-    def soa(self) -> float | None:
-        """Onset to onset of two bursts, s; None where they have none in common."""
-        return self._core.soa_s  # type: ignore[no-any-return]
-
-    @property
-    def total(self) -> float:
-        """End of the last sound, s."""
-        return self._core.total_s  # type: ignore[no-any-return]
-
-    @property
-    def warnings(self) -> list[str]:
-        """What was odd and taken nevertheless."""
-        return self._core.warnings  # type: ignore[no-any-return]
+    algorithm: _Member[str] = _Member("algorithm", "Name of the planner.")
+    phantom: _Member[str] = _Member("phantom", "Name of the phantom model.")
+    faces: _Member[_Faces] = _Member("faces", 'Which three tactors "inverse-distance" took.')
+    overlap: _Member[_Overlap] = _Member("overlap", "Rule for bursts that overlap on the same tactor.")
+    start: _Member[float | None] = _Member("start_s", "Seconds from the start of a piece; None is when the plan before it has ended.")
+    stroke_duration: _Member[float] = _Member("stroke_duration_s", "Time of the stroke, s.")
+    stroke_length_mm: _Member[float] = _Member("stroke_length_mm", "Length of the stroke.")
+    carrier: _Member[float] = _Member("carrier_hz", "Frequency of the vibration, Hz.")
+    soa: _Member[float | None] = _Member("soa_s", "Onset to onset of two bursts, s; None where they have none in common.")
+    total: _Member[float] = _Member("total_s", "End of the last sound, s.")
+    warnings: _Member[list[str]] = _Member("warnings", "Oddities that were accepted.")
 
     @property
     def conflicts(self) -> list[Conflict]:
-        """Where bursts overlap on one tactor."""
+        """Overlaps of bursts on the same tactor."""
         return self._keep("conflicts", lambda: Frozen(Conflict(*c) for c in self._core.conflicts))  # type: ignore[no-any-return]
 
     @property
@@ -202,25 +155,10 @@ class Plan(_Value):
         """Shape (bursts, tactors), linear; 0 where a tactor does not sound."""
         return self._keep("amplitudes", self._core.amplitudes)  # type: ignore[no-any-return]
 
-    @property
-    def onsets(self) -> _NDArray[_np.float64]:
-        """Shape (bursts,), s."""
-        return self._core.onsets()  # type: ignore[no-any-return]
-
-    @property
-    def durations(self) -> _NDArray[_np.float64]:
-        """Shape (bursts,), s."""
-        return self._core.durations()  # type: ignore[no-any-return]
-
-    @property
-    def positions(self) -> _NDArray[_np.float64]:
-        """Shape (bursts, 2), mm."""
-        return self._core.positions()  # type: ignore[no-any-return]
-
-    @property
-    def intensities(self) -> _NDArray[_np.float64]:
-        """Shape (bursts,), linear."""
-        return self._core.intensities()  # type: ignore[no-any-return]
+    onsets: _Member[_NDArray[_np.float64]] = _Member("onsets", "Shape (bursts,), s.")
+    durations: _Member[_NDArray[_np.float64]] = _Member("durations", "Shape (bursts,), s.")
+    positions: _Member[_NDArray[_np.float64]] = _Member("positions", "Shape (bursts, 2), mm.")
+    intensities: _Member[_NDArray[_np.float64]] = _Member("intensities", "Shape (bursts,), linear.")
 
     @property
     def taus(self) -> _NDArray[_np.float64]:
@@ -229,11 +167,11 @@ class Plan(_Value):
 
     @property
     def compensation(self) -> dict[str, _t.Any] | None:
-        """What `compensate` did, as in the record (observer, residuals and taps); None without it."""
+        """The effect of `compensate`, as in the record (observer, residuals and taps); None without it."""
         return self.to_dict().get("compensation")
 
     def percept(self) -> Percept:
-        """What is predicted to be felt at 0, 1, 2 ... ms: a model, never a measurement.
+        """Predicts the percept at 0, 1, 2 ... ms: a model, never a measurement.
 
         Returns
         -------
@@ -246,11 +184,11 @@ class Plan(_Value):
         return self._keep("percept", made)  # type: ignore[no-any-return]
 
     def percept_summary(self) -> dict[str, float | None]:
-        """How far the prediction is from the target: rms_error_mm, largest_error_mm, speed_cv, intensity_cv, silent_share, shared_share."""
+        """Compares prediction and target: rms_error_mm, largest_error_mm, speed_cv, intensity_cv, silent_share, shared_share."""
         return self._core.summary()  # type: ignore[no-any-return]
 
     def to_pandas(self) -> _t.Any:
-        """A pandas DataFrame with a row for each burst (or sample) and a column `tactor_N` for each tactor's amplitude."""
+        """Returns a pandas DataFrame with a row for each burst (or sample) and a column `tactor_N` for each tactor's amplitude."""
         import pandas  # type: ignore
         c = self.curve
         columns: dict[str, _t.Any]
@@ -264,16 +202,11 @@ class Plan(_Value):
         columns |= {f"tactor_{i}": amplitudes[:, i] for i in range(amplitudes.shape[1])}
         return pandas.DataFrame(columns)
 
-    def _sound_on(self, array: Array, given: dict[str, _t.Any]) -> dict[str, _t.Any]:
-        """Options of a score on that array, where `given` wins. The plan has taken over what its own array's file says, and a record
-        says all; elsewhere the other array's file says what the plan leaves open."""
-        sound = self._core.sound
-        if self._recorded or self._array is array or self._array == array:
-            check_used(given, {**sound, **{name: value for name, value in given.items() if value is not None}})
-            return given
-        rivals = {"level_dbfs", "sl"} if given.get("level_dbfs") is not None or given.get("sl") is not None else set()
-        asked = {name: value for name, value in self._asked.items() if given.get(name) is None and name not in rivals}
-        return settled(array, {**given, **asked}, _SOUNDING, sound)
+    def _place_on(self, array: Array) -> tuple[bool, _t.Any]:
+        """Returns True if it was made for another array, and then the other tables of that array's file, which say what the plan leaves
+        open. A record says all, and a plan has taken over what its own array's file says."""
+        elsewhere = not (self._recorded or self._array is array or self._array == array)
+        return elsewhere, array._settings() if elsewhere else None
 
     def _keep(self, name: str, make: _t.Callable[[], _t.Any]) -> _t.Any:
         if name not in self._kept:
@@ -295,10 +228,31 @@ class Plan(_Value):
 
     def _repr_svg_(self) -> str:
         from tactor._tool import svg_of_plans
-        return svg_of_plans([self])
+        return svg_of_plans(self)
 
     def __reduce__(self) -> tuple[_t.Callable[..., _t.Any], tuple[_t.Any, ...]]:
-        return _plan_again, (self._core.json(), self._core.stroke.state(), self._array, self._recorded, self._asked)
+        return _plan_again, (self._core.json(), self._core.stroke.state(), self._array, self._recorded, self._core.asked)
+
+
+def make_plan(given: dict[str, _t.Any]) -> Plan:
+    """Makes the plan of plan()'s arguments."""
+    options = _split_envelope(given)
+    array, stroke = options.pop("array"), options.pop("stroke")
+    _need(array, Array, "array")
+    _need(stroke, Stroke, "stroke")
+    return Plan._wrap(_tactor.Plan(array._core, stroke._core, options, array._settings()), array)
+
+
+def burst_duration(*, soa: float | None = None, burst: float | None = None, slope: float | None = None,
+                   intercept: float | None = None) -> float:
+    """Returns the duration of park2016's bursts in seconds: `burst`, or what the timing law gives for the SOA.
+
+    Raises
+    ------
+    InputError
+        For an SOA out of bounds.
+    """
+    return _tactor.burst_duration(dict(soa=soa, burst=burst, slope=slope, intercept=intercept))  # type: ignore[no-any-return]
 
 
 def load_plan(file: str | os.PathLike[str]) -> Plan:
@@ -323,7 +277,7 @@ def load_plan(file: str | os.PathLike[str]) -> Plan:
 
 
 def _plain(value: _t.Any) -> _t.Any:
-    """What JSON does not know: other mappings, and numbers and arrays of NumPy."""
+    """Converts values that JSON does not know: other mappings, and numbers and arrays of NumPy."""
     if isinstance(value, _abc.Mapping):
         return dict(value)
     if hasattr(value, "tolist"):
@@ -331,5 +285,42 @@ def _plain(value: _t.Any) -> _t.Any:
     raise TypeError(f"there is a {type(value).__name__} in it")
 
 
-def _plan_again(text: str, stroke: bytes, array: Array, recorded: bool, asked: dict[str, _t.Any]) -> Plan:
-    return Plan._of(_tactor.Plan.from_parts(text, _tactor.Stroke.from_state(stroke), array._core), array, recorded, asked)
+def _check_keys(text: str, name: str) -> None:
+    """Refuses keys that no plan has; `text` is JSON that was read as a plan, `name` stands for it in messages."""
+    import json
+    record = json.loads(text)
+    plans = record.get("plans")
+    for plan in plans if isinstance(plans, list) else [record]:
+        _check_members(plan, _schema(), "", name)
+
+
+@functools.lru_cache(None)
+def _schema() -> dict[str, _t.Any]:
+    import json
+    with open(os.path.join(os.path.dirname(__file__), "tactor-plan-1.schema.json"), encoding="utf-8") as file:
+        return json.load(file)  # type: ignore[no-any-return]
+
+
+def _check_members(value: _t.Any, schema: dict[str, _t.Any], place: str, name: str) -> None:
+    if isinstance(value, list):
+        for i, entry in enumerate(value):
+            _check_members(entry, schema.get("items", {}), f"{place}[{i}]", name)
+        return
+    known = schema.get("properties")
+    if not isinstance(value, dict) or known is None:
+        return
+    for key, entry in value.items():
+        at = f"{place}.{key}" if place else key
+        if key not in known:
+            raise InputError(f"{name}: {at}", "no plan has this key", _nearest(key, known), file=name, field=at)
+        _check_members(entry, known[key], at, name)
+
+
+def _nearest(key: str, known: _t.Iterable[str]) -> str:
+    import difflib
+    near = difflib.get_close_matches(key, known, 1)
+    return f"did you mean '{near[0]}'?" if near else "see tactor-json(5)"
+
+
+def _plan_again(text: str, stroke: bytes, array: Array, recorded: bool, asked: list[str]) -> Plan:
+    return Plan._wrap(_tactor.Plan.from_parts(text, _tactor.Stroke.from_state(stroke), array._core, asked), array, recorded)

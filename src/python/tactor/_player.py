@@ -13,10 +13,8 @@ import weakref
 from tactor import _tactor
 from tactor._array import Array
 from tactor._calls import PlayerCalls
-from tactor._checks import _need, _number, _Unique, _whole
+from tactor._checks import encoded, _need, _number, _split_envelope, _Unique, _whole
 from tactor._errors import InputError
-from tactor._files import encoded
-from tactor._options import _LIVE, settled
 from tactor._score import Score
 from tactor._ticket import LiveStroke, Report, Ticket, _call, _Held, _Shared
 
@@ -77,7 +75,7 @@ class Player(PlayerCalls, _Unique):
 
     @property
     def setup(self) -> dict[str, _t.Any]:
-        """What was agreed on with the device (name, channels, device_channels, rate, format, period_frames, buffer_frames, batch, has_clock)."""
+        """The setup of the device (name, channels, device_channels, rate, format, period_frames, buffer_frames, batch, has_clock)."""
         return dict(self._setup)
 
     @property
@@ -92,7 +90,7 @@ class Player(PlayerCalls, _Unique):
 
     @property
     def closed(self) -> bool:
-        """Whether it was closed."""
+        """True once it was closed."""
         return self._get().core.closed  # type: ignore[no-any-return]
 
     def play(self, score: Score, at: _At = "now", *, at_s: float | None = None, delay: float | None = None,
@@ -152,7 +150,7 @@ class Player(PlayerCalls, _Unique):
 
     def _fitting(self, score: Score) -> _t.Any:
         if score.channels < self.channels and score.rate == self.rate:
-            return Score._of(score._array, score._plans, {**score._options, "channels": self.channels})._core
+            return Score._wrap(score._array, score._plans, {**score._options, "channels": self.channels})._core
         return score._core
 
     def _begin(self, given: dict[str, _t.Any]) -> LiveStroke:
@@ -160,32 +158,31 @@ class Player(PlayerCalls, _Unique):
         timeout, longest, smooth = (given.pop(name) for name in ("timeout", "longest", "smooth"))
         times = (_number("timeout", timeout, 0.001, 86400.0), None if longest is None else _number("longest", longest, 0.001, 86400.0),
                  _number("smooth", smooth, 0.0, 1.0))
-        options = settled(self._array, given, _LIVE)
         with shared.lock:
-            core = shared.core.live(self._array._core, options, *times)
+            core = shared.core.live(self._array._core, _split_envelope(given), *times, self._array._settings())
             stroke = LiveStroke(shared, core)
             self._held.tickets[stroke.id] = stroke
         return stroke
 
     def fire(self, at_s: float | None = None) -> int:
-        """Starts all armed strokes, now or at a time of CLOCK_MONOTONIC; how many there were."""
+        """Starts all armed strokes, now or at a time of CLOCK_MONOTONIC; returns their number."""
         return self._get().core.fire(time.monotonic() if at_s is None else _number("at_s", at_s, -_LATEST_S, _LATEST_S, _CLOCK))  # type: ignore[no-any-return]
 
     def stop(self, *_: object) -> None:
-        """Fades everything out and stops the stream. What that ends counts as cancelled. Ignores its arguments, such as the event of a button."""
+        """Fades everything out and stops the stream. Strokes that this ends count as cancelled. Ignores its arguments, such as the event of a button."""
         self._get().core.stop()
 
     @property
     def ended(self) -> str | None:
-        """Why the stream has ended; empty where `stop` or `close` ended it in order, None while it goes on."""
+        """The reason for the end of the stream; empty after `stop` or `close`, None while it goes on."""
         return self._get().core.ended()  # type: ignore[no-any-return]
 
     def stats(self) -> dict[str, _t.Any]:
-        """Counters since it was opened, after `close` those of the end: periods, frames, xruns, limited_frames, power_limited_frames, drives_cut, stalls, realtime, ..."""
+        """Returns the counters since it was opened, after `close` those of the end: periods, frames, xruns, limited_frames, power_limited_frames, drives_cut, stalls, realtime, ..."""
         return self._get().core.stats()  # type: ignore[no-any-return]
 
     def position(self) -> dict[str, _t.Any]:
-        """Where the stream is: running, played (frame at the DAC), stroke (number of the newest that sounds, or None), stroke_frame."""
+        """Returns the place in the stream: running, played (frame at the DAC), stroke (number of the newest that sounds, or None), stroke_frame."""
         return self._get().core.position()  # type: ignore[no-any-return]
 
     def close(self) -> None:
@@ -193,7 +190,7 @@ class Player(PlayerCalls, _Unique):
         shared = self._get()
         held = self._held
         shared.held = lambda: held  # collected, it is still told how its strokes ended
-        with shared.closing:  # who comes second finds it closed
+        with shared.closing:  # a second caller finds it closed
             shared.core.close()
         _open.discard(self)
         if threading.current_thread() is not shared.thread:

@@ -9,10 +9,8 @@ import typing as _t
 from tactor import _tactor
 from tactor._array import Array
 from tactor._calls import ScoreCall
-from tactor._checks import _counted, _need, _number, _Value, _whole
+from tactor._checks import _counted, _Member, _need, _number, reading, _split_envelope, _Value, _whole
 from tactor._errors import InputError
-from tactor._files import reading
-from tactor._options import in_parts
 from tactor._plan import Plan
 
 if _t.TYPE_CHECKING:
@@ -26,7 +24,7 @@ _FORMATS = {"float32": "float", "int16": "s16", "int32": "s32"}
 _dtypes: dict[str, _t.Any] = {}  # of these names, for NumPy takes its time for each
 
 
-def _format_of(dtype: _DTypeLike) -> str:
+def _find_format(dtype: _DTypeLike) -> str:
     """Name of a type that can be rendered, which then stands in _dtypes."""
     name = dtype if isinstance(dtype, str) else ""
     if name not in _dtypes:
@@ -43,7 +41,7 @@ def _format_of(dtype: _DTypeLike) -> str:
 
 
 def placed(plans: _Plans) -> list[tuple[float | None, Plan]]:
-    """Plans with the times at which they start."""
+    """Returns plans with the times at which they start."""
     if isinstance(plans, Plan):
         return [(plans.start, plans)]
     if not isinstance(plans, _abc.Iterable):
@@ -80,17 +78,17 @@ class Score(ScoreCall, _Value):
     def _make(self, given: dict[str, _t.Any]) -> None:
         array, plans = given.pop("array"), given.pop("plans")
         _need(array, Array, "array")
-        self._take(array, tuple(placed(plans)), in_parts(given))
+        self._take(array, tuple(placed(plans)), _split_envelope(given))
 
     def _take(self, array: Array, plans: tuple[tuple[float | None, Plan], ...], options: dict[str, _t.Any]) -> None:
         self._array = array
         self._plans = plans
         self._options = options
         self._core, self._recipe = _tactor.make_score(
-            array._core, [(start, p._core, p._sound_on(array, options)) for start, p in plans])
+            array._core, [(start, p._core, *p._place_on(array)) for start, p in plans], options)
 
     @classmethod
-    def _of(cls, array: Array, plans: tuple[tuple[float | None, Plan], ...], options: dict[str, _t.Any]) -> Score:
+    def _wrap(cls, array: Array, plans: tuple[tuple[float | None, Plan], ...], options: dict[str, _t.Any]) -> Score:
         made = cls.__new__(cls)
         made._take(array, plans, options)
         return made
@@ -105,34 +103,20 @@ class Score(ScoreCall, _Value):
         """The plans, in the order given."""
         return tuple(p for _, p in self._plans)
 
-    @property
-    def frames(self) -> int:
-        """Length."""
-        return self._core.frames  # type: ignore[no-any-return]
-
-    @property
-    def channels(self) -> int:
-        """Samples of a frame."""
-        return self._core.channels  # type: ignore[no-any-return]
-
-    @property
-    def rate(self) -> int:
-        """Hz."""
-        return self._core.rate  # type: ignore[no-any-return]
+    frames: _Member[int] = _Member("frames", "Length.")
+    channels: _Member[int] = _Member("channels", "Samples of a frame.")
+    rate: _Member[int] = _Member("rate", "Hz.")
 
     @property
     def duration(self) -> float:
         """Length, s."""
         return self.frames / self.rate
 
-    @property
-    def starts(self) -> list[int]:
-        """First frame of each plan."""
-        return self._core.starts  # type: ignore[no-any-return]
+    starts: _Member[list[int]] = _Member("starts", "First frame of each plan.")
 
     def render(self, dtype: _DTypeLike = "float32", *, start: int = 0, frames: int | None = None,
                out: _NDArray[_t.Any] | None = None) -> _NDArray[_t.Any]:
-        """The samples, the same as `tactor render` writes.
+        """Renders the samples, the same as `tactor render` writes.
 
         Parameters
         ----------
@@ -154,7 +138,7 @@ class Score(ScoreCall, _Value):
         InputError
             For another type, and for an array that does not fit.
         """
-        name = _format_of(dtype if out is None else out.dtype)
+        name = _find_format(dtype if out is None else out.dtype)
         first = _whole("start", start, 0, 1 << 62)
         count = max(self.frames - first, 0) if frames is None and out is None else \
             len(_t.cast(_t.Any, out)) if frames is None else _whole("frames", frames, 0, 1 << 40)
@@ -170,7 +154,7 @@ class Score(ScoreCall, _Value):
         return out
 
     def blocks(self, frames: int, dtype: _DTypeLike = "float32") -> _t.Iterator[_NDArray[_t.Any]]:
-        """The samples block by block, so that a long score need not be in memory.
+        """Renders the samples block by block, so that a long score need not be in memory.
 
         Parameters
         ----------
@@ -189,7 +173,7 @@ class Score(ScoreCall, _Value):
         InputError
             For another type or number.
         """
-        name = _format_of(dtype)
+        name = _find_format(dtype)
         return self._blocks(name, _whole("frames", frames, 1, 1 << 24))
 
     def _blocks(self, name: str, frames: int) -> _t.Iterator[_NDArray[_t.Any]]:
@@ -201,7 +185,7 @@ class Score(ScoreCall, _Value):
             yield block
 
     def to_numpy(self) -> _NDArray[_np.float32]:
-        """The same as `render()`."""
+        """Does the same as `render()`."""
         return self.render()
 
     def write(self, file: str | os.PathLike[str], sample_format: _WavFormat = "float") -> None:
@@ -233,7 +217,7 @@ class Score(ScoreCall, _Value):
         return hash(self._sounds())
 
     def _sounds(self) -> tuple[_t.Any, ...]:
-        """What decides on the samples, but for the plans' bursts and curves."""
+        """Returns all that decides on the samples, but for the plans' bursts and curves."""
         return self._array.tactors, tuple(self.starts), self.frames, self._recipe
 
     def __repr__(self) -> str:
@@ -241,8 +225,4 @@ class Score(ScoreCall, _Value):
                 f"{self.duration:.6g} s>")
 
     def __reduce__(self) -> tuple[_t.Callable[..., _t.Any], tuple[_t.Any, ...]]:
-        return _score_again, (self._array, self._plans, self._options)
-
-
-def _score_again(array: Array, plans: tuple[tuple[float | None, Plan], ...], options: dict[str, _t.Any]) -> Score:
-    return Score._of(array, plans, options)
+        return Score._wrap, (self._array, self._plans, self._options)

@@ -7,9 +7,8 @@ import typing as _t
 
 from tactor import _tactor
 from tactor._array import Array, Point
-from tactor._checks import _floats, _need, _number, _Stated
+from tactor._checks import _floats, _Member, _need, _number, reading, _Stated
 from tactor._errors import InputError
-from tactor._files import reading
 from tactor._path import Path
 
 if _t.TYPE_CHECKING:
@@ -22,7 +21,7 @@ if _t.TYPE_CHECKING:
 
 
 def _profile(name: str, points: _t.Any) -> _t.Any:
-    """(part, value) as a table of two columns."""
+    """Returns (part, value) as a table of two columns."""
     table = _floats(name, points)
     if table.size == 0:
         return table.reshape(-1, 2)
@@ -32,7 +31,7 @@ def _profile(name: str, points: _t.Any) -> _t.Any:
 
 
 def _pauses(pauses: _t.Any) -> _t.Any:
-    """(part, seconds) or (part, seconds, intensity) as a table of three columns."""
+    """Returns (part, seconds) or (part, seconds, intensity) as a table of three columns."""
     rows = []
     for row in pauses:
         if not hasattr(row, "__len__") or len(row) not in (2, 3):
@@ -42,7 +41,7 @@ def _pauses(pauses: _t.Any) -> _t.Any:
 
 
 def _is_one(value: _t.Any) -> bool:
-    """Whether it is one number, not a list of them."""
+    """Returns True for a number, False for a list of them."""
     return not hasattr(value, "__len__") or getattr(value, "ndim", 1) == 0
 
 
@@ -115,7 +114,7 @@ class Stroke(_Stated):
             core = _tactor.Stroke.moving(
                 name, path._core, duration, speed if one_speed else None, intensity if one_intensity else 1.0, easing,
                 _profile("speed", () if one_speed else speed), _profile("intensity", () if one_intensity else intensity), _pauses(pauses))
-        return cls._of(core.same_as(*placing))
+        return cls._wrap(core.same_as(*placing))
 
     @classmethod
     def timed(cls, t: _ArrayLike, x: _ArrayLike, y: _ArrayLike, intensity: _ArrayLike | None = None, *, name: str = "timed",
@@ -143,81 +142,40 @@ class Stroke(_Stated):
         if columns[3].size not in (1, count) or columns[3].ndim != 1:
             raise InputError("intensity", f"it has the shape {columns[3].shape}, not ({count},)", "one for each point, or one for all")
         columns[3] = np.broadcast_to(columns[3], (count,))
-        return cls._of(_tactor.Stroke.timed(name, np.column_stack(columns)).same_as(*placing))
+        return cls._wrap(_tactor.Stroke.timed(name, np.column_stack(columns)).same_as(*placing))
 
     @classmethod
     def preset(cls, name: str) -> Stroke:
-        """A built-in stroke: "park2016-1" ... "park2016-4", "wave-2x4", "round-2x4" (`stroke_presets`)."""
+        """Returns a built-in stroke: "park2016-1" ... "park2016-4", "wave-2x4", "round-2x4" (`stroke_presets`)."""
         _need(name, str, "name")
-        return cls._of(_tactor.Stroke.preset(name))
+        return cls._wrap(_tactor.Stroke.preset(name))
 
     @classmethod
     def shape(cls, name: str) -> Stroke:
-        """A "tap", "line", "circle", "eight" or "spiral", as large as the array for which it is planned (`stroke_shapes`)."""
+        """Returns a "tap", "line", "circle", "eight" or "spiral", as large as the array for which it is planned (`stroke_shapes`)."""
         _need(name, str, "name")
-        return cls._of(_tactor.Stroke.shape(name))
+        return cls._wrap(_tactor.Stroke.shape(name))
 
-    @property
-    def name(self) -> str:
-        """Name; may be empty."""
-        return self._core.name  # type: ignore[no-any-return]
-
-    @property
-    def duration(self) -> float:
-        """Time from start to end, s."""
-        return self._core.duration_s  # type: ignore[no-any-return]
-
-    @property
-    def length_mm(self) -> float:
-        """Length of the way."""
-        return self._core.length_mm  # type: ignore[no-any-return]
-
-    @property
-    def start(self) -> float | None:
-        """Seconds from where `start_from` says; None is when the stroke before it has ended."""
-        return self._core.start_s  # type: ignore[no-any-return]
-
-    @property
-    def start_from(self) -> _StartFrom:
-        """From where `start` counts, as a file says it. The start of the "piece", or the "start" or "end" of strokes before."""
-        return self._core.start_from  # type: ignore[no-any-return]
-
-    @property
-    def choices(self) -> dict[str, str | float]:
-        """Options of `plan` that a file gives this stroke (algorithm, phantom, faces, soa, burst), which win over those of the call."""
-        return self._core.choices  # type: ignore[no-any-return]
-
-    @property
-    def level_db(self) -> float:
-        """How much stronger a file says it is than the others."""
-        return self._core.level_db  # type: ignore[no-any-return]
-
-    @property
-    def carrier(self) -> float | None:
-        """Its own carrier, Hz; None is the plan's."""
-        return self._core.carrier_hz  # type: ignore[no-any-return]
-
-    @property
-    def speed(self) -> float | None:
-        """The speed, mm/s, from which its time follows; None where a time was given."""
-        return self._core.speed_mm_s  # type: ignore[no-any-return]
-
-    @property
-    def note(self) -> _Note:
-        """What must be said of it."""
-        return self._core.note  # type: ignore[no-any-return]
-
-    @property
-    def warnings(self) -> list[str]:
-        """What was odd about the input and taken nevertheless."""
-        return self._core.warnings  # type: ignore[no-any-return]
+    name: _Member[str] = _Member("name", "Name; may be empty.")
+    duration: _Member[float] = _Member("duration_s", "Time from start to end, s.")
+    length_mm: _Member[float] = _Member("length_mm", "Length of the way.")
+    start: _Member[float | None] = _Member("start_s", "Seconds from where `start_from` says; None is when the stroke before it has ended.")
+    start_from: _Member[_StartFrom] = _Member(
+        "start_from", 'From where `start` counts, as a file says it. The start of the "piece", or the "start" or "end" of strokes before.')
+    choices: _Member[dict[str, str | float]] = _Member(
+        "choices", "Options of `plan` that a file gives this stroke (algorithm, phantom, faces, soa, burst), which win over those of the call.")
+    level_db: _Member[float] = _Member("level_db", "Its level in a file, relative to the other strokes.")
+    carrier: _Member[float | None] = _Member("carrier_hz", "Its own carrier, Hz; None is the plan's.")
+    speed: _Member[float | None] = _Member("speed_mm_s", "The speed, mm/s, from which its time follows; None where a time was given.")
+    note: _Member[_Note] = _Member("note", "A note on its origin.")
+    warnings: _Member[list[str]] = _Member("warnings", "Oddities of the input that were accepted.")
 
     @_t.overload
     def position(self, t: float) -> Point: ...
     @_t.overload
     def position(self, t: _t.Sequence[float] | _NDArray[_np.float64]) -> _NDArray[_np.float64]: ...
     def position(self, t: _t.Any) -> _t.Any:
-        """Where the target is at a time in seconds, clamped to 0 ... duration; of an array of n times the places, shape (n, 2), mm."""
+        """Returns the target's place at a time in seconds, clamped to 0 ... duration; of an array of n times the places, shape (n, 2), mm."""
         if _is_one(t):
             return Point(*self._core.position(_number("t", t, finite=False)))
         return self._core.positions(_times(t))
@@ -227,34 +185,34 @@ class Stroke(_Stated):
     @_t.overload
     def intensity(self, t: _t.Sequence[float] | _NDArray[_np.float64]) -> _NDArray[_np.float64]: ...
     def intensity(self, t: _t.Any) -> _t.Any:
-        """How strong the target is at a time in seconds, clamped to 0 ... duration; of an array of n times all, shape (n,), linear."""
+        """Returns the target's intensity at a time in seconds, clamped to 0 ... duration; of an array of n times all, shape (n,), linear."""
         if _is_one(t):
             return self._core.intensity(_number("t", t, finite=False))
         return self._core.intensities(_times(t))
 
     def meets_x(self, x_mm: float) -> list[float]:
-        """Times, ascending, at which the target meets the line x = x_mm."""
+        """Returns the times, ascending, at which the target meets the line x = x_mm."""
         return self._core.meets_x(_number("x_mm", x_mm))  # type: ignore[no-any-return]
 
     def meets_y(self, y_mm: float) -> list[float]:
-        """The same for the line y = y_mm."""
+        """Does the same for the line y = y_mm."""
         return self._core.meets_y(_number("y_mm", y_mm))  # type: ignore[no-any-return]
 
     def with_duration(self, duration: float) -> Stroke:
-        """The same movement in another time, s, pauses included."""
-        return self._of(self._core.with_duration(_number("duration", duration)))
+        """Returns the same movement in another time, s, pauses included."""
+        return self._wrap(self._core.with_duration(_number("duration", duration)))
 
     def with_speed(self, speed: float) -> Stroke:
-        """The same movement at another mean speed, mm/s; pauses along a path stay as long as they are."""
-        return self._of(self._core.with_speed(_number("speed", speed)))
+        """Returns the same movement at another mean speed, mm/s; pauses along a path stay as long as they are."""
+        return self._wrap(self._core.with_speed(_number("speed", speed)))
 
     def reversed(self) -> Stroke:
-        """The same movement played backwards."""
-        return self._of(self._core.reversed())
+        """Returns the same movement played backwards."""
+        return self._wrap(self._core.reversed())
 
     def with_intensity(self, factor: float) -> Stroke:
-        """The same movement with every intensity times a factor."""
-        return self._of(self._core.with_intensity(_number("factor", factor)))
+        """Returns the same movement with every intensity times a factor."""
+        return self._wrap(self._core.with_intensity(_number("factor", factor)))
 
     def write(self, file: str | os.PathLike[str]) -> None:
         """Writes a stroke file in TOML that `load` and the tool read.
@@ -279,8 +237,7 @@ class Stroke(_Stated):
             _tactor.write_text(to, self._core.text())
 
     def fitted(self, array: Array, margin_mm: float = 0.0) -> Stroke:
-        """The same shape, as large as the array has space for and in its middle; see `fit_strokes`."""
-        from tactor._fitting import fit_strokes
+        """Returns the same shape, as large as the array has space for and in its middle; see `fit_strokes`."""
         return fit_strokes([self], array, margin_mm)[0][0]
 
     def __repr__(self) -> str:
@@ -289,6 +246,68 @@ class Stroke(_Stated):
     def _repr_svg_(self) -> str:
         from tactor._tool import picture_of_stroke
         return picture_of_stroke(self)
+
+
+class Fitting(_t.NamedTuple):
+    """The new place of a picture: `origin` became `to`, and all distances are `scale` times what they were."""
+
+    origin: Point
+    to: Point
+    scale: float
+
+
+def fit_strokes(strokes: _t.Sequence[Stroke], array: Array, margin_mm: float = 0.0) -> tuple[list[Stroke], Fitting]:
+    """Moves and scales strokes together, so that they are as large as the array has space for.
+
+    Parameters
+    ----------
+    strokes : sequence of Stroke
+    array : Array
+    margin_mm : float
+        Distance kept from the array's edge.
+
+    Returns
+    -------
+    tuple
+        The strokes, and where the picture was put.
+
+    Raises
+    ------
+    InputError
+        For a margin that leaves no space.
+    """
+    _need(array, Array, "array")
+    fitted, origin, to, scale = _tactor.fit_strokes(_cores(strokes), array._core, _number("margin_mm", margin_mm))
+    return [Stroke._wrap(s) for s in fitted], Fitting(Point(*origin), Point(*to), scale)
+
+
+def apply_fits(strokes: _t.Sequence[Stroke], array: Array) -> list[Stroke]:
+    """Fits strokes as their file asks (`fit`), those of a group together. `plan` does it for a stroke alone.
+
+    Parameters
+    ----------
+    strokes : sequence of Stroke
+        As `load` gives them; a stroke that asks for no fit stays.
+    array : Array
+
+    Returns
+    -------
+    list of Stroke
+        In the same order; they ask for no fit.
+
+    Raises
+    ------
+    InputError
+        For a margin that leaves no space.
+    """
+    _need(array, Array, "array")
+    return [Stroke._wrap(s) for s in _tactor.apply_fits(_cores(strokes), array._core)]
+
+
+def _cores(strokes: _t.Any) -> list[_t.Any]:
+    for s in strokes:
+        _need(s, Stroke, "strokes")
+    return [s._core for s in strokes]
 
 
 def load(file: str | os.PathLike[str]) -> list[Stroke]:
@@ -305,21 +324,21 @@ def load(file: str | os.PathLike[str]) -> list[Stroke]:
         With file, line and column.
     """
     with reading(file) as name:
-        return [Stroke._of(s) for s in _tactor.Stroke.load(name)]
+        return [Stroke._wrap(s) for s in _tactor.Stroke.load(name)]
 
 
 def parse(text: str, name: str = "text") -> list[Stroke]:
-    """Strokes of what a stroke file would say: SVG, CSV or TOML, told apart by how it begins."""
+    """Reads strokes from the text of a stroke file: SVG, CSV or TOML, which its beginning tells."""
     _need(text, str, "text")
     _need(name, str, "name")
-    return [Stroke._of(s) for s in _tactor.Stroke.parse(text, name)]
+    return [Stroke._wrap(s) for s in _tactor.Stroke.parse(text, name)]
 
 
 def stroke_presets() -> list[str]:
-    """Names of the built-in strokes."""
+    """Returns the names of the built-in strokes."""
     return _tactor.stroke_presets()  # type: ignore[no-any-return]
 
 
 def stroke_shapes() -> list[str]:
-    """Names for `Stroke.shape`."""
+    """Returns the names for `Stroke.shape`."""
     return _tactor.stroke_shapes()  # type: ignore[no-any-return]

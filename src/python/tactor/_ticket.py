@@ -10,7 +10,7 @@ import typing as _t
 import warnings
 import weakref
 
-from tactor._checks import _number, _Unique
+from tactor._checks import _Member, _number, _Unique
 
 if _t.TYPE_CHECKING:
     import asyncio
@@ -24,7 +24,7 @@ _T = _t.TypeVar("_T")
 
 
 class Delay(_t.NamedTuple):
-    """How long a live stroke's points took, s, from their time stamps until the DAC had the first frame that each changed.
+    """The delay of a live stroke's points, s: from their time stamps until the DAC had the first frame that each changed.
 
     Attributes
     ----------
@@ -41,7 +41,7 @@ class Delay(_t.NamedTuple):
 
 
 class Report(_t.NamedTuple):
-    """How a stroke ended.
+    """The end of a stroke.
 
     Attributes
     ----------
@@ -72,7 +72,7 @@ class Report(_t.NamedTuple):
 
 
 class _Awaited(_Unique, _t.Generic[_T]):
-    """What ends once, with a result or an error: awaited, waited for, and told to callbacks."""
+    """A thing that ends once, with a result or an error: it can be awaited and waited for, and calls back."""
 
     def __init__(self) -> None:
         self._gate = _Gate()
@@ -161,11 +161,11 @@ class Ticket(_Awaited[Report]):
 
     @property
     def report(self) -> Report | None:
-        """How it ended; None as long as it has not."""
+        """The report of its end; None until then."""
         return self._result
 
     def done(self) -> bool:
-        """Whether it has ended."""
+        """Returns True once it has ended."""
         return self._done
 
     def wait(self, timeout: float | None = None) -> Report:
@@ -269,17 +269,14 @@ class LiveStroke(Ticket):
         return moved
 
     def end(self) -> None:
-        """No more points come: fades out, or plays its last burst to the end."""
+        """Ends it, for no more points come: fades out, or plays its last burst to the end."""
         self._core.end()
 
-    @property
-    def open(self) -> bool:
-        """Whether it can still be fed."""
-        return self._core.open  # type: ignore[no-any-return]
+    open: _Member[bool] = _Member("open", "True while it can be fed.")
 
     @property
     def counts(self) -> dict[str, int]:
-        """How many `points` were taken, of these moved from `outside`, `limited` at a channel's limit, and `held` at
+        """Counts of the `points` taken, and of those moved from `outside`, `limited` at a channel's limit, and `held` at
         intensity 1."""
         return self._core.counts()  # type: ignore[no-any-return]
 
@@ -319,7 +316,7 @@ class _Gate:
 
 
 class _Held:
-    """What a player holds for its thread: callbacks may know the player, so that a thread which held them would keep it alive."""
+    """References that a player holds for its thread: callbacks may know the player, so a thread that held them would keep it alive."""
 
     def __init__(self, log: _t.Callable[[_LogKind, str], object] | None) -> None:
         self.log = log
@@ -327,7 +324,7 @@ class _Held:
 
 
 class _Shared:
-    """What a player, its tickets and its thread have in common: not the player, so that a forgotten one can be collected."""
+    """Common state of a player, its tickets and its thread: not the player, so that a forgotten one can be collected."""
 
     def __init__(self, core: _t.Any, held: _Held) -> None:
         self.core = core

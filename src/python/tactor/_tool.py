@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What the tool computes, draws and lists."""
+"""Comparisons, pictures and devices, as the tool has them."""
 from __future__ import annotations
 
 import collections.abc as _abc
@@ -8,10 +8,8 @@ import typing as _t
 
 from tactor import _tactor
 from tactor._array import Array
-from tactor._checks import _need, _number, _shown, _whole
+from tactor._checks import encoded, _need, _number, reading, _shown, _whole
 from tactor._errors import InputError
-from tactor._files import encoded, reading
-from tactor._options import _PLANNING, settled
 from tactor._plan import Plan
 from tactor._score import Score, placed
 from tactor._stroke import Stroke
@@ -26,7 +24,7 @@ def _size(width: float, dpi: int) -> tuple[float, int]:
 
 
 class Comparison(list[dict[str, _t.Any]]):
-    """What algorithms are predicted to feel like: a dict for each algorithm with each phantom model, as the `results` of
+    """The predicted percepts of algorithms: a dict for each algorithm with each phantom model, as the `results` of
     `tactor compare --format json`.
 
     Attributes
@@ -56,7 +54,7 @@ class Comparison(list[dict[str, _t.Any]]):
 
 
 def _names(what: str, value: str | _t.Iterable[str] | None, one: _t.Any) -> list[str]:
-    """A list of names; empty where the one that may be given in its place counts."""
+    """Returns a list of names; empty if its option for a single name counts."""
     if value is None:
         return []
     if one is not None:
@@ -75,7 +73,7 @@ def _names(what: str, value: str | _t.Iterable[str] | None, one: _t.Any) -> list
 
 
 def make_comparison(given: dict[str, _t.Any]) -> Comparison:
-    """The comparison of compare()'s arguments."""
+    """Makes the comparison of compare()'s arguments."""
     options = {name: value for name, value in given.items() if value is not None}
     array, stroke = given["array"], given["stroke"]
     for name in ("array", "stroke", "algorithms", "phantoms"):
@@ -88,10 +86,7 @@ def make_comparison(given: dict[str, _t.Any]) -> Comparison:
     of = _names("algorithms", given["algorithms"], given["algorithm"]), _names("phantoms", given["phantoms"], given["phantom"])
     if not of[0] and given["algorithm"] is None:
         of[0].extend(("park2016", "tactile-brush", "continuous"))
-    options = settled(array, options, _PLANNING | {"observer", "sl"})
-    if given["sl"] is not None and options.get("intensity_scale") != "sl":
-        raise InputError("sl", "nothing here uses it", 'say intensity_scale="sl", too', field="sl")
-    return Comparison(_tactor.Compared(array._core, stroke._core, options, *of))
+    return Comparison(_tactor.Compared(array._core, stroke._core, options, *of, array._settings()))
 
 
 def _picture(plans: _Plans, view: str) -> tuple[_t.Any, list[tuple[float | None, _t.Any]], str, _t.Any]:
@@ -138,27 +133,20 @@ def plot(plans: _Plans, file: str | os.PathLike[str], *, view: _View = "both", w
                              bool(force))
 
 
-def svg_of_plans(plans: _t.Sequence[Plan]) -> str:
-    """An SVG document of plans."""
-    array, all_of_them, name, score = _picture(plans, "both")
-    return _tactor.svg(array, all_of_them, name, score, "both", 85.0)  # type: ignore[no-any-return]
+def svg_of_plans(plans: _Plans, view: str = "both") -> str:
+    """Draws plans as an SVG document."""
+    return _tactor.svg(*_picture(plans, view), view, 85.0)  # type: ignore[no-any-return]
 
 
 def picture_of_stroke(stroke: Stroke) -> str:
-    """The way of a stroke on the array that it fits: palm-3x3, where it lies within; else what it needs."""
+    """Draws a stroke on palm-3x3."""
     from tactor._calls import plan
-    palm = Array.preset("palm-3x3")
-    return _tactor.svg(*_stroke_on(plan(palm, stroke, algorithm="continuous", outside="clamp")))  # type: ignore[no-any-return]
-
-
-def _stroke_on(p: Plan) -> tuple[_t.Any, ...]:
-    array, all_of_them, name, score = _picture(p, "array")
-    return array, all_of_them, name, score, "array", 85.0
+    return svg_of_plans(plan(Array.preset("palm-3x3"), stroke, algorithm="continuous", outside="clamp"), "array")
 
 
 def devices(array: Array | None = None, *, device: str | None = None, rate: int | None = None,
             config: str | os.PathLike[str] | None = None) -> dict[str, _t.Any]:
-    """PCMs, what they can do, and GPIO lines, as `tactor devices --format json` prints them: a tactor-devices/1 object.
+    """Lists PCMs, what they can do, and GPIO lines, as `tactor devices --format json` prints them: a tactor-devices/1 object.
 
     Parameters
     ----------

@@ -9,7 +9,7 @@
 
 #include "core/sha256.hpp"
 #include "files/plan/json_value.hpp"
-#include "files/plan/plan_sound.hpp"
+#include "files/plan/plan_values.hpp"
 #include "session/threshold_carrier.hpp"
 
 namespace tactor::study {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// What a continuous plan asks of each tactor at most, for the check of a score's peaks.
+/// The greatest drive of each tactor in a continuous plan, for the check of a score's peaks.
 #pragma once
 
 #include <cstddef>

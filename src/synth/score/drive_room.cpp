@@ -25,7 +25,7 @@ void each_part(const drive_event& e, F f)
         f(e.line.channel, most);
 }
 
-// Whether all of it leaves its channels open.
+// Drives the whole score. Returns true if the guard leaves all its channels open.
 bool drive_piece(drive_guard& g, const score& s, std::uint64_t clock)
 {
     std::vector<std::uint64_t> until(s.channels(), 0);

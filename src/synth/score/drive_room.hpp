@@ -27,7 +27,7 @@ public:
     /// needed. None where it would be cut on an array that has rested.
     std::optional<std::uint64_t> wait(const score& s, std::uint64_t clock) const;
 
-    /// A piece was played that began with this frame. Pieces in order of time.
+    /// Takes note of a score that was played from this frame on. Scores come in order of time.
     void played(const score& s, std::uint64_t clock);
 
 private:

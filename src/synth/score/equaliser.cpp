@@ -12,10 +12,10 @@ inline namespace v0 {
 
 namespace {
 
-/// The carrier of a plan at a time of it.
+/// Returns the carrier of a plan at a time of it.
 double hz_at(const plan& p, double t_s)
 {
-    // Of a recording along the path, the course says how often it comes round.
+    // For a recording along the path the course holds its repetition rate.
     if (p.course.empty() || p.wave.kind == waveform_kind::recording)
         return p.carrier_hz;
     const auto after = std::upper_bound(p.course.begin(), p.course.end(), t_s,

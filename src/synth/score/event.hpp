@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// What crosses the ring from the control side to the audio thread: scheduled drives, not audio.
+/// Elements of the ring from the control side to the audio thread: scheduled drives, not audio.
 #pragma once
 
 #include <array>
@@ -18,8 +18,8 @@ inline constexpr std::uint32_t as_ramp = ~std::uint32_t{0};
 
 inline constexpr unsigned drives_per_event = 4;
 
-/// One channel's part: peak amplitude (level, gain and polarity included) at the first frame of the
-/// event and at the frame after its last; linear between.
+/// Part of a channel: peak amplitude (level, gain and polarity included) at the first frame of the event and
+/// at the frame after its last; linear between.
 struct channel_drive {
     double from;
     double to;
@@ -28,7 +28,7 @@ struct channel_drive {
 
 inline constexpr unsigned points_per_line = 9;
 
-/// One channel's part with bends: its peak amplitude at some frames of the event, linear between them.
+/// Part of a channel with bends: its peak amplitude at some frames of the event, linear between them.
 struct channel_line {
     std::array<double, points_per_line> amplitude;
     std::array<std::uint16_t, points_per_line> frame; ///< since the event's start: 0, ascending, its length

@@ -60,7 +60,7 @@ void expander::stretch(std::uint64_t start, std::uint64_t length) noexcept
     event_.ramp_position = start - item_->start;
     event_.window = item_->length;
     event_.ramp = item_->ramp;
-    // What is joined has its members' envelopes already.
+    // Joined bursts have their members' envelopes already.
     event_.release = item_->kind == item_kind::joined
                          ? 0
                          : release_frames(score_->envelope, score_->rate, item_->length, item_->ramp);
@@ -139,7 +139,7 @@ void expander::continuous_event()
     draw(c.rows[next_++]);
 }
 
-/// A tactor between the control points, up to where it has come down to zero.
+/// Draws a tactor between the control points, up to where it has come down to zero.
 void expander::draw(const control_points::row& r) noexcept
 {
     const control_points& c = *points_;

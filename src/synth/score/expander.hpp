@@ -36,7 +36,7 @@ struct control_points {
 /// needs: begin() and advance() throw std::bad_alloc, and do the rest when they are called again.
 class expander {
 public:
-    /// `points` for a continuous item; not to be shared while this expander is in use.
+    /// Begins an item. `points` is for a continuous one; not to be shared while this expander is in use.
     void begin(const score::impl& s, std::size_t item_number, control_points* points);
 
     bool done() const noexcept { return done_; }
@@ -75,14 +75,15 @@ struct joined_stretch {
     double to = 0.0;
 };
 
-/// The stretch from frame `at` on in which the amplitude is taken as linear: to the next start or end of a
-/// member, and within ramps to the next 64th of the ramp. `first`: all members before this one have ended; it
-/// is moved on.
+/// Returns the stretch from frame `at` on in which the amplitude is taken as linear: to the next start or end
+/// of a member, and within ramps to the next 64th of the ramp. `first`: all members before this one have
+/// ended; it is moved on.
 joined_stretch join_members(const item_member* members, std::size_t count, std::size_t& first,
                             std::uint64_t at, overlap_kind rule,
                             envelope_kind shape = envelope_kind::raised_cosine) noexcept;
 
-/// Frame of control point k of a stroke of `length` frames, from its start. Points beyond the end are at it.
+/// Returns the frame of control point k of a stroke of `length` frames, from its start. Points beyond the end
+/// are at it.
 std::uint64_t control_frame(std::uint64_t k, unsigned rate, std::uint64_t length) noexcept;
 
 } // namespace tactor::synth

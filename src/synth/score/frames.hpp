@@ -15,27 +15,27 @@ namespace tactor::synth {
 
 /// Ramp of bursts that do not begin and end on a zero crossing.
 inline constexpr double default_ramp_s = 0.002;
-/// How far from a zero crossing, in half cycles, still counts as one.
+/// Distance from a zero crossing, in half cycles, up to which a time counts as on it.
 inline constexpr double half_cycle_tolerance = 0.01;
 /// Longest drive in one event; longer ones are cut without a seam.
 inline constexpr std::uint64_t longest_event = std::uint64_t{1} << 30;
 
-/// Nearest frame. A tie goes up, and so does a time that misses a tie only by the noise of its last digits:
-/// otherwise o_k + d and o_(k+1), equal on paper, could end up in two frames.
+/// Returns the nearest frame. A tie goes up, and so does a time that misses a tie only by the noise of its
+/// last digits: otherwise o_k + d and o_(k+1), equal on paper, could end up in two frames.
 inline std::uint64_t frame_at(double seconds, double rate) noexcept
 {
     return static_cast<std::uint64_t>(std::floor(seconds * rate + 0.5 + 1e-6));
 }
 
-/// Whether a carrier crosses zero at both ends of a burst, `from` and `to`, which are in half cycles of it.
+/// Returns true if a carrier crosses zero at both ends of a burst, `from` and `to`, in half cycles of it.
 inline bool between_zeros(double from, double to) noexcept
 {
     const auto on_zero = [](double at) { return std::abs(at - std::round(at)) <= half_cycle_tolerance; };
     return on_zero(from) && on_zero(to) && to - from >= 1.0 - half_cycle_tolerance;
 }
 
-/// Ramp that was asked for, or the default one of a burst. The carrier has run for `carrier_s` when the burst
-/// begins. Both times are the exact ones, not those rounded to whole frames.
+/// Returns the ramp that was asked for, or the default one of a burst. The carrier has run for `carrier_s`
+/// when the burst begins. Both times are the exact ones, not those rounded to whole frames.
 inline double ramp_seconds(std::optional<double> ramp_s, double carrier_s, double duration_s,
                            double carrier_hz) noexcept
 {

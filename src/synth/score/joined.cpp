@@ -13,7 +13,8 @@ namespace {
 /// Fine enough for 0.2 %, and exact (one frame a step) for the default ramp at up to 48 kHz.
 constexpr std::uint32_t ramp_steps = 64;
 
-/// Next frame after `at` where this member's window is not linear any more, or its start if it is to come.
+/// Returns the next frame after `at` where this member's window is not linear any more, or its start if it is
+/// to come.
 std::uint64_t next_break(const item_member& m, std::uint64_t at) noexcept
 {
     if (at < m.start)
@@ -29,7 +30,8 @@ std::uint64_t next_break(const item_member& m, std::uint64_t at) noexcept
     return m.start + std::min(m.length, fall + ((k - fall) / fall_step + 1) * fall_step);
 }
 
-/// Amplitude at frame `at` of the members that sound up to it or from it on: those that hold `inside`.
+/// Returns the amplitude at frame `at` of the members that sound up to it or from it on: those that hold
+/// `inside`.
 double amplitude(const item_member* first, const item_member* last, std::uint64_t inside, std::uint64_t at,
                  overlap_kind rule, envelope_kind shape) noexcept
 {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// How strongly each tactor is driven, and whether it may be.
+/// Levels of the tactors, and their limits.
 #pragma once
 
 #include <string_view>
@@ -14,23 +14,24 @@ namespace tactor::synth {
 /// carrier comes on top.
 inline constexpr double reference_hz = 250.0;
 
-/// An amplitude in dBFS.
+/// Converts an amplitude to dBFS.
 double in_db(double amplitude);
 
-/// Gain of each tactor; of unmeasured_tactors() that of full scale, which must not sound.
+/// Returns the gain of each tactor; of unmeasured_tactors() that of full scale, which must not sound.
 /// \throws error (bad_input) for levels over full scale.
 std::vector<tactor_level> tactor_levels(const array& a, const render_options& o);
 
-/// Those without a threshold where the level is above it.
+/// Returns the tactors without a threshold if the level is in dB SL.
 std::vector<std::size_t> unmeasured_tactors(const array& a, const render_options& o);
 
 /// \throws error (bad_input): the tactor has no threshold.
 [[noreturn]] void refuse_unmeasured(const array& a, std::size_t i, const render_options& o);
 
-/// Factor on the gain of a tactor with a sensation level, at a carrier other than reference_hz.
+/// Returns the factor on the gain of a tactor with a sensation level, at a carrier other than reference_hz.
 double threshold_factor(const tactor_spec& t, double hz);
 
-/// Greatest peak that a tactor may have, linear: its max_dbfs or full scale, plus the noise of last digits.
+/// Returns the greatest peak that a tactor may have, linear: its max_dbfs or full scale, plus the noise of
+/// last digits.
 double tactor_limit(const array& a, std::size_t i);
 
 /// \throws error (bad_input): the tactor's line in the array file and number, why and hint.

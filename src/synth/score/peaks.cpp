@@ -25,7 +25,7 @@ struct change {
     double by;
     std::size_t tactor;
 
-    /// Of two changes of a tactor at one frame the one downwards comes first.
+    /// Orders by frame. At the same frame, changes downwards come first.
     bool operator>(const change& c) const { return std::tie(frame, by) > std::tie(c.frame, c.by); }
 };
 
@@ -58,7 +58,7 @@ public:
         return peaks_;
     }
 
-    /// That of each tactor's loudest item.
+    /// Returns the factor of each tactor's loudest item.
     const std::vector<double>& factors() const noexcept { return factors_; }
 
 private:
@@ -158,7 +158,7 @@ void check(const array& a, std::size_t i, double peak, double factor, const rend
         fmt::format("lower {{level_dbfs}} or the tactor's gain_db by {:.2f} dB or more{}", excess_db, raise));
 }
 
-/// Whatever drove them after all, nobody would feel it at full scale.
+/// Silences tactors without a threshold: no drive of theirs may sound at full scale.
 void silence_unmeasured(score::impl& s)
 {
     for (const std::size_t i : s.unmeasured)

@@ -47,8 +47,8 @@ void check(const burst& b, std::size_t number, std::size_t tactors)
     }
 }
 
-/// The most that bursts which overlap come to: A_v, or what an intensity scale has made of it.
-double cap_of(const burst& b)
+/// Returns the most that overlapping bursts add up to: A_v, or what an intensity scale has made of it.
+double greatest_sum(const burst& b)
 {
     const double energy =
         std::accumulate(b.drives.begin(), b.drives.end(), 0.0,
@@ -64,7 +64,7 @@ struct stretch {
     std::uint64_t to;
 };
 
-stretch stretch_of(const burst& b, unsigned rate)
+stretch find_stretch(const burst& b, unsigned rate)
 {
     const double to_s = b.onset_s + b.duration_s;
     return {b.onset_s, to_s, frame_at(b.onset_s, rate), frame_at(to_s, rate)};
@@ -73,7 +73,7 @@ stretch stretch_of(const burst& b, unsigned rate)
 /// The latest bursts of one tactor of which each overlaps with one before it. They arrive by start.
 class run {
 public:
-    /// Whether the burst goes on with the run; if not, another one begins with it.
+    /// Returns true if the burst continues the run; if not, it begins another one.
     bool takes(const stretch& s)
     {
         constexpr double touch_s = 1e-9;
@@ -109,7 +109,7 @@ public:
     {
         for (std::size_t i = 0; i < bursts_.size(); ++i) {
             const burst& b = bursts_[order_.empty() ? i : order_[i]];
-            const stretch s = stretch_of(b, rate_);
+            const stretch s = find_stretch(b, rate_);
             if (s.to > s.from)
                 f(b, s);
         }
@@ -184,7 +184,7 @@ private:
                 const std::uint32_t release =
                     release_frames(options_.envelope, options_.rate, s.to - s.from, attack);
                 members[d.tactor].push_back(
-                    {start_ + s.from, s.to - s.from, attack, release, d.amplitude, cap_of(b)});
+                    {start_ + s.from, s.to - s.from, attack, release, d.amplitude, greatest_sum(b)});
             }
         });
         for (std::size_t i = 0; i < tactors_; ++i)
@@ -213,7 +213,7 @@ private:
         members.clear();
     }
 
-    /// The drives that are in no run, burst by burst, in order of tactor.
+    /// Appends the drives that are in no run, burst by burst, in order of tactor.
     void append_bursts()
     {
         std::vector<drive> single;

@@ -15,11 +15,11 @@ namespace {
 
 /// After so many of its time constants an actuator has got there: 0.7 % are missing.
 constexpr double enough_rises = 5.0;
-/// Less than this, of full scale, is not worth a burst of its own (-100 dB).
+/// Least amplitude of an added burst, of full scale (-100 dB).
 constexpr double least_boost = 1e-5;
 
-/// What a window adds to a lag in frames from ... to - 1, at frame `to`.
-double part_of(const burst_window& w, std::uint64_t from, std::uint64_t to, double rise)
+/// Returns what a window adds to a lag in frames from ... to - 1, at frame `to`.
+double window_share(const burst_window& w, std::uint64_t from, std::uint64_t to, double rise)
 {
     const double kept = std::exp(-1.0 / rise);
     double y = 0.0;
@@ -28,7 +28,7 @@ double part_of(const burst_window& w, std::uint64_t from, std::uint64_t to, doub
     return y;
 }
 
-/// What a tactor does when the next burst begins.
+/// State of a tactor when the next burst begins.
 struct motion {
     std::uint64_t until = 0; ///< it is driven
     double strength = 0.0;   ///< of its actuator then, in amplitudes of drives
@@ -81,7 +81,7 @@ private:
     {
         motion& m = motions_[tactor];
         const auto rise_s = a_.tactors[tactor].rise_s;
-        // Of two bursts that touch, rounding may put the end of one into the first frame of the other.
+        // Rounding may put the end of a burst into the first frame of the next, which it touches.
         if (!rise_s || it.start + 1 < m.until) {
             moved(m, it.end(), amplitude);
             return;
@@ -92,7 +92,7 @@ private:
         const double before = m.strength * l.left(static_cast<double>(pause));
         const double unit = std::abs(s_.tactors[tactor].gain) * s_.equalised(tactor, it.plan, it.start);
         const double headroom = (tactor_limit(a_, tactor) * (1.0 - 2e-9) - peaks_[tactor]) / unit;
-        const boost b = boost_of(it, l, release, amplitude, before, headroom, *rise_s);
+        const boost b = find_boost(it, l, release, amplitude, before, headroom, *rise_s);
         if (b.amplitude * unit > least_boost)
             add(it, tactor, b, more);
         const auto length = static_cast<double>(it.length);
@@ -102,9 +102,10 @@ private:
         m.until = it.end();
     }
 
-    /// The shortest of whole half cycles that is enough, or all that there is space for.
-    boost boost_of(const item& it, const lag& l, std::uint32_t release, double amplitude, double before,
-                   double headroom, double rise_s) const
+    /// Returns the shortest burst of whole half cycles that is enough, or the longest that there is space
+    /// for.
+    boost find_boost(const item& it, const lag& l, std::uint32_t release, double amplitude, double before,
+                     double headroom, double rise_s) const
     {
         if (!(headroom > 0.0 && amplitude > before))
             return {};
@@ -157,8 +158,8 @@ lag::lag(double rise, std::uint32_t attack, std::uint32_t release, envelope_kind
     : rise_(rise), attack_(attack), release_(release)
 {
     const burst_window w{std::uint64_t{attack} + release, attack, release, shape};
-    after_attack_ = part_of(w, 0, attack, rise);
-    of_release_ = part_of(w, attack, w.length, rise);
+    after_attack_ = window_share(w, 0, attack, rise);
+    of_release_ = window_share(w, attack, w.length, rise);
 }
 
 double lag::left(double frames) const noexcept

@@ -11,19 +11,19 @@
 
 namespace tactor::synth {
 
-/// How far a burst has brought its actuator, by the model of a first-order lag (1 - e^(-t / rise_s) of a
+/// Strength that an actuator reaches in a burst, by the model of a first-order lag (1 - e^(-t / rise_s) of a
 /// steady vibration after t).
 class lag {
 public:
-    /// Of bursts that rise in `attack` frames and fall in `release`; `rise` in frames, above 0.
+    /// Prepares for bursts that rise in `attack` frames and fall in `release`; `rise` in frames, above 0.
     lag(double rise, std::uint32_t attack, std::uint32_t release, envelope_kind shape);
 
-    /// The part of a strength that is left after so many frames.
+    /// Returns the part of a strength that is left after so many frames.
     double left(double frames) const noexcept;
-    /// The strength reached `frames` after the burst's begin, if strength 1 is asked for; not for times
-    /// before the end of its attack.
+    /// Returns the strength reached `frames` after the burst's begin, if strength 1 is asked for; not for
+    /// times before the end of its attack.
     double risen(double frames) const noexcept;
-    /// The same at the end of a burst of so many frames, after its release.
+    /// Returns the same at the end of a burst of so many frames, after its release.
     double fallen(double frames) const noexcept;
 
 private:

@@ -34,7 +34,7 @@ using synth::item_kind;
 constexpr unsigned most_channels = 16384; // of an array; no PCM has so many
 constexpr double latest_start_s = 1e6;
 
-unsigned channels_of(const array& a, const render_options& o)
+unsigned settle_channels(const array& a, const render_options& o)
 {
     const unsigned needed = a.channels();
     const unsigned channels = o.channels == 0 ? needed : o.channels;
@@ -98,7 +98,7 @@ void check_marker(const array& a, const render_options& o, unsigned channels)
     }
 }
 
-/// One at the start of each plan; none makes the piece longer.
+/// Places a marker at the start of each plan. Markers do not make the score longer.
 void place_markers(score::impl& s, std::uint64_t length, unsigned channel)
 {
     for (std::size_t i = 0; i < s.starts.size(); ++i) {
@@ -135,7 +135,7 @@ void check_start(double start_s)
     }
 }
 
-/// Greatest sum of `weight` over the items that are open at once; they arrive by start.
+/// Returns the greatest sum of `weight` over the items that are open at once; they arrive by start.
 template <class End, class Weight>
 std::size_t most_open(const std::deque<item>& items, End end, Weight weight)
 {
@@ -206,7 +206,7 @@ struct score_builder::impl {
         s->rate = o.rate;
         s->phase = o.phase;
         s->envelope = o.envelope;
-        s->channels = channels_of(a, o);
+        s->channels = settle_channels(a, o);
         check_marker(a, o, s->channels);
         if (o.limits)
             synth::check_limits(*o.limits);
@@ -221,8 +221,8 @@ struct score_builder::impl {
 
     std::uint32_t number() const noexcept { return static_cast<std::uint32_t>(s->plans.size()); }
 
-    /// Frame at which the next plan starts. That of its time also where it follows another: what rounding
-    /// took from the end of each would add up.
+    /// Returns the frame at which the next plan starts. That of its time also where it follows another: what
+    /// rounding took from the end of each would add up.
     std::uint64_t start(std::optional<double> start_s, const start_anchor& anchor)
     {
         const double at_s = times.start(start_s, anchor);

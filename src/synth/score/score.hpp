@@ -55,7 +55,7 @@ struct item {
 };
 static_assert(sizeof(item) == 40);
 
-/// All items of a score by start, and what they refer to.
+/// Items of a score by start, and what they refer to.
 struct item_list {
     // Deques grow without being copied: a copy would take half as much memory again.
     std::deque<item> items;
@@ -95,12 +95,12 @@ struct score::impl {
     std::size_t open_continuous = 0; ///< of these, continuous ones
     std::size_t open_events = 0;     ///< most events that sound in one frame
 
-    /// The first frame in which an item may be heard: a ramp begins with a zero, and so do most carriers. Of
-    /// two bursts or strokes that touch, rounding may put that frame into the end of the other.
+    /// Returns the first frame in which an item may be heard: a ramp begins with a zero, and so do most
+    /// carriers. Of two bursts or strokes that touch, rounding may put that frame into the end of the other.
     std::uint64_t heard_from(const synth::item& it) const noexcept;
-    /// Factor on a tactor's gain in a frame of the score, for its threshold at the carrier there.
+    /// Returns the factor on a tactor's gain in a frame of the score, for its threshold at the carrier there.
     double equalised(std::size_t tactor, std::uint32_t plan, std::uint64_t frame) const;
-    /// The greatest such factor in a plan.
+    /// Returns the greatest such factor in a plan.
     double most_equalised(std::size_t tactor, std::uint32_t plan) const;
 };
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// How strongly each tactor is driven at one time, for pictures of what plays.
+/// Drive of each tactor at one time, for pictures of what plays.
 #pragma once
 
 #include <cstdint>
@@ -18,9 +18,9 @@ class sounding_now {
 public:
     explicit sounding_now(const score& s);
 
-    /// Amplitude of each tactor in a frame of the score, by index; 1 is the intensity asked for. Frames may
-    /// not go back: an earlier frame than the last one asked for counts as that one. Valid until the next
-    /// call.
+    /// Returns the amplitude of each tactor in a frame of the score, by index; 1 is the intensity asked for.
+    /// Frames may not go back: an earlier frame than the last one asked for counts as that one. Valid until
+    /// the next call.
     const std::vector<double>& at(std::uint64_t asked);
 
 private:
