@@ -241,32 +241,22 @@ bool service::receive(client_number number, net::rpc_message& m, std::size_t byt
 
 void service::handle(client& c, net::rpc_request& r, const answer& to, std::size_t bytes)
 {
-    const std::string& m = r.method;
-    if (m == "hello")
-        return hello(c, r.params, to);
-    if (!c.admitted)
+    using handler = void (service::*)(client&, const json&, const answer&);
+    static constexpr std::pair<std::string_view, handler> handlers[] = {
+        {"hello", &service::hello},   {"to", &service::to},
+        {"cancel", &service::cancel}, {"stop", &service::stop},
+        {"fire", &service::fire},     {"begin", &service::begin},
+        {"end", &service::end},       {"drive", &service::drive},
+        {"status", &service::status}, {"subscribe", &service::subscribe}};
+    if (!c.admitted && r.method != "hello")
         throw fault_error({net::code_no_token, "token", "token", "hello with the token comes first", ""});
-    if (m == "to")
-        return this->to(c, r.params, to);
-    if (m == "play" || m == "plan")
-        return plan_or_play(c, std::move(r.params), to, m == "play", bytes);
-    if (m == "cancel")
-        return cancel(c, r.params, to);
-    if (m == "stop")
-        return stop(c, to);
-    if (m == "fire")
-        return fire(r.params, to);
-    if (m == "begin")
-        return begin(c, r.params, to);
-    if (m == "end")
-        return end(c, r.params, to);
-    if (m == "drive")
-        return drive(c, r.params, to);
-    if (m == "status")
-        return status(r.params, to);
-    if (m == "subscribe")
-        return subscribe(c, r.params, to);
-    throw fault_error({net::code_no_method, "bad-input", "method", fmt::format("there is no \"{}\"", m),
+    if (r.method == "play" || r.method == "plan")
+        return plan_or_play(c, std::move(r.params), to, r.method == "play", bytes);
+    for (const auto& [name, handle] : handlers)
+        if (name == r.method)
+            return (this->*handle)(c, r.params, to);
+    throw fault_error({net::code_no_method, "bad-input", "method",
+                       fmt::format("there is no \"{}\"", r.method),
                        "one of hello, play, plan, cancel, stop, fire, begin, to, end, drive, status, "
                        "subscribe"});
 }

@@ -25,6 +25,7 @@
 #include <tactor/player.hpp>
 
 #include "net/rpc.hpp"
+#include "net/shared_by_peers.hpp"
 #include "server/stream.hpp"
 #include "server/stroke_source.hpp"
 
@@ -49,23 +50,9 @@ struct service_limits {
 
 using client_number = std::uint64_t;
 
-/// A client's way back. The context's thread calls it.
-class client_link {
-public:
-    client_link() = default;
-    client_link(const client_link&) = delete;
-    client_link& operator=(const client_link&) = delete;
-    virtual ~client_link() = default;
-
-    /// Queues one message.
-    virtual void send(std::string message) = 0;
-    /// Bytes that it has not taken yet.
-    virtual std::size_t waiting() const = 0;
-    /// Closes when all is written. Not from within: the service may be in the middle of something.
-    virtual void finish() = 0;
-    /// The same, for something that it did; `why` is for those who can be told so.
-    virtual void turn_out(const char* /*why*/) { finish(); }
-};
+/// The way to a client. The service calls finish() never from within something that the connection does not
+/// expect: it may be in the middle of it.
+using client_link = net::peer;
 
 struct service_options {
     planning plans = {};
@@ -179,7 +166,7 @@ private:
 
     // service_methods.cpp
     void hello(client& c, const net::json& params, const answer& to);
-    void status(const net::json& params, const answer& to);
+    void status(client& c, const net::json& params, const answer& to);
     void subscribe(client& c, const net::json& params, const answer& to);
     void send_levels(client_number number);
     void gather_levels();
@@ -208,9 +195,9 @@ private:
     void cancel(client& c, const net::json& params, const answer& to);
     void cancel_all(client& c);
     void cancel(stroke_record& r, const char* why);
-    void stop(client& c, const answer& to);
+    void stop(client& c, const net::json& params, const answer& to);
     void stop_all(client_number by);
-    void fire(const net::json& params, const answer& to);
+    void fire(client& c, const net::json& params, const answer& to);
     void release(const std::vector<std::uint32_t>& numbers);
 
     // service_live.cpp

@@ -90,7 +90,7 @@ reply_json service::limits_json() const
             {"max_all_unfinished_bytes", l.max_all_unfinished_bytes}};
 }
 
-void service::status(const json& params, const answer& to)
+void service::status(client& /*c*/, const json& params, const answer& to)
 {
     only(params, {});
     to.result(status_now());

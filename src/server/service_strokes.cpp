@@ -174,7 +174,7 @@ void service::cancel(stroke_record& r, const char* why)
         p->cancel(r.id);
 }
 
-void service::stop(client& c, const answer& to)
+void service::stop(client& c, const json& /*params*/, const answer& to)
 {
     stop_all(c.number);
     to.result(reply_json::object());
@@ -194,7 +194,7 @@ void service::stop_all(client_number by)
         stopped_();
 }
 
-void service::fire(const json& params, const answer& to)
+void service::fire(client& /*c*/, const json& params, const answer& to)
 {
     only(params, {});
     player* p = stream_.current();
