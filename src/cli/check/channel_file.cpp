@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "cli/check/channel_file.hpp"
+#include "cli/check/walk_session.hpp"
 
 #include <cerrno>
 #include <cstring>

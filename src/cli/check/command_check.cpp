@@ -6,7 +6,6 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "cli/check/channel_file.hpp"
 #include "cli/check/finding.hpp"
 #include "cli/check/system_facts.hpp"
 #include "cli/check/walk_session.hpp"

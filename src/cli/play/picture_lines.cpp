@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "cli/play/picture_lines.hpp"
+#include "cli/play/live_picture.hpp"
 
 #include <algorithm>
 #include <array>

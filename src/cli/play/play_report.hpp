@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// What came of a run, for people and for programs.
+/// Options of `play`, and the report of a run, for people and for programs.
 #pragma once
 
 #include <cstdint>
@@ -16,6 +16,13 @@
 #include "session/play_session.hpp"
 
 namespace tactor::cli {
+
+struct play_options {
+    std::optional<std::string> socket = {}; ///< of a server to play through; here where none is named
+    std::string format = "text";
+
+    bool json() const { return format == "json"; }
+};
 
 /// One STROKE argument and how it ended; no report: it was not played.
 struct stroke_outcome {
@@ -58,5 +65,9 @@ int judge_run(const run_report& r, int signal, const std::optional<error>& broke
 
 /// One object of schema tactor-play/1.
 void print_json(std::FILE* to, const run_report& r);
+
+/// Plays all STROKEs through a server, one after the other; the exit status. \throws error, also for options
+/// that are the server's owner's alone.
+int play_remote(const settings& s, const play_options& o);
 
 } // namespace tactor::cli

@@ -5,17 +5,21 @@
 #include <cstdio>
 #include <cstring>
 #include <memory>
+#include <new>
+#include <string_view>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
+#include <grp.h>
 #include <nlohmann/json.hpp>
+#include <sys/resource.h>
+#include <sys/stat.h>
 
 #include <tactor/version.hpp>
 
 #include "cli/commands.hpp"
 #include "cli/input.hpp"
 #include "cli/say.hpp"
-#include "cli/serve/owner.hpp"
 #include "cli/settings.hpp"
 #include "core/words.hpp"
 #include "files/plan/json_value.hpp"
@@ -28,11 +32,111 @@
 #include "session/log.hpp"
 #include "session/own_memory.hpp"
 #include "session/sound_server.hpp"
+#include "session/variable.hpp"
 
 namespace tactor::cli {
 namespace {
 
 using files::or_null;
+
+// Options of `tactor serve` alone; of [serve], those that the command line has too.
+struct serve_options : options::serve_settings {
+    std::string format = "text";
+};
+
+constexpr const char* socket_name = "/tactor.sock";
+
+// Of the system, where a service manager gives a folder that is not below the user's own.
+bool is_systems()
+{
+    const std::string given = session::service_folder();
+    const std::string users = session::variable("XDG_RUNTIME_DIR");
+    return !given.empty() && (users.empty() || !given.starts_with(users + "/"));
+}
+
+// Returns where the Unix socket is by default; empty where nothing says so and there are other doors.
+std::string default_socket(bool others)
+{
+    if (const std::string folder = session::runtime_folder(); !folder.empty())
+        return folder + socket_name;
+    if (others)
+        return {};
+    throw error(error_kind::bad_input, "socket",
+                "neither RUNTIME_DIRECTORY nor XDG_RUNTIME_DIR says in which folder",
+                "name one with --socket PATH, or under [serve] in the configuration");
+}
+
+// Returns `s`, which the configuration says, with the options over it.
+options::serve_settings settle_serve(const serve_options& o, options::serve_settings s)
+{
+    const auto prefer = [](auto& ours, const auto& given) {
+        if (given)
+            ours = given;
+    };
+    prefer(s.socket, o.socket);
+    prefer(s.tcp, o.tcp);
+    prefer(s.osc, o.osc);
+    prefer(s.http, o.http);
+    prefer(s.idle_stop_s, o.idle_stop_s);
+    return s;
+}
+
+server::endpoint_options settle_endpoints(const options::serve_settings& s)
+{
+    if (s.socket && s.socket->empty())
+        throw error(error_kind::bad_input, "--socket", "the name is empty", "name a path");
+    server::endpoint_options e;
+    e.socket = [given = s.socket, others = s.tcp || s.osc || s.http] {
+        return given ? *given : default_socket(others);
+    };
+    if (is_systems()) {
+        e.mode = S_IRUSR | S_IWUSR | S_IRGRP | S_IWGRP;
+        if (const group* g = ::getgrnam("tactor"))
+            e.group = g->gr_gid;
+        else
+            say(stderr, "tactor: warning: there is no group tactor: only this user's group may draw\n");
+    }
+    if (s.tcp)
+        e.tcp = net::parse_host(*s.tcp, "--tcp");
+    if (s.http)
+        e.http = net::parse_host(*s.http, "--http");
+    if (s.osc)
+        e.osc = net::parse_host(*s.osc, "--osc");
+    return e;
+}
+
+// Raises the limit on open files to the need of so many clients; warns if that is not allowed.
+void provide_descriptors(const server::service_limits& l)
+{
+    // Senders of OSC share one; browsers that only load the page come beside clients.
+    constexpr rlim_t others = 96;
+    const rlim_t wanted = l.max_clients + others;
+    rlimit now{};
+    if (::getrlimit(RLIMIT_NOFILE, &now) != 0 || now.rlim_cur >= wanted)
+        return;
+    now.rlim_cur = std::min(wanted, now.rlim_max);
+    if (::setrlimit(RLIMIT_NOFILE, &now) != 0 || now.rlim_cur < wanted)
+        say(stderr,
+            "tactor: warning: too few descriptors: {} may be open, and {} clients need {}: later ones are "
+            "refused (raise ulimit -n, or LimitNOFILE= of the unit)\n",
+            now.rlim_cur, l.max_clients, wanted);
+}
+
+// Returns the output of `tactor plan --format json`, for the answers of the service. Throws std::bad_alloc
+// above `most_bytes`.
+std::string plan_text(const server::planned& p, const environment& e, std::size_t most_bytes)
+{
+    const piece one{p.name, p.strokes, p.plans, {}, p.moved};
+    std::string text;
+    files::write_plans(record_plans(one, e, make_score(one, e, p.render), p.render),
+                       [&](std::string_view part) {
+                           if (text.size() + part.size() > most_bytes)
+                               throw std::bad_alloc();
+                           text += part;
+                       });
+    return text;
+}
+
 // What the channels get of all clients together: the ceiling, with what the owner adds to a tactor.
 array limited(array a, double max_level_dbfs)
 {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "cli/play/play_options.hpp"
+#include "cli/play/play_report.hpp"
 
 #include <algorithm>
 #include <chrono>
@@ -16,7 +16,6 @@
 #include "cli/input.hpp"
 #include "cli/option_words.hpp"
 #include "cli/play/live_lines.hpp"
-#include "cli/play/play_report.hpp"
 #include "cli/say.hpp"
 #include "cli/serve/rpc_client.hpp"
 #include "cli/serve/server_words.hpp"
