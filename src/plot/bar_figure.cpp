@@ -6,10 +6,9 @@
 
 #include <fmt/format.h>
 
-#include <tactor/error.hpp>
-
 #include "plot/compare_figure.hpp"
 #include "plot/draw/axes.hpp"
+#include "plot/draw/notes.hpp"
 #include "plot/figure.hpp"
 #include "plot/paint/text.hpp"
 
@@ -153,23 +152,15 @@ void draw_panel_of(canvas& c, const bar_panel& p, const std::string& across, box
 
 canvas draw_bars_of(const bar_figure& f)
 {
-    if (!(f.width_mm >= least_width_mm && f.width_mm <= most_width_mm))
-        throw error(error_kind::bad_input, "picture", fmt::format("{} mm wide", f.width_mm),
-                    fmt::format("{} to {} mm", least_width_mm, most_width_mm));
-    canvas c;
-    c.width = f.width_mm * pt_per_mm;
+    canvas c = make_canvas(f.width_mm);
     c.title = clean(f.title);
     c.description = f.note;
     double y = margin;
     const std::string across = clean(f.across);
-    if (f.heading) {
-        y += cap_height(title_size);
-        c.text({margin, y},
-               shorten(clean(f.title) + (across.empty() ? "" : " (" + across + ")"), title_size,
-                       c.width - 2.0 * margin, true),
-               {.size = title_size, .bold = true});
-        y += 8.0;
-    }
+    if (f.heading)
+        y = draw_heading(c, clean(f.title) + (across.empty() ? "" : " (" + across + ")"), {},
+                         {margin, y, c.width - 2.0 * margin, 0.0}) +
+            8.0;
     const std::size_t columns = c.width >= two_columns ? 2 : 1;
     const double width =
         (c.width - 2.0 * margin - between * static_cast<double>(columns - 1)) / static_cast<double>(columns);

@@ -7,6 +7,8 @@
 
 #include <fmt/format.h>
 
+#include <tactor/error.hpp>
+
 #include "core/words.hpp"
 #include "plot/draw/array_frame.hpp"
 #include "plot/draw/axes.hpp"
@@ -65,18 +67,6 @@ std::string describe(const std::vector<std::string>& parts)
     return all;
 }
 
-double draw_heading(canvas& c, const scene& s, const std::vector<std::string>& parts, box where)
-{
-    const group g(c, {.id = "heading"});
-    double y = where.y + cap_height(title_size);
-    c.text({where.x, y}, shorten(s.name, title_size, where.width, true), {.size = title_size, .bold = true});
-    for (const std::string& line : wrap(parts, ", ", small_text, where.width, 3)) {
-        y += line_pitch;
-        c.text({where.x, y}, line, {.size = small_text, .ink = dark_grey});
-    }
-    return y + 4.0 - where.y;
-}
-
 // Under an array that stands alone: what its colours mean.
 double draw_time_key(canvas& c, const timeline& t, box where)
 {
@@ -107,7 +97,10 @@ drawn draw_within(const scene& s, const timeline& t, const figure_options& o, co
     c.title = fmt::format("{} on {}", clean(s.name), clean(s.tactors.name));
     c.description = describe(parts);
     box rest{margin, margin, c.width - 2.0 * margin, 0.0};
-    rest.y += o.heading ? draw_heading(c, s, parts, rest) : 0.0;
+    if (o.heading) {
+        const group g(c, {.id = "heading"});
+        rest.y += draw_heading(c, s.name, wrap(parts, ", ", small_text, rest.width, 3), rest) + 4.0 - rest.y;
+    }
     if (with_array) {
         rest.height = 0.8 * c.width;
         d.array_height = draw_array_view(c, s, t, rest, most.array);
@@ -137,6 +130,16 @@ double page_height(double width)
 }
 
 } // namespace
+
+canvas make_canvas(double width_mm)
+{
+    if (!(width_mm >= least_width_mm && width_mm <= most_width_mm))
+        throw error(error_kind::bad_input, "picture", fmt::format("{} mm wide", width_mm),
+                    fmt::format("{} to {} mm", least_width_mm, most_width_mm));
+    canvas c;
+    c.width = width_mm * pt_per_mm;
+    return c;
+}
 
 canvas draw_figure(const scene& s, const figure_options& o)
 {

@@ -19,6 +19,9 @@ struct figure_options {
 inline constexpr double least_width_mm = 60.0;
 inline constexpr double most_width_mm = 1000.0;
 
+/// Returns an empty picture. \throws error (bad_input) for a width out of these bounds.
+canvas make_canvas(double width_mm);
+
 /// Draws a scene. The height follows from the content; it is at most 247 mm, or of a picture wider than 170
 /// mm in that proportion to it. \throws error (bad_input), for the waveform, see draw_wave_view().
 canvas draw_figure(const scene& s, const figure_options& o);

@@ -23,4 +23,8 @@ std::vector<std::string> note_lines(const std::vector<std::string>& notes, doubl
 /// Draws them from the upper edge of a box down; returns the height taken.
 double draw_notes(canvas& c, const std::vector<std::string>& notes, box where, std::size_t most_lines);
 
+/// Draws a title and lines under it, which must fit, from the upper edge of a box down. Returns the y of the
+/// last baseline, pt.
+double draw_heading(canvas& c, const std::string& title, const std::vector<std::string>& lines, box where);
+
 } // namespace tactor::plot
