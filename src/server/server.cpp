@@ -39,8 +39,8 @@ using net::line_fault;
 using net::listener;
 using socket_type = line_connection::socket_type;
 
-constexpr auto farewell = std::chrono::seconds(2); // for what the last words take
-constexpr std::size_t short_visits = 32;           // of browsers at once, beside those that stay as clients
+constexpr auto farewell = std::chrono::seconds(2); // until the last messages are sent
+constexpr std::size_t short_visits = 32;           // browsers at once in addition to clients
 
 bool may_stop(std::string_view message)
 {
@@ -113,7 +113,7 @@ public:
         if (at.osc)
             osc_.emplace(io, at.osc.get(), service_, std::move(w.osc_peers),
                          std::min(limits_.max_message_bytes, osc_endpoint::largest_packet));
-        service_.on_told_all([this](client_number n) { finish(n); });
+        service_.on_all_sent([this](client_number n) { finish(n); });
     }
 
     void start(std::function<void()> ready)
@@ -206,7 +206,7 @@ private:
             found->second->finish();
     }
 
-    // Whoever only asks for a page is no client: a WebSocket is one.
+    // Takes a browser. It becomes a client when it opens a WebSocket.
     void take_browser(socket_type s)
     {
         if (visitors_.size() >= limits_.max_clients + short_visits)
@@ -256,7 +256,7 @@ private:
             io_.stop();
     }
 
-    // Twice in the time that the manager gives, as long as the audio thread goes on.
+    // Notifies the manager twice in the time that it gives, as long as the audio thread goes on.
     void feed_watchdog()
     {
         const char* us = std::getenv("WATCHDOG_USEC");
@@ -295,7 +295,7 @@ void serve(const endpoints& at, service_options o, stream_options s, network_opt
            const std::function<void()>& listening)
 {
     asio::io_context io(1);
-    // Also while nobody is connected and the stream fades out: it ends by stop().
+    // The context runs until stop(), also while nobody is connected and the stream fades out.
     const auto until_stopped = asio::make_work_guard(io);
     std::exception_ptr refused;
     s.refused = [&](std::exception_ptr e) {
@@ -303,16 +303,16 @@ void serve(const endpoints& at, service_options o, stream_options s, network_opt
         io.stop();
     };
     server all(io, at, std::move(o), std::move(s), std::move(w));
-    // Where it may, this thread goes before the programs that send to it, and before those that plan, which
-    // it has started. Linux holds this by thread.
+    // If allowed, this thread gets the processor before its clients and before the threads that plan. Linux
+    // sets the priority of this thread only.
     constexpr int before_others = -10;
     ::setpriority(PRIO_PROCESS, 0, before_others);
-    asio::posix::stream_descriptor told(io, ::dup(signals));
-    told.async_wait(asio::posix::descriptor_base::wait_read, [&](const boost::system::error_code& e) {
+    asio::posix::stream_descriptor signalled(io, ::dup(signals));
+    signalled.async_wait(asio::posix::descriptor_base::wait_read, [&](const boost::system::error_code& e) {
         if (!e)
             all.stop();
     });
-    // Told when the device was tried: who connects then is not told that it is missing when it is not.
+    // Called when the device was tried: a client that connects then learns the true state.
     all.start([&] {
         listening();
         net::notify_manager("READY=1");

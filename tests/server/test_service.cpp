@@ -503,7 +503,7 @@ TEST_CASE("who sends no more and waits for the end of a stroke takes no place, a
         o.limits.kept_clients = 0;
     });
     std::vector<server::client_number> let_go;
-    rig.all->on_told_all([&](server::client_number n) { let_go.push_back(n); });
+    rig.all->on_all_sent([&](server::client_number n) { let_go.push_back(n); });
     rig.plug();
     rig.start();
     std::vector<service_rig::connected> gone;
