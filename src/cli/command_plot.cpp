@@ -52,7 +52,7 @@ std::string name_of(const piece& p)
 int draw(settings& s, const plot_settings& p)
 {
     const picture_options& o = p.picture;
-    plot::format_of(o.file); // before the work
+    plot::find_format(o.file); // before the work
     const environment e = session::read_environment(s);
     const piece q = plan_one_piece(s, e);
     plot::check_output(o.file, o.force);

@@ -22,12 +22,12 @@ using detail::comparison_row;
 constexpr double chart_height = 105.0;
 constexpr double scale_height = 12.0;
 
-// Of algorithms, in order: they differ in hue, lightness and dash.
+// Lines of algorithms, in order: they differ in hue, lightness and dash.
 constexpr std::array<style, 3> looks{style{.stroke = blue, .width = 0.9},
                                      style{.stroke = vermilion, .width = 0.9, .dash = 3.0},
                                      style{.stroke = ink, .width = 0.9, .dash = 1.1}};
 
-// The different values of a member, in order of appearance.
+// Returns the different values of a member, in order of appearance.
 template <class Kind>
 std::vector<Kind> different(const std::vector<comparison_row>& all, Kind comparison_row::*member)
 {
@@ -56,7 +56,7 @@ series target_speed(const std::vector<percept_sample>& samples)
     return s;
 }
 
-// From tap to tap, at the middle between their onsets.
+// Returns the speeds from tap to tap, at the middle between their onsets.
 series chain_speed(const std::string& name, const std::vector<tap>& taps, point tap::*place,
                    const style& look)
 {
@@ -69,7 +69,7 @@ series chain_speed(const std::string& name, const std::vector<tap>& taps, point 
     return s;
 }
 
-// One prediction's line, after the target's where it is the first.
+// Adds the line of a prediction; before the first one, the line of the target.
 void add_speeds(std::vector<series>& lines, const comparison_row& p, const style& look)
 {
     const bool by_taps = !p.taps.empty();
@@ -121,14 +121,14 @@ double draw_speeds(canvas& c, const std::string& phantom, std::vector<series> li
     return chart_height;
 }
 
-// All panels have one scale: a bar under the first row.
+// Draws the scale, which is the same in all panels, under the first row.
 double draw_scale(canvas& c, const panel_ground& g, box cell)
 {
     draw_scale_bar(c, panel_frame(g, cell), {cell.x, cell.y + scale_height / 2.0});
     return scale_height;
 }
 
-// The panels of one phantom model and their speeds.
+// Draws the panels of a phantom model and their speeds.
 double draw_row(canvas& c, const panel_ground& g, const std::vector<comparison_row>& all,
                 const std::vector<algorithm_kind>& algorithms, phantom_kind phantom, bool first, box where)
 {

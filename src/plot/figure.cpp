@@ -21,7 +21,7 @@
 namespace tactor::plot {
 namespace {
 
-// What is the same in all plans, e.g. the algorithm; empty where they differ.
+// Returns a text that is the same for all plans, e.g. the algorithm; empty if they differ.
 template <class Get>
 std::string common(const scene& s, Get&& get)
 {
@@ -32,7 +32,7 @@ std::string common(const scene& s, Get&& get)
     return first;
 }
 
-// The movement's own time; of several, that of the piece.
+// Returns the duration of the movement; for several strokes, of the whole.
 double seconds(const scene& s, const timeline& t)
 {
     return s.plans.size() == 1 ? s.plans[0].plan.stroke_duration_s : t.total_s;
@@ -67,7 +67,7 @@ std::string describe(const std::vector<std::string>& parts)
     return all;
 }
 
-// Under an array that stands alone: what its colours mean.
+// Draws the meaning of the colours under an array without other views.
 double draw_time_key(canvas& c, const timeline& t, box where)
 {
     const scale x{0.0, std::max(t.total_s, 1e-9), where.x + 6.0, where.right() - 10.0};
@@ -76,7 +76,7 @@ double draw_time_key(canvas& c, const timeline& t, box where)
     return 6.0 + axis_height;
 }
 
-// How high the parts may be, pt.
+// Largest heights, pt.
 struct bounds {
     double array = std::numeric_limits<double>::infinity();
     double picture = std::numeric_limits<double>::infinity();
@@ -121,7 +121,7 @@ drawn draw_within(const scene& s, const timeline& t, const figure_options& o, co
     return d;
 }
 
-// A4 within its margins; of wider pictures in proportion.
+// Returns the height of A4 within its margins; in proportion for wider pictures.
 double page_height(double width)
 {
     constexpr double a4_width = 170.0;

@@ -15,9 +15,9 @@ namespace {
 constexpr double legend_row = 9.0;
 constexpr double sample_length = 14.0;
 constexpr double left_column = 30.0; // for the labels of y, pt
-constexpr double column = 0.25;      // pt: values nearer than this along x are one
+constexpr double column = 0.25;      // pt: closer values along x are one
 
-// Of the values that fall on one column of the page the first, the least, the largest and the last remain.
+// Keeps the first, the least, the largest and the last of the values in each column of the page.
 std::vector<spot> thin_out(const std::vector<spot>& line)
 {
     std::vector<spot> out;
@@ -44,8 +44,8 @@ std::vector<spot> thin_out(const std::vector<spot>& line)
     return out;
 }
 
-// Draws names behind samples of their lines, in rows up to `width`, from (x, y) down; returns the height,
-// also without a canvas.
+// Draws samples of lines and their names, in rows up to `width`, from (x, y) down. Returns the height, also
+// without a canvas.
 double draw_line_legend(canvas* c, const std::vector<series>& lines, double x, double y, double width)
 {
     double at = x;
@@ -75,7 +75,7 @@ struct segment {
     spot to;
 };
 
-// Liang and Barsky: the part of a segment inside a box.
+// Returns the part of a segment inside a box (Liang and Barsky).
 std::optional<segment> clip_segment(spot a, spot b, box w)
 {
     const double dx = b.x - a.x;
