@@ -16,12 +16,12 @@ struct walk_options {
     session::stream_options stream;
     bool json = false; ///< questions go to standard error
     double carrier_hz = 250.0;
-    bool ask = true;    ///< else each is only named
-    std::string output; ///< the file for the map; empty: none
+    bool ask = true;    ///< false: each is only named
+    std::string output; ///< file for the map; empty: none
 };
 
 struct walk_result {
-    int signal = 0; ///< that ended it, or 0
+    int signal = 0; ///< signal that ended it, or 0
     session::walk_answers felt;
 };
 
@@ -29,18 +29,19 @@ struct walk_result {
 piece walk_one(const array& a, unsigned tactor, double carrier_hz);
 
 /// Drives each tactor and asks where it was felt, on standard input. Questions go to standard output, or to
-/// standard error where that is JSON.
-/// \throws error: what play throws; runtime when the walk is left before its end, and in the end where a
-/// tactor was not driven to its end and not again.
+/// standard error if that is JSON.
+/// \throws error: errors of play; runtime when the walk is left before its end, or a tactor was interrupted
+/// and
+///         not driven again.
 walk_result walk(const alsa_options& device, const environment& e, const render_options& render,
                  const walk_options& o, const session::stream_source& source = {});
 
-/// Whether a new file can be made there. \throws error (bad_input): there is one, or no such folder.
+/// Checks that a new file can be made. \throws error (bad_input): the file exists, or its folder does not.
 void check_new_file(const std::string& name);
 
-/// Writes a new array file: the text of the one in use with other channels; where that is none, or its text
-/// cannot be used from there, a file that takes the array from it. Nothing is left where it fails.
-/// \throws error: bad_input as check_new_file() does, runtime when it cannot be written.
+/// Writes a new array file: the text of the file in use with other channels, or, if there is none or its text
+/// cannot be used at the new place, a file that takes the array from it. Leaves no file if it fails.
+/// \throws error: bad_input like check_new_file(), runtime if it cannot be written.
 void write_channel_file(const std::string& name, const environment& e, const std::vector<unsigned>& channels);
 
 } // namespace tactor::cli

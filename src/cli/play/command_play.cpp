@@ -39,8 +39,8 @@ std::vector<score> make_scores(std::vector<piece>& pieces, const settings& s, co
 
 constexpr const char* wait_hint = "--reopen-s S waits for the device to come back";
 
-// Plays one piece, once more where its device went before it began, and says when it waits for its trigger.
-// False when there is no device.
+// Plays a piece, once again if the device went away before it began, and reports when it waits for its
+// trigger. Returns false if there is no device.
 bool play_piece(session::play_session& session, bool as_json, const array& a, const piece& p, const score& s,
                 stroke_outcome& out)
 {
@@ -53,7 +53,7 @@ bool play_piece(session::play_session& session, bool as_json, const array& a, co
     for (bool again = false;; again = true) {
         if (session.lost() && !session.reopen())
             return false;
-        // The picture leaves log lines alone.
+        // No picture with --verbose: it would overwrite log lines.
         out.report = play_drawn(session, a, p, s, !as_json && !session.asked().verbose, armed);
         const bool untouched =
             out.report->state == state_kind::interrupted && out.report->frames == 0 && session.lost();
@@ -62,7 +62,7 @@ bool play_piece(session::play_session& session, bool as_json, const array& a, co
     }
 }
 
-// Why the run ends with this stroke. What became of the last is said in the end.
+// Returns the error that ends the run with this stroke, if any. The end of the last stroke is reported later.
 std::optional<error> judge(const session::play_session& session, const stroke_outcome& out, bool last)
 {
     if (out.report->state != state_kind::interrupted)
@@ -117,7 +117,7 @@ stroke_report follow_lines(session::play_session& session, const live_options& o
     });
 }
 
-// Refuses what a live stroke does not know.
+// Refuses options that a live stroke does not have.
 void check_live(const settings& s)
 {
     if (s.strokes.size() != 1 || s.strokes.front() != "-" || s.path_data)

@@ -19,7 +19,7 @@
 namespace tactor::cli {
 namespace {
 
-// For whoever reads slowly. A terminal that takes nothing holds up the line that is printed next, anyway.
+// Time for a slow terminal. One that takes nothing blocks the next printed line anyway.
 constexpr int patience_ms = 2000;
 
 std::string to_its_beginning(std::size_t lines)
@@ -34,7 +34,7 @@ void ask_to_stop(int) noexcept
     stop_asked = 1;
 }
 
-// A terminal that does not control this process tells no foreground group.
+// Returns true in the background. A terminal that does not control this process has no foreground group.
 bool is_in_background() noexcept
 {
     const pid_t front = ::tcgetpgrp(STDOUT_FILENO);
@@ -54,7 +54,7 @@ bool may_colour()
     return session::variable("NO_COLOR").empty();
 }
 
-// From the environment: the program itself stays in the C locale, whatever it is called in.
+// Reads the environment: the program itself stays in the C locale.
 bool speaks_utf8()
 {
     for (const char* name : {"LC_ALL", "LC_CTYPE", "LANG"}) {
@@ -66,10 +66,11 @@ bool speaks_utf8()
     return false;
 }
 
-// Opened anew: O_NONBLOCK on standard output itself would be there for all who share it, the shell included.
+// Opens standard output again: O_NONBLOCK on it would hold for all processes that share it, such as the
+// shell.
 terminal::terminal() : fd_(open("/proc/self/fd/1", O_WRONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC))
 {
-    if (fd_ < 0) // no /proc: waiting is better than nothing
+    if (fd_ < 0) // no /proc: writes may block
         fd_ = fcntl(STDOUT_FILENO, F_DUPFD_CLOEXEC, 0);
 }
 
@@ -96,7 +97,7 @@ bool terminal::idle()
         if (n < 0 && (errno == EAGAIN || errno == EWOULDBLOCK))
             return false;
         if (n < 0)
-            left_.clear(); // hung up: nobody looks any more
+            left_.clear(); // hung up
         else
             left_.erase(0, static_cast<std::size_t>(n));
     }
@@ -119,7 +120,7 @@ void terminal::finish()
 
 live_picture::live_picture(const array& a, bool wanted) : array_(a), style_{speaks_utf8(), may_colour()}
 {
-    flush_output(); // what was printed before stands above it
+    flush_output(); // printed lines stay above it
     if (!wanted || !can_draw())
         return;
     terminal_.emplace();
@@ -136,7 +137,7 @@ live_picture::~live_picture()
     ::sigaction(SIGTSTP, &before_, nullptr);
     try {
         erase();
-    } catch (const std::bad_alloc&) { // then it stays
+    } catch (const std::bad_alloc&) { // then the picture stays
     }
     if (stop_asked == 0)
         return;
@@ -153,7 +154,7 @@ void live_picture::erase()
     terminal_->finish();
 }
 
-// The shell's prompt comes where the picture was.
+// Erases the picture and stops, if asked: the shell's prompt takes its place.
 void live_picture::stop_where_asked()
 {
     if (stop_asked == 0)
@@ -189,7 +190,7 @@ stroke_report play_drawn(session::play_session& session, const array& a, const p
         return session.follow();
     piece_follower follower(p, s, a);
     const double total_s = static_cast<double>(s.frames()) / s.rate();
-    double t_s = 0.0; // stays where it was while the report of the stroke's end is on its way
+    double t_s = 0.0; // keeps its value until the report of the stroke's end arrives
     return session.follow([&] {
         if (const auto frame = session.stroke_frame())
             t_s = static_cast<double>(*frame) / s.rate();

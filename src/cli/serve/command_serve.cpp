@@ -39,22 +39,22 @@ namespace {
 
 using files::or_null;
 
-// Options of `tactor serve` alone; of [serve], those that the command line has too.
+// Options of `tactor serve` alone; of [serve], those that the command line also has.
 struct serve_options : options::serve_settings {
     std::string format = "text";
 };
 
 constexpr const char* socket_name = "/tactor.sock";
 
-// Of the system, where a service manager gives a folder that is not below the user's own.
-bool is_systems()
+// Returns true for a service of the system: the service manager gives a folder outside the user's.
+bool serves_system()
 {
     const std::string given = session::service_folder();
     const std::string users = session::variable("XDG_RUNTIME_DIR");
     return !given.empty() && (users.empty() || !given.starts_with(users + "/"));
 }
 
-// Returns where the Unix socket is by default; empty where nothing says so and there are other doors.
+// Returns the default path of the Unix socket; empty if there is none and there are other endpoints.
 std::string default_socket(bool others)
 {
     if (const std::string folder = session::runtime_folder(); !folder.empty())
@@ -89,7 +89,7 @@ server::endpoint_options settle_endpoints(const options::serve_settings& s)
     e.socket = [given = s.socket, others = s.tcp || s.osc || s.http] {
         return given ? *given : default_socket(others);
     };
-    if (is_systems()) {
+    if (serves_system()) {
         e.mode = S_IRUSR | S_IWUSR | S_IRGRP | S_IWGRP;
         if (const group* g = ::getgrnam("tactor"))
             e.group = g->gr_gid;
@@ -108,7 +108,7 @@ server::endpoint_options settle_endpoints(const options::serve_settings& s)
 // Raises the limit on open files to the need of so many clients; warns if that is not allowed.
 void provide_descriptors(const server::service_limits& l)
 {
-    // Senders of OSC share one; browsers that only load the page come beside clients.
+    // Senders of OSC share one; browsers that only load the page come in addition to clients.
     constexpr rlim_t others = 96;
     const rlim_t wanted = l.max_clients + others;
     rlimit now{};
@@ -137,29 +137,29 @@ std::string plan_text(const server::planned& p, const environment& e, std::size_
     return text;
 }
 
-// What the channels get of all clients together: the ceiling, with what the owner adds to a tactor.
-array limited(array a, double max_level_dbfs)
+// Limits the channels for all clients together to the ceiling, plus the gain that the owner gives a tactor.
+array limit_levels(array a, double max_level_dbfs)
 {
     for (tactor_spec& t : a.tactors)
         t.max_dbfs = std::min(t.max_dbfs, max_level_dbfs + std::max(t.gain_db, 0.0));
     return a;
 }
 
-server::planning planning_of(const settings& s, const environment& e, const options::serve_settings& serve,
-                             const server::service_limits& limits)
+server::planning make_planning(const settings& s, const environment& e, const options::serve_settings& serve,
+                               const server::service_limits& limits)
 {
     server::planning p;
     p.owner = static_cast<const options::wishes&>(s);
     p.owner.render = session::settle_render(s, e);
     p.max_level_dbfs = serve.max_level_dbfs.value_or(p.owner.render.level_dbfs);
     p.owner.render.level_dbfs = std::min(p.owner.render.level_dbfs, p.max_level_dbfs);
-    p.tactors = limited(e.tactors, p.max_level_dbfs);
+    p.tactors = limit_levels(e.tactors, p.max_level_dbfs);
     p.max_stroke_s = limits.max_stroke_s;
     p.max_strokes = limits.max_strokes;
     return p;
 }
 
-void say_who_may(const server::endpoints& at, const std::string& token, bool has_peers)
+void warn_of_access(const server::endpoints& at, const std::string& token, bool has_peers)
 {
     if (!at.osc_address.empty() && !has_peers && !net::is_loopback(at.osc.get()))
         throw error(error_kind::bad_input, "osc " + at.osc_address,
@@ -192,7 +192,7 @@ void say_who_may(const server::endpoints& at, const std::string& token, bool has
     }
 }
 
-void tell_listening(const server::endpoints& at, const std::string& format)
+void print_endpoints(const server::endpoints& at, const std::string& format)
 {
     using json = nlohmann::ordered_json;
     const std::string http = at.http_address.empty() ? "" : "http://" + at.http_address + "/";
@@ -213,14 +213,14 @@ void tell_listening(const server::endpoints& at, const std::string& format)
     }
     if (std::fflush(stdout) == 0)
         return;
-    // Who waits for these lines waits in vain; who draws is served all the same.
+    // A program that waits for these lines does not get them; clients are served all the same.
     say(stderr, "tactor: warning: standard output: {}: where it listens could not be said there\n",
         std::strerror(errno));
     std::clearerr(stdout);
 }
 
-// To whoever started it: a person, the journal, the line that systemctl status shows.
-std::function<void(server::stream_state, const std::string&)> tell_owner()
+// Returns a handler that reports states of the stream on standard error and to the service manager.
+std::function<void(server::stream_state, const std::string&)> make_owner_log()
 {
     return [lost = false, ran = false](server::stream_state state, const std::string& reason) mutable {
         const bool again = std::exchange(ran, ran || state == server::stream_state::running);
@@ -237,7 +237,7 @@ std::function<void(server::stream_state, const std::string&)> tell_owner()
 
 int serve(settings& s, const serve_options& o)
 {
-    // Strokes sound as [defaults] say, unless a client says something else.
+    // [defaults] hold for strokes, unless a client gives other options.
     s.place |= options::on_play;
     const environment e = session::read_environment(s);
     const session::stream_options& play = s.stream;
@@ -252,14 +252,14 @@ int serve(settings& s, const serve_options& o)
     service.token = server::read_token(serve);
     service.version = version();
     service.array = files::array_json(e.tactors);
-    service.plans = planning_of(s, e, serve, service.limits);
+    service.plans = make_planning(s, e, serve, service.limits);
     service.plan_text = [&e](const server::planned& p, std::size_t most) { return plan_text(p, e, most); };
     service.now_ns = rt::monotonic_ns;
     server::endpoints at = server::open_endpoints(where);
     const std::shared_ptr<void> removed(nullptr, [&at](void*) { server::remove_socket(at); });
-    say_who_may(at, service.token, !network.osc_peers.empty());
+    warn_of_access(at, service.token, !network.osc_peers.empty());
 
-    // A service's owner does not watch it: what is otherwise asked for is there to be looked up.
+    // Nobody watches a service: in the journal the log is always verbose.
     session::session_log log(play.verbose || session::goes_to_journal(stderr), play.log);
     const render_options& sound = service.plans.owner.render;
     alsa_options device = session::device_options(s, play, e, sound.channels, sound.rate);
@@ -272,14 +272,14 @@ int serve(settings& s, const serve_options& o)
     session::give_memory_back();
     session::warn_of_rights(probe_realtime_rights().priority != 0, locked);
     stream.tactors = service.plans.tactors;
-    stream.changed = [&stop, tell = tell_owner()](server::stream_state state, const std::string& reason) {
+    stream.changed = [&stop, tell = make_owner_log()](server::stream_state state, const std::string& reason) {
         if (state == server::stream_state::closing)
-            stop.poll(); // from here on it has so long to end
+            stop.poll(); // the time to end counts from here
         tell(state, reason);
     };
     stream.times.idle_stop_s = serve.idle_stop_s.value_or(0.0);
     server::serve(at, std::move(service), std::move(stream), std::move(network), stop.descriptor(),
-                  [&] { tell_listening(at, o.format); });
+                  [&] { print_endpoints(at, o.format); });
     stop.was_the_last();
     return status_ok;
 }
