@@ -185,13 +185,14 @@ private:
     void post_job(planner_lane& lane, plan_job j);
     void job_done(planner_lane& lane, const plan_job& job, std::shared_ptr<planned> p,
                   std::vector<score> scores, std::string text, std::optional<net::rpc_fault> fault);
-    void submit_all(const plan_job& job, const std::shared_ptr<planned>& p, const std::vector<score>& scores);
+    void submit_all(const plan_job& job, const planned& p, const std::vector<score>& scores);
 
     // service_strokes.cpp
     void drive(client& c, const net::json& params, const answer& to);
     std::vector<std::uint32_t> submit(client_number owner, const net::json& start, const planned& p,
                                       const std::vector<score>& scores, const char* ended_by);
     void check_free_place(const client& c) const;
+    void once_ready(client_number number, const answer& to, const char* source, std::function<void()> then);
     void cancel(client& c, const net::json& params, const answer& to);
     void cancel_all(client& c);
     void cancel(stroke_record& r, const char* why);

@@ -217,42 +217,34 @@ void service::job_done(planner_lane& lane, const plan_job& job, std::shared_ptr<
             job.to.result_text(text);
     } else {
         // The stream may have to be started first.
-        stream_.when_ready([this, number, job, p, scores = std::move(scores)] {
-            if (client* then = find(number))
-                --then->coming;
-            submit_all(job, p, scores);
-            boost::asio::post(reader_, [p] {}); // which frees it
-            note_busy();
+        once_ready(number, job.to, "stream", [this, job, p, scores = std::move(scores)] {
+            const std::shared_ptr<void> after(nullptr, [&](void*) {
+                boost::asio::post(reader_, [p] {}); // which frees it
+            });
+            submit_all(job, *p, scores);
         });
     }
     note_busy();
     next_job(lane);
 }
 
-void service::submit_all(const plan_job& job, const std::shared_ptr<planned>& p,
-                         const std::vector<score>& scores)
+void service::submit_all(const plan_job& job, const planned& p, const std::vector<score>& scores)
 {
-    try {
-        const client_number number = job.to.all->to;
-        if (const client* c = find(number);
-            c != nullptr && scores.size() > 1 &&
-            c->strokes.size() + c->coming + scores.size() > options_.limits.max_strokes)
-            limit_reached("max_strokes",
-                          fmt::format("{} strokes are more than the {} that a client may have at once",
-                                      scores.size(), options_.limits.max_strokes),
-                          "send fewer");
-        const auto numbers = submit(number, job.start, *p, scores, stop_reason_since(job.asked, number));
-        auto warnings = p->warnings();
-        for (std::string& w : warnings)
-            w = net::cut_echo(w);
-        job.to.result({{"stroke", numbers.front()},
-                       {"strokes", numbers},
-                       {"total_s", p->total_s()},
-                       {"warnings", warnings}},
-                      numbers);
-    } catch (...) {
-        job.to.fault(current_fault("stream"));
-    }
+    const client_number number = job.to.all->to;
+    if (const client* c = find(number);
+        c != nullptr && scores.size() > 1 &&
+        c->strokes.size() + c->coming + scores.size() > options_.limits.max_strokes)
+        limit_reached("max_strokes",
+                      fmt::format("{} strokes are more than the {} that a client may have at once",
+                                  scores.size(), options_.limits.max_strokes),
+                      "send fewer");
+    const auto numbers = submit(number, job.start, p, scores, stop_reason_since(job.asked, number));
+    auto warnings = p.warnings();
+    for (std::string& w : warnings)
+        w = net::cut_echo(w);
+    job.to.result(
+        {{"stroke", numbers.front()}, {"strokes", numbers}, {"total_s", p.total_s()}, {"warnings", warnings}},
+        numbers);
 }
 
 } // namespace tactor::server

@@ -46,18 +46,12 @@ void service::begin(client& c, const json& params, const answer& to)
     ++c.coming;
     ++c.live;
     note_busy();
-    stream_.when_ready([this, number = c.number, o, to, asked = mark(c)] {
+    once_ready(c.number, to, "options", [this, number = c.number, o, to, asked = mark(c)] {
         client* then = find(number);
         if (then == nullptr)
-            return note_busy();
-        --then->coming;
+            return;
         --then->live;
-        try {
-            begin_now(*then, o, to, stop_reason_since(asked, number));
-        } catch (...) {
-            to.fault(current_fault("options"));
-        }
-        note_busy();
+        begin_now(*then, o, to, stop_reason_since(asked, number));
     });
 }
 

@@ -96,6 +96,23 @@ std::vector<std::uint32_t> service::submit(client_number owner, const json& star
     return numbers;
 }
 
+// Calls `then` for a request of a client that is `coming`, once the stream runs or it is known that it does
+// not. Answers with the fault that it throws, about `source`.
+void service::once_ready(client_number number, const answer& to, const char* source,
+                         std::function<void()> then)
+{
+    stream_.when_ready([this, number, to, source, then = std::move(then)] {
+        if (client* c = find(number))
+            --c->coming;
+        try {
+            then();
+        } catch (...) {
+            to.fault(current_fault(source));
+        }
+        note_busy();
+    });
+}
+
 void service::drive(client& c, const json& params, const answer& to)
 {
     auto p = std::make_shared<planned>(make_drive(options_.plans, params));
@@ -104,19 +121,12 @@ void service::drive(client& c, const json& params, const answer& to)
     check_free_place(c);
     if (closing_ || stream_.is_out())
         no_stream(stream_.reason());
+    const std::vector<score> scores{p->make_score(options_.plans.tactors, 0)};
     ++c.coming;
     note_busy();
-    const std::vector<score> scores{p->make_score(options_.plans.tactors, 0)};
-    stream_.when_ready([this, number = c.number, to, p, scores, start, asked = mark(c)] {
-        if (client* then = find(number))
-            --then->coming;
-        try {
-            const auto numbers = submit(number, start, *p, scores, stop_reason_since(asked, number));
-            to.result({{"stroke", numbers.front()}}, numbers);
-        } catch (...) {
-            to.fault(current_fault("stream"));
-        }
-        note_busy();
+    once_ready(c.number, to, "stream", [this, number = c.number, to, p, scores, start, asked = mark(c)] {
+        const auto numbers = submit(number, start, *p, scores, stop_reason_since(asked, number));
+        to.result({{"stroke", numbers.front()}}, numbers);
     });
 }
 
