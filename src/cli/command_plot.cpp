@@ -54,7 +54,7 @@ std::string choose_name(const piece& p)
 int draw(settings& s, const plot_settings& p)
 {
     const picture_options& o = p.picture;
-    const plot::file_format format = plot::format_of(o.file); // before the work
+    const plot::file_format format = plot::find_format(o.file); // before the work
     if (p.animated && format != plot::file_format::svg)
         refuse_option("--animate", "only SVG can move", "name a file .svg");
     if (p.animated && p.view == figure_view::wave)

@@ -6,6 +6,8 @@
 #include <utility>
 
 #include <boost/asio/ip/address.hpp>
+#include <boost/asio/ip/network_v4.hpp>
+#include <boost/asio/ip/network_v6.hpp>
 #include <fmt/format.h>
 
 #include <tactor/error.hpp>
@@ -17,23 +19,15 @@ namespace {
 
 namespace ip = boost::asio::ip;
 
-template <typename Bytes>
-bool same_beginning(const Bytes& a, const Bytes& b, unsigned bits)
-{
-    const auto whole = static_cast<std::ptrdiff_t>(bits / 8);
-    if (!std::equal(a.begin(), a.begin() + whole, b.begin()))
-        return false;
-    const unsigned left = bits % 8;
-    const auto i = static_cast<std::size_t>(whole);
-    return left == 0 || (a[i] ^ b[i]) >> (8U - left) == 0;
-}
-
 bool within(const ip::address& a, const address_prefix& p)
 {
+    const auto bits = static_cast<unsigned short>(p.bits);
     if (a.is_v4() != p.address.is_v4())
         return false;
-    return a.is_v4() ? same_beginning(a.to_v4().to_bytes(), p.address.to_v4().to_bytes(), p.bits)
-                     : same_beginning(a.to_v6().to_bytes(), p.address.to_v6().to_bytes(), p.bits);
+    if (a.is_v4())
+        return ip::network_v4(a.to_v4(), bits).network() == ip::network_v4(p.address.to_v4(), bits).network();
+    return ip::network_v6(a.to_v6(), bits).network().to_bytes() == // without the scope
+           ip::network_v6(p.address.to_v6(), bits).network().to_bytes();
 }
 
 bool same_name(std::string_view a, std::string_view b)

@@ -33,9 +33,7 @@ line_connection::line_connection(socket_type s, const line_limits& l, shared_by_
 {
 }
 
-line_connection::~line_connection() = default;
-
-void line_connection::start(handlers h)
+void line_connection::start(peer_handlers h)
 {
     handlers_ = std::move(h);
     arm(limits_.message_s);
@@ -147,7 +145,7 @@ void line_connection::handle_line(std::size_t size)
     const std::string large = blocks_.empty() ? std::string() : whole_line(size);
     const std::string_view line =
         blocks_.empty() ? std::string_view(partial_.data() + begin_, size) : std::string_view(large);
-    handled(size, size == 0 || handlers_.line(line));
+    handled(size, size == 0 || handlers_.message(line));
 }
 
 std::string line_connection::whole_line(std::size_t size)
@@ -182,7 +180,8 @@ void line_connection::handled(std::size_t size, bool go_on)
 {
     if (closed_)
         return;
-    reading_ = reading_ && go_on;
+    if (!go_on)
+        return finish();
     if (!reading_)
         return;
     blocks_.clear();

@@ -6,7 +6,6 @@
 #include <chrono>
 #include <cstddef>
 #include <deque>
-#include <functional>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -36,53 +35,17 @@ inline std::chrono::steady_clock::duration steady_seconds(double seconds)
 /// Bytes of a message that is handled at once. A larger one waits for its turn.
 constexpr std::size_t small_message = 2048;
 
-/// Reason why a connection is given up.
-enum class line_fault {
-    too_long, ///< a line beyond message_bytes
-    too_slow, ///< unfinished messages of all peers are too many, and this peer has most
-    crowded,  ///< unfinished messages of all peers are too many, and this one has most
-    unread,   ///< it does not read its messages
-    memory,   ///< there is not enough memory for its input
-    gone,     ///< the socket failed, or everything is written
-};
-
-class line_connection : public std::enable_shared_from_this<line_connection> {
+class line_connection final : public peer, public std::enable_shared_from_this<line_connection> {
 public:
     using socket_type = boost::asio::generic::stream_protocol::socket;
 
-    struct handlers {
-        /// Handles a line, without its end. Returns false to stop reading.
-        std::function<bool(std::string_view)> line;
-        /// The peer sends no more; it may still read.
-        std::function<void()> input_ended;
-        /// Called before the connection closes; send() still works for `too_long` and `too_slow`.
-        std::function<void(line_fault)> fault;
-        /// Called once, when the socket is closed. The connection may be forgotten.
-        std::function<void()> closed;
-        /// Returns true once the first message, which the peer owes, has come. None: any message that is not
-        /// empty counts.
-        std::function<bool()> met = {};
-        /// Handles a line above `small_message`, on its turn. The next line is handled when `done` is called
-        /// with the result that `line` would return. None: `line` handles all.
-        std::function<void(std::string text, std::function<void(bool)> done)> large = {};
-        /// Returns true for a small line that is handled at once, before those of others. None: no line is
-        /// urgent.
-        std::function<bool(std::string_view)> urgent = {};
-    };
-
     line_connection(socket_type s, const line_limits& l, shared_by_peers& all);
-    ~line_connection();
-    line_connection(const line_connection&) = delete;
-    line_connection& operator=(const line_connection&) = delete;
 
-    void start(handlers h);
-    /// Queues a line and adds its end. Drops a peer that lets too much wait.
-    void send(std::string line);
-    /// Stops reading, and closes when everything is written, or after a second.
-    void finish();
+    void start(peer_handlers h);
+    void send(std::string line) override;
+    void finish() override;
+    std::size_t waiting() const override { return unread_.held(); }
     void close();
-    /// Returns the bytes that the peer has not read.
-    std::size_t waiting() const noexcept { return unread_.held(); }
 
 private:
     void read();
@@ -112,7 +75,7 @@ private:
     byte_budget::share unfinished_;
     message_turns& turns_;
     short_turns& small_;
-    handlers handlers_;
+    peer_handlers handlers_;
     boost::asio::steady_timer deadline_;
     boost::asio::steady_timer linger_;
     std::vector<char> chunk_;

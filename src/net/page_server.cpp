@@ -55,26 +55,27 @@ void page_server::state::take(listener::socket_type s)
 {
     if (all.size() >= most_connections)
         return turn_away(s.native_handle()); // then the socket closes
-    auto stream = web_socket(io, std::move(s));
-    if (!stream)
+    const auto c = connect_browser(io, std::move(s), page_limits, shared, {});
+    if (!c)
         return;
-    const auto c =
-        std::make_shared<web_connection>(*std::move(stream), page_limits, shared, std::vector<std::string>{});
     all.insert(c);
     const visitor n = ++last;
-    c->start({[this](std::string_view path, std::string_view host, std::string_view) {
-                  return path == "/" ? make_page(document, host)
-                                     : web_reply{404, "text/plain", "there are / and /rpc\n", ""};
-              },
-              [this, n, weak = std::weak_ptr(c)] {
-                  return visitors.size() < most_visitors && visitors.emplace(n, weak.lock()).second;
-              },
-              [this, n](std::string_view text) { return calls.said(n, text); },
-              [this, n, weak = std::weak_ptr(c)] {
-                  all.erase(weak.lock());
-                  if (visitors.erase(n) != 0)
-                      calls.left(n);
-              }});
+    c->start({.message = [this, n](std::string_view text) { return calls.said(n, text); },
+              .closed =
+                  [this, n, weak = std::weak_ptr(c)] {
+                      all.erase(weak.lock());
+                      if (visitors.erase(n) != 0)
+                          calls.left(n);
+                  },
+              .get =
+                  [this](std::string_view path, std::string_view host, std::string_view) {
+                      return path == "/" ? make_page(document, host)
+                                         : web_reply{404, "text/plain", "there are / and /rpc\n", ""};
+                  },
+              .upgrade =
+                  [this, n, weak = std::weak_ptr(c)] {
+                      return visitors.size() < most_visitors && visitors.emplace(n, weak.lock()).second;
+                  }});
 }
 
 page_server::page_server(owned_fd listening, std::string_view document, handlers h)

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// Memory and turns that all peers of a server share. One thread: the context's.
+/// Peers of a server, and the memory and turns that they share. One thread: the context's.
 #pragma once
 
 #include <cstddef>
@@ -8,10 +8,76 @@
 #include <functional>
 #include <memory>
 #include <set>
+#include <string>
+#include <string_view>
 
 #include <boost/asio/io_context.hpp>
 
 namespace tactor::net {
+
+/// The way to a peer, over a connection of any kind.
+class peer {
+public:
+    peer() = default;
+    peer(const peer&) = delete;
+    peer& operator=(const peer&) = delete;
+    virtual ~peer() = default;
+
+    /// Queues a message. Drops a peer that lets too much wait.
+    virtual void send(std::string message) = 0;
+    /// Returns the bytes that the peer has not read.
+    virtual std::size_t waiting() const = 0;
+    /// Stops reading, and closes when everything is written, or after a second.
+    virtual void finish() = 0;
+    /// Closes in the same way. `why`, of at most 123 bytes, is for a peer that can be told.
+    virtual void turn_out(const char* /*why*/) { finish(); }
+};
+
+/// Reason why a connection is given up.
+enum class line_fault {
+    too_long, ///< a line beyond message_bytes
+    too_slow, ///< no whole message within message_s
+    crowded,  ///< unfinished messages of all peers are too many, and this one has most
+    unread,   ///< it does not read its messages
+    memory,   ///< there is not enough memory for its input
+    gone,     ///< the socket failed, or everything is written
+};
+
+struct web_reply {
+    unsigned status = 200;
+    std::string type = "text/plain; charset=utf-8";
+    std::string body = {};
+    std::string policy = {}; ///< Content-Security-Policy; empty: the page may load nothing
+};
+
+/// Calls of a connection to its server.
+struct peer_handlers {
+    /// Handles a message: a line without its end, or a text. Returns false to close the connection.
+    std::function<bool(std::string_view)> message;
+    /// Called once, when the socket is closed. The connection may be forgotten.
+    std::function<void()> closed;
+    /// Returns true once the first message, which the peer owes, has come. None: any message that is not
+    /// empty counts.
+    std::function<bool()> met = {};
+    /// Handles a message above `small_message`, on its turn. The next one is handled when `done` is called
+    /// with the result that `message` would return. None: `message` handles all.
+    std::function<void(std::string text, std::function<void(bool)> done)> large = {};
+    /// Returns true for a small message that is handled at once, before those of others. None: no message is
+    /// urgent.
+    std::function<bool(std::string_view)> urgent = {};
+
+    /// Lines: the peer sends no more; it may still read.
+    std::function<void()> input_ended = {};
+    /// Lines: called before the connection closes; send() still works for all faults but `unread` and `gone`.
+    std::function<void(line_fault)> fault = {};
+
+    /// Browsers: answers GET of a path. `host`: the server's name in the browser; `token`: of "Authorization:
+    /// Bearer".
+    std::function<web_reply(std::string_view path, std::string_view host, std::string_view token)> get = {};
+    /// Browsers: returns true if there is a place for a WebSocket. From then on `message` is called, and
+    /// `closed` is its end.
+    std::function<bool()> upgrade = {};
+};
 
 /// Limit on the bytes that all peers hold together. Beyond it the peer that holds most is given up, not the
 /// one that comes next.

@@ -2,8 +2,8 @@
 #include "net/web_connection.hpp"
 
 #include <chrono>
+#include <memory>
 #include <new>
-#include <optional>
 #include <string>
 #include <utility>
 
@@ -26,7 +26,7 @@ constexpr std::chrono::seconds to_hang_up{1};
 
 // Works like line_connection::within_memory().
 template <typename F>
-void web_connection::session::within_memory(F f)
+void web_session::within_memory(F f)
 {
     try {
         f();
@@ -35,7 +35,7 @@ void web_connection::session::within_memory(F f)
     }
 }
 
-void web_connection::session::read()
+void web_session::read()
 {
     if (!reading || closed)
         return;
@@ -49,7 +49,7 @@ void web_connection::session::read()
                         });
 }
 
-void web_connection::session::received()
+void web_session::received()
 {
     if (!unfinished.hold(buffer.capacity()))
         return;
@@ -70,14 +70,14 @@ void web_connection::session::received()
         return;
     }
     if (text.empty() || (calls.urgent && calls.urgent(text)))
-        return handled(text.empty(), text.empty() || calls.text(text));
+        return handled(text.empty(), text.empty() || calls.message(text));
     small.join([self = shared_from_this(), text = std::move(text)] {
         if (!self->closed && !self->finishing)
-            self->within_memory([&] { self->handled(false, self->calls.text(text)); });
+            self->within_memory([&] { self->handled(false, self->calls.message(text)); });
     });
 }
 
-void web_connection::session::handle_large(std::string text)
+void web_session::handle_large(std::string text)
 {
     if (closed || finishing)
         return turns.pass();
@@ -94,7 +94,7 @@ void web_connection::session::handle_large(std::string text)
     }
 }
 
-void web_connection::session::handled(bool empty, bool go_on)
+void web_session::handled(bool empty, bool go_on)
 {
     if (!go_on)
         return finish({websocket::close_code::policy_error, "this is not taken"});
@@ -107,7 +107,7 @@ void web_connection::session::handled(bool empty, bool go_on)
 }
 
 // Notices frames that begin. Beast reports payload only: no head alone, and no fragment without payload.
-void web_connection::session::watch()
+void web_session::watch()
 {
     if (!met || closed || finishing)
         return;
@@ -119,13 +119,13 @@ void web_connection::session::watch()
     arm(limits.message_s);
 }
 
-void web_connection::session::disarm()
+void web_session::disarm()
 {
     if (std::exchange(armed, false))
         deadline.cancel();
 }
 
-void web_connection::session::send(std::string text)
+void web_session::send(std::string text)
 {
     if (closed || finishing || !accepted)
         return;
@@ -140,13 +140,13 @@ void web_connection::session::send(std::string text)
 }
 
 // Does not close here, because the caller may be iterating over all peers.
-void web_connection::session::give_up()
+void web_session::give_up()
 {
     finishing = true;
     asio::post(socket.get_executor(), [self = shared_from_this()] { self->close(); });
 }
 
-void web_connection::session::give_up_crowded()
+void web_session::give_up_crowded()
 {
     reading = false;
     asio::post(socket.get_executor(), [self = shared_from_this()] {
@@ -155,7 +155,7 @@ void web_connection::session::give_up_crowded()
     });
 }
 
-void web_connection::session::write()
+void web_session::write()
 {
     writing = true;
     ws->text(true);
@@ -175,7 +175,7 @@ void web_connection::session::write()
                     });
 }
 
-void web_connection::session::finish(const websocket::close_reason& r)
+void web_session::finish(const websocket::close_reason& r)
 {
     if (closed || closing)
         return;
@@ -193,7 +193,7 @@ void web_connection::session::finish(const websocket::close_reason& r)
     ws->async_close(why, [self = shared_from_this()](const beast::error_code&) { self->close(); });
 }
 
-void web_connection::session::hang_up_soon()
+void web_session::hang_up_soon()
 {
     lingering.expires_after(to_hang_up);
     lingering.async_wait([self = shared_from_this()](const boost::system::error_code& e) {
@@ -202,7 +202,7 @@ void web_connection::session::hang_up_soon()
     });
 }
 
-void web_connection::session::arm(double seconds)
+void web_session::arm(double seconds)
 {
     armed = true;
     deadline.expires_after(steady_seconds(seconds));
@@ -221,7 +221,7 @@ void web_connection::session::arm(double seconds)
     });
 }
 
-void web_connection::session::close()
+void web_session::close()
 {
     if (closed)
         return;
@@ -238,55 +238,39 @@ void web_connection::session::close()
         });
 }
 
-std::optional<asio::ip::tcp::socket> web_socket(asio::io_context& io, line_connection::socket_type taken)
+void web_session::start(peer_handlers h)
+{
+    calls = std::move(h);
+    read_request();
+}
+
+void web_session::finish()
+{
+    finish(websocket::close_code::going_away);
+}
+
+void web_session::turn_out(const char* reason)
+{
+    finish({websocket::close_code::policy_error, reason});
+}
+
+std::shared_ptr<web_connection> connect_browser(asio::io_context& io, line_connection::socket_type accepted,
+                                                const line_limits& l, shared_by_peers& all,
+                                                std::vector<std::string> allowed_hosts)
 {
     boost::system::error_code failed;
-    const bool old = taken.local_endpoint(failed).protocol().family() == AF_INET;
+    const bool old = accepted.local_endpoint(failed).protocol().family() == AF_INET;
     if (failed)
-        return {};
+        return nullptr;
     asio::ip::tcp::socket stream(io);
-    const int fd = taken.release();
+    const int fd = accepted.release();
     stream.assign(old ? asio::ip::tcp::v4() : asio::ip::tcp::v6(), fd, failed);
     if (failed) {
         ::close(fd);
-        return {};
+        return nullptr;
     }
     stream.set_option(asio::ip::tcp::no_delay(true), failed);
-    return stream;
-}
-
-web_connection::web_connection(socket_type s, const line_limits& l, shared_by_peers& all,
-                               std::vector<std::string> allowed_hosts)
-    : session_(std::make_shared<session>(std::move(s), l, all, std::move(allowed_hosts)))
-{
-}
-
-web_connection::~web_connection() = default;
-
-void web_connection::start(handlers h)
-{
-    session_->calls = std::move(h);
-    session_->read_request();
-}
-
-void web_connection::send(std::string text)
-{
-    session_->send(std::move(text));
-}
-
-void web_connection::finish()
-{
-    session_->finish(websocket::close_code::going_away);
-}
-
-void web_connection::turn_out(const char* why)
-{
-    session_->finish({websocket::close_code::policy_error, why});
-}
-
-std::size_t web_connection::waiting() const noexcept
-{
-    return session_->unread.held();
+    return std::make_shared<web_session>(std::move(stream), l, all, std::move(allowed_hosts));
 }
 
 } // namespace tactor::net

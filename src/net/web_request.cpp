@@ -49,8 +49,8 @@ std::string unavailable(std::string_view why)
 
 } // namespace
 
-web_connection::session::session(socket_type s, const line_limits& l, shared_by_peers& all,
-                                 std::vector<std::string> hosts)
+web_session::web_session(socket_type s, const line_limits& l, shared_by_peers& all,
+                         std::vector<std::string> hosts)
     : limits(l),
       unread(all.unread, [this] { give_up(); }),
       unfinished(all.unfinished, [this] { give_up_crowded(); }),
@@ -66,7 +66,7 @@ web_connection::session::session(socket_type s, const line_limits& l, shared_by_
     parser.body_limit(std::numeric_limits<std::uint64_t>::max()); // no body is read
 }
 
-void web_connection::session::read_request()
+void web_session::read_request()
 {
     arm(limits.message_s);
     http::async_read_header(
@@ -86,7 +86,7 @@ void web_connection::session::read_request()
         });
 }
 
-void web_connection::session::answer_request()
+void web_session::answer_request()
 {
     const auto& request = parser.get();
     const std::string host_header(view(request[http::field::host]));
@@ -113,7 +113,7 @@ void web_connection::session::answer_request()
 }
 
 // Sends the reply and closes. One request for each connection, because a page asks for little.
-void web_connection::session::respond(web_reply r)
+void web_session::respond(web_reply r)
 {
     answered = true;
     response.result(r.status);
@@ -142,7 +142,7 @@ void web_connection::session::respond(web_reply r)
                       [self = shared_from_this()](const beast::error_code&, std::size_t) { self->close(); });
 }
 
-void web_connection::session::upgrade()
+void web_session::upgrade()
 {
     if (!calls.upgrade())
         return respond({503, "text/plain", "there is no place, try again later\n", ""});

@@ -109,11 +109,17 @@ void async_teardown(boost::beast::role_type role, watched_socket& s, Handler&& h
     async_teardown(role, s.next_layer(), std::forward<Handler>(handler));
 }
 
-struct web_connection::session : std::enable_shared_from_this<session> {
-    session(socket_type s, const line_limits& l, shared_by_peers& all, std::vector<std::string> hosts);
-    ~session() = default;
-    session(const session&) = delete;
-    session& operator=(const session&) = delete;
+struct web_session final : web_connection, std::enable_shared_from_this<web_session> {
+    using socket_type = boost::asio::ip::tcp::socket;
+
+    web_session(socket_type s, const line_limits& l, shared_by_peers& all, std::vector<std::string> hosts);
+
+    void start(peer_handlers h) override;
+    void send(std::string text) override;
+    std::size_t waiting() const override { return unread.held(); }
+    void finish() override;
+    /// Closes with status 1008.
+    void turn_out(const char* why) override;
 
     // Request.
     void read_request();
@@ -125,7 +131,6 @@ struct web_connection::session : std::enable_shared_from_this<session> {
     void received();
     void handle_large(std::string text);
     void handled(bool empty, bool go_on);
-    void send(std::string text);
     void write();
     void give_up();
     void give_up_crowded();
@@ -146,7 +151,7 @@ struct web_connection::session : std::enable_shared_from_this<session> {
     short_turns& small;
     std::vector<std::string> allowed;
     std::string local;
-    handlers calls;
+    peer_handlers calls;
     socket_type socket;
     std::optional<boost::beast::websocket::stream<watched_socket>> ws;
     web_frames frames;

@@ -25,7 +25,7 @@ constexpr std::size_t few_paths = 20;
 constexpr double places_per_s = 30.0; // of the target in an animated picture
 constexpr double most_places = 600.0;
 
-// How fine the marks are: the more bursts, the finer.
+// Sizes of the marks: the more bursts, the finer.
 struct fineness {
     double dot = 2.4;  // radius, pt
     double join = 2.0; // width of a joining line at full amplitude, pt
@@ -62,7 +62,7 @@ public:
                                            {"x0", fmt::format("{:.9g}", frame_.origin.x)},
                                            {"y0", fmt::format("{:.9g}", frame_.origin.y)},
                                            {"stride", fmt::format("{}", stride_)}}});
-        const tactor_looks looks = look_at_tactors();
+        const tactor_looks looks = find_looks();
         for (const stroke& s : scene_.strokes) // before what is lighter: obstacles are limited
             paths_.push_back(path_on_page(frame_, s.motion));
         for (const auto& parts : paths_)
@@ -92,7 +92,7 @@ public:
     }
 
 private:
-    // Higher where tactors would be too close on the page to be numbered.
+    // Fits the array; makes it higher if tactors would be too close on the page to be numbered.
     static array_frame fit(const scene& s, box at_most, double highest)
     {
         const extent shown = shown_extent(s.tactors, s.strokes);
@@ -105,7 +105,7 @@ private:
         return fit_array(s.tactors, shown, at_most);
     }
 
-    // One in how many bursts is drawn.
+    // Returns n, so that one burst in n is drawn.
     std::size_t stride() const
     {
         const std::size_t n = std::max<std::size_t>(1, time_.bursts.size());
@@ -117,7 +117,7 @@ private:
         return static_cast<std::size_t>(std::ceil(static_cast<double>(n) / fitting));
     }
 
-    std::vector<bool> who_plays() const
+    std::vector<bool> find_playing() const
     {
         std::vector<bool> plays(scene_.tactors.tactors.size(), false);
         for (const unsigned i : time_.playing)
@@ -125,10 +125,10 @@ private:
         return plays;
     }
 
-    // A number stands in its circle where that has space and nothing lies on it.
-    tactor_looks look_at_tactors() const
+    // Finds the numbers that stand in their circles: a circle has space, and nothing lies on it.
+    tactor_looks find_looks() const
     {
-        // How near a centre may come: dots, and the larger rings and squares of starts and ends.
+        // Distance at which a mark touches a number: of dots, and of the larger rings and squares of ends.
         struct mark_on_page {
             spot at;
             double reach;
@@ -141,7 +141,7 @@ private:
         for_each_shown([&](const shown_burst&, spot at, colour) {
             marks.push_back({at, number_half + fine_.dot});
         });
-        tactor_looks looks{who_plays(), {}};
+        tactor_looks looks{find_playing(), {}};
         for (const tactor_spec& t : scene_.tactors.tactors) {
             const spot at = frame_(t.position);
             looks.inside.push_back(frame_.number > 0.0 &&
@@ -180,16 +180,17 @@ private:
                              time_.sampled ? "in between" : "in others"));
     }
 
-    double width_of(double amplitude) const { return std::max(0.15, fine_.join * amplitude / time_.peak); }
+    double join_width(double amplitude) const { return std::max(0.15, fine_.join * amplitude / time_.peak); }
 
     template <class Draw>
     void for_each_shown(Draw&& draw) const
     {
         for (std::size_t i = 0; i < time_.bursts.size(); i += stride_)
-            draw(time_.bursts[i], frame_(time_.bursts[i].what->position), colour_of(time_, time_.bursts[i]));
+            draw(time_.bursts[i], frame_(time_.bursts[i].what->position),
+                 burst_colour(time_, time_.bursts[i]));
     }
 
-    // Colours of strokes that lie on each other would mix to those of none.
+    // Returns the colour of a join. Grey for several strokes: their colours would mix to those of none.
     colour join_colour(colour of_burst) const { return time_.several() ? grey : of_burst; }
 
     // Returns true if most of a stroke's path lies on an earlier one that looks different.
@@ -229,7 +230,7 @@ private:
                 taken_.block_line({at, to}, 2.0, 0.1);
                 canvas_.line(
                     at, to,
-                    {.stroke = with_alpha(join_colour(c), fine_.alpha), .width = width_of(d.amplitude)},
+                    {.stroke = with_alpha(join_colour(c), fine_.alpha), .width = join_width(d.amplitude)},
                     {.kind = "join",
                      .data = {{"tactor", fmt::format("{}", d.tactor)},
                               {"amplitude", fmt::format("{:.6g}", d.amplitude)}}});
@@ -246,7 +247,7 @@ private:
             if (time_.looks[i] != next)
                 continue;
             ++next;
-            style look{.stroke = time_.several() ? of_stroke(time_.looks[i]) : ink, .width = width};
+            style look{.stroke = time_.several() ? stroke_colour(time_.looks[i]) : ink, .width = width};
             if (paths_.size() <= few_paths && lies_on_another(i))
                 look.dash = 3.0; // the other shows through
             for (const std::vector<spot>& part : paths_[i])
@@ -278,19 +279,19 @@ private:
                              plain_number(o.sigma_v_mm_s)));
     }
 
-    // Of bursts that were moved: where an observer is predicted to feel them.
+    // Draws the predicted places of bursts that were moved for an observer.
     void draw_felt()
     {
         constexpr double radius = 1.1;
         for (const compensated_plan& m : scene_.moved) {
             const group one(canvas_, {.kind = "predicted"});
-            std::vector<spot> way;
+            std::vector<spot> felt;
             for (const tap& t : m.taps)
-                way.push_back(frame_(t.felt));
-            canvas_.poly(simplify(way, 0.04), false, {.stroke = vermilion, .width = 0.7, .dash = 2.0},
+                felt.push_back(frame_(t.felt));
+            canvas_.poly(simplify(felt, 0.04), false, {.stroke = vermilion, .width = 0.7, .dash = 2.0},
                          {.kind = "felt"});
-            for (std::size_t i = 0; i < way.size(); i += stride_)
-                canvas_.circle(way[i], radius, {.fill = white, .stroke = vermilion, .width = 0.5},
+            for (std::size_t i = 0; i < felt.size(); i += stride_)
+                canvas_.circle(felt[i], radius, {.fill = white, .stroke = vermilion, .width = 0.5},
                                {.kind = "felt-at"});
         }
     }
@@ -337,7 +338,7 @@ private:
             const std::string text = number(amplitude, 3);
             x -= text_width(text, small_text);
             canvas_.text({x, y + cap_height(small_text) / 2.0}, text, {.size = small_text});
-            canvas_.line({x - 15.0, y}, {x - 2.5, y}, {.stroke = dark_grey, .width = width_of(amplitude)});
+            canvas_.line({x - 15.0, y}, {x - 2.5, y}, {.stroke = dark_grey, .width = join_width(amplitude)});
             x -= 21.0;
         }
         canvas_.text({x + 3.0, y + cap_height(small_text) / 2.0}, "amplitude",

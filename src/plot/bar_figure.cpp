@@ -6,10 +6,9 @@
 
 #include <fmt/format.h>
 
-#include <tactor/error.hpp>
-
 #include "plot/compare_figure.hpp"
 #include "plot/draw/axes.hpp"
+#include "plot/draw/notes.hpp"
 #include "plot/figure.hpp"
 #include "plot/paint/text.hpp"
 
@@ -22,14 +21,14 @@ constexpr double labels_height = 24.0; // names of the groups, and the legend
 constexpr double between = 14.0;
 constexpr double bars_share = 0.72; // of a group's width
 
-// Of methods, in order: a few differ in lightness too; more of them are told apart as strokes are.
+// Colours of methods, in order. A few differ in lightness too; more get the colours of strokes.
 constexpr std::array<colour, 4> fills{light_grey, blue, orange, dark_grey};
 
-colour fill_of(std::size_t i, std::size_t of)
+colour fill_colour(std::size_t i, std::size_t count)
 {
-    if (of == 1)
+    if (count == 1)
         return blue;
-    return of <= fills.size() ? fills[i] : of_stroke(i);
+    return count <= fills.size() ? fills[i] : stroke_colour(i);
 }
 
 void draw_error(canvas& c, const bar& b, const scale& y, double x, double cap)
@@ -42,7 +41,7 @@ void draw_error(canvas& c, const bar& b, const scale& y, double x, double cap)
     c.line({x - cap, low}, {x + cap, low}, s);
 }
 
-// Beside each other in their order, so that equal ones are seen.
+// Draws values side by side in their order, so that equal ones are seen.
 void draw_values(canvas& c, const bar& b, const scale& y, double x, double width)
 {
     const double step = 0.7 * width / static_cast<double>(b.values.size());
@@ -52,7 +51,7 @@ void draw_values(canvas& c, const bar& b, const scale& y, double x, double width
                  {.fill = with_alpha(white, 0.7), .stroke = ink, .width = 0.3}, {.kind = "value"});
 }
 
-// The bars of a panel by group and series, each with its place.
+// Calls `draw` for each bar of a panel, by group and series, with its place.
 template <class Draw>
 void for_each_bar(const bar_panel& p, box inside, Draw&& draw)
 {
@@ -72,14 +71,14 @@ void draw_bars(canvas& c, const bar_panel& p, const scale& y, box inside)
         const double height = *p.series[i].bars[g].height;
         const double top = y(std::clamp(height, p.y_from, p.y_to));
         c.rect({x, top, width, y(p.y_from) - top},
-               {.fill = fill_of(i, p.series.size()), .stroke = ink, .width = 0.5},
+               {.fill = fill_colour(i, p.series.size()), .stroke = ink, .width = 0.5},
                {.kind = "bar",
                 .title = fmt::format("{}: {}", clean(p.groups[g]), number(height)),
                 .data = {{"group", clean(p.groups[g])}, {"series", clean(p.series[i].name)}}});
     });
 }
 
-// Over whatever is written across.
+// Draws values and error bars, on top of the text across.
 void draw_spread(canvas& c, const bar_panel& p, const scale& y, box inside)
 {
     for_each_bar(p, inside, [&](std::size_t g, std::size_t i, double x, double width) {
@@ -118,14 +117,14 @@ void draw_legend(canvas& c, const bar_panel& p, double x, double y, double width
             continue;
         const double space = width / static_cast<double>(p.series.size()) - 12.0;
         const std::string name = shorten(clean(p.series[i].name), small_text, space);
-        c.rect({at, y - 5.0, 6.0, 5.0}, {.fill = fill_of(i, p.series.size()), .stroke = ink, .width = 0.4},
-               {.kind = "legend"});
+        c.rect({at, y - 5.0, 6.0, 5.0},
+               {.fill = fill_colour(i, p.series.size()), .stroke = ink, .width = 0.4}, {.kind = "legend"});
         c.text({at + 8.0, y}, name, {.size = small_text}, {.kind = "legend"});
         at += 12.0 + text_width(name, small_text) + 6.0;
     }
 }
 
-void draw_panel_of(canvas& c, const bar_panel& p, const std::string& across, box where)
+void draw_bar_panel(canvas& c, const bar_panel& p, const std::string& across, box where)
 {
     const box inside{where.x + 28.0, where.y + 14.0, where.width - 30.0, where.height - 14.0 - labels_height};
     const scale y{p.y_from, p.y_to, inside.bottom(), inside.y};
@@ -151,31 +150,23 @@ void draw_panel_of(canvas& c, const bar_panel& p, const std::string& across, box
 
 } // namespace
 
-canvas draw_bars_of(const bar_figure& f)
+canvas draw_bar_figure(const bar_figure& f)
 {
-    if (!(f.width_mm >= least_width_mm && f.width_mm <= most_width_mm))
-        throw error(error_kind::bad_input, "picture", fmt::format("{} mm wide", f.width_mm),
-                    fmt::format("{} to {} mm", least_width_mm, most_width_mm));
-    canvas c;
-    c.width = f.width_mm * pt_per_mm;
+    canvas c = make_canvas(f.width_mm);
     c.title = clean(f.title);
     c.description = f.note;
     double y = margin;
     const std::string across = clean(f.across);
-    if (f.heading) {
-        y += cap_height(title_size);
-        c.text({margin, y},
-               shorten(clean(f.title) + (across.empty() ? "" : " (" + across + ")"), title_size,
-                       c.width - 2.0 * margin, true),
-               {.size = title_size, .bold = true});
-        y += 8.0;
-    }
+    if (f.heading)
+        y = draw_heading(c, clean(f.title) + (across.empty() ? "" : " (" + across + ")"), {},
+                         {margin, y, c.width - 2.0 * margin, 0.0}) +
+            8.0;
     const std::size_t columns = c.width >= two_columns ? 2 : 1;
     const double width =
         (c.width - 2.0 * margin - between * static_cast<double>(columns - 1)) / static_cast<double>(columns);
     for (std::size_t i = 0; i < f.panels.size(); ++i) {
         const double x = margin + (width + between) * static_cast<double>(i % columns);
-        draw_panel_of(c, f.panels[i], across, {x, y, width, panel_height});
+        draw_bar_panel(c, f.panels[i], across, {x, y, width, panel_height});
         if ((i + 1) % columns == 0 || i + 1 == f.panels.size())
             y += panel_height + 8.0;
     }

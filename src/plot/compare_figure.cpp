@@ -10,6 +10,7 @@
 
 #include "core/words.hpp"
 #include "plot/draw/axes.hpp"
+#include "plot/draw/notes.hpp"
 #include "plot/figure.hpp"
 #include "plot/paint/text.hpp"
 
@@ -21,12 +22,12 @@ using detail::comparison_row;
 constexpr double chart_height = 105.0;
 constexpr double scale_height = 12.0;
 
-// Of algorithms, in order: they differ in hue, lightness and dash.
+// Lines of algorithms, in order: they differ in hue, lightness and dash.
 constexpr std::array<style, 3> looks{style{.stroke = blue, .width = 0.9},
                                      style{.stroke = vermilion, .width = 0.9, .dash = 3.0},
                                      style{.stroke = ink, .width = 0.9, .dash = 1.1}};
 
-// The different values of a member, in order of appearance.
+// Returns the different values of a member, in order of appearance.
 template <class Kind>
 std::vector<Kind> different(const std::vector<comparison_row>& all, Kind comparison_row::*member)
 {
@@ -55,7 +56,7 @@ series target_speed(const std::vector<percept_sample>& samples)
     return s;
 }
 
-// From tap to tap, at the middle between their onsets.
+// Returns the speeds from tap to tap, at the middle between their onsets.
 series chain_speed(const std::string& name, const std::vector<tap>& taps, point tap::*place,
                    const style& look)
 {
@@ -68,7 +69,7 @@ series chain_speed(const std::string& name, const std::vector<tap>& taps, point 
     return s;
 }
 
-// One prediction's line, after the target's where it is the first.
+// Adds the line of a prediction; before the first one, the line of the target.
 void add_speeds(std::vector<series>& lines, const comparison_row& p, const style& look)
 {
     const bool by_taps = !p.taps.empty();
@@ -88,19 +89,6 @@ double largest(const std::vector<series>& lines)
         for (const spot& x : s.values)
             v = std::isfinite(x.y) ? std::max(v, x.y) : v;
     return v > 0.0 ? 1.05 * v : 1.0;
-}
-
-double draw_heading(canvas& c, const std::string& title, const array& a, const stroke& target, box where)
-{
-    double y = where.y + cap_height(title_size);
-    c.text({where.x, y}, shorten(clean(title), title_size, where.width, true),
-           {.size = title_size, .bold = true});
-    y += line_pitch;
-    const trajectory& m = target.motion;
-    const std::string facts = fmt::format("on {}, {} mm in {}", clean(a.name), plain_number(m.length_mm(), 4),
-                                          seconds_text(m.duration_s(), 4));
-    c.text({where.x, y}, shorten(facts, small_text, where.width), {.size = small_text, .ink = dark_grey});
-    return y + 6.0 - where.y;
 }
 
 chart_band make_band(const comparison_row& p, const style& look)
@@ -133,14 +121,14 @@ double draw_speeds(canvas& c, const std::string& phantom, std::vector<series> li
     return chart_height;
 }
 
-// All panels have one scale: a bar under the first row.
+// Draws the scale, which is the same in all panels, under the first row.
 double draw_scale(canvas& c, const panel_ground& g, box cell)
 {
     draw_scale_bar(c, panel_frame(g, cell), {cell.x, cell.y + scale_height / 2.0});
     return scale_height;
 }
 
-// The panels of one phantom model and their speeds.
+// Draws the panels of a phantom model and their speeds.
 double draw_row(canvas& c, const panel_ground& g, const std::vector<comparison_row>& all,
                 const std::vector<algorithm_kind>& algorithms, phantom_kind phantom, bool first, box where)
 {
@@ -192,18 +180,20 @@ std::string note(const detail::comparison& c)
 canvas draw_comparison(const array& a, const detail::comparison& all, const std::string& title,
                        double width_mm)
 {
-    if (!(width_mm >= least_width_mm && width_mm <= most_width_mm))
-        throw error(error_kind::bad_input, "picture", fmt::format("{} mm wide", width_mm),
-                    fmt::format("{} to {} mm", least_width_mm, most_width_mm));
-    canvas c;
-    c.width = width_mm * pt_per_mm;
+    canvas c = make_canvas(width_mm);
     c.title = fmt::format("{} on {}: predicted percepts", clean(all.target.name), clean(a.name));
     c.description = note(all);
     const panel_ground g{a, all.target, shown_extent(a, {all.target})};
     const std::vector<algorithm_kind> algorithms = different(all.rows, &comparison_row::algorithm);
     box rest{margin, margin, c.width - 2.0 * margin, 0.0};
-    if (!title.empty())
-        rest.y += draw_heading(c, title, a, all.target, rest);
+    if (!title.empty()) {
+        const trajectory& m = all.target.motion;
+        const std::string facts =
+            fmt::format("on {}, {} mm in {}", clean(a.name), plain_number(m.length_mm(), 4),
+                        seconds_text(m.duration_s(), 4));
+        rest.y +=
+            draw_heading(c, clean(title), {shorten(facts, small_text, rest.width)}, rest) + 6.0 - rest.y;
+    }
     const std::vector<phantom_kind> phantoms = different(all.rows, &comparison_row::phantom);
     for (const phantom_kind phantom : phantoms)
         rest.y += draw_row(c, g, all.rows, algorithms, phantom, phantom == phantoms.front(), rest);

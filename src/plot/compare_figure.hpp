@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// What several algorithms are predicted to feel like (as figure 6 of Park et al. 2016), and how fast.
+/// Predicted percepts of several algorithms (as figure 6 of Park et al. 2016), and their speeds.
 #pragma once
 
 #include <string>
@@ -13,9 +13,9 @@
 
 namespace tactor::plot {
 
-/// Draws for each phantom model a row of panels, one for each algorithm, and under it all their speeds over
-/// time; of rows that kept their samples. `title` stands over the picture, with the target's length and time;
-/// empty: neither. \throws error (bad_input) for a width out of bounds (figure.hpp).
+/// Draws for each phantom model a row of panels, one for each algorithm, and under it their speeds over time.
+/// Rows need their samples. `title` is above the picture, with the target's length and time; empty: neither.
+/// \throws error (bad_input) for a width out of bounds (figure.hpp).
 canvas draw_comparison(const array& a, const detail::comparison& all, const std::string& title,
                        double width_mm);
 
@@ -26,17 +26,17 @@ struct panel_ground {
     extent shown;
 };
 
-/// Returns where the array is in a panel; the scale is the same in all of one size.
+/// Returns the place of the array in a panel; the scale is the same in all panels of one size.
 array_frame panel_frame(const panel_ground& g, box where);
 
-/// The target's line, in panels and charts alike.
+/// Look of the target's line, in panels and charts.
 inline constexpr style target_look{.stroke = light_grey, .width = 2.6};
 
-/// Draws a text in small lines, as many as it takes and no more than that; returns the height taken.
+/// Draws a text in at most `most_lines` small lines; returns the height taken.
 double draw_words(canvas& c, const std::string& text, box where, std::size_t most_lines, const char* kind);
 
-/// Draws a panel, the target and what is felt instead, into the upper part of a box, in the look of its
-/// algorithm; returns the height taken.
+/// Draws a panel into the upper part of a box: the target, and the predicted percept in the look of its
+/// algorithm. Returns the height taken.
 double draw_panel(canvas& c, const panel_ground& g, const detail::comparison_row& p, const style& look,
                   box where);
 

@@ -18,7 +18,7 @@ constexpr double most_radius = 5.5; // panels lie close together
 constexpr std::size_t most_dots = 400;
 constexpr std::size_t most_points = 20000;
 
-// Where the felt position is, and where it rests: bursts, not a continuous movement.
+// Line of the felt position, and the places at which it rests, which only bursts have.
 struct track {
     std::vector<spot> line = {};
     std::vector<spot> rests = {};
@@ -42,7 +42,7 @@ track follow(const array_frame& f, const std::vector<percept_sample>& samples)
         last = x.felt;
         t.line.push_back(f(*x.felt));
     }
-    // A burst at the very end has one sample only.
+    // A burst at the very end has only one sample.
     if (!t.rests.empty() && !rested && !t.line.empty())
         t.rests.push_back(t.line.back());
     const std::size_t stride = t.line.size() / most_points + 1;
@@ -53,7 +53,7 @@ track follow(const array_frame& f, const std::vector<percept_sample>& samples)
     return t;
 }
 
-// Each tap is felt at its place.
+// Returns the places at which taps are felt.
 track follow(const array_frame& f, const std::vector<tap>& taps)
 {
     track t;
@@ -69,7 +69,7 @@ void draw_track(canvas& c, const track& t, const style& look)
         c.poly(t.line, false, look, {.kind = "felt"});
     if (t.rests.size() > most_dots)
         return;
-    // Where they lie close, white rims would rub each other out.
+    // White rims of close dots would cover the dots.
     double length = 0.0;
     for (std::size_t i = 1; i < t.line.size(); ++i)
         length += std::hypot(t.line[i].x - t.line[i - 1].x, t.line[i].y - t.line[i - 1].y);
@@ -122,7 +122,7 @@ void draw_people(canvas& c, const std::vector<std::vector<point>>& tracks, const
     }
 }
 
-// Under the panel's name, of the low-speed observer: error and length.
+// Returns a line under the panel's name, for the low-speed observer: error or length.
 std::string tap_figures(const detail::comparison_row& p, bool error, double width)
 {
     if (error)

@@ -21,7 +21,7 @@
 namespace tactor::plot {
 namespace {
 
-// What is the same in all plans, e.g. the algorithm; empty where they differ.
+// Returns a text that is the same for all plans, e.g. the algorithm; empty if they differ.
 template <class Get>
 std::string common(const scene& s, Get&& get)
 {
@@ -32,7 +32,7 @@ std::string common(const scene& s, Get&& get)
     return first;
 }
 
-// The movement's own time; of several, that of the piece.
+// Returns the duration of the movement; for several strokes, of the whole.
 double seconds(const scene& s, const timeline& t)
 {
     return s.plans.size() == 1 ? s.plans[0].plan.stroke_duration_s : t.total_s;
@@ -67,19 +67,7 @@ std::string describe(const std::vector<std::string>& parts)
     return all;
 }
 
-double draw_heading(canvas& c, const scene& s, const std::vector<std::string>& parts, box where)
-{
-    const group g(c, {.id = "heading"});
-    double y = where.y + cap_height(title_size);
-    c.text({where.x, y}, shorten(s.name, title_size, where.width, true), {.size = title_size, .bold = true});
-    for (const std::string& line : wrap(parts, ", ", small_text, where.width, 3)) {
-        y += line_pitch;
-        c.text({where.x, y}, line, {.size = small_text, .ink = dark_grey});
-    }
-    return y + 4.0 - where.y;
-}
-
-// Under an array that stands alone: what its colours mean.
+// Draws the meaning of the colours under an array without other views.
 double draw_time_key(canvas& c, const timeline& t, box where)
 {
     const scale x{0.0, std::max(t.total_s, 1e-9), where.x + 6.0, where.right() - 10.0};
@@ -88,7 +76,7 @@ double draw_time_key(canvas& c, const timeline& t, box where)
     return 6.0 + axis_height;
 }
 
-// How high the parts may be, pt.
+// Largest heights, pt.
 struct bounds {
     double array = std::numeric_limits<double>::infinity();
     double picture = std::numeric_limits<double>::infinity();
@@ -110,7 +98,10 @@ drawn draw_within(const scene& s, const timeline& t, const figure_options& o, co
     c.title = fmt::format("{} on {}", clean(s.name), clean(s.tactors.name));
     c.description = describe(parts);
     box rest{margin, margin, c.width - 2.0 * margin, 0.0};
-    rest.y += o.heading ? draw_heading(c, s, parts, rest) : 0.0;
+    if (o.heading) {
+        const group g(c, {.id = "heading"});
+        rest.y += draw_heading(c, s.name, wrap(parts, ", ", small_text, rest.width, 3), rest) + 4.0 - rest.y;
+    }
     if (with_array) {
         rest.height = 0.8 * c.width;
         d.array_height = draw_array_view(c, s, t, rest, most.array);
@@ -131,7 +122,7 @@ drawn draw_within(const scene& s, const timeline& t, const figure_options& o, co
     return d;
 }
 
-// A4 within its margins; of wider pictures in proportion.
+// Returns the height of A4 within its margins; in proportion for wider pictures.
 double page_height(double width)
 {
     constexpr double a4_width = 170.0;
@@ -140,6 +131,16 @@ double page_height(double width)
 }
 
 } // namespace
+
+canvas make_canvas(double width_mm)
+{
+    if (!(width_mm >= least_width_mm && width_mm <= most_width_mm))
+        throw error(error_kind::bad_input, "picture", fmt::format("{} mm wide", width_mm),
+                    fmt::format("{} to {} mm", least_width_mm, most_width_mm));
+    canvas c;
+    c.width = width_mm * pt_per_mm;
+    return c;
+}
 
 canvas draw_figure(const scene& s, const figure_options& o)
 {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// The whole picture, and the views that it is made of.
+/// The whole picture, and its views.
 #pragma once
 
 #include "plot/draw/timeline.hpp"
@@ -12,8 +12,8 @@ enum class figure_view { array, timing, wave, both };
 
 struct figure_options {
     figure_view view = figure_view::both;
-    double width_mm = 85.0; ///< one print column
-    bool heading = true;    ///< the name and the facts above the picture
+    double width_mm = 85.0; ///< default: one print column
+    bool heading = true;    ///< true: name and facts above the picture
     bool animated = false;  ///< SVG: tactors light up while they play, again and again, in real time
 };
 
@@ -23,29 +23,32 @@ inline constexpr std::size_t most_animated_bursts = 2000;
 inline constexpr double least_width_mm = 60.0;
 inline constexpr double most_width_mm = 1000.0;
 
-/// Draws a scene. The height follows from the content; it is at most 247 mm, or of a picture wider than 170
-/// mm in that proportion to it. \throws error (bad_input): for the waveform, see
-/// draw_wave_view(); for more bursts than an animated picture can have.
+/// Returns an empty picture. \throws error (bad_input) for a width out of these bounds.
+canvas make_canvas(double width_mm);
+
+/// Draws a scene. The height follows from the content; it is at most 247 mm, in proportion more for pictures
+/// wider than 170 mm. \throws error (bad_input): for the waveform, see draw_wave_view(); for more than
+/// most_animated_bursts.
 canvas draw_figure(const scene& s, const figure_options& o);
 
-/// Most bursts that are drawn; of more, and where they would lie on each other, every n-th is.
+/// Most bursts that are drawn; if there are more, or they would overlap, every n-th is drawn.
 inline constexpr std::size_t most_shown_bursts = 120;
 
 inline constexpr std::size_t most_array_notes = 6; ///< lines
 
-/// Draws where the bursts are felt: the array, the path, the phantoms and their tactors (as figure 3 of Park
-/// et al. 2016). Draws into the upper part of a box; returns the height taken. Where tactors would be too
-/// close for their numbers it is higher than the box, but at most `highest` pt and most_array_notes lines.
+/// Draws the array, the path, the phantoms and their tactors (as figure 3 of Park et al. 2016) into the upper
+/// part of a box. Returns the height taken. If tactors would be too close for their numbers, it is higher
+/// than the box, but at most `highest` pt and most_array_notes lines.
 double draw_array_view(canvas& c, const scene& s, const timeline& t, box at_most, double highest);
 
-/// Draws which tactor plays when, and how strongly: one row for each (as figure 4 of Park et al. 2016).
-/// Draws from (where.x, where.y) down, where.width wide; returns the height taken. With `colours` a strip
-/// above the rows shows the colour of each time.
+/// Draws the amplitude of each tactor over time, in rows (as figure 4 of Park et al. 2016). Draws from
+/// (where.x, where.y) down, where.width wide; returns the height taken. With `colours` a strip above the rows
+/// shows the colour of each time.
 double draw_timing_view(canvas& c, const scene& s, const timeline& t, box where, bool colours);
 
 /// Renders scene::sound and draws the envelope of each channel that is not silent, or the carrier itself
-/// where there is space for its cycles. From (where.x, where.y) down, where.width wide; returns the height
-/// taken. \throws error (bad_input) where the piece has too many samples to look at.
+/// if there is space for its cycles. From (where.x, where.y) down, where.width wide; returns the height
+/// taken. \throws error (bad_input) for too many samples.
 double draw_wave_view(canvas& c, const scene& s, const timeline& t, box where);
 
 } // namespace tactor::plot

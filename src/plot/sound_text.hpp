@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// A plan's vibration in words.
+/// The vibration of a plan in words.
 #pragma once
 
 #include <string>
@@ -9,11 +9,11 @@
 
 namespace tactor::plot {
 
-/// Returns what vibrates, for captions and listings: "250 Hz" (a sine), "square of 60 to 120 Hz", "noise of
-/// 60 to 400 Hz", "brush.wav along the path"; with ", AM of 30 Hz" where it is modulated.
+/// Returns the vibration, for captions and listings: "250 Hz" (a sine), "square of 60 to 120 Hz", "noise of
+/// 60 to 400 Hz", "brush.wav along the path"; with ", AM of 30 Hz" if it is modulated.
 std::string describe_sound(const plan& p);
 
-/// Returns the phantom model, and its faces where they are not Delaunay's: "inverse-distance (faces
+/// Returns the phantom model, and its faces if they are not Delaunay's: "inverse-distance (faces
 /// nearest)".
 std::string describe_phantom(const plan& p);
 

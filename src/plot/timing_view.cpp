@@ -23,8 +23,8 @@ constexpr const char* strip_heading = "time (s)";
 constexpr double dimension_pitch = 9.5;
 constexpr double first_dimension = 8.0; // under the strip
 constexpr double heading_height = 9.5;
-constexpr double inset = 9.0;  // of time 0 in the diagram: space for arrows that point from outside
-constexpr double outset = 7.0; // behind the last sound: space for half a label
+constexpr double inset = 9.0;  // space before time 0, for arrows that point from outside
+constexpr double outset = 7.0; // space after the last sound, for half a label
 constexpr double timing_legend_height = 10.0;
 constexpr std::size_t most_timing_notes = 3; // lines
 constexpr double most_around_rows = 107.0;   // pt: strip, arrows, starts, axis, legend and notes
@@ -46,7 +46,7 @@ public:
         const double per_s = (where.right() - left - inset - outset) / std::max(t.total_s, 1e-9);
         frame_.x = {-inset / per_s, t.total_s + outset / per_s, left, where.right()};
         find_first_pair();
-        starts_ = look_at_starts(t, frame_.x);
+        starts_ = find_starts(t, frame_.x);
         frame_.top = where.y + (colours ? strip_height : 0.0) + dimensions_height() + 3.0 + starts_.height;
         const double space = where.bottom() - frame_.top - axis_gap - axis_height - timing_legend_height -
                              note_height * static_cast<double>(most_timing_notes);
@@ -84,7 +84,7 @@ public:
     }
 
 private:
-    // The first two bursts of the first stroke that has two, or the first burst.
+    // Finds the first two bursts of the first stroke that has two, or the first burst.
     void find_first_pair()
     {
         if (time_.sampled || time_.bursts.empty())
@@ -106,7 +106,7 @@ private:
     void draw_rows()
     {
         for (std::size_t i = 0; i < frame_.rows.rows.size(); ++i)
-            canvas_.line({frame_.x.page_from, frame_.bottom_of(i)}, {frame_.x.page_to, frame_.bottom_of(i)},
+            canvas_.line({frame_.x.page_from, frame_.bottom_y(i)}, {frame_.x.page_to, frame_.bottom_y(i)},
                          {.stroke = light_grey, .width = 0.4}, {.kind = "row-line"});
         notes_.push_back(draw_lane_labels(canvas_, frame_.rows, frame_.x.page_from - 3.0, frame_.top));
         canvas_.text({frame_.x.page_from - 3.0, frame_.top - 3.5}, frame_.rows.heading,
@@ -131,13 +131,13 @@ private:
             draw_bars(canvas_, time_, frame_);
     }
 
-    double top_row_of(const burst& b) const
+    double top_row_y(const burst& b) const
     {
         if (frame_.rows.rows.empty()) // nothing sounds
             return frame_.top;
         std::size_t row = frame_.rows.rows.size() - 1;
         for (const drive& d : b.drives)
-            row = std::min(row, static_cast<std::size_t>(frame_.rows.row_of[d.tactor]));
+            row = std::min(row, static_cast<std::size_t>(frame_.rows.row_by_tactor[d.tactor]));
         return frame_.top + frame_.rows.rows[row].top;
     }
 
@@ -149,13 +149,12 @@ private:
         double y = where_.y + (colours_ ? strip_height : 0.0) + first_dimension;
         if (second_ != nullptr) {
             draw_dimension(canvas_, frame_.x(first_->from_s), frame_.x(second_->from_s), y,
-                           std::max(top_row_of(*first_->what), top_row_of(*second_->what)),
+                           std::max(top_row_y(*first_->what), top_row_y(*second_->what)),
                            fmt::format("{}SOA {}", which, seconds_text(second_->from_s - first_->from_s, 4)),
                            {.id = "soa"});
             y += dimension_pitch;
         }
-        draw_dimension(canvas_, frame_.x(first_->from_s), frame_.x(first_->to_s), y,
-                       top_row_of(*first_->what),
+        draw_dimension(canvas_, frame_.x(first_->from_s), frame_.x(first_->to_s), y, top_row_y(*first_->what),
                        fmt::format("{}duration {}", which, seconds_text(first_->to_s - first_->from_s, 4)),
                        {.id = "duration"});
     }

@@ -1,9 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include <tactor/error.hpp>
-#include <tactor/render.hpp>
-
 #include "plot/figure.hpp"
-#include "synth/mix/sample_ranges.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -15,11 +11,15 @@
 
 #include <fmt/format.h>
 
+#include <tactor/error.hpp>
+#include <tactor/render.hpp>
+
 #include "plot/draw/axes.hpp"
 #include "plot/draw/lanes.hpp"
 #include "plot/draw/notes.hpp"
 #include "plot/draw/stroke_starts.hpp"
 #include "plot/paint/text.hpp"
+#include "synth/mix/sample_ranges.hpp"
 
 namespace tactor::plot {
 namespace {
@@ -27,7 +27,7 @@ namespace {
 constexpr double most_samples = 2e10;
 constexpr std::size_t most_block_samples = 1U << 16U;
 
-/// Least and largest sample in one stretch of time.
+/// Least and largest sample in a stretch of time.
 struct sample_range {
     float low = 0.0F;
     float high = 0.0F;
@@ -36,13 +36,13 @@ struct sample_range {
 /// Samples of some channels in stretches of equal length.
 struct waveform {
     double stretch_s = 0.0;
-    std::vector<std::vector<sample_range>> by_channel = {}; ///< in the order asked for
+    std::vector<std::vector<sample_range>> by_channel = {}; ///< in the order of the request
     std::vector<float> peaks = {};                          ///< largest magnitude of each
 };
 
-/// Renders a score into `stretches` stretches (fewer where a stretch would be shorter than one frame).
-/// \throws error (bad_input) where there are more than 2e10 samples.
-waveform look_at(const score& s, const std::vector<unsigned>& channels, std::size_t stretches)
+/// Renders a score into `stretches` stretches (fewer if a stretch would be shorter than a frame).
+/// \throws error (bad_input) for more than 2e10 samples.
+waveform measure(const score& s, const std::vector<unsigned>& channels, std::size_t stretches)
 {
     const std::uint64_t frames = s.frames();
     const double samples = static_cast<double>(frames) * s.channels();
@@ -83,7 +83,7 @@ waveform look_at(const score& s, const std::vector<unsigned>& channels, std::siz
 constexpr std::size_t most_high_rows = 16;
 constexpr double row_factor = 1.6;   // rows are higher than in the timing diagram
 constexpr double peak_column = 26.0; // for the levels on the right, pt
-constexpr double least_cycle = 1.5;  // pt: shorter cycles are shown by their envelope
+constexpr double least_cycle = 1.5;  // pt: for shorter cycles the envelope is shown
 constexpr double points_per_cycle = 14.0;
 constexpr double wave_heading_height = 12.0;
 constexpr double wave_legend_height = 10.0;
@@ -108,7 +108,7 @@ public:
         const double total = std::max(static_cast<double>(s.sound->frames()) / s.sound->rate(), 1e-9);
         const double left = where.x + lanes_.label_width + 4.0;
         x_ = {0.0, total, left, where.right() - peak_column};
-        starts_ = look_at_starts(t, x_);
+        starts_ = find_starts(t, x_);
         top_ = where.y + wave_heading_height + starts_.height;
         const double space = where.bottom() - top_ - axis_gap - axis_height - wave_legend_height -
                              note_height * static_cast<double>(most_wave_notes);
@@ -127,7 +127,7 @@ public:
         const double columns = carrier_
                                    ? total * highest * points_per_cycle
                                    : std::min((x_.page_to - x_.page_from) / column_width, total * lowest);
-        wave_ = look_at(*s.sound, channels(t), static_cast<std::size_t>(std::max(1.0, columns)));
+        wave_ = measure(*s.sound, channels(t), static_cast<std::size_t>(std::max(1.0, columns)));
     }
 
     double draw()
@@ -156,7 +156,7 @@ public:
     }
 
 private:
-    // One channel a tactor, in the order of the rows.
+    // Returns the channels of tactors, in the order of the rows.
     std::vector<unsigned> channels(const timeline& t) const
     {
         std::vector<unsigned> c;
@@ -201,9 +201,12 @@ private:
                          {.size = small_text, .anchor = align::end}, {.kind = "peak"});
     }
 
-    double y_of(double sample, double middle) const { return middle - 0.46 * lanes_.height * sample / peak_; }
+    double page_y(double sample, double middle) const
+    {
+        return middle - 0.46 * lanes_.height * sample / peak_;
+    }
 
-    double time_of(std::size_t stretch) const { return static_cast<double>(stretch) * wave_.stretch_s; }
+    double start_s(std::size_t stretch) const { return static_cast<double>(stretch) * wave_.stretch_s; }
 
     void draw_carrier(std::size_t k, double middle)
     {
@@ -211,7 +214,7 @@ private:
         const std::vector<sample_range>& w = wave_.by_channel[k];
         for (std::size_t i = 0; i < w.size(); ++i) {
             const double sample = std::abs(w[i].low) > std::abs(w[i].high) ? w[i].low : w[i].high;
-            line.push_back({x_(std::min(time_of(i) + wave_.stretch_s / 2.0, x_.to)), y_of(sample, middle)});
+            line.push_back({x_(std::min(start_s(i) + wave_.stretch_s / 2.0, x_.to)), page_y(sample, middle)});
         }
         canvas_.poly(simplify(line, 0.02), false, {.stroke = ink, .width = 0.4}, {.kind = "curve"});
     }
@@ -234,9 +237,9 @@ private:
         std::vector<spot> above;
         std::vector<spot> below;
         for (std::size_t i = first; i < end; ++i)
-            for (const double x : {x_(time_of(i)), x_(std::min(time_of(i + 1), x_.to))}) {
-                above.push_back({x, y_of(static_cast<double>(w[i].high), middle)});
-                below.push_back({x, y_of(static_cast<double>(w[i].low), middle)});
+            for (const double x : {x_(start_s(i)), x_(std::min(start_s(i + 1), x_.to))}) {
+                above.push_back({x, page_y(static_cast<double>(w[i].high), middle)});
+                below.push_back({x, page_y(static_cast<double>(w[i].low), middle)});
             }
         std::vector<spot> shape = simplify(above, 0.02);
         const std::vector<spot> lower = simplify(below, 0.02);

@@ -21,7 +21,7 @@
 namespace tactor::server {
 namespace {
 
-// What may be inherited by which name.
+// A name of an inherited socket, and the kind of socket that it must be.
 struct inheritable {
     std::string_view name;
     net::owned_fd endpoints::*place;
@@ -36,7 +36,7 @@ constexpr std::array known{
     inheritable{"osc", &endpoints::osc, net::is_bound_udp, "it is no UDP socket with a port"},
 };
 
-// As of one that is bound here: who may write to it may draw.
+// Refuses a socket that everybody may write to: a user who may write to it may draw.
 void check_private(const std::string& path)
 {
     struct stat is {};

@@ -77,18 +77,18 @@ void no_stream(const std::string& why)
 
 rpc_fault option_fault(const error& e)
 {
-    const error said = options::spell(e, by_protocol);
-    return {net::code_bad_params, "bad-input", std::string(said.subject()), std::string(said.why()),
-            std::string(said.hint())};
+    const error worded = options::spell(e, by_protocol);
+    return {net::code_bad_params, "bad-input", std::string(worded.subject()), std::string(worded.why()),
+            std::string(worded.hint())};
 }
 
-rpc_fault fault_of(const error& e, const std::string& source)
+rpc_fault library_fault(const error& e, const std::string& source)
 {
     const bool of_call = e.subject() == "live stroke" && !e.field().empty();
-    const error said = options::spell(of_call ? e.reworded(e.field(), e.why(), e.hint()) : e, by_protocol);
-    const std::string_view subject = said.subject();
-    rpc_fault f{net::code_bad_params, std::string(to_string(e.kind())), source, std::string(said.why()),
-                std::string(said.hint())};
+    const error worded = options::spell(of_call ? e.reworded(e.field(), e.why(), e.hint()) : e, by_protocol);
+    const std::string_view subject = worded.subject();
+    rpc_fault f{net::code_bad_params, std::string(to_string(e.kind())), source, std::string(worded.why()),
+                std::string(worded.hint())};
     if (e.kind() == error_kind::runtime)
         f.code = net::code_internal;
     if (e.kind() == error_kind::not_available)
@@ -116,7 +116,7 @@ rpc_fault current_fault(const std::string& source)
     } catch (const fault_error& e) {
         return e.fault();
     } catch (const error& e) {
-        return fault_of(e, source);
+        return library_fault(e, source);
     } catch (const std::bad_alloc&) {
         return {net::code_limit, "limit", source, "there is not enough memory for it", "make it smaller"};
     } catch (const std::exception& e) {
@@ -124,7 +124,7 @@ rpc_fault current_fault(const std::string& source)
     }
 }
 
-void only(const json& params, std::initializer_list<std::string_view> known)
+void allow_only(const json& params, std::initializer_list<std::string_view> known)
 {
     if (!params.is_object())
         bad_param("params", "they are a list", "name them: an object");

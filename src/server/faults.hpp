@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// What is refused, in words of the protocol: parameters, never fields of the library or options of the tool.
+/// Refusals in words of the protocol: parameters, never fields of the library or options of the tool. Readers
+/// of parameters, which throw them.
 #pragma once
 
 #include <cstdint>
@@ -34,20 +35,20 @@ private:
 [[noreturn]] void no_such_stroke(std::uint32_t number, std::string why = "no such stroke of yours goes on");
 [[noreturn]] void no_stream(const std::string& why);
 
-/// An error of the table of options, about one of `options`.
+/// Converts an error of the table of options, which is about one of `options`.
 net::rpc_fault option_fault(const error& e);
-/// An error of the library about the parameter `source`, or about the option that it names.
-net::rpc_fault fault_of(const error& e, const std::string& source);
-/// The fault of whatever is being handled: for catch (...).
+/// Converts an error of the library about the parameter `source`, or about the option that it names.
+net::rpc_fault library_fault(const error& e, const std::string& source);
+/// Returns the fault of the exception that is being handled: for catch (...).
 net::rpc_fault current_fault(const std::string& source);
 
-/// Refuses parameters that are not among these, and lists (params are an array).
-void only(const net::json& params, std::initializer_list<std::string_view> known);
-/// A member, or null where there is none.
+/// Refuses parameters that are not among these, and params that are a list.
+void allow_only(const net::json& params, std::initializer_list<std::string_view> known);
+/// Returns a member; null if there is none.
 const net::json* member(const net::json& params, const char* name);
-/// A number within bounds. \throws fault_error.
+/// Returns a number within bounds. \throws fault_error.
 double number(const net::json& v, const std::string& what, detail::bounds b);
-/// A required one.
+/// Returns a required number within bounds. \throws fault_error.
 double need_number(const net::json& params, const char* name, detail::bounds b);
 std::uint32_t need_stroke(const net::json& params);
 const std::string& text(const net::json& v, const std::string& what);

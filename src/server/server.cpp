@@ -29,7 +29,6 @@
 #include "net/web_connection.hpp"
 #include "server/drawing_page.hpp"
 #include "server/osc/endpoint.hpp"
-#include "server/way_back.hpp"
 
 namespace tactor::server {
 namespace {
@@ -40,12 +39,49 @@ using net::line_fault;
 using net::listener;
 using socket_type = line_connection::socket_type;
 
-constexpr auto farewell = std::chrono::seconds(2); // for what the last words take
-constexpr std::size_t short_visits = 32;           // of browsers at once, beside those that stay as clients
+constexpr auto farewell = std::chrono::seconds(2); // until the last messages are sent
+constexpr std::size_t short_visits = 32;           // browsers at once in addition to clients
 
 bool may_stop(std::string_view message)
 {
     return message.find("\"stop\"") != std::string_view::npos;
+}
+
+// Returns an error of -32001 that answers no request.
+std::string refusal(std::string what, std::string why, std::string hint)
+{
+    return net::json_line(net::error_reply(
+        nullptr, {net::code_limit, "limit", std::move(what), std::move(why), std::move(hint)}));
+}
+
+// Returns the line for a client for which no descriptor is left.
+std::string no_descriptors()
+{
+    return refusal("descriptors", "the server has as many files open as it may", "try again later") + "\n";
+}
+
+// Returns the message to a client that is given up; empty for one that can be told nothing. `admitted`: it
+// owes no token.
+std::string why_given_up(net::line_fault f, const service_limits& l, bool admitted)
+{
+    if (f == net::line_fault::too_long)
+        return refusal("max_message_bytes",
+                       fmt::format("a message of more than {} bytes", l.max_message_bytes),
+                       "send smaller ones");
+    if (f == net::line_fault::crowded)
+        return refusal("max_all_unfinished_bytes",
+                       fmt::format("unfinished messages of all clients take more than {} bytes",
+                                   l.max_all_unfinished_bytes),
+                       "try again later");
+    if (f == net::line_fault::memory)
+        return refusal("message", "there is not enough memory for it", "send smaller ones");
+    if (f == net::line_fault::too_slow && !admitted)
+        return refusal("max_message_s", fmt::format("no hello with the token in {} s", l.max_message_s),
+                       "begin with it");
+    if (f == net::line_fault::too_slow)
+        return refusal("max_message_s", fmt::format("no whole message in {} s", l.max_message_s),
+                       "send what is complete");
+    return {};
 }
 
 class server {
@@ -53,6 +89,7 @@ public:
     server(asio::io_context& io, const endpoints& at, service_options o, stream_options s, network_options w)
         : io_(io),
           limits_(o.limits),
+          line_limits_{limits_.max_message_bytes, limits_.max_message_s, limits_.max_unread_bytes},
           allow_hosts_(std::move(w.allow_hosts)),
           shared_(io, limits_.max_all_unread_bytes, limits_.max_all_unfinished_bytes),
           service_(io, std::move(o), std::move(s)),
@@ -76,7 +113,7 @@ public:
         if (at.osc)
             osc_.emplace(io, at.osc.get(), service_, std::move(w.osc_peers),
                          std::min(limits_.max_message_bytes, osc_endpoint::largest_packet));
-        service_.on_told_all([this](client_number n) { finish(n); });
+        service_.on_all_sent([this](client_number n) { finish(n); });
     }
 
     void start(std::function<void()> ready)
@@ -121,46 +158,39 @@ private:
         const int yes = 1;
         if (kind == client_kind::network)
             ::setsockopt(s.native_handle(), IPPROTO_TCP, 1 /* TCP_NODELAY */, &yes, sizeof yes);
-        const auto c = std::make_shared<line_connection>(
-            std::move(s),
-            net::line_limits{limits_.max_message_bytes, limits_.max_message_s, limits_.max_unread_bytes},
-            shared_);
+        const auto c = std::make_shared<line_connection>(std::move(s), line_limits_, shared_);
         ++open_;
         if (!service_.has_place(kind)) {
-            c->start(
-                {[](std::string_view) { return false; }, [] {}, [](line_fault) {}, [this] { closed(0); }});
+            c->start({.message = [](std::string_view) { return false; }, .closed = [this] { closed(0); }});
             c->send(refusal("max_clients", no_place(kind), "try again later"));
             return c->finish();
         }
-        const auto link = std::make_shared<link_over<line_connection>>(c);
-        const client_number n = service_.connect(link, kind);
-        links_.emplace(n, link);
-        std::weak_ptr<line_connection> weak = c;
-        c->start({[this, n, weak](std::string_view line) {
-                      if (service_.receive(n, line))
-                          return true;
-                      if (const auto self = weak.lock())
-                          self->finish();
-                      return false;
-                  },
-                  [this, n] {
-                      if (service_.input_ended(n))
-                          finish(n);
-                  },
-                  [this, n, weak](line_fault f) {
-                      const std::string why = why_given_up(f, limits_, service_.is_admitted(n));
-                      if (const auto self = weak.lock(); self && !why.empty())
-                          self->send(why);
-                  },
-                  [this, n] { closed(n); }, [this, n] { return service_.is_admitted(n); },
-                  [this, n, weak](std::string text, const std::function<void(bool)>& done) {
-                      service_.receive_large(n, std::move(text), [weak, done](bool go_on) {
-                          if (const auto self = weak.lock(); self && !go_on)
-                              self->finish();
-                          done(go_on);
-                      });
-                  },
-                  may_stop});
+        const client_number n = service_.connect(c, kind);
+        links_.emplace(n, c);
+        net::peer_handlers h = handlers(std::make_shared<client_number>(n));
+        h.input_ended = [this, n] {
+            if (service_.input_ended(n))
+                finish(n);
+        };
+        h.fault = [this, n](line_fault f) {
+            const std::string why = why_given_up(f, limits_, service_.is_admitted(n));
+            if (const auto found = links_.find(n); found != links_.end() && !why.empty())
+                found->second->send(why);
+        };
+        c->start(std::move(h));
+    }
+
+    // Returns the calls of a connection to the client with a number, which is 0 until a browser becomes one.
+    net::peer_handlers handlers(const std::shared_ptr<client_number>& n)
+    {
+        return {.message = [this, n](std::string_view text) { return service_.receive(*n, text); },
+                .closed = [this, n] { closed(*n); },
+                .met = [this, n] { return service_.is_admitted(*n); },
+                .large =
+                    [this, n](std::string text, std::function<void(bool)> done) {
+                        service_.receive_large(*n, std::move(text), std::move(done));
+                    },
+                .urgent = may_stop};
     }
 
     std::string no_place(client_kind kind) const
@@ -176,43 +206,34 @@ private:
             found->second->finish();
     }
 
-    // Whoever only asks for a page is no client: a WebSocket is one.
+    // Takes a browser. It becomes a client when it opens a WebSocket.
     void take_browser(socket_type s)
     {
         if (visitors_.size() >= limits_.max_clients + short_visits)
             return net::turn_away(s.native_handle()); // and the socket closes
-        auto stream = net::web_socket(io_, std::move(s));
-        if (!stream)
+        const auto c = net::connect_browser(io_, std::move(s), line_limits_, shared_, allow_hosts_);
+        if (!c)
             return;
-        const auto c = std::make_shared<net::web_connection>(
-            *std::move(stream),
-            net::line_limits{limits_.max_message_bytes, limits_.max_message_s, limits_.max_unread_bytes},
-            shared_, allow_hosts_);
         ++open_;
         visitors_.insert(c);
-        // Number of the client that it becomes.
         const auto n = std::make_shared<client_number>(0);
-        c->start({[this](std::string_view path, std::string_view host, std::string_view token) {
-                      return page(path, host, token);
-                  },
-                  [this, n, weak = std::weak_ptr(c)] {
-                      if (!service_.has_place(client_kind::web))
-                          return false;
-                      const auto link = std::make_shared<link_over<net::web_connection>>(weak.lock());
-                      *n = service_.connect(link, client_kind::web);
-                      links_.emplace(*n, link);
-                      return true;
-                  },
-                  [this, n](std::string_view text) { return service_.receive(*n, text); },
-                  [this, n, weak = std::weak_ptr(c)] {
-                      visitors_.erase(weak.lock());
-                      closed(*n);
-                  },
-                  [this, n] { return service_.is_admitted(*n); },
-                  [this, n](std::string text, std::function<void(bool)> done) {
-                      service_.receive_large(*n, std::move(text), std::move(done));
-                  },
-                  may_stop});
+        net::peer_handlers h = handlers(n);
+        h.closed = [this, n, weak = std::weak_ptr(c)] {
+            visitors_.erase(weak.lock());
+            closed(*n);
+        };
+        h.get = [this](std::string_view path, std::string_view host, std::string_view token) {
+            return page(path, host, token);
+        };
+        h.upgrade = [this, n, weak = std::weak_ptr(c)] {
+            if (!service_.has_place(client_kind::web))
+                return false;
+            const auto link = weak.lock();
+            *n = service_.connect(link, client_kind::web);
+            links_.emplace(*n, link);
+            return true;
+        };
+        c->start(std::move(h));
     }
 
     net::web_reply page(std::string_view path, std::string_view host, std::string_view token)
@@ -235,7 +256,7 @@ private:
             io_.stop();
     }
 
-    // Twice in the time that the manager gives, as long as the audio thread goes on.
+    // Notifies the manager twice in the time that it gives, as long as the audio thread goes on.
     void feed_watchdog()
     {
         const char* us = std::getenv("WATCHDOG_USEC");
@@ -254,6 +275,7 @@ private:
 
     asio::io_context& io_;
     service_limits limits_;
+    net::line_limits line_limits_;
     std::vector<std::string> allow_hosts_;
     net::shared_by_peers shared_;
     service service_;
@@ -273,7 +295,7 @@ void serve(const endpoints& at, service_options o, stream_options s, network_opt
            const std::function<void()>& listening)
 {
     asio::io_context io(1);
-    // Also while nobody is connected and the stream fades out: it ends by stop().
+    // The context runs until stop(), also while nobody is connected and the stream fades out.
     const auto until_stopped = asio::make_work_guard(io);
     std::exception_ptr refused;
     s.refused = [&](std::exception_ptr e) {
@@ -281,16 +303,16 @@ void serve(const endpoints& at, service_options o, stream_options s, network_opt
         io.stop();
     };
     server all(io, at, std::move(o), std::move(s), std::move(w));
-    // Where it may, this thread goes before the programs that send to it, and before those that plan, which
-    // it has started. Linux holds this by thread.
+    // If allowed, this thread gets the processor before its clients and before the threads that plan. Linux
+    // sets the priority of this thread only.
     constexpr int before_others = -10;
     ::setpriority(PRIO_PROCESS, 0, before_others);
-    asio::posix::stream_descriptor told(io, ::dup(signals));
-    told.async_wait(asio::posix::descriptor_base::wait_read, [&](const boost::system::error_code& e) {
+    asio::posix::stream_descriptor signalled(io, ::dup(signals));
+    signalled.async_wait(asio::posix::descriptor_base::wait_read, [&](const boost::system::error_code& e) {
         if (!e)
             all.stop();
     });
-    // Told when the device was tried: who connects then is not told that it is missing when it is not.
+    // Called when the device was tried: a client that connects then learns the true state.
     all.start([&] {
         listening();
         net::notify_manager("READY=1");

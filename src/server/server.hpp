@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// The service with its sockets, signals and whoever started it.
+/// The service with its sockets and signals, and the manager that started it.
 #pragma once
 
 #include <functional>
@@ -19,7 +19,7 @@
 namespace tactor::server {
 
 struct endpoint_options {
-    std::function<std::string()> socket; ///< gives the path, where none was inherited
+    std::function<std::string()> socket; ///< returns the path, if none was inherited
     mode_t mode = 0600;
     std::optional<gid_t> group = {};
     std::optional<net::host_and_port> tcp = {};
@@ -27,11 +27,11 @@ struct endpoint_options {
     std::optional<net::host_and_port> osc = {};
 };
 
-/// What is listened on.
+/// Listening sockets and their addresses.
 struct endpoints {
     net::owned_fd socket;
     std::string socket_path;
-    /// Device and number of the file that was bound here, and is removed at the end, if it is that one still.
+    /// Device and number of the file that was bound here. It is removed at the end if it is still that file.
     std::optional<std::pair<dev_t, ino_t>> own_socket = {};
     net::owned_fd tcp;
     std::string tcp_address; ///< empty: off
@@ -41,14 +41,14 @@ struct endpoints {
     std::string osc_address; ///< empty: off
 };
 
-/// Who else may come to the endpoints of the network.
+/// Peers that the endpoints of the network accept.
 struct network_options {
     std::vector<std::string> allow_hosts =
         {}; ///< HTTP: other names of this server, and pages that may use it
-    std::vector<net::address_prefix> osc_peers = {}; ///< OSC: other machines that are heard
+    std::vector<net::address_prefix> osc_peers = {}; ///< OSC: other machines whose packets are accepted
 };
 
-/// Returns who else may come. \throws error (bad_input) for what is no prefix.
+/// Returns the accepted peers. \throws error (bad_input) for a text that is no prefix.
 network_options settle_network(const options::serve_settings& s);
 
 service_limits settle_limits(const options::serve_settings& s);
@@ -57,15 +57,15 @@ service_limits settle_limits(const options::serve_settings& s);
 /// that others may read, and for an empty one.
 std::string read_token(const options::serve_settings& s);
 
-/// Binds, or takes what was inherited. \throws error: see net/listen.hpp; bad_input for inherited sockets
+/// Binds sockets, or takes inherited ones. \throws error: see net/listen.hpp; bad_input for inherited sockets
 /// that are not what their names say.
 endpoints open_endpoints(const endpoint_options& o);
 
-/// Removes what was bound here.
+/// Removes the socket that was bound here.
 void remove_socket(const endpoints& at) noexcept;
 
-/// Serves until `signals` is readable; then fades out and tells everybody.
-/// `listening` is called once when all accept.
+/// Serves until `signals` is readable; then fades out and notifies all clients. Calls `listening` once, when
+/// all sockets accept.
 void serve(const endpoints& at, service_options o, stream_options s, network_options w, int signals,
            const std::function<void()>& listening);
 

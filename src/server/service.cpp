@@ -20,7 +20,7 @@ using net::reply_json;
 
 namespace {
 
-// Never throws: a message that is too large for the memory that there is is refused.
+// Parses a message. Refuses one that needs more memory than there is.
 net::rpc_message parsed(std::string_view text, const service_limits& l)
 {
     try {
@@ -56,7 +56,7 @@ void service::pending::give(std::size_t at, std::string reply, const std::vector
             c->link->send(batch ? "[" + all + "]" : all);
     }
     owner.release(numbers);
-    owner.check_told_all(to);
+    owner.check_all_sent(to);
 }
 
 void service::answer::result(reply_json r, const std::vector<std::uint32_t>& strokes) const
@@ -82,11 +82,11 @@ service::service(boost::asio::io_context& io, service_options o, stream_options 
       quiet_(io),
       options_(std::move(o)),
       faces_(options_.plans.tactors),
-      stream_(io, heard(std::move(s)))
+      stream_(io, with_handlers(std::move(s)))
 {
 }
 
-stream_options service::heard(stream_options s)
+stream_options service::with_handlers(stream_options s)
 {
     s.begun = [this](std::uint64_t p, stroke_id id, std::optional<std::int64_t> at) { begun(p, id, at); };
     s.ended = [this](std::uint64_t p, const stroke_report& r) { ended(p, r); };
@@ -123,9 +123,9 @@ bool service::has_place(client_kind k) const
     return taken < (datagram ? std::max<std::size_t>(1, options_.limits.max_clients / osc_part) : places(k));
 }
 
-// Over TCP nobody knows whether who sends no more still reads; they wait for what they are owed, and take no
+// Counts clients that send no more. A TCP client of these may still read: it gets its answers, but takes no
 // place.
-std::size_t service::gone() const
+std::size_t service::count_silent() const
 {
     return static_cast<std::size_t>(
         std::count_if(clients_.begin(), clients_.end(), [](const auto& c) { return c.second->input_over; }));
@@ -135,7 +135,7 @@ client_number service::connect(std::shared_ptr<client_link> link, client_kind k)
 {
     auto c = std::make_unique<client>(io_, ++last_client_, std::move(link), k);
     c->admitted = k == client_kind::local || k == client_kind::datagram || options_.token.empty();
-    // A browser's WebSocket has shown where it comes from, and of datagrams only those that may be are heard.
+    // A WebSocket has shown its origin, and datagrams come only from accepted peers.
     c->greeted = k != client_kind::network;
     c->points = options_.limits.max_points_per_s;
     c->points_ns = options_.now_ns();
@@ -160,7 +160,7 @@ void service::send(client& c, const reply_json& message)
     c.link->send(net::json_line(message));
 }
 
-// What comes over a network begins with hello: a browser's POST does not.
+// Returns false for a connection of the network that does not begin with hello, like a browser's POST.
 bool service::admitted(client& c, const net::rpc_message& m)
 {
     if (c.greeted)
@@ -191,8 +191,8 @@ void service::receive_large(client_number number, std::string text, std::functio
     });
 }
 
-// Small blocks of large messages stay in the heap otherwise. Trimming keeps all others from the heap
-// meanwhile: not before nothing large came for a while.
+// Returns the small blocks of large messages to the system. Trimming blocks the heap for all threads, so this
+// waits until no large message has come for a while.
 void service::give_memory_back_when_quiet()
 {
     constexpr std::chrono::milliseconds quiet_for{500};
@@ -241,32 +241,22 @@ bool service::receive(client_number number, net::rpc_message& m, std::size_t byt
 
 void service::handle(client& c, net::rpc_request& r, const answer& to, std::size_t bytes)
 {
-    const std::string& m = r.method;
-    if (m == "hello")
-        return hello(c, r.params, to);
-    if (!c.admitted)
+    using handler = void (service::*)(client&, const json&, const answer&);
+    static constexpr std::pair<std::string_view, handler> handlers[] = {
+        {"hello", &service::hello},   {"to", &service::to},
+        {"cancel", &service::cancel}, {"stop", &service::stop},
+        {"fire", &service::fire},     {"begin", &service::begin},
+        {"end", &service::end},       {"drive", &service::drive},
+        {"status", &service::status}, {"subscribe", &service::subscribe}};
+    if (!c.admitted && r.method != "hello")
         throw fault_error({net::code_no_token, "token", "token", "hello with the token comes first", ""});
-    if (m == "to")
-        return this->to(c, r.params, to);
-    if (m == "play" || m == "plan")
-        return plan_or_play(c, std::move(r.params), to, m == "play", bytes);
-    if (m == "cancel")
-        return cancel(c, r.params, to);
-    if (m == "stop")
-        return stop(c, to);
-    if (m == "fire")
-        return fire(r.params, to);
-    if (m == "begin")
-        return begin(c, r.params, to);
-    if (m == "end")
-        return end(c, r.params, to);
-    if (m == "drive")
-        return drive(c, r.params, to);
-    if (m == "status")
-        return status(r.params, to);
-    if (m == "subscribe")
-        return subscribe(c, r.params, to);
-    throw fault_error({net::code_no_method, "bad-input", "method", fmt::format("there is no \"{}\"", m),
+    if (r.method == "play" || r.method == "plan")
+        return plan_or_play(c, std::move(r.params), to, r.method == "play", bytes);
+    for (const auto& [name, handle] : handlers)
+        if (name == r.method)
+            return (this->*handle)(c, r.params, to);
+    throw fault_error({net::code_no_method, "bad-input", "method",
+                       fmt::format("there is no \"{}\"", r.method),
                        "one of hello, play, plan, cancel, stop, fire, begin, to, end, drive, status, "
                        "subscribe"});
 }
@@ -280,19 +270,19 @@ bool service::input_ended(client_number number)
     for (const std::uint32_t n : c->strokes)
         if (const auto& r = strokes_.at(n); r->live)
             r->live->end();
-    // More of them than places: the first is let go, whose strokes play on.
-    if (told_all_ && gone() > options_.limits.max_clients)
-        told_all_(std::find_if(clients_.begin(), clients_.end(), [](const auto& one) {
+    // There are more of them than places: lets the first one go. Its strokes play on.
+    if (all_sent_ && count_silent() > options_.limits.max_clients)
+        all_sent_(std::find_if(clients_.begin(), clients_.end(), [](const auto& one) {
                       return one.second->input_over;
                   })->first);
     return c->unanswered == 0 && c->strokes.empty();
 }
 
-void service::check_told_all(client_number number)
+void service::check_all_sent(client_number number)
 {
     const client* c = find(number);
-    if (c != nullptr && c->input_over && c->unanswered == 0 && c->strokes.empty() && told_all_)
-        told_all_(number);
+    if (c != nullptr && c->input_over && c->unanswered == 0 && c->strokes.empty() && all_sent_)
+        all_sent_(number);
 }
 
 void service::disconnect(client_number number)

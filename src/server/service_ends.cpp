@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What becomes of strokes, and who is told: each number has exactly one end.
+// Starts and ends of strokes, and their notifications: each number has exactly one end.
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -27,7 +27,7 @@ void service::begun(std::uint64_t player, stroke_id id, std::optional<std::int64
         return;
     stroke_record& r = *strokes_.at(found->second);
     if (r.state == "started")
-        return; // an xrun made it begin again
+        return; // it began again after an xrun
     r.state = "started";
     const std::int64_t now = options_.now_ns();
     r.started_ns = at_ns.value_or(now);
@@ -38,20 +38,20 @@ void service::begun(std::uint64_t player, stroke_id id, std::optional<std::int64
     start_followers(r, *r.started_ns);
 }
 
-// The others of an armed file: their time is known only now.
+// Submits the other strokes of an armed file, whose times are known only now.
 void service::start_followers(stroke_record& first, std::int64_t at_ns)
 {
     tactor::player* out = stream_.number() == first.player ? stream_.current() : nullptr;
     for (const auto& [number, after_s] : std::exchange(first.followers, {})) {
         const auto found = strokes_.find(number);
-        if (found == strokes_.end() || !found->second->music)
+        if (found == strokes_.end() || !found->second->submits_later)
             continue;
         stroke_record& r = *found->second;
-        const score music = *std::exchange(r.music, {});
+        const score later = *std::exchange(r.submits_later, {});
         try {
             if (out == nullptr)
                 no_stream("");
-            r.id = out->submit(music, start_at::time(at_ns + std::llround(after_s * 1e9)));
+            r.id = out->submit(later, start_at::time(at_ns + std::llround(after_s * 1e9)));
             r.state = "waiting";
             by_player_[{r.player, r.id}] = r.number;
         } catch (const error& e) {
@@ -73,9 +73,9 @@ void service::ended(std::uint64_t player, const stroke_report& report)
         return;
     stroke_record& r = *strokes_.at(found->second);
     by_player_.erase(found);
-    // What did not begin takes with it what was to follow.
+    // A stroke that did not begin takes its followers with it.
     for (const auto& [number, after_s] : std::exchange(r.followers, {}))
-        if (const auto f = strokes_.find(number); f != strokes_.end() && f->second->music) {
+        if (const auto f = strokes_.find(number); f != strokes_.end() && f->second->submits_later) {
             stroke_report same = report;
             same.frames = 0;
             same.started_ns.reset();
@@ -94,7 +94,7 @@ void service::finish(stroke_record& r, const stroke_report& how)
 {
     if (how.started_ns)
         r.started_ns = how.started_ns;
-    r.music.reset();
+    r.submits_later.reset();
     const client_number owner = r.owner;
     if (client* c = find(owner)) {
         c->strokes.erase(r.number);
@@ -102,12 +102,12 @@ void service::finish(stroke_record& r, const stroke_report& how)
             --c->live;
     }
     r.state = "ended";
-    stroke_report told = how;
-    told.why = reason(r, how);
-    tell_stroke(r, to_string(told.state), told);
+    stroke_report report = how;
+    report.why = reason(r, how);
+    tell_stroke(r, to_string(report.state), report);
     if (r.released)
         strokes_.erase(r.number);
-    check_told_all(owner);
+    check_all_sent(owner);
 }
 
 std::string service::reason(const stroke_record& r, const stroke_report& how) const

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// What the service keeps of clients, strokes and answers.
+/// Records of the service: clients, strokes and answers.
 #pragma once
 
 #include <cstdint>
@@ -24,21 +24,21 @@ struct service::client {
     client_number number;
     std::shared_ptr<client_link> link;
     client_kind kind;
-    bool greeted = false;  ///< network: hello was the first
-    bool admitted = false; ///< its token was right, or none is owed
+    bool greeted = false;  ///< network: its first message was hello
+    bool admitted = false; ///< its token was right, or it needs none
     bool input_over = false;
     unsigned wrong_tokens = 0;
     std::set<std::string> events;
     double levels_hz = 30.0;
     boost::asio::steady_timer levels_timer;
     std::vector<float> levels; ///< by channel, since the last notification
-    std::size_t coming = 0;    ///< plays whose strokes have no number yet
+    std::size_t coming = 0;    ///< requests whose strokes have no number yet
     std::size_t unanswered = 0;
-    std::set<std::uint32_t> strokes; ///< that have not ended
+    std::set<std::uint32_t> strokes; ///< strokes that have not ended
     std::size_t live = 0;
-    /// How often it has cancelled all; outlives it in what it asked for.
+    /// Count of its cancels of all. Its requests share it, and may outlive the client.
     std::shared_ptr<std::uint64_t> cancels = std::make_shared<std::uint64_t>(0);
-    double points = 0.0; ///< that it may give at once
+    double points = 0.0; ///< points that it may send at once
     std::int64_t points_ns = 0;
 };
 
@@ -49,14 +49,14 @@ struct service::stroke_record {
     stroke_id id = {};
     std::string state = "waiting"; ///< "armed", "started"
     std::optional<live_stroke> live = {};
-    bool released = false;          ///< its number was told
-    const char* ended_by = nullptr; ///< the reason, once somebody cancelled or stopped it
+    bool released = false;          ///< its number was sent
+    const char* ended_by = nullptr; ///< reason, once it is cancelled or stopped
     std::vector<reply_json> held = {};
     std::optional<std::int64_t> asked_ns = {};
     std::optional<std::int64_t> started_ns = {};
-    /// Of an armed file: strokes that start so long after this one.
+    /// Other strokes of an armed file, and their starts after this one, s.
     std::vector<std::pair<std::uint32_t, double>> followers = {};
-    std::optional<score> music = {}; ///< of a follower, until it is submitted
+    std::optional<score> submits_later = {}; ///< score of a follower, until it is submitted
 };
 
 /// The replies to one message.
@@ -76,7 +76,7 @@ struct service::pending {
     bool batch = false;
     std::vector<place> places;
     std::size_t open = 0;
-    std::vector<std::uint32_t> numbers = {}; ///< to be released when it is sent
+    std::vector<std::uint32_t> numbers = {}; ///< strokes to release when it is sent
 };
 
 } // namespace tactor::server

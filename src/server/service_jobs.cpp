@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// play and plan: what waits to be planned, whose turn it is, and what becomes of it.
+// play and plan: requests that wait, their turns, and their results.
 #include <algorithm>
 #include <utility>
 
@@ -14,10 +14,10 @@ namespace {
 
 using net::json;
 
-// Whose turn it is for all that clients left behind when they went: together they are one.
+// Client of all requests that disconnected clients left behind: together they have one turn.
 constexpr client_number nobody = 0;
 
-// Line ends within texts of JSON are escaped: these are blanks.
+// Replaces line ends, which are blanks here: JSON escapes them within texts.
 std::string on_one_line(std::string json_text)
 {
     std::replace(json_text.begin(), json_text.end(), '\n', ' ');
@@ -25,7 +25,7 @@ std::string on_one_line(std::string json_text)
 }
 
 // Estimates the size of the text or list that says what to draw, bytes.
-std::size_t size_of_source(const json& source)
+std::size_t estimate_source_bytes(const json& source)
 {
     constexpr std::size_t point_bytes = 16;
     const auto* text = source.get_ptr<const json::string_t*>();
@@ -54,8 +54,8 @@ service::planner_lane& service::lane_for(const plan_job& j) noexcept
 
 void service::plan_or_play(client& c, json&& params, const answer& to, bool play, std::size_t bytes)
 {
-    only(params, {"stroke", "path", "points", "toml", "csv", "svg", "options", "start"});
-    bytes = std::max(bytes, size_of_source(params[source_of(params)]));
+    allow_only(params, {"stroke", "path", "points", "toml", "csv", "svg", "options", "start"});
+    bytes = std::max(bytes, estimate_source_bytes(params[find_source(params)]));
     static_cast<void>(read_start(member(params, "start"), options_.now_ns()));
     if (const json* o = member(params, "options"))
         static_cast<void>(with_options(options_.plans.owner, *o, options_for::planned));
@@ -86,7 +86,7 @@ void service::queue_job(client_number number, plan_job j)
     next_job(lane);
 }
 
-// One after the other, and one of each client in turn: who has many does not keep the others waiting.
+// Begins the next request, of each client in turn: a client with many does not keep the others waiting.
 void service::next_job(planner_lane& lane)
 {
     if (lane.planning || lane.turns.empty())
@@ -104,20 +104,20 @@ void service::next_job(planner_lane& lane)
     post_job(lane, std::move(job));
 }
 
-// What a client asked for that has gone is played, whoever hears of it.
-void service::keep_jobs(client_number gone)
+// Keeps the requests of a client that disconnects: they are played.
+void service::keep_jobs(client_number number)
 {
     for (planner_lane& lane : lanes_) {
-        auto own = lane.queued.extract(gone);
+        auto own = lane.queued.extract(number);
         if (own.empty())
             continue;
-        std::erase(lane.turns, gone);
+        std::erase(lane.turns, number);
         for (plan_job& j : own.mapped())
             queue_job(nobody, std::move(j));
     }
 }
 
-// Where the server ends.
+// Refuses all requests when the server ends.
 void service::refuse_jobs()
 {
     ending_ = true;
@@ -134,11 +134,11 @@ void service::refuse_jobs()
     }
 }
 
-// Called by a planner, between reading the text and the work. Returns false where it is too much for this
-// lane.
+// Weighs a request. A planner calls it between reading the text and the work. Returns false if the work is
+// too much for this lane.
 bool service::weigh(plan_job& j, const planner_lane& in, const planning_work& w)
 {
-    constexpr double text_bytes = 64.0; // at least, of a burst or a sample in tactor-plan/1
+    constexpr double text_bytes = 64.0; // least size of a burst or a sample in tactor-plan/1
     constexpr double burst_bytes = 256.0;
     const service_limits& l = options_.limits;
     j.steps = w.steps;
@@ -151,7 +151,7 @@ bool service::weigh(plan_job& j, const planner_lane& in, const planning_work& w)
     return &lane_for(j) == &in;
 }
 
-// A short text may ask for much: it goes to the end of the queue for that.
+// Moves a request with a short text and much work to the end of the queue for such work.
 void service::move_up(planner_lane& from, plan_job&& j)
 {
     if (ending_)
@@ -182,7 +182,7 @@ void service::post_job(planner_lane& lane, plan_job j)
                 return boost::asio::post(io_, [this, &lane, job] { move_up(lane, std::move(*job)); });
             for (std::size_t i = 0; job->play && i < p->plans.size(); ++i) {
                 go_on();
-                scores.push_back(p->score_of(options_.plans.tactors, i));
+                scores.push_back(p->make_score(options_.plans.tactors, i));
             }
             if (!job->play)
                 text = on_one_line(options_.plan_text(*p, options_.limits.max_unread_bytes / 2));
@@ -217,42 +217,34 @@ void service::job_done(planner_lane& lane, const plan_job& job, std::shared_ptr<
             job.to.result_text(text);
     } else {
         // The stream may have to be started first.
-        stream_.when_ready([this, number, job, p, scores = std::move(scores)] {
-            if (client* then = find(number))
-                --then->coming;
-            submit_all(job, p, scores);
-            boost::asio::post(reader_, [p] {}); // which frees it
-            note_busy();
+        once_ready(number, job.to, "stream", [this, job, p, scores = std::move(scores)] {
+            const std::shared_ptr<void> after(nullptr, [&](void*) {
+                boost::asio::post(reader_, [p] {}); // which frees it
+            });
+            submit_all(job, *p, scores);
         });
     }
     note_busy();
     next_job(lane);
 }
 
-void service::submit_all(const plan_job& job, const std::shared_ptr<planned>& p,
-                         const std::vector<score>& scores)
+void service::submit_all(const plan_job& job, const planned& p, const std::vector<score>& scores)
 {
-    try {
-        const client_number number = job.to.all->to;
-        if (const client* c = find(number);
-            c != nullptr && scores.size() > 1 &&
-            c->strokes.size() + c->coming + scores.size() > options_.limits.max_strokes)
-            limit_reached("max_strokes",
-                          fmt::format("{} strokes are more than the {} that a client may have at once",
-                                      scores.size(), options_.limits.max_strokes),
-                          "send fewer");
-        const auto numbers = submit(number, job.start, *p, scores, stopped_since(job.asked, number));
-        auto warnings = p->warnings();
-        for (std::string& w : warnings)
-            w = net::cut_echo(w);
-        job.to.result({{"stroke", numbers.front()},
-                       {"strokes", numbers},
-                       {"total_s", p->total_s()},
-                       {"warnings", warnings}},
-                      numbers);
-    } catch (...) {
-        job.to.fault(current_fault("stream"));
-    }
+    const client_number number = job.to.all->to;
+    if (const client* c = find(number);
+        c != nullptr && scores.size() > 1 &&
+        c->strokes.size() + c->coming + scores.size() > options_.limits.max_strokes)
+        limit_reached("max_strokes",
+                      fmt::format("{} strokes are more than the {} that a client may have at once",
+                                  scores.size(), options_.limits.max_strokes),
+                      "send fewer");
+    const auto numbers = submit(number, job.start, p, scores, stop_reason_since(job.asked, number));
+    auto warnings = p.warnings();
+    for (std::string& w : warnings)
+        w = net::cut_echo(w);
+    job.to.result(
+        {{"stroke", numbers.front()}, {"strokes", numbers}, {"total_s", p.total_s()}, {"warnings", warnings}},
+        numbers);
 }
 
 } // namespace tactor::server

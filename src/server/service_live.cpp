@@ -13,14 +13,14 @@ namespace {
 using net::json;
 using net::reply_json;
 
-// Places beyond this are nonsense, and clamped or refused by the stroke.
+// Farthest place, mm. The stroke clamps or refuses nearer places outside the array.
 constexpr double farthest_mm = 1e6;
 
 } // namespace
 
 void service::begin(client& c, const json& params, const answer& to)
 {
-    only(params, {"options", "timeout_s", "smooth_s"});
+    allow_only(params, {"options", "timeout_s", "smooth_s"});
     const live_options usual;
     options::wishes s = options_.plans.owner;
     s.plan.algorithm = usual.plan.algorithm;
@@ -46,18 +46,12 @@ void service::begin(client& c, const json& params, const answer& to)
     ++c.coming;
     ++c.live;
     note_busy();
-    stream_.when_ready([this, number = c.number, o, to, asked = mark(c)] {
+    once_ready(c.number, to, "options", [this, number = c.number, o, to, asked = mark(c)] {
         client* then = find(number);
         if (then == nullptr)
-            return note_busy();
-        --then->coming;
+            return;
         --then->live;
-        try {
-            begin_now(*then, o, to, stopped_since(asked, number));
-        } catch (...) {
-            to.fault(current_fault("options"));
-        }
-        note_busy();
+        begin_now(*then, o, to, stop_reason_since(asked, number));
     });
 }
 
@@ -67,7 +61,7 @@ void service::begin_now(client& c, const live_options& o, const answer& to, cons
     if (closing_ || out == nullptr || out->ended())
         no_stream(closing_ ? "the server ends" : stream_.reason());
     if (ended_by != nullptr) {
-        // While the stream was being started: as with what was being planned then.
+        // It was cancelled while the stream was being started.
         stroke_record& r = add_record(c.number);
         r.ended_by = ended_by;
         finish(r, {.state = state_kind::cancelled});
@@ -96,7 +90,7 @@ service::stroke_record& service::own_live(client& c, std::uint32_t number)
     return r;
 }
 
-// As many at once as in a second, then as they come back.
+// Takes one of the points of a client, which come back over a second. Returns false if none is left.
 bool service::take_point(client& c)
 {
     const double most = options_.limits.max_points_per_s;
@@ -111,7 +105,7 @@ bool service::take_point(client& c)
 
 void service::to(client& c, const json& params, const answer& to)
 {
-    only(params, {"stroke", "x_mm", "y_mm", "intensity"});
+    allow_only(params, {"stroke", "x_mm", "y_mm", "intensity"});
     if (!take_point(c))
         limit_reached("max_points_per_s",
                       fmt::format("{} points in a second are the most", options_.limits.max_points_per_s));
@@ -126,14 +120,14 @@ void service::to(client& c, const json& params, const answer& to)
         if (!r.live->to(x, y, intensity))
             no_such_stroke(n, "it has ended");
     } catch (const error& e) {
-        throw fault_error(fault_of(e, "x_mm"));
+        throw fault_error(library_fault(e, "x_mm"));
     }
     to.result(reply_json::object());
 }
 
 void service::end(client& c, const json& params, const answer& to)
 {
-    only(params, {"stroke"});
+    allow_only(params, {"stroke"});
     own_live(c, need_stroke(params)).live->end();
     to.result(reply_json::object());
 }

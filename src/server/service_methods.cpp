@@ -18,10 +18,10 @@ using net::reply_json;
 
 constexpr unsigned most_wrong_tokens = 3;
 constexpr double most_levels_hz = 100.0;
-// A client that is so far behind gets levels when it has caught up.
+// A client that has more than this to read gets levels when it has caught up.
 constexpr std::size_t enough_waiting = 64U << 10;
 
-// In a time that does not tell how much of it is right.
+// Compares in a time that does not show how much is right.
 bool same_secret(const std::string& a, const std::string& b)
 {
     unsigned char differs = a.size() == b.size() ? 0 : 1;
@@ -56,7 +56,7 @@ reply_json service::hello_result()
 
 void service::hello(client& c, const json& params, const answer& to)
 {
-    only(params, {"token"});
+    allow_only(params, {"token"});
     const json* token = member(params, "token");
     if (token != nullptr)
         static_cast<void>(text(*token, "token"));
@@ -90,9 +90,9 @@ reply_json service::limits_json() const
             {"max_all_unfinished_bytes", l.max_all_unfinished_bytes}};
 }
 
-void service::status(const json& params, const answer& to)
+void service::status(client& /*c*/, const json& params, const answer& to)
 {
-    only(params, {});
+    allow_only(params, {});
     to.result(status_now());
 }
 
@@ -123,7 +123,7 @@ reply_json service::status_now()
 
 void service::subscribe(client& c, const json& params, const answer& to)
 {
-    only(params, {"events", "levels_hz"});
+    allow_only(params, {"events", "levels_hz"});
     const json* events = member(params, "events");
     if (events == nullptr || !events->is_array())
         bad_param("events", events == nullptr ? "they are missing" : "they are no list",
@@ -150,7 +150,7 @@ void service::subscribe(client& c, const json& params, const answer& to)
     send_levels(c.number);
 }
 
-// All that asked share the one meter: what it gives goes to each of them.
+// Adds the peaks of the one meter to the levels of each client that asked for them.
 void service::gather_levels()
 {
     level_peaks& peaks = stream_.peaks();
@@ -185,7 +185,7 @@ void service::send_levels(client_number number)
         }
         const auto step = std::chrono::nanoseconds(std::llround(1e9 / c->levels_hz));
         const auto next = c->levels_timer.expiry() + step;
-        // A process that stood still does not make up for what it missed.
+        // A process that stood still does not make up for missed notifications.
         c->levels_timer.expires_at(std::max(next, std::chrono::steady_clock::now()));
         send_levels(number);
     });

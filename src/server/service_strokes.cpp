@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What was planned is played; drive, cancel, stop, fire.
+// Planned strokes are submitted; drive, cancel, stop, fire.
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -25,7 +25,7 @@ void service::check_free_place(const client& c) const
     if (c.strokes.size() + c.coming >= most)
         limit_reached("max_strokes", fmt::format("{} strokes of yours go on", most),
                       "try again when one has ended");
-    // Those of clients that have gone count here.
+    // Strokes of disconnected clients count here.
     if (strokes_.size() + jobs_ >= most * options_.limits.max_clients)
         limit_reached("max_strokes", "there are too many strokes of all clients", "try again later");
 }
@@ -39,12 +39,12 @@ std::vector<std::uint32_t> service::submit(client_number owner, const json& star
     if (out == nullptr || out->ended())
         no_stream(stream_.reason());
     const std::int64_t now = options_.now_ns();
-    const start_wish wish = read_start(&start, now);
+    const start_time asked = read_start(&start, now);
     const std::vector<double> starts = p.starts_s();
     const stream_setup& s = out->setup();
-    // Several strokes keep their distances: from a time that the first can be sure to reach.
+    // Several strokes keep their distances: they count from a time that the first is sure to reach.
     const auto lead_ns = std::int64_t{1'000'000'000} * (s.buffer_frames + 3 * s.period_frames) / s.rate;
-    const std::int64_t base_ns = wish.at_ns.value_or(now + lead_ns);
+    const std::int64_t base_ns = asked.at_ns.value_or(now + lead_ns);
     const auto first =
         static_cast<std::size_t>(std::min_element(starts.begin(), starts.end()) - starts.begin());
     std::vector<std::uint32_t> numbers;
@@ -59,41 +59,58 @@ std::vector<std::uint32_t> service::submit(client_number owner, const json& star
             r.ended_by = ended_by;
             continue;
         }
-        if (wish.armed && i != first) {
-            r.music = scores[i];
+        if (asked.armed && i != first) {
+            r.submits_later = scores[i];
             r.state = "armed";
             continue;
         }
         const std::int64_t at = base_ns + std::llround(starts[i] * 1e9);
         start_at when = start_at::now();
-        if (wish.armed)
+        if (asked.armed)
             when = start_at::trigger();
-        else if (wish.at_ns || scores.size() > 1) {
+        else if (asked.at_ns || scores.size() > 1) {
             when = start_at::time(at);
-            if (wish.at_ns)
+            if (asked.at_ns)
                 r.asked_ns = at;
         }
         try {
             r.id = out->submit(scores[i], when);
         } catch (const error& e) {
-            refused[i] = e.what(); // as where the stream has just ended: its number ends with it, below
+            refused[i] = e.what(); // the stream may just have ended: the number ends below
             continue;
         }
-        r.state = wish.armed ? "armed" : "waiting";
+        r.state = asked.armed ? "armed" : "waiting";
         by_player_[{r.player, r.id}] = r.number;
     }
     for (std::size_t i = 0; i < records.size(); ++i)
-        if (records[i]->music)
+        if (records[i]->submits_later)
             records[first]->followers.emplace_back(records[i]->number, starts[i] - starts[first]);
     const auto end = out->ended();
     for (std::size_t i = 0; i < records.size(); ++i)
-        if (records[i]->id == stroke_id{} && !records[i]->music)
+        if (records[i]->id == stroke_id{} && !records[i]->submits_later)
             finish(*records[i], ended_by != nullptr
                                     ? stroke_report{.state = state_kind::cancelled}
                                     : stroke_report{.state = state_kind::interrupted,
                                                     .reason = end ? end->reason : reason_kind::failed,
                                                     .why = end ? end->why : refused[i]});
     return numbers;
+}
+
+// Calls `then` for a request of a client that is `coming`, once the stream runs or it is known that it does
+// not. Answers with the fault that it throws, about `source`.
+void service::once_ready(client_number number, const answer& to, const char* source,
+                         std::function<void()> then)
+{
+    stream_.when_ready([this, number, to, source, then = std::move(then)] {
+        if (client* c = find(number))
+            --c->coming;
+        try {
+            then();
+        } catch (...) {
+            to.fault(current_fault(source));
+        }
+        note_busy();
+    });
 }
 
 void service::drive(client& c, const json& params, const answer& to)
@@ -104,24 +121,17 @@ void service::drive(client& c, const json& params, const answer& to)
     check_free_place(c);
     if (closing_ || stream_.is_out())
         no_stream(stream_.reason());
+    const std::vector<score> scores{p->make_score(options_.plans.tactors, 0)};
     ++c.coming;
     note_busy();
-    const std::vector<score> scores{p->score_of(options_.plans.tactors, 0)};
-    stream_.when_ready([this, number = c.number, to, p, scores, start, asked = mark(c)] {
-        if (client* then = find(number))
-            --then->coming;
-        try {
-            const auto numbers = submit(number, start, *p, scores, stopped_since(asked, number));
-            to.result({{"stroke", numbers.front()}}, numbers);
-        } catch (...) {
-            to.fault(current_fault("stream"));
-        }
-        note_busy();
+    once_ready(c.number, to, "stream", [this, number = c.number, to, p, scores, start, asked = mark(c)] {
+        const auto numbers = submit(number, start, *p, scores, stop_reason_since(asked, number));
+        to.result({{"stroke", numbers.front()}}, numbers);
     });
 }
 
-// The reason of strokes that the last stop ended.
-const char* service::stopped_for(client_number owner) const
+// Returns the reason of strokes that the last stop ended.
+const char* service::stop_reason(client_number owner) const
 {
     return owner == stopped_by_ ? cancelled_by_client : "stopped by another client";
 }
@@ -131,17 +141,17 @@ service::stop_mark service::mark(const client& c) const
     return {stops_, c.cancels, *c.cancels};
 }
 
-// The reason of a stroke that must not begin; none: it may.
-const char* service::stopped_since(const stop_mark& m, client_number owner) const
+// Returns the reason of a stroke that must not begin; null: it may.
+const char* service::stop_reason_since(const stop_mark& m, client_number owner) const
 {
     if (*m.cancels != m.own)
         return cancelled_by_client;
-    return m.stops != stops_ ? stopped_for(owner) : nullptr;
+    return m.stops != stops_ ? stop_reason(owner) : nullptr;
 }
 
 void service::cancel(client& c, const json& params, const answer& to)
 {
-    only(params, {"stroke", "all"});
+    allow_only(params, {"stroke", "all"});
     if (const json* all = member(params, "all")) {
         if (!all->is_boolean() || !all->get<bool>() || params.contains("stroke"))
             bad_param("all", "it is true, and stands alone", R"({"stroke":N} or {"all":true})");
@@ -155,7 +165,7 @@ void service::cancel(client& c, const json& params, const answer& to)
     cancel(*strokes_.at(n), cancelled_by_client);
 }
 
-// What is being planned, or waits for the stream to start, looks at the count.
+// Cancels all strokes of a client. Requests that are being planned, or wait for the stream, check the count.
 void service::cancel_all(client& c)
 {
     ++*c.cancels;
@@ -168,13 +178,13 @@ void service::cancel(stroke_record& r, const char* why)
 {
     if (r.ended_by == nullptr)
         r.ended_by = why;
-    if (r.music) // it waits for another to begin
+    if (r.submits_later) // it waits for another to begin
         return finish(r, {.state = state_kind::cancelled});
     if (player* p = stream_.current(); p != nullptr && r.player == stream_.number())
         p->cancel(r.id);
 }
 
-void service::stop(client& c, const answer& to)
+void service::stop(client& c, const json& /*params*/, const answer& to)
 {
     stop_all(c.number);
     to.result(reply_json::object());
@@ -189,26 +199,26 @@ void service::stop_all(client_number by)
         all.push_back(number);
     for (const std::uint32_t n : all)
         if (const auto found = strokes_.find(n); found != strokes_.end())
-            cancel(*found->second, stopped_for(found->second->owner));
+            cancel(*found->second, stop_reason(found->second->owner));
     if (stopped_)
         stopped_();
 }
 
-void service::fire(const json& params, const answer& to)
+void service::fire(client& /*c*/, const json& params, const answer& to)
 {
-    only(params, {});
+    allow_only(params, {});
     player* p = stream_.current();
     if (p == nullptr && stream_.is_out())
         no_stream(stream_.reason());
-    // What is armed keeps a stream going: of one that stopped for want of strokes there is nothing to start.
+    // Armed strokes keep a stream going: if it was stopped for want of strokes, there is nothing to start.
     const std::int64_t now = options_.now_ns();
     std::size_t n = p == nullptr ? 0 : p->fire(now);
     for (const auto& [number, r] : strokes_) {
         if (r->state != "armed" || r->player != stream_.number())
             continue;
         r->state = "waiting";
-        if (r->music)
-            ++n; // one that follows another of its file
+        if (r->submits_later)
+            ++n; // it follows another stroke of its file
         else
             r->asked_ns = now;
     }

@@ -11,7 +11,7 @@
 namespace tactor::server {
 namespace {
 
-// A device that is there and cannot do it names the field that is in the way.
+// Returns true if the device is there and cannot be used in this way: its error names a field.
 bool is_misfit(const std::exception_ptr& failure)
 try {
     if (failure != nullptr)

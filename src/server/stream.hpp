@@ -24,12 +24,12 @@ using session::stream_state;
 
 struct stream_options : session::stream_parts {
     std::function<void(stream_state, const std::string& reason)> changed = {};
-    /// In place of all that follows: the configuration can never be opened. Only of the first attempt; later
-    /// the device may be another one, and is tried again.
+    /// Called instead of all others if the configuration can never be opened. Only after the first attempt:
+    /// later the device may be another one, and is tried again.
     std::function<void(std::exception_ptr)> refused = {};
 };
 
-/// One thread, the context's, calls all members, and is where all handlers run.
+/// A stream whose members are called in the context's thread. All handlers run there.
 class stream : public session::device_stream {
 public:
     stream(boost::asio::io_context& io, stream_options o);
@@ -39,14 +39,14 @@ public:
 
     /// Begins to open the device.
     void start() { go_on(); }
-    /// Calls `ready` once there is a player, or it is known that there is none: at once where that is so.
+    /// Calls `ready` once there is a player, or it is known that there is none; at once if that is known.
     void when_ready(std::function<void()> ready);
     level_peaks& peaks() noexcept { return *peaks_; }
     /// Returns true if the audio thread has gone on since the last call, or has no reason to.
     bool progresses();
-    /// Strokes go on, or there are none: when to stop for want of them.
+    /// Notes that strokes go on, or that there are none: the stream stops after a time without.
     void busy(bool is);
-    /// Fades out and closes; `done` when all strokes were reported.
+    /// Fades out and closes; calls `done` when all strokes were reported.
     void close(std::function<void()> done);
 
 private:

@@ -46,7 +46,7 @@ const option& known_option(const std::string& name, options_for which)
     return *o;
 }
 
-// Files are the server's own.
+// Refuses a waveform in a file: files are the server's own.
 void refuse_file(const option& o, const options::value& v)
 {
     const auto* text = std::get_if<std::string>(&v);
@@ -81,7 +81,7 @@ options::wishes with_options(options::wishes w, const json& given, options_for w
     return w;
 }
 
-start_wish read_start(const net::json* start, std::int64_t now_ns)
+start_time read_start(const net::json* start, std::int64_t now_ns)
 {
     constexpr const char* forms = R"("now", "armed", {"delay_s":S}, {"monotonic_s":S} or {"unix_s":S})";
     if (start == nullptr || *start == "now")

@@ -29,16 +29,16 @@ inline std::int64_t unix_ns() noexcept
 /// Strokes that are planned ahead know more options than live ones.
 enum class options_for { planned, live };
 
-/// Puts what a client gave over the owner's. \throws fault_error naming the option.
+/// Returns the owner's options with those of a client over them. \throws fault_error naming the option.
 options::wishes with_options(options::wishes w, const net::json& given, options_for which);
 
-/// "now" is no time, "armed" waits for fire.
-struct start_wish {
+/// Start of a stroke: now, at a time, or armed, which waits for fire.
+struct start_time {
     bool armed = false;
     std::optional<std::int64_t> at_ns = {}; ///< CLOCK_MONOTONIC
 };
 
-/// None is now. \throws fault_error naming it.
-start_wish read_start(const net::json* start, std::int64_t now_ns);
+/// Reads a start; null: now. \throws fault_error naming it.
+start_time read_start(const net::json* start, std::int64_t now_ns);
 
 } // namespace tactor::server

@@ -85,7 +85,7 @@ std::vector<stroke> read_strokes(const std::string& source, const json& v, const
     return parse_strokes_svg(t, source);
 }
 
-void in_time(const planning& with, double seconds)
+void check_duration(const planning& with, double seconds)
 {
     if (seconds > with.max_stroke_s)
         limit_reached("max_stroke_s",
@@ -94,7 +94,7 @@ void in_time(const planning& with, double seconds)
                       "draw less, or faster");
 }
 
-void few_enough(const planning& with, std::size_t strokes)
+void check_count(const planning& with, std::size_t strokes)
 {
     if (strokes > with.max_strokes)
         limit_reached("max_strokes",
@@ -103,7 +103,8 @@ void few_enough(const planning& with, std::size_t strokes)
                       "send fewer");
 }
 
-// When each begins, and that they do not last too long, alone and together: so long takes planning them.
+// Sets the start of each stroke. Refuses strokes that last too long, alone or together: planning them takes
+// as long.
 void place_strokes(const planning& with, const options::wishes& s, std::vector<stroke>& strokes)
 {
     detail::start_times times;
@@ -111,7 +112,7 @@ void place_strokes(const planning& with, const options::wishes& s, std::vector<s
     for (stroke& k : strokes) {
         detail::set_pace(k, {s.duration_s, s.speed_mm_s, s.usual_speed_mm_s});
         times.start(k.start_s, k.anchor);
-        in_time(with, times.lasts(k.motion.duration_s()));
+        check_duration(with, times.lasts(k.motion.duration_s()));
         together_s += k.motion.duration_s();
     }
     if (together_s > with.max_stroke_s)
@@ -121,7 +122,7 @@ void place_strokes(const planning& with, const options::wishes& s, std::vector<s
                       "send them one by one");
 }
 
-// As the plan samples it.
+// Returns the largest intensity, or amplitude, at the times that the plan samples.
 double loudest(const stroke& k, const plan& p, intensity_scale scale)
 {
     double most = 0.0;
@@ -145,7 +146,7 @@ double park_bursts(const stroke& k, const plan_options& o)
 
 } // namespace
 
-const char* source_of(const json& params)
+const char* find_source(const json& params)
 {
     const char* found = nullptr;
     for (const char* name : {"stroke", "path", "points", "toml", "csv", "svg"}) {
@@ -225,7 +226,7 @@ std::vector<std::string> planned::warnings() const
     return all;
 }
 
-score planned::score_of(const array& a, std::size_t i) const
+score planned::make_score(const array& a, std::size_t i) const
 {
     return {a, plans[i].plan, render};
 }
@@ -233,7 +234,7 @@ score planned::score_of(const array& a, std::size_t i) const
 planned make_planned(const planning& with, const layout& faces, const json& params,
                      const planning_checks& checks)
 {
-    const std::string source = source_of(params);
+    const std::string source = find_source(params);
     const json* options = member(params, "options");
     const options::wishes s =
         options == nullptr ? with.owner : with_options(with.owner, *options, options_for::planned);
@@ -241,7 +242,7 @@ planned make_planned(const planning& with, const layout& faces, const json& para
         planned p{source, read_strokes(source, params[source], s), {}, s.render};
         if (source == "stroke")
             p.name = p.strokes.front().name;
-        few_enough(with, p.strokes.size());
+        check_count(with, p.strokes.size());
         p.strokes = apply_fits(std::move(p.strokes), faces);
         place_strokes(with, s, p.strokes);
         const auto between = [&] {
@@ -261,7 +262,7 @@ planned make_planned(const planning& with, const layout& faces, const json& para
             const plan& made = p.plans.back().plan;
             check_level(with, s, loudest(k, made, s.plan.scale), made.carrier_hz, source);
         }
-        in_time(with, p.total_s());
+        check_duration(with, p.total_s());
         between();
         static_cast<void>(score(with.tactors, p.plans, p.render)); // levels and carriers
         return p;
@@ -274,7 +275,7 @@ planned make_planned(const planning& with, const layout& faces, const json& para
 
 planned make_drive(const planning& with, const json& params)
 {
-    only(params, {"tactor", "intensity", "duration_s", "start"});
+    allow_only(params, {"tactor", "intensity", "duration_s", "start"});
     const auto count = static_cast<double>(with.tactors.tactors.size());
     const double tactor = need_number(params, "tactor", {0, count - 1});
     if (tactor != std::floor(tactor))
@@ -285,21 +286,21 @@ planned make_drive(const planning& with, const json& params)
     constexpr double usual_s = 0.5;
     const double seconds =
         given == nullptr ? usual_s : number(*given, "duration_s", detail::bounds_of::duration_s);
-    in_time(with, seconds);
+    check_duration(with, seconds);
     check_level(with, with.owner, intensity, with.owner.plan.carrier_hz, "intensity");
     planned p{"drive", {}, {}, with.owner.render};
     const point where = with.tactors.tactors[static_cast<std::size_t>(tactor)].position;
-    plan schedule{.algorithm = "drive", .phantom = "none"};
-    schedule.stroke_duration_s = seconds;
-    schedule.total_s = seconds;
-    schedule.carrier_hz = with.owner.plan.carrier_hz;
+    plan one{.algorithm = "drive", .phantom = "none"};
+    one.stroke_duration_s = seconds;
+    one.total_s = seconds;
+    one.carrier_hz = with.owner.plan.carrier_hz;
     burst b{.duration_s = seconds, .position = where, .intensity = intensity};
     if (intensity > 0.0)
         b.drives.push_back({static_cast<unsigned>(tactor), intensity});
-    schedule.bursts.push_back(std::move(b));
-    p.plans.push_back({std::move(schedule), {}});
+    one.bursts.push_back(std::move(b));
+    p.plans.push_back({std::move(one), {}});
     try {
-        static_cast<void>(p.score_of(with.tactors, 0));
+        static_cast<void>(p.make_score(with.tactors, 0));
     } catch (...) {
         throw fault_error(current_fault("tactor"));
     }

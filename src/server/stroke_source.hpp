@@ -20,35 +20,35 @@
 
 namespace tactor::server {
 
-/// What all plans share.
+/// Settings that all plans share.
 struct planning {
     array tactors;
     options::wishes owner; ///< with the stream's rate and channels
     double max_level_dbfs = -12.0;
-    double max_stroke_s = 600.0; ///< of a stroke, and of those of one request together
+    double max_stroke_s = 600.0; ///< of a stroke, and of the strokes of one request together
     std::size_t max_strokes = 64;
 };
 
-/// One request's strokes, planned.
+/// The planned strokes of a request.
 struct planned {
     std::string name;
     std::vector<stroke> strokes;
     std::vector<placed_plan> plans;
     render_options render;
-    /// What `compensate` did to each plan; empty without it. The plans themselves are moved to `plans`.
+    /// Moves of `compensate` in each plan; empty without it. The plans themselves are moved to `plans`.
     std::vector<compensated_plan> moved = {};
 
-    /// Start of each plan, s from the start of all.
+    /// Returns the start of each plan, s from the start of all.
     std::vector<double> starts_s() const;
     double total_s() const;
     std::vector<std::string> warnings() const;
-    /// One of each plan, to be submitted by itself.
-    score score_of(const array& a, std::size_t i) const;
+    /// Returns the score of a plan alone, to be submitted by itself.
+    score make_score(const array& a, std::size_t i) const;
 };
 
-/// The one parameter of these that says what is drawn: "stroke", "path", "points", "toml", "csv" or "svg".
-/// \throws fault_error for none or several.
-const char* source_of(const net::json& params);
+/// Returns the one parameter of these that says what is drawn: "stroke", "path", "points", "toml", "csv" or
+/// "svg". \throws fault_error for none or several.
+const char* find_source(const net::json& params);
 
 /// Work of planning strokes. Exact for park2016 and continuous, an upper bound for tactile-brush.
 struct planning_work {
@@ -64,19 +64,19 @@ planning_work estimate_work(const std::vector<stroke>& strokes, const options::w
 /// Calls from within make_planned(); each may throw.
 struct planning_checks {
     std::function<void()> go_on = {}; ///< called between strokes
-    /// Called before the work, when the text was read. False: nothing is planned.
+    /// Called before the work, when the text is read. Returns false if nothing is to be planned.
     std::function<bool(const planning_work&)> weigh = {};
 };
 
-/// Reads and plans. Returns no plans where `weigh` returns false. \throws fault_error, and what checks throw.
+/// Reads and plans. Returns no plans if `weigh` returns false. \throws fault_error, and what checks throw.
 planned make_planned(const planning& with, const layout& faces, const net::json& params,
                      const planning_checks& checks = {});
 
-/// One tactor for a while. \throws fault_error.
+/// Returns a plan that drives one tactor for a time. \throws fault_error.
 planned make_drive(const planning& with, const net::json& params);
 
-/// \throws fault_error where the settings are louder at this intensity and carrier than the owner allows; of
-///         the level, or of `source` where only its intensity is too much.
+/// Checks the level at an intensity and a carrier. \throws fault_error if it is above the owner's: about the
+/// level, or about `source` if only its intensity is too much.
 void check_level(const planning& with, const options::wishes& s, double intensity, double carrier_hz,
                  const std::string& source);
 

@@ -47,7 +47,7 @@ TEST_CASE("lines are free, held or not there")
     CHECK(all[1].found == "line 27 \"OUT\" of pinctrl-rp1 (/dev/gpiochip0): held by \"led\"");
     CHECK(all[2].found == "GPIO line \"GONE\": no line has this name");
     CHECK(all[2].cure == "there are: AMP, OUT");
-    CHECK(status_of(all) == 3);
+    CHECK(worst_status(all) == 3);
 }
 
 TEST_CASE("an amplifier that is on when low is a warning, and so is none where a person feels it")
@@ -66,11 +66,11 @@ TEST_CASE("bad input wins over a missing device in the exit status, warnings do 
     const finding device = failure("device", error(error_kind::not_available, "a", "b"));
     const finding input = failure("levels", error(error_kind::bad_input, "a", "b"));
     const finding other = failure("x", error(error_kind::runtime, "a", "b"));
-    CHECK(status_of({}) == 0);
-    CHECK(status_of({warning("a", "b", "c"), fine("a", "b")}) == 0);
-    CHECK(status_of({device, input}) == 2);
-    CHECK(status_of({other, device}) == 3);
-    CHECK(status_of({other}) == 1);
+    CHECK(worst_status({}) == 0);
+    CHECK(worst_status({warning("a", "b", "c"), fine("a", "b")}) == 0);
+    CHECK(worst_status({device, input}) == 2);
+    CHECK(worst_status({other, device}) == 3);
+    CHECK(worst_status({other}) == 1);
 }
 
 TEST_CASE("findings have this form")

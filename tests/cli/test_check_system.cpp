@@ -86,7 +86,7 @@ TEST_CASE("an empty machine is read without complaint")
     CHECK_FALSE(f.keeps_outputs.has_value());
     CHECK_FALSE(f.raspberry_pi);
     CHECK(f.preempts == preemption::none);
-    CHECK(status_of(check_system(f, {})) == 0);
+    CHECK(worst_status(check_system(f, {})) == 0);
 }
 
 TEST_CASE("groups and devices are read")
@@ -289,7 +289,7 @@ TEST_CASE("addresses of the kernel's tables are read")
     };
     for (const auto& c : cases) {
         INFO(c.said);
-        const endpoint e = endpoint_of(c.said);
+        const endpoint e = parse_endpoint(c.said);
         CHECK(e.at == c.means);
         CHECK(e.beyond_loopback == c.beyond);
     }

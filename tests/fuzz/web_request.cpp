@@ -44,26 +44,28 @@ void check_connection(std::string_view bytes, bool open)
     std::string said;
     {
         boost::asio::io_context io(1);
-        boost::asio::ip::tcp::socket s(io, boost::asio::ip::tcp::v4(), ends[0]);
+        net::line_connection::socket_type s(io, boost::asio::generic::stream_protocol(AF_UNIX, 0), ends[0]);
         net::shared_by_peers shared(io);
         const net::line_limits limits{.message_bytes = 1024};
-        const auto c = std::make_shared<net::web_connection>(std::move(s), limits, shared,
-                                                             std::vector<std::string>{"h"});
-        c->start({[](std::string_view, std::string_view host, std::string_view) {
-                      HOLDS(host == "h" || host == "H" || host.starts_with("h:") || host.starts_with("H:") ||
-                            host.starts_with("[h]") || host.starts_with("[H]"));
-                      return net::web_reply{};
-                  },
-                  [&] { return upgraded = true; },
-                  [&](std::string_view text) {
-                      HOLDS(upgraded && !text.empty() && text.size() <= limits.message_bytes);
-                      c->send("answer");
-                      return text != "close";
-                  },
-                  [&] {
-                      ++closed;
-                      io.stop(); // else it waits for times that nobody keeps
-                  }});
+        const auto c = net::connect_browser(io, std::move(s), limits, shared, {"h"});
+        c->start({.message =
+                      [&](std::string_view text) {
+                          HOLDS(upgraded && !text.empty() && text.size() <= limits.message_bytes);
+                          c->send("answer");
+                          return text != "close";
+                      },
+                  .closed =
+                      [&] {
+                          ++closed;
+                          io.stop(); // else it waits for times that nobody keeps
+                      },
+                  .get =
+                      [](std::string_view, std::string_view host, std::string_view) {
+                          HOLDS(host == "h" || host == "H" || host.starts_with("h:") ||
+                                host.starts_with("H:") || host.starts_with("[h]") || host.starts_with("[H]"));
+                          return net::web_reply{};
+                      },
+                  .upgrade = [&] { return upgraded = true; }});
         if (open) {
             // Frames come after the answer, as the standard has it.
             write_all(ends[1], handshake);

@@ -41,17 +41,21 @@ struct pair {
         line_connection::socket_type s(io);
         s.assign(boost::asio::generic::stream_protocol(AF_UNIX, 0), fds[0]);
         end = std::make_shared<line_connection>(std::move(s), l, all);
-        end->start({[this](std::string_view t) {
-                        lines.emplace_back(t);
-                        return true;
-                    },
-                    [this] { input_over = true; }, [this](line_fault f) { faults.push_back(f); },
-                    [this] { closed = true; },
-                    is_first ? [this, is_first] { return is_first(lines.back()); } : std::function<bool()>(),
-                    [this](std::string t, std::function<void(bool)> done) {
-                        lines.push_back(std::move(t));
-                        large_done = std::move(done);
-                    }});
+        end->start(
+            {.message =
+                 [this](std::string_view t) {
+                     lines.emplace_back(t);
+                     return true;
+                 },
+             .closed = [this] { closed = true; },
+             .met = is_first ? [this, is_first] { return is_first(lines.back()); } : std::function<bool()>(),
+             .large =
+                 [this](std::string t, std::function<void(bool)> done) {
+                     lines.push_back(std::move(t));
+                     large_done = std::move(done);
+                 },
+             .input_ended = [this] { input_over = true; },
+             .fault = [this](line_fault f) { faults.push_back(f); }});
     }
     ~pair()
     {
@@ -335,12 +339,13 @@ TEST_CASE("a message beyond memory drops only its peer")
     s.assign(boost::asio::generic::stream_protocol(AF_UNIX, 0), fds[0]);
     const auto end = std::make_shared<line_connection>(std::move(s), line_limits{}, both->all);
     std::vector<line_fault> faults;
-    end->start({[](std::string_view) -> bool { throw std::bad_alloc(); }, [] {},
-                [&](line_fault f) {
-                    faults.push_back(f);
-                    end->send("why");
-                },
-                [] {}});
+    end->start({.message = [](std::string_view) -> bool { throw std::bad_alloc(); },
+                .closed = [] {},
+                .fault =
+                    [&](line_fault f) {
+                        faults.push_back(f);
+                        end->send("why");
+                    }});
     REQUIRE(::write(fds[1], "x\n", 2) == 2);
     other.write("one\n");
     other.until([&] { return other.lines.size() == 1 && !faults.empty(); });

@@ -106,14 +106,14 @@ TEST_CASE("colours of strokes differ for eyes of each kind, and are visible on w
 {
     for (const matrix& sight : sights)
         for (std::size_t i = 0; i < stroke_colours; ++i) {
-            const auto a = lab(of_stroke(i), sight);
+            const auto a = lab(stroke_colour(i), sight);
             CHECK(a[0] < 82.0);
             for (std::size_t k = 0; k < i; ++k) {
-                const auto b = lab(of_stroke(k), sight);
+                const auto b = lab(stroke_colour(k), sight);
                 CHECK(std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]) > 20.0);
             }
         }
-    CHECK(of_stroke(stroke_colours) == of_stroke(0));
+    CHECK(stroke_colour(stroke_colours) == stroke_colour(0));
 }
 
 TEST_CASE("luminance is 0 for black and 1 for white")

@@ -67,11 +67,11 @@ TEST_CASE("a PDF is one, without the time of day")
 
 TEST_CASE("the format follows the name, in upper or lower case")
 {
-    CHECK(format_of("a.svg") == file_format::svg);
-    CHECK(format_of("b/c.PNG") == file_format::png);
-    CHECK(format_of("a.b.Pdf") == file_format::pdf);
+    CHECK(find_format("a.svg") == file_format::svg);
+    CHECK(find_format("b/c.PNG") == file_format::png);
+    CHECK(find_format("a.b.Pdf") == file_format::pdf);
     for (const char* name : {"a", "a.jpg", "svg", ".svg", "a.svg/", "a.svg.gz", ""})
-        CHECK_THROWS_AS(format_of(name), error);
+        CHECK_THROWS_AS(find_format(name), error);
 }
 
 } // namespace output_test

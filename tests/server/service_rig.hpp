@@ -38,7 +38,7 @@ public:
     void finish() override { finished = true; }
 
     /// Returns those of a stroke, in order.
-    std::vector<json> of_stroke(const json& number) const
+    std::vector<json> stroke_messages(const json& number) const
     {
         std::vector<json> found;
         for (const json& m : all)
@@ -46,9 +46,9 @@ public:
                 found.push_back(m["params"]);
         return found;
     }
-    std::optional<json> end_of(const json& number) const
+    std::optional<json> find_end(const json& number) const
     {
-        for (const json& m : of_stroke(number))
+        for (const json& m : stroke_messages(number))
             if (m["state"] != "started")
                 return m;
         return std::nullopt;
@@ -167,10 +167,10 @@ public:
         const json r = call(c, method, params);
         return r.contains("error") ? r["error"]["code"].get<int>() : 0;
     }
-    json end_of(const connected& c, const json& number)
+    json find_end(const connected& c, const json& number)
     {
-        until([&] { return c.box->end_of(number).has_value(); });
-        return *c.box->end_of(number);
+        until([&] { return c.box->find_end(number).has_value(); });
+        return *c.box->find_end(number);
     }
     template <typename Condition>
     void until(Condition c)

@@ -24,7 +24,7 @@ json with(json params, const char* name, const json& value)
     return params;
 }
 
-double peak_of(const fake_dac& card)
+double find_peak(const fake_dac& card)
 {
     const auto bytes = card.captured();
     double most = 0.0;
@@ -45,11 +45,11 @@ TEST_CASE("a stroke: the reply, its beginning, its end, each once and in this or
     rig.start();
     const auto c = rig.client();
     const json n = rig.ok(c, "play", stroke)["stroke"];
-    CHECK(c.box->of_stroke(n).empty()); // none came before the reply
-    const json end = rig.end_of(c, n);
+    CHECK(c.box->stroke_messages(n).empty()); // none came before the reply
+    const json end = rig.find_end(c, n);
     CHECK(end["state"] == "finished");
     CHECK(end["frames"] == 4800);
-    const auto told = c.box->of_stroke(n);
+    const auto told = c.box->stroke_messages(n);
     REQUIRE(told.size() == 2);
     CHECK(told[0]["state"] == "started");
     CHECK(told[0]["frames"] == 0);
@@ -73,7 +73,7 @@ TEST_CASE("a batch's reply comes before reports of its strokes")
         numbers.insert(r["result"]["stroke"].get<int>());
     CHECK(numbers.size() == 20);
     for (const int n : numbers)
-        CHECK(rig.end_of(c, n)["state"] == "finished");
+        CHECK(rig.find_end(c, n)["state"] == "finished");
 }
 
 TEST_CASE("all clients together stay below the ceiling on every channel")
@@ -90,12 +90,12 @@ TEST_CASE("all clients together stay below the ceiling on every channel")
     const json loud{{"stroke", live}, {"x_mm", 20}, {"y_mm", 20}, {"intensity", 1000}};
     CHECK(rig.ok(b, "to", loud).empty());
     CHECK(rig.ok(b, "to", loud).empty());
-    rig.end_of(a, x);
-    rig.end_of(b, y);
+    rig.find_end(a, x);
+    rig.find_end(b, y);
     rig.ok(b, "end", {{"stroke", live}});
-    CHECK(rig.end_of(b, live)["held_points"] == 2);
-    CHECK(peak_of(card) <= -12.0 + 0.01);
-    CHECK(peak_of(card) > -12.5);
+    CHECK(rig.find_end(b, live)["held_points"] == 2);
+    CHECK(find_peak(card) <= -12.0 + 0.01);
+    CHECK(find_peak(card) > -12.5);
 }
 
 TEST_CASE("other people's strokes are not touched, but stop is everybody's")
@@ -110,8 +110,8 @@ TEST_CASE("other people's strokes are not touched, but stop is everybody's")
     CHECK(rig.code(b, "end", {{"stroke", n}}) == -32002);
     CHECK(rig.code(a, "end", {{"stroke", n}}) == -32002); // it is not live
     CHECK(rig.ok(b, "stop").empty());
-    CHECK(rig.end_of(a, n)["state"] == "cancelled");
-    CHECK(b.box->of_stroke(n).empty());
+    CHECK(rig.find_end(a, n)["state"] == "cancelled");
+    CHECK(b.box->stroke_messages(n).empty());
     CHECK(rig.ok(b, "fire")["count"] == 0);
 }
 
@@ -126,7 +126,7 @@ TEST_CASE("the reason of an end says who ended it")
     const json several{{"toml", "[[stroke]]\npath = 'M 0 0 L 40 0'\nduration_s = 1\n[[stroke]]\npath = 'M 0 "
                                 "0 L 0 40'\nduration_s = 1\n"},
                        {"start", "armed"}};
-    const auto reason = [&](const json& n) { return rig.end_of(a, n)["reason"]; };
+    const auto reason = [&](const json& n) { return rig.find_end(a, n)["reason"]; };
     const json own = rig.ok(a, "play", armed)["stroke"];
     rig.ok(a, "cancel", {{"stroke", own}});
     CHECK(reason(own) == "cancelled by its client");
@@ -151,7 +151,7 @@ TEST_CASE("the reason of an end says who ended it")
     CHECK(reason(starved) == "no more points came");
     const json lost = rig.ok(a, "begin", {{"timeout_s", 86400}})["stroke"];
     rig.ok(a, "to", {{"stroke", lost}, {"x_mm", 20}, {"y_mm", 20}});
-    rig.until([&] { return !a.box->of_stroke(lost).empty(); });
+    rig.until([&] { return !a.box->stroke_messages(lost).empty(); });
     rig.unplug();
     CHECK(reason(lost) == "device: the device is gone");
     rig.plug();
@@ -170,15 +170,15 @@ TEST_CASE("a stroke handed over twice, as after an xrun before it sounds, is rep
     rig.clocks.clear(); // time stands still
     const json n = rig.ok(c, "play", with(stroke, "start", {{"delay_s", 0.4}}))["stroke"];
     // Its first frame lies far ahead, but it has been handed over.
-    while (c.box->of_stroke(n).empty()) {
+    while (c.box->stroke_messages(n).empty()) {
         card.advance_queued(1);
         rig.io.poll();
         std::this_thread::yield();
     }
     card.advance(1'000'000); // an xrun
     rig.clocks.emplace_back(card, running_clock::capture_kind::dropped);
-    CHECK(rig.end_of(c, n)["state"] == "finished");
-    CHECK(c.box->of_stroke(n).size() == 2); // that it started, and that it ended
+    CHECK(rig.find_end(c, n)["state"] == "finished");
+    CHECK(c.box->stroke_messages(n).size() == 2); // that it started, and that it ended
     CHECK(rig.ok(c, "status")["stream"]["xruns"] == 1);
 }
 
@@ -205,7 +205,7 @@ TEST_CASE("a large message is read on another thread, and answered as a small on
     rig.until([&] { return c.box->reply(900).has_value(); });
     const json n = (*c.box->reply(900))["result"]["stroke"];
     CHECK(rig.ok(c, "fire")["count"] == 1);
-    CHECK(rig.end_of(c, n)["state"] == "finished");
+    CHECK(rig.find_end(c, n)["state"] == "finished");
     const std::string noise(10'000, 'x');
     large(noise);
     CHECK(c.box->all.back()["error"]["code"] == -32700);
@@ -230,7 +230,7 @@ TEST_CASE("one tactor alone has a start, too")
     const json n = rig.ok(c, "drive", with(drive, "start", "armed"))["stroke"];
     CHECK(rig.ok(c, "status")["strokes"][0]["state"] == "armed");
     CHECK(rig.ok(c, "fire")["count"] == 1);
-    CHECK(rig.end_of(c, n)["state"] == "finished");
+    CHECK(rig.find_end(c, n)["state"] == "finished");
     CHECK(rig.call(c, "drive", with(drive, "start", "soon"))["error"]["data"]["what"] == "start");
     CHECK(rig.call(c, "drive", with(drive, "start", {{"delay_s", -1}}))["error"]["data"]["what"] ==
           "start.delay_s");
@@ -246,7 +246,7 @@ TEST_CASE("stop holds for what is being planned, too")
     rig.send(c, {{"jsonrpc", "2.0"}, {"id", 1001}, {"method", "stop"}});
     rig.until([&] { return c.box->reply(1000).has_value(); });
     const json n = (*c.box->reply(1000))["result"]["stroke"];
-    const json end = rig.end_of(c, n);
+    const json end = rig.find_end(c, n);
     CHECK(end["state"] == "cancelled");
     CHECK(end["frames"] == 0);
 }
@@ -269,7 +269,7 @@ TEST_CASE("a stop in a message that is refused as a whole stops all the same")
         const json n = rig.ok(a, "play", with(stroke, "start", "armed"))["stroke"];
         b.box->all.clear();
         rig.send(b, message);
-        CHECK(rig.end_of(a, n)["reason"] == "stopped by another client");
+        CHECK(rig.find_end(a, n)["reason"] == "stopped by another client");
         CHECK(b.box->all.front()["error"]["code"] == -32001);
     }
     // Like any request: not before the token.
@@ -300,16 +300,16 @@ TEST_CASE("cancel of all ends strokes being planned, even of a client that has g
     rig.send(me, {{"jsonrpc", "2.0"}, {"id", 1000}, {"method", "play"}, {"params", stroke}});
     rig.send(me, cancel);
     for (const json& n : {armed, live})
-        CHECK(rig.end_of(me, n)["reason"] == "cancelled by its client");
+        CHECK(rig.find_end(me, n)["reason"] == "cancelled by its client");
     rig.until([&] { return me.box->reply(1000).has_value(); });
     CHECK((*me.box->reply(1001))["result"] == json::object());
-    const json end = rig.end_of(me, (*me.box->reply(1000))["result"]["stroke"]);
+    const json end = rig.find_end(me, (*me.box->reply(1000))["result"]["stroke"]);
     CHECK(end["state"] == "cancelled");
     CHECK(end["reason"] == "cancelled by its client");
     CHECK(end["frames"] == 0);
     // Later strokes play.
     const json next = rig.ok(me, "play", stroke)["stroke"];
-    CHECK(rig.end_of(me, next)["state"] == "finished");
+    CHECK(rig.find_end(me, next)["state"] == "finished");
     you.box->all.clear();
     rig.send(me, {{"jsonrpc", "2.0"}, {"id", 1002}, {"method", "play"}, {"params", stroke}});
     rig.send(me, cancel);
@@ -356,7 +356,7 @@ TEST_CASE("what is too large by its durations and options is refused before it i
                            {"start", "armed"},
                            {"options", {{"duration", 600}, {"algorithm", "continuous"}}}})["stroke"];
     rig.ok(c, "cancel", {{"all", true}});
-    CHECK(rig.end_of(c, n)["state"] == "cancelled");
+    CHECK(rig.find_end(c, n)["state"] == "cancelled");
 }
 
 TEST_CASE("a client that goes: its played strokes play on, also those that were not planned yet")
@@ -378,7 +378,7 @@ TEST_CASE("a client that goes: its played strokes play on, also those that were 
             finished += m.contains("method") && m["params"]["state"] == "finished" ? 1 : 0;
         return finished == 6;
     });
-    CHECK(watcher.box->end_of(live).has_value());
+    CHECK(watcher.box->find_end(live).has_value());
     CHECK(rig.ok(watcher, "status")["clients"] == 1);
 }
 
@@ -431,7 +431,7 @@ TEST_CASE("max_stroke_s holds for live strokes, too, however many points come")
     const json point{
         {"jsonrpc", "2.0"}, {"method", "to"}, {"params", {{"stroke", n}, {"x_mm", 1}, {"y_mm", 1}}}};
     rig.send(c, point);
-    const json end = rig.end_of(c, n);
+    const json end = rig.find_end(c, n);
     CHECK(end["state"] == "interrupted");
     CHECK(end["reason"] == "limit: it has lasted as long as it may");
     CHECK(end["frames"] >= 9600);
@@ -451,11 +451,11 @@ TEST_CASE("smooth_s: an end waits until the last point is reached")
     const json n = rig.ok(c, "begin", {{"timeout_s", 86400}, {"smooth_s", 0.5}})["stroke"];
     rig.ok(c, "to", {{"stroke", n}, {"x_mm", 1}, {"y_mm", 1}});
     // It has begun, and periods have gone by since.
-    rig.until([&] { return !c.box->of_stroke(n).empty(); });
-    rig.end_of(c, rig.ok(c, "drive", {{"tactor", 8}, {"duration_s", 0.05}})["stroke"]);
+    rig.until([&] { return !c.box->stroke_messages(n).empty(); });
+    rig.find_end(c, rig.ok(c, "drive", {{"tactor", 8}, {"duration_s", 0.05}})["stroke"]);
     rig.ok(c, "to", {{"stroke", n}, {"x_mm", 39}, {"y_mm", 39}});
     rig.ok(c, "end", {{"stroke", n}});
-    const json end = rig.end_of(c, n);
+    const json end = rig.find_end(c, n);
     CHECK(end["state"] == "finished");
     CHECK(end["frames"] >= 24'000);
 }
@@ -503,7 +503,7 @@ TEST_CASE("who sends no more and waits for the end of a stroke takes no place, a
         o.limits.kept_clients = 0;
     });
     std::vector<server::client_number> let_go;
-    rig.all->on_told_all([&](server::client_number n) { let_go.push_back(n); });
+    rig.all->on_all_sent([&](server::client_number n) { let_go.push_back(n); });
     rig.plug();
     rig.start();
     std::vector<service_rig::connected> gone;
@@ -516,7 +516,7 @@ TEST_CASE("who sends no more and waits for the end of a stroke takes no place, a
     CHECK(let_go == std::vector{gone.front().number});
     const auto last = rig.client();
     rig.ok(last, "stop");
-    CHECK(rig.end_of(gone.back(), 3)["state"] == "cancelled");
+    CHECK(rig.find_end(gone.back(), 3)["state"] == "cancelled");
 }
 
 } // namespace service_test

@@ -66,13 +66,13 @@ TEST_CASE("no card at the start, then one, then another in its place")
     rig.plug();
     rig.until([&] { return rig.all->output().state() == server::stream_state::running; });
     CHECK(rig.ok(c, "hello")["stream"]["format"] == "s32");
-    CHECK(rig.end_of(c, rig.ok(c, "play", brief)["stroke"])["state"] == "finished");
+    CHECK(rig.find_end(c, rig.ok(c, "play", brief)["stroke"])["state"] == "finished");
 
     const json played = rig.ok(c, "play", armed)["stroke"];
     const json live = rig.ok(c, "begin", {{"timeout_s", 86400}})["stroke"];
     rig.unplug();
     for (const json& n : {played, live}) {
-        const json end = rig.end_of(c, n);
+        const json end = rig.find_end(c, n);
         CHECK(end["state"] == "interrupted");
         CHECK(end["reason"] != "");
     }
@@ -82,11 +82,11 @@ TEST_CASE("no card at the start, then one, then another in its place")
     rig.until([&] { return rig.all->output().state() == server::stream_state::running; });
     const json again = rig.ok(c, "play", brief)["stroke"];
     CHECK(again.get<int>() > live.get<int>());
-    CHECK(rig.end_of(c, again)["state"] == "finished");
+    CHECK(rig.find_end(c, again)["state"] == "finished");
     const auto told = c.box->streams();
     REQUIRE(told.size() >= 3);
     CHECK(told.back() == "running");
-    CHECK(c.box->of_stroke(played).size() == 1);
+    CHECK(c.box->stroke_messages(played).size() == 1);
 }
 
 TEST_CASE("at the end each number has had exactly one end, whoever is still there")
@@ -112,7 +112,7 @@ TEST_CASE("at the end each number has had exactly one end, whoever is still ther
     }
     for (const json& n : numbers) {
         int ends = 0;
-        for (const json& m : c.box->of_stroke(n)) {
+        for (const json& m : c.box->stroke_messages(n)) {
             ends += m["state"] != "started" ? 1 : 0;
             CHECK((m["state"] != "cancelled" || m["reason"] == "stopped by the owner"));
         }
@@ -129,7 +129,7 @@ TEST_CASE("an idle stream is closed, and opened by the next stroke")
     rig.start();
     const auto c = rig.client();
     rig.sleep_and_plug();
-    CHECK(rig.end_of(c, rig.ok(c, "drive", {{"tactor", 0}, {"duration_s", 0.1}})["stroke"])["state"] ==
+    CHECK(rig.find_end(c, rig.ok(c, "drive", {{"tactor", 0}, {"duration_s", 0.1}})["stroke"])["state"] ==
           "finished");
 }
 
@@ -258,15 +258,15 @@ TEST_CASE("stop reaches what waits for an idle stream to start")
         CAPTURE(asked[static_cast<std::size_t>(id - 1000)].first);
         rig.until([&] { return c.box->reply(id).has_value(); });
         const json n = (*c.box->reply(id))["result"]["stroke"];
-        const json end = rig.end_of(c, n);
+        const json end = rig.find_end(c, n);
         CHECK(end["state"] == "cancelled");
         CHECK(end["reason"] == "cancelled by its client");
         CHECK(end["frames"] == 0);
-        CHECK(c.box->of_stroke(n).size() == 1);
+        CHECK(c.box->stroke_messages(n).size() == 1);
         CHECK(rig.code(c, "to", {{"stroke", n}, {"x_mm", 1}, {"y_mm", 1}}) == -32002);
     }
     // A request after the stop begins.
-    CHECK(rig.end_of(c, rig.ok(c, "play", brief)["stroke"])["state"] == "finished");
+    CHECK(rig.find_end(c, rig.ok(c, "play", brief)["stroke"])["state"] == "finished");
     CHECK(rig.ok(c, "status")["strokes"].empty());
 }
 

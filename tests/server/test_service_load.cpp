@@ -39,12 +39,12 @@ struct asker {
              {"options", {{"algorithm", "continuous"}, {"duration", 0.1}, {"level_dbfs", -40}}}});
         began.push_back(asked);
     }
-    json stroke_of(int request) const { return (*link.box->reply(request))["result"]["stroke"]; }
+    json stroke_number(int request) const { return (*link.box->reply(request))["result"]["stroke"]; }
     bool replied() const { return link.box->reply(asked).has_value(); }
     bool settled() const
     {
         return replied() && std::all_of(began.begin(), began.end(), [&](int request) {
-                   return link.box->reply(request) && link.box->end_of(stroke_of(request));
+                   return link.box->reply(request) && link.box->find_end(stroke_number(request));
                });
     }
 };
@@ -73,8 +73,8 @@ TEST_CASE("a hundred clients at once: each request has one reply, each stroke on
             rig.until([&] { return a.replied(); });
             for (int k = 0; k < points; ++k)
                 a.ask(rig, "to",
-                      {{"stroke", a.stroke_of(a.began.back())}, {"x_mm", k % 41}, {"y_mm", 7 * k % 41}});
-            a.ask(rig, "end", {{"stroke", a.stroke_of(a.began.back())}});
+                      {{"stroke", a.stroke_number(a.began.back())}, {"x_mm", k % 41}, {"y_mm", 7 * k % 41}});
+            a.ask(rig, "end", {{"stroke", a.stroke_number(a.began.back())}});
         }
         auto next = all.begin();
         rig.until([&] {

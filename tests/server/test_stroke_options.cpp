@@ -38,7 +38,7 @@ planning palm()
     return p;
 }
 
-std::string what_of(const json& params)
+std::string fault_what(const json& params)
 {
     const planning p = palm();
     return fault_from([&] { make_planned(p, layout(p.tactors), params); }).what;
@@ -101,7 +101,7 @@ TEST_CASE("options are put over the owner's, each with its type")
 }
 
 // Returns the schema of one option.
-json schema_of(const options::option& o)
+json option_schema(const options::option& o)
 {
     using options::kind;
     if (o.what == kind::choice)
@@ -127,7 +127,7 @@ TEST_CASE("the schema has each option of a client with its type, values and boun
     json wanted = json::object();
     for (const options::option& o : options::all())
         if ((o.where & options::by_client) != 0)
-            wanted[std::string(o.name)] = schema_of(o);
+            wanted[std::string(o.name)] = option_schema(o);
     CHECK(said == wanted);
 }
 
@@ -137,7 +137,7 @@ TEST_CASE("what is refused names its parameter")
     const auto option = [&](const char* name, const json& value) {
         json p = path;
         p["options"] = {{name, value}};
-        return what_of(p);
+        return fault_what(p);
     };
     for (const char* name : {"soa", "burst", "slope", "carrier", "ramp", "level_dbfs", "sl", "duration"}) {
         CHECK(option(name, "1") == std::string("options.") + name);
@@ -156,9 +156,9 @@ TEST_CASE("what is refused names its parameter")
     CHECK(option("envelope", "tukey:2") == "options.envelope");
     CHECK(option("envelope", "linear:0.5") == "options.envelope");
     CHECK(option("intensity_scale", "sl") == "options.intensity_scale");
-    CHECK(what_of({{"path", "M 0 0 L 400 0"}}) == "path");
-    CHECK(what_of({{"toml", "stroke"}}) == "toml");
-    CHECK(what_of({{"csv", "t_s,x_mm,y_mm\n0,0,0\n"}}) == "csv");
+    CHECK(fault_what({{"path", "M 0 0 L 400 0"}}) == "path");
+    CHECK(fault_what({{"toml", "stroke"}}) == "toml");
+    CHECK(fault_what({{"csv", "t_s,x_mm,y_mm\n0,0,0\n"}}) == "csv");
 }
 
 TEST_CASE("bursts are moved for the low-speed observer where it is asked for")
@@ -185,17 +185,17 @@ TEST_CASE("bursts are moved for the low-speed observer where it is asked for")
     p.owner.compensate = false;
 
     const auto refused = [&](const char* name, const json& value) {
-        return what_of({{"stroke", "park2016-3"}, {"options", {{name, value}}}});
+        return fault_what({{"stroke", "park2016-3"}, {"options", {{name, value}}}});
     };
     CHECK(refused("compensate", "lowspeed") == "options.compensate");
     CHECK(refused("compensate", true) == "options.compensate");
     CHECK(refused("sigma_mm", 8) == "options.sigma_mm");
     CHECK(refused("sigma_v_mm_s", 8) == "options.sigma_v_mm_s");
     params["options"]["algorithm"] = "continuous";
-    CHECK(what_of(params) == "options.algorithm");
+    CHECK(fault_what(params) == "options.algorithm");
     params["options"]["algorithm"] = "park2016";
     params["options"]["sigma_mm"] = 1e6;
-    CHECK(what_of(params) == "options.sigma_mm");
+    CHECK(fault_what(params) == "options.sigma_mm");
     CHECK(fault_from([&] {
               with_options({}, {{"compensate", "low-speed"}}, options_for::live);
           }).what == "options.compensate");
@@ -203,12 +203,12 @@ TEST_CASE("bursts are moved for the low-speed observer where it is asked for")
 
 TEST_CASE("a hint names what a request can say")
 {
-    const auto hint_of = [p = palm()](const json& params) {
+    const auto fault_hint = [p = palm()](const json& params) {
         return fault_from([&] { make_planned(p, layout(p.tactors), params); }).hint;
     };
-    CHECK(hint_of({{"toml", "[array]\npreset = \"palm-3x3\"\n"}}) ==
+    CHECK(fault_hint({{"toml", "[array]\npreset = \"palm-3x3\"\n"}}) ==
           "give it as an array or a configuration of the server");
-    CHECK(hint_of({{"stroke", "wave-2x4"}}) ==
+    CHECK(fault_hint({{"stroke", "wave-2x4"}}) ==
           "palm-2x4 is the one it is drawn for, options.outside clamp plays "
           "the nearest point of the array");
 }
@@ -223,8 +223,8 @@ TEST_CASE("faces are those that are asked for, and go with inverse-distance alon
     const planned made = make_planned(p, l, with_faces("inverse-distance"));
     const plan_options o{.faces = faces_kind::nearest};
     CHECK(made.plans.front().plan == make_plan(p.tactors, preset_stroke("park2016-1"), o));
-    CHECK(what_of(with_faces("log")) == "options.faces");
-    CHECK(what_of({{"stroke", "park2016-1"}, {"options", {{"faces", "neerest"}}}}) == "options.faces");
+    CHECK(fault_what(with_faces("log")) == "options.faces");
+    CHECK(fault_what({{"stroke", "park2016-1"}, {"options", {{"faces", "neerest"}}}}) == "options.faces");
     const auto f = fault_from([&] { make_planned(p, l, with_faces("log")); });
     CHECK(f.hint == "use options.faces delaunay or options.phantom inverse-distance");
     CHECK(with_options({}, {{"faces", "nearest"}}, options_for::live).plan.faces == faces_kind::nearest);

@@ -58,7 +58,7 @@ plot::canvas draw_analysis(const study::analysis& a, const picture_options& o)
     for (const study::run_analysis& r : a.runs)
         if (r.n != 0)
             f.panels.push_back(make_panel(r));
-    return plot::draw_bars_of(f);
+    return plot::draw_bar_figure(f);
 }
 
 } // namespace tactor::cli

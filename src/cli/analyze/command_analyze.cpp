@@ -64,7 +64,7 @@ command add_analyze(CLI::App& app)
                       "format of the output; tsv has a line for each trial, for R (default text)");
     add_text(*c, "-o,--output", "FILE.svg|.png|.pdf",
              "also draw means with standard errors, and each participant", [o](const std::string& t) {
-                 plot::format_of(t);
+                 plot::find_format(t);
                  o->picture.file = t;
              });
     add_picture_options(*c, o->picture, "170, the width of a page");

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "cli/check/channel_file.hpp"
+#include "cli/check/walk_session.hpp"
 
 #include <cerrno>
 #include <cstring>
@@ -23,8 +23,8 @@ error already_there(const std::string& name)
             "choose another name: it is not overwritten"};
 }
 
-// How a file is named in another one. Where that cannot be told, as it is named here.
-std::string named_in(const std::string& name, const std::string& file)
+// Returns the name of a file as another file must write it; the name used here if that cannot be found.
+std::string name_in(const std::string& name, const std::string& file)
 {
     std::error_code failed;
     const fs::path whole = fs::absolute(file, failed);
@@ -35,12 +35,12 @@ std::string named_in(const std::string& name, const std::string& file)
     return failed ? whole.string() : near.string();
 }
 
-// Takes the array from where it is and says nothing but the channels.
+// Returns the text of an array file that takes the array from its file or preset and changes channels only.
 std::string overlay(const std::string& name, const environment& e, const std::vector<unsigned>& channels)
 {
     std::string base = fmt::format("preset = {}", detail::toml_string(e.tactors.name));
     if (!e.array_file.empty())
-        base = fmt::format("file = {}", detail::toml_string(named_in(name, e.array_file)));
+        base = fmt::format("file = {}", detail::toml_string(name_in(name, e.array_file)));
     std::string s =
         fmt::format("# Channels as felt on a walk (tactor check --walk).\n[array]\nname = {}\n{}\n",
                     detail::toml_string(e.tactors.name), base);
@@ -50,7 +50,7 @@ std::string overlay(const std::string& name, const environment& e, const std::ve
     return s;
 }
 
-// Not output_file, which replaces what is there.
+// Writes a new file. output_file would replace an existing one.
 void write_new(const std::string& name, const std::string& text)
 {
     const int fd = ::open(name.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
@@ -75,7 +75,7 @@ void write_new(const std::string& name, const std::string& text)
     throw error(error_kind::runtime, name, std::strerror(code));
 }
 
-bool says(const std::string& name, const std::vector<unsigned>& channels)
+bool has_channels(const std::string& name, const std::vector<unsigned>& channels)
 {
     const setup s = load_setup(name);
     if (!s.array || s.array->tactors.size() != channels.size())
@@ -86,13 +86,14 @@ bool says(const std::string& name, const std::vector<unsigned>& channels)
     return true;
 }
 
-// False when the file does not say what it should from there, as one that names other files does.
+// Writes a file and reads it back. Returns false, and removes it, if its channels are not these, e.g. because
+// it names other files.
 bool try_text(const std::string& name, const std::string& text, const std::vector<unsigned>& channels)
 {
     write_new(name, text);
     bool good = false;
     try {
-        good = says(name, channels);
+        good = has_channels(name, channels);
     } catch (const error&) {
         good = false;
     }
@@ -121,7 +122,7 @@ void write_channel_file(const std::string& name, const environment& e, const std
         try {
             text = detail::with_channels(e.array_file, channels);
         } catch (const error&) {
-            text.clear(); // the overlay says it
+            text.clear(); // the overlay has them
         }
         if (!text.empty() && try_text(name, text, channels))
             return;

@@ -15,10 +15,10 @@
 namespace tactor::cli {
 namespace {
 
-// Tactors are discs of 5 mm and more on a body part: what is far from that was not meant in mm.
+// Tactors are discs of 5 mm and more on a body part: other distances are probably not in mm.
 constexpr double closest_mm = 4.0;
 constexpr double widest_mm = 2000.0;
-// No hand or forearm is so wide: a trunk, or a leg.
+// A trunk, or a leg: no hand or forearm is so wide.
 constexpr double trunk_mm = 150.0;
 
 struct spread {
@@ -30,7 +30,7 @@ struct spread {
         least = std::min(least, v);
         most = std::max(most, v);
     }
-    // A difference that nobody measures is none.
+    // Returns the range; a single value if the difference is too small to measure.
     std::string text(const char* unit) const
     {
         return most - least < 0.05 ? fmt::format("{:.4g} {}", least, unit)
@@ -38,7 +38,7 @@ struct spread {
     }
 };
 
-// Distances from each tactor to its nearest neighbour, by a sweep from left to right.
+// Returns the distances from tactors to their nearest neighbours, by a sweep from left to right.
 spread neighbours(const array& a)
 {
     std::vector<point> p;
@@ -113,10 +113,10 @@ finding check_channels(const render_options& r, const array& a)
     return fine("channels", found);
 }
 
-// At which thresholds count that are known at several frequencies.
+// Frequency of the thresholds that count, if they are known at several.
 constexpr double usual_hz = 250.0;
 
-// Peaks of intensity 1, dBFS.
+// Returns the peaks of intensity 1, dBFS.
 spread peaks(const render_options& r, const array& a)
 {
     spread s;
@@ -125,7 +125,7 @@ spread peaks(const render_options& r, const array& a)
     return s;
 }
 
-// Where the beginnings of bursts are made stronger, up to what a tactor may have.
+// Returns a note on tactors with stronger beginnings of bursts, up to their limit.
 std::string raised(const array& a)
 {
     spread s;
@@ -139,7 +139,7 @@ std::string raised(const array& a)
 finding check_levels(const render_options& r, const array& a, const plan_options& p)
 {
     try {
-        // What play would refuse, in its words. The carrier is looked at by itself.
+        // Throws the error with which play would refuse. The carrier has a separate check.
         score(a, session::walk_plans(a, std::min(p.carrier_hz, r.rate / 4.0)), r);
     } catch (const error& e) {
         return failure("levels", e);
@@ -162,9 +162,9 @@ finding check_levels(const render_options& r, const array& a, const plan_options
     return fine("levels", found);
 }
 
-// Where the levels are right, thresholds may still be those of another carrier.
-finding check_carrier_of_thresholds(finding levels, const environment& e, const render_options& r,
-                                    const plan_options& p)
+// Warns of thresholds that were measured at another carrier, if the levels are right.
+finding check_threshold_carrier(finding levels, const environment& e, const render_options& r,
+                                const plan_options& p)
 {
     plan usual;
     usual.carrier_hz = p.carrier_hz;
@@ -176,13 +176,13 @@ finding check_carrier_of_thresholds(finding levels, const environment& e, const 
                                    "--array FILE with thresholds at this carrier, or another --carrier");
 }
 
-// The defaults of what a file or an option has made weaker.
+// Returns the defaults of limits that a file or an option made weaker.
 std::vector<std::string> lifted(const drive_limits& l, std::size_t tactors)
 {
     const drive_limits usual;
     std::vector<std::string> all;
-    const double of_all = 10.0 * std::log10(static_cast<double>(tactors)); // more than that nobody asks for
-    if (std::min(l.power_dbfs, of_all) > usual.power_dbfs)
+    const double all_full = 10.0 * std::log10(static_cast<double>(tactors)); // all tactors at full scale
+    if (std::min(l.power_dbfs, all_full) > usual.power_dbfs)
         all.push_back(fmt::format("power_dbfs = {:.3g}", usual.power_dbfs));
     if (l.max_drive_s > usual.max_drive_s || l.max_drive_s / l.window_s > usual.max_drive_s / usual.window_s)
         all.push_back(
@@ -215,7 +215,7 @@ std::vector<finding> check_array(const settings& s, const environment& e, const 
 {
     const render_options r = session::settle_render(s, e);
     std::vector<finding> all{check_places(e.tactors), check_channels(r, e.tactors),
-                             check_carrier_of_thresholds(check_levels(r, e.tactors, s.plan), e, r, s.plan)};
+                             check_threshold_carrier(check_levels(r, e.tactors, s.plan), e, r, s.plan)};
     for (finding& f : check_bursts(s.plan, e.tactors, r.rate))
         all.push_back(std::move(f));
     all.push_back(check_limits(l, e.tactors.tactors.size()));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Whether the actuators can make the bursts that are asked for.
+// Checks of actuators against the bursts.
 #include <algorithm>
 #include <map>
 
@@ -17,12 +17,12 @@ namespace {
 // 5 Hz, an ERM about 116 ms and direct current instead of a carrier.
 constexpr double lra_rise_s = 0.020;
 constexpr double erm_rise_s = 0.116;
-// What is felt as vibration, and best: Pacinian corpuscles.
+// Range in which vibration is felt well: Pacinian corpuscles.
 constexpr double lowest_hz = 40.0;
 constexpr double highest_hz = 800.0;
 constexpr double fewest_cycles = 5.0;
 
-std::vector<std::size_t> of_kind(const array& a, actuator_kind kind)
+std::vector<std::size_t> select_kind(const array& a, actuator_kind kind)
 {
     return tactors_where(a, [kind](const tactor_spec& t) { return t.actuator == kind; });
 }
@@ -51,13 +51,13 @@ void check_actuators(const array& a, double carrier_hz, double burst_s, bool has
     const std::size_t before = into.size();
     const std::string burst =
         has_bursts ? fmt::format("bursts of {:.3g} ms", burst_s * 1e3) : std::string("a moving phantom");
-    if (const auto erm = of_kind(a, actuator_kind::erm); !erm.empty())
+    if (const auto erm = select_kind(a, actuator_kind::erm); !erm.empty())
         into.push_back(warning("actuators",
                                fmt::format("{}: an ERM needs about {:.0f} ms to start, too long for {}, and "
                                            "its frequency follows its voltage, not the carrier of {:.4g} Hz",
                                            who(a, erm), erm_rise_s * 1e3, burst, carrier_hz),
                                "use piezo or voice coil actuators"));
-    if (const auto lra = of_kind(a, actuator_kind::lra); !lra.empty())
+    if (const auto lra = select_kind(a, actuator_kind::lra); !lra.empty())
         into.push_back(warning(
             "actuators",
             fmt::format("{}: an LRA needs over {:.0f} ms to start, much of {}, and works only within about 5 "
@@ -76,7 +76,7 @@ void check_actuators(const array& a, double carrier_hz, double burst_s, bool has
             "make bursts longer with --burst, or use faster actuators"));
     if (into.size() != before)
         return;
-    const bool unknown = !of_kind(a, actuator_kind::unknown).empty();
+    const bool unknown = !select_kind(a, actuator_kind::unknown).empty();
     into.push_back(fine("actuators", kinds(a),
                         unknown ? fmt::format("say actuator = \"piezo\", \"voice-coil\", \"lra\" or \"erm\" "
                                               "under [array]: {} need one that starts within a few ms",
@@ -84,7 +84,7 @@ void check_actuators(const array& a, double carrier_hz, double burst_s, bool has
                                 : ""));
 }
 
-// Noise and recordings have no carrier that cycles could be counted of.
+// Names noise or a recording, which have no carrier, so that there are no cycles to count.
 finding name_sound(const plan_options& p, double burst_s, bool has_bursts)
 {
     const std::string sound = plot::describe_sound({.carrier_hz = p.carrier_hz, .wave = p.wave, .am = p.am});

@@ -14,20 +14,20 @@ namespace tactor::cli {
 
 namespace {
 
-finding told_lost(const alsa_options& device, const std::string& lost)
+finding refuse_lost_tactor(const alsa_options& device, const std::string& lost)
 {
     return failure("device", {error_kind::not_available, fmt::format("PCM \"{}\"", device.pcm), lost,
                               "give each channel one of the device's, at 1, where the PCM is defined "
                               "(ttable, bindings), or play on the card itself: -D hw:CARD=NAME"});
 }
 
-finding told_open(const alsa_options& device, const session::stream_options& o, const environment& e,
-                  bool named)
+finding check_open(const alsa_options& device, const session::stream_options& o, const environment& e,
+                   bool named)
 {
     const std::string server = session::settle_server(device.pcm);
     const stream_setup made = session::open_device(device)->setup();
     if (const std::string lost = lost_tactor(e.tactors, made.wiring); !lost.empty())
-        return told_lost(device, lost);
+        return refuse_lost_tactor(device, lost);
     const std::string found = describe(made) + (server.empty() ? "" : "; " + session::server_note(server));
     if (!named)
         return warning("device", "none is named, so play goes to " + found,
@@ -79,10 +79,10 @@ finding check_device(const alsa_options& device, const session::stream_options& 
                              fmt::format("{}: not opened, for that would empty its file or start its command",
                                          device.pcm),
                              "play opens it: is it meant?")
-                   : told_lost(device, lost);
+                   : refuse_lost_tactor(device, lost);
     }
     try {
-        return told_open(device, o, e, named);
+        return check_open(device, o, e, named);
     } catch (const error& failed) {
         return failure("device", failed);
     }

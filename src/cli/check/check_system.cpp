@@ -12,18 +12,18 @@
 namespace tactor::cli {
 namespace {
 
-bool among(const std::vector<std::string>& names, const std::string& name)
+bool contains(const std::vector<std::string>& names, const std::string& name)
 {
     return std::find(names.begin(), names.end(), name) != names.end();
 }
 
-// How to become a member: of a group that was joined since, by a new login only.
+// Returns the hint for becoming a member. A group that was joined since the login needs a new login.
 std::string how_to_join(const system_facts& f, const std::string& group)
 {
     if (group == "root")
         return "the device is root's alone: install the udev rules (tactor-raspberry-pi(7) says how), or run "
                "as root";
-    if (among(f.joined, group) && !among(f.own.groups, group))
+    if (contains(f.joined, group) && !contains(f.own.groups, group))
         return fmt::format("{} is in the group {} already: log out and in again", f.own.user, group);
     return fmt::format("sudo usermod -aG {} $USER, then log out and in again", group);
 }
@@ -41,9 +41,9 @@ finding check_nodes(const system_facts& f, const char* check, const std::vector<
                     const char* usual_group, bool needed)
 {
     if (nodes.empty())
-        return fine(check, fmt::format("no device to open{}", f.own.root ? "; you are root" : ""),
-                    f.own.root || among(f.own.groups, usual_group) || !needed ? ""
-                                                                              : how_to_join(f, usual_group));
+        return fine(
+            check, fmt::format("no device to open{}", f.own.root ? "; you are root" : ""),
+            f.own.root || contains(f.own.groups, usual_group) || !needed ? "" : how_to_join(f, usual_group));
     for (const device_node& n : nodes) {
         if (n.may_open)
             continue;
@@ -135,7 +135,7 @@ finding check_servers(const system_facts& f, const system_needs& n)
                        std::any_of(n.holders.begin(), n.holders.end(), is_server)
                            ? std::string(rules)
                            : fmt::format("stop it: kill {}", n.holders.front().pid));
-    // JACK takes the card that it was told to, and no other.
+    // JACK takes only the card that it is configured for.
     std::vector<process_info> desktop;
     std::copy_if(f.servers.begin(), f.servers.end(), std::back_inserter(desktop),
                  [](const process_info& p) { return p.program.rfind("jack", 0) != 0; });
@@ -150,7 +150,7 @@ finding check_servers(const system_facts& f, const system_needs& n)
         rules);
 }
 
-// Each that runs, and one where none does.
+// Returns a finding for each running service, or one if none runs.
 std::vector<finding> check_services(const system_facts& f)
 {
     std::vector<finding> all;
@@ -182,8 +182,8 @@ std::vector<finding> check_services(const system_facts& f)
     return all;
 }
 
-// Raspberry Pi kernels may leave an output as it was when its program has ended. That matters where nobody is
-// left to switch it off: the holder, killed together with the player.
+// Checks the level of outputs after their program ended: Raspberry Pi kernels may keep it. That matters if
+// the holder is killed together with the player, so that no process switches the amplifier off.
 std::vector<finding> check_release(const system_facts& f, const system_needs& n)
 {
     if (!n.amplifier)

@@ -6,7 +6,6 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "cli/check/channel_file.hpp"
 #include "cli/check/finding.hpp"
 #include "cli/check/system_facts.hpp"
 #include "cli/check/walk_session.hpp"
@@ -29,7 +28,7 @@ struct check_options {
     bool json() const { return format == "json"; }
 };
 
-// Adds what needs no array, so that a file that cannot be read hides nothing else.
+// Adds the checks that need no array, so that they run even if a file cannot be read.
 void check_machine(const setup& config, const alsa_options& device, const session::stream_options& o,
                    std::vector<finding>& all)
 {
@@ -116,7 +115,7 @@ int run_walk(const settings& s, const check_options& o, const environment& e, co
     }
     const session::walk_verdict v = session::judge(e.tactors, w.felt);
     if (o.json())
-        fmt::print("{}", check_json(all, walk_told{e.tactors, w.felt, v}));
+        fmt::print("{}", check_json(all, walk_outcome{e.tactors, w.felt, v}));
     conclude(o, e, v);
     return status_ok;
 }
@@ -127,7 +126,7 @@ int complain(const std::vector<finding>& all)
         std::find_if(all.begin(), all.end(), [](const auto& f) { return f.how == level::error; });
     say(stderr, "tactor: {}: {}{}\n", first->check, first->found,
         first->cure.empty() ? "" : fmt::format(" ({})", first->cure));
-    return status_of(all);
+    return worst_status(all);
 }
 
 void check_usage(const settings& s, const check_options& o)
@@ -157,13 +156,13 @@ int check(settings& s, const check_options& o)
         all = {failure("array", x)};
         check_machine({}, {.pcm = s.pcm.value_or("null")}, s.stream, all);
     }
-    const bool walks = o.walk && status_of(all) == status_ok;
+    const bool walks = o.walk && worst_status(all) == status_ok;
     if (!o.json())
         say(stdout, "{}", check_text(all, o.walk));
     else if (!walks)
         fmt::print("{}", check_json(all, {}));
     flush_output();
-    if (status_of(all) != status_ok)
+    if (worst_status(all) != status_ok)
         return complain(all);
     return walks ? run_walk(s, o, *e, all) : status_ok;
 }

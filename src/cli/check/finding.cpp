@@ -40,7 +40,7 @@ json to_json(const std::vector<finding>& all)
     return list;
 }
 
-json to_json(const walk_told& w)
+json to_json(const walk_outcome& w)
 {
     const session::walk_answers& felt = w.felt;
     const session::walk_verdict& v = w.verdict;
@@ -75,7 +75,7 @@ std::string findings_text(const std::vector<finding>& all)
     return s;
 }
 
-int status_of(const std::vector<finding>& all)
+int worst_status(const std::vector<finding>& all)
 {
     int status = status_ok;
     for (const finding& f : all) {
@@ -99,7 +99,7 @@ std::string check_text(const std::vector<finding>& all, bool brief)
     return fmt::format("{}{}{}\n", findings_text(shown), shown.empty() ? "" : "\n", summary(all));
 }
 
-std::string check_json(const std::vector<finding>& all, const std::optional<walk_told>& walked)
+std::string check_json(const std::vector<finding>& all, const std::optional<walk_outcome>& walked)
 {
     json told{{"schema", "tactor-check/1"},
               {"errors", count(all, level::error)},

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// Findings of `check`, what it prints, and its checks of array, device and lines.
+/// Findings of `check`, their output, and the checks of array, device and lines.
 #pragma once
 
 #include <cstddef>
@@ -25,11 +25,11 @@ namespace tactor::cli {
 enum class level { ok, warning, error };
 
 struct finding {
-    std::string check; ///< what was looked at
+    std::string check; ///< name of the check
     level how = level::ok;
     std::string found;
     std::string cure = {};                 ///< what to do; empty: nothing
-    error_kind kind = error_kind::runtime; ///< of an error, for the exit status
+    error_kind kind = error_kind::runtime; ///< kind of an error, for the exit status
 };
 
 inline finding fine(std::string check, std::string found, std::string cure = {})
@@ -52,34 +52,34 @@ inline finding failure(std::string check, const error& of_library)
 
 std::string_view to_string(level l);
 
-/// A line or two for each, at most 80 columns wide.
+/// Returns a line or two for each finding, at most 80 columns wide.
 std::string findings_text(const std::vector<finding>& all);
 
-/// The exit status: that of bad input before that of a device before any other; 0 without an error.
-int status_of(const std::vector<finding>& all);
+/// Returns the exit status: that of bad input before that of a device before any other; 0 without an error.
+int worst_status(const std::vector<finding>& all);
 
-/// What a walk with answers came to.
-struct walk_told {
+/// Outcome of a walk with answers.
+struct walk_outcome {
     const array& tactors;
     const session::walk_answers& felt;
     const session::walk_verdict& verdict;
 };
 
-/// For people. `brief`: a walk follows, which leaves out what is as it should be.
+/// Returns the findings for people. `brief`: leaves out the good ones, because a walk follows.
 std::string check_text(const std::vector<finding>& all, bool brief);
 
-/// One object of schema tactor-check/1.
-std::string check_json(const std::vector<finding>& all, const std::optional<walk_told>& walked);
+/// Returns an object of schema tactor-check/1.
+std::string check_json(const std::vector<finding>& all, const std::optional<walk_outcome>& walked);
 
 /// Finds a line, or throws what find_gpio_line() throws.
 using line_finder = std::function<gpio_line_place(const gpio_line_name&)>;
 
-/// Whether each line is there and free, and where the array is `felt`, whether there is one for its
-/// amplifier. None is requested or driven.
+/// Checks that each line is there and free, and, if the array is `felt`, that its amplifier has one. Requests
+/// and drives none.
 std::vector<finding> check_lines(const setup& config, bool felt, const line_finder& find);
 
-/// Opens and closes it, but for one that writes a file; nothing sounds. `named`: whether anything names it,
-/// else it is the default.
+/// Opens and closes the device, unless it writes a file; plays nothing. `named`: false for the default
+/// device.
 finding check_device(const alsa_options& device, const session::stream_options& o, const environment& e,
                      bool named);
 
@@ -94,10 +94,10 @@ std::vector<std::size_t> tactors_where(const array& a, F&& take)
     return all;
 }
 
-/// Places, channels, levels, actuators, bursts, limits. Looks at values only.
+/// Checks places, channels, levels, actuators, bursts and limits. Looks at values only.
 std::vector<finding> check_array(const settings& s, const environment& e, const drive_limits& l);
 
-/// Actuators against burst length and carrier: the part of check_array() that knows actuators. `rate`: Hz.
+/// Checks actuators against burst length and carrier, as a part of check_array(). `rate`: Hz.
 std::vector<finding> check_bursts(const plan_options& p, const array& a, unsigned rate);
 
 } // namespace tactor::cli

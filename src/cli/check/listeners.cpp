@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Files under /proc: processes, and where running services of this tool can be reached.
+// Files under /proc: processes, and the endpoints of running services of this tool.
 #include "cli/check/system_facts.hpp"
 
 #include <algorithm>
@@ -24,14 +24,14 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Endpoints of all sockets that wait for somebody, by inode.
+// Endpoints of all listening sockets, by inode.
 using by_inode = std::map<std::string, endpoint>;
 
-// The first ten words of each line, which are all that is asked for.
-std::vector<std::array<std::string, 10>> rows_of(const fs::path& file)
+// Returns the first ten words of each line.
+std::vector<std::array<std::string, 10>> read_rows(const fs::path& file)
 {
     std::vector<std::array<std::string, 10>> rows;
-    std::istringstream lines(text_of(file));
+    std::istringstream lines(read_trimmed(file));
     for (std::string line; std::getline(lines, line);) {
         std::istringstream words(line);
         for (std::string& word : rows.emplace_back())
@@ -40,43 +40,43 @@ std::vector<std::array<std::string, 10>> rows_of(const fs::path& file)
     return rows;
 }
 
-// "sl local_address rem_address st ... inode": the tenth of a line.
+// Adds sockets of lines "sl local_address rem_address st ... inode"; the inode is the tenth word.
 void read_internet(const fs::path& file, std::string_view waiting, const char* before, by_inode& all)
 {
-    for (const auto& row : rows_of(file))
-        if (endpoint e = endpoint_of(row[1]); row[3] == waiting && !e.at.empty()) {
+    for (const auto& row : read_rows(file))
+        if (endpoint e = parse_endpoint(row[1]); row[3] == waiting && !e.at.empty()) {
             e.at.insert(0, before);
             all[row[9]] = std::move(e);
         }
 }
 
-// "Num RefCount Protocol Flags Type St Inode Path".
+// Adds listening sockets of lines "Num RefCount Protocol Flags Type St Inode Path".
 void read_unix(const fs::path& file, by_inode& all)
 {
     constexpr unsigned accepts = 0x10000;
-    for (const auto& row : rows_of(file))
+    for (const auto& row : read_rows(file))
         if ((detail::number_in<unsigned>(row[3], 16).value_or(0) & accepts) != 0 && !row[7].empty())
             all[row[6]] = {row[7], false};
 }
 
 bool serves(const fs::path& process)
 {
-    // The arguments, each ended by a zero.
-    const std::string arguments = text_of(process / "cmdline");
+    // Each argument ends with a zero.
+    const std::string arguments = read_trimmed(process / "cmdline");
     const std::string first = arguments.substr(arguments.find('\0') + 1);
-    return text_of(process / "comm") == "tactor" && first.substr(0, first.find('\0')) == "serve";
+    return read_trimmed(process / "comm") == "tactor" && first.substr(0, first.find('\0')) == "serve";
 }
 
 } // namespace
 
-endpoint endpoint_of(std::string_view hexadecimal)
+endpoint parse_endpoint(std::string_view hexadecimal)
 {
     const std::size_t colon = hexadecimal.find(':');
     const std::string_view address = hexadecimal.substr(0, colon);
     if (colon == std::string_view::npos || (address.size() != 8 && address.size() != 32))
         return {};
     const auto port = detail::number_in<std::uint16_t>(hexadecimal.substr(colon + 1), 16);
-    // Words of 32 bits, each as this machine has them.
+    // Words of 32 bits in the byte order of this machine.
     std::array<std::uint32_t, 4> words{};
     for (std::size_t i = 0; i < address.size() / 8; ++i) {
         const auto word = detail::number_in<std::uint32_t>(address.substr(8 * i, 8), 16);
@@ -100,7 +100,7 @@ std::vector<listening_service> find_services(const fs::path& root)
     for (const char* file : {"proc/net/tcp", "proc/net/tcp6"})
         read_internet(root / file, "0A", "", all); // TCP_LISTEN
     for (const char* file : {"proc/net/udp", "proc/net/udp6"})
-        read_internet(root / file, "07", "osc ", all); // bound, to nobody in particular
+        read_internet(root / file, "07", "osc ", all); // bound, without a peer
     read_unix(root / "proc/net/unix", all);
     std::vector<listening_service> found;
     for (const process_folder& process : processes(root)) {
@@ -135,8 +135,8 @@ std::vector<fs::path> entries(const fs::path& folder)
     return all;
 }
 
-// A process may end meanwhile: what reads stream buffers itself would throw then.
-std::string text_of(const fs::path& file)
+// Reads by operator<<, which does not throw if the process ends meanwhile.
+std::string read_trimmed(const fs::path& file)
 {
     std::ifstream in(file, std::ios::binary);
     std::ostringstream text;

@@ -38,8 +38,8 @@ std::vector<device_node> nodes(const fs::path& folder, bool (*wanted)(const std:
     return all;
 }
 
-// "name:x:29:ann,bob"
-std::vector<std::string> groups_of(const std::string& user, const fs::path& file)
+// Returns the groups of a user, from lines "name:x:29:ann,bob".
+std::vector<std::string> find_groups(const std::string& user, const fs::path& file)
 {
     std::vector<std::string> all;
     std::ifstream in(file);
@@ -56,13 +56,14 @@ bool has(const std::string& text, const char* part)
     return text.find(part) != std::string::npos;
 }
 
-// "none voluntary (full)" with the one in force in brackets; older kernels say it in their version only.
-preemption preemption_of(const std::string& kernel, const fs::path& root)
+// Finds the preemption in force, which is in brackets: "none voluntary (full)". Older kernels have it only in
+// their version.
+preemption find_preemption(const std::string& kernel, const fs::path& root)
 {
-    if (text_of(root / "sys/kernel/realtime") == "1" || has(kernel, "PREEMPT_RT"))
+    if (read_trimmed(root / "sys/kernel/realtime") == "1" || has(kernel, "PREEMPT_RT"))
         return preemption::realtime;
-    const std::string debug = text_of(root / "sys/kernel/debug/sched/preempt");
-    const std::string line = fmt::format(" {} ", text_of(root / "proc/cmdline"));
+    const std::string debug = read_trimmed(root / "sys/kernel/debug/sched/preempt");
+    const std::string line = fmt::format(" {} ", read_trimmed(root / "proc/cmdline"));
     const auto chosen = [&](const char* name) {
         return debug.empty() ? has(line, fmt::format(" preempt={} ", name).c_str())
                              : has(debug, fmt::format("({})", name).c_str());
@@ -84,7 +85,7 @@ std::vector<process_info> find_sound_servers(const fs::path& root)
                                "wireplumber", "jackd",    "jackdbus"};
     std::vector<process_info> all;
     for (const process_folder& process : processes(root)) {
-        const std::string program = text_of(process.path / "comm");
+        const std::string program = read_trimmed(process.path / "comm");
         if (std::find(known.begin(), known.end(), program) != known.end())
             all.push_back({process.pid, program});
     }
@@ -100,8 +101,9 @@ bool switches_off(const fs::path& unit)
     return false;
 }
 
-// Those of the system and their drop-ins ("tactor-play@.service.d/off.conf"), by the unit's name, each once.
-std::vector<std::string> units_that_switch_off(const fs::path& root)
+// Returns the units of the system that switch the amplifier off, also by drop-ins
+// ("tactor-play@.service.d/off.conf"), each once.
+std::vector<std::string> find_off_units(const fs::path& root)
 {
     std::set<std::string> all;
     for (const char* folder : {"etc/systemd/system", "run/systemd/system", "usr/local/lib/systemd/system",
@@ -153,34 +155,34 @@ own_facts read_own()
 system_facts read_system(own_facts own, const fs::path& root)
 {
     system_facts f;
-    f.joined = groups_of(own.user, root / "etc/group");
+    f.joined = find_groups(own.user, root / "etc/group");
     f.sound = nodes(root / "dev/snd", is_playback);
     f.gpio = nodes(root / "dev", is_chip);
-    f.preempts = preemption_of(own.kernel, root);
+    f.preempts = find_preemption(own.kernel, root);
     std::set<std::string> governors;
     for (const fs::path& cpu : entries(root / "sys/devices/system/cpu"))
-        if (const std::string g = text_of(cpu / "cpufreq/scaling_governor"); !g.empty())
+        if (const std::string g = read_trimmed(cpu / "cpufreq/scaling_governor"); !g.empty())
             governors.insert(g);
     f.governors.assign(governors.begin(), governors.end());
     f.servers = find_sound_servers(root);
     f.services = find_services(root);
     for (const fs::path& module : entries(root / "sys/module")) {
         const fs::path file = module / "parameters/persist_gpio_outputs";
-        const std::string says = text_of(file);
-        if (says == "Y" || says == "1")
+        const std::string value = read_trimmed(file);
+        if (value == "Y" || value == "1")
             f.keeps_outputs = file.string();
-        else if (!says.empty())
+        else if (!value.empty())
             f.releases_outputs = true;
     }
-    f.off_units = units_that_switch_off(root);
-    f.raspberry_pi = has(text_of(root / "proc/device-tree/model"), "Raspberry Pi");
+    f.off_units = find_off_units(root);
+    f.raspberry_pi = has(read_trimmed(root / "proc/device-tree/model"), "Raspberry Pi");
     f.own = std::move(own);
     return f;
 }
 
 bool servers_ignore(unsigned card_index, const fs::path& root)
 {
-    const std::string data = text_of(root / "run/udev/data" / fmt::format("+sound:card{}", card_index));
+    const std::string data = read_trimmed(root / "run/udev/data" / fmt::format("+sound:card{}", card_index));
     return has(data, "E:ACP_IGNORE=1") && has(data, "E:PULSE_IGNORE=1");
 }
 

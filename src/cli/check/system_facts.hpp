@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// This machine as plain values, so that it can be judged without being it.
+/// This machine as plain values, so that tests can check other machines.
 #pragma once
 
 #include <cstdint>
@@ -26,7 +26,7 @@ struct endpoint {
 /// A process `tactor serve`.
 struct listening_service {
     process_info who = {};
-    bool may_look = true; ///< its descriptors may be read: only its user's and root's may
+    bool may_look = true; ///< its descriptors can be read, by its user and root only
     std::vector<endpoint> endpoints = {};
 };
 
@@ -37,55 +37,57 @@ struct device_node {
     bool may_open = false;
 };
 
-/// How soon the kernel lets a real-time thread run.
+/// Preemption of the kernel, which delays a real-time thread.
 enum class preemption { unknown, none, voluntary, full, realtime };
 
-/// What the process is, whatever the files say.
+/// Facts of this process, which no file under `root` has.
 struct own_facts {
     bool root = false;
     std::string user = {};
-    std::vector<std::string> groups = {}; ///< in force
+    std::vector<std::string> groups = {}; ///< groups in force
     realtime_rights rights = {};
-    std::uint64_t memory_bytes = 0; ///< that play would lock
+    std::uint64_t memory_bytes = 0; ///< memory that play would lock
     std::string kernel = {};        ///< version text, as uname -v
 };
 
 struct system_facts {
     own_facts own;
-    std::vector<std::string> joined = {}; ///< groups that the user is a member of, in force or not
+    std::vector<std::string> joined = {}; ///< groups of the user, in force or not
     std::vector<device_node> sound = {};  ///< playback devices
     std::vector<device_node> gpio = {};   ///< chips
     preemption preempts = preemption::unknown;
     std::vector<std::string> governors = {};      ///< of the CPUs, each once; none: no frequency scaling
-    std::vector<process_info> servers = {};       ///< sound servers that run
-    std::vector<listening_service> services = {}; ///< `tactor serve` that runs
+    std::vector<process_info> servers = {};       ///< running sound servers
+    std::vector<listening_service> services = {}; ///< running `tactor serve`
     std::optional<std::string> keeps_outputs =
-        {};                        ///< file that says that lines keep their level when released
-    bool releases_outputs = false; ///< a file says that they do not
+        {};                        ///< file with the setting that lines keep their level when released
+    bool releases_outputs = false; ///< a file has the setting that they do not
     bool raspberry_pi = false;
-    std::vector<std::string> off_units = {}; ///< systemd's, that run "tactor off" when they have stopped
+    std::vector<std::string> off_units = {}; ///< units of systemd that run "tactor off" when they stop
 };
 
+/// Returns the facts of this process.
 own_facts read_own();
 
-/// From files under `root`, "/" but in tests. What cannot be read is left out. Blocks shortly.
+/// Reads files under `root`, "/" but in tests. Leaves out files that cannot be read. Blocks shortly.
 system_facts read_system(own_facts own, const std::filesystem::path& root = "/");
 
-/// Whether udev keeps desktop sound servers off a card.
+/// Returns true if udev keeps desktop sound servers off a card.
 bool servers_ignore(unsigned card_index, const std::filesystem::path& root = "/");
 
-/// An address as /proc/net/tcp (8 digits) and tcp6 (32) have it, "0100007F:0FA1" with the port; nothing there
-/// (an empty `at`) for what is none.
-endpoint endpoint_of(std::string_view hexadecimal);
+/// Parses an address with its port as in /proc/net/tcp (8 digits) and tcp6 (32), "0100007F:0FA1". Returns an
+/// empty `at` for other texts.
+endpoint parse_endpoint(std::string_view hexadecimal);
 
-/// By process number, from files under `root`/proc. What cannot be read is left out. Blocks shortly.
+/// Returns running services by process number, from files under `root`/proc. Leaves out files that cannot be
+/// read. Blocks shortly.
 std::vector<listening_service> find_services(const std::filesystem::path& root);
 
-/// What the set-up needs of the machine.
+/// Needs of the set-up from the machine.
 struct system_needs {
-    std::string pcm = {};                   ///< as it will be opened
-    std::optional<card_info> card = {};     ///< that its name says
-    std::vector<process_info> holders = {}; ///< of that card
+    std::string pcm = {};                   ///< name with which it is opened
+    std::optional<card_info> card = {};     ///< card in its name
+    std::vector<process_info> holders = {}; ///< programs that hold that card
     bool ignored = false;                   ///< udev keeps desktop sound servers off that card
     bool gpio = false;                      ///< [amplifier] or [sync] names a line
     bool amplifier = false;
@@ -93,20 +95,22 @@ struct system_needs {
     bool require_realtime = false;
 };
 
+/// Checks rights, servers, services, lines and the kernel.
 std::vector<finding> check_system(const system_facts& f, const system_needs& n);
 
-/// In order of name; none for a folder that cannot be read.
+/// Returns the entries of a folder by name; none if it cannot be read.
 std::vector<std::filesystem::path> entries(const std::filesystem::path& folder);
 
-/// Without the end of the last line; /proc also ends texts with zeros. Empty where it cannot be read.
-std::string text_of(const std::filesystem::path& file);
+/// Returns the text of a file without the end of the last line, and without the zeros with which /proc ends
+/// texts; empty if it cannot be read.
+std::string read_trimmed(const std::filesystem::path& file);
 
 struct process_folder {
     int pid = 0;
     std::filesystem::path path = {};
 };
 
-/// `root`/proc/NUMBER, by number.
+/// Returns the folders `root`/proc/NUMBER, by number.
 std::vector<process_folder> processes(const std::filesystem::path& root);
 
 } // namespace tactor::cli

@@ -18,12 +18,12 @@ namespace {
 
 struct interrupted {};
 
-// Lines of standard input, waited for together with the signals.
+// Reader of lines of standard input, which also waits for signals.
 class line_reader {
 public:
     explicit line_reader(session::play_session& s) : session_(s) {}
 
-    /// Nothing at the end of the input. \throws interrupted when a signal comes.
+    /// Returns the next line; nothing at the end of the input. \throws interrupted when a signal comes.
     std::optional<std::string> next()
     {
         for (;;) {
@@ -74,12 +74,12 @@ public:
             const auto i = static_cast<unsigned>(felt.size());
             sound(i);
             if (!options_.ask) {
-                say(place_of(i) + "\n");
+                say(describe_tactor(i) + "\n");
                 felt.emplace_back();
             } else if (const auto got = ask(i)) {
                 felt.push_back(got->felt);
             } else {
-                felt.pop_back(); // and that one is driven again
+                felt.pop_back(); // the previous tactor is driven again
             }
         }
         for (std::size_t i = 0; i < n; ++i)
@@ -98,7 +98,7 @@ private:
         std::fflush(to_);
     }
 
-    std::string place_of(unsigned i) const
+    std::string describe_tactor(unsigned i) const
     {
         const tactor_spec& t = tactors()[i];
         return fmt::format("tactor {}: channel {}, at {:.4g}, {:.4g} mm", i, t.channel, t.position.x_mm,
@@ -121,10 +121,10 @@ private:
     }
 
     struct answer {
-        std::optional<unsigned> felt; // the number of a tactor; nothing where it was not felt
+        std::optional<unsigned> felt; // number of a tactor; nothing: not felt
     };
 
-    // Nothing: back to the one before.
+    // Asks until there is an answer; nothing: back to the previous tactor.
     std::optional<answer> ask(unsigned i)
     {
         const std::size_t last = tactors().size() - 1;
@@ -161,7 +161,7 @@ private:
     const walk_options& options_;
     line_reader input_;
     std::FILE* to_;
-    std::vector<std::string> unfinished_; // why, of each tactor; empty: it vibrated to the end
+    std::vector<std::string> unfinished_; // reason for each tactor; empty: it vibrated to the end
 };
 
 } // namespace

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// The walk itself: sounds, questions, answers.
+/// The walk: sounds, questions, answers, and the array file with the channels as they were felt.
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "cli/input.hpp"
 #include "session/play_session.hpp"
@@ -15,12 +16,12 @@ struct walk_options {
     session::stream_options stream;
     bool json = false; ///< questions go to standard error
     double carrier_hz = 250.0;
-    bool ask = true;    ///< else each is only named
-    std::string output; ///< the file for the map; empty: none
+    bool ask = true;    ///< false: each is only named
+    std::string output; ///< file for the map; empty: none
 };
 
 struct walk_result {
-    int signal = 0; ///< that ended it, or 0
+    int signal = 0; ///< signal that ended it, or 0
     session::walk_answers felt;
 };
 
@@ -28,10 +29,19 @@ struct walk_result {
 piece walk_one(const array& a, unsigned tactor, double carrier_hz);
 
 /// Drives each tactor and asks where it was felt, on standard input. Questions go to standard output, or to
-/// standard error where that is JSON.
-/// \throws error: what play throws; runtime when the walk is left before its end, and in the end where a
-/// tactor was not driven to its end and not again.
+/// standard error if that is JSON.
+/// \throws error: errors of play; runtime when the walk is left before its end, or a tactor was interrupted
+/// and
+///         not driven again.
 walk_result walk(const alsa_options& device, const environment& e, const render_options& render,
                  const walk_options& o, const session::stream_source& source = {});
+
+/// Checks that a new file can be made. \throws error (bad_input): the file exists, or its folder does not.
+void check_new_file(const std::string& name);
+
+/// Writes a new array file: the text of the file in use with other channels, or, if there is none or its text
+/// cannot be used at the new place, a file that takes the array from it. Leaves no file if it fails.
+/// \throws error: bad_input like check_new_file(), runtime if it cannot be written.
+void write_channel_file(const std::string& name, const environment& e, const std::vector<unsigned>& channels);
 
 } // namespace tactor::cli

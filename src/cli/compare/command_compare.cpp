@@ -80,7 +80,7 @@ void add_output_options(CLI::App& c, const std::shared_ptr<compare_options>& o)
 {
     add_text(c, "-o,--output", "FILE.svg|.png|.pdf",
              "also draw target and prediction on the array, and speed over time", [o](const std::string& t) {
-                 plot::format_of(t);
+                 plot::find_format(t);
                  o->picture.file = t;
                  o->choice.keep_samples = true;
              });

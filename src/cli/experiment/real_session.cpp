@@ -11,7 +11,6 @@
 #include <fmt/format.h>
 
 #include "cli/play/live_picture.hpp"
-#include "cli/play/terminal.hpp"
 #include "cli/say.hpp"
 #include "session/interrupt.hpp"
 #include "session/sound_server.hpp"

@@ -5,11 +5,13 @@
 #include <vector>
 
 #include <CLI/CLI.hpp>
+#include <unistd.h>
 
 #include "cli/commands.hpp"
 #include "cli/input.hpp"
+#include "cli/option_words.hpp"
+#include "cli/play/live_lines.hpp"
 #include "cli/play/live_picture.hpp"
-#include "cli/play/play_options.hpp"
 #include "cli/play/play_report.hpp"
 #include "cli/say.hpp"
 #include "cli/settings.hpp"
@@ -37,8 +39,8 @@ std::vector<score> make_scores(std::vector<piece>& pieces, const settings& s, co
 
 constexpr const char* wait_hint = "--reopen-s S waits for the device to come back";
 
-// Plays one piece, once more where its device went before it began, and says when it waits for its trigger.
-// False when there is no device.
+// Plays a piece, once again if the device went away before it began, and reports when it waits for its
+// trigger. Returns false if there is no device.
 bool play_piece(session::play_session& session, bool as_json, const array& a, const piece& p, const score& s,
                 stroke_outcome& out)
 {
@@ -51,7 +53,7 @@ bool play_piece(session::play_session& session, bool as_json, const array& a, co
     for (bool again = false;; again = true) {
         if (session.lost() && !session.reopen())
             return false;
-        // The picture leaves log lines alone.
+        // No picture with --verbose: it would overwrite log lines.
         out.report = play_drawn(session, a, p, s, !as_json && !session.asked().verbose, armed);
         const bool untouched =
             out.report->state == state_kind::interrupted && out.report->frames == 0 && session.lost();
@@ -60,7 +62,7 @@ bool play_piece(session::play_session& session, bool as_json, const array& a, co
     }
 }
 
-// Why the run ends with this stroke. What became of the last is said in the end.
+// Returns the error that ends the run with this stroke, if any. The end of the last stroke is reported later.
 std::optional<error> judge(const session::play_session& session, const stroke_outcome& out, bool last)
 {
     if (out.report->state != state_kind::interrupted)
@@ -94,6 +96,67 @@ std::optional<error> play_all(session::play_session& session, bool as_json, cons
             return broken;
     }
     return {};
+}
+
+// Plays a stroke that lines move, until they end.
+stroke_report follow_lines(session::play_session& session, const live_options& o, live_lines& lines)
+{
+    live_stroke stroke = session.begin(o);
+    bool begun = false;
+    bool ended = false;
+    return session.follow([&] {
+        while (const auto p = lines.next()) {
+            stroke.to(p->position.x_mm, p->position.y_mm, p->intensity);
+            if (p->intensity > 1.0 && stroke.counts().held == 1)
+                lines.warn_of_held(p->intensity);
+            begun = true;
+        }
+        if (lines.over() && !std::exchange(ended, true))
+            stroke.end();
+        return session::look{.descriptor = lines.over() ? -1 : lines.descriptor(), .drives = begun};
+    });
+}
+
+// Refuses options that a live stroke does not have.
+void check_live(const settings& s)
+{
+    if (s.strokes.size() != 1 || s.strokes.front() != "-" || s.path_data)
+        throw error(error_kind::bad_input, "--live", "it takes its points from standard input",
+                    "give - as the only STROKE: tactor play --live -");
+    for (const options::option& o : options::all())
+        if ((o.where & options::planning) != 0 && (o.where & options::live) == 0 && s.gives(o))
+            throw error(error_kind::bad_input, option_name(o), "a live stroke does not know it",
+                        "its points say when it is where");
+    if (s.stream.arm)
+        throw error(error_kind::bad_input, "--arm", "a live stroke starts with its first point",
+                    "leave it out");
+}
+
+// Plays until standard input ends.
+int play_live(settings& s, const play_options& o)
+{
+    s.strokes.clear(); // standard input has its points, which come later
+    const environment e = session::read_environment(s);
+    const live_options usual;
+    live_options l;
+    l.plan = s.plan;
+    if (!s.gives("algorithm"))
+        l.plan.algorithm = usual.plan.algorithm;
+    if (!s.gives("outside"))
+        l.plan.outside = usual.plan.outside;
+    l.render = session::settle_render(s, e);
+    l.timeout_s = live_timeout_s;
+    l.smooth_s = s.stream.smooth_s.value_or(l.smooth_s);
+    return hold_run(
+        s, e, l.render.channels, l.render.rate, o.json(), {{"live"}},
+        [&](session::play_session& session, std::vector<stroke_outcome>& outcomes) -> std::optional<error> {
+            live_lines lines(STDIN_FILENO);
+            stroke_outcome& out = outcomes.front();
+            out.report = follow_lines(session, l, lines);
+            out.length_frames = out.report->frames;
+            tell(out, session.setup().rate, o.json());
+            return {};
+        });
 }
 
 int play(settings& s, const play_options& o)

@@ -25,7 +25,7 @@ namespace {
 constexpr std::size_t longest_line = 4096;
 constexpr double farthest_mm = 1e6;
 
-// Splits at blanks. A comma is a separator only before a blank: anywhere else it may be a decimal one.
+// Splits at blanks. A comma is a separator only before a blank: elsewhere it may be a decimal one.
 std::vector<std::string_view> split(std::string_view line)
 {
     std::vector<std::string_view> words;
@@ -40,14 +40,14 @@ std::vector<std::string_view> split(std::string_view line)
     return words;
 }
 
-source_place place_of(std::size_t line)
+source_place line_place(std::size_t line)
 {
     return {.file = "standard input", .line = static_cast<unsigned>(line)};
 }
 
 } // namespace
 
-// False when there is nothing to take now.
+// Reads available bytes. Returns false if there are none.
 bool live_lines::fill()
 {
     pollfd p{fd_, POLLIN, 0};
@@ -80,7 +80,7 @@ std::optional<timed_point> live_lines::next()
                 return point;
         }
         if (buffer_.size() > longest_line)
-            throw error(error_kind::bad_input, place_of(line_ + 1),
+            throw error(error_kind::bad_input, line_place(line_ + 1),
                         fmt::format("a line of more than {} bytes", longest_line),
                         "give x y [intensity], in mm");
     } while (fill());
@@ -93,7 +93,7 @@ std::optional<timed_point> live_lines::parse(const std::string& line)
     if (words.empty() || words.front().front() == '#')
         return std::nullopt;
     const auto refuse = [&](const std::string& why) {
-        throw error(error_kind::bad_input, place_of(line_), why,
+        throw error(error_kind::bad_input, line_place(line_), why,
                     "give x y [intensity]: two places in mm and a factor from 0 to 1, such as 20 12.5 0.8");
     };
     double v[3] = {0.0, 0.0, 1.0};

@@ -11,23 +11,24 @@
 
 namespace tactor::cli {
 
-/// The pipe's end is the stroke's end: no silence before it is.
+/// Time-out of live strokes, s: only the end of the pipe ends them.
 inline constexpr double live_timeout_s = 86400.0;
 
+/// Reader of points in lines.
 class live_lines {
 public:
     /// Reads the descriptor without waiting, whatever its mode.
     explicit live_lines(int descriptor) : fd_(descriptor) {}
 
-    /// Returns the next place that has come, mm, and its intensity; nothing where there is none yet, and at
-    /// the end. Skips empty lines and those that begin with #. A line with nan gives the last place at
-    /// intensity 0. \throws error (bad_input) with the line.
+    /// Returns the next available place, mm, and its intensity; nothing if there is none yet, and at the end.
+    /// Skips empty lines and those that begin with #. A line with nan gives the last place at intensity 0.
+    /// \throws error (bad_input) with the line.
     std::optional<timed_point> next();
-    /// Says that the stroke holds the intensity of the newest point at 1.
+    /// Warns that the stroke holds the intensity of the newest point at 1.
     void warn_of_held(double intensity) const;
-    /// Returns true once no more will come, and all that came was given.
+    /// Returns true once the input has ended and all points were returned.
     bool over() const noexcept { return end_ && buffer_.empty(); }
-    /// Readable when something has come.
+    /// Returns the descriptor, which is readable when input is available.
     int descriptor() const noexcept { return fd_; }
 
 private:

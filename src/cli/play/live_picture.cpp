@@ -1,17 +1,26 @@
 // SPDX-License-Identifier: MIT
 #include "cli/play/live_picture.hpp"
 
+#include <cerrno>
 #include <new>
 #include <string>
 #include <utility>
 
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <poll.h>
+#include <sys/ioctl.h>
 #include <unistd.h>
 
 #include "cli/say.hpp"
+#include "core/words.hpp"
+#include "session/variable.hpp"
 
 namespace tactor::cli {
 namespace {
+
+// Time for a slow terminal. One that takes nothing blocks the next printed line anyway.
+constexpr int patience_ms = 2000;
 
 std::string to_its_beginning(std::size_t lines)
 {
@@ -25,7 +34,7 @@ void ask_to_stop(int) noexcept
     stop_asked = 1;
 }
 
-// A terminal that does not control this process tells no foreground group.
+// Returns true in the background. A terminal that does not control this process has no foreground group.
 bool is_in_background() noexcept
 {
     const pid_t front = ::tcgetpgrp(STDOUT_FILENO);
@@ -34,9 +43,84 @@ bool is_in_background() noexcept
 
 } // namespace
 
+bool can_draw()
+{
+    const std::string kind = session::variable("TERM");
+    return isatty(STDOUT_FILENO) != 0 && !kind.empty() && kind != "dumb";
+}
+
+bool may_colour()
+{
+    return session::variable("NO_COLOR").empty();
+}
+
+// Reads the environment: the program itself stays in the C locale.
+bool speaks_utf8()
+{
+    for (const char* name : {"LC_ALL", "LC_CTYPE", "LANG"}) {
+        const std::string value = in_small_letters(session::variable(name));
+        if (value.empty())
+            continue;
+        return value.find("utf-8") != std::string::npos || value.find("utf8") != std::string::npos;
+    }
+    return false;
+}
+
+// Opens standard output again: O_NONBLOCK on it would hold for all processes that share it, such as the
+// shell.
+terminal::terminal() : fd_(open("/proc/self/fd/1", O_WRONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC))
+{
+    if (fd_ < 0) // no /proc: writes may block
+        fd_ = fcntl(STDOUT_FILENO, F_DUPFD_CLOEXEC, 0);
+}
+
+terminal::~terminal()
+{
+    if (fd_ >= 0)
+        close(fd_);
+}
+
+terminal_size terminal::size() const noexcept
+{
+    winsize w{};
+    if (ioctl(STDOUT_FILENO, TIOCGWINSZ, &w) != 0 || w.ws_col == 0 || w.ws_row == 0)
+        return {};
+    return {w.ws_col, w.ws_row};
+}
+
+bool terminal::idle()
+{
+    while (!left_.empty()) {
+        const ssize_t n = ::write(fd_, left_.data(), left_.size());
+        if (n < 0 && errno == EINTR)
+            continue;
+        if (n < 0 && (errno == EAGAIN || errno == EWOULDBLOCK))
+            return false;
+        if (n < 0)
+            left_.clear(); // hung up
+        else
+            left_.erase(0, static_cast<std::size_t>(n));
+    }
+    return true;
+}
+
+void terminal::write(std::string text)
+{
+    left_ += text;
+    idle();
+}
+
+void terminal::finish()
+{
+    for (int waited = 0; !idle() && waited < patience_ms; waited += patience_ms / 10) {
+        pollfd p{.fd = fd_, .events = POLLOUT, .revents = 0};
+        ::poll(&p, 1, patience_ms / 10);
+    }
+}
+
 live_picture::live_picture(const array& a, bool wanted) : array_(a), style_{speaks_utf8(), may_colour()}
 {
-    flush_output(); // what was printed before stands above it
+    flush_output(); // printed lines stay above it
     if (!wanted || !can_draw())
         return;
     terminal_.emplace();
@@ -53,7 +137,7 @@ live_picture::~live_picture()
     ::sigaction(SIGTSTP, &before_, nullptr);
     try {
         erase();
-    } catch (const std::bad_alloc&) { // then it stays
+    } catch (const std::bad_alloc&) { // then the picture stays
     }
     if (stop_asked == 0)
         return;
@@ -70,7 +154,7 @@ void live_picture::erase()
     terminal_->finish();
 }
 
-// The shell's prompt comes where the picture was.
+// Erases the picture and stops, if asked: the shell's prompt takes its place.
 void live_picture::stop_where_asked()
 {
     if (stop_asked == 0)
@@ -106,7 +190,7 @@ stroke_report play_drawn(session::play_session& session, const array& a, const p
         return session.follow();
     piece_follower follower(p, s, a);
     const double total_s = static_cast<double>(s.frames()) / s.rate();
-    double t_s = 0.0; // stays where it was while the report of the stroke's end is on its way
+    double t_s = 0.0; // keeps its value until the report of the stroke's end arrives
     return session.follow([&] {
         if (const auto frame = session.stroke_frame())
             t_s = static_cast<double>(*frame) / s.rate();

@@ -1,24 +1,98 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// The array on a terminal while it plays.
+/// The array in characters on a terminal while it plays.
 #pragma once
 
 #include <csignal>
 #include <functional>
 #include <optional>
+#include <string>
+#include <vector>
 
 #include <tactor/tactor.hpp>
 
-#include "cli/play/picture_lines.hpp"
-#include "cli/play/terminal.hpp"
+#include "cli/input.hpp"
 #include "session/play_session.hpp"
+#include "synth/score/sounding_now.hpp"
 
 namespace tactor::cli {
 
-/// Draws over itself, and takes itself away when destroyed and before Ctrl-Z stops the program. In the
-/// background it draws nothing. It changes no mode of the terminal (the cursor
-/// stays visible), so that there is nothing to restore whatever ends the program. Where standard output is no
-/// terminal, it draws nothing.
+/// State of a piece at one time.
+struct instant {
+    std::vector<double> levels;  ///< by tactor, linear; 1: the intensity of the stroke
+    std::optional<point> target; ///< place of the touch
+};
+
+/// Follower of a piece from its beginning on.
+class piece_follower {
+public:
+    /// Follows `p`, which must live as long.
+    piece_follower(const piece& p, const score& s, const array& a);
+
+    /// Returns the state at a time, s from the start of the piece. Times must ascend.
+    instant at(double t_s);
+
+private:
+    const piece& piece_;
+    score score_;
+    layout faces_;
+    synth::sounding_now sounding_;
+};
+
+struct terminal_size {
+    unsigned columns = 80;
+    unsigned rows = 24;
+
+    friend bool operator==(const terminal_size&, const terminal_size&) = default;
+};
+
+struct picture_style {
+    bool unicode = true; ///< true: shades, false: letters
+    bool colours = true;
+};
+
+/// Returns the array with each tactor's level and the place of the touch, and under it time, place and
+/// progress: at most rows - 1 lines of columns - 1 characters, so that nothing wraps or scrolls. With less
+/// space the array is smaller, then left out, and then the last line gets shorter.
+std::vector<std::string> picture_lines(const array& a, const instant& now, double t_s, double total_s,
+                                       terminal_size size, picture_style style);
+
+/// Returns true if standard output is a terminal on which lines can be drawn again.
+bool can_draw();
+
+/// Returns true unless NO_COLOR asks for no colours (no-color.org: set, and not empty).
+bool may_colour();
+
+/// Returns true if the locale's characters are UTF-8.
+bool speaks_utf8();
+
+/// Writer to the terminal that never waits for it: a terminal that is stopped (Ctrl-S) or slow must not keep
+/// a signal from ending the program.
+class terminal {
+public:
+    terminal();
+    ~terminal();
+    terminal(const terminal&) = delete;
+    terminal& operator=(const terminal&) = delete;
+
+    /// Returns the size as it is now: windows change.
+    terminal_size size() const noexcept;
+
+    /// Returns true if the terminal has taken all that was given to write().
+    bool idle();
+    /// Writes as much as the terminal takes; keeps the rest.
+    void write(std::string text);
+    /// Waits up to two seconds for the rest.
+    void finish();
+
+private:
+    int fd_;
+    std::string left_;
+};
+
+/// Picture that draws over itself, and erases itself when destroyed and before Ctrl-Z stops the program.
+/// Draws nothing in the background, and if standard output is no terminal. Changes no mode of the terminal
+/// (the cursor stays visible), so that nothing has to be restored, however the program ends.
 class live_picture {
 public:
     explicit live_picture(const array& a, bool wanted = true);
@@ -27,7 +101,7 @@ public:
     live_picture& operator=(const live_picture&) = delete;
 
     bool active() const noexcept { return terminal_.has_value(); }
-    /// Skipped while the terminal has not taken what was drawn before.
+    /// Draws, unless the terminal has not taken the previous picture yet.
     void draw(const instant& now, double t_s, double total_s);
 
 private:
@@ -38,10 +112,10 @@ private:
     std::optional<terminal> terminal_ = {};
     picture_style style_;
     std::size_t drawn_lines_ = 0;
-    struct sigaction before_ = {}; ///< what SIGTSTP did
+    struct sigaction before_ = {}; ///< previous action of SIGTSTP
 };
 
-/// Plays a score of a piece to its end, and draws it on a terminal where that is `wanted`. With
+/// Plays a score of a piece to its end, and draws it on a terminal if that is `wanted`. With
 /// stream_options::arm `armed` is called once the score waits for its trigger. \throws error.
 stroke_report play_drawn(
     session::play_session& session, const array& a, const piece& p, const score& s, bool wanted,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "cli/play/picture_lines.hpp"
+#include "cli/play/live_picture.hpp"
 
 #include <algorithm>
 #include <array>
@@ -15,8 +15,8 @@ namespace tactor::cli {
 namespace {
 
 constexpr unsigned margin = 3;              // left of the array
-constexpr double natural_mm = 1.25;         // a column, where there is space: 4 columns to 5 mm
-constexpr unsigned least_array_columns = 5; // less shows nothing
+constexpr double natural_mm = 1.25;         // of a column, if there is space: 4 columns are 5 mm
+constexpr unsigned least_array_columns = 5; // fewer show nothing
 constexpr const char* level_colour = "\033[33m";
 constexpr const char* target_colour = "\033[1;36m";
 constexpr const char* no_colour = "\033[0m";
@@ -26,7 +26,7 @@ struct bounds {
     point high;
 };
 
-bounds bounds_of(const array& a)
+bounds find_bounds(const array& a)
 {
     bounds b{a.tactors.front().position, a.tactors.front().position};
     for (const tactor_spec& t : a.tactors) {
@@ -36,7 +36,7 @@ bounds bounds_of(const array& a)
     return b;
 }
 
-// How strongly a tactor vibrates. Digits would say more, shades are seen while they change.
+// Returns the level of a tactor as a shade: changes of digits would be hard to see.
 const char* shade(double level, bool unicode)
 {
     static constexpr std::array shades{"·", "░", "▒", "▓", "█"};
@@ -45,7 +45,7 @@ const char* shade(double level, bool unicode)
     return unicode ? shades[i] : letters[i];
 }
 
-// Characters of about twice the height of their width.
+// Grid of characters, which are about twice as high as wide.
 class grid {
 public:
     grid(const bounds& b, unsigned columns, unsigned rows) : low_(b.low)
@@ -61,13 +61,13 @@ public:
 
     void put_tactor(point p, double level)
     {
-        const std::size_t at = cell_of(p);
-        // Tactors that share a cell in a small picture: the strongest is seen.
+        const std::size_t at = find_cell(p);
+        // In a small picture tactors may share a cell: the strongest shows.
         for (std::size_t i = at; i < at + 3; ++i)
             levels_[i] = std::max(levels_[i], level);
     }
 
-    void put_target(point p) { target_ = cell_of(p) + 1; }
+    void put_target(point p) { target_ = find_cell(p) + 1; }
 
     std::vector<std::string> lines(picture_style style) const
     {
@@ -75,7 +75,7 @@ public:
         for (unsigned r = 0; r < rows_; ++r) {
             std::string line(margin, ' ');
             for (std::size_t i = std::size_t{r} * columns_; i < std::size_t{r + 1} * columns_; ++i)
-                line += text_of(i, style);
+                line += cell_text(i, style);
             line.erase(line.find_last_not_of(' ') + 1);
             all.push_back(line);
         }
@@ -83,7 +83,7 @@ public:
     }
 
 private:
-    std::size_t cell_of(point p) const
+    std::size_t find_cell(point p) const
     {
         const auto whole = [](double v, unsigned most) {
             return static_cast<unsigned>(std::clamp(std::round(v), 0.0, static_cast<double>(most)));
@@ -92,7 +92,7 @@ private:
                whole((p.x_mm - low_.x_mm) / mm_, columns_ - 3);
     }
 
-    std::string text_of(std::size_t i, picture_style style) const
+    std::string cell_text(std::size_t i, picture_style style) const
     {
         const auto coloured = [&](const char* colour, const char* text) {
             return style.colours ? fmt::format("{}{}{}", colour, text, no_colour) : text;
@@ -112,7 +112,7 @@ private:
     std::optional<std::size_t> target_ = {};
 };
 
-// The fullest of these that fits.
+// Returns the longest status that fits.
 std::string status_line(const instant& now, double t_s, double total_s, unsigned columns)
 {
     const double t = std::max(t_s, 0.0);
@@ -120,7 +120,7 @@ std::string status_line(const instant& now, double t_s, double total_s, unsigned
     const std::string times = fmt::format("{:.2f} / {:.2f} s", t, total_s);
     const std::string place =
         now.target ? fmt::format("   at {:.1f}, {:.1f} mm", now.target->x_mm, now.target->y_mm) : "";
-    // As if there always were a place of this length: a bar that changes its length says nothing.
+    // Assumes a place of this length, so that the length of the bar does not change.
     const std::size_t beside = times.size() + std::string_view("   at -000.0, -000.0 mm").size() + margin + 3;
     if (columns >= beside + 10) {
         const std::size_t length = std::min<std::size_t>(30, columns - beside);
@@ -145,8 +145,8 @@ std::vector<std::string> picture_lines(const array& a, const instant& now, doubl
     const unsigned columns = size.columns - 1;
     const unsigned rows = size.rows - 1;
     const unsigned gap = rows >= 6 ? 1 : 0; // between array and status
-    const bounds b = bounds_of(a);
-    // Rows of an array on one another would show touches where none are.
+    const bounds b = find_bounds(a);
+    // A single line for several rows of an array would show touches at wrong places.
     const unsigned least_rows = b.high.y_mm - b.low.y_mm > natural_mm ? 2 : 1;
 
     std::vector<std::string> lines;

@@ -95,7 +95,7 @@ std::string xruns_text(const player_stats& s)
     return fmt::format("{}, the longest {:.1f} ms", s.xruns, *longest * 1e3);
 }
 
-// A short table of the counters.
+// Prints a short table of the counters.
 void print_table(std::FILE* to, const run_report& r)
 {
     const player_stats& s = r.stats;

@@ -5,17 +5,21 @@
 #include <cstdio>
 #include <cstring>
 #include <memory>
+#include <new>
+#include <string_view>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
+#include <grp.h>
 #include <nlohmann/json.hpp>
+#include <sys/resource.h>
+#include <sys/stat.h>
 
 #include <tactor/version.hpp>
 
 #include "cli/commands.hpp"
 #include "cli/input.hpp"
 #include "cli/say.hpp"
-#include "cli/serve/owner.hpp"
 #include "cli/settings.hpp"
 #include "core/words.hpp"
 #include "files/plan/json_value.hpp"
@@ -28,34 +32,134 @@
 #include "session/log.hpp"
 #include "session/own_memory.hpp"
 #include "session/sound_server.hpp"
+#include "session/variable.hpp"
 
 namespace tactor::cli {
 namespace {
 
 using files::or_null;
-// What the channels get of all clients together: the ceiling, with what the owner adds to a tactor.
-array limited(array a, double max_level_dbfs)
+
+// Options of `tactor serve` alone; of [serve], those that the command line also has.
+struct serve_options : options::serve_settings {
+    std::string format = "text";
+};
+
+constexpr const char* socket_name = "/tactor.sock";
+
+// Returns true for a service of the system: the service manager gives a folder outside the user's.
+bool serves_system()
+{
+    const std::string given = session::service_folder();
+    const std::string users = session::variable("XDG_RUNTIME_DIR");
+    return !given.empty() && (users.empty() || !given.starts_with(users + "/"));
+}
+
+// Returns the default path of the Unix socket; empty if there is none and there are other endpoints.
+std::string default_socket(bool others)
+{
+    if (const std::string folder = session::runtime_folder(); !folder.empty())
+        return folder + socket_name;
+    if (others)
+        return {};
+    throw error(error_kind::bad_input, "socket",
+                "neither RUNTIME_DIRECTORY nor XDG_RUNTIME_DIR says in which folder",
+                "name one with --socket PATH, or under [serve] in the configuration");
+}
+
+// Returns `s`, which the configuration says, with the options over it.
+options::serve_settings settle_serve(const serve_options& o, options::serve_settings s)
+{
+    const auto prefer = [](auto& ours, const auto& given) {
+        if (given)
+            ours = given;
+    };
+    prefer(s.socket, o.socket);
+    prefer(s.tcp, o.tcp);
+    prefer(s.osc, o.osc);
+    prefer(s.http, o.http);
+    prefer(s.idle_stop_s, o.idle_stop_s);
+    return s;
+}
+
+server::endpoint_options settle_endpoints(const options::serve_settings& s)
+{
+    if (s.socket && s.socket->empty())
+        throw error(error_kind::bad_input, "--socket", "the name is empty", "name a path");
+    server::endpoint_options e;
+    e.socket = [given = s.socket, others = s.tcp || s.osc || s.http] {
+        return given ? *given : default_socket(others);
+    };
+    if (serves_system()) {
+        e.mode = S_IRUSR | S_IWUSR | S_IRGRP | S_IWGRP;
+        if (const group* g = ::getgrnam("tactor"))
+            e.group = g->gr_gid;
+        else
+            say(stderr, "tactor: warning: there is no group tactor: only this user's group may draw\n");
+    }
+    if (s.tcp)
+        e.tcp = net::parse_host(*s.tcp, "--tcp");
+    if (s.http)
+        e.http = net::parse_host(*s.http, "--http");
+    if (s.osc)
+        e.osc = net::parse_host(*s.osc, "--osc");
+    return e;
+}
+
+// Raises the limit on open files to the need of so many clients; warns if that is not allowed.
+void provide_descriptors(const server::service_limits& l)
+{
+    // Senders of OSC share one; browsers that only load the page come in addition to clients.
+    constexpr rlim_t others = 96;
+    const rlim_t wanted = l.max_clients + others;
+    rlimit now{};
+    if (::getrlimit(RLIMIT_NOFILE, &now) != 0 || now.rlim_cur >= wanted)
+        return;
+    now.rlim_cur = std::min(wanted, now.rlim_max);
+    if (::setrlimit(RLIMIT_NOFILE, &now) != 0 || now.rlim_cur < wanted)
+        say(stderr,
+            "tactor: warning: too few descriptors: {} may be open, and {} clients need {}: later ones are "
+            "refused (raise ulimit -n, or LimitNOFILE= of the unit)\n",
+            now.rlim_cur, l.max_clients, wanted);
+}
+
+// Returns the output of `tactor plan --format json`, for the answers of the service. Throws std::bad_alloc
+// above `most_bytes`.
+std::string plan_text(const server::planned& p, const environment& e, std::size_t most_bytes)
+{
+    const piece one{p.name, p.strokes, p.plans, {}, p.moved};
+    std::string text;
+    files::write_plans(record_plans(one, e, make_score(one, e, p.render), p.render),
+                       [&](std::string_view part) {
+                           if (text.size() + part.size() > most_bytes)
+                               throw std::bad_alloc();
+                           text += part;
+                       });
+    return text;
+}
+
+// Limits the channels for all clients together to the ceiling, plus the gain that the owner gives a tactor.
+array limit_levels(array a, double max_level_dbfs)
 {
     for (tactor_spec& t : a.tactors)
         t.max_dbfs = std::min(t.max_dbfs, max_level_dbfs + std::max(t.gain_db, 0.0));
     return a;
 }
 
-server::planning planning_of(const settings& s, const environment& e, const options::serve_settings& serve,
-                             const server::service_limits& limits)
+server::planning make_planning(const settings& s, const environment& e, const options::serve_settings& serve,
+                               const server::service_limits& limits)
 {
     server::planning p;
     p.owner = static_cast<const options::wishes&>(s);
     p.owner.render = session::settle_render(s, e);
     p.max_level_dbfs = serve.max_level_dbfs.value_or(p.owner.render.level_dbfs);
     p.owner.render.level_dbfs = std::min(p.owner.render.level_dbfs, p.max_level_dbfs);
-    p.tactors = limited(e.tactors, p.max_level_dbfs);
+    p.tactors = limit_levels(e.tactors, p.max_level_dbfs);
     p.max_stroke_s = limits.max_stroke_s;
     p.max_strokes = limits.max_strokes;
     return p;
 }
 
-void say_who_may(const server::endpoints& at, const std::string& token, bool has_peers)
+void warn_of_access(const server::endpoints& at, const std::string& token, bool has_peers)
 {
     if (!at.osc_address.empty() && !has_peers && !net::is_loopback(at.osc.get()))
         throw error(error_kind::bad_input, "osc " + at.osc_address,
@@ -88,7 +192,7 @@ void say_who_may(const server::endpoints& at, const std::string& token, bool has
     }
 }
 
-void tell_listening(const server::endpoints& at, const std::string& format)
+void print_endpoints(const server::endpoints& at, const std::string& format)
 {
     using json = nlohmann::ordered_json;
     const std::string http = at.http_address.empty() ? "" : "http://" + at.http_address + "/";
@@ -109,14 +213,14 @@ void tell_listening(const server::endpoints& at, const std::string& format)
     }
     if (std::fflush(stdout) == 0)
         return;
-    // Who waits for these lines waits in vain; who draws is served all the same.
+    // A program that waits for these lines does not get them; clients are served all the same.
     say(stderr, "tactor: warning: standard output: {}: where it listens could not be said there\n",
         std::strerror(errno));
     std::clearerr(stdout);
 }
 
-// To whoever started it: a person, the journal, the line that systemctl status shows.
-std::function<void(server::stream_state, const std::string&)> tell_owner()
+// Returns a handler that reports states of the stream on standard error and to the service manager.
+std::function<void(server::stream_state, const std::string&)> make_owner_log()
 {
     return [lost = false, ran = false](server::stream_state state, const std::string& reason) mutable {
         const bool again = std::exchange(ran, ran || state == server::stream_state::running);
@@ -133,7 +237,7 @@ std::function<void(server::stream_state, const std::string&)> tell_owner()
 
 int serve(settings& s, const serve_options& o)
 {
-    // Strokes sound as [defaults] say, unless a client says something else.
+    // [defaults] hold for strokes, unless a client gives other options.
     s.place |= options::on_play;
     const environment e = session::read_environment(s);
     const session::stream_options& play = s.stream;
@@ -148,14 +252,14 @@ int serve(settings& s, const serve_options& o)
     service.token = server::read_token(serve);
     service.version = version();
     service.array = files::array_json(e.tactors);
-    service.plans = planning_of(s, e, serve, service.limits);
+    service.plans = make_planning(s, e, serve, service.limits);
     service.plan_text = [&e](const server::planned& p, std::size_t most) { return plan_text(p, e, most); };
     service.now_ns = rt::monotonic_ns;
     server::endpoints at = server::open_endpoints(where);
     const std::shared_ptr<void> removed(nullptr, [&at](void*) { server::remove_socket(at); });
-    say_who_may(at, service.token, !network.osc_peers.empty());
+    warn_of_access(at, service.token, !network.osc_peers.empty());
 
-    // A service's owner does not watch it: what is otherwise asked for is there to be looked up.
+    // Nobody watches a service: in the journal the log is always verbose.
     session::session_log log(play.verbose || session::goes_to_journal(stderr), play.log);
     const render_options& sound = service.plans.owner.render;
     alsa_options device = session::device_options(s, play, e, sound.channels, sound.rate);
@@ -168,14 +272,14 @@ int serve(settings& s, const serve_options& o)
     session::give_memory_back();
     session::warn_of_rights(probe_realtime_rights().priority != 0, locked);
     stream.tactors = service.plans.tactors;
-    stream.changed = [&stop, tell = tell_owner()](server::stream_state state, const std::string& reason) {
+    stream.changed = [&stop, tell = make_owner_log()](server::stream_state state, const std::string& reason) {
         if (state == server::stream_state::closing)
-            stop.poll(); // from here on it has so long to end
+            stop.poll(); // the time to end counts from here
         tell(state, reason);
     };
     stream.times.idle_stop_s = serve.idle_stop_s.value_or(0.0);
     server::serve(at, std::move(service), std::move(stream), std::move(network), stop.descriptor(),
-                  [&] { tell_listening(at, o.format); });
+                  [&] { print_endpoints(at, o.format); });
     stop.was_the_last();
     return status_ok;
 }

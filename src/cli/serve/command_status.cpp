@@ -60,7 +60,7 @@ void print_json_line(const net::json& j)
     fmt::print("{}\n", j.dump(-1, ' ', false, net::json::error_handler_t::replace));
 }
 
-// Until the server ends. Throws interrupted.
+// Prints notifications until the server ends. Throws interrupted.
 int watch(rpc_client& server, const status_options& o)
 {
     for (;;) {
@@ -71,7 +71,7 @@ int watch(rpc_client& server, const status_options& o)
                 print_event(*n);
             flush_output();
             if (std::ferror(stdout) != 0)
-                return status_ok; // main() says why
+                return status_ok; // main() reports it
             if ((*n)["method"] == "stream" && (*n)["params"].value("state", "") == "closing")
                 return status_ok;
         }
@@ -93,7 +93,7 @@ int status(const status_options& o, session::interrupt& stop)
     return o.watch ? watch(server, o) : static_cast<int>(status_ok);
 }
 
-// Also while the server does not answer.
+// Calls `ask`, which a signal interrupts, also while the server does not answer.
 template <typename F>
 int until_interrupted(F ask)
 {

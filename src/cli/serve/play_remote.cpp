@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "cli/play/play_options.hpp"
+#include "cli/play/play_report.hpp"
 
 #include <algorithm>
 #include <chrono>
@@ -16,7 +16,6 @@
 #include "cli/input.hpp"
 #include "cli/option_words.hpp"
 #include "cli/play/live_lines.hpp"
-#include "cli/play/play_report.hpp"
 #include "cli/say.hpp"
 #include "cli/serve/rpc_client.hpp"
 #include "cli/serve/server_words.hpp"
@@ -27,9 +26,10 @@
 namespace tactor::cli {
 namespace {
 
-constexpr std::chrono::seconds to_finish{10};       // for a server to fade out, after a signal
+constexpr std::chrono::seconds to_finish{10};       // time for a server to fade out, after a signal
 constexpr std::chrono::milliseconds limit_pause{5}; // some ten points of 2,000 a second
-// What a server's owner decides, or the server does not do.
+
+// Refuses options that the server's owner decides, or that a server does not have.
 void refuse_owners(const settings& s)
 {
     for (const options::option& o : options::all())
@@ -92,7 +92,8 @@ public:
         } catch (const error&) {
             try {
                 server_.tell("cancel", {{"stroke", n}});
-            } catch (const error&) { // NOLINT(bugprone-empty-catch): it is gone, and told already
+            } catch (
+                const error&) { // NOLINT(bugprone-empty-catch): the server is gone, which is reported already
             }
             throw;
         }
@@ -102,7 +103,7 @@ public:
     }
 
 private:
-    // Until nothing more is there, a signal has come, or the stroke is no more, which its end tells.
+    // Sends points until there are no more, a signal comes, or the stroke ends.
     void draw(const net::json& n, live_lines& lines)
     {
         while (server_.signal() == 0) {
@@ -112,7 +113,8 @@ private:
         }
     }
 
-    // What comes faster than the server takes points waits here, and in the pipe: none is left out.
+    // Sends a point. Waits while the server takes no more points, so that none is lost. Returns false if the
+    // stroke has ended.
     bool move(const net::json& n, const timed_point& p, const live_lines& lines)
     {
         const net::json to{
@@ -163,7 +165,7 @@ private:
         judge(out, last);
     }
 
-    // It may have ended in between.
+    // Cancels a stroke, which may have ended meanwhile.
     void cancel(const net::json& n)
     {
         try {
@@ -174,7 +176,7 @@ private:
         }
     }
 
-    // Whether the stroke has ended; what is left of a piece is the worst of its strokes.
+    // Returns true if the stroke has ended. The report of a piece has the worst end of its strokes.
     bool ended(const net::json& n, stroke_outcome& out)
     {
         while (const auto m = server_.notification())
@@ -205,7 +207,7 @@ private:
         return true;
     }
 
-    // What has come with a signal is cancelled first.
+    // Waits, unless a signal came: then strokes are cancelled first.
     void wait(int also)
     {
         if (server_.signal() == 0 || cancelled_)

@@ -32,7 +32,7 @@ std::vector<std::string> candidates(const std::optional<std::string>& named)
     return all;
 }
 
-// Zero, or an errno.
+// Connects to a socket. Returns 0 or an errno.
 int try_to_connect(const std::string& path, net::owned_fd& into)
 {
     sockaddr_un a{};
@@ -41,14 +41,14 @@ int try_to_connect(const std::string& path, net::owned_fd& into)
         return ENAMETOOLONG;
     std::memcpy(static_cast<char*>(a.sun_path), path.c_str(), path.size() + 1);
     net::owned_fd fd(::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0));
-    // NOLINTNEXTLINE(cppcoreguidelines-pro-type-reinterpret-cast): as sockets want it
+    // NOLINTNEXTLINE(cppcoreguidelines-pro-type-reinterpret-cast): the socket API requires it
     if (!fd || ::connect(fd.get(), reinterpret_cast<const sockaddr*>(&a), sizeof a) != 0)
         return errno;
     into = std::move(fd);
     return 0;
 }
 
-error error_of(const net::json& e)
+error make_error(const net::json& e)
 {
     const int code = e.value("code", 0);
     const error_kind kind = code == net::code_bad_params  ? error_kind::bad_input
@@ -155,7 +155,7 @@ net::json rpc_client::answer(const std::string& method, const net::json& params)
     for (;;) {
         for (auto m = message(); m; m = message()) {
             if (m->contains("method")) {
-                told_.push_back(std::move(*m));
+                notifications_.push_back(std::move(*m));
                 continue;
             }
             if (m->contains("error") || (m->contains("id") && (*m)["id"] == id))
@@ -169,7 +169,7 @@ net::json rpc_client::call(const std::string& method, const net::json& params)
 {
     const net::json m = answer(method, params);
     if (m.contains("error"))
-        throw error_of(m["error"]);
+        throw make_error(m["error"]);
     return m.value("result", net::json::object());
 }
 
@@ -179,7 +179,7 @@ bool rpc_client::try_call(const std::string& method, const net::json& params)
     if (!m.contains("error"))
         return true;
     if (m["error"].value("code", 0) != net::code_limit)
-        throw error_of(m["error"]);
+        throw make_error(m["error"]);
     return false;
 }
 
@@ -190,20 +190,20 @@ void rpc_client::tell(const std::string& method, const net::json& params)
 
 std::optional<net::json> rpc_client::notification()
 {
-    if (told_.empty()) {
+    if (notifications_.empty()) {
         pollfd p{fd_.get(), POLLIN, 0};
         if (::poll(&p, 1, 0) > 0)
             receive();
         for (auto m = message(); m; m = message()) {
             if (m->contains("error"))
-                throw error_of((*m)["error"]);
-            told_.push_back(std::move(*m));
+                throw make_error((*m)["error"]);
+            notifications_.push_back(std::move(*m));
         }
     }
-    if (told_.empty())
+    if (notifications_.empty())
         return std::nullopt;
-    net::json first = std::move(told_.front());
-    told_.pop_front();
+    net::json first = std::move(notifications_.front());
+    notifications_.pop_front();
     return first;
 }
 

@@ -16,52 +16,53 @@
 
 namespace tactor::cli {
 
-/// A signal has come. The exit status: interrupt::status().
+/// Thrown when a signal comes. The exit status is interrupt::status().
 struct interrupted {
     int signal;
 };
 
-/// Of a server: the one that was named, else XDG_RUNTIME_DIR's, else the system's.
-/// \throws error (not_available) where none listens.
+/// Client of a server.
 class rpc_client {
 public:
-    /// A signal at `stop` ends what waits for a reply.
+    /// Connects to the named server, else to that of XDG_RUNTIME_DIR, else to the system's. A signal at
+    /// `stop` ends waiting for a reply. \throws error (not_available) if none listens.
     rpc_client(const std::optional<std::string>& socket, session::interrupt& stop);
 
-    /// The result. \throws error with the server's words, runtime where it went away; interrupted.
+    /// Returns the result. \throws error with the server's words, runtime if it went away; interrupted.
     net::json call(const std::string& method, const net::json& params = net::json::object());
-    /// As call(), but false where a limit of the server's is reached: to be tried again.
+    /// Does the same. Returns false if a limit of the server is reached: try again.
     bool try_call(const std::string& method, const net::json& params);
-    /// Without a reply.
+    /// Sends a notification, which has no reply.
     void tell(const std::string& method, const net::json& params);
 
-    /// The next notification that has come. Does not wait.
+    /// Returns the next notification, if any. Does not wait.
     std::optional<net::json> notification();
-    /// Waits until something has come from the server or at `also`, or a signal. \throws interrupted.
+    /// Waits until the server or `also` has input, or a signal comes. \throws interrupted.
     void wait(int also = -1);
-    /// From now on a first signal is only told by signal(), and the server has so long for what is asked of
-    /// it then. Where it comes while a reply is awaited, the server is told to cancel all that this client
-    /// asked for: also what it is still planning, and would play though nobody were left to cancel it.
+    /// Gives the server time to finish after a first signal, which from now on only sets signal(). If the
+    /// signal comes while a reply is awaited, tells the server to cancel all requests of this client, also
+    /// those that it is still planning and would play without anybody to cancel them.
     void let_finish(std::chrono::milliseconds grace) { grace_ = grace; }
-    /// That has come, or 0.
+    /// Returns the signal that came, or 0.
     int signal() const noexcept { return signal_; }
     const std::string& socket() const noexcept { return path_; }
 
 private:
     void send(const net::json& message);
-    /// The reply to it, or an error that answers nothing.
+    /// Sends a request. Returns its reply, or an error that answers no request.
     net::json answer(const std::string& method, const net::json& params);
-    /// Whether the socket can be read or written (POLLIN, POLLOUT); waits for that, `also`, or a signal.
+    /// Waits for the socket (POLLIN, POLLOUT), `also`, or a signal. Returns true if the socket is ready.
     bool poll(short what, int also);
-    /// Takes in what is there; waits for something where there is nothing.
+    /// Receives the available input; waits for some if there is none.
     void receive();
+    /// Returns the next whole message that was received.
     std::optional<net::json> message();
 
     session::interrupt& stop_;
     net::owned_fd fd_;
     std::string path_;
     std::string buffer_;
-    std::deque<net::json> told_;
+    std::deque<net::json> notifications_;
     int last_ = 0;
     int signal_ = 0;
     bool cancelled_ = false;

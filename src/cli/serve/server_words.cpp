@@ -29,8 +29,8 @@ namespace tactor::cli {
 
 namespace {
 
-/// "3:5: no number" as 3, 5 and "no number"; line 0 where it does not begin so.
-std::pair<source_place, std::string> placed(const std::string& file, const std::string& why)
+/// Splits "3:5: no number" into 3, 5 and "no number"; line 0 for other texts.
+std::pair<source_place, std::string> split_place(const std::string& file, const std::string& why)
 {
     source_place at{.file = file};
     const char* const end = why.data() + why.size();
@@ -44,7 +44,7 @@ std::pair<source_place, std::string> placed(const std::string& file, const std::
     return {at, std::string(rest + 2, end)};
 }
 
-// "options.level_dbfs" as "--level-dbfs".
+// Replaces "options.level_dbfs" with "--level-dbfs".
 std::string in_options(std::string_view text)
 {
     constexpr std::string_view prefix = "options.";
@@ -81,8 +81,8 @@ std::string read_all(int fd, const std::string& name)
     }
 }
 
-// As the library guesses.
-const char* kind_of(std::string_view text)
+// Guesses the format of a text.
+const char* guess_kind(std::string_view text)
 {
     const auto first = text.find_first_not_of(" \t\r\n\xEF\xBB\xBF");
     if (first != std::string_view::npos && text[first] == '<')
@@ -95,7 +95,7 @@ const char* kind_of(std::string_view text)
     throw error(error_kind::bad_input, name, "it is a plan, which a server does not take", "give the stroke");
 }
 
-net::json params_of(const std::string& argument)
+net::json make_params(const std::string& argument)
 {
     const auto& presets = stroke_presets();
     std::error_code ignored;
@@ -104,7 +104,7 @@ net::json params_of(const std::string& argument)
         const std::string text = read_all(STDIN_FILENO, "standard input");
         if (files::holds_plans(text))
             refuse_plan("standard input");
-        return {{kind_of(text), text}};
+        return {{guess_kind(text), text}};
     }
     if (is_preset ||
         (!std::filesystem::exists(argument, ignored) && argument.find_first_of("./") == std::string::npos))
@@ -120,7 +120,7 @@ net::json params_of(const std::string& argument)
     for (const char* kind : {"toml", "csv", "svg"})
         if (extension == fmt::format(".{}", kind))
             return {{kind, text}};
-    return {{kind_of(text), text}};
+    return {{guess_kind(text), text}};
 }
 
 } // namespace
@@ -129,7 +129,7 @@ error in_words_of_the_tool(const error& e, const std::string& argument)
 {
     std::string what(e.subject());
     if (what == "stroke" || what == "path" || what == "toml" || what == "csv" || what == "svg") {
-        const auto [at, why] = placed(argument, std::string(e.why()));
+        const auto [at, why] = split_place(argument, std::string(e.why()));
         if (at.line != 0)
             return e.reworded(at.text(), why, e.hint()).with_place(at);
         what = argument;
@@ -148,7 +148,7 @@ std::vector<std::pair<std::string, net::json>> stroke_params(const settings& s)
         return {{arguments.front(), {{"stroke", *s.shape}}}};
     std::vector<std::pair<std::string, net::json>> all;
     for (const std::string& argument : arguments)
-        all.emplace_back(argument, params_of(argument));
+        all.emplace_back(argument, make_params(argument));
     return all;
 }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// The tool's words and a server's: STROKE arguments and options as parameters of `play`, faults as the tool
-/// says them.
+/// Words of the tool and of a server: STROKE arguments and options as parameters of `play`, faults as the
+/// tool writes them.
 #pragma once
 
 #include <string>
@@ -15,15 +15,15 @@
 
 namespace tactor::cli {
 
-/// `argument` is the stroke that was sent, a file's name or a preset's: of a place in a file, the error has
-/// it.
+/// Rewords an error of a server. `argument`: the stroke that was sent, the name of a file or a preset, which
+/// the error names before a place in a file.
 error in_words_of_the_tool(const error& e, const std::string& argument);
 
-/// Of each STROKE its name and the parameter that says it: a preset, path data, or the text of a file.
+/// Returns the name of each STROKE and its parameter: a preset, path data, or the text of a file.
 /// \throws error (bad_input), also for plans, which a server does not take.
 std::vector<std::pair<std::string, net::json>> stroke_params(const settings& s);
 
-/// The options that the command line gives, as parameter; the server's owner has said the others.
+/// Returns the options that the command line gives, as a parameter. The server's owner sets the others.
 net::json client_options(const settings& s);
 
 } // namespace tactor::cli

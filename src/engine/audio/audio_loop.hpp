@@ -12,13 +12,38 @@
 #include <tactor/sink.hpp>
 
 #include "engine/audio/dac_clock.hpp"
-#include "engine/audio/device.hpp"
 #include "engine/audio/score_table.hpp"
 #include "engine/link.hpp"
 #include "rt/nonblocking.hpp"
 #include "synth/mix/mixer.hpp"
 
 namespace tactor::engine {
+
+/// The sink as the audio loop calls it: these calls may enter the kernel. ALSA locks a mutex of the handle in
+/// them, which only the audio thread uses.
+class device {
+public:
+    explicit device(sink& s) noexcept : sink_(s) {}
+
+    io_kind prepare() noexcept { return enter(&sink::prepare); }
+    io_kind start() noexcept { return enter(&sink::start); }
+    io_kind resume() noexcept { return enter(&sink::resume); }
+    std::int64_t xrun_ns() noexcept { return enter(&sink::xrun_ns); }
+    io_result available() noexcept { return enter(&sink::available); }
+    io_result write(std::span<const std::byte> frames) noexcept { return enter(&sink::write, frames); }
+    stream_position position() noexcept { return enter(&sink::position); }
+    void drop() noexcept { return enter(&sink::drop); }
+
+private:
+    template <typename Result, typename... Args>
+    Result enter(Result (sink::*call)(Args...) noexcept, Args... args) noexcept
+    {
+        const rt::permitted_call here{};
+        return (sink_.*call)(args...);
+    }
+
+    sink& sink_;
+};
 
 struct loop_options {
     std::uint32_t fade_frames = 480;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "engine/live/smoothing.hpp"
+#include "engine/live/live_stroke.hpp"
 
 #include <algorithm>
 

@@ -19,13 +19,13 @@ namespace tactor::plot {
 namespace {
 
 constexpr double largest_pitch = 100.0; // pt: neighbours are not farther apart on the page
-constexpr double lone_tactor_mm = 20.0; // shown round a tactor without neighbours
+constexpr double lone_tactor_mm = 20.0; // shown around a tactor without neighbours
 constexpr std::size_t most_path_points = 20000;
 constexpr std::array<double, 3> number_sizes{7.0, 6.0, 5.2}; // pt
 constexpr double largest_radius = 7.0;
-constexpr double largest_share = 0.28;  // of the distance of neighbours, for a circle's radius
-constexpr double beside = 3.0;          // pt: farther away a label has lost its tactor
-constexpr std::size_t most_told = 1024; // tactors that get a group with a title of their own
+constexpr double largest_share = 0.28;    // of the distance of neighbours, for a circle's radius
+constexpr double beside = 3.0;            // pt: farther away a label has lost its tactor
+constexpr std::size_t most_titled = 1024; // tactors that get a group and a title each
 
 double pitch_mm(const array& a)
 {
@@ -45,8 +45,8 @@ extent tactors_extent(const array& a)
 std::vector<point> sample(const trajectory& motion)
 {
     constexpr double step_mm = 0.1;
-    const double wished = std::max(64.0, motion.length_mm() / step_mm);
-    const auto n = static_cast<std::size_t>(std::min(wished, static_cast<double>(most_path_points)));
+    const double wanted = std::max(64.0, motion.length_mm() / step_mm);
+    const auto n = static_cast<std::size_t>(std::min(wanted, static_cast<double>(most_path_points)));
     std::vector<point> points;
     for (std::size_t i = 0; i <= n; ++i)
         points.push_back(
@@ -54,18 +54,19 @@ std::vector<point> sample(const trajectory& motion)
     return points;
 }
 
-// Shortest way between two tactors, pt: circles must not touch. Only looked for where each is told.
+// Returns the shortest distance of two tactors, pt: circles must not touch. Infinite if there are too many
+// for titles.
 double closest_pt(const array& a, double scale)
 {
     double least = std::numeric_limits<double>::infinity();
-    if (a.tactors.size() <= most_told)
+    if (a.tactors.size() <= most_titled)
         for (std::size_t i = 0; i < a.tactors.size(); ++i)
             for (std::size_t k = 0; k < i; ++k)
                 least = std::min(least, distance_mm(a.tactors[i].position, a.tactors[k].position));
     return least * scale;
 }
 
-// Circles in which the largest number fits, if there is space for them.
+// Sizes circles so that the largest number fits, if there is space for that.
 void size_tactors(array_frame& f, const array& a)
 {
     const double space = std::min(f.pitch, closest_pt(a, f.scale));
@@ -82,7 +83,7 @@ void size_tactors(array_frame& f, const array& a)
     }
 }
 
-// Tactors that had no space for something.
+// Tactors that have no space for something.
 struct missing {
     std::vector<unsigned> tactors = {};
 
@@ -173,7 +174,7 @@ void draw_tactors(canvas& c, const array_frame& f, const array& a, const tactor_
         const colour rim = looks.plays[i] ? ink : grey;
         const style look =
             f.radius < 1.5 ? style{.fill = rim} : style{.fill = white, .stroke = rim, .width = 0.7};
-        if (a.tactors.size() > most_told) {
+        if (a.tactors.size() > most_titled) {
             c.circle(at, f.radius, look, {.kind = "tactor"});
             continue;
         }
@@ -194,7 +195,7 @@ void draw_tactors(canvas& c, const array_frame& f, const array& a, const tactor_
 std::string draw_tactor_labels(canvas& c, const array_frame& f, const array& a, const tactor_looks& looks,
                                label_placer& taken)
 {
-    if (a.tactors.size() > most_told)
+    if (a.tactors.size() > most_titled)
         return "too many tactors to number each";
     const group all(c, {.id = "tactor-labels"});
     const bool channels = !channels_are_numbers(a);
@@ -205,26 +206,26 @@ std::string draw_tactor_labels(canvas& c, const array_frame& f, const array& a, 
     missing without_channel;
     for (unsigned i = 0; i < a.tactors.size(); ++i) {
         const std::string channel = fmt::format("ch {}", a.tactors[i].channel);
-        std::vector<std::string> wished; // the first that has space
+        std::vector<std::string> wanted; // the first with space is drawn
         if (!looks.inside[i] && channels)
-            wished = {fmt::format("{} ({})", i, channel), fmt::format("{}", i)};
+            wanted = {fmt::format("{} ({})", i, channel), fmt::format("{}", i)};
         else if (!looks.inside[i])
-            wished = {fmt::format("{}", i)};
+            wanted = {fmt::format("{}", i)};
         else if (channels)
-            wished = {channel};
+            wanted = {channel};
         std::optional<spot> at;
-        for (std::size_t k = 0; k < wished.size() && !at; ++k) {
+        for (std::size_t k = 0; k < wanted.size() && !at; ++k) {
             const double size = small_text;
-            at = taken.place_at(wished[k], size, sites, i, f.radius + 1.2, beside);
+            at = taken.place_at(wanted[k], size, sites, i, f.radius + 1.2, beside);
             if (at)
-                c.text(*at, wished[k], {.size = size, .ink = looks.plays[i] ? ink : dark_grey, .halo = true},
+                c.text(*at, wanted[k], {.size = size, .ink = looks.plays[i] ? ink : dark_grey, .halo = true},
                        {.kind = "tactor-label", .data = {{"tactor", fmt::format("{}", i)}}});
             if (at && channels && k > 0)
                 without_channel.add(i);
         }
         if (!at && !looks.inside[i])
             without_number.add(i);
-        else if (!at && !wished.empty())
+        else if (!at && !wanted.empty())
             without_channel.add(i);
     }
     return joined(without_number.text("number", a), without_channel.text("channel", a));

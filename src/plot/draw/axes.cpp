@@ -16,9 +16,9 @@ constexpr double tick_length = 2.5;
 
 constexpr double head_length = 3.6;
 constexpr double head_half = 1.3;
-constexpr double tail = 4.0; // of an arrow that points from outside
+constexpr double tail = 4.0; // tail of an arrow that points from outside
 
-// A head whose tip is at x; direction 1 points to the right.
+// Draws a head with its tip at x; direction 1 points to the right.
 void draw_head(canvas& c, double x, double y, double direction)
 {
     c.poly(

@@ -10,7 +10,7 @@
 
 namespace tactor::plot {
 
-/// Maps values to the page, linearly.
+/// Linear map from values to the page.
 struct scale {
     double from = 0.0; ///< value at page_from
     double to = 1.0;   ///< value at page_to; not equal to `from`
@@ -21,47 +21,47 @@ struct scale {
     double operator()(double v) const noexcept { return page_from + (v - from) * per_unit(); }
 };
 
-/// Round numbers (1, 2 or 5 times a power of ten apart) in lo ... hi, at most `most` of them, at least one
-/// where lo <= 0 <= hi.
+/// Round numbers, at a distance of 1, 2 or 5 times a power of ten.
 struct ticks {
     double step = 1.0;
     std::vector<double> at = {};
 
-    /// As many decimals as the step needs.
+    /// Returns the label of a value, with as many decimals as the step needs.
     std::string label(double v) const;
 };
+/// Returns at most `most` ticks in lo ... hi, and at least one if lo <= 0 <= hi.
 ticks nice_ticks(double lo, double hi, std::size_t most);
 
-/// Ticks whose labels do not touch along a horizontal axis.
+/// Returns ticks whose labels do not touch along a horizontal axis.
 ticks horizontal_ticks(const scale& x, double text_size);
 
 inline constexpr double small_text = 6.0; ///< pt, the least at one print column
 inline constexpr double label_text = 6.5;
 inline constexpr double title_text = 7.0;
 
-/// Height that draw_time_axis() needs under the line, pt.
+/// Height that draw_horizontal_axis() needs under the line, pt.
 inline constexpr double axis_height = 19.0;
 
-/// Between a diagram's lowest row and that line, pt.
+/// Gap between a diagram's lowest row and that line, pt.
 inline constexpr double axis_gap = 1.5;
 
-/// A line at y with ticks and labels under it, `title` under these, and light lines from `grid_top` down to
-/// it.
+/// Draws a line at y, ticks and labels under it, `title` under these, and light lines from `grid_top` down to
+/// the line.
 void draw_horizontal_axis(canvas& c, const scale& x, double y, double grid_top, const std::string& title);
 
-/// A line at the left of `inside` with these ticks and their labels beside it, light lines across, and
-/// `title` upwards with its foot at title_x.
+/// Draws a line at the left of `inside` with ticks and labels, light lines across, and `title` upwards with
+/// its foot at title_x.
 void draw_vertical_axis(canvas& c, const scale& y, const ticks& t, box inside, const std::string& title,
                         double title_x);
 
-/// One line of a chart; a value that is not finite interrupts it.
+/// A line of a chart; a value that is not finite interrupts it.
 struct series {
     std::string name = {};
     std::vector<spot> values = {}; ///< in units of the axes
     style look = {.stroke = ink, .width = 0.8};
 };
 
-/// What lies between two lines of a chart.
+/// Area between two lines of a chart.
 struct chart_band {
     std::string name = {};
     std::vector<spot> low = {}; ///< in units of the axes, by x
@@ -78,29 +78,29 @@ struct chart {
     std::string x_title = {};
     std::string y_title = {};
     std::vector<series> lines = {};
-    std::vector<chart_band> bands = {}; ///< under the lines, within the axes
+    std::vector<chart_band> bands = {}; ///< behind the lines, within the axes
 };
 
-/// Draws the chart with its legend above; lines are clipped to the axes. The cost on the page is bounded by
-/// its width, however many values there are. Returns the box inside the axes. Its SVG group has data-x0,
+/// Draws the chart with its legend above, and clips lines to the axes. The number of points on the page is
+/// bounded by the width. Returns the box inside the axes. Its SVG group has data-x0,
 /// data-x-scale, data-y0 and data-y-scale: page = 0 + scale * value.
 box draw_chart(canvas& c, const chart& ch);
 
-/// Parts of a line inside a box.
+/// Returns the parts of a line inside a box.
 std::vector<std::vector<spot>> clip(const std::vector<spot>& line, box b);
 
-/// The line with fewer points, nowhere more than `tolerance` pt away (Douglas and Peucker).
+/// Returns a line with fewer points, nowhere more than `tolerance` pt away (Douglas and Peucker).
 std::vector<spot> simplify(const std::vector<spot>& line, double tolerance);
 
 /// Returns the distance of a point from the segment between two others, pt.
 double distance(spot p, spot a, spot b) noexcept;
 
-/// An arrow from x0 to x1 at y with its label in or beside it; where the arrow would be too short its heads
-/// point at the interval from outside. Thin lines run down to `below` at both ends.
+/// Draws an arrow from x0 to x1 at y with its label in it or to its right. If the arrow would be too short,
+/// its heads point at the interval from outside. Thin lines run down to `below` at both ends.
 void draw_dimension(canvas& c, double x0, double x1, double y, double below, const std::string& label,
                     const mark& m);
 
-/// Slanted lines inside a box, and its rim.
+/// Draws slanted lines inside a box, and its rim.
 void draw_hatch(canvas& c, box b, const mark& m);
 
 } // namespace tactor::plot

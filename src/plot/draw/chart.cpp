@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 
 #include <fmt/format.h>
 
@@ -14,9 +15,9 @@ namespace {
 constexpr double legend_row = 9.0;
 constexpr double sample_length = 14.0;
 constexpr double left_column = 30.0; // for the labels of y, pt
-constexpr double column = 0.25;      // pt: values nearer than this along x are one
+constexpr double column = 0.25;      // pt: closer values along x are one
 
-// Of the values that fall on one column of the page the first, the least, the largest and the last remain.
+// Keeps the first, the least, the largest and the last of the values in each column of the page.
 std::vector<spot> thin_out(const std::vector<spot>& line)
 {
     std::vector<spot> out;
@@ -43,8 +44,8 @@ std::vector<spot> thin_out(const std::vector<spot>& line)
     return out;
 }
 
-// Draws names behind samples of their lines, in rows up to `width`, from (x, y) down; returns the height,
-// also without a canvas.
+// Draws samples of lines and their names, in rows up to `width`, from (x, y) down. Returns the height, also
+// without a canvas.
 double draw_line_legend(canvas* c, const std::vector<series>& lines, double x, double y, double width)
 {
     double at = x;
@@ -69,7 +70,101 @@ double draw_line_legend(canvas* c, const std::vector<series>& lines, double x, d
     return at > x ? row + legend_row - y : 0.0;
 }
 
+struct segment {
+    spot from;
+    spot to;
+};
+
+// Returns the part of a segment inside a box (Liang and Barsky).
+std::optional<segment> clip_segment(spot a, spot b, box w)
+{
+    const double dx = b.x - a.x;
+    const double dy = b.y - a.y;
+    double enter = 0.0;
+    double leave = 1.0;
+    const auto cut = [&](double speed, double space) { // speed * t <= space
+        if (speed == 0.0)
+            return space >= 0.0;
+        const double t = space / speed;
+        if (speed < 0.0)
+            enter = std::max(enter, t);
+        else
+            leave = std::min(leave, t);
+        return enter <= leave;
+    };
+    if (!cut(-dx, a.x - w.x) || !cut(dx, w.right() - a.x) || !cut(-dy, a.y - w.y) ||
+        !cut(dy, w.bottom() - a.y))
+        return {};
+    return segment{{a.x + enter * dx, a.y + enter * dy}, {a.x + leave * dx, a.y + leave * dy}};
+}
+
+bool finite(spot s) noexcept
+{
+    return std::isfinite(s.x) && std::isfinite(s.y);
+}
+
 } // namespace
+
+double distance(spot p, spot a, spot b) noexcept
+{
+    const double dx = b.x - a.x;
+    const double dy = b.y - a.y;
+    const double square = dx * dx + dy * dy;
+    const double t =
+        square > 0.0 ? std::clamp(((p.x - a.x) * dx + (p.y - a.y) * dy) / square, 0.0, 1.0) : 0.0;
+    return std::hypot(p.x - a.x - t * dx, p.y - a.y - t * dy);
+}
+
+std::vector<std::vector<spot>> clip(const std::vector<spot>& line, box b)
+{
+    std::vector<std::vector<spot>> parts;
+    bool joined = false;
+    for (std::size_t i = 1; i < line.size(); ++i) {
+        const auto inside =
+            finite(line[i - 1]) && finite(line[i]) ? clip_segment(line[i - 1], line[i], b) : std::nullopt;
+        if (!inside) {
+            joined = false;
+            continue;
+        }
+        if (!joined)
+            parts.push_back({inside->from});
+        parts.back().push_back(inside->to);
+        joined = inside->to.x == line[i].x && inside->to.y == line[i].y;
+    }
+    return parts;
+}
+
+std::vector<spot> simplify(const std::vector<spot>& line, double tolerance)
+{
+    if (line.size() < 3)
+        return line;
+    std::vector<bool> keep(line.size(), false);
+    keep.front() = keep.back() = true;
+    std::vector<std::pair<std::size_t, std::size_t>> open{{0, line.size() - 1}};
+    while (!open.empty()) {
+        const auto [first, last] = open.back();
+        open.pop_back();
+        double worst = tolerance;
+        std::size_t at = 0;
+        for (std::size_t i = first + 1; i < last; ++i) {
+            const double d = distance(line[i], line[first], line[last]);
+            if (d > worst) {
+                worst = d;
+                at = i;
+            }
+        }
+        if (at != 0) {
+            keep[at] = true;
+            open.emplace_back(first, at);
+            open.emplace_back(at, last);
+        }
+    }
+    std::vector<spot> out;
+    for (std::size_t i = 0; i < line.size(); ++i)
+        if (keep[i])
+            out.push_back(line[i]);
+    return out;
+}
 
 box draw_chart(canvas& c, const chart& ch)
 {

@@ -11,8 +11,8 @@
 namespace tactor::plot {
 namespace {
 
-constexpr std::size_t most_obstacles = 4000; // what a crowded picture has more changes no place
-constexpr double off_page = 50.0;            // weight of what leaves the area
+constexpr std::size_t most_obstacles = 4000; // more do not change the places in a crowded picture
+constexpr double off_page = 50.0;            // weight of the part outside the area
 
 // Directions in order of preference: below, right, left, above, then the corners; y down.
 struct direction {
@@ -66,7 +66,7 @@ double label_placer::cost(box b) const
     return sum;
 }
 
-// Not even touching: edges that meet are no overlap.
+// Returns true if a box is inside the area and on no other label or tactor. Edges that meet do not overlap.
 bool label_placer::is_clear(box b) const
 {
     if (overlap_area(b, area_) < b.width * b.height - 1e-6)

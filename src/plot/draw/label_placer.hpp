@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// Finds places for labels beside what is drawn.
+/// Places of labels next to the drawing.
 #pragma once
 
 #include <optional>
@@ -11,33 +11,34 @@
 
 namespace tactor::plot {
 
-/// Knows what is taken, and takes for each label the place where it covers least.
+/// Keeper of the taken places. Finds for each label the place at which it covers least.
 class label_placer {
 public:
     /// Labels stay inside `area` if they can.
     explicit label_placer(box area) : area_(area) {}
 
-    /// `weight`: how bad it is to be covered, to the square point.
+    /// Blocks a box. `weight`: cost of covering a square point.
     void block(box b, double weight) { taken_.push_back({b, weight}); }
     void block_disc(spot centre, double radius, double weight);
     void block_line(const std::vector<spot>& line, double width, double weight);
 
-    /// Where to begin the baseline of `text` near `at`, at least `gap` away from it. The place is taken then.
+    /// Returns the start of the baseline of `text` near `at`, at least `gap` away from it, and takes that
+    /// place.
     spot place(std::string_view text, double size, spot at, double gap);
 
-    /// The same, but only where the text lies inside the area and on no other label or tactor; nothing where
-    /// there is no such place, which is not taken then. `reach`: how far away it may be, pt.
+    /// Does the same, but only for a place inside the area and on no other label or tactor. Returns nothing
+    /// if there is none. `reach`: largest distance, pt.
     std::optional<spot> place_clear(std::string_view text, double size, spot at, double gap, double reach);
 
-    /// The same beside one of many sites, and only where that site is clearly the nearest to the text.
+    /// Does the same next to one of many sites, and only if that site is clearly the nearest to the text.
     std::optional<spot> place_at(std::string_view text, double size, const std::vector<spot>& sites,
                                  std::size_t own, double gap, double reach);
 
-    /// Blocks what no label may lie on: a tactor or another label.
+    /// Blocks a place on which no label may lie: a tactor or another label.
     void forbid(box b) { block(b, forbidden); }
     void forbid_disc(spot centre, double radius) { block_disc(centre, radius, forbidden); }
 
-    /// What it would cover, each square point with its weight.
+    /// Returns the sum of the covered square points, each with its weight.
     double cost(box b) const;
 
     static constexpr double forbidden = 20.0;

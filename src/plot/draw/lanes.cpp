@@ -14,15 +14,15 @@ namespace {
 
 constexpr double highest_row = 11.0;
 constexpr double lowest_row = 2.2;
-constexpr double lowest_level = 1.6;      // where strokes lie below each other
-constexpr double most_height = 260.0;     // of rows that do not all get a label, pt
-constexpr std::size_t most_labelled = 64; // rows that all get a label with ease
-constexpr double wide_pitch = 7.2;        // of labels, pt
+constexpr double lowest_level = 1.6;      // for strokes below each other
+constexpr double most_height = 260.0;     // of rows without a label for each, pt
+constexpr std::size_t most_labelled = 64; // rows that can all get a label
+constexpr double wide_pitch = 7.2;        // distance of labels, pt
 constexpr double tight_pitch = 5.6;
 constexpr double most_labelled_height = wide_pitch * static_cast<double>(most_labelled);
 constexpr double least_space = 60.0;
 
-std::string label_of(const array& a, const std::vector<unsigned>& tactors, bool channels)
+std::string make_label(const array& a, const std::vector<unsigned>& tactors, bool channels)
 {
     if (tactors.size() > 1)
         return fmt::format("{}-{}", tactors.front(), tactors.back());
@@ -30,18 +30,18 @@ std::string label_of(const array& a, const std::vector<unsigned>& tactors, bool 
                     : fmt::format("{}", tactors.front());
 }
 
-double middle_of(const lane& r)
+double row_middle(const lane& r)
 {
     return r.top + r.height / 2.0;
 }
 
-// Rows whose labels have space, from the first on.
+// Returns the rows whose labels have space, from the first on.
 std::vector<std::size_t> labelled(const lanes& l)
 {
     std::vector<std::size_t> shown;
     double last = -l.label_pitch;
     for (std::size_t i = 0; i < l.rows.size(); ++i)
-        if (const double middle = middle_of(l.rows[i]); middle - last >= l.label_pitch - 1e-9) {
+        if (const double middle = row_middle(l.rows[i]); middle - last >= l.label_pitch - 1e-9) {
             last = middle;
             shown.push_back(i);
         }
@@ -55,17 +55,17 @@ lanes make_lanes(const array& a, const std::vector<unsigned>& playing, double sp
     const auto most_rows = static_cast<std::size_t>(std::clamp(space, least_space, most_height) / lowest_row);
     const std::size_t together = std::max<std::size_t>(1, (playing.size() + most_rows - 1) / most_rows);
     lanes l;
-    l.row_of.assign(a.tactors.size(), -1);
+    l.row_by_tactor.assign(a.tactors.size(), -1);
     for (std::size_t i = 0; i < playing.size(); ++i) {
         if (i % together == 0)
             l.rows.emplace_back();
         l.rows.back().tactors.push_back(playing[i]);
-        l.row_of[playing[i]] = static_cast<int>(l.rows.size()) - 1;
+        l.row_by_tactor[playing[i]] = static_cast<int>(l.rows.size()) - 1;
     }
     const bool channels = !channels_are_numbers(a);
     l.heading = channels ? "tactor (ch)" : "tactor";
     for (lane& r : l.rows) {
-        r.label = label_of(a, r.tactors, channels);
+        r.label = make_label(a, r.tactors, channels);
         l.label_width = std::max(l.label_width, text_width(r.label, small_text));
     }
     l.label_width = std::max(l.label_width, text_width(l.heading, small_text));
@@ -86,7 +86,7 @@ bool lanes::fit(double space)
     lay_out(even(rows.size() <= most_labelled ? most_labelled_height : most_height));
     if (all_height <= space && labelled(*this).size() == rows.size())
         return true;
-    // Closer labels then, and no row too low for its own.
+    // Uses closer labels, and no row too low for its label.
     label_pitch = tight_pitch;
     const double most = std::min(space, most_labelled_height);
     double low = lowest_level;
@@ -124,9 +124,9 @@ std::string draw_lane_labels(canvas& c, const lanes& l, double x, double top)
 {
     const std::vector<std::size_t> shown = labelled(l);
     for (const std::size_t i : shown)
-        c.text({x, top + middle_of(l.rows[i]) + cap_height(small_text) / 2.0}, l.rows[i].label,
+        c.text({x, top + row_middle(l.rows[i]) + cap_height(small_text) / 2.0}, l.rows[i].label,
                {.size = small_text, .anchor = align::end}, {.kind = "row-label"});
-    // Where there is no space for all, rows are of one height.
+    // Rows are of one height if there is no space for all.
     return shown.size() == l.rows.size() ? "" : fmt::format("one row in {} has its number", shown[1]);
 }
 
@@ -149,24 +149,24 @@ void column_profile::add(double from_s, double to_s, double value)
 std::vector<std::vector<spot>> column_profile::outlines(double base, double height, bool smooth) const
 {
     std::vector<std::vector<spot>> shapes;
-    const auto x_of = [&](double i) { return std::min(x_.page_from + i * column_width, x_.page_to); };
+    const auto page_x = [&](double i) { return std::min(x_.page_from + i * column_width, x_.page_to); };
     for (std::size_t i = 0; i < columns_.size();) {
         if (columns_[i] <= 0.0) {
             ++i;
             continue;
         }
-        std::vector<spot> shape{{x_of(static_cast<double>(i)), base}};
+        std::vector<spot> shape{{page_x(static_cast<double>(i)), base}};
         for (; i < columns_.size() && columns_[i] > 0.0; ++i) {
             const double y = base - height * columns_[i];
             const auto k = static_cast<double>(i);
             if (smooth) {
-                shape.push_back({x_of(k + 0.5), y});
+                shape.push_back({page_x(k + 0.5), y});
             } else {
-                shape.push_back({x_of(k), y});
-                shape.push_back({x_of(k + 1.0), y});
+                shape.push_back({page_x(k), y});
+                shape.push_back({page_x(k + 1.0), y});
             }
         }
-        shape.push_back({x_of(static_cast<double>(i)), base});
+        shape.push_back({page_x(static_cast<double>(i)), base});
         shapes.push_back(simplify(shape, 0.02));
     }
     return shapes;

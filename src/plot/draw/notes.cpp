@@ -71,4 +71,15 @@ double draw_notes(canvas& c, const std::vector<std::string>& notes, box where, s
     return y - where.y;
 }
 
+double draw_heading(canvas& c, const std::string& title, const std::vector<std::string>& lines, box where)
+{
+    double y = where.y + cap_height(title_size);
+    c.text({where.x, y}, shorten(title, title_size, where.width, true), {.size = title_size, .bold = true});
+    for (const std::string& line : lines) {
+        y += line_pitch;
+        c.text({where.x, y}, line, {.size = small_text, .ink = dark_grey});
+    }
+    return y;
+}
+
 } // namespace tactor::plot

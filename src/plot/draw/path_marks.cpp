@@ -21,7 +21,7 @@ constexpr std::size_t most_arrows = 60; // in a picture
 constexpr double farthest_number = 7.0;
 constexpr double same_start = 1.0;      // pt
 constexpr double farthest_label = 20.0; // from a start or end, pt
-constexpr std::size_t most_marked = 60; // strokes whose ends are marked
+constexpr std::size_t most_marked = 60; // strokes with marked ends
 
 class marker {
 public:
@@ -71,7 +71,8 @@ public:
     }
 
 private:
-    // In a box of the stroke's colour: plain numbers are tactors. False where there is no space.
+    // Draws numbers in a box of the stroke's colour, because plain numbers are tactors. Returns false if
+    // there is no space.
     bool number_start(const std::vector<spot>& starts, std::size_t k, const std::vector<std::size_t>& strokes)
     {
         std::vector<std::size_t> numbers;
@@ -85,7 +86,7 @@ private:
         const bool one_look = std::all_of(strokes.begin(), strokes.end(), [&](std::size_t i) {
             return time_.looks[i] == time_.looks[strokes.front()];
         });
-        const colour fill = one_look ? of_stroke(time_.looks[strokes.front()]) : dark_grey;
+        const colour fill = one_look ? stroke_colour(time_.looks[strokes.front()]) : dark_grey;
         const double height = cap_height(small_text);
         const double pad = text_width(" ", small_text);
         const double air = 1.3;
@@ -111,15 +112,15 @@ private:
         return {at.x - r, at.y - r, 2.0 * r, 2.0 * r};
     }
 
-    // The time near `wished` at which an arrow covers least: no dot, no tactor.
-    double clear_time(const trajectory& motion, double wished, double range) const
+    // Returns the time near `wanted` at which an arrow covers least.
+    double clear_time(const trajectory& motion, double wanted, double range) const
     {
         constexpr int tries = 40;
-        double best = wished;
-        double least = taken_.cost(arrow_box(frame_(motion.position(wished))));
+        double best = wanted;
+        double least = taken_.cost(arrow_box(frame_(motion.position(wanted))));
         for (int k = 1; k <= tries; ++k)
             for (const double side : {1.0, -1.0}) {
-                const double t = wished + side * range * k / tries;
+                const double t = wanted + side * range * k / tries;
                 const double c = taken_.cost(arrow_box(frame_(motion.position(t)))) + 1.0 * k;
                 if (c < least) {
                     least = c;
@@ -129,9 +130,9 @@ private:
         return best;
     }
 
-    void draw_arrow(const trajectory& motion, double wished, double range)
+    void draw_arrow(const trajectory& motion, double wanted, double range)
     {
-        const double t = clear_time(motion, wished, range);
+        const double t = clear_time(motion, wanted, range);
         const double step = 1e-3 * motion.duration_s();
         const spot from = frame_(motion.position(t - step));
         const spot to = frame_(motion.position(t + step));
@@ -152,9 +153,9 @@ private:
 
     void draw_arrows(const trajectory& motion, std::size_t strokes)
     {
-        const auto wished = std::max(1L, std::lround(motion.length_mm() * frame_.scale / arrow_every));
+        const auto wanted = std::max(1L, std::lround(motion.length_mm() * frame_.scale / arrow_every));
         const std::size_t n =
-            std::min({static_cast<std::size_t>(wished), most_arrows / strokes, most_arrows / 6});
+            std::min({static_cast<std::size_t>(wanted), most_arrows / strokes, most_arrows / 6});
         const double each = motion.duration_s() / static_cast<double>(n);
         for (std::size_t k = 0; k < n; ++k)
             draw_arrow(motion, (static_cast<double>(k) + 0.5) * each, 0.4 * each);
@@ -177,7 +178,7 @@ private:
         taken_.block_disc(end, r, 12.0);
     }
 
-    // Whether there was space, or nothing to label.
+    // Labels a place. Returns false if there is no space.
     bool label(const std::string& text, const char* kind, point where)
     {
         const spot at = frame_(where);

@@ -21,10 +21,10 @@
 namespace tactor::plot {
 namespace {
 
-constexpr std::size_t most_starts = 60; // more say nothing
+constexpr std::size_t most_starts = 60; // more are not legible
 constexpr std::size_t most_lines = 3;   // of numbers
 constexpr double line_height = 7.0;
-constexpr double aside = 2.0; // of a number, behind its start
+constexpr double aside = 2.0; // distance of a number from its start
 
 using numbers_at = std::map<double, std::vector<std::size_t>>; // by x
 
@@ -32,10 +32,10 @@ constexpr double row_height = 8.5;
 constexpr double swatch = 8.0;
 constexpr double gap = 3.0;           // between swatch and name
 constexpr double column_gap = 10.0;   // at least, between columns
-constexpr double most_of_width = 0.5; // for one entry, where there are several
+constexpr double most_of_width = 0.5; // for an entry if there are several
 constexpr std::size_t most_rows = 12;
 
-// A line of the legend: a stroke, or all repeats of one.
+// A line of the legend: a stroke, or all its repeats.
 struct entry {
     std::vector<std::size_t> numbers = {};
     std::string name = {};
@@ -64,7 +64,7 @@ std::vector<std::string> write_entries(const std::vector<entry>& entries)
     return all;
 }
 
-// Where names are cut to the same letters, their ends tell them apart.
+// Shortens names; shortens them in the middle if their beginnings are the same.
 std::vector<std::string> shortened(const std::vector<std::string>& all, double width)
 {
     std::vector<std::string> cut;
@@ -95,7 +95,7 @@ std::string join_runs(const std::vector<std::size_t>& numbers)
     return fmt::format("{}", fmt::join(runs, ", "));
 }
 
-stroke_starts look_at_starts(const timeline& t, const scale& x)
+stroke_starts find_starts(const timeline& t, const scale& x)
 {
     stroke_starts all;
     if (!t.several())
@@ -177,7 +177,7 @@ double draw_stroke_legend(canvas& c, const scene& s, const timeline& t, box wher
         const double x = where.x + entry_width * static_cast<double>(in_column);
         const double middle = where.y + row_height * (static_cast<double>(i % rows) + 0.5);
         if (colours)
-            c.rect({x, middle - 2.5, swatch, 5.0}, {.fill = of_stroke(i), .stroke = ink, .width = 0.3},
+            c.rect({x, middle - 2.5, swatch, 5.0}, {.fill = stroke_colour(i), .stroke = ink, .width = 0.3},
                    {.kind = "stroke-colour"});
         c.text(
             {x + lead, middle + cap_height(small_text) / 2.0}, names[i], {.size = small_text},

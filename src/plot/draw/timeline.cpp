@@ -10,8 +10,8 @@
 namespace tactor::plot {
 namespace {
 
-constexpr std::size_t most_instants = 24; // of `continuous`, that are shown as positions
-constexpr std::size_t looked_at = 4000;   // instants of `continuous` at which who plays is looked up
+constexpr std::size_t most_instants = 24; // of `continuous`, shown as positions
+constexpr std::size_t looked_at = 4000;   // instants of `continuous` at which playing tactors are looked up
 
 class maker {
 public:
@@ -118,9 +118,9 @@ timeline make_timeline(const scene& s)
     return maker(s).make();
 }
 
-colour colour_of(const timeline& t, const shown_burst& b) noexcept
+colour burst_colour(const timeline& t, const shown_burst& b) noexcept
 {
-    return t.several() ? of_stroke(t.looks[b.stroke])
+    return t.several() ? stroke_colour(t.looks[b.stroke])
                        : ordered(t.total_s > 0.0 ? b.target_s / t.total_s : 0.0);
 }
 
@@ -128,7 +128,7 @@ void draw_time_strip(canvas& c, box where)
 {
     constexpr int steps = 128;
     const group g(c, {.id = "time-colours", .title = "colour of each time"});
-    // Each reaches to the end, so that no seam shows between two.
+    // Each part reaches to the end, so that no seam shows between two.
     for (int i = 0; i < steps; ++i) {
         const double part = static_cast<double>(i) / steps;
         c.rect({where.x + part * where.width, where.y, (1.0 - part) * where.width, where.height},

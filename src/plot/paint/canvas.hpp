@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// A picture as a value: what is drawn where, in points (1/72 inch), y down. It knows no file format;
-/// to_svg(), to_png() and to_pdf() (output.hpp) write the same picture.
+/// A picture as a list of elements, in points (1/72 inch), y down. to_svg(), to_png() and to_pdf()
+/// (output.hpp) write the same picture.
 #pragma once
 
 #include <cstddef>
@@ -14,7 +14,7 @@
 
 namespace tactor::plot {
 
-/// A colour that colour-blind people and black-and-white printers can tell from the others here.
+/// A colour that colour-blind people and black-and-white printers can distinguish from the others here.
 struct colour {
     std::uint8_t r = 0;
     std::uint8_t g = 0;
@@ -31,30 +31,28 @@ inline constexpr colour grey{150, 150, 150};
 inline constexpr colour light_grey{215, 215, 215};
 inline constexpr colour white{255, 255, 255};
 
-/// For lines that stand for things and not for numbers, from the palette of Okabe and Ito; each also differs
-/// in lightness from the others.
+/// Colours of categories, from the palette of Okabe and Ito; they also differ in lightness.
 inline constexpr colour blue{0, 114, 178};
 inline constexpr colour orange{230, 159, 0};
 inline constexpr colour vermilion{213, 94, 0};
 
-/// Colour of u in 0 ... 1 (clamped): dark to light, and evenly so in grey. The map "viridis" of Smith and van
-/// der Walt without its lightest end, which is lost on white paper.
+/// Returns the colour of u in 0 ... 1 (clamped), from dark to light, evenly in grey too: the map "viridis" of
+/// Smith and van der Walt without its lightest end, which is lost on white paper.
 colour ordered(double u) noexcept;
 
-/// Returns the same colour, seen through.
+/// Returns the same colour, translucent.
 constexpr colour with_alpha(colour c, double alpha) noexcept
 {
     c.alpha = alpha;
     return c;
 }
 
-/// Number of strokes that have a colour of their own.
+/// Number of different colours of strokes.
 inline constexpr std::size_t stroke_colours = 10;
 
-/// Colour of the n-th stroke, from 0; they repeat after `stroke_colours`. Chosen so that any two differ by
-/// more than 20 in CIELAB for normal sight and for protan, deutan and tritan sight alike (model of Machado et
-/// al.).
-colour of_stroke(std::size_t n) noexcept;
+/// Returns the colour of the n-th stroke, from 0; colours repeat after `stroke_colours`. Any two differ by
+/// more than 20 in CIELAB for normal, protan, deutan and tritan sight (model of Machado et al.).
+colour stroke_colour(std::size_t n) noexcept;
 
 /// A place on the page, pt.
 struct spot {
@@ -91,12 +89,12 @@ struct text_style {
     bool bold = false;
     align anchor = align::start;
     colour ink = black;
-    bool halo = false;    ///< white rim, where it lies on lines
+    bool halo = false;    ///< white rim, for text on lines
     bool upwards = false; ///< turned by a quarter, read from below
 };
 
-/// What readers that are no eyes learn of an element: SVG's id, class, title and data-* attributes. PNG and
-/// PDF leave it out.
+/// Description of an element for programs and screen readers: id, class, title and data-* attributes of SVG.
+/// PNG and PDF do not have it.
 struct mark {
     std::string id = {};
     std::string kind = {};

@@ -36,7 +36,7 @@ colour ordered(double u) noexcept
     return {mixed(a.r, b.r, part), mixed(a.g, b.g, part), mixed(a.b, b.b, part)};
 }
 
-colour of_stroke(std::size_t n) noexcept
+colour stroke_colour(std::size_t n) noexcept
 {
     constexpr std::array<colour, stroke_colours> all{{{26, 133, 255},
                                                       {230, 159, 0},

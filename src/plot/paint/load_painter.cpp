@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// to_png() and to_pdf() of the tool and of Python's extension, which is compiled with this once more: by the
-// module, which is loaded when the first picture needs it.
+// to_png() and to_pdf() of the tool and of Python's extension, each of which compiles this file: by the
+// module, which is loaded for the first picture that needs it.
 #include <array>
 #include <filesystem>
 #include <string>
@@ -17,11 +17,11 @@
 namespace tactor::plot {
 namespace {
 
-// From the folder of tool or extension: where Meson installs it or built it, and nowhere else. The
-// environment has no say.
+// Places of the module, from the folder of tool or extension: as Meson installs it, and as it was built. The
+// environment cannot change them.
 constexpr std::array places{TACTOR_PAINTERS};
 
-// Not by $ORIGIN, which a sanitizer's dlopen() takes for its own.
+// Returns the folder of tool or extension. $ORIGIN would be the folder of a sanitizer's dlopen().
 std::filesystem::path own_folder()
 {
 #ifdef TACTOR_IN_EXTENSION
@@ -35,7 +35,7 @@ std::filesystem::path own_folder()
 #endif
 }
 
-// It stays loaded: fonts and libraries below it keep what they have begun.
+// Loads the module for good: fonts and libraries below it keep state.
 const painter_module& load()
 {
     if (TACTOR_HAS_PAINTER == 0)
@@ -49,8 +49,8 @@ const painter_module& load()
         const std::string file = (folder / place).lexically_normal().string();
         void* const module = dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL);
         if (module == nullptr) {
-            const char* const said = dlerror();
-            why += fmt::format("{}{}", why.empty() ? "" : "; ", said != nullptr ? said : file);
+            const char* const failed = dlerror();
+            why += fmt::format("{}{}", why.empty() ? "" : "; ", failed != nullptr ? failed : file);
             continue;
         }
         if (const void* entry = dlsym(module, "tactor_painter"))

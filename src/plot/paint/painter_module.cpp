@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The entry of the module that paints with Cairo.
+// Entry of the module that paints with Cairo.
 #include "plot/paint/painter_module.hpp"
 
 #include "plot/paint/output.hpp"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// What paints PNG and PDF is a module of its own, for Cairo brings some twenty libraries, which would be
-/// loaded whenever the tool starts. Tool and module are of one build: the version is in the module's name.
+/// The module that paints PNG and PDF. Cairo brings some twenty libraries, which would slow down each start
+/// of the tool. Tool and module are of one build: the version is in the module's name.
 #pragma once
 
 #include <new>
@@ -14,22 +14,22 @@
 
 namespace tactor::plot {
 
-/// A file's bytes, or why there are none. No exception passes from the module to who loaded it: each may have
-/// a C++ runtime of its own.
+/// Bytes of a file, or the reason why there are none. No exception leaves the module: it may have another C++
+/// runtime than the program that loaded it.
 struct painting {
     std::string bytes = {};
     bool no_memory = false;
     std::optional<error_kind> failed = {};
-    std::string what = {}, why = {}, hint = {}; ///< where it failed
+    std::string what = {}, why = {}, hint = {}; ///< of a failure
 };
 
-/// What the module exports, as tactor_painter.
+/// Functions that the module exports as tactor_painter.
 struct painter_module {
     painting (*to_png)(const canvas&, unsigned dpi) noexcept;
     painting (*to_pdf)(const canvas&) noexcept;
 };
 
-/// \throws error, std::bad_alloc
+/// Returns the bytes. \throws error, std::bad_alloc.
 inline std::string painted_bytes(painting p)
 {
     if (p.no_memory)

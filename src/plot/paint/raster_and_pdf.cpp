@@ -23,7 +23,7 @@ struct surface_closer {
 };
 using surface_ptr = std::unique_ptr<cairo_surface_t, surface_closer>;
 
-constexpr double halo_width = 1.6; // as in SVG
+constexpr double halo_width = 1.6; // the same in SVG
 
 void set_colour(cairo_t* cr, colour c)
 {
@@ -177,7 +177,7 @@ void add_chunk(std::string& to, const std::string& name_and_content)
     add_big_endian(to, crc(name_and_content));
 }
 
-// Cairo says neither how large a pixel is nor who drew it; chunks behind the header (8 + 25 bytes) do.
+// Adds the size of a pixel and the mark in chunks after the header (8 + 25 bytes): Cairo writes neither.
 void add_resolution_and_mark(std::string& png, unsigned dpi)
 {
     constexpr std::size_t after_header = 33;
@@ -192,7 +192,7 @@ void add_resolution_and_mark(std::string& png, unsigned dpi)
     png.insert(after_header, chunks);
 }
 
-// A comment in front of the place of the table of references: no other place moves.
+// Adds the mark as a comment before "startxref", so that no reference moves.
 void add_mark(std::string& pdf)
 {
     const std::size_t at = pdf.rfind("\nstartxref");
@@ -228,7 +228,7 @@ std::string to_pdf(const canvas& c)
     cairo_pdf_surface_restrict_to_version(surface.get(), CAIRO_PDF_VERSION_1_5);
     cairo_pdf_surface_set_metadata(surface.get(), CAIRO_PDF_METADATA_TITLE, clean(c.title).c_str());
     cairo_pdf_surface_set_metadata(surface.get(), CAIRO_PDF_METADATA_SUBJECT, clean(c.description).c_str());
-    // Cairo would put the time of day: the same picture must be the same file.
+    // Without this Cairo writes the time: the same picture must be the same file.
     cairo_pdf_surface_set_metadata(surface.get(), CAIRO_PDF_METADATA_CREATE_DATE, "");
     paint(c, surface.get(), 1.0);
     cairo_surface_finish(surface.get());

@@ -17,7 +17,7 @@ constexpr std::array<std::uint16_t, 95> advances{
     575, 775, 752, 295, 295, 656, 557, 863, 748, 787, 603, 787, 695, 635,  611, 732, 684, 989, 685,
     611, 685, 390, 337, 390, 838, 500, 500, 613, 635, 550, 635, 615, 352,  635, 634, 278, 278, 579,
     278, 974, 634, 612, 635, 635, 411, 521, 392, 634, 592, 818, 592, 592,  525, 636, 337, 636, 838};
-constexpr double other_advance = 1.0; // of one em: wide enough for ideographs
+constexpr double other_advance = 1.0; // em: wide enough for ideographs
 constexpr double bold_factor = 1.13;
 constexpr std::string_view replacement = "\xEF\xBF\xBD";
 constexpr std::string_view ellipsis = "\xE2\x80\xA6";
@@ -111,7 +111,7 @@ std::string shorten_middle(std::string_view text, double size, double width)
     for (std::size_t i = all.size(); i > 0;) {
         do
             --i;
-        while (i > 0 && (static_cast<unsigned char>(all[i]) & 0xC0U) == 0x80U); // to where a character begins
+        while (i > 0 && (static_cast<unsigned char>(all[i]) & 0xC0U) == 0x80U); // to the start of a character
         if (text_width(std::string_view(all).substr(i), size) > space)
             break;
         end = i;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What goes out, and who is known.
+// Requests to the service, its answers, and the senders.
 #include <utility>
 
 #include <boost/asio/post.hpp>
@@ -16,16 +16,16 @@ constexpr std::size_t most_words = 1000; // of an error, in bytes
 
 } // namespace
 
-/// The way from the service back to a sender.
-class osc_clients::link final : public client_link {
+/// The way from the service to a sender.
+class osc_clients::sender_link final : public client_link {
 public:
-    link(osc_clients& all, endpoint to) : all_(&all), to_(std::move(to)), alive_(all.alive_) {}
+    sender_link(osc_clients& all, endpoint to) : all_(&all), to_(std::move(to)), alive_(all.alive_) {}
     void send(std::string message) override
     {
         if (!alive_.expired())
-            all_->told(to_, message);
+            all_->deliver(to_, message);
     }
-    // A datagram has gone, or was lost.
+    // A datagram is sent, or lost.
     std::size_t waiting() const override { return 0; }
     void finish() override {}
 
@@ -35,7 +35,7 @@ private:
     std::weak_ptr<const int> alive_;
 };
 
-// Not from within: the service may be in the middle of something.
+// Calls `f` later, because the service may be in the middle of something.
 template <typename F>
 void osc_clients::later(F f)
 {
@@ -58,8 +58,8 @@ osc_clients::sender& osc_clients::admit(const endpoint& from)
     if (!service_.has_place(client_kind::datagram))
         limit_reached("max_clients", "there is no place for one more");
     auto s = std::make_unique<sender>();
-    s->way_back = std::make_shared<link>(*this, from);
-    s->client = service_.connect(s->way_back, client_kind::datagram);
+    s->link = std::make_shared<sender_link>(*this, from);
+    s->client = service_.connect(s->link, client_kind::datagram);
     return *senders_.emplace(from, std::move(s)).first->second;
 }
 
@@ -73,8 +73,8 @@ void osc_clients::ask(sender& s, const osc_request& r)
             {{"jsonrpc", "2.0"}, {"id", id}, {"method", r.method}, {"params", net::reply_json(r.params)}}));
 }
 
-// About a stroke that it was given before.
-void osc_clients::ask_of(sender& s, drawn& d, osc_request r)
+// Asks about a stroke that the sender has; waits for its number if that is not known yet.
+void osc_clients::ask_about(sender& s, drawn& d, osc_request r)
 {
     if (d.stroke && d.waiting.empty()) {
         r.params["stroke"] = *d.stroke;
@@ -97,23 +97,23 @@ void osc_clients::flush(const endpoint& from, std::int32_t number)
         r.params["stroke"] = *d.stroke;
         ask(*s, r);
     }
-    look_at(from);
+    check_later(from);
 }
 
-void osc_clients::told(const endpoint& to, const std::string& text)
+void osc_clients::deliver(const endpoint& to, const std::string& text)
 {
     sender* s = find(to);
     if (s == nullptr)
         return;
     const net::json m = net::json::parse(text);
     if (m.contains("method"))
-        told_news(*s, to, m);
+        deliver_news(*s, to, m);
     else
-        told_answer(*s, to, m);
-    look_at(to);
+        deliver_answer(*s, to, m);
+    check_later(to);
 }
 
-void osc_clients::told_answer(sender& s, const endpoint& to, const net::json& m)
+void osc_clients::deliver_answer(sender& s, const endpoint& to, const net::json& m)
 {
     const auto node = s.asked.extract(m["id"].get<std::uint64_t>());
     if (node.empty())
@@ -121,8 +121,8 @@ void osc_clients::told_answer(sender& s, const endpoint& to, const net::json& m)
     const asked_for& a = node.mapped();
     const bool draws = a.method == "play" || a.method == "begin" || a.method == "drive";
     if (m.contains("error")) {
-        const auto& said = m["error"]["message"].get_ref<const std::string&>();
-        refuse(to, a.address, a.number == 0 ? said : fmt::format("stroke {}: {}", a.number, said));
+        const auto& why = m["error"]["message"].get_ref<const std::string&>();
+        refuse(to, a.address, a.number == 0 ? why : fmt::format("stroke {}: {}", a.number, why));
         if (draws)
             s.drawn_as.erase(a.number);
     } else if (draws) {
@@ -136,7 +136,7 @@ void osc_clients::told_answer(sender& s, const endpoint& to, const net::json& m)
     }
 }
 
-void osc_clients::told_news(sender& s, const endpoint& to, const net::json& m)
+void osc_clients::deliver_news(sender& s, const endpoint& to, const net::json& m)
 {
     const net::json& p = m["params"];
     const auto& name = m["method"].get_ref<const std::string&>();
@@ -153,7 +153,7 @@ void osc_clients::told_news(sender& s, const endpoint& to, const net::json& m)
             s.numbers.erase(found);
             s.drawn_as.erase(number);
         }
-        say_stroke(to, number, state);
+        send_stroke(to, number, state);
     } else if (name == "levels") {
         std::vector<net::osc_value> dbfs;
         for (const net::json& v : p["dbfs"])
@@ -164,7 +164,7 @@ void osc_clients::told_news(sender& s, const endpoint& to, const net::json& m)
     }
 }
 
-void osc_clients::say_stroke(const endpoint& to, std::int32_t number, const std::string& state)
+void osc_clients::send_stroke(const endpoint& to, std::int32_t number, const std::string& state)
 {
     outside_.send(to, net::osc_packet("/tactor/stroke", {std::int64_t{number}, state}));
 }
@@ -180,15 +180,15 @@ void osc_clients::refuse(const endpoint& to, const std::string& address, const n
     refuse(to, address, net::fault_text(f));
 }
 
-void osc_clients::look_at(const endpoint& e)
+void osc_clients::check_later(const endpoint& e)
 {
-    if (looked_at_.insert(e).second && looked_at_.size() == 1)
+    if (to_check_.insert(e).second && to_check_.size() == 1)
         later([this] { forget_idle(); });
 }
 
 void osc_clients::forget_idle()
 {
-    for (const endpoint& e : std::exchange(looked_at_, {})) {
+    for (const endpoint& e : std::exchange(to_check_, {})) {
         const auto found = senders_.find(e);
         if (found == senders_.end() || !found->second->idle())
             continue;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What comes in: at once, or when it is due.
+// Messages of senders: handled at once, or when they are due.
 #include "server/osc/clients.hpp"
 
 #include <cmath>
@@ -19,7 +19,7 @@ using net::osc_message;
 
 namespace {
 
-// Less is what lies between two readings.
+// A smaller difference comes from the time between two readings.
 constexpr std::int64_t clocks_differ_ns = 50'000;
 
 // Tests for a stop in a packet that cannot be read as a whole: alone, or behind its size in a bundle.
@@ -63,7 +63,7 @@ osc_clients::~osc_clients()
 
 void osc_clients::receive(std::string_view packet, const endpoint& from)
 {
-    look_at_clocks();
+    read_clocks();
     try {
         if (packet.size() > outside_.most_bytes)
             throw error(error_kind::bad_input, "packet", fmt::format("it has {} bytes", packet.size()),
@@ -71,7 +71,7 @@ void osc_clients::receive(std::string_view packet, const endpoint& from)
         for (const osc_message& m : net::parse_osc(packet))
             take(m, from);
     } catch (const error& e) {
-        // A stop whose values cannot be read is one all the same, and so is one in a bundle that is refused.
+        // A stop whose values cannot be read stops all the same, and so does one in a bundle that is refused.
         const bool stops = has_stop(packet);
         if (stops)
             stop(from);
@@ -79,7 +79,7 @@ void osc_clients::receive(std::string_view packet, const endpoint& from)
             refuse(from, "", e.what());
     }
     act();
-    look_at(from);
+    check_later(from);
 }
 
 void osc_clients::take(const osc_message& m, const endpoint& from)
@@ -88,19 +88,18 @@ void osc_clients::take(const osc_message& m, const endpoint& from)
         return;
     try {
         osc_request r = read_osc(m);
-        // At once, whatever its time is.
-        if (r.method == "stop")
+        if (r.method == "stop") // at once, whatever its time is
             stop(from);
         else if (!r.method.empty())
-            handle(std::move(r), time_of(m), from);
+            handle(std::move(r), due_ns(m), from);
     } catch (...) {
         refuse(from, m.address, current_fault("values"));
     }
 }
 
-// Once a packet, and anew only where the clocks have moved: what has one time, in one bundle or in several,
-// has one place in the order then, and acts as it was sent.
-void osc_clients::look_at_clocks()
+// Reads the clocks for a packet. Keeps the offset unless the clocks have moved: messages of one time, in one
+// bundle or in several, then keep the order in which they were sent.
+void osc_clients::read_clocks()
 {
     unix_ns_ = outside_.unix_ns();
     const std::int64_t offset_ns = outside_.now_ns() - unix_ns_;
@@ -108,8 +107,8 @@ void osc_clients::look_at_clocks()
         offset_ns_ = offset_ns;
 }
 
-// By the clock that the service goes by; none: at once, which the past is too.
-std::optional<std::int64_t> osc_clients::time_of(const osc_message& m) const
+// Returns the time of a message by the clock of the service; nothing for now and the past.
+std::optional<std::int64_t> osc_clients::due_ns(const osc_message& m) const
 {
     if (!m.unix_ns)
         return {};
@@ -122,7 +121,7 @@ std::optional<std::int64_t> osc_clients::time_of(const osc_message& m) const
     return *m.unix_ns + offset_ns_;
 }
 
-// How long before its first sample is at the DAC a live stroke must be fed.
+// Returns how long before its first sample is at the DAC a live stroke must be fed.
 std::int64_t osc_clients::lead_ns()
 {
     const stream_setup& s = service_.output().setup();
@@ -139,7 +138,7 @@ void osc_clients::handle(osc_request r, std::optional<std::int64_t> at_ns, const
     draw(std::move(r), at_ns, from);
 }
 
-// Also of somebody who is not known, and where there is no place for more.
+// Stops everything, also for a sender that is not known, and when there is no place for more.
 void osc_clients::stop(const endpoint& from)
 {
     if (sender* s = find(from))
@@ -168,7 +167,7 @@ void osc_clients::subscribe(const osc_request& r, const endpoint& from)
     s.unsubscribes = held_.emplace(outside_.now_ns() + std::llround(subscription_s * 1e9), held{from, end});
 }
 
-// to, end and cancel act at their time.
+// Handles to, end and cancel, which act at their time.
 void osc_clients::move(osc_request r, std::optional<std::int64_t> at_ns, const endpoint& from)
 {
     sender* s = find(from);
@@ -182,13 +181,13 @@ void osc_clients::move(osc_request r, std::optional<std::int64_t> at_ns, const e
     if (d.held && !at_ns && r.method == "cancel")
         return drop_held([&](const held& h) { return h.from == from && h.request.number == r.number; });
     if (!at_ns)
-        return ask_of(*s, d, std::move(r));
-    // What begins a live stroke is at the DAC at its time, as the stroke is.
+        return ask_about(*s, d, std::move(r));
+    // The first point of a live stroke is at the DAC at its time, like the stroke.
     const bool first = d.begins_unix_ns == r.unix_ns && r.method == "to";
     hold(*s, first ? *at_ns - lead_ns() : *at_ns, {from, std::move(r)});
 }
 
-// play, begin, drive: their first sample is at the DAC at the time.
+// Handles play, begin and drive: their first sample is at the DAC at the time.
 void osc_clients::draw(osc_request r, std::optional<std::int64_t> at_ns, const endpoint& from)
 {
     sender& s = admit(from);
@@ -230,7 +229,7 @@ void osc_clients::act()
         } catch (...) {
             refuse(h.from, h.request.address, current_fault("values"));
         }
-        look_at(h.from);
+        check_later(h.from);
     }
 }
 
@@ -247,7 +246,7 @@ void osc_clients::do_held(const held& h)
     if (d == s.drawn_as.end())
         no_such_stroke(r.number, "it has ended before this was due");
     if (r.method != "begin")
-        return ask_of(s, d->second, r);
+        return ask_about(s, d->second, r);
     d->second.held = false;
     ask(s, r);
 }
@@ -257,7 +256,7 @@ void osc_clients::drop_held()
     drop_held([](const held&) { return true; });
 }
 
-// Somebody stopped everything, or a sender its own: what has not begun does not begin.
+// Drops messages after a client stopped everything, or a sender its own stroke.
 void osc_clients::drop_held(const std::function<bool(const held&)>& which)
 {
     for (auto h = held_.begin(); h != held_.end();) {
@@ -269,9 +268,9 @@ void osc_clients::drop_held(const std::function<bool(const held&)>& which)
         --s.held;
         if (gone.request.method == "begin") {
             s.drawn_as.erase(gone.request.number);
-            say_stroke(gone.from, gone.request.number, "cancelled");
+            send_stroke(gone.from, gone.request.number, "cancelled");
         }
-        look_at(gone.from);
+        check_later(gone.from);
     }
 }
 

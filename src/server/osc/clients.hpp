@@ -52,9 +52,8 @@ private:
     std::map<boost::asio::ip::address, std::deque<std::int64_t>> sent_; ///< when, the oldest first
 };
 
-/// Each address and port is a client of its own for as long as something of it goes on: strokes, answers that
-/// are owed, messages for later, a subscription. Then it is forgotten.
-/// All members are called by the context's thread.
+/// Server of all senders. Each address and port is a client while it has strokes, requests without an answer,
+/// messages for later or a subscription. Then it is forgotten. Members are called in the context's thread.
 class osc_clients {
 public:
     using endpoint = boost::asio::ip::udp::endpoint;
@@ -66,13 +65,13 @@ public:
         std::size_t most_bytes = 65536;        ///< of a packet
     };
 
-    /// Messages that wait for their time: of one sender, and of all.
+    /// Most messages that wait for their time: of one sender, and of all.
     static constexpr std::size_t most_held = 2048;
     static constexpr std::size_t most_held_of_all = 16384;
-    /// That wait for the number of a stroke that is being planned or begun.
+    /// Most messages that wait for the number of a stroke that is being planned or begun.
     static constexpr std::size_t most_waiting = 256;
-    static constexpr double farthest_s = 60.0;     ///< that a time tag may be ahead
-    static constexpr double subscription_s = 10.0; ///< then it is to be renewed
+    static constexpr double farthest_s = 60.0;     ///< most that a time tag may be ahead
+    static constexpr double subscription_s = 10.0; ///< a subscription must be renewed after it
 
     osc_clients(boost::asio::io_context& io, service& s, outside o);
     ~osc_clients();
@@ -80,17 +79,17 @@ public:
     osc_clients& operator=(const osc_clients&) = delete;
 
     void receive(std::string_view packet, const endpoint& from);
-    /// When act() has something to do, CLOCK_MONOTONIC.
+    /// Returns the time at which act() has something to do, CLOCK_MONOTONIC.
     std::optional<std::int64_t> next_ns() const;
-    /// Does what is due.
+    /// Handles the messages that are due.
     void act();
-    /// What has not begun does not begin, and its senders are told.
+    /// Drops the strokes that have not begun, and says so to their senders.
     void drop_held();
-    /// Senders that are known.
+    /// Returns the number of known senders.
     std::size_t count() const noexcept { return senders_.size(); }
 
 private:
-    class link;
+    class sender_link;
     struct asked_for;
     struct drawn;
     struct sender;
@@ -100,7 +99,7 @@ private:
     };
     using held_messages = std::multimap<std::int64_t, held>; ///< by when they are due
 
-    // osc_clients.cpp
+    // clients.cpp
     void take(const net::osc_message& m, const endpoint& from);
     void handle(osc_request r, std::optional<std::int64_t> at_ns, const endpoint& from);
     void stop(const endpoint& from);
@@ -110,23 +109,23 @@ private:
     void hold(sender& s, std::int64_t due_ns, held h);
     void drop_held(const std::function<bool(const held&)>& which);
     void do_held(const held& h);
-    void look_at_clocks();
-    std::optional<std::int64_t> time_of(const net::osc_message& m) const;
+    void read_clocks();
+    std::optional<std::int64_t> due_ns(const net::osc_message& m) const;
     std::int64_t lead_ns();
 
-    // osc_answers.cpp
+    // answers.cpp
     sender* find(const endpoint& from);
     sender& admit(const endpoint& from);
     void ask(sender& s, const osc_request& r);
-    void ask_of(sender& s, drawn& d, osc_request r);
-    void told(const endpoint& to, const std::string& text);
-    void told_answer(sender& s, const endpoint& to, const net::json& m);
-    void told_news(sender& s, const endpoint& to, const net::json& m);
+    void ask_about(sender& s, drawn& d, osc_request r);
+    void deliver(const endpoint& to, const std::string& text);
+    void deliver_answer(sender& s, const endpoint& to, const net::json& m);
+    void deliver_news(sender& s, const endpoint& to, const net::json& m);
     void flush(const endpoint& from, std::int32_t number);
-    void say_stroke(const endpoint& to, std::int32_t number, const std::string& state);
+    void send_stroke(const endpoint& to, std::int32_t number, const std::string& state);
     void refuse(const endpoint& to, const std::string& address, const std::string& why);
     void refuse(const endpoint& to, const std::string& address, const net::rpc_fault& f);
-    void look_at(const endpoint& e);
+    void check_later(const endpoint& e);
     void forget_idle();
     template <typename F>
     void later(F f);
@@ -136,14 +135,14 @@ private:
     outside outside_;
     std::map<endpoint, std::unique_ptr<sender>> senders_;
     held_messages held_;
-    std::set<endpoint> looked_at_; ///< that may be idle
+    std::set<endpoint> to_check_; ///< senders that may be idle
     error_allowance errors_;
-    std::int64_t unix_ns_ = 0;   ///< when the packet came
+    std::int64_t unix_ns_ = 0;   ///< time of the packet
     std::int64_t offset_ns_ = 0; ///< CLOCK_MONOTONIC minus the system's clock
     std::shared_ptr<const int> alive_ = std::make_shared<const int>();
 };
 
-/// A request to the service that was not answered.
+/// A request to the service that is not answered yet.
 struct osc_clients::asked_for {
     std::string address;
     std::string method;
@@ -152,11 +151,11 @@ struct osc_clients::asked_for {
 
 /// A stroke with a number of the sender's choice.
 struct osc_clients::drawn {
-    std::optional<std::uint32_t> stroke = {};        ///< the service's number, once it is known
-    std::optional<std::int64_t> begins_unix_ns = {}; ///< of a live stroke, its time tag
-    bool held = false;                               ///< that time has not come
-    bool is_loud = false;                            ///< a point was above intensity 1, which was said
-    std::deque<osc_request> waiting = {};            ///< until its number is known
+    std::optional<std::uint32_t> stroke = {};        ///< number of the service, once it is known
+    std::optional<std::int64_t> begins_unix_ns = {}; ///< time tag of a live stroke
+    bool held = false;                               ///< it waits for that time
+    bool is_loud = false;                            ///< a point above intensity 1 was reported
+    std::deque<osc_request> waiting = {};            ///< messages until its number is known
 };
 
 struct osc_clients::sender {
@@ -164,11 +163,11 @@ struct osc_clients::sender {
     std::uint64_t last_id = 0;
     std::map<std::uint64_t, asked_for> asked = {};
     std::map<std::int32_t, drawn> drawn_as = {};
-    std::map<std::uint32_t, std::int32_t> numbers = {}; ///< of strokes that go on: the service's to its own
+    std::map<std::uint32_t, std::int32_t> numbers = {}; ///< its own, by the service's, of strokes that go on
     std::size_t held = 0;
-    std::optional<held_messages::iterator> unsubscribes = {}; ///< when its subscription ends
-    std::uint16_t port = 0;                                   ///< that it goes to
-    std::shared_ptr<client_link> way_back = {};
+    std::optional<held_messages::iterator> unsubscribes = {}; ///< end of its subscription
+    std::uint16_t port = 0;                                   ///< destination of the subscription
+    std::shared_ptr<client_link> link = {};
 
     bool idle() const
     {

@@ -14,7 +14,7 @@ namespace {
 namespace asio = boost::asio;
 using udp = asio::ip::udp;
 
-udp protocol_of(int fd)
+udp find_protocol(int fd)
 {
     sockaddr_storage at{};
     socklen_t size = sizeof at;
@@ -34,7 +34,7 @@ std::int64_t monotonic_ns()
 
 osc_endpoint::osc_endpoint(asio::io_context& io, int fd, service& s, std::vector<net::address_prefix> peers,
                            std::size_t most_bytes)
-    : socket_(io, protocol_of(fd), fd),
+    : socket_(io, find_protocol(fd), fd),
       due_(io),
       peers_(std::move(peers)),
       clients_(io, s,
@@ -96,7 +96,7 @@ void osc_endpoint::arm()
     });
 }
 
-// Where the system has no space for it, it is lost, as it may be on its way.
+// Sends a datagram. It is lost if the system has no space, as it may be on its way.
 void osc_endpoint::send(const osc_clients::endpoint& to, const std::string& packet)
 {
     boost::system::error_code lost;

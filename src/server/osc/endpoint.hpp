@@ -20,7 +20,7 @@ class osc_endpoint {
 public:
     static constexpr std::size_t largest_packet = 65536;
 
-    /// `fd`, a bound socket, stays its owner's. Of other machines only `peers` are heard.
+    /// Uses `fd`, a bound socket, which stays its owner's. Accepts only `peers` of other machines.
     osc_endpoint(boost::asio::io_context& io, int fd, service& s, std::vector<net::address_prefix> peers,
                  std::size_t most_bytes);
     ~osc_endpoint();
@@ -28,7 +28,7 @@ public:
     osc_endpoint& operator=(const osc_endpoint&) = delete;
 
     void start();
-    /// Hears nothing more; who is known is still told how its strokes end.
+    /// Stops receiving; known senders still get the ends of their strokes.
     void stop();
 
 private:

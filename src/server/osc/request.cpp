@@ -21,14 +21,14 @@ using net::json;
 using net::osc_message;
 using net::osc_value;
 
-// Values one after the other.
+// Reader of the values of a message, in order.
 class value_list {
 public:
     explicit value_list(const osc_message& m) : all_(m.values) {}
 
     bool left() const { return next_ != all_.size(); }
     bool next_is_number() const { return left() && is_number(all_[next_]); }
-    /// Returns true where the next value is 0 or false.
+    /// Returns true if the next value is 0 or false.
     bool released() const
     {
         if (!left())
@@ -93,7 +93,7 @@ private:
 
 constexpr auto lowest_number = std::numeric_limits<std::int32_t>::min();
 
-// "soa=0.07" as what it would be in JSON.
+// Adds "soa=0.07" as the value that it would be in JSON.
 void read_option(const std::string& word, json& into)
 {
     const auto equals = word.find('=');
@@ -169,7 +169,8 @@ void read_own_stroke(value_list& v, osc_request& r)
     v.ignore_rest();
 }
 
-// Any value but 0 and false: controllers append a button's state, and nothing a controller may append fails.
+// Stops for any value but 0 and false: controllers append the state of a button. Nothing that a controller
+// may append is refused.
 void read_stop(value_list& v, osc_request& r)
 {
     if (v.released())

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// What a message of OSC asks for, in the words of the protocol. Pure.
+/// Requests in messages of OSC, in the words of the protocol. Pure.
 #pragma once
 
 #include <cstdint>
@@ -15,20 +15,21 @@ namespace tactor::server {
 
 struct osc_request {
     std::string address;
-    std::string method; ///< of the protocol; empty: a button's release, which asks for nothing
+    std::string method; ///< method of the protocol; empty: a button's release, which asks for nothing
     net::json params = net::json::object();
-    std::int32_t number = 0;                  ///< the sender's for its stroke; 0: none
+    std::int32_t number = 0;                  ///< the sender's number for its stroke; 0: none
     std::optional<std::int64_t> unix_ns = {}; ///< its time tag
-    std::uint16_t port = 0;                   ///< where a subscriber listens; 0: where it sends from
+    std::uint16_t port = 0; ///< port at which a subscriber listens; 0: the port that it sends from
 };
 
-/// Whether a server sends such messages: they are never answered, so that two servers do not talk for ever.
+/// Returns true for messages that a server sends: they are never answered, so that two servers do not talk
+/// for ever.
 bool is_servers_own(std::string_view address);
 
 /// Address of the message that fades everything out.
 constexpr std::string_view osc_stop = "/tactor/stop";
 
-/// \throws fault_error for addresses that are not known, and for wrong values.
+/// Reads a message. \throws fault_error for addresses that are not known, and for wrong values.
 osc_request read_osc(const net::osc_message& m);
 
 } // namespace tactor::server

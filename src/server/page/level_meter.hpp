@@ -13,19 +13,19 @@
 
 namespace tactor::server {
 
-/// Between the audio thread, which writes, and the one that asks.
+/// Peaks by channel, between the audio thread, which writes them, and the thread that asks.
 class level_peaks {
 public:
     explicit level_peaks(std::size_t channels) : peaks_(channels) {}
 
-    /// Nothing is looked at while nobody asks.
+    /// Switches the meter on or off: it costs time only while a client asks.
     void listen(bool on) noexcept { on_.store(on, std::memory_order_relaxed); }
     bool listens() const noexcept { return on_.load(std::memory_order_relaxed); }
     std::size_t size() const noexcept { return peaks_.size(); }
 
-    /// The audio thread: a sample of a channel, full scale 1, without its sign.
+    /// Notes the magnitude of a sample, full scale 1. The audio thread calls it.
     void raise(std::size_t channel, float peak) noexcept;
-    /// The largest since the last call; 0 where there was silence.
+    /// Returns the largest magnitude since the last call; 0 after silence.
     float take(std::size_t channel) noexcept;
 
 private:
@@ -33,7 +33,7 @@ private:
     std::atomic<bool> on_{false};
 };
 
-/// Passes everything on to `s` and looks at what is written.
+/// Returns a sink that passes everything on to `s` and measures the written samples.
 std::unique_ptr<sink> metered(std::unique_ptr<sink> s, std::shared_ptr<level_peaks> peaks);
 
 } // namespace tactor::server

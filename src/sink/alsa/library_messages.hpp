@@ -36,7 +36,7 @@ private:
 };
 
 /// Collects libasound's first message on this thread while an object lives. A second object takes the
-/// messages of its own lifetime.
+/// messages while it lives.
 class library_messages : quiet {
 public:
     library_messages() noexcept;

@@ -71,16 +71,17 @@ std::vector<process_info> processes(const std::vector<holder>& holders);
 /// Fills in the abilities of an open PCM, and the reason why it does not fit.
 void look_at(snd_pcm_t* p, const std::optional<alsa_options>& wanted, pcm_info& into);
 
-/// Without blanks at both ends.
+/// Returns a text without the blanks at both ends.
 std::string trimmed(std::string_view s);
 
-/// Empty where the file cannot be read. \throws error (runtime), here and below, without a descriptor.
+/// Returns the lines of a file; none if it cannot be read. \throws error (runtime), here and below, without a
+/// descriptor.
 std::vector<std::string> read_lines(const std::filesystem::path& file);
 
-/// The value after "key:" in a file of such lines.
+/// Returns the value after "key:" in a file of such lines.
 std::string field(const std::filesystem::path& file, std::string_view key);
 
-/// What is in a folder, in no order.
+/// Returns the entries of a folder, in no order.
 std::vector<std::filesystem::path> entries(const std::filesystem::path& folder);
 
 } // namespace tactor::alsa

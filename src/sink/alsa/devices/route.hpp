@@ -67,12 +67,12 @@ struct known_name {
     std::string description = {}; ///< one line; may be empty
 };
 
-/// Every PCM for playback that the configuration names and that needs no argument: those with a hint as
-/// ALSA lists them, then the others.
+/// Returns the PCMs for playback that the configuration names and that need no argument: those with a hint in
+/// the order of ALSA, then the others.
 std::vector<known_name> known_names();
 
-/// All PCMs that a configuration defines under `pcm`, those that need arguments too; as hints for a mistyped
-/// name.
+/// Returns all PCMs that a configuration defines under `pcm`, including those that need arguments, as hints
+/// for a mistyped name.
 std::vector<std::string> defined_pcms(snd_config_t* top);
 
 /// Finds the wiring of the first `channels` of a PCM that is opened with `device_channels`, none of them

@@ -1,16 +1,25 @@
 // SPDX-License-Identifier: MIT
+#include "plot/paint/output.hpp"
+
 #include <cmath>
+#include <cstdint>
 #include <iterator>
+#include <string>
 
 #include <fmt/format.h>
 
-#include "plot/paint/output.hpp"
+#include <tactor/error.hpp>
+
+#include "core/words.hpp"
+#include "files/output_file.hpp"
 #include "plot/paint/text.hpp"
 
 namespace tactor::plot {
 namespace {
 
-// Verdana is as wide, for readers without the typeface.
+namespace fs = std::filesystem;
+
+// Fonts for readers without the typeface: Verdana is as wide.
 constexpr std::string_view other_fonts = "Verdana, sans-serif";
 
 std::string escaped(std::string_view text)
@@ -37,7 +46,7 @@ std::string escaped(std::string_view text)
     return out;
 }
 
-// A thousandth of a point is finer than any printer.
+// Formats a coordinate to a thousandth of a point, which is finer than any printer.
 std::string coordinate(double v)
 {
     std::string s = fmt::format("{:.3f}", std::isfinite(v) ? v : 0.0);
@@ -108,7 +117,7 @@ public:
             out_ += " font-weight=\"bold\"";
         if (t.s.halo)
             out_ += " stroke=\"#fff\" stroke-width=\"1.6\" stroke-linejoin=\"round\" paint-order=\"stroke\"";
-        add("{}{}>{}</text>\n", colour_of("fill", t.s.ink), marks(t.m), escaped(t.string));
+        add("{}{}>{}</text>\n", attributes("fill", t.s.ink), marks(t.m), escaped(t.string));
     }
 
 private:
@@ -176,7 +185,7 @@ private:
         return s;
     }
 
-    static std::string colour_of(std::string_view what, colour c)
+    static std::string attributes(std::string_view what, colour c)
     {
         std::string s = fmt::format(" {}=\"#{:02x}{:02x}{:02x}\"", what, c.r, c.g, c.b);
         return c.alpha < 1.0 ? s + fmt::format(" {}-opacity=\"{}\"", what, coordinate(c.alpha)) : s;
@@ -184,10 +193,10 @@ private:
 
     static std::string paint(const style& s)
     {
-        std::string p = s.fill ? colour_of("fill", *s.fill) : " fill=\"none\"";
+        std::string p = s.fill ? attributes("fill", *s.fill) : " fill=\"none\"";
         if (!s.stroke)
             return p;
-        p += colour_of("stroke", *s.stroke) + fmt::format(" stroke-width=\"{}\"", coordinate(s.width));
+        p += attributes("stroke", *s.stroke) + fmt::format(" stroke-width=\"{}\"", coordinate(s.width));
         p += " stroke-linejoin=\"round\"";
         if (s.dash > 0.0)
             p += fmt::format(" stroke-dasharray=\"{}\"", coordinate(s.dash));
@@ -203,6 +212,45 @@ private:
 std::string to_svg(const canvas& c)
 {
     return writer().write(c);
+}
+
+file_format find_format(const fs::path& file)
+{
+    const std::string e = in_small_letters(file.extension().string());
+    if (e == ".svg")
+        return file_format::svg;
+    if (e == ".png")
+        return file_format::png;
+    if (e == ".pdf")
+        return file_format::pdf;
+    throw error(error_kind::bad_input, file.string(),
+                e.empty() ? "has no extension, so it is not said which format the picture has"
+                          : fmt::format("\"{}\" is no format for a picture", e),
+                e.empty() && file.string().starts_with("/dev/")
+                    ? "its name says which: write FILE.svg, .png or .pdf, and pass that on"
+                    : "end the name in .svg, .png or .pdf");
+}
+
+void check_output(const fs::path& file, bool force)
+{
+    const file_format format = find_format(file);
+    detail::check_replaced(file, force, [format](std::string_view begin, std::string_view end) {
+        return format == file_format::pdf   ? end.find(pdf_mark) != end.npos
+               : format == file_format::png ? begin.find(png_mark) != begin.npos
+                                            : begin.find(svg_mark) != begin.npos;
+    });
+}
+
+void save(const canvas& c, const fs::path& file, unsigned dpi, bool force)
+{
+    check_output(file, force);
+    const file_format format = find_format(file);
+    const std::string bytes = format == file_format::svg   ? to_svg(c)
+                              : format == file_format::png ? to_png(c, dpi)
+                                                           : to_pdf(c);
+    detail::output_file to(file);
+    to.write(bytes.data(), static_cast<std::int64_t>(bytes.size()));
+    to.commit();
 }
 
 } // namespace tactor::plot
