@@ -55,23 +55,21 @@ std::string value_text(const std::optional<double>& d)
 // Refuses sounds that differ in what a score has once.
 void check_alike(const render_options& a, const render_options& b)
 {
-    if (a.rate != b.rate)
-        refuse_different("rate", fmt::format("{} Hz", a.rate), fmt::format("{} Hz", b.rate));
-    if (a.phase != b.phase)
-        refuse_different("phase", std::string(to_string(a.phase)), std::string(to_string(b.phase)));
-    if (a.ramp_s != b.ramp_s)
-        refuse_different("ramp", value_text(a.ramp_s), value_text(b.ramp_s));
-    if (a.envelope.attack_s != b.envelope.attack_s)
-        refuse_different("attack", value_text(a.envelope.attack_s), value_text(b.envelope.attack_s));
-    if (a.envelope.release_s != b.envelope.release_s)
-        refuse_different("release", value_text(a.envelope.release_s), value_text(b.envelope.release_s));
-    if (a.envelope != b.envelope)
-        refuse_different("envelope", envelope_text(a.envelope), envelope_text(b.envelope));
+    const auto check = [](const char* name, const auto& x, const auto& y, auto text) {
+        if (x != y)
+            refuse_different(name, text(x), text(y));
+    };
+    check("rate", a.rate, b.rate, [](unsigned hz) { return fmt::format("{} Hz", hz); });
+    check("phase", a.phase, b.phase, [](phase_kind k) { return std::string(to_string(k)); });
+    check("ramp", a.ramp_s, b.ramp_s, value_text);
+    check("attack", a.envelope.attack_s, b.envelope.attack_s, value_text);
+    check("release", a.envelope.release_s, b.envelope.release_s, value_text);
+    check("envelope", a.envelope, b.envelope, envelope_text);
     if (a.sl_db.has_value() != b.sl_db.has_value())
         refuse_different("sl", value_text(a.sl_db), value_text(b.sl_db));
-    if (a.marker_channel && b.marker_channel && a.marker_channel != b.marker_channel)
-        refuse_different("marker_channel", std::to_string(*a.marker_channel),
-                         std::to_string(*b.marker_channel));
+    if (a.marker_channel && b.marker_channel)
+        check("marker_channel", *a.marker_channel, *b.marker_channel,
+              [](unsigned c) { return std::to_string(c); });
 }
 
 double level_db(const render_options& o)
