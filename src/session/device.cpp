@@ -78,10 +78,10 @@ drive_limits limits_over(const stream_options& asked, drive_limits l)
 
 drive_limits settle_limits(const stream_options& o, const environment& e)
 {
-    const limit_settings said = e.config.limits.value_or(limit_settings{});
-    return limits_over(o, limits_over({.power_dbfs = said.power_dbfs,
-                                       .max_drive_s = said.max_drive_s,
-                                       .drive_window_s = said.window_s},
+    const limit_settings written = e.config.limits.value_or(limit_settings{});
+    return limits_over(o, limits_over({.power_dbfs = written.power_dbfs,
+                                       .max_drive_s = written.max_drive_s,
+                                       .drive_window_s = written.window_s},
                                       {}));
 }
 

@@ -46,7 +46,7 @@ private:
     std::string text_;   ///< of driven-NAME, as it was last seen
     bool counted_ = true;
     drive_history own_;    ///< of this run, and what its streams went on from
-    drive_history others_; ///< what the files said that this run had not written
+    drive_history others_; ///< from files that this run had not written
     drive_history ahead_;  ///< what this stream may have driven; none: a going-NAME-PID is not this run's
     std::int64_t next_ns_ = 0;
 };

@@ -165,7 +165,7 @@ bool play_session::reopen()
 {
     if (!waits())
         return false;
-    for (bool told = false;;) {
+    for (bool announced = false;;) {
         const auto again = stream_.step();
         if (stream_.is_over())
             return false;
@@ -175,7 +175,7 @@ bool play_session::reopen()
             check_failure();
             continue;
         }
-        if (!std::exchange(told, true)) {
+        if (!std::exchange(announced, true)) {
             say(stderr, "tactor: waiting for \"{}\" to come back (Ctrl-C ends)\n", pcm_);
             detail::log(log_.function(), log_kind::info, "waiting for PCM \"{}\" to come back", pcm_);
         }

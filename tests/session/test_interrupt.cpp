@@ -28,21 +28,21 @@ std::pair<int, std::string> in_child(const Act& act)
         ::_exit(0);
     }
     ::close(ends[1]);
-    std::string said;
+    std::string printed;
     char bytes[256];
     for (ssize_t n = 0; (n = ::read(ends[0], bytes, sizeof bytes)) > 0;)
-        said.append(bytes, static_cast<std::size_t>(n));
+        printed.append(bytes, static_cast<std::size_t>(n));
     ::close(ends[0]);
     int status = 0;
     ::waitpid(child, &status, 0);
-    return {status, said};
+    return {status, printed};
 }
 
 } // namespace
 
 TEST_CASE("a program held up by a device is ended after its time, with the status of the signal")
 {
-    const auto [status, said] = in_child([] {
+    const auto [status, printed] = in_child([] {
         interrupt stop(1);
         ::raise(SIGTERM);
         while (stop.poll() == 0)
@@ -52,12 +52,12 @@ TEST_CASE("a program held up by a device is ended after its time, with the statu
     });
     REQUIRE(WIFEXITED(status));
     CHECK(WEXITSTATUS(status) == 128 + SIGTERM);
-    CHECK(said == "tactor: the device does not answer: ended all the same\n");
+    CHECK(printed == "tactor: the device does not answer: ended all the same\n");
 }
 
 TEST_CASE("a program that ends by itself has no time limit any more")
 {
-    const auto [status, said] = in_child([] {
+    const auto [status, printed] = in_child([] {
         {
             interrupt stop(1);
             ::raise(SIGINT);
@@ -68,7 +68,7 @@ TEST_CASE("a program that ends by itself has no time limit any more")
     });
     REQUIRE(WIFEXITED(status));
     CHECK(WEXITSTATUS(status) == 7);
-    CHECK(said.empty());
+    CHECK(printed.empty());
 }
 
 } // namespace interrupt_test

@@ -44,10 +44,10 @@ TEST_CASE("missing trials are reported with their participants")
     CHECK(warns(a, "pairs: sub-2 has 3 trials that count, of 4"));
     CHECK(warns(a, "pairs: sub-3 has 5 trials that count, of 4"));
     CHECK(warns(a, "pairs: sub-4 is left out: no trial that counts"));
-    const auto told = std::count_if(a.warnings.begin(), a.warnings.end(), [](const std::string& w) {
+    const auto named = std::count_if(a.warnings.begin(), a.warnings.end(), [](const std::string& w) {
         return w.find("that count, of") != std::string::npos;
     });
-    CHECK(told == 2);
+    CHECK(named == 2);
     d.experiment.runs[0].trials = 0; // the definition does not give their number
     CHECK_FALSE(warns(analyse(d), "pairs: sub-2 has 3 trials that count, of 0"));
 }

@@ -529,7 +529,7 @@ TEST_CASE("one participant's calibrations at several carriers come to lists by f
 TEST_CASE("the tables of a calibration are checked where they are read")
 {
     const std::string good = calibration_text(settings(), {{.tactor = 8, .threshold_dbfs = -30.0}});
-    const auto said = [](std::string text) {
+    const auto complaint = [](std::string text) {
         try {
             static_cast<void>(parse_setup("[array]\npreset = \"palm-3x3\"\n" + text, "me.toml"));
         } catch (const error& e) {
@@ -540,22 +540,23 @@ TEST_CASE("the tables of a calibration are checked where they are read")
     const auto changed = [&](const std::string& from, const std::string& to) {
         std::string text = good;
         REQUIRE(has(text, from));
-        return said(text.replace(text.find(from), from.size(), to));
+        return complaint(text.replace(text.find(from), from.size(), to));
     };
-    CHECK(said(good) == "no error");
+    CHECK(complaint(good) == "no error");
     CHECK(has(changed("seed", "sead"), "sead"));
     CHECK(has(changed("tactor = 8", "tactor = 9"), "tactor is 9"));
     CHECK(has(changed("1up3down", "1up4down"), "1up4down"));
     CHECK(has(changed("threshold_dbfs = -30", "threshold_dbfs = 3"), "threshold_dbfs is 3"));
     CHECK(has(changed("trials", "trails"), "trails"));
     CHECK(has(changed("participant = \"P07\"\n", ""), "participant"));
-    CHECK(has(said(good + "\n[[calibration.tactor]]\ntactor = 8\ntrials = 1\n"), "has an entry already"));
+    CHECK(
+        has(complaint(good + "\n[[calibration.tactor]]\ntactor = 8\ntrials = 1\n"), "has an entry already"));
     CHECK_THROWS_AS(parse_setup(good, "me.toml"), error);
 }
 
 TEST_CASE("a bad simulation is refused with the fault")
 {
-    const auto said = [](std::string_view text) {
+    const auto complaint = [](std::string_view text) {
         try {
             parse_observer(text, {2, 0}, 4);
         } catch (const error& e) {
@@ -567,14 +568,14 @@ TEST_CASE("a bad simulation is refused with the fault")
           std::vector<double>{-45, -50});
     CHECK(parse_observer("lapse=0.02,threshold=-1,-2,-3,-4", {2, 0}, 4).thresholds_dbfs ==
           std::vector<double>{-3, -1});
-    CHECK(has(said(""), "has no ="));
-    CHECK(has(said("spread=2"), "threshold is missing"));
-    CHECK(has(said("threshold=-45,spread=-1"), "spread is -1"));
-    CHECK(has(said("threshold=-45,lapse=0.6"), "lapse is 0.6"));
-    CHECK(has(said("threshold=low"), "\"low\" is not a number"));
-    CHECK(has(said("threshold=-45,threshold=-46"), "said twice"));
-    CHECK(has(said("threshold=1,2,3"), "3 thresholds for 2 tactors"));
-    CHECK(has(said("sigma=1,threshold=-45"), "\"sigma\" is not known"));
+    CHECK(has(complaint(""), "has no ="));
+    CHECK(has(complaint("spread=2"), "threshold is missing"));
+    CHECK(has(complaint("threshold=-45,spread=-1"), "spread is -1"));
+    CHECK(has(complaint("threshold=-45,lapse=0.6"), "lapse is 0.6"));
+    CHECK(has(complaint("threshold=low"), "\"low\" is not a number"));
+    CHECK(has(complaint("threshold=-45,threshold=-46"), "said twice"));
+    CHECK(has(complaint("threshold=1,2,3"), "3 thresholds for 2 tactors"));
+    CHECK(has(complaint("sigma=1,threshold=-45"), "\"sigma\" is not known"));
 }
 
 } // namespace

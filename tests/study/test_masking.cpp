@@ -224,7 +224,7 @@ TEST_CASE("a device that is lost, or stands still all the time, ends the noise")
 
 TEST_CASE("an impossible masker is refused")
 {
-    const auto said = [](const masking_options& o, io_kind preparing) -> std::string {
+    const auto refusal = [](const masking_options& o, io_kind preparing) -> std::string {
         auto s = std::make_unique<own_sink>();
         s->preparing = preparing;
         try {
@@ -234,9 +234,10 @@ TEST_CASE("an impossible masker is refused")
         }
         return "no error";
     };
-    CHECK(has(said({.level_dbfs = -2.0}, io_kind::ok), "-2 dBFS is above -5 dBFS"));
-    CHECK(has(said({.color = noise_color::pink, .level_dbfs = -14.0}, io_kind::ok), "-14 dBFS is above -15"));
-    CHECK(has(said({}, io_kind::lost), "phones: the masking noise does not start: lost"));
+    CHECK(has(refusal({.level_dbfs = -2.0}, io_kind::ok), "-2 dBFS is above -5 dBFS"));
+    CHECK(has(refusal({.color = noise_color::pink, .level_dbfs = -14.0}, io_kind::ok),
+              "-14 dBFS is above -15"));
+    CHECK(has(refusal({}, io_kind::lost), "phones: the masking noise does not start: lost"));
 }
 
 } // namespace

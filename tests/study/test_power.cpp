@@ -63,9 +63,9 @@ TEST_CASE("the quick test gives the t and p of the full one")
 TEST_CASE("where both methods are equal, one study in twenty is significant")
 {
     const rig r("tactile-brush", std::string(choose) + rate);
-    const std::vector<run_power> told = r.tell({{.seed = 1, .sigma = 1.0}, {8}, 3000});
-    REQUIRE(told.size() == 2);
-    for (const run_power& p : told) {
+    const std::vector<run_power> powers = r.tell({{.seed = 1, .sigma = 1.0}, {8}, 3000});
+    REQUIRE(powers.size() == 2);
+    for (const run_power& p : powers) {
         CHECK(p.at[0].power > 0.03); // counts are coarse, and so is their t: not 0.05 exactly
         CHECK(p.at[0].power < 0.07);
         CHECK(static_cast<double>(p.at[0].for_last) ==
@@ -110,18 +110,18 @@ TEST_CASE("ratings of one method have nothing to compare, identifications chance
 {
     const rig r("park2016", std::string(rate) + "methods = [\"b\"]\n[[run]]\nname = \"what\"\n"
                                                 "task = \"identify\"\ntrials = 8\n");
-    const auto told = r.tell({{.sigma = 30.0}, {6}, 20});
-    CHECK(told[0].at.empty());
-    REQUIRE(told[1].at.size() == 1);
-    CHECK(told[1].at[0].significant > 0);
+    const auto powers = r.tell({{.sigma = 30.0}, {6}, 20});
+    CHECK(powers[0].at.empty());
+    REQUIRE(powers[1].at.size() == 1);
+    CHECK(powers[1].at[0].significant > 0);
 }
 
 TEST_CASE("the computation asks before each study whether to go on, and gives nothing when stopped")
 {
     const rig r("park2016", choose);
     int asked = 0;
-    const auto told = simulate_power(r.d, r.stimuli, {{}, {3}, 100}, [&] { return ++asked < 4; });
-    CHECK_FALSE(told.has_value());
+    const auto powers = simulate_power(r.d, r.stimuli, {{}, {3}, 100}, [&] { return ++asked < 4; });
+    CHECK_FALSE(powers.has_value());
     CHECK(asked == 4);
 }
 

@@ -36,10 +36,10 @@ std::string device_text(const session_facts& s)
 
 TEST_CASE("values shared by all are printed once, others with their participants")
 {
-    CHECK(told(sessions_that_say({"a", "a", "a"}), device_text) == "a");
-    CHECK(told(sessions_that_say({"a", "b", "a"}), device_text) == "a (sub-1, sub-3); b (sub-2)");
-    CHECK(told(sessions_that_say({"", "b"}), device_text) == "not recorded (sub-1); b (sub-2)");
-    CHECK(told(sessions_that_say({""}), device_text) == "not recorded");
+    CHECK(join_texts(sessions_that_say({"a", "a", "a"}), device_text) == "a");
+    CHECK(join_texts(sessions_that_say({"a", "b", "a"}), device_text) == "a (sub-1, sub-3); b (sub-2)");
+    CHECK(join_texts(sessions_that_say({"", "b"}), device_text) == "not recorded (sub-1); b (sub-2)");
+    CHECK(join_texts(sessions_that_say({""}), device_text) == "not recorded");
 }
 
 TEST_CASE("texts from files are no Markdown, and do not control a terminal")

@@ -17,8 +17,8 @@ std::string refusal(const std::string& text)
 {
     const folder f;
     f.write("t.tsv", text);
-    const std::string said = message_of([&] { text_table t(f / "t.tsv"); });
-    return said.empty() ? said : said.substr(f.path().string().size() + 1);
+    const std::string message = message_of([&] { text_table t(f / "t.tsv"); });
+    return message.empty() ? message : message.substr(f.path().string().size() + 1);
 }
 
 TEST_CASE("cells by name, n/a as missing, lines of any system")

@@ -68,15 +68,15 @@ std::vector<std::string> session_store::mend(const std::vector<const run_definit
             entered = true;
         }
     }
-    const auto say_lost = [&](bool lost, const fs::path& file, const std::string& what) {
+    const auto note_lost = [&](bool lost, const fs::path& file, const std::string& what) {
         done.push_back(file.string() +
                        (lost ? ": it is missing: a new one is begun (put the old one back from a copy)"
                              : fmt::format(": {} was missing, and is there again", what)));
     };
     if (added)
-        say_lost(lost_people, folder_.path() / "participants.tsv", "sub-" + code_);
+        note_lost(lost_people, folder_.path() / "participants.tsv", "sub-" + code_);
     if (entered)
-        say_lost(lost_scans, folder_.scans(code_), "a run");
+        note_lost(lost_scans, folder_.scans(code_), "a run");
     if (const fs::path practice = source_ / "practice.tsv"; there(practice))
         cut(practice);
     return done;

@@ -72,12 +72,6 @@ bool lacks_header(const std::string& log)
     return log.size() + 1 < header.size() && header.starts_with(log);
 }
 
-// Returns true for an errno that a wrong name causes; the system refuses for all others.
-bool bad_name(int code)
-{
-    return code == ENOENT || code == ENOTDIR || code == EISDIR || code == ELOOP || code == ENAMETOOLONG;
-}
-
 const std::string not_there = "n/a";
 constexpr double most_frame = 9e15; // a double counts them up to there
 
@@ -179,9 +173,12 @@ void calibration_log::open()
     fd_ =
         detail::owned_fd(::open(file_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NONBLOCK | O_NOFOLLOW, 0666));
     struct stat is {};
+    const int code = errno;
+    const bool bad_name =
+        code == ENOENT || code == ENOTDIR || code == EISDIR || code == ELOOP || code == ENAMETOOLONG;
     if (!fd_)
-        throw error(bad_name(errno) ? error_kind::bad_input : error_kind::runtime, file_.string(),
-                    errno == ELOOP ? "it is a link" : std::strerror(errno), "name a log that can be written");
+        throw error(bad_name ? error_kind::bad_input : error_kind::runtime, file_.string(),
+                    code == ELOOP ? "it is a link" : std::strerror(code), "name a log that can be written");
     if (::fstat(fd_.get(), &is) != 0 || !S_ISREG(is.st_mode))
         throw error(error_kind::bad_input, file_.string(), "it is no regular file", "name another log");
     if (::flock(fd_.get(), LOCK_EX | LOCK_NB) != 0)

@@ -117,7 +117,7 @@ void person::begin()
         return;
     session::show(page_ ? "The participant begins, Ctrl-C ends; what was answered is kept.\n"
                         : "Any key begins, Ctrl-C ends; what was answered is kept.\n");
-    while (!said())
+    while (!read_keys())
         stage_.wait_for(keys_.descriptor());
 }
 
@@ -128,7 +128,7 @@ void person::on_page(page_screen s)
 }
 
 // With a page the terminal is the experimenter's, who has Ctrl-C.
-std::optional<std::string> person::said()
+std::optional<std::string> person::read_keys()
 {
     if (!page_)
         return keys_.next();
@@ -143,7 +143,7 @@ std::optional<std::string> person::said()
 std::string person::wait_for_answer(const calibration_trial& t)
 {
     for (;;) {
-        if (auto answered = said())
+        if (auto answered = read_keys())
             return *answered;
         if (ended()) {
             session::show("\n");
@@ -229,7 +229,7 @@ calibration_answer person::adjust(const calibration_trial& t)
         const score s = trial_score(t.tactor, level, 0.0, settings_.interval_s + interval_gap_s);
         const auto take = [&] {
             while (!out) {
-                const auto keys = said();
+                const auto keys = read_keys();
                 if (!keys || change_level(*keys, t, level, out))
                     return;
                 on_page(adjust_screen()); // each change is an answer

@@ -51,7 +51,7 @@ private:
     void begin();
     void on_page(page_screen s);
     /// Returns the keys of an answer, if there is one.
-    std::optional<std::string> said();
+    std::optional<std::string> read_keys();
     bool ended() const noexcept { return !page_ && keys_.ended(); }
 
     const session::environment& environment_;

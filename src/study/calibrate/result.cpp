@@ -97,14 +97,14 @@ void write_new_output(const std::filesystem::path& file, const std::string& text
 void check_finished(const std::filesystem::path& file, const calibration_settings& s)
 {
     read_file(file); // refuses what is no file
-    const auto said = load_setup(file).calibration;
+    const auto written = load_setup(file).calibration;
     std::vector<unsigned> tactors;
-    if (said)
-        for (const calibrated_tactor& t : said->tactors)
+    if (written)
+        for (const calibrated_tactor& t : written->tactors)
             tactors.push_back(t.tactor);
-    if (!said || is_foreign(*said, s) || said->method != to_string(s.method) ||
-        said->carrier_hz != s.carrier_hz || said->interval_s != s.interval_s || said->seed != s.seed ||
-        said->date != s.date || tactors != s.tactors)
+    if (!written || is_foreign(*written, s) || written->method != to_string(s.method) ||
+        written->carrier_hz != s.carrier_hz || written->interval_s != s.interval_s ||
+        written->seed != s.seed || written->date != s.date || tactors != s.tactors)
         throw error(error_kind::bad_input, file.string(), "it is not what this session came to",
                     "choose another name: it is not overwritten");
 }

@@ -74,7 +74,7 @@ struct method_definition {
 /// [[run]]. Motions and methods are places in those of the definition.
 struct run_definition {
     run_outline outline;
-    std::string attribute = {}; ///< similarity or uniformity; of identify: empty where it is not said
+    std::string attribute = {}; ///< similarity or uniformity; may be empty for identify
     std::string question = {};
     bool animation = false;
     unsigned practice = 0; ///< trials before that do not count

@@ -43,8 +43,9 @@ auto at_key(const toml_table& t, std::string_view key, F make)
     try {
         return make();
     } catch (const error& e) {
-        const error said = options::spell(e, {write_key});
-        throw error(e.kind(), t.where(key), fmt::format("{}: {}", said.subject(), said.why()), said.hint())
+        const error worded = options::spell(e, {write_key});
+        throw error(e.kind(), t.where(key), fmt::format("{}: {}", worded.subject(), worded.why()),
+                    worded.hint())
             .with_field(key);
     }
 }
@@ -127,13 +128,6 @@ std::vector<std::size_t> places_in(const toml_table& run, std::string_view key, 
         if (wanted[i])
             places.push_back(i);
     return places;
-}
-
-void check_task_keys(const toml_table& t, task_kind task)
-{
-    for (const std::string_view key : {"scale", "labels"})
-        if (task != task_kind::rate && t.has(key))
-            t.fail(key, fmt::format("{} is of runs that rate", key), "leave it out, or task = \"rate\"");
 }
 
 } // namespace
@@ -254,7 +248,9 @@ run_definition read_run_definition(const toml_table& t, const experiment_definit
             t.fail(fmt::format("the runs \"{}\" and \"{}\" differ in capitals only", other.outline.name,
                                r.outline.name),
                    "another name: on some disks their files would be one");
-    check_task_keys(t, r.outline.task);
+    for (const std::string_view key : {"scale", "labels"})
+        if (r.outline.task != task_kind::rate && t.has(key))
+            t.fail(key, fmt::format("{} is of runs that rate", key), "leave it out, or task = \"rate\"");
     r.attribute = t.choice("attribute", {"similarity", "uniformity"}).value_or("");
     if (r.attribute.empty() && r.outline.task != task_kind::identify)
         t.need(std::optional<std::string>{}, "attribute");

@@ -61,11 +61,11 @@ std::vector<page_dialogue::message> page_dialogue::show(page_screen s, std::int6
 
 page_dialogue::heard page_dialogue::hear(visitor from, std::string_view text, std::int64_t now_ns)
 {
-    const ordered said = ordered::parse(text, nullptr, false);
-    if (!said.is_object())
+    const ordered received = ordered::parse(text, nullptr, false);
+    if (!received.is_object())
         return {.understood = false};
     heard h;
-    if (said.contains("hello")) {
+    if (received.contains("hello")) {
         if (theirs_ && *theirs_ != from)
             h.replies.push_back({*theirs_, message_text({{"screen", "elsewhere"}}), true});
         theirs_ = from;
@@ -73,12 +73,12 @@ page_dialogue::heard page_dialogue::hear(visitor from, std::string_view text, st
         h.replies.push_back({from, state(now_ns)});
         return h;
     }
-    const std::uint64_t choice = whole_number(said, "answer");
+    const std::uint64_t choice = whole_number(received, "answer");
     if (choice == 0)
         return {.understood = false};
     if (theirs_ != from)
         return h; // the page knows that another one took its place
-    if (!open_ || whole_number(said, "ask") != asked_ || choice > screen_.keys.size()) {
+    if (!open_ || whole_number(received, "ask") != asked_ || choice > screen_.keys.size()) {
         h.replies.push_back({from, state(now_ns)});
         return h;
     }

@@ -65,12 +65,6 @@ stimulus_set::stimulus_set(const experiment_definition& d, const array& a, const
 stimulus stimulus_set::make(const motion_definition& motion, const method_definition& method, const array& a,
                             const layout& faces, const plan_writer& write)
 {
-    const auto blame = [&](const error& e) {
-        return error(e.kind(), motion.where,
-                     fmt::format("motion \"{}\" by method \"{}\" (line {}): {}: {}", motion.name, method.name,
-                                 method.where.line, detail::plain(e.subject()), e.why()),
-                     in_definition_words(e.hint()));
-    };
     try {
         if (motion.drawn.motion.duration_s() > longest_stimulus_s)
             throw error(error_kind::bad_input, "stroke", "it takes more than ten minutes", "a shorter one");
@@ -85,16 +79,19 @@ stimulus stimulus_set::make(const motion_definition& motion, const method_defini
         s.felt = summarise(samples);
         s.felt_path = sample_path(samples);
         for (const std::string& w : s.plan.warnings) {
-            const std::string said =
+            const std::string warning =
                 fmt::format("motion \"{}\" by method \"{}\": {}", motion.name, method.name, w);
-            if (std::find(warnings_.begin(), warnings_.end(), said) == warnings_.end())
-                warnings_.push_back(said);
+            if (std::find(warnings_.begin(), warnings_.end(), warning) == warnings_.end())
+                warnings_.push_back(warning);
         }
         return s;
     } catch (const error& e) {
         if (e.kind() != error_kind::bad_input)
             throw;
-        throw blame(e);
+        throw error(e.kind(), motion.where,
+                    fmt::format("motion \"{}\" by method \"{}\" (line {}): {}: {}", motion.name, method.name,
+                                method.where.line, detail::plain(e.subject()), e.why()),
+                    in_definition_words(e.hint()));
     }
 }
 

@@ -76,9 +76,9 @@ bool masker::wait_for(masking_state s, const waiter& wait)
             return false;
         if (state_ == s)
             return true;
-        if (late || !wait(told_.fd(), look_ms))
+        if (late || !wait(changed_.fd(), look_ms))
             return false;
-        told_.consume();
+        changed_.consume();
     }
 }
 
@@ -102,13 +102,13 @@ void masker::run() noexcept
         breaks_ = stream_.breaks();
         if (now != io_kind::ok) {
             ended_ = now;
-            told_.signal();
+            changed_.signal();
             return;
         }
         const masking_state is = stream_.state();
         // A state other than the wanted one is not final, if the wish has changed meanwhile.
         if (is != (on ? masking_state::silent : masking_state::full) && state_.exchange(is) != is)
-            told_.signal();
+            changed_.signal();
     }
 }
 

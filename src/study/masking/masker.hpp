@@ -55,7 +55,7 @@ private:
     masking_stream stream_;
     std::vector<pollfd> fds_;
     rt::event_fd wake_;
-    rt::event_fd told_;
+    rt::event_fd changed_;
     std::atomic<bool> on_{false};
     std::atomic<bool> over_{false};
     std::atomic<masking_state> state_{masking_state::silent};

@@ -32,11 +32,6 @@ constexpr double direct = 0.5362;
 constexpr double delayed = 0.115926;
 constexpr int response_samples = 1 << 15; // until the slowest pole has nothing left
 
-double amplitude(double dbfs)
-{
-    return std::pow(10.0, dbfs / 20.0);
-}
-
 } // namespace
 
 masking_stream::masking_stream(sink& s, const masking_options& o)
@@ -158,7 +153,8 @@ double greatest_noise_dbfs(noise_color c) noexcept
 
 noise::noise(noise_color c, double level_dbfs, std::string_view seed)
     : color_(c),
-      gain_(amplitude(level_dbfs) * std::numbers::sqrt3), // a uniform number between -1 and 1 has 1 / sqrt 3
+      gain_(std::pow(10.0, level_dbfs / 20.0) *
+            std::numbers::sqrt3), // a uniform number between -1 and 1 has 1 / sqrt 3
       r_(seed)
 {
     if (c == noise_color::white)

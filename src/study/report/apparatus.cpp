@@ -203,9 +203,9 @@ std::string origin_text(const session_facts& s)
 
 std::string fact_text(const study_facts& f, const char* key)
 {
-    return told(f, [&](const session_facts& s) {
-        const json_value said = s.facts()[key];
-        return !said.there() && s.document.contains(key) ? std::string("none") : plain(said.words());
+    return join_texts(f, [&](const session_facts& s) {
+        const json_value value = s.facts()[key];
+        return !value.there() && s.document.contains(key) ? std::string("none") : plain(value.words());
     });
 }
 
@@ -214,7 +214,7 @@ std::string fact_text(const study_facts& f, const char* key)
 std::string apparatus_section(const study_facts& f)
 {
     std::string text = "\n## Apparatus\n\n### Array\n\n";
-    text += fmt::format("Array: {}.\n", told(f, [](const session_facts& s) {
+    text += fmt::format("Array: {}.\n", join_texts(f, [](const session_facts& s) {
                             return s.tactors
                                        ? fmt::format("{}: {} {}; actuators: {}", plain(s.tactors->name),
                                                      counted(s.tactors->tactors.size(), "tactor"),
@@ -227,9 +227,10 @@ std::string apparatus_section(const study_facts& f)
         "Sample rate (Hz): {}. Channels: {}. Device: {}. Sound server between tactor and the device: {}.\n",
         fact_text(f, "rate"), fact_text(f, "channels"), fact_text(f, "device"), fact_text(f, "sound_server"));
     text += "\n### Levels and thresholds\n\n";
-    text += fmt::format("Level: {}. Thresholds: {}.\n\n", told(f, level_text), told(f, assumed_text));
+    text +=
+        fmt::format("Level: {}. Thresholds: {}.\n\n", join_texts(f, level_text), join_texts(f, assumed_text));
     text += thresholds_table(f);
-    if (const std::string how = told(f, origin_text); how != not_recorded)
+    if (const std::string how = join_texts(f, origin_text); how != not_recorded)
         text += fmt::format("\nCalibration: {}.\n", how);
     return text;
 }

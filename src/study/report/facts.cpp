@@ -19,9 +19,9 @@ namespace fs = std::filesystem;
 
 constexpr int most_channel = 16383;
 
-[[noreturn]] void refuse_changed(const std::string& what, const std::string& said, const std::string& is)
+[[noreturn]] void refuse_changed(const std::string& what, const std::string& written, const std::string& is)
 {
-    throw error(error_kind::bad_input, what, fmt::format("its SHA-256 is {}, not {}", is, said),
+    throw error(error_kind::bad_input, what, fmt::format("its SHA-256 is {}, not {}", is, written),
                 "it was changed after the session: put back what it was");
 }
 
@@ -129,8 +129,9 @@ session_facts read_session_facts(const fs::path& folder, const std::string& code
     s.document = files::read_object(read_file(file), s.file);
     const std::string text = s.facts()["experiment"]["text"].need_text();
     s.definition_hash = detail::sha256_text(text);
-    if (const auto said = s.facts()["experiment"]["sha256"].text(); said && *said != s.definition_hash)
-        refuse_changed(s.file + ": experiment.text", *said, s.definition_hash);
+    if (const auto written = s.facts()["experiment"]["sha256"].text();
+        written && *written != s.definition_hash)
+        refuse_changed(s.file + ": experiment.text", *written, s.definition_hash);
     if (s.facts()["schema"].text() == own_schema)
         s.design = read_design(text, s.file + ": experiment.text");
     s.tactors = array_in(s.facts()["array"]);

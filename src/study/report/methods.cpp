@@ -15,13 +15,6 @@
 namespace tactor::study {
 namespace {
 
-std::string title_text(const study_facts& f, const dataset& d)
-{
-    return told(f, [&](const session_facts& s) {
-        return s.design ? plain(s.design->title) : plain(d.experiment.name);
-    });
-}
-
 constexpr std::string_view mark = "Written by tactor ";
 
 // Facts for a paper that no file of the folder has.
@@ -84,15 +77,44 @@ std::string without_runs_of_blanks(const std::string& text)
     return out;
 }
 
+std::string data_section(const study_facts& f, const dataset& d)
+{
+    std::string text = "\n## Data\n\n";
+    void_count all;
+    for (const session_facts& s : f.sessions)
+        for (const void_count& c : s.voids)
+            all = {all.voids + c.voids, all.again + c.again, all.with_xruns + c.with_xruns,
+                   all.unknown + c.unknown};
+    if (all.voids == 0)
+        text += "No trial was void. ";
+    else
+        text += fmt::format("Void trials: {}, of which had gaps in the sound: {}; they do not count. {}. ",
+                            all.voids, gaps_text(all), again_text(all));
+    text += "Trials that count / void / void\nwith gaps in the sound:\n\n";
+    text += trials_table(f, d);
+    text += "\n### Versions and hashes\n\n";
+    text += fmt::format("- tactor: {}\n", without_runs_of_blanks(join_texts(f, version_text)));
+    text += fmt::format("- SHA-256 of the definition: {}\n",
+                        join_texts(f, [](const session_facts& s) { return "`" + s.definition_hash + "`"; }));
+    if (std::any_of(f.sessions.begin(), f.sessions.end(),
+                    [](const session_facts& s) { return !s.stimuli.empty(); }))
+        text += "- Each stimulus is identified by the SHA-256 of its plan, in the table above; the plans "
+                "were found "
+                "to have these\n  hashes still, and each trial to name those of its motion and methods.\n";
+    return text;
+}
+
 } // namespace
 
 std::string methods_text(const study_facts& f, const dataset& d, const analysis& a)
 {
-    std::string text = fmt::format("# Methods: {}\n\n", title_text(f, d));
+    std::string text = fmt::format("# Methods: {}\n\n", join_texts(f, [&](const session_facts& s) {
+                                       return plain(s.design ? s.design->title : d.experiment.name);
+                                   }));
     if (a.simulated)
         text += fmt::format("> **SIMULATED: nobody was asked.** The answers come from a model ({}). They "
                             "test the software and say nothing\n> about people.\n\n",
-                            told(f, [](const session_facts& s) {
+                            join_texts(f, [](const session_facts& s) {
                                 return plain(s.facts()["simulation"].text().value_or(""));
                             }));
     text += fmt::format(
@@ -125,33 +147,6 @@ void write_report(const std::filesystem::path& file, const std::string& text, bo
     detail::output_file out(file);
     out.write(text.data(), static_cast<std::int64_t>(text.size()));
     out.commit();
-}
-
-std::string data_section(const study_facts& f, const dataset& d)
-{
-    std::string text = "\n## Data\n\n";
-    void_count all;
-    for (const session_facts& s : f.sessions)
-        for (const void_count& c : s.voids)
-            all = {all.voids + c.voids, all.again + c.again, all.with_xruns + c.with_xruns,
-                   all.unknown + c.unknown};
-    if (all.voids == 0)
-        text += "No trial was void. ";
-    else
-        text += fmt::format("Void trials: {}, of which had gaps in the sound: {}; they do not count. {}. ",
-                            all.voids, gaps_text(all), again_text(all));
-    text += "Trials that count / void / void\nwith gaps in the sound:\n\n";
-    text += trials_table(f, d);
-    text += "\n### Versions and hashes\n\n";
-    text += fmt::format("- tactor: {}\n", without_runs_of_blanks(told(f, version_text)));
-    text += fmt::format("- SHA-256 of the definition: {}\n",
-                        told(f, [](const session_facts& s) { return "`" + s.definition_hash + "`"; }));
-    if (std::any_of(f.sessions.begin(), f.sessions.end(),
-                    [](const session_facts& s) { return !s.stimuli.empty(); }))
-        text += "- Each stimulus is identified by the SHA-256 of its plan, in the table above; the plans "
-                "were found "
-                "to have these\n  hashes still, and each trial to name those of its motion and methods.\n";
-    return text;
 }
 
 std::string plain(std::string_view text)
@@ -207,7 +202,7 @@ std::string table_head(const std::vector<std::string>& cells)
     return table_row(cells) + table_row(std::vector<std::string>(cells.size(), "---"));
 }
 
-void add_saying(sayings& all, std::string text, const std::string& who)
+void add_text(shared_texts& all, std::string text, const std::string& who)
 {
     auto at = std::find_if(all.begin(), all.end(), [&](const auto& s) { return s.first == text; });
     if (at == all.end())
@@ -215,17 +210,17 @@ void add_saying(sayings& all, std::string text, const std::string& who)
     at->second.push_back(who);
 }
 
-std::string told(const study_facts& f, const std::function<std::string(const session_facts&)>& say)
+std::string join_texts(const study_facts& f, const std::function<std::string(const session_facts&)>& say)
 {
-    sayings said;
+    shared_texts texts;
     for (const session_facts& s : f.sessions) {
         std::string text = say(s);
-        add_saying(said, text.empty() ? not_recorded : std::move(text), s.code);
+        add_text(texts, text.empty() ? not_recorded : std::move(text), s.code);
     }
-    if (said.size() == 1)
-        return said.front().first;
+    if (texts.size() == 1)
+        return texts.front().first;
     std::string all;
-    for (const auto& [text, codes] : said)
+    for (const auto& [text, codes] : texts)
         all += fmt::format("{}{} ({})", all.empty() ? "" : "; ", text, subjects(codes));
     return all;
 }

@@ -73,8 +73,8 @@ std::string counts_text(const study_facts& f, std::optional<std::string> partici
     if (counts.size() == 1 && counts.contains(not_recorded))
         return not_recorded;
     std::string all;
-    for (const auto& [said, n] : counts)
-        all += fmt::format("{}{} {}", all.empty() ? "" : ", ", n, said);
+    for (const auto& [value, n] : counts)
+        all += fmt::format("{}{} {}", all.empty() ? "" : ", ", n, value);
     return all;
 }
 

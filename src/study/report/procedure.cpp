@@ -32,19 +32,19 @@ bool is_simulated(const session_facts& s)
 template <class F>
 std::string over_streams(const session_facts& s, const std::set<unsigned>& used, const F& say)
 {
-    sayings said;
+    shared_texts texts;
     for (const json_value& one : s.facts()["streams"].list()) {
         const std::string number = one["stream"].words();
         if (!used.empty() && std::none_of(used.begin(), used.end(),
                                           [&](unsigned n) { return fmt::format("{}", n) == number; }))
             continue;
         std::string text = say(one);
-        add_saying(said, text.empty() ? not_recorded : std::move(text), number);
+        add_text(texts, text.empty() ? not_recorded : std::move(text), number);
     }
-    if (said.size() == 1)
-        return said.front().first == not_recorded ? "" : said.front().first;
+    if (texts.size() == 1)
+        return texts.front().first == not_recorded ? "" : texts.front().first;
     std::string all;
-    for (const auto& [text, numbers] : said)
+    for (const auto& [text, numbers] : texts)
         all += fmt::format("{}{} ({} {} of the device)", all.empty() ? "" : ", ", text,
                            numbers.size() == 1 ? "opening" : "openings", fmt::join(numbers, ", "));
     return all;
@@ -141,18 +141,12 @@ std::string walk_text(const session_facts& s)
     return felt.empty() ? "" : fmt::format("{}, the last on {}", counted(felt.size(), "tactor"), plain(last));
 }
 
-const run_definition* find_run(const session_facts& s, std::size_t run)
-{
-    return s.design ? &s.design->runs.at(run) : nullptr;
-}
-
 // Returns a fact about a run from the definitions.
 template <class F>
 std::string run_fact(const study_facts& f, std::size_t run, const F& say)
 {
-    return told(f, [&](const session_facts& s) {
-        const run_definition* r = find_run(s, run);
-        return r == nullptr ? std::string() : std::string(say(*r));
+    return join_texts(f, [&](const session_facts& s) {
+        return s.design ? std::string(say(s.design->runs.at(run))) : std::string();
     });
 }
 
@@ -176,7 +170,7 @@ std::string run_text(const study_facts& f, const run_outline& o, std::size_t run
     text += fmt::format("- Question: {}\n",
                         run_fact(f, run, [](const run_definition& r) { return plain(r.question); }));
     text += fmt::format("- Animation of the target before the first stimulus: {}\n",
-                        told(f, [&](const session_facts& s) { return animation_text(s, run); }));
+                        join_texts(f, [&](const session_facts& s) { return animation_text(s, run); }));
     text +=
         fmt::format("- Trials: {}; practice trials before, which do not count: {}\n",
                     o.trials == 0 ? std::string(not_recorded) : fmt::format("{}", o.trials),
@@ -226,8 +220,9 @@ std::string randomisation(const study_facts& f)
     const bool own = std::any_of(f.sessions.begin(), f.sessions.end(),
                                  [](const session_facts& s) { return s.design.has_value(); });
     std::string text = "\n### Order and randomisation\n\n";
-    text += fmt::format("Order of the runs: {}.\n\nSeeds: {}.\n\n", told(f, order_text),
-                        told(f, [](const session_facts& s) { return plain(s.facts()["seed"].words()); }));
+    text +=
+        fmt::format("Order of the runs: {}.\n\nSeeds: {}.\n\n", join_texts(f, order_text),
+                    join_texts(f, [](const session_facts& s) { return plain(s.facts()["seed"].words()); }));
     if (own)
         text +=
             fmt::format("The order of the runs is a row of a Williams square (Williams 1949), chosen by the "
@@ -248,10 +243,10 @@ std::string procedure_section(const study_facts& f, const dataset& d)
     std::string text = "\n## Procedure\n\n";
     text += fmt::format("Experiment: {}, with {}. Gap between the two stimuli of a choice: {}.\n",
                         plain(d.experiment.name), counted(d.experiment.runs.size(), "run"),
-                        told(f, [](const session_facts& s) {
+                        join_texts(f, [](const session_facts& s) {
                             return s.design ? digits(s.design->gap_s) + " s" : std::string();
                         }));
-    text += fmt::format("Rest before each trial: {}.\n", told(f, [](const session_facts& s) {
+    text += fmt::format("Rest before each trial: {}.\n", join_texts(f, [](const session_facts& s) {
                             return !s.design              ? std::string()
                                    : s.design->rest_s > 0 ? digits(s.design->rest_s) + " s"
                                                           : std::string("none");
@@ -264,8 +259,8 @@ std::string procedure_section(const study_facts& f, const dataset& d)
     return text + fmt::format("\n### As it was held\n\n"
                               "Masking noise: {}.\n\nDisplay: {}.\n\nConsent: {}.\n\n"
                               "Tactors that the participant confirmed to feel before the runs: {}.\n",
-                              told(f, masking_text), told(f, display_text), told(f, consent_text),
-                              told(f, walk_text));
+                              join_texts(f, masking_text), join_texts(f, display_text),
+                              join_texts(f, consent_text), join_texts(f, walk_text));
 }
 
 } // namespace tactor::study

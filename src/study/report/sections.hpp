@@ -5,7 +5,6 @@
 /// differ between participants.
 #pragma once
 
-#include <cstddef>
 #include <filesystem>
 #include <functional>
 #include <span>
@@ -30,8 +29,6 @@ std::string apparatus_section(const study_facts& f);
 std::string stimuli_section(const study_facts& f);
 /// Describes runs, trials, order, masking, breaks.
 std::string procedure_section(const study_facts& f, const dataset& d);
-/// Describes void trials, versions, hashes.
-std::string data_section(const study_facts& f, const dataset& d);
 /// Gives the results as tactor analyze computes them; each is marked where the study is simulated.
 std::string results_section(const analysis& a);
 /// Lists the papers that `named` names.
@@ -85,12 +82,12 @@ std::string table_row(const std::vector<std::string>& cells);
 std::string table_head(const std::vector<std::string>& cells);
 
 /// Texts in the order in which they first came, each with the sessions that say it.
-using sayings = std::vector<std::pair<std::string, std::vector<std::string>>>;
-void add_saying(sayings& all, std::string text, const std::string& who);
+using shared_texts = std::vector<std::pair<std::string, std::vector<std::string>>>;
+void add_text(shared_texts& all, std::string text, const std::string& who);
 
 /// Returns the text of all sessions, or each text with the sessions that say it if they differ. An empty text
 /// reads "not recorded".
-std::string told(const study_facts& f, const std::function<std::string(const session_facts&)>& say);
+std::string join_texts(const study_facts& f, const std::function<std::string(const session_facts&)>& say);
 
 /// Returns the least and the largest value, or the only one; "not recorded" for none.
 std::string range_text(const std::vector<double>& values);

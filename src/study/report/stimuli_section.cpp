@@ -95,7 +95,7 @@ std::string method_text(const study_facts& f, const std::string& method)
     for (const std::string& a : algorithms)
         text += fmt::format("Algorithm {}: {}\n", plain(a), algorithm_text(a));
     text += fmt::format("Phantom model: {}. Options: {}.\n", plain_list(list_kinds(f, method, "phantom")),
-                        told(f, [&](const session_facts& s) { return options_text(s, method); }));
+                        join_texts(f, [&](const session_facts& s) { return options_text(s, method); }));
     return text;
 }
 
@@ -121,10 +121,10 @@ std::string plan_row(const planned_stimulus& p)
 // Makes a row for each plan; names the sessions that have it, if not all do.
 std::string plans_table(const study_facts& f)
 {
-    sayings rows;
+    shared_texts rows;
     for (const session_facts& s : f.sessions)
         for (const planned_stimulus& p : s.stimuli)
-            add_saying(rows, plan_row(p), s.code);
+            add_text(rows, plan_row(p), s.code);
     if (rows.empty())
         return "\nThe stimuli are not recorded.\n";
     std::string text = "\n" + table_head({"motion", "method", "path", "target (s)", "length (mm)", "SOA (s)",
@@ -158,10 +158,10 @@ std::string notes_text(const study_facts& f)
 std::string stimuli_section(const study_facts& f)
 {
     std::string text = "\n## Stimuli\n\n### Carrier and timing\n\n";
-    text += fmt::format("Carrier: {}.\n\n", told(f, carrier_text));
+    text += fmt::format("Carrier: {}.\n\n", join_texts(f, carrier_text));
     text += fmt::format("Timing law (Eq. 1 of Park et al. 2016, from Israr and Poupyrev 2011), the SOA being "
                         "the time from onset to onset:\n{}.\n",
-                        told(f, law_text));
+                        join_texts(f, law_text));
     text += "\n### Methods of rendering\n";
     std::vector<std::string> methods;
     for (const session_facts& s : f.sessions)

@@ -68,14 +68,14 @@ unsigned digit(char c)
     return c >= '1' && c <= '9' ? static_cast<unsigned>(c - '0') : 0;
 }
 
-std::optional<session_key> read_key(const std::optional<std::string>& said)
+std::optional<session_key> read_key(const std::optional<std::string>& typed)
 {
-    if (!said)
+    if (!typed)
         return {};
     session_key k{.at_ns = rt::monotonic_ns()};
-    if (said->size() != 1)
+    if (typed->size() != 1)
         return k;
-    k.character = said->front();
+    k.character = typed->front();
     k.asked = find_operator_key(k.character);
     k.answer = digit(k.character);
     return k;
@@ -161,11 +161,11 @@ std::optional<std::string> key_input::typed()
     std::size_t end = terminal_ ? 1 : text_.find('\n');
     if (text_.empty() || (end == text_.npos && !ended_))
         return std::nullopt;
-    std::string said = text_.substr(0, end);
+    std::string line = text_.substr(0, end);
     text_.erase(0, end == text_.npos ? end : end + (terminal_ ? 0 : 1));
     if (!terminal_)
-        std::erase_if(said, [](char c) { return c == ' ' || c == '\t' || c == '\r'; });
-    return said;
+        std::erase_if(line, [](char c) { return c == ' ' || c == '\t' || c == '\r'; });
+    return line;
 }
 
 std::optional<char> find_answer(std::uint16_t code) noexcept

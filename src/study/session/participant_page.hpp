@@ -39,18 +39,18 @@ public:
     /// Returns the answer to the open question, if any.
     std::optional<page_answer> poll();
     /// Readable while there is an answer.
-    int descriptor() const noexcept { return told_.fd(); }
+    int descriptor() const noexcept { return answered_.fd(); }
 
 private:
     void take(const page_dialogue::heard& h, std::int64_t now_ns);
-    bool said(net::page_server::visitor v, std::string_view text);
+    bool hear(net::page_server::visitor v, std::string_view text);
     void left(net::page_server::visitor v);
     void send(const std::vector<page_dialogue::message>& all);
 
     std::mutex mutex_;
     page_dialogue dialogue_;
     std::optional<page_answer> answer_ = {};
-    rt::event_fd told_;
+    rt::event_fd answered_;
     net::page_server server_; // last: its thread uses what is above
 };
 

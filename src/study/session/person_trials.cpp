@@ -65,9 +65,9 @@ bool person_session::make_room(const session_step& s, const planned_trial& t, co
     double ahead_s = stimulus_lead_s;
     if (p_.run_at(s.run).animation)
         ahead_s += p_.definition.motions[t.motion].drawn.motion.duration_s();
-    bool told = false;
+    bool announced = false;
     return stage_.make_room(stimuli, ahead_s, [&](double) {
-        if (!std::exchange(told, true)) {
+        if (!std::exchange(announced, true)) {
             on_page(idle_screen(p_, "wait"));
             session::show(p_.definition.page["wait"] + " ");
         }
