@@ -41,7 +41,7 @@ NOT_RUN = {
     "meson compile -C build docs": "the suite docs does it",
     "meson compile -C build": "the lane tests/lanes/deb builds with the service",
     "meson setup small": "the lane tests/lanes/small does it",
-    "meson setup build -Dservice=true": "the lane tests/lanes/deb builds with the service",
+    "meson configure build -Dservice=true": "the lane tests/lanes/deb builds with the service",
     "c++ ": "the suite install compiles it against an installed library",
     "cp -r examples/debian": "the lane tests/lanes/deb does it",
     "dpkg-buildpackage": "the lane tests/lanes/deb does it",
