@@ -11,7 +11,7 @@ import sys
 COMMENT = re.compile(r"^\s*(?:///|//|#)\s+(What|Whether|How|Those|One|Of|Where|Which|Who|Why|Nothing|As|All)\s")
 NAME = re.compile(r"\b([a-z]\w*_of)\s*\(")
 # Names of the standard library and of its style.
-TERMS = ("first_of", "last_of", "not_of", "any_of", "all_of", "none_of")
+TERMS = ("as_of", "one_of", "first_of", "last_of", "not_of", "any_of", "all_of", "none_of")
 COLUMNS, WORDS = 100, 30
 
 

@@ -75,15 +75,6 @@ bool is_command(std::string_view name)
                        [&](const named_command& c) { return c.name == name; });
 }
 
-// The option of a name that is no command, with or without dashes; null for none.
-const options::option* asked_option(std::string_view name)
-{
-    name.remove_prefix(std::min(name.find_first_not_of('-'), name.size()));
-    const options::option* o = options::find(name);
-    const bool is_shown = o != nullptr && (o->where & options::on_any_command) != 0;
-    return is_shown && !is_command(name) ? o : nullptr;
-}
-
 // `tactor help plan` is `tactor plan --help`, for whoever has no manual pages.
 std::vector<std::string> arguments(int argc, char** argv)
 {
@@ -92,7 +83,7 @@ std::vector<std::string> arguments(int argc, char** argv)
         return all;
     while (!all.empty() && all.front() == "help")
         all.erase(all.begin());
-    if (all.size() == 1 && asked_option(all.front()) != nullptr)
+    if (all.size() == 1 && !is_command(all.front()))
         return {"help", all.front()};
     if (all.empty() || is_command(all.front())) // another is complained of
         all.emplace_back("--help");
@@ -106,10 +97,7 @@ int run(const std::vector<std::string>& given)
         fmt::print("{}\n", version_text());
         return status_ok;
     }
-    if (first == "help" && given.size() == 2) {
-        fmt::print("{}", describe_option(*asked_option(given[1])));
-        return status_ok;
-    }
+    const bool asks = first == "help" && given.size() == 2; // about an option
     if (given.empty()) {
         say_error("tactor: command line: no command (tactor --help lists them)\n\n{}", first_steps());
         return status_usage;
@@ -132,8 +120,13 @@ int run(const std::vector<std::string>& given)
             fmt::print("{}\n", line);
         return status_ok;
     }
+    if (const std::string text = asks ? describe_option(app, given[1]) : ""; !text.empty()) {
+        fmt::print("{}", text);
+        return status_ok;
+    }
     try {
-        app.parse(std::vector<std::string>(given.rbegin(), given.rend())); // the last first, as it wants them
+        // The last first, as it wants them; a name that is no option is no command either.
+        app.parse(std::vector<std::string>(given.rbegin(), given.rend() - (asks ? 1 : 0)));
     } catch (const CLI::Success& e) {
         std::ostringstream text; // of --help or --version
         const int status = app.exit(e, text);

@@ -138,9 +138,7 @@ std::string places_text(const std::array<place_name, N>& names, std::uint64_t wh
     return all;
 }
 
-} // namespace
-
-std::string describe_option(const options::option& o)
+std::string describe_row(const options::option& o)
 {
     std::string text =
         fmt::format("{}{}{}\n  {}\n", option_name(o), o.what == options::kind::flag ? "" : " ",
@@ -163,6 +161,25 @@ std::string describe_option(const options::option& o)
     line("OSC:", (o.where & options::by_client) != 0 ? fmt::format("{}=", o.name) : "");
     const std::string python = places_text(python_names, o.where);
     line("Python:", python.empty() ? "" : fmt::format("{} of {}", o.name, python));
+    return text;
+}
+
+} // namespace
+
+std::string describe_option(const CLI::App& app, std::string_view name)
+{
+    name.remove_prefix(std::min(name.find_first_not_of('-'), name.size()));
+    const options::option* row = options::find(name);
+    if (row != nullptr && (row->where & options::on_any_command) == 0)
+        row = nullptr;
+    std::string text = row != nullptr ? describe_row(*row) : "";
+    for (const CLI::App* command : app.get_subcommands({})) {
+        const CLI::Option* o = command->get_option_no_throw(fmt::format("--{}", name));
+        if (o != nullptr && (row == nullptr || o->get_group() != to_string(row->in)))
+            text +=
+                fmt::format("tactor {}: --{}{}{}\n  {}\n", command->get_name(), name,
+                            o->get_type_name().empty() ? "" : " ", o->get_type_name(), o->get_description());
+    }
     return text;
 }
 

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <tactor/error.hpp>
@@ -23,8 +24,9 @@ void use_help_pages(CLI::App& app);
 /// Returns the lines with the commands to try first.
 std::string first_steps();
 
-/// Returns what there is to know of an option: values, where it may be given and under which name.
-std::string describe_option(const options::option& o);
+/// Describes an option: its values, the places where it may be given and its names there; of options that
+/// only some commands have, the line of their help. `name` may begin with dashes. Empty for an unknown name.
+std::string describe_option(const CLI::App& app, std::string_view name);
 
 /// Turns the parser's complaint into an error that names the option and, where it is not known, the
 /// nearest one that is.

@@ -418,7 +418,7 @@ constexpr std::array table{
            .where = playing | on_calibrate | on_experiment,
            .to = reach([](auto& w) -> auto& { return w.stream.verbose; })},
     option{.name = "log", .what = kind::text, .shown = "FILE", .in = group::output,
-           .help = "append the same report to a file",
+           .help = "append what {verbose} reports to a file",
            .where = playing | on_experiment, .to = {set_log, reach([](auto& w) -> auto& { return w.stream.log; }).get}},
 };
 // clang-format on

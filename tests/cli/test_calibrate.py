@@ -215,7 +215,7 @@ class Simulated(CalibrateTest):
             if float(r["level_dbfs"]) >= -45:
                 self.assertEqual(r["correct"], "true")
 
-    def test_levels_above_thresholds_of_another_carrier_are_warned_of(self):
+    def test_levels_above_thresholds_of_another_carrier_give_a_warning(self):
         self.simulated("me.toml", "--carrier", 100, *SHORT)
         told = "thresholds were measured at 100 Hz, and a carrier is 250 Hz"
         at = ("--array", "me.toml", "--sl", 7)

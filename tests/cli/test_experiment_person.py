@@ -453,7 +453,7 @@ class ByLines(PersonTest):
         self.ok(*self.args("--resume"), stdin="y\ny\n" + "1\n" * 5)
         self.assertRegex(self.session()["date"], r"^20\d\d-")
 
-    def test_missing_authors_are_warned_of(self):
+    def test_missing_authors_give_a_warning(self):
         self.assertNotIn("authors", self.refused(1, *self.args(), stdin="n\n").stderr)
         for said, warned in (("put your names here", True), ("A. Author", False)):
             self.write("short.toml", SHORT.replace("gap_s", f'authors = ["{said}"]\ngap_s', 1))

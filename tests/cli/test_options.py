@@ -167,6 +167,13 @@ class Options(ToolTest):
         for name in ("soa", "--soa", "max-drive-s", "max_drive_s"):
             self.assertIn("Range:", self.ok("help", name).stdout)
 
+    def test_help_explains_the_options_of_single_commands_too(self):
+        for command in COMMANDS + ("analyze", "report", "status"):
+            for name in re.findall(r"^  (?:-\w,)?--([a-z-]+)", self.ok(command, "--help-all").stdout, re.M):
+                if name not in ("help", "help-all"):
+                    text = self.ok("help", name).stdout
+                    self.assertRegex(text, rf"Commands:.*\b{command}\b|tactor {command}: --{name}\b", name)
+
 
 if __name__ == "__main__":
     main()

@@ -330,7 +330,7 @@ class StrokeFiles(ToolTest):
         self.assertAlmostEqual(self.plan("s.toml", "--speed", "20")["stroke"]["duration_s"], 2.5, 9)
         self.assertAlmostEqual(self.plan("s.toml", "--duration", "3")["stroke"]["duration_s"], 3.0, 9)
 
-    def test_a_path_too_short_to_be_felt_as_motion_is_warned_of(self):
+    def test_a_path_too_short_to_be_felt_as_motion_gives_a_warning(self):
         for command in (("plan",), ("render", "-o", "s.wav")):
             done = self.ok(*command, "--path", "M 10 10 h 3")
             self.assertIn("shorter than a fifth", done.stdout + done.stderr)

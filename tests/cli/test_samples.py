@@ -374,7 +374,7 @@ class Recordings(ToolTest):
         self.write("old.json", json.dumps(plan))
         self.ok("plan", "old.json")
 
-    def test_a_recording_that_is_cut_short_is_warned_of(self):
+    def test_a_recording_that_is_cut_short_gives_a_warning(self):
         sound = wav_bytes([math.sin(2 * math.pi * i / 40) for i in range(400)], rate=RATE)
         self.write("r.wav", sound[:44 + 2 * 100])
         for command in (("plan",), ("render", "-o", "x.wav"), ("plot", "-o", "x.svg")):

@@ -9,10 +9,10 @@
 #include <doctest/doctest.h>
 #include <unistd.h>
 
+#include "caught.hpp"
 #include "clock_runner.hpp"
 #include "fake_dac.hpp"
 #include "has.hpp"
-#include "message_of.hpp"
 #include "player_support.hpp"
 #include "sink/alsa/adopt.hpp"
 
@@ -91,7 +91,7 @@ walk_result stumble(bool ask)
 
 TEST_CASE("a walk on which a tactor was not driven to its end fails at its end")
 {
-    const std::string said = message_of([] { stumble(false); });
+    const std::string said = caught_message([] { stumble(false); });
     CHECK(has(said, "tactor 0: interrupted: "));
     CHECK(has(said, "walk again"));
 }

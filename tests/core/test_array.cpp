@@ -10,7 +10,7 @@
 
 #include <tactor/array.hpp>
 
-#include "message_of.hpp"
+#include "caught.hpp"
 
 namespace array_test {
 
@@ -63,26 +63,26 @@ TEST_CASE("palm-2x4 has two rows of four")
 
 TEST_CASE("an unknown preset lists the presets")
 {
-    CHECK(message_of([] { static_cast<void>(preset_array("palm-4x4")); }) ==
+    CHECK(caught_message([] { static_cast<void>(preset_array("palm-4x4")); }) ==
           "array: there is no preset 'palm-4x4' (did you mean 'palm-2x4'? presets: palm-3x3, palm-2x4)");
-    CHECK(message_of([] { static_cast<void>(preset_array("glove")); }) ==
+    CHECK(caught_message([] { static_cast<void>(preset_array("glove")); }) ==
           "array: there is no preset 'glove' (presets: palm-3x3, palm-2x4)");
 }
 
 TEST_CASE("make_grid refuses impossible grids")
 {
-    CHECK(message_of([] { static_cast<void>(make_grid("g", 0, 3, 20, 20)); }) ==
+    CHECK(caught_message([] { static_cast<void>(make_grid("g", 0, 3, 20, 20)); }) ==
           "grid: 0 rows x 3 columns (1 to 16384 tactors)");
-    CHECK(message_of([] { static_cast<void>(make_grid("g", 129, 128, 20, 20)); }) ==
+    CHECK(caught_message([] { static_cast<void>(make_grid("g", 129, 128, 20, 20)); }) ==
           "grid: 129 rows x 128 columns (1 to 16384 tactors)");
     // 2^32 tactors, which is 0 in 32 bits
-    CHECK(message_of([] { static_cast<void>(make_grid("g", 65536, 65536, 20, 20)); }) ==
+    CHECK(caught_message([] { static_cast<void>(make_grid("g", 65536, 65536, 20, 20)); }) ==
           "grid: 65536 rows x 65536 columns (1 to 16384 tactors)");
-    CHECK(message_of([] { static_cast<void>(make_grid("g", 3, 3, 0.0, 20)); }) ==
+    CHECK(caught_message([] { static_cast<void>(make_grid("g", 3, 3, 0.0, 20)); }) ==
           "grid: the pitch is 0 mm (it must be more than 0)");
-    CHECK(message_of([] { static_cast<void>(make_grid("g", 3, 3, 20, not_a_number)); }) ==
+    CHECK(caught_message([] { static_cast<void>(make_grid("g", 3, 3, 20, not_a_number)); }) ==
           "grid: the pitch is nan mm (it must be more than 0)");
-    CHECK(message_of([] { static_cast<void>(make_grid("g", 3, 3, 20, -inf)); }) ==
+    CHECK(caught_message([] { static_cast<void>(make_grid("g", 3, 3, 20, -inf)); }) ==
           "grid: the pitch is -inf mm (it must be more than 0)");
     CHECK(make_grid("g", 128, 128, 1, 1).tactors.size() == 16384);
 }
@@ -159,18 +159,19 @@ TEST_CASE("validate takes the presets and grids of the greatest size")
 TEST_CASE("validate names both tactors, with their lines where known")
 {
     array a = at_places({{0, 0}, {20, 0}, {20 + 0.9e-6, 0}});
-    CHECK(message_of([&] { validate(a); }) == "array 'test': tactor 2 is at (20.0000009, 0) mm, the place of "
-                                              "tactor 1 (give each tactor a place of its own)");
+    CHECK(caught_message([&] { validate(a); }) ==
+          "array 'test': tactor 2 is at (20.0000009, 0) mm, the place of "
+          "tactor 1 (give each tactor a place of its own)");
     a.tactors[1].where = {"palm.toml", 5, 1};
     a.tactors[2].where = {"palm.toml", 9, 1};
-    CHECK(message_of([&] { validate(a); }) ==
+    CHECK(caught_message([&] { validate(a); }) ==
           "palm.toml:9:1: tactor 2 is at (20.0000009, 0) mm, the place of tactor 1 (palm.toml:5:1) (give "
           "each tactor a place of its own)");
     a.tactors[2].position.x_mm = 20 + 1.1e-6;
     CHECK_NOTHROW(validate(a));
     a.tactors[2].channel = 1;
-    CHECK(message_of([&] { validate(a); }) == "palm.toml:9:1: tactor 2 is on channel 1, that of tactor 1 "
-                                              "(palm.toml:5:1) (give each tactor a channel of its own)");
+    CHECK(caught_message([&] { validate(a); }) == "palm.toml:9:1: tactor 2 is on channel 1, that of tactor 1 "
+                                                  "(palm.toml:5:1) (give each tactor a channel of its own)");
 }
 
 TEST_CASE("validate refuses impossible tactors")
@@ -178,7 +179,7 @@ TEST_CASE("validate refuses impossible tactors")
     const auto why = [](auto change) {
         array a = preset_array("palm-3x3");
         change(a.tactors[4]);
-        return message_of([&] { validate(a); });
+        return caught_message([&] { validate(a); });
     };
     const std::string at = "array 'palm-3x3': tactor 4 ";
     CHECK(why([](tactor_spec& t) { t.position.x_mm = not_a_number; }).starts_with(at + "is at (nan, 20) mm"));
@@ -210,7 +211,7 @@ TEST_CASE("validate refuses impossible tactors")
     CHECK(why([](tactor_spec& t) { t.rise_s = 1.0; }).empty());
     CHECK(why([](tactor_spec& t) { t.rise_s = 1.001; }).starts_with(at + "has a rise time of 1.001 s"));
     CHECK(why([](tactor_spec& t) { t.rise_s = 0.0; }).starts_with(at + "has a rise time of 0 s"));
-    CHECK(message_of([] { validate(array{}); }) == "array '': 0 tactors (an array has 1 to 16384)");
+    CHECK(caught_message([] { validate(array{}); }) == "array '': 0 tactors (an array has 1 to 16384)");
 }
 
 TEST_CASE("two tactors on one place are found anywhere")
@@ -227,11 +228,11 @@ TEST_CASE("two tactors on one place are found anywhere")
         // Coordinates of 1e6 mm have a resolution of 1e-10 mm.
         places.push_back({p.x_mm + 0.99e-6 * std::cos(phi), p.y_mm + 0.99e-6 * std::sin(phi)});
         std::shuffle(places.begin(), places.end(), random);
-        REQUIRE_FALSE(message_of([&] { validate(at_places(places)); }).empty());
+        REQUIRE_FALSE(caught_message([&] { validate(at_places(places)); }).empty());
         for (point& q : places)
             if (q == p)
                 q = {p.x_mm - 0.02e-6 * std::cos(phi), p.y_mm - 0.02e-6 * std::sin(phi)};
-        REQUIRE(message_of([&] { validate(at_places(places)); }).empty());
+        REQUIRE(caught_message([&] { validate(at_places(places)); }).empty());
     }
 }
 

@@ -10,8 +10,8 @@
 #include <tactor/error.hpp>
 #include <tactor/stroke.hpp>
 
+#include "caught.hpp"
 #include "core/trajectory/spans.hpp"
-#include "message_of.hpp"
 
 namespace movement_test {
 
@@ -34,7 +34,7 @@ double smooth(double u)
 
 std::string refusal(const movement& m)
 {
-    return message_of([&] { static_cast<void>(trajectory::along(line, m)); });
+    return caught_message([&] { static_cast<void>(trajectory::along(line, m)); });
 }
 
 /// Draws rests, speeds and intensities at random places.

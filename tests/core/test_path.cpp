@@ -10,7 +10,7 @@
 #include <tactor/error.hpp>
 #include <tactor/path.hpp>
 
-#include "message_of.hpp"
+#include "caught.hpp"
 #include "path_samples.hpp"
 #include "rounds.hpp"
 
@@ -215,7 +215,7 @@ TEST_CASE("senseless polylines and arcs are refused")
     const double nan = std::numeric_limits<double>::quiet_NaN();
     const double inf = std::numeric_limits<double>::infinity();
     const auto polyline = [](std::vector<point> p) {
-        return message_of([&] { static_cast<void>(path::polyline(p)); });
+        return caught_message([&] { static_cast<void>(path::polyline(p)); });
     };
     CHECK(polyline({}).find("has no point") != std::string::npos);
     CHECK(polyline({{1.0, 1.0}, {nan, 1.0}}).find("not finite") != std::string::npos);
@@ -223,7 +223,7 @@ TEST_CASE("senseless polylines and arcs are refused")
     CHECK(polyline({{1.0, 1.0}, {2e6, 1.0}}).find("beyond") != std::string::npos);
 
     const auto arc = [](point c, double r, double from, double sweep) {
-        return message_of([&] { static_cast<void>(path::arc(c, r, from, sweep)); });
+        return caught_message([&] { static_cast<void>(path::arc(c, r, from, sweep)); });
     };
     CHECK(arc({}, 0.0, 0.0, 90.0).find("radius") != std::string::npos);
     CHECK(arc({}, nan, 0.0, 90.0).find("radius") != std::string::npos);

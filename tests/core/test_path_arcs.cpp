@@ -10,7 +10,7 @@
 #include <tactor/error.hpp>
 #include <tactor/path.hpp>
 
-#include "message_of.hpp"
+#include "caught.hpp"
 
 namespace path_arcs_test {
 

@@ -9,7 +9,7 @@
 #include <tactor/path.hpp>
 #include <tactor/stroke.hpp>
 
-#include "message_of.hpp"
+#include "caught.hpp"
 #include "path_samples.hpp"
 #include "rounds.hpp"
 
@@ -21,7 +21,7 @@ namespace {
 
 std::string refusal(const std::string& data)
 {
-    return message_of([&] { static_cast<void>(path::from_svg(data)); });
+    return caught_message([&] { static_cast<void>(path::from_svg(data)); });
 }
 
 // A locale in which a number has a decimal comma, for as long as it lives.
@@ -156,7 +156,7 @@ TEST_CASE("changed path data gives a path or an error, nothing else")
         CHECK(std::abs(middle.y_mm) <= 1.001e6);
         for (const double at_mm : p.meets_x(20.0))
             CHECK(std::isfinite(at_mm));
-        CHECK(message_of([&] { static_cast<void>(path::from_svg(p.svg())); }).empty());
+        CHECK(caught_message([&] { static_cast<void>(path::from_svg(p.svg())); }).empty());
     }
     CHECK(paths > tactor::test::rounds(2000));
 }

@@ -9,7 +9,7 @@
 #include <tactor/error.hpp>
 #include <tactor/stroke.hpp>
 
-#include "message_of.hpp"
+#include "caught.hpp"
 
 namespace trajectory_test {
 
@@ -27,7 +27,7 @@ trajectory line_in(double duration_s)
 
 std::string timed_refusal(std::vector<timed_point> points)
 {
-    return message_of([&] { static_cast<void>(trajectory::timed(points)); });
+    return caught_message([&] { static_cast<void>(trajectory::timed(points)); });
 }
 
 } // namespace
@@ -151,23 +151,24 @@ TEST_CASE("a path of one place is a tap of the given duration")
     const movement reach{.duration_s = 2.0, .easing = easing_kind::minimum_jerk};
     CHECK(trajectory::along(place, reach).duration_s() == 2.0);
     const std::string refusal = "path: has no length (duration_s makes it a tap)";
-    CHECK(message_of([&] { static_cast<void>(trajectory::along(place, 0.0)); }) == refusal);
+    CHECK(caught_message([&] { static_cast<void>(trajectory::along(place, 0.0)); }) == refusal);
     for (const movement& m : {movement{}, movement{.duration_s = 1.0, .intensity = {{0.0, 0.5}}},
                               movement{.rests = {{0.5, 1.0}}}})
-        CHECK(message_of([&] { static_cast<void>(trajectory::along(place, m)); }) == refusal);
+        CHECK(caught_message([&] { static_cast<void>(trajectory::along(place, m)); }) == refusal);
 }
 
 TEST_CASE("durations and intensities out of range are refused")
 {
     for (const double d : {0.0, -1.0, nan_value, infinite, 86400.1}) {
         CAPTURE(d);
-        CHECK(message_of([&] { line_in(d); }).find("duration: ") == 0);
-        CHECK(message_of([&] { static_cast<void>(line_in(1.0).with_duration(d)); }).find("duration: ") == 0);
+        CHECK(caught_message([&] { line_in(d); }).find("duration: ") == 0);
+        CHECK(caught_message([&] { static_cast<void>(line_in(1.0).with_duration(d)); }).find("duration: ") ==
+              0);
     }
     CHECK(line_in(86400.0).duration_s() == 86400.0);
     for (const double a : {-0.1, nan_value, infinite, 1001.0}) {
         CAPTURE(a);
-        CHECK(message_of([&] {
+        CHECK(caught_message([&] {
                   static_cast<void>(trajectory::along(path::from_svg("M 0 0 H 1"), 1.0, a));
               }).find("intensity") != std::string::npos);
     }

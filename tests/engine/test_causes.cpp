@@ -19,9 +19,9 @@
 #include <tactor/setup.hpp>
 #include <tactor/stroke.hpp>
 
+#include "caught.hpp"
 #include "folder.hpp"
 #include "has.hpp"
-#include "message_of.hpp"
 #include "player_support.hpp"
 #include "rig.hpp"
 #include "scores.hpp"

@@ -11,8 +11,8 @@
 #include <tactor/error.hpp>
 #include <tactor/player.hpp>
 
+#include "caught.hpp"
 #include "clock_runner.hpp"
-#include "message_of.hpp"
 #include "player_support.hpp"
 #include "rt/clock.hpp"
 #include "scores.hpp"
@@ -108,8 +108,8 @@ TEST_CASE("a plan's drive time counts only until now when its process died early
                          "drive history: -1 s ahead (give 0 to 86400 s)", error);
     CHECK_THROWS_WITH_AS(static_cast<void>(ahead.with_ahead(16385, 1.0)),
                          "drive history: 16385 channels (give 0 to 16384)", error);
-    CHECK(field_of([&] { static_cast<void>(ahead.with_ahead(9, -1.0)); }) == "ahead_s");
-    CHECK(field_of([&] { static_cast<void>(ahead.with_ahead(16385, 1.0)); }) == "channels");
+    CHECK(caught_field([&] { static_cast<void>(ahead.with_ahead(9, -1.0)); }) == "ahead_s");
+    CHECK(caught_field([&] { static_cast<void>(ahead.with_ahead(16385, 1.0)); }) == "channels");
 }
 
 TEST_CASE("histories of one array add up")
@@ -141,7 +141,7 @@ TEST_CASE("a text that is incomplete or foreign is refused; one from before the 
     const auto refused = [&](std::string_view what, std::string_view by) {
         std::string other = text;
         other.replace(other.find(what), what.size(), by);
-        return message_of([&] { static_cast<void>(drive_history::restore(other)); });
+        return caught_message([&] { static_cast<void>(drive_history::restore(other)); });
     };
     CHECK(refused("tactor-driven", "somebody else") ==
           "drive history: the text is something else (begin with an empty one)");

@@ -12,9 +12,9 @@
 #include <tactor/player.hpp>
 #include <tactor/stroke.hpp>
 
+#include "caught.hpp"
 #include "clock_runner.hpp"
 #include "has.hpp"
-#include "message_of.hpp"
 #include "player_support.hpp"
 #include "scores.hpp"
 #include "sink/alsa/adopt.hpp"
@@ -93,7 +93,7 @@ std::string complaint(const array& a, const score& s)
 std::string refused_field(const score& s)
 {
     clocked_player p;
-    return field_of([&] { p.submit(s); });
+    return caught_field([&] { p.submit(s); });
 }
 
 } // namespace

@@ -8,9 +8,9 @@
 
 #include <tactor/setup.hpp>
 
+#include "caught.hpp"
 #include "files/setup_text.hpp"
 #include "folder.hpp"
-#include "message_of.hpp"
 
 namespace channel_map_test {
 
@@ -75,12 +75,12 @@ TEST_CASE("the array of another file is changed where it is used")
 TEST_CASE("channels that the file cannot have, or cannot express, are refused")
 {
     const std::string grid = "[array]\ngrid = { rows = 1, columns = 2, pitch_mm = 20.0 }\n";
-    CHECK(message_of([&] { changed(grid, {0}); }).find("1 channel for 2 tactors") != std::string::npos);
-    CHECK(message_of([&] { changed(grid, {1, 1}); }).find("channel 1") != std::string::npos);
-    CHECK(message_of([&] {
+    CHECK(caught_message([&] { changed(grid, {0}); }).find("1 channel for 2 tactors") != std::string::npos);
+    CHECK(caught_message([&] { changed(grid, {1, 1}); }).find("channel 1") != std::string::npos);
+    CHECK(caught_message([&] {
               changed(grid + "[output]\nchannels = 2\n", {0, 2});
           }).find("channels is 2") != std::string::npos);
-    CHECK(message_of([&] { changed("[output]\nrate = 48000\n", {0}); }).find("says no [array]") !=
+    CHECK(caught_message([&] { changed("[output]\nrate = 48000\n", {0}); }).find("says no [array]") !=
           std::string::npos);
     // An array that is closed by its brackets takes no further entry.
     CHECK_THROWS_AS(changed(grid + "tactor = [ { tactor = 0, gain_db = -1 } ]\n", {1, 0}), error);

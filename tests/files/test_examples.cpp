@@ -9,8 +9,8 @@
 #include <tactor/setup.hpp>
 #include <tactor/stroke.hpp>
 
+#include "caught.hpp"
 #include "files/text_file.hpp"
-#include "message_of.hpp"
 
 namespace examples_test {
 
@@ -38,7 +38,7 @@ TEST_CASE("every example array is read and named after its file")
     for (const fs::path& f : files) {
         CAPTURE(f.string());
         setup s;
-        REQUIRE(message_of([&] { s = load_setup(f); }) == "");
+        REQUIRE(caught_message([&] { s = load_setup(f); }) == "");
         REQUIRE(s.array.has_value());
         CHECK(s.array->name == f.stem().string());
     }
@@ -59,7 +59,7 @@ TEST_CASE("every example stroke is read")
         CAPTURE(f.string());
         if (f.extension() == ".wav") // a waveform of one of them
             continue;
-        const std::string said = message_of([&] { CHECK_FALSE(load_strokes(f).empty()); });
+        const std::string said = caught_message([&] { CHECK_FALSE(load_strokes(f).empty()); });
         CHECK((said.empty() || (TACTOR_HAS_RECORDINGS == 0 && said.find("libsndfile") != std::string::npos)));
     }
 }
@@ -86,12 +86,12 @@ TEST_CASE("the examples in the manual page are read")
         strokes += stroke_text ? 1 : 0;
         arrays += stroke_text ? 0 : 1;
         if (text.find("file = ") != std::string::npos)
-            CHECK(message_of([&] { static_cast<void>(parse_setup(text, "man")); }).find("No such file") !=
+            CHECK(caught_message([&] { static_cast<void>(parse_setup(text, "man")); }).find("No such file") !=
                   std::string::npos);
         else if (stroke_text)
-            CHECK(message_of([&] { static_cast<void>(parse_strokes(text, "man")); }) == "");
+            CHECK(caught_message([&] { static_cast<void>(parse_strokes(text, "man")); }) == "");
         else
-            CHECK(message_of([&] { static_cast<void>(parse_setup(text, "man")); }) == "");
+            CHECK(caught_message([&] { static_cast<void>(parse_setup(text, "man")); }) == "");
     }
     CHECK(arrays >= 3);
     CHECK(strokes >= 2);

@@ -9,7 +9,7 @@
 #include <tactor/error.hpp>
 #include <tactor/stroke.hpp>
 
-#include "message_of.hpp"
+#include "caught.hpp"
 
 namespace presets_test {
 
@@ -82,7 +82,7 @@ TEST_CASE("an unknown preset is refused with the list, and a slip with its neare
 {
     const std::string all = "presets: park2016-1, park2016-2, park2016-3, park2016-4, wave-2x4, round-2x4)";
     const auto said = [](const char* name) {
-        return message_of([name] { static_cast<void>(tactor::preset_stroke(name)); });
+        return caught_message([name] { static_cast<void>(tactor::preset_stroke(name)); });
     };
     CHECK(said("circle") == "stroke: no preset 'circle' (" + all);
     CHECK(said("prak2016-1") == "stroke: no preset 'prak2016-1' (did you mean 'park2016-1'? " + all);

@@ -14,9 +14,9 @@
 
 #include "core/sha256.hpp"
 
+#include "caught.hpp"
 #include "folder.hpp"
 #include "has.hpp"
-#include "message_of.hpp"
 
 namespace recording_test {
 
@@ -89,7 +89,7 @@ TEST_CASE("a file that is no WAV file of one channel is refused by name")
     const std::string data = chunk("data", samples<std::int16_t>({1000, -1000}));
     const auto refused = [&](const std::string& text, const std::string& part) {
         const std::string said =
-            message_of([&] { static_cast<void>(load_recording(dir.write("b.wav", text))); });
+            caught_message([&] { static_cast<void>(load_recording(dir.write("b.wav", text))); });
         return has(said, part) && has(said, "b.wav");
     };
     CHECK(refused("", "no WAV file"));
@@ -171,7 +171,7 @@ TEST_CASE("sizes that a recorder left open end with the file")
         CHECK(r.missing == 0);
     }
     // No samples are no open size.
-    CHECK(has(message_of([&] {
+    CHECK(has(caught_message([&] {
                   static_cast<void>(
                       load_recording(dir.write("a.wav", wav(head + open_data(0, chunk("LIST", "INFO"))))));
               }),
@@ -231,8 +231,8 @@ TEST_CASE("text that is not a file cannot name a recording")
     REQUIRE(all.size() == 1);
     REQUIRE(all.front().sound.wave);
     CHECK(all.front().sound.wave->recorded->samples.size() == 2);
-    CHECK(has(message_of([&] { static_cast<void>(parse_strokes_toml(text, "text")); }), "text:3"));
-    CHECK(has(message_of([&] { static_cast<void>(parse_strokes(text, "text")); }), "text:3"));
+    CHECK(has(caught_message([&] { static_cast<void>(parse_strokes_toml(text, "text")); }), "text:3"));
+    CHECK(has(caught_message([&] { static_cast<void>(parse_strokes(text, "text")); }), "text:3"));
 }
 
 } // namespace recording_test

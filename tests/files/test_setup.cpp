@@ -9,8 +9,8 @@
 
 #include <tactor/setup.hpp>
 
+#include "caught.hpp"
 #include "files/setup_text.hpp"
-#include "message_of.hpp"
 
 namespace setup_test {
 
@@ -25,7 +25,7 @@ setup read(const std::string& text)
 
 std::string complaint(const std::string& text)
 {
-    return message_of([&] { read(text); });
+    return caught_message([&] { read(text); });
 }
 
 // The format's example, with all tables.

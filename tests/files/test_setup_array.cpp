@@ -8,7 +8,7 @@
 
 #include <tactor/setup.hpp>
 
-#include "message_of.hpp"
+#include "caught.hpp"
 
 namespace setup_array_test {
 
@@ -18,7 +18,7 @@ namespace {
 
 std::string complaint(const std::string& text)
 {
-    return message_of([&] { static_cast<void>(parse_setup(text, "palm.toml")); });
+    return caught_message([&] { static_cast<void>(parse_setup(text, "palm.toml")); });
 }
 
 array parse_array(const std::string& text)

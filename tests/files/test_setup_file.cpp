@@ -10,8 +10,8 @@
 #include <tactor/error.hpp>
 #include <tactor/setup.hpp>
 
+#include "caught.hpp"
 #include "folder.hpp"
-#include "message_of.hpp"
 
 namespace setup_file_test {
 
@@ -22,7 +22,7 @@ namespace {
 
 std::string complaint(const fs::path& file)
 {
-    return message_of([&] { static_cast<void>(load_setup(file)); });
+    return caught_message([&] { static_cast<void>(load_setup(file)); });
 }
 
 const std::string grid = "[array]\nname = \"arm\"\ngrid = { rows = 1, columns = 4, pitch_mm = 40 }\n";

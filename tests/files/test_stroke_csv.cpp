@@ -8,7 +8,7 @@
 #include <tactor/error.hpp>
 #include <tactor/stroke.hpp>
 
-#include "message_of.hpp"
+#include "caught.hpp"
 
 namespace stroke_csv_test {
 
@@ -26,7 +26,7 @@ stroke one(const std::string& csv)
 
 std::string refusal(const std::string& csv)
 {
-    return message_of([&] { static_cast<void>(tactor::parse_strokes_csv(csv, "f.csv")); });
+    return caught_message([&] { static_cast<void>(tactor::parse_strokes_csv(csv, "f.csv")); });
 }
 
 } // namespace

@@ -8,8 +8,8 @@
 #include <tactor/error.hpp>
 #include <tactor/stroke.hpp>
 
+#include "caught.hpp"
 #include "folder.hpp"
-#include "message_of.hpp"
 
 namespace stroke_load_test {
 
@@ -26,7 +26,7 @@ double length(const std::vector<tactor::stroke>& strokes)
 
 std::string refusal(const std::filesystem::path& file)
 {
-    return message_of([&] { static_cast<void>(tactor::load_strokes(file)); });
+    return caught_message([&] { static_cast<void>(tactor::load_strokes(file)); });
 }
 
 } // namespace
@@ -57,11 +57,11 @@ TEST_CASE("the kind of stroke text is guessed from its first line")
           6.0);
     CHECK(length(tactor::parse_strokes("\n  <?xml version='1.0'?>" + svg, "-")) == -1.0 + 7.0);
     CHECK(length(tactor::parse_strokes("# t_s\n" + toml, "-")) == 6.0);
-    CHECK(message_of([] {
+    CHECK(caught_message([] {
               static_cast<void>(tactor::parse_strokes("time,x,y\n", "-"));
           }).find("-:1:6: unknown column 'x' (did you mean 'x_mm'?)") == 0);
-    CHECK_FALSE(message_of([] { static_cast<void>(tactor::parse_strokes("", "-")); }).empty());
-    CHECK_FALSE(message_of([] { static_cast<void>(tactor::parse_strokes("\xff\xfe", "-")); }).empty());
+    CHECK_FALSE(caught_message([] { static_cast<void>(tactor::parse_strokes("", "-")); }).empty());
+    CHECK_FALSE(caught_message([] { static_cast<void>(tactor::parse_strokes("\xff\xfe", "-")); }).empty());
 }
 
 TEST_CASE("unreadable files are named")
@@ -80,10 +80,10 @@ TEST_CASE("unreadable files are named")
 TEST_CASE("text of gigabytes is refused before it is read")
 {
     const std::string_view long_text(csv.data(), std::size_t{1} << 32);
-    CHECK(message_of([&] {
+    CHECK(caught_message([&] {
               static_cast<void>(tactor::parse_strokes_csv(long_text, "x"));
           }).find("x: longer than 512 MB") == 0);
-    CHECK(message_of([&] {
+    CHECK(caught_message([&] {
               static_cast<void>(tactor::parse_strokes_svg(long_text, "x"));
           }).find("x: longer than 48 MB") == 0);
 }
@@ -97,10 +97,10 @@ TEST_CASE("random bytes are refused by every reader")
         for (char& c : text)
             c = static_cast<char>(byte(random));
         CAPTURE(text);
-        CHECK_FALSE(message_of([&] { static_cast<void>(tactor::parse_strokes(text, "x")); }).empty());
-        CHECK_FALSE(message_of([&] { static_cast<void>(tactor::parse_strokes_csv(text, "x")); }).empty());
-        CHECK_FALSE(message_of([&] { static_cast<void>(tactor::parse_strokes_svg(text, "x")); }).empty());
-        CHECK_FALSE(message_of([&] { static_cast<void>(tactor::path::from_svg(text)); }).empty());
+        CHECK_FALSE(caught_message([&] { static_cast<void>(tactor::parse_strokes(text, "x")); }).empty());
+        CHECK_FALSE(caught_message([&] { static_cast<void>(tactor::parse_strokes_csv(text, "x")); }).empty());
+        CHECK_FALSE(caught_message([&] { static_cast<void>(tactor::parse_strokes_svg(text, "x")); }).empty());
+        CHECK_FALSE(caught_message([&] { static_cast<void>(tactor::path::from_svg(text)); }).empty());
     }
 }
 

@@ -8,7 +8,7 @@
 
 #include <tactor/stroke.hpp>
 
-#include "message_of.hpp"
+#include "caught.hpp"
 
 namespace stroke_movement_test {
 
@@ -25,7 +25,7 @@ stroke one(const std::string& body)
 
 std::string complaint(const std::string& body)
 {
-    return message_of([&] { one(body); });
+    return caught_message([&] { one(body); });
 }
 
 void check_same(const trajectory& a, const trajectory& b)

@@ -11,9 +11,9 @@
 
 #include <tactor/stroke.hpp>
 
+#include "caught.hpp"
 #include "files/setup_text.hpp"
 #include "has.hpp"
-#include "message_of.hpp"
 
 namespace stroke_order_test {
 
@@ -55,7 +55,7 @@ void check_starts(const std::string& text, const std::vector<double>& wanted)
 
 std::string complaint(const std::string& text)
 {
-    return message_of([&] { parse_all(text); });
+    return caught_message([&] { parse_all(text); });
 }
 
 const std::string one = "[[stroke]]\n";
@@ -69,7 +69,7 @@ TEST_CASE("a stroke chooses its faces")
     const stroke s = parse_strokes_toml(text + "\"nearest\"\n", "t").front();
     CHECK(s.choices == stroke_choices{.faces = faces_kind::nearest});
     CHECK(parse_strokes_toml(detail::stroke_text(s), "t").front().choices == s.choices);
-    CHECK(has(message_of([&] { static_cast<void>(parse_strokes_toml(text + "\"neerest\"\n", "t")); }),
+    CHECK(has(caught_message([&] { static_cast<void>(parse_strokes_toml(text + "\"neerest\"\n", "t")); }),
               "t:3:9: faces"));
 }
 
@@ -101,7 +101,7 @@ TEST_CASE("a start before the piece is refused once it is known")
     const auto s = parse_all(one + line(1) + one + line(2, "start_s = -1.5\nstart_from = \"end\""));
     const std::vector<double> from{0.0};
     const std::vector<double> to{1.0};
-    CHECK(message_of([&] { static_cast<void>(resolve_start_s(s[1].start_s, s[1].anchor, from, to)); }) ==
+    CHECK(caught_message([&] { static_cast<void>(resolve_start_s(s[1].start_s, s[1].anchor, from, to)); }) ==
           "start of the stroke: 1.5 s before the end of what comes before it is before the piece "
           "(1 s before is the start of the piece)");
     CHECK(s[1].places.start.line != 0); // where the file has it

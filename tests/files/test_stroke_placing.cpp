@@ -9,7 +9,7 @@
 
 #include <tactor/stroke.hpp>
 
-#include "message_of.hpp"
+#include "caught.hpp"
 
 namespace stroke_placing_test {
 
@@ -24,7 +24,7 @@ stroke one(const std::string& body)
 
 std::string complaint(const std::string& body)
 {
-    return message_of([&] { one(body); });
+    return caught_message([&] { one(body); });
 }
 
 const std::string bend = "path = \"M 10 0 C 20 0 30 10 30 30 L 30 40\"\nduration_s = 2.0\n";

@@ -10,7 +10,7 @@
 #include <tactor/error.hpp>
 #include <tactor/stroke.hpp>
 
-#include "message_of.hpp"
+#include "caught.hpp"
 
 namespace stroke_svg_test {
 
@@ -50,7 +50,7 @@ void check_near(point got, point want, double within = 1e-9)
 
 std::string refusal(const std::string& svg)
 {
-    return message_of([&] { parse(svg); });
+    return caught_message([&] { parse(svg); });
 }
 
 } // namespace

@@ -9,7 +9,7 @@
 #include <tactor/error.hpp>
 #include <tactor/stroke.hpp>
 
-#include "message_of.hpp"
+#include "caught.hpp"
 
 namespace stroke_svg_errors_test {
 
@@ -17,7 +17,7 @@ namespace {
 
 std::string refusal(const std::string& svg)
 {
-    return message_of([&] { static_cast<void>(tactor::parse_strokes_svg(svg, "a.svg")); });
+    return caught_message([&] { static_cast<void>(tactor::parse_strokes_svg(svg, "a.svg")); });
 }
 
 std::string repeated(const std::string& what, int times)

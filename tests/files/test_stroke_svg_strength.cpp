@@ -7,7 +7,7 @@
 
 #include <tactor/stroke.hpp>
 
-#include "message_of.hpp"
+#include "caught.hpp"
 
 namespace stroke_svg_strength_test {
 
@@ -68,7 +68,7 @@ TEST_CASE("shapes ease")
 TEST_CASE("unreadable looks are reported where they are used")
 {
     const auto said = [](const std::string& root, const std::string& shape) {
-        return message_of([&] { intensities(root, "\n" + shape); });
+        return caught_message([&] { intensities(root, "\n" + shape); });
     };
     CHECK(said("", "<path d=\"M 0 0 H 9\" stroke-width=\"calc(1px)\" opacity=\"var(--a)\"/>").empty());
     CHECK(said(by_width, "<path d=\"M 0 0 H 9\" stroke-width=\"calc(1px)\"/>").find("d.svg:2:") == 0);

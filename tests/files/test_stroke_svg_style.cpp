@@ -8,8 +8,8 @@
 
 #include <tactor/stroke.hpp>
 
+#include "caught.hpp"
 #include "has.hpp"
-#include "message_of.hpp"
 
 namespace stroke_svg_style_test {
 
@@ -124,7 +124,7 @@ TEST_CASE("transforms of styles and sheets have units and origins")
 TEST_CASE("a transform that cannot be read is named with its place")
 {
     const auto refusal = [](const std::string& svg) {
-        return message_of([&] { static_cast<void>(parse_strokes_svg(svg, "d.svg")); });
+        return caught_message([&] { static_cast<void>(parse_strokes_svg(svg, "d.svg")); });
     };
     CHECK(has(refusal("<svg><line x2='9' style='transform:rotate(3em)'/></svg>"),
               "d.svg:1:7: transform of <line>: 'em' is no unit of an angle (deg, grad, rad or turn)"));
@@ -187,7 +187,7 @@ TEST_CASE("sheets that do not end, or match without end, end")
     many += "</style>";
     for (int i = 0; i < 20000; ++i)
         many += "<line class='a' x2='9'/>";
-    CHECK(has(message_of([&] { static_cast<void>(strokes(many)); }), "takes too long"));
+    CHECK(has(caught_message([&] { static_cast<void>(strokes(many)); }), "takes too long"));
 }
 
 } // namespace stroke_svg_style_test

@@ -7,7 +7,7 @@
 
 #include <tactor/stroke.hpp>
 
-#include "message_of.hpp"
+#include "caught.hpp"
 
 namespace stroke_toml_test {
 
@@ -30,7 +30,8 @@ stroke one(const std::string& body)
 // Returns the fault of a stroke whose keys begin in line 2.
 std::string complaint(const std::string& body)
 {
-    return message_of([&] { static_cast<void>(parse_strokes_toml("[stroke]\n" + body + "\n", "w.toml")); });
+    return caught_message(
+        [&] { static_cast<void>(parse_strokes_toml("[stroke]\n" + body + "\n", "w.toml")); });
 }
 
 void check_near(point p, double x_mm, double y_mm)
@@ -206,7 +207,7 @@ TEST_CASE("timed points out of order are refused with the line of the point")
 TEST_CASE("files without a stroke are refused")
 {
     const auto whole = [](const std::string& text) {
-        return message_of([&] { static_cast<void>(parse_strokes_toml(text, "w.toml")); });
+        return caught_message([&] { static_cast<void>(parse_strokes_toml(text, "w.toml")); });
     };
     CHECK(whole("") == "w.toml: there is no stroke in it (add [stroke] or [[stroke]])");
     CHECK(whole("stroke = []\n").starts_with("w.toml:1:10: there is no stroke in it"));

@@ -8,7 +8,7 @@ using namespace tactor;
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size)
 {
-    const setup s = fuzz::accepted([&] { return parse_setup(fuzz::text_of(data, size), "fuzz.toml"); });
+    const setup s = fuzz::accepted([&] { return parse_setup(fuzz::as_text(data, size), "fuzz.toml"); });
     if (s.array)
         fuzz::check_array(*s.array);
     return 0;

@@ -48,6 +48,6 @@ void check_setup(const setup& s)
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size)
 {
-    check_setup(fuzz::accepted([&] { return parse_setup(fuzz::text_of(data, size), "fuzz.toml"); }));
+    check_setup(fuzz::accepted([&] { return parse_setup(fuzz::as_text(data, size), "fuzz.toml"); }));
     return 0;
 }

@@ -12,7 +12,7 @@ using namespace tactor;
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size)
 {
-    const auto p = fuzz::accepted([&] { return std::optional(path::from_svg(fuzz::text_of(data, size))); });
+    const auto p = fuzz::accepted([&] { return std::optional(path::from_svg(fuzz::as_text(data, size))); });
     if (!p)
         return 0;
     fuzz::check_path(*p);

@@ -58,7 +58,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
 {
     static const configuration top = stock();
     const alsa::library_messages silent;
-    const std::string name(fuzz::text_of(data, size));
+    const std::string name(fuzz::as_text(data, size));
     if (!alsa::not_plain(name).empty())
         return 0;
     HOLDS(name.find('\0') == name.npos && name.size() <= 200);

@@ -269,6 +269,6 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
 {
     // Never destroyed: at exit, static tables of the library go before the threads that read them.
     static rig& one = *new rig; // NOLINT(cppcoreguidelines-owning-memory)
-    one.take(fuzz::text_of(data, size));
+    one.take(fuzz::as_text(data, size));
     return 0;
 }

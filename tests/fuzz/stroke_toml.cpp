@@ -9,7 +9,7 @@ using namespace tactor;
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size)
 {
     for (const stroke& s :
-         fuzz::accepted([&] { return parse_strokes_toml(fuzz::text_of(data, size), "fuzz.toml"); }))
+         fuzz::accepted([&] { return parse_strokes_toml(fuzz::as_text(data, size), "fuzz.toml"); }))
         fuzz::check_stroke(s);
     return 0;
 }

@@ -84,6 +84,6 @@ void check_table(std::string_view text, study::last_line end)
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size)
 {
     for (const auto end : {study::last_line::whole, study::last_line::may_be_cut})
-        check_table(fuzz::text_of(data, size), end);
+        check_table(fuzz::as_text(data, size), end);
     return 0;
 }

@@ -34,7 +34,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
 {
     const auto r = fuzz::accepted([&] {
         return std::make_shared<const recording>(
-            detail::parse_recording(fuzz::text_of(data, size), "fuzz.wav"));
+            detail::parse_recording(fuzz::as_text(data, size), "fuzz.wav"));
     });
     if (r == nullptr)
         return 0;

@@ -105,7 +105,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
 {
     if (size == 0)
         return 0;
-    const std::string_view rest = fuzz::text_of(data + 1, size - 1);
+    const std::string_view rest = fuzz::as_text(data + 1, size - 1);
     switch (*data % 3) {
     case 0:
         check_connection(rest, false);

@@ -12,9 +12,9 @@
 
 #include <tactor/error.hpp>
 
+#include "caught.hpp"
 #include "folder.hpp"
 #include "has.hpp"
-#include "message_of.hpp"
 
 namespace listen_test {
 

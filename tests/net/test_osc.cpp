@@ -10,8 +10,8 @@
 
 #include <tactor/error.hpp>
 
+#include "caught.hpp"
 #include "has.hpp"
-#include "message_of.hpp"
 #include "rounds.hpp"
 
 namespace osc_test {
@@ -48,7 +48,7 @@ const std::string stop = padded("/tactor/stop") + padded(",");
 
 std::string refusal(const std::string& packet, const osc_limits& l = {})
 {
-    return message_of([&] { static_cast<void>(parse_osc(packet, l)); });
+    return caught_message([&] { static_cast<void>(parse_osc(packet, l)); });
 }
 
 } // namespace

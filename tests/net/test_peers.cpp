@@ -6,8 +6,8 @@
 
 #include <tactor/error.hpp>
 
+#include "caught.hpp"
 #include "has.hpp"
-#include "message_of.hpp"
 
 namespace peers_test {
 
@@ -60,7 +60,7 @@ TEST_CASE("a bad prefix is refused by its name")
     for (const char* bad : {"", "/", "10.0.0.0/33", "::/129", "10.0.0.0/", "10.0.0.0/-1", "10.0.0.0/8x",
                             "10.0.0", "example.org", "10.0.0.0/8/8", "10.0.0.0/ 8", "[::1]"}) {
         CAPTURE(bad);
-        const std::string said = message_of([&] { static_cast<void>(parse_prefix(bad, "osc_peers")); });
+        const std::string said = caught_message([&] { static_cast<void>(parse_prefix(bad, "osc_peers")); });
         CHECK(has(said, "osc_peers"));
         CHECK(has(said, bad));
     }

@@ -8,8 +8,8 @@
 
 #include <tactor/setup.hpp>
 
+#include "caught.hpp"
 #include "files/text_file.hpp"
-#include "message_of.hpp"
 #include "options/settle.hpp"
 
 namespace defaults_test {
@@ -26,7 +26,7 @@ setup read(const std::string& text)
 
 std::string complaint(const std::string& line)
 {
-    return message_of([&] { static_cast<void>(read_defaults(read("[defaults]\n" + line + "\n"))); });
+    return caught_message([&] { static_cast<void>(read_defaults(read("[defaults]\n" + line + "\n"))); });
 }
 
 wishes settled(std::uint64_t place, const std::string& lines)
@@ -123,7 +123,7 @@ TEST_CASE("a value of [defaults] that cannot be names its place")
     CHECK(complaint("waveform = 3") == "t.toml:2:12: waveform: 3 is no text (put it in quotes)");
     CHECK(complaint("am = 30") == "");
     CHECK(complaint("waveform = \"nowhere.wav\"") == ""); // looked for where it is used
-    CHECK(message_of([&] {
+    CHECK(caught_message([&] {
               static_cast<void>(read_defaults(read("defaults = { sl = 7, level-dbfs = -6 }\n")));
           }) == "t.toml:1:35: [defaults] has both sl and level-dbfs (keep one of them)");
     CHECK(complaint("level-dbfs = -6\nsl = 7") ==
@@ -173,7 +173,8 @@ TEST_CASE("values of [defaults] that nothing uses may stand there for other stro
     wishes w;
     w.place = on_plan;
     give(w, *find("noise_seed"), 3.0);
-    CHECK(message_of([&] { settle(w); }) == "noise_seed: nothing here uses it (add waveform = noise:LO-HI)");
+    CHECK(caught_message([&] { settle(w); }) ==
+          "noise_seed: nothing here uses it (add waveform = noise:LO-HI)");
 }
 
 TEST_CASE("an error about a value of [defaults] has its place in the file")

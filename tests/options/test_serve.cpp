@@ -7,7 +7,7 @@
 #include <tactor/error.hpp>
 #include <tactor/setup.hpp>
 
-#include "message_of.hpp"
+#include "caught.hpp"
 #include "options/serve.hpp"
 
 namespace serve_test {
@@ -69,7 +69,7 @@ max_all_unfinished_bytes = 70000
 TEST_CASE("[serve]: impossible values are refused with their place")
 {
     const auto says = [](const std::string& line) {
-        return message_of([&] {
+        return caught_message([&] {
             static_cast<void>(options::read_serve(parse_setup("[serve]\n" + line + "\n", "t").serve));
         });
     };

@@ -7,8 +7,8 @@
 #include <doctest/doctest.h>
 #include <fmt/format.h>
 
+#include "caught.hpp"
 #include "core/marks.hpp"
-#include "message_of.hpp"
 #include "options/check.hpp"
 #include "options/settle.hpp"
 #include "options/words.hpp"
@@ -85,7 +85,7 @@ TEST_CASE("each number ends at its bounds, typed and as a value, and comes back"
         const double below = std::nextafter(o.allowed.low, -1e300);
         const double above = std::nextafter(o.allowed.high, 1e300);
         for (const double v : {below, above, std::nan(""), double(INFINITY)}) {
-            const std::string said = message_of([&] { static_cast<void>(read_value(o, v)); });
+            const std::string said = caught_message([&] { static_cast<void>(read_value(o, v)); });
             CHECK(said.starts_with(fmt::format("{}: ", o.name)));
             CHECK(said.find(" is out of range (" + detail::plain(range_text(o)) + ")") != std::string::npos);
             CHECK_THROWS_AS(read_text(o, fmt::format("{}", v)), error);
@@ -128,7 +128,7 @@ TEST_CASE("two exclusive options are refused in any order")
         CAPTURE(o.name);
         wishes w;
         give(w, *find(o.rival), find(o.rival)->allowed.low);
-        CHECK(message_of([&] { give(w, o, o.allowed.low); }) ==
+        CHECK(caught_message([&] { give(w, o, o.allowed.low); }) ==
               fmt::format("{}: there is also {{{}}} (give one of them)", o.name, o.rival));
     }
 }
@@ -137,7 +137,7 @@ TEST_CASE("an unused option is refused with a hint for its place")
 {
     const auto said = [](std::uint64_t place, std::initializer_list<std::pair<const char*, value>> given) {
         wishes w = with(place, given);
-        return message_of([&] { settle(w); });
+        return caught_message([&] { settle(w); });
     };
     CHECK(said(on_plan, {{"sigma_mm", 3.0}}) ==
           "sigma_mm: nothing here uses it (add compensate = low-speed)");
@@ -210,7 +210,7 @@ TEST_CASE("options of planning are refused beside a plan")
         wishes w;
         w.given.set(index(o));
         CAPTURE(o.name);
-        const bool refused = !message_of([&] { refuse_planning(w, "p.json"); }).empty();
+        const bool refused = !caught_message([&] { refuse_planning(w, "p.json"); }).empty();
         CHECK(refused == ((o.where & planning) != 0));
     }
 }

@@ -10,7 +10,7 @@
 #include <tactor/error.hpp>
 #include <tactor/plan.hpp>
 
-#include "message_of.hpp"
+#include "caught.hpp"
 
 namespace curve_test {
 
@@ -161,7 +161,7 @@ TEST_CASE("a custom model is asked when the stroke is planned, once for each sam
     CHECK(p.phantom == "mine");
     CHECK(mine->asked == 1401);
     s.motion = s.motion.with_duration(20000.0);
-    CHECK(message_of([&] {
+    CHECK(caught_message([&] {
               static_cast<void>(make_plan(palm, s, o));
           }).find("2e+07 samples of phantom model \"mine\"") != std::string::npos);
     CHECK(mine->asked == 1401);
@@ -171,12 +171,12 @@ TEST_CASE("impossible samples of a curve are refused")
 {
     const curve_samples good = read_samples(*flowing(0.01).curve);
     const auto refused = [](double duration_s, const curve_samples& s) {
-        return message_of([&] { curve(duration_s, s); });
+        return caught_message([&] { curve(duration_s, s); });
     };
     CHECK(refused(0.01, good).empty());
     for (const double duration : {0.0, -1.0, HUGE_VAL, std::nan(""), 86401.0})
         CHECK(refused(duration, good).find("curve: it lasts") == 0);
-    CHECK(field_of([&] { curve(0.0, good); }) == "duration_s");
+    CHECK(caught_field([&] { curve(0.0, good); }) == "duration_s");
     CHECK(refused(0.011, good).find("0.011 s has 12 samples") != std::string::npos);
     const auto with = [&](auto change) {
         curve_samples s = good;

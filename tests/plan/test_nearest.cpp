@@ -13,8 +13,8 @@
 #include <tactor/setup.hpp>
 
 #include "arrays.hpp"
+#include "caught.hpp"
 #include "has.hpp"
-#include "message_of.hpp"
 #include "oracle.hpp"
 
 namespace nearest_test {
@@ -228,7 +228,7 @@ TEST_CASE("only inverse-distance takes faces")
          {phantom_kind::barycentric, phantom_kind::linear, phantom_kind::log, phantom_kind::gaussian})
         for (const algorithm_kind by : all_values<algorithm_kind>()) {
             const plan_options o{.algorithm = by, .phantom = k, .faces = faces_kind::nearest};
-            const std::string said = message_of([&] { static_cast<void>(make_plan(a, s, o)); });
+            const std::string said = caught_message([&] { static_cast<void>(make_plan(a, s, o)); });
             CHECK(has(said, "faces: nearest goes with inverse-distance only, not with "));
             CHECK(has(said, std::string(to_string(k))));
             CHECK_THROWS_AS(make_phantom(k, layout(a), faces_kind::nearest), const error&);
@@ -240,7 +240,7 @@ TEST_CASE("only inverse-distance takes faces")
     };
     plan_options o{.faces = faces_kind::nearest};
     o.custom_phantom = std::make_shared<silent>();
-    CHECK(has(message_of([&] { static_cast<void>(make_plan(a, s, o)); }),
+    CHECK(has(caught_message([&] { static_cast<void>(make_plan(a, s, o)); }),
               "not with a phantom model of your own"));
 
     // A stroke's own choice wins.
@@ -250,7 +250,7 @@ TEST_CASE("only inverse-distance takes faces")
     CHECK(make_plan(a, own, o).faces == faces_kind::delaunay);
     own.choices.faces = faces_kind::nearest;
     own.choices.phantom = phantom_kind::log;
-    CHECK(has(message_of([&] { static_cast<void>(make_plan(a, own, {})); }), "not with log"));
+    CHECK(has(caught_message([&] { static_cast<void>(make_plan(a, own, {})); }), "not with log"));
 }
 
 TEST_CASE("the Tactile Brush plays on the lines of the grid and reports that it ignores the faces")

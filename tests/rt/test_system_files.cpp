@@ -8,10 +8,10 @@
 
 #include <doctest/doctest.h>
 
+#include "caught.hpp"
 #include "count_allocations.hpp"
 #include "descriptors_left.hpp"
 #include "folder.hpp"
-#include "message_of.hpp"
 
 namespace system_files_test {
 

@@ -5,8 +5,8 @@
 
 #include <doctest/doctest.h>
 
+#include "caught.hpp"
 #include "has.hpp"
-#include "message_of.hpp"
 
 namespace tactor::study::test_definition {
 namespace {
@@ -24,7 +24,7 @@ experiment_definition read(const std::string& text)
 
 std::string refusal(const std::string& text)
 {
-    return message_of([&] { read(text); });
+    return caught_message([&] { read(text); });
 }
 
 TEST_CASE("the shipped experiment is the paper's")
@@ -151,8 +151,8 @@ TEST_CASE("faults have their line")
 
 TEST_CASE("a missing experiment lists the existing ones")
 {
-    CHECK(has(message_of([] { load_definition("park2017"); }), "park2016, or a file"));
-    CHECK(has(message_of([] { load_definition("./none.toml"); }), "none.toml"));
+    CHECK(has(caught_message([] { load_definition("park2017"); }), "park2016, or a file"));
+    CHECK(has(caught_message([] { load_definition("./none.toml"); }), "none.toml"));
 }
 
 } // namespace

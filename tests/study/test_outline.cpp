@@ -5,7 +5,7 @@
 
 #include <doctest/doctest.h>
 
-#include "message_of.hpp"
+#include "caught.hpp"
 
 namespace tactor::study::test_outline {
 namespace {
@@ -17,7 +17,7 @@ const std::string head =
 
 std::string refusal(const std::string& text)
 {
-    return message_of([&] { read_outline(text, "e.toml"); });
+    return caught_message([&] { read_outline(text, "e.toml"); });
 }
 
 TEST_CASE("runs in order, motions and methods in the order of the definition")

@@ -5,9 +5,9 @@
 #include <doctest/doctest.h>
 #include <nlohmann/json.hpp>
 
+#include "caught.hpp"
 #include "files/plan/json_value.hpp"
 #include "has.hpp"
-#include "message_of.hpp"
 #include "study/report/sections.hpp"
 
 namespace tactor::study::test_report {
@@ -66,14 +66,15 @@ TEST_CASE("a wrong value is reported with its place")
     CHECK_FALSE(f["none"]["deeper"]["still"].there());
     CHECK(f["none"].list().empty());
     const json_value first = f["array"]["tactors"].list().at(0);
-    CHECK(has(message_of([&] { static_cast<void>(first["x_mm"].number()); }),
+    CHECK(has(caught_message([&] { static_cast<void>(first["x_mm"].number()); }),
               "s.json: array.tactors[0].x_mm: is no number"));
-    CHECK(has(message_of([&] { static_cast<void>(first["y_mm"].need_number()); }),
+    CHECK(has(caught_message([&] { static_cast<void>(first["y_mm"].need_number()); }),
               "array.tactors[0].y_mm: is missing"));
-    CHECK(has(message_of([&] { static_cast<void>(f["date"].text()); }), "date: is no text"));
-    CHECK(has(message_of([&] { static_cast<void>(f["date"]["deeper"]); }), "date: is no object"));
-    CHECK(has(message_of([&] { static_cast<void>(f["date"].list()); }), "date: is no list"));
-    CHECK(has(message_of([&] { static_cast<void>(f["date"].truth()); }), "date: is neither true nor false"));
+    CHECK(has(caught_message([&] { static_cast<void>(f["date"].text()); }), "date: is no text"));
+    CHECK(has(caught_message([&] { static_cast<void>(f["date"]["deeper"]); }), "date: is no object"));
+    CHECK(has(caught_message([&] { static_cast<void>(f["date"].list()); }), "date: is no list"));
+    CHECK(has(caught_message([&] { static_cast<void>(f["date"].truth()); }),
+              "date: is neither true nor false"));
 }
 
 TEST_CASE("any value has words")

@@ -11,9 +11,9 @@
 #include <doctest/doctest.h>
 #include <fmt/format.h>
 
+#include "caught.hpp"
 #include "core/sha256.hpp"
 #include "has.hpp"
-#include "message_of.hpp"
 
 namespace tactor::study::test_sequence {
 namespace {
@@ -201,8 +201,8 @@ TEST_CASE("orders are the same on every machine")
 TEST_CASE("an impossible order is refused, and one motion is no order")
 {
     const std::string many = "task = \"rate\"\nattribute = \"similarity\"\ntrials = 200\n";
-    CHECK(
-        has(message_of([&] { make_run(with_run(many, 2), 0, "01", 1); }), "several runs with fewer trials"));
+    CHECK(has(caught_message([&] { make_run(with_run(many, 2), 0, "01", 1); }),
+              "several runs with fewer trials"));
     CHECK(make_run(with_run(many, 1), 0, "01", 1).trials.size() == 200);
 }
 
@@ -212,7 +212,7 @@ TEST_CASE("long runs try fewer orders, so that the refusal comes soon")
     static_assert(most_draws(200) == 1000000);
     static_assert(most_draws(10000) == 20000);
     const std::string many = "task = \"rate\"\nattribute = \"similarity\"\ntrials = 10000\n";
-    CHECK(has(message_of([&] { make_run(with_run(many, 2), 0, "01", 1); }), "no order of 10000 trials"));
+    CHECK(has(caught_message([&] { make_run(with_run(many, 2), 0, "01", 1); }), "no order of 10000 trials"));
 }
 
 } // namespace

@@ -7,9 +7,9 @@
 #include <boost/math/distributions/normal.hpp>
 #include <doctest/doctest.h>
 
+#include "caught.hpp"
 #include "felt_array.hpp"
 #include "has.hpp"
-#include "message_of.hpp"
 
 namespace tactor::study::test_simulated {
 namespace {
@@ -135,7 +135,7 @@ TEST_CASE("a given share of the trials is void, and no practice")
 
 TEST_CASE("impossible simulations are refused")
 {
-    const auto refusal = [](const char* text) { return message_of([&] { parse_simulation(text); }); };
+    const auto refusal = [](const char* text) { return caught_message([&] { parse_simulation(text); }); };
     CHECK(has(refusal("sigma=-1"), "sigma is \"-1\""));
     CHECK(has(refusal("sigma=nan"), "sigma is \"nan\""));
     CHECK(has(refusal("noise=1"), "\"noise\" is not known"));
@@ -157,7 +157,7 @@ TEST_CASE("a stimulus that cannot be planned or played is refused with its motio
         o.level_dbfs = d.level_dbfs.value_or(-12.0);
         if (!d.level_dbfs)
             o.sl_db = d.sl_db;
-        return message_of([&] {
+        return caught_message([&] {
             stimulus_set(d, felt_array(), o, [](const stroke&, const plan&, const score&) { return ""; });
         });
     };

@@ -7,8 +7,8 @@
 #include <doctest/doctest.h>
 #include <sys/stat.h>
 
+#include "caught.hpp"
 #include "folder.hpp"
-#include "message_of.hpp"
 
 namespace tactor::study::test_text_table {
 namespace {
@@ -17,7 +17,7 @@ std::string refusal(const std::string& text)
 {
     const folder f;
     f.write("t.tsv", text);
-    const std::string message = message_of([&] { text_table t(f / "t.tsv"); });
+    const std::string message = caught_message([&] { text_table t(f / "t.tsv"); });
     return message.empty() ? message : message.substr(f.path().string().size() + 1);
 }
 
@@ -34,13 +34,14 @@ TEST_CASE("cells by name, n/a as missing, lines of any system")
     CHECK(*t.whole(1, "trial", 1, 9) == 2);
     CHECK(*t.number(0, "x") == 0.5);
     CHECK(!t.number(1, "x"));
-    CHECK(message_of([&] { t.need(1, "motion"); }).find("t.tsv:3: motion is missing") != std::string::npos);
-    CHECK(message_of([&] { t.cell(0, "y"); }).find("t.tsv:1: there is no column y") != std::string::npos);
-    CHECK(message_of([&] {
+    CHECK(caught_message([&] { t.need(1, "motion"); }).find("t.tsv:3: motion is missing") !=
+          std::string::npos);
+    CHECK(caught_message([&] { t.cell(0, "y"); }).find("t.tsv:1: there is no column y") != std::string::npos);
+    CHECK(caught_message([&] {
               t.whole(1, "trial", 3, 9);
           }).find("t.tsv:3: trial is \"2\" (a whole number from 3 to 9)") != std::string::npos);
-    CHECK(message_of([&] { t.whole(0, "x", 0, 9); }).find("x is \"0.5\"") != std::string::npos);
-    CHECK(message_of([&] { t.number(0, "motion"); }).find("t.tsv:2: motion is \"one two\"") !=
+    CHECK(caught_message([&] { t.whole(0, "x", 0, 9); }).find("x is \"0.5\"") != std::string::npos);
+    CHECK(caught_message([&] { t.number(0, "motion"); }).find("t.tsv:2: motion is \"one two\"") !=
           std::string::npos);
 }
 
@@ -50,9 +51,9 @@ TEST_CASE("bad numbers are refused")
     f.write("t.tsv", "x\nnan\ninf\n1e999\n0x1\n 1\n1 \n-1\n4294967296\n");
     const text_table t(f / "t.tsv");
     for (std::size_t row = 0; row < t.rows(); ++row)
-        CHECK(!message_of([&] { t.whole(row, "x", 0, 9); }).empty());
+        CHECK(!caught_message([&] { t.whole(row, "x", 0, 9); }).empty());
     for (std::size_t row = 0; row < 6; ++row)
-        CHECK(!message_of([&] { t.number(row, "x"); }).empty());
+        CHECK(!caught_message([&] { t.number(row, "x"); }).empty());
 }
 
 TEST_CASE("an incomplete table is refused with the place")
@@ -124,16 +125,16 @@ TEST_CASE("truths in any case, whole numbers with a point")
     CHECK(t.truth(0, "a"));
     CHECK_FALSE(t.truth(1, "a"));
     CHECK(t.truth(2, "a"));
-    CHECK(message_of([&] { t.truth(3, "a"); }).find("t.tsv:5: a is \"yes\" (true or false)") !=
+    CHECK(caught_message([&] { t.truth(3, "a"); }).find("t.tsv:5: a is \"yes\" (true or false)") !=
           std::string::npos);
     CHECK(*t.whole(0, "b", 0, 9) == 3);
     CHECK(*t.whole(0, "b", 3, 3) == 3);
     for (std::size_t row = 1; row < 4; ++row)
-        CHECK(message_of([&] { t.whole(row, "b", 0, 4294967295U); }).find("a whole number from 0") !=
+        CHECK(caught_message([&] { t.whole(row, "b", 0, 4294967295U); }).find("a whole number from 0") !=
               std::string::npos);
-    CHECK(message_of([&] { t.whole(0, "b", 4, 9); }).find("b is \"3.0\" (a whole number from 4 to 9)") !=
+    CHECK(caught_message([&] { t.whole(0, "b", 4, 9); }).find("b is \"3.0\" (a whole number from 4 to 9)") !=
           std::string::npos);
-    CHECK(message_of([&] { t.whole(0, "b", 0, 2); }).find("b is \"3.0\"") != std::string::npos);
+    CHECK(caught_message([&] { t.whole(0, "b", 0, 2); }).find("b is \"3.0\"") != std::string::npos);
 }
 
 TEST_CASE("lines are counted like in an editor")
@@ -192,7 +193,7 @@ TEST_CASE("an incomplete last line is cut off, where allowed")
     CHECK(cut(std::string("3\t4\0\0", 5)) == text.size());
     CHECK_FALSE(cut("3\t4"));
     CHECK_FALSE(cut("3\t"));
-    CHECK(message_of([&] {
+    CHECK(caught_message([&] {
               text_table("t.tsv", text + "3\n", last_line::may_be_cut);
           }).find("t.tsv:3: it has 1 column") == 0);
     text_table t("t.tsv", text + "3\tx", last_line::may_be_cut);
@@ -200,18 +201,18 @@ TEST_CASE("an incomplete last line is cut off, where allowed")
     t.leave_out_last();
     CHECK_FALSE(t.is_open());
     CHECK(t.rows() == 1);
-    CHECK(message_of([&] { t.refuse_cut("mend it"); }) == "t.tsv:3: the last line is cut off (mend it)");
+    CHECK(caught_message([&] { t.refuse_cut("mend it"); }) == "t.tsv:3: the last line is cut off (mend it)");
 }
 
 TEST_CASE("anything other than a file is refused at once")
 {
     const folder f;
     REQUIRE(::mkfifo((f / "pipe").c_str(), 0600) == 0);
-    CHECK(message_of([&] { read_file(f / "pipe"); }).find("it is no file") != std::string::npos);
-    CHECK(message_of([&] { read_file(f.path()); }).find("it is no file") != std::string::npos);
-    CHECK(message_of([&] { read_file(f / "none"); }).find("No such file") != std::string::npos);
+    CHECK(caught_message([&] { read_file(f / "pipe"); }).find("it is no file") != std::string::npos);
+    CHECK(caught_message([&] { read_file(f.path()); }).find("it is no file") != std::string::npos);
+    CHECK(caught_message([&] { read_file(f / "none"); }).find("No such file") != std::string::npos);
     f.write("large", std::string(20, 'x'));
-    CHECK(message_of([&] { read_file(f / "large", 19); }).find("longer than 0 MB") != std::string::npos);
+    CHECK(caught_message([&] { read_file(f / "large", 19); }).find("longer than 0 MB") != std::string::npos);
     CHECK(read_file(f / "large", 20).size() == 20);
 }
 

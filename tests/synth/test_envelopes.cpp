@@ -10,8 +10,8 @@
 
 #include <tactor/error.hpp>
 
+#include "caught.hpp"
 #include "has.hpp"
-#include "message_of.hpp"
 #include "pieces.hpp"
 
 namespace envelopes_test {
@@ -196,7 +196,7 @@ TEST_CASE("impossible envelopes are refused")
     const auto refused = [&](const burst_envelope& e, const std::string& part) {
         render_options o;
         o.envelope = e;
-        return has(message_of([&] { score(row(1), p, o); }), part);
+        return has(caught_message([&] { score(row(1), p, o); }), part);
     };
     CHECK(refused({envelope_kind::linear, -0.1, {}}, "attack_s"));
     CHECK(refused({envelope_kind::linear, {}, std::nan("")}, "release_s"));

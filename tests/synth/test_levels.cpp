@@ -8,7 +8,7 @@
 
 #include <tactor/error.hpp>
 
-#include "message_of.hpp"
+#include "caught.hpp"
 #include "own_curve.hpp"
 #include "pieces.hpp"
 
@@ -76,7 +76,7 @@ TEST_CASE("a sensation level is above each tactor's threshold, without gain_db")
     a.tactors[1].threshold_dbfs.reset();
     a.tactors[1].where = {"palm.toml", 7, 1};
     CHECK(holds(message([&] { score(a, {{one, {}}}, o); }), "palm.toml:7:1: tactor 1 has no threshold_dbfs"));
-    CHECK(field_of([&] { score(a, {{one, {}}}, o); }).empty()); // threshold_dbfs and sl_db together
+    CHECK(caught_field([&] { score(a, {{one, {}}}, o); }).empty()); // threshold_dbfs and sl_db together
     a.tactors[1].threshold_dbfs = -3.0;
     CHECK(holds(message([&] { score(a, {{one, {}}}, o); }), "full scale"));
 }
@@ -104,7 +104,7 @@ TEST_CASE("impossible levels are refused")
     a.tactors[1].gain_db = 12.5;
     a.tactors[1].where = {"palm.toml", 7, 1};
     const std::string text = message([&] { score(a, {{one, {}}}, {}); });
-    CHECK(field_of([&] { score(a, {{one, {}}}, {}); }).empty()); // gain_db and level_dbfs together
+    CHECK(caught_field([&] { score(a, {{one, {}}}, {}); }).empty()); // gain_db and level_dbfs together
     CHECK(holds(text, "palm.toml:7:1"));
     CHECK(holds(text, "0.5 dBFS"));
     a.tactors[1].gain_db = 12.0;
@@ -115,10 +115,10 @@ TEST_CASE("an impossible length is refused by its name")
 {
     plan p = one;
     p.total_s = -1.0;
-    CHECK(field_of([&] { score(row(2), p); }) == "total_s");
+    CHECK(caught_field([&] { score(row(2), p); }) == "total_s");
     p = one;
     p.stroke_duration_s = 1e9;
-    CHECK(field_of([&] { score(row(2), p); }) == "stroke_duration_s");
+    CHECK(caught_field([&] { score(row(2), p); }) == "stroke_duration_s");
 }
 
 TEST_CASE("a tactor's limit is compared with the score's level for it")

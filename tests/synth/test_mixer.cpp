@@ -319,7 +319,7 @@ TEST_CASE("a cut is immediate, and fades are refused beyond 256")
 TEST_CASE("hundreds of scores leave in one look at the voices")
 {
     // CPU time in which so many of 500 scores with 16 drives each begin to fade, and have faded.
-    const auto seconds_of = [](std::uint32_t leaving) {
+    const auto to_seconds = [](std::uint32_t leaving) {
         double least = 1e9;
         for (int run = 0; run < 5; ++run) {
             mixer m = make_mixer(8192);
@@ -337,7 +337,7 @@ TEST_CASE("hundreds of scores leave in one look at the voices")
         }
         return least;
     };
-    CHECK(seconds_of(500) < 30.0 * (seconds_of(1) + 1e-5));
+    CHECK(to_seconds(500) < 30.0 * (to_seconds(1) + 1e-5));
 }
 
 TEST_CASE("reset drops everything and counts from 0")

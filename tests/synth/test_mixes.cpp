@@ -29,7 +29,7 @@ using mixes::mix;
 
 namespace {
 
-std::uint64_t frame_of(double t_s, unsigned rate)
+std::uint64_t to_frame(double t_s, unsigned rate)
 {
     return static_cast<std::uint64_t>(std::floor(t_s * rate + 0.5 + 1e-6));
 }
@@ -86,8 +86,8 @@ void add_bursts(const plan& p, unsigned rate, const std::vector<double>& peaks, 
         const double to_s = b.onset_s + b.duration_s;
         const part base{b.onset_s,
                         to_s,
-                        frame_of(b.onset_s, rate),
-                        frame_of(to_s, rate),
+                        to_frame(b.onset_s, rate),
+                        to_frame(to_s, rate),
                         0.0,
                         std::max(b.intensity, std::sqrt(energy))};
         for (const drive& d : b.drives) {
@@ -121,7 +121,7 @@ void add_bursts(const plan& p, unsigned rate, const std::vector<double>& peaks, 
 void add_curve(const plan& p, unsigned rate, const std::vector<double>& peaks, std::uint64_t start,
                levels& out)
 {
-    const std::uint64_t length = frame_of(p.stroke_duration_s, rate);
+    const std::uint64_t length = to_frame(p.stroke_duration_s, rate);
     const auto at = [&](std::uint64_t k) {
         burst b;
         p.curve->sample(k, b);
@@ -134,7 +134,7 @@ void add_curve(const plan& p, unsigned rate, const std::vector<double>& peaks, s
     std::uint64_t from = 0;
     for (std::uint64_t k = 1; from < length; ++k) {
         const std::vector<double> next = at(k);
-        const std::uint64_t to = std::min(length, frame_of(static_cast<double>(k) * continuous_step_s, rate));
+        const std::uint64_t to = std::min(length, to_frame(static_cast<double>(k) * continuous_step_s, rate));
         for (std::size_t t = 0; t < out.size(); ++t) {
             for (std::uint64_t n = from; n < to; ++n) {
                 const double part = static_cast<double>(n - from) / static_cast<double>(to - from);

@@ -7,7 +7,7 @@
 
 #include <tactor/error.hpp>
 
-#include "message_of.hpp"
+#include "caught.hpp"
 #include "own_curve.hpp"
 #include "pieces.hpp"
 #include "rounds.hpp"
@@ -54,7 +54,7 @@ TEST_CASE("strokes in a row begin at their times, however many there are, at ful
 TEST_CASE("a burst that cannot be placed is refused with a hint")
 {
     const auto refusal = [](const burst& b) {
-        return message_of([&] {
+        return caught_message([&] {
             static_cast<void>(score(row(2), {{make_plan({b}), {}}}, render_options()));
         });
     };
@@ -275,14 +275,14 @@ TEST_CASE("continuous strokes are linear between control points, one carrier thr
             };
             std::int64_t step = 0;
             for (std::int64_t k = 0; k < n; ++k) {
-                const auto frame_of = [&](std::int64_t i) {
+                const auto to_frame = [&](std::int64_t i) {
                     return std::min(
                         n, static_cast<std::int64_t>(std::llround(static_cast<double>(i) * 0.001 * rate)));
                 };
-                while (frame_of(step + 1) <= k)
+                while (to_frame(step + 1) <= k)
                     ++step;
-                const auto from = static_cast<double>(frame_of(step));
-                const auto to = static_cast<double>(frame_of(step + 1));
+                const auto from = static_cast<double>(to_frame(step));
+                const auto to = static_cast<double>(to_frame(step + 1));
                 const double a = amplitude(0.001 * static_cast<double>(step));
                 const double b = amplitude(0.001 * static_cast<double>(step + 1));
                 const double e = a + (b - a) * (static_cast<double>(k) - from) / (to - from);

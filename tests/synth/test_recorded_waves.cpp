@@ -11,8 +11,8 @@
 
 #include <tactor/error.hpp>
 
+#include "caught.hpp"
 #include "has.hpp"
-#include "message_of.hpp"
 #include "tones.hpp"
 
 namespace recorded_waves_test {
@@ -35,7 +35,7 @@ std::vector<float> make_sine(std::size_t samples, double cycles, double amplitud
 
 std::string refusal(const waveform& w, double hz = 250.0)
 {
-    return message_of([&] { static_cast<void>(played(tone(w, hz, 0.1))); });
+    return caught_message([&] { static_cast<void>(played(tone(w, hz, 0.1))); });
 }
 
 } // namespace

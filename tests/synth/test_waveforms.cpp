@@ -9,10 +9,10 @@
 
 #include <tactor/error.hpp>
 
+#include "caught.hpp"
 #include "core/access.hpp"
 #include "count_allocations.hpp"
 #include "has.hpp"
-#include "message_of.hpp"
 #include "tones.hpp"
 
 namespace waveforms_test {
@@ -288,9 +288,9 @@ TEST_CASE("a carrier along the path follows its list, without a jump")
     CHECK(p.course[3].hz == 200.0);
     CHECK(p.course[4] == carrier_point{3.0, 50.0});
     s.sound.carrier_profile = {{0.5, 100.0}, {0.5, 200.0}};
-    CHECK(has(message_of([&] { static_cast<void>(make_plan(row(3), s, {})); }), "carrier_profile"));
+    CHECK(has(caught_message([&] { static_cast<void>(make_plan(row(3), s, {})); }), "carrier_profile"));
     s.sound.carrier_profile = {{0.5, 0.5}};
-    CHECK(has(message_of([&] { static_cast<void>(make_plan(row(3), s, {})); }), "not a carrier"));
+    CHECK(has(caught_message([&] { static_cast<void>(make_plan(row(3), s, {})); }), "not a carrier"));
 }
 
 TEST_CASE("waves that cannot be rendered are refused with a hint")
@@ -299,7 +299,7 @@ TEST_CASE("waves that cannot be rendered are refused with a hint")
                             unsigned at_rate = rate) {
         plan p = tone(w, 250.0, 0.1);
         p.am = m;
-        return has(message_of([&] { static_cast<void>(played(p, 0.0, at_rate)); }), part);
+        return has(caught_message([&] { static_cast<void>(played(p, 0.0, at_rate)); }), part);
     };
     CHECK(refused(noise(500, 100), {}, "noise from 500 to 100"));
     CHECK(refused(noise(0.0, 100), {}, "noise from 0 to 100"));

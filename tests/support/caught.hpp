@@ -8,7 +8,7 @@
 
 /// Returns the message of a call's error, or "". Other exceptions go through and fail the test.
 template <class F>
-std::string message_of(F call)
+std::string caught_message(F call)
 {
     try {
         call();
@@ -21,7 +21,7 @@ std::string message_of(F call)
 
 /// Returns the field of a call's error; "" for none, "no error" where it succeeds.
 template <class F>
-std::string field_of(F call)
+std::string caught_field(F call)
 {
     try {
         call();
