@@ -55,6 +55,10 @@ void refuse_no_text(std::string_view text, const std::string& name, std::string_
 /// Longest stroke file: ten million timed points with all their digits; more is the wrong file.
 inline constexpr std::size_t max_stroke_bytes = std::size_t{512} << 20;
 
+/// Returns "svg", "csv" or "toml": the format of a text with strokes by the extension of its file's name, in
+/// upper or lower case, else by its first line.
+std::string_view find_stroke_format(std::string_view text, const std::filesystem::path& file);
+
 /// Longest text that is kept as a tree while it is read: TOML takes some 40 bytes of memory for one of text,
 /// so a million timed points fit, and 2 GB are not exceeded.
 inline constexpr std::size_t max_tree_bytes = std::size_t{48} << 20;

@@ -56,6 +56,17 @@ class Remote(ToolTest):
         self.assertEqual(record["compensation"], self.plan("park2016-1", *move, "--duration", "0.4")["compensation"])
         self.refused(2, "play", "park2016-1", "--sigma-mm", "8", "--socket", s.where["socket"])
 
+    def test_a_file_has_the_same_format_through_a_server(self):
+        s = self.serve()
+        points = "t_s,x_mm,y_mm\n0,0,0\n0.05,40,40\n"
+        self.write("points.CSV", "# of a tracker\n" + points)
+        self.write("points", "\n# of a tracker\n" + points)
+        self.write("nameless", "time,x,y\n0,0,0\n0.05,40,40\n")
+        for name in ("points.CSV", "points"):
+            self.assertIn("played 0.050 s", self.ok("play", name, "--algorithm", "continuous", "--socket", s.where["socket"]).stdout)
+        here, there = (self.refused(2, "play", "nameless", *where).stderr for where in (("-D", "null"), ("--socket", s.where["socket"])))
+        self.assertEqual(here, there)
+
     def test_the_users_socket_is_found(self):
         env = {"XDG_RUNTIME_DIR": str(self.dir)}
         s = self.serve(env=env)

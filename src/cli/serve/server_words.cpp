@@ -22,6 +22,7 @@
 #include "cli/input.hpp"
 #include "cli/option_words.hpp"
 #include "files/plan/plan_file.hpp"
+#include "files/text_file.hpp"
 #include "net/listen.hpp"
 #include "session/pipes.hpp"
 
@@ -81,15 +82,6 @@ std::string read_all(int fd, const std::string& name)
     }
 }
 
-// Guesses the format of a text.
-const char* guess_kind(std::string_view text)
-{
-    const auto first = text.find_first_not_of(" \t\r\n\xEF\xBB\xBF");
-    if (first != std::string_view::npos && text[first] == '<')
-        return "svg";
-    return text.substr(0, text.find('\n')).find("t_s") != std::string_view::npos ? "csv" : "toml";
-}
-
 [[noreturn]] void refuse_plan(const std::string& name)
 {
     throw error(error_kind::bad_input, name, "it is a plan, which a server does not take", "give the stroke");
@@ -104,7 +96,7 @@ net::json make_params(const std::string& argument)
         const std::string text = read_all(STDIN_FILENO, "standard input");
         if (files::holds_plans(text))
             refuse_plan("standard input");
-        return {{guess_kind(text), text}};
+        return {{std::string(detail::find_stroke_format(text, {})), text}};
     }
     if (is_preset ||
         (!std::filesystem::exists(argument, ignored) && argument.find_first_of("./") == std::string::npos))
@@ -116,11 +108,7 @@ net::json make_params(const std::string& argument)
     if (!fd)
         throw error(error_kind::bad_input, argument, std::strerror(errno));
     const std::string text = read_all(fd.get(), argument);
-    const std::string extension = std::filesystem::path(argument).extension().string();
-    for (const char* kind : {"toml", "csv", "svg"})
-        if (extension == fmt::format(".{}", kind))
-            return {{kind, text}};
-    return {{guess_kind(text), text}};
+    return {{std::string(detail::find_stroke_format(text, argument)), text}};
 }
 
 } // namespace

@@ -39,28 +39,28 @@ bool looks_like_csv(std::string_view line)
            (line.find("t_s") != std::string_view::npos || line.find(',') != std::string_view::npos);
 }
 
+std::vector<stroke> parse_as(std::string_view format, std::string_view text, const std::string& name)
+{
+    return format == "svg"   ? parse_strokes_svg(text, name)
+           : format == "csv" ? parse_strokes_csv(text, name)
+                             : parse_strokes_toml(text, name);
+}
+
 } // namespace
 
 std::vector<stroke> parse_strokes(std::string_view text, const std::string& name)
 {
-    const std::string_view line = first_line(detail::without_mark(text));
-    if (!line.empty() && line.front() == '<')
-        return parse_strokes_svg(text, name);
-    return looks_like_csv(line) ? parse_strokes_csv(text, name) : parse_strokes_toml(text, name);
+    return parse_as(detail::find_stroke_format(text, {}), text, name);
 }
 
 std::vector<stroke> load_strokes(const std::filesystem::path& file)
 {
     const detail::whole_text text = detail::read_text_file(file, detail::max_stroke_bytes);
     const std::string name = file.string();
-    const std::string extension = in_small_letters(file.extension().string());
-    if (extension == ".csv")
-        return parse_strokes_csv(text, name);
-    if (extension == ".svg")
-        return parse_strokes_svg(text, name);
-    if (extension == ".toml")
+    const std::string_view format = detail::find_stroke_format(text, file);
+    if (format == "toml" && in_small_letters(file.extension().string()) == ".toml")
         return detail::strokes_of_toml_file(text, name);
-    return parse_strokes(text, name);
+    return parse_as(format, text, name);
 }
 
 std::vector<stroke> load_strokes(int descriptor, const std::string& name)
@@ -70,4 +70,20 @@ std::vector<stroke> load_strokes(int descriptor, const std::string& name)
 }
 
 } // namespace v0
+
+namespace detail {
+
+std::string_view find_stroke_format(std::string_view text, const std::filesystem::path& file)
+{
+    const std::string extension = in_small_letters(file.extension().string());
+    for (const std::string_view format : {"svg", "csv", "toml"})
+        if (extension.substr(std::min<std::size_t>(1, extension.size())) == format)
+            return format;
+    const std::string_view line = first_line(without_mark(text));
+    if (!line.empty() && line.front() == '<')
+        return "svg";
+    return looks_like_csv(line) ? "csv" : "toml";
+}
+
+} // namespace detail
 } // namespace tactor
