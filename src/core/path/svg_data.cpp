@@ -12,6 +12,7 @@
 
 #include "core/limits.hpp"
 #include "core/path/impl.hpp"
+#include "core/path/number.hpp"
 #include "core/path/svg_pen.hpp"
 #include "core/suggest.hpp"
 #include "core/words.hpp"

@@ -8,6 +8,7 @@
 #include <boost/math/special_functions/sin_pi.hpp>
 #include <fmt/format.h>
 
+#include "core/path/number.hpp"
 #include "core/suggest.hpp"
 #include "core/words.hpp"
 #include "files/svg/values.hpp"

@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "core/path/number.hpp"
 #include "core/suggest.hpp"
 
 namespace tactor::detail {
