@@ -239,6 +239,20 @@ TEST_CASE("a stimulus that has waited for room is whole")
     s.there.finish();
 }
 
+TEST_CASE("a tactor of the walk that a limit silenced is driven again when the window has passed")
+{
+    set_up s(0.3, 60.0);
+    CHECK_FALSE(s.there.give(tone(0.25), 0.0, nobody).limited);
+    bool waited = false;
+    const study::given_stimulus g =
+        s.there.give_after_limits(tone(0.2), [&](double) { return waited = true; });
+    CHECK(g.fault().empty());
+    CHECK(waited);
+    // Nobody waits where no limit acts.
+    CHECK(s.there.give_after_limits(tone(0.05), [&](double) -> bool { throw 1; }).fault().empty());
+    s.there.finish();
+}
+
 TEST_CASE("what the experimenter cuts off says so")
 {
     set_up s;

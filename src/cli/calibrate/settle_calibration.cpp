@@ -13,6 +13,7 @@
 #include "cli/say.hpp"
 #include "cli/settings.hpp"
 #include "core/split.hpp"
+#include "session/device.hpp"
 #include "study/bids/study_folder.hpp"
 #include "study/experiment/sequence.hpp"
 

@@ -82,6 +82,8 @@ private:
     bool rest_before(const session_step& s);
     /// Waits until the limits allow the drive time. Returns false if the device is gone.
     bool make_room(const session_step& s, const planned_trial& t, const score& stimuli);
+    /// Returns a watcher that asks for a moment's patience when it is first called.
+    std::function<bool(double)> waiting();
     /// Shows the target. Returns the reason if that made the trial void.
     std::string animate(const session_step& s, const planned_trial& t);
     given_stimulus give(const session_step& s, const planned_trial& t);

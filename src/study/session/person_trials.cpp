@@ -65,14 +65,18 @@ bool person_session::make_room(const session_step& s, const planned_trial& t, co
     double ahead_s = stimulus_lead_s;
     if (p_.run_at(s.run).animation)
         ahead_s += p_.definition.motions[t.motion].drawn.motion.duration_s();
-    bool announced = false;
-    return stage_.make_room(stimuli, ahead_s, [&](double) {
+    return stage_.make_room(stimuli, ahead_s, waiting());
+}
+
+std::function<bool(double)> person_session::waiting()
+{
+    return [this, announced = false](double) mutable {
         if (!std::exchange(announced, true)) {
             on_page(idle_screen(p_, "wait"));
             session::show(p_.definition.page["wait"] + " ");
         }
         return heed();
-    });
+    };
 }
 
 given_stimulus person_session::give(const session_step& s, const planned_trial& t)
@@ -212,10 +216,7 @@ void person_session::walk(unsigned tactor)
     }
     on_page(walk_screen(p_, tactor, false));
     const score s = walk_score(p_.definition, a, p_.render, tactor);
-    const given_stimulus g = [&] {
-        const noise_around noise(stage_);
-        return stage_.give(s, 0.0, [](std::uint64_t) {});
-    }();
+    const given_stimulus g = stage_.give_after_limits(s, waiting());
     if (!g.flaw.empty()) {
         session::say(stderr, "tactor: tactor {}: {}\n", tactor, g.flaw);
         find_device();

@@ -62,6 +62,10 @@ public:
     /// the noise's device cannot be opened again.
     given_stimulus give(const score& s, double lead_s, const watcher& watch);
 
+    /// Plays a score as give(). If a limit changed it, lets the limits' window pass, which drive of earlier
+    /// runs may fill, and plays it once more. `watch`: as of pass().
+    given_stimulus give_after_limits(const score& s, const std::function<bool(double passed_s)>& watch);
+
     /// Begins noise until fade_out(). Returns false if it does not sound. \throws as give().
     bool fade_in();
     void fade_out() noexcept;
@@ -87,6 +91,7 @@ private:
     masking_options masking_ = {};
     std::unique_ptr<masker> masker_; ///< null: no noise
     synth::drive_room room_;
+    double window_s_; ///< of the limit on drive time
     std::uint64_t before_ =
         0; ///< frames of the streams before this one; the time between them does not count
 };
