@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: MIT
+#include <array>
+#include <cstdint>
 #include <functional>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -8,6 +11,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "cli/option_words.hpp"
 #include "cli/usage.hpp"
 #include "core/split.hpp"
 
@@ -28,17 +32,60 @@ bool is_first(const CLI::Option& o)
     return row != nullptr && (row->where & options::shown_first) != 0;
 }
 
+std::string with_type(const std::string& name, const std::string& type)
+{
+    return type.empty() ? name : fmt::format("{} {}", name, type);
+}
+
 std::string describe_line(const CLI::Option& o)
 {
-    const std::string name = fmt::format("{}{}{}", o.get_name(false, true),
-                                         o.get_type_name().empty() ? "" : " ", o.get_type_name());
+    const std::string name = with_type(o.get_name(false, true), o.get_type_name());
     return fmt::format("  {:<{}}{}{}\n", name, name_columns,
                        name.size() < name_columns ? "" : fmt::format("\n{:{}}", "", name_columns + 2),
                        o.get_description());
 }
 
+constexpr std::array python_names{
+    options::place_name{options::in_plan, "plan"}, options::place_name{options::in_score, "Score"},
+    options::place_name{options::in_compare, "compare"}, options::place_name{options::in_player, "Player"}};
+
+std::string places_text(std::span<const options::place_name> names, std::uint64_t where)
+{
+    std::string all;
+    for (const options::place_name& p : names)
+        if ((where & p.bit) != 0)
+            all.append(all.empty() ? "" : ", ").append(p.name);
+    return all;
+}
+
+std::string describe_row(const options::option& o)
+{
+    std::string text = fmt::format(
+        "{}\n  {}\n", with_type(option_name(o), o.what == options::kind::flag ? "" : options::type_text(o)),
+        spelled(o.help));
+    const auto line = [&text](const char* title, const std::string& said) {
+        if (!said.empty())
+            text += fmt::format("  {:<18}{}\n", title, said);
+    };
+    const auto row = [](std::string_view name) { return option_name(*options::find(name)); };
+    if (o.what == options::kind::number || o.what == options::kind::whole)
+        line("Range:", spelled(options::range_text(o)));
+    line("Not beside:", o.rival.empty() ? "" : row(o.rival));
+    line("Needs:", spelled(fmt::format("{}", fmt::join(detail::split(o.needs, '|'), " or "))));
+    line("Commands:", places_text(options::command_names(), o.where));
+    const bool is_default = (o.where & options::in_defaults) != 0;
+    line("[defaults]:", is_default ? options::dashed(o) : "");
+    line("Stroke files:", (o.where & options::in_stroke) != 0 ? std::string(o.field_name()) : "");
+    line("[[method]]:", (o.where & options::in_method) != 0 ? std::string(o.name) : "");
+    line("JSON-RPC:", (o.where & options::by_client) != 0 ? fmt::format("options.{}", o.name) : "");
+    line("OSC:", (o.where & options::by_client) != 0 ? fmt::format("{}=", o.name) : "");
+    const std::string python = places_text(python_names, o.where);
+    line("Python:", python.empty() ? "" : fmt::format("{} of {}", o.name, python));
+    return text;
+}
+
 /// Writes --help so that it fits a screen: the options that a command alone has and those that most people
-/// need, with their meaning; of the others the names. --help-all is CLI11's own list.
+/// need, with their meaning; of the others the names. --help-all explains them all.
 class help_page : public CLI::Formatter {
 public:
     std::string make_help(const CLI::App* app, std::string name, CLI::AppFormatMode mode) const override
@@ -138,6 +185,23 @@ void use_help_pages(CLI::App& app)
     app.formatter(std::make_shared<help_page>());
     app.set_help_flag("-h,--help", "print the most important options and exit");
     app.set_help_all_flag("--help-all", "print all options and exit");
+}
+
+std::string describe_option(const CLI::App& app, std::string_view name)
+{
+    name = bare_name(name);
+    const options::option* row = options::find(name);
+    if (row != nullptr && (row->where & options::on_any_command) == 0)
+        row = nullptr;
+    std::string text = row != nullptr ? describe_row(*row) : "";
+    for (const CLI::App* command : app.get_subcommands({})) {
+        const CLI::Option* o = command->get_option_no_throw(fmt::format("--{}", name));
+        if (o != nullptr && (row == nullptr || o->get_group() != to_string(row->in)))
+            text +=
+                fmt::format("tactor {}: {}\n  {}\n", command->get_name(),
+                            with_type(fmt::format("--{}", name), o->get_type_name()), o->get_description());
+    }
+    return text;
 }
 
 std::string first_steps()

@@ -99,7 +99,7 @@ int run(const std::vector<std::string>& given)
     }
     const bool asks = first == "help" && given.size() == 2; // about an option
     if (given.empty()) {
-        say_error("tactor: command line: no command (tactor --help lists them)\n\n{}", first_steps());
+        say_error("tactor: {}\n\n{}", no_command().what(), first_steps());
         return status_usage;
     }
     CLI::App app("Draws on skin: moving tactile strokes over sparse arrays of tactors.", "tactor");
@@ -125,8 +125,10 @@ int run(const std::vector<std::string>& given)
         return status_ok;
     }
     try {
-        // The last first, as it wants them; a name that is no option is no command either.
-        app.parse(std::vector<std::string>(given.rbegin(), given.rend() - (asks ? 1 : 0)));
+        std::vector<std::string> words(given.rbegin(), given.rend()); // the last first, as it wants them
+        if (asks)
+            words.pop_back(); // a name that is no option is no command either
+        app.parse(words);
     } catch (const CLI::Success& e) {
         std::ostringstream text; // of --help or --version
         const int status = app.exit(e, text);

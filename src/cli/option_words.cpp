@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "cli/option_words.hpp"
 
+#include <algorithm>
 #include <array>
 
 #include <fmt/format.h>
@@ -29,6 +30,11 @@ constexpr options::spelling by_tool{.write = spell_option, .own = own_words};
 std::string option_name(const options::option& o)
 {
     return "--" + options::dashed(o);
+}
+
+std::string_view bare_name(std::string_view name) noexcept
+{
+    return name.substr(std::min(name.find_first_not_of('-'), name.size()));
 }
 
 std::string spelled(std::string_view marked)

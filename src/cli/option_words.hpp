@@ -15,6 +15,9 @@ namespace tactor::cli {
 /// Returns "--level-dbfs" for the row level_dbfs.
 std::string option_name(const options::option& o);
 
+/// Returns a name without the dashes before it.
+std::string_view bare_name(std::string_view name) noexcept;
+
 /// Returns the text with its marks as options: "--timing fit".
 std::string spelled(std::string_view marked);
 

@@ -45,7 +45,7 @@ std::vector<std::string> option_names(const CLI::App& command)
 std::string nearest_option(const std::string& given, const std::vector<std::string>& names)
 {
     constexpr std::size_t short_name = 4;
-    const std::string bare = given.substr(std::min(given.find_first_not_of('-'), given.size()));
+    const std::string bare(bare_name(given));
     const std::string like = nearest(bare, names);
     if (like.empty() || (bare.size() <= short_name && bare.substr(0, 2) != like.substr(0, 2)))
         return {};
@@ -60,9 +60,9 @@ std::string help_command(const CLI::App& app, const CLI::App& command)
 // Returns the error for a missing command, argument or option.
 error missing(const CLI::App& app, const CLI::App& command)
 {
-    const std::string help = help_command(app, command);
     if (&command == &app)
-        return {error_kind::bad_input, "command line", "no command", help + " lists them"};
+        return no_command();
+    const std::string help = help_command(app, command);
     const auto options = command.get_options();
     const auto o = std::find_if(options.begin(), options.end(),
                                 [](const CLI::Option* x) { return x->get_required() && x->count() == 0; });
@@ -111,76 +111,11 @@ error unknown(const CLI::App& app, const CLI::App& command)
     return {error_kind::bad_input, given, "one argument too many", help};
 }
 
-struct place_name {
-    std::uint64_t place;
-    const char* name;
-};
-
-constexpr std::array command_names{
-    place_name{options::on_plan, "plan"},           place_name{options::on_render, "render"},
-    place_name{options::on_plot, "plot"},           place_name{options::on_compare, "compare"},
-    place_name{options::on_play, "play"},           place_name{options::on_check, "check"},
-    place_name{options::on_calibrate, "calibrate"}, place_name{options::on_experiment, "experiment"},
-    place_name{options::on_devices, "devices"},     place_name{options::on_off, "off"},
-    place_name{options::on_serve, "serve"}};
-
-constexpr std::array python_names{
-    place_name{options::in_plan, "plan"}, place_name{options::in_score, "Score"},
-    place_name{options::in_compare, "compare"}, place_name{options::in_player, "Player"}};
-
-template <std::size_t N>
-std::string places_text(const std::array<place_name, N>& names, std::uint64_t where)
-{
-    std::string all;
-    for (const place_name& p : names)
-        if ((where & p.place) != 0)
-            all.append(all.empty() ? "" : ", ").append(p.name);
-    return all;
-}
-
-std::string describe_row(const options::option& o)
-{
-    std::string text =
-        fmt::format("{}{}{}\n  {}\n", option_name(o), o.what == options::kind::flag ? "" : " ",
-                    o.what == options::kind::flag ? "" : options::type_text(o), spelled(o.help));
-    const auto line = [&text](const char* title, const std::string& said) {
-        if (!said.empty())
-            text += fmt::format("  {:<18}{}\n", title, said);
-    };
-    const auto row = [](std::string_view name) { return option_name(*options::find(name)); };
-    if (o.what == options::kind::number || o.what == options::kind::whole)
-        line("Range:", spelled(options::range_text(o)));
-    line("Not beside:", o.rival.empty() ? "" : row(o.rival));
-    line("Needs:", spelled(fmt::format("{}", fmt::join(detail::split(o.needs, '|'), " or "))));
-    line("Commands:", places_text(command_names, o.where));
-    const bool is_default = (o.where & options::in_defaults) != 0;
-    line("[defaults]:", is_default ? options::dashed(o) : "");
-    line("Stroke files:", (o.where & options::in_stroke) != 0 ? std::string(o.field_name()) : "");
-    line("[[method]]:", (o.where & options::in_method) != 0 ? std::string(o.name) : "");
-    line("JSON-RPC:", (o.where & options::by_client) != 0 ? fmt::format("options.{}", o.name) : "");
-    line("OSC:", (o.where & options::by_client) != 0 ? fmt::format("{}=", o.name) : "");
-    const std::string python = places_text(python_names, o.where);
-    line("Python:", python.empty() ? "" : fmt::format("{} of {}", o.name, python));
-    return text;
-}
-
 } // namespace
 
-std::string describe_option(const CLI::App& app, std::string_view name)
+error no_command()
 {
-    name.remove_prefix(std::min(name.find_first_not_of('-'), name.size()));
-    const options::option* row = options::find(name);
-    if (row != nullptr && (row->where & options::on_any_command) == 0)
-        row = nullptr;
-    std::string text = row != nullptr ? describe_row(*row) : "";
-    for (const CLI::App* command : app.get_subcommands({})) {
-        const CLI::Option* o = command->get_option_no_throw(fmt::format("--{}", name));
-        if (o != nullptr && (row == nullptr || o->get_group() != to_string(row->in)))
-            text +=
-                fmt::format("tactor {}: --{}{}{}\n  {}\n", command->get_name(), name,
-                            o->get_type_name().empty() ? "" : " ", o->get_type_name(), o->get_description());
-    }
-    return text;
+    return {error_kind::bad_input, "command line", "no command", "tactor --help lists them"};
 }
 
 error usage_error(const CLI::App& app, const CLI::ParseError& e)

@@ -28,6 +28,9 @@ std::string first_steps();
 /// only some commands have, the line of their help. `name` may begin with dashes. Empty for an unknown name.
 std::string describe_option(const CLI::App& app, std::string_view name);
 
+/// Returns the error for a command line without a command.
+error no_command();
+
 /// Turns the parser's complaint into an error that names the option and, where it is not known, the
 /// nearest one that is.
 error usage_error(const CLI::App& app, const CLI::ParseError& e);

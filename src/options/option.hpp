@@ -50,6 +50,15 @@ enum place : std::uint64_t {
     shown_first = 1 << 22,    ///< --help explains it; most people need it
 };
 
+/// A place and its name there.
+struct place_name {
+    place bit;
+    std::string_view name;
+};
+
+/// Returns the commands that take options of the table, in the order of help.
+[[nodiscard]] std::span<const place_name> command_names() noexcept;
+
 /// A value on its way from a front end: nothing, a flag, a number (whole ones, too), or a text or choice.
 using value = std::variant<std::monostate, bool, double, std::string>;
 

@@ -196,17 +196,10 @@ void settle_score(wishes& w)
 // An option as the manual describes it; its texts have marks.
 py::dict manual_entry(const option& o)
 {
-    constexpr std::array commands{
-        std::pair{"plan", options::on_plan},           std::pair{"render", options::on_render},
-        std::pair{"plot", options::on_plot},           std::pair{"compare", options::on_compare},
-        std::pair{"play", options::on_play},           std::pair{"check", options::on_check},
-        std::pair{"calibrate", options::on_calibrate}, std::pair{"experiment", options::on_experiment},
-        std::pair{"devices", options::on_devices},     std::pair{"off", options::on_off},
-        std::pair{"serve", options::on_serve}};
     py::list takers;
-    for (const auto& [name, place] : commands)
-        if ((o.where & place) != 0)
-            takers.append(name);
+    for (const options::place_name& c : options::command_names())
+        if ((o.where & c.bit) != 0)
+            takers.append(c.name);
     return py::dict("group"_a = options::to_string(o.in), "letter"_a = o.letter, "commands"_a = takers,
                     "type"_a = o.what == options::kind::flag ? "" : options::type_text(o),
                     "range"_a = options::range_text(o), "default"_a = o.to.get(options::wishes{}),
