@@ -39,6 +39,24 @@ bool looks_like_csv(std::string_view line)
            (line.find("t_s") != std::string_view::npos || line.find(',') != std::string_view::npos);
 }
 
+// Returns the format that the extension of a file's name says; empty for others.
+std::string_view format_in_name(const std::filesystem::path& file)
+{
+    const std::string extension = in_small_letters(file.extension().string());
+    for (const std::string_view format : {"svg", "csv", "toml"})
+        if (extension == fmt::format(".{}", format))
+            return format;
+    return {};
+}
+
+std::string_view guess_format(std::string_view text)
+{
+    const std::string_view line = first_line(detail::without_mark(text));
+    if (!line.empty() && line.front() == '<')
+        return "svg";
+    return looks_like_csv(line) ? "csv" : "toml";
+}
+
 std::vector<stroke> parse_as(std::string_view format, std::string_view text, const std::string& name)
 {
     return format == "svg"   ? parse_strokes_svg(text, name)
@@ -50,17 +68,17 @@ std::vector<stroke> parse_as(std::string_view format, std::string_view text, con
 
 std::vector<stroke> parse_strokes(std::string_view text, const std::string& name)
 {
-    return parse_as(detail::find_stroke_format(text, {}), text, name);
+    return parse_as(guess_format(text), text, name);
 }
 
 std::vector<stroke> load_strokes(const std::filesystem::path& file)
 {
     const detail::whole_text text = detail::read_text_file(file, detail::max_stroke_bytes);
     const std::string name = file.string();
-    const std::string_view format = detail::find_stroke_format(text, file);
-    if (format == "toml" && in_small_letters(file.extension().string()) == ".toml")
+    const std::string_view format = format_in_name(file);
+    if (format == "toml")
         return detail::strokes_of_toml_file(text, name);
-    return parse_as(format, text, name);
+    return format.empty() ? parse_strokes(text, name) : parse_as(format, text, name);
 }
 
 std::vector<stroke> load_strokes(int descriptor, const std::string& name)
@@ -75,14 +93,8 @@ namespace detail {
 
 std::string_view find_stroke_format(std::string_view text, const std::filesystem::path& file)
 {
-    const std::string extension = in_small_letters(file.extension().string());
-    for (const std::string_view format : {"svg", "csv", "toml"})
-        if (extension.substr(std::min<std::size_t>(1, extension.size())) == format)
-            return format;
-    const std::string_view line = first_line(without_mark(text));
-    if (!line.empty() && line.front() == '<')
-        return "svg";
-    return looks_like_csv(line) ? "csv" : "toml";
+    const std::string_view format = format_in_name(file);
+    return format.empty() ? guess_format(text) : format;
 }
 
 } // namespace detail
