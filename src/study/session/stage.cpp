@@ -21,9 +21,7 @@ constexpr unsigned masker_channels = 2;
 
 stage::stage(const alsa_options& device, const session::stream_options& o, const session::environment& e,
              const session::stream_source& source)
-    : play_session(device, o, e, source),
-      room_(setup().channels, session::settle_limits(o, e), setup().rate),
-      window_s_(session::settle_limits(o, e).window_s)
+    : play_session(device, o, e, source), room_(setup().channels, session::settle_limits(o, e), setup().rate)
 {
 }
 
@@ -143,7 +141,7 @@ given_stimulus stage::give_after_limits(const score& s, const std::function<bool
         return give(s, 0.0, [](std::uint64_t) {});
     };
     given_stimulus g = once();
-    if (g.flaw.empty() && g.limited && pass(window_s_, watch))
+    if (g.flaw.empty() && g.limited && pass(room_.window_s(), watch))
         g = once();
     return g;
 }

@@ -91,7 +91,6 @@ private:
     masking_options masking_ = {};
     std::unique_ptr<masker> masker_; ///< null: no noise
     synth::drive_room room_;
-    double window_s_; ///< of the limit on drive time
     std::uint64_t before_ =
         0; ///< frames of the streams before this one; the time between them does not count
 };

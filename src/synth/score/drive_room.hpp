@@ -30,6 +30,9 @@ public:
     /// Takes note of a score that was played from this frame on. Scores come in order of time.
     void played(const score& s, std::uint64_t clock);
 
+    /// Time in which all drive leaves the limit's window, s; 0 without a limit.
+    double window_s() const noexcept { return static_cast<double>(window_) / rate_; }
+
 private:
     drive_room(std::size_t channels, const guard_settings& g);
 
