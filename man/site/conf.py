@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: MIT
 """Settings of Sphinx for the site; make_site.py hands over the version and the folder of Doxygen's XML."""
-import importlib.util
 import os
 import pathlib
 import runpy
@@ -12,9 +11,9 @@ version = release = os.environ["TACTOR_VERSION"]
 extensions = ["myst_parser", "breathe"]
 breathe_projects = {"tactor": os.environ["TACTOR_XML"]}
 breathe_default_project = "tactor"
-if importlib.util.find_spec("tactor"):
-    # The Python package describes itself.
-    of_package = runpy.run_path(str(pathlib.Path(os.environ["TACTOR_SOURCE"]) / "src/python/reference/conf.py"))
+package = pathlib.Path(__file__).parent / "python-reference/conf.py"
+if package.exists():  # the Python package describes itself
+    of_package = runpy.run_path(str(package))
     extensions += of_package["extensions"]
     globals().update({name: value for name, value in of_package.items() if name == "setup" or name.startswith(("add_", "auto", "default_role", "napoleon"))})
 html_theme = "furo"

@@ -5,9 +5,6 @@ import pathlib
 import re
 import xml.etree.ElementTree as xml
 
-DIRECTIVES = {"struct": "struct", "class": "class", "enum": "enum", "typedef": "typedef", "variable": "variable", "function": "function"}
-
-
 def drop_initializers(folder):
     """Removes default values that name members ({.algorithm = ...}): Sphinx cannot read these."""
     for file in folder.glob("*.xml"):
@@ -48,7 +45,7 @@ def write_pages(folder, stage):
     for header, members in sorted(list_members(folder).items()):
         text = [f"tactor/{header}", "=" * 60, "", *(line for p in describe_header(folder, header) for line in (p.replace("\\", "\\\\").replace("*", "\\*").replace("`", "\\`"), ""))]
         for _, kind, name, arguments in sorted(members):
-            text += [f".. doxygen{DIRECTIVES[kind]}:: {name}{arguments}", *(["   :members:"] if kind in ("struct", "class") else []), ""]
+            text += [f".. doxygen{kind}:: {name}{arguments}", *(["   :members:"] if kind in ("struct", "class") else []), ""]
         names.append(f"cpp-{header.removesuffix('.hpp')}")
         (stage / f"{names[-1]}.rst").write_text("\n".join(text), encoding="utf-8")
     return names

@@ -25,9 +25,10 @@ PRESETS = [("park2016-1", ""), ("park2016-2", ""), ("park2016-3", ""), ("park201
 SHAPES = ["line", "circle", "eight", "spiral"]
 # How each array of examples is shown.
 ON_ARRAY = {"arm-line-4": '--path "M 0 0 L 120 0"', "lra-row-3": '--path "M 0 0 H 60" --sl 12 --carrier 170'}
+PYTHON = "python-reference/index"
 SECTIONS = {"Start": ["start", "how-to", "study", "files", "cpp", "python", "trouble"],
             "Understand": ["method", "predictions", "safety", "performance", "parts", "compared", "architecture", "glossary"],
-            "Reference": ["manuals", "cpp-reference", "python-reference/index", "schemas", "gallery", "CONTRIBUTING", "tests/lanes/README", "SECURITY", "NEWS"]}
+            "Reference": ["manuals", "cpp-reference", PYTHON, "schemas", "gallery", "CONTRIBUTING", "tests/lanes/README", "SECURITY", "NEWS"]}
 
 
 def on_the_site(text, root):
@@ -130,10 +131,12 @@ def stage_pages(root, stage, tool, schemas, reference):
     shutil.copytree(schemas, stage / "schemas", ignore=lambda _, names: [n for n in names if not n.endswith(".json")])
     headers = cpp_pages.write_pages(reference, stage)
     texts["cpp-reference"] = "# C++ interface\n\n```{toctree}\n" + "\n".join(headers) + "\n```\n"
+    absent = {PYTHON}
     if importlib.util.find_spec("tactor"):
-        shutil.copytree(root / "src/python/reference", stage / "python-reference", ignore=shutil.ignore_patterns("conf.py"))
+        absent.clear()
+        shutil.copytree(root / "src/python/reference", (stage / PYTHON).parent)
     for title, names in SECTIONS.items():
-        texts["index"] += "\n```{toctree}\n:hidden:\n:caption: " + title + "\n\n" + "\n".join(n for n in names if n in texts or (stage / f"{n}.rst").exists() or n.startswith("tests/")) + "\n```\n"
+        texts["index"] += "\n```{toctree}\n:hidden:\n:caption: " + title + "\n\n" + "\n".join(n for n in names if n not in absent) + "\n```\n"
     for name, text in texts.items():
         (stage / f"{name}.md").write_text(with_manuals(on_the_site(text, root), pages), encoding="utf-8")
     lanes = stage / "tests/lanes"
@@ -163,7 +166,7 @@ def main():
     stage.mkdir(parents=True)
     stage_pages(root, stage, tool, schemas, pathlib.Path(sys.argv[8]))
     shutil.copy(root / "man/site/conf.py", stage)
-    made = subprocess.run(["sphinx-build", "-W", "--keep-going", "-q", "-b", "html", stage, out / "html"], check=False, env=os.environ | {"TACTOR_VERSION": version, "TACTOR_SOURCE": str(root), "TACTOR_XML": str(pathlib.Path(sys.argv[8]).resolve())})
+    made = subprocess.run(["sphinx-build", "-W", "--keep-going", "-q", "-b", "html", stage, out / "html"], check=False, env=os.environ | {"TACTOR_VERSION": version, "TACTOR_XML": str(pathlib.Path(sys.argv[8]).resolve())})
     bad = broken_links(out / "html") if made.returncode == 0 else ["sphinx-build found faults, see above"]
     print(*bad, sep="\n")
     sys.exit(1 if bad else 0)
