@@ -42,7 +42,8 @@ def main():
     pages = [*sorted(root.glob("*.md")), *sorted((root / "man/guide").glob("*.md")), *sorted((root / "tests").rglob("*.md")), *sorted((root / "examples").rglob("*.md"))]
     bad = [b for files, check in ((code, bad_code), (pages, bad_page)) for f in files for b in check(f.relative_to(root), f.read_text(encoding="utf-8"))]
     print(*bad, sep="\n")
-    print(f"{len(code) + len(pages) - len({b.split(':')[0] for b in bad})} passed, {len({b.split(':')[0] for b in bad})} failed")
+    failed = len({b.split(":")[0] for b in bad})
+    print(f"{len(code) + len(pages) - failed} passed, {failed} failed")
     return 1 if bad else 0
 
 

@@ -209,12 +209,8 @@ class Documents(ToolTest):
         self.assertGreater(len(named), 30)
         self.assertEqual([file for file in named if not (ROOT / "src" / file).exists()], [])
 
-    def test_readme_fits_a_screen_or_two_and_lines_fit_100_columns(self):
+    def test_readme_fits_a_screen_or_two(self):
         self.assertLessEqual(len((ROOT / "README.md").read_text(encoding="utf-8").splitlines()), 130)
-        wide = [f"{file.name}:{number}" for file in [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *GUIDE]
-                for number, line in enumerate(file.read_text(encoding="utf-8").splitlines(), 1)
-                if len(line) > 100 and not line.startswith(("|", "!", ">"))]
-        self.assertEqual(wide, [])
 
     def test_readmes_of_examples(self):
         for file in sorted((ROOT / "examples").rglob("README.md")):
