@@ -14,6 +14,7 @@ import struct
 import subprocess
 import tempfile
 import time
+import unittest
 
 from experiments import SMALL, ExperimentTest, contents, read_table
 from harness import PATIENCE_S, TOOL, main
@@ -400,12 +401,15 @@ class ByLines(PersonTest):
         self.write("study/dataset_description.json", "{}")
         self.write("study/sub-01", "a file")
         told(2, "study/sub-01", "Not a directory")
-        if os.geteuid() != 0:  # root may write everywhere
-            (self.dir / "study/sourcedata").mkdir()
-            (self.dir / "study").chmod(0o555)
-            self.refused(1, *self.args(code="02"), stdin=self.ANSWERS)
-            (self.dir / "study").chmod(0o755)
-            self.assertEqual(contents(self.dir / "study/sourcedata"), {})
+
+    @unittest.skipIf(os.geteuid() == 0, "root may write everywhere")
+    def test_a_study_without_rights_is_reported_before_the_first_question(self):
+        self.write("study/dataset_description.json", "{}")
+        (self.dir / "study/sourcedata").mkdir()
+        (self.dir / "study").chmod(0o555)
+        self.refused(1, *self.args(code="02"), stdin=self.ANSWERS)
+        (self.dir / "study").chmod(0o755)
+        self.assertEqual(contents(self.dir / "study/sourcedata"), {})
 
     def test_a_tactor_that_is_not_felt_ends_it_and_may_be_driven_again(self):
         result = self.refused(1, *self.args(), stdin="y\nr\nx\ny\nb\ny\nn\n")
