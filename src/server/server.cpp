@@ -27,8 +27,8 @@
 #include "net/line_connection.hpp"
 #include "net/listener.hpp"
 #include "net/web_connection.hpp"
-#include "server/drawing_page.hpp"
 #include "server/osc/endpoint.hpp"
+#include "server/page/studio_page.hpp"
 
 namespace tactor::server {
 namespace {
@@ -239,7 +239,7 @@ private:
     net::web_reply page(std::string_view path, std::string_view host, std::string_view token)
     {
         if (path == "/")
-            return net::make_page(drawing_page, host);
+            return net::make_page(studio_page, host);
         if (path != "/status")
             return {404, "text/plain", "there are / and /rpc and /status\n", ""};
         if (!service_.admits(token))
