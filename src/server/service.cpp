@@ -253,6 +253,7 @@ void service::handle(client& c, net::rpc_request& r, const answer& to, std::size
         {"drive", &service::drive},
         {"status", &service::status},
         {"subscribe", &service::subscribe},
+        {"options", &service::list_options},
     };
     if (!c.admitted && r.method != "hello")
         throw fault_error({net::code_no_token, "token", "token", "hello with the token comes first", ""});
@@ -264,7 +265,7 @@ void service::handle(client& c, net::rpc_request& r, const answer& to, std::size
     throw fault_error({net::code_no_method, "bad-input", "method",
                        fmt::format("there is no \"{}\"", r.method),
                        "one of hello, play, plan, cancel, stop, fire, begin, to, end, drive, status, "
-                       "subscribe"});
+                       "subscribe, options"});
 }
 
 bool service::input_ended(client_number number)

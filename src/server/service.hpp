@@ -168,6 +168,7 @@ private:
     // service_methods.cpp
     void hello(client& c, const net::json& params, const answer& to);
     void status(client& c, const net::json& params, const answer& to);
+    void list_options(client& c, const net::json& params, const answer& to);
     void subscribe(client& c, const net::json& params, const answer& to);
     void send_levels(client_number number);
     void gather_levels();

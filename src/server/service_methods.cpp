@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// hello, status, subscribe and what follows from it.
+// hello, status, options, subscribe and what follows from it.
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -9,6 +9,7 @@
 #include <tactor/stroke.hpp>
 
 #include "core/label.hpp"
+#include "server/option_rows.hpp"
 #include "server/service_impl.hpp"
 
 namespace tactor::server {
@@ -136,6 +137,12 @@ reply_json service::people() const
     for (const auto& [number, c] : clients_)
         who.push_back({{"client", number}, {"name", c->name}, {"from", c->from}});
     return who;
+}
+
+void service::list_options(client& /*c*/, const json& params, const answer& to)
+{
+    allow_only(params, {});
+    to.result({{"options", option_rows(options_.plans.owner)}});
 }
 
 void service::subscribe(client& c, const json& params, const answer& to)

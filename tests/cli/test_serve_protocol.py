@@ -5,7 +5,7 @@ import socket
 import time
 
 from harness import PATIENCE_S, main
-from serving import LONG, SHORT, ServeTest
+from serving import LONG, MESSAGE, SHORT, ServeTest
 from websocket import Peer
 
 
@@ -52,7 +52,7 @@ class Protocol(ServeTest):
 
     def test_missing_parameters_are_empty_ones_for_every_method(self):
         c = self.serve().client()
-        for method in ("hello", "play", "plan", "cancel", "stop", "fire", "begin", "to", "end", "drive", "status", "subscribe"):
+        for method in ("hello", "play", "plan", "cancel", "stop", "fire", "begin", "to", "end", "drive", "status", "subscribe", "options"):
             told = []
             for raw in (b"", b',"params":{}', b',"params":[]', b',"params":null'):
                 c.raw(b'{"jsonrpc":"2.0","id":1,"method":"%s"%s}\n' % (method.encode(), raw))
@@ -296,6 +296,12 @@ class Protocol(ServeTest):
             self.assertIn(line, said)
         self.assertEqual(json.loads(self.ok("status", "--socket", s.where["socket"], "--format", "json").stdout)["who"][:3], who)
         self.check_error(a.error("hello", name="a\x1bb"), -32602, "name")
+
+    def test_the_options_are_those_of_the_schema(self):
+        c = self.serve(config="[defaults]\nsoa = 0.06\n").client()
+        rows = {x["name"]: x for x in c.ok("options")["options"]}
+        self.assertEqual(set(rows), set(MESSAGE.schema["$defs"]["options"]["properties"]))
+        self.assertEqual((rows["soa"]["default"], rows["level_dbfs"]["default"]), (0.06, -12))
 
 
 if __name__ == "__main__":
