@@ -75,6 +75,11 @@ void no_stream(const std::string& why)
     throw fault_error({net::code_no_stream, "not-available", "stream", why, "try again when it is back"});
 }
 
+std::string in_words_of_protocol(std::string_view marked)
+{
+    return options::spell(marked, by_protocol);
+}
+
 rpc_fault option_fault(const error& e)
 {
     const error worded = options::spell(e, by_protocol);

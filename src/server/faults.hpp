@@ -35,6 +35,8 @@ private:
 [[noreturn]] void no_such_stroke(std::uint32_t number, std::string why = "no such stroke of yours goes on");
 [[noreturn]] void no_stream(const std::string& why);
 
+/// Writes the marks of a text as the protocol names options: "options.soa".
+std::string in_words_of_protocol(std::string_view marked);
 /// Converts an error of the table of options, which is about one of `options`.
 net::rpc_fault option_fault(const error& e);
 /// Converts an error of the library about the parameter `source`, or about the option that it names.

@@ -131,9 +131,9 @@ std::size_t service::count_silent() const
         std::count_if(clients_.begin(), clients_.end(), [](const auto& c) { return c.second->input_over; }));
 }
 
-client_number service::connect(std::shared_ptr<client_link> link, client_kind k)
+client_number service::connect(std::shared_ptr<client_link> link, client_kind k, std::string from)
 {
-    auto c = std::make_unique<client>(io_, ++last_client_, std::move(link), k);
+    auto c = std::make_unique<client>(io_, ++last_client_, std::move(link), k, std::move(from));
     c->admitted = k == client_kind::local || k == client_kind::datagram || options_.token.empty();
     // A WebSocket has shown its origin, and datagrams come only from accepted peers.
     c->greeted = k != client_kind::network;
@@ -243,11 +243,18 @@ void service::handle(client& c, net::rpc_request& r, const answer& to, std::size
 {
     using handler = void (service::*)(client&, const json&, const answer&);
     static constexpr std::pair<std::string_view, handler> handlers[] = {
-        {"hello", &service::hello},   {"to", &service::to},
-        {"cancel", &service::cancel}, {"stop", &service::stop},
-        {"fire", &service::fire},     {"begin", &service::begin},
-        {"end", &service::end},       {"drive", &service::drive},
-        {"status", &service::status}, {"subscribe", &service::subscribe}};
+        {"hello", &service::hello},
+        {"to", &service::to},
+        {"cancel", &service::cancel},
+        {"stop", &service::stop},
+        {"fire", &service::fire},
+        {"begin", &service::begin},
+        {"end", &service::end},
+        {"drive", &service::drive},
+        {"status", &service::status},
+        {"subscribe", &service::subscribe},
+        {"options", &service::list_options},
+    };
     if (!c.admitted && r.method != "hello")
         throw fault_error({net::code_no_token, "token", "token", "hello with the token comes first", ""});
     if (r.method == "play" || r.method == "plan")
@@ -258,7 +265,7 @@ void service::handle(client& c, net::rpc_request& r, const answer& to, std::size
     throw fault_error({net::code_no_method, "bad-input", "method",
                        fmt::format("there is no \"{}\"", r.method),
                        "one of hello, play, plan, cancel, stop, fire, begin, to, end, drive, status, "
-                       "subscribe"});
+                       "subscribe, options"});
 }
 
 bool service::input_ended(client_number number)

@@ -84,7 +84,8 @@ public:
     bool has_place(client_kind k) const;
     /// Returns true if the client is connected and owes no token.
     bool is_admitted(client_number number) const;
-    client_number connect(std::shared_ptr<client_link> link, client_kind k);
+    /// Adds a client. `from`: its address; a local one needs none.
+    client_number connect(std::shared_ptr<client_link> link, client_kind k, std::string from = {});
     /// Handles a message. Returns false if the connection must be closed unanswered.
     bool receive(client_number number, std::string_view text);
     /// Handles a large message, which another thread parses. Calls `done` with the result in this thread.
@@ -167,10 +168,12 @@ private:
     // service_methods.cpp
     void hello(client& c, const net::json& params, const answer& to);
     void status(client& c, const net::json& params, const answer& to);
+    void list_options(client& c, const net::json& params, const answer& to);
     void subscribe(client& c, const net::json& params, const answer& to);
     void send_levels(client_number number);
     void gather_levels();
-    reply_json hello_result();
+    reply_json hello_result(const client& c);
+    reply_json people() const;
     reply_json limits_json() const;
 
     // service_jobs.cpp

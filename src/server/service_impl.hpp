@@ -16,14 +16,21 @@
 namespace tactor::server {
 
 struct service::client {
-    client(boost::asio::io_context& io, client_number n, std::shared_ptr<client_link> l, client_kind k)
-        : number(n), link(std::move(l)), kind(k), levels_timer(io)
+    client(boost::asio::io_context& io, client_number n, std::shared_ptr<client_link> l, client_kind k,
+           std::string address)
+        : number(n),
+          link(std::move(l)),
+          kind(k),
+          from(k == client_kind::local ? "this computer" : std::move(address)),
+          levels_timer(io)
     {
     }
 
     client_number number;
     std::shared_ptr<client_link> link;
     client_kind kind;
+    std::string from;      ///< address, as others are shown it
+    std::string name = {}; ///< as the client gave it
     bool greeted = false;  ///< network: its first message was hello
     bool admitted = false; ///< its token was right, or it needs none
     bool input_over = false;

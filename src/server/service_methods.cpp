@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// hello, status, subscribe and what follows from it.
+// hello, status, options, subscribe and what follows from it.
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -8,6 +8,8 @@
 
 #include <tactor/stroke.hpp>
 
+#include "core/label.hpp"
+#include "server/option_rows.hpp"
 #include "server/service_impl.hpp"
 
 namespace tactor::server {
@@ -32,7 +34,7 @@ bool same_secret(const std::string& a, const std::string& b)
 
 } // namespace
 
-reply_json service::hello_result()
+reply_json service::hello_result(const client& c)
 {
     const stream_setup& s = stream_.setup();
     const bool seen = s.buffer_frames != 0 && stream_.number() != 0;
@@ -51,15 +53,19 @@ reply_json service::hello_result()
               {"pcm", s.name}}},
             {"presets", presets},
             {"clock", {{"monotonic_s", seconds(options_.now_ns())}, {"unix_s", seconds(unix_ns())}}},
-            {"max_level_dbfs", options_.plans.max_level_dbfs}};
+            {"max_level_dbfs", options_.plans.max_level_dbfs},
+            {"client", c.number}};
 }
 
 void service::hello(client& c, const json& params, const answer& to)
 {
-    allow_only(params, {"token"});
+    allow_only(params, {"token", "name"});
     const json* token = member(params, "token");
     if (token != nullptr)
         static_cast<void>(text(*token, "token"));
+    const json* name = member(params, "name");
+    if (const std::string why = name == nullptr ? "" : label_fault(text(*name, "name")); !why.empty())
+        bad_param("name", "it " + why, label_hint);
     if (!c.admitted) {
         if (token == nullptr || !same_secret(token->get<std::string>(), options_.token)) {
             to.fault({net::code_no_token, "token", "token", token == nullptr ? "it is owed" : "it is wrong",
@@ -70,7 +76,9 @@ void service::hello(client& c, const json& params, const answer& to)
         }
         c.admitted = true;
     }
-    to.result(hello_result());
+    if (name != nullptr)
+        c.name = name->get<std::string>();
+    to.result(hello_result(c));
 }
 
 reply_json service::limits_json() const
@@ -117,8 +125,24 @@ reply_json service::status_now()
               {"realtime", s.realtime}}},
             {"amplifier", to_string(stream_.amplifier())},
             {"clients", clients_.size()},
+            {"who", people()},
             {"strokes", strokes},
             {"limits", limits_json()}};
+}
+
+// Lists the clients that are there.
+reply_json service::people() const
+{
+    reply_json who = reply_json::array();
+    for (const auto& [number, c] : clients_)
+        who.push_back({{"client", number}, {"name", c->name}, {"from", c->from}});
+    return who;
+}
+
+void service::list_options(client& /*c*/, const json& params, const answer& to)
+{
+    allow_only(params, {});
+    to.result({{"options", option_rows(options_.plans.owner)}});
 }
 
 void service::subscribe(client& c, const json& params, const answer& to)

@@ -5,13 +5,14 @@ import socket
 import time
 
 from harness import PATIENCE_S, main
-from serving import LONG, SHORT, ServeTest
+from serving import LONG, MESSAGE, SHORT, ServeTest
+from websocket import Peer
 
 
 class Protocol(ServeTest):
     def test_hello_has_the_versions(self):
         r = self.serve().client().ok("hello")
-        self.assertEqual(list(r), ["protocol", "version", "array", "stream", "presets", "clock", "max_level_dbfs"])
+        self.assertEqual(list(r), ["protocol", "version", "array", "stream", "presets", "clock", "max_level_dbfs", "client"])
         self.assertEqual(set(r["stream"]), {"rate", "channels", "format", "period_frames", "latency_s", "pcm"})
         self.assertEqual(r["array"], self.plan("park2016-1")["array"])
         self.assertEqual((r["stream"]["pcm"], r["stream"]["channels"], r["max_level_dbfs"]), ("null", 9, -12.0))
@@ -51,7 +52,7 @@ class Protocol(ServeTest):
 
     def test_missing_parameters_are_empty_ones_for_every_method(self):
         c = self.serve().client()
-        for method in ("hello", "play", "plan", "cancel", "stop", "fire", "begin", "to", "end", "drive", "status", "subscribe"):
+        for method in ("hello", "play", "plan", "cancel", "stop", "fire", "begin", "to", "end", "drive", "status", "subscribe", "options"):
             told = []
             for raw in (b"", b',"params":{}', b',"params":[]', b',"params":null'):
                 c.raw(b'{"jsonrpc":"2.0","id":1,"method":"%s"%s}\n' % (method.encode(), raw))
@@ -274,9 +275,33 @@ class Protocol(ServeTest):
         c = s.client()
         c.ok("play", **SHORT)
         r = c.ok("status")
-        self.assertEqual(list(r), ["version", "stream", "amplifier", "clients", "strokes", "limits"])
+        self.assertEqual(list(r), ["version", "stream", "amplifier", "clients", "who", "strokes", "limits"])
         self.assertLessEqual({"state", "xruns", "uptime_s", "realtime"}, set(r["stream"]))
         self.assertEqual((r["stream"]["state"], r["amplifier"], r["clients"]), ("running", "none", 1))
+        self.assertEqual(r["who"], [{"client": c.ok("hello")["client"], "name": "", "from": "this computer"}])
+
+    def test_who_is_there_is_told_with_names_and_addresses(self):
+        s = self.serve("--tcp", "0", "--http", "0")
+        a, b = s.client(), s.client(tcp=True)
+        mine = a.ok("hello", name="Ann \u2766")["client"]
+        theirs = b.ok("hello", name="Bob")["client"]
+        page = Peer(s.where["http"].removeprefix("http://").rstrip("/"))
+        self.addCleanup(page.socket.close)
+        self.assertEqual(page.upgrade(), 101)
+        who = a.ok("status")["who"]
+        self.assertEqual([(x["client"], x["name"], x["from"]) for x in who],
+                         [(mine, "Ann \u2766", "this computer"), (theirs, "Bob", "127.0.0.1"), (who[-1]["client"], "", "127.0.0.1")])
+        said = self.ok("status", "--socket", s.where["socket"]).stdout
+        for line in (f"  {mine} Ann \u2766 from this computer\n", f"  {theirs} Bob from 127.0.0.1\n", f"  {who[-1]['client']} from 127.0.0.1\n"):
+            self.assertIn(line, said)
+        self.assertEqual(json.loads(self.ok("status", "--socket", s.where["socket"], "--format", "json").stdout)["who"][:3], who)
+        self.check_error(a.error("hello", name="a\x1bb"), -32602, "name")
+
+    def test_the_options_are_those_of_the_schema(self):
+        c = self.serve(config="[defaults]\nsoa = 0.06\n").client()
+        rows = {x["name"]: x for x in c.ok("options")["options"]}
+        self.assertEqual(set(rows), set(MESSAGE.schema["$defs"]["options"]["properties"]))
+        self.assertEqual((rows["soa"]["default"], rows["level_dbfs"]["default"]), (0.06, -12))
 
 
 if __name__ == "__main__":
