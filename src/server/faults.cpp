@@ -165,12 +165,18 @@ double need_number(const json& params, const char* name, detail::bounds b)
     return number(*v, name, b);
 }
 
+double whole(const json& v, const std::string& what, detail::bounds b)
+{
+    const double n = number(v, what, b);
+    if (n != std::floor(n))
+        bad_param(what, fmt::format("{} is no whole number", n));
+    return n;
+}
+
 std::uint32_t need_stroke(const json& params)
 {
-    const double n = need_number(params, "stroke", {0, 4294967295.0});
-    if (n != std::floor(n))
-        bad_param("stroke", fmt::format("{} is no whole number", n));
-    return static_cast<std::uint32_t>(n);
+    static_cast<void>(need_number(params, "stroke", {0, 4294967295.0}));
+    return static_cast<std::uint32_t>(whole(params["stroke"], "stroke", {0, 4294967295.0}));
 }
 
 const std::string& text(const json& v, const std::string& what)

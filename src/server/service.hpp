@@ -139,6 +139,7 @@ private:
         std::size_t bytes = 0;
         bool play = false;
         stop_mark asked = {};
+        view_choice view = {};
         double steps = 0.0; ///< see planning_work; 0 until its text is read
     };
 
@@ -185,6 +186,7 @@ private:
     void next_job(planner_lane& lane);
     void keep_jobs(client_number number);
     void refuse_jobs();
+    std::string answer_text(const planned& p, const view_choice& view) const;
     void post_job(planner_lane& lane, plan_job j);
     void job_done(planner_lane& lane, const plan_job& job, std::shared_ptr<planned> p,
                   std::vector<score> scores, std::string text, std::optional<net::rpc_fault> fault);

@@ -8,6 +8,7 @@
 
 #include "server/service_impl.hpp"
 #include "server/stroke_options.hpp"
+#include "server/view/view.hpp"
 
 namespace tactor::server {
 namespace {
@@ -54,11 +55,14 @@ service::planner_lane& service::lane_for(const plan_job& j) noexcept
 
 void service::plan_or_play(client& c, json&& params, const answer& to, bool play, std::size_t bytes)
 {
-    allow_only(params, {"stroke", "path", "points", "toml", "csv", "svg", "options", "start"});
+    if (play)
+        allow_only(params, {"stroke", "path", "points", "toml", "csv", "svg", "options", "start"});
+    else
+        allow_only(params, {"stroke", "path", "points", "toml", "csv", "svg", "options", "start", "view",
+                            "bins", "observer"});
     bytes = std::max(bytes, estimate_source_bytes(params[find_source(params)]));
     static_cast<void>(read_start(member(params, "start"), options_.now_ns()));
-    if (const json* o = member(params, "options"))
-        static_cast<void>(with_options(options_.plans.owner, *o, options_for::planned));
+    static_cast<void>(settle_options(options_.plans.owner, params));
     if (closing_)
         no_stream("the server ends");
     check_free_place(c);
@@ -71,6 +75,7 @@ void service::plan_or_play(client& c, json&& params, const answer& to, bool play
     ++c.coming;
     const json* start = member(params, "start");
     plan_job job{to, {}, start == nullptr ? json("now") : *start, bytes, play, mark(c)};
+    job.view = read_view(params);
     job.params = std::move(params);
     note_busy();
     queue_job(c.number, std::move(job));
@@ -142,7 +147,10 @@ bool service::weigh(plan_job& j, const planner_lane& in, const planning_work& w)
     constexpr double burst_bytes = 256.0;
     const service_limits& l = options_.limits;
     j.steps = w.steps;
-    if (!j.play && (w.bursts + w.samples) * text_bytes > static_cast<double>(l.max_unread_bytes) / 2.0)
+    const double least_bytes = j.view.kind == view_kind::full
+                                   ? (w.bursts + w.samples) * text_bytes
+                                   : least_view_bytes(j.view, w, options_.plans.tactors.tactors.size());
+    if (!j.play && least_bytes > static_cast<double>(l.max_unread_bytes) / 2.0)
         throw fault_error(too_large_to_send());
     if (w.bursts * burst_bytes > static_cast<double>(l.max_all_unread_bytes))
         limit_reached("max_all_unread_bytes",
@@ -160,6 +168,14 @@ void service::move_up(planner_lane& from, plan_job&& j)
     const client_number number = j.to.all->to;
     queue_job(find(number) != nullptr ? number : nobody, std::move(j));
     next_job(from);
+}
+
+// Returns the answer to plan. Throws std::bad_alloc if it is too large to be sent.
+std::string service::answer_text(const planned& p, const view_choice& view) const
+{
+    const std::size_t most = options_.limits.max_unread_bytes / 2;
+    return view.kind == view_kind::full ? on_one_line(options_.plan_text(p, most))
+                                        : view_text(p, options_.plans.tactors, view, most);
 }
 
 void service::post_job(planner_lane& lane, plan_job j)
@@ -185,7 +201,7 @@ void service::post_job(planner_lane& lane, plan_job j)
                 scores.push_back(p->make_score(options_.plans.tactors, i));
             }
             if (!job->play)
-                text = on_one_line(options_.plan_text(*p, options_.limits.max_unread_bytes / 2));
+                text = answer_text(*p, job->view);
         } catch (const std::bad_alloc&) {
             fault = too_large_to_send();
         } catch (...) {

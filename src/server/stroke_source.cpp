@@ -22,6 +22,9 @@ using net::json;
 constexpr double rounding_db = 1e-9;
 constexpr double moving = 4.0;           // time of a burst that `compensate` moves, against another
 constexpr double tactors_a_step = 128.0; // that a phantom model looks at in the time of a step
+constexpr double checked = 0.05;         // time of a sample whose intensity alone is looked at
+constexpr double predicted = 0.2;        // time of a millisecond of a prediction
+constexpr double again = 2.0;            // samples that a prediction reads for one of a plan
 constexpr double crossings = 4.0;        // of a grid's lines in one pitch of a path, at most
 constexpr double least_soa_s = 0.0001;
 constexpr double least_pitch_mm = 1.0;
@@ -183,10 +186,13 @@ void check_level(const planning& with, const options::wishes& s, double intensit
               "ask for less");
 }
 
-planning_work estimate_work(const std::vector<stroke>& strokes, const options::wishes& s, const layout& faces)
+planning_work estimate_work(const std::vector<stroke>& strokes, const options::wishes& s, const layout& faces,
+                            const view_choice& view)
 {
     planning_work w;
+    double felt = 0.0;
     for (const stroke& k : strokes) {
+        felt += k.motion.duration_s() / percept_step_s;
         switch (k.choices.algorithm.value_or(s.plan.algorithm)) {
         case algorithm_kind::park2016:
             w.bursts += park_bursts(k, s.plan);
@@ -200,7 +206,12 @@ planning_work estimate_work(const std::vector<stroke>& strokes, const options::w
         }
     }
     const double wide = 1.0 + static_cast<double>(faces.places().size()) / tactors_a_step;
-    w.steps = (w.samples + w.bursts * (s.compensate ? moving : 1.0)) * wide;
+    double samples = w.samples;
+    if (view.kind == view_kind::bursts)
+        samples = std::min(samples, most_view_rows) + samples * checked;
+    if (view.kind == view_kind::percept)
+        samples = felt * predicted + samples * again;
+    w.steps = (samples + w.bursts * (s.compensate ? moving : 1.0)) * wide;
     return w;
 }
 
@@ -235,11 +246,10 @@ planned make_planned(const planning& with, const layout& faces, const json& para
                      const planning_checks& checks)
 {
     const std::string source = find_source(params);
-    const json* options = member(params, "options");
-    const options::wishes s =
-        options == nullptr ? with.owner : with_options(with.owner, *options, options_for::planned);
+    const options::wishes s = settle_options(with.owner, params);
     try {
         planned p{source, read_strokes(source, params[source], s), {}, s.render};
+        p.observer = {s.observer, s.low_speed};
         if (source == "stroke")
             p.name = p.strokes.front().name;
         check_count(with, p.strokes.size());
@@ -249,7 +259,7 @@ planned make_planned(const planning& with, const layout& faces, const json& para
             if (checks.go_on)
                 checks.go_on();
         };
-        if (checks.weigh && !checks.weigh(estimate_work(p.strokes, s, faces)))
+        if (checks.weigh && !checks.weigh(estimate_work(p.strokes, s, faces, read_view(params))))
             return p;
         for (const stroke& k : p.strokes) {
             between();

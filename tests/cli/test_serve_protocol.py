@@ -102,6 +102,37 @@ class Protocol(ServeTest):
                          self.plan("park2016-3", "--phantom", "barycentric"))
         self.check_error(c.error("plan", path="M 0 0 L 40 40", options={"algorithm": "continuous", "duration": 600}), -32001)
 
+    def test_a_view_shows_a_part_of_the_plan(self):
+        c = self.serve(config='[defaults]\nobserver = "low-speed"\n').client()
+        for algorithm in ("park2016", "tactile-brush", "continuous"):
+            line = {"path": "M 0 0 L 40 40", "options": {"algorithm": algorithm, "duration": 1.5}}
+            plan, v = c.ok("plan", **line), c.ok("plan", **line, view="bursts")
+            rows = plan["continuous"]["points"][:-1] if v["continuous"] else plan["bursts"]
+            self.assertEqual(v["continuous"], algorithm == "continuous")
+            self.assertEqual(v["onsets"], [round(r.get("onset_s", r.get("t_s")), 5) for r in rows])
+            self.assertEqual(v["positions"], [round(r[x], 3) for r in rows for x in ("x_mm", "y_mm")])
+            for i, r in enumerate(rows):
+                on = {d["tactor"]: d["amplitude"] for d in r["drives"]}
+                for k, a in enumerate(v["amplitudes"][9 * i:9 * i + 9]):
+                    self.assertAlmostEqual(a, on.get(k, 0), delta=0.51e-4)
+            for observer in ("centroid", None):
+                v = c.ok("plan", **line, view="percept", **({"observer": observer} if observer else {}))
+                self.assertEqual(v["observer"], observer or "low-speed")
+                row = json.loads(self.ok("compare", "--path", line["path"], "--duration", 1.5, "--algorithm", algorithm, "--phantom",
+                                         "inverse-distance", "--observer", v["observer"], "--format", "json").stdout)["results"][0]
+                self.assertEqual(v["errors"], {k: row[k] for k in v["errors"]})
+        v = c.ok("plan", **LONG, view="peaks", bins=100)
+        self.assertEqual((v["step_s"], len(v["peaks"]), max(v["peaks"])), (3.0, 900, 1.0))
+        for what, params in (("view", {"view": "all"}), ("bins", {"view": "peaks", "bins": 4001}), ("bins", {"bins": 9}),
+                             ("observer", {"observer": "centroid"}), ("observer", {"view": "percept", "observer": "me"})):
+            self.check_error(c.error("plan", **SHORT, **params), -32602, what)
+        for what, value in (("view", "full"), ("bins", 9), ("observer", "centroid")):
+            self.check_error(c.error("play", **SHORT, **{what: value}), -32602, what)
+        # Views of a plan that is too large as a whole.
+        long = {"path": "M 0 0 L 40 40", "options": {"algorithm": "continuous", "duration": 600}}
+        self.check_error(c.error("plan", **long), -32001, "plan")
+        self.assertEqual(len(c.ok("plan", **long, view="bursts")["onsets"]), 2000)
+
     def test_bad_strokes_and_options_name_their_parameter(self):
         c = self.serve().client()
         path = "M 0 0 L 40 40"

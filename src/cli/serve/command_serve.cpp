@@ -237,8 +237,8 @@ std::function<void(server::stream_state, const std::string&)> make_owner_log()
 
 int serve(settings& s, const serve_options& o)
 {
-    // [defaults] hold for strokes, unless a client gives other options.
-    s.place |= options::on_play;
+    // [defaults] hold for strokes and predictions, unless a client gives other options.
+    s.place |= options::on_play | options::on_compare;
     const environment e = session::read_environment(s);
     const session::stream_options& play = s.stream;
     const options::serve_settings serve = settle_serve(o, e.serve);
