@@ -49,11 +49,22 @@ void service::pending::give(std::size_t at, std::string reply, const std::vector
     if (c != nullptr) {
         --c->unanswered;
         std::string all;
-        for (const place& one : places)
-            if (one.wanted)
-                all += (all.empty() ? "" : ",") + one.reply;
-        if (!all.empty())
-            c->link->send(batch ? "[" + all + "]" : all);
+        bool large = false;
+        for (place& one : places) {
+            if (!one.wanted)
+                continue;
+            large = large || one.large;
+            if (batch)
+                all += (all.empty() ? "[" : ",") + one.reply;
+            else
+                all = std::move(one.reply);
+        }
+        if (batch && !all.empty())
+            all += ']';
+        if (large)
+            c->link->send_large(std::move(all));
+        else if (!all.empty())
+            c->link->send(std::move(all));
     }
     owner.release(numbers);
     owner.check_all_sent(to);
@@ -64,12 +75,18 @@ void service::answer::result(reply_json r, const std::vector<std::uint32_t>& str
     all->give(at, net::json_line(net::result_reply(all->places[at].id, std::move(r))), strokes);
 }
 
-void service::answer::result_text(const std::string& r) const
+std::string service::answer::write_reply(std::string_view result) const
 {
-    all->give(at,
-              fmt::format(R"({{"jsonrpc":"2.0","id":{},"result":{}}})",
-                          net::json_line(reply_json(all->places[at].id)), r),
-              {});
+    std::string reply =
+        fmt::format(R"({{"jsonrpc":"2.0","id":{},"result":)", net::json_line(reply_json(all->places[at].id)));
+    reply.reserve(reply.size() + result.size() + 2); // with the end of a line: it may be large
+    return reply.append(result).append("}");
+}
+
+void service::answer::whole_reply(std::string reply, bool large) const
+{
+    all->places[at].large = large;
+    all->give(at, std::move(reply), {});
 }
 
 void service::answer::fault(const net::rpc_fault& f) const
@@ -259,13 +276,15 @@ void service::handle(client& c, net::rpc_request& r, const answer& to, std::size
         throw fault_error({net::code_no_token, "token", "token", "hello with the token comes first", ""});
     if (r.method == "play" || r.method == "plan")
         return plan_or_play(c, std::move(r.params), to, r.method == "play", bytes);
+    if (r.method == "import")
+        return import_file(c, std::move(r.params), to, bytes);
     for (const auto& [name, handle] : handlers)
         if (name == r.method)
             return (this->*handle)(c, r.params, to);
     throw fault_error({net::code_no_method, "bad-input", "method",
                        fmt::format("there is no \"{}\"", r.method),
                        "one of hello, play, plan, cancel, stop, fire, begin, to, end, drive, status, "
-                       "subscribe, options"});
+                       "subscribe, options, import"});
 }
 
 bool service::input_ended(client_number number)

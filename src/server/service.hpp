@@ -48,6 +48,9 @@ struct service_limits {
     std::size_t max_all_unfinished_bytes = 32U << 20; ///< of incomplete messages of all
 };
 
+/// Most bytes of an exported file, and of the result of an import.
+inline constexpr std::size_t most_file_bytes = 64U << 20;
+
 using client_number = std::uint64_t;
 
 /// The way to a client. Its finish() must not call the service back at once, which may be in the middle of
@@ -120,8 +123,10 @@ private:
 
         /// Gives the result. `strokes`: new ones, whose notifications are sent from now on.
         void result(reply_json r, const std::vector<std::uint32_t>& strokes = {}) const;
-        /// Gives a result that is JSON text already, on one line.
-        void result_text(const std::string& r) const;
+        /// Returns the reply with a result that is JSON text already, on one line. Any thread.
+        std::string write_reply(std::string_view result) const;
+        /// Gives what write_reply() returned. `large`: it may be longer than what waits for a client.
+        void whole_reply(std::string reply, bool large) const;
         void fault(const net::rpc_fault& f) const;
     };
 
@@ -134,13 +139,15 @@ private:
 
     struct plan_job {
         answer to;
-        net::json params; ///< params of play and plan; freed when it is planned
+        net::json params = {}; ///< freed when they are planned or made
         net::json start = "now";
         std::size_t bytes = 0;
         bool play = false;
         stop_mark asked = {};
         view_choice view = {};
         double steps = 0.0; ///< see planning_work; 0 until its text is read
+        /// Makes the result of import or export, in place of a plan. Empty: too much work for its lane.
+        std::function<std::string(const net::json& params, const planning_checks&)> make_text = {};
     };
 
     /// Requests that wait to be planned, and the thread that plans them.
@@ -179,18 +186,23 @@ private:
 
     // service_jobs.cpp
     void plan_or_play(client& c, net::json&& params, const answer& to, bool play, std::size_t bytes);
+    void admit_job(client& c, plan_job j);
     planner_lane& lane_for(const plan_job& j) noexcept;
     bool weigh(plan_job& j, const planner_lane& in, const planning_work& w);
     void move_up(planner_lane& from, plan_job&& j);
     void queue_job(client_number number, plan_job j);
     void next_job(planner_lane& lane);
     void keep_jobs(client_number number);
+    void forget_job(const plan_job& j);
     void refuse_jobs();
     std::string answer_text(const planned& p, const view_choice& view) const;
     void post_job(planner_lane& lane, plan_job j);
     void job_done(planner_lane& lane, const plan_job& job, std::shared_ptr<planned> p,
                   std::vector<score> scores, std::string text, std::optional<net::rpc_fault> fault);
     void submit_all(const plan_job& job, const planned& p, const std::vector<score>& scores);
+
+    // service_files.cpp
+    void import_file(client& c, net::json&& params, const answer& to, std::size_t bytes);
 
     // service_strokes.cpp
     void drive(client& c, const net::json& params, const answer& to);

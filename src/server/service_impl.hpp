@@ -72,6 +72,7 @@ struct service::pending {
         net::json id = nullptr;
         bool wanted = false;
         bool given = false;
+        bool large = false; ///< the reply may be longer than what waits for a client
         std::string reply = {};
     };
 

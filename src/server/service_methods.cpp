@@ -38,9 +38,6 @@ reply_json service::hello_result(const client& c)
 {
     const stream_setup& s = stream_.setup();
     const bool seen = s.buffer_frames != 0 && stream_.number() != 0;
-    reply_json presets = reply_json::array();
-    for (const std::string& p : stroke_presets())
-        presets.push_back(p);
     return {{"protocol", "tactor/1"},
             {"version", options_.version},
             {"array", options_.array},
@@ -51,7 +48,8 @@ reply_json service::hello_result(const client& c)
               {"period_frames", s.period_frames},
               {"latency_s", static_cast<double>(s.buffer_frames) / s.rate},
               {"pcm", s.name}}},
-            {"presets", presets},
+            {"presets", stroke_presets()},
+            {"shapes", stroke_shapes()},
             {"clock", {{"monotonic_s", seconds(options_.now_ns())}, {"unix_s", seconds(unix_ns())}}},
             {"max_level_dbfs", options_.plans.max_level_dbfs},
             {"client", c.number}};

@@ -72,22 +72,6 @@ bool is_shape(const std::string& name)
     return std::find(shapes.begin(), shapes.end(), name) != shapes.end();
 }
 
-std::vector<stroke> read_strokes(const std::string& source, const json& v, const options::wishes& s)
-{
-    if (source == "points")
-        return read_points(v);
-    const std::string& t = text(v, source);
-    if (source == "stroke")
-        return {is_shape(t) ? shape_stroke(t) : preset_stroke(t)};
-    if (source == "path")
-        return {stroke_of_path(t, s)};
-    if (source == "toml")
-        return parse_strokes_toml(t, source);
-    if (source == "csv")
-        return parse_strokes_csv(t, source);
-    return parse_strokes_svg(t, source);
-}
-
 void check_duration(const planning& with, double seconds)
 {
     if (seconds > with.max_stroke_s)
@@ -148,6 +132,33 @@ double park_bursts(const stroke& k, const plan_options& o)
 }
 
 } // namespace
+
+std::vector<stroke> read_strokes(const std::string& source, const json& v, const options::wishes& s)
+{
+    if (source == "points")
+        return read_points(v);
+    const std::string& t = text(v, source);
+    if (source == "stroke")
+        return {is_shape(t) ? shape_stroke(t) : preset_stroke(t)};
+    if (source == "path")
+        return {stroke_of_path(t, s)};
+    if (source == "toml")
+        return parse_strokes_toml(t, source);
+    if (source == "csv")
+        return parse_strokes_csv(t, source);
+    return parse_strokes_svg(t, source);
+}
+
+std::vector<stroke> settle_strokes(const planning& with, const layout& faces, std::vector<stroke> strokes,
+                                   const options::wishes& s, bool fit)
+{
+    check_count(with, strokes.size());
+    strokes = apply_fits(std::move(strokes), faces);
+    if (fit)
+        strokes = fit_strokes(strokes, faces).strokes;
+    place_strokes(with, s, strokes);
+    return strokes;
+}
 
 const char* find_source(const json& params)
 {
@@ -252,9 +263,7 @@ planned make_planned(const planning& with, const layout& faces, const json& para
         p.observer = {s.observer, s.low_speed};
         if (source == "stroke")
             p.name = p.strokes.front().name;
-        check_count(with, p.strokes.size());
-        p.strokes = apply_fits(std::move(p.strokes), faces);
-        place_strokes(with, s, p.strokes);
+        p.strokes = settle_strokes(with, faces, std::move(p.strokes), s, false);
         const auto between = [&] {
             if (checks.go_on)
                 checks.go_on();

@@ -48,6 +48,15 @@ struct planned {
     score make_score(const array& a, std::size_t i) const;
 };
 
+/// Reads the strokes that a parameter says, as parse_strokes_toml() and its kin do. \throws error,
+/// fault_error.
+std::vector<stroke> read_strokes(const std::string& source, const net::json& v, const options::wishes& s);
+
+/// Returns the strokes on the array, each with its pace: those that ask for it fitted, and with `fit` all of
+/// them together. \throws fault_error if there are too many or if they last too long; error.
+std::vector<stroke> settle_strokes(const planning& with, const layout& faces, std::vector<stroke> strokes,
+                                   const options::wishes& s, bool fit);
+
 /// Returns the one parameter of these that says what is drawn: "stroke", "path", "points", "toml", "csv" or
 /// "svg". \throws fault_error for none or several.
 const char* find_source(const net::json& params);

@@ -12,7 +12,7 @@ from websocket import Peer
 class Protocol(ServeTest):
     def test_hello_has_the_versions(self):
         r = self.serve().client().ok("hello")
-        self.assertEqual(list(r), ["protocol", "version", "array", "stream", "presets", "clock", "max_level_dbfs", "client"])
+        self.assertEqual(list(r), ["protocol", "version", "array", "stream", "presets", "shapes", "clock", "max_level_dbfs", "client"])
         self.assertEqual(set(r["stream"]), {"rate", "channels", "format", "period_frames", "latency_s", "pcm"})
         self.assertEqual(r["array"], self.plan("park2016-1")["array"])
         self.assertEqual((r["stream"]["pcm"], r["stream"]["channels"], r["max_level_dbfs"]), ("null", 9, -12.0))
@@ -52,7 +52,7 @@ class Protocol(ServeTest):
 
     def test_missing_parameters_are_empty_ones_for_every_method(self):
         c = self.serve().client()
-        for method in ("hello", "play", "plan", "cancel", "stop", "fire", "begin", "to", "end", "drive", "status", "subscribe", "options"):
+        for method in ("hello", "play", "plan", "cancel", "stop", "fire", "begin", "to", "end", "drive", "status", "subscribe", "options", "import"):
             told = []
             for raw in (b"", b',"params":{}', b',"params":[]', b',"params":null'):
                 c.raw(b'{"jsonrpc":"2.0","id":1,"method":"%s"%s}\n' % (method.encode(), raw))
