@@ -109,7 +109,7 @@ class Context {
   createGain() { const gain = new Param(); this.gains.push(gain); return {gain, connect: to => to}; }
   createStereoPanner() { const pan = new Param(); this.places.push(pan); return {pan, connect: to => to}; }
   createOscillator() { ++this.oscillators; return {frequency: this.frequency = new Param(), connect: to => to, start() {}}; }
-  resume() {}
+  async resume() {}
   close() { this.closed = true; }
 }
 

@@ -44,7 +44,7 @@ export function start_loudspeaker(plan, at_s = 0, options = {}) {
     }
   };
   const timer = setInterval(schedule, 1000 * SOUND_CHECK_S);
-  context.resume();
+  context.resume().catch(() => {}); // stopped before it could start
   schedule();
   return {stop, now_s: () => Math.min(plan.total_s, Math.max(at_s, elapsed_s() - (context.outputLatency || 0)))};
 }
