@@ -139,7 +139,8 @@ private:
         bool play = false;
         stop_mark asked = {};
         view_choice view = {};
-        double steps = 0.0; ///< see planning_work; 0 until its text is read
+        std::optional<double> draft = {}; ///< its number
+        double steps = 0.0;               ///< see planning_work; 0 until its text is read
     };
 
     /// Requests that wait to be planned, and the thread that plans them.
@@ -182,6 +183,9 @@ private:
     void queue_job(client_number number, plan_job j);
     void next_job(planner_lane& lane);
     void keep_jobs(client_number number);
+    bool outdate_drafts(client_number number, plan_job& j);
+    void uncount(const plan_job& j);
+    void refuse(const plan_job& j, const net::rpc_fault& f);
     void refuse_jobs();
     std::string answer_text(const planned& p, const view_choice& view) const;
     void post_job(planner_lane& lane, plan_job j);
