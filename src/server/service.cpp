@@ -319,9 +319,9 @@ void service::disconnect(client_number number)
     input_ended(number);
     client& c = *found->second;
     c.levels_timer.cancel();
-    keep_jobs(number);
     const auto kept = std::move(found->second); // its answers look for it, and find nobody
     clients_.erase(found);
+    keep_jobs(number);
     gather_levels();
     note_busy();
 }

@@ -145,7 +145,8 @@ private:
         bool play = false;
         stop_mark asked = {};
         view_choice view = {};
-        double steps = 0.0; ///< see planning_work; 0 until its text is read
+        std::optional<double> draft = {}; ///< its number
+        double steps = 0.0;               ///< see planning_work; 0 until its text is read
         /// Makes the result of import or export, in place of a plan. Empty: too much work for its lane.
         std::function<std::string(const net::json& params, const planning_checks&)> make_text = {};
     };
@@ -194,6 +195,9 @@ private:
     void next_job(planner_lane& lane);
     void keep_jobs(client_number number);
     void forget_job(const plan_job& j);
+    bool outdate_drafts(client_number number, plan_job& j);
+    void uncount(const plan_job& j);
+    void refuse(const plan_job& j, const net::rpc_fault& f);
     void refuse_jobs();
     std::string answer_text(const planned& p, const view_choice& view) const;
     void post_job(planner_lane& lane, plan_job j);

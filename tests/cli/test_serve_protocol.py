@@ -123,10 +123,11 @@ class Protocol(ServeTest):
                 self.assertEqual(v["errors"], {k: row[k] for k in v["errors"]})
         v = c.ok("plan", **LONG, view="peaks", bins=100)
         self.assertEqual((v["step_s"], len(v["peaks"]), max(v["peaks"])), (3.0, 900, 1.0))
-        for what, params in (("view", {"view": "all"}), ("bins", {"view": "peaks", "bins": 4001}), ("bins", {"bins": 9}),
+        self.assertEqual(c.ok("plan", **SHORT, view="bursts", draft=7)["strokes"][0]["count"], 50)
+        for what, params in (("draft", {"draft": -1}), ("view", {"view": "all"}), ("bins", {"view": "peaks", "bins": 4001}), ("bins", {"bins": 9}),
                              ("observer", {"observer": "centroid"}), ("observer", {"view": "percept", "observer": "me"})):
             self.check_error(c.error("plan", **SHORT, **params), -32602, what)
-        for what, value in (("view", "full"), ("bins", 9), ("observer", "centroid")):
+        for what, value in (("view", "full"), ("draft", 1), ("bins", 9), ("observer", "centroid")):
             self.check_error(c.error("play", **SHORT, **{what: value}), -32602, what)
         # Views of a plan that is too large as a whole.
         long = {"path": "M 0 0 L 40 40", "options": {"algorithm": "continuous", "duration": 600}}
