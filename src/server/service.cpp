@@ -82,7 +82,8 @@ service::service(boost::asio::io_context& io, service_options o, stream_options 
       quiet_(io),
       options_(std::move(o)),
       faces_(options_.plans.tactors),
-      stream_(io, with_handlers(std::move(s)))
+      stream_(io, with_handlers(std::move(s))),
+      touch_timer_(io)
 {
 }
 
@@ -137,8 +138,6 @@ client_number service::connect(std::shared_ptr<client_link> link, client_kind k,
     c->admitted = k == client_kind::local || k == client_kind::datagram || options_.token.empty();
     // A WebSocket has shown its origin, and datagrams come only from accepted peers.
     c->greeted = k != client_kind::network;
-    c->points = options_.limits.max_points_per_s;
-    c->points_ns = options_.now_ns();
     clients_.emplace(last_client_, std::move(c));
     return last_client_;
 }
@@ -304,6 +303,7 @@ void service::disconnect(client_number number)
     const auto kept = std::move(found->second); // its answers look for it, and find nobody
     clients_.erase(found);
     gather_levels();
+    count_touch_listeners();
     note_busy();
 }
 
@@ -320,6 +320,7 @@ void service::close(std::function<void()> done)
     closing_ = true;
     refuse_jobs();
     stream_.close(std::move(done));
+    tell_stop(0);
 }
 
 } // namespace tactor::server
