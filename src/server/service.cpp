@@ -99,7 +99,8 @@ service::service(boost::asio::io_context& io, service_options o, stream_options 
       quiet_(io),
       options_(std::move(o)),
       faces_(options_.plans.tactors),
-      stream_(io, with_handlers(std::move(s)))
+      stream_(io, with_handlers(std::move(s))),
+      touch_timer_(io)
 {
 }
 
@@ -154,8 +155,6 @@ client_number service::connect(std::shared_ptr<client_link> link, client_kind k,
     c->admitted = k == client_kind::local || k == client_kind::datagram || options_.token.empty();
     // A WebSocket has shown its origin, and datagrams come only from accepted peers.
     c->greeted = k != client_kind::network;
-    c->points = options_.limits.max_points_per_s;
-    c->points_ns = options_.now_ns();
     clients_.emplace(last_client_, std::move(c));
     return last_client_;
 }
@@ -323,6 +322,7 @@ void service::disconnect(client_number number)
     clients_.erase(found);
     keep_jobs(number);
     gather_levels();
+    count_touch_listeners();
     note_busy();
 }
 
@@ -339,6 +339,7 @@ void service::close(std::function<void()> done)
     closing_ = true;
     refuse_jobs();
     stream_.close(std::move(done));
+    tell_stop(0);
 }
 
 } // namespace tactor::server

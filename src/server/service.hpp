@@ -3,6 +3,7 @@
 /// The service without its sockets: clients, their strokes, and notifications.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <cstdint>
@@ -12,8 +13,10 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include <boost/asio/io_context.hpp>
@@ -52,6 +55,23 @@ struct service_limits {
 inline constexpr std::size_t most_file_bytes = 64U << 20;
 
 using client_number = std::uint64_t;
+
+/// Number of things that may be done at once. It comes back within a second.
+struct allowance {
+    double left = std::numeric_limits<double>::infinity();
+    std::int64_t at_ns = 0;
+
+    /// Takes `n` of at most `per_s`. Returns false if fewer are left.
+    bool take(double n, double per_s, std::int64_t now_ns) noexcept
+    {
+        left =
+            std::min(per_s, left + static_cast<double>(now_ns - std::exchange(at_ns, now_ns)) * 1e-9 * per_s);
+        if (left < n)
+            return false;
+        left -= n;
+        return true;
+    }
+};
 
 /// The way to a client. Its finish() must not call the service back at once, which may be in the middle of
 /// something.
@@ -182,7 +202,6 @@ private:
     void send_levels(client_number number);
     void gather_levels();
     reply_json hello_result(const client& c);
-    reply_json people() const;
     reply_json limits_json() const;
 
     // service_jobs.cpp
@@ -227,8 +246,17 @@ private:
     void begin_now(client& c, const live_options& o, const answer& to, const char* ended_by);
     void to(client& c, const net::json& params, const answer& to);
     void end(client& c, const net::json& params, const answer& to);
-    bool take_point(client& c);
     stroke_record& own_live(client& c, std::uint32_t number);
+
+    // service_people.cpp
+    reply_json people() const;
+    void tell_subscribers(const std::string& event, reply_json params, client_number except = 0);
+    void count_touch_listeners();
+    void touch(stroke_record& r);
+    void touch_later(std::uint32_t stroke);
+    void end_touch(stroke_record& r);
+    void tell_touch(const stroke_record& r, bool down);
+    void tell_stop(client_number by);
 
     // service_ends.cpp
     stroke_record& add_record(client_number owner);
@@ -256,6 +284,10 @@ private:
     std::uint32_t last_stroke_ = 0;
     std::uint64_t stops_ = 0;
     client_number stopped_by_ = 0; ///< client of the last stop
+    boost::asio::steady_timer touch_timer_;
+    std::set<std::uint32_t> touches_due_ = {}; ///< live strokes whose last place others were not told
+    allowance touches_ = {};
+    std::size_t touch_listeners_ = 0;
     std::size_t planning_bytes_ = 0;
     std::size_t jobs_ = 0;
     bool closing_ = false;

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: MIT
 // hello, status, options, subscribe and what follows from it.
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <tactor/stroke.hpp>
 
@@ -20,8 +22,7 @@ using net::reply_json;
 
 constexpr unsigned most_wrong_tokens = 3;
 constexpr double most_levels_hz = 100.0;
-// A client that has more than this to read gets levels when it has caught up.
-constexpr std::size_t enough_waiting = 64U << 10;
+constexpr std::array event_names{"strokes", "levels", "stream", "touches", "stops"};
 
 // Compares in a time that does not show how much is right.
 bool same_secret(const std::string& a, const std::string& b)
@@ -128,15 +129,6 @@ reply_json service::status_now()
             {"limits", limits_json()}};
 }
 
-// Lists the clients that are there.
-reply_json service::people() const
-{
-    reply_json who = reply_json::array();
-    for (const auto& [number, c] : clients_)
-        who.push_back({{"client", number}, {"name", c->name}, {"from", c->from}});
-    return who;
-}
-
 void service::list_options(client& /*c*/, const json& params, const answer& to)
 {
     allow_only(params, {});
@@ -147,14 +139,15 @@ void service::subscribe(client& c, const json& params, const answer& to)
 {
     allow_only(params, {"events", "levels_hz"});
     const json* events = member(params, "events");
+    const std::string known = fmt::format("any of {}", fmt::join(event_names, ", "));
     if (events == nullptr || !events->is_array())
         bad_param("events", events == nullptr ? "they are missing" : "they are no list",
-                  R"(any of "strokes", "levels", "stream"; [] ends it)");
+                  known + "; [] ends it");
     std::set<std::string> wanted;
     for (const json& e : *events) {
         const std::string name = text(e, "events");
-        if (name != "strokes" && name != "levels" && name != "stream")
-            bad_param("events", fmt::format("there are no \"{}\"", name), "any of strokes, levels, stream");
+        if (std::find(event_names.begin(), event_names.end(), name) == event_names.end())
+            bad_param("events", fmt::format("there are no \"{}\"", name), known);
         wanted.insert(name);
     }
     const json* hz = member(params, "levels_hz");
@@ -166,6 +159,7 @@ void service::subscribe(client& c, const json& params, const answer& to)
     c.levels.assign(stream_.peaks().size(), 0.0F);
     c.levels_timer.cancel();
     gather_levels();
+    count_touch_listeners();
     if (!c.events.contains("levels"))
         return;
     c.levels_timer.expires_after(std::chrono::nanoseconds(std::llround(1e9 / c.levels_hz)));

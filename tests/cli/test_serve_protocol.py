@@ -329,6 +329,29 @@ class Protocol(ServeTest):
         self.assertEqual(json.loads(self.ok("status", "--socket", s.where["socket"], "--format", "json").stdout)["who"][:3], who)
         self.check_error(a.error("hello", name="a\x1bb"), -32602, "name")
 
+    def test_the_array_s_place_on_the_body_is_told(self):
+        palm = self.write("palm.toml", '[array]\nsite = "left palm"\nup = "fingers"\npreset = "palm-3x3"\n')
+        self.ok("check", "--array", palm, "-D", "null")
+        c = self.serve("--array", palm).client()
+        array = c.ok("hello")["array"]
+        self.assertEqual((array.pop("site"), array.pop("up")), ("left palm", "fingers"))
+        self.assertEqual(array, self.plan("park2016-1", "--array", palm)["array"])
+
+    def test_touches_and_stops_of_others_are_told(self):
+        s = self.serve()
+        draws, looks = s.client(), s.client()
+        me = draws.ok("hello", name="Ann")["client"]
+        looks.ok("subscribe", events=["touches", "stops"])
+        n = draws.ok("begin", timeout_s=3600)["stroke"]
+        draws.ok("to", stroke=n, x_mm=10, y_mm=20)
+        told = looks.notification(lambda m: m["method"] == "touches")["params"]
+        self.assertEqual(told, {"client": me, "stroke": n, "x_mm": 10, "y_mm": 20, "down": True})
+        draws.ok("stop")
+        self.assertEqual(looks.notification(lambda m: m["method"] == "stops")["params"], {"client": me, "name": "Ann"})
+        self.assertEqual(looks.notification(lambda m: m["method"] == "touches")["params"], told | {"down": False})
+        s.process.terminate()
+        self.assertEqual(looks.notification(lambda m: m["method"] == "stops")["params"], {"client": 0, "name": ""})
+
     def test_the_options_are_those_of_the_schema(self):
         c = self.serve(config="[defaults]\nsoa = 0.06\n").client()
         rows = {x["name"]: x for x in c.ok("options")["options"]}
