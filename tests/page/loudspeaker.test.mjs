@@ -5,7 +5,8 @@ import {largest_sum, plan_ramps, ramps_by_slice, slice_gains, start_loudspeaker}
 
 // Makes a plan for tactors 20 mm apart from strokes of rows [onset, duration, amplitude of each tactor].
 function make_plan(count, ...strokes) {
-  const plan = {tactors: Array.from({length: count}, (_, i) => ({x_mm: 20 * i, y_mm: 0})), strokes: [], onsets: [], durations: [], amplitudes: []};
+  const places = Array.from({length: count}, (_, i) => ({x_mm: 20 * i, y_mm: 0}));
+  const plan = {tactors: count, places, strokes: [], onsets: [], durations: [], amplitudes: []};
   for (const {continuous = false, rows} of strokes) {
     plan.strokes.push({first: plan.onsets.length, count: rows.length, continuous});
     for (const [onset, duration, ...amplitudes] of rows) {
@@ -140,9 +141,9 @@ test("tactors are places between left and right", t => {
   assert.deepEqual(start(t, make_plan(1, {rows: [[0, 0.1, 1]]}), 0).context.places.map(p => p.value), [0]);
 });
 
-test("the sum is well below full scale", t => {
-  const {context} = start(t, make_plan(3, {rows: [[0, 0.1, 1, 1, 1]]}), 0);
-  close(context.gains[0].at(8) * 3, 0.25);
+test("the sum is well below full scale, and a gain lowers it only", t => {
+  for (const [gain, largest] of [[undefined, 0.25], [0.1, 0.025], [4, 0.25]])
+    close(start(t, make_plan(3, {rows: [[0, 0.1, 1, 1, 1]]}), 0, {gain}).context.gains[0].at(8) * 3, largest);
 });
 
 test("ten minutes are scheduled bit by bit on the same few nodes, from the middle, too", t => {

@@ -10,17 +10,18 @@ const SOUND_LEVEL = 0.25;    // the largest sample, full scale 1
 
 // Starts at a time of the plan and returns {stop(), now_s()}; now_s() is the time of the plan that is heard. Call it from a
 // user's gesture: browsers allow sound only then.
-//   plan: what the method `plan` gives for the view "bursts", its `tactors` replaced by the array's [{x_mm, y_mm}, ...]
-//   options: carrier_hz (250); ended, a function that is called at the end of the plan, but not after stop(); context, the AudioContext
+//   plan: what the method `plan` gives for the view "bursts", and its `places`: the array's tactors, [{x_mm, y_mm}, ...]
+//   options: carrier_hz (250); gain (1, at most); ended, called at the end of the plan, but not after stop(); context, the AudioContext
 export function start_loudspeaker(plan, at_s = 0, options = {}) {
   const context = options.context ?? new AudioContext();
   const ramps = plan_ramps(plan), slices = ramps_by_slice(ramps);
   const begin = context.currentTime + SOUND_START_S;
   const master = context.createGain();
   master.gain.setValueAtTime(0, begin);
-  master.gain.linearRampToValueAtTime(SOUND_LEVEL / Math.max(1, largest_sum(plan, ramps)), begin + SOUND_ENVELOPE_S);
+  const level = SOUND_LEVEL * Math.min(1, options.gain ?? 1) / Math.max(1, largest_sum(plan, ramps));
+  master.gain.linearRampToValueAtTime(level, begin + SOUND_ENVELOPE_S);
   master.connect(context.destination);
-  const gains = connect_tactors(context, plan.tactors, options.carrier_hz ?? 250, master);
+  const gains = connect_places(context, plan.places, options.carrier_hz ?? 250, master);
   const elapsed_s = () => at_s + context.currentTime - begin;
   let next_s = at_s, stopped = false;
   const stop = () => {
@@ -49,16 +50,16 @@ export function start_loudspeaker(plan, at_s = 0, options = {}) {
   return {stop, now_s: () => Math.min(plan.total_s, Math.max(at_s, elapsed_s() - (context.outputLatency || 0)))};
 }
 
-// Connects one oscillator through a gain and a place for each tactor; returns the gains.
-function connect_tactors(context, tactors, carrier_hz, master) {
+// Connects one oscillator through a gain and a panner for each tactor; returns the gains.
+function connect_places(context, places, carrier_hz, master) {
   const carrier = context.createOscillator();
   carrier.frequency.value = carrier_hz;
-  const xs = tactors.map(t => t.x_mm), left = Math.min(...xs), width = Math.max(...xs) - left;
-  const gains = tactors.map(({x_mm}) => {
-    const gain = context.createGain(), place = context.createStereoPanner();
+  const xs = places.map(p => p.x_mm), left = Math.min(...xs), width = Math.max(...xs) - left;
+  const gains = places.map(({x_mm}) => {
+    const gain = context.createGain(), panner = context.createStereoPanner();
     gain.gain.value = 0;
-    place.pan.value = width > 0 ? 2 * (x_mm - left) / width - 1 : 0;
-    carrier.connect(gain).connect(place).connect(master);
+    panner.pan.value = width > 0 ? 2 * (x_mm - left) / width - 1 : 0;
+    carrier.connect(gain).connect(panner).connect(master);
     return gain.gain;
   });
   carrier.start();
@@ -106,10 +107,10 @@ export function ramps_by_slice(ramps) {
 // Returns the gains of each tactor from one time to another as [[t_s, gain], ...], linear between them, and [] for a silent tactor.
 // Only ramps of the slice are needed. Strokes at once add up.
 export function slice_gains(plan, ramps, from_s, to_s) {
-  return plan.tactors.map((_, tactor) => {
+  return Array.from({length: plan.tactors}, (_, tactor) => {
     const turns = [];   // [time, change of the slope]
     for (const {row, times: [a, b, c, d]} of ramps) {
-      const amplitude = plan.amplitudes[row * plan.tactors.length + tactor];
+      const amplitude = plan.amplitudes[row * plan.tactors + tactor];
       if (amplitude > 0) turns.push([a, amplitude / (b - a)], [b, amplitude / (a - b)], [c, amplitude / (c - d)], [d, amplitude / (d - c)]);
     }
     if (!turns.length) return [];
@@ -129,10 +130,9 @@ export function slice_gains(plan, ramps, from_s, to_s) {
 
 // Returns the largest sum of the tactors' gains at any time: they have one carrier, and may all meet on one side.
 export function largest_sum(plan, ramps) {
-  const count = plan.tactors.length;
   const changes = ramps.flatMap(({row, times: [a, b, c, d]}) => {
     let sum = 0;
-    for (let i = row * count; i < (row + 1) * count; ++i) sum += plan.amplitudes[i];
+    for (let i = row * plan.tactors; i < (row + 1) * plan.tactors; ++i) sum += plan.amplitudes[i];
     return [[(a + b) / 2, sum], [(c + d) / 2, -sum]];
   });
   changes.sort((x, y) => x[0] - y[0] || x[1] - y[1]);
