@@ -160,6 +160,14 @@ double need_number(const json& params, const char* name, detail::bounds b)
     return number(*v, name, b);
 }
 
+bool flag(const json& params, const char* name)
+{
+    const json* v = member(params, name);
+    if (v != nullptr && !v->is_boolean())
+        bad_param(name, "it is neither true nor false", "true or false");
+    return v != nullptr && v->get<bool>();
+}
+
 std::uint32_t need_stroke(const json& params)
 {
     const double n = need_number(params, "stroke", {0, 4294967295.0});

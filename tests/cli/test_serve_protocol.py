@@ -51,7 +51,7 @@ class Protocol(ServeTest):
 
     def test_missing_parameters_are_empty_ones_for_every_method(self):
         c = self.serve().client()
-        for method in ("hello", "play", "plan", "import", "cancel", "stop", "fire", "begin", "to", "end", "drive", "status", "subscribe"):
+        for method in ("hello", "play", "plan", "import", "export", "cancel", "stop", "fire", "begin", "to", "end", "drive", "status", "subscribe"):
             told = []
             for raw in (b"", b',"params":{}', b',"params":[]', b',"params":null'):
                 c.raw(b'{"jsonrpc":"2.0","id":1,"method":"%s"%s}\n' % (method.encode(), raw))
