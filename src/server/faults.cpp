@@ -173,6 +173,14 @@ double whole(const json& v, const std::string& what, detail::bounds b)
     return n;
 }
 
+bool flag(const json& params, const char* name)
+{
+    const json* v = member(params, name);
+    if (v != nullptr && !v->is_boolean())
+        bad_param(name, "it is neither true nor false", "true or false");
+    return v != nullptr && v->get<bool>();
+}
+
 std::uint32_t need_stroke(const json& params)
 {
     static_cast<void>(need_number(params, "stroke", {0, 4294967295.0}));

@@ -277,13 +277,15 @@ void service::handle(client& c, net::rpc_request& r, const answer& to, std::size
         return plan_or_play(c, std::move(r.params), to, r.method == "play", bytes);
     if (r.method == "import")
         return import_file(c, std::move(r.params), to, bytes);
+    if (r.method == "export")
+        return export_file(c, std::move(r.params), to, bytes);
     for (const auto& [name, handle] : handlers)
         if (name == r.method)
             return (this->*handle)(c, r.params, to);
     throw fault_error({net::code_no_method, "bad-input", "method",
                        fmt::format("there is no \"{}\"", r.method),
                        "one of hello, play, plan, cancel, stop, fire, begin, to, end, drive, status, "
-                       "subscribe, options, import"});
+                       "subscribe, options, import, export"});
 }
 
 bool service::input_ended(client_number number)

@@ -83,6 +83,7 @@ struct service_options {
     std::string version = {};
     std::string token = {}; ///< token that TCP clients need; empty: none
     net::reply_json array = {};
+    std::string array_name = {}; ///< preset or file, for the tool's command line; empty: none
     /// Returns the tactor-plan/1 text of a plan; throws std::bad_alloc beyond so many bytes.
     std::function<std::string(const planned&, std::size_t most_bytes)> plan_text = {};
     /// CLOCK_MONOTONIC, ns.
@@ -226,6 +227,7 @@ private:
 
     // service_files.cpp
     void import_file(client& c, net::json&& params, const answer& to, std::size_t bytes);
+    void export_file(client& c, net::json&& params, const answer& to, std::size_t bytes);
 
     // service_strokes.cpp
     void drive(client& c, const net::json& params, const answer& to);

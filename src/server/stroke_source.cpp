@@ -160,6 +160,16 @@ std::vector<stroke> settle_strokes(const planning& with, const layout& faces, st
     return strokes;
 }
 
+std::vector<double> path_starts_s(const std::vector<stroke>& strokes)
+{
+    detail::start_times times;
+    for (const stroke& k : strokes) {
+        times.start(k.start_s, k.anchor);
+        times.lasts(k.motion.duration_s());
+    }
+    return std::move(times).all();
+}
+
 const char* find_source(const json& params)
 {
     const char* found = nullptr;
@@ -253,6 +263,29 @@ score planned::make_score(const array& a, std::size_t i) const
     return {a, plans[i].plan, render};
 }
 
+void plan_strokes(const planning& with, const layout& faces, planned& p, const options::wishes& s,
+                  const std::string& source, const planning_checks& checks)
+{
+    const auto between = [&] {
+        if (checks.go_on)
+            checks.go_on();
+    };
+    for (const stroke& k : p.strokes) {
+        between();
+        if (s.compensate) {
+            p.moved.push_back(make_compensated_plan(with.tactors, faces, k, s.plan, s.low_speed));
+            p.plans.push_back({std::move(p.moved.back().plan), k.start_s, k.anchor});
+        } else {
+            p.plans.push_back({make_plan(with.tactors, faces, k, s.plan), k.start_s, k.anchor});
+        }
+        const plan& made = p.plans.back().plan;
+        check_level(with, s, loudest(k, made, s.plan.scale), made.carrier_hz, source);
+    }
+    check_duration(with, p.total_s());
+    between();
+    static_cast<void>(score(with.tactors, p.plans, p.render)); // levels and carriers
+}
+
 planned make_planned(const planning& with, const layout& faces, const json& params,
                      const planning_checks& checks)
 {
@@ -264,26 +297,9 @@ planned make_planned(const planning& with, const layout& faces, const json& para
         if (source == "stroke")
             p.name = p.strokes.front().name;
         p.strokes = settle_strokes(with, faces, std::move(p.strokes), s, false);
-        const auto between = [&] {
-            if (checks.go_on)
-                checks.go_on();
-        };
         if (checks.weigh && !checks.weigh(estimate_work(p.strokes, s, faces, read_view(params))))
             return p;
-        for (const stroke& k : p.strokes) {
-            between();
-            if (s.compensate) {
-                p.moved.push_back(make_compensated_plan(with.tactors, faces, k, s.plan, s.low_speed));
-                p.plans.push_back({std::move(p.moved.back().plan), k.start_s, k.anchor});
-            } else {
-                p.plans.push_back({make_plan(with.tactors, faces, k, s.plan), k.start_s, k.anchor});
-            }
-            const plan& made = p.plans.back().plan;
-            check_level(with, s, loudest(k, made, s.plan.scale), made.carrier_hz, source);
-        }
-        check_duration(with, p.total_s());
-        between();
-        static_cast<void>(score(with.tactors, p.plans, p.render)); // levels and carriers
+        plan_strokes(with, faces, p, s, source, checks);
         return p;
     } catch (const fault_error&) {
         throw;

@@ -10,7 +10,6 @@
 
 #include <fmt/format.h>
 
-#include "core/start_times.hpp"
 #include "core/trajectory/sample_points.hpp"
 #include "core/words.hpp"
 #include "files/plan/plan_file.hpp"
@@ -95,17 +94,6 @@ read_file read_bytes(std::string bytes, const std::string& name)
     return {std::move(strokes), std::move(bytes)};
 }
 
-// Returns the start of each stroke, s, as if each lasted as long as its path.
-std::vector<double> starts_s(const std::vector<stroke>& strokes)
-{
-    detail::start_times times;
-    for (const stroke& k : strokes) {
-        times.start(k.start_s, k.anchor);
-        times.lasts(k.motion.duration_s());
-    }
-    return std::move(times).all();
-}
-
 std::string toml_text(std::vector<stroke> strokes, const std::vector<double>& starts)
 {
     for (std::size_t i = 0; i < strokes.size(); ++i)
@@ -133,7 +121,7 @@ void append_points(std::string& out, const std::vector<stroke>& strokes, std::si
 
 std::string result_text(const read_file& f, std::size_t most_bytes)
 {
-    const std::vector<double> starts = starts_s(f.strokes);
+    const std::vector<double> starts = path_starts_s(f.strokes);
     net::reply_json strokes = net::reply_json::array();
     net::reply_json warnings = net::reply_json::array();
     for (std::size_t i = 0; i < f.strokes.size(); ++i) {
@@ -159,21 +147,13 @@ net::rpc_fault content_fault(const std::string& source, const std::string& name)
     return f;
 }
 
-bool wants_fit(const json& params)
-{
-    const json* fit = member(params, "fit");
-    if (fit != nullptr && !fit->is_boolean())
-        bad_param("fit", "it is neither true nor false", "true or false");
-    return fit != nullptr && fit->get<bool>();
-}
-
 } // namespace
 
 void check_import(const json& params)
 {
     allow_only(params, {"name", "text", "base64", "stroke", "fit"});
     static_cast<void>(text(params[find_content(params)], find_content(params)));
-    static_cast<void>(wants_fit(params));
+    static_cast<void>(flag(params, "fit"));
     if (file_name(params).size() > longest_name)
         bad_param("name", fmt::format("it has more than {} bytes", longest_name), "shorten it");
 }
@@ -183,7 +163,7 @@ std::string import_strokes(const planning& with, const layout& faces, const json
 {
     const std::string source = find_content(params);
     const std::string name = source == "stroke" ? source : file_name(params);
-    const bool fit = wants_fit(params);
+    const bool fit = flag(params, "fit");
     try {
         read_file f = source == "stroke" ? read_file{read_strokes(source, params[source], with.owner)}
                                          : read_bytes(content(source, params[source]), name);
