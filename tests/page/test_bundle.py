@@ -16,7 +16,7 @@ from harness import TOOL, ToolTest, main  # noqa: E402
 LARGEST = 150_000  # bytes of a page
 # An address with a host, other than the names of XML's languages, and what asks for another file.
 ELSEWHERE = re.compile(r"\b(?:https?|wss?|ftp)://(?!www\.w3\.org/)[\w\[.-]+|(?:src|href|url)\W{1,3}//[\w.-]+|@import|^import\b.*|\bimport\(.*", re.M)
-# What needs 'unsafe-inline' or 'unsafe-eval' of a policy, in markup that a script makes, too.
+# Code for which a policy would have to allow 'unsafe-inline' or 'unsafe-eval', in markup that a script makes, too.
 UNSAFE = re.compile(r"""<\w[^<>]*\s(?:style|on\w+)=["'$\\]|setAttribute\(["'](?:style|on\w+)["']|\beval\(|\bnew Function\(""")
 NODE = shutil.which("node")
 
