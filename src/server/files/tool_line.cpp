@@ -40,6 +40,7 @@ options::wishes for_command(options::wishes s, const array& a, const std::string
     s.rate.reset();
     if (s.render.rate != usual_rate)
         s.rate = s.render.rate;
+    s.observer = options::wishes().observer; // no command that makes a file predicts
     s.channels.reset();
     if (s.render.channels > a.channels())
         s.channels = s.render.channels;
