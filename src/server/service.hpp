@@ -178,6 +178,7 @@ private:
         double most_steps;
         std::map<client_number, std::deque<plan_job>> queued = {};
         std::deque<client_number> turns = {}; ///< order of the clients that have requests
+        bool passed = false;                  ///< the last request was a draft that passed others
         std::optional<answer> planning = {};  ///< destination of the result that is being planned
         boost::asio::thread_pool thread{1};
     };

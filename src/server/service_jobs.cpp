@@ -161,12 +161,20 @@ void service::refuse(const plan_job& j, const net::rpc_fault& f)
 }
 
 // Begins the next request, of each client in turn: a client with many does not keep the others waiting.
+// Drafts pass other requests, one each.
 void service::next_job(planner_lane& lane)
 {
     if (lane.planning || lane.turns.empty())
         return;
-    const client_number number = lane.turns.front();
-    lane.turns.pop_front();
+    const auto is_draft = [&lane](client_number c) { return lane.queued.at(c).front().draft.has_value(); };
+    auto turn = lane.turns.begin();
+    if (!std::exchange(lane.passed, false))
+        turn = std::find_if(turn, lane.turns.end(), is_draft);
+    if (turn == lane.turns.end())
+        turn = lane.turns.begin();
+    lane.passed = turn != lane.turns.begin();
+    const client_number number = *turn;
+    lane.turns.erase(turn);
     const auto own = lane.queued.find(number);
     plan_job job = std::move(own->second.front());
     own->second.pop_front();

@@ -36,8 +36,10 @@ options::wishes with_options(options::wishes w, const net::json& given, options_
 /// Part of a plan that is asked for: all, or one for a picture.
 enum class view_kind { full, bursts, percept, peaks };
 
-/// Most rows of samples, and of felt places, in a view of all strokes together.
+/// Most rows of samples, and of felt places, in a view of all strokes together; least time from one to the
+/// next of a stroke, s.
 inline constexpr double most_view_rows = 2000.0;
+inline constexpr double view_step_s = 0.002;
 
 struct view_choice {
     view_kind kind = view_kind::full;

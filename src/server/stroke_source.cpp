@@ -22,9 +22,6 @@ using net::json;
 constexpr double rounding_db = 1e-9;
 constexpr double moving = 4.0;           // time of a burst that `compensate` moves, against another
 constexpr double tactors_a_step = 128.0; // that a phantom model looks at in the time of a step
-constexpr double checked = 0.05;         // time of a sample whose intensity alone is looked at
-constexpr double predicted = 0.2;        // time of a millisecond of a prediction
-constexpr double again = 2.0;            // samples that a prediction reads for one of a plan
 constexpr double crossings = 4.0;        // of a grid's lines in one pitch of a path, at most
 constexpr double least_soa_s = 0.0001;
 constexpr double least_pitch_mm = 1.0;
@@ -121,6 +118,25 @@ double loudest(const stroke& k, const plan& p, intensity_scale scale)
         most = std::max(most, k.motion.intensity(p.curve->time_s(i)));
     scale.level_db += k.choices.level_db;
     return scale.amplitude(most);
+}
+
+// Returns the samples that take as long as what a view looks at.
+double count_view_samples(const view_choice& view, const planning_work& w, double felt)
+{
+    constexpr double looked_at = 0.05; // time of a sample whose intensity alone is read, against one as text
+    constexpr double predicted = 0.1;  // time of a millisecond of a prediction
+    constexpr double read = 0.3;       // time of a sample without its text
+    switch (view.kind) {
+    case view_kind::full:
+        break;
+    case view_kind::bursts:
+        return std::min(w.samples, most_view_rows) + looked_at * w.samples;
+    case view_kind::percept:
+        return std::min(w.samples, most_view_rows) + read * w.samples + predicted * felt;
+    case view_kind::peaks:
+        return read * w.samples;
+    }
+    return w.samples;
 }
 
 double park_bursts(const stroke& k, const plan_options& o)
@@ -227,11 +243,7 @@ planning_work estimate_work(const std::vector<stroke>& strokes, const options::w
         }
     }
     const double wide = 1.0 + static_cast<double>(faces.places().size()) / tactors_a_step;
-    double samples = w.samples;
-    if (view.kind == view_kind::bursts)
-        samples = std::min(samples, most_view_rows) + samples * checked;
-    if (view.kind == view_kind::percept)
-        samples = felt * predicted + samples * again;
+    const double samples = count_view_samples(view, w, felt);
     w.steps = (samples + w.bursts * (s.compensate ? moving : 1.0)) * wide;
     return w;
 }

@@ -3,6 +3,7 @@
 #include <atomic>
 #include <future>
 #include <string>
+#include <vector>
 
 #include <doctest/doctest.h>
 
@@ -119,11 +120,42 @@ TEST_CASE("a newer draft takes the turn of the one before")
     s.plan(other, 900, small);
     s.plan(me, 1, with_draft(small, 1, 0.3));
     const auto last = s.rig.client();
-    s.plan(last, 901, small);
+    s.plan(last, 901, with_draft(small, 1, 0.3));
     s.plan(me, 2, with_draft(small, 2, 0.4));
     s.go_on();
     s.result(last, 901);
     CHECK(me.box->reply(2).has_value());
+}
+
+TEST_CASE("drafts pass the plans of others, one each")
+{
+    held_service s;
+    const auto other = s.rig.client();
+    s.plan(other, 900, small);
+    std::vector<service_rig::connected> planning;
+    std::vector<service_rig::connected> drafting;
+    for (int i = 0; i < 4; ++i) {
+        planning.push_back(s.rig.client());
+        s.plan(planning.back(), 901, small);
+    }
+    for (int i = 0; i < 3; ++i) {
+        drafting.push_back(s.rig.client());
+        s.plan(drafting.back(), 901, with_draft(small, 1, 0.3));
+    }
+    s.go_on();
+    std::string order;
+    const auto look = [&](std::vector<service_rig::connected>& all, char name) {
+        if (!all.empty() && all.front().box->reply(901)) {
+            all.erase(all.begin());
+            order += name;
+        }
+    };
+    while (order.size() < 7) {
+        s.rig.io.run_one();
+        look(planning, 'p');
+        look(drafting, 'd');
+    }
+    CHECK(order == "dpdpdpp");
 }
 
 TEST_CASE("drafts in all lanes: one that waits with larger ones is outdated, too")

@@ -14,6 +14,9 @@
 
 namespace tactor::server {
 
+/// Returns the rows that a curve, or the felt places, of a stroke can have.
+std::size_t count_steps(const plan& p);
+
 /// Shares the rows of a view among strokes that would need so many. A stroke that needs any has at least one.
 std::vector<std::size_t> share_rows(const std::vector<std::size_t>& needed);
 

@@ -69,9 +69,12 @@ detail::prediction predict(felt_rows to, const planned& p, const array& a, std::
 std::string add_percept(reply_json& head, const planned& p, const array& a)
 {
     std::vector<std::size_t> places;
-    for (const placed_plan& one : p.plans)
+    std::vector<std::size_t> needed;
+    for (const placed_plan& one : p.plans) {
         places.push_back(count_felt(one.plan, p.observer.kind));
-    const std::vector<std::size_t> rows = share_rows(places);
+        needed.push_back(std::min(places.back(), 1 + count_steps(one.plan)));
+    }
+    const std::vector<std::size_t> rows = share_rows(needed);
     const std::vector<double> starts = p.starts_s();
     number_list felt("felt");
     head["observer"] = to_string(p.observer.kind);

@@ -2,6 +2,7 @@
 #include "server/view/view.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <new>
 #include <numeric>
 #include <vector>
@@ -16,6 +17,7 @@ using net::reply_json;
 
 constexpr double number_bytes = 2.0;  // least size of a number with the comma after it
 constexpr double burst_numbers = 5.0; // of each burst, beside its amplitudes
+constexpr double time_edge = 1e-6;    // of a step: a duration so little above is none
 
 // Bursts of all strokes, list by list.
 class burst_lists {
@@ -71,7 +73,7 @@ std::string add_bursts(reply_json& head, const planned& p, std::size_t tactors, 
 {
     std::vector<std::size_t> needed;
     for (const placed_plan& one : p.plans)
-        needed.push_back(one.plan.curve ? static_cast<std::size_t>(one.plan.curve->size() - 1) : 0);
+        needed.push_back(one.plan.curve ? count_steps(one.plan) : 0);
     const std::vector<std::size_t> rows = share_rows(needed);
     const std::vector<double> starts = p.starts_s();
     burst_lists lists(tactors, most_bytes);
@@ -99,6 +101,11 @@ std::string add_bursts(reply_json& head, const planned& p, std::size_t tactors, 
 }
 
 } // namespace
+
+std::size_t count_steps(const plan& p)
+{
+    return static_cast<std::size_t>(std::ceil(p.stroke_duration_s / view_step_s - time_edge));
+}
 
 std::vector<std::size_t> share_rows(const std::vector<std::size_t>& needed)
 {
