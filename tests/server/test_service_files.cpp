@@ -16,14 +16,14 @@ using namespace tactor::test;
 
 namespace {
 
-json sound_of(double seconds)
+json ask_sound(double seconds)
 {
     return {{"path", "M 0 0 L 40 40"}, {"as", "wav"}, {"options", {{"duration", seconds}}}};
 }
 
 json export_request(int id, double seconds)
 {
-    return {{"jsonrpc", "2.0"}, {"id", id}, {"method", "export"}, {"params", sound_of(seconds)}};
+    return {{"jsonrpc", "2.0"}, {"id", id}, {"method", "export"}, {"params", ask_sound(seconds)}};
 }
 
 } // namespace
@@ -34,7 +34,7 @@ TEST_CASE("files are made without a device, and in batches")
     rig.start();
     const auto c = rig.client();
     CHECK(rig.code(c, "play", {{"path", "M 0 0 L 40 40"}}) == net::code_no_stream);
-    const json sound = rig.ok(c, "export", sound_of(0.5));
+    const json sound = rig.ok(c, "export", ask_sound(0.5));
     const auto bytes = net::read_base64(sound["base64"].get<std::string>());
     REQUIRE(bytes);
     CHECK(bytes->starts_with("RIFF"));
@@ -56,7 +56,7 @@ TEST_CASE("a file that other answers leave no room for is refused")
     rig.start();
     const auto c = rig.client();
     c.box->left = 100'000;
-    const json r = rig.call(c, "export", sound_of(1.0));
+    const json r = rig.call(c, "export", ask_sound(1.0));
     CHECK(r["error"]["code"] == net::code_limit);
     CHECK(r["error"]["data"]["what"] == "max_all_unread_bytes");
     CHECK(rig.code(c, "export", {{"path", "M 0 0 L 40 40"}, {"as", "toml"}}) == 0);
