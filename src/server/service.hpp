@@ -29,6 +29,7 @@
 
 #include "net/rpc.hpp"
 #include "net/shared_by_peers.hpp"
+#include "server/files/tool_line.hpp"
 #include "server/stream.hpp"
 #include "server/stroke_source.hpp"
 
@@ -83,7 +84,7 @@ struct service_options {
     std::string version = {};
     std::string token = {}; ///< token that TCP clients need; empty: none
     net::reply_json array = {};
-    std::string array_name = {}; ///< preset or file, for the tool's command line; empty: none
+    tool_files named = {}; ///< in the tool's command line, for exported files
     /// Returns the tactor-plan/1 text of a plan; throws std::bad_alloc beyond so many bytes.
     std::function<std::string(const planned&, std::size_t most_bytes)> plan_text = {};
     /// CLOCK_MONOTONIC, ns.

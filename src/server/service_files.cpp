@@ -26,8 +26,8 @@ void service::export_file(client& c, json&& params, const answer& to, std::size_
     check_export(options_.plans, params);
     plan_job job{.to = to, .bytes = bytes, .asked = mark(c)};
     job.make_text = [this](const json& p, const planning_checks& checks) {
-        return export_strokes(
-            {options_.plans, faces_, options_.array_name, options_.plan_text, most_file_bytes}, p, checks);
+        return export_strokes({options_.plans, faces_, options_.named, options_.plan_text, most_file_bytes},
+                              p, checks);
     };
     job.params = std::move(params);
     admit_job(c, std::move(job));

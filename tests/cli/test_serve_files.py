@@ -5,7 +5,7 @@ import json
 import math
 import shlex
 
-from harness import ROOT, main
+from harness import ROOT, Wav, main
 from serving import ServeTest
 
 CIRCLE_SVG = '<svg xmlns="http://www.w3.org/2000/svg"><circle cx="20" cy="20" r="15"/></svg>'
@@ -198,7 +198,7 @@ class Export(ServeTest):
         self.assertEqual(base64.b64decode(r["base64"]), b"t_s,x_mm,y_mm,intensity\n0,0,0,1\n1,40,40,1\n")
         self.assertEqual((r["name"], r["mime"]), ("two words.csv", "text/csv"))
         self.assertEqual(r["command"],
-                         "tactor render 'two words.csv' --array palm-3x3 --algorithm continuous -o 'two words.wav'")
+                         "tactor render 'two words.csv' --array palm-3x3 --algorithm continuous --level-dbfs -12 -o 'two words.wav'")
         self.assertEqual(c.ok("export", stroke="tap", **{"as": "toml"})["name"], "tap.toml")
         self.assertEqual(c.ok("export", toml='[stroke]\nname = "-a/b\\"\u00e9 "\npath = "M 0 0 L 9 9"\n',
                               **{"as": "toml"})["name"], "_a_b_\u00e9.toml")
@@ -211,6 +211,15 @@ class Export(ServeTest):
         self.assertEqual(line, f"tactor render up.toml --array {self.dir}/serve.toml --level-dbfs -30 --rate 44100 --channels 12 -o up.wav")
         self.export(c, "toml", path="M 0 0 L 40 40", name="up")
         self.assertEqual(self.run_line(line), wav)
+
+    def test_marks_and_limits_of_the_owner_are_in_the_sound(self):
+        c = self.serve(config='[output]\nchannels = 10\n[sync]\nchannel = 9\n[serve]\nmax_level_dbfs = -12\n'
+                              '[defaults]\nlevel-dbfs = -6\n').client()
+        wav, line = self.export(c, "wav", path="M 0 0 L 40 40", name="up")
+        self.assertIn(f" --array palm-3x3 --config {self.dir}/serve.toml --level-dbfs -12 ", line)
+        self.export(c, "toml", path="M 0 0 L 40 40", name="up")
+        self.assertEqual(self.run_line(line), wav)
+        self.assertEqual(max(x[9] for x in Wav(self.dir / "up.wav").samples()), 1)
 
     def test_figures_are_those_of_plot(self):
         c = self.serve().client()

@@ -19,7 +19,6 @@
 #include "plot/paint/output.hpp"
 #include "server/faults.hpp"
 #include "server/files/file_name.hpp"
-#include "server/files/tool_line.hpp"
 #include "sink/wav/wav.hpp"
 
 namespace tactor::server {
@@ -188,8 +187,8 @@ std::string command_line(const exporting& e, const file_kind& kind, const std::s
 {
     return fmt::format("tactor {} {}{} {} {}", kind.command,
                        quote_word(fmt::format("{}.{}", name, kind.reads)),
-                       option_words(s, kind.place, e.with.tactors, e.array_name, kind.reads == "toml"),
-                       kind.into, quote_word(fmt::format("{}.{}", name, kind.writes)));
+                       option_words(s, kind.place, e.with.tactors, e.named, kind.reads == "toml"), kind.into,
+                       quote_word(fmt::format("{}.{}", name, kind.writes)));
 }
 
 std::string result_text(const exporting& e, const file_kind& kind, const std::string& name,

@@ -7,6 +7,7 @@
 #include <functional>
 #include <string>
 
+#include "server/files/tool_line.hpp"
 #include "server/stroke_source.hpp"
 
 namespace tactor::server {
@@ -15,7 +16,7 @@ namespace tactor::server {
 struct exporting {
     const planning& with;
     const layout& faces;
-    const std::string& array_name; ///< preset or file, for the tool's command line; empty: none
+    const tool_files& named; ///< in the tool's command line
     /// Returns the tactor-plan/1 text of a plan; throws std::bad_alloc beyond so many bytes.
     const std::function<std::string(const planned&, std::size_t most_bytes)>& plan_text;
     std::size_t most_bytes; ///< of the file

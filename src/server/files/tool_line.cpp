@@ -25,18 +25,20 @@ bool is_in_file(const option& o, const options::wishes& s)
 }
 
 // Returns the options as a command has them: strokes are settled, and the array is named.
-options::wishes for_command(options::wishes s, const array& a, const std::string& array_name)
+options::wishes for_command(options::wishes s, const array& a, const tool_files& files)
 {
     constexpr unsigned usual_rate = 48000;
     s.path_data.reset();
     s.shape.reset();
     s.config_file.reset();
+    if (!files.config.empty())
+        s.config_file = files.config;
     s.duration_s.reset();
     s.speed_mm_s.reset();
     s.fit = false;
     s.array_name.reset();
-    if (!array_name.empty())
-        s.array_name = array_name;
+    if (!files.array.empty())
+        s.array_name = files.array;
     s.rate.reset();
     if (s.render.rate != usual_rate)
         s.rate = s.render.rate;
@@ -56,15 +58,17 @@ std::string value_text(const options::value& v)
     return {}; // a flag
 }
 
-// Returns true for a value that the command must say.
+// Returns true for a value that the command must say. It always has the level, which a configuration on the
+// way may set otherwise.
 bool is_needed(const option& o, const options::wishes& s, const options::value& v)
 {
     static const options::wishes usual;
     const bool is_off = std::holds_alternative<std::monostate>(v) || v == options::value(false);
     const bool is_used = o.used == nullptr || o.used(s);
-    const bool is_replaced = o.name == "level_dbfs" && s.render.sl_db;
+    if (o.name == "level_dbfs")
+        return !s.render.sl_db;
     const bool was_given = s.gives(o) && (o.where & options::by_client) != 0;
-    return !is_off && is_used && !is_replaced && (was_given || v != o.to.get(usual));
+    return !is_off && is_used && (was_given || v != o.to.get(usual));
 }
 
 } // namespace
@@ -90,9 +94,9 @@ void put_options(stroke& k, const options::wishes& s)
 }
 
 std::string option_words(const options::wishes& s, options::place command, const array& a,
-                         const std::string& array_name, bool file_says)
+                         const tool_files& files, bool file_says)
 {
-    const options::wishes w = for_command(s, a, array_name);
+    const options::wishes w = for_command(s, a, files);
     std::string words;
     for (const option& o : options::all()) {
         const options::value v = o.to.get(w);

@@ -92,7 +92,7 @@ void render_parts(const score& s, format_kind f, container c, std::uint64_t& don
     while (done < s.frames() && go_on()) {
         const std::uint64_t n = std::min(at_once, s.frames() - done);
         r.process(std::span(block).first(n * frame_bytes));
-        put(reinterpret_cast<const char*>(block.data()), n * frame_bytes);
+        put(block.data(), n * frame_bytes);
         done += n;
     }
     put("", padding(s.frames() * frame_bytes));
@@ -112,7 +112,7 @@ std::string bytes(const score& s, format_kind f)
     std::uint64_t done = 0;
     render_parts(
         s, f, container_of_score(s, f), done, [] { return true; },
-        [&](const char* data, std::size_t n) { all.append(data, n); });
+        [&](const void* data, std::size_t n) { all.append(static_cast<const char*>(data), n); });
     return all;
 }
 
@@ -126,7 +126,7 @@ bool write(const score& s, format_kind f, const std::filesystem::path& file, con
     detail::output_file to(file, wanted);
     render_parts(
         s, f, c, done, [&] { return to.good() && !(given_up = !wanted()); },
-        [&](const char* data, std::size_t n) { to.write(data, static_cast<std::int64_t>(n)); });
+        [&](const void* data, std::size_t n) { to.write(data, static_cast<std::int64_t>(n)); });
     if (given_up || to.given_up() || (to.good() && !wanted()))
         return false;
     to.commit();
