@@ -75,6 +75,11 @@ void no_stream(const std::string& why)
     throw fault_error({net::code_no_stream, "not-available", "stream", why, "try again when it is back"});
 }
 
+std::string in_words_of_protocol(std::string_view marked)
+{
+    return options::spell(marked, by_protocol);
+}
+
 rpc_fault option_fault(const error& e)
 {
     const error worded = options::spell(e, by_protocol);
@@ -166,6 +171,14 @@ double whole(const json& v, const std::string& what, detail::bounds b)
     if (n != std::floor(n))
         bad_param(what, fmt::format("{} is no whole number", n));
     return n;
+}
+
+bool flag(const json& params, const char* name)
+{
+    const json* v = member(params, name);
+    if (v != nullptr && !v->is_boolean())
+        bad_param(name, "it is neither true nor false", "true or false");
+    return v != nullptr && v->get<bool>();
 }
 
 std::uint32_t need_stroke(const json& params)

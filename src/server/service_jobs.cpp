@@ -39,6 +39,12 @@ net::rpc_fault too_large_to_send()
             "draw less, or plan it with the tool"};
 }
 
+net::rpc_fault no_room()
+{
+    return {net::code_limit, "limit", "max_all_unread_bytes", "too much waits to be read by clients",
+            "try again later, or make it smaller"};
+}
+
 net::rpc_fault server_ends()
 {
     return {net::code_no_stream, "not-available", "stream", "the server ends", ""};
@@ -71,23 +77,28 @@ void service::plan_or_play(client& c, json&& params, const answer& to, bool play
     std::optional<double> draft;
     if (const json* given = member(params, "draft"))
         draft = whole(*given, "draft", {0.0, 0x1p53});
-    if (closing_)
-        no_stream("the server ends");
-    check_free_place(c);
-    if (play && stream_.is_out())
-        no_stream(stream_.reason());
-    if (planning_bytes_ + bytes > options_.limits.max_all_unread_bytes)
-        limit_reached("max_all_unread_bytes", "too much waits to be planned");
-    planning_bytes_ += bytes;
-    ++jobs_;
-    ++c.coming;
     const json* start = member(params, "start");
     plan_job job{to, {}, start == nullptr ? json("now") : *start, bytes, play, mark(c)};
     job.view = read_view(params);
     job.draft = draft;
     job.params = std::move(params);
+    admit_job(c, std::move(job));
+}
+
+void service::admit_job(client& c, plan_job j)
+{
+    if (closing_)
+        no_stream("the server ends");
+    check_free_place(c);
+    if (j.play && stream_.is_out())
+        no_stream(stream_.reason());
+    if (planning_bytes_ + j.bytes > options_.limits.max_all_unread_bytes)
+        limit_reached("max_all_unread_bytes", "too much waits to be planned");
+    planning_bytes_ += j.bytes;
+    ++jobs_;
+    ++c.coming;
     note_busy();
-    queue_job(c.number, std::move(job));
+    queue_job(c.number, std::move(j));
 }
 
 void service::queue_job(client_number number, plan_job j)
@@ -138,8 +149,7 @@ bool service::outdate_drafts(client_number number, plan_job& j)
 // Ends the count of a request without a stroke.
 void service::uncount(const plan_job& j)
 {
-    planning_bytes_ -= j.bytes;
-    --jobs_;
+    forget_job(j);
     if (client* c = find(j.to.all->to))
         --c->coming;
 }
@@ -189,6 +199,13 @@ void service::keep_jobs(client_number number)
     }
 }
 
+// Ends the count of a request that no longer waits.
+void service::forget_job(const plan_job& j)
+{
+    planning_bytes_ -= j.bytes;
+    --jobs_;
+}
+
 // Refuses all requests when the server ends.
 void service::refuse_jobs()
 {
@@ -214,7 +231,7 @@ bool service::weigh(plan_job& j, const planner_lane& in, const planning_work& w)
     const double least_bytes = j.view.kind == view_kind::full
                                    ? (w.bursts + w.samples) * text_bytes
                                    : least_view_bytes(j.view, w, options_.plans.tactors.tactors.size());
-    if (!j.play && least_bytes > static_cast<double>(l.max_unread_bytes) / 2.0)
+    if (!j.play && !j.make_text && least_bytes > static_cast<double>(l.max_unread_bytes) / 2.0)
         throw fault_error(too_large_to_send());
     if (w.bursts * burst_bytes > static_cast<double>(l.max_all_unread_bytes))
         limit_reached("max_all_unread_bytes",
@@ -255,18 +272,22 @@ void service::post_job(planner_lane& lane, plan_job j)
             if (ending_)
                 throw fault_error(server_ends());
         };
+        const planning_checks checks{go_on, [&](const planning_work& w) { return weigh(*job, lane, w); }};
         try {
-            p = std::make_shared<planned>(
-                make_planned(options_.plans, faces_, job->params,
-                             {go_on, [&](const planning_work& w) { return weigh(*job, lane, w); }}));
-            if (p->plans.empty())
+            if (job->make_text)
+                text = job->make_text(job->params, checks);
+            else
+                p = std::make_shared<planned>(make_planned(options_.plans, faces_, job->params, checks));
+            if (p ? p->plans.empty() : text.empty())
                 return boost::asio::post(io_, [this, &lane, job] { move_up(lane, std::move(*job)); });
             for (std::size_t i = 0; job->play && i < p->plans.size(); ++i) {
                 go_on();
                 scores.push_back(p->make_score(options_.plans.tactors, i));
             }
-            if (!job->play)
+            if (p && !job->play)
                 text = answer_text(*p, job->view);
+            if (!text.empty())
+                text = job->to.write_reply(text);
         } catch (const std::bad_alloc&) {
             fault = too_large_to_send();
         } catch (...) {
@@ -287,14 +308,18 @@ void service::job_done(planner_lane& lane, const plan_job& job, std::shared_ptr<
     const client_number number = job.to.all->to;
     if (closing_ && !fault)
         fault = server_ends();
+    if (!fault && job.make_text) {
+        const client* c = find(number);
+        if (c != nullptr && text.size() >= c->link->room())
+            fault = no_room();
+    }
     if (fault) {
         refuse(job, *fault);
     } else if (!job.play) {
         uncount(job);
-        job.to.result_text(text);
+        job.to.whole_reply(std::move(text), job.make_text != nullptr);
     } else {
-        planning_bytes_ -= job.bytes;
-        --jobs_;
+        forget_job(job);
         // The stream may have to be started first.
         once_ready(number, job.to, "stream", [this, job, p, scores = std::move(scores)] {
             const std::shared_ptr<void> after(nullptr, [&](void*) {

@@ -69,22 +69,6 @@ bool is_shape(const std::string& name)
     return std::find(shapes.begin(), shapes.end(), name) != shapes.end();
 }
 
-std::vector<stroke> read_strokes(const std::string& source, const json& v, const options::wishes& s)
-{
-    if (source == "points")
-        return read_points(v);
-    const std::string& t = text(v, source);
-    if (source == "stroke")
-        return {is_shape(t) ? shape_stroke(t) : preset_stroke(t)};
-    if (source == "path")
-        return {stroke_of_path(t, s)};
-    if (source == "toml")
-        return parse_strokes_toml(t, source);
-    if (source == "csv")
-        return parse_strokes_csv(t, source);
-    return parse_strokes_svg(t, source);
-}
-
 void check_duration(const planning& with, double seconds)
 {
     if (seconds > with.max_stroke_s)
@@ -164,6 +148,43 @@ double park_bursts(const stroke& k, const plan_options& o)
 }
 
 } // namespace
+
+std::vector<stroke> read_strokes(const std::string& source, const json& v, const options::wishes& s)
+{
+    if (source == "points")
+        return read_points(v);
+    const std::string& t = text(v, source);
+    if (source == "stroke")
+        return {is_shape(t) ? shape_stroke(t) : preset_stroke(t)};
+    if (source == "path")
+        return {stroke_of_path(t, s)};
+    if (source == "toml")
+        return parse_strokes_toml(t, source);
+    if (source == "csv")
+        return parse_strokes_csv(t, source);
+    return parse_strokes_svg(t, source);
+}
+
+std::vector<stroke> settle_strokes(const planning& with, const layout& faces, std::vector<stroke> strokes,
+                                   const options::wishes& s, bool fit)
+{
+    check_count(with, strokes.size());
+    strokes = apply_fits(std::move(strokes), faces);
+    if (fit)
+        strokes = fit_strokes(strokes, faces).strokes;
+    place_strokes(with, s, strokes);
+    return strokes;
+}
+
+std::vector<double> path_starts_s(const std::vector<stroke>& strokes)
+{
+    detail::start_times times;
+    for (const stroke& k : strokes) {
+        times.start(k.start_s, k.anchor);
+        times.lasts(k.motion.duration_s());
+    }
+    return std::move(times).all();
+}
 
 const char* find_source(const json& params)
 {
@@ -254,6 +275,29 @@ score planned::make_score(const array& a, std::size_t i) const
     return {a, plans[i].plan, render};
 }
 
+void plan_strokes(const planning& with, const layout& faces, planned& p, const options::wishes& s,
+                  const std::string& source, const planning_checks& checks)
+{
+    const auto between = [&] {
+        if (checks.go_on)
+            checks.go_on();
+    };
+    for (const stroke& k : p.strokes) {
+        between();
+        if (s.compensate) {
+            p.moved.push_back(make_compensated_plan(with.tactors, faces, k, s.plan, s.low_speed));
+            p.plans.push_back({std::move(p.moved.back().plan), k.start_s, k.anchor});
+        } else {
+            p.plans.push_back({make_plan(with.tactors, faces, k, s.plan), k.start_s, k.anchor});
+        }
+        const plan& made = p.plans.back().plan;
+        check_level(with, s, loudest(k, made, s.plan.scale), made.carrier_hz, source);
+    }
+    check_duration(with, p.total_s());
+    between();
+    static_cast<void>(score(with.tactors, p.plans, p.render)); // levels and carriers
+}
+
 planned make_planned(const planning& with, const layout& faces, const json& params,
                      const planning_checks& checks)
 {
@@ -264,29 +308,10 @@ planned make_planned(const planning& with, const layout& faces, const json& para
         p.observer = {s.observer, s.low_speed};
         if (source == "stroke")
             p.name = p.strokes.front().name;
-        check_count(with, p.strokes.size());
-        p.strokes = apply_fits(std::move(p.strokes), faces);
-        place_strokes(with, s, p.strokes);
-        const auto between = [&] {
-            if (checks.go_on)
-                checks.go_on();
-        };
+        p.strokes = settle_strokes(with, faces, std::move(p.strokes), s, false);
         if (checks.weigh && !checks.weigh(estimate_work(p.strokes, s, faces, read_view(params))))
             return p;
-        for (const stroke& k : p.strokes) {
-            between();
-            if (s.compensate) {
-                p.moved.push_back(make_compensated_plan(with.tactors, faces, k, s.plan, s.low_speed));
-                p.plans.push_back({std::move(p.moved.back().plan), k.start_s, k.anchor});
-            } else {
-                p.plans.push_back({make_plan(with.tactors, faces, k, s.plan), k.start_s, k.anchor});
-            }
-            const plan& made = p.plans.back().plan;
-            check_level(with, s, loudest(k, made, s.plan.scale), made.carrier_hz, source);
-        }
-        check_duration(with, p.total_s());
-        between();
-        static_cast<void>(score(with.tactors, p.plans, p.render)); // levels and carriers
+        plan_strokes(with, faces, p, s, source, checks);
         return p;
     } catch (const fault_error&) {
         throw;

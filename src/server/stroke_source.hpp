@@ -48,6 +48,18 @@ struct planned {
     score make_score(const array& a, std::size_t i) const;
 };
 
+/// Reads the strokes that a parameter says, as parse_strokes_toml() and its kin do. \throws error,
+/// fault_error.
+std::vector<stroke> read_strokes(const std::string& source, const net::json& v, const options::wishes& s);
+
+/// Returns the strokes on the array, each with its pace: those that ask for it fitted, and with `fit` all of
+/// them together. \throws fault_error if there are too many or if they last too long; error.
+std::vector<stroke> settle_strokes(const planning& with, const layout& faces, std::vector<stroke> strokes,
+                                   const options::wishes& s, bool fit);
+
+/// Returns the start of each stroke, s, as if each lasted as long as its path.
+std::vector<double> path_starts_s(const std::vector<stroke>& strokes);
+
 /// Returns the one parameter of these that says what is drawn: "stroke", "path", "points", "toml", "csv" or
 /// "svg". \throws fault_error for none or several.
 const char* find_source(const net::json& params);
@@ -69,6 +81,11 @@ struct planning_checks {
     /// Called before the work, when the text is read. Returns false if nothing is to be planned.
     std::function<bool(const planning_work&)> weigh = {};
 };
+
+/// Plans p.strokes into p.plans and p.moved. `source`: parameter that said them. \throws fault_error for a
+/// level above the owner's; error.
+void plan_strokes(const planning& with, const layout& faces, planned& p, const options::wishes& s,
+                  const std::string& source, const planning_checks& checks);
 
 /// Reads and plans. Returns no plans if `weigh` returns false. \throws fault_error, and what checks throw.
 planned make_planned(const planning& with, const layout& faces, const net::json& params,

@@ -5,13 +5,14 @@ import socket
 import time
 
 from harness import PATIENCE_S, main
-from serving import LONG, SHORT, ServeTest
+from serving import LONG, MESSAGE, SHORT, ServeTest
+from websocket import Peer
 
 
 class Protocol(ServeTest):
     def test_hello_has_the_versions(self):
         r = self.serve().client().ok("hello")
-        self.assertEqual(list(r), ["protocol", "version", "array", "stream", "presets", "clock", "max_level_dbfs"])
+        self.assertEqual(list(r), ["protocol", "version", "array", "stream", "presets", "shapes", "clock", "max_level_dbfs", "client"])
         self.assertEqual(set(r["stream"]), {"rate", "channels", "format", "period_frames", "latency_s", "pcm"})
         self.assertEqual(r["array"], self.plan("park2016-1")["array"])
         self.assertEqual((r["stream"]["pcm"], r["stream"]["channels"], r["max_level_dbfs"]), ("null", 9, -12.0))
@@ -51,7 +52,7 @@ class Protocol(ServeTest):
 
     def test_missing_parameters_are_empty_ones_for_every_method(self):
         c = self.serve().client()
-        for method in ("hello", "play", "plan", "cancel", "stop", "fire", "begin", "to", "end", "drive", "status", "subscribe"):
+        for method in ("hello", "play", "plan", "cancel", "stop", "fire", "begin", "to", "end", "drive", "status", "subscribe", "options", "import", "export"):
             told = []
             for raw in (b"", b',"params":{}', b',"params":[]', b',"params":null'):
                 c.raw(b'{"jsonrpc":"2.0","id":1,"method":"%s"%s}\n' % (method.encode(), raw))
@@ -306,9 +307,56 @@ class Protocol(ServeTest):
         c = s.client()
         c.ok("play", **SHORT)
         r = c.ok("status")
-        self.assertEqual(list(r), ["version", "stream", "amplifier", "clients", "strokes", "limits"])
+        self.assertEqual(list(r), ["version", "stream", "amplifier", "clients", "who", "strokes", "limits"])
         self.assertLessEqual({"state", "xruns", "uptime_s", "realtime"}, set(r["stream"]))
         self.assertEqual((r["stream"]["state"], r["amplifier"], r["clients"]), ("running", "none", 1))
+        self.assertEqual(r["who"], [{"client": c.ok("hello")["client"], "name": "", "from": "this computer"}])
+
+    def test_who_is_there_is_told_with_names_and_addresses(self):
+        s = self.serve("--tcp", "0", "--http", "0")
+        a, b = s.client(), s.client(tcp=True)
+        mine = a.ok("hello", name="Ann \u2766")["client"]
+        theirs = b.ok("hello", name="Bob")["client"]
+        page = Peer(s.where["http"].removeprefix("http://").rstrip("/"))
+        self.addCleanup(page.socket.close)
+        self.assertEqual(page.upgrade(), 101)
+        who = a.ok("status")["who"]
+        self.assertEqual([(x["client"], x["name"], x["from"]) for x in who],
+                         [(mine, "Ann \u2766", "this computer"), (theirs, "Bob", "127.0.0.1"), (who[-1]["client"], "", "127.0.0.1")])
+        said = self.ok("status", "--socket", s.where["socket"]).stdout
+        for line in (f"  {mine} Ann \u2766 from this computer\n", f"  {theirs} Bob from 127.0.0.1\n", f"  {who[-1]['client']} from 127.0.0.1\n"):
+            self.assertIn(line, said)
+        self.assertEqual(json.loads(self.ok("status", "--socket", s.where["socket"], "--format", "json").stdout)["who"][:3], who)
+        self.check_error(a.error("hello", name="a\x1bb"), -32602, "name")
+
+    def test_the_array_s_place_on_the_body_is_told(self):
+        palm = self.write("palm.toml", '[array]\nsite = "left palm"\nup = "fingers"\npreset = "palm-3x3"\n')
+        self.ok("check", "--array", palm, "-D", "null")
+        c = self.serve("--array", palm).client()
+        array = c.ok("hello")["array"]
+        self.assertEqual((array.pop("site"), array.pop("up")), ("left palm", "fingers"))
+        self.assertEqual(array, self.plan("park2016-1", "--array", palm)["array"])
+
+    def test_touches_and_stops_of_others_are_told(self):
+        s = self.serve()
+        draws, looks = s.client(), s.client()
+        me = draws.ok("hello", name="Ann")["client"]
+        looks.ok("subscribe", events=["touches", "stops"])
+        n = draws.ok("begin", timeout_s=3600)["stroke"]
+        draws.ok("to", stroke=n, x_mm=10, y_mm=20)
+        told = looks.notification(lambda m: m["method"] == "touches")["params"]
+        self.assertEqual(told, {"client": me, "stroke": n, "x_mm": 10, "y_mm": 20, "down": True})
+        draws.ok("stop")
+        self.assertEqual(looks.notification(lambda m: m["method"] == "stops")["params"], {"client": me, "name": "Ann"})
+        self.assertEqual(looks.notification(lambda m: m["method"] == "touches")["params"], told | {"down": False})
+        s.process.terminate()
+        self.assertEqual(looks.notification(lambda m: m["method"] == "stops")["params"], {"client": 0, "name": ""})
+
+    def test_the_options_are_those_of_the_schema(self):
+        c = self.serve(config="[defaults]\nsoa = 0.06\n").client()
+        rows = {x["name"]: x for x in c.ok("options")["options"]}
+        self.assertEqual(set(rows), set(MESSAGE.schema["$defs"]["options"]["properties"]))
+        self.assertEqual((rows["soa"]["default"], rows["level_dbfs"]["default"]), (0.06, -12))
 
 
 if __name__ == "__main__":

@@ -252,6 +252,10 @@ int serve(settings& s, const serve_options& o)
     service.token = server::read_token(serve);
     service.version = version();
     service.array = files::array_json(e.tactors);
+    for (const auto& [key, text] : {std::pair("site", &e.tactors.site), std::pair("up", &e.tactors.up)})
+        if (!text->empty())
+            service.array[key] = *text;
+    service.array_name = e.array_file.empty() ? e.tactors.name : e.array_file;
     service.plans = make_planning(s, e, serve, service.limits);
     service.plan_text = [&e](const server::planned& p, std::size_t most) { return plan_text(p, e, most); };
     service.now_ns = rt::monotonic_ns;

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: MIT
+/// \file
+/// Options that a file of strokes can say, and the command line that says the rest.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include <tactor/array.hpp>
+#include <tactor/stroke.hpp>
+
+#include "options/option.hpp"
+#include "options/wishes.hpp"
+
+namespace tactor::server {
+
+/// Gives a stroke the options that differ from the built-in ones or that a client gave, as far as a stroke
+/// file has keys for them and the stroke does not say them itself.
+void put_options(stroke& k, const options::wishes& s);
+
+/// Returns " --array palm-3x3 --level-dbfs -15": what a command of the tool needs to do the same as these
+/// options. `array_name`: preset or file; empty: none. `file_says`: put_options() has said what it can.
+std::string option_words(const options::wishes& s, options::place command, const array& a,
+                         const std::string& array_name, bool file_says);
+
+/// Returns a word as a shell reads it.
+std::string quote_word(std::string_view word);
+
+} // namespace tactor::server
