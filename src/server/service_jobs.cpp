@@ -160,8 +160,8 @@ void service::refuse(const plan_job& j, const net::rpc_fault& f)
     j.to.fault(f);
 }
 
-// Begins the next request, of each client in turn: a client with many does not keep the others waiting.
-// Drafts pass other requests, one each.
+// Begins the next request, of each client in turn: a client with many does not keep the others waiting. A
+// draft passes other requests; after each that did, the first of these comes.
 void service::next_job(planner_lane& lane)
 {
     if (lane.planning || lane.turns.empty())

@@ -44,6 +44,8 @@ def rpc_seeds():
     stroke = '{"path":"M 0 0 L 40 40","options":{"algorithm":"continuous","duration":0.01}'
     calls = ['"hello","params":{"name":"Ann"}', '"status"', '"options"', '"stop"', '"fire"', f'"play","params":{stroke}}}', f'"play","params":{stroke},"start":"armed"}}',
              f'"play","params":{stroke},"start":{{"delay_s":0.01}}}}', f'"plan","params":{stroke}}}',
+             f'"plan","params":{stroke},"view":"percept","observer":"centroid","draft":1}}', f'"plan","params":{stroke},"view":"bursts","draft":2}}',
+             f'"plan","params":{stroke},"view":"peaks","bins":9}}',
              '"play","params":{"stroke":"park2016-1","options":{"soa":0.07,"snap":true}}',
              '"play","params":{"points":[[0,0,0],[0.1,20,20,0.5]]}', '"play","params":{"csv":"t_s,x_mm,y_mm\\n0,0,0\\n1,10,10\\n"}',
              '"play","params":{"svg":"<svg><path d=\\"M 0 0 L 9 9\\"/></svg>"}',

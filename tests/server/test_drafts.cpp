@@ -127,7 +127,7 @@ TEST_CASE("a newer draft takes the turn of the one before")
     CHECK(me.box->reply(2).has_value());
 }
 
-TEST_CASE("drafts pass the plans of others, one each")
+TEST_CASE("a draft passes the plans of others, and after each one of these comes")
 {
     held_service s;
     const auto other = s.rig.client();
