@@ -13,8 +13,9 @@ from harness import main  # noqa: E402
 from pages import Session  # noqa: E402
 from test_experiment_person import DESK, SHORT  # noqa: E402
 
-DARK = [{"name": "prefers-color-scheme", "value": "dark"}]
-SIZES = ((1280, 800), (390, 844))
+THEMES = {"light": [], "dark": [{"name": "prefers-color-scheme", "value": "dark"}]}
+SIZES = ((1440, 900), (820, 1180), (390, 844), (844, 390))
+PHONE = SIZES[2]
 FRAME_S = 1 / 60
 
 
@@ -56,19 +57,21 @@ class ParticipantPage(BrowserTest, ExperimentTest):
         return [(r["trial"], r["attempt"], r["void"], r[column]) for r in self.rows("01", task)]
 
     def picture(self, p, name):
-        """Checks each size, light and dark: nothing outside the screen and no button too small."""
+        """Checks each size: nothing outside the screen and no button too small. Pictures are light and dark."""
         for width, height in SIZES:
             p.call("Emulation.setDeviceMetricsOverride", width=width, height=height, deviceScaleFactor=1, mobile=False)
             self.assertLessEqual(p.value("document.documentElement.scrollWidth"), width, name)
             for x, y, w, h in p.value("[...document.querySelectorAll('#answers button')].map(b => { const r ="
                                       " b.getBoundingClientRect(); return [r.x, r.y, r.width, r.height]; })"):
                 self.assertTrue(x >= 0 and y >= 0 and x + w <= width and y + h <= height, (name, width, x, y, w, h))
-                self.assertGreaterEqual(h, 44, name)
-            if PICTURES:
-                p.call("Emulation.setEmulatedMedia", features=DARK if width < 500 else [])
-                p.picture(PICTURES / f"participant-{name}-{width}x{height}.png")
+                self.assertGreaterEqual(min(w, h), 44, (name, width))
+            for theme, features in THEMES.items() if PICTURES else ():
+                p.call("Emulation.setEmulatedMedia", features=features)
+                p.until(f"document.documentElement.dataset.theme === '{theme}'")
+                p.picture(PICTURES / f"participant-{name}-{width}x{height}-{theme}.png")
 
     def test_mouse_keys_and_touch_answer(self):
+        self.write("short.toml", SHORT.replace("break_s = 0.3", "break_s = 60"))
         s = self.start()
         p = self.open(s)
         self.asked(p, "consent")
@@ -88,8 +91,10 @@ class ParticipantPage(BrowserTest, ExperimentTest):
         p.key("Digit7", "7")  # there is none
         ask = self.key(p, "question", "2")
         ask = self.tap(p, "question", 1, ask)
-        p.until("state.screen === 'rest' && /^[01]$/.test(document.querySelector('#left').textContent)")
+        p.until("state.screen === 'rest' && /^(1:00|[1-5]?[0-9])$/.test(document.querySelector('#left').textContent)")
+        self.assertEqual(p.value("['valuenow', 'valuemax'].map(v => document.querySelector('#bar').getAttribute(`aria-${v}`))"), ["2", "2"])
         self.picture(p, "rest")
+        s.key("g")
         ask = self.click(p, "introduce", 1, ask)
         ask = self.asked(p, "question", ask)
         self.picture(p, "rate")
@@ -126,9 +131,16 @@ class ParticipantPage(BrowserTest, ExperimentTest):
         self.assertEqual(after, "stimulus")
         self.assertEqual(p.value("document.querySelector('#field').getClientRects().length"), 0)
         self.assertGreater(len(places), 10)
-        self.click(p, "question", 1, ask)
+        ask = self.click(p, "question", 1, ask)
         p.until("state.screen === 'target' && document.querySelector('#dot')")
         self.picture(p, "target")  # takes its time
+        # The stimulus that plays is lit where its answer will be.
+        for playing in (1, 2):
+            p.until(f"document.querySelector('#stimuli .on')?.textContent === '{playing}' && document.querySelector('#playing').textContent === '{playing}'")
+            self.picture(p, f"stimulus-{playing}")
+        lit = p.middle("#stimuli .on")
+        self.asked(p, "question", ask)
+        self.assertEqual(p.middle("#answers button:nth-child(2)"), lit)
         s.key("q")
         self.assertEqual(s.end(), 130)
         speed = 20 / 2.0
@@ -188,7 +200,7 @@ class ParticipantPage(BrowserTest, ExperimentTest):
         ask = self.asked(p, "question", ask)
         p.reload()  # during the question
         self.assertEqual(self.asked(p, "question"), ask)
-        second = self.open(s, size=SIZES[1])
+        second = self.open(s, size=PHONE)
         self.assertEqual(self.asked(second, "question"), ask)
         p.until("state.screen === 'elsewhere'")
         self.picture(p, "elsewhere")
@@ -244,6 +256,9 @@ class ParticipantPage(BrowserTest, ExperimentTest):
                 self.key(p, "question", "9")
             else:
                 self.assertEqual(p.value("[...document.querySelectorAll('#answers span')].map(e => e.textContent)"), ["east", "west"])
+                # The pictures: where each motion ends is its arrow.
+                ends = p.value("[...document.querySelectorAll('#answers .end')].map(e => e.getAttribute('transform').match(/[-.0-9]+/g).map(Number))")
+                self.assertEqual([(x, angle) for x, y, angle, size in ends], [(20, 0), (0, 180)])
                 self.click(p, "question", 2)
         self.assertEqual(s.end(), 0, s.said)
         self.assertEqual([r["rating"] for r in self.rows("01", "marks")], ["9"])
@@ -266,6 +281,11 @@ class ParticipantPage(BrowserTest, ExperimentTest):
                 s.process.terminate()
                 self.assertEqual(s.end(), 143, s.said)
                 continue
+            # The keyboard's focus stays on a button that is pressed again and again.
+            ask = self.asked(p, "question", ask)
+            p.value("document.querySelector('#answers button:nth-child(2)').focus(); document.activeElement.click()")
+            self.asked(p, "question", ask)
+            self.assertEqual(p.value("document.activeElement.textContent"), "2Weaker")
             for choice in (1, 3, 5, 5, 5, 5, 5, 5):  # much weaker, stronger, and the six series as they are then
                 ask = self.tap(p, "question", choice, ask)
             p.until("state.screen === 'over'")

@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: MIT
+import {by_id, show_only_if} from "./dom.js";
+import {follow_theme} from "./theme.js";
+import {show_progress, show_no_progress, show_bar_if} from "./progress.js";
+import {draw_target, move_target} from "./motion.js";
+import {show_answers, enable_answers, mark_answer, show_stimuli} from "./answers.js";
+
+const RETRY_MS = 500;
+const LAST = ["over", "elsewhere"]; // screens after which nothing comes
+const ALONE = ["target", "rest", "wait", "pause", "over", "elsewhere"]; // screens without answers
+const BETWEEN = ["wait", "pause"];  // screens that leave the progress as it is
+
+let socket = null, words = {}, tactors = [], state = {screen: "wait", ask: 0}, began = 0;
+
+// The program has all there is to know; this page shows what it was told last, and keeps nothing.
+function connect() {
+  socket = new WebSocket(`ws://${location.host}/rpc`);
+  socket.onopen = () => socket.send('{"hello":true}');
+  socket.onmessage = m => {
+    const said = JSON.parse(m.data);
+    if (said.words) greet(said); else show(said);
+  };
+  socket.onclose = () => {
+    if (LAST.includes(state.screen)) return;
+    state.ask = 0;
+    enable_answers(false);
+    show_only_if(by_id("offline"), words.offline);
+    setTimeout(connect, RETRY_MS);
+  };
+}
+function greet(facts) {
+  ({words, tactors} = facts);
+  document.documentElement.lang = words.language;
+  by_id("offline").lastElementChild.textContent = words.offline;
+  show_only_if(by_id("offline"), false);
+  by_id("full").lastElementChild.textContent = words.full_screen;
+  show_only_if(by_id("full"), document.fullscreenEnabled);
+}
+
+function show(s) {
+  state = s;
+  began = performance.now() - 1000 * (s.passed_s ?? 0);
+  const looks = document.querySelector("main").classList;
+  looks.value = s.screen;
+  looks.toggle("alone", ALONE.includes(s.screen));
+  looks.toggle("replies", Boolean(s.choices || s.stimuli || s.screen === "walk")); // or a place for them
+  by_id("text").textContent = s.screen === "elsewhere" ? words.elsewhere : s.text ?? "";
+  by_id("text").tabIndex = s.screen === "consent" ? 0 : -1; // a long one is scrolled
+  by_id("question").textContent = s.question ?? "";
+  for (const mark of by_id("mark").children) show_only_if(mark, !s.stimuli && mark.dataset.on.split(" ").includes(s.screen));
+  if (s.progress) show_progress(s.progress, words, s.screen === "rest");
+  else if (!BETWEEN.includes(s.screen)) show_no_progress();
+  if (s.progress || !BETWEEN.includes(s.screen)) show_bar_if(s.progress);
+  show_stimuli(s.stimuli ?? 0, s.playing ?? 0);
+  show_answers(s, tactors, answer);
+  enable_answers(state.ask > 0);
+  show_only_if(by_id("field"), s.path);
+  show_only_if(by_id("rest"), s.screen === "rest");
+  if (s.path) draw_target(tactors, s.path);
+  if (s.lasts_s) move(s);
+}
+
+// The target moves, and a break passes, in the program's own time.
+function move(s) {
+  if (s !== state) return;
+  const passed_s = (performance.now() - began) / 1000;
+  if (s.path) move_target(s.path, passed_s / s.lasts_s);
+  else show_left(Math.max(0, s.lasts_s - passed_s), s.lasts_s);
+  requestAnimationFrame(() => move(s));
+}
+function show_left(left_s, lasts_s) {
+  const left = Math.ceil(left_s);
+  by_id("left").textContent = left < 60 ? left : `${Math.floor(left / 60)}:${String(left % 60).padStart(2, "0")}`;
+  by_id("rest").style.setProperty("--left", left_s / lasts_s);
+}
+
+function answer(choice) {
+  if (!state.ask || choice > state.choices.length || socket.readyState !== WebSocket.OPEN) return;
+  socket.send(JSON.stringify({ask: state.ask, answer: choice}));
+  state.ask = 0; // whether it came to be known is seen by what comes next
+  enable_answers(false);
+  mark_answer(choice);
+}
+addEventListener("keydown", e => {
+  const presses = e.key === " " || e.key === "Enter";
+  if (e.repeat && presses) e.preventDefault(); // a key that is held answers once
+  if (e.repeat || e.ctrlKey || e.altKey || e.metaKey) return;
+  if (/^[1-9]$/.test(e.key)) answer(Number(e.key));
+  else if (presses && state.choices?.length === 1 && e.target !== by_id("full")) {
+    e.preventDefault(); // or the button's own click would follow
+    answer(1);
+  }
+});
+
+by_id("full").addEventListener("click", () => {
+  const done = document.fullscreenElement ? document.exitFullscreen() : document.documentElement.requestFullscreen();
+  done.catch(() => {});
+  by_id("full").blur(); // or space would answer it
+});
+follow_theme();
+connect();
