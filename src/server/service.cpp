@@ -99,7 +99,8 @@ service::service(boost::asio::io_context& io, service_options o, stream_options 
       quiet_(io),
       options_(std::move(o)),
       faces_(options_.plans.tactors),
-      stream_(io, with_handlers(std::move(s)))
+      stream_(io, with_handlers(std::move(s))),
+      touch_timer_(io)
 {
 }
 
@@ -148,14 +149,12 @@ std::size_t service::count_silent() const
         std::count_if(clients_.begin(), clients_.end(), [](const auto& c) { return c.second->input_over; }));
 }
 
-client_number service::connect(std::shared_ptr<client_link> link, client_kind k)
+client_number service::connect(std::shared_ptr<client_link> link, client_kind k, std::string from)
 {
-    auto c = std::make_unique<client>(io_, ++last_client_, std::move(link), k);
+    auto c = std::make_unique<client>(io_, ++last_client_, std::move(link), k, std::move(from));
     c->admitted = k == client_kind::local || k == client_kind::datagram || options_.token.empty();
     // A WebSocket has shown its origin, and datagrams come only from accepted peers.
     c->greeted = k != client_kind::network;
-    c->points = options_.limits.max_points_per_s;
-    c->points_ns = options_.now_ns();
     clients_.emplace(last_client_, std::move(c));
     return last_client_;
 }
@@ -260,11 +259,18 @@ void service::handle(client& c, net::rpc_request& r, const answer& to, std::size
 {
     using handler = void (service::*)(client&, const json&, const answer&);
     static constexpr std::pair<std::string_view, handler> handlers[] = {
-        {"hello", &service::hello},   {"to", &service::to},
-        {"cancel", &service::cancel}, {"stop", &service::stop},
-        {"fire", &service::fire},     {"begin", &service::begin},
-        {"end", &service::end},       {"drive", &service::drive},
-        {"status", &service::status}, {"subscribe", &service::subscribe}};
+        {"hello", &service::hello},
+        {"to", &service::to},
+        {"cancel", &service::cancel},
+        {"stop", &service::stop},
+        {"fire", &service::fire},
+        {"begin", &service::begin},
+        {"end", &service::end},
+        {"drive", &service::drive},
+        {"status", &service::status},
+        {"subscribe", &service::subscribe},
+        {"options", &service::list_options},
+    };
     if (!c.admitted && r.method != "hello")
         throw fault_error({net::code_no_token, "token", "token", "hello with the token comes first", ""});
     if (r.method == "play" || r.method == "plan")
@@ -279,7 +285,7 @@ void service::handle(client& c, net::rpc_request& r, const answer& to, std::size
     throw fault_error({net::code_no_method, "bad-input", "method",
                        fmt::format("there is no \"{}\"", r.method),
                        "one of hello, play, plan, cancel, stop, fire, begin, to, end, drive, status, "
-                       "subscribe, import, export"});
+                       "subscribe, options, import, export"});
 }
 
 bool service::input_ended(client_number number)
@@ -314,10 +320,11 @@ void service::disconnect(client_number number)
     input_ended(number);
     client& c = *found->second;
     c.levels_timer.cancel();
-    keep_jobs(number);
     const auto kept = std::move(found->second); // its answers look for it, and find nobody
     clients_.erase(found);
+    keep_jobs(number);
     gather_levels();
+    count_touch_listeners();
     note_busy();
 }
 
@@ -334,6 +341,7 @@ void service::close(std::function<void()> done)
     closing_ = true;
     refuse_jobs();
     stream_.close(std::move(done));
+    tell_stop(0);
 }
 
 } // namespace tactor::server

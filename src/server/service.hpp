@@ -3,6 +3,7 @@
 /// The service without its sockets: clients, their strokes, and notifications.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <cstdint>
@@ -12,8 +13,10 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include <boost/asio/io_context.hpp>
@@ -54,6 +57,23 @@ inline constexpr std::size_t most_file_bytes = 64U << 20;
 
 using client_number = std::uint64_t;
 
+/// Number of things that may be done at once. It comes back within a second.
+struct allowance {
+    double left = std::numeric_limits<double>::infinity();
+    std::int64_t at_ns = 0;
+
+    /// Takes `n` of at most `per_s`. Returns false if fewer are left.
+    bool take(double n, double per_s, std::int64_t now_ns) noexcept
+    {
+        left =
+            std::min(per_s, left + static_cast<double>(now_ns - std::exchange(at_ns, now_ns)) * 1e-9 * per_s);
+        if (left < n)
+            return false;
+        left -= n;
+        return true;
+    }
+};
+
 /// The way to a client. Its finish() must not call the service back at once, which may be in the middle of
 /// something.
 using client_link = net::peer;
@@ -89,7 +109,8 @@ public:
     bool has_place(client_kind k) const;
     /// Returns true if the client is connected and owes no token.
     bool is_admitted(client_number number) const;
-    client_number connect(std::shared_ptr<client_link> link, client_kind k);
+    /// Adds a client. `from`: its address; a local one needs none.
+    client_number connect(std::shared_ptr<client_link> link, client_kind k, std::string from = {});
     /// Handles a message. Returns false if the connection must be closed unanswered.
     bool receive(client_number number, std::string_view text);
     /// Handles a large message, which another thread parses. Calls `done` with the result in this thread.
@@ -145,7 +166,9 @@ private:
         std::size_t bytes = 0;
         bool play = false;
         stop_mark asked = {};
-        double steps = 0.0; ///< see planning_work; 0 until its text is read
+        view_choice view = {};
+        std::optional<double> draft = {}; ///< its number
+        double steps = 0.0;               ///< see planning_work; 0 until its text is read
         /// Makes the result of import or export, in place of a plan. Empty: too much work for its lane.
         std::function<std::string(const net::json& params, const planning_checks&)> make_text = {};
     };
@@ -156,6 +179,7 @@ private:
         double most_steps;
         std::map<client_number, std::deque<plan_job>> queued = {};
         std::deque<client_number> turns = {}; ///< order of the clients that have requests
+        bool passed = false;                  ///< the last request was a draft that passed others
         std::optional<answer> planning = {};  ///< destination of the result that is being planned
         boost::asio::thread_pool thread{1};
     };
@@ -176,10 +200,11 @@ private:
     // service_methods.cpp
     void hello(client& c, const net::json& params, const answer& to);
     void status(client& c, const net::json& params, const answer& to);
+    void list_options(client& c, const net::json& params, const answer& to);
     void subscribe(client& c, const net::json& params, const answer& to);
     void send_levels(client_number number);
     void gather_levels();
-    reply_json hello_result();
+    reply_json hello_result(const client& c);
     reply_json limits_json() const;
 
     // service_jobs.cpp
@@ -192,7 +217,11 @@ private:
     void next_job(planner_lane& lane);
     void keep_jobs(client_number number);
     void forget_job(const plan_job& j);
+    bool outdate_drafts(client_number number, plan_job& j);
+    void uncount(const plan_job& j);
+    void refuse(const plan_job& j, const net::rpc_fault& f);
     void refuse_jobs();
+    std::string answer_text(const planned& p, const view_choice& view) const;
     void post_job(planner_lane& lane, plan_job j);
     void job_done(planner_lane& lane, const plan_job& job, std::shared_ptr<planned> p,
                   std::vector<score> scores, std::string text, std::optional<net::rpc_fault> fault);
@@ -221,8 +250,17 @@ private:
     void begin_now(client& c, const live_options& o, const answer& to, const char* ended_by);
     void to(client& c, const net::json& params, const answer& to);
     void end(client& c, const net::json& params, const answer& to);
-    bool take_point(client& c);
     stroke_record& own_live(client& c, std::uint32_t number);
+
+    // service_people.cpp
+    reply_json people() const;
+    void tell_subscribers(const std::string& event, reply_json params, client_number except = 0);
+    void count_touch_listeners();
+    void touch(stroke_record& r);
+    void touch_later(std::uint32_t stroke);
+    void end_touch(stroke_record& r);
+    void tell_touch(const stroke_record& r, bool down);
+    void tell_stop(client_number by);
 
     // service_ends.cpp
     stroke_record& add_record(client_number owner);
@@ -250,6 +288,10 @@ private:
     std::uint32_t last_stroke_ = 0;
     std::uint64_t stops_ = 0;
     client_number stopped_by_ = 0; ///< client of the last stop
+    boost::asio::steady_timer touch_timer_;
+    std::set<std::uint32_t> touches_due_ = {}; ///< live strokes whose last place others were not told
+    allowance touches_ = {};
+    std::size_t touch_listeners_ = 0;
     std::size_t planning_bytes_ = 0;
     std::size_t jobs_ = 0;
     bool closing_ = false;

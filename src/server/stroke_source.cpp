@@ -120,6 +120,25 @@ double loudest(const stroke& k, const plan& p, intensity_scale scale)
     return scale.amplitude(most);
 }
 
+// Returns the samples that take as long as what a view looks at.
+double count_view_samples(const view_choice& view, const planning_work& w, double felt)
+{
+    constexpr double looked_at = 0.05; // time of a sample whose intensity alone is read, against one as text
+    constexpr double predicted = 0.1;  // time of a millisecond of a prediction
+    constexpr double read = 0.3;       // time of a sample without its text
+    switch (view.kind) {
+    case view_kind::full:
+        break;
+    case view_kind::bursts:
+        return std::min(w.samples, most_view_rows) + looked_at * w.samples;
+    case view_kind::percept:
+        return std::min(w.samples, most_view_rows) + read * w.samples + predicted * felt;
+    case view_kind::peaks:
+        return read * w.samples;
+    }
+    return w.samples;
+}
+
 double park_bursts(const stroke& k, const plan_options& o)
 {
     const double soa_s = k.choices.soa_s.value_or(o.soa_s);
@@ -204,10 +223,13 @@ void check_level(const planning& with, const options::wishes& s, double intensit
               "ask for less");
 }
 
-planning_work estimate_work(const std::vector<stroke>& strokes, const options::wishes& s, const layout& faces)
+planning_work estimate_work(const std::vector<stroke>& strokes, const options::wishes& s, const layout& faces,
+                            const view_choice& view)
 {
     planning_work w;
+    double felt = 0.0;
     for (const stroke& k : strokes) {
+        felt += k.motion.duration_s() / percept_step_s;
         switch (k.choices.algorithm.value_or(s.plan.algorithm)) {
         case algorithm_kind::park2016:
             w.bursts += park_bursts(k, s.plan);
@@ -221,7 +243,8 @@ planning_work estimate_work(const std::vector<stroke>& strokes, const options::w
         }
     }
     const double wide = 1.0 + static_cast<double>(faces.places().size()) / tactors_a_step;
-    w.steps = (w.samples + w.bursts * (s.compensate ? moving : 1.0)) * wide;
+    const double samples = count_view_samples(view, w, felt);
+    w.steps = (samples + w.bursts * (s.compensate ? moving : 1.0)) * wide;
     return w;
 }
 
@@ -279,15 +302,14 @@ planned make_planned(const planning& with, const layout& faces, const json& para
                      const planning_checks& checks)
 {
     const std::string source = find_source(params);
-    const json* options = member(params, "options");
-    const options::wishes s =
-        options == nullptr ? with.owner : with_options(with.owner, *options, options_for::planned);
+    const options::wishes s = settle_options(with.owner, params);
     try {
         planned p{source, read_strokes(source, params[source], s), {}, s.render};
+        p.observer = {s.observer, s.low_speed};
         if (source == "stroke")
             p.name = p.strokes.front().name;
         p.strokes = settle_strokes(with, faces, std::move(p.strokes), s, false);
-        if (checks.weigh && !checks.weigh(estimate_work(p.strokes, s, faces)))
+        if (checks.weigh && !checks.weigh(estimate_work(p.strokes, s, faces, read_view(params))))
             return p;
         plan_strokes(with, faces, p, s, source, checks);
         return p;

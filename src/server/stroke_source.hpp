@@ -16,6 +16,7 @@
 #include <tactor/stroke.hpp>
 
 #include "net/rpc.hpp"
+#include "percept/compare.hpp"
 #include "server/stroke_options.hpp"
 
 namespace tactor::server {
@@ -37,6 +38,7 @@ struct planned {
     render_options render;
     /// Moves of `compensate` in each plan; empty without it. The plans themselves are moved to `plans`.
     std::vector<compensated_plan> moved = {};
+    detail::observer_choice observer = {}; ///< of the view percept
 
     /// Returns the start of each plan, s from the start of all.
     std::vector<double> starts_s() const;
@@ -66,12 +68,12 @@ const char* find_source(const net::json& params);
 struct planning_work {
     double bursts = 0.0;
     double samples = 0.0; ///< of continuous strokes
-    double steps = 0.0;   ///< in time: some 2 to 5 us each
+    double steps = 0.0;   ///< in time, with the view: some 2 to 5 us each
 };
 
 /// Estimates the work from durations and options; none for an SOA that the planner refuses.
-planning_work estimate_work(const std::vector<stroke>& strokes, const options::wishes& s,
-                            const layout& faces);
+planning_work estimate_work(const std::vector<stroke>& strokes, const options::wishes& s, const layout& faces,
+                            const view_choice& view = {});
 
 /// Calls from within make_planned(); each may throw.
 struct planning_checks {

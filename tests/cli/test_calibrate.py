@@ -395,6 +395,7 @@ class Page(CalibrateTest):
         for trial in (1, 2, 3):
             for interval in (1, 2):
                 self.until_text(f"Interval {interval}$")
+                self.assertEqual((self.page.seen[-1]["stimuli"], self.page.seen[-1]["playing"]), (2, interval))
             asked = self.page.next()
             s.key("2")
             self.assertEqual((asked["question"], asked["choices"]), ("Which one vibrated?", ["", ""]))

@@ -90,6 +90,37 @@ class Sessions(PageTest):
             del m["progress"], m["ask"]
         self.assertEqual(marks[:len(marks) // 2], marks[len(marks) // 2:])
 
+    def test_the_page_gets_which_of_two_stimuli_plays(self):
+        s = self.start()
+        p = s.participant()
+        p.begin()
+        for _ in range(3):
+            p.answer("question", 1)
+        p.answer("introduce", 1)
+        for _ in range(2):
+            p.answer("question", 1)
+        self.assertEqual(s.end(), 0, s.said)
+        told = {}
+        for m in p.seen:
+            if m.get("screen") == "stimulus":
+                where = m["progress"]
+                told.setdefault((where["run"], where["practice"], where["trial"]), []).append((m.get("stimuli"), m.get("playing")))
+        pair = [(2, 0), (2, 1), (2, 0), (2, 2)]
+        self.assertEqual(told, {(1, True, 1): pair, (1, False, 1): pair, (1, False, 2): pair,
+                                (2, False, 1): [(None, None)], (2, False, 2): [(None, None)]})
+
+    def test_motions_to_name_have_pictures(self):
+        self.write("names.toml", SHORT[:SHORT.index("[[run]]")] + '[[run]]\nname = "what"\ntask = "identify"\ntrials = 2\nmethods = ["Birch"]\n')
+        s = self.start(definition="names.toml")
+        p = s.participant()
+        p.begin()
+        for i in (1, 2):
+            asked = p.answer("question", i)
+            self.assertEqual(asked["choices"], ["east", "west"])
+            self.assertEqual([(way[0], way[-1]) for way in asked["pictures"]], [([0, 0], [20, 0]), ([20, 0], [0, 0])])
+        self.assertEqual(s.end(), 0, s.said)
+        self.assertEqual([m["progress"]["trial"] for m in p.seen if m.get("screen") == "walk" and m["ask"]], [1, 2])
+
     def test_words_are_in_the_participant_s_language(self):
         words = '[page]\nlanguage = "de"\nagree = "Machen Sie mit?"\nyes = "Ja"\npause = "Pause"\n'
         self.write("de.toml", SHORT.replace("[[motion]]", words + "[[motion]]", 1))

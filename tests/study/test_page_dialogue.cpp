@@ -50,6 +50,19 @@ TEST_CASE("a new page gets the facts and the present state")
           json{{"screen", "rest"}, {"ask", 0}, {"lasts_s", 60.0}, {"passed_s", 3.0}});
 }
 
+TEST_CASE("a page gets pictures of motions, and which stimulus plays")
+{
+    page_dialogue d(json::object());
+    static_cast<void>(d.hear(1, hello, 0));
+    page_screen s = question();
+    s.pictures = {{{0.0, 0.0}, {2.0, 1.0}}, {{2.0, 0.0}, {0.0, 0.0}}};
+    const json asked = only(d.show(s, 0), 1);
+    CHECK(asked["pictures"] == json{{{0.0, 0.0}, {2.0, 1.0}}, {{2.0, 0.0}, {0.0, 0.0}}});
+    CHECK_FALSE(asked.contains("stimuli"));
+    CHECK(only(d.show({.name = "stimulus", .stimuli = 2, .playing = 1}, 0), 1) ==
+          json{{"screen", "stimulus"}, {"ask", 0}, {"stimuli", 2}, {"playing", 1}});
+}
+
 TEST_CASE("a question has one answer")
 {
     page_dialogue d(json::object());

@@ -170,7 +170,10 @@ calibration_answer person::choose(const calibration_trial& t)
     const auto show_until = [&](unsigned now) {
         for (; shown < now; ++shown) {
             session::show(fmt::format(" interval {}", shown + 1));
-            on_page({.name = "stimulus", .text = fmt::format("Interval {}", shown + 1)});
+            on_page({.name = "stimulus",
+                     .text = fmt::format("Interval {}", shown + 1),
+                     .stimuli = 2,
+                     .playing = shown + 1});
         }
     };
     std::optional<noise_around> noise(stage_);
@@ -251,7 +254,8 @@ void person::tell(const calibration_record& r)
     if (!settings_.feedback || !r.correct)
         return;
     session::show(*r.correct ? "right\n" : "wrong\n");
-    on_page({.name = "stimulus", .text = *r.correct ? "That was right." : "That was wrong."});
+    on_page(
+        {.name = *r.correct ? "right" : "wrong", .text = *r.correct ? "That was right." : "That was wrong."});
 }
 
 void person::thank()

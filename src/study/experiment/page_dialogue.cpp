@@ -20,6 +20,14 @@ std::uint64_t whole_number(const ordered& j, const char* key)
     return found != j.end() && found->is_number_unsigned() ? found->get<std::uint64_t>() : 0;
 }
 
+ordered points_list(const std::vector<point>& path)
+{
+    ordered all = ordered::array();
+    for (const point& p : path)
+        all.push_back({p.x_mm, p.y_mm});
+    return all;
+}
+
 } // namespace
 
 std::string page_dialogue::state(std::int64_t now_ns) const
@@ -37,9 +45,14 @@ std::string page_dialogue::state(std::int64_t now_ns) const
                          {"practice", screen_.where->practice},
                          {"trial", screen_.where->trial},
                          {"trials", screen_.where->trials}};
+    for (const std::vector<point>& motion : screen_.pictures)
+        j["pictures"].push_back(points_list(motion));
+    if (screen_.stimuli > 0) {
+        j["stimuli"] = screen_.stimuli;
+        j["playing"] = screen_.playing;
+    }
     if (screen_.path.size() > 1)
-        for (const point& p : screen_.path)
-            j["path"].push_back({p.x_mm, p.y_mm});
+        j["path"] = points_list(screen_.path);
     if (screen_.lasts_s > 0.0) {
         j["lasts_s"] = screen_.lasts_s;
         j["passed_s"] = static_cast<double>(now_ns - since_ns_) * 1e-9;

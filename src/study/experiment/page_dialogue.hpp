@@ -27,13 +27,18 @@ struct page_progress {
 
 /// Content of the participant's screen. Nothing in it says by which method a motion is rendered.
 struct page_screen {
-    std::string name = "wait"; ///< of consent, walk, introduce, target, stimulus, question, rest, pause, over
+    /// Kind of screen: consent, walk, introduce, target, stimulus, question, right, wrong, rest, pause, wait,
+    /// over.
+    std::string name = "wait";
     std::string text = {};
     std::string question = {};
     std::vector<std::string> choices = {}; ///< possible answers; the page shows the number of an empty one
     std::string keys = {};                 ///< a key for each choice
-    std::vector<point> path = {};          ///< the target, at equal parts of its time
-    double lasts_s = 0.0;                  ///< of target and rest
+    std::vector<std::vector<point>> pictures = {}; ///< a motion for each choice, as the path; may be empty
+    unsigned stimuli = 0;                          ///< in the trial; 0: the page does not tell them apart
+    unsigned playing = 0;                          ///< the one that plays now, from 1; 0: none
+    std::vector<point> path = {};                  ///< the target, at equal parts of its time
+    double lasts_s = 0.0;                          ///< of target and rest
     std::optional<page_progress> where = {};
 };
 

@@ -12,12 +12,12 @@ namespace {
 // Points of a path on the page: nobody sees the straight lines between them.
 constexpr double points_per_s = 200.0;
 constexpr double most_points = 4000.0;
+constexpr double picture_points = 60.0;
 
-std::vector<point> sample_way(const stroke& target, const array& a)
+std::vector<point> sample_way(const stroke& target, const array& a, double parts)
 {
     const trajectory& m = target.motion;
     const layout faces(a);
-    const double parts = std::clamp(std::ceil(m.duration_s() * points_per_s), 50.0, most_points);
     std::vector<point> way;
     for (double i = 0.0; i <= parts; ++i) {
         const point p = m.position(m.duration_s() * i / parts);
@@ -47,6 +47,11 @@ page_progress where_is(const prepared_experiment& p, const session_step& s)
     const run_sequence& run = p.runs[s.run];
     return {s.run + 1, p.runs.size(), s.practice, s.which.trial,
             s.practice ? run.practice.size() : run.trials.size()};
+}
+
+page_progress before_trials(const prepared_experiment& p, const session_step& s)
+{
+    return {s.run + 1, p.runs.size(), false, 0, p.runs[s.run].trials.size()};
 }
 
 // Returns the steps of the scale with their labels, or its ends.
@@ -109,6 +114,7 @@ page_screen walk_screen(const prepared_experiment& p, unsigned tactor, bool aske
 {
     const page_words& w = p.definition.page;
     page_screen s{.name = "walk", .text = w["walk"]};
+    s.where = {1, 1, false, tactor + 1, p.where.tactors.tactors.size()};
     if (!asked)
         return s;
     s.question = w["felt"];
@@ -127,15 +133,14 @@ page_screen introduce_screen(const prepared_experiment& p, const session_step& s
                       .question = p.run_at(s.run).question,
                       .choices = {p.definition.page["begin"]},
                       .keys = " "};
-    shown.where = where_is(p, s);
-    shown.where->trial = 0;
-    shown.where->trials = p.runs[s.run].trials.size();
+    shown.where = before_trials(p, s);
     return shown;
 }
 
 page_screen rest_screen(const prepared_experiment& p, const session_step& s)
 {
     page_screen shown = idle_screen(p, "rest");
+    shown.where = before_trials(p, s);
     shown.lasts_s = p.run_at(s.run).break_s;
     return shown;
 }
@@ -143,15 +148,18 @@ page_screen rest_screen(const prepared_experiment& p, const session_step& s)
 page_screen target_screen(const prepared_experiment& p, const session_step& s, const stroke& target)
 {
     page_screen shown = idle_screen(p, "target");
-    shown.path = sample_way(target, p.where.tactors);
     shown.lasts_s = target.motion.duration_s();
+    shown.path = sample_way(target, p.where.tactors,
+                            std::clamp(std::ceil(shown.lasts_s * points_per_s), 50.0, most_points));
     shown.where = where_is(p, s);
     return shown;
 }
 
-page_screen stimulus_screen(const prepared_experiment& p, const session_step& s)
+page_screen stimulus_screen(const prepared_experiment& p, const session_step& s, unsigned playing)
 {
     page_screen shown = idle_screen(p, "stimulus");
+    shown.stimuli = p.run_at(s.run).outline.task == task_kind::choose ? 2 : 0;
+    shown.playing = playing;
     shown.where = where_is(p, s);
     return shown;
 }
@@ -162,6 +170,10 @@ page_screen question_screen(const prepared_experiment& p, const session_step& s)
     page_screen shown{.name = "question", .question = r.question, .choices = label_choices(p, r)};
     for (std::size_t i = 0; i < shown.choices.size(); ++i)
         shown.keys += static_cast<char>('1' + i);
+    if (r.outline.task == task_kind::identify)
+        for (const std::size_t m : r.motions)
+            shown.pictures.push_back(
+                sample_way(p.definition.motions[m].drawn, p.where.tactors, picture_points));
     shown.where = where_is(p, s);
     return shown;
 }

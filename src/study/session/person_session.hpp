@@ -87,6 +87,8 @@ private:
     /// Shows the target. Returns the reason if that made the trial void.
     std::string animate(const session_step& s, const planned_trial& t);
     given_stimulus give(const session_step& s, const planned_trial& t);
+    /// Returns a watcher that shows on the page which of two stimuli plays at a frame, and what came before.
+    std::function<void(std::uint64_t)> marks(const session_step& s, const planned_trial& t);
     asked_answer ask(const session_step& s, const given_stimulus& g);
     void write(const session_step& s, const trial_row& row, std::int64_t started_ns);
 
@@ -135,7 +137,7 @@ page_screen introduce_screen(const prepared_experiment& p, const session_step& s
 page_screen rest_screen(const prepared_experiment& p, const session_step& s);
 /// Make the screens of a trial: its target, its stimuli, its question.
 page_screen target_screen(const prepared_experiment& p, const session_step& s, const stroke& target);
-page_screen stimulus_screen(const prepared_experiment& p, const session_step& s);
+page_screen stimulus_screen(const prepared_experiment& p, const session_step& s, unsigned playing = 0);
 page_screen question_screen(const prepared_experiment& p, const session_step& s);
 
 } // namespace tactor::study

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
 // Steps with a person: consent, the walk over the array, and trials with target, stimuli and question.
 #include <algorithm>
+#include <array>
 #include <csignal>
+#include <functional>
 #include <utility>
 
 #include <fmt/format.h>
@@ -79,6 +81,20 @@ std::function<bool(double)> person_session::waiting()
     };
 }
 
+std::function<void(std::uint64_t)> person_session::marks(const session_step& s, const planned_trial& t)
+{
+    if (!t.method_2)
+        return [](std::uint64_t) {};
+    const stimulus_set& all = p_.stimuli;
+    // The gap's mark is there, too: both stimuli are seen to begin and end.
+    const std::array<std::pair<std::uint64_t, unsigned>, 3> changes{
+        {{0, 1}, {all.at(t.motion, t.method_1).frames, 0}, {all.second(t), 2}}};
+    return [this, s, changes, shown = std::size_t{0}](std::uint64_t frame) mutable {
+        for (; shown < changes.size() && frame >= changes[shown].first; ++shown)
+            on_page(stimulus_screen(p_, s, changes[shown].second));
+    };
+}
+
 given_stimulus person_session::give(const session_step& s, const planned_trial& t)
 {
     const score stimuli = p_.stimuli.make_score(t);
@@ -93,10 +109,14 @@ given_stimulus person_session::give(const session_step& s, const planned_trial& 
         std::optional<noise_around> noise;
         if (!p_.definition.masking.through_run)
             noise.emplace(stage_);
-        g = stage_.give(stimuli, stimulus_lead_s, [&](std::uint64_t) {
+        const auto mark = marks(s, t);
+        g = stage_.give(stimuli, stimulus_lead_s, [&](std::uint64_t frame) {
+            mark(frame);
             if (!heed())
                 stage_.cancel();
         });
+        if (g.flaw.empty())
+            mark(stimuli.frames()); // where the process was too slow to look
     }
     heed(); // drops keys that were pressed too early
     if (quit_)

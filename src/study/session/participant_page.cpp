@@ -3,14 +3,15 @@
 
 #include <utility>
 
-#include "study/session/stage.hpp"
 #include "rt/clock.hpp"
 
 namespace tactor::study {
 namespace {
 
-// participant_page.html, as it is.
-constexpr std::string_view document = R"page(@page@)page";
+// page/participant.html with its styles and modules, as one document.
+constexpr std::string_view document =
+#include "study/participant_page.inc"
+    ;
 
 // Returns what a page needs to draw and to speak, without title and methods, which would give them away.
 nlohmann::ordered_json make_facts(const page_words& texts, const array& a)

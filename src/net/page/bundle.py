@@ -1,0 +1,96 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
+"""Joins a page, its styles and its modules into one document. Usage: bundle.py PAGE.html OUTPUT [DEPFILE]
+
+An output whose name ends in .inc is a C++ literal. Lines of the page that are only
+    <link rel="stylesheet" href="FILE.css">  and  <script src="FILE.js">...</script>
+become the files' contents, with the nonce that the server fills in. A module imports by lines such as
+    import {name, other} from "./FILE.js";
+and exports declarations. Names at the top of modules are unique in the page, so that modules can be joined as they are.
+Blank lines and lines that are only a comment are left out."""
+import pathlib
+import re
+import sys
+
+STYLE = re.compile(r'\s*<link rel="stylesheet" href="([\w./-]+)">\s*')
+SCRIPT = re.compile(r'\s*<script(?: type="module")? src="([\w./-]+)"></script>\s*')
+IMPORT = re.compile(r'import \{([\w, ]+)\} from "([\w./-]+)";')
+DECLARATION = re.compile(r"(export )?(?:async )?(?:function\*?|const|let|class) (\w+)")
+
+
+class Bundle:
+    def __init__(self):
+        self.read = []       # files, in the order in which they were read
+        self.exported = {}   # file: names
+        self.declared = {}   # name: place
+
+    def text(self, file):
+        self.read.append(file)
+        return file.read_text(encoding="utf-8")
+
+    def page(self, file):
+        return "".join(self.line(file.parent, line) for line in self.text(file).splitlines(keepends=True))
+
+    def line(self, folder, line):
+        if m := STYLE.fullmatch(line):
+            return f'<style nonce="NONCE">\n{self.style(folder / m[1])}</style>\n'
+        if m := SCRIPT.fullmatch(line):
+            return f'<script nonce="NONCE">\n"use strict";\n{self.module((folder / m[1]).resolve())}</script>\n'
+        return line
+
+    def style(self, file):
+        return "".join(f"{line.strip()}\n" for line in self.text(file).splitlines()
+                       if line.strip() and not re.fullmatch(r"\s*/\*.*\*/\s*", line))
+
+    def module(self, file):
+        """Returns a module after all those that it imports and that were not returned before."""
+        if file in self.exported:
+            return ""
+        self.exported[file] = set()
+        before, own = [], []
+        for number, line in enumerate(self.text(file).splitlines(), 1):
+            place = f"{file}:{number}"
+            if line.startswith("import "):
+                before.append(self.imported(file, line, place))
+                continue
+            if m := DECLARATION.match(line):
+                self.declare(m[2], place)
+                if m[1]:
+                    self.exported[file].add(m[2])
+                    line = line[len(m[1]):]
+            elif line.startswith("export "):
+                sys.exit(f"{place}: export a declaration")
+            if line.strip() and not line.lstrip().startswith("//"):
+                own.append(line + "\n")
+        return "".join(before + own)
+
+    def imported(self, file, line, place):
+        m = IMPORT.fullmatch(line)
+        if not m:
+            sys.exit(f'{place}: write import {{name}} from "./file.js"; on one line')
+        other = (file.parent / m[2]).resolve()
+        text = self.module(other)
+        if missing := {n.strip() for n in m[1].split(",")} - self.exported[other]:
+            sys.exit(f"{place}: {m[2]} does not export {', '.join(sorted(missing))}")
+        return text
+
+    def declare(self, name, place):
+        if name in self.declared:
+            sys.exit(f"{place}: {name} stands at {self.declared[name]}, too")
+        self.declared[name] = place
+
+
+def main(page, output, depfile=None):
+    b = Bundle()
+    text = b.page(pathlib.Path(page))
+    if output.endswith(".inc"):
+        if ')page"' in text:
+            sys.exit(f'{page}: )page" would end the literal')
+        text = f'R"page({text})page"\n'
+    pathlib.Path(output).write_text(text, encoding="utf-8")
+    if depfile:
+        pathlib.Path(depfile).write_text(f"{output}: {' '.join(map(str, b.read))}\n", encoding="utf-8")
+
+
+if __name__ == "__main__":
+    main(*sys.argv[1:])
