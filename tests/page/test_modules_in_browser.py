@@ -36,8 +36,8 @@ class ModulesTest(BrowserTest, ToolTest):
         self.address = f"http://127.0.0.1:{server.server_port}"
 
     def open(self, more=""):
-        p = self.page(f"{self.address}/viridis.js{more}")
-        p.until("location.pathname === '/viridis.js' && document.readyState === 'complete'")
+        p = self.page(f"{self.address}/qr.js{more}")
+        p.until("location.pathname === '/qr.js' && document.readyState === 'complete'")
         return p
 
     @staticmethod

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 import assert from "node:assert/strict";
 import {test} from "node:test";
-import {viridis} from "../../src/server/page/viridis.js";
+import {viridis} from "../../src/net/page/viridis.js";
 
 const parts = Array.from({length: 101}, (_, i) => i / 100);
 const channels = colour => [1, 3, 5].map(i => parseInt(colour.slice(i, i + 2), 16));
