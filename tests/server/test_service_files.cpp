@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Imports and exports among the other requests of the service.
+#include <atomic>
 #include <string>
 
 #include <doctest/doctest.h>
@@ -64,21 +65,31 @@ TEST_CASE("a file that other answers leave no room for is refused")
 
 TEST_CASE("files for a client that left are not made, and its strokes are played")
 {
-    service_rig rig;
+    std::atomic<int> made = 0;
+    service_rig rig([&](server::service_options& o, server::stream_options&) {
+        o.plan_text = [&made](const server::planned&, std::size_t) {
+            ++made;
+            return std::string("{}");
+        };
+    });
     rig.plug();
     rig.start();
     const auto a = rig.client();
     const auto b = rig.client();
     rig.ok(b, "subscribe", {{"events", {"strokes"}}});
+    json plan = export_request(1, 0.5);
+    plan["params"]["as"] = "json";
     for (int i = 0; i < 30; ++i)
-        rig.send(a, export_request(i, 20.0));
+        rig.send(a, plan);
     rig.send(a, {{"jsonrpc", "2.0"},
                  {"id", 99},
                  {"method", "play"},
                  {"params", {{"path", "M 0 0 L 40 40"}, {"options", {{"duration", 0.1}}}}}});
     rig.all->disconnect(a.number);
     rig.find_end(b, 1);
+    rig.close();
     CHECK(a.box->all.empty());
+    CHECK(made <= 1); // what was being made
 }
 
 TEST_CASE("the end of the server refuses files that wait")
