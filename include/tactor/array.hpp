@@ -55,6 +55,8 @@ struct array {
     std::string name = {};
     std::vector<tactor_spec> tactors = {};
     source_place where = {};
+    std::string site = {}; ///< place on the body, such as "left palm"; empty: not known
+    std::string up = {};   ///< direction of its upper edge on the body, such as "fingers"; empty: not known
 
     /// Returns the number of channels that the array needs: the highest channel + 1.
     TACTOR_API unsigned channels() const noexcept;

@@ -43,14 +43,6 @@ void add_plot_options(CLI::App& c, plot_settings& p)
     add_picture_options(c, p.picture, "85, one print column");
 }
 
-// Returns a stroke's own name, or that of the file that holds several.
-std::string choose_name(const piece& p)
-{
-    if (p.strokes.size() == 1 && !p.strokes[0].name.empty())
-        return p.strokes[0].name;
-    return std::filesystem::path(shown_name(p.name)).filename().string();
-}
-
 int draw(settings& s, const plot_settings& p)
 {
     const picture_options& o = p.picture;
@@ -66,8 +58,10 @@ int draw(settings& s, const plot_settings& p)
     std::optional<score> sound;
     if (p.view == figure_view::wave)
         sound = make_score(q, e, session::settle_render(s, e));
+    const std::string name =
+        plot::name_scene(q.strokes, std::filesystem::path(shown_name(q.name)).filename().string());
     const plot::canvas picture = plot::draw_figure(
-        {e.tactors, o.choose_title(choose_name(q)), q.strokes, q.plans, sound ? &*sound : nullptr, q.moved},
+        {e.tactors, o.choose_title(name), q.strokes, q.plans, sound ? &*sound : nullptr, q.moved},
         {p.view, o.width_mm, o.has_title(), p.animated});
     session::tell_of_pipe_to_write(o.file);
     plot::save(picture, o.file, o.dpi, o.force);

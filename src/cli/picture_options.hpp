@@ -6,6 +6,7 @@
 #include <string>
 
 #include "plot/figure.hpp"
+#include "plot/paint/output.hpp"
 
 namespace CLI {
 class App;
@@ -16,7 +17,7 @@ namespace tactor::cli {
 struct picture_options {
     std::string file = {}; ///< empty: none
     double width_mm = plot::figure_options{}.width_mm;
-    unsigned dpi = 300;
+    unsigned dpi = plot::usual_dpi;
     bool force = false;     ///< replaces a file that tactor did not write
     std::string title = {}; ///< --title; empty: the picture's own, "none": none
 

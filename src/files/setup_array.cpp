@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "core/kind_names.hpp"
+#include "core/label.hpp"
 #include "core/words.hpp"
 #include "files/setup_parts.hpp"
 #include "files/text_file.hpp"
@@ -70,6 +71,15 @@ array read_included(const toml_table& table, const setup_source& source, located
     if (!out.said.array)
         table.fail("file", fmt::format("{} has no array", file.string()), "name an array file");
     return *std::exchange(out.said.array, std::nullopt);
+}
+
+// Reads a text that is shown to people as it is.
+std::optional<std::string> read_label(const toml_table& t, std::string_view key)
+{
+    std::optional<std::string> said = t.text(key);
+    if (const std::string why = said ? label_fault(*said) : ""; !why.empty())
+        t.fail(key, fmt::format("{} {}", key, why), label_hint);
+    return said;
 }
 
 // Reads the kind of actuator. A missing one is unknown, which no file can say.
@@ -200,7 +210,7 @@ void read_array(const toml_table& root, const setup_source& source, located_setu
         root.table("array", "[array]", "[array]").value_or(toml_table(none, "[array]", source.name));
     if (table.has("tactor"))
         table.fail("tactor", "tactors inside [array]", "write [[tactor]], which stands beside [array]");
-    table.only({"name", "grid", "preset", "file", "actuator"});
+    table.only({"name", "site", "up", "grid", "preset", "file", "actuator"});
     const std::vector<toml_table> entries = root.tables("tactor");
 
     std::string_view base;
@@ -220,6 +230,8 @@ void read_array(const toml_table& root, const setup_source& source, located_setu
         a.name = *name;
     else if (a.name.empty())
         a.name = std::filesystem::path(source.name).stem().string();
+    a.site = read_label(table, "site").value_or(a.site);
+    a.up = read_label(table, "up").value_or(a.up);
     if (const auto actuator = read_actuator(table))
         for (tactor_spec& t : a.tactors)
             if (t.actuator == actuator_kind::unknown)

@@ -2,6 +2,7 @@
 #include "files/setup_text.hpp"
 
 #include <optional>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -131,6 +132,9 @@ std::string toml_string(std::string_view s)
 std::string array_text(const array& a)
 {
     std::string s = fmt::format("[array]\nname = {}\n", toml_string(a.name));
+    for (const auto& [key, text] : {std::pair("site", &a.site), std::pair("up", &a.up)})
+        if (!text->empty())
+            s += fmt::format("{} = {}\n", key, toml_string(*text));
     for (const tactor_spec& t : a.tactors)
         s += tactor_text(t);
     return s;

@@ -35,6 +35,10 @@ std::string origin_text(const calibration_origin& o);
 ///         group that is fitted as a single picture.
 std::string stroke_text(const stroke& s);
 
+/// Writes that, or a table [[stroke]] for each of several; each may start after the one before it.
+/// \throws error (bad_input) as above, and for a start that counts from a group (start_anchor::back).
+std::string strokes_text(std::span<const stroke> all);
+
 /// Returns the text of an array or configuration file with other channels, one for each tactor in order. The
 /// rest stays as it is, comments too. May block on the file system.
 /// \throws error (bad_input): what load_setup() throws; no array in the file; a wrong number of channels;

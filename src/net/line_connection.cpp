@@ -251,17 +251,18 @@ void line_connection::give_up(line_fault f)
         close();
 }
 
-void line_connection::send(std::string line)
+void line_connection::queue(std::string line, bool large)
 {
     if (closed_ || finishing_)
         return;
     line += '\n';
     const std::size_t n = line.size();
-    if (unread_.held() + n > limits_.waiting_bytes)
+    if (!large && unread_.held() - large_bytes_ + n > limits_.waiting_bytes)
         unread_.give_up();
     if (!unread_.add(n))
         return;
-    queue_.push_back(std::move(line));
+    large_bytes_ += large ? n : 0;
+    queue_.push_back({std::move(line), large});
     if (in_flight_ == 0)
         write();
 }
@@ -288,7 +289,7 @@ void line_connection::write()
 {
     std::vector<boost::asio::const_buffer> buffers;
     for (std::size_t i = 0; i < std::min(queue_.size(), lines_at_once); ++i)
-        buffers.push_back(boost::asio::buffer(queue_[i]));
+        buffers.push_back(boost::asio::buffer(queue_[i].text));
     in_flight_ = buffers.size();
     boost::asio::async_write(socket_, buffers,
                              [self = shared_from_this()](const boost::system::error_code& e, std::size_t n) {
@@ -304,6 +305,8 @@ void line_connection::write()
 void line_connection::wrote(std::size_t n)
 {
     unread_.take(n);
+    for (std::size_t i = 0; i < in_flight_; ++i)
+        large_bytes_ -= queue_[i].large ? queue_[i].text.size() : 0;
     queue_.erase(queue_.begin(), queue_.begin() + static_cast<std::ptrdiff_t>(in_flight_));
     in_flight_ = 0;
     if (!queue_.empty())

@@ -9,6 +9,7 @@
 #include <memory>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include <boost/asio/generic/stream_protocol.hpp>
@@ -42,9 +43,11 @@ public:
     line_connection(socket_type s, const line_limits& l, shared_by_peers& all);
 
     void start(peer_handlers h);
-    void send(std::string line) override;
+    void send(std::string line) override { queue(std::move(line), false); }
+    void send_large(std::string line) override { queue(std::move(line), true); }
     void finish() override;
     std::size_t waiting() const override { return unread_.held(); }
+    std::size_t room() const override { return unread_.room(); }
     void close();
 
 private:
@@ -66,6 +69,7 @@ private:
     void give_up_soon(line_fault f);
     template <typename F>
     void within_memory(F f);
+    void queue(std::string line, bool large);
     void write();
     void wrote(std::size_t n);
 
@@ -83,8 +87,9 @@ private:
     std::string partial_;             ///< the rest of it, or short lines
     std::size_t begin_ = 0;           ///< start of the next line in it
     std::size_t scanned_ = 0;         ///< no line ends between begin_ and this place
-    std::deque<std::string> queue_;
-    std::size_t in_flight_ = 0; ///< lines
+    std::deque<queued_text> queue_;
+    std::size_t large_bytes_ = 0; ///< of large messages in the queue
+    std::size_t in_flight_ = 0;   ///< lines
     bool armed_ = false;
     bool met_ = false; ///< the first message has come
     bool reading_ = true;

@@ -6,6 +6,8 @@
 #include <cstring>
 #include <memory>
 
+#include <boost/asio/ip/address.hpp>
+#include <boost/system/error_code.hpp>
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <netdb.h>
@@ -21,6 +23,7 @@
 
 #include "core/refused.hpp"
 #include "core/split.hpp"
+#include "net/access.hpp"
 
 namespace tactor::net {
 namespace {
@@ -217,6 +220,22 @@ std::string local_address(int fd)
         return {};
     return b.at.ss_family == AF_INET6 ? fmt::format("[{}]:{}", &host[0], &port[0])
                                       : fmt::format("{}:{}", &host[0], &port[0]);
+}
+
+std::string peer_address(int fd)
+{
+    sockaddr_storage at{};
+    socklen_t size = sizeof at;
+    char host[NI_MAXHOST];
+    // NOLINTBEGIN(cppcoreguidelines-pro-type-reinterpret-cast)
+    if (::getpeername(fd, reinterpret_cast<sockaddr*>(&at), &size) != 0 ||
+        ::getnameinfo(reinterpret_cast<const sockaddr*>(&at), size, host, sizeof host, nullptr, 0,
+                      NI_NUMERICHOST) != 0)
+        return {};
+    // NOLINTEND(cppcoreguidelines-pro-type-reinterpret-cast)
+    boost::system::error_code other;
+    const auto address = boost::asio::ip::make_address(&host[0], other);
+    return other ? std::string() : plain(address).to_string();
 }
 
 bool is_loopback(int fd)

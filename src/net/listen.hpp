@@ -43,6 +43,9 @@ owned_fd bind_udp(const host_and_port& at, const std::string& what);
 
 /// Returns the address to which a TCP socket is bound, as "127.0.0.1:4001" or "[::1]:4001".
 std::string local_address(int fd);
+/// Returns the address of a socket's peer without its port, as "192.168.1.7" or "fe80::1%eth0"; an IPv4
+/// address within IPv6 as IPv4. Empty: the peer is gone.
+std::string peer_address(int fd);
 /// Returns true if that address is on the loopback interface.
 bool is_loopback(int fd);
 /// Returns true if the socket is of the family AF_UNIX, a stream, and listens.

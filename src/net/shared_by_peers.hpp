@@ -6,10 +6,12 @@
 #include <cstddef>
 #include <deque>
 #include <functional>
+#include <limits>
 #include <memory>
 #include <set>
 #include <string>
 #include <string_view>
+#include <utility>
 
 #include <boost/asio/io_context.hpp>
 
@@ -25,12 +27,22 @@ public:
 
     /// Queues a message. Drops a peer that lets too much wait.
     virtual void send(std::string message) = 0;
+    /// Queues a large message that the peer asked for. Beside it as much may wait as without it.
+    virtual void send_large(std::string message) { send(std::move(message)); }
+    /// Returns the bytes that all peers together may still let wait.
+    virtual std::size_t room() const { return std::numeric_limits<std::size_t>::max(); }
     /// Returns the bytes that the peer has not read.
     virtual std::size_t waiting() const = 0;
     /// Stops reading, and closes when everything is written, or after a second.
     virtual void finish() = 0;
     /// Closes in the same way. `why`, of at most 123 bytes, is for a peer that can be told.
     virtual void turn_out(const char* /*why*/) { finish(); }
+};
+
+/// A message that waits to be written.
+struct queued_text {
+    std::string text;
+    bool large = false; ///< the peer asked for it, whatever its size
 };
 
 /// Reason why a connection is given up.
@@ -116,6 +128,8 @@ public:
     /// Stops counting the bytes of this peer.
     void give_up();
     std::size_t held() const noexcept { return held_; }
+    /// Returns the bytes that all peers together may still add.
+    std::size_t room() const noexcept { return all_->most - all_->held; }
 
 private:
     void leave() noexcept;

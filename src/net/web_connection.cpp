@@ -125,16 +125,17 @@ void web_session::disarm()
         deadline.cancel();
 }
 
-void web_session::send(std::string text)
+void web_session::enqueue(std::string text, bool large)
 {
     if (closed || finishing || !accepted)
         return;
     const std::size_t n = text.size();
-    if (unread.held() + n > limits.waiting_bytes)
+    if (!large && unread.held() - large_bytes + n > limits.waiting_bytes)
         unread.give_up();
     if (!unread.add(n))
         return;
-    queue.push_back(std::move(text));
+    large_bytes += large ? n : 0;
+    queue.push_back({std::move(text), large});
     if (!writing && ws && ws->is_open())
         write();
 }
@@ -159,14 +160,16 @@ void web_session::write()
 {
     writing = true;
     ws->text(true);
-    ws->async_write(asio::buffer(queue.front()),
+    ws->async_write(asio::buffer(queue.front().text),
                     [self = shared_from_this()](const beast::error_code& e, std::size_t) {
                         self->writing = false;
                         if (self->closed)
                             return;
                         if (e)
                             return self->close();
-                        self->unread.take(self->queue.front().size());
+                        const queued_text& written = self->queue.front();
+                        self->unread.take(written.text.size());
+                        self->large_bytes -= written.large ? written.text.size() : 0;
                         self->queue.pop_front();
                         if (!self->queue.empty())
                             self->write();

@@ -115,8 +115,10 @@ struct web_session final : web_connection, std::enable_shared_from_this<web_sess
     web_session(socket_type s, const line_limits& l, shared_by_peers& all, std::vector<std::string> hosts);
 
     void start(peer_handlers h) override;
-    void send(std::string text) override;
+    void send(std::string text) override { enqueue(std::move(text), false); }
+    void send_large(std::string text) override { enqueue(std::move(text), true); }
     std::size_t waiting() const override { return unread.held(); }
+    std::size_t room() const override { return unread.room(); }
     void finish() override;
     /// Closes with status 1008.
     void turn_out(const char* why) override;
@@ -131,6 +133,7 @@ struct web_session final : web_connection, std::enable_shared_from_this<web_sess
     void received();
     void handle_large(std::string text);
     void handled(bool empty, bool go_on);
+    void enqueue(std::string text, bool large);
     void write();
     void give_up();
     void give_up_crowded();
@@ -161,7 +164,8 @@ struct web_session final : web_connection, std::enable_shared_from_this<web_sess
     boost::beast::http::response<boost::beast::http::string_body> response;
     boost::asio::steady_timer deadline;
     boost::asio::steady_timer lingering;
-    std::deque<std::string> queue;
+    std::deque<queued_text> queue;
+    std::size_t large_bytes = 0; ///< of large messages in the queue
     boost::beast::websocket::close_reason why{boost::beast::websocket::close_code::normal};
     bool armed = false;
     bool met = false; ///< the first message has come

@@ -11,16 +11,18 @@ namespace tactor::detail {
 
 namespace {
 
-void add_taps(comparison_row& row, const stroke& s, const array& a, const low_speed_observer& o)
+prediction predict_low_speed(const array& a, const stroke& s, const plan& p, const low_speed_observer& o)
 {
-    if (row.plan->curve) {
-        row.unpredicted = "continuous has no bursts, and this observer feels taps";
+    prediction r;
+    if (p.curve) {
+        r.unpredicted = "continuous has no bursts, and this observer feels taps";
     } else {
-        row.taps = predict_taps(a, s, *row.plan, o);
-        row.tapped = summarise(row.taps);
-        row.felt.rms_error_mm = row.tapped.rms_error_mm;
-        row.felt.largest_error_mm = row.tapped.largest_error_mm;
+        r.taps = predict_taps(a, s, p, o);
+        r.tapped = summarise(r.taps);
+        r.felt.rms_error_mm = r.tapped.rms_error_mm;
+        r.felt.largest_error_mm = r.tapped.largest_error_mm;
     }
+    return r;
 }
 
 void predict_people(comparison_row& row, const stroke& s, const array& a, const comparison_choice& choice,
@@ -72,6 +74,15 @@ std::string prediction_note(const observer_choice& o)
     return model + "the felt position is taken to be the centre of energy of the tactors that sound";
 }
 
+prediction predict(const array& a, const stroke& s, const plan& p, const observer_choice& o,
+                   const std::function<void(const percept_sample&)>& each)
+{
+    if (o.kind == observer_kind::low_speed)
+        return predict_low_speed(a, s, p, o.low_speed);
+    const plan* const one = &p;
+    return {.felt = predict_summaries(a, s, {&one, 1}, each).front()};
+}
+
 bool comparison::playable() const
 {
     return std::any_of(rows.begin(), rows.end(), [](const comparison_row& r) { return r.plan.has_value(); });
@@ -89,7 +100,7 @@ comparison compare(const stroke& given, const array& a, const layout& faces, con
     const std::vector<drawn_person> people = draw_people(choice.spread, a.tactors.size());
     for (const algorithm_kind algorithm : choice.algorithms)
         for (const phantom_kind phantom : choice.phantoms) {
-            comparison_row row{algorithm, phantom};
+            comparison_row row{{}, algorithm, phantom};
             plan_options o = options;
             o.algorithm = algorithm;
             o.phantom = phantom;
@@ -98,7 +109,8 @@ comparison compare(const stroke& given, const array& a, const layout& faces, con
                                ? make_compensated_plan(a, faces, s, o, choice.observer.low_speed).plan
                                : make_plan(a, faces, s, o);
                 if (choice.observer.kind == observer_kind::low_speed)
-                    add_taps(row, s, a, choice.observer.low_speed);
+                    static_cast<prediction&>(row) =
+                        predict_low_speed(a, s, *row.plan, choice.observer.low_speed);
                 predict_people(row, s, a, choice, people);
             } catch (const error& e) {
                 if (e.kind() != error_kind::bad_input)

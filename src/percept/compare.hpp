@@ -27,16 +27,25 @@ struct observer_choice {
 /// Returns a sentence that explains the prediction, to print with its numbers.
 std::string prediction_note(const observer_choice& o);
 
+/// Prediction of how a plan feels.
+struct prediction {
+    percept_summary felt = {};    ///< by the centroid; by low_speed only the errors
+    tap_summary tapped = {};      ///< by low_speed
+    std::vector<tap> taps = {};   ///< by low_speed
+    std::string unpredicted = {}; ///< reason why low_speed has no prediction; empty: it has one
+};
+
+/// Predicts how a plan of a stroke feels. For the centroid, passes each sample to `each`, without its speed.
+/// \throws error (bad_input) as predict_percept() and predict_taps().
+prediction predict(const array& a, const stroke& s, const plan& p, const observer_choice& o,
+                   const std::function<void(const percept_sample&)>& each);
+
 /// An algorithm with a phantom model: a plan, or the reason why there is none.
-struct comparison_row {
+struct comparison_row : prediction {
     algorithm_kind algorithm = algorithm_kind::park2016;
     phantom_kind phantom = phantom_kind::inverse_distance;
     std::optional<tactor::plan> plan = {};
-    percept_summary felt = {};                ///< by the centroid; by low_speed only the errors
     std::vector<percept_sample> samples = {}; ///< by the centroid, only on request
-    tap_summary tapped = {};                  ///< by low_speed
-    std::vector<tap> taps = {};               ///< by low_speed
-    std::string unpredicted = {};             ///< reason why low_speed has no prediction; empty: it has one
     std::optional<row_spread> spread = {};    ///< with drawn people, if there is a prediction
     std::optional<error> refused = {};        ///< refusal, in the words of the library
 };

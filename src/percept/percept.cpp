@@ -230,7 +230,8 @@ percept_summary summarise(const std::vector<percept_sample>& samples)
 namespace tactor::detail {
 
 std::vector<percept_summary> predict_summaries(const array& a, const stroke& s,
-                                               std::span<const plan* const> plans)
+                                               std::span<const plan* const> plans,
+                                               const std::function<void(const percept_sample&)>& each)
 {
     const std::size_t count = count_samples(s.motion.duration_s());
     std::vector<followed_plan> all;
@@ -245,6 +246,8 @@ std::vector<percept_summary> predict_summaries(const array& a, const stroke& s,
             const auto v = f.speed.next(x.felt);
             if (v && f.speed.was_felt())
                 f.sums.add_speed(*v);
+            if (each)
+                each(x);
         }
     }
     std::vector<percept_summary> summaries;

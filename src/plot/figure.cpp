@@ -142,6 +142,11 @@ canvas make_canvas(double width_mm)
     return c;
 }
 
+std::string name_scene(const std::vector<stroke>& strokes, const std::string& file)
+{
+    return strokes.size() == 1 && !strokes[0].name.empty() ? strokes[0].name : file;
+}
+
 canvas draw_figure(const scene& s, const figure_options& o)
 {
     constexpr double least_array = 0.35; // of the page

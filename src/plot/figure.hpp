@@ -3,6 +3,9 @@
 /// The whole picture, and its views.
 #pragma once
 
+#include <string>
+#include <vector>
+
 #include "plot/draw/timeline.hpp"
 #include "plot/paint/canvas.hpp"
 
@@ -25,6 +28,9 @@ inline constexpr double most_width_mm = 1000.0;
 
 /// Returns an empty picture. \throws error (bad_input) for a width out of these bounds.
 canvas make_canvas(double width_mm);
+
+/// Returns the name of a scene: that of the only stroke, or of the file that holds several.
+std::string name_scene(const std::vector<stroke>& strokes, const std::string& file);
 
 /// Draws a scene. The height follows from the content; it is at most 247 mm, in proportion more for pictures
 /// wider than 170 mm. \throws error (bad_input): for the waveform, see draw_wave_view(); for more than

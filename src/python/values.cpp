@@ -22,10 +22,13 @@ namespace {
 using tactor_row = std::tuple<double, double, unsigned, double, double, std::optional<double>, int,
                               std::string, std::vector<std::pair<double, double>>, std::optional<double>>;
 
-array_handle make_array(const std::string& name, const std::vector<tactor_row>& rows)
+array_handle make_array(const std::string& name, const std::vector<tactor_row>& rows, const std::string& site,
+                        const std::string& up)
 {
     array a;
     a.name = name;
+    a.site = site;
+    a.up = up;
     for (const auto& [x, y, channel, gain, most, threshold, polarity, actuator, thresholds, rise_s] : rows) {
         a.tactors.push_back(
             {{x, y}, channel, gain, most, threshold, polarity, from_string<actuator_kind>(actuator)});
@@ -122,6 +125,8 @@ void bind_array(py::module_& m)
                         return array_handle(make_grid(std::move(name), rows, columns, x, y));
                     })
         .def_property_readonly("name", [](const array_handle& h) { return h.value().name; })
+        .def_property_readonly("site", [](const array_handle& h) { return h.value().site; })
+        .def_property_readonly("up", [](const array_handle& h) { return h.value().up; })
         .def_property_readonly("channels", [](const array_handle& h) { return h.value().channels(); })
         .def_property_readonly("rows", &list_rows)
         .def("text", [](const array_handle& h) { return detail::array_text(h.value()); })

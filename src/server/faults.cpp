@@ -75,6 +75,11 @@ void no_stream(const std::string& why)
     throw fault_error({net::code_no_stream, "not-available", "stream", why, "try again when it is back"});
 }
 
+std::string in_words_of_protocol(std::string_view marked)
+{
+    return options::spell(marked, by_protocol);
+}
+
 rpc_fault option_fault(const error& e)
 {
     const error worded = options::spell(e, by_protocol);
@@ -160,12 +165,26 @@ double need_number(const json& params, const char* name, detail::bounds b)
     return number(*v, name, b);
 }
 
+double whole(const json& v, const std::string& what, detail::bounds b)
+{
+    const double n = number(v, what, b);
+    if (n != std::floor(n))
+        bad_param(what, fmt::format("{} is no whole number", n));
+    return n;
+}
+
+bool flag(const json& params, const char* name)
+{
+    const json* v = member(params, name);
+    if (v != nullptr && !v->is_boolean())
+        bad_param(name, "it is neither true nor false", "true or false");
+    return v != nullptr && v->get<bool>();
+}
+
 std::uint32_t need_stroke(const json& params)
 {
-    const double n = need_number(params, "stroke", {0, 4294967295.0});
-    if (n != std::floor(n))
-        bad_param("stroke", fmt::format("{} is no whole number", n));
-    return static_cast<std::uint32_t>(n);
+    static_cast<void>(need_number(params, "stroke", {0, 4294967295.0}));
+    return static_cast<std::uint32_t>(whole(params["stroke"], "stroke", {0, 4294967295.0}));
 }
 
 const std::string& text(const json& v, const std::string& what)

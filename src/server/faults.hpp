@@ -35,6 +35,8 @@ private:
 [[noreturn]] void no_such_stroke(std::uint32_t number, std::string why = "no such stroke of yours goes on");
 [[noreturn]] void no_stream(const std::string& why);
 
+/// Writes the marks of a text as the protocol names options: "options.soa".
+std::string in_words_of_protocol(std::string_view marked);
 /// Converts an error of the table of options, which is about one of `options`.
 net::rpc_fault option_fault(const error& e);
 /// Converts an error of the library about the parameter `source`, or about the option that it names.
@@ -50,6 +52,10 @@ const net::json* member(const net::json& params, const char* name);
 double number(const net::json& v, const std::string& what, detail::bounds b);
 /// Returns a required number within bounds. \throws fault_error.
 double need_number(const net::json& params, const char* name, detail::bounds b);
+/// Returns a whole number within bounds. \throws fault_error.
+double whole(const net::json& v, const std::string& what, detail::bounds b);
+/// Returns a member that is true or false; false if there is none. \throws fault_error.
+bool flag(const net::json& params, const char* name);
 std::uint32_t need_stroke(const net::json& params);
 const std::string& text(const net::json& v, const std::string& what);
 

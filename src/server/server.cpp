@@ -158,6 +158,7 @@ private:
         const int yes = 1;
         if (kind == client_kind::network)
             ::setsockopt(s.native_handle(), IPPROTO_TCP, 1 /* TCP_NODELAY */, &yes, sizeof yes);
+        const std::string from = net::peer_address(s.native_handle());
         const auto c = std::make_shared<line_connection>(std::move(s), line_limits_, shared_);
         ++open_;
         if (!service_.has_place(kind)) {
@@ -165,7 +166,7 @@ private:
             c->send(refusal("max_clients", no_place(kind), "try again later"));
             return c->finish();
         }
-        const client_number n = service_.connect(c, kind);
+        const client_number n = service_.connect(c, kind, from);
         links_.emplace(n, c);
         net::peer_handlers h = handlers(std::make_shared<client_number>(n));
         h.input_ended = [this, n] {
@@ -211,6 +212,7 @@ private:
     {
         if (visitors_.size() >= limits_.max_clients + short_visits)
             return net::turn_away(s.native_handle()); // and the socket closes
+        const std::string from = net::peer_address(s.native_handle());
         const auto c = net::connect_browser(io_, std::move(s), line_limits_, shared_, allow_hosts_);
         if (!c)
             return;
@@ -225,11 +227,11 @@ private:
         h.get = [this](std::string_view path, std::string_view host, std::string_view token) {
             return page(path, host, token);
         };
-        h.upgrade = [this, n, weak = std::weak_ptr(c)] {
+        h.upgrade = [this, n, from, weak = std::weak_ptr(c)] {
             if (!service_.has_place(client_kind::web))
                 return false;
             const auto link = weak.lock();
-            *n = service_.connect(link, client_kind::web);
+            *n = service_.connect(link, client_kind::web, from);
             links_.emplace(*n, link);
             return true;
         };

@@ -49,11 +49,22 @@ void service::pending::give(std::size_t at, std::string reply, const std::vector
     if (c != nullptr) {
         --c->unanswered;
         std::string all;
-        for (const place& one : places)
-            if (one.wanted)
-                all += (all.empty() ? "" : ",") + one.reply;
-        if (!all.empty())
-            c->link->send(batch ? "[" + all + "]" : all);
+        bool large = false;
+        for (place& one : places) {
+            if (!one.wanted)
+                continue;
+            large = large || one.large;
+            if (batch)
+                all += (all.empty() ? "[" : ",") + one.reply;
+            else
+                all = std::move(one.reply);
+        }
+        if (batch && !all.empty())
+            all += ']';
+        if (large)
+            c->link->send_large(std::move(all));
+        else if (!all.empty())
+            c->link->send(std::move(all));
     }
     owner.release(numbers);
     owner.check_all_sent(to);
@@ -64,12 +75,18 @@ void service::answer::result(reply_json r, const std::vector<std::uint32_t>& str
     all->give(at, net::json_line(net::result_reply(all->places[at].id, std::move(r))), strokes);
 }
 
-void service::answer::result_text(const std::string& r) const
+std::string service::answer::write_reply(std::string_view result) const
 {
-    all->give(at,
-              fmt::format(R"({{"jsonrpc":"2.0","id":{},"result":{}}})",
-                          net::json_line(reply_json(all->places[at].id)), r),
-              {});
+    std::string reply =
+        fmt::format(R"({{"jsonrpc":"2.0","id":{},"result":)", net::json_line(reply_json(all->places[at].id)));
+    reply.reserve(reply.size() + result.size() + 2); // with the end of a line: it may be large
+    return reply.append(result).append("}");
+}
+
+void service::answer::whole_reply(std::string reply, bool large) const
+{
+    all->places[at].large = large;
+    all->give(at, std::move(reply), {});
 }
 
 void service::answer::fault(const net::rpc_fault& f) const
@@ -82,7 +99,8 @@ service::service(boost::asio::io_context& io, service_options o, stream_options 
       quiet_(io),
       options_(std::move(o)),
       faces_(options_.plans.tactors),
-      stream_(io, with_handlers(std::move(s)))
+      stream_(io, with_handlers(std::move(s))),
+      touch_timer_(io)
 {
 }
 
@@ -131,14 +149,12 @@ std::size_t service::count_silent() const
         std::count_if(clients_.begin(), clients_.end(), [](const auto& c) { return c.second->input_over; }));
 }
 
-client_number service::connect(std::shared_ptr<client_link> link, client_kind k)
+client_number service::connect(std::shared_ptr<client_link> link, client_kind k, std::string from)
 {
-    auto c = std::make_unique<client>(io_, ++last_client_, std::move(link), k);
+    auto c = std::make_unique<client>(io_, ++last_client_, std::move(link), k, std::move(from));
     c->admitted = k == client_kind::local || k == client_kind::datagram || options_.token.empty();
     // A WebSocket has shown its origin, and datagrams come only from accepted peers.
     c->greeted = k != client_kind::network;
-    c->points = options_.limits.max_points_per_s;
-    c->points_ns = options_.now_ns();
     clients_.emplace(last_client_, std::move(c));
     return last_client_;
 }
@@ -243,22 +259,33 @@ void service::handle(client& c, net::rpc_request& r, const answer& to, std::size
 {
     using handler = void (service::*)(client&, const json&, const answer&);
     static constexpr std::pair<std::string_view, handler> handlers[] = {
-        {"hello", &service::hello},   {"to", &service::to},
-        {"cancel", &service::cancel}, {"stop", &service::stop},
-        {"fire", &service::fire},     {"begin", &service::begin},
-        {"end", &service::end},       {"drive", &service::drive},
-        {"status", &service::status}, {"subscribe", &service::subscribe}};
+        {"hello", &service::hello},
+        {"to", &service::to},
+        {"cancel", &service::cancel},
+        {"stop", &service::stop},
+        {"fire", &service::fire},
+        {"begin", &service::begin},
+        {"end", &service::end},
+        {"drive", &service::drive},
+        {"status", &service::status},
+        {"subscribe", &service::subscribe},
+        {"options", &service::list_options},
+    };
     if (!c.admitted && r.method != "hello")
         throw fault_error({net::code_no_token, "token", "token", "hello with the token comes first", ""});
     if (r.method == "play" || r.method == "plan")
         return plan_or_play(c, std::move(r.params), to, r.method == "play", bytes);
+    if (r.method == "import")
+        return import_file(c, std::move(r.params), to, bytes);
+    if (r.method == "export")
+        return export_file(c, std::move(r.params), to, bytes);
     for (const auto& [name, handle] : handlers)
         if (name == r.method)
             return (this->*handle)(c, r.params, to);
     throw fault_error({net::code_no_method, "bad-input", "method",
                        fmt::format("there is no \"{}\"", r.method),
                        "one of hello, play, plan, cancel, stop, fire, begin, to, end, drive, status, "
-                       "subscribe"});
+                       "subscribe, options, import, export"});
 }
 
 bool service::input_ended(client_number number)
@@ -293,10 +320,11 @@ void service::disconnect(client_number number)
     input_ended(number);
     client& c = *found->second;
     c.levels_timer.cancel();
-    keep_jobs(number);
     const auto kept = std::move(found->second); // its answers look for it, and find nobody
     clients_.erase(found);
+    keep_jobs(number);
     gather_levels();
+    count_touch_listeners();
     note_busy();
 }
 
@@ -313,6 +341,7 @@ void service::close(std::function<void()> done)
     closing_ = true;
     refuse_jobs();
     stream_.close(std::move(done));
+    tell_stop(0);
 }
 
 } // namespace tactor::server

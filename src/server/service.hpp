@@ -3,6 +3,7 @@
 /// The service without its sockets: clients, their strokes, and notifications.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <cstdint>
@@ -12,8 +13,10 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include <boost/asio/io_context.hpp>
@@ -26,6 +29,7 @@
 
 #include "net/rpc.hpp"
 #include "net/shared_by_peers.hpp"
+#include "server/files/tool_line.hpp"
 #include "server/stream.hpp"
 #include "server/stroke_source.hpp"
 
@@ -48,7 +52,27 @@ struct service_limits {
     std::size_t max_all_unfinished_bytes = 32U << 20; ///< of incomplete messages of all
 };
 
+/// Most bytes of an exported file, and of the result of an import.
+inline constexpr std::size_t most_file_bytes = 64U << 20;
+
 using client_number = std::uint64_t;
+
+/// Number of things that may be done at once. It comes back within a second.
+struct allowance {
+    double left = std::numeric_limits<double>::infinity();
+    std::int64_t at_ns = 0;
+
+    /// Takes `n` of at most `per_s`. Returns false if fewer are left.
+    bool take(double n, double per_s, std::int64_t now_ns) noexcept
+    {
+        left =
+            std::min(per_s, left + static_cast<double>(now_ns - std::exchange(at_ns, now_ns)) * 1e-9 * per_s);
+        if (left < n)
+            return false;
+        left -= n;
+        return true;
+    }
+};
 
 /// The way to a client. Its finish() must not call the service back at once, which may be in the middle of
 /// something.
@@ -60,6 +84,7 @@ struct service_options {
     std::string version = {};
     std::string token = {}; ///< token that TCP clients need; empty: none
     net::reply_json array = {};
+    tool_files named = {}; ///< in the tool's command line, for exported files
     /// Returns the tactor-plan/1 text of a plan; throws std::bad_alloc beyond so many bytes.
     std::function<std::string(const planned&, std::size_t most_bytes)> plan_text = {};
     /// CLOCK_MONOTONIC, ns.
@@ -84,7 +109,8 @@ public:
     bool has_place(client_kind k) const;
     /// Returns true if the client is connected and owes no token.
     bool is_admitted(client_number number) const;
-    client_number connect(std::shared_ptr<client_link> link, client_kind k);
+    /// Adds a client. `from`: its address; a local one needs none.
+    client_number connect(std::shared_ptr<client_link> link, client_kind k, std::string from = {});
     /// Handles a message. Returns false if the connection must be closed unanswered.
     bool receive(client_number number, std::string_view text);
     /// Handles a large message, which another thread parses. Calls `done` with the result in this thread.
@@ -119,8 +145,10 @@ private:
 
         /// Gives the result. `strokes`: new ones, whose notifications are sent from now on.
         void result(reply_json r, const std::vector<std::uint32_t>& strokes = {}) const;
-        /// Gives a result that is JSON text already, on one line.
-        void result_text(const std::string& r) const;
+        /// Returns the reply with a result that is JSON text already, on one line. Any thread.
+        std::string write_reply(std::string_view result) const;
+        /// Gives what write_reply() returned. `large`: it may be longer than what waits for a client.
+        void whole_reply(std::string reply, bool large) const;
         void fault(const net::rpc_fault& f) const;
     };
 
@@ -133,12 +161,16 @@ private:
 
     struct plan_job {
         answer to;
-        net::json params; ///< params of play and plan; freed when it is planned
+        net::json params = {}; ///< freed when they are planned or made
         net::json start = "now";
         std::size_t bytes = 0;
         bool play = false;
         stop_mark asked = {};
-        double steps = 0.0; ///< see planning_work; 0 until its text is read
+        view_choice view = {};
+        std::optional<double> draft = {}; ///< its number
+        double steps = 0.0;               ///< see planning_work; 0 until its text is read
+        /// Makes the result of import or export, in place of a plan. Empty: too much work for its lane.
+        std::function<std::string(const net::json& params, const planning_checks&)> make_text = {};
     };
 
     /// Requests that wait to be planned, and the thread that plans them.
@@ -147,6 +179,7 @@ private:
         double most_steps;
         std::map<client_number, std::deque<plan_job>> queued = {};
         std::deque<client_number> turns = {}; ///< order of the clients that have requests
+        bool passed = false;                  ///< the last request was a draft that passed others
         std::optional<answer> planning = {};  ///< destination of the result that is being planned
         boost::asio::thread_pool thread{1};
     };
@@ -167,25 +200,36 @@ private:
     // service_methods.cpp
     void hello(client& c, const net::json& params, const answer& to);
     void status(client& c, const net::json& params, const answer& to);
+    void list_options(client& c, const net::json& params, const answer& to);
     void subscribe(client& c, const net::json& params, const answer& to);
     void send_levels(client_number number);
     void gather_levels();
-    reply_json hello_result();
+    reply_json hello_result(const client& c);
     reply_json limits_json() const;
 
     // service_jobs.cpp
     void plan_or_play(client& c, net::json&& params, const answer& to, bool play, std::size_t bytes);
+    void admit_job(client& c, plan_job j);
     planner_lane& lane_for(const plan_job& j) noexcept;
     bool weigh(plan_job& j, const planner_lane& in, const planning_work& w);
     void move_up(planner_lane& from, plan_job&& j);
     void queue_job(client_number number, plan_job j);
     void next_job(planner_lane& lane);
     void keep_jobs(client_number number);
+    void forget_job(const plan_job& j);
+    bool outdate_drafts(client_number number, plan_job& j);
+    void uncount(const plan_job& j);
+    void refuse(const plan_job& j, const net::rpc_fault& f);
     void refuse_jobs();
+    std::string answer_text(const planned& p, const view_choice& view) const;
     void post_job(planner_lane& lane, plan_job j);
     void job_done(planner_lane& lane, const plan_job& job, std::shared_ptr<planned> p,
                   std::vector<score> scores, std::string text, std::optional<net::rpc_fault> fault);
     void submit_all(const plan_job& job, const planned& p, const std::vector<score>& scores);
+
+    // service_files.cpp
+    void import_file(client& c, net::json&& params, const answer& to, std::size_t bytes);
+    void export_file(client& c, net::json&& params, const answer& to, std::size_t bytes);
 
     // service_strokes.cpp
     void drive(client& c, const net::json& params, const answer& to);
@@ -206,8 +250,17 @@ private:
     void begin_now(client& c, const live_options& o, const answer& to, const char* ended_by);
     void to(client& c, const net::json& params, const answer& to);
     void end(client& c, const net::json& params, const answer& to);
-    bool take_point(client& c);
     stroke_record& own_live(client& c, std::uint32_t number);
+
+    // service_people.cpp
+    reply_json people() const;
+    void tell_subscribers(const std::string& event, reply_json params, client_number except = 0);
+    void count_touch_listeners();
+    void touch(stroke_record& r);
+    void touch_later(std::uint32_t stroke);
+    void end_touch(stroke_record& r);
+    void tell_touch(const stroke_record& r, bool down);
+    void tell_stop(client_number by);
 
     // service_ends.cpp
     stroke_record& add_record(client_number owner);
@@ -235,6 +288,10 @@ private:
     std::uint32_t last_stroke_ = 0;
     std::uint64_t stops_ = 0;
     client_number stopped_by_ = 0; ///< client of the last stop
+    boost::asio::steady_timer touch_timer_;
+    std::set<std::uint32_t> touches_due_ = {}; ///< live strokes whose last place others were not told
+    allowance touches_ = {};
+    std::size_t touch_listeners_ = 0;
     std::size_t planning_bytes_ = 0;
     std::size_t jobs_ = 0;
     bool closing_ = false;

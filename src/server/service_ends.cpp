@@ -102,6 +102,7 @@ void service::finish(stroke_record& r, const stroke_report& how)
             --c->live;
     }
     r.state = "ended";
+    end_touch(r);
     stroke_report report = how;
     report.why = reason(r, how);
     tell_stroke(r, to_string(report.state), report);

@@ -15,15 +15,25 @@
 
 namespace tactor::server {
 
+/// Bytes waiting for a client that is behind. It misses levels, touches and stops until it has caught up.
+constexpr std::size_t enough_waiting = 64U << 10;
+
 struct service::client {
-    client(boost::asio::io_context& io, client_number n, std::shared_ptr<client_link> l, client_kind k)
-        : number(n), link(std::move(l)), kind(k), levels_timer(io)
+    client(boost::asio::io_context& io, client_number n, std::shared_ptr<client_link> l, client_kind k,
+           std::string address)
+        : number(n),
+          link(std::move(l)),
+          kind(k),
+          from(k == client_kind::local ? "this computer" : std::move(address)),
+          levels_timer(io)
     {
     }
 
     client_number number;
     std::shared_ptr<client_link> link;
     client_kind kind;
+    std::string from;      ///< address, as others are shown it
+    std::string name = {}; ///< as the client gave it
     bool greeted = false;  ///< network: its first message was hello
     bool admitted = false; ///< its token was right, or it needs none
     bool input_over = false;
@@ -38,8 +48,7 @@ struct service::client {
     std::size_t live = 0;
     /// Count of its cancels of all. Its requests share it, and may outlive the client.
     std::shared_ptr<std::uint64_t> cancels = std::make_shared<std::uint64_t>(0);
-    double points = 0.0; ///< points that it may send at once
-    std::int64_t points_ns = 0;
+    allowance points = {}; ///< that it may send
 };
 
 struct service::stroke_record {
@@ -49,8 +58,10 @@ struct service::stroke_record {
     stroke_id id = {};
     std::string state = "waiting"; ///< "armed", "started"
     std::optional<live_stroke> live = {};
-    bool released = false;          ///< its number was sent
-    const char* ended_by = nullptr; ///< reason, once it is cancelled or stopped
+    std::optional<point> touched = {};              ///< its last point
+    std::optional<std::int64_t> touch_told_ns = {}; ///< when others were told a point
+    bool released = false;                          ///< its number was sent
+    const char* ended_by = nullptr;                 ///< reason, once it is cancelled or stopped
     std::vector<reply_json> held = {};
     std::optional<std::int64_t> asked_ns = {};
     std::optional<std::int64_t> started_ns = {};
@@ -65,6 +76,7 @@ struct service::pending {
         net::json id = nullptr;
         bool wanted = false;
         bool given = false;
+        bool large = false; ///< the reply may be longer than what waits for a client
         std::string reply = {};
     };
 

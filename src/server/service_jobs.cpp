@@ -8,6 +8,7 @@
 
 #include "server/service_impl.hpp"
 #include "server/stroke_options.hpp"
+#include "server/view/view.hpp"
 
 namespace tactor::server {
 namespace {
@@ -38,9 +39,20 @@ net::rpc_fault too_large_to_send()
             "draw less, or plan it with the tool"};
 }
 
+net::rpc_fault no_room()
+{
+    return {net::code_limit, "limit", "max_all_unread_bytes", "too much waits to be read by clients",
+            "try again later, or make it smaller"};
+}
+
 net::rpc_fault server_ends()
 {
     return {net::code_no_stream, "not-available", "stream", "the server ends", ""};
+}
+
+net::rpc_fault outdated()
+{
+    return {net::code_limit, "limit", "draft", "outdated", ""};
 }
 
 } // namespace
@@ -54,30 +66,47 @@ service::planner_lane& service::lane_for(const plan_job& j) noexcept
 
 void service::plan_or_play(client& c, json&& params, const answer& to, bool play, std::size_t bytes)
 {
-    allow_only(params, {"stroke", "path", "points", "toml", "csv", "svg", "options", "start"});
+    if (play)
+        allow_only(params, {"stroke", "path", "points", "toml", "csv", "svg", "options", "start"});
+    else
+        allow_only(params, {"stroke", "path", "points", "toml", "csv", "svg", "options", "start", "view",
+                            "draft", "bins", "observer"});
     bytes = std::max(bytes, estimate_source_bytes(params[find_source(params)]));
     static_cast<void>(read_start(member(params, "start"), options_.now_ns()));
-    if (const json* o = member(params, "options"))
-        static_cast<void>(with_options(options_.plans.owner, *o, options_for::planned));
+    static_cast<void>(settle_options(options_.plans.owner, params));
+    std::optional<double> draft;
+    if (const json* given = member(params, "draft"))
+        draft = whole(*given, "draft", {0.0, 0x1p53});
+    const json* start = member(params, "start");
+    plan_job job{to, {}, start == nullptr ? json("now") : *start, bytes, play, mark(c)};
+    job.view = read_view(params);
+    job.draft = draft;
+    job.params = std::move(params);
+    admit_job(c, std::move(job));
+}
+
+void service::admit_job(client& c, plan_job j)
+{
     if (closing_)
         no_stream("the server ends");
     check_free_place(c);
-    if (play && stream_.is_out())
+    if (j.play && stream_.is_out())
         no_stream(stream_.reason());
-    if (planning_bytes_ + bytes > options_.limits.max_all_unread_bytes)
+    if (planning_bytes_ + j.bytes > options_.limits.max_all_unread_bytes)
         limit_reached("max_all_unread_bytes", "too much waits to be planned");
-    planning_bytes_ += bytes;
+    planning_bytes_ += j.bytes;
     ++jobs_;
     ++c.coming;
-    const json* start = member(params, "start");
-    plan_job job{to, {}, start == nullptr ? json("now") : *start, bytes, play, mark(c)};
-    job.params = std::move(params);
     note_busy();
-    queue_job(c.number, std::move(job));
+    queue_job(c.number, std::move(j));
 }
 
 void service::queue_job(client_number number, plan_job j)
 {
+    if (number == nobody && !j.play)
+        return refuse(j, {net::code_no_stream, "not-available", "plan", "its client has gone", ""});
+    if (j.draft && !outdate_drafts(number, j))
+        return;
     planner_lane& lane = lane_for(j);
     std::deque<plan_job>& own = lane.queued[number];
     if (own.empty())
@@ -86,13 +115,66 @@ void service::queue_job(client_number number, plan_job j)
     next_job(lane);
 }
 
-// Begins the next request, of each client in turn: a client with many does not keep the others waiting.
+// Refuses the older of this draft and one of its client that waits; one waits at most. Returns true if `j` is
+// still to be queued.
+bool service::outdate_drafts(client_number number, plan_job& j)
+{
+    for (planner_lane& lane : lanes_) {
+        const auto own = lane.queued.find(number);
+        if (own == lane.queued.end())
+            continue;
+        std::deque<plan_job>& jobs = own->second;
+        const auto waits =
+            std::find_if(jobs.begin(), jobs.end(), [](const plan_job& x) { return x.draft.has_value(); });
+        if (waits == jobs.end())
+            continue;
+        const bool newer = *j.draft >= *waits->draft;
+        const bool fits = j.bytes <= lane.most_bytes;
+        if (newer)
+            std::swap(*waits, j); // the new one has its turn: else a client that sends many never has one
+        refuse(j, outdated());
+        if (!newer || fits)
+            return false;
+        j = std::move(*waits);
+        jobs.erase(waits);
+        if (jobs.empty()) {
+            lane.queued.erase(own);
+            std::erase(lane.turns, number);
+        }
+        return true;
+    }
+    return true;
+}
+
+// Ends the count of a request without a stroke.
+void service::uncount(const plan_job& j)
+{
+    forget_job(j);
+    if (client* c = find(j.to.all->to))
+        --c->coming;
+}
+
+void service::refuse(const plan_job& j, const net::rpc_fault& f)
+{
+    uncount(j);
+    j.to.fault(f);
+}
+
+// Begins the next request, of each client in turn: a client with many does not keep the others waiting. A
+// draft passes other requests; after each that did, the first of these comes.
 void service::next_job(planner_lane& lane)
 {
     if (lane.planning || lane.turns.empty())
         return;
-    const client_number number = lane.turns.front();
-    lane.turns.pop_front();
+    const auto is_draft = [&lane](client_number c) { return lane.queued.at(c).front().draft.has_value(); };
+    auto turn = lane.turns.begin();
+    if (!std::exchange(lane.passed, false))
+        turn = std::find_if(turn, lane.turns.end(), is_draft);
+    if (turn == lane.turns.end())
+        turn = lane.turns.begin();
+    lane.passed = turn != lane.turns.begin();
+    const client_number number = *turn;
+    lane.turns.erase(turn);
     const auto own = lane.queued.find(number);
     plan_job job = std::move(own->second.front());
     own->second.pop_front();
@@ -104,7 +186,7 @@ void service::next_job(planner_lane& lane)
     post_job(lane, std::move(job));
 }
 
-// Keeps the requests of a client that disconnects: they are played.
+// Keeps the requests of a client that has gone: they are played.
 void service::keep_jobs(client_number number)
 {
     for (planner_lane& lane : lanes_) {
@@ -117,6 +199,13 @@ void service::keep_jobs(client_number number)
     }
 }
 
+// Ends the count of a request that no longer waits.
+void service::forget_job(const plan_job& j)
+{
+    planning_bytes_ -= j.bytes;
+    --jobs_;
+}
+
 // Refuses all requests when the server ends.
 void service::refuse_jobs()
 {
@@ -124,25 +213,25 @@ void service::refuse_jobs()
     for (planner_lane& lane : lanes_) {
         lane.turns.clear();
         for (const auto& [number, jobs] : std::exchange(lane.queued, {}))
-            for (const plan_job& j : jobs) {
-                planning_bytes_ -= j.bytes;
-                --jobs_;
-                j.to.fault(server_ends());
-            }
+            for (const plan_job& j : jobs)
+                refuse(j, server_ends());
         if (lane.planning)
             lane.planning->fault(server_ends());
     }
 }
 
 // Weighs a request. A planner calls it between reading the text and the work. Returns false if the work is
-// too much for this lane.
+// for another lane.
 bool service::weigh(plan_job& j, const planner_lane& in, const planning_work& w)
 {
     constexpr double text_bytes = 64.0; // least size of a burst or a sample in tactor-plan/1
     constexpr double burst_bytes = 256.0;
     const service_limits& l = options_.limits;
     j.steps = w.steps;
-    if (!j.play && (w.bursts + w.samples) * text_bytes > static_cast<double>(l.max_unread_bytes) / 2.0)
+    const double least_bytes = j.view.kind == view_kind::full
+                                   ? (w.bursts + w.samples) * text_bytes
+                                   : least_view_bytes(j.view, w, options_.plans.tactors.tactors.size());
+    if (!j.play && !j.make_text && least_bytes > static_cast<double>(l.max_unread_bytes) / 2.0)
         throw fault_error(too_large_to_send());
     if (w.bursts * burst_bytes > static_cast<double>(l.max_all_unread_bytes))
         limit_reached("max_all_unread_bytes",
@@ -151,7 +240,8 @@ bool service::weigh(plan_job& j, const planner_lane& in, const planning_work& w)
     return &lane_for(j) == &in;
 }
 
-// Moves a request with a short text and much work to the end of the queue for such work.
+// Moves a request with a short text and much work, or a draft with less work than the one before, to the end
+// of the queue for such work.
 void service::move_up(planner_lane& from, plan_job&& j)
 {
     if (ending_)
@@ -160,6 +250,14 @@ void service::move_up(planner_lane& from, plan_job&& j)
     const client_number number = j.to.all->to;
     queue_job(find(number) != nullptr ? number : nobody, std::move(j));
     next_job(from);
+}
+
+// Returns the answer to plan. Throws std::bad_alloc if it is too large to be sent.
+std::string service::answer_text(const planned& p, const view_choice& view) const
+{
+    const std::size_t most = options_.limits.max_unread_bytes / 2;
+    return view.kind == view_kind::full ? on_one_line(options_.plan_text(p, most))
+                                        : view_text(p, options_.plans.tactors, view, most);
 }
 
 void service::post_job(planner_lane& lane, plan_job j)
@@ -174,18 +272,22 @@ void service::post_job(planner_lane& lane, plan_job j)
             if (ending_)
                 throw fault_error(server_ends());
         };
+        const planning_checks checks{go_on, [&](const planning_work& w) { return weigh(*job, lane, w); }};
         try {
-            p = std::make_shared<planned>(
-                make_planned(options_.plans, faces_, job->params,
-                             {go_on, [&](const planning_work& w) { return weigh(*job, lane, w); }}));
-            if (p->plans.empty())
+            if (job->make_text)
+                text = job->make_text(job->params, checks);
+            else
+                p = std::make_shared<planned>(make_planned(options_.plans, faces_, job->params, checks));
+            if (p ? p->plans.empty() : text.empty())
                 return boost::asio::post(io_, [this, &lane, job] { move_up(lane, std::move(*job)); });
             for (std::size_t i = 0; job->play && i < p->plans.size(); ++i) {
                 go_on();
                 scores.push_back(p->make_score(options_.plans.tactors, i));
             }
-            if (!job->play)
-                text = on_one_line(options_.plan_text(*p, options_.limits.max_unread_bytes / 2));
+            if (p && !job->play)
+                text = answer_text(*p, job->view);
+            if (!text.empty())
+                text = job->to.write_reply(text);
         } catch (const std::bad_alloc&) {
             fault = too_large_to_send();
         } catch (...) {
@@ -202,20 +304,22 @@ void service::post_job(planner_lane& lane, plan_job j)
 void service::job_done(planner_lane& lane, const plan_job& job, std::shared_ptr<planned> p,
                        std::vector<score> scores, std::string text, std::optional<net::rpc_fault> fault)
 {
-    planning_bytes_ -= job.bytes;
-    --jobs_;
     lane.planning.reset();
     const client_number number = job.to.all->to;
     if (closing_ && !fault)
         fault = server_ends();
-    if (fault || !job.play) {
-        if (client* c = find(number))
-            --c->coming;
-        if (fault)
-            job.to.fault(*fault);
-        else
-            job.to.result_text(text);
+    if (!fault && job.make_text) {
+        const client* c = find(number);
+        if (c != nullptr && text.size() >= c->link->room())
+            fault = no_room();
+    }
+    if (fault) {
+        refuse(job, *fault);
+    } else if (!job.play) {
+        uncount(job);
+        job.to.whole_reply(std::move(text), job.make_text != nullptr);
     } else {
+        forget_job(job);
         // The stream may have to be started first.
         once_ready(number, job.to, "stream", [this, job, p, scores = std::move(scores)] {
             const std::shared_ptr<void> after(nullptr, [&](void*) {

@@ -90,25 +90,11 @@ service::stroke_record& service::own_live(client& c, std::uint32_t number)
     return r;
 }
 
-// Takes one of the points of a client, which come back over a second. Returns false if none is left.
-bool service::take_point(client& c)
-{
-    const double most = options_.limits.max_points_per_s;
-    const std::int64_t now = options_.now_ns();
-    c.points = std::min(most, c.points + static_cast<double>(now - c.points_ns) * 1e-9 * most);
-    c.points_ns = now;
-    if (c.points < 1.0)
-        return false;
-    c.points -= 1.0;
-    return true;
-}
-
 void service::to(client& c, const json& params, const answer& to)
 {
     allow_only(params, {"stroke", "x_mm", "y_mm", "intensity"});
-    if (!take_point(c))
-        limit_reached("max_points_per_s",
-                      fmt::format("{} points in a second are the most", options_.limits.max_points_per_s));
+    if (const double most = options_.limits.max_points_per_s; !c.points.take(1.0, most, options_.now_ns()))
+        limit_reached("max_points_per_s", fmt::format("{} points in a second are the most", most));
     const std::uint32_t n = need_stroke(params);
     const double x = need_number(params, "x_mm", {-farthest_mm, farthest_mm});
     const double y = need_number(params, "y_mm", {-farthest_mm, farthest_mm});
@@ -122,6 +108,8 @@ void service::to(client& c, const json& params, const answer& to)
     } catch (const error& e) {
         throw fault_error(library_fault(e, "x_mm"));
     }
+    r.touched = point{x, y};
+    touch(r);
     to.result(reply_json::object());
 }
 

@@ -1,13 +1,17 @@
 // SPDX-License-Identifier: MIT
-// hello, status, subscribe and what follows from it.
+// hello, status, options, subscribe and what follows from it.
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <tactor/stroke.hpp>
 
+#include "core/label.hpp"
+#include "server/option_rows.hpp"
 #include "server/service_impl.hpp"
 
 namespace tactor::server {
@@ -18,8 +22,7 @@ using net::reply_json;
 
 constexpr unsigned most_wrong_tokens = 3;
 constexpr double most_levels_hz = 100.0;
-// A client that has more than this to read gets levels when it has caught up.
-constexpr std::size_t enough_waiting = 64U << 10;
+constexpr std::array event_names{"strokes", "levels", "stream", "touches", "stops"};
 
 // Compares in a time that does not show how much is right.
 bool same_secret(const std::string& a, const std::string& b)
@@ -32,13 +35,10 @@ bool same_secret(const std::string& a, const std::string& b)
 
 } // namespace
 
-reply_json service::hello_result()
+reply_json service::hello_result(const client& c)
 {
     const stream_setup& s = stream_.setup();
     const bool seen = s.buffer_frames != 0 && stream_.number() != 0;
-    reply_json presets = reply_json::array();
-    for (const std::string& p : stroke_presets())
-        presets.push_back(p);
     return {{"protocol", "tactor/1"},
             {"version", options_.version},
             {"array", options_.array},
@@ -49,17 +49,22 @@ reply_json service::hello_result()
               {"period_frames", s.period_frames},
               {"latency_s", static_cast<double>(s.buffer_frames) / s.rate},
               {"pcm", s.name}}},
-            {"presets", presets},
+            {"presets", stroke_presets()},
+            {"shapes", stroke_shapes()},
             {"clock", {{"monotonic_s", seconds(options_.now_ns())}, {"unix_s", seconds(unix_ns())}}},
-            {"max_level_dbfs", options_.plans.max_level_dbfs}};
+            {"max_level_dbfs", options_.plans.max_level_dbfs},
+            {"client", c.number}};
 }
 
 void service::hello(client& c, const json& params, const answer& to)
 {
-    allow_only(params, {"token"});
+    allow_only(params, {"token", "name"});
     const json* token = member(params, "token");
     if (token != nullptr)
         static_cast<void>(text(*token, "token"));
+    const json* name = member(params, "name");
+    if (const std::string why = name == nullptr ? "" : label_fault(text(*name, "name")); !why.empty())
+        bad_param("name", "it " + why, label_hint);
     if (!c.admitted) {
         if (token == nullptr || !same_secret(token->get<std::string>(), options_.token)) {
             to.fault({net::code_no_token, "token", "token", token == nullptr ? "it is owed" : "it is wrong",
@@ -70,7 +75,9 @@ void service::hello(client& c, const json& params, const answer& to)
         }
         c.admitted = true;
     }
-    to.result(hello_result());
+    if (name != nullptr)
+        c.name = name->get<std::string>();
+    to.result(hello_result(c));
 }
 
 reply_json service::limits_json() const
@@ -117,22 +124,30 @@ reply_json service::status_now()
               {"realtime", s.realtime}}},
             {"amplifier", to_string(stream_.amplifier())},
             {"clients", clients_.size()},
+            {"who", people()},
             {"strokes", strokes},
             {"limits", limits_json()}};
+}
+
+void service::list_options(client& /*c*/, const json& params, const answer& to)
+{
+    allow_only(params, {});
+    to.result({{"options", option_rows(options_.plans.owner)}});
 }
 
 void service::subscribe(client& c, const json& params, const answer& to)
 {
     allow_only(params, {"events", "levels_hz"});
     const json* events = member(params, "events");
+    const std::string known = fmt::format("any of {}", fmt::join(event_names, ", "));
     if (events == nullptr || !events->is_array())
         bad_param("events", events == nullptr ? "they are missing" : "they are no list",
-                  R"(any of "strokes", "levels", "stream"; [] ends it)");
+                  known + "; [] ends it");
     std::set<std::string> wanted;
     for (const json& e : *events) {
         const std::string name = text(e, "events");
-        if (name != "strokes" && name != "levels" && name != "stream")
-            bad_param("events", fmt::format("there are no \"{}\"", name), "any of strokes, levels, stream");
+        if (std::find(event_names.begin(), event_names.end(), name) == event_names.end())
+            bad_param("events", fmt::format("there are no \"{}\"", name), known);
         wanted.insert(name);
     }
     const json* hz = member(params, "levels_hz");
@@ -144,6 +159,7 @@ void service::subscribe(client& c, const json& params, const answer& to)
     c.levels.assign(stream_.peaks().size(), 0.0F);
     c.levels_timer.cancel();
     gather_levels();
+    count_touch_listeners();
     if (!c.events.contains("levels"))
         return;
     c.levels_timer.expires_after(std::chrono::nanoseconds(std::llround(1e9 / c.levels_hz)));

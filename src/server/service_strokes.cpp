@@ -202,6 +202,7 @@ void service::stop_all(client_number by)
             cancel(*found->second, stop_reason(found->second->owner));
     if (stopped_)
         stopped_();
+    tell_stop(by);
 }
 
 void service::fire(client& /*c*/, const json& params, const answer& to)

@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "server/stroke_options.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <string>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -57,6 +60,11 @@ void refuse_file(const option& o, const options::value& v)
 
 constexpr double longest_wait_s = 86400.0;
 
+constexpr std::pair<std::string_view, view_kind> views[] = {{"full", view_kind::full},
+                                                            {"bursts", view_kind::bursts},
+                                                            {"percept", view_kind::percept},
+                                                            {"peaks", view_kind::peaks}};
+
 } // namespace
 
 options::wishes with_options(options::wishes w, const json& given, options_for which)
@@ -79,6 +87,47 @@ options::wishes with_options(options::wishes w, const json& given, options_for w
         throw fault_error(option_fault(e));
     }
     return w;
+}
+
+view_choice read_view(const json& params)
+{
+    constexpr double most_bins = 4000.0;
+    view_choice v;
+    if (const json* name = member(params, "view")) {
+        const std::string& said = text(*name, "view");
+        const auto* found = std::find_if(std::begin(views), std::end(views),
+                                         [&](const auto& one) { return one.first == said; });
+        if (found == std::end(views))
+            bad_param("view", fmt::format("\"{}\" is not known", said),
+                      "one of full, bursts, percept, peaks");
+        v.kind = found->second;
+    }
+    if (const json* bins = member(params, "bins")) {
+        if (v.kind != view_kind::peaks)
+            bad_param("bins", "only the view peaks has them", R"(add "view":"peaks")");
+        v.bins = static_cast<std::size_t>(whole(*bins, "bins", {1.0, most_bins}));
+    }
+    return v;
+}
+
+options::wishes settle_options(options::wishes owner, const json& params)
+{
+    const bool predicts = read_view(params).kind == view_kind::percept;
+    if (!predicts)
+        owner.observer = observer_kind::centroid; // which uses no option
+    if (const json* given = member(params, "observer")) {
+        const option& o = *options::find("observer");
+        const std::string& name = text(*given, "observer");
+        const std::vector<std::string_view> known = o.choices();
+        if (!predicts)
+            bad_param("observer", "only the view percept has one", R"(add "view":"percept")");
+        if (std::find(known.begin(), known.end(), name) == known.end())
+            bad_param("observer", fmt::format("\"{}\" is not known", name),
+                      fmt::format("one of {}", options::choices_text(o)));
+        o.to.set(owner, name);
+    }
+    const json* given = member(params, "options");
+    return given == nullptr ? owner : with_options(std::move(owner), *given, options_for::planned);
 }
 
 start_time read_start(const net::json* start, std::int64_t now_ns)

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// The parameters `options` and `start` of a request.
+/// The parameters of a request beside the stroke: `options`, `start`, and `plan`'s view.
 #pragma once
 
 #include <chrono>
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 
@@ -31,6 +32,26 @@ enum class options_for { planned, live };
 
 /// Returns the owner's options with those of a client over them. \throws fault_error naming the option.
 options::wishes with_options(options::wishes w, const net::json& given, options_for which);
+
+/// Part of a plan that is asked for: all, or one for a picture.
+enum class view_kind { full, bursts, percept, peaks };
+
+/// Most rows of samples, and of felt places, in a view of all strokes together; least time from one to the
+/// next of a stroke, s.
+inline constexpr double most_view_rows = 2000.0;
+inline constexpr double view_step_s = 0.002;
+
+struct view_choice {
+    view_kind kind = view_kind::full;
+    std::size_t bins = 400; ///< of peaks
+};
+
+/// Reads `view` and `bins`. \throws fault_error naming the parameter.
+view_choice read_view(const net::json& params);
+
+/// Returns the owner's options with the request's `options` and `observer` over them. \throws fault_error
+/// naming the parameter.
+options::wishes settle_options(options::wishes owner, const net::json& params);
 
 /// Start of a stroke: now, at a time, or armed, which waits for fire.
 struct start_time {

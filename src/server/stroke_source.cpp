@@ -69,22 +69,6 @@ bool is_shape(const std::string& name)
     return std::find(shapes.begin(), shapes.end(), name) != shapes.end();
 }
 
-std::vector<stroke> read_strokes(const std::string& source, const json& v, const options::wishes& s)
-{
-    if (source == "points")
-        return read_points(v);
-    const std::string& t = text(v, source);
-    if (source == "stroke")
-        return {is_shape(t) ? shape_stroke(t) : preset_stroke(t)};
-    if (source == "path")
-        return {stroke_of_path(t, s)};
-    if (source == "toml")
-        return parse_strokes_toml(t, source);
-    if (source == "csv")
-        return parse_strokes_csv(t, source);
-    return parse_strokes_svg(t, source);
-}
-
 void check_duration(const planning& with, double seconds)
 {
     if (seconds > with.max_stroke_s)
@@ -136,6 +120,25 @@ double loudest(const stroke& k, const plan& p, intensity_scale scale)
     return scale.amplitude(most);
 }
 
+// Returns the samples that take as long as what a view looks at.
+double count_view_samples(const view_choice& view, const planning_work& w, double felt)
+{
+    constexpr double looked_at = 0.05; // time of a sample whose intensity alone is read, against one as text
+    constexpr double predicted = 0.1;  // time of a millisecond of a prediction
+    constexpr double read = 0.3;       // time of a sample without its text
+    switch (view.kind) {
+    case view_kind::full:
+        break;
+    case view_kind::bursts:
+        return std::min(w.samples, most_view_rows) + looked_at * w.samples;
+    case view_kind::percept:
+        return std::min(w.samples, most_view_rows) + read * w.samples + predicted * felt;
+    case view_kind::peaks:
+        return read * w.samples;
+    }
+    return w.samples;
+}
+
 double park_bursts(const stroke& k, const plan_options& o)
 {
     const double soa_s = k.choices.soa_s.value_or(o.soa_s);
@@ -145,6 +148,43 @@ double park_bursts(const stroke& k, const plan_options& o)
 }
 
 } // namespace
+
+std::vector<stroke> read_strokes(const std::string& source, const json& v, const options::wishes& s)
+{
+    if (source == "points")
+        return read_points(v);
+    const std::string& t = text(v, source);
+    if (source == "stroke")
+        return {is_shape(t) ? shape_stroke(t) : preset_stroke(t)};
+    if (source == "path")
+        return {stroke_of_path(t, s)};
+    if (source == "toml")
+        return parse_strokes_toml(t, source);
+    if (source == "csv")
+        return parse_strokes_csv(t, source);
+    return parse_strokes_svg(t, source);
+}
+
+std::vector<stroke> settle_strokes(const planning& with, const layout& faces, std::vector<stroke> strokes,
+                                   const options::wishes& s, bool fit)
+{
+    check_count(with, strokes.size());
+    strokes = apply_fits(std::move(strokes), faces);
+    if (fit)
+        strokes = fit_strokes(strokes, faces).strokes;
+    place_strokes(with, s, strokes);
+    return strokes;
+}
+
+std::vector<double> path_starts_s(const std::vector<stroke>& strokes)
+{
+    detail::start_times times;
+    for (const stroke& k : strokes) {
+        times.start(k.start_s, k.anchor);
+        times.lasts(k.motion.duration_s());
+    }
+    return std::move(times).all();
+}
 
 const char* find_source(const json& params)
 {
@@ -183,10 +223,13 @@ void check_level(const planning& with, const options::wishes& s, double intensit
               "ask for less");
 }
 
-planning_work estimate_work(const std::vector<stroke>& strokes, const options::wishes& s, const layout& faces)
+planning_work estimate_work(const std::vector<stroke>& strokes, const options::wishes& s, const layout& faces,
+                            const view_choice& view)
 {
     planning_work w;
+    double felt = 0.0;
     for (const stroke& k : strokes) {
+        felt += k.motion.duration_s() / percept_step_s;
         switch (k.choices.algorithm.value_or(s.plan.algorithm)) {
         case algorithm_kind::park2016:
             w.bursts += park_bursts(k, s.plan);
@@ -200,7 +243,8 @@ planning_work estimate_work(const std::vector<stroke>& strokes, const options::w
         }
     }
     const double wide = 1.0 + static_cast<double>(faces.places().size()) / tactors_a_step;
-    w.steps = (w.samples + w.bursts * (s.compensate ? moving : 1.0)) * wide;
+    const double samples = count_view_samples(view, w, felt);
+    w.steps = (samples + w.bursts * (s.compensate ? moving : 1.0)) * wide;
     return w;
 }
 
@@ -231,40 +275,43 @@ score planned::make_score(const array& a, std::size_t i) const
     return {a, plans[i].plan, render};
 }
 
+void plan_strokes(const planning& with, const layout& faces, planned& p, const options::wishes& s,
+                  const std::string& source, const planning_checks& checks)
+{
+    const auto between = [&] {
+        if (checks.go_on)
+            checks.go_on();
+    };
+    for (const stroke& k : p.strokes) {
+        between();
+        if (s.compensate) {
+            p.moved.push_back(make_compensated_plan(with.tactors, faces, k, s.plan, s.low_speed));
+            p.plans.push_back({std::move(p.moved.back().plan), k.start_s, k.anchor});
+        } else {
+            p.plans.push_back({make_plan(with.tactors, faces, k, s.plan), k.start_s, k.anchor});
+        }
+        const plan& made = p.plans.back().plan;
+        check_level(with, s, loudest(k, made, s.plan.scale), made.carrier_hz, source);
+    }
+    check_duration(with, p.total_s());
+    between();
+    static_cast<void>(score(with.tactors, p.plans, p.render)); // levels and carriers
+}
+
 planned make_planned(const planning& with, const layout& faces, const json& params,
                      const planning_checks& checks)
 {
     const std::string source = find_source(params);
-    const json* options = member(params, "options");
-    const options::wishes s =
-        options == nullptr ? with.owner : with_options(with.owner, *options, options_for::planned);
+    const options::wishes s = settle_options(with.owner, params);
     try {
         planned p{source, read_strokes(source, params[source], s), {}, s.render};
+        p.observer = {s.observer, s.low_speed};
         if (source == "stroke")
             p.name = p.strokes.front().name;
-        check_count(with, p.strokes.size());
-        p.strokes = apply_fits(std::move(p.strokes), faces);
-        place_strokes(with, s, p.strokes);
-        const auto between = [&] {
-            if (checks.go_on)
-                checks.go_on();
-        };
-        if (checks.weigh && !checks.weigh(estimate_work(p.strokes, s, faces)))
+        p.strokes = settle_strokes(with, faces, std::move(p.strokes), s, false);
+        if (checks.weigh && !checks.weigh(estimate_work(p.strokes, s, faces, read_view(params))))
             return p;
-        for (const stroke& k : p.strokes) {
-            between();
-            if (s.compensate) {
-                p.moved.push_back(make_compensated_plan(with.tactors, faces, k, s.plan, s.low_speed));
-                p.plans.push_back({std::move(p.moved.back().plan), k.start_s, k.anchor});
-            } else {
-                p.plans.push_back({make_plan(with.tactors, faces, k, s.plan), k.start_s, k.anchor});
-            }
-            const plan& made = p.plans.back().plan;
-            check_level(with, s, loudest(k, made, s.plan.scale), made.carrier_hz, source);
-        }
-        check_duration(with, p.total_s());
-        between();
-        static_cast<void>(score(with.tactors, p.plans, p.render)); // levels and carriers
+        plan_strokes(with, faces, p, s, source, checks);
         return p;
     } catch (const fault_error&) {
         throw;

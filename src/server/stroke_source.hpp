@@ -16,6 +16,7 @@
 #include <tactor/stroke.hpp>
 
 #include "net/rpc.hpp"
+#include "percept/compare.hpp"
 #include "server/stroke_options.hpp"
 
 namespace tactor::server {
@@ -37,6 +38,7 @@ struct planned {
     render_options render;
     /// Moves of `compensate` in each plan; empty without it. The plans themselves are moved to `plans`.
     std::vector<compensated_plan> moved = {};
+    detail::observer_choice observer = {}; ///< of the view percept
 
     /// Returns the start of each plan, s from the start of all.
     std::vector<double> starts_s() const;
@@ -46,6 +48,18 @@ struct planned {
     score make_score(const array& a, std::size_t i) const;
 };
 
+/// Reads the strokes that a parameter says, as parse_strokes_toml() and its kin do. \throws error,
+/// fault_error.
+std::vector<stroke> read_strokes(const std::string& source, const net::json& v, const options::wishes& s);
+
+/// Returns the strokes on the array, each with its pace: those that ask for it fitted, and with `fit` all of
+/// them together. \throws fault_error if there are too many or if they last too long; error.
+std::vector<stroke> settle_strokes(const planning& with, const layout& faces, std::vector<stroke> strokes,
+                                   const options::wishes& s, bool fit);
+
+/// Returns the start of each stroke, s, as if each lasted as long as its path.
+std::vector<double> path_starts_s(const std::vector<stroke>& strokes);
+
 /// Returns the one parameter of these that says what is drawn: "stroke", "path", "points", "toml", "csv" or
 /// "svg". \throws fault_error for none or several.
 const char* find_source(const net::json& params);
@@ -54,12 +68,12 @@ const char* find_source(const net::json& params);
 struct planning_work {
     double bursts = 0.0;
     double samples = 0.0; ///< of continuous strokes
-    double steps = 0.0;   ///< in time: some 2 to 5 us each
+    double steps = 0.0;   ///< in time, with the view: some 2 to 5 us each
 };
 
 /// Estimates the work from durations and options; none for an SOA that the planner refuses.
-planning_work estimate_work(const std::vector<stroke>& strokes, const options::wishes& s,
-                            const layout& faces);
+planning_work estimate_work(const std::vector<stroke>& strokes, const options::wishes& s, const layout& faces,
+                            const view_choice& view = {});
 
 /// Calls from within make_planned(); each may throw.
 struct planning_checks {
@@ -67,6 +81,11 @@ struct planning_checks {
     /// Called before the work, when the text is read. Returns false if nothing is to be planned.
     std::function<bool(const planning_work&)> weigh = {};
 };
+
+/// Plans p.strokes into p.plans and p.moved. `source`: parameter that said them. \throws fault_error for a
+/// level above the owner's; error.
+void plan_strokes(const planning& with, const layout& faces, planned& p, const options::wishes& s,
+                  const std::string& source, const planning_checks& checks);
 
 /// Reads and plans. Returns no plans if `weigh` returns false. \throws fault_error, and what checks throw.
 planned make_planned(const planning& with, const layout& faces, const net::json& params,

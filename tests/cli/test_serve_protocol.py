@@ -5,13 +5,14 @@ import socket
 import time
 
 from harness import PATIENCE_S, main
-from serving import LONG, SHORT, ServeTest
+from serving import LONG, MESSAGE, SHORT, ServeTest
+from websocket import Peer
 
 
 class Protocol(ServeTest):
     def test_hello_has_the_versions(self):
         r = self.serve().client().ok("hello")
-        self.assertEqual(list(r), ["protocol", "version", "array", "stream", "presets", "clock", "max_level_dbfs"])
+        self.assertEqual(list(r), ["protocol", "version", "array", "stream", "presets", "shapes", "clock", "max_level_dbfs", "client"])
         self.assertEqual(set(r["stream"]), {"rate", "channels", "format", "period_frames", "latency_s", "pcm"})
         self.assertEqual(r["array"], self.plan("park2016-1")["array"])
         self.assertEqual((r["stream"]["pcm"], r["stream"]["channels"], r["max_level_dbfs"]), ("null", 9, -12.0))
@@ -51,7 +52,7 @@ class Protocol(ServeTest):
 
     def test_missing_parameters_are_empty_ones_for_every_method(self):
         c = self.serve().client()
-        for method in ("hello", "play", "plan", "cancel", "stop", "fire", "begin", "to", "end", "drive", "status", "subscribe"):
+        for method in ("hello", "play", "plan", "cancel", "stop", "fire", "begin", "to", "end", "drive", "status", "subscribe", "options", "import", "export"):
             told = []
             for raw in (b"", b',"params":{}', b',"params":[]', b',"params":null'):
                 c.raw(b'{"jsonrpc":"2.0","id":1,"method":"%s"%s}\n' % (method.encode(), raw))
@@ -100,6 +101,38 @@ class Protocol(ServeTest):
         self.assertEqual(c.ok("plan", stroke="park2016-3", options={"phantom": "barycentric"}),
                          self.plan("park2016-3", "--phantom", "barycentric"))
         self.check_error(c.error("plan", path="M 0 0 L 40 40", options={"algorithm": "continuous", "duration": 600}), -32001)
+
+    def test_a_view_shows_a_part_of_the_plan(self):
+        c = self.serve(config='[defaults]\nobserver = "low-speed"\n').client()
+        for algorithm in ("park2016", "tactile-brush", "continuous"):
+            line = {"path": "M 0 0 L 40 40", "options": {"algorithm": algorithm, "duration": 1.5}}
+            plan, v = c.ok("plan", **line), c.ok("plan", **line, view="bursts")
+            rows = plan["continuous"]["points"][:-1:2] if v["continuous"] else plan["bursts"]
+            self.assertEqual(v["continuous"], algorithm == "continuous")
+            self.assertEqual(v["onsets"], [round(r.get("onset_s", r.get("t_s")), 5) for r in rows])
+            self.assertEqual(v["positions"], [round(r[x], 3) for r in rows for x in ("x_mm", "y_mm")])
+            for i, r in enumerate(rows):
+                on = {d["tactor"]: d["amplitude"] for d in r["drives"]}
+                for k, a in enumerate(v["amplitudes"][9 * i:9 * i + 9]):
+                    self.assertAlmostEqual(a, on.get(k, 0), delta=0.51e-4)
+            for observer in ("centroid", None):
+                v = c.ok("plan", **line, view="percept", **({"observer": observer} if observer else {}))
+                self.assertEqual(v["observer"], observer or "low-speed")
+                row = json.loads(self.ok("compare", "--path", line["path"], "--duration", 1.5, "--algorithm", algorithm, "--phantom",
+                                         "inverse-distance", "--observer", v["observer"], "--format", "json").stdout)["results"][0]
+                self.assertEqual(v["errors"], {k: row[k] for k in v["errors"]})
+        v = c.ok("plan", **LONG, view="peaks", bins=100)
+        self.assertEqual((v["step_s"], len(v["peaks"]), max(v["peaks"])), (3.0, 900, 1.0))
+        self.assertEqual(c.ok("plan", **SHORT, view="bursts", draft=7)["strokes"][0]["count"], 25)
+        for what, params in (("draft", {"draft": -1}), ("view", {"view": "all"}), ("bins", {"view": "peaks", "bins": 4001}), ("bins", {"bins": 9}),
+                             ("observer", {"observer": "centroid"}), ("observer", {"view": "percept", "observer": "me"})):
+            self.check_error(c.error("plan", **SHORT, **params), -32602, what)
+        for what, value in (("view", "full"), ("draft", 1), ("bins", 9), ("observer", "centroid")):
+            self.check_error(c.error("play", **SHORT, **{what: value}), -32602, what)
+        # Views of a plan that is too large as a whole.
+        long = {"path": "M 0 0 L 40 40", "options": {"algorithm": "continuous", "duration": 600}}
+        self.check_error(c.error("plan", **long), -32001, "plan")
+        self.assertEqual(len(c.ok("plan", **long, view="bursts")["onsets"]), 2000)
 
     def test_bad_strokes_and_options_name_their_parameter(self):
         c = self.serve().client()
@@ -274,9 +307,56 @@ class Protocol(ServeTest):
         c = s.client()
         c.ok("play", **SHORT)
         r = c.ok("status")
-        self.assertEqual(list(r), ["version", "stream", "amplifier", "clients", "strokes", "limits"])
+        self.assertEqual(list(r), ["version", "stream", "amplifier", "clients", "who", "strokes", "limits"])
         self.assertLessEqual({"state", "xruns", "uptime_s", "realtime"}, set(r["stream"]))
         self.assertEqual((r["stream"]["state"], r["amplifier"], r["clients"]), ("running", "none", 1))
+        self.assertEqual(r["who"], [{"client": c.ok("hello")["client"], "name": "", "from": "this computer"}])
+
+    def test_who_is_there_is_told_with_names_and_addresses(self):
+        s = self.serve("--tcp", "0", "--http", "0")
+        a, b = s.client(), s.client(tcp=True)
+        mine = a.ok("hello", name="Ann \u2766")["client"]
+        theirs = b.ok("hello", name="Bob")["client"]
+        page = Peer(s.where["http"].removeprefix("http://").rstrip("/"))
+        self.addCleanup(page.socket.close)
+        self.assertEqual(page.upgrade(), 101)
+        who = a.ok("status")["who"]
+        self.assertEqual([(x["client"], x["name"], x["from"]) for x in who],
+                         [(mine, "Ann \u2766", "this computer"), (theirs, "Bob", "127.0.0.1"), (who[-1]["client"], "", "127.0.0.1")])
+        said = self.ok("status", "--socket", s.where["socket"]).stdout
+        for line in (f"  {mine} Ann \u2766 from this computer\n", f"  {theirs} Bob from 127.0.0.1\n", f"  {who[-1]['client']} from 127.0.0.1\n"):
+            self.assertIn(line, said)
+        self.assertEqual(json.loads(self.ok("status", "--socket", s.where["socket"], "--format", "json").stdout)["who"][:3], who)
+        self.check_error(a.error("hello", name="a\x1bb"), -32602, "name")
+
+    def test_the_array_s_place_on_the_body_is_told(self):
+        palm = self.write("palm.toml", '[array]\nsite = "left palm"\nup = "fingers"\npreset = "palm-3x3"\n')
+        self.ok("check", "--array", palm, "-D", "null")
+        c = self.serve("--array", palm).client()
+        array = c.ok("hello")["array"]
+        self.assertEqual((array.pop("site"), array.pop("up")), ("left palm", "fingers"))
+        self.assertEqual(array, self.plan("park2016-1", "--array", palm)["array"])
+
+    def test_touches_and_stops_of_others_are_told(self):
+        s = self.serve()
+        draws, looks = s.client(), s.client()
+        me = draws.ok("hello", name="Ann")["client"]
+        looks.ok("subscribe", events=["touches", "stops"])
+        n = draws.ok("begin", timeout_s=3600)["stroke"]
+        draws.ok("to", stroke=n, x_mm=10, y_mm=20)
+        told = looks.notification(lambda m: m["method"] == "touches")["params"]
+        self.assertEqual(told, {"client": me, "stroke": n, "x_mm": 10, "y_mm": 20, "down": True})
+        draws.ok("stop")
+        self.assertEqual(looks.notification(lambda m: m["method"] == "stops")["params"], {"client": me, "name": "Ann"})
+        self.assertEqual(looks.notification(lambda m: m["method"] == "touches")["params"], told | {"down": False})
+        s.process.terminate()
+        self.assertEqual(looks.notification(lambda m: m["method"] == "stops")["params"], {"client": 0, "name": ""})
+
+    def test_the_options_are_those_of_the_schema(self):
+        c = self.serve(config="[defaults]\nsoa = 0.06\n").client()
+        rows = {x["name"]: x for x in c.ok("options")["options"]}
+        self.assertEqual(set(rows), set(MESSAGE.schema["$defs"]["options"]["properties"]))
+        self.assertEqual((rows["soa"]["default"], rows["level_dbfs"]["default"]), (0.06, -12))
 
 
 if __name__ == "__main__":

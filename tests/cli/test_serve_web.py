@@ -211,6 +211,12 @@ class Web(ToolTest):
         self.assertEqual(p.call("stop")["result"], {})
         self.assertEqual(p.message()["params"]["reason"], "cancelled by its client")
 
+    def test_large_files_come_whole(self):
+        p = self.websocket(self.serve(config="[serve]\nmax_unread_bytes = 100000\n"))
+        r = p.call("export", path="M 0 0 L 40 40", options={"duration": 6}, **{"as": "wav"})["result"]
+        self.assertGreater(len(r["base64"]), 10_000_000)
+        self.assertEqual(p.call("status")["result"]["clients"], 1)
+
     def test_a_leaving_client_ends_live_strokes(self):
         s = self.serve()
         p = self.websocket(s)

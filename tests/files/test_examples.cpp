@@ -4,12 +4,14 @@
 
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include <tactor/config.hpp>
 #include <tactor/setup.hpp>
 #include <tactor/stroke.hpp>
 
 #include "caught.hpp"
+#include "files/setup_text.hpp"
 #include "files/text_file.hpp"
 
 namespace examples_test {
@@ -49,6 +51,54 @@ TEST_CASE("the tactors of the example ring lie on one circle")
     const setup s = load_setup(source / "examples/arrays/ring-8.toml");
     for (const tactor_spec& t : s.array->tactors)
         CHECK(distance_mm(t.position, {25.0, 25.0}) == doctest::Approx(25.0).epsilon(1e-9));
+}
+
+TEST_CASE("strokes that are written as TOML are the same when they are read again")
+{
+    std::size_t tried = 0;
+    for (const fs::path& f : files_in(source / "examples/strokes")) {
+        if (f.extension() == ".wav")
+            continue;
+        CAPTURE(f.string());
+        std::vector<stroke> all = load_strokes(f);
+        for (stroke& s : all) {
+            if (s.anchor.back != 1)
+                s.anchor = {};
+            if (s.sound.wave && s.sound.wave->kind == waveform_kind::recording)
+                s.sound.wave.reset(); // text that is no file's may name none
+        }
+        const std::vector<stroke> again = parse_strokes_toml(detail::strokes_text(all), "again.toml");
+        REQUIRE(again.size() == all.size());
+        for (std::size_t i = 0; i < all.size(); ++i) {
+            const stroke& a = all[i];
+            const stroke& b = again[i];
+            CHECK(b.name == a.name);
+            CHECK(b.start_s == a.start_s);
+            if (i > 0)
+                CHECK(b.anchor == a.anchor);
+            CHECK(b.choices == a.choices);
+            CHECK(b.fit == a.fit);
+            CHECK(b.sound.carrier_hz == a.sound.carrier_hz);
+            CHECK(b.sound.carrier_profile == a.sound.carrier_profile);
+            CHECK(b.sound.am == a.sound.am);
+            CHECK(b.motion.duration_s() == doctest::Approx(a.motion.duration_s()).epsilon(1e-12));
+            for (const double part : {0.0, 0.1, 0.5, 0.77, 1.0}) {
+                const double t = part * a.motion.duration_s();
+                CHECK(distance_mm(b.motion.position(t), a.motion.position(t)) < 1e-6);
+                CHECK(b.motion.intensity(t) == doctest::Approx(a.motion.intensity(t)).epsilon(1e-9));
+            }
+        }
+        ++tried;
+    }
+    CHECK(tried >= 10);
+}
+
+TEST_CASE("a start that counts from a group is not written")
+{
+    stroke late{.name = "late", .start_s = 1.0, .anchor = {start_from_kind::end, 2}};
+    CHECK(caught_message([&] {
+              static_cast<void>(detail::strokes_text(std::vector{stroke{}, stroke{}, late}));
+          }).find("group") != std::string::npos);
 }
 
 TEST_CASE("every example stroke is read")

@@ -9,6 +9,7 @@
 #include <tactor/setup.hpp>
 
 #include "caught.hpp"
+#include "files/setup_text.hpp"
 
 namespace setup_array_test {
 
@@ -194,6 +195,29 @@ TEST_CASE("wrong types and ranges are reported at the value")
     CHECK(complaint("tactor = 3\n") == "palm.toml:1:10: tactor is 3 (give [[tactor]] entries)");
     CHECK(complaint("array = \"palm-3x3\"\n") ==
           "palm.toml:1:9: array is 'palm-3x3' (give a table, [array])");
+}
+
+TEST_CASE("an array says where on the body it is, and which way up")
+{
+    const array a = parse_array(grid + "site = \"left palm\"\nup = \"fingers\"\n");
+    CHECK(a.site == "left palm");
+    CHECK(a.up == "fingers");
+    const array again = parse_array(detail::array_text(a));
+    CHECK(again.site == a.site);
+    CHECK(again.up == a.up);
+    CHECK(parse_array(grid).site.empty());
+    CHECK(detail::array_text(parse_array(grid)).find("site") == std::string::npos);
+    CHECK(parse_array("[array]\npreset = \"palm-3x3\"\nsite = \"\u5de6\u624b\"\n").site ==
+          "\xe5\xb7\xa6\xe6\x89\x8b");
+    CHECK(parse_array(grid + "site = \"" + std::string(40, 'x') + "\"\n").site.size() == 40);
+    CHECK(complaint(grid + "site = \"" + std::string(41, 'x') + "\"\n") ==
+          "palm.toml:3:8: site has 41 characters (1 to 40 characters, no control characters)");
+    CHECK(complaint(grid + "\n up = \"a\\nb\"\n") ==
+          "palm.toml:4:7: up has control characters (1 to 40 characters, no control characters)");
+    CHECK(complaint(grid + "up = \"\"\n") == "palm.toml:3:6: up is empty");
+    CHECK(complaint(grid + "site = 3\n") == "palm.toml:3:8: site is 3 (give a string in quotes)");
+    CHECK(complaint(grid + "sites = \"x\"\n") ==
+          "palm.toml:3:1: unknown key 'sites' in [array] (did you mean 'site'?)");
 }
 
 TEST_CASE("impossible grids are refused")

@@ -103,6 +103,13 @@ speed = 70
     CHECK(s.defaults ==
           std::vector<written_value>{{"soa", 0.06, false, {}, {}}, {"speed", 70.0, false, {}, {}}});
 
+    f.write("arrays/palm.toml",
+            grid.substr(0, 8) + "site = \"left palm\"\nup = \"fingers\"\n" + grid.substr(8));
+    const setup placed =
+        load_setup(f.write("placed.toml", "[array]\nfile = \"arrays/palm.toml\"\nup = \"thumb\"\n"));
+    CHECK(placed.array->site == "left palm");
+    CHECK(placed.array->up == "thumb");
+
     const setup named =
         load_setup(f.write("named.toml", "[array]\nname = \"left\"\nfile = \"arrays/arm.toml\"\n"));
     CHECK(named.array->name == "left");

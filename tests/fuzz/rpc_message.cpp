@@ -166,7 +166,7 @@ public:
             io_.run_one();
         watcher_ = all_->connect(seen_, server::client_kind::local);
         send_as_watcher(
-            R"({"jsonrpc":"2.0","method":"subscribe","params":{"events":["strokes","levels","stream"],"levels_hz":5}})");
+            R"({"jsonrpc":"2.0","method":"subscribe","params":{"events":["strokes","levels","stream","touches","stops"],"levels_hz":5}})");
     }
 
     void take(std::string_view lines)

@@ -42,15 +42,17 @@ def wav_files():
 # Inputs that tests make of parts: each line is a seed.
 def rpc_seeds():
     stroke = '{"path":"M 0 0 L 40 40","options":{"algorithm":"continuous","duration":0.01}'
-    calls = ['"hello"', '"status"', '"stop"', '"fire"', f'"play","params":{stroke}}}', f'"play","params":{stroke},"start":"armed"}}',
+    calls = ['"hello","params":{"name":"Ann"}', '"status"', '"options"', '"stop"', '"fire"', f'"play","params":{stroke}}}', f'"play","params":{stroke},"start":"armed"}}',
              f'"play","params":{stroke},"start":{{"delay_s":0.01}}}}', f'"plan","params":{stroke}}}',
+             f'"plan","params":{stroke},"view":"percept","observer":"centroid","draft":1}}', f'"plan","params":{stroke},"view":"bursts","draft":2}}',
+             f'"plan","params":{stroke},"view":"peaks","bins":9}}',
              '"play","params":{"stroke":"park2016-1","options":{"soa":0.07,"snap":true}}',
              '"play","params":{"points":[[0,0,0],[0.1,20,20,0.5]]}', '"play","params":{"csv":"t_s,x_mm,y_mm\\n0,0,0\\n1,10,10\\n"}',
              '"play","params":{"svg":"<svg><path d=\\"M 0 0 L 9 9\\"/></svg>"}',
              '"play","params":{"toml":"[[stroke]]\\npath = \\"M 0 0 L 9 9\\"\\n"}', '"begin","params":{"timeout_s":0.01}',
              '"to","params":{"stroke":1,"x_mm":20,"y_mm":20,"intensity":0.5}', '"end","params":{"stroke":1}', '"cancel","params":{"stroke":1}',
              '"drive","params":{"tactor":4,"intensity":0.5,"duration_s":0.01,"start":"now"}',
-             '"subscribe","params":{"events":["strokes","levels","stream"],"levels_hz":100}']
+             '"subscribe","params":{"events":["strokes","levels","stream","touches","stops"],"levels_hz":100}']
     lines = [f'{{"jsonrpc":"2.0","id":{i},"method":{call}}}' for i, call in enumerate(calls)]
     # An empty line lets time pass: strokes that begin, go on and end, in some orders.
     named = {re.match(r'"(\w+)"', call)[1]: line for call, line in zip(calls, lines)}

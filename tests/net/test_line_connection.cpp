@@ -172,6 +172,29 @@ TEST_CASE("a peer that does not read is dropped, and its waiting data are freed"
     CHECK(p.all.unread.held() == 0);
 }
 
+TEST_CASE("a large message that a peer asked for leaves room for others, within what all may have")
+{
+    pair p({.waiting_bytes = 100'000});
+    const std::size_t most = p.end->room();
+    p.end->send_large(std::string(40'000'000, 'x'));
+    CHECK(p.end->waiting() == 40'000'001);
+    CHECK(p.end->room() == most - 40'000'001);
+    p.end->send(std::string(90'000, 'x'));
+    p.io.poll();
+    CHECK_FALSE(p.closed);
+    p.end->send(std::string(20'000, 'x'));
+    p.until([&] { return p.closed; });
+    CHECK(p.faults == std::vector<line_fault>{line_fault::unread});
+    p.io.poll();
+    p.end.reset();
+    p.io.poll();
+    CHECK(p.all.unread.held() == 0);
+    pair q({.waiting_bytes = 100'000});
+    q.end->send_large(std::string(most, 'x'));
+    q.until([&] { return q.closed; });
+    CHECK(q.faults == std::vector<line_fault>{line_fault::unread});
+}
+
 TEST_CASE("an empty line is no first message, and after that no late message")
 {
     pair p({.message_s = 0.001});

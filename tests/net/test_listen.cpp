@@ -5,6 +5,8 @@
 #include <cerrno>
 #include <string>
 
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/ip/tcp.hpp>
 #include <doctest/doctest.h>
 #include <fcntl.h>
 #include <sys/file.h>
@@ -58,6 +60,18 @@ TEST_CASE("a port in use is reported with its process")
     CHECK(has(says([&] { bind_udp(udp, "osc"); }), me));
     CHECK(find_port_holder(tcp.port, true).ends_with(me));
     CHECK(find_port_holder(0, true).empty());
+}
+
+TEST_CASE("a peer's address is told without its port")
+{
+    const owned_fd listener = listen_tcp({}, "tcp");
+    const host_and_port at = parse_host(local_address(listener.get()), "tcp");
+    boost::asio::io_context io;
+    boost::asio::ip::tcp::socket s(io);
+    s.open(boost::asio::ip::tcp::v4());
+    CHECK(peer_address(s.native_handle()).empty()); // not connected
+    s.connect({boost::asio::ip::make_address(at.host), at.port});
+    CHECK(peer_address(s.native_handle()) == "127.0.0.1");
 }
 
 } // namespace listen_test

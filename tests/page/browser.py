@@ -2,16 +2,19 @@
 """A headless Chromium, driven by the DevTools protocol over a WebSocket. The client of that is in cli."""
 import base64
 import json
+import os
 import pathlib
 import shutil
 import subprocess
 import tempfile
 import time
+import unittest
 
 from harness import PATIENCE_S
 from websocket import TEXT, Peer
 
 PROGRAM = shutil.which("chromium")
+AXE = os.environ.get("TACTOR_AXE")  # axe.min.js
 
 
 class Browser:
@@ -119,6 +122,16 @@ class Page:
         self.call("Page.bringToFront")  # a tab behind another is not painted
         data = self.call("Page.captureScreenshot", format="png")["data"]
         pathlib.Path(file).write_bytes(base64.b64decode(data))
+
+    def axe_findings(self):
+        """Returns what axe-core finds wrong with the page as it is: the rule, and each element with what to do."""
+        if not AXE:
+            raise unittest.SkipTest("axe-core is not there (tests/lanes/page gets it)")
+        if not self.value("'axe' in window"):
+            self.value(pathlib.Path(AXE).read_text(encoding="utf-8") + "\n0")
+        # It asks for nothing: styles of elsewhere there are none.
+        return self.value("""axe.run(document, {resultTypes: ["violations"], preload: false}).then(r => r.violations.flatMap(v =>
+            v.nodes.map(n => `${v.id}: ${n.target.join(" ")}: ${n.failureSummary}`)))""")
 
     def close(self):
         self.browser.call("Target.closeTarget", targetId=self.target)

@@ -57,6 +57,18 @@ def test_the_values_of_a_tactor_are_kept():
         tactor.Array("falls", [more._replace(thresholds=((250.0, -41.0), (100.0, -20.0)))])
 
 
+def test_the_place_on_the_body_is_kept(tmp_path):
+    file = tmp_path / "palm.toml"
+    file.write_text('[array]\nsite = "left palm"\nup = "fingers"\npreset = "palm-3x3"\n')
+    array = tactor.Array.from_file(file)
+    assert (array.site, array.up) == ("left palm", "fingers")
+    array.replace(name="again").write(file)
+    for again in (tactor.Array.from_file(file), pickle.loads(pickle.dumps(array)), array.replace(gains=-1.0)):
+        assert (again.site, again.up) == ("left palm", "fingers")
+    assert pickle.loads(pickle.dumps(array)) == array != tactor.Array(array.name, array)
+    assert tactor.Array.preset("palm-3x3").site == ""
+
+
 def test_a_pickled_array_is_as_loud_as_that_of_its_file(tmp_path, stroke):
     file = tmp_path / "measured.toml"
     file.write_text('[array]\nname = "measured"\npreset = "palm-3x3"\n' + "".join(

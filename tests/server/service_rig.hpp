@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <list>
 #include <memory>
 #include <mutex>
@@ -35,6 +36,7 @@ class inbox final : public server::client_link {
 public:
     void send(std::string message) override { all.push_back(json::parse(message)); }
     std::size_t waiting() const override { return unread; }
+    std::size_t room() const override { return left; }
     void finish() override { finished = true; }
 
     /// Returns those of a stroke, in order.
@@ -71,6 +73,7 @@ public:
 
     std::vector<json> all;
     std::size_t unread = 0;
+    std::size_t left = std::numeric_limits<std::size_t>::max(); ///< of what all may let wait
     bool finished = false;
 };
 
@@ -145,7 +148,7 @@ public:
     connected client(server::client_kind k = server::client_kind::local)
     {
         auto box = std::make_shared<inbox>();
-        return {all->connect(box, k), box};
+        return {all->connect(box, k, "192.168.1.7"), box}; // a local one has no address
     }
     bool send(const connected& c, const json& message) { return all->receive(c.number, message.dump()); }
     /// A request and its answer.

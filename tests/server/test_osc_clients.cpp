@@ -61,6 +61,14 @@ TEST_CASE("a stroke is reported by the sender's number, and then no sender is le
     CHECK(rig.ok(c, "status")["clients"] == 1);
 }
 
+TEST_CASE("a sender is among those who are there, by its address")
+{
+    osc_rig rig;
+    ready(rig);
+    rig.say(rig.at(9000, "::ffff:192.168.1.7"), "/tactor/begin", endless(1));
+    CHECK(rig.all->status_now()["who"].front()["from"] == "192.168.1.7");
+}
+
 TEST_CASE("numbers belong to an address with its port")
 {
     osc_rig rig;

@@ -348,6 +348,15 @@ TEST_CASE("what is too large by its durations and options is refused before it i
     CHECK(rig.code(c, "plan",
                    {{"path", "M 0 0 L 40 40"},
                     {"options", {{"duration", 10}, {"algorithm", "continuous"}}}}) == -32603); // planned
+    // A view is refused for its own size.
+    const json dense{{"duration", 590}, {"soa", 0.004}, {"burst", 0.004}};
+    const auto view = [&](const char* name) {
+        const json params{{"path", "M 0 0 L 40 40"}, {"view", name}, {"options", dense}};
+        return rig.call(c, "plan", params);
+    };
+    CHECK(refused("plan", dense) == "plan");
+    CHECK(view("bursts")["error"]["data"]["what"] == "plan");
+    CHECK(view("peaks")["result"]["peaks"].size() == 3600);
     CHECK(rig.ok(c, "status")["strokes"].empty());
     // A continuous stroke takes no memory by its length, and a large request that is cancelled leaves
     // nothing.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <cmath>
 #include <fstream>
+#include <map>
 #include <string>
 
 #include <doctest/doctest.h>
@@ -8,6 +9,7 @@
 
 #include "options/option.hpp"
 #include "server/faults.hpp"
+#include "server/option_rows.hpp"
 #include "server/stroke_options.hpp"
 #include "server/stroke_source.hpp"
 
@@ -45,6 +47,53 @@ std::string fault_what(const json& params)
 }
 
 } // namespace
+
+TEST_CASE("the options that a client may give are listed with bounds, choices and the owner's values")
+{
+    options::wishes owner;
+    owner.render.level_dbfs = -20.0;
+    owner.plan.timing = timing_kind::fit;
+    std::map<std::string, json> rows;
+    for (const auto& row : option_rows(owner))
+        rows[row["name"]] = json(row);
+    for (const options::option& o : options::all()) {
+        CAPTURE(o.name);
+        const bool listed = rows.contains(std::string(o.name));
+        CHECK(listed == ((o.where & options::by_client) != 0));
+        if (!listed)
+            continue;
+        const json& row = rows.at(std::string(o.name));
+        CHECK(row.size() == 11);
+        CHECK(row["help"].get<std::string>().find('{') == std::string::npos);
+        if (!row["default"].is_null() && o.used == nullptr) // a client may give it back
+            CHECK_NOTHROW(with_options({}, {{o.name, row["default"]}}, options_for::planned));
+    }
+    CHECK(rows["soa"] ==
+          json{{"name", "soa"},
+               {"key", "soa_s"},
+               {"group", "Timing"},
+               {"kind", "number"},
+               {"unit", "s"},
+               {"least", nullptr},
+               {"most", nullptr}, // the timing law's
+               {"choices", json::array()},
+               {"default", 0.07},
+               {"live", true},
+               {"help", "time from the onset of a burst to the onset of the next (default 0.07)"}});
+    CHECK(rows["level_dbfs"]["default"] == -20.0);
+    CHECK(rows["level_dbfs"]["key"].is_null());
+    CHECK(rows["level_dbfs"]["least"] == -200.0);
+    CHECK(rows["level_dbfs"]["most"] == 0.0);
+    CHECK(rows["timing"]["choices"] == json{"fixed", "fit"});
+    CHECK(rows["timing"]["default"] == "fit");
+    CHECK(rows["timing"]["live"] == false);
+    CHECK(rows["snap"]["kind"] == "flag");
+    CHECK(rows["snap"]["default"] == false);
+    CHECK(rows["noise_seed"]["kind"] == "whole");
+    CHECK(rows["noise_seed"]["default"].is_number_integer());
+    CHECK(rows["duration"]["default"].is_null());
+    CHECK(rows["attack"]["help"] == "time in which each burst rises (default: options.ramp)");
+}
 
 TEST_CASE("options are put over the owner's, each with its type")
 {

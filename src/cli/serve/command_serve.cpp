@@ -237,8 +237,8 @@ std::function<void(server::stream_state, const std::string&)> make_owner_log()
 
 int serve(settings& s, const serve_options& o)
 {
-    // [defaults] hold for strokes, unless a client gives other options.
-    s.place |= options::on_play;
+    // [defaults] hold for strokes and predictions, unless a client gives other options.
+    s.place |= options::on_play | options::on_compare;
     const environment e = session::read_environment(s);
     const session::stream_options& play = s.stream;
     const options::serve_settings serve = settle_serve(o, e.serve);
@@ -252,7 +252,13 @@ int serve(settings& s, const serve_options& o)
     service.token = server::read_token(serve);
     service.version = version();
     service.array = files::array_json(e.tactors);
+    for (const auto& [key, text] : {std::pair("site", &e.tactors.site), std::pair("up", &e.tactors.up)})
+        if (!text->empty())
+            service.array[key] = *text;
     service.plans = make_planning(s, e, serve, service.limits);
+    service.named.array = e.array_file.empty() ? e.tactors.name : e.array_file;
+    if (service.plans.owner.render.marker_channel) // which no option of the tool says
+        service.named.config = e.config_name;
     service.plan_text = [&e](const server::planned& p, std::size_t most) { return plan_text(p, e, most); };
     service.now_ns = rt::monotonic_ns;
     server::endpoints at = server::open_endpoints(where);

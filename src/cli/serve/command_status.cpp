@@ -41,6 +41,12 @@ void print_status(const net::json& s)
     say(stdout, "real time  {}\n", stream.value("realtime", false) ? "yes" : "no");
     say(stdout, "amplifier  {}\n", s.value("amplifier", ""));
     say(stdout, "clients    {}\n", s.value("clients", 0));
+    for (const net::json& c : s.value("who", net::json::array())) {
+        const std::string name = c.value("name", "");
+        const std::string from = c.value("from", "");
+        say(stdout, "  {}{}{}\n", c.value("client", 0), name.empty() ? "" : " " + shown(name),
+            from.empty() ? "" : " from " + shown(from));
+    }
     say(stdout, "strokes    {}\n", s["strokes"].size());
     for (const net::json& k : s["strokes"])
         say(stdout, "  {} {}, client {}\n", k.value("stroke", 0), k.value("state", ""), k.value("client", 0));

@@ -12,6 +12,7 @@ using detail::comparison;
 using detail::comparison_row;
 using detail::interval;
 using detail::observer_choice;
+using detail::prediction;
 using detail::row_spread;
 using detail::spread_choice;
 
@@ -58,20 +59,13 @@ json people_json(const comparison& c)
             {"parts", {0.05, 0.95}}};
 }
 
-// Adds the members of the low-speed observer.
-void add_taps(json& j, const comparison_row& r, bool by_taps)
+// Returns true if the low-speed observer has a prediction.
+bool has_taps(const prediction& r, observer_kind by)
 {
-    const bool predicted = by_taps && r.unpredicted.empty();
-    j["unpredicted"] = r.unpredicted.empty() ? json(nullptr) : json(r.unpredicted);
-    j["felt_length_mm"] = predicted ? json(r.tapped.felt_length_mm) : json(nullptr);
-    j["target_length_mm"] = predicted ? json(r.tapped.target_length_mm) : json(nullptr);
-    j["length_ratio"] = or_null(r.tapped.length_ratio);
-    j["taps"] = predicted ? json::array() : json(nullptr);
-    for (const tap& t : r.taps)
-        j["taps"].push_back(tap_json(t));
+    return by == observer_kind::low_speed && r.unpredicted.empty();
 }
 
-json compared_row_json(const comparison_row& r, bool by_taps)
+json compared_row_json(const comparison_row& r, observer_kind by)
 {
     json j;
     j["algorithm"] = to_string(r.algorithm);
@@ -83,13 +77,10 @@ json compared_row_json(const comparison_row& r, bool by_taps)
     j["bursts"] = p.curve ? json(nullptr) : json(p.bursts.size());
     j["soa_s"] = or_null(p.soa_s);
     j["total_s"] = p.total_s;
-    j["rms_error_mm"] = or_null(r.felt.rms_error_mm);
-    j["largest_error_mm"] = or_null(r.felt.largest_error_mm);
-    j["speed_cv"] = or_null(r.felt.speed_cv);
-    j["intensity_cv"] = or_null(r.felt.intensity_cv);
-    j["silent_share"] = by_taps ? json(nullptr) : json(r.felt.silent_share);
-    j["shared_share"] = by_taps ? json(nullptr) : json(r.felt.shared_share);
-    add_taps(j, r, by_taps);
+    j.update(errors_json(r, by));
+    j["taps"] = has_taps(r, by) ? json::array() : json(nullptr);
+    for (const tap& t : r.taps)
+        j["taps"].push_back(tap_json(t));
     j["spread"] = spread_json(r);
     j["warnings"] = p.warnings;
     return j;
@@ -119,11 +110,27 @@ json comparison_json(const comparison& c, const array& a)
     j["array"] = {{"name", a.name}, {"tactors", tactors}};
     j["results"] = json::array();
     for (const comparison_row& r : c.rows)
-        j["results"].push_back(compared_row_json(r, c.observer.kind == observer_kind::low_speed));
+        j["results"].push_back(compared_row_json(r, c.observer.kind));
     return j;
 }
 
 } // namespace
+
+json errors_json(const prediction& r, observer_kind by)
+{
+    const bool by_energy = by == observer_kind::centroid;
+    const bool by_taps = has_taps(r, by);
+    return {{"rms_error_mm", or_null(r.felt.rms_error_mm)},
+            {"largest_error_mm", or_null(r.felt.largest_error_mm)},
+            {"speed_cv", or_null(r.felt.speed_cv)},
+            {"intensity_cv", or_null(r.felt.intensity_cv)},
+            {"silent_share", by_energy ? json(r.felt.silent_share) : json(nullptr)},
+            {"shared_share", by_energy ? json(r.felt.shared_share) : json(nullptr)},
+            {"unpredicted", or_null(r.unpredicted)},
+            {"felt_length_mm", by_taps ? json(r.tapped.felt_length_mm) : json(nullptr)},
+            {"target_length_mm", by_taps ? json(r.tapped.target_length_mm) : json(nullptr)},
+            {"length_ratio", or_null(r.tapped.length_ratio)}};
+}
 
 std::string comparisons_text(const std::vector<comparison>& all, const array& a)
 {

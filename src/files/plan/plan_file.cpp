@@ -26,7 +26,7 @@ constexpr const char* how_to_make = "{command:plan} makes one";
 /// Follows the parser: bursts and samples are taken as they end, and dropped from the document.
 class reader {
 public:
-    explicit reader(std::string file) : file_(std::move(file)) {}
+    reader(std::string file, recordings_kind recordings) : file_(std::move(file)), recordings_(recordings) {}
 
     bool event(int depth, ordered_json::parse_event_t what, ordered_json& parsed)
     {
@@ -83,8 +83,8 @@ private:
         } else {
             check_same_array(file_, tactors, read_.tactors);
         }
-        read_.plans.push_back(
-            read_plan(all, read_.tactors, std::exchange(bursts_, {}), std::exchange(samples_, {})));
+        read_.plans.push_back(read_plan(all, read_.tactors, std::exchange(bursts_, {}),
+                                        std::exchange(samples_, {}), recordings_));
         std::optional<compensated_plan> moved = read_compensation(all);
         read_.strokes.push_back(read_stroke(all, read_.plans.back().plan, moved));
         if (moved)
@@ -95,6 +95,7 @@ private:
     }
 
     std::string file_;
+    recordings_kind recordings_;
     std::vector<std::string> keys_; ///< by depth
     std::vector<burst> bursts_;
     curve_samples samples_;
@@ -112,9 +113,9 @@ std::string said(const std::string& what)
 
 // Reads a stream or a text.
 template <class Input>
-plan_file read_from(Input&& in, const std::string& name)
+plan_file read_from(Input&& in, const std::string& name, recordings_kind recordings = recordings_kind::read)
 {
-    reader r(name);
+    reader r(name, recordings);
     try {
         const ordered_json all =
             ordered_json::parse(in, [&r](int depth, ordered_json::parse_event_t what, ordered_json& parsed) {
@@ -146,9 +147,9 @@ plan_file load_plans(const std::string& file)
     return read_from(in, file);
 }
 
-plan_file read_plans(std::string_view text, const std::string& name)
+plan_file read_plans(std::string_view text, const std::string& name, recordings_kind recordings)
 {
-    return read_from(text, name);
+    return read_from(text, name, recordings);
 }
 
 bool holds_plans(std::string_view text) noexcept

@@ -44,6 +44,9 @@ nlohmann::ordered_json array_json(const array& a);
 /// Returns what a stroke's note means, for people; empty for none.
 std::string note_text(note_kind n);
 
+/// Returns what a prediction says in numbers, and why it says nothing.
+nlohmann::ordered_json errors_json(const detail::prediction& r, observer_kind by);
+
 /// Returns one object of one comparison, a list in an object of several, and a line end.
 std::string comparisons_text(const std::vector<detail::comparison>& all, const array& a);
 

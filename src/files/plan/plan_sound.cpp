@@ -120,10 +120,13 @@ void check_recording(const json_value& said, const recording& r)
 
 } // namespace
 
-void take_sound(const json_value& stroke, plan& p)
+void take_sound(const json_value& stroke, plan& p, recordings_kind recordings)
 {
+    const auto text = stroke["waveform"].text();
+    if (text && recordings == recordings_kind::refuse && waveform_names_file(*text))
+        stroke["waveform"].refuse(fmt::format("is a file, {}, and this text is none", *text));
     try {
-        if (const auto text = stroke["waveform"].text())
+        if (text)
             p.wave = parse_waveform(*text);
     } catch (const error& e) {
         stroke["waveform"].refuse(fmt::format("{}: {}", e.subject(), e.why()));

@@ -137,7 +137,8 @@ render_options read_render(const json_value& plan)
     return o;
 }
 
-placed_plan read_plan(const json_value& f, const array& a, std::vector<burst> bursts, curve_samples samples)
+placed_plan read_plan(const json_value& f, const array& a, std::vector<burst> bursts, curve_samples samples,
+                      recordings_kind recordings)
 {
     plan p;
     const json_value drawn = f["stroke"];
@@ -147,7 +148,7 @@ placed_plan read_plan(const json_value& f, const array& a, std::vector<burst> bu
     p.stroke_duration_s = drawn["duration_s"].need_number();
     p.stroke_length_mm = drawn["length_mm"].need_number();
     p.carrier_hz = drawn["carrier_hz"].need_number();
-    take_sound(drawn, p);
+    take_sound(drawn, p, recordings);
     p.overlap = f["render"]["overlap"].need_kind<overlap_kind>();
     p.soa_s = f["soa_s"].need_member().number();
     p.total_s = f["total_s"].need_number();

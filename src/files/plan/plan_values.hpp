@@ -12,6 +12,7 @@
 #include <tactor/tactor.hpp>
 
 #include "files/plan/json_value.hpp"
+#include "files/plan/plan_file.hpp"
 
 namespace tactor::files {
 
@@ -20,7 +21,8 @@ burst read_burst(const json_value& f);
 burst read_sample(const json_value& f);
 array read_array(const json_value& plan);
 render_options read_render(const json_value& plan);
-placed_plan read_plan(const json_value& f, const array& a, std::vector<burst> bursts, curve_samples samples);
+placed_plan read_plan(const json_value& f, const array& a, std::vector<burst> bursts, curve_samples samples,
+                      recordings_kind recordings);
 /// Reads the compensation without its plan, if the plan has one.
 std::optional<compensated_plan> read_compensation(const json_value& plan);
 /// Reads the path of a plan's bursts or samples, or the target of compensated ones, for pictures.
@@ -41,8 +43,8 @@ nlohmann::ordered_json envelope_json(const burst_envelope& e);
 nlohmann::ordered_json threshold_json(const tactor_spec& t);
 void take_threshold(const json_value& t, tactor_spec& into);
 
-/// Reads the sound from "stroke", and the WAV file that it names. \throws error (bad_input).
-void take_sound(const json_value& stroke, plan& p);
+/// Reads the sound from "stroke", and the WAV file that it names, or refuses it. \throws error (bad_input).
+void take_sound(const json_value& stroke, plan& p, recordings_kind recordings);
 /// Reads the envelope from "render".
 burst_envelope read_envelope(const json_value& render);
 

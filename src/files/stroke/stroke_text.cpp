@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <filesystem>
 #include <optional>
+#include <span>
+#include <string>
 #include <string_view>
 #include <utility>
 #include <variant>
@@ -161,9 +163,16 @@ void add_choices(lines& out, const stroke& s)
     }
 }
 
-} // namespace
+// Writes the start. In a file of one stroke there is nothing that it could count from.
+void add_start(lines& out, const stroke& s, bool follows)
+{
+    if (s.anchor.from != start_from_kind::piece && follows)
+        out.add("start_from", to_string(s.anchor.from));
+    if (s.anchor.from == start_from_kind::piece || follows)
+        out.maybe("start_s", s.start_s);
+}
 
-std::string stroke_text(const stroke& s)
+std::string keys_text(const stroke& s, bool follows)
 {
     lines out;
     if (!s.name.empty())
@@ -173,11 +182,30 @@ std::string stroke_text(const stroke& s)
         add_path(out, s, i, *drawn);
     else
         add_timed(out, i, std::get<timed_points>(i.law));
-    if (s.anchor.from == start_from_kind::piece) // there is nothing else in the file that it could count from
-        out.maybe("start_s", s.start_s);
+    add_start(out, s, follows);
     add_sound(out, s);
     add_choices(out, s);
-    return "[stroke]\n" + out.take();
+    return out.take();
+}
+
+} // namespace
+
+std::string stroke_text(const stroke& s)
+{
+    return "[stroke]\n" + keys_text(s, false);
+}
+
+std::string strokes_text(std::span<const stroke> all)
+{
+    if (all.size() == 1)
+        return stroke_text(all.front());
+    std::string text;
+    for (const stroke& s : all) {
+        if (s.start_s && s.anchor.from != start_from_kind::piece && s.anchor.back != 1)
+            refuse(s, "it starts after a group", "give it a start in seconds");
+        text += fmt::format("{}[[stroke]]\n{}", text.empty() ? "" : "\n", keys_text(s, !text.empty()));
+    }
+    return text;
 }
 
 } // namespace tactor::detail

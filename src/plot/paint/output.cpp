@@ -214,6 +214,11 @@ std::string to_svg(const canvas& c)
     return writer().write(c);
 }
 
+std::string to_bytes(const canvas& c, file_format format, unsigned dpi)
+{
+    return format == file_format::svg ? to_svg(c) : format == file_format::png ? to_png(c, dpi) : to_pdf(c);
+}
+
 file_format find_format(const fs::path& file)
 {
     const std::string e = in_small_letters(file.extension().string());
@@ -244,10 +249,7 @@ void check_output(const fs::path& file, bool force)
 void save(const canvas& c, const fs::path& file, unsigned dpi, bool force)
 {
     check_output(file, force);
-    const file_format format = find_format(file);
-    const std::string bytes = format == file_format::svg   ? to_svg(c)
-                              : format == file_format::png ? to_png(c, dpi)
-                                                           : to_pdf(c);
+    const std::string bytes = to_bytes(c, find_format(file), dpi);
     detail::output_file to(file);
     to.write(bytes.data(), static_cast<std::int64_t>(bytes.size()));
     to.commit();

@@ -36,6 +36,12 @@ std::string to_png(const canvas& c, unsigned dpi);
 /// Returns a page of the picture's size. \throws error (runtime).
 std::string to_pdf(const canvas& c);
 
+/// Returns the bytes of a file in a format; `dpi` is for PNG. \throws error as above.
+std::string to_bytes(const canvas& c, file_format format, unsigned dpi);
+
+/// Resolution of PNG where nobody asks for another.
+inline constexpr unsigned usual_dpi = 300;
+
 /// Throws the error that save() would throw about an existing file. Call it when all input is read, before
 /// the work. \throws error (bad_input).
 void check_output(const std::filesystem::path& file, bool force);

@@ -149,6 +149,8 @@ class Array(_Value):
         return cls(name, [Tactor(Point(x, y), i) for i, (x, y) in enumerate(_places("points", points).tolist())])
 
     name: _Member[str] = _Member("name", "Name, for plans and pictures.")
+    site: _Member[str] = _Member("site", "Place on the body that its file says, such as \"left palm\"; else empty.")
+    up: _Member[str] = _Member("up", "Direction of its upper edge on the body that its file says, such as \"fingers\"; else empty.")
     positions: _Member[_NDArray[_np.float64]] = _Member("positions", "Places, shape (n, 2), mm; a view that cannot be written.")
     channels: _Member[int] = _Member("channels", "Channels that the map needs, the highest and one.")
 
@@ -288,7 +290,7 @@ class Array(_Value):
                 listed = hasattr(one, "__len__") and not isinstance(one, str)
                 made = (*made[:i], made[i]._replace(**{"thresholds" if listed else "threshold_dbfs": one}), *made[i + 1:])
         origin = self._origin if tactors is None and thresholds is None else ""
-        return Array._wrap(_make_core(self.name if name is None else name, made), self._file, self._besides, origin)
+        return Array._wrap(_make_core(self.name if name is None else name, made, self.site, self.up), self._file, self._besides, origin)
 
     def write(self, file: str | os.PathLike[str]) -> None:
         """Writes an array file that `from_file` and the tool read, with all that `replace` keeps. It needs no other file.
@@ -331,7 +333,7 @@ class Array(_Value):
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, Array):
             return NotImplemented
-        return self.name == other.name and self._tactors == other._tactors and self._besides == other._besides
+        return all(getattr(self, what) == getattr(other, what) for what in ("name", "site", "up", "_tactors", "_besides"))
 
     def __hash__(self) -> int:
         return hash((self.name, self._tactors))
@@ -340,7 +342,7 @@ class Array(_Value):
         return f"<tactor.Array {self.name!r}: {_counted(len(self), 'tactor')}, {_counted(self.channels, 'channel')}>"
 
     def __reduce__(self) -> tuple[_t.Callable[..., _t.Any], tuple[_t.Any, ...]]:
-        return _array_again, (self.name, self._tactors, self._file, self._besides, self._origin)
+        return _array_again, (self.name, self._tactors, self._file, self._besides, self._origin, self.site, self.up)
 
 
 def _places(what: str, points: _t.Any) -> _t.Any:
@@ -372,10 +374,10 @@ def _checked_tactors(tactors: _t.Iterable[Tactor]) -> tuple[Tactor, ...]:
     return tactors
 
 
-def _make_core(name: str, tactors: _t.Iterable[Tactor]) -> _t.Any:
+def _make_core(name: str, tactors: _t.Iterable[Tactor], site: str = "", up: str = "") -> _t.Any:
     tactors = _checked_tactors(tactors)
     _need(name, str, "name")
-    return _tactor.Array(name, [_row(t) for t in tactors])
+    return _tactor.Array(name, [_row(t) for t in tactors], site, up)
 
 
 def _each(what: str, values: _t.Any, count: int) -> list[_t.Any]:
@@ -391,8 +393,9 @@ def _each(what: str, values: _t.Any, count: int) -> list[_t.Any]:
     return all_of_them
 
 
-def _array_again(name: str, tactors: tuple[Tactor, ...], file: str | None, besides: str, origin: str) -> Array:
-    return Array._wrap(_make_core(name, tactors), file, besides, origin)
+def _array_again(name: str, tactors: tuple[Tactor, ...], file: str | None, besides: str, origin: str,
+                 site: str = "", up: str = "") -> Array:
+    return Array._wrap(_make_core(name, tactors, site, up), file, besides, origin)
 
 
 def array_presets() -> list[str]:

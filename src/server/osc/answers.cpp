@@ -5,6 +5,7 @@
 #include <boost/asio/post.hpp>
 #include <fmt/format.h>
 
+#include "net/access.hpp"
 #include "server/faults.hpp"
 #include "server/osc/clients.hpp"
 
@@ -59,7 +60,7 @@ osc_clients::sender& osc_clients::admit(const endpoint& from)
         limit_reached("max_clients", "there is no place for one more");
     auto s = std::make_unique<sender>();
     s->link = std::make_shared<sender_link>(*this, from);
-    s->client = service_.connect(s->link, client_kind::datagram);
+    s->client = service_.connect(s->link, client_kind::datagram, net::plain(from.address()).to_string());
     return *senders_.emplace(from, std::move(s)).first->second;
 }
 

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <string>
 
 #include <tactor/choices.hpp>
@@ -32,6 +33,10 @@ constexpr unsigned padding(std::uint64_t data_bytes) noexcept
 {
     return data_bytes % 2 != 0 ? 1U : 0U;
 }
+
+/// Returns the bytes that write_wav() writes.
+/// \throws error (bad_input) for a format that WAV cannot hold.
+std::string bytes(const score& s, format_kind f);
 
 /// Writes a file as write_wav() does, in the given container, so that tests can make small RF64 files.
 bool write(const score& s, format_kind f, const std::filesystem::path& file, container c,

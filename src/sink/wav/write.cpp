@@ -78,30 +78,56 @@ std::string format_chunk(format_kind f, unsigned channels, unsigned rate)
     return chunk("fmt ", s);
 }
 
-} // namespace
-
-bool write(const score& s, format_kind f, const std::filesystem::path& file, container c,
-           const wav_progress& progress)
+/// Renders a file block by block: calls put(data, bytes) with its parts and counts the frames in `done`.
+/// Stops when go_on() returns false.
+template <class GoOn, class Put>
+void render_parts(const score& s, format_kind f, container c, std::uint64_t& done, GoOn go_on, Put put)
 {
     const std::string before = header(f, c, s.channels(), s.rate(), s.frames());
-    std::uint64_t done = 0;
-    const auto go_on = [&] { return !progress || progress(done, s.frames()); };
-    detail::output_file to(file, go_on);
     const std::size_t frame_bytes = s.channels() * sample_bytes(f);
     const std::uint64_t at_once = std::clamp<std::uint64_t>(block_bytes / frame_bytes, 1, most_block_frames);
     std::vector<std::byte> block(at_once * frame_bytes);
     renderer r(s, f);
-    to.write(before.data(), static_cast<std::int64_t>(before.size()));
-    while (done < s.frames() && to.good()) {
-        if (!go_on())
-            return false;
+    put(before.data(), before.size());
+    while (done < s.frames() && go_on()) {
         const std::uint64_t n = std::min(at_once, s.frames() - done);
         r.process(std::span(block).first(n * frame_bytes));
-        to.write(block.data(), static_cast<std::int64_t>(n * frame_bytes));
+        put(block.data(), n * frame_bytes);
         done += n;
     }
-    to.write("", padding(s.frames() * frame_bytes));
-    if (to.given_up() || (to.good() && !go_on()))
+    put("", padding(s.frames() * frame_bytes));
+}
+
+container container_of_score(const score& s, format_kind f)
+{
+    return container_for(s.frames(), s.channels() * sample_bytes(f));
+}
+
+} // namespace
+
+std::string bytes(const score& s, format_kind f)
+{
+    std::string all;
+    all.reserve(s.frames() * s.channels() * sample_bytes(f) + 128);
+    std::uint64_t done = 0;
+    render_parts(
+        s, f, container_of_score(s, f), done, [] { return true; },
+        [&](const void* data, std::size_t n) { all.append(static_cast<const char*>(data), n); });
+    return all;
+}
+
+bool write(const score& s, format_kind f, const std::filesystem::path& file, container c,
+           const wav_progress& progress)
+{
+    std::uint64_t done = 0;
+    bool given_up = false;
+    const auto wanted = [&] { return !progress || progress(done, s.frames()); };
+    check_format(f, s.channels());
+    detail::output_file to(file, wanted);
+    render_parts(
+        s, f, c, done, [&] { return to.good() && !(given_up = !wanted()); },
+        [&](const void* data, std::size_t n) { to.write(data, static_cast<std::int64_t>(n)); });
+    if (given_up || to.given_up() || (to.good() && !wanted()))
         return false;
     to.commit();
     return true;
@@ -130,7 +156,7 @@ inline namespace v0 {
 
 bool write_wav(const score& s, format_kind f, const std::filesystem::path& file, const wav_progress& progress)
 {
-    return wav::write(s, f, file, wav::container_for(s.frames(), s.channels() * sample_bytes(f)), progress);
+    return wav::write(s, f, file, wav::container_of_score(s, f), progress);
 }
 
 } // namespace v0

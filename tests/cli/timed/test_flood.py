@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""Latency of stop, and the server's memory, while many clients send much."""
+"""Latency of stop and of drafts, and the server's memory, while many clients send much."""
 import json
+import math
 import os
 import resource
 import socket
@@ -16,6 +17,8 @@ from serving import LONG, Client, ServeTest
 CLIENTS = 200
 MIB = 1 << 20
 STOP_S = 0.020
+DRAFTS = 300
+DRAFT_S = 0.030
 ABOVE_REST_BYTES = 64 * MIB
 STOP = b'{"jsonrpc":"2.0","id":1,"method":"stop"}\n'
 ANSWER = b'{"jsonrpc":"2.0","id":1,"result":{}}\n'
@@ -154,7 +157,85 @@ class Flood(ServeTest):
         self.hold(s, b"x" * MIB)
 
 
+# In a separate process: twenty clients that go on until it is killed. They draw live, plan drafts of their own, play, and ask for
+# what is much to plan.
+OTHERS = """
+import itertools, json, math, socket, sys, threading, time
+def line(algorithm, duration):
+    return {"path": "M 0 0 L 40 40", "options": {"algorithm": algorithm, "duration": duration, "level_dbfs": -60}}
+class Client:
+    def __init__(self):
+        self.socket = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM)
+        self.socket.connect(sys.argv[1])
+        self.lines = self.socket.makefile("rb")
+    def send(self, method, params, **more):
+        self.socket.sendall(json.dumps({"jsonrpc": "2.0", "method": method, "params": params, **more}).encode() + b"\\n")
+    def call(self, method, params):
+        self.send(method, params, id=1)
+        while b'"id":1' not in (got := self.lines.readline())[:30]:
+            assert got
+        return got
+def live(c):
+    n = json.loads(c.call("begin", {"timeout_s": 60, "options": {"level_dbfs": -60}}))["result"]["stroke"]
+    for i in itertools.count():
+        c.send("to", {"stroke": n, "x_mm": 20 + 18 * math.cos(i / 20), "y_mm": 20 + 18 * math.sin(i / 20)})
+        time.sleep(1 / 60)
+def draft(c):
+    for i in itertools.count():
+        c.call("plan", {**line("park2016", 2), "view": "percept", "draft": i})
+        time.sleep(1 / 30)
+def play(c):
+    while True:
+        c.call("plan", line("continuous", 4))
+        c.call("play", line("continuous", 0.2))
+        time.sleep(0.2)
+def much(c):
+    while True:
+        c.call("plan", line("continuous", 10))
+        c.call("plan", {**line("continuous", 600), "view": "peaks"})
+for what, count in ((live, 8), (draft, 4), (play, 4), (much, 4)):
+    for _ in range(count):
+        threading.Thread(target=what, args=(Client(),)).start()
+print(flush=True)
+"""
+
+
 class Planning(ServeTest):
+    def test_drafts_are_answered_while_somebody_draws(self):
+        """A page asks 30 times a second for the percept of the stroke so far, 2 s long, beside twenty others."""
+        s = self.serve()
+        others = subprocess.Popen([sys.executable, "-c", OTHERS, s.where["socket"]], stdout=subprocess.PIPE)
+        self.addCleanup(others.stdout.close)
+        self.addCleanup(others.wait)
+        self.addCleanup(others.kill)
+        others.stdout.readline()
+        c = s.client()
+        points = [[i / 60, 20 + 18 * math.cos(i / 20), 20 + 18 * math.sin(i / 30)] for i in range(121)]
+        for algorithm in ("park2016", "tactile-brush", "continuous"):
+            asked = {"points": points, "view": "percept", "options": {"algorithm": algorithm, "drop_points": True, "snap": True}}
+            waits, began = [], time.monotonic()
+            for i in range(DRAFTS):
+                time.sleep(max(0.0, began + i / 30 - time.monotonic()))
+                message = json.dumps({"jsonrpc": "2.0", "id": i, "method": "plan", "params": {**asked, "draft": i}}).encode() + b"\n"
+                waits.append(self.answered(c.socket, message))
+            longest, most, median = summarise(waits)
+            print(f"draft, {algorithm}: longest {longest:.4f} s, 99 % {most:.4f} s, median {median:.4f} s")
+            self.assertLess(most, DRAFT_S)
+        self.assertIsNone(others.poll())
+        stream = c.ok("status")["stream"]
+        self.assertEqual((stream["state"], stream["xruns"]), ("running", 0))
+
+    def answered(self, client, question):
+        """Measures an answer, in seconds; checks it afterwards, and without its schema, which takes longer than all the rest."""
+        got = b""
+        began = time.monotonic()
+        client.sendall(question)
+        while not got.endswith(b"\n"):
+            got += client.recv(1 << 20)
+        waited = time.monotonic() - began
+        self.assertIn(b'"result"', got[:100])
+        return waited
+
     def test_small_plays_pass_large_ones(self):
         s = self.serve()
         path = "M 0 0" + " L 40 40 L 0 0" * 68_000

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: MIT
+#include "core/label.hpp"
+
+#include <cstddef>
+
+#include "core/words.hpp"
+
+namespace tactor {
+namespace {
+
+constexpr std::size_t longest = 40; // as in label_hint
+
+struct range {
+    char32_t first;
+    char32_t last;
+};
+
+// C0, DEL and C1; ends of lines and paragraphs with the marks of direction behind them; its isolates.
+constexpr range controls[] = {{0x00, 0x1f}, {0x7f, 0x9f}, {0x2028, 0x202e}, {0x2066, 0x2069}};
+
+bool is_control(char32_t c)
+{
+    for (const range& r : controls)
+        if (c >= r.first && c <= r.last)
+            return true;
+    return false;
+}
+
+} // namespace
+
+std::string label_fault(std::string_view utf8)
+{
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < utf8.size(); ++count) {
+        const auto lead = static_cast<unsigned char>(utf8[i++]);
+        char32_t c = lead < 0x80 ? lead : lead < 0xe0 ? lead & 0x1fU : lead < 0xf0 ? lead & 0x0fU : lead & 7U;
+        for (; i < utf8.size() && (static_cast<unsigned char>(utf8[i]) & 0xc0U) == 0x80U; ++i)
+            c = c << 6U | (static_cast<unsigned char>(utf8[i]) & 0x3fU);
+        if (is_control(c))
+            return "has control characters";
+    }
+    if (count == 0)
+        return "is empty";
+    return count > longest ? "has " + counted(count, "character") : "";
+}
+
+} // namespace tactor

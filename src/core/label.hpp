@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: MIT
+/// \file
+/// Short texts by which somebody names a thing for others to read: a client, the place of an array.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+namespace tactor {
+
+/// Hint for a text that is no label.
+inline constexpr const char* label_hint = "1 to 40 characters, no control characters";
+
+/// Returns what is wrong with a label: "is empty", "has 41 characters", "has control characters"; empty:
+/// nothing. Characters that turn the direction of a line count as control characters. `utf8` is valid.
+[[nodiscard]] std::string label_fault(std::string_view utf8);
+
+} // namespace tactor

@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: MIT
+#include "core/trajectory/sample_points.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+#include <variant>
+
+#include <fmt/format.h>
+
+#include "core/access.hpp"
+#include "core/trajectory/impl.hpp"
+
+namespace tactor::detail {
+namespace {
+
+// Half of what is promised: between the places that are looked at it may be a little more.
+constexpr double tolerance_mm = 0.005;
+constexpr double tolerance_intensity = 0.002;
+constexpr double shortest_s = 1e-4;
+
+class sampler {
+public:
+    explicit sampler(const trajectory& t) : from_(t) {}
+
+    std::vector<timed_point> take(const std::vector<double>& times)
+    {
+        points_.push_back(at(times.front()));
+        for (std::size_t i = 1; i < times.size(); ++i)
+            add_until(at(times[i]));
+        return std::move(points_);
+    }
+
+private:
+    timed_point at(double t_s) const { return {t_s, from_.position(t_s), from_.intensity(t_s)}; }
+
+    bool is_straight(const timed_point& a, const timed_point& b) const
+    {
+        for (const double part : {0.25, 0.5, 0.75}) {
+            const timed_point p = at(std::lerp(a.t_s, b.t_s, part));
+            const point even{std::lerp(a.position.x_mm, b.position.x_mm, part),
+                             std::lerp(a.position.y_mm, b.position.y_mm, part)};
+            if (distance_mm(p.position, even) > tolerance_mm ||
+                std::abs(p.intensity - std::lerp(a.intensity, b.intensity, part)) > tolerance_intensity)
+                return false;
+        }
+        return true;
+    }
+
+    // Adds points after the last one until `end`, halving what is not straight.
+    void add_until(const timed_point& end)
+    {
+        std::vector<timed_point> ends{end};
+        while (!ends.empty()) {
+            const timed_point last = points_.back();
+            const timed_point next = ends.back();
+            if (next.t_s - last.t_s > shortest_s && !is_straight(last, next)) {
+                ends.push_back(at(0.5 * (last.t_s + next.t_s)));
+                continue;
+            }
+            points_.push_back(next);
+            ends.pop_back();
+            if (points_.size() > most_sampled_points)
+                throw error(error_kind::bad_input, "stroke",
+                            fmt::format("it takes more than {} timed points", most_sampled_points),
+                            "make it shorter or simpler");
+        }
+    }
+
+    const trajectory& from_;
+    std::vector<timed_point> points_;
+};
+
+// Returns the times between which the movement is smooth, ascending, from 0 to the duration.
+std::vector<double> smooth_between(const trajectory::impl& i, const drawn_path& law)
+{
+    std::vector<double> times{0.0, i.duration_s};
+    if (law.way.length_mm() > 0.0)
+        times = i.vertices();
+    if (law.moves) {
+        for (const double t : law.moves->bends())
+            times.push_back(i.time_of_pace(*law.moves, t));
+        for (const profile_point& p : law.moves->given().intensity)
+            times.push_back(i.time_of_pace(*law.moves, law.moves->arrival_s(p.part)));
+    }
+    std::sort(times.begin(), times.end());
+    times.front() = 0.0;
+    times.back() = i.duration_s;
+    times.erase(std::unique(times.begin(), times.end()), times.end());
+    return times;
+}
+
+} // namespace
+
+std::vector<timed_point> sample_points(const trajectory& t)
+{
+    const trajectory::impl& i = access::of(t);
+    if (const auto* law = std::get_if<drawn_path>(&i.law))
+        return sampler(t).take(smooth_between(i, *law));
+    const auto& law = std::get<timed_points>(i.law);
+    std::vector<timed_point> points = *law.points;
+    for (timed_point& p : points) {
+        p.t_s = i.time_of_own(law, p.t_s);
+        p.intensity *= i.gain;
+    }
+    return points;
+}
+
+} // namespace tactor::detail

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: MIT
+/// \file
+/// Options that a file of strokes can say, and the command line that says the rest.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include <tactor/array.hpp>
+#include <tactor/stroke.hpp>
+
+#include "options/option.hpp"
+#include "options/wishes.hpp"
+
+namespace tactor::server {
+
+/// Names in a command line of the tool; empty: none.
+struct tool_files {
+    std::string array = {}; ///< preset or file
+    std::string config = {};
+};
+
+/// Gives a stroke the options that differ from the built-in ones or that a client gave, as far as a stroke
+/// file has keys for them and the stroke does not say them itself.
+void put_options(stroke& k, const options::wishes& s);
+
+/// Returns " --array palm-3x3 --level-dbfs -15": what a command of the tool needs to do the same as these
+/// options. `file_says`: put_options() has said what it can.
+std::string option_words(const options::wishes& s, options::place command, const array& a,
+                         const tool_files& files, bool file_says);
+
+/// Returns a word as a shell reads it.
+std::string quote_word(std::string_view word);
+
+} // namespace tactor::server

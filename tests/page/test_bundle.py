@@ -1,0 +1,143 @@
+# SPDX-License-Identifier: MIT
+"""The script that joins pages, and the pages that it makes. Usage: test_bundle.py BUNDLE SOURCE_ROOT PAGE..."""
+import html.parser
+import pathlib
+import re
+import shutil
+import subprocess
+import sys
+import unittest
+
+PAGES = [pathlib.Path(p) for p in sys.argv[3:]]
+del sys.argv[3:]
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "cli"))
+from harness import TOOL, ToolTest, main  # noqa: E402
+
+LARGEST = 150_000  # bytes of a page
+# An address with a host, other than the names of XML's languages, and what asks for another file.
+ELSEWHERE = re.compile(r"\b(?:https?|wss?|ftp)://(?!www\.w3\.org/)[\w\[.-]+|(?:src|href|url)\W{1,3}//[\w.-]+|@import|^import\b.*|\bimport\(.*", re.M)
+# Code for which a policy would have to allow 'unsafe-inline' or 'unsafe-eval', in markup that a script makes, too.
+UNSAFE = re.compile(r"""<\w[^<>]*\s(?:style|on\w+)=["'$\\]|setAttribute\(["'](?:style|on\w+)["']|\beval\(|\bnew Function\(""")
+NODE = shutil.which("node")
+
+
+class Joining(ToolTest):
+    def bundle(self, output="out.html", **files):
+        """Writes files, by names without their extensions, and bundles page.html; returns what became of the process."""
+        for name, text in files.items():
+            base, _, kind = name.rpartition("_")
+            self.write(f"{base}.{kind}", text)
+        return subprocess.run([sys.executable, TOOL, "page.html", output, "out.d"], cwd=self.dir, capture_output=True, text=True, check=False)
+
+    def joined(self, **files):
+        result = self.bundle(**files)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        return (self.dir / "out.html").read_text(encoding="utf-8")
+
+    def refused(self, why, **files):
+        result = self.bundle(**{"page_html": '<script src="main.js"></script>\n'} | files)
+        self.assertEqual(result.returncode, 1, result.stderr)
+        self.assertRegex(result.stderr, f"^{why}\n$")
+        self.assertFalse((self.dir / files.get("output", "out.html")).exists())
+
+    def test_a_page_with_its_style_and_modules(self):
+        page = '<!DOCTYPE html>\n  <link rel="stylesheet" href="a.css">\n<p>text</p>\n<script type="module" src="main.js"></script>\n</html>\n'
+        text = self.joined(page_html=page, a_css="/* a comment */\np {\n  color: red; }\n\n",
+                           main_js='import {twice} from "./b.js";\n\n// A comment.\nlet two = twice(1); // stays\n',
+                           b_js="export function twice(x) {\n  return 2 * x;\n}\n")
+        self.assertEqual(text, '<!DOCTYPE html>\n<style nonce="NONCE">\np {\ncolor: red; }\n</style>\n<p>text</p>\n'
+                               '<script nonce="NONCE">\n"use strict";\nfunction twice(x) {\n  return 2 * x;\n}\nlet two = twice(1); // stays\n</script>\n</html>\n')
+        self.assertEqual((self.dir / "out.d").read_text(encoding="utf-8").split(":")[0], "out.html")
+        self.assertEqual({pathlib.Path(f).name for f in (self.dir / "out.d").read_text(encoding="utf-8").split(":", 1)[1].split()},
+                         {"page.html", "a.css", "main.js", "b.js"})
+
+    def test_modules_stand_once_and_after_those_that_they_import(self):
+        text = self.joined(page_html='<script src="main.js"></script>\n',
+                           main_js='import {a} from "./a.js";\nimport {b, c} from "./b.js";\nconst main = 1;\n',
+                           a_js='import {d} from "./d.js";\nexport const a = d;\n',
+                           b_js='import {d} from "./d.js";\nexport let b = d;\nexport class c {}\n',
+                           d_js="export async function d() {}\nexport function* e() {}\n")
+        self.assertEqual(re.findall(r"(?m)^(?:async function|function\*|const|let|class) (\w+)", text), ["d", "e", "a", "b", "c", "main"])
+        self.assertNotRegex(text, r"\b(import|export)\b")
+
+    def test_what_a_module_does_not_export_is_refused(self):
+        self.refused(r".*main\.js:1: \./a\.js does not export b, c", main_js='import {a, b, c} from "./a.js";\n', a_js="export const a = 1;\nconst b = 2;\n")
+
+    def test_a_name_of_two_modules_is_refused(self):
+        for line in ("const a = 1;", "export class a {}", "async function a() {}", "let a;"):
+            with self.subTest(line):
+                self.refused(r".*main\.js:2: a stands at .*a\.js:1, too", main_js=f'import {{b}} from "./a.js";\n{line}\n', a_js="function a() {}\nexport const b = 1;\n")
+
+    def test_other_forms_of_import_and_export_are_refused(self):
+        for line in ('import a from "./a.js";', 'import * as a from "./a.js";', 'import {', 'import {a} from "./a.js"'):
+            with self.subTest(line):
+                self.refused(r'.*main\.js:1: write import \{name\} from "\./file\.js"; on one line', main_js=line + "\n", a_js="export const a = 1;\n")
+        self.refused(r".*main\.js:1: \./a\.js does not export a as b", main_js='import {a as b} from "./a.js";\n', a_js="export const a = 1;\n")
+        for line in ("export default 1;", "export {a};", 'export * from "./a.js";'):
+            with self.subTest(line):
+                self.refused(r".*main\.js:2: export a declaration", main_js=f"const a = 1;\n{line}\n")
+
+    def test_a_literal_of_c_plus_plus(self):
+        self.assertEqual(self.bundle(page_html="<p>x</p>\n", output="out.inc").returncode, 0)
+        self.assertEqual((self.dir / "out.inc").read_text(encoding="utf-8"), 'R"page(<p>x</p>\n)page"\n')
+        self.refused(r'page\.html: \)page" would end the literal', output="end.inc", main_js="f(')page\"');\n")
+
+
+class Elements(html.parser.HTMLParser):
+    def __init__(self, text):
+        super().__init__()
+        self.all = []  # [name, attributes, text]
+        self.feed(text)
+
+    def handle_starttag(self, tag, attributes):
+        self.all.append([tag, dict(attributes), ""])
+
+    def handle_data(self, data):
+        if self.all:
+            self.all[-1][2] += data
+
+
+class Pages(ToolTest):
+    """Pages as they are served: small, complete, and without what their policy would have to allow."""
+
+    def look(self, at):
+        """Calls `at` with each page's text and elements."""
+        self.assertTrue(PAGES)
+        for file in PAGES:
+            with self.subTest(file.name):
+                text = re.search(r'R"page\((.*)\)page"', file.read_text(encoding="utf-8"), re.S)[1]
+                at(text, Elements(text).all)
+
+    def test_a_page_is_small(self):
+        self.look(lambda text, _: self.assertLessEqual(len(text.encode()), LARGEST))
+
+    def test_nothing_comes_from_elsewhere(self):
+        def at(text, elements):
+            self.assertEqual([found[:80] for found in ELSEWHERE.findall(text)], [])
+            for tag, attributes, _ in elements:
+                for name in ("src", "href", "srcset", "action", "data", "poster"):
+                    self.assertRegex(attributes.get(name, "#"), "^(#|data:)", tag)
+        self.look(at)
+
+    def test_styles_and_scripts_have_the_nonce_and_nothing_stands_in_attributes(self):
+        def at(_, elements):
+            for tag, attributes, body in elements:
+                if tag in ("style", "script"):
+                    self.assertEqual(attributes, {"nonce": "NONCE"})
+                self.assertEqual([a for a in attributes if a == "style" or a.startswith("on")], [], (tag, attributes))
+                if tag == "script":
+                    self.assertEqual([found[:80] for found in UNSAFE.findall(body)], [])
+        self.look(at)
+
+    @unittest.skipIf(NODE is None, "Node.js is not there (install nodejs)")
+    def test_scripts_parse(self):
+        def at(_, elements):
+            code = "".join(body for tag, _, body in elements if tag == "script")
+            self.assertTrue(code)
+            result = subprocess.run([NODE, "--check", self.write("page.cjs", code)], capture_output=True, text=True, check=False)
+            self.assertEqual(result.returncode, 0, result.stderr)
+        self.look(at)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,115 @@
+# SPDX-License-Identifier: MIT
+"""The studio's modules that stand on what a browser alone has: its database and its sound.
+Usage: test_modules_in_browser.py TOOL SOURCE_ROOT"""
+import functools
+import http.server
+import pathlib
+import sys
+import threading
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "cli"))
+del sys.argv[3:]
+from browser import BrowserTest  # noqa: E402
+from harness import ROOT, ToolTest, main  # noqa: E402
+
+
+class Files(http.server.SimpleHTTPRequestHandler):
+    """The modules. With ?sandbox a page may not have anything of its origin, as where a user forbids it."""
+
+    def end_headers(self):
+        self.send_header("Access-Control-Allow-Origin", "*")
+        if self.path.endswith("?sandbox"):
+            self.send_header("Content-Security-Policy", "sandbox allow-scripts")
+        super().end_headers()
+
+    def log_message(self, *_):
+        pass
+
+
+class ModulesTest(BrowserTest, ToolTest):
+    def setUp(self):
+        super().setUp()
+        server = http.server.ThreadingHTTPServer(("127.0.0.1", 0), functools.partial(Files, directory=ROOT / "src/server/page"))
+        self.addCleanup(server.server_close)
+        self.addCleanup(server.shutdown)
+        threading.Thread(target=server.serve_forever).start()
+        self.address = f"http://127.0.0.1:{server.server_port}"
+
+    def open(self, more=""):
+        p = self.page(f"{self.address}/qr.js{more}")
+        p.until("location.pathname === '/qr.js' && document.readyState === 'complete'")
+        return p
+
+    @staticmethod
+    def call(p, module, body):
+        """Runs the body of an asynchronous function that has the module as `m`."""
+        return p.value(f"(async () => {{ const m = await import('{module}'); {body} }})()")
+
+
+class Storage(ModulesTest):
+    OPENED = "const s = await m.open_storage('takes');"
+
+    def storage(self, p, body):
+        return self.call(p, f"{self.address}/storage.js", self.OPENED + body)
+
+    def test_thousands_of_takes_outlast_the_page_and_load_at_once(self):
+        p = self.open()
+        self.assertTrue(self.storage(p, """
+            const points = Array.from({length: 200}, (_, i) => [i / 100, i, i, 1]);
+            await Promise.all(Array.from({length: 2000}, (_, i) => s.save({id: i, name: `take ${i}`, points})));
+            await s.save({id: 7, name: "again"});
+            await s.remove(8);
+            await s.set("current", 7);
+            return s.lasting; """))
+        p.reload()
+        count, ids, again, current, asked = self.storage(p, """
+            let asked = 0;
+            const get_all = IDBObjectStore.prototype.getAll;
+            IDBObjectStore.prototype.getAll = function () { ++asked; return get_all.call(this); };
+            const {takes, current} = await s.load();
+            return [takes.length, takes.slice(0, 9).map(t => t.id), takes[7], current, asked]; """)
+        self.assertEqual((count, ids, again, current, asked), (1999, [0, 1, 2, 3, 4, 5, 6, 7, 9], {"id": 7, "name": "again"}, 7, 1))
+
+    def test_a_full_disk_rejects_and_loses_nothing(self):
+        p = self.open()
+        # First: the browser remembers for a while how much there was.
+        p.call("Storage.overrideQuotaForOrigin", origin=self.address, quotaSize=100_000)
+        self.storage(p, "await s.save({id: 1, name: 'kept'});")
+        self.assertEqual(self.storage(p, """
+            try { await s.save({id: 2, bytes: new Uint8Array(5e6).map(() => 256 * Math.random())}); } catch (e) { return e.name; } """), "QuotaExceededError")
+        self.assertEqual(self.storage(p, "return (await s.load()).takes;"), [{"id": 1, "name": "kept"}])
+
+    def test_a_database_that_is_deleted_meanwhile_rejects(self):
+        p = self.open()
+        self.assertEqual(self.storage(p, """
+            await new Promise((done, failed) => Object.assign(indexedDB.deleteDatabase("takes"), {onsuccess: done, onerror: failed, onblocked: failed}));
+            try { await s.save({id: 1}); } catch (e) { return e.name; } """), "InvalidStateError")
+
+    def test_where_the_browser_keeps_nothing_the_storage_says_so(self):
+        p = self.open("?sandbox")
+        self.assertEqual(self.storage(p, "await s.save({id: 1}); return [s.lasting, (await s.load()).takes];"), [False, [{"id": 1}]])
+
+
+class Sound(ModulesTest):
+    def test_a_burst_is_heard_on_its_side_and_in_its_time(self):
+        # Two bursts, of the left tactor and the right; the largest sample of each 10 ms on both sides, from where the plan begins.
+        left, right = self.call(self.open(), "/loudspeaker.js", """
+            const context = new OfflineAudioContext(2, 48000, 48000);
+            Object.assign(context, {resume: async () => {}, close() {}});
+            const sound = m.start_loudspeaker({tactors: 2, places: [{x_mm: 0, y_mm: 0}, {x_mm: 40, y_mm: 0}], total_s: 0.3,
+                strokes: [{first: 0, count: 2, continuous: false}], onsets: [0, 0.2], durations: [0.1, 0.1], amplitudes: [1, 0, 0, 0.5]}, 0, {context});
+            const heard = await context.startRendering();
+            sound.stop();
+            return [0, 1].map(side => Array.from({length: 40}, (_, i) =>
+                Math.max(...heard.getChannelData(side).slice(2400 + 480 * i, 2400 + 480 * (i + 1)).map(Math.abs)))); """)
+        for side, burst, level in ((left, range(0, 10), 0.25), (right, range(20, 30), 0.125)):
+            for i, sample in enumerate(side):
+                with self.subTest(i=i, level=level):
+                    if i in burst:
+                        self.assertAlmostEqual(sample, level, delta=0.02 if i not in (burst[0], burst[-1]) else level / 2)
+                    else:
+                        self.assertLess(sample, 1e-4)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: MIT
+// Imports and exports among the other requests of the service.
+#include <string>
+
+#include <doctest/doctest.h>
+
+#include "net/base64.hpp"
+#include "server/files/file_name.hpp"
+#include "server/files/tool_line.hpp"
+#include "service_rig.hpp"
+
+namespace service_files_test {
+
+using namespace tactor;
+using namespace tactor::test;
+
+namespace {
+
+json ask_sound(double seconds)
+{
+    return {{"path", "M 0 0 L 40 40"}, {"as", "wav"}, {"options", {{"duration", seconds}}}};
+}
+
+json export_request(int id, double seconds)
+{
+    return {{"jsonrpc", "2.0"}, {"id", id}, {"method", "export"}, {"params", ask_sound(seconds)}};
+}
+
+} // namespace
+
+TEST_CASE("files are made without a device, and in batches")
+{
+    service_rig rig;
+    rig.start();
+    const auto c = rig.client();
+    CHECK(rig.code(c, "play", {{"path", "M 0 0 L 40 40"}}) == net::code_no_stream);
+    const json sound = rig.ok(c, "export", ask_sound(0.5));
+    const auto bytes = net::read_base64(sound["base64"].get<std::string>());
+    REQUIRE(bytes);
+    CHECK(bytes->starts_with("RIFF"));
+    CHECK(rig.ok(c, "import", {{"stroke", "circle"}})["strokes"].size() == 1);
+    rig.send(c, json::array({export_request(71, 0.1), export_request(72, 10.0), export_request(73, 0.1)}));
+    rig.until([&] { return !c.box->all.empty() && c.box->all.back().is_array(); });
+    const json& all = c.box->all.back();
+    REQUIRE(all.size() == 3);
+    for (std::size_t i = 0; i < 3; ++i) {
+        CHECK(all[i]["id"] == 71 + static_cast<int>(i));
+        CHECK(all[i].contains("result"));
+    }
+}
+
+TEST_CASE("a file that other answers leave no room for is refused")
+{
+    service_rig rig;
+    rig.plug();
+    rig.start();
+    const auto c = rig.client();
+    c.box->left = 100'000;
+    const json r = rig.call(c, "export", ask_sound(1.0));
+    CHECK(r["error"]["code"] == net::code_limit);
+    CHECK(r["error"]["data"]["what"] == "max_all_unread_bytes");
+    CHECK(rig.code(c, "export", {{"path", "M 0 0 L 40 40"}, {"as", "toml"}}) == 0);
+}
+
+TEST_CASE("files for a client that left are not made, and its strokes are played")
+{
+    service_rig rig;
+    rig.plug();
+    rig.start();
+    const auto a = rig.client();
+    const auto b = rig.client();
+    rig.ok(b, "subscribe", {{"events", {"strokes"}}});
+    for (int i = 0; i < 30; ++i)
+        rig.send(a, export_request(i, 20.0));
+    rig.send(a, {{"jsonrpc", "2.0"},
+                 {"id", 99},
+                 {"method", "play"},
+                 {"params", {{"path", "M 0 0 L 40 40"}, {"options", {{"duration", 0.1}}}}}});
+    rig.all->disconnect(a.number);
+    rig.find_end(b, 1);
+    CHECK(a.box->all.empty());
+}
+
+TEST_CASE("the end of the server refuses files that wait")
+{
+    service_rig rig;
+    rig.plug();
+    rig.start();
+    const auto c = rig.client();
+    for (int i = 1; i <= 10; ++i)
+        rig.send(c, export_request(i, 20.0));
+    rig.close();
+    rig.until([&] { return c.box->reply(10).has_value(); });
+    CHECK((*c.box->reply(10))["error"]["code"] == net::code_no_stream);
+}
+
+TEST_CASE("names of files are letters, digits, blanks, - and _")
+{
+    using server::is_file_name;
+    using server::make_file_name;
+    for (const char* name : {"a", "a b_c-1", "Kr\u00e4ftig \u7dda", "0"}) {
+        CHECK(is_file_name(name));
+        CHECK(make_file_name(name) == name);
+    }
+    for (const char* name :
+         {"", "-a", " a", "a ", "a/b", "..", "a.b", "a\nb", "a\u202eb", "a\u00a0b", "a\xff", "a\xc3"}) {
+        CAPTURE(name);
+        CHECK_FALSE(is_file_name(name));
+        CHECK(is_file_name(make_file_name(name)));
+    }
+    CHECK(make_file_name("../../etc/passwd") == "______etc_passwd");
+    CHECK(make_file_name("") == "stroke");
+    CHECK(make_file_name(" ") == "_");
+    CHECK(make_file_name(std::string(99, 'x') + "\u7dda") == std::string(99, 'x'));
+}
+
+TEST_CASE("words are quoted for a shell")
+{
+    CHECK(server::quote_word("noise:50-300") == "noise:50-300");
+    CHECK(server::quote_word("two words") == "'two words'");
+    CHECK(server::quote_word("it's $HOME") == "'it'\\''s $HOME'");
+    CHECK(server::quote_word("") == "''");
+}
+
+} // namespace service_files_test
