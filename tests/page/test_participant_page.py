@@ -13,7 +13,9 @@ from harness import main  # noqa: E402
 from pages import Session  # noqa: E402
 from test_experiment_person import DESK, SHORT  # noqa: E402
 
-THEMES = {"light": [], "dark": [{"name": "prefers-color-scheme", "value": "dark"}]}
+# Without the transitions between themes, which pictures would catch.
+THEMES = {theme: [{"name": "prefers-color-scheme", "value": theme}, {"name": "prefers-reduced-motion", "value": "reduce"}]
+          for theme in ("light", "dark")}
 SIZES = ((1440, 900), (820, 1180), (390, 844), (844, 390))
 PHONE = SIZES[2]
 FRAME_S = 1 / 60
