@@ -193,6 +193,7 @@ web_reply make_page(std::string_view document, std::string_view host)
         text.replace(at, place_of_nonce.size(), nonce);
     return {200, "text/html; charset=utf-8", std::move(text),
             fmt::format("default-src 'none'; script-src 'nonce-{0}'; style-src 'nonce-{0}'; img-src data:; "
+                        "manifest-src blob:; "
                         "connect-src 'self' ws://{1}; frame-ancestors 'none'; base-uri 'none'; "
                         "form-action 'none'",
                         nonce, host)};

@@ -67,8 +67,8 @@ class Page:
         self.target = browser.call("Target.createTarget", url="about:blank")["targetId"]
         self.session = browser.call("Target.attachToTarget", targetId=self.target, flatten=True)["sessionId"]
         self.call("Emulation.setDeviceMetricsOverride", width=size[0], height=size[1], deviceScaleFactor=1, mobile=False)
-        self.call("Network.enable")
-        self.call("Page.enable")
+        for domain in ("Network", "Page", "Runtime", "Log"):
+            self.call(f"{domain}.enable")
         self.call("Page.navigate", url=address)
 
     def call(self, method, **params):
@@ -98,6 +98,14 @@ class Page:
         return [e["params"]["request"]["url"] for e in self.browser.events
                 if e.get("sessionId") == self.session and e.get("method") == "Network.requestWillBeSent"]
 
+    def faults(self):
+        """Returns what the page threw and what the browser holds against it (its policy, say), but not refused connections."""
+        self.value("0")
+        own = [e for e in self.browser.events if e.get("sessionId") == self.session]
+        entries = [e["params"]["entry"] for e in own if e.get("method") == "Log.entryAdded"]
+        return [e["params"]["exceptionDetails"] for e in own if e.get("method") == "Runtime.exceptionThrown"] + [
+            e for e in entries if e["level"] == "error" and e["source"] != "network"]
+
     def middle(self, selector):
         return self.value(f"""(() => {{ const r = document.querySelector({json.dumps(selector)}).getBoundingClientRect();
             return [r.x + r.width / 2, r.y + r.height / 2]; }})()""")
@@ -110,6 +118,11 @@ class Page:
         x, y = self.middle(selector)
         self.mouse("mousePressed", x, y)
         self.mouse("mouseReleased", x, y)
+
+    def move_to(self, *places):
+        """Moves the mouse with its button down."""
+        for place in places:
+            self.mouse("mouseMoved", *place)
 
     def touch(self, kind, *points):
         self.call("Input.dispatchTouchEvent", type=kind, touchPoints=[{"x": x, "y": y, "id": i} for i, x, y in points])

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 import assert from "node:assert/strict";
 import {test} from "node:test";
-import {largest_sum, plan_ramps, ramps_by_slice, slice_gains, start_loudspeaker} from "../../src/server/page/loudspeaker.js";
+import {largest_sum, plan_ramps, ramps_by_slice, slice_gains, start_loudspeaker} from "../../src/server/page/service/loudspeaker.js";
 
 // Makes a plan for tactors 20 mm apart from strokes of rows [onset, duration, amplitude of each tactor].
 function make_plan(count, ...strokes) {

@@ -2,7 +2,7 @@
 import assert from "node:assert/strict";
 import {createHash} from "node:crypto";
 import {test} from "node:test";
-import {make_qr} from "../../src/server/page/qr.js";
+import {make_qr} from "../../src/server/page/takes/qr.js";
 
 const TEXT = "http://192.168.1.7:8080/#token=" + "0123456789abcdef".repeat(12);
 // Of each version: bytes, mask, and the SHA-256 of the rows that segno makes (without its padding fault of 1.4.1) and qrencode, too.

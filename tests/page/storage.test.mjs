@@ -2,7 +2,7 @@
 // Storage without IndexedDB, which Node.js does not have; test_storage.py tries it in a browser.
 import assert from "node:assert/strict";
 import {test} from "node:test";
-import {open_storage} from "../../src/server/page/storage.js";
+import {open_storage} from "../../src/server/page/takes/storage.js";
 
 test("without a database, takes are kept in memory, and the storage says so", async () => {
   const refusing = {open: () => { throw new Error("SecurityError"); }};

@@ -19,15 +19,16 @@ ELSEWHERE = re.compile(r"\b(?:https?|wss?|ftp)://(?!www\.w3\.org/)[\w\[.-]+|(?:s
 # Code for which a policy would have to allow 'unsafe-inline' or 'unsafe-eval', in markup that a script makes, too.
 UNSAFE = re.compile(r"""<\w[^<>]*\s(?:style|on\w+)=["'$\\]|setAttribute\(["'](?:style|on\w+)["']|\beval\(|\bnew Function\(""")
 NODE = shutil.which("node")
+ESBUILD = shutil.which("esbuild")
 
 
 class Joining(ToolTest):
-    def bundle(self, output="out.html", **files):
-        """Writes files, by names without their extensions, and bundles page.html; returns what became of the process."""
+    def bundle(self, output="out.html", esbuild=(), **files):
+        """Writes files (page_html is page.html) and bundles page.html; returns what became of the process."""
         for name, text in files.items():
             base, _, kind = name.rpartition("_")
             self.write(f"{base}.{kind}", text)
-        return subprocess.run([sys.executable, TOOL, "page.html", output, "out.d"], cwd=self.dir, capture_output=True, text=True, check=False)
+        return subprocess.run([sys.executable, TOOL, "page.html", output, "out.d", *esbuild], cwd=self.dir, capture_output=True, text=True, check=False)
 
     def joined(self, **files):
         result = self.bundle(**files)
@@ -59,6 +60,22 @@ class Joining(ToolTest):
                            d_js="export async function d() {}\nexport function* e() {}\n")
         self.assertEqual(re.findall(r"(?m)^(?:async function|function\*|const|let|class) (\w+)", text), ["d", "e", "a", "b", "c", "main"])
         self.assertNotRegex(text, r"\b(import|export)\b")
+
+    def test_a_module_that_is_imported_for_what_it_does(self):
+        text = self.joined(page_html='<script src="main.js"></script>\n', main_js='import "./a.js";\nimport "./a.js";\nlet main;\n', a_js="f();\n")
+        self.assertIn('"use strict";\nf();\nlet main;\n</script>', text)
+
+    @unittest.skipIf(ESBUILD is None, "esbuild is not there (install esbuild)")
+    def test_esbuild_makes_it_smaller_and_all_is_checked_nevertheless(self):
+        page = {"page_html": '<link rel="stylesheet" href="a.css">\n<script src="main.js"></script>\n', "a_css": "p {\n  color: red; }\n",
+                "main_js": 'import {twice} from "./a.js";\nlog(twice(1));\n', "a_js": "export function twice(number) {\n  return 2 * number;\n}\n"}
+        text = self.joined(**page)
+        smaller = self.joined(esbuild=[ESBUILD], **page)
+        self.assertLess(len(smaller), len(text))
+        self.assertIn('<style nonce="NONCE">\np{color:red}\n</style>', smaller)
+        self.assertRegex(smaller, r'(?s)<script nonce="NONCE">\n"use strict";\n.*log\(.*</script>')
+        (self.dir / "out.html").unlink()
+        self.refused(r".*main\.js:1: \./a\.js does not export twice", esbuild=[ESBUILD], **page | {"a_js": "function twice() {}\n"})
 
     def test_what_a_module_does_not_export_is_refused(self):
         self.refused(r".*main\.js:1: \./a\.js does not export b, c", main_js='import {a, b, c} from "./a.js";\n', a_js="export const a = 1;\nconst b = 2;\n")
@@ -108,6 +125,7 @@ class Pages(ToolTest):
                 text = re.search(r'R"page\((.*)\)page"', file.read_text(encoding="utf-8"), re.S)[1]
                 at(text, Elements(text).all)
 
+    @unittest.skipIf(ESBUILD is None, "esbuild is not there (install esbuild)")
     def test_a_page_is_small(self):
         self.look(lambda text, _: self.assertLessEqual(len(text.encode()), LARGEST))
 

@@ -36,8 +36,8 @@ class ModulesTest(BrowserTest, ToolTest):
         self.address = f"http://127.0.0.1:{server.server_port}"
 
     def open(self, more=""):
-        p = self.page(f"{self.address}/qr.js{more}")
-        p.until("location.pathname === '/qr.js' && document.readyState === 'complete'")
+        p = self.page(f"{self.address}/takes/qr.js{more}")
+        p.until("location.pathname === '/takes/qr.js' && document.readyState === 'complete'")
         return p
 
     @staticmethod
@@ -50,7 +50,7 @@ class Storage(ModulesTest):
     OPENED = "const s = await m.open_storage('takes');"
 
     def storage(self, p, body):
-        return self.call(p, f"{self.address}/storage.js", self.OPENED + body)
+        return self.call(p, f"{self.address}/takes/storage.js", self.OPENED + body)
 
     def test_thousands_of_takes_outlast_the_page_and_load_at_once(self):
         p = self.open()
@@ -93,7 +93,7 @@ class Storage(ModulesTest):
 class Sound(ModulesTest):
     def test_a_burst_is_heard_on_its_side_and_in_its_time(self):
         # Two bursts, of the left tactor and the right; the largest sample of each 10 ms on both sides, from where the plan begins.
-        left, right = self.call(self.open(), "/loudspeaker.js", """
+        left, right = self.call(self.open(), "/service/loudspeaker.js", """
             const context = new OfflineAudioContext(2, 48000, 48000);
             Object.assign(context, {resume: async () => {}, close() {}});
             const sound = m.start_loudspeaker({tactors: 2, places: [{x_mm: 0, y_mm: 0}, {x_mm: 40, y_mm: 0}], total_s: 0.3,

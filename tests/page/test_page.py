@@ -1,188 +1,255 @@
 # SPDX-License-Identifier: MIT
-"""The page of `tactor serve --http` in a real Chromium: drawing, stopping, playing, permissions, and its messages when
-something is missing. Usage: test_page.py TOOL SOURCE_ROOT [FOLDER_FOR_PICTURES]"""
+"""The studio in a real Chromium: drawing, feeling, playing and stopping, with mouse, fingers and keys; who may ask.
+Usage: test_page.py TOOL SOURCE_ROOT"""
 import http.server
 import json
-import pathlib
 import sys
 import threading
 
-PICTURES = pathlib.Path(sys.argv.pop(3)).resolve() if len(sys.argv) > 3 else None
-sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "cli"))
-from browser import BrowserTest  # noqa: E402
-from harness import ToolTest, main  # noqa: E402
-from serving import Server  # noqa: E402
+del sys.argv[3:]
+from studio import PHONE, SIZES, StudioTest  # noqa: E402
+from harness import main  # noqa: E402
 
-DARK = [{"name": "prefers-color-scheme", "value": "dark"}]
+LONG = "[[stroke]]\npath = 'M 0 0 L 40 40'\nduration_s = 60.0\n"
+# Where space is written, and does not stop.
+TEXTS = "input:is([type=text], [type=password], :not([type]))"
 
 
-class DrawingPage(BrowserTest, ToolTest):
-    def serve(self, *args, **more):
-        s = Server(self, "--http", "0", *args, **more)
-        if s.where is None:
-            self.fail(s.errors)
-        return s
-
-    def ready(self, s, **more):
-        p = self.page(s.where["http"], **more)
-        p.until("document.querySelector('#state').textContent.startsWith('running')")
-        watcher = s.client()
-        watcher.ok("subscribe", events=["strokes"])
-        return p, watcher
-
-    def place(self, p, part_x, part_y):
-        """Returns a place on the field, by parts of the distance between the first tactor and the last."""
-        a, b = p.middle(".ring"), p.value("(() => { const r = [...document.querySelectorAll('.ring')].at(-1)"
-                                          ".getBoundingClientRect(); return [r.x + r.width / 2, r.y + r.height / 2]; })()")
-        return a[0] + part_x * (b[0] - a[0]), a[1] + part_y * (b[1] - a[1])
-
-    @staticmethod
-    def next_stroke(watcher, state):
-        return watcher.notification(lambda m: m["method"] == "stroke" and m["params"]["state"] == state)["params"]
-
-    def says(self, p, text):
-        p.until(f"document.querySelector('#says').textContent.includes({json.dumps(text)})")
-
+class Drawing(StudioTest):
     def test_the_mouse_draws_and_the_drawing_plays_again(self):
         p, watcher = self.ready(self.serve())
-        self.assertEqual(p.value("document.querySelectorAll('.ring').length"), 9)
-        self.assertTrue(p.value("document.querySelector('#again').disabled"))
-        p.mouse("mousePressed", *self.place(p, 0.1, 0.1))
-        first = self.next_stroke(watcher, "started")["stroke"]
-        for i in range(1, 20):
-            p.mouse("mouseMoved", *self.place(p, 0.1 + i * 0.04, 0.5))
-        # The tactors move in the picture as they do on the skin.
-        p.until("[...document.querySelectorAll('.beat')].some(b => Number(b.getAttribute('r')) > 0)")
-        p.mouse("mouseMoved", *self.place(p, 1.1, 1.1))  # beside the array
-        p.mouse("mouseReleased", *self.place(p, 0.9, 0.9))
-        self.assertEqual(self.next_stroke(watcher, "finished")["stroke"], first)
-        p.until("!document.querySelector('#again').disabled")
-        self.assertEqual(p.value("drawn.length"), 1)
-        self.assertGreater(p.value("drawn[0].points.length"), 5)
-        p.click("#again")
-        self.assertGreater(self.next_stroke(watcher, "started")["stroke"], first)
+        self.assertTrue(p.value("document.querySelector('#play').disabled"))
+        last = self.press(p, [4, 4])
+        p.move_to(*self.at(p, *self.way([4, 5], [36, 20])))
+        first = self.next_stroke(watcher, "started")
+        # It is felt, shown and predicted while it is drawn.
+        p.until("tactor.state.drawing && tactor.state.dbfs.some(v => v !== null)")
+        p.until("tactor.state.drawing && tactor.state.plan?.felt.length && document.querySelector('#predicted .tile')")
+        p.move_to(*self.at(p, [50, 50]))  # beside the array
+        p.mouse("mouseReleased", *last)
+        self.assertEqual(self.next_stroke(watcher, "finished"), first)
+        self.toast(p, "Kept as")
+        self.planned(p)
+        drawn = self.take(p)
+        self.assertEqual(len(drawn["strokes"]), 1)
+        self.assertGreater(len(drawn["strokes"][0]["timed"]), 5)
+        p.until("!document.querySelector('#play').disabled")
+        p.click("#play")
+        self.assertGreater(self.next_stroke(watcher, "started"), first)
+        p.until("tactor.state.playing && tactor.state.at_s > 0 && document.querySelector('#play').textContent === 'Playing'")
         self.next_stroke(watcher, "finished")
-        self.assertEqual(p.value("document.querySelector('#says').className"), "")
-        self.assertEqual(self.saved(p), "drawn.csv")
-        self.assertEqual(self.run_tool("plan", "drawn.csv").returncode, 0)
+        p.until("!tactor.state.playing && document.querySelector('#play').textContent === 'Play'")
+        self.assertTrue(p.value("document.querySelector('#banner').hidden"))
 
-    def saved(self, p):
-        """Returns the name of the file that the page offers, once it exists."""
-        name, text = p.value("""(async () => { let blob, name; const make = URL.createObjectURL;
-            URL.createObjectURL = b => { blob = b; return make(b); };
-            HTMLAnchorElement.prototype.click = function () { name = this.download; };
-            document.querySelector('#save').click(); return [name, await blob.text()]; })()""")
-        self.write(name, text)
-        return name
-
-    def test_each_finger_is_a_stroke(self):
-        p, watcher = self.ready(self.serve(), size=(390, 844))
-        p.touch("touchStart", (1, *self.place(p, 0.1, 0.1)), (2, *self.place(p, 0.9, 0.1)))
-        both = {self.next_stroke(watcher, "started")["stroke"] for _ in range(2)}
-        self.assertEqual(len(both), 2)
-        p.touch("touchMove", (1, *self.place(p, 0.1, 0.9)), (2, *self.place(p, 0.9, 0.9)))
+    def test_each_finger_is_a_stroke_of_one_take(self):
+        p, watcher = self.ready(self.serve(), size=PHONE, fingers=True)
+        rows = (5, 20, 35)
+        self.fingers(p, "touchStart", *([5, y] for y in rows))
+        for x in range(8, 36, 3):
+            self.fingers(p, "touchMove", *([x, y] for y in rows))
+        all_three = {self.next_stroke(watcher, "started") for _ in rows}
+        self.assertEqual(len(all_three), 3)
         p.touch("touchEnd")
-        self.assertEqual({self.next_stroke(watcher, "finished")["stroke"] for _ in range(2)}, both)
-        # And one recording, which plays and is saved as it was drawn.
-        p.until("!document.querySelector('#again').disabled")
-        self.assertEqual(p.value("drawn.length"), 2)
-        p.click("#again")
-        again = {self.next_stroke(watcher, "started")["stroke"] for _ in range(2)}
-        self.assertEqual({self.next_stroke(watcher, "finished")["stroke"] for _ in range(2)}, again)
-        self.assertFalse(again & both)
-        self.assertEqual(self.saved(p), "drawn.toml")
-        result = self.run_tool("plan", "drawn.toml", "--algorithm", "continuous", "--format", "json")
-        self.assertEqual(result.returncode, 0, result.stderr)
-        self.assertEqual([s["stroke"]["name"] for s in json.loads(result.stdout)["plans"]], ["finger 1", "finger 2"])
+        self.assertEqual({self.next_stroke(watcher, "finished") for _ in rows}, all_three)
+        p.until("tactor.state.takes.length === 1")
+        self.assertEqual([s["name"] for s in self.take(p)["strokes"]], ["finger 1", "finger 2", "finger 3"])
+        p.until("!document.querySelector('#play').disabled")
+        p.click("#play")
 
-    def test_fingers_that_touch_in_turn_are_one_recording_while_one_touches(self):
-        p, watcher = self.ready(self.serve(), size=(390, 844))
-        p.touch("touchStart", (1, *self.place(p, 0.1, 0.1)))
+        again = {self.next_stroke(watcher, "started") for _ in rows}
+        self.assertEqual({self.next_stroke(watcher, "finished") for _ in rows}, again)
+        self.assertFalse(again & all_three)
+
+    def test_fingers_that_touch_in_turn_are_one_take_while_one_touches(self):
+        p, watcher = self.ready(self.serve(), size=PHONE, fingers=True)
+        self.fingers(p, "touchStart", [5, 5])
+        self.fingers(p, "touchMove", [5, 10])
         self.next_stroke(watcher, "started")
-        p.touch("touchStart", (1, *self.place(p, 0.1, 0.1)), (2, *self.place(p, 0.9, 0.1)))
+        self.fingers(p, "touchStart", [5, 10], [35, 5])
+        self.fingers(p, "touchMove", [5, 35], [35, 35])
         self.next_stroke(watcher, "started")
-        p.touch("touchMove", (1, *self.place(p, 0.1, 0.9)), (2, *self.place(p, 0.9, 0.9)))
         p.touch("touchEnd")
-        p.until("!document.querySelector('#again').disabled")
-        self.assertEqual(p.value("drawn[0].start_s"), 0)
-        self.assertGreater(p.value("drawn[1].start_s"), 0)
-        # The next drawing replaces it.
-        p.mouse("mousePressed", *self.place(p, 0.5, 0.5))
-        p.mouse("mouseMoved", *self.place(p, 0.6, 0.5))
-        p.mouse("mouseReleased", *self.place(p, 0.6, 0.5))
-        p.until("drawn.length === 1")
+        p.until("tactor.state.takes.length === 1")
+        strokes = self.take(p)["strokes"]
+        self.assertEqual(strokes[0]["start_s"], 0)
+        self.assertGreater(strokes[1]["start_s"], 0)
+        # What is drawn next is a take of its own.
+        self.draw(p, *self.way([10, 20], [30, 20]))
+        self.assertEqual(p.value("tactor.state.takes.map(t => t.strokes.length)"), [1, 2])
 
     def test_a_finger_that_rests_plays_on(self):
         s = self.serve()
         p, watcher = self.ready(s)
-        p.mouse("mousePressed", *self.place(p, 0.5, 0.5))
-        number = self.next_stroke(watcher, "started")["stroke"]
+        last = self.press(p, [20, 20], [22, 20])
+        number = self.next_stroke(watcher, "started")
         # Longer than the service waits for a point, by the stream's clock.
-        began = s.client().ok("status")["stream"]["uptime_s"]
         asker = s.client()
+        began = asker.ok("status")["stream"]["uptime_s"]
         while asker.ok("status")["stream"]["uptime_s"] < began + 0.8:
             pass
         self.assertIn(number, [x["stroke"] for x in asker.ok("status")["strokes"]])
-        p.mouse("mouseReleased", *self.place(p, 0.5, 0.5))
-        self.assertEqual(self.next_stroke(watcher, "finished")["stroke"], number)
+        p.mouse("mouseReleased", *last)
+        self.assertEqual(self.next_stroke(watcher, "finished"), number)
+        # And it rests as long in the take.
+        self.assertGreater(p.until(f"tactor.state.takes.length && {'tactor.state.takes[0].strokes[0].timed.at(-1)[0]'}"), 0.75)
 
-    def test_the_keyboard_draws_and_space_stops(self):
+    def test_with_feel_off_a_drawing_is_silent(self):
+        s = self.serve()
+        p, _ = self.ready(s)
+        p.click("#feel")
+        p.until("document.querySelector('#feel').getAttribute('aria-checked') === 'false'")
+        self.draw(p, *self.way([5, 5], [35, 35]))
+        self.assertEqual(s.client().ok("status")["strokes"], [])
+        self.assertEqual(p.value("tactor.state.takes.length"), 1)
+
+    def test_the_line_tool_and_the_shift_key_draw_straight(self):
+        p, _ = self.ready(self.serve())
+        p.click("[data-tool=line]")
+        self.draw(p, [5, 5], [10, 30], [35, 5])
+        p.click("[data-tool=draw]")
+        p.value("document.querySelector('#field').addEventListener('pointerdown', e => Object.defineProperty(e, 'shiftKey', {value: true}), {capture: true, once: true})")
+        self.draw(p, [5, 35], [10, 10], [35, 35])
+        for take in p.value("tactor.state.takes"):
+            self.assertEqual({round(y) for _, _, y, _ in take["strokes"][0]["timed"]}, {5} if take["name"] == "Take 1" else {35})
+
+    def test_a_pen_s_pressure_is_its_strength(self):
+        p, _ = self.ready(self.serve())
+        first, *rest = self.at(p, *self.way([5, 20], [35, 20]))
+        pen = {"button": "left", "buttons": 1, "pointerType": "pen"}
+        p.call("Input.dispatchMouseEvent", type="mousePressed", x=first[0], y=first[1], force=0.25, clickCount=1, **pen)
+        for x, y in rest:
+            p.call("Input.dispatchMouseEvent", type="mouseMoved", x=x, y=y, force=0.25, **pen)
+        p.call("Input.dispatchMouseEvent", type="mouseReleased", x=x, y=y, **pen | {"buttons": 0})
+        p.until("tactor.state.takes.length === 1")
+        take = self.take(p)
+        self.assertEqual(take["origin"], "drawn with a pen")
+        self.assertAlmostEqual(take["strokes"][0]["timed"][1][3], 0.25, places=2)
+
+    def test_a_tap_tries_a_tactor_and_a_long_one_shows_its_facts(self):
+        p, watcher = self.ready(self.serve())
+        place = self.at(p, [20, 20])[0]
+        p.mouse("mousePressed", *place)
+        p.mouse("mouseReleased", *place)
+        self.next_stroke(watcher, "started")
+        self.toast(p, "Tactor 4")
+        p.mouse("mousePressed", *place)
+        p.until("document.querySelector('#p-tactor').matches(':popover-open')")
+        p.mouse("mouseReleased", *place)
+        self.assertIn("Channel", p.value("document.querySelector('#p-tactor').innerText"))
+        self.assertEqual(p.value("tactor.state.takes.length"), 0)
+
+    def test_the_field_does_not_move_under_a_finger(self):
+        s = self.serve()
+        p, watcher = self.ready(s, size=PHONE, fingers=True)
+        corners = ([0, 0], [40, 40])
+        before = self.at(p, *corners), p.value("[document.querySelector('#field').width, document.querySelector('#field').height]")
+        last = self.press(p, [5, 5], [10, 10])
+        self.next_stroke(watcher, "started")
+        s.kill()
+        self.banner(p, "No connection")
+        # A message is over the field, and cannot be touched by mistake.
+        self.assertEqual(p.value("getComputedStyle(document.querySelector('#banner')).pointerEvents"), "none")
+        p.value("document.querySelector('#settings').click()")
+        p.call("Emulation.setDeviceMetricsOverride", width=PHONE[0], height=PHONE[1] - 60, deviceScaleFactor=1, mobile=False)  # an address bar
+        p.value("new Promise(requestAnimationFrame).then(() => new Promise(requestAnimationFrame)).then(() => 1)")
+        self.assertEqual((self.at(p, *corners), p.value("[document.querySelector('#field').width, document.querySelector('#field').height]")), before)
+        p.mouse("mouseReleased", *last)
+        p.until("tactor.state.takes.length === 1")
+
+
+class Keys(StudioTest):
+    def test_the_keyboard_draws_plays_and_stops(self):
         p, watcher = self.ready(self.serve())
         p.value("document.querySelector('#field').focus()")
         p.key("Enter")
-        number = self.next_stroke(watcher, "started")["stroke"]
         p.key("ArrowRight")
+        number = self.next_stroke(watcher, "started")
         p.key("ArrowDown", modifiers=8)
+        p.key("ArrowRight")
         p.key("Enter")
-        self.assertEqual(self.next_stroke(watcher, "finished")["stroke"], number)
-        p.click("#play")
-        number = self.next_stroke(watcher, "started")["stroke"]
+        self.assertEqual(self.next_stroke(watcher, "finished"), number)
+        p.until("tactor.state.takes.length === 1")
+        self.assertEqual(self.take(p)["origin"], "drawn with keys")
+        self.planned(p)
+        p.key("KeyL", "l")
+        p.key("KeyP", "p")
+        self.next_stroke(watcher, "started")
         p.key("Space", " ")
-        ended = watcher.await_end(number)
-        self.assertEqual(ended["state"], "cancelled")
-        self.assertNotIn("somebody", p.value("document.querySelector('#says').textContent"))
+        self.says(p, "Stopped")
+        self.assertEqual(p.value("document.querySelector('#state-why').textContent"), " · by you")
+        p.until("!tactor.state.playing")
 
-    def test_space_stops_with_any_focus(self):
-        p, watcher = self.ready(self.serve())
-        for id in ("level", "file", "preset", "play", "field"):
-            p.value("play({path: 'M 0 0 L 40 40'}).then(() => 1)")
-            number = self.next_stroke(watcher, "started")["stroke"]
-            p.value(f"document.querySelector('#{id}').focus()")
-            p.key("Space", " ")
-            self.assertEqual(watcher.await_end(number)["state"], "cancelled", id)
-
-    def test_another_client_stops(self):
+    def test_space_stops_with_any_focus_but_in_a_text(self):
         s = self.serve()
         p, watcher = self.ready(s)
-        p.value("play({path: 'M 0 0 L 40 40'}).then(() => 1)")
-        self.next_stroke(watcher, "started")
-        s.client().ok("stop")
-        self.says(p, "stopped by another client")
+        player = s.client()
+        self.assertGreater(p.value("""(globalThis.all = [...document.querySelectorAll("button, input, summary, [tabindex='0']")]
+            .filter(e => e.checkVisibility() && !e.disabled && !e.matches("%s"))).length""" % TEXTS), 30)
+        for i in range(p.value("all.length")):
+            number = player.ok("play", toml=LONG)["stroke"]
+            watcher.stroke(number, "started")
+            name = p.value(f"(all[{i}].focus(), document.activeElement === all[{i}] && (all[{i}].id || all[{i}].outerHTML.slice(0, 80)))")
+            self.assertTrue(name, p.value(f"all[{i}].isConnected + all[{i}].outerHTML.slice(0, 200)"))
+            p.key("Space", " ")
+            self.assertEqual(watcher.await_end(number)["state"], "cancelled", name)
+        # It did nothing else.
+        self.assertEqual(p.value("[tactor.state.tool, tactor.state.feel, tactor.state.loop, tactor.state.takes.length]"), ["draw", True, False, 0])
+        # In a text it is a space; the button there is the way.
+        p.value("document.querySelector('#p-others').showPopover(), document.querySelector('#own-name-text').focus()")
+        number = player.ok("play", toml=LONG)["stroke"]
+        watcher.stroke(number, "started")
+        p.call("Input.dispatchKeyEvent", type="keyDown", code="Space", key=" ", text=" ")
+        self.assertEqual(p.value("document.querySelector('#own-name-text').value"), " ")
+        self.assertIn(number, [x["stroke"] for x in player.ok("status")["strokes"]])
+        p.click("#stop")
+        self.assertEqual(watcher.await_end(number)["state"], "cancelled")
 
-    def test_files_and_their_errors_are_shown(self):
+    def test_space_stops_what_is_being_drawn(self):
         p, watcher = self.ready(self.serve())
-        upload = """(() => { const d = new DataTransfer(); d.items.add(new File([%s], %s));
-            const f = document.querySelector('#file'); f.files = d.files; f.dispatchEvent(new Event('change')); })()"""
-        p.value(upload % (json.dumps("t_s,x_mm,y_mm\n0,0,0\n0.2,40,40\n"), json.dumps("line.csv")))
-        self.next_stroke(watcher, "started")
-        p.value(upload % (json.dumps("t_s,x_mm,y_mm\n0,zero,0\n"), json.dumps("line.csv")))
-        self.says(p, "zero")
-        p.value(upload % (json.dumps("x"), json.dumps("line.exe")))
-        self.says(p, "ends in .toml")
+        last = self.press(p, [5, 5], [20, 20])
+        number = self.next_stroke(watcher, "started")
+        p.key("Space", " ")
+        self.assertIn(watcher.await_end(number)["state"], ("cancelled", "finished"))
+        p.until("!tactor.state.drawing")
+        # Moving on with the button down does not start it again.
+        p.move_to(*self.at(p, [30, 30], [35, 5]))
+        p.mouse("mouseReleased", *last)
+        self.assertFalse(p.value("tactor.state.drawing"))
 
+
+class Safety(StudioTest):
     def test_no_other_server_is_asked(self):
         s = self.serve()
         p, _ = self.ready(s)
-        self.assertEqual({u for u in p.requests() if u != "data:,"}, {s.where["http"]})
+        own = s.where["http"]
+        self.assertEqual({u for u in p.requests() if not u.startswith(("data:", "about:", "blob:" + own))}, {own})
+
+    def test_a_policy_allows_nothing_that_the_page_does_not_need(self):
+        p, _ = self.ready(self.serve())
+        self.assertEqual(p.value("fetch('http://127.0.0.1:9/').then(() => 'sent', () => 'refused')"), "refused")
+        p.value("document.body.append(Object.assign(document.createElement('script'), {textContent: 'globalThis.injected = 1'}))")
+        self.assertIsNone(p.value("globalThis.injected"))
+        refused = p.faults()
+        self.assertTrue(refused and all("Content Security Policy" in f["text"] for f in refused), refused)
+        p.browser.events.clear()
 
     def test_the_token_is_required(self):
         token = self.write("token", "secret\n")
         token.chmod(0o600)
         s = self.serve(config=f'[serve]\ntoken_file = "{token}"\n')
-        self.says(self.page(s.where["http"]), "token: it is owed")
-        self.says(self.page(s.where["http"] + "#token=guess"), "token: it is wrong")
-        p = self.page(s.where["http"] + "#token=secret")
-        p.until("document.querySelector('#state').textContent.startsWith('running')")
+        p = self.open(s)
+        self.banner(p, "asks for its token")
+        self.says(p, "Locked")
+        p = self.open(s, "#token=guess")
+        self.banner(p, "token is wrong")
+        # There is a field for it.
+        p.click("#token-text")
+        p.call("Input.insertText", text="secret")
+        p.click("#token button")
+        self.says(p, "Running")
+        self.assertTrue(p.until("document.querySelector('#banner').hidden"))
+        p = self.open(s, "#token=secret")
+        self.says(p, "Running")
 
     def test_another_origin_s_page_cannot_connect(self):
         s = self.serve("--tcp", "0")
@@ -212,36 +279,30 @@ class DrawingPage(BrowserTest, ToolTest):
             self.assertEqual(s.client().ok("status")["strokes"], [])
             evil.shutdown()
 
-    def test_a_server_that_goes_and_comes_back(self):
-        s = self.serve()
-        p, _ = self.ready(s)
-        port = s.where["http"].rsplit(":", 1)[1].rstrip("/")
-        s.kill()
-        p.until("document.querySelector('#state').textContent.includes('no connection')")
-        self.assertEqual(p.value("document.querySelector('#state').dataset.bad"), "true")
-        again = Server(self, "--http", port)
-        self.assertIsNotNone(again.where)
-        p.until("document.querySelector('#state').textContent.startsWith('running')")
 
-    def test_a_missing_device_is_shown(self):
-        p = self.page(self.serve(device=("-D", "hw:CARD=NotThere")).where["http"])
-        p.until("document.querySelector('#state').textContent.startsWith('no device')")
+class Screens(StudioTest):
+    CONTROLS = ("[...document.querySelectorAll(\"button, input, summary, [role=slider], [role=radio]\")].filter(e => e.checkVisibility({visibilityProperty: true, contentVisibilityAuto: true})"
+                " && !e.closest('[popover]'))")
 
-    def test_it_fits_all_screens(self):
+    def test_it_fits_all_screens_and_fingers(self):
         s = self.serve()
-        for size in ((1280, 800), (390, 844), (844, 390), (320, 568)):
-            p, _ = self.ready(s, size=size)
-            p.call("Emulation.setEmulatedMedia", features=DARK if size[0] == 844 else [])
-            self.assertLessEqual(p.value("document.documentElement.scrollWidth"), size[0])
-            for selector in ("#stop", "#play", "#field", "#level"):
-                x, y, w, h = p.value(f"(() => {{ const r = document.querySelector('{selector}').getBoundingClientRect();"
-                                     " return [r.x, r.y, r.width, r.height]; })()")
-                self.assertTrue(x >= 0 and y >= 0 and x + w <= size[0] + 0.5, (size, selector, x, y, w, h))
-                self.assertGreaterEqual(h, 44, (size, selector))
-            stop = p.middle("#stop")
-            self.assertTrue(0 <= stop[1] <= size[1], (size, stop))
-            if PICTURES:
-                p.picture(PICTURES / f"page-{size[0]}x{size[1]}.png")
+        for size in (*SIZES, (320, 568), (1280, 800)):
+            with self.subTest(size=size):
+                p, _ = self.ready(s, size=size, fingers=size[0] < 1100)
+                self.assertEqual(p.value("[document.documentElement.scrollWidth, document.documentElement.scrollHeight]"), list(size))
+                boxes = p.value(f"""{self.CONTROLS}.map(e => {{ const r = (e.type === 'range' ? e.parentElement : e).getBoundingClientRect();
+                    return [e.id || e.dataset.tool || e.textContent.trim() || e.getAttribute('aria-label'), r.x, r.y, r.width, r.height]; }})""")
+                for name, x, y, w, h in boxes:
+                    with self.subTest(size=size, name=name):
+                        if name in ("stop", "play", "field", "feel", "draw", "device", "save"):
+                            self.assertTrue(x >= -0.5 and y >= -0.5 and x + w <= size[0] + 0.5 and y + h <= size[1] + 0.5, (x, y, w, h))
+                        if size[0] < 1100:
+                            self.assertTrue(w >= 43.5 and h >= 43.5, (x, y, w, h))
+                # The array is whole, and nothing lies over Stop.
+                for x, y in self.at(p, [0, 0], [40, 40]):
+                    self.assertEqual(p.value(f"document.elementFromPoint({x}, {y}).id"), "field")
+                x, y = p.middle("#stop")
+                self.assertEqual(p.value(f"document.elementFromPoint({x}, {y}).closest('button').id"), "stop")
 
 
 if __name__ == "__main__":

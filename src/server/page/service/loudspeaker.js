@@ -111,7 +111,8 @@ export function slice_gains(plan, ramps, from_s, to_s) {
     const turns = [];   // [time, change of the slope]
     for (const {row, times: [a, b, c, d]} of ramps) {
       const amplitude = plan.amplitudes[row * plan.tactors + tactor];
-      if (amplitude > 0) turns.push([a, amplitude / (b - a)], [b, amplitude / (a - b)], [c, amplitude / (c - d)], [d, amplitude / (d - c)]);
+      if (amplitude > 0) turns.push([a, amplitude / (b - a)], [b, amplitude / (a - b)], [c, amplitude / (c - d)],
+        [d, amplitude / (d - c)]);
     }
     if (!turns.length) return [];
     turns.push([from_s, 0], [to_s, 0]);

@@ -36,6 +36,7 @@ function database_storage(database) {
     const transaction = database.transaction(["takes", "values"], mode);
     const asked = ask(transaction.objectStore("takes"), transaction.objectStore("values"));
     transaction.oncomplete = () => done(asked.map(a => a.result));
+    if (mode === "readwrite") transaction.commit(); // a page that goes away at once has written it nevertheless
     transaction.onabort = () => failed(transaction.error ?? new Error("the browser's storage gave up"));
   });
   return {

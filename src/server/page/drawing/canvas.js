@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: MIT
+// The picture of the array at one moment: over ground and strokes, what is driven and felt.
+import {state, current_take, ceiling_dbfs} from "../state.js";
+import {by_id, colour} from "../dom.js";
+import {interpolate} from "../takes/stroke.js";
+import {array, view, layers, stale, trace, disc, font, to_px} from "./view.js";
+import {draw_ground} from "./ground.js";
+import {draw_ink} from "./ink.js";
+
+const pen = by_id("field").getContext("2d");
+
+// The parts of full amplitude of each tactor at this moment: measured, or planned where nothing is driven.
+export function shares() {
+  const t = array?.places.length ?? 0, out = new Array(t).fill(0);
+  if (state.dbfs.some(v => v !== null)) {
+    state.dbfs.forEach((v, i) => { if (v !== null) out[i] = Math.min(1, 10 ** ((v - ceiling_dbfs()) / 20)); });
+    return out;
+  }
+  const plan = state.plan;
+  if (!plan?.onsets?.length || (state.playing?.felt && !state.playing.waits)) return out;
+  if (state.at_s <= 0 && !state.playing) return out;
+  const level = 10 ** (state.level_db / 20);
+  for (const i of bursts_at(plan, state.at_s)) for (let k = 0; k < t; ++k) out[k] = Math.max(out[k],
+    Math.min(1, plan.amplitudes[i * t + k] * level));
+  return out;
+}
+// Bursts that sound at a moment. Those of one stroke come by onset.
+export function bursts_at(plan, t) {
+  const found = [];
+  for (const s of plan.strokes ?? [{first: 0, count: plan.onsets.length}]) {
+    let low = s.first, high = s.first + s.count;
+    while (low < high) { const mid = (low + high) >> 1; if (plan.onsets[mid] <= t) low = mid + 1; else high = mid; }
+    for (let i = low - 1; i >= s.first && i >= low - 12; --i) if (plan.onsets[i] + plan.durations[i] > t) found.push(i);
+  }
+  return found;
+}
+export function felt_at(plan, t) {
+  const felt = plan?.felt;
+  if (!felt?.length) return [];
+  return (plan.strokes ?? [{felt_first: 0, felt_count: felt.length}]).flatMap(s => {
+    const rows = felt.slice(s.felt_first, s.felt_first + s.felt_count);
+    return rows.length && t >= rows[0][0] && t <= rows.at(-1)[0] + 0.1 ? [interpolate(rows, t)] : [];
+  });
+}
+
+export function draw_frame() {
+  if (!view.width) return;
+  if (stale.ground) { draw_ground(); stale.ground = false; }
+  if (stale.ink) { draw_ink(); stale.ink = false; }
+  pen.setTransform(1, 0, 0, 1, 0, 0);
+  pen.drawImage(layers.ground, 0, 0);
+  if (!array) return;
+  pen.drawImage(layers.ink, 0, 0);
+  pen.setTransform(view.dpr, 0, 0, view.dpr, 0, 0);
+  const now = shares();
+  draw_arms(now);
+  array.places.forEach((q, i) => draw_disc(q, i, now[i]));
+  draw_moment();
+  draw_fingers();
+  draw_others();
+  draw_outside();
+}
+function draw_disc(q, i, share) {
+  const c = to_px(q), r = array.radius * view.scale, p = pen;
+  if (share > 0.001) {
+    disc(p, c, r);
+    p.strokeStyle = colour("felt"); p.lineWidth = 2.5; p.stroke();
+    disc(p, c, r * Math.sqrt(share) * 0.93);
+    p.fillStyle = colour("felt"); p.fill();
+    p.font = font(12, 600);
+    p.textAlign = "center";
+    p.lineWidth = 4;
+    p.strokeStyle = colour("skin");
+    p.fillStyle = colour("felt-ink");
+    const text = `${Math.round(share * 100)} %`;
+    p.strokeText(text, c[0], c[1] + r + 16); p.fillText(text, c[0], c[1] + r + 16);
+  }
+  pen.font = font(Math.max(11, Math.min(16, r * 0.5)), 600);
+  pen.textAlign = "center";
+  pen.textBaseline = "middle";
+  pen.fillStyle = share > 0.06 ? colour("on-felt") : colour("ink");
+  pen.fillText(array.tactors[i].tactor ?? i, c[0], c[1] + 0.5);
+  pen.textBaseline = "alphabetic";
+}
+function draw_arms(now) {
+  if (!state.plan || state.drawing) return;
+  const places = felt_at(state.plan, state.at_s);
+  if (!places.length || (state.at_s <= 0 && !state.playing)) return;
+  pen.strokeStyle = colour("felt");
+  pen.globalAlpha = 0.35;
+  for (const f of places) now.forEach((share, i) => {
+    if (share < 0.01) return;
+    pen.lineWidth = 1 + 7 * share;
+    trace(pen, [[f[1], f[2]], array.places[i]]);
+    pen.stroke();
+  });
+  pen.globalAlpha = 1;
+}
+// Where the target is at the moment: a ring; where it is felt: a dot.
+function draw_moment() {
+  const take = current_take();
+  if (!take || state.drawing || (state.at_s <= 0 && !state.playing)) return;
+  for (const s of take.strokes) {
+    const t = state.at_s - s.start_s;
+    if (t < 0 || t > s.timed.at(-1)[0]) continue;
+    const c = to_px(interpolate(s.timed, t).slice(1));
+    disc(pen, c, 11);
+    pen.strokeStyle = colour("skin"); pen.lineWidth = 5; pen.stroke();
+    pen.strokeStyle = colour("ink"); pen.lineWidth = 2.5; pen.stroke();
+  }
+  for (const f of felt_at(state.plan, state.at_s)) felt_dot(to_px([f[1], f[2]]));
+}
+function felt_dot(c) {
+  disc(pen, c, 7);
+  pen.fillStyle = colour("felt"); pen.fill();
+  pen.strokeStyle = colour("skin"); pen.lineWidth = 2; pen.stroke();
+}
+function draw_fingers() {
+  for (const k of state.drawing?.tracks ?? []) {
+    if (!k.down) continue;
+    const q = k.points.at(-1);
+    felt_dot(to_px([q[1], q[2]]));
+  }
+}
+function draw_others() {
+  for (const [id, t] of state.touches) {
+    if (performance.now() - t.at > 3000) { state.touches.delete(id); continue; }
+    const c = to_px([t.x_mm, t.y_mm]);
+    disc(pen, c, 13);
+    pen.strokeStyle = colour("info"); pen.lineWidth = 3; pen.stroke();
+    const who = state.status?.who?.find(w => w.client === t.client)?.name;
+    if (who) { pen.font = font(12, 600); pen.textAlign = "center"; pen.fillStyle = colour("info");
+      pen.fillText(who, c[0], c[1] - 20); }
+  }
+}
+// A mark where the end of a stroke lies beyond the array.
+function draw_outside() {
+  for (const w of state.outside ?? []) {
+    const [x, y] = to_px(w.place);
+    disc(pen, [x, y], 11);
+    pen.fillStyle = colour("warn-ground"); pen.fill();
+    pen.strokeStyle = colour("warn"); pen.lineWidth = 1.5; pen.stroke();
+    pen.font = font(13, 700); pen.textAlign = "center"; pen.fillStyle = colour("warn");
+    pen.fillText("!", x, y + 4.5);
+  }
+}
+// Whether a frame differs from the one before while nothing was changed.
+export const moves = () => state.playing !== null || state.drawing !== null || state.touches.size > 0
+  || state.dbfs.some(v => v !== null);

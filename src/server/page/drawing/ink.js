@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: MIT
+// Strokes, their bursts, and where they are predicted to be felt.
+import {state, current_take} from "../state.js";
+import {colour, is_dark} from "../dom.js";
+import {array, view, layers, start_layer, trace, disc, font, to_px} from "./view.js";
+import {viridis} from "../../../net/page/viridis.js";
+
+export function draw_ink() {
+  const p = start_layer(layers.ink);
+  if (!array) return;
+  const take = current_take(), plan = state.plan;
+  const drawing = state.drawing;
+  // Tactors are the ground of the lines, which stay above them.
+  array.places.forEach((q, i) => draw_ring(p, q, i));
+  if (plan && (drawing || plan === state.plan)) draw_felt(p, plan);
+  const strokes = drawing ? drawing.before : take?.strokes ?? [];
+  strokes.forEach((s, i) => draw_stroke(p, s, i, i === state.stroke || drawing !== null));
+  drawing?.tracks.forEach(k => {
+    trace(p, k.points.map(q => [q[1], q[2]]));
+    p.strokeStyle = colour("ink");
+    p.lineWidth = 2.5;
+    p.stroke();
+  });
+  if (plan) draw_dots(p, plan);
+  if (!drawing) strokes.forEach((s, i) => draw_marks(p, s, i));
+}
+function draw_ring(p, q, i) {
+  const c = to_px(q), r = array.radius * view.scale;
+  disc(p, c, r);
+  p.fillStyle = colour("skin");
+  p.fill();
+  p.strokeStyle = colour(i === state.hot ? "ink" : "ink3");
+  p.lineWidth = i === state.hot ? 2.5 : 1.5;
+  p.stroke();
+}
+function draw_felt(p, plan) {
+  const felt = plan.felt ?? [];
+  if (!felt.length) return;
+  p.save();
+  p.globalAlpha = is_dark() ? 0.5 : 0.45;
+  p.strokeStyle = colour("felt");
+  p.lineWidth = Math.min(9, Math.max(5, view.scale * 0.8));
+  const parts = plan.strokes?.map(s => felt.slice(s.felt_first, s.felt_first + s.felt_count)) ?? [felt];
+  for (const rows of parts) { trace(p, rows.map(f => [f[1], f[2]])); p.stroke(); }
+  p.restore();
+}
+function draw_stroke(p, s, i, own) {
+  trace(p, s.timed.map(q => [q[1], q[2]]));
+  p.strokeStyle = own ? colour("ink") : colour("ink2");
+  p.lineWidth = own ? 2 : 1.5;
+  p.stroke();
+}
+function draw_dots(p, plan) {
+  if (plan.continuous || !plan.onsets) return;
+  const n = plan.onsets.length, size = Math.min(6, Math.max(2.2, view.scale * 0.55)), many = n > 1200;
+  p.lineWidth = 1;
+  let last = [-1e9, 0];
+  for (let i = 0; i < n; ++i) {
+    const c = to_px([plan.positions[2 * i], plan.positions[2 * i + 1]]);
+    if (many && Math.hypot(c[0] - last[0], c[1] - last[1]) < size) continue;
+    last = c;
+    disc(p, c, size);
+    p.fillStyle = viridis(plan.onsets[i] / (plan.total_s || 1), is_dark());
+    p.fill();
+    p.strokeStyle = is_dark() ? "#eceeef61" : "#17181a61";
+    p.stroke();
+  }
+}
+function draw_marks(p, s, i) {
+  const own = i === state.stroke, first = to_px(s.timed[0].slice(1)), last = to_px(s.timed.at(-1).slice(1));
+  if (own && s.knots && (state.tool === "points" || s.knots.length < 14)) s.knots.forEach((k, n) => draw_knot(p, k,
+    state.tool === "points", n === state.knot));
+  if (!own) return;
+  p.font = font(12, 600);
+  // Names lie on the side of the stroke that is away from its way.
+  label(p, "start", first, s.timed, 0);
+  if (Math.hypot(first[0] - last[0], first[1] - last[1]) > 24) label(p, "end", last, s.timed, s.timed.length - 1);
+}
+function draw_knot(p, k, large, chosen) {
+  const [x, y] = to_px([k.x, k.y]), r = large ? 6.5 : 4;
+  p.beginPath();
+  if (k.corner) p.rect(x - r * 0.9, y - r * 0.9, r * 1.8, r * 1.8); else p.arc(x, y, r, 0, 2 * Math.PI);
+  p.fillStyle = chosen ? colour("ink") : colour("raised");
+  p.fill();
+  p.strokeStyle = colour("ink");
+  p.lineWidth = 2;
+  p.stroke();
+}
+function label(p, text, [x, y], timed, at) {
+  const other = timed[at === 0 ? Math.min(timed.length - 1, 3) : Math.max(0, timed.length - 4)], [ox, oy] = to_px(other.slice(1));
+  const d = Math.hypot(x - ox, y - oy) || 1, dx = (x - ox) / d, dy = (y - oy) / d;
+  p.textAlign = dx > 0.4 ? "left" : dx < -0.4 ? "right" : "center";
+  p.lineWidth = 4;
+  p.strokeStyle = colour("skin");
+  const tx = x + dx * 11, ty = y + dy * 16 + 4;
+  p.strokeText(text, tx, ty);
+  p.fillStyle = colour("ink");
+  p.fillText(text, tx, ty);
+}

@@ -1,0 +1,278 @@
+// SPDX-License-Identifier: MIT
+// Fingers, pen, mouse and keys on the array: drawing, straight lines, points, tests of single tactors.
+import {state, changed, current_take, ceiling_dbfs, say} from "../state.js";
+import {by_id} from "../dom.js";
+import {call, tell, is_connected, on_lost} from "../service/connection.js";
+import {array, to_mm, to_px, px_per_mm, tactor_at, zoom, pan} from "./view.js";
+import {add_take, edit_take, edit_stroke, end_edit, request_options, moved_knot} from "../takes/takes.js";
+import {from_drawing, straight, editable, nearest_knot, insert_knot, rebuild, total_s} from "../takes/stroke.js";
+import {level_dbfs} from "../service/planner.js";
+import {test_tactor, on_stop} from "../service/player.js";
+
+const RESTING_MS = 100;    // a finger that rests says so, or its stroke would end
+const LEAST_MM = 1;        // a shorter touch is a tap
+const HOLD_MS = 500;
+const LEAST_STEP_MS = 2;   // between points that are sent
+const REACH_PX = 22;
+const LINE_MM_S = 60;
+const PAUSE_S = 0.1;       // between strokes of a take that were drawn one after the other
+const NAMES = {mouse: "drawn", touch: "drawn", pen: "drawn with a pen", key: "drawn with keys"};
+
+const field = by_id("field");
+const fingers = new Map();
+let show_held = () => {};
+export function on_tactor_held(f) { show_held = f; }
+
+const pixel_of = e => { const r = field.getBoundingClientRect(); return [e.clientX - r.left, e.clientY - r.top]; };
+// A pen's pressure; mice and most fingers have none to tell.
+const strength = e => e.pointerType === "pen" && e.pressure > 0 ? Math.min(1, +e.pressure.toFixed(3)) : 1;
+const seconds = ms => +(ms / 1000).toFixed(4);
+
+function down(id, px, e) {
+  if (!array || fingers.has(id)) return;
+  const mm = to_mm(...px);
+  const f = {id, px, from: mm, at: mm, strength: strength(e), kind: e.pointerType ?? "key", down_ms: e.timeStamp
+    ?? performance.now(), mode: "tap",
+    straight: state.tool === "line" || e.shiftKey, sent_ms: 0, number: null};
+  if (state.tool === "points" && grasp(f, mm)) { fingers.set(id, f); return; }
+  const tactor = tactor_at(mm);
+  if (tactor >= 0) f.hold = setTimeout(() => { if (f.mode === "tap") { f.mode = "held"; show_held(tactor, px); } }, HOLD_MS);
+  f.tactor = tactor;
+  fingers.set(id, f);
+}
+
+function moved(id, px, e) {
+  const f = fingers.get(id);
+  if (!f) return;
+  const mm = to_mm(...px);
+  f.at = mm;
+  f.strength = strength(e);
+  if (f.mode === "knot") return drag_knot(f, mm);
+  if (f.mode === "tap" && Math.hypot(mm[0] - f.from[0], mm[1] - f.from[1]) > LEAST_MM && state.tool !== "points") begin(f);
+  if (f.mode === "draw") record(f, mm, e.timeStamp);
+}
+
+function begin(f) {
+  clearTimeout(f.hold);
+  f.mode = "draw";
+  const now = f.down_ms;
+  if (!state.drawing) {
+    const take = current_take();
+    const before = state.append && take ? take.strokes : [];
+    state.drawing = {began: now - 1000 * total_s(before), before, tracks: [], kind: f.kind, append: state.append
+      && take !== null};
+    document.body.classList.add("touching");
+  }
+  f.track = {start_s: Math.max(0, seconds(now - state.drawing.began)), began: now, points: [], down: true, straight: f.straight,
+    strength: f.strength};
+  state.drawing.tracks.push(f.track);
+  f.track.points.push([0, ...rounded(f.from), f.strength]);
+  if (state.feel && is_connected()) begin_live(f);
+  changed("drawing");
+}
+const rounded = p => p.map(v => +v.toFixed(3));
+
+function record(f, mm, at_ms) {
+  const t = seconds(at_ms - f.track.began), last = f.track.points.at(-1);
+  if (f.straight) f.track.points.length = 1;
+  if (t <= f.track.points.at(-1)[0]) return;
+  f.track.points.push([t, ...rounded(mm), f.strength]);
+  if (last[0] !== t) send(f, at_ms);
+  changed("drawing");
+}
+
+// Live strokes: what is drawn is felt.
+function begin_live(f) {
+  // The level takes effect while the finger moves: the stroke begins at the ceiling, and its points are weaker.
+  f.scaled = !state.options.length || (take_option("sl") === undefined && (take_option("intensity_scale")
+    ?? "amplitude") === "amplitude");
+  const o = request_options(current_take(), f.scaled ? ceiling_dbfs() : level_dbfs());
+  if (o.algorithm === "tactile-brush") o.algorithm = "continuous"; // it has to know the end first
+  const live = new Set(state.options.filter(r => r.live).map(r => r.name));
+  const options = Object.fromEntries(Object.entries(o).filter(([name]) => live.has(name) || !live.size));
+  call("begin", {options}).then(r => {
+    f.number = r.stroke;
+    send(f, performance.now(), true);
+    if (!f.track.down) tell("end", {stroke: f.number});
+  }, e => { if (!f.refused) say(e.message); f.refused = true; });
+}
+const take_option = name => current_take()?.options[name];
+function send(f, at_ms, always = false) {
+  if (f.number === null || (!always && at_ms - f.sent_ms < LEAST_STEP_MS)) return;
+  f.sent_ms = at_ms;
+  tell("to", {stroke: f.number, x_mm: f.at[0], y_mm: f.at[1],
+    intensity: f.strength * (f.scaled ? 10 ** (state.level_db / 20) : 1)});
+}
+setInterval(() => fingers.forEach(f => f.mode === "draw" && send(f, performance.now(), true)), RESTING_MS);
+
+function up(id, cancelled = false) {
+  const f = fingers.get(id);
+  if (!f) return;
+  fingers.delete(id);
+  clearTimeout(f.hold);
+  if (f.mode === "knot") { end_edit(); changed("take"); return; }
+  if (f.mode === "tap" && !cancelled) return tap(f);
+  if (f.mode !== "draw") return;
+  f.track.down = false;
+  const t = seconds(performance.now() - f.track.began), last = f.track.points.at(-1);
+  // A finger that rests before it is lifted stays there as long.
+  if (t > last[0] + 0.05) f.track.points.push([t, last[1], last[2], last[3]]);
+  if (f.number !== null) tell("end", {stroke: f.number});
+  if ([...fingers.values()].some(o => o.mode === "draw")) return changed("drawing");
+  finish();
+}
+function tap(f) {
+  if (state.tool === "points" && choose_stroke(f.from)) return;
+  if (f.tactor >= 0) test_tactor(f.tactor);
+}
+
+// All that touched until none did any more becomes a take, or more strokes of this one.
+function finish() {
+  const d = state.drawing;
+  state.drawing = null;
+  document.body.classList.remove("touching");
+  const tracks = d.tracks.filter(k => k.points.length > 1);
+  if (!tracks.length) return changed("drawing");
+  const many = tracks.length > 1;
+  const strokes = tracks.map((k, i) => {
+    const n = d.before.length + i + 1, name = many ? `finger ${i + 1}` : `stroke ${n}`;
+    return k.straight ? straight(k.points[0].slice(1, 3), k.points.at(-1).slice(1, 3), LINE_MM_S, name, k.start_s,
+      k.points.at(-1)[3])
+      : from_drawing(k.points, name, k.start_s);
+  });
+  if (d.append) {
+    // It follows the last stroke, whenever it was drawn; the last burst of that one has ended by then.
+    const first = Math.min(...strokes.map(s => s.start_s)), after = total_s(d.before) + PAUSE_S;
+    edit_take(t => ({strokes: [...t.strokes, ...strokes.map(s => ({...s, start_s: +(s.start_s - first + after).toFixed(4)}))]}));
+    state.stroke = d.before.length;
+    state.append = false;
+  } else {
+    const first = Math.min(...strokes.map(s => s.start_s));
+    const take = add_take(strokes.map(s => ({...s, start_s: +(s.start_s - first).toFixed(4)})),
+      {origin: NAMES[d.kind] ?? "drawn"});
+    say(`Kept as “${take.name}”`);
+  }
+  state.at_s = 0;
+  changed("drawing", "take");
+}
+function lift_all() {
+  key = null;
+  for (const id of [...fingers.keys()]) up(id, true);
+}
+on_stop(lift_all);
+// Without a connection what is drawn goes on in silence; its live strokes have ended.
+on_lost(() => fingers.forEach(f => { f.number = null; }));
+
+// Points.
+function edited_stroke() {
+  const take = current_take();
+  return take?.strokes[state.stroke] ? editable(take.strokes[state.stroke]) : null;
+}
+function grasp(f, mm) {
+  const s = edited_stroke();
+  if (!s) return false;
+  const near = nearest_knot(s.knots, mm);
+  if (near.off * px_per_mm() > REACH_PX) return false;
+  f.mode = "knot";
+  f.knot = near.index;
+  f.key = `knot ${f.id} ${performance.now()}`;
+  state.knot = near.index;
+  changed("knot");
+  return true;
+}
+function drag_knot(f, mm) { edit_stroke(s => moved_knot(s, f.knot, mm.map(v => +v.toFixed(3))), f.key); }
+export function add_point(mm) {
+  const s = edited_stroke();
+  if (!s) return;
+  const added = insert_knot(s, mm);
+  edit_stroke(() => added.stroke);
+  state.knot = added.index;
+  changed("knot");
+}
+export function change_point(how) {
+  edit_stroke(s => rebuild({...s, knots: s.knots.map((k, i) => i === state.knot ? {...k, ...how} : k)}));
+}
+export function remove_point() {
+  const s = edited_stroke();
+  if (!s || state.knot < 0 || s.knots.length <= 2) return;
+  edit_stroke(t => rebuild({...t, knots: t.knots.filter((_, i) => i !== state.knot)}));
+  state.knot = Math.min(state.knot, s.knots.length - 2);
+  changed("knot");
+}
+// Chooses the stroke whose path is nearest; returns true if there is one.
+function choose_stroke(mm) {
+  const take = current_take();
+  let best = {off: REACH_PX / px_per_mm(), i: -1};
+  take?.strokes.forEach((s, i) => s.timed.forEach(p => {
+    const off = Math.hypot(p[1] - mm[0], p[2] - mm[1]);
+    if (off < best.off) best = {off, i};
+  }));
+  if (best.i < 0) return false;
+  if (best.i === state.stroke && tactor_at(mm) < 0) add_point(mm);
+  Object.assign(state, {stroke: best.i, knot: best.i === state.stroke ? state.knot : -1});
+  changed("take");
+  return true;
+}
+
+// Listeners. `pointerrawupdate` comes before the frame, where the browser has it.
+let middle = null;
+field.addEventListener("pointerdown", e => {
+  if (e.button === 1) { middle = [e.clientX, e.clientY]; field.setPointerCapture(e.pointerId); e.preventDefault(); return; }
+  if (e.button > 0) return;
+  try { field.setPointerCapture(e.pointerId); } catch { /* a pointer that is gone already */ }
+  down(e.pointerId, pixel_of(e), e);
+});
+const raw = "onpointerrawupdate" in window;
+function follow(e) {
+  if (middle) { pan(e.clientX - middle[0], e.clientY - middle[1]); middle = [e.clientX, e.clientY]; return; }
+  const f = fingers.get(e.pointerId);
+  if (!f) return hover(e);
+  const all = e.getCoalescedEvents?.() ?? [];
+  for (const p of all.length ? all : [e]) moved(e.pointerId, pixel_of(p), p);
+}
+field.addEventListener(raw ? "pointerrawupdate" : "pointermove", follow);
+if (raw) field.addEventListener("pointermove", e => { if (fingers.has(e.pointerId)) moved(e.pointerId, pixel_of(e), e); });
+field.addEventListener("pointerup", e => { middle = null; if (fingers.has(e.pointerId)) { moved(e.pointerId, pixel_of(e), e);
+  up(e.pointerId); } });
+for (const end of ["pointercancel", "lostpointercapture"]) field.addEventListener(end,
+  e => { middle = null; up(e.pointerId, true); });
+field.addEventListener("pointerleave", () => set_hot(-1));
+field.addEventListener("contextmenu", e => e.preventDefault());
+field.addEventListener("wheel", e => {
+  e.preventDefault();
+  if (state.drawing) return;
+  const r = field.getBoundingClientRect();
+  if (e.ctrlKey || Math.abs(e.deltaX) < 1) zoom(Math.exp(-e.deltaY / 400), [e.clientX - r.left, e.clientY - r.top]);
+    else pan(-e.deltaX, -e.deltaY);
+}, {passive: false});
+function hover(e) { if (e.pointerType === "mouse" && array) set_hot(tactor_at(to_mm(...pixel_of(e)))); }
+export function set_hot(i) {
+  if (state.hot === i) return;
+  state.hot = i;
+  changed("hot");
+}
+
+// Keys within the canvas: Enter touches and lifts, arrows move.
+let key = null;
+field.addEventListener("keydown", e => {
+  if (!array || e.ctrlKey || e.metaKey || e.altKey) return;
+  if (e.key === "Enter") {
+    e.preventDefault();
+    if (key) { key = null; up("key"); return; }
+    key = array.box.middle.slice();
+    down("key", to_px(key), {pointerType: "key", timeStamp: performance.now()});
+    return;
+  }
+  const step = {ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1]}[e.key];
+  if (!step) return;
+  e.preventDefault();
+  const mm = Math.max(...array.box.size, 10) / (e.shiftKey ? 100 : 25);
+  if (state.tool === "points" && state.knot >= 0 && edited_stroke()) {
+    const k = edited_stroke().knots[state.knot];
+    return edit_stroke(s => moved_knot(s, state.knot, [k.x + step[0] * mm, k.y + step[1] * mm]), `key knot ${state.knot}`);
+  }
+  if (!key) return;
+  key = [key[0] + step[0] * mm, key[1] + step[1] * mm];
+  moved("key", to_px(key), {pointerType: "key", timeStamp: performance.now()});
+});
+field.addEventListener("blur", () => { if (key) { key = null; up("key"); } });

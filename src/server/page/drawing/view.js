@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: MIT
+// The array to scale: millimetres to pixels, zoom, and the layers that are drawn again when something changes.
+import {state, changed, on_change} from "../state.js";
+import {by_id} from "../dom.js";
+import {hull, box} from "../takes/stroke.js";
+
+const canvas = by_id("field");
+export const layers = {ground: document.createElement("canvas"), ink: document.createElement("canvas")};
+export const view = {zoom: 1, x: 0, y: 0, scale: 1, left: 0, top: 0, width: 0, height: 0, dpr: 1};
+export const stale = {ground: true, ink: true};
+export let array = null; // {tactors, edge, pitch, radius}
+
+export function set_array(a) {
+  const places = a.tactors.map(t => [t.x_mm, t.y_mm]);
+  let pitch = 40;
+  places.forEach((p, i) => places.slice(i + 1).forEach(q => { pitch = Math.min(pitch, Math.hypot(p[0] - q[0], p[1] - q[1])
+    || pitch); }));
+  array = {...a, places, edge: hull(places), box: box(places), pitch, radius: pitch * 0.215};
+  look_at_all();
+}
+export const to_px = ([x, y]) => [view.left + (x - array.box.middle[0]) * view.scale,
+  view.top + (y - array.box.middle[1]) * view.scale];
+export const to_mm = (px, py) => [(px - view.left) / view.scale + array.box.middle[0],
+  (py - view.top) / view.scale + array.box.middle[1]];
+export const place_in_page = p => { const r = canvas.getBoundingClientRect(), [x, y] = to_px(p); return [r.left + x, r.top + y];
+  };
+export const px_per_mm = () => view.scale;
+export function tactor_at([x, y]) {
+  return array ? array.places.findIndex(p => Math.hypot(p[0] - x, p[1] - y) <= array.radius * 1.05) : -1;
+}
+
+export function look_at_all() { Object.assign(view, {zoom: 1, x: 0, y: 0}); resize(); }
+export function zoom(by, at = null) {
+  const before = at && to_mm(...at), zoomed = Math.min(12, Math.max(0.5, view.zoom * by));
+  view.zoom = zoomed;
+  place();
+  if (before) { const now = to_px(before); view.x += at[0] - now[0]; view.y += at[1] - now[1]; place(); }
+  outdated("ground", "ink");
+}
+export function pan(dx, dy) { view.x += dx; view.y += dy; place(); outdated("ground", "ink"); }
+
+// The free part of the stage: what tools, title and an open sheet leave.
+function insets() {
+  const s = getComputedStyle(by_id("stage")), v = name => parseFloat(s.getPropertyValue(name)) || 0;
+  const free = {left: v("--free-left"), right: v("--free-right"), top: v("--free-top"), bottom: v("--free-bottom")};
+  const stage = by_id("stage").getBoundingClientRect(), sheet = by_id("sheet-head").getBoundingClientRect();
+  if (!sheet.width) return free;
+  if (sheet.left > stage.left + 10) return {...free, right: stage.right - sheet.left + 10};
+  return {...free, top: 12, bottom: stage.bottom - sheet.top + 8};
+}
+function place() {
+  if (!array || !view.width) return;
+  const i = insets(), margin = 2 * (array.radius + array.pitch * 0.1);
+  const width = Math.max(60, view.width - i.left - i.right), height = Math.max(60, view.height - i.top - i.bottom);
+  const fit = Math.min(width / (array.box.size[0] + margin), height / (array.box.size[1] + margin + array.pitch * 0.12));
+  view.scale = fit * view.zoom;
+  view.left = i.left + width / 2 + view.x;
+  view.top = i.top + height / 2 - array.pitch * 0.03 * view.scale + view.y;
+}
+export function resize() {
+  if (state.drawing) return; // the canvas never moves under a finger
+  const r = by_id("stage").getBoundingClientRect();
+  view.dpr = Math.min(3, devicePixelRatio || 1);
+  view.width = r.width; view.height = r.height;
+  for (const c of [canvas, layers.ground, layers.ink]) { c.width = Math.round(r.width * view.dpr);
+    c.height = Math.round(r.height * view.dpr); }
+  place();
+  outdated("ground", "ink");
+}
+export function outdated(...names) { names.forEach(l => { stale[l] = true; }); changed("frame"); }
+on_change(what => {
+  if (what.has("take") || what.has("plan") || what.has("drawing") || what.has("tool") || what.has("knot")) outdated("ink");
+  if (what.has("theme") || what.has("array")) outdated("ground", "ink");
+  if (what.has("layout")) resize();
+});
+
+// Begins a layer, or the canvas, anew.
+export function start_layer(c) {
+  const p = c.getContext("2d");
+  p.setTransform(view.dpr, 0, 0, view.dpr, 0, 0);
+  p.clearRect(0, 0, view.width, view.height);
+  p.lineJoin = p.lineCap = "round";
+  return p;
+}
+export function trace(p, places, closed = false) {
+  p.beginPath();
+  places.forEach((q, i) => { const [x, y] = to_px(q); if (i) p.lineTo(x, y); else p.moveTo(x, y); });
+  if (closed) p.closePath();
+}
+export function disc(p, [x, y], r) { p.beginPath(); p.arc(x, y, Math.max(0, r), 0, 2 * Math.PI); }
+export const font = (size, weight = 400) => `${weight} ${size}px ${getComputedStyle(document.body).fontFamily}`;
+

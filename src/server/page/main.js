@@ -1,0 +1,189 @@
+// SPDX-License-Identifier: MIT
+// The page to draw on: what belongs to no part of it, and the start.
+import {state, changed, on_change, on_toast, current_take, say} from "./state.js";
+import {by_id, place_icons, forget_colours, is_dark} from "./dom.js";
+import {connect, call, on_hello, is_connected} from "./service/connection.js";
+import {open_takes, undo, redo, can_undo, can_redo} from "./takes/takes.js";
+import {draw_frame, moves} from "./drawing/canvas.js";
+import {set_array, look_at_all, zoom, resize, place_in_page} from "./drawing/view.js";
+import {draw_lanes, clock_text} from "./time/lanes.js";
+import "./time/timeline.js";
+import {LEAST_LEVEL_DB} from "./service/planner.js";
+import {play, stop, tick, silence_speaker} from "./service/player.js";
+import {change_point, remove_point, on_tactor_held} from "./drawing/pointer.js";
+import {show_examples, open_example} from "./takes/takes_panel.js";
+import {show_tactor, on_rename} from "./service/device.js";
+import {choose_tool, new_take} from "./settings/keys.js";
+import "./takes/files.js";
+import "./settings/inspector.js";
+import "./settings/prediction.js";
+import {seconds_text} from "./words.js";
+import {length_mm, editable} from "./takes/stroke.js";
+
+const TOAST_MS = 2200;
+
+// Light and dark.
+const dark = matchMedia("(prefers-color-scheme: dark)");
+const kept = name => { try { return localStorage.getItem(name); } catch { return null; } };
+function set_theme(theme) {
+  document.documentElement.dataset.theme = theme ?? (dark.matches ? "dark" : "light");
+  document.querySelector('meta[name="theme-color"]').content = is_dark() ? "#15181b" : "#f8f7f4";
+  forget_colours();
+  changed("theme");
+}
+set_theme(kept("tactor-theme"));
+// A page that is opened again is no louder than it was.
+state.level_db = Math.min(0, Math.max(LEAST_LEVEL_DB, Number(kept("tactor-level") ?? 0) || 0));
+on_change(what => { if (what.has("level")) try { localStorage.setItem("tactor-level", state.level_db);
+  } catch { /* for this visit only */ } });
+dark.addEventListener("change", () => { if (!kept("tactor-theme")) set_theme(null); });
+by_id("theme").addEventListener("click", () => {
+  const theme = is_dark() ? "light" : "dark";
+  try { localStorage.setItem("tactor-theme", theme); } catch { /* for this visit only */ }
+  set_theme(theme);
+});
+place_icons();
+
+// Messages that go away.
+let toast_timer = 0;
+on_toast(text => {
+  by_id("toast").textContent = text;
+  by_id("toast").classList.add("on");
+  clearTimeout(toast_timer);
+  toast_timer = setTimeout(() => by_id("toast").classList.remove("on"), TOAST_MS);
+});
+
+// Buttons.
+const on = (id, f) => by_id(id).addEventListener("click", f);
+on("play", () => play());
+on("stop", () => stop());
+on("undo", undo);
+on("redo", redo);
+on("new-take", () => { new_take(); say("Draw a new take"); });
+on("zoom-in", () => zoom(1.3));
+on("zoom-out", () => zoom(1 / 1.3));
+on("zoom-all", look_at_all);
+on("loop", () => { state.loop = !state.loop; changed("playing"); });
+on("speaker", () => {
+  state.speaker = !state.speaker;
+  if (state.speaker) say("Play is heard on this computer's own loudspeakers; they must not be the array's card");
+    else silence_speaker();
+  changed("playing");
+});
+on("feel", () => { state.feel = !state.feel; changed("tool"); });
+on("show-speed", () => { state.show_speed = !state.show_speed; changed("curves"); });
+on("show-strength", () => { state.show_strength = !state.show_strength; changed("curves"); });
+on("point-curve", () => change_point({corner: false}));
+on("point-corner", () => change_point({corner: true}));
+on("point-bin", remove_point);
+on("pill", () => open_sheet("inspector"));
+on("settings", () => open_sheet(document.body.dataset.sheetOpen ? "" : state.sheet || "inspector"));
+on("sheet-close", () => open_sheet(""));
+on("hint-close", () => { hint_closed = true; by_id("hint").hidden = true; });
+on("hint-example", () => { open_example(); setTimeout(play, 0); });
+let hint_closed = false;
+for (const b of document.querySelectorAll("button[data-tool]")) b.addEventListener("click", () => choose_tool(b.dataset.tool));
+for (const b of document.querySelectorAll("button[data-sheet]")) b.addEventListener("click", () => open_sheet(b.dataset.sheet));
+function open_sheet(name) {
+  if (state.drawing) return; // the canvas never changes under a finger
+  if (name) state.sheet = name;
+  document.body.dataset.sheetOpen = name;
+  for (const b of document.querySelectorAll("button[data-sheet]")) b.setAttribute("aria-pressed", b.dataset.sheet === name);
+  by_id("settings").setAttribute("aria-expanded", name !== "");
+  changed("layout");
+}
+document.body.dataset.sheetOpen = "";
+on_tactor_held(show_tactor);
+
+// Texts and states of buttons.
+on_change(() => {
+  const take = current_take(), p = state.playing;
+  by_id("undo").disabled = !can_undo();
+  by_id("redo").disabled = !can_redo();
+  by_id("play").disabled = !take?.strokes.length;
+  by_id("play").dataset.on = p !== null;
+  by_id("play").querySelector("span").textContent = p ? "Playing" : "Play";
+  by_id("loop").setAttribute("aria-pressed", state.loop);
+  by_id("speaker").setAttribute("aria-pressed", state.speaker);
+  by_id("show-speed").setAttribute("aria-pressed", state.show_speed);
+  by_id("show-strength").setAttribute("aria-pressed", state.show_strength);
+  by_id("feel").setAttribute("aria-checked", state.feel);
+  by_id("feel-text").textContent = state.feel ? "Feel on" : "Feel off";
+  for (const b of document.querySelectorAll("button[data-tool]")) b.setAttribute("aria-pressed", b.dataset.tool === state.tool);
+  by_id("field").dataset.tool = state.tool;
+  by_id("take-name").textContent = take?.name ?? "New take";
+  by_id("take-facts").textContent = take_facts(take);
+  by_id("take-origin").textContent = take?.origin.includes("-") ? ` · ${take.origin}` : "";
+  by_id("no-lanes").hidden = Boolean(take?.strokes.length || state.drawing);
+  by_id("hint").hidden = hint_closed || state.takes.length > 0 || state.drawing !== null || !by_id("banner").hidden;
+  show_point(take);
+});
+function take_facts(take) {
+  if (!take?.strokes.length) return "";
+  const bursts = state.plan && !state.plan.continuous && state.plan.onsets ? `${state.plan.onsets.length} bursts, ` : "";
+  const mm = take.strokes.reduce((sum, s) => sum + length_mm(s.timed), 0);
+  return `${bursts}${Math.round(mm)} mm in ${seconds_text(Math.max(...take.strokes.map(s => s.start_s + s.timed.at(-1)[0])))}`;
+}
+function show_point(take) {
+  const s = take?.strokes[state.stroke], on_point = state.tool === "points" && s && state.knot >= 0;
+  by_id("points").hidden = !on_point;
+  if (!on_point) return;
+  const knots = editable(s).knots, k = knots[Math.min(state.knot, knots.length - 1)];
+  by_id("point-text").textContent = `Point ${state.knot + 1} of ${knots.length}`;
+  by_id("point-curve").setAttribute("aria-pressed", !k.corner);
+  by_id("point-corner").setAttribute("aria-pressed", k.corner);
+}
+
+// Frames: only while something moves or has changed.
+let told_clock = "", running = false;
+function frame() {
+  tick();
+  draw_frame();
+  draw_lanes();
+  const [now, total] = clock_text();
+  if (now + total !== told_clock) {
+    told_clock = now + total;
+    by_id("clock").textContent = now;
+    by_id("total").textContent = total;
+    const slider = by_id("lanes");
+    slider.setAttribute("aria-valuenow", now);
+    slider.setAttribute("aria-valuemax", parseFloat(total) || 0);
+    slider.setAttribute("aria-valuetext", `${now} of ${total}`);
+  }
+  running = moves();
+  if (running) requestAnimationFrame(frame);
+}
+export function wake() { if (!running) { running = true; requestAnimationFrame(frame); } }
+on_change(wake);
+setInterval(() => { if (state.dbfs.some(v => v !== null) || state.touches.size) wake(); }, 33);
+
+new ResizeObserver(() => { resize(); changed("frame"); }).observe(by_id("stage"));
+addEventListener("beforeunload", e => { if (!state.storage_lasts && state.takes.length) e.preventDefault(); });
+
+// The start.
+const own_name = () => kept("tactor-name") || (matchMedia("(pointer: coarse)").matches ? "A phone" : "A browser");
+by_id("own-name-text").value = kept("tactor-name") ?? "";
+on_rename(name => { if (is_connected()) call("hello", {name: name || own_name(), ...token_of_page()}).catch(e => say(e.message));
+  });
+const token_of_page = () => { const t = new URLSearchParams(location.hash.slice(1)).get("token"); return t ? {token: t} : {}; };
+on_hello(async h => {
+  set_array(h.array);
+  try { state.options = (await call("options")).options; } catch (e) { if (e.code === 0) throw e; }
+  changed("array", "options", "take");
+  show_examples();
+});
+open_takes().catch(() => say("This browser keeps no takes"));
+connect(own_name());
+changed("takes", "take", "theme", "tool");
+
+// For a home screen, where the browser allows it.
+const icon_url = `data:image/svg+xml,${encodeURIComponent('<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 20 20"><circle cx="10" cy="10" r="7" fill="#d1480b"/></svg>')}`;
+document.querySelector('link[rel="icon"]').href = icon_url;
+document.head.append(Object.assign(document.createElement("link"), {rel: "manifest",
+  href: URL.createObjectURL(new Blob([JSON.stringify({
+  name: "tactor", short_name: "tactor", start_url: location.href, display: "standalone", background_color: "#efeeea",
+    theme_color: "#f8f7f4",
+  icons: [{src: icon_url, sizes: "any", type: "image/svg+xml"}]})], {type: "application/manifest+json"}))}));
+
+// For the console, and for tests.
+globalThis.tactor = {state, changed, place_in_page};

@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: MIT
+// What state the service is in: one word and one reason each, a banner where something is to be done.
+import {state, on_change, changed, ceiling_dbfs} from "../state.js";
+import {by_id, make, icon} from "../dom.js";
+import {connect_with, connect} from "./connection.js";
+import {test_tactor} from "./player.js";
+import {array_name, number_text} from "../words.js";
+
+const STOPPED_MS = 6000;
+
+// Returns [icon, word, tone, reason].
+function describe() {
+  const s = state.stream;
+  if (state.link === "connecting") return ["waiting", "Connecting", "off", ""];
+  if (state.link === "token") return ["barred", "Locked", "warn", "a token is needed"];
+  if (state.link === "lost") return ["broken", "No connection", "bad",
+    `again in ${Math.max(0, Math.ceil((state.retry_at - performance.now()) / 1000))} s`];
+  if (state.slow) return ["waiting", "No answer", "warn", "waiting for tactor"];
+  if (s.state === "lost") return state.hello?.stream.format === null ? ["barred", "No card", "bad",
+    "it is looked for"] : ["broken", "Card lost", "bad", "it is looked for"];
+  if (s.state === "muted") return ["muted", "Muted", "warn", s.reason];
+  if (s.state === "closing") return ["stop", "Closing", "warn", "tactor ends"];
+  if (state.stopped && performance.now() - state.stopped.at < STOPPED_MS) return ["stop", "Stopped", "off",
+    `by ${state.stopped.name}`];
+  const other = state.status?.strokes.find(k => k.state === "started" && k.client !== state.hello?.client);
+  if (other) return ["people", "Someone is playing", "info", who(other.client)];
+  return s.state === "idle" ? ["ready", "Ready", "ok", state.hello?.stream.pcm ?? ""] : ["running", "Running", "ok",
+    state.hello?.stream.pcm ?? ""];
+}
+const who = client => { const w = state.status?.who?.find(x => x.client === client); return w ? w.name || w.from : ""; };
+
+// Returns what the banner says: [text, tone, details], or null.
+function warn() {
+  const s = state.stream;
+  if (state.link === "token") return [state.asks_token, "warn",
+    "The owner has it, in the file that token_file names; or open the link that ends in #token=…"];
+  if (state.link === "lost") return ["No connection to tactor. It is tried again; nothing is lost.", "bad", state.lost_reason
+    || "The WebSocket to the service is closed."];
+  if (state.link === "connected" && state.slow) return null;
+  if (s.state === "lost") return [state.hello?.stream.format === null
+    ? "No sound card. Plug it in and it goes on by itself." : "The sound card is gone. Drawings are kept; plug it in again.",
+    "bad", s.reason];
+  if (s.state === "muted") return ["Muted: the sound broke up. It comes back when it is steady.", "warn", s.reason];
+  if (s.state === "closing") return ["Tactor ends. Drawings are kept.", "warn", s.reason];
+  if (state.fault) return [state.fault, "bad", ""];
+  return null;
+}
+
+let closed = "", said = {};
+function show_device() {
+  const [picture, word, tone, why] = describe();
+  const text = `${picture} ${word} ${why}`;
+  if (text !== said.chip) {
+    said.chip = text;
+    by_id("device-icon").replaceChildren(icon(picture));
+    if (by_id("state").textContent !== word) by_id("state").textContent = word;
+    by_id("state-why").textContent = why ? ` · ${why}` : "";
+    by_id("device").dataset.tone = tone;
+  }
+  by_id("array-name").textContent = state.hello ? array_name(state.hello.array) : "tactor";
+  const others = Math.max(0, (state.status?.who?.length ?? state.status?.clients ?? 1) - 1);
+  by_id("others").hidden = others === 0;
+  by_id("others-text").replaceChildren(String(others), make("i", {}, others === 1 ? " other" : " others"));
+  by_id("others").setAttribute("aria-label", `${others} ${others === 1 ? "other" : "others"}`);
+  const b = warn(), key = b ? b[0] : "";
+  if (key !== closed && key === "") closed = "";
+  by_id("banner").hidden = !b || closed === key;
+  if (b && closed !== key && key !== said.banner) {
+    by_id("banner").dataset.tone = b[1];
+    by_id("banner-icon").replaceChildren(icon("warn"));
+    by_id("banner-text").textContent = b[0];
+    by_id("banner-details").textContent = b[2];
+    by_id("banner-more").hidden = !b[2];
+    by_id("token").hidden = state.link !== "token";
+  }
+  said.banner = by_id("banner").hidden ? "" : key;
+}
+by_id("banner-close").addEventListener("click", () => { closed = by_id("banner-text").textContent; state.fault = null;
+  changed("link"); });
+by_id("banner-more").addEventListener("click", () => {
+  const d = by_id("banner-details");
+  d.hidden = !d.hidden;
+  by_id("banner-more").setAttribute("aria-expanded", !d.hidden);
+});
+by_id("token").addEventListener("submit", e => { e.preventDefault(); connect_with(by_id("token-text").value.trim());
+  by_id("token-text").value = ""; });
+addEventListener("hashchange", () => { if (state.link !== "connected") connect(); });
+
+const fact = (name, v) => v === null || v === undefined || v === "" ? [] : [make("dt", {}, name), make("dd", {}, String(v))];
+by_id("p-device").addEventListener("toggle", show_facts);
+function show_facts() {
+  const h = state.hello, s = state.status;
+  by_id("facts").replaceChildren(...!h ? fact("State", "no connection") : [
+    ...fact("Array", `${array_name(h.array)}, ${h.array.tactors.length} tactors`), ...fact("Where", h.array.site),
+      ...fact("Card", h.stream.pcm),
+    ...fact("Stream", `${h.stream.rate} Hz, ${h.stream.channels} channels${h.stream.format ? `, ${h.stream.format}` : ""}`),
+    ...fact("Period", `${h.stream.period_frames} frames (${number_text(1000 * h.stream.period_frames / h.stream.rate)} ms), buffer ${number_text(1000 * h.stream.latency_s)} ms`),
+    ...fact("State", `${state.stream.state}${state.stream.reason ? `: ${state.stream.reason}` : ""}`),
+      ...fact("Amplifier", s?.amplifier), ...fact("Xruns", s?.stream.xruns),
+    ...fact("Real time", s ? s.stream.realtime ? "yes" : "no" : null), ...fact("Ceiling",
+      `${number_text(ceiling_dbfs(), 0)} dBFS`), ...fact("Version", h.version),
+    ...fact("Takes", state.storage_lasts ? "kept in this browser" : "this browser keeps nothing: save what you need")]);
+}
+on_change(what => {
+  if (!what.has("array") || !state.hello) return;
+  by_id("try").replaceChildren(...state.hello.array.tactors.map((t, i) => make("button",
+    {type: "button", class: "button outlined", "aria-label": `Try tactor ${t.tactor ?? i}`, onclick: () => test_tactor(i)},
+    String(t.tactor ?? i))));
+});
+by_id("p-others").addEventListener("toggle", () => {
+  by_id("people").replaceChildren(...(state.status?.who ?? []).map(w => make("li", {},
+    make("b", {}, w.client === state.hello?.client ? `${w.name || "You"} (this page)` : w.name || "no name"),
+    make("small", {}, `${w.from}${state.status.strokes.some(k => k.client === w.client && k.state === "started") ? ", playing" : ", silent"}`))));
+});
+by_id("own-name").addEventListener("submit", e => e.preventDefault());
+by_id("own-name-text").addEventListener("change", () => {
+  const name = by_id("own-name-text").value.trim();
+  try { localStorage.setItem("tactor-name", name); } catch { /* it is asked for again */ }
+  connect_with_name(name);
+});
+function connect_with_name(name) { send_name?.(name); }
+let send_name = null;
+export function on_rename(f) { send_name = f; }
+export function show_tactor(i, at) {
+  const t = state.hello?.array.tactors[i];
+  if (!t) return;
+  by_id("tactor-title").textContent = `Tactor ${t.tactor ?? i}`;
+  by_id("tactor-facts").replaceChildren(...fact("Place", `${t.x_mm}, ${t.y_mm} mm`), ...fact("Channel", t.channel),
+    ...fact("Gain", t.gain_db === undefined ? null : `${number_text(t.gain_db)} dB`),
+    ...fact("Limit", `${number_text(t.max_dbfs ?? 0)} dBFS`), ...fact("Threshold", typeof t.threshold_dbfs === "number"
+      ? `${number_text(t.threshold_dbfs)} dBFS` : "not measured"),
+    ...fact("Polarity", t.polarity < 0 ? "reversed" : "as wired"));
+  const p = by_id("p-tactor");
+  p.showPopover();
+  p.style.inset = `${Math.max(8, Math.min(innerHeight - 220, at[1] + 60))}px auto auto ${Math.max(8, Math.min(innerWidth - 352, at[0]))}px`;
+}
+// A fault is about the take as it was.
+on_change(what => { if (what.has("take")) state.fault = null; });
+on_change(what => { if (["take", "link", "status", "stream", "array", "playing"].some(w => what.has(w))) show_device(); });
+setInterval(() => { if (state.stopped) show_device(); }, 1000);

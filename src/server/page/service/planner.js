@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: MIT
+// Plans for the picture: one question at a time, always about what is newest.
+import {state, changed, on_change, current_take, ceiling_dbfs} from "../state.js";
+import {call, is_connected} from "./connection.js";
+import {request_of, request_options, take_s} from "../takes/takes.js";
+import {strokes_toml, thin} from "../takes/stroke.js";
+
+const COMPARED_MS = 500;   // quiet before other methods are predicted
+const COMPARED_S = 30;     // the longest take for which they are
+const MOST_KEPT = 200;
+const DRAFTED_POINTS = 2000; // of a drawing; more are thinned before they are sent
+export const LEAST_LEVEL_DB = -40;
+
+let draft = 0, busy = false, owed = false, compare_timer = 0, round = 0;
+
+export const level_dbfs = () => ceiling_dbfs() + state.level_db;
+
+function request() {
+  if (state.drawing) {
+    const strokes = [...state.drawing.before, ...state.drawing.tracks.filter(k => k.points.length > 1)
+      .map(k => ({name: "drawing", start_s: k.start_s, timed: k.points.length > DRAFTED_POINTS
+        ? thin(k.points, 0.1) : k.points}))];
+    return strokes.length ? {toml: strokes_toml(strokes), options: request_options(current_take(), level_dbfs())} : null;
+  }
+  const take = current_take();
+  return take?.strokes.length ? request_of(take, level_dbfs()) : null;
+}
+
+export function plan_soon() {
+  if (busy) { owed = true; return; }
+  if (is_connected()) ask();
+}
+async function ask() {
+  const what = request();
+  owed = false;
+  clearTimeout(compare_timer);
+  if (!what) {
+    Object.assign(state, {plan: null, plan_fault: null});
+    return changed("plan");
+  }
+  busy = true;
+  const began = performance.now();
+  const take = current_take(), was_drawing = state.drawing !== null;
+  try {
+    const plan = await call("plan", {...what, view: "percept", draft: ++draft, ...observer()});
+    if (was_drawing || current_take() === take) Object.assign(state, {plan: prepared(plan), plan_fault: null,
+      plan_of: was_drawing ? null : take});
+  } catch (e) {
+    if (e.code !== 0 && e.data?.why !== "outdated") Object.assign(state, {plan: null, plan_fault: e});
+  }
+  changed("plan");
+  // A long drawing is planned less often: its picture must not hold the hand up.
+  if (was_drawing) await new Promise(done => setTimeout(done, Math.min(2000, 2 * (performance.now() - began) - 20)));
+  busy = false;
+  if (owed) return ask();
+  if (!was_drawing) compare_timer = setTimeout(compare, COMPARED_MS);
+}
+// By how much strokes that add up on a tactor are too strong.
+export const too_strong_db = f => f.data?.what === "options.level_dbfs" ? Number(/by ([\d.]+) dB/.exec(f.data.hint ?? "")?.[1]
+  ?? 0) : 0;
+// Lowers the level until the take can be played: a refusal names one tactor at a time.
+export async function lower_level(refusal) {
+  for (let by = too_strong_db(refusal); by > 0 && state.level_db > LEAST_LEVEL_DB;) {
+    state.level_db = Math.max(LEAST_LEVEL_DB, state.level_db - Math.ceil(2 * by) / 2);
+    by = await call("plan", {...request(), view: "peaks"}).then(() => 0, too_strong_db);
+  }
+  changed("level");
+}
+const observer = () => state.observer ? {observer: state.observer} : {};
+
+// Adds what pictures need: when each burst ends, and where the last one is.
+function prepared(plan) {
+  plan.felt ??= [];
+  return plan;
+}
+
+// Predicts the other algorithms and phantoms, one after the other, while nothing else is asked for.
+async function compare() {
+  const take = current_take(), own = ++round;
+  if (!take?.strokes.length || state.drawing || take_s(take) > COMPARED_S) return;
+  const row = name => state.options.find(o => o.name === name);
+  const used = name => take.options[name] ?? row(name)?.default;
+  const wanted = [...(row("algorithm")?.choices ?? []).map(v => ["algorithm", v]),
+    ...(row("phantom")?.choices ?? []).map(v => ["phantom", v])]
+    .filter(([name, v]) => v !== used(name));
+  for (const [name, v] of wanted) {
+    if (own !== round || busy || current_take() !== take || !is_connected()) return;
+    const key = predicted_key(take, name, v);
+    if (state.predicted.has(key)) continue;
+    const what = request_of({...take, options: {...take.options, [name]: v}}, level_dbfs());
+    let found;
+    try { found = (await call("plan", {...what, view: "percept", ...observer()})).errors; } catch (e) {
+      if (e.code === 0) return;
+      found = {refused: e.message};
+    }
+    if (state.predicted.size > MOST_KEPT) state.predicted.clear();
+    state.predicted.set(key, found);
+    changed("predicted");
+  }
+}
+const numbers = new WeakMap();
+let last_number = 0;
+export function predicted_key(take, name, v) {
+  if (!numbers.has(take)) numbers.set(take, ++last_number);
+  return `${numbers.get(take)} ${name} ${v} ${state.observer ?? ""} ${state.level_db}`;
+}
+
+on_change(what => {
+  if (what.has("take") || what.has("drawing") || what.has("level") || what.has("link") || what.has("observer")) { ++round;
+    plan_soon(); }
+});

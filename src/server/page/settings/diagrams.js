@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: MIT
+// Small pictures that are computed from the formulas they stand for.
+import {make, is_dark} from "../dom.js";
+import {viridis} from "../../../net/page/viridis.js";
+
+const picture = (width, height, ...parts) => make("svg", {viewBox: `0 0 ${width} ${height}`, class: "diagram",
+  "aria-hidden": "true"}, ...parts);
+const line = (points, attributes = {}) => make("polyline",
+  {points: points.map(p => p.map(v => v.toFixed(1)).join(",")).join(" "), fill: "none", stroke: "currentColor",
+  "stroke-width": 1.6, "stroke-linecap": "round", "stroke-linejoin": "round", ...attributes});
+const base = y => line([[1, y], [55, y]], {stroke: "var(--line2)", "stroke-width": 1});
+const tone = part => viridis(part, is_dark());
+
+// Who plays when, on two tactors that a stroke passes.
+export function algorithm_picture(name) {
+  const parts = [base(17), base(35)];
+  if (name === "park2016") {
+    for (let i = 0; i < 5; ++i) {
+      const w = (i + 0.5) / 5, a = [Math.sqrt(1 - w), Math.sqrt(w)];
+      a.forEach((v, k) => parts.push(make("rect", {x: 4 + i * 10, y: 17 + 18 * k - v * 15, width: 9, height: v * 15,
+        fill: tone(i / 5)})));
+    }
+  } else if (name === "tactile-brush") {
+    [[2, 17, 0.1], [34, 17, 0.75], [18, 35, 0.42]].forEach(([x, y, part]) => parts.push(make("path",
+      {d: `M${x} ${y}l4-14h13l4 14z`, fill: tone(part)})));
+  } else {
+    const areas = [v => Math.sqrt(1 - v), v => Math.sqrt(v)];
+    areas.forEach((f, k) => {
+      for (let i = 0; i < 26; ++i) parts.push(make("rect", {x: 2 + i * 2, y: 17 + 18 * k - f(i / 25) * 15, width: 2.2,
+        height: Math.max(0.01, f(i / 25) * 15), fill: tone(i / 25)}));
+    });
+  }
+  return picture(56, 36, ...parts);
+}
+// Amplitudes of two tactors while the point moves from the one to the other.
+const SHARES = {
+  "inverse-distance": v => { const a = 1 / Math.max(v, 0.02), b = 1 / Math.max(1 - v, 0.02); return Math.sqrt(a / (a + b)); },
+  "barycentric": v => 1 - v, "linear": v => 1 - v,
+  "log": v => Math.log(1 + (1 - v) * 9) / Math.log(10),
+  "gaussian": v => Math.exp(-((v * 1.8) ** 2) / 2),
+};
+export function phantom_picture(name) {
+  const f = SHARES[name] ?? SHARES.linear;
+  const curve = flipped => Array.from({length: 25}, (_, i) => [4 + i * 2, 32 - 27 * f(flipped ? 1 - i / 24 : i / 24)]);
+  return picture(56, 36, base(33), line(curve(false), {stroke: "var(--ink2)"}), line(curve(true)),
+    make("circle", {cx: 4, cy: 33, r: 2.5, fill: "currentColor"}), make("circle",
+    {cx: 52, cy: 33, r: 2.5, fill: "currentColor"}));
+}
+const WAVES = {
+  sine: t => Math.sin(2 * Math.PI * t), square: t => t % 1 < 0.5 ? 1 : -1, triangle: t => 1 - 4 * Math.abs((t + 0.25) % 1 - 0.5),
+  sawtooth: t => 2 * ((t + 0.5) % 1) - 1,
+  noise: t => Math.sin(37 * t) * 0.6 + Math.sin(61 * t + 1) * 0.4 + Math.sin(97 * t) * 0.3,
+};
+export function wave_picture(name) {
+  return picture(40, 22, line(Array.from({length: 81}, (_, i) => [2 + i * 0.45,
+    11 - 8 * Math.max(-1, Math.min(1, WAVES[name](i / 40)))])));
+}
+// Bursts and the interval between their onsets, to scale.
+export function timing_picture(burst_s, soa_s) {
+  const scale = 250 / Math.max(3 * soa_s, 2 * soa_s + burst_s), x = i => 22 + i * soa_s * scale;
+  const parts = [0, 1, 2].map(i => make("rect", {x: x(i), y: 34, width: Math.max(2, burst_s * scale - 1), height: 24,
+    fill: tone(0.2 + 0.25 * i), opacity: burst_s > soa_s ? 0.75 : 1}));
+  parts.push(line([[10, 58.5], [286, 58.5]], {stroke: "var(--line2)", "stroke-width": 1}),
+    line([[x(0), 28], [x(0), 22], [x(1), 22], [x(1), 28]], {stroke: "var(--ink2)", "stroke-width": 1.2}));
+  const word = (at, y, t) => make("text", {x: at, y, "text-anchor": "middle", "font-size": 11, fill: "var(--ink2)"}, t);
+  parts.push(word((x(0) + x(1)) / 2, 17, "interval"), word(x(0) + burst_s * scale / 2, 72, "burst"));
+  return picture(296, 80, ...parts);
+}
+// One burst with its carrier.
+export function envelope_picture(burst_s, attack_s, release_s, carrier_hz, kind) {
+  const rise = Math.min(0.5, attack_s / burst_s), fall = Math.min(0.5, release_s / burst_s);
+  const ramp = v => kind?.startsWith("linear") ? v : kind?.startsWith("exponential")
+    ? (Math.exp(3 * v) - 1) / (Math.exp(3) - 1) : 0.5 - 0.5 * Math.cos(Math.PI * v);
+  const at = v => Math.min(rise > 0 && v < rise ? ramp(v / rise) : 1, fall > 0 && v > 1 - fall ? ramp((1 - v) / fall) : 1);
+  const n = 600, cycles = Math.min(40, burst_s * carrier_hz);
+  const wave = Array.from({length: n + 1}, (_, i) => [14 + 268 * i / n,
+    40 - 30 * at(i / n) * Math.sin(2 * Math.PI * cycles * i / n)]);
+  const top = Array.from({length: 121}, (_, i) => [14 + 268 * i / 120, 40 - 30 * at(i / 120)]);
+  return picture(296, 80, line(wave, {stroke: "var(--ink3)", "stroke-width": 0.9}), line(top, {"stroke-width": 2}));
+}
+// Values over time, as a line with its area.
+export function spark(values, level = null) {
+  const most = Math.max(1e-9, ...values, level ?? 0), n = values.length;
+  if (n < 2) return picture(140, 26);
+  const points = values.map((v, i) => [140 * i / (n - 1), 24 - 22 * Math.min(1, v / most)]);
+  const area = [[0, 25], ...points, [140, 25]];
+  return make("svg", {viewBox: "0 0 140 26", preserveAspectRatio: "none", class: "spark", "aria-hidden": "true"},
+    make("path", {d: `M${area.map(p => p.map(v => v.toFixed(1)).join(" ")).join("L")}Z`, fill: "var(--felt-soft)"}),
+    line(points, {stroke: "var(--felt)", "stroke-width": 1.3, "vector-effect": "non-scaling-stroke"}),
+    level === null ? null : line([[0, 24 - 22 * level / most], [140, 24 - 22 * level / most]],
+      {stroke: "var(--ink)", "stroke-width": 1.3, "vector-effect": "non-scaling-stroke"}));
+}

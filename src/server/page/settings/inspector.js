@@ -1,0 +1,249 @@
+// SPDX-License-Identifier: MIT
+// Settings of the take. Options come from the service's table: those with a control of their own are named in OWN, all
+// others are made from their rows.
+import {state, changed, on_change, current_take, ceiling_dbfs} from "../state.js";
+import {by_id, make, icon} from "../dom.js";
+import {slider, choice, toggle, entry, button} from "./controls.js";
+import {set_option, end_edit, edit_stroke, edit_take} from "../takes/takes.js";
+import {predicted_key, LEAST_LEVEL_DB} from "../service/planner.js";
+import {algorithm_picture, phantom_picture, wave_picture, timing_picture, envelope_picture} from "./diagrams.js";
+import {ALGORITHMS, PHANTOMS, OPTION_NAMES, number_text, plain_name, seconds_text} from "../words.js";
+import {duration_s, length_mm, with_duration, rebuild, speeds_of, editable, trimmed} from "../takes/stroke.js";
+import {set_strength, strengths, set_speed} from "../time/curves.js";
+import {row, value, algorithm, own_stroke} from "./values.js";
+import {LEAST_S, MOST_S} from "../time/time_axis.js";
+
+const TAB_OF = {place: "method", timing: "timing", sound: "vibration", level: "vibration", output: "method", stroke: "timing"};
+const IN_METHOD = new Set(["algorithm", "phantom", "faces", "snap", "drop_points", "overlap", "compensate", "sigma_mm",
+  "sigma_v_mm_s", "observer"]);
+const OWN = new Set(["algorithm", "phantom", "soa", "burst", "waveform", "carrier", "attack", "release", "phase", "level_dbfs",
+  "duration", "speed"]);
+// Only one algorithm knows these.
+const ONLY = {snap: "tactile-brush", drop_points: "tactile-brush", overlap: "tactile-brush", soa: "park2016", burst: "park2016"};
+
+const ms = v => `${number_text(v * 1000, 0)} ms`;
+
+let controls = [], structure = "";
+
+// The panes.
+function algorithm_choice() {
+  return cards("Algorithm", "algorithm", row("algorithm")?.choices ?? Object.keys(ALGORITHMS), ALGORITHMS, algorithm_picture,
+    true);
+}
+function phantom_choice() {
+  return cards("Phantom: how tactors share a point", "phantom", row("phantom")?.choices ?? Object.keys(PHANTOMS), PHANTOMS,
+    phantom_picture, false);
+}
+function cards(label, name, ids, words, picture, large) {
+  const c = choice({label, visible_label: false, shape: "cards", get: () => value(name), set: v => set_option(name, v),
+    values: ids.map(id => {
+      const error = make("span", {class: "error"});
+      return {value: id, name: id, content: [picture(id), make("b", {}, words[id]?.[0] ?? plain_name(id)), error,
+        make("p", {}, words[id]?.[1] ?? "")],
+        update: () => { error.textContent = predicted_text(name, id); }};
+    })});
+  c.element.classList.toggle("large", large);
+  return {element: make("section", {}, make("h3", {}, label, large && make("span", {}, "predicted error")), c.element),
+    update: c.update};
+}
+function predicted_text(name, id) {
+  const take = current_take();
+  if (!take) return "";
+  const e = value(name) === id ? state.plan?.errors : state.predicted.get(predicted_key(take, name, id));
+  return !e ? "" : e.refused ? "not possible" : typeof e.rms_error_mm === "number" ? `${number_text(e.rms_error_mm)} mm` : "";
+}
+
+function pace_controls() {
+  const kinds = [["even", "Even"], ["soft", "Soft ends"], ["reach", "Like a reach"], ["drawn", "As drawn"]];
+  const duration = slider({label: "Duration", least: LEAST_S, most: MOST_S, log: true, get: () => own_stroke()
+    ? duration_s(own_stroke()) : 1,
+    set: v => edit_stroke(s => with_duration(s, +v.toPrecision(3)), "duration"), done: end_edit, text: v => v < 1
+      ? ms(v) : seconds_text(v)});
+  const along = make("p", {class: "hint-text"});
+  const movement = choice({label: "Movement", get: () => own_stroke() ? editable(own_stroke()).pace.kind : "even",
+    set: kind => edit_stroke(s => rebuild({...s, drawn: s.drawn ?? (s.pace.kind === "drawn" ? s.pace : null),
+      pace: kind === "drawn" ? s.drawn ?? s.pace : {kind}})),
+    values: kinds.map(([v, name]) => ({value: v, name, update: b => { b.hidden = v === "drawn" && !can_be_drawn(); }}))});
+  const parts = ["at the start", "a quarter on", "half-way", "three quarters on", "at the end"];
+  const speeds = make("details", {class: "more"}, make("summary", {}, "Speed and strength along the path"));
+  const rows = parts.map((word, i) => slider({label: `Speed ${word}`, least: 0.1, most: 5, log: true,
+    get: () => own_stroke() ? speeds_of(editable(own_stroke()).pace)[i]?.[1] ?? 1 : 1, set: v => set_speed(i, v, `speed ${i}`),
+      done: end_edit,
+    text: v => `${Math.round(100 * v)} %`}));
+  const strong = make("div"), made = {count: 0, list: []};
+  function update() {
+    const s = own_stroke();
+    duration.update(); movement.update(); rows.forEach(r => r.update());
+    along.textContent = s ? `${Math.round(length_mm(s.timed) / duration_s(s))} mm/s along ${Math.round(length_mm(s.timed))} mm` : "";
+    const n = strengths().length;
+    if (n !== made.count) {
+      made.count = n;
+      made.list = strengths().map((_, i) => slider({label: `Strength, point ${i + 1}`, least: 0, most: 1,
+        get: () => strengths()[i]?.[1] ?? 1,
+        set: v => set_strength(i, v, `strength ${i}`), done: end_edit, text: v => `${Math.round(100 * v)} %`}));
+      strong.replaceChildren(...made.list.map(c => c.element));
+    }
+    made.list.forEach(c => c.update());
+  }
+  speeds.append(...rows.map(r => r.element), strong);
+  update();
+  return {element: make("section", {}, make("h3", {}, "Stroke"), duration.element, along, movement.element, speeds), update};
+}
+// The strokes of the take: which one is edited, when it starts, and what of it is left.
+function stroke_controls() {
+  const take = current_take(), many = take.strokes.length > 1;
+  const change = f => edit_take(t => ({strokes: t.strokes.map((s, i) => i === state.stroke ? f(s) : s)}));
+  const which = many && choice({label: "Stroke", shape: "segments", get: () => state.stroke,
+    set: i => { Object.assign(state, {stroke: i, knot: -1}); changed("take"); },
+    values: take.strokes.map((s, i) => ({value: i, name: s.name}))});
+  const text = v => v === null ? "" : +v.toFixed(3);
+  const own = f => own_stroke() ? text(f(own_stroke())) : "";
+  const list = [
+    entry({label: "Starts at", unit: "s", numeric: true, get: () => own(s => s.start_s),
+      set: v => change(s => ({...s, start_s: Math.max(0, v ?? 0)}))}),
+    entry({label: "Cut off its start", unit: "s", numeric: true, get: () => "", hint: "0", set: v => v > 0
+      && change(s => trimmed(s, Math.min(v, duration_s(s) - LEAST_S), duration_s(s)))}),
+    entry({label: "Cut off its end", unit: "s", numeric: true, get: () => "", hint: "0", set: v => v > 0
+      && change(s => trimmed(s, 0, Math.max(LEAST_S, duration_s(s) - v)))})];
+  const bin = many && button("Delete this stroke", "bin",
+    () => edit_take(t => ({strokes: t.strokes.filter((_, i) => i !== state.stroke)})));
+  const parts = [which?.element, ...list.map(c => c.element), bin].filter(Boolean);
+  return {element: make("details", {class: "more", open: many}, make("summary", {}, "Place in time"), ...parts),
+    update: () => { if (which) which.update(); list.forEach(c => c.update()); }};
+}
+const can_be_drawn = () => { const s = own_stroke(); return s && (s.drawn || editable(s).pace.kind === "drawn"); };
+
+const law_ms = burst_s => ((value("slope") ?? 0.32) * burst_s + (value("intercept") ?? 0.0473));
+function burst_controls() {
+  const soa = () => value("soa") ?? 0.07;
+  const burst = () => value("burst") ?? (soa() - (value("intercept") ?? 0.0473)) / (value("slope") ?? 0.32);
+  const picture = make("div", {class: "picture"}), law = make("div", {class: "law"});
+  const bursts = slider({label: OPTION_NAMES.burst, least: 0.005, most: 0.4, step: 0.001, get: burst, done: end_edit, text: ms,
+    set: v => { set_option("burst", v, "burst"); }});
+  const interval = slider({label: OPTION_NAMES.soa, least: 0.02, most: 0.4, step: 0.001, get: soa, done: end_edit, text: ms,
+    set: v => { if (value("burst") === null && v > 0.07) set_option("burst", +burst().toFixed(4), "soa");
+      set_option("soa", v, "soa"); }});
+  function update() {
+    bursts.update(); interval.update();
+    picture.replaceChildren(timing_picture(Math.max(0.001, burst()), soa()));
+    const wanted = law_ms(burst()), off = Math.round((soa() - wanted) * 1000);
+    law.classList.toggle("off", off !== 0);
+    const sum = `${+(value("slope") ?? 0.32).toFixed(3)} × ${Math.round(burst() * 1000)} + ${Math.round((value("intercept") ?? 0.0473) * 1000)} = ${Math.round(wanted * 1000)} ms`;
+    law.replaceChildren(icon(off === 0 ? "check" : "warn"), off === 0 ? make("span", {}, "On the law: ", make("b", {}, sum))
+      : make("span", {}, `${Math.abs(off)} ms ${off < 0 ? "shorter than the law: may blur" : "longer than the law: may be felt as taps"}`),
+      ...off === 0 ? [] : [make("button", {type: "button", class: "button", onclick: () => set_option("soa",
+        +wanted.toFixed(4))}, `Use ${Math.round(wanted * 1000)} ms`)]);
+  }
+  update();
+  return {element: make("section", {}, make("h3", {}, "Bursts"), picture, bursts.element, interval.element, law), update};
+}
+
+const WAVE_NAMES = [["sine", "Sine"], ["square", "Square"], ["triangle", "Triangle"], ["sawtooth", "Saw"], ["noise", "Noise"]];
+function vibration_controls() {
+  const kind = () => String(value("waveform") ?? "sine").split(":")[0];
+  const wave = choice({label: "Waveform", shape: "waves", get: kind, set: v => set_option("waveform", v === "noise"
+    ? "noise:100-400" : v),
+    values: WAVE_NAMES.map(([v, name]) => ({value: v, name, content: [wave_picture(v), name]}))});
+  const noise = entry({label: "Noise from – to, Hz", get: () => String(value("waveform")).split(":")[1] ?? "",
+    set: v => set_option("waveform", v ? `noise:${v}` : null), hint: "100-400"});
+  const carrier = slider({label: "Carrier", least: 20, most: 1000, log: true, step: 1, get: () => value("carrier") ?? 250,
+    set: v => set_option("carrier", v, "carrier"), done: end_edit,
+    text: v => `${Math.round(v)} Hz`});
+  const near = make("p", {class: "hint-text"}, "Skin is most sensitive near 250 Hz.");
+  const picture = make("div", {class: "picture"});
+  const attack = () => value("attack") ?? value("ramp") ?? 0.002, release = () => value("release") ?? attack();
+  const rise = slider({label: "Attack", least: 0, most: 0.05, step: 0.0005, get: attack,
+    set: v => set_option("attack", v, "attack"), done: end_edit, text: v => `${number_text(v * 1000)} ms`});
+  const fall = slider({label: "Release", least: 0, most: 0.05, step: 0.0005, get: release,
+    set: v => set_option("release", v, "release"), done: end_edit, text: v => `${number_text(v * 1000)} ms`});
+  const phase_row = row("phase"), through = phase_row?.choices?.[0];
+  const phase = toggle({label: "One carrier through the stroke", hint: "Off: it starts again with each burst",
+    get: () => (value("phase") ?? through) === through, set: on => set_option("phase", on ? null : phase_row?.choices?.[1])});
+  function update() {
+    [wave, noise, carrier, rise, fall, phase].forEach(c => c.update());
+    noise.element.hidden = kind() !== "noise";
+    const soa = value("soa") ?? 0.07, burst = value("burst") ?? Math.max(0.01,
+      (soa - (value("intercept") ?? 0.0473)) / (value("slope") ?? 0.32));
+    picture.replaceChildren(envelope_picture(algorithm() === "park2016" ? burst : 0.07, attack(), release(), value("carrier")
+      ?? 250, value("envelope")));
+  }
+  update();
+  return {element: make("section", {}, wave.element, noise.element, carrier.element, near,
+    make("h3", {class: "apart"}, "Envelope of a burst"), picture, rise.element, fall.element, phase.element), update};
+}
+
+// A control made from a row of the table.
+function from_row(o) {
+  const label = OPTION_NAMES[o.name] ?? plain_name(o.name), get = () => value(o.name), set = v => set_option(o.name, v);
+  const hint = o.help.charAt(0).toUpperCase() + o.help.slice(1);
+  let c;
+  if (o.kind === "flag") c = toggle({label, hint, get, set});
+  else if (o.kind === "choice") c = choice({label, get, set, values: o.choices.map(v => ({value: v, name: plain_name(v)}))});
+  else c = entry({label, get, set, unit: o.unit, numeric: o.kind !== "text", hint: o.default === null ? "" : String(o.default)});
+  c.element.title = hint;
+  return c;
+}
+function others(tab) {
+  const list = state.options.filter(o => !OWN.has(o.name) && (IN_METHOD.has(o.name) ? "method" : TAB_OF[o.group]
+    ?? "method") === tab
+    && (!ONLY[o.name] || ONLY[o.name] === algorithm()));
+  if (!list.length) return null;
+  const made = list.map(from_row);
+  const set = list.filter(o => current_take()?.options[o.name] !== undefined).length;
+  return {element: make("details", {class: "more", open: set > 0}, make("summary", {}, "More settings"),
+    ...made.map(c => c.element)), update: () => made.forEach(c => c.update())};
+}
+
+function observer_choice() {
+  const o = row("observer");
+  const names = o?.choices ?? ["centroid", "low-speed"];
+  return choice({label: "Predicted by", get: () => state.observer ?? o?.default ?? "centroid",
+    set: v => { state.observer = v; changed("observer"); },
+    values: names.map(v => ({value: v, name: plain_name(v)}))});
+}
+
+function build() {
+  const now = [state.tab, state.options.length, algorithm(), current_take()?.strokes.length ?? -1,
+    current_take()?.strokes.map(s => s.name).join() ?? "", document.documentElement.dataset.theme].join();
+  if (now === structure) return;
+  structure = now;
+  const section = {
+    method: () => [algorithm_choice(), phantom_choice(), observer_choice(), others("method")],
+    timing: () => [own_stroke() && pace_controls(), own_stroke() && stroke_controls(), algorithm() === "park2016"
+      && burst_controls(), others("timing")],
+    vibration: () => [vibration_controls(), others("vibration")],
+  }[state.tab]();
+  controls = section.filter(Boolean);
+  by_id("pane").replaceChildren(...controls.map(c => c.element));
+  by_id("pane").setAttribute("aria-labelledby", `tab-${state.tab}`);
+  for (const b of document.querySelectorAll("[data-tab]")) {
+    b.setAttribute("aria-selected", b.dataset.tab === state.tab);
+    b.tabIndex = b.dataset.tab === state.tab ? 0 : -1;
+  }
+}
+for (const b of document.querySelectorAll("[data-tab]")) b.addEventListener("click",
+  () => { state.tab = b.dataset.tab; changed("tab"); });
+by_id("tabs").addEventListener("keydown", e => {
+  const all = [...document.querySelectorAll("[data-tab]")], step = {ArrowLeft: -1, ArrowRight: 1}[e.key];
+  if (!step) return;
+  e.preventDefault();
+  const next = all[(all.indexOf(document.activeElement) + step + all.length) % all.length];
+  next.focus();
+  next.click();
+});
+
+// The level: a part of the owner's ceiling.
+const level = slider({label: "Level", least: LEAST_LEVEL_DB, most: 0, step: 0.5, get: () => state.level_db,
+  set: v => { state.level_db = v; changed("level"); },
+  text: v => [`${Math.round(100 * 10 ** (v / 20))} %`, v === 0 ? "0 dB" : `${number_text(v)} dB`]});
+by_id("level").prepend(level.element);
+
+on_change(what => {
+  const all = ["take", "plan", "predicted", "tab", "array", "options", "theme", "level", "observer", "drawing"];
+  if (!all.some(w => what.has(w))) return;
+  state.shape = algorithm();
+  build();
+  controls.forEach(c => c.update());
+  level.update();
+  by_id("ceiling").textContent = `ceiling ${number_text(ceiling_dbfs(), 0)} dBFS`;
+});

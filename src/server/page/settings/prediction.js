@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: MIT
+// What is predicted to be felt, and what is wrong with the take, in plain words, with what mends it.
+import {state, changed, on_change, current_take} from "../state.js";
+import {by_id, make, icon} from "../dom.js";
+import {set_option, fit_take} from "../takes/takes.js";
+import {too_strong_db, lower_level} from "../service/planner.js";
+import {spark} from "./diagrams.js";
+import {place_word, even_word, number_text, plain_name} from "../words.js";
+import {duration_s, length_mm, outside_mm, interpolate} from "../takes/stroke.js";
+import {array} from "../drawing/view.js";
+import {felt_speeds} from "../time/curves.js";
+import {algorithm, own_stroke} from "./values.js";
+
+const OUTSIDE_MM = 0.5;
+
+// Predictions.
+function show_predicted() {
+  const e = state.plan?.errors, box = by_id("predicted");
+  const numbers = e && typeof e.rms_error_mm === "number" ? [
+    tile(number_text(e.rms_error_mm), "mm off", `${place_word(e.rms_error_mm)}, RMS`, spark(errors_over_time())),
+    e.speed_cv === undefined || e.speed_cv === null ? tile("–", "", "speed is not predicted", spark([]))
+      : tile(`${Math.round(100 / (1 + e.speed_cv))}`, "% even", `${even_word(e.speed_cv)}, CV ${e.speed_cv.toFixed(2)}`,
+        spark(felt_speed(), mean_speed()))]
+    : [make("p", {class: "hint-text"}, state.plan_fault ? "There is no plan." : "Draw, and the prediction shows here.")];
+  box.replaceChildren(...numbers);
+  by_id("pill").hidden = typeof e?.rms_error_mm !== "number";
+  by_id("pill-text").textContent = e && typeof e.rms_error_mm === "number" ? `${number_text(e.rms_error_mm)} mm off` : "";
+}
+const tile = (figure, unit, word, picture) => make("div", {class: "tile"}, make("div", {}, make("b", {}, figure),
+  make("small", {}, unit)), make("p", {}, word), picture);
+function errors_over_time() {
+  const take = current_take(), plan = state.plan;
+  if (!take || !plan?.felt) return [];
+  const felt = plan.felt, step = Math.max(1, Math.floor(felt.length / 80)), found = [];
+  (plan.strokes ?? []).forEach((s, i) => {
+    const target = take.strokes[i];
+    if (!target) return;
+    for (let k = s.felt_first; k < s.felt_first + s.felt_count; k += step) {
+      const q = interpolate(target.timed, felt[k][0] - s.start_s);
+      found.push(Math.hypot(q[1] - felt[k][1], q[2] - felt[k][2]));
+    }
+  });
+  return found;
+}
+const felt_speed = () => felt_speeds(state.plan).flat().map(r => r[1]);
+const mean_speed = () => { const s = own_stroke(); return s ? length_mm(s.timed) / duration_s(s) : null; };
+
+// Warnings in plain words, with what mends them.
+function show_warnings() {
+  const found = [], take = current_take();
+  if (state.plan_fault) found.push({text: plain_fault(state.plan_fault), buttons: mending(state.plan_fault)});
+  state.outside = [];
+  if (array && take && !state.drawing) take.strokes.forEach(s => {
+    const worst = s.timed.reduce((w, q) => { const off = outside_mm(array.edge, [q[1], q[2]]);
+      return off > w.off ? {off, place: [q[1], q[2]]} : w; }, {off: OUTSIDE_MM, place: null});
+    if (!worst.place) return;
+    state.outside.push(worst);
+    if (take.leaves_array) return;
+    found.push({text: `“${take.strokes.length === 1 ? take.name : s.name}” is up to ${worst.off.toFixed(0) || 1} mm outside the array. There it is felt at the edge.`,
+      buttons: [["Fit to array", () => fit_take(array.edge)], ["Leave it", leave]]});
+  });
+  for (const w of state.plan?.warnings ?? []) if (!/outside/.test(w)) found.push({text: w, buttons: []});
+  const some = found.slice(0, 3);
+  by_id("warnings").replaceChildren(...some.map(w => make("div", {class: "warning"}, icon("warn"),
+    make("div", {}, make("p", {}, w.text), w.buttons.length > 0 && make("div", {class: "row"}, ...w.buttons.map(([t, f], i) =>
+      make("button", {type: "button", class: i === 0 ? "button outlined" : "button", onclick: f}, t)))))));
+  by_id("pill").dataset.warn = found.length > 0;
+  changed("frame");
+}
+function leave() {
+  const take = current_take();
+  state.takes = state.takes.map(t => t === take ? {...t, leaves_array: true} : t);
+  changed("take");
+}
+// Says a refusal for people: what is too much, and not in the terms of files.
+function plain_fault(f) {
+  const {what = "", why, hint} = f.data ?? {};
+  if (!why) return f.message;
+  const by = too_strong_db(f);
+  if (by > 0) return `Together the strokes are ${number_text(by)} dB stronger than ${/^tactor \d+/.exec(why)?.[0] ?? "a tactor"} may be driven.`;
+  if (/no line of the grid/.test(why)) return "The Tactile Brush begins and ends on lines of the grid, and this stroke does not.";
+  const about = what === "toml" ? "" : `${plain_name(what.replace(/^options\./, ""))}: `;
+  return `${about}${why}${hint ? ` (${hint})` : ""}.`;
+}
+const to_continuous = ["Use Continuous", () => set_option("algorithm", "continuous")];
+function mending(f) {
+  const name = /^options\.(\w+)/.exec(f.data?.what ?? "")?.[1];
+  if (too_strong_db(f) > 0) return [["Lower the level", () => lower_level(f)]];
+  if (/options\.snap/.test(f.data?.hint ?? f.data?.why ?? "")) return [["Move its ends there", () => set_option("snap", true)], to_continuous];
+  const list = name ? [["Use the usual value", () => set_option(name, null)]] : [];
+  if (algorithm() !== "continuous") list.push(to_continuous);
+  return list;
+}
+
+on_change(what => {
+  if (["plan", "take", "array", "drawing"].some(w => what.has(w))) { show_predicted(); show_warnings(); }
+});

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: MIT
+// What the page knows, and who is told of changes.
+
+export const state = {
+  // The service.
+  hello: null, link: "connecting", stream: {state: "", reason: ""}, status: null, retry_s: 0, slow: false, asks_token: "",
+  stopped: null,         // {name, at}
+  touches: new Map(),    // of other people, by stroke: {x, y, at}
+  dbfs: [],              // of each tactor, as it is driven
+  options: [],           // the rows of the table of options that a client may give
+  // Takes.
+  takes: [], current: null, storage_lasts: true,
+  stroke: 0,             // the one that is edited
+  knot: -1, tool: "draw", feel: true, append: false, level_db: 0, // below the ceiling
+  // What is drawn, predicted and played.
+  drawing: null,         // {began, tracks}
+  plan: null, plan_fault: null, plan_of: null, predicted: new Map(),
+  playing: null,         // {began_ms, total_s, numbers, felt, loop}
+  at_s: 0, loop: false, speaker: false, hot: -1,
+  tab: "method", sheet: "", show_speed: true, show_strength: true,
+};
+
+const listeners = [];
+let asked = new Set(), waiting = false;
+
+// Calls f(changes) at most once a frame, with the set of what has changed.
+export function on_change(f) { listeners.push(f); }
+export function changed(...what) {
+  what.forEach(w => asked.add(w));
+  if (waiting) return;
+  waiting = true;
+  // A tab that is not shown has no frames.
+  if (document.hidden) setTimeout(flush, 0); else requestAnimationFrame(flush);
+}
+function flush() {
+  waiting = false;
+  const now = asked;
+  asked = new Set();
+  listeners.forEach(f => f(now));
+}
+
+// Messages: a toast that goes away, and a banner that stays.
+let toast = null;
+export function on_toast(f) { toast = f; }
+export function say(text) { toast?.(text); }
+
+export const current_take = () => state.takes.find(t => t.id === state.current) ?? null;
+export const ceiling_dbfs = () => state.hello?.max_level_dbfs ?? -12;

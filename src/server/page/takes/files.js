@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: MIT
+// Files that come in, and files that go out: read and written by the service, so that they are the tool's.
+import {state, current_take, say} from "../state.js";
+import {by_id, make} from "../dom.js";
+import {call, is_connected} from "../service/connection.js";
+import {add_take, request_of} from "./takes.js";
+import {strokes_toml, stroke_csv} from "./stroke.js";
+import {level_dbfs} from "../service/planner.js";
+import {make_qr} from "./qr.js";
+
+const MOST_BYTES = 700 << 10; // a message is at most 1 MiB
+const KINDS = [["toml", "Stroke", "for the tool, a study and this page"], ["csv", "Timed points",
+  "a table: time, place, intensity"], ["svg", "Figure, SVG", "for a paper, to be edited"],
+  ["png", "Figure, PNG", ""], ["pdf", "Figure, PDF", ""], ["wav", "Samples", "exactly what each channel plays"],
+    ["json", "Plan", "all bursts as numbers"]];
+
+export async function open_files(files) {
+  for (const file of files) {
+    try {
+      if (file.size > MOST_BYTES) throw new Error(`${file.name} is larger than ${MOST_BYTES >> 10} KiB`);
+      const r = await call("import", {name: file.name, text: await file.text()});
+      add_take(r.points.map((timed, i) => ({name: r.strokes[i].name, start_s: r.strokes[i].start_s, timed})),
+        {name: file.name.replace(/\.[^.]*$/, "").slice(0, 60), origin: "file"});
+      say(r.warnings.length ? r.warnings[0] : `Opened “${file.name}”`);
+    } catch (e) {
+      state.fault = `“${file.name}” was not opened: ${e.message}`;
+      say(state.fault);
+    }
+  }
+}
+by_id("open").addEventListener("click", () => by_id("file").click());
+by_id("file").addEventListener("change", () => { open_files([...by_id("file").files]); by_id("file").value = ""; });
+let over = 0;
+addEventListener("dragenter", e => { if (e.dataTransfer?.types.includes("Files")) { ++over; by_id("drop").hidden = false; } });
+addEventListener("dragleave", () => { over = Math.max(0, over - 1); if (!over) by_id("drop").hidden = true; });
+addEventListener("dragover", e => e.preventDefault());
+addEventListener("drop", e => { e.preventDefault(); over = 0; by_id("drop").hidden = true;
+  open_files([...e.dataTransfer?.files ?? []]); });
+
+const file_name = take => take.name.replace(/[^\p{L}\p{N} _-]/gu, "").replace(/[^\x20-\x7e]/g, "").trim().replace(/ +/g,
+  "-").toLowerCase() || "take";
+function give(name, blob) {
+  const a = make("a", {download: name, href: URL.createObjectURL(blob)});
+  a.click();
+  setTimeout(() => URL.revokeObjectURL(a.href), 10000);
+}
+const decoded = text => Uint8Array.from(atob(text), c => c.charCodeAt(0));
+
+export async function save_as(kind) {
+  const take = current_take();
+  if (!take?.strokes.length) return say("There is nothing to save yet");
+  by_id("p-save").hidePopover();
+  try {
+    if (is_connected()) {
+      const r = await call("export", {...request_of(take, level_dbfs()), as: kind, name: file_name(take)});
+      give(r.name, new Blob([decoded(r.base64)], {type: r.mime}));
+    } else if (kind === "toml") give(`${file_name(take)}.toml`, new Blob([strokes_toml(take.strokes)],
+      {type: "application/toml"}));
+    else if (kind === "csv" && take.strokes.length === 1) give(`${file_name(take)}.csv`,
+      new Blob([stroke_csv(take.strokes[0])], {type: "text/csv"}));
+    else throw new Error("without a connection only a stroke, as TOML or CSV, can be saved");
+    say(`Saved “${take.name}”`);
+  } catch (e) { say(e.message); }
+}
+by_id("save-list").replaceChildren(...KINDS.map(([kind, name, why]) => make("button",
+  {type: "button", class: "save-item", "data-kind": kind, onclick: () => save_as(kind)}, make("b", {}, name),
+  make("small", {}, why), make("span", {}, `.${kind}`))));
+by_id("p-save").addEventListener("toggle", async e => {
+  if (e.newState !== "open") return;
+  const take = current_take();
+  by_id("command").textContent = take?.strokes.length ? "…" : "There is nothing to save yet.";
+  if (!take?.strokes.length) return;
+  try { by_id("command").textContent = (await call("export", {...request_of(take, level_dbfs()), as: "toml",
+    name: file_name(take)})).command; } catch (x) { by_id("command").textContent = x.message; }
+});
+async function copy(id) {
+  try { await navigator.clipboard.writeText(by_id(id).textContent); say("Copied"); } catch {
+    getSelection().selectAllChildren(by_id(id));
+    say("Marked; copy it with Ctrl C");
+  }
+}
+by_id("copy-command").addEventListener("click", () => copy("command"));
+by_id("copy-link").addEventListener("click", () => copy("link"));
+
+// A link, with the token, for a phone beside the array.
+by_id("p-share").addEventListener("toggle", e => {
+  if (e.newState !== "open") return;
+  const here = /^(localhost|127\.|\[::1\])/.test(location.host);
+  by_id("link").textContent = location.href;
+  by_id("share-text").textContent = here ? "This address is this computer's own. For a phone, start the service with " +
+    "--http 0.0.0.0:4003 and a token_file, and open the page by the computer's address."
+    : location.hash.includes("token=") ? "The link has the token: who has it can draw." : "Open it on a phone in the same network.";
+  try {
+    const qr = make_qr(location.href);
+    let d = "";
+    for (let y = 0; y < qr.size; ++y) for (let x = 0; x < qr.size; ++x) if (qr.dark(y, x)) d += `M${x} ${y}h1v1h-1z`;
+    by_id("qr").replaceChildren(make("svg", {viewBox: `0 0 ${qr.size} ${qr.size}`, role: "img",
+      "aria-label": "QR code of the link", "shape-rendering": "crispEdges"}, make("path", {d, fill: "#000"})));
+  } catch { by_id("qr").replaceChildren(make("p", {class: "hint-text"}, "The link is too long for a QR code.")); }
+});

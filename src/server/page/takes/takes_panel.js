@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: MIT
+// The list of takes and examples.
+import {state, on_change, say} from "../state.js";
+import {by_id, make, icon, is_dark, colour} from "../dom.js";
+import {choose_take, rename_take, duplicate_take, delete_take, add_take, fit_take, take_s} from "./takes.js";
+import {array} from "../drawing/view.js";
+import {viridis} from "../../../net/page/viridis.js";
+import {PRESETS, plain_name, seconds_text} from "../words.js";
+import {call} from "../service/connection.js";
+
+const SIZE = 48;
+const rows = new Map(); // by take: {take, element}
+const seen = new IntersectionObserver(list => list.filter(e => e.isIntersecting).forEach(e => { seen.unobserve(e.target);
+  e.target.draw?.(); }), {rootMargin: "300px"});
+
+// A small picture of strokes over the tactors, drawn when it comes into view.
+function thumb(strokes) {
+  const c = make("canvas", {class: "thumb", width: SIZE * 2, height: SIZE * 2, "aria-hidden": "true"});
+  c.draw = () => draw(c, strokes);
+  seen.observe(c);
+  return c;
+}
+function draw(c, strokes) {
+  if (!array) return;
+  const p = c.getContext("2d"), side = Math.max(...array.box.size, 1), scale = SIZE * 2 * 0.68 / side;
+  const at = (x, y) => [SIZE + (x - array.box.middle[0]) * scale, SIZE + (y - array.box.middle[1]) * scale];
+  p.clearRect(0, 0, c.width, c.height);
+  p.fillStyle = colour("line2");
+  for (const q of array.places) { p.beginPath(); p.arc(...at(...q), 3.5, 0, 7); p.fill(); }
+  p.lineWidth = 5; p.lineCap = "round";
+  const total = Math.max(0.01, ...strokes.map(s => s.start_s + s.timed.at(-1)[0]));
+  for (const s of strokes) {
+    const step = Math.max(1, Math.floor(s.timed.length / 40));
+    for (let i = 0; i + 1 < s.timed.length; i += step) {
+      const a = s.timed[i], b = s.timed[Math.min(s.timed.length - 1, i + step)];
+      p.strokeStyle = viridis((s.start_s + a[0]) / total, is_dark());
+      p.beginPath(); p.moveTo(...at(a[1], a[2])); p.lineTo(...at(b[1], b[2])); p.stroke();
+    }
+  }
+}
+const facts = t => `${t.strokes.length > 1 ? `${t.strokes.length} strokes` : t.origin}, ${seconds_text(take_s(t))}`;
+
+function row_of(take) {
+  const kept = rows.get(take.id);
+  if (kept?.take === take) return kept.element;
+  const element = make("li", {}, make("button", {type: "button", class: "take", onclick: () => choose_take(take.id)},
+    thumb(take.strokes), make("span", {}, make("b", {}, take.name), make("small", {}, facts(take)))),
+    make("button", {type: "button", class: "button more-button", "aria-label": `More about ${take.name}`,
+      onclick: e => menu(take, e.currentTarget)}, icon("more")));
+  rows.set(take.id, {take, element});
+  return element;
+}
+function menu(take, at) {
+  const m = by_id("p-take"), item = (text, name, f) => make("button", {type: "button", class: "button",
+    onclick: () => { m.hidePopover(); f(); }}, icon(name), text);
+  m.replaceChildren(item("Rename", "rename", () => rename(take)), item("Duplicate", "copy", () => duplicate_take(take.id)),
+    item("Fit to array", "all", () => { choose_take(take.id); if (array && take.strokes.length) fit_take(array.edge); }),
+    item("Delete", "bin", () => delete_take(take.id)));
+  m.showPopover();
+  const r = at.getBoundingClientRect();
+  m.style.inset = `${Math.min(innerHeight - 204, r.bottom + 4)}px auto auto ${Math.max(8, Math.min(innerWidth - 200, r.right - 190))}px`;
+}
+function rename(take) {
+  const li = rows.get(take.id).element, input = make("input", {class: "rename", type: "text", "aria-label": "Name",
+    maxlength: 60, ".value": take.name});
+  const end = keep => { input.remove(); if (keep) rename_take(take.id, input.value); };
+  input.addEventListener("keydown", e => { if (e.key === "Enter") input.blur();
+    if (e.key === "Escape") { e.stopPropagation(); input.value = take.name; input.blur(); } });
+  input.addEventListener("blur", () => end(input.value !== take.name), {once: true});
+  li.append(input);
+  input.focus();
+  input.select();
+}
+
+let listed = [];
+function show_takes() {
+  const list = by_id("takes"), now = state.takes;
+  if (listed.length !== now.length || now.some((t, i) => t !== listed[i])) {
+    const elements = now.map(row_of), wanted = new Set(now.map(t => t.id));
+    for (const id of [...rows.keys()]) if (!wanted.has(id)) rows.delete(id);
+    // Only what differs is moved, which keeps a list of a thousand quick.
+    elements.forEach((e, i) => { if (list.children[i] !== e) list.insertBefore(e, list.children[i] ?? null); });
+    while (list.children.length > elements.length) list.lastChild.remove();
+    listed = now;
+  }
+  for (const b of list.querySelectorAll('[aria-current="true"]')) b.removeAttribute("aria-current");
+  rows.get(state.current)?.element.firstChild.setAttribute("aria-current", "true");
+  by_id("no-takes").hidden = now.length > 0;
+}
+export function draw_thumbs() { for (const c of document.querySelectorAll(".thumb")) c.draw?.(); }
+
+// Examples: the presets that fit this array.
+const examples = new Map();
+export async function show_examples() {
+  const found = [];
+  for (const name of state.hello.presets) {
+    try {
+      const r = await call("import", {stroke: name});
+      const strokes = r.points.map((timed, i) => ({name: r.strokes[i].name, start_s: r.strokes[i].start_s, timed}));
+      if (strokes.flatMap(s => s.timed).every(q => inside(q))) { examples.set(name, strokes); found.push(name); }
+    } catch (e) { if (e.code === 0) return; }
+  }
+  by_id("examples").replaceChildren(...found.map(name => make("li", {}, make("button",
+    {type: "button", class: "take", onclick: () => open_example(name)}, thumb(examples.get(name)),
+    make("span", {}, make("b", {}, PRESETS[name] ?? plain_name(name)), make("small", {}, name))))));
+}
+const inside = q => q[1] >= array.box.least[0] - 1 && q[1] <= array.box.most[0] + 1 && q[2] >= array.box.least[1] - 1
+  && q[2] <= array.box.most[1] + 1;
+export function open_example(name) {
+  const id = name ?? examples.keys().next().value;
+  if (!examples.has(id)) return say("There is no example for this array");
+  add_take(examples.get(id), {name: PRESETS[id] ?? plain_name(id), origin: id});
+}
+on_change(what => {
+  if (what.has("takes") || what.has("take")) show_takes();
+  if (what.has("theme") || what.has("array")) draw_thumbs();
+});

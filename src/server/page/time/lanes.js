@@ -1,0 +1,171 @@
+// SPDX-License-Identifier: MIT
+// Who plays when: a ruler, the strokes as clips, a lane for each tactor. The lanes are drawn again only when something
+// has changed; the moment is drawn over them each frame.
+import {state, changed, current_take} from "../state.js";
+import {colour, is_dark} from "../dom.js";
+import {array} from "../drawing/view.js";
+import {viridis} from "../../../net/page/viridis.js";
+import {full, mini, total, shown, left, right, x_of, RULER, CLIP, CURVES} from "./time_axis.js";
+import {draw_curves} from "./curves.js";
+import {end_s} from "../takes/stroke.js";
+import {look_at} from "../service/player.js";
+import {seconds_text} from "../words.js";
+
+function lane_height(l) {
+  const n = Math.max(1, array?.places.length ?? 1);
+  return l.mini ? (l.height - 16) / n : Math.max(3, (l.height - RULER - CLIP - CURVES - 16) / n);
+}
+const lanes_top = l => l.mini ? 8 : RULER + CLIP + 8;
+function draw_layer(l) {
+  const p = l.layer.getContext("2d");
+  p.setTransform(l.dpr, 0, 0, l.dpr, 0, 0);
+  p.clearRect(0, 0, l.width, l.height);
+  if (!array) return;
+  const n = array.places.length, h = lane_height(l), top = lanes_top(l), end = l.width - right(l);
+  p.font = `11px ${getComputedStyle(document.body).fontFamily}`;
+  if (!l.mini) draw_ruler(p, l, top + n * h);
+  for (let i = 0; i < n; ++i) {
+    const y = top + (i + 1) * h;
+    if (l.mini) { p.fillStyle = colour("well"); p.fillRect(left(l), y - h * 0.8, end - left(l), Math.max(1, h * 0.6)); continue; }
+    p.strokeStyle = colour(i === state.hot ? "ink2" : "grid");
+    p.lineWidth = 1;
+    p.beginPath(); p.moveTo(left(l), y - 0.5); p.lineTo(end, y - 0.5); p.stroke();
+    p.textAlign = "right";
+    p.fillStyle = colour(i === state.hot ? "ink" : "ink2");
+    p.font = `${i === state.hot ? 700 : 600} 12px ${getComputedStyle(document.body).fontFamily}`;
+    if (i % Math.ceil(11 / h) === 0) p.fillText(`${i === 0 && h > 12 ? "tactor " : ""}${array.tactors[i].tactor ?? i}`,
+      left(l) - 8, y - 2);
+  }
+  if (state.plan?.onsets) draw_bars(p, l, h, top);
+  if (!l.mini && !state.drawing) { draw_clips(p, l); draw_curves(p, l); }
+}
+function draw_ruler(p, l, bottom) {
+  const s = shown(l), step = [0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 30, 60,
+    120].find(v => v / s * (l.width - left(l) - right(l)) > 58) ?? 300;
+  p.textAlign = "center";
+  p.font = `11px ${getComputedStyle(document.body).fontFamily}`;
+  for (let i = Math.ceil(l.from / step); i * step <= l.from + s; ++i) {
+    const x = x_of(l, i * step);
+    p.strokeStyle = colour("grid"); p.lineWidth = 1;
+    p.beginPath(); p.moveTo(x, RULER); p.lineTo(x, bottom); p.stroke();
+    p.fillStyle = colour("ink2");
+    p.fillText(`${(i * step).toFixed(step < 0.1 ? 2 : step < 1 ? 1 : 0)}${i === 0 ? " s" : ""}`, x, 12);
+  }
+  const until = x_of(l, Math.min(total(), l.from + s)), from = x_of(l, l.from);
+  const g = p.createLinearGradient(x_of(l, 0), 0, x_of(l, total()), 0);
+  for (let k = 0; k <= 8; ++k) g.addColorStop(k / 8, viridis(k / 8, is_dark()));
+  p.fillStyle = g;
+  p.beginPath(); p.roundRect(from, 18, Math.max(1, until - from), 5, 2.5); p.fill();
+}
+function draw_bars(p, l, h, top) {
+  const plan = state.plan, t = plan.tactors ?? array.places.length, n = plan.onsets.length;
+  const from = l.from, to = l.from + shown(l), all = plan.total_s || 1;
+  // Where bursts are narrower than a pixel, the largest of each pixel is drawn.
+  const merged = n * 2 > (l.width - left(l)) && !plan.continuous && (l.width / n < 1.5);
+  const rows = merged ? merged_rows(l, plan, t) : null;
+  const one = (onset, seconds, k, a) => {
+    if (a < 0.004) return;
+    const x = x_of(l, onset), w = Math.max(0.75, x_of(l, onset + seconds) - x), y = top + (k + 1) * h;
+    p.fillStyle = viridis(onset / all, is_dark());
+    if (l.mini) { p.globalAlpha = 0.25 + 0.75 * Math.min(1, a);
+      p.fillRect(x, y - h * 0.8, w - (w > 3 ? 0.5 : 0), Math.max(1, h * 0.6)); p.globalAlpha = 1; return; }
+    const tall = Math.min(1, a) * (h - 3);
+    if (state.shape === "tactile-brush") {
+      const ramp = Math.min(w * 0.2, 6);
+      p.beginPath(); p.moveTo(x, y - 1); p.lineTo(x + ramp, y - 1 - tall); p.lineTo(x + w - ramp, y - 1 - tall);
+        p.lineTo(x + w, y - 1); p.fill();
+      return;
+    }
+    p.fillRect(x, y - 1 - tall, w - (w > 3 && !plan.continuous ? 0.75 : -0.3), tall);
+    if (w > 4 && !plan.continuous) { p.fillStyle = is_dark() ? "#eceeef61" : "#17181a61";
+      p.fillRect(x, y - 1 - tall, w - 0.75, 1); }
+  };
+  if (rows) { for (const r of rows) one(...r); return; }
+  for (let i = 0; i < n; ++i) {
+    if (plan.onsets[i] > to || plan.onsets[i] + plan.durations[i] < from) continue;
+    for (let k = 0; k < t; ++k) one(plan.onsets[i], plan.durations[i], k, plan.amplitudes[i * t + k]);
+  }
+}
+function merged_rows(l, plan, t) {
+  const bins = new Map(), width = shown(l) / (l.width - left(l) - right(l));
+  for (let i = 0; i < plan.onsets.length; ++i) {
+    const at = plan.onsets[i];
+    if (at < l.from || at > l.from + shown(l)) continue;
+    const bin = Math.floor((at - l.from) / width);
+    for (let k = 0; k < t; ++k) {
+      const a = plan.amplitudes[i * t + k], key = bin * t + k;
+      if (a > (bins.get(key) ?? 0)) bins.set(key, a);
+    }
+  }
+  return [...bins].map(([key, a]) => [l.from + Math.floor(key / t) * width, width * 1.4, key % t, a]);
+}
+export const clip_box = (l, s) => [x_of(l, s.start_s), x_of(l, end_s(s))];
+function draw_clips(p, l) {
+  const take = current_take();
+  if (!take) return;
+  take.strokes.forEach((s, i) => {
+    const [a, b] = clip_box(l, s), own = i === state.stroke, w = Math.max(6, b - a);
+    p.beginPath(); p.roundRect(a, RULER, w, CLIP - 4, 6);
+    p.fillStyle = colour(own ? "raised" : "well"); p.fill();
+    p.strokeStyle = colour(own ? "ink" : "line2"); p.lineWidth = own ? 2 : 1.5; p.stroke();
+    if (own && w > 24) { p.fillStyle = colour("ink"); for (const x of [a + 4, b - 7]) { p.beginPath();
+      p.roundRect(x, RULER + 5, 3, CLIP - 14, 1.5); p.fill(); } }
+    p.save();
+    p.beginPath(); p.rect(a + 10, RULER, Math.max(0, w - 20), CLIP); p.clip();
+    p.fillStyle = colour(own ? "ink" : "ink2"); p.textAlign = "left";
+    p.font = `${own ? 600 : 500} 12px ${getComputedStyle(document.body).fontFamily}`;
+    p.fillText(take.strokes.length === 1 ? take.name : s.name, a + 13, RULER + 15);
+    p.restore();
+    const before = take.strokes.filter((_, k) => k !== i).map(end_s).filter(e => e <= s.start_s + 1e-9);
+    const gap = before.length ? s.start_s - Math.max(...before) : 0;
+    if (gap > 0.005 && x_of(l, gap) - x_of(l, 0) > 34) { p.font = `11px ${getComputedStyle(document.body).fontFamily}`;
+      p.fillStyle = colour("ink3"); p.textAlign = "center";
+      p.fillText(`${gap.toFixed(2)} s`, x_of(l, s.start_s - gap / 2), RULER + 15); }
+  });
+  const x = x_of(l, total()) + 8;
+  if (x < l.width - 24) {
+    p.setLineDash([3, 3]); p.strokeStyle = colour(state.append ? "felt" : "line2"); p.lineWidth = 1.5;
+    p.beginPath(); p.roundRect(x, RULER, 28, CLIP - 4, 6); p.stroke(); p.setLineDash([]);
+    p.strokeStyle = colour(state.append ? "felt" : "ink2"); p.beginPath();
+    p.moveTo(x + 9, RULER + 11); p.lineTo(x + 19, RULER + 11); p.moveTo(x + 14, RULER + 6); p.lineTo(x + 14, RULER + 16);
+      p.stroke();
+  }
+}
+
+export function draw_lanes() {
+  for (const l of [full, mini]) {
+    if (!l.width || !l.height) continue;
+    if (l.stale) { draw_layer(l); l.stale = false; }
+    const p = l.canvas.getContext("2d");
+    p.setTransform(1, 0, 0, 1, 0, 0);
+    p.clearRect(0, 0, l.canvas.width, l.canvas.height);
+    p.drawImage(l.layer, 0, 0);
+    p.setTransform(l.dpr, 0, 0, l.dpr, 0, 0);
+    const x = x_of(l, state.drawing ? total() : state.at_s);
+    if (x < left(l) - 1 || x > l.width - right(l) + 20) continue;
+    p.fillStyle = p.strokeStyle = colour("ink");
+    p.lineWidth = 2;
+    p.beginPath(); p.moveTo(x, l.mini ? 2 : 20); p.lineTo(x, l.height - (l.mini ? 2 : 8)); p.stroke();
+    if (!l.mini) { p.beginPath(); p.moveTo(x - 6, 15); p.lineTo(x + 6, 15); p.lineTo(x + 6, 21); p.lineTo(x, 27);
+      p.lineTo(x - 6, 21); p.closePath(); p.fill(); }
+  }
+  // The moment follows where it leaves what is shown.
+  if (state.playing && full.span && (state.at_s > full.from + full.span * 0.95
+    || state.at_s < full.from)) { full.from = Math.max(0, state.at_s - full.span * 0.1); full.stale = true; }
+}
+export function show_all_time() { Object.assign(full, {from: 0, span: null, stale: true}); changed("frame"); }
+export function zoom_time(by, at_s = state.at_s) {
+  const span = Math.min(total() * 1.02, Math.max(0.1, shown(full) * by));
+  full.from = Math.max(0, Math.min(total() * 1.02 - span, at_s - (at_s - full.from) * span / shown(full)));
+  full.span = span >= total() * 1.02 ? null : span;
+  full.stale = true;
+  changed("frame");
+}
+
+// One burst on or back.
+export function step_burst(by) {
+  const onsets = [...(state.plan?.onsets ?? [])].sort((a, b) => a - b);
+  const next = by > 0 ? onsets.find(t => t > state.at_s + 1e-4) : onsets.findLast(t => t < state.at_s - 1e-4);
+  if (next !== undefined) look_at(next + 1e-4);
+}
+export const clock_text = () => [state.drawing ? total().toFixed(2) : state.at_s.toFixed(2), seconds_text(total())];

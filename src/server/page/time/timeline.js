@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: MIT
+// Pointers and keys on the timelines: look at a moment, move and trim clips, drag points of speed and strength.
+import {state, changed, current_take, say} from "../state.js";
+import {edit_take, end_edit} from "../takes/takes.js";
+import {trimmed, duration_s} from "../takes/stroke.js";
+import {look_at} from "../service/player.js";
+import {full, mini, total, x_of, t_of, RULER, CLIP, CURVES, LEAST_S} from "./time_axis.js";
+import {handles, set_strength, set_speed} from "./curves.js";
+import {clip_box, zoom_time} from "./lanes.js";
+
+const REACH = 14;
+
+let held = null;
+function lane_down(l, e) {
+  const r = l.canvas.getBoundingClientRect(), x = e.clientX - r.left, y = e.clientY - r.top, take = current_take();
+  l.canvas.setPointerCapture(e.pointerId);
+  held = {l, kind: "look", key: `lane ${performance.now()}`, x};
+  if (!l.mini && take) {
+    const handle = handles(l).find(h => Math.hypot(h.x - x, h.y - y) < REACH);
+    if (handle) return void Object.assign(held, handle);
+    if (y >= RULER - 2 && y <= RULER + CLIP) {
+      if (x > x_of(l, total()) + 4) { held = null; state.append = !state.append;
+        say(state.append ? "Draw: it follows the last stroke" : "Drawings are takes of their own"); return changed("curves"); }
+      for (const [i, s] of take.strokes.entries()) {
+        const [a, b] = clip_box(l, s);
+        if (x < a - 6 || x > b + 6) continue;
+        state.stroke = i; state.knot = -1;
+        changed("take");
+        const ends = b - a > 30;
+        return void Object.assign(held, {kind: ends && x < a + 10 ? "trim-start" : ends && x > b - 10 ? "trim-end" : "move",
+          stroke: s, index: i, t: t_of(l, x), cut: 0});
+      }
+    }
+  }
+  look_at(t_of(l, x));
+}
+function lane_moved(e) {
+  if (!held) return;
+  const r = held.l.canvas.getBoundingClientRect(), x = e.clientX - r.left, y = e.clientY - r.top, t = t_of(held.l, x),
+    s = held.stroke;
+  if (held.kind === "look") return look_at(t);
+  if (held.kind === "strength") {
+    const v = Math.min(1, Math.max(0, (held.l.height - 8 - y) / (CURVES - 20)));
+    return set_strength(held.index, v, held.key);
+  }
+  if (held.kind === "speed") return set_speed(held.index, Math.min(5,
+    Math.max(0.1, +((held.l.height - 8 - y) / (CURVES - 20) * held.most / held.mean).toFixed(2))), held.key);
+  if (Math.abs(x - held.x) < 3 && !held.moved) return;
+  held.moved = true;
+  if (held.kind === "move") return put_stroke(held.index, {...s, start_s: Math.max(0, +(s.start_s + t - held.t).toFixed(3))});
+  const d = duration_s(s);
+  if (held.kind === "trim-start") put_stroke(held.index, trimmed(s, Math.min(d - LEAST_S, Math.max(0, t - s.start_s)), d));
+  else put_stroke(held.index, trimmed(s, 0, Math.max(LEAST_S, Math.min(d, t - s.start_s))));
+}
+function put_stroke(index, stroke) { edit_take(take => ({strokes: take.strokes.map((s, i) => i === index ? stroke : s)}),
+  held?.key); }
+function lane_up() {
+  if (held) { end_edit(); changed("take"); }
+  held = null;
+}
+for (const l of [full, mini]) {
+  l.canvas.addEventListener("pointerdown", e => { if (e.button === 0) lane_down(l, e); });
+  l.canvas.addEventListener("pointermove", lane_moved);
+  for (const end of ["pointerup", "pointercancel"]) l.canvas.addEventListener(end, lane_up);
+  l.canvas.addEventListener("wheel", e => {
+    if (l.mini) return;
+    e.preventDefault();
+    const x = e.clientX - l.canvas.getBoundingClientRect().left;
+    if (Math.abs(e.deltaX) > Math.abs(e.deltaY) && full.span) { full.from = Math.max(0,
+      Math.min(total() * 1.02 - full.span, full.from + e.deltaX / l.width * full.span)); full.stale = true; changed("frame"); }
+    else zoom_time(Math.exp(e.deltaY / 300), t_of(l, x));
+  }, {passive: false});
+  l.canvas.addEventListener("keydown", e => {
+    const step = {ArrowLeft: -1, ArrowRight: 1}[e.key];
+    if (!step && e.key !== "Home" && e.key !== "End") return;
+    e.preventDefault();
+    look_at(e.key === "Home" ? 0 : e.key === "End" ? total() : state.at_s + step * total() / (e.shiftKey ? 500 : 50));
+  });
+}

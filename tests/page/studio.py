@@ -1,0 +1,137 @@
+# SPDX-License-Identifier: MIT
+"""The studio in a browser, for its tests: a service, a page of it, and hands that draw."""
+import json
+import pathlib
+import sys
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "cli"))
+from browser import BrowserTest  # noqa: E402
+from harness import ToolTest  # noqa: E402
+from serving import Server  # noqa: E402
+
+DESKTOP, TABLET, PHONE, LYING = (1440, 900), (820, 1180), (390, 844), (844, 390)
+SIZES = (DESKTOP, TABLET, PHONE, LYING)
+DARK = [{"name": "prefers-color-scheme", "value": "dark"}]
+TAKE = "tactor.state.takes.find(t => t.id === tactor.state.current)"
+
+
+def quoted(text):
+    return json.dumps(text)
+
+
+class StudioTest(BrowserTest, ToolTest):
+    def serve(self, *args, **more):
+        s = Server(self, "--http", "0", *args, **more)
+        if s.where is None:
+            self.fail(s.errors)
+        return s
+
+    def restart(self, s, **more):
+        """Kills a service and starts another at the same address."""
+        port = s.where["http"].rsplit(":", 1)[1].rstrip("/")
+        s.kill()
+        again = Server(self, "--http", port, **more)
+        self.assertIsNotNone(again.where)
+        return again
+
+    def open(self, s, fragment="", fingers=False, **more):
+        """Opens the page. With `fingers` the screen is one that is touched."""
+        p = self.page("about:blank", **({"size": DESKTOP} | more))
+        if fingers:
+            p.call("Emulation.setTouchEmulationEnabled", enabled=True, maxTouchPoints=5)
+        p.call("Page.navigate", url=s.where["http"] + fragment)
+        p.call("Page.bringToFront")  # a tab behind another has no frames
+        p.until("tactor.state")
+        # Whatever a test does, the page throws nothing and keeps to its policy.
+        self.addCleanup(lambda: self.assertEqual(p.faults(), []))
+        return p
+
+    def ready(self, s, **more):
+        """Returns a page that is connected and has its array, and a client that watches what plays."""
+        p = self.open(s, **more)
+        self.await_service(p)
+        watcher = s.client()
+        watcher.ok("subscribe", events=["strokes"])
+        return p, watcher
+
+    @staticmethod
+    def await_service(p):
+        p.until("tactor.state.link === 'connected' && tactor.state.options.length && document.querySelector('#state').textContent === 'Running'"
+                " && document.querySelectorAll('#examples li').length")
+
+    def says(self, p, word):
+        """Waits until the chip says so."""
+        p.until(f"document.querySelector('#state').textContent === {quoted(word)}")
+
+    @staticmethod
+    def toast(p, text):
+        p.until(f"document.querySelector('#toast').textContent.includes({quoted(text)})")
+
+    @staticmethod
+    def banner(p, text):
+        p.until(f"!document.querySelector('#banner').hidden && document.querySelector('#banner-text').textContent.includes({quoted(text)})")
+
+    # Hands. Places are in millimetres of the array.
+
+    @staticmethod
+    def at(p, *places):
+        """Returns places of the array as pixels of the page."""
+        return [tuple(q) for q in p.value(f"{json.dumps(places)}.map(tactor.place_in_page)")]
+
+    def press(self, p, *places):
+        """Puts the mouse down and moves it; it stays down."""
+        first, *rest = self.at(p, *places)
+        p.mouse("mousePressed", *first)
+        p.move_to(*rest)
+        return (first, *rest)[-1]
+
+    def draw(self, p, *places):
+        """Draws with the mouse; returns once it is a take."""
+        before = p.value("tactor.state.takes.length")
+        p.mouse("mouseReleased", *self.press(p, *places))
+        p.until(f"tactor.state.takes.length === {before + 1} && !tactor.state.drawing")
+
+    @staticmethod
+    def way(start, end, steps=12):
+        """Returns places along a straight way."""
+        return [[a + (b - a) * i / steps for a, b in zip(start, end)] for i in range(steps + 1)]
+
+    def fingers(self, p, kind, *places):
+        p.touch(kind, *((i, *q) for i, q in enumerate(self.at(p, *places))))
+
+    def planned(self, p):
+        """Waits for the plan of the current take as it is now."""
+        p.until(f"tactor.state.plan && tactor.state.plan_of === {TAKE}")
+
+    @staticmethod
+    def mend(p, word):
+        """Does what one of the warnings offers."""
+        p.until(f"(globalThis.offer = [...document.querySelectorAll('#warnings button')].find(b => b.textContent === {quoted(word)}))")
+        p.value("offer.click()")
+
+    @staticmethod
+    def next_stroke(watcher, state):
+        return watcher.notification(lambda m: m["method"] == "stroke" and m["params"]["state"] == state)["params"]["stroke"]
+
+    def take(self, p):
+        return p.value(TAKE)
+
+    def saved(self, p, kind):
+        """Saves the current take with the page's own buttons; returns the file."""
+        folder = self.dir / "downloads"
+        folder.mkdir(exist_ok=True)
+        p.browser.call("Browser.setDownloadBehavior", behavior="allow", downloadPath=str(folder), eventsEnabled=True)
+        since = len(p.browser.events)
+        p.click("#save")
+        p.until("document.querySelector('#p-save').matches(':popover-open')")
+        p.click(f"#p-save [data-kind={kind}]")
+        while True:
+            done = next((e["params"] for e in p.browser.events[since:] if e.get("method") == "Browser.downloadProgress"
+                         and e["params"]["state"] != "inProgress"), None)
+            if done:
+                break
+            p.browser.events.append(json.loads(p.browser.channel.text()))
+        self.assertEqual(done["state"], "completed")
+        name = next(e["params"]["suggestedFilename"] for e in p.browser.events[since:] if e.get("method") == "Browser.downloadWillBegin"
+                    and e["params"]["guid"] == done["guid"])
+        return folder / name

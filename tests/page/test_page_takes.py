@@ -1,0 +1,360 @@
+# SPDX-License-Identifier: MIT
+"""The studio's takes in a real Chromium: drawn, edited, kept, undone; files that come in and go out.
+Usage: test_page_takes.py TOOL SOURCE_ROOT"""
+import json
+import shlex
+import sys
+
+del sys.argv[3:]
+from studio import DESKTOP, PHONE, TAKE, StudioTest, quoted  # noqa: E402
+from harness import main  # noqa: E402
+
+DROP = """(() => { const d = new DataTransfer(); d.items.add(new File([%s], %s));
+    for (const kind of ["dragenter", "drop"]) document.querySelector("#field").dispatchEvent(new DragEvent(kind, {dataTransfer: d, bubbles: true, cancelable: true})); })()"""
+# Takes put where the browser keeps them.
+STORE = """new Promise((done, failed) => { const asked = indexedDB.open("tactor", 1);
+    asked.onerror = failed; asked.onsuccess = () => { const t = asked.result.transaction("takes", "readwrite");
+        for (let i = 0; i < %d; ++i) t.objectStore("takes").put({id: `t${i}`, made: i, name: `Take ${i}`, origin: "drawn", options: {}, strokes: [
+            {name: "stroke 1", start_s: 0, timed: Array.from({length: 60}, (_, k) => [k / 50, 20 + 18 * Math.cos(k / 10 + i), 20 + 18 * Math.sin(k / 10 + i), 1])}]});
+        t.oncomplete = () => { asked.result.close(); done(1); }; }; })"""
+
+
+class TakesTest(StudioTest):
+    def names(self, p):
+        return p.value("[...document.querySelectorAll('#takes .take b')].map(b => b.textContent)")
+
+    def menu(self, p, number, word):
+        """Chooses from the menu of one of the takes."""
+        p.until("document.querySelectorAll('#takes li').length === tactor.state.takes.length")
+        p.click(f"#takes li:nth-child({number}) .more-button")
+        p.until("document.querySelector('#p-take').matches(':popover-open')")
+        p.value(f"[...document.querySelectorAll('#p-take button')].find(b => b.textContent.includes({quoted(word)})).click()")
+
+    def edit_point(self, p, start, end):
+        """Drags a point of the stroke that is edited."""
+        p.click("[data-tool=points]")
+        p.until("tactor.state.tool === 'points'")
+        p.mouse("mouseReleased", *self.press(p, start, end))
+
+
+class FromDrawingToFile(TakesTest):
+    def test_three_fingers_edited_fitted_heard_saved_reloaded_and_played(self):
+        s = self.serve()
+        p, watcher = self.ready(s, fingers=True)
+        rows = (5, 20, 52)  # the last beyond the array
+        self.fingers(p, "touchStart", *([5, y] for y in rows))
+        for x in range(8, 36, 3):
+            self.fingers(p, "touchMove", *([x, y - (x > 20)] for y in rows))
+        p.touch("touchEnd")
+        p.until("tactor.state.takes.length === 1")
+        for _ in rows:
+            self.next_stroke(watcher, "finished")
+
+        # Edited by a point.
+        before = self.take(p)["strokes"][0]
+        knot = before["knots"][1]
+        self.edit_point(p, [knot["x"], knot["y"]], [knot["x"], knot["y"] + 6])
+        edited = p.until(f"{TAKE}.strokes[0].knots[1].y > {knot['y'] + 5} && {TAKE}")["strokes"]
+        self.assertNotEqual(edited[0]["timed"], before["timed"])
+        self.assertEqual(edited[1:], self.take(p)["strokes"][1:])
+
+        # Fitted, and as loud as three strokes together may be.
+        p.until("document.querySelector('#warnings').textContent.includes('outside the array')")
+        self.mend(p, "Fit to array")
+        p.until(f"{TAKE}.strokes.every(s => s.timed.every(q => q[2] > -0.1 && q[2] < 40.1))")
+        p.until("document.querySelector('#warnings').textContent.includes('dB stronger')")
+        self.mend(p, "Lower the level")
+        p.until("document.querySelector('#warnings').textContent === '' && tactor.state.plan")
+
+        # Heard by loudspeakers, too.
+        p.value("""globalThis.heard = 0; for (const name of ["start"]) { const was = OscillatorNode.prototype[name];
+            OscillatorNode.prototype[name] = function (...a) { ++heard; return was.apply(this, a); }; }""")
+        p.click("#speaker")
+        p.click("#play")
+        for _ in rows:
+            self.next_stroke(watcher, "started")
+        self.assertGreater(p.until("heard"), 1)
+        for _ in rows:
+            self.next_stroke(watcher, "finished")
+        p.until("!tactor.state.playing")
+
+        # Saved.
+        toml, wav = self.saved(p, "toml"), self.saved(p, "wav")
+        p.click("#save")
+        command = p.until("document.querySelector('#command').textContent.startsWith('tactor render') && document.querySelector('#command').textContent")
+        self.write(toml.name, toml.read_bytes())
+        kept = self.take(p)
+
+        # The page is loaded again: what was drawn is there, and plays.
+        p.reload()
+        self.await_service(p)
+        self.assertEqual(self.take(p), kept)
+        self.assertEqual(self.names(p), [kept["name"]])
+        p.until("!document.querySelector('#play').disabled")
+        p.click("#play")
+        for _ in rows:
+            self.next_stroke(watcher, "started")
+        for _ in rows:
+            self.next_stroke(watcher, "finished")
+
+        # The command that the page shows makes the same bytes of the saved file.
+        program, *args = shlex.split(command)
+        self.assertEqual(program, "tactor")
+        self.ok(*args)
+        rendered = self.dir / args[args.index("-o") + 1]
+        self.assertEqual(rendered.read_bytes(), wav.read_bytes())
+        self.assertGreater(len(wav.read_bytes()), 1000)
+
+    def test_all_kinds_of_files_are_saved(self):
+        p, _ = self.ready(self.serve())
+        self.draw(p, *self.way([5, 5], [35, 30]))
+        heads = {"toml": b"[stroke]", "csv": b"t_s,x_mm,y_mm", "svg": b"<?xml", "png": b"\x89PNG", "pdf": b"%PDF", "wav": b"RIFF", "json": b"{"}
+        self.assertEqual(set(p.value("[...document.querySelectorAll('#p-save [data-kind]')].map(b => b.dataset.kind)")), set(heads))
+        for kind, head in heads.items():
+            with self.subTest(kind=kind):
+                file = self.saved(p, kind)
+                self.assertEqual(file.name, f"take-1.{kind}")
+                self.assertTrue(file.read_bytes().lstrip().startswith((head, b"<svg") if kind == "svg" else head), file.read_bytes()[:40])
+
+    def test_without_a_connection_a_stroke_is_saved_nevertheless(self):
+        s = self.serve()
+        p, _ = self.ready(s)
+        self.draw(p, *self.way([5, 5], [35, 30]))
+        s.kill()
+        self.says(p, "No connection")
+        self.ok("plan", self.write("offline.toml", self.saved(p, "toml").read_bytes()), "--array", "palm-3x3")
+        self.ok("plan", self.write("offline.csv", self.saved(p, "csv").read_bytes()), "--array", "palm-3x3")
+
+
+class Takes(TakesTest):
+    def test_takes_are_named_duplicated_deleted_undone_and_outlast_the_page(self):
+        p, _ = self.ready(self.serve())
+        for y in (5, 20, 35):
+            self.draw(p, *self.way([5, y], [35, y]))
+        p.until("document.querySelectorAll('#takes li').length === 3")
+        self.assertEqual(self.names(p), ["Take 3", "Take 2", "Take 1"])
+        self.menu(p, 2, "Rename")
+        p.until("document.querySelector('input.rename')")
+        p.call("Input.insertText", text="Middle of the palm")
+        p.key("Enter")
+        p.until("[...document.querySelectorAll('#takes b')].some(b => b.textContent === 'Middle of the palm')")
+        self.menu(p, 2, "Duplicate")
+        p.until("document.querySelectorAll('#takes li').length === 4")
+        self.menu(p, 1, "Delete")
+        p.until("document.querySelectorAll('#takes li').length === 3")
+        self.toast(p, "Deleted")
+        after = ["Middle of the palm, copy", "Middle of the palm", "Take 1"]
+        self.assertEqual(self.names(p), after)
+        for _ in range(4):
+            p.key("KeyZ", "z", modifiers=2)
+        p.until("document.querySelectorAll('#takes li').length === 2")
+        self.assertEqual(self.names(p), ["Take 2", "Take 1"])
+        for _ in range(4):
+            p.key("KeyZ", "z", modifiers=2 | 8)
+        p.until("document.querySelectorAll('#takes li').length === 3 && document.querySelector('#redo').disabled")
+        p.reload()
+        self.await_service(p)
+        p.until("document.querySelectorAll('#takes li').length === 3")
+        self.assertEqual(self.names(p), after)
+
+    def test_a_new_take_after_a_reload_has_a_name_of_its_own(self):
+        p, _ = self.ready(self.serve())
+        for y in (5, 20):
+            self.draw(p, *self.way([5, y], [35, y]))
+        self.menu(p, 2, "Delete")
+        p.until("document.querySelectorAll('#takes li').length === 1")
+        p.reload()
+        self.await_service(p)
+        self.draw(p, *self.way([5, 35], [35, 35]))
+        p.until("document.querySelectorAll('#takes li').length === 2")
+        self.assertEqual(len(set(self.names(p))), 2)
+
+    def test_a_drawing_after_plus_follows_the_last_stroke(self):
+        p, watcher = self.ready(self.serve())
+        self.draw(p, *self.way([5, 5], [35, 5]))
+        self.planned(p)
+        end = self.take(p)["strokes"][0]["timed"][-1][0]
+        # The plus stands right of the last clip.
+        x, y, w = p.value("(r => [r.x, r.y, r.width])(document.querySelector('#lanes').getBoundingClientRect())")
+        for step in range(int(w), 0, -8):
+            p.mouse("mousePressed", x + step, y + 40)
+            p.mouse("mouseReleased", x + step, y + 40)
+            if p.value("tactor.state.append"):
+                break
+        self.assertTrue(p.value("tactor.state.append"))
+        p.mouse("mouseReleased", *self.press(p, *self.way([5, 35], [35, 35])))
+        p.until(f"{TAKE}.strokes.length === 2")
+        self.assertAlmostEqual(self.take(p)["strokes"][1]["start_s"], end + 0.1, places=3)  # a pause for the last burst
+        self.assertEqual(p.value("tactor.state.takes.length"), 1)
+
+    def test_points_are_moved_made_corners_added_and_deleted(self):
+        p, _ = self.ready(self.serve())
+        self.draw(p, *self.way([4, 20], [36, 20]))
+        knots = self.take(p)["strokes"][0]["knots"]
+        self.edit_point(p, [knots[1]["x"], knots[1]["y"]], [knots[1]["x"], knots[1]["y"] - 8])
+        p.until("!document.querySelector('#points').hidden")
+        self.assertEqual(p.value("document.querySelector('#point-text').textContent"), f"Point 2 of {len(knots)}")
+        p.click("#point-corner")
+        p.until(f"{TAKE}.strokes[0].knots[1].corner")
+        p.click("#point-bin")
+        p.until(f"{TAKE}.strokes[0].knots.length === {len(knots) - 1}")
+        # The keyboard does the same.
+        p.value("document.querySelector('#field').focus()")
+        place = self.take(p)["strokes"][0]["knots"][1]["x"]
+        p.key("ArrowRight")
+        p.until(f"{TAKE}.strokes[0].knots[1].x > {place}")
+        p.key("Delete")
+        p.until(f"{TAKE}.strokes[0].knots.length === {len(knots) - 2}")
+        for _ in range(5):
+            p.click("#undo")
+        p.until(f"{TAKE}.strokes[0].knots.length === {len(knots)}")
+        self.assertEqual(self.take(p)["strokes"][0]["knots"], knots)
+
+    def test_settings_are_the_take_s_and_reach_the_plan(self):
+        p, _ = self.ready(self.serve())
+        self.draw(p, *self.way([4, 20], [36, 20]))
+        self.planned(p)
+        p.value("document.querySelector('#pane [data-value=continuous]').click()")
+        p.until("tactor.state.plan?.continuous")
+        p.click("[data-tab=vibration]")
+        p.until("document.querySelector('#pane [data-value=square]')")
+        p.value("document.querySelector('#pane [data-value=square]').click()")
+        p.until(f"{TAKE}.options.waveform === 'square'")
+        text = self.saved(p, "toml").read_text()
+        self.assertIn("square", text)
+        self.assertIn("continuous", text)
+        # Another take of the same session begins with these; undo takes them back one by one.
+        p.click("#undo")
+        p.until(f"{TAKE}.options.waveform === undefined && {TAKE}.options.algorithm === 'continuous'")
+        p.click("#undo")
+        p.until(f"tactor.state.plan && !tactor.state.plan.continuous && {TAKE}.options.algorithm === undefined")
+
+    def test_other_methods_are_predicted_beside_this_one(self):
+        p, _ = self.ready(self.serve())
+        p.click("#hint-example")
+        p.until("[...document.querySelectorAll('#pane .error')].length > 5 && [...document.querySelectorAll('#pane .error')].every(e => /mm|not possible/.test(e.textContent))")
+
+    def test_examples_have_names_for_people_and_play(self):
+        p, watcher = self.ready(self.serve())
+        self.assertEqual(p.value("[...document.querySelectorAll('#examples b')].map(b => b.textContent)"),
+                         ["Half circle, left", "Half circle, right", "Three-quarter circle", "Three-quarter circle, mirrored"])
+        p.click("#hint-example")
+        number = self.next_stroke(watcher, "started")
+        self.assertEqual(self.next_stroke(watcher, "finished"), number)
+        self.assertEqual(self.names(p), ["Half circle, left"])
+
+    def test_a_loop_plays_round_after_round(self):
+        p, watcher = self.ready(self.serve())
+        self.draw(p, *self.way([5, 5], [35, 35]))
+        self.planned(p)
+        p.click("#loop")
+        p.click("#play")
+        rounds = [self.next_stroke(watcher, "started") for _ in range(3)]
+        self.assertEqual(len(set(rounds)), 3)
+        self.assertTrue(p.value("tactor.state.playing !== null"))
+        p.click("#stop")
+        p.until("!tactor.state.playing")
+
+    def test_a_clip_is_trimmed_and_the_moment_is_looked_at(self):
+        p, _ = self.ready(self.serve())
+        p.click("#hint-example")
+        p.until(f"tactor.state.takes.length && !tactor.state.playing && tactor.state.at_s > 1 && tactor.state.plan_of === {TAKE}")
+        x, y, w = p.value("(r => [r.x, r.y, r.width])(document.querySelector('#lanes').getBoundingClientRect())")
+        p.mouse("mousePressed", x + w / 2, y + 100)
+        p.mouse("mouseReleased", x + w / 2, y + 100)
+        p.until("tactor.state.at_s > 0.4 && tactor.state.at_s < 1.1")
+        p.value("document.querySelector('#lanes').focus()")
+        at = p.value("tactor.state.at_s")
+        p.key("ArrowRight")
+        p.until(f"tactor.state.at_s > {at}")
+        p.key("Comma", ",")
+        before = self.take(p)["strokes"][0]["timed"][-1][0]
+        p.mouse("mousePressed", x + 60, y + 43)
+        p.move_to((x + 90, y + 43), (x + 150, y + 43))
+        p.mouse("mouseReleased", x + 150, y + 43)
+        p.until(f"{TAKE}.strokes[0].timed.at(-1)[0] < {before} - 0.1")
+
+
+class Files(TakesTest):
+    def drop(self, p, name, text):
+        p.value(DROP % (quoted(text), quoted(name)))
+
+    def test_dropped_files_become_takes_and_nothing_plays(self):
+        s = self.serve()
+        p, _ = self.ready(s)
+        line = "t_s,x_mm,y_mm\n0,0,0\n0.2,40,40\n"
+        self.write("line.csv", line)
+        plan = self.ok("plan", "line.csv", "--array", "palm-3x3", "--format", "json").stdout
+        files = {"line.csv": line, "two.toml": "[[stroke]]\npath = 'M 5 5 L 35 5'\n[[stroke]]\npath = 'M 5 35 L 35 35'\n",
+                 "arc.svg": '<svg xmlns="http://www.w3.org/2000/svg" width="40mm" height="40mm" viewBox="0 0 40 40"><path d="M 5 5 L 35 35"/></svg>', "plan.json": plan}
+        for i, (name, text) in enumerate(files.items()):
+            with self.subTest(name=name):
+                self.drop(p, name, text)
+                p.until(f"tactor.state.takes.length === {i + 1}")
+                take = self.take(p)
+                self.assertEqual(take["name"], name.split(".")[0])
+                self.assertEqual(len(take["strokes"]), 2 if name == "two.toml" else 1)
+                p.until("document.querySelector('#drop').hidden")
+        self.assertEqual(s.client().ok("status")["strokes"], [])
+
+    def test_what_is_wrong_with_a_file_is_said_with_its_name(self):
+        p, _ = self.ready(self.serve())
+        self.drop(p, "line.csv", "t_s,x_mm,y_mm\n0,zero,0\n")
+        self.banner(p, "“line.csv” was not opened")
+        self.assertIn("zero", p.value("document.querySelector('#banner-text').textContent"))
+        p.click("#banner-close")
+        p.until("document.querySelector('#banner').hidden")
+        self.drop(p, "notes.exe", "MZ")
+        self.banner(p, "“notes.exe” was not opened")
+        self.assertEqual(p.value("tactor.state.takes.length"), 0)
+
+    def test_the_button_opens_files_too(self):
+        p, _ = self.ready(self.serve())
+        p.value("""(() => { const d = new DataTransfer(); for (const n of ["a.csv", "b.csv"]) d.items.add(new File(["t_s,x_mm,y_mm\\n0,0,0\\n0.2,40,40\\n"], n));
+            const f = document.querySelector("#file"); f.files = d.files; f.dispatchEvent(new Event("change")); })()""")
+        p.until("tactor.state.takes.length === 2")
+        self.assertEqual(set(self.names(p) or ["a", "b"]), {"a", "b"})
+
+    def test_a_hostile_name_is_text(self):
+        p, _ = self.ready(self.serve())
+        name = '<img src=x onerror="globalThis.injected = 1">'
+        self.drop(p, f"{name}.toml", f"[[stroke]]\nname = '{name}'\npath = 'M 0 0 L 40 40'\n")
+        p.until("document.querySelectorAll('#takes li').length === 1")
+        self.assertEqual(p.value("document.querySelector('#take-name').textContent"), name)
+        self.assertIsNone(p.value("globalThis.injected"))
+        self.ok("plan", self.write("again.toml", self.saved(p, "toml").read_bytes()), "--array", "palm-3x3")
+
+
+class Many(TakesTest):
+    def test_a_thousand_takes(self):
+        self.check_thousand(size=DESKTOP)
+
+    def test_a_thousand_takes_on_a_phone(self):
+        self.check_thousand(size=PHONE, fingers=True)
+
+    def check_thousand(self, **screen):
+        p, _ = self.ready(self.serve(), **screen)
+        p.value(STORE % 1000)
+        p.reload()
+        self.await_service(p)
+        p.until("document.querySelectorAll('#takes li').length === 1000")
+        loaded_ms = p.value("performance.now()")
+        # Adding one, choosing one and taking it back: each in a few frames.
+        before = p.value("tactor.state.takes.length")
+        self.draw(p, *self.way([5, 5], [35, 35]))
+        added_ms = p.value(f"""(async () => {{ const begin = performance.now();
+            document.querySelector("#undo").click();
+            while (document.querySelectorAll("#takes li").length !== {before}) await new Promise(requestAnimationFrame);
+            const undone = performance.now();
+            document.querySelector("#redo").click();
+            while (document.querySelectorAll("#takes li").length !== {before + 1}) await new Promise(requestAnimationFrame);
+            const redone = performance.now();
+            document.querySelector("#takes li:nth-child(800) .take").click();
+            while (!document.querySelector("#takes li:nth-child(800) .take").hasAttribute("aria-current")) await new Promise(requestAnimationFrame);
+            return [undone - begin, redone - undone, performance.now() - redone].map(Math.round); }})()""")
+        print(f"1000 takes{screen}: shown {loaded_ms / 1000:.2f} s after the start; undo, redo, choose: {added_ms} ms")
+        self.assertLess(max(added_ms), 1000)
+
+
+if __name__ == "__main__":
+    main()
