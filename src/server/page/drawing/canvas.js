@@ -136,7 +136,7 @@ function draw_others() {
 // A mark where the end of a stroke lies beyond the array.
 function draw_outside() {
   for (const w of state.outside ?? []) {
-    const [x, y] = to_px(w.place);
+    const [x, y] = to_px(w.place).map((v, k) => Math.min((k ? view.height : view.width) - 14, Math.max(14, v)));
     disc(pen, [x, y], 11);
     pen.fillStyle = colour("warn-ground"); pen.fill();
     pen.strokeStyle = colour("warn"); pen.lineWidth = 1.5; pen.stroke();

@@ -62,16 +62,24 @@ export function resize() {
   const r = by_id("stage").getBoundingClientRect();
   view.dpr = Math.min(3, devicePixelRatio || 1);
   view.width = r.width; view.height = r.height;
-  for (const c of [canvas, layers.ground, layers.ink]) { c.width = Math.round(r.width * view.dpr);
-    c.height = Math.round(r.height * view.dpr); }
+  for (const c of [canvas, layers.ground, layers.ink]) {
+    c.width = Math.round(r.width * view.dpr);
+    c.height = Math.round(r.height * view.dpr);
+  }
+  // Of its own size, or it would be stretched where the screen changes under a finger.
+  Object.assign(canvas.style, {width: `${r.width}px`, height: `${r.height}px`});
   place();
   outdated("ground", "ink");
+}
+function is_outgrown() {
+  const r = by_id("stage").getBoundingClientRect();
+  return r.width !== view.width || r.height !== view.height;
 }
 export function outdated(...names) { names.forEach(l => { stale[l] = true; }); changed("frame"); }
 on_change(what => {
   if (what.has("take") || what.has("plan") || what.has("drawing") || what.has("tool") || what.has("knot")) outdated("ink");
   if (what.has("theme") || what.has("array")) outdated("ground", "ink");
-  if (what.has("layout")) resize();
+  if (what.has("layout") || (what.has("drawing") && is_outgrown())) resize();
 });
 
 // Begins a layer, or the canvas, anew.
