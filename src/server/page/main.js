@@ -111,9 +111,10 @@ on_change(() => {
   by_id("feel-text").textContent = state.feel ? "Feel on" : "Feel off";
   for (const b of document.querySelectorAll("button[data-tool]")) b.setAttribute("aria-pressed", b.dataset.tool === state.tool);
   by_id("field").dataset.tool = state.tool;
-  by_id("take-name").textContent = take?.name ?? "New take";
-  by_id("take-facts").textContent = take_facts(take);
-  by_id("take-origin").textContent = take?.origin.includes("-") ? ` · ${take.origin}` : "";
+  const anew = state.drawing !== null && !state.drawing.append;
+  by_id("take-name").textContent = anew ? "New take" : take?.name ?? "New take";
+  by_id("take-facts").textContent = anew ? "" : take_facts(take);
+  by_id("take-origin").textContent = !anew && take?.origin.includes("-") ? ` · ${take.origin}` : "";
   by_id("no-lanes").hidden = Boolean(take?.strokes.length || state.drawing);
   by_id("hint").hidden = hint_closed || state.takes.length > 0 || state.drawing !== null || !by_id("banner").hidden;
   show_point(take);

@@ -5,7 +5,7 @@ import {by_id, colour} from "../dom.js";
 import {interpolate} from "../takes/stroke.js";
 import {array, view, layers, stale, trace, disc, font, to_px} from "./view.js";
 import {draw_ground} from "./ground.js";
-import {draw_ink} from "./ink.js";
+import {draw_ink, draw_number} from "./ink.js";
 
 const pen = by_id("field").getContext("2d");
 
@@ -74,13 +74,8 @@ function draw_disc(q, i, share) {
     p.fillStyle = colour("felt-ink");
     const text = `${Math.round(share * 100)} %`;
     p.strokeText(text, c[0], c[1] + r + 16); p.fillText(text, c[0], c[1] + r + 16);
+    draw_number(p, c, i, share > 0.06 ? "on-felt" : "ink");
   }
-  pen.font = font(Math.max(11, Math.min(16, r * 0.5)), 600);
-  pen.textAlign = "center";
-  pen.textBaseline = "middle";
-  pen.fillStyle = share > 0.06 ? colour("on-felt") : colour("ink");
-  pen.fillText(array.tactors[i].tactor ?? i, c[0], c[1] + 0.5);
-  pen.textBaseline = "alphabetic";
 }
 function draw_arms(now) {
   if (!state.plan || state.drawing) return;

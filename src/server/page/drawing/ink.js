@@ -32,6 +32,16 @@ function draw_ring(p, q, i) {
   p.strokeStyle = colour(i === state.hot ? "ink" : "ink3");
   p.lineWidth = i === state.hot ? 2.5 : 1.5;
   p.stroke();
+  draw_number(p, c, i, "ink");
+}
+// Writes a tactor's number: under strokes and points, and over its disc while it is driven.
+export function draw_number(p, [x, y], i, tone) {
+  p.font = font(Math.max(11, Math.min(16, array.radius * view.scale * 0.5)), 600);
+  p.textAlign = "center";
+  p.textBaseline = "middle";
+  p.fillStyle = colour(tone);
+  p.fillText(array.tactors[i].tactor ?? i, x, y + 0.5);
+  p.textBaseline = "alphabetic";
 }
 function draw_felt(p, plan) {
   const felt = plan.felt ?? [];

@@ -61,6 +61,7 @@ function begin(f) {
     const before = state.append && take ? take.strokes : [];
     state.drawing = {began: now - 1000 * total_s(before), before, tracks: [], kind: f.kind, append: state.append
       && take !== null};
+    state.stopped = null;
     document.body.classList.add("touching");
   }
   f.track = {start_s: Math.max(0, seconds(now - state.drawing.began)), began: now, points: [], down: true, straight: f.straight,
@@ -68,7 +69,7 @@ function begin(f) {
   state.drawing.tracks.push(f.track);
   f.track.points.push([0, ...rounded(f.from), f.strength]);
   if (state.feel && is_connected()) begin_live(f);
-  changed("drawing");
+  changed("drawing", "link");
 }
 const rounded = p => p.map(v => +v.toFixed(3));
 
