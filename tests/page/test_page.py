@@ -7,7 +7,7 @@ import sys
 import threading
 
 del sys.argv[3:]
-from studio import PHONE, SIZES, StudioTest  # noqa: E402
+from studio import DARK, PHONE, SIZES, StudioTest  # noqa: E402
 from harness import main  # noqa: E402
 
 LONG = "[[stroke]]\npath = 'M 0 0 L 40 40'\nduration_s = 60.0\n"
@@ -76,6 +76,21 @@ class Drawing(StudioTest):
         # What is drawn next is a take of its own.
         self.draw(p, *self.way([10, 20], [30, 20]))
         self.assertEqual(p.value("tactor.state.takes.map(t => t.strokes.length)"), [1, 2])
+
+    def test_more_fingers_than_are_felt_are_drawn_nevertheless(self):
+        s = self.serve()
+        p, watcher = self.ready(s, size=PHONE, fingers=True)
+        most = s.client().ok("status")["limits"]["max_live_strokes"]
+        rows = [4 + 32 * i / most for i in range(most + 1)]
+        self.fingers(p, "touchStart", *([5, y] for y in rows))
+        for x in range(8, 36, 3):
+            self.fingers(p, "touchMove", *([x, y] for y in rows))
+        felt = {self.next_stroke(watcher, "started") for _ in range(most)}
+        p.until("document.querySelector('#toast').textContent")
+        p.touch("touchEnd")
+        self.assertEqual({self.next_stroke(watcher, "finished") for _ in range(most)}, felt)
+        p.until("tactor.state.takes.length === 1")
+        self.assertEqual(len(self.take(p)["strokes"]), most + 1)
 
     def test_a_finger_that_rests_plays_on(self):
         s = self.serve()
@@ -285,6 +300,18 @@ class Safety(StudioTest):
 class Screens(StudioTest):
     CONTROLS = ("[...document.querySelectorAll(\"button, input, summary, [role=slider], [role=radio]\")].filter(e => e.checkVisibility({visibilityProperty: true, contentVisibilityAuto: true})"
                 " && !e.closest('[popover]'))")
+
+    def test_light_and_dark_follow_the_system_until_one_is_chosen(self):
+        p, _ = self.ready(self.serve())
+        theme = "document.documentElement.dataset.theme"
+        for wanted in ("dark", "light"):
+            p.call("Emulation.setEmulatedMedia", features=DARK if wanted == "dark" else [])
+            p.until(f"{theme} === '{wanted}'")
+        p.click("#theme")
+        p.until(f"{theme} === 'dark'")
+        p.reload()
+        self.await_service(p)
+        self.assertEqual(p.value(theme), "dark")
 
     def test_it_fits_all_screens_and_fingers(self):
         s = self.serve()

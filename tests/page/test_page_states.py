@@ -9,7 +9,7 @@ import sys
 PICTURES = pathlib.Path(sys.argv.pop(3)).resolve() if len(sys.argv) > 3 else None
 from studio import DARK, SIZES, TAKE, StudioTest, quoted  # noqa: E402
 from browser import AXE  # noqa: E402
-from harness import main  # noqa: E402
+from harness import ROOT, main  # noqa: E402
 
 LIVE = {"algorithm": "continuous"}
 MISSING = ("-D", "hw:CARD=NotThere")
@@ -206,6 +206,10 @@ class Others(StatesTest):
 class Looks(StatesTest):
     """Each state in each size, light and dark: within the screen, Stop to be seen, nothing that axe-core finds."""
 
+    def test_axe_core_is_there(self):
+        if not AXE:
+            self.skipTest("axe-core is not there (tests/lanes/page gets it)")
+
     def look(self, p, name, sizes=SIZES):
         for size in sizes:
             p.call("Emulation.setDeviceMetricsOverride", width=size[0], height=size[1], deviceScaleFactor=1, mobile=False)
@@ -258,6 +262,18 @@ class Looks(StatesTest):
         p.until("!document.querySelector('#points').hidden")
         self.planned(p)
         self.look(p, "points")
+
+    def test_arrays_of_all_shapes(self):
+        for file in sorted((ROOT / "examples/arrays").glob("*.toml")):
+            with self.subTest(array=file.stem):
+                s = self.serve("--array", file, "--socket", self.dir / f"{file.stem}.sock")
+                p = self.open(s)
+                p.until("tactor.state.link === 'connected' && tactor.state.options.length")
+                tactors = [[t["x_mm"], t["y_mm"]] for t in p.value("tactor.state.hello.array.tactors")]
+                self.draw(p, *self.way(tactors[0], tactors[len(tactors) // 2]), *self.way(tactors[len(tactors) // 2], tactors[-1]))
+                p.until(f"tactor.state.plan_of === {TAKE} || tactor.state.plan_fault")
+                self.assertIsNone(p.value("tactor.state.plan_fault"))
+                self.look(p, f"array-{file.stem}", SIZES[::2])
 
     def test_panes_and_sheets(self):
         p, _ = self.drawn(self.serve())

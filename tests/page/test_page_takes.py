@@ -4,6 +4,7 @@ Usage: test_page_takes.py TOOL SOURCE_ROOT"""
 import json
 import shlex
 import sys
+import unittest
 
 del sys.argv[3:]
 from studio import DESKTOP, PHONE, TAKE, StudioTest, quoted  # noqa: E402
@@ -210,6 +211,17 @@ class Takes(TakesTest):
         p.until(f"{TAKE}.strokes[0].knots.length === {len(knots)}")
         self.assertEqual(self.take(p)["strokes"][0]["knots"], knots)
 
+    @unittest.expectedFailure  # the service counts the last burst, which ends after 600 s
+    def test_the_longest_and_the_shortest_duration_can_be_played(self):
+        p, _ = self.ready(self.serve())
+        self.draw(p, *self.way([4, 20], [36, 20]))
+        p.click("[data-tab=timing]")
+        for place in (0, 1000):
+            p.until("(globalThis.slider = [...document.querySelectorAll('#pane .slider')].find(s => s.textContent.startsWith('Duration'))?.querySelector('input'))")
+            p.value(f"slider.value = {place}, slider.dispatchEvent(new Event('input')), slider.dispatchEvent(new Event('change'))")
+            p.until(f"tactor.state.plan_of === {TAKE} || tactor.state.plan_fault")
+            self.assertIsNone(p.value("tactor.state.plan_fault"))
+
     def test_settings_are_the_take_s_and_reach_the_plan(self):
         p, _ = self.ready(self.serve())
         self.draw(p, *self.way([4, 20], [36, 20]))
@@ -313,7 +325,7 @@ class Files(TakesTest):
         p.value("""(() => { const d = new DataTransfer(); for (const n of ["a.csv", "b.csv"]) d.items.add(new File(["t_s,x_mm,y_mm\\n0,0,0\\n0.2,40,40\\n"], n));
             const f = document.querySelector("#file"); f.files = d.files; f.dispatchEvent(new Event("change")); })()""")
         p.until("tactor.state.takes.length === 2")
-        self.assertEqual(set(self.names(p) or ["a", "b"]), {"a", "b"})
+        self.assertEqual(p.value("tactor.state.takes.map(t => t.name).sort()"), ["a", "b"])
 
     def test_a_hostile_name_is_text(self):
         p, _ = self.ready(self.serve())
@@ -342,6 +354,7 @@ class Many(TakesTest):
         # Adding one, choosing one and taking it back: each in a few frames.
         before = p.value("tactor.state.takes.length")
         self.draw(p, *self.way([5, 5], [35, 35]))
+        p.until(f"document.querySelectorAll('#takes li').length === {before + 1}")
         added_ms = p.value(f"""(async () => {{ const begin = performance.now();
             document.querySelector("#undo").click();
             while (document.querySelectorAll("#takes li").length !== {before}) await new Promise(requestAnimationFrame);
