@@ -11,7 +11,7 @@ from studio import DARK, PHONE, SIZES, StudioTest  # noqa: E402
 from harness import main  # noqa: E402
 
 LONG = "[[stroke]]\npath = 'M 0 0 L 40 40'\nduration_s = 60.0\n"
-# Where space is written, and does not stop.
+# Fields in which space is written, and does not stop.
 TEXTS = "input:is([type=text], [type=password], :not([type]))"
 
 
@@ -73,7 +73,7 @@ class Drawing(StudioTest):
         strokes = self.take(p)["strokes"]
         self.assertEqual(strokes[0]["start_s"], 0)
         self.assertGreater(strokes[1]["start_s"], 0)
-        # What is drawn next is a take of its own.
+        # The next drawing is a take of its own.
         self.draw(p, *self.way([10, 20], [30, 20]))
         self.assertEqual(p.value("tactor.state.takes.map(t => t.strokes.length)"), [1, 2])
 

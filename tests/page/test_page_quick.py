@@ -44,7 +44,7 @@ class Quick(StudioTest):
 
     def test_from_a_pointer_to_the_service(self):
         p, watcher = self.ready(self.serve())
-        # Of each point: when it is sent, and when the service answers what is asked right behind it, both since the pointer moved.
+        # Times of each point: when it is sent, and when the service answers what is asked right behind it, both since the pointer moved.
         p.value("""globalThis.sent = []; globalThis.answered = []; const send = WebSocket.prototype.send; WebSocket.prototype.send = function (m) {
             const moved = event?.timeStamp; send.call(this, m);
             if (!m.includes('"to"') || !event?.type.startsWith("pointer")) return;

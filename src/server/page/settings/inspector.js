@@ -55,10 +55,10 @@ function predicted_text(name, id) {
 
 function pace_controls() {
   const kinds = [["even", "Even"], ["soft", "Soft ends"], ["reach", "Like a reach"], ["drawn", "As drawn"]];
-  const duration = slider({label: "Duration", least: LEAST_S, most: MOST_S, log: true, get: () => own_stroke()
-    ? duration_s(own_stroke()) : 1,
-    set: v => edit_stroke(s => with_duration(s, +v.toPrecision(3)), "duration"), done: end_edit, text: v => v < 1
-      ? ms(v) : seconds_text(v)});
+  const duration = slider({label: "Duration", least: LEAST_S, most: MOST_S, log: true,
+    get: () => own_stroke() ? duration_s(own_stroke()) : 1,
+    set: v => edit_stroke(s => with_duration(s, Math.min(MOST_S, +v.toPrecision(3))), "duration"), done: end_edit,
+    text: v => v < 1 ? ms(v) : seconds_text(v)});
   const along = make("p", {class: "hint-text"});
   const movement = choice({label: "Movement", get: () => own_stroke() ? editable(own_stroke()).pace.kind : "even",
     set: kind => edit_stroke(s => rebuild({...s, drawn: s.drawn ?? (s.pace.kind === "drawn" ? s.pace : null),

@@ -8,7 +8,7 @@ export const RULER = 30;
 export const CLIP = 26;
 export const CURVES = 76;
 export const LEAST_S = 0.06;
-export const MOST_S = 600;
+export const MOST_S = 599.9; // with its last burst a stroke has at most 600 s
 const LABEL = 58, RIGHT = 58, EDGE = 14;
 
 function lanes_of(canvas, mini) {
