@@ -288,7 +288,7 @@ class OneName(ToolTest):
 
     def texts(self):
         files = [ROOT / "README.md", *GUIDE, *(ROOT / "man").glob("*.[1-8]"), *(ROOT / "udev").iterdir(),
-                 *(f for f in (ROOT / "examples").rglob("*") if f.is_file() and f.suffix not in (".svg", ".wav"))]
+                 *(f for f in (ROOT / "examples").rglob("*") if f.is_file() and f.suffix not in (".png", ".svg", ".wav"))]
         return {f.relative_to(ROOT).as_posix(): f.read_text(encoding="utf-8") for f in files}
 
     def test_the_version_is_the_same_everywhere(self):
