@@ -265,6 +265,18 @@ class Takes(TakesTest):
         p.click("#stop")
         p.until("!tactor.state.playing")
 
+    def test_strokes_of_the_same_time_are_chosen_in_turn(self):
+        p, _ = self.ready(self.serve(), fingers=True)
+        self.fingers(p, "touchStart", [5, 5], [5, 20], [5, 35])
+        self.fingers(p, "touchMove", [35, 5], [35, 20], [35, 35])
+        p.touch("touchEnd")
+        p.until("tactor.state.takes.length === 1")
+        x, y = p.value("(r => [r.x + r.width / 2, r.y + 43])(document.querySelector('#lanes').getBoundingClientRect())")
+        for wanted in (1, 2, 0):
+            p.mouse("mousePressed", x, y)
+            p.mouse("mouseReleased", x, y)
+            p.until(f"tactor.state.stroke === {wanted}")
+
     def test_a_clip_is_trimmed_and_the_moment_is_looked_at(self):
         p, _ = self.ready(self.serve())
         p.click("#hint-example")
