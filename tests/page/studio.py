@@ -12,6 +12,8 @@ from serving import Server  # noqa: E402
 DESKTOP, TABLET, PHONE, LYING = (1440, 900), (820, 1180), (390, 844), (844, 390)
 SIZES = (DESKTOP, TABLET, PHONE, LYING)
 DARK = [{"name": "prefers-color-scheme", "value": "dark"}]
+LIVE = {"algorithm": "continuous"}  # options of a live stroke
+MISSING = ("-D", "hw:CARD=NotThere")
 TAKE = "tactor.state.takes.find(t => t.id === tactor.state.current)"
 
 
@@ -25,6 +27,17 @@ class StudioTest(BrowserTest, ToolTest):
         if s.where is None:
             self.fail(s.errors)
         return s
+
+    def other(self, s, name):
+        """Returns another client, with a name."""
+        c = s.client()
+        c.ok("hello", name=name)
+        return c
+
+    def token(self, text):
+        path = self.write("token", text + "\n")
+        path.chmod(0o600)
+        return f'[serve]\ntoken_file = "{path}"\n'
 
     def restart(self, s, **more):
         """Kills a service and starts another at the same address."""
@@ -135,3 +148,12 @@ class StudioTest(BrowserTest, ToolTest):
         name = next(e["params"]["suggestedFilename"] for e in p.browser.events[since:] if e.get("method") == "Browser.downloadWillBegin"
                     and e["params"]["guid"] == done["guid"])
         return folder / name
+
+    def names(self, p):
+        return p.value("[...document.querySelectorAll('#takes .take b')].map(b => b.textContent)")
+
+    def edit_point(self, p, start, end):
+        """Drags a point of the stroke that is edited."""
+        p.click("[data-tool=points]")
+        p.until("tactor.state.tool === 'points'")
+        p.mouse("mouseReleased", *self.press(p, start, end))

@@ -1,37 +1,16 @@
 # SPDX-License-Identifier: MIT
-"""The studio's states in a real Chromium: what is said when something is missing, who else is there, that nothing drawn is
-lost; and how each state looks. Usage: test_page_states.py TOOL SOURCE_ROOT [FOLDER_FOR_PICTURES]"""
+"""The studio's states in a real Chromium: what is said when something is missing, who else is there, and that nothing drawn is
+lost. Usage: test_page_states.py TOOL SOURCE_ROOT"""
 import os
-import pathlib
 import signal
 import sys
 
-PICTURES = pathlib.Path(sys.argv.pop(3)).resolve() if len(sys.argv) > 3 else None
-from studio import DARK, SIZES, TAKE, StudioTest, quoted  # noqa: E402
-from browser import AXE  # noqa: E402
-from harness import ROOT, main  # noqa: E402
-
-LIVE = {"algorithm": "continuous"}
-MISSING = ("-D", "hw:CARD=NotThere")
+del sys.argv[3:]
+from studio import LIVE, MISSING, StudioTest, quoted  # noqa: E402
+from harness import main  # noqa: E402
 
 
-class StatesTest(StudioTest):
-    def other(self, s, name):
-        """Returns another client, with a name."""
-        c = s.client()
-        c.ok("hello", name=name)
-        return c
-
-    def token(self, text):
-        path = self.write("token", text + "\n")
-        path.chmod(0o600)
-        return f'[serve]\ntoken_file = "{path}"\n'
-
-    def why(self, p, text):
-        p.until(f"document.querySelector('#state-why').textContent.includes({quoted(text)})")
-
-
-class NothingIsLost(StatesTest):
+class NothingIsLost(StudioTest):
     """While a finger draws: the service is killed, stopped, started again, with another token."""
 
     def begin(self, s, fragment=""):
@@ -145,7 +124,7 @@ class NothingIsLost(StatesTest):
         self.plays(p, again)
 
 
-class Devices(StatesTest):
+class Devices(StudioTest):
     def test_without_a_card_it_is_drawn_and_shown(self):
         p = self.open(self.serve(device=MISSING))
         self.says(p, "No card")
@@ -160,7 +139,10 @@ class Devices(StatesTest):
         p.until("!tactor.state.playing")
 
 
-class Others(StatesTest):
+class Others(StudioTest):
+    def why(self, p, text):
+        p.until(f"document.querySelector('#state-why').textContent.includes({quoted(text)})")
+
     def test_touches_of_others_are_shown_and_who_plays(self):
         s = self.serve()
         p, _ = self.ready(s)
@@ -201,164 +183,6 @@ class Others(StatesTest):
         p.call("Input.insertText", text="Ada's laptop")
         p.value("document.querySelector('#own-name-text').blur()")
         self.until(lambda: "Ada's laptop" in [w["name"] for w in watcher.ok("status")["who"]])
-
-
-class Looks(StatesTest):
-    """Each state in each size, light and dark: within the screen, Stop to be seen, nothing that axe-core finds."""
-
-    def test_axe_core_is_there(self):
-        if not AXE:
-            self.skipTest("axe-core is not there (tests/lanes/page gets it)")
-
-    def look(self, p, name, sizes=SIZES):
-        for size in sizes:
-            p.call("Emulation.setDeviceMetricsOverride", width=size[0], height=size[1], deviceScaleFactor=1, mobile=False)
-            p.call("Emulation.setTouchEmulationEnabled", enabled=size[0] < 1100, maxTouchPoints=5)
-            for theme in ("light", "dark"):
-                p.call("Emulation.setEmulatedMedia", features=DARK if theme == "dark" else [])
-                p.until(f"document.documentElement.dataset.theme === '{theme}'")
-                p.value("new Promise(f => requestAnimationFrame(() => requestAnimationFrame(() => setTimeout(f, 0))))")
-                p.until("document.getAnimations().length === 0")
-                picture = f"{name}-{size[0]}x{size[1]}-{theme}"
-                if PICTURES:
-                    p.picture(PICTURES / f"studio-{picture}.png")
-                with self.subTest(picture=picture):
-                    self.assertEqual(p.value("[document.documentElement.scrollWidth, document.documentElement.scrollHeight]"), list(size))
-                    x, y = p.middle("#stop")
-                    self.assertEqual(p.value(f"document.elementFromPoint({x}, {y})?.closest('button')?.id"), "stop")
-                    if AXE:
-                        self.assertEqual(p.axe_findings(), [])
-        p.call("Emulation.setTouchEmulationEnabled", enabled=False)
-        p.call("Emulation.setDeviceMetricsOverride", width=SIZES[0][0], height=SIZES[0][1], deviceScaleFactor=1, mobile=False)
-        p.until(f"innerWidth === {SIZES[0][0]} && (f => f.clientHeight === f.parentElement.clientHeight)(document.querySelector('#field'))")
-
-    def pretend(self, p, **values):
-        """Lets the state say what no test can bring about with a device that is none."""
-        for name, v in values.items():
-            p.value(f"Object.defineProperty(tactor.state, '{name}', {{get: () => ({v}), set() {{}}}}), tactor.changed('link', 'stream')")
-
-    def drawn(self, s):
-        """Returns a page with a take that leaves the array, and one of two strokes."""
-        p, watcher = self.ready(s)
-        self.draw(p, *self.way([5, 5], [35, 12]), *self.way([35, 12], [8, 30]), *self.way([8, 30], [48, 36]))
-        p.until("document.querySelector('#warnings').textContent.includes('outside')")
-        p.until("[...document.querySelectorAll('#pane .error')].every(e => e.textContent)")
-        return p, watcher
-
-    def test_running(self):
-        p, _ = self.ready(self.serve())
-        self.look(p, "empty")
-        p.click("#hint-example")
-        p.until("tactor.state.takes.length && !tactor.state.playing")
-        p.until("[...document.querySelectorAll('#pane .error')].every(e => e.textContent)")
-        self.look(p, "take")
-
-    def test_a_take_with_a_warning_and_its_points(self):
-        p, _ = self.drawn(self.serve())
-        self.look(p, "warning")
-        p.click("[data-tool=points]")
-        knot = self.take(p)["strokes"][0]["knots"][3]
-        p.mouse("mouseReleased", *self.press(p, [knot["x"], knot["y"]], [knot["x"] - 4, knot["y"] + 2]))
-        p.until("!document.querySelector('#points').hidden")
-        self.planned(p)
-        self.look(p, "points")
-
-    def test_arrays_of_all_shapes(self):
-        for file in sorted((ROOT / "examples/arrays").glob("*.toml")):
-            with self.subTest(array=file.stem):
-                s = self.serve("--array", file, "--socket", self.dir / f"{file.stem}.sock")
-                p = self.open(s)
-                p.until("tactor.state.link === 'connected' && tactor.state.options.length")
-                tactors = [[t["x_mm"], t["y_mm"]] for t in p.value("tactor.state.hello.array.tactors")]
-                self.draw(p, *self.way(tactors[0], tactors[len(tactors) // 2]), *self.way(tactors[len(tactors) // 2], tactors[-1]))
-                p.until(f"tactor.state.plan_of === {TAKE} || tactor.state.plan_fault")
-                self.assertIsNone(p.value("tactor.state.plan_fault"))
-                self.look(p, f"array-{file.stem}", SIZES[::2])
-
-    def test_panes_and_sheets(self):
-        p, _ = self.drawn(self.serve())
-        for tab in ("method", "timing", "vibration"):
-            p.value(f"document.querySelector('[data-tab={tab}]').click(), document.querySelector('#settings').click()")
-            p.until(f"document.querySelector('[data-tab={tab}]').getAttribute('aria-selected') === 'true'")
-            self.look(p, f"pane-{tab}")
-            p.value("for (const d of document.querySelectorAll('#pane details')) d.open = true; document.querySelector('#sheet-close').click()")
-            self.look(p, f"pane-{tab}-more", SIZES[:1])
-        for sheet in ("time", "takes"):
-            p.value(f"document.querySelector('button[data-sheet={sheet}]').click()")
-            self.look(p, f"sheet-{sheet}", SIZES[2:])
-
-    def test_popovers(self):
-        p, _ = self.drawn(self.serve())
-        for name in ("device", "others", "share", "save", "keys"):
-            p.value(f"document.querySelector('#p-{name}').showPopover()")
-            p.until(f"document.querySelector('#p-{name}').matches(':popover-open')")
-            if name == "save":
-                p.until("document.querySelector('#command').textContent.startsWith('tactor')")
-            self.look(p, f"popover-{name}")
-        p.value("document.querySelector('#p-keys').hidePopover(); document.querySelector('.more-button').click()")
-        self.look(p, "popover-take", SIZES[:1])
-
-    def test_playing_and_drawing(self):
-        s = self.serve()
-        p, watcher = self.drawn(s)
-        p.value("document.querySelector('#loop').click(); document.querySelector('#play').click()")
-        self.next_stroke(watcher, "started")
-        p.until("tactor.state.playing && tactor.state.at_s > 0.02")
-        self.look(p, "playing")
-        p.click("#stop")
-        p.until("!tactor.state.playing")
-        self.look(p, "stopped")
-        last = self.press(p, *self.way([5, 35], [30, 10]))
-        p.until("tactor.state.drawing && tactor.state.plan?.felt.length")
-        self.look(p, "drawing", SIZES[:1])
-        p.mouse("mouseReleased", *last)
-
-    def test_someone_plays(self):
-        s = self.serve()
-        p, _ = self.drawn(s)
-        phone = self.other(s, "A phone")
-        number = phone.ok("begin", options=LIVE, timeout_s=86400)["stroke"]
-        phone.ok("to", stroke=number, x_mm=12, y_mm=14)
-        p.until("tactor.state.touches.size && tactor.state.status.who.some(w => w.name === 'A phone')")
-        self.pretend(p, touches=f"new Map([[1, {{client: tactor.state.status.who.find(w => w.name === 'A phone').client, x_mm: 12, y_mm: 14, at: performance.now()}}]])",
-                     status=p.value("JSON.stringify(tactor.state.status)").replace('"strokes":[]', '"strokes":[{"stroke":1,"state":"started","client":0}]'))
-        self.look(p, "other", SIZES)
-
-    def test_devices(self):
-        p = self.open(self.serve(device=MISSING))
-        self.banner(p, "No sound card")
-        self.look(p, "no-card")
-        p.click("#banner-more")
-        p.until("!document.querySelector('#banner-details').hidden")
-        self.look(p, "no-card-details")
-
-    def test_streams_that_break(self):
-        p, _ = self.drawn(self.serve())
-        self.pretend(p, stream='{state: "muted", reason: "2 xruns within a second"}')
-        self.says(p, "Muted")
-        self.look(p, "muted")
-        self.pretend(p, slow="true")
-        self.says(p, "No answer")
-        self.look(p, "no-answer")
-
-    def test_card_lost(self):
-        p, _ = self.drawn(self.serve())
-        self.pretend(p, stream='{state: "lost", reason: "No such device"}')
-        p.value("tactor.state.hello.stream.format ??= 'S32_LE', tactor.changed('link')")
-        self.says(p, "Card lost")
-        self.look(p, "card-lost")
-
-    def test_no_connection(self):
-        s = self.serve()
-        p, _ = self.drawn(s)
-        s.kill()
-        self.says(p, "No connection")
-        self.look(p, "no-connection")
-
-    def test_locked(self):
-        p = self.open(self.serve(config=self.token("secret")), "#token=guess")
-        self.banner(p, "token is wrong")
-        self.look(p, "locked")
 
 
 if __name__ == "__main__":

@@ -1,16 +1,11 @@
 # SPDX-License-Identifier: MIT
-"""The studio's takes in a real Chromium: drawn, edited, kept, undone; files that come in and go out.
-Usage: test_page_takes.py TOOL SOURCE_ROOT"""
-import json
-import shlex
+"""The studio's takes in a real Chromium: edited, kept, named, undone, set, by the thousand. Usage: test_page_takes.py TOOL SOURCE_ROOT"""
 import sys
 
 del sys.argv[3:]
 from studio import DESKTOP, PHONE, TAKE, StudioTest, quoted  # noqa: E402
 from harness import main  # noqa: E402
 
-DROP = """(() => { const d = new DataTransfer(); d.items.add(new File([%s], %s));
-    for (const kind of ["dragenter", "drop"]) document.querySelector("#field").dispatchEvent(new DragEvent(kind, {dataTransfer: d, bubbles: true, cancelable: true})); })()"""
 # Takes put where the browser keeps them.
 STORE = """new Promise((done, failed) => { const asked = indexedDB.open("tactor", 1);
     asked.onerror = failed; asked.onsuccess = () => { const t = asked.result.transaction("takes", "readwrite");
@@ -19,10 +14,7 @@ STORE = """new Promise((done, failed) => { const asked = indexedDB.open("tactor"
         t.oncomplete = () => { asked.result.close(); done(1); }; }; })"""
 
 
-class TakesTest(StudioTest):
-    def names(self, p):
-        return p.value("[...document.querySelectorAll('#takes .take b')].map(b => b.textContent)")
-
+class Takes(StudioTest):
     def menu(self, p, number, word):
         """Chooses from the menu of one of the takes."""
         p.until("document.querySelectorAll('#takes li').length === tactor.state.takes.length")
@@ -30,103 +22,6 @@ class TakesTest(StudioTest):
         p.until("document.querySelector('#p-take').matches(':popover-open')")
         p.value(f"[...document.querySelectorAll('#p-take button')].find(b => b.textContent.includes({quoted(word)})).click()")
 
-    def edit_point(self, p, start, end):
-        """Drags a point of the stroke that is edited."""
-        p.click("[data-tool=points]")
-        p.until("tactor.state.tool === 'points'")
-        p.mouse("mouseReleased", *self.press(p, start, end))
-
-
-class FromDrawingToFile(TakesTest):
-    def test_three_fingers_edited_fitted_heard_saved_reloaded_and_played(self):
-        s = self.serve()
-        p, watcher = self.ready(s, fingers=True)
-        rows = (5, 20, 52)  # the last beyond the array
-        self.fingers(p, "touchStart", *([5, y] for y in rows))
-        for x in range(8, 36, 3):
-            self.fingers(p, "touchMove", *([x, y - (x > 20)] for y in rows))
-        p.touch("touchEnd")
-        p.until("tactor.state.takes.length === 1")
-        for _ in rows:
-            self.next_stroke(watcher, "finished")
-
-        # Edited by a point.
-        before = self.take(p)["strokes"][0]
-        knot = before["knots"][1]
-        self.edit_point(p, [knot["x"], knot["y"]], [knot["x"], knot["y"] + 6])
-        edited = p.until(f"{TAKE}.strokes[0].knots[1].y > {knot['y'] + 5} && {TAKE}")["strokes"]
-        self.assertNotEqual(edited[0]["timed"], before["timed"])
-        self.assertEqual(edited[1:], self.take(p)["strokes"][1:])
-
-        # Fitted, and as loud as three strokes together may be.
-        p.until("document.querySelector('#warnings').textContent.includes('outside the array')")
-        self.mend(p, "Fit to array")
-        p.until(f"{TAKE}.strokes.every(s => s.timed.every(q => q[2] > -0.1 && q[2] < 40.1))")
-        p.until("document.querySelector('#warnings').textContent.includes('dB stronger')")
-        self.mend(p, "Lower the level")
-        p.until("document.querySelector('#warnings').textContent === '' && tactor.state.plan")
-
-        # Heard by loudspeakers, too.
-        p.value("""globalThis.heard = 0; for (const name of ["start"]) { const was = OscillatorNode.prototype[name];
-            OscillatorNode.prototype[name] = function (...a) { ++heard; return was.apply(this, a); }; }""")
-        p.click("#speaker")
-        p.click("#play")
-        for _ in rows:
-            self.next_stroke(watcher, "started")
-        p.until("heard > 1")  # an oscillator for each tactor that is used
-        for _ in rows:
-            self.next_stroke(watcher, "finished")
-        p.until("!tactor.state.playing")
-
-        # Saved.
-        toml, wav = self.saved(p, "toml"), self.saved(p, "wav")
-        p.click("#save")
-        command = p.until("document.querySelector('#command').textContent.startsWith('tactor render') && document.querySelector('#command').textContent")
-        self.write(toml.name, toml.read_bytes())
-        kept = self.take(p)
-
-        # The page is loaded again: what was drawn is there, and plays.
-        p.reload()
-        self.await_service(p)
-        self.assertEqual(self.take(p), kept)
-        self.assertEqual(self.names(p), [kept["name"]])
-        p.until("!document.querySelector('#play').disabled")
-        p.click("#play")
-        for _ in rows:
-            self.next_stroke(watcher, "started")
-        for _ in rows:
-            self.next_stroke(watcher, "finished")
-
-        # The command that the page shows makes the same bytes of the saved file.
-        program, *args = shlex.split(command)
-        self.assertEqual(program, "tactor")
-        self.ok(*args)
-        rendered = self.dir / args[args.index("-o") + 1]
-        self.assertEqual(rendered.read_bytes(), wav.read_bytes())
-        self.assertGreater(len(wav.read_bytes()), 1000)
-
-    def test_all_kinds_of_files_are_saved(self):
-        p, _ = self.ready(self.serve())
-        self.draw(p, *self.way([5, 5], [35, 30]))
-        heads = {"toml": b"[stroke]", "csv": b"t_s,x_mm,y_mm", "svg": b"<?xml", "png": b"\x89PNG", "pdf": b"%PDF", "wav": b"RIFF", "json": b"{"}
-        self.assertEqual(set(p.value("[...document.querySelectorAll('#p-save [data-kind]')].map(b => b.dataset.kind)")), set(heads))
-        for kind, head in heads.items():
-            with self.subTest(kind=kind):
-                file = self.saved(p, kind)
-                self.assertEqual(file.name, f"take-1.{kind}")
-                self.assertTrue(file.read_bytes().lstrip().startswith((head, b"<svg") if kind == "svg" else head), file.read_bytes()[:40])
-
-    def test_without_a_connection_a_stroke_is_saved_nevertheless(self):
-        s = self.serve()
-        p, _ = self.ready(s)
-        self.draw(p, *self.way([5, 5], [35, 30]))
-        s.kill()
-        self.says(p, "No connection")
-        self.ok("plan", self.write("offline.toml", self.saved(p, "toml").read_bytes()), "--array", "palm-3x3")
-        self.ok("plan", self.write("offline.csv", self.saved(p, "csv").read_bytes()), "--array", "palm-3x3")
-
-
-class Takes(TakesTest):
     def test_takes_are_named_duplicated_deleted_undone_and_outlast_the_page(self):
         p, _ = self.ready(self.serve())
         for y in (5, 20, 35):
@@ -265,6 +160,18 @@ class Takes(TakesTest):
         p.click("#stop")
         p.until("!tactor.state.playing")
 
+    def test_strokes_of_the_same_time_are_chosen_in_turn(self):
+        p, _ = self.ready(self.serve(), fingers=True)
+        self.fingers(p, "touchStart", [5, 5], [5, 20], [5, 35])
+        self.fingers(p, "touchMove", [35, 5], [35, 20], [35, 35])
+        p.touch("touchEnd")
+        p.until("tactor.state.takes.length === 1")
+        x, y = p.value("(r => [r.x + r.width / 2, r.y + 43])(document.querySelector('#lanes').getBoundingClientRect())")
+        for wanted in (1, 2, 0):
+            p.mouse("mousePressed", x, y)
+            p.mouse("mouseReleased", x, y)
+            p.until(f"tactor.state.stroke === {wanted}")
+
     def test_a_clip_is_trimmed_and_the_moment_is_looked_at(self):
         p, _ = self.ready(self.serve())
         p.click("#hint-example")
@@ -285,57 +192,7 @@ class Takes(TakesTest):
         p.until(f"{TAKE}.strokes[0].timed.at(-1)[0] < {before} - 0.1")
 
 
-class Files(TakesTest):
-    def drop(self, p, name, text):
-        p.value(DROP % (quoted(text), quoted(name)))
-
-    def test_dropped_files_become_takes_and_nothing_plays(self):
-        s = self.serve()
-        p, _ = self.ready(s)
-        line = "t_s,x_mm,y_mm\n0,0,0\n0.2,40,40\n"
-        self.write("line.csv", line)
-        plan = self.ok("plan", "line.csv", "--array", "palm-3x3", "--format", "json").stdout
-        files = {"line.csv": line, "two.toml": "[[stroke]]\npath = 'M 5 5 L 35 5'\n[[stroke]]\npath = 'M 5 35 L 35 35'\n",
-                 "arc.svg": '<svg xmlns="http://www.w3.org/2000/svg" width="40mm" height="40mm" viewBox="0 0 40 40"><path d="M 5 5 L 35 35"/></svg>', "plan.json": plan}
-        for i, (name, text) in enumerate(files.items()):
-            with self.subTest(name=name):
-                self.drop(p, name, text)
-                p.until(f"tactor.state.takes.length === {i + 1}")
-                take = self.take(p)
-                self.assertEqual(take["name"], name.split(".")[0])
-                self.assertEqual(len(take["strokes"]), 2 if name == "two.toml" else 1)
-                p.until("document.querySelector('#drop').hidden")
-        self.assertEqual(s.client().ok("status")["strokes"], [])
-
-    def test_what_is_wrong_with_a_file_is_said_with_its_name(self):
-        p, _ = self.ready(self.serve())
-        self.drop(p, "line.csv", "t_s,x_mm,y_mm\n0,zero,0\n")
-        self.banner(p, "“line.csv” was not opened")
-        self.assertIn("zero", p.value("document.querySelector('#banner-text').textContent"))
-        p.click("#banner-close")
-        p.until("document.querySelector('#banner').hidden")
-        self.drop(p, "notes.exe", "MZ")
-        self.banner(p, "“notes.exe” was not opened")
-        self.assertEqual(p.value("tactor.state.takes.length"), 0)
-
-    def test_the_button_opens_files_too(self):
-        p, _ = self.ready(self.serve())
-        p.value("""(() => { const d = new DataTransfer(); for (const n of ["a.csv", "b.csv"]) d.items.add(new File(["t_s,x_mm,y_mm\\n0,0,0\\n0.2,40,40\\n"], n));
-            const f = document.querySelector("#file"); f.files = d.files; f.dispatchEvent(new Event("change")); })()""")
-        p.until("tactor.state.takes.length === 2")
-        self.assertEqual(p.value("tactor.state.takes.map(t => t.name).sort()"), ["a", "b"])
-
-    def test_a_hostile_name_is_text(self):
-        p, _ = self.ready(self.serve())
-        name = '<img src=x onerror="globalThis.injected = 1">'
-        self.drop(p, f"{name}.toml", f"[[stroke]]\nname = '{name}'\npath = 'M 0 0 L 40 40'\n")
-        p.until("document.querySelectorAll('#takes li').length === 1")
-        self.assertEqual(p.value("document.querySelector('#take-name').textContent"), name)
-        self.assertIsNone(p.value("globalThis.injected"))
-        self.ok("plan", self.write("again.toml", self.saved(p, "toml").read_bytes()), "--array", "palm-3x3")
-
-
-class Many(TakesTest):
+class Many(StudioTest):
     def test_a_thousand_takes(self):
         self.check_thousand(size=DESKTOP)
 

@@ -103,7 +103,9 @@ export const clip_box = (l, s) => [x_of(l, s.start_s), x_of(l, end_s(s))];
 function draw_clips(p, l) {
   const take = current_take();
   if (!take) return;
-  take.strokes.forEach((s, i) => {
+  // The one that is edited lies above others of its time.
+  const order = [...take.strokes.entries()].sort((a, b) => (a[0] === state.stroke) - (b[0] === state.stroke));
+  order.forEach(([i, s]) => {
     const [a, b] = clip_box(l, s), own = i === state.stroke, w = Math.max(6, b - a);
     p.beginPath(); p.roundRect(a, RULER, w, CLIP - 4, 6);
     p.fillStyle = colour(own ? "raised" : "well"); p.fill();

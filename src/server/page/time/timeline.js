@@ -11,6 +11,10 @@ import {clip_box, zoom_time} from "./lanes.js";
 const REACH = 14;
 
 let held = null;
+function choose_clip(i) {
+  if (i !== state.stroke) Object.assign(state, {stroke: i, knot: -1});
+  changed("take");
+}
 function lane_down(l, e) {
   const r = l.canvas.getBoundingClientRect(), x = e.clientX - r.left, y = e.clientY - r.top, take = current_take();
   l.canvas.setPointerCapture(e.pointerId);
@@ -21,14 +25,14 @@ function lane_down(l, e) {
     if (y >= RULER - 2 && y <= RULER + CLIP) {
       if (x > x_of(l, total()) + 4) { held = null; state.append = !state.append;
         say(state.append ? "Draw: it follows the last stroke" : "Drawings are takes of their own"); return changed("curves"); }
-      for (const [i, s] of take.strokes.entries()) {
-        const [a, b] = clip_box(l, s);
-        if (x < a - 6 || x > b + 6) continue;
-        state.stroke = i; state.knot = -1;
-        changed("take");
-        const ends = b - a > 30;
+      const is_under = s => { const [a, b] = clip_box(l, s); return x >= a - 6 && x <= b + 6; };
+      const under = [...take.strokes.keys()].filter(i => is_under(take.strokes[i]));
+      if (under.length) {
+        const again = under.includes(state.stroke), index = again ? state.stroke : under[0], stroke = take.strokes[index];
+        choose_clip(index);
+        const [a, b] = clip_box(l, stroke), ends = b - a > 30;
         return void Object.assign(held, {kind: ends && x < a + 10 ? "trim-start" : ends && x > b - 10 ? "trim-end" : "move",
-          stroke: s, index: i, t: t_of(l, x), cut: 0});
+          stroke, index, t: t_of(l, x), cut: 0, next: again ? under[(under.indexOf(index) + 1) % under.length] : index});
       }
     }
   }
@@ -55,6 +59,8 @@ function lane_moved(e) {
 function put_stroke(index, stroke) { edit_take(take => ({strokes: take.strokes.map((s, i) => i === index ? stroke : s)}),
   held?.key); }
 function lane_up() {
+  // Another tap takes the next of those that lie at the same time.
+  if (held?.next !== undefined && !held.moved) choose_clip(held.next);
   if (held) { end_edit(); changed("take"); }
   held = null;
 }

@@ -99,3 +99,6 @@ by_id("full").addEventListener("click", () => {
 });
 follow_theme();
 connect();
+
+// For the console, and for tests: what esbuild joins is not seen from outside.
+Object.defineProperties(globalThis, {state: {get: () => state}, began: {get: () => began}});
