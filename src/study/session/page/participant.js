@@ -101,4 +101,4 @@ follow_theme();
 connect();
 
 // For the console, and for tests: what esbuild joins is not seen from outside.
-Object.defineProperties(globalThis, {state: {get: () => state}, began: {get: () => began}});
+Object.defineProperties(globalThis, {state: {get: () => state}, began: {get: () => began}, socket: {get: () => socket}});
