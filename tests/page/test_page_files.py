@@ -13,6 +13,20 @@ DROP = """(() => { const d = new DataTransfer(); d.items.add(new File([%s], %s))
 
 
 class FromDrawingToFile(StudioTest):
+    def test_strokes_that_are_too_strong_together_play_at_a_lower_level(self):
+        s = self.serve()
+        p, watcher = self.ready(s)
+        line = "[[stroke]]\nstart_s = 0\nstart_from = 'piece'\npath = 'M 0 20 L 40 20'\nduration_s = 0.3\n"
+        p.value("(t => { const d = new DataTransfer(); d.items.add(new File([t], 'three.toml'));"
+                " const f = document.querySelector('#file'); f.files = d.files; f.dispatchEvent(new Event('change')); })(%s)" % quoted(3 * line))
+        p.until(f"{TAKE}?.strokes.length === 3 && tactor.state.plan_fault")
+        p.click("#play")
+        for _ in range(3):
+            self.next_stroke(watcher, "started")
+        self.assertLess(p.value("tactor.state.level_db"), -9)
+        for _ in range(3):
+            self.next_stroke(watcher, "finished")
+
     def test_three_fingers_edited_fitted_heard_saved_reloaded_and_played(self):
         s = self.serve()
         p, watcher = self.ready(s, fingers=True)

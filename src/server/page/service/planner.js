@@ -43,7 +43,7 @@ async function ask() {
   const take = current_take(), was_drawing = state.drawing !== null;
   try {
     const plan = await call("plan", {...what, view: "percept", draft: ++draft, ...observer()});
-    if (was_drawing || current_take() === take) Object.assign(state, {plan: prepared(plan), plan_fault: null,
+    if (was_drawing || current_take() === take) Object.assign(state, {plan, plan_fault: null,
       plan_of: was_drawing ? null : take});
   } catch (e) {
     if (e.code !== 0 && e.data?.why !== "outdated") Object.assign(state, {plan: null, plan_fault: e});
@@ -67,12 +67,6 @@ export async function lower_level(refusal) {
   changed("level");
 }
 const observer = () => state.observer ? {observer: state.observer} : {};
-
-// Adds what pictures need: when each burst ends, and where the last one is.
-function prepared(plan) {
-  plan.felt ??= [];
-  return plan;
-}
 
 // Predicts the other algorithms and phantoms, one after the other, while nothing else is asked for.
 async function compare() {

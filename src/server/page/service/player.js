@@ -3,7 +3,8 @@
 import {state, changed, current_take, say} from "../state.js";
 import {call, is_connected, server_now_s, from_server_ms, on_notification, on_lost} from "./connection.js";
 import {request_of, take_s} from "../takes/takes.js";
-import {level_dbfs} from "./planner.js";
+import {level_dbfs, too_strong_db, lower_level} from "./planner.js";
+import {number_text} from "../words.js";
 import {start_loudspeaker} from "./loudspeaker.js";
 
 const TEST_S = 0.5;
@@ -19,7 +20,7 @@ export async function play() {
   state.stopped = null;
   // After a look at one moment it plays from the start.
   state.playing = {take: take.id, began_ms: performance.now(), total_s: state.plan?.total_s ?? take_s(take), numbers: new Set(),
-    felt, asked: felt};
+    felt};
   state.at_s = 0;
   if (felt) await ask_to_play(null); else say(state.link === "connected"
     ? "No card: shown, not felt" : "No connection: shown, not felt");
@@ -35,11 +36,19 @@ async function ask_to_play(start) {
     own.total_s = r.total_s;
     own.numbers = new Set(r.strokes.filter(n => !ended.has(n)));
     ended.clear();
-    own.asked = false;
     own.next = null;
     if (!start) own.waits = true; // until it sounds
   } catch (e) {
     if (state.playing !== own) return;
+    // Strokes of several fingers add up: they are played as strong as they may be.
+    if (too_strong_db(e) > 0 && !own.lowered) {
+      own.lowered = true;
+      const before = state.level_db;
+      await lower_level(e);
+      if (state.playing !== own) return;
+      say(`Level ${number_text(state.level_db - before)} dB: together the strokes are too strong`);
+      return ask_to_play(start);
+    }
     state.playing = null;
     if (state.plan_fault) say("It cannot be played: the warning at its settings says why");
     else if (e.code !== 0) { state.fault = e.message; changed("link"); }
