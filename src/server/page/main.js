@@ -154,7 +154,7 @@ function frame() {
   running = moves();
   if (running) requestAnimationFrame(frame);
 }
-export function wake() { if (!running) { running = true; requestAnimationFrame(frame); } }
+function wake() { if (!running) { running = true; requestAnimationFrame(frame); } }
 on_change(wake);
 setInterval(() => { if (state.dbfs.some(v => v !== null) || state.touches.size) wake(); }, 33);
 

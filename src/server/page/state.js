@@ -3,7 +3,9 @@
 
 export const state = {
   // The service.
-  hello: null, link: "connecting", stream: {state: "", reason: ""}, status: null, retry_s: 0, slow: false, asks_token: "",
+  hello: null, link: "connecting", stream: {state: "", reason: ""}, status: null, slow: false, asks_token: "",
+  lost_reason: "", retry_at: 0, // of a connection that is tried again
+  fault: null,           // what failed, for the banner
   stopped: null,         // {name, at}
   touches: new Map(),    // of other people, by stroke: {x, y, at}
   dbfs: [],              // of each tactor, as it is driven
@@ -14,7 +16,9 @@ export const state = {
   knot: -1, tool: "draw", feel: true, append: false, level_db: 0, // below the ceiling
   // What is drawn, predicted and played.
   drawing: null,         // {began, tracks}
-  plan: null, plan_fault: null, plan_of: null, predicted: new Map(),
+  plan: null, plan_fault: null, plan_of: null, predicted: new Map(), observer: null,
+  outside: [],           // places of strokes that are farthest from the array
+  shape: "park2016",     // of the bars: the take's algorithm
   playing: null,         // {began_ms, total_s, numbers, felt, loop}
   at_s: 0, loop: false, speaker: false, hot: -1,
   tab: "method", sheet: "", show_speed: true, show_strength: true,

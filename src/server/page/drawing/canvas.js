@@ -10,7 +10,7 @@ import {draw_ink, draw_number} from "./ink.js";
 const pen = by_id("field").getContext("2d");
 
 // The parts of full amplitude of each tactor at this moment: measured, or planned where nothing is driven.
-export function shares() {
+function shares() {
   const t = array?.places.length ?? 0, out = new Array(t).fill(0);
   if (state.dbfs.some(v => v !== null)) {
     state.dbfs.forEach((v, i) => { if (v !== null) out[i] = Math.min(1, 10 ** ((v - ceiling_dbfs()) / 20)); });
@@ -25,7 +25,7 @@ export function shares() {
   return out;
 }
 // Bursts that sound at a moment. Those of one stroke come by onset.
-export function bursts_at(plan, t) {
+function bursts_at(plan, t) {
   const found = [];
   for (const s of plan.strokes ?? [{first: 0, count: plan.onsets.length}]) {
     let low = s.first, high = s.first + s.count;
@@ -34,7 +34,7 @@ export function bursts_at(plan, t) {
   }
   return found;
 }
-export function felt_at(plan, t) {
+function felt_at(plan, t) {
   const felt = plan?.felt;
   if (!felt?.length) return [];
   return (plan.strokes ?? [{felt_first: 0, felt_count: felt.length}]).flatMap(s => {

@@ -182,7 +182,7 @@ function grasp(f, mm) {
   return true;
 }
 function drag_knot(f, mm) { edit_stroke(s => moved_knot(s, f.knot, mm.map(v => +v.toFixed(3))), f.key); }
-export function add_point(mm) {
+function add_point(mm) {
   const s = edited_stroke();
   if (!s) return;
   const added = insert_knot(s, mm);
@@ -247,7 +247,7 @@ field.addEventListener("wheel", e => {
     else pan(-e.deltaX, -e.deltaY);
 }, {passive: false});
 function hover(e) { if (e.pointerType === "mouse" && array) set_hot(tactor_at(to_mm(...pixel_of(e)))); }
-export function set_hot(i) {
+function set_hot(i) {
   if (state.hot === i) return;
   state.hot = i;
   changed("hot");

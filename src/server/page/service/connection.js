@@ -22,7 +22,7 @@ export function on_hello(f) { greet = f; }
 export const server_now_s = () => performance.now() / 1000 + offset_s;
 export const from_server_ms = s => (s - offset_s) * 1000;
 
-export class Fault extends Error {
+class Fault extends Error {
   constructor(e) {
     const d = e.data ?? {};
     super([d.what, d.why ?? e.message].filter(Boolean).join(": ") + (d.hint ? ` (${d.hint})` : ""));

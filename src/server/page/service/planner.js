@@ -26,7 +26,7 @@ function request() {
   return take?.strokes.length ? request_of(take, level_dbfs()) : null;
 }
 
-export function plan_soon() {
+function plan_soon() {
   if (busy) { owed = true; return; }
   if (is_connected()) ask();
 }

@@ -14,7 +14,7 @@ const KINDS = [["toml", "Stroke", "for the tool, a study and this page"], ["csv"
   ["png", "Figure, PNG", ""], ["pdf", "Figure, PDF", ""], ["wav", "Samples", "exactly what each channel plays"],
     ["json", "Plan", "all bursts as numbers"]];
 
-export async function open_files(files) {
+async function open_files(files) {
   for (const file of files) {
     try {
       if (file.size > MOST_BYTES) throw new Error(`${file.name} is larger than ${MOST_BYTES >> 10} KiB`);
@@ -46,7 +46,7 @@ function give(name, blob) {
 }
 const decoded = text => Uint8Array.from(atob(text), c => c.charCodeAt(0));
 
-export async function save_as(kind) {
+async function save_as(kind) {
   const take = current_take();
   if (!take?.strokes.length) return say("There is nothing to save yet");
   by_id("p-save").hidePopover();

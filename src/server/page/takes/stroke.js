@@ -3,7 +3,7 @@
 // timed is [[t_s, x_mm, y_mm, intensity], ...] and what is played; knots [{x, y, corner}] lie on its path;
 // pace says when which part of the path is reached; strength is [[part, factor], ...].
 
-export const KNOT_MM = 8;
+const KNOT_MM = 8;
 const STEP_MM = 0.5;
 const STEP_S = 0.02;
 const MOST_POINTS = 20000;
@@ -17,7 +17,7 @@ const distance = (a, b) => Math.hypot(a[0] - b[0], a[1] - b[1]);
 const between = (a, b, part) => a + (b - a) * part;
 
 // Finds the index of the last row whose first value is at most v, by halving.
-export function row_before(rows, v) {
+function row_before(rows, v) {
   let low = 0, high = rows.length - 1;
   while (low < high) {
     const mid = (low + high + 1) >> 1;
@@ -56,7 +56,7 @@ function along(places) {
 }
 
 // A spline through the knots (Catmull-Rom, centripetal), with corners, as places STEP_MM apart.
-export function curve_through(knots) {
+function curve_through(knots) {
   const out = [];
   for (let i = 0; i + 1 < knots.length; ++i) {
     const b = knots[i], c = knots[i + 1];
@@ -84,7 +84,7 @@ function catmull_rom(a, b, c, d, part) {
 }
 
 // Knots each KNOT_MM along a path, and at its corners.
-export function find_knots(places, step = KNOT_MM) {
+function find_knots(places, step = KNOT_MM) {
   const rows = along(places);
   if (rows.length < 2) return [{x: places[0][0], y: places[0][1], corner: false},
     {x: places.at(-1)[0] + 0.01, y: places.at(-1)[1], corner: false}];

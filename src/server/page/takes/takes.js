@@ -68,7 +68,7 @@ export function add_take(strokes, {name, origin, options} = {}) {
   edit({takes: [take, ...state.takes], current: take.id, stroke: 0});
   return take;
 }
-export function replace_take(take, same) {
+function replace_take(take, same) {
   edit({takes: state.takes.map(t => t.id === take.id ? take : t), current: take.id}, same);
 }
 export function edit_take(change, same) {

@@ -87,7 +87,7 @@ function show_takes() {
   rows.get(state.current)?.element.firstChild.setAttribute("aria-current", "true");
   by_id("no-takes").hidden = now.length > 0;
 }
-export function draw_thumbs() { for (const c of document.querySelectorAll(".thumb")) c.draw?.(); }
+function draw_thumbs() { for (const c of document.querySelectorAll(".thumb")) c.draw?.(); }
 
 // Examples: the presets that fit this array.
 const examples = new Map();
