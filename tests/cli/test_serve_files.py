@@ -183,6 +183,22 @@ class Export(ServeTest):
             self.ok("render", *arguments, "-o", "c.wav")
             self.assertEqual((self.dir / "c.wav").read_bytes(), wav)
 
+    def test_a_take_is_played_to_the_samples_of_its_file(self):
+        server = self.serve(device=("-D", "raw:played.raw"))
+        c = server.client()
+        take = {"toml": "[[stroke]]\nname = 'drawn'\nstart_s = 0\ntimed = [[0, 3, 3, 0.4], [0.21, 20, 30.5, 1], [0.4, 38, 11]]\n",
+                "options": {"soa": 0.06, "phantom": "barycentric", "outside": "clamp", "level_dbfs": -15}}
+        told = c.ok("play", **take)
+        c.await_end(told["stroke"])
+        sample_format = c.ok("hello")["stream"]["format"]
+        file, line = self.export(c, "toml", name="drawn", **take)
+        self.write("drawn.toml", file.decode())
+        server.terminate()
+        self.run_line(line.replace(" -o ", f" --sample-format {sample_format} -o "))
+        samples = Wav(self.dir / "drawn.wav").data
+        self.assertGreater(sum(map(bool, samples)), 10000)
+        self.assertIn(samples, (self.dir / "played.raw").read_bytes())
+
     def test_a_file_says_its_options_and_the_command_the_rest(self):
         c = self.serve().client()
         toml, line = self.export(c, "toml", path="M 0 0 L 40 40", name="up",
