@@ -94,7 +94,7 @@ view_choice read_view(const json& params)
     constexpr double most_bins = 4000.0;
     view_choice v;
     if (const json* name = member(params, "view")) {
-        const std::string& said = text(*name, "view");
+        const std::string said = text(*name, "view");
         const auto* found = std::find_if(std::begin(views), std::end(views),
                                          [&](const auto& one) { return one.first == said; });
         if (found == std::end(views))
@@ -117,7 +117,7 @@ options::wishes settle_options(options::wishes owner, const json& params)
         owner.observer = observer_kind::centroid; // which uses no option
     if (const json* given = member(params, "observer")) {
         const option& o = *options::find("observer");
-        const std::string& name = text(*given, "observer");
+        const std::string name = text(*given, "observer");
         const std::vector<std::string_view> known = o.choices();
         if (!predicts)
             bad_param("observer", "only the view percept has one", R"(add "view":"percept")");

@@ -56,7 +56,7 @@ const file_kind& find_kind(const json& params)
     constexpr const char* hint = "one of toml, csv, svg, wav, png, pdf, json";
     if (as == nullptr)
         bad_param("as", "it is missing", hint);
-    const std::string& name = text(*as, "as");
+    const std::string name = text(*as, "as");
     const auto* found =
         std::find_if(kinds.begin(), kinds.end(), [&name](const file_kind& k) { return k.extension == name; });
     if (found == kinds.end())
