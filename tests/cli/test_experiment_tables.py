@@ -23,7 +23,7 @@ class Tables(ExperimentTest):
         table.write_text("".join(table.read_text().splitlines(True)[:3]))
         (self.dir / "study/sub-01" / third).unlink()
         scans.write_text("".join(lines[:-1]))
-        return whole, table, [p for p in (self.dir / "study").rglob("*.tsv")]
+        return whole, table, sorted((self.dir / "study").rglob("*.tsv"))
 
     def test_tables_saved_by_another_program_resume_and_keep_their_line_ends(self):
         def quoted(text):

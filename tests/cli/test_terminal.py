@@ -46,7 +46,7 @@ class Terminal(ToolTest):
             before = self.run_tool(*args)
             status, text = self.on_terminal(columns, *args)
             after = self.run_tool(*args)
-            if before.stdout == after.stdout:
+            if before.stdout == after.stdout and text.split() == (before.stdout + before.stderr).split():
                 break
         self.assertEqual(status, before.returncode)
         self.assertEqual(text.split(), (before.stdout + before.stderr).split(), args)
