@@ -173,6 +173,19 @@ double whole(const json& v, const std::string& what, detail::bounds b)
     return n;
 }
 
+const char* find_one(const json& params, std::initializer_list<const char*> names)
+{
+    const char* found = nullptr;
+    for (const char* name : names) {
+        if (!params.contains(name))
+            continue;
+        if (found != nullptr)
+            bad_param(name, fmt::format("there is also \"{}\"", found), "give one of them");
+        found = name;
+    }
+    return found;
+}
+
 bool flag(const json& params, const char* name)
 {
     const json* v = member(params, name);

@@ -54,6 +54,8 @@ double number(const net::json& v, const std::string& what, detail::bounds b);
 double need_number(const net::json& params, const char* name, detail::bounds b);
 /// Returns a whole number within bounds. \throws fault_error.
 double whole(const net::json& v, const std::string& what, detail::bounds b);
+/// Returns the one of these names that there is; null for none. \throws fault_error for several.
+const char* find_one(const net::json& params, std::initializer_list<const char*> names);
 /// Returns a member that is true or false; false if there is none. \throws fault_error.
 bool flag(const net::json& params, const char* name);
 std::uint32_t need_stroke(const net::json& params);

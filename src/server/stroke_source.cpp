@@ -186,16 +186,23 @@ std::vector<double> path_starts_s(const std::vector<stroke>& strokes)
     return std::move(times).all();
 }
 
+bool counts_from_group(const stroke& k) noexcept
+{
+    return k.anchor.back != 1;
+}
+
+void count_from_piece(std::vector<stroke>& strokes, const std::vector<double>& starts_s)
+{
+    for (std::size_t i = 0; i < strokes.size(); ++i)
+        if (counts_from_group(strokes[i])) {
+            strokes[i].start_s = starts_s[i];
+            strokes[i].anchor = {};
+        }
+}
+
 const char* find_source(const json& params)
 {
-    const char* found = nullptr;
-    for (const char* name : {"stroke", "path", "points", "toml", "csv", "svg"}) {
-        if (!params.contains(name))
-            continue;
-        if (found != nullptr)
-            bad_param(name, fmt::format("there is also \"{}\"", found), "give one of them");
-        found = name;
-    }
+    const char* found = find_one(params, {"stroke", "path", "points", "toml", "csv", "svg"});
     if (found == nullptr)
         bad_param("stroke", "nothing says what to draw", "one of stroke, path, points, toml, csv, svg");
     return found;

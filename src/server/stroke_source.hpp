@@ -60,6 +60,12 @@ std::vector<stroke> settle_strokes(const planning& with, const layout& faces, st
 /// Returns the start of each stroke, s, as if each lasted as long as its path.
 std::vector<double> path_starts_s(const std::vector<stroke>& strokes);
 
+/// Returns true for a stroke whose start counts from that of a group, which a stroke file written anew has
+/// not.
+bool counts_from_group(const stroke& k) noexcept;
+/// Gives such strokes their starts, s from that of the piece.
+void count_from_piece(std::vector<stroke>& strokes, const std::vector<double>& starts_s);
+
 /// Returns the one parameter of these that says what is drawn: "stroke", "path", "points", "toml", "csv" or
 /// "svg". \throws fault_error for none or several.
 const char* find_source(const net::json& params);

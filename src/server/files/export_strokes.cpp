@@ -64,12 +64,6 @@ const file_kind& find_kind(const json& params)
     return *found;
 }
 
-options::wishes find_options(const planning& with, const json& params)
-{
-    const json* given = member(params, "options");
-    return given == nullptr ? with.owner : with_options(with.owner, *given, options_for::planned);
-}
-
 [[noreturn]] void too_large(std::size_t most_bytes)
 {
     limit_reached("export", fmt::format("the file is larger than {} MiB", most_bytes >> 20U),
@@ -105,18 +99,13 @@ double end_s(const std::vector<stroke>& strokes)
     return end;
 }
 
-bool counts_from_group(const std::vector<stroke>& strokes)
-{
-    return std::any_of(strokes.begin(), strokes.end(), [](const stroke& k) { return k.anchor.back != 1; });
-}
-
 // Adds the time of rendering or drawing to the work of planning.
 planning_work estimate(const exporting& e, const file_kind& kind, const options::wishes& s,
                        const std::vector<stroke>& strokes)
 {
     constexpr double steps_a_second = 60.0; // of samples of one channel
     constexpr double steps_a_picture = 20'000.0;
-    if (!kind.has_plan() && !counts_from_group(strokes))
+    if (!kind.has_plan() && std::none_of(strokes.begin(), strokes.end(), counts_from_group))
         return {};
     planning_work w = estimate_work(strokes, s, e.faces);
     if (kind.extension == "wav")
@@ -131,16 +120,11 @@ planning_work estimate(const exporting& e, const file_kind& kind, const options:
 void place_by_plans(const exporting& e, const options::wishes& s, std::vector<stroke>& strokes,
                     const planning_checks& checks)
 {
-    if (!counts_from_group(strokes))
+    if (std::none_of(strokes.begin(), strokes.end(), counts_from_group))
         return;
     planned p{"", strokes, {}, s.render};
     plan_strokes(e.with, e.faces, p, s, "stroke", checks);
-    const std::vector<double> starts = p.starts_s();
-    for (std::size_t i = 0; i < strokes.size(); ++i)
-        if (strokes[i].anchor.back != 1) {
-            strokes[i].start_s = starts[i];
-            strokes[i].anchor = {};
-        }
+    count_from_piece(strokes, p.starts_s());
 }
 
 // Returns the strokes as the tool reads them in the exported file: all its digits come from there.
@@ -231,7 +215,7 @@ void check_export(const planning& with, const json& params)
     allow_only(params, {"stroke", "path", "points", "toml", "csv", "svg", "options", "fit", "as", "name"});
     static_cast<void>(find_source(params));
     static_cast<void>(find_kind(params));
-    static_cast<void>(find_options(with, params));
+    static_cast<void>(settle_options(with.owner, params));
     static_cast<void>(flag(params, "fit"));
     if (const json* name = member(params, "name"); name != nullptr && !is_file_name(text(*name, "name")))
         bad_param("name", "it is no name for a file", "1 to 100 letters, digits, blanks, - and _");
@@ -241,7 +225,7 @@ std::string export_strokes(const exporting& e, const json& params, const plannin
 {
     const std::string source = find_source(params);
     const file_kind& kind = find_kind(params);
-    const options::wishes s = find_options(e.with, params);
+    const options::wishes s = settle_options(e.with.owner, params);
     try {
         std::vector<stroke> strokes =
             settle_strokes(e.with, e.faces, read_strokes(source, params[source], s), s, flag(params, "fit"));

@@ -34,14 +34,7 @@ struct read_file {
 // Returns the parameter that has the strokes.
 const char* find_content(const json& params)
 {
-    const char* found = nullptr;
-    for (const char* name : {"stroke", "text", "base64"}) {
-        if (!params.contains(name))
-            continue;
-        if (found != nullptr)
-            bad_param(name, fmt::format("there is also \"{}\"", found), "give one of them");
-        found = name;
-    }
+    const char* found = find_one(params, {"stroke", "text", "base64"});
     if (found == nullptr)
         bad_param("text", "nothing says what to read", "one of text, base64, stroke");
     return found;
@@ -96,11 +89,7 @@ read_file read_bytes(std::string bytes, const std::string& name)
 
 std::string toml_text(std::vector<stroke> strokes, const std::vector<double>& starts)
 {
-    for (std::size_t i = 0; i < strokes.size(); ++i)
-        if (strokes[i].anchor.back != 1) {
-            strokes[i].start_s = starts[i];
-            strokes[i].anchor = {};
-        }
+    count_from_piece(strokes, starts);
     return detail::strokes_text(strokes);
 }
 

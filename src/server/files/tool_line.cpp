@@ -42,7 +42,6 @@ options::wishes for_command(options::wishes s, const array& a, const tool_files&
     s.rate.reset();
     if (s.render.rate != usual_rate)
         s.rate = s.render.rate;
-    s.observer = options::wishes().observer; // no command that makes a file predicts
     s.channels.reset();
     if (s.render.channels > a.channels())
         s.channels = s.render.channels;
