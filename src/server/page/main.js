@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 // The page to draw on: what belongs to no part of it, and the start.
 import {state, changed, on_change, on_toast, current_take, say} from "./state.js";
-import {by_id, place_icons, forget_colours, is_dark} from "./dom.js";
+import {by_id} from "../../net/page/dom.js";
+import {place_icons, forget_colours, is_dark} from "./look.js";
 import {connect, call, on_hello, is_connected} from "./service/connection.js";
 import {open_takes, undo, redo, can_undo, can_redo} from "./takes/takes.js";
 import {draw_frame, moves} from "./drawing/canvas.js";

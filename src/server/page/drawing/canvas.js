@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
 // The picture of the array at one moment: over ground and strokes, what is driven and felt.
 import {state, current_take, ceiling_dbfs} from "../state.js";
-import {by_id, colour} from "../dom.js";
+import {by_id} from "../../../net/page/dom.js";
+import {colour, font} from "../look.js";
 import {interpolate} from "../takes/stroke.js";
-import {array, view, layers, stale, trace, disc, font, to_px} from "./view.js";
+import {array, view, layers, stale, trace, disc, to_px} from "./view.js";
 import {draw_ground} from "./ground.js";
 import {draw_ink, draw_number} from "./ink.js";
 

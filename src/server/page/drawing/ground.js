@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 // What lies under the strokes: the body part, the skin between the tactors with its grid, the scale.
-import {by_id, colour} from "../dom.js";
-import {array, view, layers, start_layer, trace, font, to_px} from "./view.js";
+import {by_id} from "../../../net/page/dom.js";
+import {colour, font} from "../look.js";
+import {array, view, layers, start_layer, trace, to_px} from "./view.js";
 
 export function draw_ground() {
   const p = start_layer(layers.ground);

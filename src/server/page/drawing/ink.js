@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Strokes, their bursts, and where they are predicted to be felt.
 import {state, current_take} from "../state.js";
-import {colour, is_dark} from "../dom.js";
-import {array, view, layers, start_layer, trace, disc, font, to_px} from "./view.js";
+import {colour, is_dark, font} from "../look.js";
+import {array, view, layers, start_layer, trace, disc, to_px} from "./view.js";
 import {viridis} from "../../../net/page/viridis.js";
 
 export function draw_ink() {

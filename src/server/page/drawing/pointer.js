@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Fingers, pen, mouse and keys on the array: drawing, straight lines, points, tests of single tactors.
 import {state, changed, current_take, ceiling_dbfs, say} from "../state.js";
-import {by_id} from "../dom.js";
+import {by_id} from "../../../net/page/dom.js";
 import {call, tell, is_connected, on_lost} from "../service/connection.js";
 import {array, to_mm, to_px, px_per_mm, tactor_at, zoom, pan} from "./view.js";
 import {add_take, edit_take, edit_stroke, end_edit, request_options, moved_knot} from "../takes/takes.js";

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The array to scale: millimetres to pixels, zoom, and the layers that are drawn again when something changes.
 import {state, changed, on_change} from "../state.js";
-import {by_id} from "../dom.js";
+import {by_id} from "../../../net/page/dom.js";
 import {hull, box} from "../takes/stroke.js";
 
 const canvas = by_id("field");
@@ -96,5 +96,4 @@ export function trace(p, places, closed = false) {
   if (closed) p.closePath();
 }
 export function disc(p, [x, y], r) { p.beginPath(); p.arc(x, y, Math.max(0, r), 0, 2 * Math.PI); }
-export const font = (size, weight = 400) => `${weight} ${size}px ${getComputedStyle(document.body).fontFamily}`;
 

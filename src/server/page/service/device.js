@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 // What state the service is in: one word and one reason each, a banner where something is to be done.
 import {state, on_change, changed, ceiling_dbfs} from "../state.js";
-import {by_id, make, icon} from "../dom.js";
+import {by_id, make} from "../../../net/page/dom.js";
+import {icon} from "../look.js";
 import {connect_with, connect} from "./connection.js";
 import {test_tactor} from "./player.js";
 import {array_name, number_text} from "../words.js";

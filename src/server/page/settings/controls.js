@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Controls that stand for a value: each has an element, and an update that shows the value again.
-import {make, icon} from "../dom.js";
+import {make} from "../../../net/page/dom.js";
+import {icon} from "../look.js";
 
 let last_id = 0;
 const ids = () => `c${++last_id}`;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Small pictures that are computed from the formulas they stand for.
-import {make, is_dark} from "../dom.js";
+import {make} from "../../../net/page/dom.js";
+import {is_dark} from "../look.js";
 import {viridis} from "../../../net/page/viridis.js";
 
 const picture = (width, height, ...parts) => make("svg", {viewBox: `0 0 ${width} ${height}`, class: "diagram",

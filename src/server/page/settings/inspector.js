@@ -2,7 +2,8 @@
 // Settings of the take. Options come from the service's table: those with a control of their own are named in OWN, all
 // others are made from their rows.
 import {state, changed, on_change, current_take, ceiling_dbfs} from "../state.js";
-import {by_id, make, icon} from "../dom.js";
+import {by_id, make} from "../../../net/page/dom.js";
+import {icon} from "../look.js";
 import {slider, choice, toggle, entry, button} from "./controls.js";
 import {set_option, end_edit, edit_stroke, edit_take} from "../takes/takes.js";
 import {predicted_key, LEAST_LEVEL_DB} from "../service/planner.js";

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Keys, wherever the focus is.
 import {state, changed} from "../state.js";
-import {by_id, make} from "../dom.js";
+import {by_id, make} from "../../../net/page/dom.js";
 import {play, stop} from "../service/player.js";
 import {undo, redo, choose_take} from "../takes/takes.js";
 import {look_at_all} from "../drawing/view.js";

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 // What is predicted to be felt, and what is wrong with the take, in plain words, with what mends it.
 import {state, changed, on_change, current_take} from "../state.js";
-import {by_id, make, icon} from "../dom.js";
+import {by_id, make} from "../../../net/page/dom.js";
+import {icon} from "../look.js";
 import {set_option, fit_take} from "../takes/takes.js";
 import {too_strong_db, lower_level} from "../service/planner.js";
 import {spark} from "./diagrams.js";

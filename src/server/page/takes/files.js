@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Files that come in, and files that go out: read and written by the service, so that they are the tool's.
 import {state, current_take, say} from "../state.js";
-import {by_id, make} from "../dom.js";
+import {by_id, make} from "../../../net/page/dom.js";
 import {call, is_connected} from "../service/connection.js";
 import {add_take, request_of} from "./takes.js";
 import {strokes_toml, stroke_csv} from "./stroke.js";

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 // The list of takes and examples.
 import {state, on_change, say} from "../state.js";
-import {by_id, make, icon, is_dark, colour} from "../dom.js";
+import {by_id, make} from "../../../net/page/dom.js";
+import {icon, is_dark, colour} from "../look.js";
 import {choose_take, rename_take, duplicate_take, delete_take, add_take, fit_take, take_s} from "./takes.js";
 import {array} from "../drawing/view.js";
 import {viridis} from "../../../net/page/viridis.js";

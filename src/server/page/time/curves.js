@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: MIT
 // Speed and strength along the strokes: as asked for, as felt, and the points by which they are changed.
 import {state, current_take} from "../state.js";
-import {colour} from "../dom.js";
+import {colour, font} from "../look.js";
 import {CURVES, left, right, x_of} from "./time_axis.js";
 import {edit_stroke} from "../takes/takes.js";
 import {editable, rebuild, interpolate, duration_s, speeds_of, length_mm} from "../takes/stroke.js";
 
 const FELT_STEP_S = 0.07; // the SOA of the paper
-const label_font = () => `11px ${getComputedStyle(document.body).fontFamily}`;
 
 // Speed as asked for and as felt, and strength with its points.
 export function draw_curves(p, l) {
@@ -16,7 +15,7 @@ export function draw_curves(p, l) {
   const most = most_speed(take), y_speed = v => bottom - Math.min(1, v / most) * (bottom - top - 12);
   p.strokeStyle = colour("line2"); p.lineWidth = 1;
   p.beginPath(); p.moveTo(left(l), bottom + 0.5); p.lineTo(l.width - right(l), bottom + 0.5); p.stroke();
-  p.font = label_font();
+  p.font = font(11);
   p.textAlign = "left"; p.fillStyle = colour("ink3");
   p.fillText(`${Math.round(most)} mm/s`, l.width - right(l) + 3, top + 16); p.fillText("0", l.width - right(l) + 3, bottom);
   p.textAlign = "right";

@@ -2,7 +2,7 @@
 // Who plays when: a ruler, the strokes as clips, a lane for each tactor. The lanes are drawn again only when something
 // has changed; the moment is drawn over them each frame.
 import {state, changed, current_take} from "../state.js";
-import {colour, is_dark} from "../dom.js";
+import {colour, is_dark, font} from "../look.js";
 import {array} from "../drawing/view.js";
 import {viridis} from "../../../net/page/viridis.js";
 import {full, mini, total, shown, left, right, x_of, RULER, CLIP, CURVES} from "./time_axis.js";
@@ -22,7 +22,7 @@ function draw_layer(l) {
   p.clearRect(0, 0, l.width, l.height);
   if (!array) return;
   const n = array.places.length, h = lane_height(l), top = lanes_top(l), end = l.width - right(l);
-  p.font = `11px ${getComputedStyle(document.body).fontFamily}`;
+  p.font = font(11);
   if (!l.mini) draw_ruler(p, l, top + n * h);
   for (let i = 0; i < n; ++i) {
     const y = top + (i + 1) * h;
@@ -32,7 +32,7 @@ function draw_layer(l) {
     p.beginPath(); p.moveTo(left(l), y - 0.5); p.lineTo(end, y - 0.5); p.stroke();
     p.textAlign = "right";
     p.fillStyle = colour(i === state.hot ? "ink" : "ink2");
-    p.font = `${i === state.hot ? 700 : 600} 12px ${getComputedStyle(document.body).fontFamily}`;
+    p.font = font(12, i === state.hot ? 700 : 600);
     if (i % Math.ceil(11 / h) === 0) p.fillText(`${i === 0 && h > 12 ? "tactor " : ""}${array.tactors[i].tactor ?? i}`,
       left(l) - 8, y - 2);
   }
@@ -43,7 +43,7 @@ function draw_ruler(p, l, bottom) {
   const s = shown(l), step = [0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 30, 60,
     120].find(v => v / s * (l.width - left(l) - right(l)) > 58) ?? 300;
   p.textAlign = "center";
-  p.font = `11px ${getComputedStyle(document.body).fontFamily}`;
+  p.font = font(11);
   for (let i = Math.ceil(l.from / step); i * step <= l.from + s; ++i) {
     const x = x_of(l, i * step);
     p.strokeStyle = colour("grid"); p.lineWidth = 1;
@@ -115,12 +115,12 @@ function draw_clips(p, l) {
     p.save();
     p.beginPath(); p.rect(a + 10, RULER, Math.max(0, w - 20), CLIP); p.clip();
     p.fillStyle = colour(own ? "ink" : "ink2"); p.textAlign = "left";
-    p.font = `${own ? 600 : 500} 12px ${getComputedStyle(document.body).fontFamily}`;
+    p.font = font(12, own ? 600 : 500);
     p.fillText(take.strokes.length === 1 ? take.name : s.name, a + 13, RULER + 15);
     p.restore();
     const before = take.strokes.filter((_, k) => k !== i).map(end_s).filter(e => e <= s.start_s + 1e-9);
     const gap = before.length ? s.start_s - Math.max(...before) : 0;
-    if (gap > 0.005 && x_of(l, gap) - x_of(l, 0) > 34) { p.font = `11px ${getComputedStyle(document.body).fontFamily}`;
+    if (gap > 0.005 && x_of(l, gap) - x_of(l, 0) > 34) { p.font = font(11);
       p.fillStyle = colour("ink3"); p.textAlign = "center";
       p.fillText(`${gap.toFixed(2)} s`, x_of(l, s.start_s - gap / 2), RULER + 15); }
   });

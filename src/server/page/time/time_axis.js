@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The two timelines: seconds to pixels, and what part of the time is shown.
 import {state, changed, on_change, current_take} from "../state.js";
-import {by_id} from "../dom.js";
+import {by_id} from "../../../net/page/dom.js";
 import {take_s} from "../takes/takes.js";
 
 export const RULER = 30;

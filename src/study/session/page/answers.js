@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Answers are buttons with numbers, which are keys, too. Their kinds only look different.
-import {by_id, element, show_only_if} from "./dom.js";
+import {by_id, make, show_only_if} from "../../../net/page/dom.js";
 import {draw_picture} from "./motion.js";
 
 function has_words_at_ends(choices) {
@@ -14,11 +14,11 @@ function find_kind({screen, choices, pictures}) {
   return has_words_at_ends(choices) || choices.every(c => !c) ? "scale" : "list";
 }
 function make_button(s, label, i, tactors) {
-  const kind = find_kind(s), b = element("button", {type: "button"});
+  const kind = find_kind(s), b = make("button", {type: "button"});
   if (kind === "pictures") b.append(draw_picture(tactors, s.pictures[i]));
-  if (kind !== "begin") b.append(element("b", {}, i + 1));
+  if (kind !== "begin") b.append(make("b", {}, i + 1));
   if (label && kind === "scale") b.setAttribute("aria-label", `${i + 1}, ${label}`);
-  else if (label) b.append(element("span", {}, label));
+  else if (label) b.append(make("span", {}, label));
   return b;
 }
 
@@ -68,6 +68,6 @@ export function show_stimuli(count, playing) {
   show_only_if(all, count > 0);
   by_id("playing").textContent = playing || "";
   if (all.children.length !== count)
-    all.replaceChildren(...Array.from({length: count}, (_, i) => element("div", {}, element("b", {}, i + 1))));
+    all.replaceChildren(...Array.from({length: count}, (_, i) => make("div", {}, make("b", {}, i + 1))));
   [...all.children].forEach((e, i) => e.classList.toggle("on", i + 1 === playing));
 }

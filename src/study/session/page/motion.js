@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The array and a motion over it, to scale: millimetres are the units.
-import {by_id, shape} from "./dom.js";
+import {by_id, make} from "../../../net/page/dom.js";
 import {viridis} from "../../../net/page/viridis.js";
 
 const SEGMENTS = 30; // of a picture
@@ -24,8 +24,8 @@ export function draw_target(tactors, path) {
   const box = frame([...tactors, ...path], pitch * .7);
   field.setAttribute("viewBox", box.join(" "));
   field.style.setProperty("--ratio", box[2] / box[3]);
-  field.replaceChildren(...tactors.map(([cx, cy]) => shape("circle", {cx, cy, r: pitch * .28, class: "ring"})),
-    shape("circle", {id: "dot", r: pitch * .15, "stroke-width": pitch * .16}));
+  field.replaceChildren(...tactors.map(([cx, cy]) => make("circle", {cx, cy, r: pitch * .28, class: "ring"})),
+    make("circle", {id: "dot", r: pitch * .15, "stroke-width": pitch * .16}));
   move_target(path, 0);
 }
 export function move_target(path, part) {
@@ -40,17 +40,17 @@ export function draw_picture(tactors, path) {
   const places = Array.from({length: SEGMENTS + 1}, (_, i) => place_at(path, i / SEGMENTS));
   const end = places[SEGMENTS], before = place_at(path, 1 - 1.5 / SEGMENTS);
   const angle = Math.atan2(end[1] - before[1], end[0] - before[0]) * 180 / Math.PI;
-  const picture = shape("svg", {viewBox: box.join(" "), class: "picture", "aria-hidden": "true"},
-    ...tactors.map(([cx, cy]) => shape("circle", {cx, cy, r: size * .026, class: "place"})),
-    shape("polyline", {points: places.join(" "), class: "edge", "stroke-width": size * .062}));
+  const picture = make("svg", {viewBox: box.join(" "), class: "picture", "aria-hidden": "true"},
+    ...tactors.map(([cx, cy]) => make("circle", {cx, cy, r: size * .026, class: "place"})),
+    make("polyline", {points: places.join(" "), class: "edge", "stroke-width": size * .062}));
   for (let i = 0; i < SEGMENTS; ++i) {
-    const part = shape("polyline", {points: [places[i], places[i + 1]].join(" "), class: "time", "stroke-width": size * .045});
+    const part = make("polyline", {points: [places[i], places[i + 1]].join(" "), class: "time", "stroke-width": size * .045});
     part.style.setProperty("--light", viridis(i / (SEGMENTS - 1), false));
     part.style.setProperty("--dark", viridis(i / (SEGMENTS - 1), true));
     picture.append(part);
   }
-  picture.append(shape("circle", {cx: places[0][0], cy: places[0][1], r: size * .045, class: "start", "stroke-width": size * .022}),
-    shape("path", {d: "M.9 0L-.7 .85L-.35 0L-.7 -.85Z", class: "end",
+  picture.append(make("circle", {cx: places[0][0], cy: places[0][1], r: size * .045, class: "start", "stroke-width": size * .022}),
+    make("path", {d: "M.9 0L-.7 .85L-.35 0L-.7 -.85Z", class: "end",
       transform: `translate(${end.join(" ")}) rotate(${angle}) scale(${size * .085})`}));
   return picture;
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-import {by_id, show_only_if} from "./dom.js";
+import {by_id, show_only_if} from "../../../net/page/dom.js";
 import {follow_theme} from "./theme.js";
 import {show_progress, show_no_progress, show_bar_if} from "./progress.js";
 import {draw_target, move_target} from "./motion.js";

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-import {by_id, element, show_only_if} from "./dom.js";
+import {by_id, make, show_only_if} from "../../../net/page/dom.js";
 
 // Shows where the session is. The bar has a segment for each part; the present one fills with its trials.
 export function show_progress(p, words, part_is_over) {
@@ -13,7 +13,7 @@ export function show_progress(p, words, part_is_over) {
   bar.setAttribute("aria-valuenow", done);
   bar.classList.toggle("practice", p.practice);
   while (bar.children.length > p.runs) bar.lastChild.remove();
-  while (bar.children.length < p.runs) bar.append(element("i"));
+  while (bar.children.length < p.runs) bar.append(make("i"));
   [...bar.children].forEach((segment, i) =>
     segment.style.setProperty("--done", i + 1 < p.run ? 1 : i + 1 === p.run ? done / p.trials : 0));
 }

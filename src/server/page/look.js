@@ -1,23 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Elements and icons.
-
-const SVG_NAMES = "http://www.w3.org/2000/svg";
-
-export const by_id = id => document.getElementById(id);
-
-// Makes an element: attributes, properties that begin with a dot, and listeners that begin with on.
-export function make(tag, attributes = {}, ...children) {
-  const svg = ["svg", "path", "rect", "circle", "line", "polyline", "g", "text"].includes(tag);
-  const e = svg ? document.createElementNS(SVG_NAMES, tag) : document.createElement(tag);
-  for (const [name, v] of Object.entries(attributes)) {
-    if (v === undefined || v === null || v === false) continue;
-    if (name.startsWith("on")) e.addEventListener(name.slice(2), v);
-    else if (name.startsWith(".")) e[name.slice(1)] = v;
-    else e.setAttribute(name, v === true ? "" : v);
-  }
-  e.append(...children.flat().filter(c => c !== null && c !== undefined && c !== false));
-  return e;
-}
+// Icons, colours and letters of the theme.
+import {make} from "../../net/page/dom.js";
 
 // Paths on a grid of 20.
 const ICONS = {
@@ -77,4 +60,6 @@ export function colour(name) {
   return colours[name] ??= getComputedStyle(document.documentElement).getPropertyValue(`--${name}`).trim();
 }
 export function forget_colours() { colours = {}; }
+let family = "";
+export const font = (size, weight = 400) => `${weight} ${size}px ${family ||= getComputedStyle(document.body).fontFamily}`;
 export const is_dark = () => document.documentElement.dataset.theme === "dark";
