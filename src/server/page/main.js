@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The page to draw on: what belongs to no part of it, and the start.
-import {state, changed, on_change, on_toast, current_take, say} from "./state.js";
+import {state, changed, on_change, on_toast, current_take, current_stroke, say} from "./state.js";
 import {by_id} from "../../net/page/dom.js";
 import {place_icons, forget_colours, is_dark} from "./look.js";
 import {connect, call, on_hello, is_connected} from "./service/connection.js";
@@ -19,7 +19,7 @@ import "./takes/files.js";
 import "./settings/inspector.js";
 import "./settings/prediction.js";
 import {seconds_text} from "./words.js";
-import {length_mm, editable} from "./takes/stroke.js";
+import {length_mm, editable, total_s} from "./takes/stroke.js";
 
 const TOAST_MS = 2200;
 
@@ -118,16 +118,16 @@ on_change(() => {
   by_id("take-origin").textContent = !anew && take?.origin.includes("-") ? ` · ${take.origin}` : "";
   by_id("no-lanes").hidden = Boolean(take?.strokes.length || state.drawing);
   by_id("hint").hidden = hint_closed || state.takes.length > 0 || state.drawing !== null || !by_id("banner").hidden;
-  show_point(take);
+  show_point();
 });
 function take_facts(take) {
   if (!take?.strokes.length) return "";
-  const bursts = state.plan && !state.plan.continuous && state.plan.onsets ? `${state.plan.onsets.length} bursts, ` : "";
+  const bursts = state.plan && !state.plan.continuous ? `${state.plan.onsets.length} bursts, ` : "";
   const mm = take.strokes.reduce((sum, s) => sum + length_mm(s.timed), 0);
-  return `${bursts}${Math.round(mm)} mm in ${seconds_text(Math.max(...take.strokes.map(s => s.start_s + s.timed.at(-1)[0])))}`;
+  return `${bursts}${Math.round(mm)} mm in ${seconds_text(total_s(take.strokes))}`;
 }
-function show_point(take) {
-  const s = take?.strokes[state.stroke], on_point = state.tool === "points" && s && state.knot >= 0;
+function show_point() {
+  const s = current_stroke(), on_point = state.tool === "points" && s && state.knot >= 0;
   by_id("points").hidden = !on_point;
   if (!on_point) return;
   const knots = editable(s).knots, k = knots[Math.min(state.knot, knots.length - 1)];

@@ -49,4 +49,9 @@ export function on_toast(f) { toast = f; }
 export function say(text) { toast?.(text); }
 
 export const current_take = () => state.takes.find(t => t.id === state.current) ?? null;
+// The stroke of the take that is edited.
+export const current_stroke = () => current_take()?.strokes[state.stroke] ?? null;
 export const ceiling_dbfs = () => state.hello?.max_level_dbfs ?? -12;
+export const level_dbfs = () => ceiling_dbfs() + state.level_db;
+// The level as a factor on what sounds at the ceiling.
+export const level_gain = () => 10 ** (state.level_db / 20);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The picture of the array at one moment: over ground and strokes, what is driven and felt.
-import {state, current_take, ceiling_dbfs} from "../state.js";
+import {state, current_take, ceiling_dbfs, level_gain} from "../state.js";
 import {by_id} from "../../../net/page/dom.js";
 import {colour, font} from "../look.js";
 import {interpolate} from "../takes/stroke.js";
@@ -20,7 +20,7 @@ function shares() {
   const plan = state.plan;
   if (!plan?.onsets?.length || (state.playing?.felt && !state.playing.waits)) return out;
   if (state.at_s <= 0 && !state.playing) return out;
-  const level = 10 ** (state.level_db / 20);
+  const level = level_gain();
   for (const i of bursts_at(plan, state.at_s)) for (let k = 0; k < t; ++k) out[k] = Math.max(out[k],
     Math.min(1, plan.amplitudes[i * t + k] * level));
   return out;
@@ -28,21 +28,16 @@ function shares() {
 // Bursts that sound at a moment. Those of one stroke come by onset.
 function bursts_at(plan, t) {
   const found = [];
-  for (const s of plan.strokes ?? [{first: 0, count: plan.onsets.length}]) {
+  for (const s of plan.strokes) {
     let low = s.first, high = s.first + s.count;
     while (low < high) { const mid = (low + high) >> 1; if (plan.onsets[mid] <= t) low = mid + 1; else high = mid; }
     for (let i = low - 1; i >= s.first && i >= low - 12; --i) if (plan.onsets[i] + plan.durations[i] > t) found.push(i);
   }
   return found;
 }
-function felt_at(plan, t) {
-  const felt = plan?.felt;
-  if (!felt?.length) return [];
-  return (plan.strokes ?? [{felt_first: 0, felt_count: felt.length}]).flatMap(s => {
-    const rows = felt.slice(s.felt_first, s.felt_first + s.felt_count);
-    return rows.length && t >= rows[0][0] && t <= rows.at(-1)[0] + 0.1 ? [interpolate(rows, t)] : [];
-  });
-}
+// Places where the strokes are felt at a moment.
+const felt_at = (plan, t) => (plan?.felt_rows ?? []).filter(rows => rows.length && t >= rows[0][0] && t <= rows.at(-1)[0] + 0.1)
+  .map(rows => interpolate(rows, t));
 
 export function draw_frame() {
   if (!view.width) return;

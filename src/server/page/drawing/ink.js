@@ -12,9 +12,9 @@ export function draw_ink() {
   const drawing = state.drawing;
   // Tactors are the ground of the lines, which stay above them.
   array.places.forEach((q, i) => draw_ring(p, q, i));
-  if (plan && (drawing || plan === state.plan)) draw_felt(p, plan);
+  if (plan) draw_felt(p, plan);
   const strokes = drawing ? drawing.before : take?.strokes ?? [];
-  strokes.forEach((s, i) => draw_stroke(p, s, i, i === state.stroke || drawing !== null));
+  strokes.forEach((s, i) => draw_stroke(p, s, i === state.stroke || drawing !== null));
   drawing?.tracks.forEach(k => {
     trace(p, k.points.map(q => [q[1], q[2]]));
     p.strokeStyle = colour("ink");
@@ -44,17 +44,14 @@ export function draw_number(p, [x, y], i, tone) {
   p.textBaseline = "alphabetic";
 }
 function draw_felt(p, plan) {
-  const felt = plan.felt ?? [];
-  if (!felt.length) return;
   p.save();
   p.globalAlpha = is_dark() ? 0.5 : 0.45;
   p.strokeStyle = colour("felt");
   p.lineWidth = Math.min(9, Math.max(5, view.scale * 0.8));
-  const parts = plan.strokes?.map(s => felt.slice(s.felt_first, s.felt_first + s.felt_count)) ?? [felt];
-  for (const rows of parts) { trace(p, rows.map(f => [f[1], f[2]])); p.stroke(); }
+  for (const rows of plan.felt_rows) { trace(p, rows.map(f => [f[1], f[2]])); p.stroke(); }
   p.restore();
 }
-function draw_stroke(p, s, i, own) {
+function draw_stroke(p, s, own) {
   trace(p, s.timed.map(q => [q[1], q[2]]));
   p.strokeStyle = own ? colour("ink") : colour("ink2");
   p.lineWidth = own ? 2 : 1.5;

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
 // Fingers, pen, mouse and keys on the array: drawing, straight lines, points, tests of single tactors.
-import {state, changed, current_take, ceiling_dbfs, say} from "../state.js";
+import {state, changed, current_take, current_stroke, ceiling_dbfs, level_dbfs, level_gain, say} from "../state.js";
 import {by_id} from "../../../net/page/dom.js";
 import {call, tell, is_connected, on_lost} from "../service/connection.js";
 import {array, to_mm, to_px, px_per_mm, tactor_at, zoom, pan} from "./view.js";
 import {add_take, edit_take, edit_stroke, end_edit, request_options, moved_knot} from "../takes/takes.js";
 import {from_drawing, straight, editable, nearest_knot, insert_knot, rebuild, total_s} from "../takes/stroke.js";
-import {level_dbfs} from "../service/planner.js";
+import {value} from "../settings/values.js";
 import {test_tactor, on_stop} from "../service/player.js";
 
 const RESTING_MS = 100;    // a finger that rests says so, or its stroke would end
@@ -23,7 +23,7 @@ const fingers = new Map();
 let show_held = () => {};
 export function on_tactor_held(f) { show_held = f; }
 
-const pixel_of = e => { const r = field.getBoundingClientRect(); return [e.clientX - r.left, e.clientY - r.top]; };
+const to_pixel = e => { const r = field.getBoundingClientRect(); return [e.clientX - r.left, e.clientY - r.top]; };
 // A pen's pressure; mice and most fingers have none to tell.
 const strength = e => e.pointerType === "pen" && e.pressure > 0 ? Math.min(1, +e.pressure.toFixed(3)) : 1;
 const seconds = ms => +(ms / 1000).toFixed(4);
@@ -85,8 +85,7 @@ function record(f, mm, at_ms) {
 // Live strokes: what is drawn is felt.
 function begin_live(f) {
   // The level takes effect while the finger moves: the stroke begins at the ceiling, and its points are weaker.
-  f.scaled = !state.options.length || (take_option("sl") === undefined && (take_option("intensity_scale")
-    ?? "amplitude") === "amplitude");
+  f.scaled = current_take()?.options.sl === undefined && (value("intensity_scale") ?? "amplitude") === "amplitude";
   const o = request_options(current_take(), f.scaled ? ceiling_dbfs() : level_dbfs());
   if (o.algorithm === "tactile-brush") o.algorithm = "continuous"; // it has to know the end first
   const live = new Set(state.options.filter(r => r.live).map(r => r.name));
@@ -97,12 +96,11 @@ function begin_live(f) {
     if (!f.track.down) tell("end", {stroke: f.number});
   }, e => { if (!f.refused) say(e.message); f.refused = true; });
 }
-const take_option = name => current_take()?.options[name];
 function send(f, at_ms, always = false) {
   if (f.number === null || (!always && at_ms - f.sent_ms < LEAST_STEP_MS)) return;
   f.sent_ms = at_ms;
   tell("to", {stroke: f.number, x_mm: f.at[0], y_mm: f.at[1],
-    intensity: f.strength * (f.scaled ? 10 ** (state.level_db / 20) : 1)});
+    intensity: f.strength * (f.scaled ? level_gain() : 1)});
 }
 setInterval(() => fingers.forEach(f => f.mode === "draw" && send(f, performance.now(), true)), RESTING_MS);
 
@@ -165,10 +163,7 @@ on_stop(lift_all);
 on_lost(() => fingers.forEach(f => { f.number = null; }));
 
 // Points.
-function edited_stroke() {
-  const take = current_take();
-  return take?.strokes[state.stroke] ? editable(take.strokes[state.stroke]) : null;
-}
+const edited_stroke = () => current_stroke() && editable(current_stroke());
 function grasp(f, mm) {
   const s = edited_stroke();
   if (!s) return false;
@@ -221,7 +216,7 @@ field.addEventListener("pointerdown", e => {
   if (e.button === 1) { middle = [e.clientX, e.clientY]; field.setPointerCapture(e.pointerId); e.preventDefault(); return; }
   if (e.button > 0) return;
   try { field.setPointerCapture(e.pointerId); } catch { /* a pointer that is gone already */ }
-  down(e.pointerId, pixel_of(e), e);
+  down(e.pointerId, to_pixel(e), e);
 });
 const raw = "onpointerrawupdate" in window;
 function follow(e) {
@@ -229,11 +224,11 @@ function follow(e) {
   const f = fingers.get(e.pointerId);
   if (!f) return hover(e);
   const all = e.getCoalescedEvents?.() ?? [];
-  for (const p of all.length ? all : [e]) moved(e.pointerId, pixel_of(p), p);
+  for (const p of all.length ? all : [e]) moved(e.pointerId, to_pixel(p), p);
 }
 field.addEventListener(raw ? "pointerrawupdate" : "pointermove", follow);
-if (raw) field.addEventListener("pointermove", e => { if (fingers.has(e.pointerId)) moved(e.pointerId, pixel_of(e), e); });
-field.addEventListener("pointerup", e => { middle = null; if (fingers.has(e.pointerId)) { moved(e.pointerId, pixel_of(e), e);
+if (raw) field.addEventListener("pointermove", e => { if (fingers.has(e.pointerId)) moved(e.pointerId, to_pixel(e), e); });
+field.addEventListener("pointerup", e => { middle = null; if (fingers.has(e.pointerId)) { moved(e.pointerId, to_pixel(e), e);
   up(e.pointerId); } });
 for (const end of ["pointercancel", "lostpointercapture"]) field.addEventListener(end,
   e => { middle = null; up(e.pointerId, true); });
@@ -246,7 +241,7 @@ field.addEventListener("wheel", e => {
   if (e.ctrlKey || Math.abs(e.deltaX) < 1) zoom(Math.exp(-e.deltaY / 400), [e.clientX - r.left, e.clientY - r.top]);
     else pan(-e.deltaX, -e.deltaY);
 }, {passive: false});
-function hover(e) { if (e.pointerType === "mouse" && array) set_hot(tactor_at(to_mm(...pixel_of(e)))); }
+function hover(e) { if (e.pointerType === "mouse" && array) set_hot(tactor_at(to_mm(...to_pixel(e)))); }
 function set_hot(i) {
   if (state.hot === i) return;
   state.hot = i;

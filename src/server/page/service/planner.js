@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
 // Plans for the picture: one question at a time, always about what is newest.
-import {state, changed, on_change, current_take, ceiling_dbfs} from "../state.js";
+import {state, changed, on_change, current_take} from "../state.js";
 import {call, is_connected} from "./connection.js";
-import {request_of, request_options, take_s} from "../takes/takes.js";
-import {strokes_toml, thin} from "../takes/stroke.js";
+import {make_request, take_s} from "../takes/takes.js";
+import {thin} from "../takes/stroke.js";
+import {row, value} from "../settings/values.js";
 
 const COMPARED_MS = 500;   // quiet before other methods are predicted
 const COMPARED_S = 30;     // the longest take for which they are
@@ -13,17 +14,14 @@ export const LEAST_LEVEL_DB = -40;
 
 let draft = 0, busy = false, owed = false, compare_timer = 0, round = 0;
 
-export const level_dbfs = () => ceiling_dbfs() + state.level_db;
-
 function request() {
-  if (state.drawing) {
-    const strokes = [...state.drawing.before, ...state.drawing.tracks.filter(k => k.points.length > 1)
-      .map(k => ({name: "drawing", start_s: k.start_s, timed: k.points.length > DRAFTED_POINTS
-        ? thin(k.points, 0.1) : k.points}))];
-    return strokes.length ? {toml: strokes_toml(strokes), options: request_options(current_take(), level_dbfs())} : null;
-  }
-  const take = current_take();
-  return take?.strokes.length ? request_of(take, level_dbfs()) : null;
+  const take = current_take(), strokes = state.drawing ? draw_so_far(state.drawing) : take?.strokes;
+  return strokes?.length ? make_request({...take, strokes}) : null;
+}
+// Returns the strokes of a drawing that goes on.
+function draw_so_far({before, tracks}) {
+  return [...before, ...tracks.filter(k => k.points.length > 1).map(k => ({name: "drawing", start_s: k.start_s,
+    timed: k.points.length > DRAFTED_POINTS ? thin(k.points, 0.1) : k.points}))];
 }
 
 function plan_soon() {
@@ -43,6 +41,7 @@ async function ask() {
   const take = current_take(), was_drawing = state.drawing !== null;
   try {
     const plan = await call("plan", {...what, view: "percept", draft: ++draft, ...observer()});
+    plan.felt_rows = plan.strokes.map(s => plan.felt.slice(s.felt_first, s.felt_first + s.felt_count));
     if (was_drawing || current_take() === take) Object.assign(state, {plan, plan_fault: null,
       plan_of: was_drawing ? null : take});
   } catch (e) {
@@ -72,16 +71,13 @@ const observer = () => state.observer ? {observer: state.observer} : {};
 async function compare() {
   const take = current_take(), own = ++round;
   if (!take?.strokes.length || state.drawing || take_s(take) > COMPARED_S) return;
-  const row = name => state.options.find(o => o.name === name);
-  const used = name => take.options[name] ?? row(name)?.default;
-  const wanted = [...(row("algorithm")?.choices ?? []).map(v => ["algorithm", v]),
-    ...(row("phantom")?.choices ?? []).map(v => ["phantom", v])]
-    .filter(([name, v]) => v !== used(name));
+  const wanted = ["algorithm", "phantom"].flatMap(name =>
+    (row(name)?.choices ?? []).filter(v => v !== value(name)).map(v => [name, v]));
   for (const [name, v] of wanted) {
     if (own !== round || busy || current_take() !== take || !is_connected()) return;
     const key = predicted_key(take, name, v);
     if (state.predicted.has(key)) continue;
-    const what = request_of({...take, options: {...take.options, [name]: v}}, level_dbfs());
+    const what = make_request({...take, options: {...take.options, [name]: v}});
     let found;
     try { found = (await call("plan", {...what, view: "percept", ...observer()})).errors; } catch (e) {
       if (e.code === 0) return;

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 // Plays takes, tests tactors, stops; and says where the moment is.
-import {state, changed, current_take, say} from "../state.js";
+import {state, changed, current_take, level_gain, say} from "../state.js";
 import {call, is_connected, server_now_s, from_server_ms, on_notification, on_lost} from "./connection.js";
-import {request_of, take_s} from "../takes/takes.js";
-import {level_dbfs, too_strong_db, lower_level} from "./planner.js";
+import {make_request, take_s} from "../takes/takes.js";
+import {too_strong_db, lower_level} from "./planner.js";
 import {number_text} from "../words.js";
 import {start_loudspeaker} from "./loudspeaker.js";
 
@@ -22,22 +22,22 @@ export async function play() {
   state.playing = {take: take.id, began_ms: performance.now(), total_s: state.plan?.total_s ?? take_s(take), numbers: new Set(),
     felt};
   state.at_s = 0;
-  if (felt) await ask_to_play(null); else say(state.link === "connected"
+  if (felt) await ask_to_play(); else say(state.link === "connected"
     ? "No card: shown, not felt" : "No connection: shown, not felt");
-  if (state.speaker && state.playing) hear_it();
+  if (!felt) hear_it();
   changed("playing");
 }
 
-async function ask_to_play(start) {
+async function ask_to_play() {
   const own = state.playing, take = state.takes.find(t => t.id === own.take);
   try {
-    const r = await call("play", {...request_of(take, level_dbfs()), ...start && {start}});
+    const r = await call("play", make_request(take));
     if (state.playing !== own) return;
     own.total_s = r.total_s;
     own.numbers = new Set(r.strokes.filter(n => !ended.has(n)));
     ended.clear();
     own.next = null;
-    if (!start) own.waits = true; // until it sounds
+    own.waits = true; // until it sounds
   } catch (e) {
     if (state.playing !== own) return;
     // Strokes of several fingers add up: they are played as strong as they may be.
@@ -47,7 +47,7 @@ async function ask_to_play(start) {
       await lower_level(e);
       if (state.playing !== own) return;
       say(`Level ${number_text(state.level_db - before)} dB: together the strokes are too strong`);
-      return ask_to_play(start);
+      return ask_to_play();
     }
     state.playing = null;
     if (state.plan_fault) say("It cannot be played: the warning at its settings says why");
@@ -66,11 +66,9 @@ export function tick() {
   if (state.loop && p.felt && !p.waits && !p.next && t > p.total_s - AHEAD_S && p.numbers.size) next_round(p);
   if (t < p.total_s || p.waits) return;
   if (p.next) return;
-  if (state.loop && !p.felt) { p.began_ms += p.total_s * 1000; if (state.speaker) hear_it(); return; }
+  if (state.loop && !p.felt) { p.began_ms += p.total_s * 1000; hear_it(); return; }
   if (p.felt && p.numbers.size && t < p.total_s + 1) return; // its end is told
-  state.playing = null;
-  silence_speaker();
-  changed("playing");
+  end_playing();
 }
 async function next_round(p) {
   p.next = true;
@@ -78,7 +76,7 @@ async function next_round(p) {
   if (!take) return;
   const at = Math.max(server_now_s() + 0.05, server_now_s() + p.total_s - (performance.now() - p.began_ms) / 1000);
   try {
-    const r = await call("play", {...request_of(take, level_dbfs()), start: {monotonic_s: at}});
+    const r = await call("play", {...make_request(take), start: {monotonic_s: at}});
     if (state.playing !== p) return r.strokes.forEach(n => call("cancel", {stroke: n}).catch(() => {}));
     r.strokes.forEach(n => p.numbers.add(n));
     p.next = {number: r.stroke, total_s: r.total_s};
@@ -89,9 +87,12 @@ on_notification("stroke", s => {
   const p = state.playing;
   if (s.state === "started") {
     if (p?.numbers.has(s.stroke) && s.started_s !== null) {
-      if (p.waits) { p.began_ms = from_server_ms(s.started_s); p.waits = false; if (state.speaker) hear_it(); }
-      else if (p.next?.number === s.stroke) { p.began_ms = from_server_ms(s.started_s); p.total_s = p.next.total_s;
-        p.next = null; if (state.speaker) hear_it(); }
+      const is_next = !p.waits && p.next?.number === s.stroke;
+      if (is_next) Object.assign(p, {total_s: p.next.total_s, next: null});
+      if (p.waits || is_next) {
+        Object.assign(p, {began_ms: from_server_ms(s.started_s), waits: false});
+        hear_it();
+      }
       changed("playing");
     }
     return;
@@ -127,12 +128,9 @@ on_notification("touches", t => {
 // Nothing of this page's own may keep a stop back: it is sent before anything else is done.
 export function stop() {
   const sent = call("stop");
-  const was = state.playing;
-  state.playing = null;
-  silence_speaker();
+  end_playing();
   lift_fingers?.();
   sent.catch(() => say(is_connected() ? "Stop was sent; tactor has not answered" : "No connection: use the amplifier's switch"));
-  if (was) changed("playing");
   return sent;
 }
 let lift_fingers = null;
@@ -140,16 +138,15 @@ export function on_stop(f) { lift_fingers = f; }
 
 export function test_tactor(i) {
   if (!is_connected()) return say("No connection: nothing is driven");
-  call("drive", {tactor: i, intensity: Math.min(1, 10 ** (state.level_db / 20)), duration_s: TEST_S})
+  call("drive", {tactor: i, intensity: level_gain(), duration_s: TEST_S})
     .then(() => say(`Tactor ${i}, ${TEST_S} s`), e => say(e.message));
 }
 
-// Loudspeakers of this computer, for those without actuators.
+// Plays on this computer's loudspeakers where that is asked for.
 function hear_it() {
   silence_speaker();
-  if (!state.plan || !state.hello) return;
-  speaker = start_loudspeaker({...state.plan, places: state.hello.array.tactors}, state.at_s,
-    {gain: 10 ** (state.level_db / 20)});
+  if (!state.speaker || !state.plan || !state.hello) return;
+  speaker = start_loudspeaker({...state.plan, places: state.hello.array.tactors}, state.at_s, {gain: level_gain()});
 }
 export function silence_speaker() { speaker?.stop(); speaker = null; }
 export function look_at(s) {

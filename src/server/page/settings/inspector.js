@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: MIT
 // Settings of the take. Options come from the service's table: those with a control of their own are named in OWN, all
 // others are made from their rows.
-import {state, changed, on_change, current_take, ceiling_dbfs} from "../state.js";
+import {state, changed, on_change, current_take, current_stroke, ceiling_dbfs} from "../state.js";
 import {by_id, make} from "../../../net/page/dom.js";
 import {icon} from "../look.js";
 import {slider, choice, toggle, entry, button} from "./controls.js";
-import {set_option, end_edit, edit_stroke, edit_take} from "../takes/takes.js";
+import {set_option, end_edit, edit_stroke, edit_take, put_stroke} from "../takes/takes.js";
 import {predicted_key, LEAST_LEVEL_DB} from "../service/planner.js";
 import {algorithm_picture, phantom_picture, wave_picture, timing_picture, envelope_picture} from "./diagrams.js";
 import {ALGORITHMS, PHANTOMS, OPTION_NAMES, number_text, plain_name, seconds_text} from "../words.js";
 import {duration_s, length_mm, with_duration, rebuild, speeds_of, editable, trimmed} from "../takes/stroke.js";
 import {set_strength, strengths, set_speed} from "../time/curves.js";
-import {row, value, algorithm, own_stroke} from "./values.js";
+import {row, value, algorithm} from "./values.js";
 import {LEAST_S, MOST_S} from "../time/time_axis.js";
 
 const TAB_OF = {place: "method", timing: "timing", sound: "vibration", level: "vibration", output: "method", stroke: "timing"};
@@ -57,23 +57,23 @@ function predicted_text(name, id) {
 function pace_controls() {
   const kinds = [["even", "Even"], ["soft", "Soft ends"], ["reach", "Like a reach"], ["drawn", "As drawn"]];
   const duration = slider({label: "Duration", least: LEAST_S, most: MOST_S, log: true,
-    get: () => own_stroke() ? duration_s(own_stroke()) : 1,
+    get: () => current_stroke() ? duration_s(current_stroke()) : 1,
     set: v => edit_stroke(s => with_duration(s, Math.min(MOST_S, +v.toPrecision(3))), "duration"), done: end_edit,
     text: v => v < 1 ? ms(v) : seconds_text(v)});
   const along = make("p", {class: "hint-text"});
-  const movement = choice({label: "Movement", get: () => own_stroke() ? editable(own_stroke()).pace.kind : "even",
+  const movement = choice({label: "Movement", get: () => current_stroke() ? editable(current_stroke()).pace.kind : "even",
     set: kind => edit_stroke(s => rebuild({...s, drawn: s.drawn ?? (s.pace.kind === "drawn" ? s.pace : null),
       pace: kind === "drawn" ? s.drawn ?? s.pace : {kind}})),
     values: kinds.map(([v, name]) => ({value: v, name, update: b => { b.hidden = v === "drawn" && !can_be_drawn(); }}))});
   const parts = ["at the start", "a quarter on", "half-way", "three quarters on", "at the end"];
   const speeds = make("details", {class: "more"}, make("summary", {}, "Speed and strength along the path"));
   const rows = parts.map((word, i) => slider({label: `Speed ${word}`, least: 0.1, most: 5, log: true,
-    get: () => own_stroke() ? speeds_of(editable(own_stroke()).pace)[i]?.[1] ?? 1 : 1, set: v => set_speed(i, v, `speed ${i}`),
+    get: () => current_stroke() ? speeds_of(editable(current_stroke()).pace)[i]?.[1] ?? 1 : 1, set: v => set_speed(i, v, `speed ${i}`),
       done: end_edit,
     text: v => `${Math.round(100 * v)} %`}));
   const strong = make("div"), made = {count: 0, list: []};
   function update() {
-    const s = own_stroke();
+    const s = current_stroke();
     duration.update(); movement.update(); rows.forEach(r => r.update());
     along.textContent = s ? `${Math.round(length_mm(s.timed) / duration_s(s))} mm/s along ${Math.round(length_mm(s.timed))} mm` : "";
     const n = strengths().length;
@@ -93,31 +93,30 @@ function pace_controls() {
 // The strokes of the take: which one is edited, when it starts, and what of it is left.
 function stroke_controls() {
   const take = current_take(), many = take.strokes.length > 1;
-  const change = f => edit_take(t => ({strokes: t.strokes.map((s, i) => i === state.stroke ? f(s) : s)}));
   const which = many && choice({label: "Stroke", shape: "segments", get: () => state.stroke,
     set: i => { Object.assign(state, {stroke: i, knot: -1}); changed("take"); },
     values: take.strokes.map((s, i) => ({value: i, name: s.name}))});
   const text = v => v === null ? "" : +v.toFixed(3);
-  const own = f => own_stroke() ? text(f(own_stroke())) : "";
+  const own = f => current_stroke() ? text(f(current_stroke())) : "";
   const list = [
     entry({label: "Starts at", unit: "s", numeric: true, get: () => own(s => s.start_s),
-      set: v => change(s => ({...s, start_s: Math.max(0, v ?? 0)}))}),
+      set: v => put_stroke(s => ({...s, start_s: Math.max(0, v ?? 0)}))}),
     entry({label: "Cut off its start", unit: "s", numeric: true, get: () => "", hint: "0", set: v => v > 0
-      && change(s => trimmed(s, Math.min(v, duration_s(s) - LEAST_S), duration_s(s)))}),
+      && put_stroke(s => trimmed(s, Math.min(v, duration_s(s) - LEAST_S), duration_s(s)))}),
     entry({label: "Cut off its end", unit: "s", numeric: true, get: () => "", hint: "0", set: v => v > 0
-      && change(s => trimmed(s, 0, Math.max(LEAST_S, duration_s(s) - v)))})];
+      && put_stroke(s => trimmed(s, 0, Math.max(LEAST_S, duration_s(s) - v)))})];
   const bin = many && button("Delete this stroke", "bin",
     () => edit_take(t => ({strokes: t.strokes.filter((_, i) => i !== state.stroke)})));
   const parts = [which?.element, ...list.map(c => c.element), bin].filter(Boolean);
   return {element: make("details", {class: "more", open: many}, make("summary", {}, "Place in time"), ...parts),
     update: () => { if (which) which.update(); list.forEach(c => c.update()); }};
 }
-const can_be_drawn = () => { const s = own_stroke(); return s && (s.drawn || editable(s).pace.kind === "drawn"); };
+const can_be_drawn = () => { const s = current_stroke(); return s && (s.drawn || editable(s).pace.kind === "drawn"); };
 
-const law_ms = burst_s => ((value("slope") ?? 0.32) * burst_s + (value("intercept") ?? 0.0473));
+// The timing law, and what the take says of it.
+const slope = () => value("slope") ?? 0.32, intercept = () => value("intercept") ?? 0.0473;
+const soa = () => value("soa") ?? 0.07, burst = () => value("burst") ?? (soa() - intercept()) / slope();
 function burst_controls() {
-  const soa = () => value("soa") ?? 0.07;
-  const burst = () => value("burst") ?? (soa() - (value("intercept") ?? 0.0473)) / (value("slope") ?? 0.32);
   const picture = make("div", {class: "picture"}), law = make("div", {class: "law"});
   const bursts = slider({label: OPTION_NAMES.burst, least: 0.005, most: 0.4, step: 0.001, get: burst, done: end_edit, text: ms,
     set: v => { set_option("burst", v, "burst"); }});
@@ -127,9 +126,9 @@ function burst_controls() {
   function update() {
     bursts.update(); interval.update();
     picture.replaceChildren(timing_picture(Math.max(0.001, burst()), soa()));
-    const wanted = law_ms(burst()), off = Math.round((soa() - wanted) * 1000);
+    const wanted = slope() * burst() + intercept(), off = Math.round((soa() - wanted) * 1000);
     law.classList.toggle("off", off !== 0);
-    const sum = `${+(value("slope") ?? 0.32).toFixed(3)} × ${Math.round(burst() * 1000)} + ${Math.round((value("intercept") ?? 0.0473) * 1000)} = ${Math.round(wanted * 1000)} ms`;
+    const sum = `${+slope().toFixed(3)} × ${Math.round(burst() * 1000)} + ${Math.round(intercept() * 1000)} = ${Math.round(wanted * 1000)} ms`;
     law.replaceChildren(icon(off === 0 ? "check" : "warn"), off === 0 ? make("span", {}, "On the law: ", make("b", {}, sum))
       : make("span", {}, `${Math.abs(off)} ms ${off < 0 ? "shorter than the law: may blur" : "longer than the law: may be felt as taps"}`),
       ...off === 0 ? [] : [make("button", {type: "button", class: "button", onclick: () => set_option("soa",
@@ -163,9 +162,7 @@ function vibration_controls() {
   function update() {
     [wave, noise, carrier, rise, fall, phase].forEach(c => c.update());
     noise.element.hidden = kind() !== "noise";
-    const soa = value("soa") ?? 0.07, burst = value("burst") ?? Math.max(0.01,
-      (soa - (value("intercept") ?? 0.0473)) / (value("slope") ?? 0.32));
-    picture.replaceChildren(envelope_picture(algorithm() === "park2016" ? burst : 0.07, attack(), release(), value("carrier")
+    picture.replaceChildren(envelope_picture(algorithm() === "park2016" ? Math.max(0.01, burst()) : 0.07, attack(), release(), value("carrier")
       ?? 250, value("envelope")));
   }
   update();
@@ -210,7 +207,7 @@ function build() {
   structure = now;
   const section = {
     method: () => [algorithm_choice(), phantom_choice(), observer_choice(), others("method")],
-    timing: () => [own_stroke() && pace_controls(), own_stroke() && stroke_controls(), algorithm() === "park2016"
+    timing: () => [current_stroke() && pace_controls(), current_stroke() && stroke_controls(), algorithm() === "park2016"
       && burst_controls(), others("timing")],
     vibration: () => [vibration_controls(), others("vibration")],
   }[state.tab]();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // What is predicted to be felt, and what is wrong with the take, in plain words, with what mends it.
-import {state, changed, on_change, current_take} from "../state.js";
+import {state, changed, on_change, current_take, current_stroke} from "../state.js";
 import {by_id, make} from "../../../net/page/dom.js";
 import {icon} from "../look.js";
 import {set_option, fit_take} from "../takes/takes.js";
@@ -10,7 +10,7 @@ import {place_word, even_word, number_text, plain_name} from "../words.js";
 import {duration_s, length_mm, outside_mm, interpolate} from "../takes/stroke.js";
 import {array} from "../drawing/view.js";
 import {felt_speeds} from "../time/curves.js";
-import {algorithm, own_stroke} from "./values.js";
+import {algorithm} from "./values.js";
 
 const OUTSIDE_MM = 0.5;
 
@@ -31,20 +31,15 @@ const tile = (figure, unit, word, picture) => make("div", {class: "tile"}, make(
   make("small", {}, unit)), make("p", {}, word), picture);
 function errors_over_time() {
   const take = current_take(), plan = state.plan;
-  if (!take || !plan?.felt) return [];
-  const felt = plan.felt, step = Math.max(1, Math.floor(felt.length / 80)), found = [];
-  (plan.strokes ?? []).forEach((s, i) => {
-    const target = take.strokes[i];
-    if (!target) return;
-    for (let k = s.felt_first; k < s.felt_first + s.felt_count; k += step) {
-      const q = interpolate(target.timed, felt[k][0] - s.start_s);
-      found.push(Math.hypot(q[1] - felt[k][1], q[2] - felt[k][2]));
-    }
-  });
-  return found;
+  if (!take) return [];
+  const step = Math.max(1, Math.floor(plan.felt.length / 80));
+  return plan.felt_rows.flatMap((rows, i) => !take.strokes[i] ? [] : rows.filter((_, k) => k % step === 0).map(f => {
+    const q = interpolate(take.strokes[i].timed, f[0] - plan.strokes[i].start_s);
+    return Math.hypot(q[1] - f[1], q[2] - f[2]);
+  }));
 }
 const felt_speed = () => felt_speeds(state.plan).flat().map(r => r[1]);
-const mean_speed = () => { const s = own_stroke(); return s ? length_mm(s.timed) / duration_s(s) : null; };
+const mean_speed = () => { const s = current_stroke(); return s ? length_mm(s.timed) / duration_s(s) : null; };
 
 // Warnings in plain words, with what mends them.
 function show_warnings() {

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: MIT
-// The options of the take, and the rows of the table that describe them.
+// Options of the take, and the rows of the table that describe them.
 import {state, current_take} from "../state.js";
 
 export const row = name => state.options.find(o => o.name === name);
 export const value = name => current_take()?.options[name] ?? row(name)?.default ?? null;
 export const algorithm = () => value("algorithm") ?? "park2016";
-export const own_stroke = () => current_take()?.strokes[state.stroke] ?? null;

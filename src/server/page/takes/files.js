@@ -3,9 +3,8 @@
 import {state, current_take, say} from "../state.js";
 import {by_id, make} from "../../../net/page/dom.js";
 import {call, is_connected} from "../service/connection.js";
-import {add_take, request_of} from "./takes.js";
+import {add_take, make_request, imported_strokes} from "./takes.js";
 import {strokes_toml, stroke_csv} from "./stroke.js";
-import {level_dbfs} from "../service/planner.js";
 import {make_qr} from "./qr.js";
 
 const MOST_BYTES = 700 << 10; // a message is at most 1 MiB
@@ -19,7 +18,7 @@ async function open_files(files) {
     try {
       if (file.size > MOST_BYTES) throw new Error(`${file.name} is larger than ${MOST_BYTES >> 10} KiB`);
       const r = await call("import", {name: file.name, text: await file.text()});
-      add_take(r.points.map((timed, i) => ({name: r.strokes[i].name, start_s: r.strokes[i].start_s, timed})),
+      add_take(imported_strokes(r),
         {name: file.name.replace(/\.[^.]*$/, "").slice(0, 60), origin: "file"});
       say(r.warnings.length ? r.warnings[0] : `Opened “${file.name}”`);
     } catch (e) {
@@ -52,7 +51,7 @@ async function save_as(kind) {
   by_id("p-save").hidePopover();
   try {
     if (is_connected()) {
-      const r = await call("export", {...request_of(take, level_dbfs()), as: kind, name: file_name(take)});
+      const r = await call("export", {...make_request(take), as: kind, name: file_name(take)});
       give(r.name, new Blob([decoded(r.base64)], {type: r.mime}));
     } else if (kind === "toml") give(`${file_name(take)}.toml`, new Blob([strokes_toml(take.strokes)],
       {type: "application/toml"}));
@@ -70,7 +69,7 @@ by_id("p-save").addEventListener("toggle", async e => {
   const take = current_take();
   by_id("command").textContent = take?.strokes.length ? "…" : "There is nothing to save yet.";
   if (!take?.strokes.length) return;
-  try { by_id("command").textContent = (await call("export", {...request_of(take, level_dbfs()), as: "toml",
+  try { by_id("command").textContent = (await call("export", {...make_request(take), as: "toml",
     name: file_name(take)})).command; } catch (x) { by_id("command").textContent = x.message; }
 });
 async function copy(id) {

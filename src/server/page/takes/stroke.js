@@ -7,6 +7,7 @@ const KNOT_MM = 8;
 const STEP_MM = 0.5;
 const STEP_S = 0.02;
 const MOST_POINTS = 20000;
+const TIMED_WEIGHTS = [1, 1, 4]; // of x, y and intensity
 const CORNER_RAD = 0.9;
 
 export const duration_s = s => s.timed.at(-1)[0];
@@ -34,11 +35,22 @@ export function interpolate(rows, v) {
   return a.map((x, k) => between(x, b[k], part));
 }
 
-export function length_mm(timed) {
-  let sum = 0;
-  for (let i = 1; i < timed.length; ++i) sum += Math.hypot(timed[i][1] - timed[i - 1][1], timed[i][2] - timed[i - 1][2]);
-  return sum;
+// Makes a function of a value that is never changed: what it returned is kept as long as the value.
+export function kept_for(f) {
+  const kept = new WeakMap();
+  return value => { if (!kept.has(value)) kept.set(value, f(value)); return kept.get(value); };
 }
+// Lengths of path until each point, mm.
+const lengths_mm = kept_for(timed => {
+  let sum = 0;
+  return timed.map((p, i) => i ? sum += Math.hypot(p[1] - timed[i - 1][1], p[2] - timed[i - 1][2]) : 0);
+});
+export const length_mm = timed => lengths_mm(timed).at(-1);
+// Parts of the path, and of the time, at each point. A path without a length goes on as time does.
+export const parts_reached = kept_for(timed => {
+  const total = length_mm(timed), seconds = timed.at(-1)[0];
+  return timed.map((p, i) => [total > 0 ? lengths_mm(timed)[i] / total : p[0] / seconds, p[0] / seconds]);
+});
 
 // Returns [[length so far, x, y], ...] without points that stay.
 function along(places) {
@@ -163,33 +175,36 @@ export function rebuild(s, seconds = duration_s(s)) {
 // Leaves out points that lie on the line of their neighbours in time, place and intensity.
 export function thin(timed, tolerance = 0.02) {
   for (;;) {
-    const kept = [0];
-    const stack = [];
+    const kept = [timed[0]];
     // Ranges of at most 512 rows, so that the work stays linear.
-    for (let from = 0; from + 1 < timed.length; from = Math.min(from + 512, timed.length - 1)) {
-      stack.push([from, Math.min(from + 512, timed.length - 1)]);
-      while (stack.length) {
-        const [a, b] = stack.pop(), worst = farthest(timed, a, b);
-        if (worst.off > tolerance) stack.push([worst.at, b], [a, worst.at]);
-        else kept.push(b);
-      }
-    }
-    const points = kept.map(i => timed[i]);
-    const rounded = points.map(([t, x, y, v]) => [+t.toFixed(4), +x.toFixed(3), +y.toFixed(3), +v.toFixed(4)]);
+    for (let from = 0; from + 1 < timed.length; from = Math.min(from + 512, timed.length - 1))
+      kept.push(...needed_rows(timed, from, Math.min(from + 512, timed.length - 1), tolerance, TIMED_WEIGHTS));
+    const rounded = kept.map(([t, x, y, v]) => [+t.toFixed(4), +x.toFixed(3), +y.toFixed(3), +v.toFixed(4)]);
     const out = rounded.filter((p, i) => i === 0 || p[0] > rounded[i - 1][0]);
     if (out.length === 1) out.push([out[0][0] + 0.001, ...rounded.at(-1).slice(1)]);
     if (out.length <= MOST_POINTS) return out;
     tolerance *= 2;
   }
 }
-function farthest(rows, a, b) {
+// Returns the fewest rows after row a, until b, between which no column, by its weight, is off by more than a tolerance.
+function needed_rows(rows, a, b, tolerance, weights) {
+  const stack = [[a, b]], needed = [];
+  while (stack.length) {
+    const [from, to] = stack.pop(), worst = farthest(rows, from, to, weights);
+    if (worst.off > tolerance) stack.push([worst.at, to], [from, worst.at]);
+    else if (to > from) needed.push(rows[to]);
+  }
+  return needed;
+}
+function farthest(rows, a, b, weights) {
   let off = 0, at = a;
   const p = rows[a], q = rows[b];
   for (let i = a + 1; i < b; ++i) {
     const r = rows[i], part = (r[0] - p[0]) / (q[0] - p[0] || 1);
-    const d = Math.max(Math.abs(between(p[1], q[1], part) - r[1]), Math.abs(between(p[2], q[2], part) - r[2]),
-      4 * Math.abs(between(p[3], q[3], part) - r[3]));
-    if (d > off) { off = d; at = i; }
+    weights.forEach((weight, k) => {
+      const d = weight * Math.abs(between(p[k + 1], q[k + 1], part) - r[k + 1]);
+      if (d > off) { off = d; at = i; }
+    });
   }
   return {off, at};
 }
@@ -198,14 +213,10 @@ function farthest(rows, a, b) {
 export function editable(s) {
   if (s.knots) return s;
   const rows = along(s.timed.map(p => [p[1], p[2]]));
-  const total = length_mm(s.timed), seconds = duration_s(s);
-  let sum = 0;
   const table = [], strength = [];
-  s.timed.forEach((p, i) => {
-    if (i > 0) sum += Math.hypot(p[1] - s.timed[i - 1][1], p[2] - s.timed[i - 1][2]);
-    const part = total > 0 ? sum / total : p[0] / seconds;
-    if (!table.length || part > table.at(-1)[0]) { table.push([part, p[0] / seconds]); strength.push([part, p[3] ?? 1]); }
-    else table.at(-1)[1] = Math.max(table.at(-1)[1], p[0] / seconds);
+  parts_reached(s.timed).forEach(([part, time], i) => {
+    if (!table.length || part > table.at(-1)[0]) { table.push([part, time]); strength.push([part, s.timed[i][3] ?? 1]); }
+    else table.at(-1)[1] = Math.max(table.at(-1)[1], time);
   });
   table[0][1] = 0; table.at(-1)[0] = 1; table.at(-1)[1] = 1; strength.at(-1)[0] = 1;
   const even = table.every(([part, t]) => Math.abs(part - t) < 0.01);
@@ -214,23 +225,9 @@ export function editable(s) {
 }
 // The fewest rows [v, w] that stay within a tolerance.
 function fewer(rows, tolerance) {
-  const out = thin_rows(rows, 0, rows.length - 1, tolerance);
+  const out = [rows[0], ...needed_rows(rows, 0, rows.length - 1, tolerance, [1])];
   return out.length > 1 ? out : [[0, rows[0][1]], [1, rows[0][1]]];
 }
-function thin_rows(rows, a, b, tolerance) {
-  const stack = [[a, b]], kept = [rows[a]];
-  while (stack.length) {
-    const [from, to] = stack.pop();
-    let off = 0, at = from;
-    for (let i = from + 1; i < to; ++i) {
-      const d = Math.abs(interpolate([rows[from], rows[to]], rows[i][0])[1] - rows[i][1]);
-      if (d > off) { off = d; at = i; }
-    }
-    if (off > tolerance) stack.push([at, to], [from, at]); else if (to > from) kept.push(rows[to]);
-  }
-  return kept;
-}
-
 // A stroke as it was drawn: raw is [[t_s, x, y, intensity], ...]; smoothed, its timing kept.
 export function from_drawing(raw, name, start_s = 0) {
   const smooth = raw.map((p, i) => {

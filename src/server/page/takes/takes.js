@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Takes: {id, name, origin, strokes, options}. They are values: a change makes a new one, so that all can be undone.
-import {state, changed, current_take, say} from "../state.js";
+import {state, changed, current_take, level_dbfs, say} from "../state.js";
 import {open_storage} from "./storage.js";
 import {total_s, strokes_toml, fitted, rebuild, editable} from "./stroke.js";
 
@@ -21,7 +21,7 @@ export async function open_takes() {
 const snapshot = () => ({takes: state.takes, current: state.current, stroke: state.stroke});
 
 // Takes over new lists, and writes down what differs from before.
-function put(next, what) {
+function put(next) {
   const before = new Map(state.takes.map(t => [t.id, t]));
   Object.assign(state, next);
   for (const t of state.takes) {
@@ -31,7 +31,7 @@ function put(next, what) {
   for (const id of before.keys()) keep(s => s.remove(id));
   keep(s => s.set("current", state.current));
   state.stroke = Math.min(state.stroke, Math.max(0, (current_take()?.strokes.length ?? 1) - 1));
-  changed("takes", "take", ...what);
+  changed("takes", "take");
 }
 let told = false;
 function keep(f) {
@@ -46,7 +46,7 @@ export function edit(next, same = null) {
   if (!same || same !== last_same) done.push(snapshot());
   last_same = same;
   undone.length = 0;
-  put(next, []);
+  put(next);
 }
 export const end_edit = () => { last_same = null; };
 export const can_undo = () => done.length > 0;
@@ -57,7 +57,7 @@ function step(from, to) {
   if (!from.length) return;
   last_same = null;
   to.push(snapshot());
-  put(from.pop(), []);
+  put(from.pop());
 }
 
 const new_id = () => `${Date.now().toString(36)}-${Math.floor(Math.random() * 1e9).toString(36)}`;
@@ -75,9 +75,11 @@ export function edit_take(change, same) {
   const take = current_take();
   if (take) replace_take({...take, ...change(take)}, same);
 }
-export function edit_stroke(change, same, index = state.stroke) {
-  edit_take(t => ({strokes: t.strokes.map((s, i) => i === index ? change(editable(s)) : s)}), same);
+// Changes a stroke as it is, or once it can be edited by points.
+export function put_stroke(change, same, index = state.stroke) {
+  edit_take(t => ({strokes: t.strokes.map((s, i) => i === index ? change(s) : s)}), same);
 }
+export const edit_stroke = (change, same) => put_stroke(s => change(editable(s)), same);
 export function set_option(name, value, same = `option ${name}`) {
   const take = current_take() ?? add_take([], {name: "Settings"});
   const options = {...take.options};
@@ -112,13 +114,13 @@ export function fit_take(edge) {
 }
 export const take_s = t => t ? total_s(t.strokes) : 0;
 
-// What the service plays, plans and writes: the same in all three.
-export function request_of(take, level_dbfs) {
-  return {toml: strokes_toml(take.strokes), options: request_options(take, level_dbfs)};
-}
-export function request_options(take, level_dbfs) {
+// Makes what the service plays, plans and writes: the same for all three.
+export const make_request = take => ({toml: strokes_toml(take.strokes), options: request_options(take, level_dbfs())});
+export function request_options(take, dbfs) {
   const o = {outside: "clamp", ...take?.options};
-  if (o.sl === undefined) o.level_dbfs = level_dbfs;
+  if (o.sl === undefined) o.level_dbfs = dbfs;
   return o;
 }
+// Returns the strokes of an answer to import.
+export const imported_strokes = r => r.points.map((timed, i) => ({name: r.strokes[i].name, start_s: r.strokes[i].start_s, timed}));
 export const moved_knot = (s, index, [x, y]) => rebuild({...s, knots: s.knots.map((k, i) => i === index ? {...k, x, y} : k)});

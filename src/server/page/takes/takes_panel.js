@@ -3,7 +3,8 @@
 import {state, on_change, say} from "../state.js";
 import {by_id, make} from "../../../net/page/dom.js";
 import {icon, is_dark, colour} from "../look.js";
-import {choose_take, rename_take, duplicate_take, delete_take, add_take, fit_take, take_s} from "./takes.js";
+import {choose_take, rename_take, duplicate_take, delete_take, add_take, fit_take, imported_strokes, take_s} from "./takes.js";
+import {total_s} from "./stroke.js";
 import {array} from "../drawing/view.js";
 import {viridis} from "../../../net/page/viridis.js";
 import {PRESETS, plain_name, seconds_text} from "../words.js";
@@ -29,7 +30,7 @@ function draw(c, strokes) {
   p.fillStyle = colour("line2");
   for (const q of array.places) { p.beginPath(); p.arc(...at(...q), 3.5, 0, 7); p.fill(); }
   p.lineWidth = 5; p.lineCap = "round";
-  const total = Math.max(0.01, ...strokes.map(s => s.start_s + s.timed.at(-1)[0]));
+  const total = Math.max(0.01, total_s(strokes));
   for (const s of strokes) {
     const step = Math.max(1, Math.floor(s.timed.length / 40));
     for (let i = 0; i + 1 < s.timed.length; i += step) {
@@ -41,7 +42,7 @@ function draw(c, strokes) {
 }
 const facts = t => `${t.strokes.length > 1 ? `${t.strokes.length} strokes` : t.origin}, ${seconds_text(take_s(t))}`;
 
-function row_of(take) {
+function make_row(take) {
   const kept = rows.get(take.id);
   if (kept?.take === take) return kept.element;
   const element = make("li", {}, make("button", {type: "button", class: "take", onclick: () => choose_take(take.id)},
@@ -77,7 +78,7 @@ let listed = [];
 function show_takes() {
   const list = by_id("takes"), now = state.takes;
   if (listed.length !== now.length || now.some((t, i) => t !== listed[i])) {
-    const elements = now.map(row_of), wanted = new Set(now.map(t => t.id));
+    const elements = now.map(make_row), wanted = new Set(now.map(t => t.id));
     for (const id of [...rows.keys()]) if (!wanted.has(id)) rows.delete(id);
     // Only what differs is moved, which keeps a list of a thousand quick.
     elements.forEach((e, i) => { if (list.children[i] !== e) list.insertBefore(e, list.children[i] ?? null); });
@@ -96,8 +97,7 @@ export async function show_examples() {
   const found = [];
   for (const name of state.hello.presets) {
     try {
-      const r = await call("import", {stroke: name});
-      const strokes = r.points.map((timed, i) => ({name: r.strokes[i].name, start_s: r.strokes[i].start_s, timed}));
+      const strokes = imported_strokes(await call("import", {stroke: name}));
       if (strokes.flatMap(s => s.timed).every(q => inside(q))) { examples.set(name, strokes); found.push(name); }
     } catch (e) { if (e.code === 0) return; }
   }

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 // Speed and strength along the strokes: as asked for, as felt, and the points by which they are changed.
-import {state, current_take} from "../state.js";
+import {state, current_take, current_stroke} from "../state.js";
 import {colour, font} from "../look.js";
-import {CURVES, left, right, x_of} from "./time_axis.js";
+import {CURVES, left, right, to_x} from "./time_axis.js";
 import {edit_stroke} from "../takes/takes.js";
-import {editable, rebuild, interpolate, duration_s, speeds_of, length_mm} from "../takes/stroke.js";
+import {editable, rebuild, interpolate, duration_s, speeds_of, length_mm, parts_reached, kept_for} from "../takes/stroke.js";
 
 const FELT_STEP_S = 0.07; // the SOA of the paper
 
@@ -29,24 +29,21 @@ export function draw_curves(p, l) {
   });
   draw_handles(p, l);
 }
-const speed_rows = s => {
-  const d = duration_s(s), n = Math.min(160, Math.max(8, Math.round(d / 0.03)));
+const speed_rows = kept_for(timed => {
+  const d = timed.at(-1)[0], n = Math.min(160, Math.max(8, Math.round(d / 0.03)));
   return Array.from({length: n}, (_, i) => {
     const middle = d * (i + 0.5) / n, half = Math.min(d / n, FELT_STEP_S) / 2;
-    const a = interpolate(s.timed, middle - half), b = interpolate(s.timed, middle + half);
+    const a = interpolate(timed, middle - half), b = interpolate(timed, middle + half);
     return [middle, Math.hypot(b[1] - a[1], b[2] - a[2]) / (2 * half)];
   });
-};
+});
 function most_speed(take) {
-  const asked = Math.max(1, ...take.strokes.flatMap(s => speed_rows(s).map(r => r[1])));
+  const asked = Math.max(1, ...take.strokes.flatMap(s => speed_rows(s.timed).map(r => r[1])));
   const felt = felt_speeds(state.plan).flat().map(r => r[1]).sort((a, b) => a - b);
   return Math.ceil(Math.max(asked * 1.25, felt[Math.floor(felt.length * 0.97)] ?? 0) / 10) * 10;
 }
-let felt_kept = {plan: null, rows: []};
-export function felt_speeds(plan) {
-  if (felt_kept.plan === plan) return felt_kept.rows;
-  const rows = (plan?.strokes ?? []).map(s => {
-    const felt = (plan.felt ?? []).slice(s.felt_first, s.felt_first + s.felt_count), found = [];
+const speeds_felt = kept_for(plan => plan.felt_rows.map(felt => {
+    const found = [];
     if (felt.length < 2) return found;
     // From the middle of one step to the middle of the next: within a burst nothing moves.
     const step = Math.max(FELT_STEP_S, (felt.at(-1)[0] - felt[0][0]) / 400);
@@ -55,56 +52,40 @@ export function felt_speeds(plan) {
       found.push([t + step / 2, Math.hypot(b[1] - a[1], b[2] - a[2]) / step]);
     }
     return found;
-  });
-  felt_kept = {plan, rows};
-  return rows;
-}
+  }));
+export const felt_speeds = plan => plan ? speeds_felt(plan) : [];
 function draw_speed(p, l, s, i, y) {
   const line = (rows, from, tone) => {
     p.beginPath();
-    rows.forEach(([t, v], k) => { const x = x_of(l, from + t); if (k) p.lineTo(x, y(v)); else p.moveTo(x, y(v)); });
+    rows.forEach(([t, v], k) => { const x = to_x(l, from + t); if (k) p.lineTo(x, y(v)); else p.moveTo(x, y(v)); });
     p.strokeStyle = colour(tone); p.lineWidth = 1.5; p.lineJoin = "round"; p.stroke();
   };
   line(felt_speeds(state.plan)[i] ?? [], 0, "felt");
-  line(speed_rows(s), s.start_s, "ink");
+  line(speed_rows(s.timed), s.start_s, "ink");
 }
 // Returns the points that can be dragged: {x, y, kind, index}.
 export function handles(l) {
-  const s = current_take()?.strokes[state.stroke];
+  const s = current_stroke();
   if (!s) return [];
   const e = editable(s), d = duration_s(s), top = l.height - CURVES, bottom = l.height - 8, found = [];
   const mean = length_mm(s.timed) / d, most = most_speed(current_take());
   if (state.show_speed) speeds_of(e.pace).forEach(([part, v], index) => found.push({kind: "speed", index,
-    x: x_of(l, s.start_s + d * time_of(e, part)), y: y_strength(Math.min(1, v * mean / most), top, bottom), mean, most}));
+    x: to_x(l, s.start_s + d * reached(e, part)), y: y_strength(Math.min(1, v * mean / most), top, bottom), mean, most}));
   if (state.show_strength) strength_points(e).forEach(([part, v], index) => found.push({kind: "strength", index,
-    x: x_of(l, s.start_s + d * time_of(e, part)), y: y_strength(v, top, bottom)}));
+    x: to_x(l, s.start_s + d * reached(e, part)), y: y_strength(v, top, bottom)}));
   return found;
 }
 const strength_points = s => s.strength.length >= 3 && s.strength.length <= 12 ? s.strength
   : s.strength.length < 3 ? [s.strength[0], [0.5, interpolate(s.strength, 0.5)[1]], s.strength.at(-1)]
   : [0, 0.25, 0.5, 0.75, 1].map(part => [part, interpolate(s.strength, part)[1]]);
 const y_strength = (v, top, bottom) => bottom - v * (bottom - top - 12);
-function time_of(s, part) {
-  const rows = s.pace.kind === "even" ? [[0, 0], [1, 1]] : pace_rows(s);
-  return interpolate(rows, part)[1];
-}
-let pace_kept = {};
-function pace_rows(s) {
-  if (pace_kept.timed !== s.timed) {
-    const total_mm = length_mm(s.timed) || 1, d = duration_s(s);
-    let sum = 0;
-    pace_kept = {timed: s.timed, rows: s.timed.map((q, i) => {
-      if (i) sum += Math.hypot(q[1] - s.timed[i - 1][1], q[2] - s.timed[i - 1][2]);
-      return [sum / total_mm, q[0] / d];
-    })};
-  }
-  return pace_kept.rows;
-}
+// Returns when a part of the path is reached, as a part of the time.
+const reached = (s, part) => interpolate(s.pace.kind === "even" ? [[0, 0], [1, 1]] : parts_reached(s.timed), part)[1];
 function draw_strength(p, l, s, top, bottom) {
   p.beginPath();
   s.timed.length > 400 ? Array.from({length: 200}, (_, k) => interpolate(s.timed,
     duration_s(s) * k / 199)).forEach(step) : s.timed.forEach(step);
-  function step(q, k) { const x = x_of(l, s.start_s + q[0]), y = y_strength(Math.min(1, q[3] ?? 1), top, bottom);
+  function step(q, k) { const x = to_x(l, s.start_s + q[0]), y = y_strength(Math.min(1, q[3] ?? 1), top, bottom);
     if (k) p.lineTo(x, y); else p.moveTo(x, y); }
   p.setLineDash([1, 4]); p.lineCap = "round"; p.strokeStyle = colour("ink2"); p.lineWidth = 2; p.stroke(); p.setLineDash([]);
 }
@@ -123,7 +104,7 @@ export function set_strength(index, v, key) {
   }, key);
 }
 export function strengths() {
-  const s = current_take()?.strokes[state.stroke];
+  const s = current_stroke();
   return s ? strength_points(editable(s)) : [];
 }
 export function set_speed(index, v, key) {

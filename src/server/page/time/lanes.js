@@ -5,7 +5,7 @@ import {state, changed, current_take} from "../state.js";
 import {colour, is_dark, font} from "../look.js";
 import {array} from "../drawing/view.js";
 import {viridis} from "../../../net/page/viridis.js";
-import {full, mini, total, shown, left, right, x_of, RULER, CLIP, CURVES} from "./time_axis.js";
+import {full, mini, total, shown, left, right, to_x, RULER, CLIP, CURVES} from "./time_axis.js";
 import {draw_curves} from "./curves.js";
 import {end_s} from "../takes/stroke.js";
 import {look_at} from "../service/player.js";
@@ -36,7 +36,7 @@ function draw_layer(l) {
     if (i % Math.ceil(11 / h) === 0) p.fillText(`${i === 0 && h > 12 ? "tactor " : ""}${array.tactors[i].tactor ?? i}`,
       left(l) - 8, y - 2);
   }
-  if (state.plan?.onsets) draw_bars(p, l, h, top);
+  if (state.plan) draw_bars(p, l, h, top);
   if (!l.mini && !state.drawing) { draw_clips(p, l); draw_curves(p, l); }
 }
 function draw_ruler(p, l, bottom) {
@@ -45,27 +45,27 @@ function draw_ruler(p, l, bottom) {
   p.textAlign = "center";
   p.font = font(11);
   for (let i = Math.ceil(l.from / step); i * step <= l.from + s; ++i) {
-    const x = x_of(l, i * step);
+    const x = to_x(l, i * step);
     p.strokeStyle = colour("grid"); p.lineWidth = 1;
     p.beginPath(); p.moveTo(x, RULER); p.lineTo(x, bottom); p.stroke();
     p.fillStyle = colour("ink2");
     p.fillText(`${(i * step).toFixed(step < 0.1 ? 2 : step < 1 ? 1 : 0)}${i === 0 ? " s" : ""}`, x, 12);
   }
-  const until = x_of(l, Math.min(total(), l.from + s)), from = x_of(l, l.from);
-  const g = p.createLinearGradient(x_of(l, 0), 0, x_of(l, total()), 0);
+  const until = to_x(l, Math.min(total(), l.from + s)), from = to_x(l, l.from);
+  const g = p.createLinearGradient(to_x(l, 0), 0, to_x(l, total()), 0);
   for (let k = 0; k <= 8; ++k) g.addColorStop(k / 8, viridis(k / 8, is_dark()));
   p.fillStyle = g;
   p.beginPath(); p.roundRect(from, 18, Math.max(1, until - from), 5, 2.5); p.fill();
 }
 function draw_bars(p, l, h, top) {
-  const plan = state.plan, t = plan.tactors ?? array.places.length, n = plan.onsets.length;
+  const plan = state.plan, t = plan.tactors, n = plan.onsets.length;
   const from = l.from, to = l.from + shown(l), all = plan.total_s || 1;
   // Where bursts are narrower than a pixel, the largest of each pixel is drawn.
   const merged = n * 2 > (l.width - left(l)) && !plan.continuous && (l.width / n < 1.5);
   const rows = merged ? merged_rows(l, plan, t) : null;
   const one = (onset, seconds, k, a) => {
     if (a < 0.004) return;
-    const x = x_of(l, onset), w = Math.max(0.75, x_of(l, onset + seconds) - x), y = top + (k + 1) * h;
+    const x = to_x(l, onset), w = Math.max(0.75, to_x(l, onset + seconds) - x), y = top + (k + 1) * h;
     p.fillStyle = viridis(onset / all, is_dark());
     if (l.mini) { p.globalAlpha = 0.25 + 0.75 * Math.min(1, a);
       p.fillRect(x, y - h * 0.8, w - (w > 3 ? 0.5 : 0), Math.max(1, h * 0.6)); p.globalAlpha = 1; return; }
@@ -99,7 +99,7 @@ function merged_rows(l, plan, t) {
   }
   return [...bins].map(([key, a]) => [l.from + Math.floor(key / t) * width, width * 1.4, key % t, a]);
 }
-export const clip_box = (l, s) => [x_of(l, s.start_s), x_of(l, end_s(s))];
+export const clip_box = (l, s) => [to_x(l, s.start_s), to_x(l, end_s(s))];
 function draw_clips(p, l) {
   const take = current_take();
   if (!take) return;
@@ -120,11 +120,11 @@ function draw_clips(p, l) {
     p.restore();
     const before = take.strokes.filter((_, k) => k !== i).map(end_s).filter(e => e <= s.start_s + 1e-9);
     const gap = before.length ? s.start_s - Math.max(...before) : 0;
-    if (gap > 0.005 && x_of(l, gap) - x_of(l, 0) > 34) { p.font = font(11);
+    if (gap > 0.005 && to_x(l, gap) - to_x(l, 0) > 34) { p.font = font(11);
       p.fillStyle = colour("ink3"); p.textAlign = "center";
-      p.fillText(`${gap.toFixed(2)} s`, x_of(l, s.start_s - gap / 2), RULER + 15); }
+      p.fillText(`${gap.toFixed(2)} s`, to_x(l, s.start_s - gap / 2), RULER + 15); }
   });
-  const x = x_of(l, total()) + 8;
+  const x = to_x(l, total()) + 8;
   if (x < l.width - 24) {
     p.setLineDash([3, 3]); p.strokeStyle = colour(state.append ? "felt" : "line2"); p.lineWidth = 1.5;
     p.beginPath(); p.roundRect(x, RULER, 28, CLIP - 4, 6); p.stroke(); p.setLineDash([]);
@@ -143,7 +143,7 @@ export function draw_lanes() {
     p.clearRect(0, 0, l.canvas.width, l.canvas.height);
     p.drawImage(l.layer, 0, 0);
     p.setTransform(l.dpr, 0, 0, l.dpr, 0, 0);
-    const x = x_of(l, state.drawing ? total() : state.at_s);
+    const x = to_x(l, state.drawing ? total() : state.at_s);
     if (x < left(l) - 1 || x > l.width - right(l) + 20) continue;
     p.fillStyle = p.strokeStyle = colour("ink");
     p.lineWidth = 2;

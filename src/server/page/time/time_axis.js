@@ -11,13 +11,13 @@ export const LEAST_S = 0.06;
 export const MOST_S = 599.9; // with its last burst a stroke has at most 600 s
 const LABEL = 58, RIGHT = 58, EDGE = 14;
 
-function lanes_of(canvas, mini) {
+function make_lanes(canvas, mini) {
   const own = {canvas, mini, layer: document.createElement("canvas"), width: 0, height: 0, stale: true, from: 0, span: null};
   new ResizeObserver(() => { measure(own); changed("frame"); }).observe(canvas.parentElement);
   return own;
 }
-export const full = lanes_of(by_id("lanes"), false);
-export const mini = lanes_of(by_id("mini"), true);
+export const full = make_lanes(by_id("lanes"), false);
+export const mini = make_lanes(by_id("mini"), true);
 
 function measure(l) {
   const r = l.canvas.getBoundingClientRect(), dpr = Math.min(3, devicePixelRatio || 1);
@@ -29,8 +29,8 @@ export const total = () => Math.max(state.plan?.total_s ?? 0, state.drawing ? 0 
 export const shown = l => l.span ?? total() * 1.02;
 export const left = l => l.mini ? EDGE : LABEL;
 export const right = l => l.mini ? EDGE : RIGHT;
-export const x_of = (l, t) => left(l) + (t - l.from) / shown(l) * (l.width - left(l) - right(l));
-export const t_of = (l, x) => l.from + (x - left(l)) / (l.width - left(l) - right(l)) * shown(l);
+export const to_x = (l, t) => left(l) + (t - l.from) / shown(l) * (l.width - left(l) - right(l));
+export const to_time = (l, x) => l.from + (x - left(l)) / (l.width - left(l) - right(l)) * shown(l);
 
 let shown_take = null;
 on_change(what => {
