@@ -48,6 +48,16 @@ class NothingIsLost(StudioTest):
         number = self.next_stroke(watcher, "started")
         self.assertEqual(watcher.await_end(number)["state"], "finished")
 
+    def test_a_name_is_kept_over_a_lost_connection(self):
+        s = self.serve()
+        p, _ = self.ready(s)
+        p.value("(e => { e.value = 'Ann'; e.dispatchEvent(new Event('change')); })(document.querySelector('#own-name-text'))")
+        p.until("tactor.state.status.who.some(w => w.name === 'Ann')")
+        self.restart(s)
+        p.until("tactor.state.link === 'lost'")
+        self.await_service(p)
+        p.until("tactor.state.status.who.some(w => w.name === 'Ann')")
+
     def test_the_service_is_killed_and_comes_back_later(self):
         s = self.serve()
         p = self.begin(s)

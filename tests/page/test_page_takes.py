@@ -134,6 +134,29 @@ class Takes(StudioTest):
         p.click("#undo")
         p.until(f"tactor.state.plan && !tactor.state.plan.continuous && {TAKE}.options.algorithm === undefined")
 
+    def test_each_option_has_its_place_in_one_tab(self):
+        p, _ = self.ready(self.serve())
+        self.draw(p, *self.way([4, 20], [36, 20]))
+        shown = {}
+        for tab in ("method", "timing", "vibration"):
+            p.click(f"[data-tab={tab}]")
+            p.until(f"document.querySelector('#pane').getAttribute('aria-labelledby') === 'tab-{tab}'")
+            shown[tab] = p.value("document.querySelector('#pane').textContent")
+        for tab, words in (("method", ("Beyond the array", "Tactors of a point")), ("timing", ("Slope of the law", "Shortest burst")),
+                           ("vibration", ("Amplitude modulation", "Seed of the noise", "Scale of strength"))):
+            for word in words:
+                self.assertEqual([t for t in shown if word in shown[t]], [tab], word)
+
+    def test_what_is_left_outside_stays_left(self):
+        p, _ = self.ready(self.serve())
+        self.draw(p, *self.way([20, 20], [20, 50]))
+        p.until("document.querySelector('#warnings').textContent.includes('outside the array')")
+        self.mend(p, "Leave it")
+        p.until("document.querySelector('#warnings').textContent === ''")
+        p.reload()
+        self.await_service(p)
+        p.until(f"{TAKE}?.leaves_array && document.querySelector('#warnings').textContent === ''")
+
     def test_other_methods_are_predicted_beside_this_one(self):
         p, _ = self.ready(self.serve())
         p.click("#hint-example")

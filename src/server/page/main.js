@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 // The page to draw on: what belongs to no part of it, and the start.
-import {state, changed, on_change, on_toast, current_take, current_stroke, say} from "./state.js";
+import {state, changed, on_change, on_toast, current_take, current_stroke, say, remember, remembered} from "./state.js";
 import {by_id} from "../../net/page/dom.js";
 import {place_icons, forget_colours, is_dark} from "./look.js";
-import {connect, call, on_hello, is_connected} from "./service/connection.js";
+import {connect, call, on_hello} from "./service/connection.js";
 import {open_takes, undo, redo, can_undo, can_redo} from "./takes/takes.js";
 import {draw_frame, moves} from "./drawing/canvas.js";
 import {set_array, look_at_all, zoom, resize, place_in_page} from "./drawing/view.js";
@@ -13,7 +13,7 @@ import {LEAST_LEVEL_DB} from "./service/planner.js";
 import {play, stop, tick, silence_speaker} from "./service/player.js";
 import {change_point, remove_point, on_tactor_held} from "./drawing/pointer.js";
 import {show_examples, open_example} from "./takes/takes_panel.js";
-import {show_tactor, on_rename} from "./service/device.js";
+import {show_tactor, own_name} from "./service/device.js";
 import {choose_tool, new_take} from "./settings/keys.js";
 import "./takes/files.js";
 import "./settings/inspector.js";
@@ -25,22 +25,20 @@ const TOAST_MS = 2200;
 
 // Light and dark.
 const dark = matchMedia("(prefers-color-scheme: dark)");
-const kept = name => { try { return localStorage.getItem(name); } catch { return null; } };
 function set_theme(theme) {
   document.documentElement.dataset.theme = theme ?? (dark.matches ? "dark" : "light");
   document.querySelector('meta[name="theme-color"]').content = is_dark() ? "#15181b" : "#f8f7f4";
   forget_colours();
   changed("theme");
 }
-set_theme(kept("tactor-theme"));
+set_theme(remembered("theme"));
 // A page that is opened again is no louder than it was.
-state.level_db = Math.min(0, Math.max(LEAST_LEVEL_DB, Number(kept("tactor-level") ?? 0) || 0));
-on_change(what => { if (what.has("level")) try { localStorage.setItem("tactor-level", state.level_db);
-  } catch { /* for this visit only */ } });
-dark.addEventListener("change", () => { if (!kept("tactor-theme")) set_theme(null); });
+state.level_db = Math.min(0, Math.max(LEAST_LEVEL_DB, Number(remembered("level") ?? 0) || 0));
+on_change(what => { if (what.has("level")) remember("level", state.level_db); });
+dark.addEventListener("change", () => { if (!remembered("theme")) set_theme(null); });
 by_id("theme").addEventListener("click", () => {
   const theme = is_dark() ? "light" : "dark";
-  try { localStorage.setItem("tactor-theme", theme); } catch { /* for this visit only */ }
+  remember("theme", theme);
   set_theme(theme);
 });
 place_icons();
@@ -163,11 +161,6 @@ new ResizeObserver(() => { resize(); changed("frame"); }).observe(by_id("stage")
 addEventListener("beforeunload", e => { if (!state.storage_lasts && state.takes.length) e.preventDefault(); });
 
 // The start.
-const own_name = () => kept("tactor-name") || (matchMedia("(pointer: coarse)").matches ? "A phone" : "A browser");
-by_id("own-name-text").value = kept("tactor-name") ?? "";
-on_rename(name => { if (is_connected()) call("hello", {name: name || own_name(), ...token_of_page()}).catch(e => say(e.message));
-  });
-const token_of_page = () => { const t = new URLSearchParams(location.hash.slice(1)).get("token"); return t ? {token: t} : {}; };
 on_hello(async h => {
   set_array(h.array);
   try { state.options = (await call("options")).options; } catch (e) { if (e.code === 0) throw e; }

@@ -48,6 +48,10 @@ let toast = null;
 export function on_toast(f) { toast = f; }
 export function say(text) { toast?.(text); }
 
+// Small things that the browser remembers, where it does.
+export const remembered = name => { try { return localStorage.getItem(`tactor-${name}`); } catch { return null; } };
+export function remember(name, v) { try { localStorage.setItem(`tactor-${name}`, v); } catch { /* for this visit only */ } }
+
 export const current_take = () => state.takes.find(t => t.id === state.current) ?? null;
 // The stroke of the take that is edited.
 export const current_stroke = () => current_take()?.strokes[state.stroke] ?? null;

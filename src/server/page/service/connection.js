@@ -62,9 +62,15 @@ export function connect_with(new_token) {
   connect();
 }
 
+const introduce = () => call("hello", {...token && {token}, ...name && {name}});
+// Goes by another name, now and when the connection comes back.
+export function rename_client(new_name) {
+  name = new_name;
+  return is_connected() ? introduce() : Promise.resolve();
+}
 async function hello() {
   try {
-    const asked = server_now_s(), h = await call("hello", {...token && {token}, ...name && {name}});
+    const asked = server_now_s(), h = await introduce();
     set_clock(h.clock.monotonic_s, asked);
     state.hello = h;
     state.asks_token = "";

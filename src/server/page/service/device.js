@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 // What state the service is in: one word and one reason each, a banner where something is to be done.
-import {state, on_change, changed, ceiling_dbfs} from "../state.js";
+import {state, on_change, changed, ceiling_dbfs, say, remember, remembered} from "../state.js";
 import {by_id, make} from "../../../net/page/dom.js";
 import {icon} from "../look.js";
-import {connect_with, connect} from "./connection.js";
+import {connect_with, connect, rename_client} from "./connection.js";
 import {test_tactor} from "./player.js";
 import {array_name, number_text} from "../words.js";
 
@@ -115,13 +115,11 @@ by_id("p-others").addEventListener("toggle", () => {
 });
 by_id("own-name").addEventListener("submit", e => e.preventDefault());
 by_id("own-name-text").addEventListener("change", () => {
-  const name = by_id("own-name-text").value.trim();
-  try { localStorage.setItem("tactor-name", name); } catch { /* it is asked for again */ }
-  connect_with_name(name);
+  remember("name", by_id("own-name-text").value.trim());
+  rename_client(own_name()).catch(e => say(e.message));
 });
-function connect_with_name(name) { send_name?.(name); }
-let send_name = null;
-export function on_rename(f) { send_name = f; }
+by_id("own-name-text").value = remembered("name") ?? "";
+export const own_name = () => remembered("name") || (matchMedia("(pointer: coarse)").matches ? "A phone" : "A browser");
 export function show_tactor(i, at) {
   const t = state.hello?.array.tactors[i];
   if (!t) return;

@@ -14,7 +14,8 @@ import {set_strength, strengths, set_speed} from "../time/curves.js";
 import {row, value, algorithm} from "./values.js";
 import {LEAST_S, MOST_S} from "../time/time_axis.js";
 
-const TAB_OF = {place: "method", timing: "timing", sound: "vibration", level: "vibration", output: "method", stroke: "timing"};
+// Tabs of the headings of the table.
+const TABS = {Place: "method", Timing: "timing", Sound: "vibration", Level: "vibration", Stroke: "timing"};
 const IN_METHOD = new Set(["algorithm", "phantom", "faces", "snap", "drop_points", "overlap", "compensate", "sigma_mm",
   "sigma_v_mm_s", "observer"]);
 const OWN = new Set(["algorithm", "phantom", "soa", "burst", "waveform", "carrier", "attack", "release", "phase", "level_dbfs",
@@ -182,7 +183,7 @@ function from_row(o) {
   return c;
 }
 function others(tab) {
-  const list = state.options.filter(o => !OWN.has(o.name) && (IN_METHOD.has(o.name) ? "method" : TAB_OF[o.group]
+  const list = state.options.filter(o => !OWN.has(o.name) && (IN_METHOD.has(o.name) ? "method" : TABS[o.group]
     ?? "method") === tab
     && (!ONLY[o.name] || ONLY[o.name] === algorithm()));
   if (!list.length) return null;

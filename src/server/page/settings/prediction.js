@@ -3,7 +3,7 @@
 import {state, changed, on_change, current_take, current_stroke} from "../state.js";
 import {by_id, make} from "../../../net/page/dom.js";
 import {icon} from "../look.js";
-import {set_option, fit_take} from "../takes/takes.js";
+import {set_option, edit_take, fit_take} from "../takes/takes.js";
 import {too_strong_db, lower_level} from "../service/planner.js";
 import {spark} from "./diagrams.js";
 import {place_word, even_word, number_text, plain_name} from "../words.js";
@@ -53,7 +53,7 @@ function show_warnings() {
     state.outside.push(worst);
     if (take.leaves_array) return;
     found.push({text: `“${take.strokes.length === 1 ? take.name : s.name}” is up to ${worst.off.toFixed(0) || 1} mm outside the array. There it is felt at the edge.`,
-      buttons: [["Fit to array", () => fit_take(array.edge)], ["Leave it", leave]]});
+      buttons: [["Fit to array", () => fit_take(array.edge)], ["Leave it", () => edit_take(() => ({leaves_array: true}))]]});
   });
   for (const w of state.plan?.warnings ?? []) if (!/outside/.test(w)) found.push({text: w, buttons: []});
   const some = found.slice(0, 3);
@@ -62,11 +62,6 @@ function show_warnings() {
       make("button", {type: "button", class: i === 0 ? "button outlined" : "button", onclick: f}, t)))))));
   by_id("pill").dataset.warn = found.length > 0;
   changed("frame");
-}
-function leave() {
-  const take = current_take();
-  state.takes = state.takes.map(t => t === take ? {...t, leaves_array: true} : t);
-  changed("take");
 }
 // Says a refusal for people: what is too much, and not in the terms of files.
 function plain_fault(f) {
