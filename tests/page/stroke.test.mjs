@@ -63,7 +63,7 @@ test("paces begin, end and ascend; a reach is slow at its ends", () => {
     assert.deepEqual(table.at(-1), [1, 1]);
     assert.ok(table.every((r, i) => i === 0 || (r[0] >= table[i - 1][0] && r[1] >= table[i - 1][1])));
   }
-  const speeds = s.speeds_of({kind: "reach"});
+  const speeds = s.find_speeds({kind: "reach"});
   assert.ok(speeds[0][1] < 0.5 && speeds[2][1] > 1.5);
   const twice = s.pace_table({kind: "points", speeds: [[0, 1], [0.49, 1], [0.51, 2], [1, 2]]});
   assert.ok(Math.abs(s.interpolate(twice, 0.5)[1] - 2 / 3) < 0.02);

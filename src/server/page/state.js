@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What the page knows, and who is told of changes.
+// State of the page, and who is told of changes.
 
 export const state = {
   // The service.
@@ -14,7 +14,7 @@ export const state = {
   takes: [], current: null, storage_lasts: true,
   stroke: 0,             // the one that is edited
   knot: -1, tool: "draw", feel: true, append: false, level_db: 0, // below the ceiling
-  // What is drawn, predicted and played.
+  // Drawing, prediction and play.
   drawing: null,         // {began, tracks}
   plan: null, plan_fault: null, plan_of: null, predicted: new Map(), observer: null,
   outside: [],           // places of strokes that are farthest from the array

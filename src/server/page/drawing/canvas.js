@@ -87,7 +87,7 @@ function draw_arms(now) {
   });
   pen.globalAlpha = 1;
 }
-// Where the target is at the moment: a ring; where it is felt: a dot.
+// Draws the target of this moment as a ring, and where it is felt as a dot.
 function draw_moment() {
   const take = current_take();
   if (!take || state.drawing || (state.at_s <= 0 && !state.playing)) return;
@@ -135,6 +135,6 @@ function draw_outside() {
     pen.fillText("!", x, y + 4.5);
   }
 }
-// Whether a frame differs from the one before while nothing was changed.
+// Returns true while a frame differs from the one before though nothing was changed.
 export const moves = () => state.playing !== null || state.drawing !== null || state.touches.size > 0
   || state.dbfs.some(v => v !== null);

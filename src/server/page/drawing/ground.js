@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What lies under the strokes: the body part, the skin between the tactors with its grid, the scale.
+// Ground of the strokes: the body part, the skin between the tactors with its grid, the scale.
 import {by_id} from "../../../net/page/dom.js";
 import {colour, font} from "../look.js";
 import {array, view, layers, start_layer, trace, to_px} from "./view.js";
@@ -42,7 +42,7 @@ export function draw_ground() {
     p.fillText(`↑ ${array.up}`, x, y - 7);
   }
 }
-// Some of the body part around the array, where the array says that it is a palm.
+// Draws some of the body part around the array, where the array says that it is a palm.
 function draw_hand(p) {
   const palm = /palm|hand/.test(array.site ?? "");
   const [w, h] = array.box.size.map(v => Math.max(v, array.pitch)), m = array.box.middle, left = /left/.test(array.site ?? "")

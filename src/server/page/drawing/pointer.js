@@ -125,7 +125,7 @@ function tap(f) {
   if (f.tactor >= 0) test_tactor(f.tactor);
 }
 
-// All that touched until none did any more becomes a take, or more strokes of this one.
+// Makes a take, or more strokes of this one, of all fingers that touched until none did any more.
 function finish() {
   const d = state.drawing;
   state.drawing = null;
@@ -159,7 +159,7 @@ function lift_all() {
   for (const id of [...fingers.keys()]) up(id, true);
 }
 on_stop(lift_all);
-// Without a connection what is drawn goes on in silence; its live strokes have ended.
+// Drawing goes on in silence without a connection; its live strokes have ended.
 on_lost(() => fingers.forEach(f => { f.number = null; }));
 
 // Points.

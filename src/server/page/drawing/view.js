@@ -66,7 +66,7 @@ export function resize() {
     c.width = Math.round(r.width * view.dpr);
     c.height = Math.round(r.height * view.dpr);
   }
-  // Of its own size, or it would be stretched where the screen changes under a finger.
+  // A size of its own keeps it from being stretched where the screen changes under a finger.
   Object.assign(canvas.style, {width: `${r.width}px`, height: `${r.height}px`});
   place();
   outdated("ground", "ink");

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What state the service is in: one word and one reason each, a banner where something is to be done.
+// State of the service: one word and one reason each, a banner where something is to be done.
 import {state, on_change, changed, ceiling_dbfs, say, remember, remembered} from "../state.js";
 import {by_id, make} from "../../../net/page/dom.js";
 import {icon} from "../look.js";

@@ -54,7 +54,7 @@ async function ask() {
   if (owed) return ask();
   if (!was_drawing) compare_timer = setTimeout(compare, COMPARED_MS);
 }
-// By how much strokes that add up on a tactor are too strong.
+// Returns by how much strokes that add up on a tactor are too strong.
 export const too_strong_db = f => f.data?.what === "options.level_dbfs" ? Number(/by ([\d.]+) dB/.exec(f.data.hint ?? "")?.[1]
   ?? 0) : 0;
 // Lowers the level until the take can be played: a refusal names one tactor at a time.

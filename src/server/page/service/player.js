@@ -125,7 +125,7 @@ on_notification("touches", t => {
   if (t.down) state.touches.set(t.stroke, {...t, at: performance.now()}); else state.touches.delete(t.stroke);
 });
 
-// Nothing of this page's own may keep a stop back: it is sent before anything else is done.
+// Sends a stop before anything else is done: nothing of this page's own may keep it back.
 export function stop() {
   const sent = call("stop");
   end_playing();

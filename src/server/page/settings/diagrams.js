@@ -12,7 +12,7 @@ const line = (points, attributes = {}) => make("polyline",
 const base = y => line([[1, y], [55, y]], {stroke: "var(--line2)", "stroke-width": 1});
 const tone = part => viridis(part, is_dark());
 
-// Who plays when, on two tactors that a stroke passes.
+// Draws who plays when, on two tactors that a stroke passes.
 export function algorithm_picture(name) {
   const parts = [base(17), base(35)];
   if (name === "park2016") {
@@ -67,7 +67,7 @@ export function timing_picture(burst_s, soa_s) {
   parts.push(word((x(0) + x(1)) / 2, 17, "interval"), word(x(0) + burst_s * scale / 2, 72, "burst"));
   return picture(296, 80, ...parts);
 }
-// One burst with its carrier.
+// Draws one burst with its carrier.
 export function envelope_picture(burst_s, attack_s, release_s, carrier_hz, kind) {
   const rise = Math.min(0.5, attack_s / burst_s), fall = Math.min(0.5, release_s / burst_s);
   const ramp = v => kind?.startsWith("linear") ? v : kind?.startsWith("exponential")

@@ -9,7 +9,7 @@ import {set_option, end_edit, edit_stroke, edit_take, put_stroke} from "../takes
 import {predicted_key, LEAST_LEVEL_DB} from "../service/planner.js";
 import {algorithm_picture, phantom_picture, wave_picture, timing_picture, envelope_picture} from "./diagrams.js";
 import {ALGORITHMS, PHANTOMS, OPTION_NAMES, number_text, plain_name, seconds_text} from "../words.js";
-import {duration_s, length_mm, with_duration, rebuild, speeds_of, editable, trimmed} from "../takes/stroke.js";
+import {duration_s, length_mm, with_duration, rebuild, find_speeds, editable, trimmed} from "../takes/stroke.js";
 import {set_strength, strengths, set_speed} from "../time/curves.js";
 import {row, value, algorithm} from "./values.js";
 import {LEAST_S, MOST_S} from "../time/time_axis.js";
@@ -20,7 +20,7 @@ const IN_METHOD = new Set(["algorithm", "phantom", "faces", "snap", "drop_points
   "sigma_v_mm_s", "observer"]);
 const OWN = new Set(["algorithm", "phantom", "soa", "burst", "waveform", "carrier", "attack", "release", "phase", "level_dbfs",
   "duration", "speed"]);
-// Only one algorithm knows these.
+// Options that only one algorithm knows.
 const ONLY = {snap: "tactile-brush", drop_points: "tactile-brush", overlap: "tactile-brush", soa: "park2016", burst: "park2016"};
 
 const ms = v => `${number_text(v * 1000, 0)} ms`;
@@ -69,7 +69,7 @@ function pace_controls() {
   const parts = ["at the start", "a quarter on", "half-way", "three quarters on", "at the end"];
   const speeds = make("details", {class: "more"}, make("summary", {}, "Speed and strength along the path"));
   const rows = parts.map((word, i) => slider({label: `Speed ${word}`, least: 0.1, most: 5, log: true,
-    get: () => current_stroke() ? speeds_of(editable(current_stroke()).pace)[i]?.[1] ?? 1 : 1, set: v => set_speed(i, v, `speed ${i}`),
+    get: () => current_stroke() ? find_speeds(editable(current_stroke()).pace)[i]?.[1] ?? 1 : 1, set: v => set_speed(i, v, `speed ${i}`),
       done: end_edit,
     text: v => `${Math.round(100 * v)} %`}));
   const strong = make("div"), made = {count: 0, list: []};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What is predicted to be felt, and what is wrong with the take, in plain words, with what mends it.
+// Prediction of what is felt, and faults of the take in plain words, with what mends them.
 import {state, changed, on_change, current_take, current_stroke} from "../state.js";
 import {by_id, make} from "../../../net/page/dom.js";
 import {icon} from "../look.js";

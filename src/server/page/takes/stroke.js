@@ -129,7 +129,7 @@ function turn(rows, at, look) {
   return Math.abs(Math.atan2(Math.sin(b - a), Math.cos(b - a)));
 }
 
-// When which part of the path is reached, both from 0 to 1: "even", "soft" (in and out), "reach" (minimum jerk),
+// Returns when which part of the path is reached, both from 0 to 1: "even", "soft" (in and out), "reach" (minimum jerk),
 // "drawn" (a table [[part, time]]) and "points" (speeds [[part, relative speed]]).
 export function pace_table(pace, n = 200) {
   if (pace.kind === "drawn") return pace.table;
@@ -148,7 +148,7 @@ export function pace_table(pace, n = 200) {
 }
 
 // Speeds, relative to the mean one, at some parts of the path; their points can be moved.
-export function speeds_of(pace, n = 5) {
+export function find_speeds(pace, n = 5) {
   if (pace.kind === "points") return pace.speeds;
   const table = pace_table(pace);
   return Array.from({length: n}, (_, i) => {
@@ -271,7 +271,7 @@ export function insert_knot(s, [x, y]) {
   for (let i = 0; i + 1 < s.knots.length; ++i)
     for (const [px, py] of curve_through(s.knots.slice(Math.max(0, i - 1), i + 3)))
       if (Math.hypot(px - x, py - y) < best.off) best = {after: i, off: Math.hypot(px - x, py - y), x: px, y: py};
-  // Which of the neighbours it lies between: the pair whose way through it is the shortest.
+  // It lies between the pair of neighbours whose way through it is the shortest.
   let pair = {after: 0, way: Infinity};
   for (let i = 0; i + 1 < s.knots.length; ++i) {
     const a = s.knots[i], b = s.knots[i + 1];

@@ -80,7 +80,7 @@ function show_takes() {
   if (listed.length !== now.length || now.some((t, i) => t !== listed[i])) {
     const elements = now.map(make_row), wanted = new Set(now.map(t => t.id));
     for (const id of [...rows.keys()]) if (!wanted.has(id)) rows.delete(id);
-    // Only what differs is moved, which keeps a list of a thousand quick.
+    // Moves only what differs, which keeps a list of a thousand quick.
     elements.forEach((e, i) => { if (list.children[i] !== e) list.insertBefore(e, list.children[i] ?? null); });
     while (list.children.length > elements.length) list.lastChild.remove();
     listed = now;

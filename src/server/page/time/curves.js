@@ -4,7 +4,7 @@ import {state, current_take, current_stroke} from "../state.js";
 import {colour, font} from "../look.js";
 import {CURVES, left, right, to_x} from "./time_axis.js";
 import {edit_stroke} from "../takes/takes.js";
-import {editable, rebuild, interpolate, duration_s, speeds_of, length_mm, parts_reached, kept_for} from "../takes/stroke.js";
+import {editable, rebuild, interpolate, duration_s, find_speeds, length_mm, parts_reached, kept_for} from "../takes/stroke.js";
 
 const FELT_STEP_S = 0.07; // the SOA of the paper
 
@@ -69,7 +69,7 @@ export function handles(l) {
   if (!s) return [];
   const e = editable(s), d = duration_s(s), top = l.height - CURVES, bottom = l.height - 8, found = [];
   const mean = length_mm(s.timed) / d, most = most_speed(current_take());
-  if (state.show_speed) speeds_of(e.pace).forEach(([part, v], index) => found.push({kind: "speed", index,
+  if (state.show_speed) find_speeds(e.pace).forEach(([part, v], index) => found.push({kind: "speed", index,
     x: to_x(l, s.start_s + d * reached(e, part)), y: y_strength(Math.min(1, v * mean / most), top, bottom), mean, most}));
   if (state.show_strength) strength_points(e).forEach(([part, v], index) => found.push({kind: "strength", index,
     x: to_x(l, s.start_s + d * reached(e, part)), y: y_strength(v, top, bottom)}));
@@ -109,7 +109,7 @@ export function strengths() {
 }
 export function set_speed(index, v, key) {
   edit_stroke(s => {
-    const speeds = speeds_of(s.pace).map((q, i) => i === index ? [q[0], v] : q);
+    const speeds = find_speeds(s.pace).map((q, i) => i === index ? [q[0], v] : q);
     return rebuild({...s, pace: {kind: "points", speeds}});
   }, key);
 }

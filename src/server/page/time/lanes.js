@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Who plays when: a ruler, the strokes as clips, a lane for each tactor. The lanes are drawn again only when something
+// Lanes that show who plays when: a ruler, the strokes as clips, a lane for each tactor. The lanes are drawn again only when something
 // has changed; the moment is drawn over them each frame.
 import {state, changed, current_take} from "../state.js";
 import {colour, is_dark, font} from "../look.js";
@@ -60,7 +60,7 @@ function draw_ruler(p, l, bottom) {
 function draw_bars(p, l, h, top) {
   const plan = state.plan, t = plan.tactors, n = plan.onsets.length;
   const from = l.from, to = l.from + shown(l), all = plan.total_s || 1;
-  // Where bursts are narrower than a pixel, the largest of each pixel is drawn.
+  // Draws the largest burst of each pixel where they are narrower than that.
   const merged = n * 2 > (l.width - left(l)) && !plan.continuous && (l.width / n < 1.5);
   const rows = merged ? merged_rows(l, plan, t) : null;
   const one = (onset, seconds, k, a) => {
@@ -164,7 +164,7 @@ export function zoom_time(by, at_s = state.at_s) {
   changed("frame");
 }
 
-// One burst on or back.
+// Goes one burst on or back.
 export function step_burst(by) {
   const onsets = [...(state.plan?.onsets ?? [])].sort((a, b) => a - b);
   const next = by > 0 ? onsets.find(t => t > state.at_s + 1e-4) : onsets.findLast(t => t < state.at_s - 1e-4);

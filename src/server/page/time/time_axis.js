@@ -24,7 +24,7 @@ function measure(l) {
   Object.assign(l, {width: r.width, height: r.height, dpr, stale: true});
   for (const c of [l.canvas, l.layer]) { c.width = Math.round(r.width * dpr); c.height = Math.round(r.height * dpr); }
 }
-// What is shown of a take: all, or a part of it.
+// Part of a take that is shown, or all of it.
 export const total = () => Math.max(state.plan?.total_s ?? 0, state.drawing ? 0 : take_s(current_take()), 0.06);
 export const shown = l => l.span ?? total() * 1.02;
 export const left = l => l.mini ? EDGE : LABEL;
