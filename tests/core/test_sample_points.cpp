@@ -15,34 +15,36 @@ using namespace tactor;
 
 namespace {
 
-// Returns the largest distance of the target from where the points say that it is, mm. Times within `near_s`
-// of each other are the same.
-double largest_error_mm(const trajectory& t, const std::vector<timed_point>& points)
+// Returns the largest error over the duration, 0 or more, as `error_at` finds it at one time.
+template <class F>
+double find_largest(const trajectory& t, const std::vector<timed_point>& points, F error_at)
 {
     constexpr int steps = 20'000;
     const trajectory sampled = trajectory::timed(points);
     double most = 0.0;
-    for (int k = 0; k <= steps; ++k) {
-        const double at = t.duration_s() * k / steps;
-        most = std::max(most, distance_mm(t.position(at), sampled.position(at)));
-    }
+    for (int k = 0; k <= steps; ++k)
+        most = std::max(most, error_at(t.duration_s() * k / steps, sampled));
     return most;
+}
+
+// Returns the largest distance of the target from where the points say that it is, mm. Times within `near_s`
+// of each other are the same.
+double largest_error_mm(const trajectory& t, const std::vector<timed_point>& points)
+{
+    return find_largest(t, points, [&t](double at, const trajectory& sampled) {
+        return distance_mm(t.position(at), sampled.position(at));
+    });
 }
 
 // Returns how far the intensity leaves what the target has within 0.1 ms: it may jump.
 double largest_intensity_error(const trajectory& t, const std::vector<timed_point>& points)
 {
-    constexpr int steps = 20'000;
-    const trajectory sampled = trajectory::timed(points);
-    double most = 0.0;
-    for (int k = 0; k <= steps; ++k) {
-        const double at = t.duration_s() * k / steps;
+    return find_largest(t, points, [&t](double at, const trajectory& sampled) {
         const double before = t.intensity(at - 1e-4);
         const double after = t.intensity(at + 1e-4);
         const double now = sampled.intensity(at);
-        most = std::max({most, std::min(before, after) - now, now - std::max(before, after)});
-    }
-    return most;
+        return std::max(std::min(before, after) - now, now - std::max(before, after));
+    });
 }
 
 } // namespace

@@ -157,6 +157,21 @@ TEST_CASE("a message that is incomplete for too long, even the first, ends the c
     }
 }
 
+namespace {
+
+// Checks that a peer is dropped for what it has not read, and that nothing of it is held any more.
+void check_dropped(pair& p)
+{
+    p.until([&] { return p.closed; });
+    CHECK(p.faults == std::vector<line_fault>{line_fault::unread});
+    p.io.poll();
+    p.end.reset();
+    p.io.poll();
+    CHECK(p.all.unread.held() == 0);
+}
+
+} // namespace
+
 TEST_CASE("a peer that does not read is dropped, and its waiting data are freed")
 {
     pair p({.waiting_bytes = 1'000'000});
@@ -164,12 +179,7 @@ TEST_CASE("a peer that does not read is dropped, and its waiting data are freed"
         p.end->send(std::string(10'000, 'x'));
         p.io.poll();
     }
-    p.until([&] { return p.closed; });
-    CHECK(p.faults == std::vector<line_fault>{line_fault::unread});
-    p.io.poll();
-    p.end.reset();
-    p.io.poll();
-    CHECK(p.all.unread.held() == 0);
+    check_dropped(p);
 }
 
 TEST_CASE("a large message that a peer asked for leaves room for others, within what all may have")
@@ -183,12 +193,7 @@ TEST_CASE("a large message that a peer asked for leaves room for others, within 
     p.io.poll();
     CHECK_FALSE(p.closed);
     p.end->send(std::string(20'000, 'x'));
-    p.until([&] { return p.closed; });
-    CHECK(p.faults == std::vector<line_fault>{line_fault::unread});
-    p.io.poll();
-    p.end.reset();
-    p.io.poll();
-    CHECK(p.all.unread.held() == 0);
+    check_dropped(p);
     pair q({.waiting_bytes = 100'000});
     q.end->send_large(std::string(most, 'x'));
     q.until([&] { return q.closed; });
