@@ -23,7 +23,7 @@ def said(*command, **more):
 
 def scripts():
     """All scripts of the source: (file, its text), by its first line or its name."""
-    for file in sorted(f for f in ROOT.rglob("*") if f.is_file() and not f.relative_to(ROOT).parts[0].startswith((".git", "build"))):
+    for file in sorted(f for f in ROOT.rglob("*") if f.is_file() and not f.relative_to(ROOT).parts[0].startswith((".git", ".cache", "build"))):
         if file.suffix in ("", ".py", ".sh"):
             try:
                 yield file, file.read_text(encoding="utf-8")
