@@ -82,7 +82,7 @@ def bad_packages(root):
     if package["version"] != version:
         yield f"pyproject.toml: version {package['version']}, not {version}, the version in meson.build"
     metadata = (root / "src/python/metadata.in").read_text(encoding="utf-8")
-    said = [f"Summary: {package['description']}", "License: MIT", f"Requires-Python: {package['requires-python']}"]
+    said = [f"Summary: {package['description']}", f"Author: {package['authors'][0]['name']}", "License: MIT", f"Requires-Python: {package['requires-python']}"]
     if metadata.splitlines()[3:] != said + [f"Requires-Dist: {d}" for d in package["dependencies"]]:
         yield "src/python/metadata.in: it says other things than pyproject.toml"
     soname = re.search(r"soversion: '(\d+)'", (root / "src/meson.build").read_text(encoding="utf-8"))[1]

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Drawing with the mouse: the drawing is felt meanwhile.
+"""Drawing with the mouse: the drawing is felt meanwhile. Needs Tk (Debian's python3-tk).
 
     draw.py [DEVICE]               without one: "null", which is not felt
 """

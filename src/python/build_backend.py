@@ -5,11 +5,13 @@ Meson stops at the first library that it does not find, under a page of pip's ow
 """
 import importlib.util
 import os
+import pathlib
 import shlex
 import shutil
 import subprocess
 import sys
 import sysconfig
+import zipfile
 
 # Needed things (a name of pkg-config's, or a header), Debian's package, and the option to build without.
 LIBRARIES = (
@@ -38,7 +40,28 @@ def get_requires_for_build_wheel(config_settings=None):
 
 def build_wheel(wheel_directory, config_settings=None, metadata_directory=None):
     check(config_settings)
-    return _mesonpy().build_wheel(wheel_directory, config_settings, metadata_directory)
+    name = _mesonpy().build_wheel(wheel_directory, sized(config_settings), metadata_directory)
+    compress(pathlib.Path(wheel_directory) / name)
+    return name
+
+
+def compress(wheel):
+    """Compresses a wheel's files, which meson-python 0.12 stores as they are."""
+    with zipfile.ZipFile(wheel) as archive:
+        files = [(file, archive.read(file)) for file in archive.infolist()]
+    with zipfile.ZipFile(wheel, "w") as archive:
+        for file, data in files:
+            archive.writestr(file, data, zipfile.ZIP_DEFLATED)
+
+
+def sized(config_settings=None):
+    """Returns the settings with as many jobs as the memory is enough for; what the user set comes last, and holds."""
+    tests = pathlib.Path(__file__).resolve().parents[2] / "tests"
+    jobs, unity = subprocess.run([tests / "jobs", "wheel"], stdout=subprocess.PIPE, text=True, check=True).stdout.split()
+    settings = dict(config_settings or {})
+    for key, value in (("setup-args", f"-Dunity={unity}"), ("compile-args", f"-j{jobs}")):
+        settings[key] = [value, *_listed(settings.get(key, []))]
+    return settings
 
 
 def check(config_settings=None):
@@ -72,9 +95,12 @@ def missing(config_settings=None):
 
 
 def _switched_off(config_settings):
-    given = (config_settings or {}).get("setup-args", [])
-    given = [given] if isinstance(given, str) else given
+    given = _listed((config_settings or {}).get("setup-args", []))
     return {option for _, _, option, *_ in LIBRARIES if option and f"-D{option}=disabled" in given}
+
+
+def _listed(given):
+    return [given] if isinstance(given, str) else given
 
 
 def _is_there(compiler, module, header):

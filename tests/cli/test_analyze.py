@@ -107,6 +107,14 @@ class Counting(AnalyzeTest):
         self.assertIsNone(told["runs"]["marks"]["means"]["park2016"]["motion"]["motion-1"]["ci"])
         self.assertIn("marks: park2016, motion-1: no variance over participants, so no interval", told["warnings"])
 
+    def test_missing_figures_have_one_line_of_warnings(self):
+        text = studies.definition("same", studies.FOUR, studies.TWO, [studies.run("marks", "rate", 8)])
+        studies.write_study(self.dir / "same", text, ["1", "2"], lambda *_: 3)
+        warnings = self.analysis("same")["warnings"]
+        self.assertGreater(len(warnings), 10)
+        self.assertEqual(self.ok("analyze", "same").stderr,
+                         f"tactor: warning: {warnings[0]} ({len(warnings) - 1} more warnings: --format json)\n")
+
     def test_equal_ratings_have_no_analysis_of_variance(self):
         text = studies.definition("same", studies.FOUR, studies.TWO, [studies.run("marks", "rate", 8)])
         studies.write_study(self.dir / "same", text, ["1", "2", "3"], lambda *_: 3)

@@ -70,6 +70,7 @@ TEST_CASE("stats of a stream that never ran dry")
     CHECK(s.xrun_s.empty());
     CHECK_FALSE(s.realtime);
     CHECK(s.frames > 0);
+    CHECK(s.ring_low_water == 0); // no stroke was fed
 }
 
 } // namespace counters_test

@@ -100,11 +100,17 @@ PLAIN = r'"(?:[^"\\\n]|\\.)*"(?:\s*"(?:[^"\\\n]|\\.)*")*'
 LITERAL = re.compile(f"{RAW}|({PLAIN})", re.S)
 
 
+def literal_bytes(literal):
+    """Returns what a compiler makes of a plain literal's inside."""
+    as_characters = re.sub(r"(?<!\\)((?:\\\\)*)\\u([0-9a-fA-F]{4})", lambda m: m[1] + chr(int(m[2], 16)), literal)
+    return as_characters.encode().decode("unicode_escape").encode("latin-1")
+
+
 def literals(text):
     code = re.sub(r"^\s*#\s*include.*$|TEST_CASE\([^\n]*", "", text, flags=re.M)
     for match in LITERAL.finditer(code):
         if match[3]:
-            yield "".join(re.findall(r'"((?:[^"\\]|\\.)*)"', match[3])).encode().decode("unicode_escape").encode("latin-1")
+            yield literal_bytes("".join(re.findall(r'"((?:[^"\\]|\\.)*)"', match[3])))
         else:
             yield match[2].encode()
 

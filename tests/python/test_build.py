@@ -4,6 +4,7 @@ import importlib.util
 import re
 import subprocess
 import sys
+import zipfile
 
 import pytest
 
@@ -52,7 +53,21 @@ def test_its_packages_are_those_of_the_list_and_of_the_guide(backend, root):
 
 def test_libraries_for_playing_and_painting_are_required(root):
     setup = (root / "pyproject.toml").read_text()
-    assert all(f'"-D{option}"' in setup for option in ("alsa=enabled", "gpio=enabled", "plots=enabled", "unity=on"))
+    assert all(f'"-D{option}"' in setup for option in ("alsa=enabled", "gpio=enabled", "plots=enabled"))
+
+
+def test_the_build_takes_as_much_as_memory_allows_and_what_the_user_sets(backend):
+    settings = backend.sized({"setup-args": "-Dunity=off", "builddir": "x"})
+    assert settings["setup-args"][0] in ("-Dunity=on", "-Dunity=off") and settings["setup-args"][1:] == ["-Dunity=off"]
+    assert re.fullmatch(r"-j[1-9]\d*", *settings["compile-args"]) and settings["builddir"] == "x"
+
+
+def test_wheels_are_compressed(backend, tmp_path):
+    with zipfile.ZipFile(tmp_path / "a.whl", "w") as archive:
+        archive.writestr("tactor/a.py", "a" * 1000)
+    backend.compress(tmp_path / "a.whl")
+    with zipfile.ZipFile(tmp_path / "a.whl") as archive:
+        assert archive.read("tactor/a.py") == b"a" * 1000 and archive.getinfo("tactor/a.py").compress_size < 100
 
 
 @pytest.mark.unsanitized

@@ -69,6 +69,7 @@ TEST_CASE("attack and release of a raised cosine have their own times")
     follows(with(envelope_kind::raised_cosine, 0.01, 0.03),
             [](double t) { return std::min(cosine(t / 0.01), cosine((0.1 - t) / 0.03)); });
     follows(with(envelope_kind::raised_cosine, 0.01, 0.0), [](double t) { return cosine(t / 0.01); });
+    follows(with(envelope_kind::raised_cosine, 0.0, 0.03), [](double t) { return cosine((0.1 - t) / 0.03); });
 }
 
 TEST_CASE("without a release it is as long as the attack")

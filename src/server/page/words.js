@@ -8,7 +8,7 @@ export const ALGORITHMS = {
 };
 export const PHANTOMS = {
   "inverse-distance": ["Inverse distance", "As Park published it. Constant energy; jumps a little from triangle to triangle."],
-  "barycentric": ["Barycentric", "The centre of the amplitudes lies exactly at the point within each triangle."],
+  "barycentric": ["Barycentric", "The centre of the energies lies exactly at the point within each triangle."],
   "linear": ["Linear", "Amplitudes fall evenly with the distance to each tactor."],
   "log": ["Logarithmic", "Amplitudes fall with the logarithm of the distance."],
   "gaussian": ["Gaussian", "Each tactor reaches smoothly around itself, so its neighbours join in."],

@@ -33,19 +33,23 @@ export function algorithm_picture(name) {
   }
   return picture(56, 36, ...parts);
 }
-// Amplitudes of two tactors while the point moves from the one to the other.
-const SHARES = {
-  "inverse-distance": v => { const a = 1 / Math.max(v, 0.02), b = 1 / Math.max(1 - v, 0.02); return Math.sqrt(a / (a + b)); },
-  "barycentric": v => 1 - v, "linear": v => 1 - v,
-  "log": v => Math.log(1 + (1 - v) * 9) / Math.log(10),
-  "gaussian": v => Math.exp(-((v * 1.8) ** 2) / 2),
-};
+// Returns the amplitudes, as the plan has them, of a tactor and of each of two others that make an even triangle with it: of a
+// point that moves from the first (part 0) to the middle between the two (part 1).
+export function shares_at(name, part) {
+  const height = Math.sqrt(0.75), to_first = part * height, to_other = Math.hypot(0.5, (1 - part) * height); // sides of 1
+  const [a, b] = {
+    "inverse-distance": () => part === 0 ? [1, 0] : part === 1 ? [0, 0.5] : [1 / to_first, 1 / to_other],
+    gaussian: () => [to_first, to_other].map(d => Math.exp(-((d / 0.6) ** 2))),
+  }[name]?.() ?? [1 - part, part / 2];
+  if (name === "linear") return [a, b];
+  if (name === "log") return [Math.log2(1 + a), Math.log2(1 + b)];
+  return [a, b].map(energy => Math.sqrt(energy / (a + 2 * b)));
+}
 export function phantom_picture(name) {
-  const f = SHARES[name] ?? SHARES.linear;
-  const curve = flipped => Array.from({length: 25}, (_, i) => [4 + i * 2, 32 - 27 * f(flipped ? 1 - i / 24 : i / 24)]);
-  return picture(56, 36, base(33), line(curve(false), {stroke: "var(--ink2)"}), line(curve(true)),
+  const curve = k => Array.from({length: 25}, (_, i) => [4 + i * 2, 32 - 27 * shares_at(name, i / 24)[k]]);
+  return picture(56, 36, base(33), line(curve(1), {stroke: "var(--ink2)"}), line(curve(0)),
     make("circle", {cx: 4, cy: 33, r: 2.5, fill: "currentColor"}), make("circle",
-    {cx: 52, cy: 33, r: 2.5, fill: "currentColor"}));
+    {cx: 52, cy: 33, r: 2.5, fill: "var(--ink2)"}));
 }
 const WAVES = {
   sine: t => Math.sin(2 * Math.PI * t), square: t => t % 1 < 0.5 ? 1 : -1, triangle: t => 1 - 4 * Math.abs((t + 0.25) % 1 - 0.5),
@@ -67,12 +71,19 @@ export function timing_picture(burst_s, soa_s) {
   parts.push(word((x(0) + x(1)) / 2, 17, "interval"), word(x(0) + burst_s * scale / 2, 72, "burst"));
   return picture(296, 80, ...parts);
 }
+// Returns the window of a burst that lasts 1, as it is played: at a part of it, with its rise and fall as parts of it.
+export function window_at(part, rise, fall, kind) {
+  const shorter = Math.min(1, 1 / (rise + fall)), up = rise * shorter, down = fall * shorter;
+  const ramp = v => kind === "linear" ? v : kind === "exponential" ? (1 - Math.exp(-5 * v)) / (1 - Math.exp(-5))
+    : 0.5 - 0.5 * Math.cos(Math.PI * v);
+  if (part < up) return ramp(part / up);
+  if (part <= 1 - down) return 1;
+  const left = (1 - part) / down;
+  return kind === "exponential" ? 1 - ramp(1 - left) : ramp(left);
+}
 // Draws one burst with its carrier.
 export function envelope_picture(burst_s, attack_s, release_s, carrier_hz, kind) {
-  const rise = Math.min(0.5, attack_s / burst_s), fall = Math.min(0.5, release_s / burst_s);
-  const ramp = v => kind?.startsWith("linear") ? v : kind?.startsWith("exponential")
-    ? (Math.exp(3 * v) - 1) / (Math.exp(3) - 1) : 0.5 - 0.5 * Math.cos(Math.PI * v);
-  const at = v => Math.min(rise > 0 && v < rise ? ramp(v / rise) : 1, fall > 0 && v > 1 - fall ? ramp((1 - v) / fall) : 1);
+  const at = v => window_at(v, attack_s / burst_s, release_s / burst_s, kind);
   const n = 600, cycles = Math.min(40, burst_s * carrier_hz);
   const wave = Array.from({length: n + 1}, (_, i) => [14 + 268 * i / n,
     40 - 30 * at(i / n) * Math.sin(2 * Math.PI * cycles * i / n)]);

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: MIT
 // Files that come in, and files that go out: read and written by the service, so that they are the tool's.
 import {state, current_take, say} from "../state.js";
-import {by_id, make} from "../../../net/page/dom.js";
+import {by_id, make, show_only_if} from "../../../net/page/dom.js";
 import {call, is_connected} from "../service/connection.js";
 import {add_take, make_request, imported_strokes} from "./takes.js";
 import {strokes_toml, stroke_csv} from "./stroke.js";
+import {is_own_host} from "./address.js";
 import {make_qr} from "./qr.js";
 
 const MOST_BYTES = 700 << 10; // a message is at most 1 MiB
@@ -81,12 +82,13 @@ async function copy(id) {
 by_id("copy-command").addEventListener("click", () => copy("command"));
 by_id("copy-link").addEventListener("click", () => copy("link"));
 
-// A link, with the token, for a phone beside the array.
+// A link, with the token, for a phone beside the array: its code is shown where a phone can open it.
 by_id("p-share").addEventListener("toggle", e => {
   if (e.newState !== "open") return;
-  const here = /^(localhost|127\.|\[::1\])/.test(location.host);
+  const own = is_own_host(location.hostname);
+  show_only_if(by_id("qr"), !own);
   by_id("link").textContent = location.href;
-  by_id("share-text").textContent = here ? "This address is this computer's own. For a phone, start the service with " +
+  by_id("share-text").textContent = own ? "This address is this computer's own. For a phone, start the service with " +
     "--http 0.0.0.0:4003 and a token_file, and open the page by the computer's address."
     : location.hash.includes("token=") ? "The link has the token: who has it can draw." : "Open it on a phone in the same network.";
   try {
