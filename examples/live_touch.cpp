@@ -64,7 +64,7 @@ try {
             continue;
         at = {std::clamp(at.x_mm, 0.0, palm_mm), std::clamp(at.y_mm, 0.0, palm_mm)};
         if (down && (!stroke || !stroke->open()))
-            stroke = player.begin();
+            stroke = player.begin({.render = {.level_dbfs = -40.0}}); // weak: come up in steps of 6 dB
         if (down)
             stroke->to(at.x_mm, at.y_mm);
         else if (stroke)

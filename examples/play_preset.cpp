@@ -13,7 +13,8 @@ try {
     const tactor::stroke stroke = tactor::preset_stroke("park2016-3");
 
     const tactor::plan plan = tactor::make_plan(palm, stroke);
-    const tactor::score score(palm, plan);
+    // Weak, for the first time on a card: then come up in steps of 6 dB.
+    const tactor::score score(palm, plan, {.level_dbfs = -40.0});
 
     tactor::alsa_options device;
     device.pcm = argc > 1 ? argv[1] : "null";

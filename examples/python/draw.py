@@ -30,7 +30,8 @@ class Drawing(tkinter.Canvas):
 
     def begin(self, event):
         self.delete("way")
-        self.finger, self.at = self.player.live(), (event.x, event.y)
+        # Weak, for the first time on a card: then come up in steps of 6 dB.
+        self.finger, self.at = self.player.live(level_dbfs=-40), (event.x, event.y)
         self.keep()
 
     def move(self, event):

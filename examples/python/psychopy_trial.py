@@ -62,7 +62,9 @@ device = sys.argv[1] if len(sys.argv) > 1 else "null"
 participant = Simulated() if device == "null" else Window()
 palm = tactor.Array.preset("palm-3x3")
 paths = {"left": "M 35 20 L 5 20", "right": "M 5 20 L 35 20"}
-scores = {name: tactor.Score(palm, tactor.plan(palm, tactor.Stroke.along(tactor.Path.svg(d), duration=0.3))) for name, d in paths.items()}
+plans = {name: tactor.plan(palm, tactor.Stroke.along(tactor.Path.svg(d), duration=0.3)) for name, d in paths.items()}
+# Weak, for the first time on a card: then come up in steps of 6 dB.
+scores = {name: tactor.Score(palm, plan, level_dbfs=-40) for name, plan in plans.items()}
 print("stroke", "started_s", "onset_s", "within_s", "response", "response_time_s", sep="\t")
 with tactor.Player(device, palm) as player:
     for name in ("left", "right", "right", "left"):

@@ -16,6 +16,8 @@ if package.exists():  # the Python package describes itself
     of_package = runpy.run_path(str(package))
     extensions += of_package["extensions"]
     globals().update({name: value for name, value in of_package.items() if name == "setup" or name.startswith(("add_", "auto", "default_role", "napoleon"))})
+# Links to headings, as a forge has them.
+myst_heading_anchors = 2
 html_theme = "furo"
 html_title = f"tactor {version}"
 html_copy_source = False

@@ -11,6 +11,7 @@ import shutil
 import subprocess
 import sys
 import sysconfig
+import tomllib
 import zipfile
 
 # Needed things (a name of pkg-config's, or a header), Debian's package, and the option to build without.
@@ -36,6 +37,19 @@ def __getattr__(name):
 def get_requires_for_build_wheel(config_settings=None):
     check(config_settings)
     return _mesonpy().get_requires_for_build_wheel(config_settings)
+
+
+def prepare_metadata_for_build_wheel(metadata_directory, config_settings=None):
+    """Writes the package's metadata; returns the name of their folder. Without this hook pip compiles everything for them."""
+    check(config_settings)
+    import pyproject_metadata  # meson-python needs it, too
+    root = pathlib.Path(__file__).resolve().parents[2]
+    with open(root / "pyproject.toml", "rb") as file:
+        metadata = pyproject_metadata.StandardMetadata.from_pyproject(tomllib.load(file), root)
+    folder = pathlib.Path(metadata_directory, f"{metadata.name}-{metadata.version}.dist-info")
+    folder.mkdir()
+    (folder / "METADATA").write_bytes(bytes(metadata.as_rfc822()))
+    return folder.name
 
 
 def build_wheel(wheel_directory, config_settings=None, metadata_directory=None):
@@ -69,6 +83,8 @@ def check(config_settings=None):
     lacks = missing(config_settings)
     if lacks:
         without = "".join(f", or do without {name}: --config-settings=setup-args=-D{option}=disabled" for name, _, option in lacks if option)
+        if sys.base_prefix != "/usr" and any(package.startswith("python3-") for _, package, _ in lacks):
+            without += f"; {sys.executable} does not see Debian's Python packages: make the environment with /usr/bin/python3"
         print(f"tactor: build: missing {', '.join(name for name, *_ in lacks)} (on Debian: apt-get install "
               f"{' '.join(package for _, package, _ in lacks)}{without})", file=sys.stderr)
         raise SystemExit(1)
@@ -117,5 +133,9 @@ def _succeeds(command, text=""):
 
 
 def _mesonpy():
-    import mesonpy
+    try:
+        import mesonpy
+    except ModuleNotFoundError:
+        check()
+        raise
     return mesonpy

@@ -8,14 +8,14 @@ PROGRAMS = r"(?:\S*/)?(?:tactor|quickstart|run)|sudo|meson|man|c\+\+|cp|dpkg-\w+
 
 @dataclasses.dataclass
 class Block:
-    kind: str  # command, name (of a command of the tool), or what a block is: toml, csv, c++, python, boot, cmake, drawing, formula
+    kind: str  # command, name (of a command of the tool), or what a block is: toml, csv, c++, python, unit, boot, cmake, drawing, formula
     text: str
     line: int
 
 
 def classify(text):
     """What a block of code is; whatever it is not known to be is commands."""
-    for kind, pattern in (("c++", r"^#include"), ("toml", r"^\[+\w+\]+$"), ("csv", r"^t_s,"), ("boot", r"^dtoverlay="), ("cmake", r"^find_package\("),
+    for kind, pattern in (("c++", r"^#include"), ("unit", r"^\[Service\]$"), ("toml", r"^\[+\w+\]+$"), ("csv", r"^t_s,"), ("boot", r"^dtoverlay="), ("cmake", r"^find_package\("),
                           ("drawing", r"-->"),
                           ("formula", r"^(?:[A-Za-z_]\w*(?:\(\w\))? = |polarity \* )")):
         if re.search(pattern, text, re.M):

@@ -34,8 +34,10 @@ RUN = ("tactor ", "build/src/cli/tactor ", "man -l man/", "python3 -m jsonschema
 # Commands, by how they begin, that are not run here, and why.
 NOT_RUN = {
     "sudo ": "needs root and changes the system",
-    "python3 -m venv": "the lane tests/lanes/python makes one",
+    "/usr/bin/python3 -m venv": "the lane tests/lanes/python makes one",
     "~/tactor-venv/bin/pip ": "the lane tests/lanes/python installs the package",
+    "git clone": "needs the network, and the address of the repository",
+    "apt-get update": "needs root and the network",
     "examples/quickstart": "installs packages and builds: needs root and the network",
     "tests/run": "would run this test",
     "meson compile -C build docs": "the suite docs does it",
@@ -47,6 +49,7 @@ NOT_RUN = {
     "dpkg-buildpackage": "the lane tests/lanes/deb does it",
     "grep . /sys/module/pinctrl": "needs the kernel of a Raspberry Pi",
     "tactor off": "needs the GPIO line of an amplifier: the suite cli-off runs it as far as that",
+    "tactor play park2016-1 park2016-3 park2016-1 --arm": "waits for a button at a GPIO line",
     "tactor stop": "needs a server: the suite cli-remote runs it",
     "tactor status": "needs a server: the suite cli-remote runs it",
     "tactor play park2016-3 --socket": "needs a server: the suite cli-remote runs it",
@@ -85,6 +88,11 @@ FILES = {
 }
 # Answers for --walk: all is wired correctly.
 ANSWERS = "".join(f"{k}\n" for k in range(16))
+
+
+def list_anchors(page):
+    """Returns the anchors of a page's headings, as forges make them."""
+    return [re.sub(r"[^\w -]", "", heading.lower()).replace(" ", "-") for heading in re.findall(r"^#+ (.*)$", page.read_text(encoding="utf-8"), re.M)]
 
 
 class Documents(ToolTest):
@@ -198,11 +206,19 @@ class Documents(ToolTest):
     def test_links_lead_somewhere_and_the_guide_to_each_of_its_pages(self):
         linked = set()
         for file in [*(ROOT / name for name in ("README.md", "CONTRIBUTING.md", "SECURITY.md", "NEWS.md", "tests/lanes/README.md")), *GUIDE]:
-            for link in re.findall(r"\]\(([^)#\s]+)", file.read_text(encoding="utf-8")):
+            for link in re.findall(r"\]\(([^)\s]+)", file.read_text(encoding="utf-8")):
                 if not re.match(r"[a-z]+:", link):
-                    self.assertTrue((file.parent / link).exists(), f"{file.name}: {link}")
-                    linked.add((file.parent / link).resolve())
+                    path, _, heading = link.partition("#")
+                    target = file.parent / path if path else file
+                    self.assertTrue(target.exists(), f"{file.name}: {link}")
+                    linked.add(target.resolve())
+                    if heading:
+                        self.assertIn(heading, list_anchors(target), f"{file.name}: {link}")
         self.assertEqual({page.name for page in GUIDE} - {file.name for file in linked}, set())
+
+    def test_how_to_begins_with_a_list_of_its_recipes(self):
+        page = ROOT / "man/guide/how-to.md"
+        self.assertEqual(re.findall(r"^\* \[.*\]\(#(.*)\)$", page.read_text(encoding="utf-8"), re.M), list_anchors(page)[1:])
 
     def test_the_files_that_the_architecture_names_are_there(self):
         named = re.findall(r"`([\w/]+\.[ch]pp)`", (ROOT / "man/guide/architecture.md").read_text(encoding="utf-8"))
@@ -290,6 +306,22 @@ class OneName(ToolTest):
         files = [ROOT / "README.md", *GUIDE, *(ROOT / "man").glob("*.[1-8]"), *(ROOT / "udev").iterdir(),
                  *(f for f in (ROOT / "examples").rglob("*") if f.is_file() and f.suffix not in (".png", ".svg", ".wav"))]
         return {f.relative_to(ROOT).as_posix(): f.read_text(encoding="utf-8") for f in files}
+
+    # Plays and walks on a card. What counts above thresholds comes after these were measured.
+    ON_A_CARD = re.compile(r"tactor (?:play|check(?=.* --walk))\b(?!.* --sl )(?=.* -D hw:)")
+
+    def test_the_first_play_on_a_card_is_at_minus_40_dbfs(self):
+        pages = {page.name: [b.text for b in code_of_markdown(page.read_text(encoding="utf-8")) if b.kind == "command"]
+                 for page in (ROOT / "README.md", *GUIDE)}
+        pages |= {page.name: [b.text for b in code_of_man(page.read_text(encoding="utf-8")) if b.kind == "command"] for page in (ROOT / "man").glob("*.[1-8]")}
+        pages |= {f"tactor {name} --help": self.ok(name, "--help").stdout.splitlines() for name in ("play", "check")}
+        pages["quickstart"] = (ROOT / "examples/quickstart").read_text(encoding="utf-8").splitlines()
+        first = {name: next((line for line in lines if self.ON_A_CARD.search(line)), None) for name, lines in pages.items()}
+        first = {name: line for name, line in first.items() if line}
+        self.assertGreater(len(first), 8)
+        self.assertEqual({name: line for name, line in first.items() if " --level-dbfs -40" not in line}, {})
+        code = [block.text for block in code_of_markdown((ROOT / "README.md").read_text(encoding="utf-8")) if "hw:CARD" in block.text]
+        self.assertEqual(sum(bool(re.search(r"level_dbfs ?= ?-40\b", text)) for text in code), 2)  # C++ and Python
 
     def test_the_version_is_the_same_everywhere(self):
         version = re.search(r"version: '([\d.]+)'", (ROOT / "meson.build").read_text(encoding="utf-8"))[1]

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
 """The package's build by pip, and its messages when something is missing."""
+import email
 import importlib.util
 import re
 import subprocess
@@ -41,6 +42,28 @@ def test_a_single_missing_library_is_named_alone(backend, monkeypatch, capsys):
     assert capsys.readouterr().err == ("tactor: build: missing libgpiod (on Debian: apt-get install libgpiod-dev, or do without libgpiod: "
                                        "--config-settings=setup-args=-Dgpio=disabled)\n")
     backend.check({"setup-args": "-Dgpio=disabled"})
+
+
+@pytest.mark.parametrize("hook", ["prepare_metadata_for_build_wheel", "build_editable", "build_sdist"])
+def test_each_hook_of_another_python_says_in_one_line_which_to_use(backend, monkeypatch, capsys, tmp_path, hook):
+    monkeypatch.setattr(backend, "missing", lambda config_settings=None: [("mesonpy", "python3-mesonpy", None)])
+    monkeypatch.setattr(backend.sys, "base_prefix", "/opt/conda")
+    monkeypatch.setattr(backend.sys, "executable", "/opt/conda/bin/python3")
+    monkeypatch.setitem(sys.modules, "mesonpy", None)  # an import fails
+    with pytest.raises(SystemExit):
+        getattr(backend, hook)(tmp_path)
+    assert capsys.readouterr().err == (
+        "tactor: build: missing mesonpy (on Debian: apt-get install python3-mesonpy; /opt/conda/bin/python3 does not see Debian's Python "
+        "packages: make the environment with /usr/bin/python3)\n")
+
+
+def test_metadata_come_without_compiling(backend, monkeypatch, tmp_path):
+    monkeypatch.setattr(backend, "missing", lambda config_settings=None: [])
+    monkeypatch.setitem(sys.modules, "mesonpy", None)
+    folder = backend.prepare_metadata_for_build_wheel(tmp_path)
+    metadata = email.message_from_bytes((tmp_path / folder / "METADATA").read_bytes())
+    assert folder == f"tactor-{metadata['Version']}.dist-info" and metadata["Name"] == "tactor"
+    assert metadata["Version"] == tactor.__version__ and metadata["Requires-Dist"].startswith("numpy")
 
 
 def test_its_packages_are_those_of_the_list_and_of_the_guide(backend, root):

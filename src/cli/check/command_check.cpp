@@ -187,7 +187,7 @@ command add_check(CLI::App& app)
     add_walk_options(*c, *o);
     add_format_option(*c, o->format, {"text", "json"}, "how to print it (default text)");
     c->footer("tactor check -D hw:CARD=Tactor\n"
-              "tactor check --array palm-2x4 --walk -o palm-felt.toml -D hw:CARD=Tactor\n"
+              "tactor check --array palm-2x4 --walk -o palm-felt.toml --level-dbfs -40 -D hw:CARD=Tactor\n"
               "tactor check --format json");
     return [s, o] { return run_with(*s, [&] { return check(*s, *o); }); };
 }

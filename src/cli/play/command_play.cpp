@@ -194,7 +194,7 @@ command add_play(CLI::App& app)
     add_options(*c, *s, options::on_play);
     c->add_option("--socket", o->socket, "play through the server at this socket")->type_name("PATH");
     add_format_option(*c, o->format, {"text", "json"}, "format of the report (default text)");
-    c->footer("tactor play park2016-3 -D hw:CARD=Tactor\n"
+    c->footer("tactor play park2016-3 -D hw:CARD=Tactor --level-dbfs -40\n"
               "tactor play --shape circle --duration 2 --level-dbfs -20 -D null\n"
               "tactor play park2016-1 park2016-3 --log play.log -D null");
     return [s, o] { return run_with(*s, [&] { return play(*s, *o); }); };
