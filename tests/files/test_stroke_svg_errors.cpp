@@ -37,7 +37,8 @@ TEST_CASE("faults of an SVG file are named by line and column")
         const char* message;
     };
     const sample samples[] = {
-        {"", "a.svg:1:1: "},
+        {"", "a.svg: is empty (strokes are TOML, CSV or SVG"},
+        {"t_s,x_mm,y_mm\n0,1,2\n", "a.svg:1:1: is a table (CSV)"},
         {"<svg>", "a.svg:1:5: Start-end tags mismatch"},
         {"<svg>\n <g></svg>", "a.svg:2:"},
         {"<html/>", "a.svg:1:2: <html> is not <svg>"},

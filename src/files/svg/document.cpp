@@ -15,11 +15,11 @@ namespace tactor::detail {
 svg_document::svg_document(std::string_view text, const std::string& name)
     : text_(without_mark(text)), name_(name), buffer_(text_)
 {
-    refuse_other_kind(text_, name_);
     const pugi::xml_parse_result r = tree_.load_buffer_inplace(buffer_.data(), buffer_.size());
     if (r.status == pugi::status_out_of_memory)
         throw std::bad_alloc();
     if (!r) {
+        refuse_other_form(text_, name_, "svg");
         const auto offset = static_cast<std::size_t>(r.offset > 0 ? r.offset : 0);
         throw error(error_kind::bad_input, find_place(text_, offset, name_), r.description(),
                     "the file is not well-formed XML");
