@@ -80,7 +80,9 @@ void check_lines(const setup& s)
 
 located_setup read_setup(std::string_view text, const setup_source& source)
 {
-    const toml::table document = parse_toml(text, source.name);
+    const toml::table document =
+        parse_toml(text, source.name,
+                   {.kinds = "arrays and configurations are TOML; points, drawings and plans are strokes"});
     const toml_table root(document, "the file", source.name);
     if (root.has("stroke"))
         root.fail("stroke", "this is a stroke file, not an array or configuration", "name it as the STROKE");

@@ -6,6 +6,7 @@
 #include <new>
 #include <string>
 #include <system_error>
+#include <utility>
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -14,10 +15,37 @@
 #include <tactor/error.hpp>
 
 #include "core/owned.hpp"
+#include "core/path/number.hpp"
 #include "core/refused.hpp"
 
 namespace tactor::detail {
 namespace {
+
+using std::string_view_literals::operator""sv;
+
+// Returns the first line with something on it that is not a comment.
+std::string_view find_first_line(std::string_view text)
+{
+    while (!text.empty()) {
+        const std::size_t end = std::min(text.find('\n'), text.size());
+        std::string_view line = text.substr(0, end);
+        std::size_t at = 0;
+        skip_blanks(line, at);
+        line.remove_prefix(at);
+        if (!line.empty() && line.front() != '#')
+            return line;
+        text.remove_prefix(std::min(end + 1, text.size()));
+    }
+    return {};
+}
+
+// Returns true for a header, also one that forgets t_s: TOML has no line with a comma and without '=' at its
+// top.
+bool looks_like_csv(std::string_view line)
+{
+    return line.find_first_of("=[{") == std::string_view::npos &&
+           (line.find("t_s") != std::string_view::npos || line.find(',') != std::string_view::npos);
+}
 
 [[noreturn]] void refuse(std::string_view name, int code)
 {
@@ -25,6 +53,46 @@ namespace {
     throw_caused(error(error_kind::bad_input, source_place{std::string(name)},
                        std::generic_category().message(code), hint),
                  code);
+}
+
+// Refuses text that begins as sound, a picture or an archive does.
+void refuse_other_kind(std::string_view text, const std::string& name, std::string_view hint)
+{
+    struct other_kind {
+        std::string_view begin;
+        std::string_view what;
+    };
+    constexpr other_kind others[] = {{"\x89PNG", "a PNG picture"},
+                                     {"\xFF\xD8\xFF", "a JPEG picture"},
+                                     {"%PDF-", "a PDF document"},
+                                     {"PK\x03\x04", "a ZIP archive or office document"},
+                                     {"\x1F\x8B", "compressed by gzip"},
+                                     {"fLaC", "FLAC sound"},
+                                     {"OggS", "Ogg sound"},
+                                     {"ID3", "MP3 sound"},
+                                     {"GIF8", "a GIF picture"},
+                                     {"II*\0"sv, "a TIFF picture"},
+                                     {"MM\0*"sv, "a TIFF picture"},
+                                     {"\xD0\xCF\x11\xE0", "an old Excel or Word document"},
+                                     {"\x93NUMPY", "an array of NumPy"},
+                                     {"\x89HDF", "HDF5 data"},
+                                     {"MATLAB 5.0", "data of MATLAB"}};
+    std::string_view what;
+    const std::string_view head = text.substr(0, 12);
+    if ((head.starts_with("RIFF") || head.starts_with("RF64")) && head.ends_with("WAVE"))
+        what = "a WAV file";
+    if (head.starts_with("RIFF") && head.ends_with("WEBP"))
+        what = "a WebP picture";
+    if (head.size() == 12 && head.substr(4, 4) == "ftyp") {
+        constexpr std::string_view pictures = "heic heix mif1 msf1 avif";
+        what = pictures.find(head.substr(8)) != std::string_view::npos ? "a HEIC or AVIF picture"
+                                                                       : "a film or sound in MP4";
+    }
+    for (const other_kind& o : others)
+        if (text.starts_with(o.begin))
+            what = o.what;
+    if (!what.empty())
+        throw error(error_kind::bad_input, source_place{name}, fmt::format("is {}, not text", what), hint);
 }
 
 } // namespace
@@ -71,30 +139,6 @@ whole_text read_text_file(const std::filesystem::path& file, std::size_t max_byt
     return read_text(in.get(), file.string(), max_bytes);
 }
 
-void refuse_other_kind(std::string_view text, const std::string& name, std::string_view hint)
-{
-    struct other_kind {
-        std::string_view begin;
-        std::string_view what;
-    };
-    constexpr other_kind others[] = {{"\x89PNG", "a PNG picture"},
-                                     {"\xFF\xD8\xFF", "a JPEG picture"},
-                                     {"%PDF-", "a PDF document"},
-                                     {"PK\x03\x04", "a ZIP archive or office document"},
-                                     {"\x1F\x8B", "compressed by gzip"},
-                                     {"fLaC", "FLAC sound"},
-                                     {"OggS", "Ogg sound"},
-                                     {"ID3", "MP3 sound"}};
-    std::string_view what;
-    if ((text.starts_with("RIFF") || text.starts_with("RF64")) && text.substr(0, 12).ends_with("WAVE"))
-        what = "a WAV file";
-    for (const other_kind& o : others)
-        if (text.starts_with(o.begin))
-            what = o.what;
-    if (!what.empty())
-        throw error(error_kind::bad_input, source_place{name}, fmt::format("is {}, not text", what), hint);
-}
-
 void refuse_no_text(std::string_view text, const std::string& name, std::string_view hint)
 {
     refuse_other_kind(text, name, hint);
@@ -105,6 +149,41 @@ void refuse_no_text(std::string_view text, const std::string& name, std::string_
     if (marked || bare)
         throw error(error_kind::bad_input, source_place{name}, "is UTF-16, not UTF-8",
                     "save it as UTF-8 in the editor, or convert it: iconv -f UTF-16 -t UTF-8 OLD > NEW");
+    constexpr std::size_t longest_look = 4096;
+    const std::string_view line = text.substr(0, std::min(text.find('\n'), longest_look));
+    const auto* const odd = std::find_if(
+        line.begin(), line.end(), [](char c) { return static_cast<unsigned char>(c) < ' ' && !blank(c); });
+    if (odd != line.end())
+        throw error(error_kind::bad_input,
+                    find_place(text, static_cast<std::size_t>(odd - line.begin()), name),
+                    "is binary, not text", hint);
+}
+
+std::string_view find_text_form(std::string_view text)
+{
+    const std::string_view line = find_first_line(without_mark(text));
+    if (line.starts_with('<'))
+        return "svg";
+    if (line.starts_with('{'))
+        return "json";
+    return looks_like_csv(line) ? "csv" : "toml";
+}
+
+void refuse_other_form(std::string_view text, const std::string& name, std::string_view wanted,
+                       std::string_view hint)
+{
+    refuse_no_text(text, name, hint);
+    constexpr std::pair<std::string_view, std::string_view> forms[] = {
+        {"svg", "SVG, or other XML"}, {"csv", "a table (CSV)"}, {"json", "JSON"}};
+    if (without_blanks(without_mark(text)).empty())
+        throw error(error_kind::bad_input, source_place{name}, "is empty", hint);
+    const std::string_view form = find_text_form(text);
+    for (const auto& [other, words] : forms)
+        if (other == form && other != wanted)
+            throw error(
+                error_kind::bad_input,
+                find_place(text, static_cast<std::size_t>(find_first_line(text).data() - text.data()), name),
+                fmt::format("is {}", words), hint);
 }
 
 void check_size(std::string_view text, const std::string& name, std::size_t max_bytes, std::string_view hint)

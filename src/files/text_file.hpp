@@ -45,12 +45,16 @@ whole_text read_text_file(const std::filesystem::path& file, std::size_t max_byt
 inline constexpr std::string_view text_kinds_hint =
     "strokes are TOML, CSV or SVG, arrays and configurations TOML; sound is for waveform = \"FILE.wav\"";
 
-/// Refuses text that begins as sound, a picture or an archive does. \throws error (bad_input) that says
-/// which: a reader's own error would be about bytes.
-void refuse_other_kind(std::string_view text, const std::string& name,
-                       std::string_view hint = text_kinds_hint);
-/// Refuses that, and UTF-16, as some editors save text.
+/// Refuses sound, pictures, archives, UTF-16, as some editors save text, and other bytes that are no text.
+/// \throws error (bad_input) that says which: a reader's own error would be about bytes.
 void refuse_no_text(std::string_view text, const std::string& name, std::string_view hint = text_kinds_hint);
+
+/// Returns "svg", "csv", "json" or "toml": the form of a text by its first line.
+std::string_view find_text_form(std::string_view text);
+/// Explains why a text cannot be read as `wanted`, a form of find_text_form(). \throws error (bad_input) for
+/// what is no text, is empty or has another form; returns for others.
+void refuse_other_form(std::string_view text, const std::string& name, std::string_view wanted,
+                       std::string_view hint = text_kinds_hint);
 
 /// Longest stroke file: ten million timed points with all their digits; more is the wrong file.
 inline constexpr std::size_t max_stroke_bytes = std::size_t{512} << 20;

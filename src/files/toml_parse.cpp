@@ -2,10 +2,13 @@
 // From text to toml++'s tables.
 #include "files/toml_reader.hpp"
 
+#include <algorithm>
 #include <optional>
 
 #include <fmt/format.h>
 
+#include "core/path/number.hpp"
+#include "core/suggest.hpp"
 #include "files/text_file.hpp"
 
 namespace tactor::detail {
@@ -92,15 +95,61 @@ std::optional<std::size_t> open_string(std::string_view t)
     return std::nullopt;
 }
 
+bool in_unit(char c) noexcept
+{
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '%' ||
+           static_cast<unsigned char>(c) >= 0x80;
+}
+
+// Refuses a line with a number that has a unit or a decimal comma, as people write them.
+void refuse_foreign_number(std::string_view text, const source_place& line)
+{
+    for (unsigned i = 1; i < line.line && !text.empty(); ++i)
+        text.remove_prefix(std::min(text.find('\n'), text.size() - 1) + 1);
+    text = text.substr(0, text.find_first_of("\n#"));
+    for (std::size_t i = 0; i < text.size();) {
+        if (text[i] == '"' || text[i] == '\'') {
+            i = after_string(text, i);
+            continue;
+        }
+        const bool value = text[i] == '=';
+        if (!value && text[i] != '[' && text[i] != ',') {
+            ++i;
+            continue;
+        }
+        skip_blanks(text, ++i);
+        const std::size_t begin = i;
+        if (!scan_number(text, i))
+            continue;
+        std::size_t end = i;
+        if (std::size_t digits = i + 1; value && text.substr(i, 1) == "," && scan_number(text, digits)) {
+            const std::string_view number = text.substr(begin, digits - begin);
+            fail_at({line.file, line.line, static_cast<unsigned>(begin + 1)},
+                    fmt::format("{} has a decimal comma", quoted(number)),
+                    fmt::format("write {}.{}", text.substr(begin, i - begin),
+                                text.substr(i + 1, digits - i - 1)));
+        }
+        skip_blanks(text, end);
+        const std::size_t unit = end;
+        while (end < text.size() && in_unit(text[end]))
+            ++end;
+        if (end > unit)
+            fail_at({line.file, line.line, static_cast<unsigned>(begin + 1)},
+                    fmt::format("{} is a number with a unit", quoted(text.substr(begin, end - begin))),
+                    "give the number alone: its unit is in the name of the key, or in the manual");
+    }
+}
+
 } // namespace
 
-toml::table parse_toml(std::string_view text, const std::string& name)
+toml::table parse_toml(std::string_view text, const std::string& name, const toml_hints& hints)
 {
-    refuse_no_text(text, name);
+    refuse_no_text(text, name, hints.kinds);
     refuse_deep_keys(text, name);
     try {
         return toml::parse(text, std::string_view(name));
     } catch (const toml::parse_error& e) {
+        refuse_other_form(text, name, "toml", hints.kinds);
         const auto& at = e.source().begin;
         if (const auto open = open_string(text)) {
             const source_place begin = find_place(text, *open, name);
@@ -114,10 +163,12 @@ toml::table parse_toml(std::string_view text, const std::string& name)
         if (e.description().find("utf-8") != std::string_view::npos)
             fail_at({name, at.line, at.column}, "this is not UTF-8",
                     "save it as UTF-8 in the editor, or convert it: iconv -f LATIN1 -t UTF-8 OLD > NEW");
+        refuse_foreign_number(text, {name, at.line, 0});
+        const std::string manual = fmt::format("see {}", hints.manual);
         if (e.description().find("could not determine value type") != std::string_view::npos)
             fail_at({name, at.line, at.column}, "this is no value",
-                    "a text stands in quotes, as name = \"palm\"; numbers have no unit; see tactor.toml(5)");
-        fail_at({name, at.line, at.column}, e.description(), "see tactor.toml(5)");
+                    "a text stands in quotes, as name = \"palm\"; numbers have no unit; " + manual);
+        fail_at({name, at.line, at.column}, e.description(), manual);
     }
 }
 

@@ -19,12 +19,19 @@
 
 #include "core/bounds.hpp"
 #include "core/kind_names.hpp"
+#include "files/text_file.hpp"
 
 namespace tactor::detail {
 
+/// Hints for a document that is no TOML.
+struct toml_hints {
+    std::string_view manual = "tactor.toml(5)";
+    std::string_view kinds = text_kinds_hint; ///< where it is something else
+};
+
 /// Parses a document. `name` stands for the file in messages.
 /// \throws error (bad_input) with file, line and column.
-toml::table parse_toml(std::string_view text, const std::string& name);
+toml::table parse_toml(std::string_view text, const std::string& name, const toml_hints& hints = {});
 
 /// A table of a document. Refers to the document and to the name: both must outlive it.
 class toml_table {

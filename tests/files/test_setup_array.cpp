@@ -254,6 +254,10 @@ TEST_CASE("an array comes from one source")
     CHECK(complaint("[array]\nname = \"\"\n").starts_with("palm.toml:1:1"));
     CHECK(complaint("[stroke]\nduration_s = 1\n") ==
           "palm.toml:1:1: this is a stroke file, not an array or configuration (name it as the STROKE)");
+    CHECK(
+        complaint("t_s,x_mm,y_mm\n0,1,2\n") ==
+        "palm.toml:1:1: is a table (CSV) (arrays and configurations are TOML; points, drawings and plans are "
+        "strokes)");
 }
 
 TEST_CASE("two tactors on one place or channel are refused with both lines")

@@ -64,6 +64,40 @@ TEST_CASE("the kind of stroke text is guessed from its first line")
     CHECK_FALSE(caught_message([] { static_cast<void>(tactor::parse_strokes("\xff\xfe", "-")); }).empty());
 }
 
+TEST_CASE("what is no stroke file is named for what it is")
+{
+    const folder f;
+    const auto said = [&f](const std::string& name, std::string text) {
+        return refusal(f.write(name, text)).substr((f.path() / name).string().size());
+    };
+    const std::string heic("\0\0\0\x18"
+                           "ftypheic\0\0\0\0",
+                           16);
+    for (const char* name : {"a.csv", "a.svg", "a.toml", "a"})
+        CHECK(said(name, heic).find(": is a HEIC or AVIF picture, not text (strokes are TOML, CSV or SVG") ==
+              0);
+    CHECK(said("b.csv", std::string("\1\2\0\3\4,5", 7)).find(":1:1: is binary, not text (") == 0);
+    CHECK(said("c.svg", " \n").find(": is empty (") == 0);
+    CHECK(said("d.csv", svg).find(":1:1: is SVG, or other XML (") == 0);
+    CHECK(said("e.toml", csv).find(":1:1: is a table (CSV) (") == 0);
+    CHECK(said("f", "{\"plans\": []}").find(":1:1: is JSON (") == 0);
+}
+
+TEST_CASE("numbers with units and decimal commas are named in TOML")
+{
+    const auto said = [](const std::string& line) {
+        return caught_message(
+            [&] { static_cast<void>(tactor::parse_strokes_toml("[stroke]\n" + line + "\n", "a")); });
+    };
+    CHECK(said("speed_mm_s = 2 cm") ==
+          "a:2:14: '2 cm' is a number with a unit (give the number alone: its unit is in "
+          "the name of the key, or in the manual)");
+    CHECK(said("speed_mm_s = 20mm").find("a:2:14: '20mm' is a number with a unit") == 0);
+    CHECK(said("points = [[0, 1 mm], [2, 3]]").find("a:2:15: '1 mm' is a number with a unit") == 0);
+    CHECK(said("speed_mm_s = 20,0") == "a:2:14: '20,0' has a decimal comma (write 20.0)");
+    CHECK(said("arc = { radius_mm = 20,5 }") == "a:2:21: '20,5' has a decimal comma (write 20.5)");
+}
+
 TEST_CASE("unreadable files are named")
 {
     const folder f;

@@ -153,6 +153,10 @@ TEST_CASE("with a physical size, the drawing has that size")
     check_near(end("width='96px' height='96px' viewBox='0 0 25.4 25.4'"), {20.0, 10.0});
     check_near(end("width='50mm' height='50mm'"), {20.0 * 25.4 / 96.0, 10.0 * 25.4 / 96.0});
     check_near(end("width='50mm' height='50mm' viewBox='-5 -10 50 50'"), {25.0, 20.0});
+    check_near(end("width='50MM' height='200q' viewBox='0 0 50 50'"), {20.0, 10.0});
+    check_near(end("style='width:50mm;HEIGHT:50mm' viewBox='0 0 100 100'"), {10.0, 5.0});
+    check_near(end("width='50mm' height='50mm' style='width:100%;height:auto' viewBox='0 0 50 50'"),
+               {20.0, 10.0});
     // Units inside are physical as well.
     check_near(end("width='50mm' height='50mm'", "<line x2='20mm'/>"), {20.0, 0.0});
 }
@@ -168,9 +172,36 @@ TEST_CASE("preserveAspectRatio is followed")
     check_near(end("preserveAspectRatio='xMidYMid meet'"), {75.0, 50.0});
     check_near(end("preserveAspectRatio='xMinYMin'"), {50.0, 50.0});
     check_near(end("preserveAspectRatio='xMaxYMax meet'"), {100.0, 50.0});
+    check_near(end("preserveAspectRatio='defer xMinYMin'"), {50.0, 50.0});
+    check_near(end("preserveAspectRatio='left'"), {75.0, 50.0});
     check_near(end("preserveAspectRatio='none'"), {100.0, 50.0});
     check_near(end("preserveAspectRatio='xMidYMid slice'"), {100.0, 75.0});
     check_near(end("preserveAspectRatio='xMidYMin slice'"), {100.0, 100.0});
+}
+
+TEST_CASE("the root's transform is about the middle of its page")
+{
+    const auto end = [](const std::string& root) {
+        return at(one("<line y1='10' x2='10' y2='10'/>", root), 1.0);
+    };
+    const std::string flip = " transform='scale(1 -1)'";
+    check_near(end("width='40mm' height='40mm' viewBox='0 0 40 40'" + flip), {10.0, 30.0});
+    check_near(end("width='40mm' height='40mm' viewBox='0 0 80 80'" + flip), {5.0, 35.0});
+    check_near(end("viewBox='-10 -10 40 40'" + flip), {10.0, 10.0});
+    check_near(end("width='40' height='30'" + flip), {10.0, 20.0});
+    check_near(end("width='80' height='80' viewBox='0 0 40 40' transform='translate(10)'"), {15.0, 10.0});
+    check_near(end("viewBox='0 0 40 40' transform='scale(1 -1)' transform-origin='0 0'"), {10.0, -10.0});
+}
+
+TEST_CASE("what a size without a unit cannot have is warned of")
+{
+    const stroke s =
+        one("<circle r='3'/>", "width='80' height='40' viewBox='0 0 40 40' preserveAspectRatio='none'");
+    CHECK(s.warnings.at(0).find("preserveAspectRatio of <svg> is not followed, as its size has no unit") !=
+          std::string::npos);
+    CHECK(one("<circle r='3'/>", "width='calc(2em)' height='9'")
+              .warnings.at(0)
+              .find("width of <svg> is not followed") != std::string::npos);
 }
 
 TEST_CASE("transforms, in lists and nested")
@@ -253,16 +284,69 @@ TEST_CASE("use draws its target; definitions alone draw nothing")
     CHECK(one("<x:line x2='3'/><line x2='7'/>").motion.length_mm() == 7.0);
 }
 
-TEST_CASE("shapes that SVG does not draw are left out if there are others")
+TEST_CASE("shapes that draw nothing are left out with a warning if there are others")
 {
-    for (const char* nothing :
-         {"<path d=''/>", "<path d='none'/>", "<path/>", "<path d='M 1 1'/>", "<rect width='0' height='3'/>",
-          "<circle r='0'/>", "<polyline points='1 1'/>", "<polygon/>"}) {
+    for (const char* nothing : {"<path d=''/>",
+                                "<path d='none'/>",
+                                "<path/>",
+                                "<path d='M 1 1'/>",
+                                "<path d='M5 5Z'/>",
+                                "<path d='M 1 1 L 1 1'/>",
+                                "<rect width='0' height='3'/>",
+                                "<rect width='-1' height='3'/>",
+                                "<circle r='0'/>",
+                                "<circle r='-1'/>",
+                                "<line/>",
+                                "<polyline points='1 1'/>",
+                                "<polygon/>",
+                                "<polygon points='1 1'/>",
+                                "<polygon points='1 1 1 1'/>",
+                                "<line x2='3' transform='scale(0)'/>",
+                                "<use href='other.svg#a'/>",
+                                "<use href='#a'/>",
+                                "<svg width='-3'><line x2='3'/></svg>",
+                                "<line x2='calc(1px + 2px)'/>",
+                                "<line x2='3em'/>"}) {
         CAPTURE(nothing);
-        CHECK(one(std::string(nothing) + "<line x2='7'/>").motion.length_mm() == 7.0);
-        CHECK(refusal(fmt::format("<svg>{}</svg>", nothing)).find("a.svg:1:7: <") == 0);
+        const stroke s = one(std::string(nothing) + "<line x2='7'/>");
+        CHECK(s.motion.length_mm() == 7.0);
+        REQUIRE(s.warnings.size() == 1);
+        CHECK(s.warnings[0].find("a.svg:1:") == 0);
+        CHECK(s.warnings[0].find("): left out") != std::string::npos);
+        CHECK(refusal(fmt::format("<svg>{}</svg>", nothing)).find("a.svg:1:") == 0);
     }
     CHECK(one("<path d='M 0 0 h 7 M 3 3'/>").motion.length_mm() == 7.0);
+    const stroke s = one("<path d='M 0 0 h 3 v 4 z M 5 5 z' data-duration-s='2'/>");
+    CHECK(s.motion.duration_s() == 2.0);
+    CHECK(s.warnings ==
+          std::vector<std::string>{"a.svg:1:8: <path>: a subpath has no length (it draws a point): "
+                                   "left out"});
+    CHECK(parse("<svg><circle r='-1'/><line/><circle r='-2'/><line x2='7'/></svg>").front().warnings.size() ==
+          2);
+}
+
+TEST_CASE("shapes that nobody sees are said")
+{
+    for (const char* unseen :
+         {"fill='none'", "style='fill:None'", "opacity='0'", "style='fill:none;stroke:none'"})
+        CHECK(one("<g " + std::string(unseen) + "><line x2='7'/></g>").warnings ==
+              std::vector<std::string>{
+                  "a.svg:1:" + std::to_string(12 + std::string(unseen).size()) +
+                  ": <line> has neither fill nor stroke, or no opacity: it plays all the same"});
+    CHECK(one("<g fill='none'><line x2='7' stroke='red'/></g>").warnings.empty());
+}
+
+TEST_CASE("equal shapes in one place are said")
+{
+    const std::string d = "<path d='M 0 0 C 1 2 3 4 5 6'/>";
+    CHECK(parse("<svg>" + d + d + d + "</svg>").front().warnings ==
+          std::vector<std::string>{
+              "a.svg:1:38: <path> has the shape of one before it, as does 1 element more: it "
+              "plays again"});
+    CHECK(parse("<svg>" + d + "<g transform='translate(1)'>" + d + "</g></svg>").front().warnings.empty());
+    CHECK(parse("<svg>" + d + "<path data-start-s='3' d='M 0 0 C 1 2 3 4 5 6'/></svg>")
+              .front()
+              .warnings.empty());
 }
 
 } // namespace stroke_svg_test

@@ -14,6 +14,7 @@
 #include "core/words.hpp"
 #include "files/input_files.hpp"
 #include "files/plan/plan_values.hpp"
+#include "files/text_file.hpp"
 
 namespace tactor::files {
 namespace {
@@ -111,9 +112,9 @@ std::string said(const std::string& what)
                                    : what.substr(at);
 }
 
-// Reads a stream or a text.
-template <class Input>
-plan_file read_from(Input&& in, const std::string& name, recordings_kind recordings = recordings_kind::read)
+// Reads a stream or a text. `begin` returns its first bytes, to explain a failure.
+template <class Input, class Begin>
+plan_file read_from(Input&& in, const std::string& name, recordings_kind recordings, const Begin& begin)
 {
     reader r(name, recordings);
     try {
@@ -122,6 +123,7 @@ plan_file read_from(Input&& in, const std::string& name, recordings_kind recordi
                 return r.event(depth, what, parsed);
             });
     } catch (const ordered_json::exception& e) {
+        detail::refuse_other_form(begin(), name, "json", how_to_make);
         throw error(error_kind::bad_input, name, said(e.what()), how_to_make);
     }
     return std::move(r).result();
@@ -144,12 +146,19 @@ plan_file load_plans(const std::string& file)
                     "check the name and its rights")
             .with_os_code(code);
     detail::note_input(file);
-    return read_from(in, file);
+    return read_from(in, file, recordings_kind::read, [&file] {
+        std::error_code ignored;
+        std::string bytes(std::filesystem::is_regular_file(file, ignored) ? 4096 : 0, '\0');
+        std::ifstream again(file, std::ios::binary);
+        again.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+        bytes.resize(static_cast<std::size_t>(again.gcount()));
+        return bytes;
+    });
 }
 
 plan_file read_plans(std::string_view text, const std::string& name, recordings_kind recordings)
 {
-    return read_from(text, name, recordings);
+    return read_from(text, name, recordings, [text] { return text; });
 }
 
 bool holds_plans(std::string_view text) noexcept

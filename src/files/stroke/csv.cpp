@@ -306,8 +306,9 @@ private:
 std::vector<stroke> parse_strokes_csv(std::string_view text, const std::string& name)
 {
     detail::check_size(text, name, detail::max_stroke_bytes, "is it the right file?");
-    detail::refuse_no_text(text, name);
-    detail::refuse_other_form(detail::without_mark(text), name);
+    if (!detail::without_blanks(text).empty())
+        detail::refuse_other_form(text, name, "csv");
+    detail::refuse_other_columns(detail::without_mark(text), name);
     return csv_reader(text, name).read();
 }
 

@@ -70,7 +70,7 @@ bool is_missing(std::string_view value) noexcept
                              (value[1] == 'a' || value[1] == 'A') && (value[2] == 'n' || value[2] == 'N'));
 }
 
-void refuse_other_form(std::string_view text, const std::string& name)
+void refuse_other_columns(std::string_view text, const std::string& name)
 {
     refuse_lone_cr(text, name);
     source_place comment;

@@ -1,11 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include <tactor/stroke.hpp>
 
-#include <algorithm>
-
 #include <fmt/format.h>
 
-#include "core/path/number.hpp"
 #include "core/words.hpp"
 #include "files/input_files.hpp"
 #include "files/stroke/parts.hpp"
@@ -14,30 +11,6 @@
 namespace tactor {
 inline namespace v0 {
 namespace {
-
-// Returns the first line with something on it that is not a comment.
-std::string_view first_line(std::string_view text)
-{
-    while (!text.empty()) {
-        const std::size_t end = std::min(text.find('\n'), text.size());
-        std::string_view line = text.substr(0, end);
-        std::size_t at = 0;
-        detail::skip_blanks(line, at);
-        line.remove_prefix(at);
-        if (!line.empty() && line.front() != '#')
-            return line;
-        text.remove_prefix(std::min(end + 1, text.size()));
-    }
-    return {};
-}
-
-// Returns true for a header, also one that forgets t_s: TOML has no line with a comma and without '=' at its
-// top.
-bool looks_like_csv(std::string_view line)
-{
-    return line.find_first_of("=[{") == std::string_view::npos &&
-           (line.find("t_s") != std::string_view::npos || line.find(',') != std::string_view::npos);
-}
 
 // Returns the format that the extension of a file's name says; empty for others.
 std::string_view format_in_name(const std::filesystem::path& file)
@@ -49,12 +22,11 @@ std::string_view format_in_name(const std::filesystem::path& file)
     return {};
 }
 
+// Takes JSON for TOML, whose reader explains what it is.
 std::string_view guess_format(std::string_view text)
 {
-    const std::string_view line = first_line(detail::without_mark(text));
-    if (!line.empty() && line.front() == '<')
-        return "svg";
-    return looks_like_csv(line) ? "csv" : "toml";
+    const std::string_view form = detail::find_text_form(text);
+    return form == "json" ? "toml" : form;
 }
 
 std::vector<stroke> parse_as(std::string_view format, std::string_view text, const std::string& name)

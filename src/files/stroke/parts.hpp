@@ -118,7 +118,7 @@ stroke placed(const toml_table& t, stroke s);
 
 /// Refuses line ends of CR alone, other separators than commas, and a header that is missing or in a comment,
 /// with a message that says so. \throws error (bad_input) with `name`, line and column.
-void refuse_other_form(std::string_view text, const std::string& name);
+void refuse_other_columns(std::string_view text, const std::string& name);
 
 /// Returns true for nan in any case and for NA.
 bool is_missing(std::string_view value) noexcept;

@@ -20,8 +20,11 @@ struct svg_look {
     double width = 1.0;          ///< user units
     double opacity = 1.0;        ///< product of those round the element
     double stroke_opacity = 1.0; ///< of the nearest
+    bool filled = true;
+    bool outlined = false;
 
     double shown() const noexcept { return opacity * stroke_opacity; }
+    bool is_painted() const noexcept { return (filled || outlined) && opacity != 0.0; }
 };
 
 /// Applies the element's own attributes to the look.
@@ -43,7 +46,7 @@ struct svg_scope {
     unsigned uses = 0;  ///< of these, <use>
 };
 
-/// Returns the scope of the root. A document with a size in physical units is as large as it says. In any
+/// Returns the scope inside the root. A document with a size in physical units is as large as it says. In any
 /// other, one user unit is one millimetre and coordinates are as they stand.
 svg_scope svg_root_scope(const svg_document& doc);
 
@@ -54,7 +57,7 @@ void enter_svg_box(const svg_document& doc, pugi::xml_node n, svg_scope& s, cons
 /// Applies the element's own attributes: transform, visibility and data-...
 void inherit_svg(const svg_document& doc, pugi::xml_node n, svg_scope& s);
 
-/// Returns true if display is "none".
+/// Returns true if display is "none", or not understood, which is noted.
 bool svg_hidden(const svg_document& doc, pugi::xml_node n);
 
 } // namespace tactor::detail

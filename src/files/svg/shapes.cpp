@@ -30,9 +30,9 @@ struct element {
     {
         const double v = doc.length(node, attribute, viewport, e);
         if (v < 0.0)
-            doc.fail(node,
-                     fmt::format("{} of {}: {:g} is less than 0", attribute, svg_document::called(node), v),
-                     "give 0 or more");
+            doc.leave_out(
+                node, fmt::format("{} of {}: {:g} is less than 0", attribute, svg_document::called(node), v),
+                "give 0 or more");
         return v;
     }
 

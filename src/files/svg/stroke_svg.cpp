@@ -3,9 +3,13 @@
 #include <tactor/stroke.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <optional>
+#include <unordered_set>
 #include <utility>
 
+#include <boost/container_hash/hash.hpp>
 #include <fmt/format.h>
 
 #include <tactor/error.hpp>
@@ -23,6 +27,7 @@ namespace {
 using detail::affine;
 using detail::enter_svg_box;
 using detail::inherit_svg;
+using detail::left_out;
 using detail::outline;
 using detail::svg_extent;
 using detail::svg_hidden;
@@ -44,8 +49,7 @@ public:
     std::vector<stroke> read()
     {
         const xml_node root = doc_.root();
-        scope s = detail::svg_root_scope(doc_);
-        inherit_svg(doc_, root, s);
+        const scope s = detail::svg_root_scope(doc_);
         note_unfollowed(root);
         if (svg_hidden(doc_, root))
             hidden_ = root;
@@ -56,9 +60,8 @@ public:
             strokes_.front().warnings = doc_.warnings();
             return std::move(strokes_);
         }
-        if (undrawn_)
-            doc_.fail(undrawn_, fmt::format("{} draws nothing", doc_.called(undrawn_)),
-                      "it needs a size, or path data that draws");
+        if (left_out_)
+            throw doc_.to_error(*left_out_);
         if (hidden_)
             doc_.fail(hidden_, fmt::format("{} is hidden, and nothing else draws", doc_.called(hidden_)),
                       "take out display or visibility");
@@ -75,9 +78,18 @@ private:
                 visit(c, s);
     }
 
-    // Ignores elements that draw nothing by themselves: defs, symbol, clipPath, mask, marker, pattern, text
-    // ...
-    void visit(xml_node n, scope s)
+    void visit(xml_node n, const scope& s)
+    {
+        try {
+            draw(n, s);
+        } catch (const left_out& f) {
+            doc_.note_left_out(f);
+            if (!left_out_)
+                left_out_ = f;
+        }
+    }
+
+    void draw(xml_node n, scope s)
     {
         if (++elements_ > most_elements || ++s.depth > deepest)
             doc_.fail(n, elements_ > most_elements ? "too many elements" : "nested too deep",
@@ -85,11 +97,14 @@ private:
         const std::string_view tag = svg_tag(n);
         const bool group = tag == "g" || tag == "a" || tag == "switch";
         if (!draws(n))
-            return;
+            return note_no_shape(n);
         if (svg_hidden(doc_, n))
             return note_hidden(n);
         note_unfollowed(n);
         inherit_svg(doc_, n, s);
+        if (!group && tag != "svg")
+            for (const xml_node c : n.children())
+                note_no_shape(c); // an animation
         if (group)
             children(n, s);
         else if (tag == "svg")
@@ -107,11 +122,28 @@ private:
     // Notes features that are not followed. SVG viewers draw one child of a switch.
     void note_unfollowed(xml_node n) const
     {
-        for (const char* what : {"clip-path", "mask"})
-            if (const std::string_view v = doc_.property(n, what); !v.empty() && v != "none")
-                doc_.note(n, what);
+        const bool root = n == doc_.root(); // whose width and height are followed
+        for (const std::string_view what : detail::unfollowed_svg_properties)
+            if (const std::string_view v = doc_.property(n, what);
+                !v.empty() && v != "none" && !(root && (what == "width" || what == "height")))
+                doc_.note_unfollowed(n, std::string(what));
         if (svg_tag(n) == "switch" && std::count_if(n.begin(), n.end(), draws) > 1)
-            doc_.note(n, "the choice");
+            doc_.note_unfollowed(n, "the choice");
+    }
+
+    // Notes an element that draws in browsers although it is no shape. Those of other programs have a prefix.
+    void note_no_shape(xml_node n) const
+    {
+        constexpr std::array<std::string_view, 20> silent{
+            "defs",    "symbol", "clipPath",       "mask",           "marker",
+            "pattern", "filter", "linearGradient", "radialGradient", "style",
+            "script",  "title",  "desc",           "metadata",       "view",
+            "cursor",  "font",   "font-face",      "color-profile",  "solidColor"};
+        const std::string_view tag = svg_tag(n);
+        if (n.type() == pugi::node_element && tag.find(':') == std::string_view::npos &&
+            std::find(silent.begin(), silent.end(), tag) == silent.end() && svg_tag(n.parent()) != "switch" &&
+            !svg_hidden(doc_, n))
+            doc_.note_no_shape(n);
     }
 
     static bool draws(xml_node n)
@@ -135,8 +167,8 @@ private:
             const xml_node from = sized.attribute(attribute) ? sized : n;
             const double v = doc_.length(from, attribute, s.viewport, e, whole);
             if (!(v > 0.0))
-                doc_.fail(from, fmt::format("{} has no size", doc_.called(from)),
-                          "width and height are more than 0");
+                doc_.leave_out(from, fmt::format("{} has no size", doc_.called(from)),
+                               "width and height are more than 0");
             return v;
         };
         const double width = side("width", svg_extent::width, s.viewport.width);
@@ -157,11 +189,12 @@ private:
         if (href.empty())
             href = n.attribute("xlink:href").value();
         if (href.size() < 2 || href.front() != '#')
-            doc_.fail(n, fmt::format("{} refers to nothing in this file", doc_.called(n)), "href=\"#id\"");
+            doc_.leave_out(n, fmt::format("{} refers to nothing in this file", doc_.called(n)),
+                           "href=\"#id\"");
         const xml_node target = doc_.by_id(href.substr(1));
         if (!target)
-            doc_.fail(n, fmt::format("{} refers to {}, which is not in this file", doc_.called(n), href),
-                      "correct the id");
+            doc_.leave_out(n, fmt::format("{} refers to {}, which is not in this file", doc_.called(n), href),
+                           "correct the id");
         if (++s.uses > most_uses_inside)
             doc_.fail(n, fmt::format("{} refers to itself, or too deep", doc_.called(n)),
                       "take the loop out");
@@ -179,24 +212,48 @@ private:
     void shape(xml_node n, const scope& s)
     {
         std::vector<outline> outlines = svg_shape(doc_, n, s.viewport);
-        if (outlines.empty() && !undrawn_)
-            undrawn_ = n;
         if (outlines.empty())
-            return;
+            doc_.leave_out(n, fmt::format("{} draws nothing", doc_.called(n)),
+                           "it needs a size, or path data that draws");
         const double scale = std::hypot(s.to_mm.a, s.to_mm.b) * std::hypot(s.to_mm.c, s.to_mm.d);
         if (!(std::abs(s.to_mm.determinant()) > 1e-9 * scale))
-            doc_.fail(n, fmt::format("{} is flattened by its transform", doc_.called(n)),
-                      "a scale of 0 or a skew of 90 degrees leaves no drawing");
+            doc_.leave_out(n, fmt::format("{} is flattened by its transform", doc_.called(n)),
+                           "a scale of 0 or a skew of 90 degrees leaves no drawing");
         std::vector<path> paths;
+        std::size_t look = 0; // equal for equal shapes in equal places
         for (outline& o : outlines) {
             vertices_ += o.vertices.size();
             if (vertices_ > most_vertices)
                 doc_.fail(n, "too many points", "simplify the drawing");
             // Looks the place up only for an error: that reads the whole file before it.
             const auto what = [&] { return fmt::format("{}: {}", doc_.where(n).text(), doc_.called(n)); };
-            paths.push_back(detail::make_path(mapped(std::move(o), s.to_mm), what));
+            outline placed = mapped(std::move(o), s.to_mm);
+            for (const point p : placed.vertices) {
+                boost::hash_combine(look, p.x_mm);
+                boost::hash_combine(look, p.y_mm);
+            }
+            paths.push_back(detail::make_path(std::move(placed), what));
+            boost::hash_combine(look, paths.back().length_mm());
         }
+        keep_drawn(n, paths);
+        if (!looks_.insert(look).second && !n.attribute("data-start-s"))
+            doc_.note_twice(n);
+        if (!s.look.is_painted())
+            doc_.note_unpainted(n);
         add(n, s, paths);
+    }
+
+    // Takes out the subpaths that are points. Where all are, a duration makes them taps.
+    void keep_drawn(xml_node n, std::vector<path>& paths)
+    {
+        const auto is_point = [](const path& p) { return p.length_mm() == 0.0; };
+        const bool all = std::all_of(paths.begin(), paths.end(), is_point);
+        if (all && !n.attribute("data-duration-s"))
+            doc_.leave_out(n, fmt::format("{}: has no length", doc_.called(n)),
+                           "data-duration-s makes it a tap");
+        if (!all && std::erase_if(paths, is_point) != 0)
+            doc_.note_left_out({doc_.offset(n), fmt::format("{}: a subpath has no length", doc_.called(n)),
+                                "it draws a point"});
     }
 
     static trajectory eased(const path& p, double duration_s, const scope& s)
@@ -239,9 +296,6 @@ private:
             const double speed = s.speed_mm_s.value_or(default_speed_mm_s);
             const double part = all > 0.0 ? length / all : 1.0 / static_cast<double>(paths.size());
             const double time = duration ? *duration * part : length / speed;
-            if (time == 0.0)
-                doc_.fail(n, fmt::format("{}: has no length", doc_.called(n)),
-                          "data-duration-s makes it a tap");
             if (time > detail::longest_stroke_s)
                 doc_.fail(n, fmt::format("{} takes {:g} s", doc_.called(n), time),
                           "a stroke takes at most a day");
@@ -260,7 +314,8 @@ private:
     detail::svg_document doc_;
     std::vector<stroke> strokes_;
     std::vector<std::pair<std::size_t, double>> widths_; ///< in mm, of those strokes that ask for it
-    xml_node undrawn_;
+    std::optional<left_out> left_out_;                   ///< the first
+    std::unordered_set<std::size_t> looks_;
     xml_node hidden_;
     std::size_t elements_ = 0;
     std::size_t vertices_ = 0;

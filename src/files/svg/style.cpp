@@ -13,6 +13,7 @@
 #include "core/suggest.hpp"
 #include "core/words.hpp"
 #include "files/svg/document.hpp"
+#include "files/svg/values.hpp"
 
 namespace tactor::detail {
 namespace {
@@ -72,9 +73,10 @@ std::size_t behind_block(std::string_view css, std::size_t open)
     return css.size();
 }
 
-bool names_property(std::string_view css)
+bool names_property(std::string_view body)
 {
-    return std::any_of(svg_properties.begin(), svg_properties.end(), [css](std::string_view p) {
+    const std::string css = in_small_letters(std::string(body));
+    return std::any_of(svg_properties.begin() + svg_paints, svg_properties.end(), [&css](std::string_view p) {
         for (std::size_t at = css.find(p); at != std::string_view::npos; at = css.find(p, at + 1)) {
             const std::size_t end = css.find_first_not_of(" \t\r\n", at + p.size());
             const bool begins = at == 0 || blank(css[at - 1]) || css[at - 1] == '{' || css[at - 1] == ';';
@@ -102,12 +104,90 @@ void for_each_class(pugi::xml_node n, F f)
     }
 }
 
+std::string tidy(std::string_view text)
+{
+    return in_small_letters(std::string(without_blanks(text)));
+}
+
+template <std::size_t count>
+bool holds(const std::array<std::string_view, count>& words, std::string_view word)
+{
+    return std::find(words.begin(), words.end(), word) != words.end();
+}
+
+constexpr std::array<std::string_view, 5> css_wide{"inherit", "initial", "unset", "revert", "revert-layer"};
+
+// Returns false for a value that no browser takes. A function or an entity may stand for anything.
+bool may_be_valid(std::string_view property, const std::string& value)
+{
+    if (value.find_first_of("(&") != std::string::npos || holds(css_wide, value))
+        return true;
+    if (property == "display" || property == "visibility")
+        return is_svg_keyword(property, value);
+    if (property == "transform")
+        return value == "none";
+    const bool side = property == "width" || property == "height";
+    if (!side && property != "opacity" && property != "stroke-opacity" && property != "stroke-width")
+        return true;
+    try {
+        return parse_svg_length(value).in != svg_length::unit::none || !side;
+    } catch (const value_fault&) {
+        return false;
+    }
+}
+
 } // namespace
+
+bool is_svg_keyword(std::string_view property, std::string_view value)
+{
+    constexpr std::array<std::string_view, 3> visibilities{"visible", "hidden", "collapse"};
+    constexpr std::array<std::string_view, 14> displays{
+        "none",  "inline",       "block",     "inline-block", "flow-root", "list-item",   "run-in",
+        "table", "inline-table", "table-row", "table-cell",   "flex",      "inline-flex", "grid"};
+    return holds(css_wide, value) ||
+           (property == "display" ? holds(displays, value) : holds(visibilities, value));
+}
+
+void svg_style_sheet::add_entities(std::string_view doctype)
+{
+    constexpr std::string_view opening = "<!ENTITY";
+    for (std::size_t at = doctype.find(opening); at != std::string_view::npos;
+         at = doctype.find(opening, at)) {
+        at += opening.size();
+        skip_blanks(doctype, at);
+        const std::size_t begin = at;
+        at = std::min(doctype.find_first_of(" \t\r\n", at), doctype.size());
+        const std::string_view name = doctype.substr(begin, at - begin);
+        skip_blanks(doctype, at);
+        if (at == doctype.size() || (doctype[at] != '"' && doctype[at] != '\''))
+            continue;
+        const std::size_t end = std::min(doctype.find(doctype[at], at + 1), doctype.size());
+        entities_.try_emplace(name, doctype.substr(at + 1, end - at - 1));
+        at = end;
+    }
+}
+
+// Returns a style with the text of its entities. One that is not known, or too long, stays as it stands.
+std::string svg_style_sheet::expand(std::string_view style) const
+{
+    constexpr std::size_t longest = std::size_t{1} << 16;
+    std::string s;
+    for (std::size_t at = 0; at < style.size();) {
+        const std::size_t mark = std::min(style.find('&', at), style.size());
+        s += style.substr(at, mark - at);
+        const std::size_t end = std::min(style.find(';', mark), style.size());
+        const auto found = entities_.find(mark < end ? style.substr(mark + 1, end - mark - 1) : style);
+        const bool known = found != entities_.end() && s.size() + found->second.size() <= longest;
+        s += known ? found->second : style.substr(mark, 1);
+        at = known ? end + 1 : mark + 1;
+    }
+    return s;
+}
 
 void svg_style_sheet::add(pugi::xml_node style)
 {
-    const std::string_view media = without_blanks(style.attribute("media").value());
-    const std::string_view type = without_blanks(style.attribute("type").value());
+    const std::string media = tidy(style.attribute("media").value());
+    const std::string type = tidy(style.attribute("type").value());
     std::string css;
     for (const pugi::xml_node c : style.children())
         css += c.value();
@@ -139,7 +219,7 @@ void svg_style_sheet::add_rules(pugi::xml_node style, std::string_view css)
         const std::string_view body = css.substr(end + 1, behind - end - 1);
         if (before.front() != '@')
             add_rule(style, before, body.substr(0, body.size() - (body.ends_with('}') ? 1 : 0)));
-        else if (before.starts_with("@import") || names_property(body))
+        else if (in_small_letters(std::string(before)).starts_with("@import") || names_property(body))
             skip(style, before);
         at = behind;
     }
@@ -160,7 +240,9 @@ void svg_style_sheet::add_rule(pugi::xml_node style, std::string_view selectors,
         s.first = first;
         s.count = all.size();
         if (!parse_selector(text, s)) {
-            skip(style, text);
+            if (std::any_of(all.begin(), all.end(),
+                            [](const declaration& d) { return d.property >= svg_paints; }))
+                skip(style, text);
             continue;
         }
         const std::string key = !s.ids.empty()       ? fmt::format("#{}", s.ids.front())
@@ -204,16 +286,21 @@ std::vector<svg_style_sheet::declaration> svg_style_sheet::parse_declarations(st
         const std::string_view item = body.substr(at, end - at);
         at = end + 1;
         const std::size_t colon = item.find(':');
-        if (colon == std::string_view::npos)
+        if (colon == std::string_view::npos) {
+            if (const std::string_view entity = without_blanks(item); entity.starts_with('&'))
+                all.push_back({svg_paints, entity, false}); // it may hide: an unknown display
             continue;
-        const std::string name = in_small_letters(std::string(without_blanks(item.substr(0, colon))));
+        }
+        std::string name = tidy(item.substr(0, colon));
+        constexpr std::string_view alias = "-webkit-"; // in all browsers
+        if (name.starts_with(alias))
+            name.erase(0, alias.size());
         const auto known = std::find(svg_properties.begin(), svg_properties.end(), name);
         if (known == svg_properties.end())
             continue;
         std::string_view value = without_blanks(item.substr(colon + 1));
         const std::size_t mark = value.rfind('!');
-        const bool important =
-            mark != std::string_view::npos && without_blanks(value.substr(mark + 1)) == "important";
+        const bool important = mark != std::string_view::npos && tidy(value.substr(mark + 1)) == "important";
         if (mark != std::string_view::npos)
             value = without_blanks(value.substr(0, mark));
         if (!value.empty())
@@ -236,18 +323,29 @@ bool svg_style_sheet::fits(const selector& s, pugi::xml_node n)
     });
 }
 
-std::string_view svg_style_sheet::value(pugi::xml_node n, std::string_view property) const
+const std::string& svg_style_sheet::value(pugi::xml_node n, std::string_view property) const
 {
-    // The greatest counts, of equals the last: important, own style, specificity.
-    using weight = std::tuple<bool, bool, std::size_t, std::size_t>;
-    std::string_view best = without_blanks(n.attribute(std::string(property).c_str()).value());
-    weight heaviest{};
+    if (n != valued_) {
+        valued_ = {};
+        find_values(n);
+        valued_ = n;
+    }
+    const auto* at = std::find(svg_properties.begin(), svg_properties.end(), property);
+    return values_[static_cast<std::size_t>(at - svg_properties.begin())];
+}
+
+void svg_style_sheet::find_values(pugi::xml_node n) const
+{
+    // The greatest counts, of equals the last: valid, important, own style, specificity.
+    using weight = std::tuple<bool, bool, bool, std::size_t, std::size_t>;
+    std::array<weight, svg_properties.size()> heaviest{};
     const auto take = [&](const declaration& d, bool own, std::size_t rank, std::size_t order) {
-        const weight w{d.important, own, rank + 1, order};
-        if (svg_properties[d.property] != property || w < heaviest)
+        std::string value = tidy(d.value);
+        const weight w{may_be_valid(svg_properties[d.property], value), d.important, own, rank, order};
+        if (w < heaviest[d.property])
             return;
-        heaviest = w;
-        best = d.value;
+        heaviest[d.property] = w;
+        values_[d.property] = std::move(value);
     };
     const auto try_all = [&](const std::string& key) {
         const auto found = by_key_.find(key);
@@ -258,9 +356,14 @@ std::string_view svg_style_sheet::value(pugi::xml_node n, std::string_view prope
                 throw value_fault{0, "its style sheet takes too long", "simplify the drawing"};
             if (const selector& s = selectors_[i]; fits(s, n))
                 for (std::size_t d = s.first; d < s.first + s.count; ++d)
-                    take(declarations_[d], false, s.rank, i);
+                    take(declarations_[d], false, s.rank + 1, i);
         }
     };
+    values_ = {};
+    for (std::size_t i = 0; i < svg_attributes; ++i)
+        if (const std::string text = without_comments(n.attribute(svg_properties[i].data()).value());
+            !without_blanks(text).empty())
+            take({i, text}, false, 0, 0);
     if (!selectors_.empty()) {
         try_all("");
         try_all(std::string(svg_tag(n)));
@@ -268,9 +371,9 @@ std::string_view svg_style_sheet::value(pugi::xml_node n, std::string_view prope
             try_all(fmt::format("#{}", id));
         for_each_class(n, [&](std::string_view c) { try_all(fmt::format(".{}", c)); });
     }
-    for (const declaration& d : parse_declarations(n.attribute("style").value()))
+    const std::string style = without_comments(expand(n.attribute("style").value()));
+    for (const declaration& d : parse_declarations(style))
         take(d, true, 0, 0);
-    return best;
 }
 
 } // namespace tactor::detail

@@ -5,6 +5,7 @@
 #include <array>
 #include <cstddef>
 #include <deque>
+#include <span>
 #include <string>
 #include <string_view>
 #include <unordered_map>
@@ -14,10 +15,23 @@
 
 namespace tactor::detail {
 
-/// Properties that decide what plays, where and how strongly, or that would if they were followed.
-inline constexpr std::array<std::string_view, 10> svg_properties{
-    "display",   "visibility",       "opacity",       "stroke-width", "stroke-opacity",
-    "transform", "transform-origin", "transform-box", "clip-path",    "mask"};
+/// Properties that decide what plays, where and how strongly, or that would if this reader followed them.
+inline constexpr std::array<std::string_view, 32> svg_properties{
+    // Followed:
+    "fill", "stroke", "display", "visibility", "opacity", "stroke-width", "stroke-opacity", "transform",
+    "transform-origin", "transform-box",
+    // Not followed:
+    "clip-path", "mask", "filter",
+    // Not followed in styles and rules; attributes of these names are geometry, or mean nothing:
+    "translate", "rotate", "scale", "zoom", "offset", "offset-path", "animation", "animation-name",
+    "content-visibility", "width", "height", "x", "y", "cx", "cy", "r", "rx", "ry", "d"};
+inline constexpr std::size_t svg_paints = 2;      ///< of these, properties that decide only what is seen
+inline constexpr std::size_t svg_attributes = 13; ///< of these, presentation attributes
+/// Properties that this reader follows for no element, but width and height for the outermost svg.
+inline constexpr std::span unfollowed_svg_properties(svg_properties.data() + 10, svg_properties.size() - 10);
+
+/// Returns true for the keywords that display or visibility may be, in small letters.
+bool is_svg_keyword(std::string_view property, std::string_view value);
 
 /// The rules of all <style> elements of a document, whose text must live as long.
 class svg_style_sheet {
@@ -30,10 +44,17 @@ public:
 
     void add(pugi::xml_node style);
 
+    /// Adds the entities of a document type declaration. Illustrator keeps styles in them.
+    void add_entities(std::string_view doctype);
+
+    /// Notes a style sheet in another file.
+    void add_other_file(pugi::xml_node n) { skip(n, "xml-stylesheet"); }
+
     /// Returns the value of a property of svg_properties for an element: of its attribute, the sheet's rules
-    /// and its style, the one that counts by CSS; without blanks and !important, empty for none. \throws
-    /// value_fault for a sheet that matches without end.
-    std::string_view value(pugi::xml_node n, std::string_view property) const;
+    /// and its style, the one that counts by CSS; in small letters, without blanks, comments and !important,
+    /// empty for none. A value that no browser takes counts only where there is no other. Valid until a value
+    /// of another element is asked for. \throws value_fault for a sheet that matches without end.
+    const std::string& value(pugi::xml_node n, std::string_view property) const;
 
     /// Returns the rules that are not followed, each once.
     const std::vector<skipped>& not_followed() const noexcept { return skipped_; }
@@ -60,14 +81,19 @@ private:
     static bool parse_selector(std::string_view text, selector& into);
     static std::vector<declaration> parse_declarations(std::string_view body);
     static bool fits(const selector& s, pugi::xml_node n);
+    std::string expand(std::string_view style) const;
+    void find_values(pugi::xml_node n) const;
 
     std::deque<std::string> texts_; ///< without comments
     std::vector<declaration> declarations_;
     std::vector<selector> selectors_; ///< in the order of the document
     /// Selectors by an id, class or tag that they need, with its sign: "#a", ".b", "c", or "" for none.
     std::unordered_map<std::string, std::vector<std::size_t>> by_key_;
+    std::unordered_map<std::string_view, std::string_view> entities_;
     std::vector<skipped> skipped_;
     mutable std::size_t tried_ = 0;
+    mutable pugi::xml_node valued_; ///< the element that has values_
+    mutable std::array<std::string, svg_properties.size()> values_;
 };
 
 } // namespace tactor::detail

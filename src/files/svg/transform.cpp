@@ -78,7 +78,7 @@ double with_unit(std::string_view name, double value, std::string_view unit, std
 {
     if (name.starts_with("translate"))
         return in_user_units(value, unit, v,
-                             name == "translateY" || index == 1 ? svg_extent::height : svg_extent::width);
+                             name == "translatey" || index == 1 ? svg_extent::height : svg_extent::width);
     if (name.starts_with("rotate") || name.starts_with("skew"))
         return in_degrees(value, unit);
     if (name.starts_with("scale") && unit == "%")
@@ -93,13 +93,13 @@ affine one(std::string_view name, const std::vector<double>& v, std::size_t offs
         return n == 6 ? affine{v[0], v[1], v[2], v[3], v[4], v[5]} : (wrong_count(name, n, offset), affine{});
     if (name == "translate" && (n == 1 || n == 2))
         return translation(v[0], n == 2 ? v[1] : 0.0);
-    if (name == "translateX" && n == 1)
+    if (name == "translatex" && n == 1)
         return translation(v[0], 0.0);
-    if (name == "translateY" && n == 1)
+    if (name == "translatey" && n == 1)
         return translation(0.0, v[0]);
-    if (name == "scaleX" && n == 1)
+    if (name == "scalex" && n == 1)
         return {v[0], 0.0, 0.0, 1.0, 0.0, 0.0};
-    if (name == "scaleY" && n == 1)
+    if (name == "scaley" && n == 1)
         return {1.0, 0.0, 0.0, v[0], 0.0, 0.0};
     if (name == "skew" && (n == 1 || n == 2))
         return {1.0, n == 2 ? tangent(v[1]) : 0.0, tangent(v[0]), 1.0, 0.0, 0.0};
@@ -109,12 +109,12 @@ affine one(std::string_view name, const std::vector<double>& v, std::size_t offs
         return rotation(v[0]);
     if (name == "rotate" && n == 3)
         return translation(v[1], v[2]) * rotation(v[0]) * translation(-v[1], -v[2]);
-    if (name == "skewX" && n == 1)
+    if (name == "skewx" && n == 1)
         return {1.0, 0.0, tangent(v[0]), 1.0, 0.0, 0.0};
-    if (name == "skewY" && n == 1)
+    if (name == "skewy" && n == 1)
         return {1.0, tangent(v[0]), 0.0, 1.0, 0.0, 0.0};
-    for (const std::string_view known : {"translate", "translateX", "translateY", "scale", "scaleX", "scaleY",
-                                         "rotate", "skew", "skewX", "skewY"})
+    for (const std::string_view known : {"translate", "translatex", "translatey", "scale", "scalex", "scaley",
+                                         "rotate", "skew", "skewx", "skewy"})
         if (name == known)
             wrong_count(name, n, offset);
     throw value_fault{offset, fmt::format("{} is not a transform", quoted(name)),

@@ -9,6 +9,7 @@
 
 #include "core/path/number.hpp"
 #include "core/suggest.hpp"
+#include "core/words.hpp"
 
 namespace tactor::detail {
 namespace {
@@ -103,11 +104,11 @@ svg_length parse_svg_length(std::string_view text)
     constexpr std::array units{known_unit{"mm", 1.0},        known_unit{"cm", 10.0},
                                known_unit{"in", 25.4},       known_unit{"pt", 25.4 / 72.0},
                                known_unit{"pc", 25.4 / 6.0}, known_unit{"px", mm_per_px},
-                               known_unit{"Q", 0.25}};
+                               known_unit{"q", 0.25}};
     std::size_t at = 0;
     skip_blanks(text, at);
     const double v = number_at(text, at);
-    const std::string_view unit = word_at(text, at);
+    const std::string unit = in_small_letters(std::string(word_at(text, at)));
     if (unit.empty())
         return {v, svg_length::unit::none};
     if (unit == "%")
@@ -149,6 +150,8 @@ svg_view_box parse_svg_view_box(std::string_view text)
 svg_aspect parse_svg_aspect(std::string_view text)
 {
     std::string_view rest = word_at(text, 0);
+    if (constexpr std::string_view for_images = "defer "; rest.starts_with(for_images))
+        rest = word_at(rest, for_images.size());
     const std::size_t gap = std::min(rest.find_first_of(" \t\r\n"), rest.size());
     const std::string_view align = rest.substr(0, gap);
     const std::string_view how = word_at(rest, gap);

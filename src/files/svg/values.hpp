@@ -55,9 +55,10 @@ std::vector<double> svg_numbers(std::string_view text, const svg_unit& unit = {}
 svg_length parse_svg_length(std::string_view text);
 svg_view_box parse_svg_view_box(std::string_view text);
 svg_aspect parse_svg_aspect(std::string_view text);
-/// Reads a two-dimensional transform in SVG's or CSS's syntax. A px is a user unit, as in browsers.
+/// Reads a two-dimensional transform in SVG's or CSS's syntax, in small letters. A px is a user unit, as in
+/// browsers.
 affine parse_svg_transform(std::string_view text, const svg_viewport& v);
-/// Reads transform-origin, in user units.
+/// Reads transform-origin in small letters; returns user units.
 point parse_svg_origin(std::string_view text, const svg_viewport& v);
 
 /// Maps a view box into a frame.

@@ -149,7 +149,9 @@ std::vector<T> read_all(const toml_table& root, std::string_view key, const Read
 
 experiment_definition definition_in(std::string_view toml, const std::string& name, const extent& e)
 {
-    const toml::table document = detail::parse_toml(toml, name);
+    const toml::table document = detail::parse_toml(
+        toml, name,
+        {"tactor-experiment(5)", "the definition of an experiment is TOML, see tactor-experiment(5)"});
     const toml_table root(document, "the file", name);
     experiment_definition d;
     d.text = toml;
