@@ -2,6 +2,7 @@
 // [array] and [[tactor]].
 #include <algorithm>
 #include <optional>
+#include <ranges>
 #include <string_view>
 #include <utility>
 #include <vector>
@@ -12,6 +13,7 @@
 #include "core/label.hpp"
 #include "core/words.hpp"
 #include "files/setup_parts.hpp"
+#include "files/stroke/parts.hpp"
 #include "files/text_file.hpp"
 
 namespace tactor::detail {
@@ -199,6 +201,24 @@ array read_base(const toml_table& table, std::string_view base, const setup_sour
     return a;
 }
 
+// Mirrors and turns the array about the middle of its tactors. Each stays the tactor and the channel that it
+// is.
+void turn_array(const toml_table& table, array& a)
+{
+    if (!table.has("mirror") && !table.has("rotate_deg"))
+        return;
+    affine m = read_turn(table);
+    const auto [left, right] = std::ranges::minmax(
+        a.tactors | std::views::transform([](const tactor_spec& t) { return t.position.x_mm; }));
+    const auto [top, bottom] = std::ranges::minmax(
+        a.tactors | std::views::transform([](const tactor_spec& t) { return t.position.y_mm; }));
+    const point middle{(left + right) / 2.0, (top + bottom) / 2.0};
+    m.e = middle.x_mm;
+    m.f = middle.y_mm;
+    for (tactor_spec& t : a.tactors)
+        t.position = m({t.position.x_mm - middle.x_mm, t.position.y_mm - middle.y_mm});
+}
+
 } // namespace
 
 void read_array(const toml_table& root, const setup_source& source, located_setup& out)
@@ -210,7 +230,7 @@ void read_array(const toml_table& root, const setup_source& source, located_setu
         root.table("array", "[array]", "[array]").value_or(toml_table(none, "[array]", source.name));
     if (table.has("tactor"))
         table.fail("tactor", "tactors inside [array]", "write [[tactor]], which stands beside [array]");
-    table.only({"name", "site", "up", "grid", "preset", "file", "actuator"});
+    table.only({"name", "site", "up", "grid", "preset", "file", "actuator", "mirror", "rotate_deg"});
     const std::vector<toml_table> entries = root.tables("tactor");
 
     std::string_view base;
@@ -226,6 +246,7 @@ void read_array(const toml_table& root, const setup_source& source, located_setu
         adjust_tactors(entries, base, a);
     }
 
+    turn_array(table, a);
     if (const auto name = table.text("name"))
         a.name = *name;
     else if (a.name.empty())

@@ -48,6 +48,27 @@ TEST_CASE("a grid has one pitch, or two")
     CHECK(c.tactors[3].position == point{20.0, 40.0});
 }
 
+TEST_CASE("an array is mirrored and turned about its middle")
+{
+    const array upside_down =
+        parse_array("[array]\ngrid = { rows = 2, columns = 3, pitch_mm = 20 }\nrotate_deg = 180\n");
+    CHECK(upside_down.tactors[0].position == point{40.0, 20.0});
+    CHECK(upside_down.tactors[0].channel == 0);
+    CHECK(upside_down.tactors[5].position == point{0.0, 0.0});
+
+    const array left = parse_array("[array]\npreset = \"palm-3x3\"\nmirror = \"x\"\n");
+    CHECK(left.tactors[0].position == point{40.0, 0.0});
+    CHECK(left.tactors[6].position == point{40.0, 40.0});
+
+    // Mirrored first, then turned clockwise on a screen.
+    const array both = parse_array("[array]\npreset = \"palm-3x3\"\nmirror = \"x\"\nrotate_deg = 90\n");
+    CHECK(both.tactors[0].position == point{40.0, 40.0});
+    CHECK(both.tactors[2].position == point{40.0, 0.0});
+
+    CHECK(complaint("[array]\npreset = \"palm-3x3\"\nmirror = \"z\"\n").find("palm.toml:3") !=
+          std::string::npos);
+}
+
 TEST_CASE("a list of tactors has every key, and defaults")
 {
     const array a = parse_array(R"(

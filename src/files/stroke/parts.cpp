@@ -171,6 +171,15 @@ stroke levelled(const toml_table& t, stroke s)
     return s;
 }
 
+affine read_turn(const toml_table& t, double scale)
+{
+    const turned turn = make_turn(t.number("rotate_deg", {-most_degrees, most_degrees}).value_or(0.0));
+    const std::string mirror = t.choice("mirror", {"x", "y"}).value_or("");
+    const double x = mirror == "x" ? -scale : scale;
+    const double y = mirror == "y" ? -scale : scale;
+    return {x * turn.cosine, x * turn.sine, -y * turn.sine, y * turn.cosine, 0.0, 0.0};
+}
+
 stroke placed(const toml_table& t, stroke s)
 {
     std::string_view first;
@@ -185,14 +194,11 @@ stroke placed(const toml_table& t, stroke s)
         return s;
     }
     const double scale = t.number("scale", {0.0, largest_scale, true}).value_or(1.0);
-    const turned turn = make_turn(t.number("rotate_deg", {-most_degrees, most_degrees}).value_or(0.0));
-    const std::string mirror = t.choice("mirror", {"x", "y"}).value_or("");
+    affine m = read_turn(t, scale);
     const point by = t.place("translate_mm").value_or(point{});
     const point from = about.value_or(point{});
-    const double x = mirror == "x" ? -scale : scale;
-    const double y = mirror == "y" ? -scale : scale;
-    const affine m{x * turn.cosine, x * turn.sine,       -y * turn.sine,
-                   y * turn.cosine, from.x_mm + by.x_mm, from.y_mm + by.y_mm};
+    m.e = from.x_mm + by.x_mm;
+    m.f = from.y_mm + by.y_mm;
     s.motion = t.at_key(first, [&] {
         const trajectory there = moved(s.motion, from, m, {}, [&] { return std::string(first); });
         return s.speed_mm_s && there.length_mm() > 0.0 ? there.with_speed(*s.speed_mm_s) : there;

@@ -15,6 +15,7 @@
 
 #include <tactor/stroke.hpp>
 
+#include "core/path/shape.hpp"
 #include "files/toml_reader.hpp"
 
 namespace tactor::detail {
@@ -111,6 +112,10 @@ std::optional<stroke_fit> read_fit(const toml_table& t);
 
 /// Returns the stroke as much stronger or weaker as level_db says.
 stroke levelled(const toml_table& t, stroke s);
+
+/// Reads mirror and rotate_deg. Returns the map that scales by `scale`, mirrors and then turns about the
+/// origin.
+affine read_turn(const toml_table& t, double scale = 1.0);
 
 /// Returns the stroke mirrored, scaled, turned and moved as the keys mirror, scale, rotate_deg, translate_mm
 /// and about_mm say; the very same without any. A stroke that says a speed keeps it.
