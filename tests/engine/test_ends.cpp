@@ -199,6 +199,26 @@ TEST_CASE("stop cuts a long buffer after 0.4 s")
     }
 }
 
+TEST_CASE("after the cut nothing is mixed while the amplifier goes off, however many strokes could not fade")
+{
+    rig r({.period = 4800, .periods = 5});
+    r.link.amplifier.off = false;
+    for (int i = 0; i < 300; ++i) // more than can fade at once
+        r.submit(tone(10.0));
+    r.play(rate);
+    r.stop();
+    while (r.status().stage != engine::stream_stage::closing)
+        r.step(); // the DAC stands still: no fade begins
+    const std::uint64_t from = r.dac.captured_frames();
+    REQUIRE(r.first_sound(from - 4800));
+    r.play(rate / 2);
+    CHECK(r.dac.captured_frames() > from);
+    CHECK_FALSE(r.first_sound(from));
+    r.link.amplifier.off = true;
+    r.step();
+    CHECK(r.loop.over());
+}
+
 TEST_CASE("a stopped loop stays stopped")
 {
     rig r;
