@@ -80,7 +80,7 @@ private:
     struct outcome;
 
     void open(outcome& o, double proof_s);
-    static void close(outcome& o);
+    void close(outcome& o);
     void settle();
 
     rt::event_fd news_;
