@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include <boost/asio/post.hpp>
-#include <unistd.h>
+#include <fcntl.h>
 
 #include <tactor/error.hpp>
 
@@ -33,7 +33,7 @@ stream::stream(boost::asio::io_context& io, stream_options o)
       peaks_(std::make_shared<level_peaks>(std::max(o.wished.channels, o.tactors.channels()))),
       told_(state(), reason()),
       again_(io),
-      news_(io, ::dup(descriptor()))
+      news_(io, ::fcntl(descriptor(), F_DUPFD_CLOEXEC, 0))
 {
     await_news();
 }
@@ -125,7 +125,8 @@ void stream::busy(bool is)
 
 bool stream::progresses()
 {
-    return current() == nullptr ||
+    // A device that is suspended takes no periods until the system wakes.
+    return current() == nullptr || !current()->position().running ||
            current()->stats().periods != std::exchange(seen_periods_, current()->stats().periods);
 }
 

@@ -133,6 +133,17 @@ TEST_CASE("an idle stream is closed, and opened by the next stroke")
           "finished");
 }
 
+TEST_CASE("a suspended device is no reason for the watchdog to end the service")
+{
+    service_rig rig;
+    fake_dac& card = rig.plug();
+    rig.start();
+    card.suspend();
+    rig.until([&] { return !rig.all->output().current()->position().running; });
+    CHECK(rig.all->output().progresses());
+    CHECK(rig.all->output().progresses());
+}
+
 TEST_CASE("of an idle stream there is nothing to fire, which is no error")
 {
     service_rig rig([](server::service_options&, server::stream_options& s) { s.times.idle_stop_s = 0.001; });
