@@ -160,10 +160,8 @@ void service::send_to_listeners(const stroke_record& r, const reply_json& messag
 
 void service::note_busy()
 {
-    const bool coming = jobs_ != 0 || std::any_of(clients_.begin(), clients_.end(),
-                                                  [](const auto& c) { return c.second->coming != 0; });
-    stream_.busy(coming || std::any_of(strokes_.begin(), strokes_.end(),
-                                       [](const auto& r) { return r.second->state != "ended"; }));
+    stream_.busy(std::any_of(strokes_.begin(), strokes_.end(),
+                             [](const auto& r) { return r.second->state != "ended"; }));
 }
 
 } // namespace tactor::server

@@ -123,7 +123,6 @@ void service::drive(client& c, const json& params, const answer& to)
         no_stream(stream_.reason());
     const std::vector<score> scores{p->make_score(options_.plans.tactors, 0)};
     ++c.coming;
-    note_busy();
     once_ready(c.number, to, "stream", [this, number = c.number, to, p, scores, start, asked = mark(c)] {
         const auto numbers = submit(number, start, *p, scores, stop_reason_since(asked, number));
         to.result({{"stroke", numbers.front()}}, numbers);

@@ -72,6 +72,8 @@ void stream::await_news()
 void stream::go_on()
 {
     again_.cancel();
+    // The end of the first that was waited for must not close the stream before the next begins.
+    set_busy(busy_ || !waiting_.empty());
     if (const auto again = step()) {
         again_.expires_at(*again);
         again_.async_wait([this](const boost::system::error_code& e) {
@@ -101,9 +103,14 @@ void stream::tell()
         told_ = std::move(now);
         changed_(state(), reason());
     }
-    if (is_ready())
-        for (const auto& ready : std::exchange(waiting_, {}))
+    if (is_ready() && !waiting_.empty()) {
+        while (!waiting_.empty()) {
+            const std::function<void()> ready = std::move(waiting_.front());
+            waiting_.pop_front();
             ready();
+        }
+        return go_on();
+    }
     if (closed_ && is_over())
         boost::asio::post(io_, std::exchange(closed_, {}));
 }
@@ -119,7 +126,7 @@ void stream::when_ready(std::function<void()> ready)
 
 void stream::busy(bool is)
 {
-    set_busy(is);
+    busy_ = is;
     go_on();
 }
 

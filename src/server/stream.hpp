@@ -3,12 +3,12 @@
 /// The service's stream: a worker opens and closes the device, one timer does the rest.
 #pragma once
 
+#include <deque>
 #include <exception>
 #include <functional>
 #include <memory>
 #include <string>
 #include <utility>
-#include <vector>
 
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/posix/stream_descriptor.hpp>
@@ -61,7 +61,8 @@ private:
     std::function<void(std::exception_ptr)> refused_; ///< empty once the device was tried
     std::shared_ptr<level_peaks> peaks_;
     std::pair<stream_state, std::string> told_;
-    std::vector<std::function<void()>> waiting_;
+    std::deque<std::function<void()>> waiting_;
+    bool busy_ = false;
     std::function<void()> closed_;
     std::uint64_t seen_periods_ = 0;
     boost::asio::steady_timer again_;

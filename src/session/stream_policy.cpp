@@ -126,8 +126,7 @@ void stream_policy::mute(bool is)
 
 void stream_policy::set_busy(bool is)
 {
-    busy_ = is;
-    if (!proves_ && phase_ == phase::open)
+    if (std::exchange(busy_, is) != is && !proves_ && phase_ == phase::open)
         due_.reset(); // of the idle stop
 }
 

@@ -133,6 +133,20 @@ TEST_CASE("an idle stream is closed, and opened by the next stroke")
           "finished");
 }
 
+TEST_CASE("requests that want no stream do not keep it from being idle")
+{
+    service_rig rig([](server::service_options&, server::stream_options& s) { s.times.idle_stop_s = 0.02; });
+    rig.plug();
+    rig.start();
+    const auto c = rig.client();
+    rig.until([&] {
+        rig.ok(c, "plan", brief);
+        rig.ok(c, "status");
+        rig.all->disconnect(rig.client().number);
+        return rig.all->output().state() == server::stream_state::idle;
+    });
+}
+
 TEST_CASE("a suspended device is no reason for the watchdog to end the service")
 {
     service_rig rig;
@@ -277,6 +291,7 @@ TEST_CASE("stop reaches what waits for an idle stream to start")
         CHECK(rig.code(c, "to", {{"stroke", n}, {"x_mm", 1}, {"y_mm", 1}}) == -32002);
     }
     // A request after the stop begins.
+    rig.sleep_and_plug();
     CHECK(rig.find_end(c, rig.ok(c, "play", brief)["stroke"])["state"] == "finished");
     CHECK(rig.ok(c, "status")["strokes"].empty());
 }
