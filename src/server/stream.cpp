@@ -48,13 +48,38 @@ stream::~stream()
 session::stream_parts stream::make_parts(stream& s, session::stream_parts p)
 {
     p.open = [&s, open = std::move(p.open)] { return metered(open(), s.peaks_); };
-    p.begun = [&s, begun = std::move(p.begun)](auto... all) {
-        boost::asio::post(s.io_, [=] { begun(all...); });
-    };
-    p.ended = [&s, ended = std::move(p.ended)](auto... all) {
-        boost::asio::post(s.io_, [=] { ended(all...); });
-    };
+    p.begun = [&s, begun = std::move(p.begun)](auto... all) { s.hand_over([=] { begun(all...); }); };
+    p.ended = [&s, ended = std::move(p.ended)](auto... all) { s.hand_over([=] { ended(all...); }); };
     return p;
+}
+
+void stream::hand_over(std::function<void()> report)
+{
+    const std::lock_guard lock(reports_mutex_);
+    reports_.push_back(std::move(report));
+    if (reports_.size() == 1)
+        boost::asio::post(io_, [this] { pass_report(); });
+}
+
+// Passes one report on, so that clients have their turn before the next: a stop ends thousands of strokes.
+void stream::pass_report()
+{
+    std::unique_lock lock(reports_mutex_);
+    const std::function<void()>& report = reports_.front(); // stays in its place while others are added
+    lock.unlock();
+    report();
+    lock.lock();
+    reports_.pop_front();
+    if (!reports_.empty())
+        return boost::asio::post(io_, [this] { pass_report(); });
+    lock.unlock();
+    tell();
+}
+
+bool stream::all_passed()
+{
+    const std::lock_guard lock(reports_mutex_);
+    return reports_.empty();
 }
 
 void stream::await_news()
@@ -111,7 +136,7 @@ void stream::tell()
         }
         return go_on();
     }
-    if (closed_ && is_over())
+    if (closed_ && is_over() && all_passed())
         boost::asio::post(io_, std::exchange(closed_, {}));
 }
 
@@ -121,6 +146,12 @@ void stream::when_ready(std::function<void()> ready)
         return ready();
     waiting_.push_back(std::move(ready));
     wake();
+    go_on();
+}
+
+void stream::cancel_all()
+{
+    device_stream::cancel_all();
     go_on();
 }
 

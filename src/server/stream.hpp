@@ -7,6 +7,7 @@
 #include <exception>
 #include <functional>
 #include <memory>
+#include <mutex>
 #include <string>
 #include <utility>
 
@@ -46,11 +47,16 @@ public:
     bool progresses();
     /// Notes that strokes go on, or that there are none: the stream stops after a time without.
     void busy(bool is);
+    /// Cancels all strokes, first those that sound.
+    void cancel_all();
     /// Fades out and closes; calls `done` when all strokes were reported.
     void close(std::function<void()> done);
 
 private:
     static session::stream_parts make_parts(stream& s, session::stream_parts p);
+    void hand_over(std::function<void()> report);
+    void pass_report();
+    bool all_passed();
     void await_news();
     void go_on();
     void tell();
@@ -64,6 +70,8 @@ private:
     std::deque<std::function<void()>> waiting_;
     bool busy_ = false;
     std::function<void()> closed_;
+    std::mutex reports_mutex_;
+    std::deque<std::function<void()>> reports_; ///< beginnings and ends of strokes, from the player's threads
     std::uint64_t seen_periods_ = 0;
     boost::asio::steady_timer again_;
     boost::asio::posix::stream_descriptor news_;

@@ -88,6 +88,12 @@ void device_stream::finish() noexcept
     }
 }
 
+void device_stream::cancel_all()
+{
+    if (player_ != nullptr && !player_->ended() && !player_->cancel_all())
+        stopped();
+}
+
 std::optional<device_stream::time> device_stream::step(time now)
 {
     if (outcome_ != nullptr && outcome_->done)

@@ -107,6 +107,12 @@ void stream_policy::ended(std::string why)
     set(stream_state::lost, std::move(why));
 }
 
+void stream_policy::stopped()
+{
+    if (phase_ == phase::open && !std::exchange(broken_, true))
+        set(stream_state::idle, "everything was stopped; the next stroke starts it");
+}
+
 void stream_policy::closed(bool left_on)
 {
     phase_ = phase::shut;
