@@ -236,6 +236,10 @@ public:
     /// Fades a stroke out. A stroke that waits (for its time, a trigger, the amplifier, a point) ends at
     /// once, even while the system sleeps. Returns false if the stroke has ended or is not known.
     bool cancel(stroke_id id);
+    /// Cancels all strokes at once. Returns true if the stream goes on. In a device's buffer of more than 0.4
+    /// s the fades would come too late: there the stream ends as by stop(), and this call returns false
+    /// without waiting. It also returns false after stop() and when the stream has ended.
+    bool cancel_all();
 
     /// Blocks until the stroke has ended, at most for timeout_s if it is given, and returns how it ended. In
     /// a handler it does not block, because reports come from the handler's own thread. wait() returns each

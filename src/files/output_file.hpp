@@ -56,6 +56,9 @@ public:
     /// Brings the file to the disk and gives it its name. \throws error (runtime): a write failed before,
     /// this did, or it was given up.
     void commit();
+    /// Gives the file its name without waiting for the disk: for what is worth nothing after a restart of the
+    /// system. \throws error as commit().
+    void publish();
     /// Refuses an errno. \throws error (runtime) with the file's name.
     [[noreturn]] void fail(int code) const;
 

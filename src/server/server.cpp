@@ -17,10 +17,10 @@
 #include <boost/asio/posix/stream_descriptor.hpp>
 #include <boost/asio/socket_base.hpp>
 #include <boost/asio/steady_timer.hpp>
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <sys/resource.h>
 #include <sys/socket.h>
-#include <unistd.h>
 
 #include <tactor/error.hpp>
 
@@ -309,7 +309,7 @@ void serve(const endpoints& at, service_options o, stream_options s, network_opt
     // sets the priority of this thread only.
     constexpr int before_others = -10;
     ::setpriority(PRIO_PROCESS, 0, before_others);
-    asio::posix::stream_descriptor signalled(io, ::dup(signals));
+    asio::posix::stream_descriptor signalled(io, ::fcntl(signals, F_DUPFD_CLOEXEC, 0));
     signalled.async_wait(asio::posix::descriptor_base::wait_read, [&](const boost::system::error_code& e) {
         if (!e)
             all.stop();

@@ -325,7 +325,6 @@ void service::disconnect(client_number number)
     keep_jobs(number);
     gather_levels();
     count_touch_listeners();
-    note_busy();
 }
 
 void service::tell_stream(stream_state s, const std::string& reason)

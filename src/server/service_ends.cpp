@@ -47,6 +47,10 @@ void service::start_followers(stroke_record& first, std::int64_t at_ns)
         if (found == strokes_.end() || !found->second->submits_later)
             continue;
         stroke_record& r = *found->second;
+        if (r.ended_by != nullptr) { // stopped since the first began
+            finish(r, {.state = state_kind::cancelled});
+            continue;
+        }
         const score later = *std::exchange(r.submits_later, {});
         try {
             if (out == nullptr)
@@ -73,15 +77,6 @@ void service::ended(std::uint64_t player, const stroke_report& report)
         return;
     stroke_record& r = *strokes_.at(found->second);
     by_player_.erase(found);
-    // A stroke that did not begin takes its followers with it.
-    for (const auto& [number, after_s] : std::exchange(r.followers, {}))
-        if (const auto f = strokes_.find(number); f != strokes_.end() && f->second->submits_later) {
-            stroke_report same = report;
-            same.frames = 0;
-            same.started_ns.reset();
-            f->second->ended_by = r.ended_by;
-            finish(*f->second, same);
-        }
     if (report.started_ns && r.state != "started" && report.frames != 0) {
         r.started_ns = report.started_ns;
         tell_stroke(r, "started", {});
@@ -92,6 +87,15 @@ void service::ended(std::uint64_t player, const stroke_report& report)
 
 void service::finish(stroke_record& r, const stroke_report& how)
 {
+    // A stroke that did not begin takes its followers with it.
+    for (const auto& [number, after_s] : std::exchange(r.followers, {}))
+        if (const auto f = strokes_.find(number); f != strokes_.end() && f->second->submits_later) {
+            stroke_report same = how;
+            same.frames = 0;
+            same.started_ns.reset();
+            f->second->ended_by = r.ended_by;
+            finish(*f->second, same);
+        }
     if (how.started_ns)
         r.started_ns = how.started_ns;
     r.submits_later.reset();
@@ -158,12 +162,11 @@ void service::send_to_listeners(const stroke_record& r, const reply_json& messag
             send(*c, message);
 }
 
+// Counts strokes alone: a request that waits for the stream wakes it.
 void service::note_busy()
 {
-    const bool coming = jobs_ != 0 || std::any_of(clients_.begin(), clients_.end(),
-                                                  [](const auto& c) { return c.second->coming != 0; });
-    stream_.busy(coming || std::any_of(strokes_.begin(), strokes_.end(),
-                                       [](const auto& r) { return r.second->state != "ended"; }));
+    stream_.busy(std::any_of(strokes_.begin(), strokes_.end(),
+                             [](const auto& r) { return r.second->state != "ended"; }));
 }
 
 } // namespace tactor::server

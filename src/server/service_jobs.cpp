@@ -97,7 +97,6 @@ void service::admit_job(client& c, plan_job j)
     planning_bytes_ += j.bytes;
     ++jobs_;
     ++c.coming;
-    note_busy();
     queue_job(c.number, std::move(j));
 }
 
@@ -328,7 +327,6 @@ void service::job_done(planner_lane& lane, const plan_job& job, std::shared_ptr<
             submit_all(job, *p, scores);
         });
     }
-    note_busy();
     next_job(lane);
 }
 

@@ -45,7 +45,6 @@ void service::begin(client& c, const json& params, const answer& to)
         no_stream(stream_.reason());
     ++c.coming;
     ++c.live;
-    note_busy();
     once_ready(c.number, to, "options", [this, number = c.number, o, to, asked = mark(c)] {
         client* then = find(number);
         if (then == nullptr)

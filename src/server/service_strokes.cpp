@@ -87,7 +87,7 @@ std::vector<std::uint32_t> service::submit(client_number owner, const json& star
             records[first]->followers.emplace_back(records[i]->number, starts[i] - starts[first]);
     const auto end = out->ended();
     for (std::size_t i = 0; i < records.size(); ++i)
-        if (records[i]->id == stroke_id{} && !records[i]->submits_later)
+        if (records[i]->id == stroke_id{} && !records[i]->submits_later && records[i]->state != "ended")
             finish(*records[i], ended_by != nullptr
                                     ? stroke_report{.state = state_kind::cancelled}
                                     : stroke_report{.state = state_kind::interrupted,
@@ -123,7 +123,6 @@ void service::drive(client& c, const json& params, const answer& to)
         no_stream(stream_.reason());
     const std::vector<score> scores{p->make_score(options_.plans.tactors, 0)};
     ++c.coming;
-    note_busy();
     once_ready(c.number, to, "stream", [this, number = c.number, to, p, scores, start, asked = mark(c)] {
         const auto numbers = submit(number, start, *p, scores, stop_reason_since(asked, number));
         to.result({{"stroke", numbers.front()}}, numbers);
@@ -194,12 +193,11 @@ void service::stop_all(client_number by)
 {
     ++stops_;
     stopped_by_ = by;
-    std::vector<std::uint32_t> all;
+    // Followers in an armed file end with the stroke that they wait for.
     for (const auto& [number, r] : strokes_)
-        all.push_back(number);
-    for (const std::uint32_t n : all)
-        if (const auto found = strokes_.find(n); found != strokes_.end())
-            cancel(*found->second, stop_reason(found->second->owner));
+        if (r->ended_by == nullptr)
+            r->ended_by = stop_reason(r->owner);
+    stream_.cancel_all();
     if (stopped_)
         stopped_();
     tell_stop(by);

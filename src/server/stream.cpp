@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include <boost/asio/post.hpp>
-#include <unistd.h>
+#include <fcntl.h>
 
 #include <tactor/error.hpp>
 
@@ -33,7 +33,7 @@ stream::stream(boost::asio::io_context& io, stream_options o)
       peaks_(std::make_shared<level_peaks>(std::max(o.wished.channels, o.tactors.channels()))),
       told_(state(), reason()),
       again_(io),
-      news_(io, ::dup(descriptor()))
+      news_(io, ::fcntl(descriptor(), F_DUPFD_CLOEXEC, 0))
 {
     await_news();
 }
@@ -48,13 +48,38 @@ stream::~stream()
 session::stream_parts stream::make_parts(stream& s, session::stream_parts p)
 {
     p.open = [&s, open = std::move(p.open)] { return metered(open(), s.peaks_); };
-    p.begun = [&s, begun = std::move(p.begun)](auto... all) {
-        boost::asio::post(s.io_, [=] { begun(all...); });
-    };
-    p.ended = [&s, ended = std::move(p.ended)](auto... all) {
-        boost::asio::post(s.io_, [=] { ended(all...); });
-    };
+    p.begun = [&s, begun = std::move(p.begun)](auto... all) { s.hand_over([=] { begun(all...); }); };
+    p.ended = [&s, ended = std::move(p.ended)](auto... all) { s.hand_over([=] { ended(all...); }); };
     return p;
+}
+
+void stream::hand_over(std::function<void()> report)
+{
+    const std::lock_guard lock(reports_mutex_);
+    reports_.push_back(std::move(report));
+    if (reports_.size() == 1)
+        boost::asio::post(io_, [this] { pass_report(); });
+}
+
+// Passes one report on, so that clients have their turn before the next: a stop ends thousands of strokes.
+void stream::pass_report()
+{
+    std::unique_lock lock(reports_mutex_);
+    const std::function<void()>& report = reports_.front(); // stays in its place while others are added
+    lock.unlock();
+    report();
+    lock.lock();
+    reports_.pop_front();
+    if (!reports_.empty())
+        return boost::asio::post(io_, [this] { pass_report(); });
+    lock.unlock();
+    tell();
+}
+
+bool stream::all_passed()
+{
+    const std::lock_guard lock(reports_mutex_);
+    return reports_.empty();
 }
 
 void stream::await_news()
@@ -72,6 +97,8 @@ void stream::await_news()
 void stream::go_on()
 {
     again_.cancel();
+    // The end of the first that was waited for must not close the stream before the next begins.
+    set_busy(busy_ || !waiting_.empty());
     if (const auto again = step()) {
         again_.expires_at(*again);
         again_.async_wait([this](const boost::system::error_code& e) {
@@ -101,10 +128,15 @@ void stream::tell()
         told_ = std::move(now);
         changed_(state(), reason());
     }
-    if (is_ready())
-        for (const auto& ready : std::exchange(waiting_, {}))
+    if (is_ready() && !waiting_.empty()) {
+        while (!waiting_.empty()) {
+            const std::function<void()> ready = std::move(waiting_.front());
+            waiting_.pop_front();
             ready();
-    if (closed_ && is_over())
+        }
+        return go_on();
+    }
+    if (closed_ && is_over() && all_passed())
         boost::asio::post(io_, std::exchange(closed_, {}));
 }
 
@@ -117,15 +149,22 @@ void stream::when_ready(std::function<void()> ready)
     go_on();
 }
 
+void stream::cancel_all()
+{
+    device_stream::cancel_all();
+    go_on();
+}
+
 void stream::busy(bool is)
 {
-    set_busy(is);
+    busy_ = is;
     go_on();
 }
 
 bool stream::progresses()
 {
-    return current() == nullptr ||
+    // A device that is suspended takes no periods until the system wakes.
+    return current() == nullptr || !current()->position().running ||
            current()->stats().periods != std::exchange(seen_periods_, current()->stats().periods);
 }
 

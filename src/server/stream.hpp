@@ -3,12 +3,13 @@
 /// The service's stream: a worker opens and closes the device, one timer does the rest.
 #pragma once
 
+#include <deque>
 #include <exception>
 #include <functional>
 #include <memory>
+#include <mutex>
 #include <string>
 #include <utility>
-#include <vector>
 
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/posix/stream_descriptor.hpp>
@@ -46,11 +47,16 @@ public:
     bool progresses();
     /// Notes that strokes go on, or that there are none: the stream stops after a time without.
     void busy(bool is);
+    /// Cancels all strokes, first those that sound.
+    void cancel_all();
     /// Fades out and closes; calls `done` when all strokes were reported.
     void close(std::function<void()> done);
 
 private:
     static session::stream_parts make_parts(stream& s, session::stream_parts p);
+    void hand_over(std::function<void()> report);
+    void pass_report();
+    bool all_passed();
     void await_news();
     void go_on();
     void tell();
@@ -61,8 +67,11 @@ private:
     std::function<void(std::exception_ptr)> refused_; ///< empty once the device was tried
     std::shared_ptr<level_peaks> peaks_;
     std::pair<stream_state, std::string> told_;
-    std::vector<std::function<void()>> waiting_;
+    std::deque<std::function<void()>> waiting_;
+    bool busy_ = false;
     std::function<void()> closed_;
+    std::mutex reports_mutex_;
+    std::deque<std::function<void()>> reports_; ///< beginnings and ends of strokes, from the player's threads
     std::uint64_t seen_periods_ = 0;
     boost::asio::steady_timer again_;
     boost::asio::posix::stream_descriptor news_;

@@ -63,7 +63,6 @@ struct device_stream::outcome {
     std::exception_ptr failure = {};
     std::string why = {};
     player_stats last = {};
-    std::optional<drive_history> driven = {}; ///< none: what is kept goes on counting
     std::atomic<bool> done = false;
 };
 
@@ -87,6 +86,12 @@ void device_stream::finish() noexcept
         work_here();
     } catch (const std::exception&) { // NOLINT(bugprone-empty-catch): what is kept counts too much then
     }
+}
+
+void device_stream::cancel_all()
+{
+    if (player_ != nullptr && !player_->ended() && !player_->cancel_all())
+        stopped();
 }
 
 std::optional<device_stream::time> device_stream::step(time now)
@@ -115,8 +120,7 @@ std::function<void()> device_stream::work()
     outcome_->closes = a == act::close;
     outcome_->player = std::move(player_);
     if (outcome_->closes)
-        return [o = outcome_.get()] { close(*o); };
-    parts_.player.driven = parts_.kept.until_now();
+        return [this, o = outcome_.get()] { close(*o); };
     return [this, o = outcome_.get(), proof_s = proves() ? parts_.times.proof_s : 0.0] { open(*o, proof_s); };
 }
 
@@ -133,6 +137,7 @@ bool device_stream::work_here()
 void device_stream::open(outcome& o, double proof_s)
 {
     try {
+        parts_.player.driven = parts_.kept.until_now();
         auto p = std::make_unique<player>(parts_.open(), parts_.tactors, parts_.player,
                                           parts_.lines.lend(proof_s));
         p->on_begin([this, number = number_ + 1](stroke_id id, std::optional<std::int64_t> at_ns) {
@@ -158,8 +163,8 @@ void device_stream::close(outcome& o)
     o.player->stop();
     o.last = o.player->stats();
     try {
-        o.driven = o.player->history();
-    } catch (const error&) { // NOLINT(bugprone-empty-catch): what is kept counts too much then
+        parts_.kept.settled(o.player->history());
+    } catch (const std::exception&) { // NOLINT(bugprone-empty-catch): what is kept counts too much then
     }
     o.player.reset(); // reports what is left; it holds the device and borrows the lines
     o.done = true;
@@ -170,8 +175,6 @@ void device_stream::settle()
     const auto o = std::exchange(outcome_, nullptr);
     if (o->closes) {
         add_stats(before_, o->last);
-        if (o->driven)
-            parts_.kept.settled(*o->driven);
         return closed(o->last.left_on);
     }
     failure_ = o->failure;

@@ -57,6 +57,9 @@ public:
     std::function<void()> work();
     /// Does the work here, if there is any, and returns whether there was. Blocks.
     bool work_here();
+    /// Cancels all strokes. If the buffer is too long to wait for their fades, step() then closes the device;
+    /// wake() opens it again.
+    void cancel_all();
     /// Closes for good, here: fades out, stops, settles. No work may be under way. Blocks.
     void finish() noexcept;
 
@@ -80,7 +83,7 @@ private:
     struct outcome;
 
     void open(outcome& o, double proof_s);
-    static void close(outcome& o);
+    void close(outcome& o);
     void settle();
 
     rt::event_fd news_;

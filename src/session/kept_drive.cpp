@@ -198,7 +198,7 @@ std::string kept_drive::write(const std::string& file, const drive_history& h)
         } else {
             detail::output_file out(path, {}, detail::owner_kind::program);
             out.write(text.data(), static_cast<std::int64_t>(text.size()));
-            out.commit();
+            out.publish();
         }
     } catch (const std::exception& e) {
         say(stderr, "tactor: warning: {}: {}\n", e.what(), what_follows);

@@ -15,7 +15,7 @@ namespace tactor::session {
 /// Drive time in the folder `tactor` there, in files that are replaced as a whole. `driven-NAME` has the
 /// history of each device; `going-NAME-PID` the channels that a living process may drive, which count once it
 /// was killed. A torn file counts as missing. Warns once if it cannot keep the time, and playing goes on. One
-/// thread.
+/// thread at a time. until_now() and settled() may wait for a lock of other processes.
 class kept_drive {
 public:
     /// Keeps drive time for this run alone.

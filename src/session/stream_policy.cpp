@@ -107,6 +107,12 @@ void stream_policy::ended(std::string why)
     set(stream_state::lost, std::move(why));
 }
 
+void stream_policy::stopped()
+{
+    if (phase_ == phase::open && !std::exchange(broken_, true))
+        set(stream_state::idle, "everything was stopped; the next stroke starts it");
+}
+
 void stream_policy::closed(bool left_on)
 {
     phase_ = phase::shut;
@@ -126,8 +132,7 @@ void stream_policy::mute(bool is)
 
 void stream_policy::set_busy(bool is)
 {
-    busy_ = is;
-    if (!proves_ && phase_ == phase::open)
+    if (std::exchange(busy_, is) != is && !proves_ && phase_ == phase::open)
         due_.reset(); // of the idle stop
 }
 

@@ -48,6 +48,8 @@ public:
     void closed(bool left_on);
     /// The stream has ended by itself.
     void ended(std::string why);
+    /// The stream ends because everything was stopped. The next stroke opens it again.
+    void stopped();
     /// The amplifier is off, or not, while the stream goes on.
     void mute(bool is);
     /// Strokes go on or wait, or there are none.

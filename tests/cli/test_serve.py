@@ -2,6 +2,7 @@
 """tactor serve for other programs: its sockets, their permissions, and its end."""
 import json
 import os
+import pathlib
 import resource
 import signal
 import socket
@@ -33,6 +34,14 @@ class Serve(ServeTest):
         self.assertRegex(s.where["http"], "^http://127")
         self.assertEqual(s.terminate()[0], 0)
         self.refused(2, "serve", "--socket", "", "--http", "0", "-D", "null")
+
+    def test_a_program_that_it_starts_inherits_no_descriptor(self):
+        s = self.serve("--tcp", "0", "--http", "0", "--osc", "0")
+        s.client().ok("hello")
+        process = pathlib.Path(f"/proc/{s.process.pid}")
+        inherited = [os.readlink(process / "fd" / f.name) for f in (process / "fdinfo").iterdir()
+                     if int(f.name) > 2 and not int(f.read_text(encoding="ascii").split()[3], 8) & os.O_CLOEXEC]
+        self.assertLessEqual(set(inherited), {"/dev/null"})  # ALSA's own, of the device "null"
 
     def test_sigint_ends_it_too(self):
         self.assertEqual(self.serve().terminate(signal.SIGINT)[0], 0)

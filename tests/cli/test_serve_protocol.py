@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: MIT
 """The protocol of tactor serve for other programs."""
+import array
 import json
+import math
 import socket
 import time
 
@@ -197,6 +199,22 @@ class Protocol(ServeTest):
         self.assertEqual(c.ok("plan", stroke="park2016-1")["render"]["level_dbfs"], -30)
         c = self.serve("--socket", self.dir / "b.sock", config='[defaults]\nlevel-dbfs = -20\n').client()
         self.assertEqual(c.ok("hello")["max_level_dbfs"], -20)
+
+    def test_sensation_levels_add_up_to_the_ceiling_and_not_to_a_gain_above_it(self):
+        samples = self.dir / "out.raw"
+        tactors = self.write("weak.toml", '[array]\nname = "weak"\n[[tactor]]\nx_mm = 0.0\ny_mm = 0.0\nchannel = 0\n'
+                             'gain_db = 6.0\nthreshold_dbfs = -40.0\n')
+        s = self.serve("--array", tactors, device=("-D", f"raw:{samples}"), config="[serve]\nmax_level_dbfs = -20\n")
+        c = s.client()
+        loud = {"path": "M 0 0 L 0.001 0", "options": {"algorithm": "continuous", "duration": 0.1, "sl": 20, "outside": "clamp"}}
+        self.assertEqual(c.ok("hello")["stream"]["format"], "s32")
+        strokes = [c.ok("play", **loud, start="armed")["stroke"] for _ in range(3)]
+        c.ok("fire")
+        for stroke in strokes:
+            self.assertEqual(c.await_end(stroke)["state"], "finished")
+        self.assertEqual(s.terminate()[0], 0)
+        peak = max(map(abs, array.array("i", samples.read_bytes()))) / 2**31
+        self.assertAlmostEqual(20 * math.log10(peak), -20, delta=0.01)
 
     def test_cancel_stop_and_fire_work(self):
         s = self.serve()

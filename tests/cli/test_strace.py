@@ -64,5 +64,17 @@ class AudioThread(ToolTest):
         self.check(f"raw:{self.dir}/out.raw")
 
 
+@unittest.skipIf(WHY_NOT, WHY_NOT)
+class DriveTime(ToolTest):
+    def test_drive_time_that_is_kept_waits_for_no_disk(self):
+        runtime = self.dir / "run"
+        runtime.mkdir(mode=0o700)
+        trace = self.dir / "trace"
+        subprocess.run(["strace", "-f", "-e", "trace=rename,fsync,fdatasync", "-o", trace, TOOL, "play", "park2016-1", "-D", "null"],
+                       cwd=self.dir, env=self.env | {"XDG_RUNTIME_DIR": str(runtime)}, check=True, capture_output=True)
+        self.assertIn("rename(", trace.read_text())
+        self.assertNotIn("sync(", trace.read_text())
+
+
 if __name__ == "__main__":
     main()

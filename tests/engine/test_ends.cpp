@@ -199,6 +199,49 @@ TEST_CASE("stop cuts a long buffer after 0.4 s")
     }
 }
 
+TEST_CASE("after the cut nothing is mixed while the amplifier goes off, however many strokes could not fade")
+{
+    rig r({.period = 4800, .periods = 5});
+    r.link.amplifier.off = false;
+    for (int i = 0; i < 300; ++i) // more than can fade at once
+        r.submit(tone(10.0));
+    r.play(rate);
+    r.stop();
+    while (r.status().stage != engine::stream_stage::closing)
+        r.step(); // the DAC stands still: no fade begins
+    const std::uint64_t from = r.dac.captured_frames();
+    REQUIRE(r.first_sound(from - 4800));
+    r.play(rate / 2);
+    CHECK(r.dac.captured_frames() > from);
+    CHECK_FALSE(r.first_sound(from));
+    r.link.amplifier.off = true;
+    r.step();
+    CHECK(r.loop.over());
+}
+
+TEST_CASE("of all strokes that are cancelled those that sound fade first, and each ends once")
+{
+    rig r;
+    for (int i = 0; i < 1000; ++i) // more than the audio thread holds
+        r.submit(tone(10.0), i % 2 == 0 ? start_at::frame(1'000'000'000) : start_at::trigger());
+    r.play(4800);
+    const stroke_id sounding = r.submit(tone(10.0));
+    r.play(4800);
+    const std::uint64_t next = r.status().written;
+    r.feed.cancel_all(r.last());
+    CHECK(r.link.requests.size() == 1);
+    CHECK(r.feed.fire(r.now) == 0);
+    const stroke_id after = r.submit(tone(0.01));
+    r.play(4800);
+    CHECK(r.end(after).state == state_kind::finished);
+    for (const auto& [id, reports] : r.ended)
+        CHECK((id == after || r.end(id).state == state_kind::cancelled));
+    CHECK(r.ended.size() == 1002);
+    CHECK(r.end(sounding).frames > 0);
+    CHECK_FALSE(r.first_sound(next + 480 + 96));
+    CHECK(r.status().running);
+}
+
 TEST_CASE("a stopped loop stays stopped")
 {
     rig r;

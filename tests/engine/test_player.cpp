@@ -101,6 +101,42 @@ TEST_CASE("cancel and stop work from another thread than the waiting one")
     p.stop();
 }
 
+TEST_CASE("cancel_all ends strokes of all kinds, and the stream goes on")
+{
+    clocked_player p;
+    std::vector<stroke_id> ids{p.submit(tone(endless_s)), p.submit(tone(1.0), start_at::trigger()),
+                               p.submit(tone(1.0), start_at::frame(4'000'000'000)),
+                               p.submit(tone(1.0), start_at::time(INT64_MAX))};
+    const live_stroke drawn = p.begin({.timeout_s = 86400.0});
+    ids.push_back(drawn.id());
+    CHECK(p.cancel_all());
+    for (const stroke_id id : ids) {
+        CAPTURE(id.number);
+        CHECK(p.wait(id)->state == state_kind::cancelled);
+    }
+    CHECK_FALSE(drawn.open());
+    CHECK(p.cancel_all());
+    CHECK(p.wait(p.submit(tone(0.1)))->state == state_kind::finished);
+}
+
+TEST_CASE("in a buffer of more than 0.4 s cancel_all ends the stream instead of waiting for its fade")
+{
+    fake_dac dac; // its clock stands still
+    alsa_options o = nine();
+    o.period_frames = 4800;
+    o.periods = 5;
+    player p(alsa::adopt(dac.pcm(), o), palm(), patient());
+    const stroke_id sounding = p.submit(tone(endless_s));
+    const stroke_id armed = p.submit(tone(1.0), start_at::trigger());
+    CHECK_FALSE(p.cancel_all());
+    CHECK_THROWS_AS(p.submit(tone(1.0)), error);
+    CHECK_FALSE(p.cancel_all());
+    CHECK(p.wait(sounding)->state == state_kind::cancelled);
+    CHECK(p.wait(armed)->state == state_kind::cancelled);
+    p.stop();
+    CHECK(p.ended()->reason == reason_kind::none);
+}
+
 TEST_CASE("a player destroyed while strokes sound reports them as interrupted")
 {
     fake_dac dac;

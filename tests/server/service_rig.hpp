@@ -201,6 +201,7 @@ public:
     std::list<fake_dac> cards;
     std::list<running_clock> clocks; ///< of the last card; ends before it
     running_clock::capture_kind captures = running_clock::capture_kind::dropped; ///< of the next card
+    alsa_options buffer = {};                                                    ///< periods of the next card
     bool closed = false;
 
 private:
@@ -215,7 +216,7 @@ private:
         if (!here)
             throw error(error_kind::not_available, "card", "it is not there");
         fake_dac& card = cards.back();
-        alsa_options o;
+        alsa_options o = buffer;
         o.channels = 9;
         o.format = format_kind::s32;
         std::unique_ptr<sink> s = alsa::adopt(card.pcm(), o);

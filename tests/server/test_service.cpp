@@ -251,6 +251,32 @@ TEST_CASE("stop holds for what is being planned, too")
     CHECK(end["frames"] == 0);
 }
 
+TEST_CASE("stop ends all strokes of an armed file, also when the first has begun unseen")
+{
+    for (const bool fired : {false, true}) {
+        CAPTURE(fired);
+        service_rig rig;
+        rig.plug();
+        rig.start();
+        const auto c = rig.client();
+        const char* const two = "[[stroke]]\npath = 'M 0 0 L 40 0'\nduration_s = 500\n"
+                                "[[stroke]]\npath = 'M 0 0 L 40 0'\nduration_s = 1\n";
+        const json numbers = rig.ok(
+            c, "play",
+            {{"toml", two}, {"start", "armed"}, {"options", {{"algorithm", "tactile-brush"}}}})["strokes"];
+        if (fired) {
+            rig.ok(c, "fire");
+            while (!rig.all->output().current()->position().stroke) // the service handles nothing meanwhile
+                std::this_thread::yield();
+        }
+        rig.ok(c, "stop");
+        for (const json& n : numbers)
+            CHECK(rig.find_end(c, n)["reason"] == "cancelled by its client");
+        CHECK(c.box->stroke_messages(numbers[1]).size() == 1);
+        rig.until([&] { return rig.ok(c, "status")["strokes"].empty(); });
+    }
+}
+
 TEST_CASE("a stop in a message that is refused as a whole stops all the same")
 {
     service_rig rig;

@@ -133,6 +133,58 @@ TEST_CASE("an idle stream is closed, and opened by the next stroke")
           "finished");
 }
 
+TEST_CASE("requests that want no stream do not keep it from being idle")
+{
+    service_rig rig([](server::service_options&, server::stream_options& s) { s.times.idle_stop_s = 0.02; });
+    rig.plug();
+    rig.start();
+    const auto c = rig.client();
+    rig.until([&] {
+        rig.ok(c, "plan", brief);
+        rig.ok(c, "status");
+        rig.all->disconnect(rig.client().number);
+        return rig.all->output().state() == server::stream_state::idle;
+    });
+}
+
+TEST_CASE("in a long buffer stop ends the stream, and the next stroke opens it again")
+{
+    service_rig rig;
+    rig.buffer.period_frames = 4800;
+    rig.buffer.periods = 5;
+    rig.plug();
+    rig.start();
+    const auto c = rig.client();
+    const auto other = rig.client();
+    const json endless{{"path", "M 0 0 L 40 0"},
+                       {"options", {{"algorithm", "tactile-brush"}, {"duration", 500}}}};
+    const json numbers{rig.ok(c, "play", endless)["stroke"], rig.ok(c, "play", armed)["stroke"],
+                       rig.ok(c, "begin", {{"timeout_s", 86400}})["stroke"]};
+    CHECK(rig.ok(other, "stop").empty());
+    CHECK(rig.ok(other, "status")["stream"]["state"] == "idle");
+    rig.until([&] { return rig.cards.back().closed(); });
+    for (const json& n : numbers) {
+        CHECK(rig.find_end(c, n)["state"] == "cancelled");
+        CHECK(rig.find_end(c, n)["reason"] == "stopped by another client");
+    }
+    rig.sleep_and_plug();
+    CHECK(rig.find_end(c, rig.ok(c, "play", brief)["stroke"])["state"] == "finished");
+    CHECK(rig.ok(c, "status")["stream"]["state"] == "running");
+    for (const json& n : numbers)
+        CHECK(c.box->stroke_messages(n).back() == rig.find_end(c, n));
+}
+
+TEST_CASE("a suspended device is no reason for the watchdog to end the service")
+{
+    service_rig rig;
+    fake_dac& card = rig.plug();
+    rig.start();
+    card.suspend();
+    rig.until([&] { return !rig.all->output().current()->position().running; });
+    CHECK(rig.all->output().progresses());
+    CHECK(rig.all->output().progresses());
+}
+
 TEST_CASE("of an idle stream there is nothing to fire, which is no error")
 {
     service_rig rig([](server::service_options&, server::stream_options& s) { s.times.idle_stop_s = 0.001; });
@@ -266,6 +318,7 @@ TEST_CASE("stop reaches what waits for an idle stream to start")
         CHECK(rig.code(c, "to", {{"stroke", n}, {"x_mm", 1}, {"y_mm", 1}}) == -32002);
     }
     // A request after the stop begins.
+    rig.sleep_and_plug();
     CHECK(rig.find_end(c, rig.ok(c, "play", brief)["stroke"])["state"] == "finished");
     CHECK(rig.ok(c, "status")["strokes"].empty());
 }

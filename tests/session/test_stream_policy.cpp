@@ -230,6 +230,32 @@ TEST_CASE("strokes keep a stream from being idle, which begins when the last has
     CHECK(o.wait_for(act::close) == doctest::Approx(10.0));
 }
 
+TEST_CASE("only the end of strokes starts the idle time, not the news that there still are none")
+{
+    owner o({.idle_stop_s = 10.0});
+    o.open();
+    for (; o.now_s < 10.0; o.now_s += 1.0) {
+        CHECK(o.step() == act::nothing);
+        o.policy.set_busy(false);
+    }
+    CHECK(o.step() == act::close);
+}
+
+TEST_CASE("a stream that ends because everything was stopped is idle, not lost")
+{
+    owner o;
+    o.open();
+    o.policy.stopped();
+    o.policy.ended("the stream was stopped");
+    CHECK(o.policy.state() == stream_state::idle);
+    o.close();
+    CHECK_FALSE(o.wait_for(act::open));
+    o.policy.wake();
+    CHECK_FALSE(o.policy.proves());
+    o.open();
+    CHECK(o.policy.state() == stream_state::running);
+}
+
 TEST_CASE("a stroke that comes while the device is being closed is not forgotten")
 {
     owner o({.idle_stop_s = 10.0});

@@ -137,11 +137,16 @@ std::string plan_text(const server::planned& p, const environment& e, std::size_
     return text;
 }
 
-// Limits the channels for all clients together to the ceiling, plus the gain that the owner gives a tactor.
+// Limits the channels for all clients together to the ceiling. A tactor that the owner makes stronger may
+// have its gain on top, unless it has a threshold: a sensation level takes no gain, so the sum would exceed
+// the ceiling.
 array limit_levels(array a, double max_level_dbfs)
 {
-    for (tactor_spec& t : a.tactors)
-        t.max_dbfs = std::min(t.max_dbfs, max_level_dbfs + std::max(t.gain_db, 0.0));
+    for (tactor_spec& t : a.tactors) {
+        const bool measured = t.threshold_dbfs || !t.thresholds.empty();
+        const double gain_db = measured ? 0.0 : std::max(t.gain_db, 0.0);
+        t.max_dbfs = std::min(t.max_dbfs, max_level_dbfs + gain_db);
+    }
     return a;
 }
 

@@ -32,6 +32,7 @@ void audio_loop::finish(reason_kind why, int code, bool runs) noexcept
         return;
     }
     scores_.interrupt(why, code, played_, false);
+    mixer_.cut(); // strokes that could not fade yet are reported, and silent
     end_why_ = why;
     end_code_ = code;
     end_runs_ = runs;

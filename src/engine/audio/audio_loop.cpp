@@ -9,9 +9,6 @@
 namespace tactor::engine {
 namespace {
 
-// Longest time from a stop to the end of its fade.
-constexpr std::int64_t longest_stop_ns = 400'000'000;
-
 // Number of idle wake-ups after which the loop sleeps instead of trusting the descriptors, so that it cannot
 // spin.
 constexpr unsigned many_idle_steps = 16;

@@ -45,6 +45,9 @@ private:
     sink& sink_;
 };
 
+/// Longest time from a stop to the end of its fade. What sounds then is cut.
+inline constexpr std::int64_t longest_stop_ns = 400'000'000;
+
 struct loop_options {
     std::uint32_t fade_frames = 480;
     std::uint64_t horizon_frames = 24'000; ///< the control side wakes after each eighth of it

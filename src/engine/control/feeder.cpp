@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <atomic>
 #include <functional>
+#include <iterator>
 #include <span>
 #include <utility>
 
@@ -27,16 +28,61 @@ bool feeder::cancel(stroke_id id)
     if (cancel_waiting(id))
         return true;
     for (const std::uint32_t place : in_use_) {
-        slot& s = slots_[place];
-        if (s.use->id != id || s.use->cancelled)
+        if (slots_[place].use->id != id || slots_[place].use->cancelled)
             continue;
-        s.use->cancelled = true;
-        s.use->fed = true;
-        link_.requests.push(
-            {.what = request::kind::cancel, .score = current_ticket(place), .closing = false});
+        cancel_playing(place);
         return true;
     }
     return false;
+}
+
+void feeder::cancel_playing(std::uint32_t place) noexcept
+{
+    active& a = *slots_[place].use;
+    if (std::exchange(a.cancelled, true))
+        return;
+    a.fed = true;
+    link_.requests.push({.what = request::kind::cancel, .score = current_ticket(place), .closing = false});
+}
+
+void feeder::cancel_all(stroke_id last) noexcept
+{
+    for (const std::uint32_t place : in_use_)
+        cancel_playing(place);
+    cancelled_to_ = last;
+}
+
+void feeder::end_cancelled()
+{
+    if (cancelled_to_ == stroke_id{})
+        return;
+    end_waiting(cancelled_to_,
+                [this](stroke_id id) { report_end({.id = id, .state = state_kind::cancelled}); });
+    cancelled_to_ = {};
+}
+
+// Ends the strokes up to `last` that were not handed over, one after the other, so that the call can be
+// repeated after memory ran out.
+template <typename End>
+void feeder::end_waiting(stroke_id last, End end)
+{
+    const auto end_tasks = [&](auto& tasks) {
+        for (auto t = tasks.begin(); t != tasks.end();) {
+            const stroke_id id = t->second.id;
+            if (id <= last)
+                end(id);
+            t = id <= last ? tasks.erase(t) : std::next(t);
+        }
+    };
+    end_tasks(armed_);
+    end_tasks(waiting_);
+    end_tasks(timed_);
+    while (!waiting_live_.empty() && waiting_live_.begin()->first <= last) {
+        const auto w = waiting_live_.begin();
+        end(w->first);
+        w->second->close();
+        gone_live_.insert(waiting_live_.extract(w));
+    }
 }
 
 void feeder::pump(std::uint64_t written, const clock_line& clock)
@@ -44,6 +90,7 @@ void feeder::pump(std::uint64_t written, const clock_line& clock)
     clock_ = clock;
     if (stream_over_)
         return;
+    end_cancelled();
     find_due(written);
     look_at_waiting_live(written);
     admit_live();
@@ -230,20 +277,7 @@ void feeder::end_all(const report& r)
             s.use->voice->close();
         release(s);
     }
-    // Ends one after the other, so that the call can be repeated after memory ran out.
-    const auto end_tasks = [&](auto& tasks) {
-        for (auto t = tasks.begin(); t != tasks.end(); t = tasks.erase(t))
-            end(t->second.id, false);
-    };
-    end_tasks(armed_);
-    end_tasks(waiting_);
-    end_tasks(timed_);
-    while (!waiting_live_.empty()) {
-        const auto w = waiting_live_.begin();
-        end(w->first, false);
-        w->second->close();
-        gone_live_.insert(waiting_live_.extract(w));
-    }
+    end_waiting({UINT32_MAX}, [&](stroke_id id) { end(id, id <= cancelled_to_); });
     stream_over_ = true;
 }
 

@@ -40,6 +40,9 @@ public:
 
     /// Cancels a stroke. Returns false if it has ended, is not known, or is being cancelled already.
     bool cancel(stroke_id id);
+    /// Cancels all strokes up to `last`. The audio thread gets its requests at once; strokes that wait end
+    /// with the next pump(), because thousands may wait.
+    void cancel_all(stroke_id last) noexcept;
 
     /// Sets two handlers. `begins` gets each stroke that begins, with its first frame of the stream. `ended`
     /// gets each stroke that ends or that an xrun stopped before it had begun; its argument is true if a part
@@ -134,6 +137,10 @@ private:
         return place + voices * slots_[place].generation;
     }
     bool cancel_waiting(stroke_id id);
+    void cancel_playing(std::uint32_t place) noexcept;
+    void end_cancelled();
+    template <typename End>
+    void end_waiting(stroke_id last, End end);
     bool waits(stroke_id id) const;
     void begun(active& a, std::uint64_t frame);
     void over(const active& a, const report& r);
@@ -165,6 +172,7 @@ private:
     bool keeps_beginnings_ = false;
     std::function<void(stroke_id, std::uint64_t)> begins_;
     std::function<void(stroke_id, bool)> ended_;
+    stroke_id cancelled_to_ = {}; ///< last one of cancel_all(), until the strokes that wait have ended
     bool urgent_ = false;
     bool stream_over_ = false;
     bool closing_ = false;

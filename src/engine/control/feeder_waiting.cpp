@@ -64,6 +64,7 @@ void feeder::submit(stroke_id id, std::shared_ptr<live_voice> voice)
 
 std::size_t feeder::fire(std::int64_t time_ns)
 {
+    end_cancelled();
     const std::size_t n = armed_.size();
     decltype(timed_) fired; // all or none, if memory runs out
     for (const auto& [id, t] : armed_)

@@ -71,6 +71,11 @@ bool player::cancel(stroke_id id)
     return impl_->cancel(id);
 }
 
+bool player::cancel_all()
+{
+    return impl_->cancel_all();
+}
+
 wait_result player::wait(stroke_id id, std::optional<double> timeout_s)
 {
     return impl_->wait(id, timeout_s);

@@ -100,6 +100,31 @@ bool player::impl::cancel(stroke_id id)
     return known;
 }
 
+bool player::impl::cancel_all()
+{
+    const std::lock_guard lock(mutex);
+    // In a longer buffer a fade comes too late: the end of the stream cuts what was written before it.
+    if (made.buffer_frames * rt::ns_per_s > engine::longest_stop_ns * made.rate)
+        end_stream(false);
+    if (stopping || feed.stream_over())
+        return false;
+    feed.cancel_all(last_id);
+    link.to_audio.signal();
+    link.to_control.signal();
+    return true;
+}
+
+// Asks the audio thread to fade out and to end the stream, under the mutex.
+void player::impl::end_stream(bool closing) noexcept
+{
+    if (std::exchange(stopping, true))
+        return;
+    if (closing)
+        feed.set_closing();
+    link.requests.push({.what = engine::request::kind::stop, .closing = closing});
+    link.to_audio.signal();
+}
+
 // Hands over drives, under the mutex. Returns false if memory ran out: nothing is lost, and the control
 // thread tries again.
 bool player::impl::pump()
@@ -146,13 +171,7 @@ wait_result player::impl::wait(stroke_id id, std::optional<double> timeout_s)
 void player::impl::stop(bool closing)
 {
     std::unique_lock lock(mutex);
-    if (!stopping) {
-        stopping = true;
-        if (closing)
-            feed.set_closing();
-        link.requests.push({.what = engine::request::kind::stop, .closing = closing});
-        link.to_audio.signal();
-    }
+    end_stream(closing);
     if (!control->is_current())
         news.wait(lock, [this] { return all_delivered; });
 }

@@ -76,6 +76,7 @@ struct player::impl : std::enable_shared_from_this<player::impl> {
     live_stroke begin(const live_options& o);
     bool on_end(stroke_id id, report_handler done);
     bool cancel(stroke_id id);
+    bool cancel_all();
     wait_result wait(stroke_id id, std::optional<double> timeout_s);
     void stop(bool closing);
     std::shared_ptr<const drive_history::impl> history();
@@ -133,6 +134,7 @@ private:
     void woken();
     bool take_reports();
     bool pump();
+    void end_stream(bool closing) noexcept;
     void check_open() const;
     bool edges();
     void call_handlers();

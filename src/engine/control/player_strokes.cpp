@@ -163,10 +163,7 @@ void player::impl::give_up(const char* what) noexcept
     } catch (const std::bad_alloc&) {
         handler_failed = "a handler threw"; // short enough to need no memory
     }
-    stopping = true;
-    feed.set_closing();
-    link.requests.push({.what = engine::request::kind::stop, .closing = true});
-    link.to_audio.signal();
+    end_stream(true);
 }
 
 } // namespace v0

@@ -129,13 +129,18 @@ void mixer::resume(const drive_history& h) noexcept
     impl_->duty.resume(h);
 }
 
-void mixer::reset() noexcept
+void mixer::cut() noexcept
 {
     impl_->power.silence(0);
     impl_->voices.clear();
     impl_->fading.clear();
     impl_->leaving.clear();
     impl_->carrier.forget();
+}
+
+void mixer::reset() noexcept
+{
+    cut();
     impl_->position = 0;
 }
 

@@ -55,6 +55,8 @@ public:
     /// time in between. Only before the first process(). Does not allocate.
     void resume(const drive_history& h) noexcept;
 
+    /// Drops everything at once. Drive times still count.
+    void cut() noexcept;
     /// Drops everything at once and counts frames from 0: a new epoch. Drive times still count.
     void reset() noexcept;
 

@@ -1,13 +1,14 @@
 # SPDX-License-Identifier: MIT
 """Properties that need two real clocks or an idle machine: noise over stimuli, strokes in a row, no page fault."""
 import json
+import time
 import unittest
 
 import test_calibrate
 import test_experiment_person
 from experiments import read_table
 from harness import SANITIZED, ToolTest, main
-from serving import ServeTest
+from serving import LONG, ServeTest
 
 
 class Trials(test_calibrate.CalibrateTest):
@@ -51,6 +52,15 @@ class Sessions(test_experiment_person.PersonTest):
 
 
 class Served(ServeTest):
+    def test_stop_is_soon_in_a_buffer_of_two_seconds(self):
+        c = self.serve("--latency-ms", "2000").client()
+        stroke = c.ok("play", **LONG)["stroke"]
+        c.stroke(stroke, "started")
+        began = time.monotonic()
+        c.ok("stop")
+        self.assertEqual(c.await_end(stroke)["state"], "cancelled")
+        self.assertLess(time.monotonic() - began, 0.6)
+
     def test_strokes_of_a_file_follow_each_other(self):
         c = self.serve().client()
         toml = "".join(f"[[stroke]]\npath = 'M 0 0 L 40 {y}'\nduration_s = 0.1\n" for y in (0, 10, 20))
