@@ -16,9 +16,16 @@ point follower::at(double t_s)
         inside_s_ = t_s;
         return p;
     }
-    if (job_.options.outside == outside_kind::error)
+    const point there = job_.faces.nearest(p);
+    if (job_.options.outside == outside_kind::error && distance_mm(p, there) > edge_tolerance_mm)
         refuse(t_s);
-    return job_.faces.nearest(p);
+    return there;
+}
+
+double follower::outside_mm(double t_s) const
+{
+    const point p = job_.motion.motion.position(t_s);
+    return distance_mm(p, job_.faces.nearest(p));
 }
 
 double follower::farthest_outside_mm(double from_s) const
@@ -26,10 +33,8 @@ double follower::farthest_outside_mm(double from_s) const
     constexpr int samples = 2000;
     const trajectory& motion = job_.motion.motion;
     double farthest = 0.0;
-    for (int i = 0; i <= samples; ++i) {
-        const point p = motion.position(from_s + (motion.duration_s() - from_s) * i / samples);
-        farthest = std::max(farthest, distance_mm(p, job_.faces.nearest(p)));
-    }
+    for (int i = 0; i <= samples; ++i)
+        farthest = std::max(farthest, outside_mm(from_s + (motion.duration_s() - from_s) * i / samples));
     return farthest;
 }
 
