@@ -97,8 +97,6 @@ public:
 
 private:
     [[noreturn]] void refuse(double t_s) const;
-    /// Returns the distance of the target from the hull; 0 inside.
-    double outside_mm(double t_s) const;
     /// Returns the greatest distance of the target from the hull from then on, at 2000 places.
     double farthest_outside_mm(double from_s) const;
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "files/plan/plan_values.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <utility>

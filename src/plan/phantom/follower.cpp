@@ -22,19 +22,15 @@ point follower::at(double t_s)
     return there;
 }
 
-double follower::outside_mm(double t_s) const
-{
-    const point p = job_.motion.motion.position(t_s);
-    return distance_mm(p, job_.faces.nearest(p));
-}
-
 double follower::farthest_outside_mm(double from_s) const
 {
     constexpr int samples = 2000;
     const trajectory& motion = job_.motion.motion;
     double farthest = 0.0;
-    for (int i = 0; i <= samples; ++i)
-        farthest = std::max(farthest, outside_mm(from_s + (motion.duration_s() - from_s) * i / samples));
+    for (int i = 0; i <= samples; ++i) {
+        const point p = motion.position(from_s + (motion.duration_s() - from_s) * i / samples);
+        farthest = std::max(farthest, distance_mm(p, job_.faces.nearest(p)));
+    }
     return farthest;
 }
 
