@@ -57,7 +57,9 @@ public:
 
     /// Moves the stroke to a place, mm, at an intensity (linear; 1 is the requested level). That level is the
     /// ceiling: an intensity above 1 sounds as 1, and live_counts::held and stroke_report::held_points count
-    /// it. When several points arrive within one period, the newest counts.
+    /// it. A place outside the array becomes the nearest one in it (outside_kind::clamp), and
+    /// live_counts::outside and stroke_report::outside_points count it. When several points arrive within one
+    /// period, the newest counts.
     ///
     /// Continuous: with the next period that is written, the weights begin to move from the last point's to
     /// this one's. The move takes one period, at least continuous_step_s. The buffer's delay adds to this.

@@ -27,6 +27,10 @@ struct drive {
     friend bool operator==(const drive&, const drive&) = default;
 };
 
+/// Distance outside the array, mm, at which a stroke still counts as on its edge. Drawing programs and
+/// converted units leave less.
+inline constexpr double edge_tolerance_mm = 0.01;
+
 /// Delaunay faces of an array (rendering model, section 4). Tactors on one circumcircle form one face.
 /// Immutable. Copies and moves share it, so a moved-from layout keeps its value. Any thread.
 class TACTOR_API layout {
@@ -44,7 +48,8 @@ public:
     /// Returns the faces as tactor indices in order round each face. Empty if all tactors are in one line.
     [[nodiscard]] const std::vector<std::vector<unsigned>>& faces() const noexcept;
 
-    /// Returns true if p is in the hull or on its edge (within same_place_mm).
+    /// Returns true if p is in the hull or on its edge (within same_place_mm). Strokes may leave it by
+    /// edge_tolerance_mm; such places are moved to the edge.
     [[nodiscard]] bool contains(point p) const;
     /// Returns the point of the hull nearest to p.
     [[nodiscard]] point nearest(point p) const;

@@ -81,6 +81,7 @@ struct stroke_report {
     std::optional<std::int64_t> started_ns = {};
     std::optional<live_delay> delay = {}; ///< live strokes only, after a point has sounded
     std::uint64_t held_points = 0;        ///< live strokes only: points above intensity 1, which sounded as 1
+    std::uint64_t outside_points = 0;     ///< live strokes only: points outside the array, moved to its edge
 };
 
 /// End of a stream.

@@ -58,7 +58,7 @@ struct movement {
     easing_kind easing = easing_kind::linear;
     /// Speeds, above 0; if duration_s is set, only their ratios count. Empty: constant.
     std::vector<profile_point> speed_mm_s = {};
-    std::vector<profile_point> intensity = {}; ///< factors, from 0. Empty: 1
+    std::vector<profile_point> intensity = {}; ///< factors, 0 to 1. Empty: 1
     std::vector<rest> rests = {};              ///< parts ascend
 
     friend bool operator==(const movement&, const movement&) = default;
@@ -68,7 +68,7 @@ struct movement {
 struct timed_point {
     double t_s = 0.0;
     point position = {};
-    double intensity = 1.0; ///< linear, >= 0; 1 is the requested intensity
+    double intensity = 1.0; ///< linear, 0 to 1; 1 is the requested intensity
 };
 
 /// A time at which the target is on a line of the grid.
@@ -123,7 +123,7 @@ public:
     [[nodiscard]] trajectory reversed() const;
 
     /// Returns the same movement with every intensity multiplied by `factor`.
-    /// \throws error (bad_input) unless factor is finite and >= 0.
+    /// \throws error (bad_input) unless factor is >= 0 and no intensity gets above 1.
     [[nodiscard]] trajectory with_intensity(double factor) const;
 
     /// Returns the times, ascending, at which the target meets the line x = x_mm (or y = y_mm), as
@@ -229,28 +229,34 @@ struct stroke {
 
 /// Reads one or more strokes from a file. The extension decides the format: .toml, .csv or .svg; see
 /// tactor.toml(5). May block on the file system.
-/// \throws error (bad_input) with file, line and column.
-[[nodiscard]] TACTOR_API std::vector<stroke> load_strokes(const std::filesystem::path& file);
+///
+/// `intensity_max`, here and below: value of an intensity in CSV and of a timed point in TOML that means 1,
+/// such as 255. A greater value is refused. \throws error (bad_input) with file, line and column.
+[[nodiscard]] TACTOR_API std::vector<stroke> load_strokes(const std::filesystem::path& file,
+                                                          double intensity_max = 1.0);
 
 /// Reads strokes from an open descriptor, such as standard input, to its end. Guesses the format as
 /// parse_strokes() does. `name` is used in messages. Blocks until the end of the input.
 /// \throws error (bad_input) with line and column.
-[[nodiscard]] TACTOR_API std::vector<stroke> load_strokes(int descriptor, const std::string& name);
+[[nodiscard]] TACTOR_API std::vector<stroke> load_strokes(int descriptor, const std::string& name,
+                                                          double intensity_max = 1.0);
 
 /// Reads strokes from TOML text. `name` is used in messages.
-[[nodiscard]] TACTOR_API std::vector<stroke> parse_strokes_toml(std::string_view text,
-                                                                const std::string& name);
+[[nodiscard]] TACTOR_API std::vector<stroke>
+parse_strokes_toml(std::string_view text, const std::string& name, double intensity_max = 1.0);
 /// Reads a stroke from CSV with a header line that names t_s, x_mm, y_mm and optionally intensity, in any
 /// order. The time of the first line becomes the stroke's zero; it may be any from -1e10 to 1e10 s. Of lines
-/// with equal times the last one counts, with a warning.
-[[nodiscard]] TACTOR_API std::vector<stroke> parse_strokes_csv(std::string_view text,
-                                                               const std::string& name);
+/// with equal times the last one counts, with a warning. Where place or intensity is nan, the touch is
+/// lifted. Rows of nothing but commas are skipped.
+[[nodiscard]] TACTOR_API std::vector<stroke> parse_strokes_csv(std::string_view text, const std::string& name,
+                                                               double intensity_max = 1.0);
 /// Reads strokes from an SVG document. Each subpath of each shape is a stroke, in document order. One user
 /// unit is 1 mm, unless the document's width or height has a physical unit.
 [[nodiscard]] TACTOR_API std::vector<stroke> parse_strokes_svg(std::string_view text,
                                                                const std::string& name);
 /// Guesses the format from the text: SVG if it starts with '<', CSV if its first line names t_s, else TOML.
-[[nodiscard]] TACTOR_API std::vector<stroke> parse_strokes(std::string_view text, const std::string& name);
+[[nodiscard]] TACTOR_API std::vector<stroke> parse_strokes(std::string_view text, const std::string& name,
+                                                           double intensity_max = 1.0);
 
 } // namespace v0
 } // namespace tactor

@@ -18,7 +18,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::vector<stroke> read_one(const environment& e, const std::string& argument)
+std::vector<stroke> read_one(const settings& s, const environment& e, const std::string& argument)
 {
     if (e.plans.contains(argument))
         throw error(error_kind::bad_input, shown_name(argument), "it is a plan",
@@ -36,7 +36,7 @@ std::vector<stroke> read_one(const environment& e, const std::string& argument)
         return {preset_stroke(argument)}; // its error lists the presets
     }
     session::check_readable(argument);
-    return load_strokes(argument);
+    return load_strokes(argument, s.intensity_max.value_or(1.0));
 }
 
 stroke stroke_of_path(const settings& s, const std::string& data)
@@ -69,7 +69,7 @@ piece read_piece(const settings& s, const environment& e, const layout& faces, c
     else if (s.shape)
         p.strokes.push_back(shape_stroke(*s.shape));
     else
-        p.strokes = read_one(e, argument);
+        p.strokes = read_one(s, e, argument);
     p.strokes = fitted_as_asked(std::move(p.strokes), faces, shown_name(argument));
     if (s.fit) {
         fitted_strokes fitted = fit_strokes(p.strokes, faces, s.fit_margin_mm);

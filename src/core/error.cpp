@@ -76,6 +76,9 @@ struct error::data {
         d.text = fmt::format("{}: {}", whole ? detail::plain(*m) : std::string(what), why);
         if (!hint.empty())
             d.text += fmt::format(" ({})", detail::plain(hint));
+        // what() ends at a zero byte.
+        for (std::size_t at = d.text.find('\0'); at != std::string::npos; at = d.text.find('\0', at))
+            d.text.replace(at, 1, "\\x00");
         return d;
     }
 };

@@ -29,7 +29,7 @@ inline constexpr double longest_stroke_s = 86400.0;
 /// Least speed of a profile. It bounds the time at its slowest place.
 inline constexpr double least_speed_mm_s = 1e-6;
 
-/// Greatest intensity. It is a factor near 1, so more than this is a slip.
-inline constexpr double max_intensity = 1000.0;
+/// Greatest intensity: the level asked for, which is a ceiling.
+inline constexpr double max_intensity = 1.0;
 
 } // namespace tactor::detail

@@ -72,7 +72,7 @@ trajectory moved(const trajectory& t, point from, const affine& m, std::optional
     std::vector<timed_point> points = *std::get<timed_points>(d.law).points;
     for (timed_point& p : points)
         p.position = m(to_origin(p.position));
-    return trajectory::timed(std::move(points)).with_duration(d.duration_s).with_intensity(d.gain);
+    return scaled(trajectory::timed(std::move(points)).with_duration(d.duration_s), d.gain);
 }
 
 } // namespace tactor::detail

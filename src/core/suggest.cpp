@@ -53,6 +53,35 @@ bool same_stem(std::string_view a, std::string_view b)
     return agree && (rest.size() == n || folded(rest[n]) == '_' || n >= 4);
 }
 
+/// A unit at the end of a name.
+struct name_unit {
+    std::string_view name;
+    char kind;   ///< 't' time, 'l' length, 'p' pixels
+    double size; ///< in s or mm
+};
+
+constexpr std::array<name_unit, 10> units{{{"ns", 't', 1e-9},
+                                           {"us", 't', 1e-6},
+                                           {"ms", 't', 1e-3},
+                                           {"s", 't', 1.0},
+                                           {"min", 't', 60.0},
+                                           {"um", 'l', 1e-3},
+                                           {"mm", 'l', 1.0},
+                                           {"cm", 'l', 10.0},
+                                           {"m", 'l', 1000.0},
+                                           {"px", 'p', 1.0}}};
+
+// Returns the unit at the end of a name; null for none.
+const name_unit* find_unit(std::string_view name)
+{
+    const std::string_view last = name.substr(name.rfind('_') + 1);
+    const auto found = std::find_if(units.begin(), units.end(), [last](const name_unit& u) {
+        return std::equal(last.begin(), last.end(), u.name.begin(), u.name.end(),
+                          [](char a, char b) { return folded(a) == b; });
+    });
+    return found == units.end() ? nullptr : &*found;
+}
+
 } // namespace
 
 std::string_view nearest_name(std::string_view name, std::span<const std::string_view> known)
@@ -74,10 +103,22 @@ std::string_view nearest_name(std::string_view name, std::span<const std::string
     return best;
 }
 
+std::string meant_name(std::string_view name, std::string_view near)
+{
+    const name_unit* from = find_unit(name);
+    const name_unit* to = find_unit(near);
+    if (from == nullptr || to == nullptr || from == to)
+        return fmt::format("did you mean '{}'?", near);
+    const std::string_view sign = from->size < to->size ? "divide" : "multiply";
+    const double ratio = std::max(to->size / from->size, from->size / to->size);
+    return fmt::format("'{}' is in {}, not {}{}", near, to->name, from->name,
+                       from->kind == to->kind ? fmt::format(": {} by {:.9g}", sign, ratio) : "");
+}
+
 std::string suggestion(std::string_view name, std::span<const std::string_view> known, std::string_view kind)
 {
     if (const std::string_view n = nearest_name(name, known); !n.empty())
-        return fmt::format("did you mean '{}'?", n);
+        return meant_name(name, n);
     return fmt::format("known {}: {}", kind, fmt::join(known, ", "));
 }
 

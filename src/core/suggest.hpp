@@ -26,6 +26,10 @@ std::string preset_hint(std::string_view name, const std::vector<std::string>& p
 /// for "pitch". Empty if none is near.
 std::string_view nearest_name(std::string_view name, std::span<const std::string_view> known);
 
+/// Returns a hint with the known name that is nearest: "did you mean 'channel'?". For a name with another
+/// unit the value must change, too: "'t_s' is in s, not ms: divide by 1000".
+std::string meant_name(std::string_view name, std::string_view near);
+
 /// Returns 'name' in quotes, shortened and without control characters, so that it fits in a message.
 std::string quoted(std::string_view name);
 

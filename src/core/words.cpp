@@ -50,12 +50,6 @@ std::string seconds_text(double s, int digits)
     return plain_number(s, digits) + " s";
 }
 
-std::string held_text(double intensity)
-{
-    return fmt::format("an intensity of {} sounds as 1: the level asked for is the ceiling",
-                       plain_number(intensity));
-}
-
 std::string in_small_letters(std::string text)
 {
     for (char& c : text)

@@ -21,10 +21,6 @@ namespace tactor {
 /// nanosecond, the remainder of rounding, is "0 s".
 [[nodiscard]] std::string seconds_text(double s, int digits = 6);
 
-/// Returns a message that a live stroke plays an intensity above 1 as 1. Used for the first such point of a
-/// stroke.
-[[nodiscard]] std::string held_text(double intensity);
-
 /// Returns the text with A to Z in lower case, for names that ignore case.
 [[nodiscard]] std::string in_small_letters(std::string text);
 

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: MIT
 // WAV files as waveforms, and the words for all of these.
 
+#include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <system_error>
 #include <utility>
 
 #include <fmt/format.h>
@@ -72,6 +74,12 @@ inline namespace v0 {
 
 recording load_recording(const std::filesystem::path& file)
 {
+    // A pipe of the shell, <(...), has its other end already; this one would be waited for in silence.
+    std::error_code unknown;
+    if (std::filesystem::is_fifo(file, unknown) &&
+        std::filesystem::exists(std::filesystem::canonical(file, unknown)))
+        throw error(error_kind::bad_input, source_place{file.string()}, "is a pipe",
+                    "name a WAV file, which can be read as often as it is needed");
     const detail::whole_text bytes = detail::read_text_file(file, max_file_bytes);
     return detail::parse_recording(bytes, file.string());
 }

@@ -302,6 +302,10 @@ constexpr std::array table{
            .used = [](const wishes& w) { return w.plan.scale.kind == scale_kind::stevens; },
            .needs = "{intensity_scale=stevens}",
            .to = reach([](auto& w) -> auto& { return w.plan.scale.exponent; })},
+    option{.name = "intensity_max", .allowed = of::intensity_max, .shown = "MAX", .in = group::level,
+           .help = "intensity in a recording that means 1 (default 1; 100: per cent, 127: MIDI, 255: 8 bits)",
+           .where = drawing | in_defaults | by_client | live | planning,
+           .to = reach([](auto& w) -> auto& { return w.intensity_max; })},
 
     option{.name = "rate", .unit = "Hz", .what = kind::whole, .allowed = of::rate_hz, .in = group::device,
            .help = "sample rate (default 48000)",

@@ -55,6 +55,7 @@ struct wishes {
     std::optional<double> duration_s = {};
     std::optional<double> speed_mm_s = {};
     std::optional<double> usual_speed_mm_s = {}; ///< of strokes that say neither a time nor a speed
+    std::optional<double> intensity_max = {};    ///< value in a recording that means intensity 1
     bool fit = false;
     double fit_margin_mm = 0.0;
     std::optional<unsigned> rate = {};

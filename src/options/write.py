@@ -171,6 +171,8 @@ LIVE = '''
             A stroke that has sounded for so long, s, fades out, interrupted; None: it may go on for ever.
         smooth : float
             For points that come in bursts, s, 0 (off) to 1: it moves evenly, and is at each point so long after that came.
+        intensity_max : float
+            The intensity of a point that means 1, above 0: 255 for a sensor of 8 bits.
 {parameters}
 
         What nobody says is as the array's file says; but `algorithm` is "continuous", and `outside` "clamp".
@@ -276,7 +278,7 @@ def calls():
         call(PLAYER, rows("player"), ["self", "device: str", "array: Array", "*"],
              ["config: _t.Union[str, os.PathLike[str], None] = None",
               "log: _t.Callable[[_LogKind, str], object] | None = None", "after: Player | None = None"]),
-        call(LIVE, of_live, ["self", "*"], ["timeout: float = 0.5", "longest: float | None = None", "smooth: float = 0.0"], own_phantom=True),
+        call(LIVE, of_live, ["self", "*"], ["timeout: float = 0.5", "longest: float | None = None", "smooth: float = 0.0", "intensity_max: float = 1.0"], own_phantom=True),
     ))
 
 

@@ -61,11 +61,7 @@ class in_array {
 public:
     explicit in_array(const job& j) : job_(j) {}
 
-    point held(point p) const
-    {
-        return job_.options.outside == outside_kind::clamp && !job_.faces.contains(p) ? job_.faces.nearest(p)
-                                                                                      : p;
-    }
+    point held(point p) const { return job_.faces.contains(p) ? p : job_.faces.nearest(p); }
     point at(double t_s) const { return held(job_.motion.motion.position(t_s)); }
 
     /// Returns true for two at one place that the target does not leave in between.

@@ -88,7 +88,7 @@ public:
         if (scale_.kind != scale_kind::linear || scale_.level_db == 0.0)
             return;
         // So that it is bounded.
-        motion_ = motion_.with_intensity(scale_.amplitude(1.0));
+        motion_ = scaled(motion_, scale_.amplitude(1.0));
         scale_.level_db = 0.0;
     }
 

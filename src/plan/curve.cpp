@@ -12,6 +12,7 @@
 #include <tactor/error.hpp>
 
 #include "core/limits.hpp"
+#include "core/trajectory/impl.hpp"
 #include "core/words.hpp"
 #include "plan/curve_impl.hpp"
 #include "plan/rounded.hpp"
@@ -143,7 +144,7 @@ public:
     scaled_curve(const curve& from, double factor) : impl(from.duration_s()), from_(from), factor_(factor)
     {
         if (const trajectory* b = curve_access::of(from_).bounds(max_tactors))
-            bounds_ = b->with_intensity(factor);
+            bounds_ = scaled(*b, factor);
     }
 
     void fill(std::uint64_t k, same_tactors& seen, burst& out) const override

@@ -186,15 +186,14 @@ py::array_t<double> weights(const std::string& kind, const std::string& of_faces
     std::vector<drive> drives;
     for (py::ssize_t i = 0; i < places.shape(0); ++i) {
         const point p{at(i, 0), at(i, 1)};
-        if (!faces.contains(p)) {
-            const point near = faces.nearest(p);
+        const point near = faces.contains(p) ? p : faces.nearest(p);
+        if (distance_mm(p, near) > edge_tolerance_mm)
             throw error(error_kind::bad_input, "point",
                         fmt::format("({:.6g}, {:.6g}) mm is outside the array, {:.3g} mm from it", p.x_mm,
                                     p.y_mm, distance_mm(p, near)),
                         "Array.nearest() gives the nearest place of it")
                 .with_field("point");
-        }
-        model->weights(p, intensity, drives);
+        model->weights(near, intensity, drives);
         for (const drive& d : drives)
             all[static_cast<std::size_t>(i) * tactors + d.tactor] = d.amplitude;
     }

@@ -9,6 +9,7 @@
 
 #include "python/options.hpp"
 #include "python/player_handle.hpp"
+#include "session/live_remarks.hpp"
 
 namespace tactor::python {
 namespace {
@@ -48,7 +49,7 @@ py::tuple report_tuple(const stroke_report& r)
             ? py::object(py::make_tuple(r.delay->points, r.delay->least_s, r.delay->mean_s, r.delay->most_s))
             : py::object(py::none());
     return py::make_tuple(r.id.number, std::string(to_string(r.state)), r.why, r.frames, started, r.late_s,
-                          delay, r.held_points);
+                          delay, r.held_points, r.outside_points);
 }
 
 py::object next_event(player_handle& h)
@@ -122,8 +123,11 @@ py::dict position_dict(const player_handle& h)
 
 // A live stroke with the player that it must not outlive in a forked process.
 struct live_handle {
-    live_handle(std::shared_ptr<player_handle> p, live_stroke s)
-        : of(std::move(p)), stroke(std::make_unique<live_stroke>(std::move(s)))
+    live_handle(std::shared_ptr<player_handle> p, live_stroke s, double most)
+        : of(std::move(p)),
+          stroke(std::make_unique<live_stroke>(std::move(s))),
+          intensity_max(most),
+          remarks(most)
     {
     }
     ~live_handle()
@@ -136,6 +140,8 @@ struct live_handle {
 
     std::shared_ptr<player_handle> of;
     std::unique_ptr<live_stroke> stroke;
+    double intensity_max;
+    session::live_remarks remarks; ///< with Python's lock
 };
 
 live_handle begin(const std::shared_ptr<player_handle>& h, const array_handle& on, const py::dict& options,
@@ -149,6 +155,7 @@ live_handle begin(const std::shared_ptr<player_handle>& h, const array_handle& o
         return d.name == "algorithm" || d.name == "outside";
     });
     take_options(w, options, on.value().tactors.size(), &said);
+    const double intensity_max = w.intensity_max.value_or(1.0);
     const without_lock free;
     return {h, h->use([&](player& p) {
                 return p.begin({.plan = w.plan,
@@ -156,7 +163,8 @@ live_handle begin(const std::shared_ptr<player_handle>& h, const array_handle& o
                                 .timeout_s = timeout_s,
                                 .longest_s = longest_s,
                                 .smooth_s = smooth_s});
-            })};
+            }),
+            intensity_max};
 }
 
 void bind_live(py::module_& m)
@@ -184,6 +192,11 @@ void bind_live(py::module_& m)
                 l.stroke->cancel();
             },
             free_call())
+        .def_property_readonly("intensity_max", [](const live_handle& l) { return l.intensity_max; })
+        .def("remarks",
+             [](live_handle& l, double x, double y, double intensity) {
+                 return l.remarks.take(*l.stroke, {x, y}, intensity);
+             })
         .def_property_readonly("open", [](const live_handle& l) { return l.stroke->open(); })
         .def("counts", [](const live_handle& l) {
             const live_counts c = l.stroke->counts();

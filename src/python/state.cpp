@@ -251,7 +251,7 @@ void members(reader& r, trajectory& m)
     if (!is_drawn && m.duration_s() != duration_s)
         m = m.with_duration(duration_s);
     if (gain != 1.0) // one factor, unless the stroke was made stronger or weaker several times
-        m = m.with_intensity(gain);
+        m = detail::scaled(m, gain);
 }
 
 template <class Io>

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/profile.hpp"
+#include "core/trajectory/recorded_points.hpp"
 #include "files/output_file.hpp"
 #include "files/setup_text.hpp"
 #include "files/text_file.hpp"
@@ -192,11 +193,15 @@ void bind_path(py::module_& m)
         .def("meets_y", &path::meets_y);
 }
 
-stroke timed(const std::string& name, const numbers& rows)
+stroke timed(const std::string& name, const numbers& rows, double intensity_max)
 {
-    return {name, trajectory::timed(read_rows(rows, [](const double* r) {
-                return timed_point{r[0], {r[1], r[2]}, r[3]};
-            }))};
+    detail::recorded_points recorded(intensity_max);
+    for (const timed_point& p : read_rows(rows, [](const double* r) {
+             return timed_point{r[0], {r[1], r[2]}, r[3]};
+         }))
+        recorded.add(p);
+    trajectory motion = trajectory::timed(recorded.take());
+    return {.name = name, .motion = std::move(motion), .warnings = recorded.warnings()};
 }
 
 stroke along(const std::string& name, const path& p, std::optional<double> duration_s,
@@ -273,9 +278,10 @@ void bind_stroke(py::module_& m)
         .def_static("timed", &timed)
         .def_static("preset", [](const std::string& name) { return preset_stroke(name); })
         .def_static("shape", [](const std::string& name) { return shape_stroke(name); })
-        .def_static("load", [](const std::string& file) { return load_strokes(file); })
-        .def_static("parse", [](const std::string& text,
-                                const std::string& name) { return parse_strokes(text, name); })
+        .def_static("load", [](const std::string& file,
+                               double intensity_max) { return load_strokes(file, intensity_max); })
+        .def_static("parse", [](const std::string& text, const std::string& name,
+                                double intensity_max) { return parse_strokes(text, name, intensity_max); })
         .def_static("from_state", [](const py::bytes& b) { return read_stroke(std::string(b)); })
         .def("state", [](const stroke& s) { return py::bytes(write_state(s)); })
         .def("same_as",

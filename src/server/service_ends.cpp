@@ -147,7 +147,8 @@ void service::tell_stroke(stroke_record& r, std::string_view state, const stroke
                                                 {"started_s", from(0)},
                                                 {"started_unix_s", from(unix_ns() - options_.now_ns())},
                                                 {"late_s", how.late_s},
-                                                {"held_points", how.held_points}});
+                                                {"held_points", how.held_points},
+                                                {"outside_points", how.outside_points}});
     if (!r.released) {
         r.held.push_back(std::move(n));
         return;

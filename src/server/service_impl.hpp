@@ -58,6 +58,7 @@ struct service::stroke_record {
     stroke_id id = {};
     std::string state = "waiting"; ///< "armed", "started"
     std::optional<live_stroke> live = {};
+    double intensity_max = 1.0;                     ///< value of its points' intensity that means 1
     std::optional<point> touched = {};              ///< its last point
     std::optional<std::int64_t> touch_told_ns = {}; ///< when others were told a point
     bool released = false;                          ///< its number was sent

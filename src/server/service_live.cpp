@@ -45,16 +45,18 @@ void service::begin(client& c, const json& params, const answer& to)
         no_stream(stream_.reason());
     ++c.coming;
     ++c.live;
-    once_ready(c.number, to, "options", [this, number = c.number, o, to, asked = mark(c)] {
+    const double intensity_max = s.intensity_max.value_or(1.0);
+    once_ready(c.number, to, "options", [this, number = c.number, o, to, asked = mark(c), intensity_max] {
         client* then = find(number);
         if (then == nullptr)
             return;
         --then->live;
-        begin_now(*then, o, to, stop_reason_since(asked, number));
+        begin_now(*then, o, intensity_max, to, stop_reason_since(asked, number));
     });
 }
 
-void service::begin_now(client& c, const live_options& o, const answer& to, const char* ended_by)
+void service::begin_now(client& c, const live_options& o, double intensity_max, const answer& to,
+                        const char* ended_by)
 {
     player* out = stream_.current();
     if (closing_ || out == nullptr || out->ended())
@@ -72,6 +74,7 @@ void service::begin_now(client& c, const live_options& o, const answer& to, cons
     r.player = stream_.number();
     r.id = live.id();
     r.live = live;
+    r.intensity_max = intensity_max;
     by_player_[{r.player, r.id}] = r.number;
     ++c.live;
     if (c.input_over)
@@ -98,9 +101,10 @@ void service::to(client& c, const json& params, const answer& to)
     const double x = need_number(params, "x_mm", {-farthest_mm, farthest_mm});
     const double y = need_number(params, "y_mm", {-farthest_mm, farthest_mm});
     const json* given = member(params, "intensity");
-    const double intensity =
+    const double asked =
         given == nullptr ? 1.0 : number(*given, "intensity", {0.0, std::numeric_limits<double>::max()});
     stroke_record& r = own_live(c, n);
+    const double intensity = given == nullptr ? 1.0 : asked / r.intensity_max;
     try {
         if (!r.live->to(x, y, intensity))
             no_such_stroke(n, "it has ended");

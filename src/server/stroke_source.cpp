@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include <fmt/format.h>
@@ -11,6 +12,7 @@
 
 #include "core/asked_pace.hpp"
 #include "core/start_times.hpp"
+#include "core/trajectory/recorded_points.hpp"
 #include "core/words.hpp"
 #include "server/faults.hpp"
 
@@ -26,32 +28,31 @@ constexpr double crossings = 4.0;        // of a grid's lines in one pitch of a 
 constexpr double least_soa_s = 0.0001;
 constexpr double least_pitch_mm = 1.0;
 
-timed_point read_point(const json& p, std::size_t i)
+timed_point read_point(const json& p, std::size_t i, double intensity_max)
 {
     const auto what = [&] { return fmt::format("point {}", i + 1); };
     if (!p.is_array() || p.size() < 3 || p.size() > 4)
         bad_param("points", what() + " is not [t, x, y] or [t, x, y, intensity]");
-    for (const json& v : p)
-        if (!v.is_number())
+    for (std::size_t k = 0; k < p.size(); ++k)
+        if (!p[k].is_number() && (k == 0 || !p[k].is_null()))
             bad_param("points", what() + " has something that is no number");
-    return {p[0].get<double>(),
-            {p[1].get<double>(), p[2].get<double>()},
-            p.size() == 4 ? p[3].get<double>() : 1.0};
+    // JSON has null for nan.
+    const auto value = [&p](std::size_t k) {
+        return p[k].is_null() ? std::numeric_limits<double>::quiet_NaN() : p[k].get<double>();
+    };
+    return {value(0), {value(1), value(2)}, p.size() == 4 ? value(3) : intensity_max};
 }
 
-std::vector<stroke> read_points(const json& list)
+std::vector<stroke> read_points(const json& list, double intensity_max)
 {
     if (!list.is_array())
         bad_param("points", "they are no list", "[[t,x,y], ...]");
-    std::vector<timed_point> points;
-    points.reserve(list.size());
-    for (std::size_t i = 0; i < list.size(); ++i) {
-        points.push_back(read_point(list[i], i));
-        points.back().t_s -= i == 0 ? 0.0 : points.front().t_s;
-    }
-    if (!points.empty())
-        points.front().t_s = 0.0;
-    return {stroke{.name = "points", .motion = trajectory::timed(std::move(points))}};
+    detail::recorded_points recorded(intensity_max);
+    recorded.reserve(list.size());
+    for (std::size_t i = 0; i < list.size(); ++i)
+        recorded.add(read_point(list[i], i, intensity_max));
+    trajectory motion = trajectory::timed(recorded.take());
+    return {stroke{.name = "points", .motion = std::move(motion), .warnings = recorded.warnings()}};
 }
 
 stroke stroke_of_path(const std::string& data, const options::wishes& s)
@@ -152,16 +153,16 @@ double park_bursts(const stroke& k, const plan_options& o)
 std::vector<stroke> read_strokes(const std::string& source, const json& v, const options::wishes& s)
 {
     if (source == "points")
-        return read_points(v);
+        return read_points(v, s.intensity_max.value_or(1.0));
     const std::string& t = text(v, source);
     if (source == "stroke")
         return {is_shape(t) ? shape_stroke(t) : preset_stroke(t)};
     if (source == "path")
         return {stroke_of_path(t, s)};
     if (source == "toml")
-        return parse_strokes_toml(t, source);
+        return parse_strokes_toml(t, source, s.intensity_max.value_or(1.0));
     if (source == "csv")
-        return parse_strokes_csv(t, source);
+        return parse_strokes_csv(t, source, s.intensity_max.value_or(1.0));
     return parse_strokes_svg(t, source);
 }
 

@@ -285,7 +285,7 @@ class Record(ToolTest):
         self.write("strokes.toml", STROKES)
         self.write("grid.toml", GRID)
         self.write("soft.csv", "t_s,x_mm,y_mm,intensity\n0,10,30,0.4\n1,45,10,0.4\n")
-        self.write("touch.csv", "t_s,x_mm,y_mm,intensity\n12.5,0,10,1\n13,20,10,0.25\n13.5,40,30,1.5\n")
+        self.write("touch.csv", "t_s,x_mm,y_mm,intensity\n12.5,0,10,1\n13,20,10,0.25\n13.5,40,30,0.5\n")
 
     def test_samples_follow_from_json(self):
         for what, args in self.CASES.items():

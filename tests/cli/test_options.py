@@ -28,7 +28,7 @@ NO_METHOD = {
     "am": "all methods of a study vibrate alike", "noise-seed": "of waveform", "phase": "all methods of a study sound alike",
     "ramp": "all methods of a study sound alike", "envelope": "all methods of a study sound alike", "attack": "of envelope", "release": "of envelope",
     "level-dbfs": "[experiment] level", "sl": "[experiment] level", "intensity-scale": "its motions have the intensities that they have",
-    "stevens-exponent": "of intensity-scale",
+    "stevens-exponent": "of intensity-scale", "intensity-max": "a recording's",
 }
 # Options that a stroke file may give for one stroke. The other options of planning hold for the piece: its strokes share one
 # clock and one array.
@@ -41,8 +41,9 @@ IN_STROKE = {"duration", "speed", "carrier", "algorithm", "phantom", "faces", "s
 # - Waiting: a client's next point comes from a program, 0.5 s; play --live reads lines that a person may type, a day. A lost device: play
 #   ends, since somebody sees it; an experiment waits an hour for its participant's; calibrate and a walk begin again, because a threshold and a
 #   place count on one device; serve waits as long as it runs.
-# - Bounds: an intensity of a profile is a factor, 0 to 1, that of a timed point an amplitude, which max_dbfs limits. calibrate's seed and
-#   --spread-seed are of 32 bits. ALSA has 1024 channels at most, a rendered score may have more. A file's strokes lie within a day.
+# - Python: intensity_max is an argument of load(), parse() and Stroke.timed(), which read recordings; the service takes it from its clients
+#   alone, since [defaults] would weaken what they draw themselves.
+# - Bounds: calibrate's seed and --spread-seed are of 32 bits. ALSA has 1024 channels at most, a rendered score may have more. A file's strokes lie within a day.
 # - One name for two things, in two commands: --power, --log, --method, --page, --seed. The manual says so at each.
 # - /tactor/drive of OSC has its intensity always, as OSC's arguments have places, not names; levels_hz is a page's, which has a WebSocket.
 # - drive (one tactor) is for finding wires from a program; a person has check --walk.

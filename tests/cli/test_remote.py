@@ -291,6 +291,23 @@ class Remote(ToolTest):
             self.refused(2, "play", "--live", "-", *option, says=(option[0], "a live stroke does not know it"))
         self.refused(2, "play", "--live", "-", "--level-dbfs", "-1", "--array", "none.toml")
 
+    def test_points_outside_the_array_are_counted_and_reported(self):
+        lines = "640 480\n20 20\n640 480\n"
+        for where in (("-D", "null"), ("--socket", self.serve().where["socket"])):
+            r = self.ok("play", "--live", "-", *where, "--format", "json", stdin=lines)
+            self.assertEqual(json.loads(r.stdout)["strokes"][0]["outside_points"], 2)
+            r = self.ok("play", "--live", "-", *where, stdin=lines)
+            self.assertIn("; 2 points outside the array moved to its edge\n", r.stdout)
+        r = self.ok("play", "--live", "-", "-D", "null", "--verbose", stdin=lines)
+        self.assertEqual(r.stderr.count("warning: standard input:1: the place (640, 480) mm is outside the array: moved to its edge"), 1)
+        self.assertRegex(r.stderr, "warning live stroke [0-9]+: 2 points outside the array moved to its edge\n")
+
+    def test_lines_of_other_programs_are_read(self):
+        for lines in ("\ufeff20 20\n21 20\n", "+20 20\n21 +2e1\n", "20 20 127\n21 20\n"):
+            r = self.ok("play", "--live", "-", "-D", "null", "--intensity-max", "127", "--format", "json", stdin=lines)
+            self.assertEqual(json.loads(r.stdout)["strokes"][0]["held_points"], 0, r.stderr)
+        self.refused(2, "play", "--live", "-", "-D", "null", stdin="20 20\nab\0cd 22\n", says=("standard input:2:", '"ab\\x00cd" is not a number'))
+
     def test_an_intensity_above_1_sounds_as_1_and_is_reported_once(self):
         lines = "20 20 80\n20, 20, 0.5\n0.1 20 20\n"
         warning = "tactor: warning: standard input:1: an intensity of 80 sounds as 1: the level asked for is the ceiling "

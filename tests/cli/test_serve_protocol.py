@@ -145,7 +145,6 @@ class Protocol(ServeTest):
                              ("options.power_dbfs", {"path": path, "options": {"power_dbfs": 1}}),
                              ("options.level_dbfs", {"path": path, "options": {"level_dbfs": -11.9}}),
                              ("points", {"points": [[0, 0, 0], [1, 20, 20, 1.1]]}),
-                             ("options.level_dbfs", {"points": [[0, 0, 0], [1, 20, 20, 1.1]], "options": {"level_dbfs": -3}}),
                              ("options.sl", {"path": path, "options": {"sl": 10}}),
                              ("options.algorithm", {"path": path, "options": {"algorithm": "x"}}),
                              ("options.snap", {"path": path, "options": {"snap": "true"}}),

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Carriers, envelopes and scales: options, stroke files and plans."""
 import math
+import os
 
 from harness import ToolTest, Wav, main, wav_bytes
 
@@ -44,6 +45,31 @@ class Sound(ToolTest):
         plain = self.rendered("park2016-3")
         self.assertEqual(self.rendered("park2016-3", "--waveform", "sine", "--am", "0", "--intensity-scale", "linear").data, plain.data)
         self.assertEqual(self.rendered("park2016-3", "--envelope", "raised-cosine").data, plain.data)
+
+    def test_an_intensity_above_1_is_refused_until_the_recorders_scale_is_said(self):
+        self.write("track.csv", "t_s,x_mm,y_mm,intensity\n0,5,5,255\n1,35,35,128\n")
+        self.write("track.toml", "[stroke]\ntimed = [[0, 5, 5, 255], [1, 35, 35, 128]]\n")
+        for name, where in (("track.csv", "2:7"), ("track.toml", "2:20")):
+            self.refused(2, "plan", name, says=(f"{name}:{where}: intensity 255 is above 1", "--intensity-max 255 for 8 bits"))
+            wav = self.same_from_plan(name, "--algorithm", "continuous", "--level-dbfs", "-60", "--intensity-max", "255")
+            peak = max(abs(v) for frame in wav.samples() for v in frame)
+            self.assertLessEqual(peak, 10 ** (-60 / 20) * (1 + 1e-6))
+            self.assertGreater(peak, 10 ** (-66 / 20))
+
+    def test_a_plan_finds_its_recording_beside_itself(self):
+        self.wave()
+        self.write("plan.json", self.ok("plan", *LINE, "--waveform", "grain.wav", "--format", "json").stdout)
+        before = self.rendered("plan.json").data
+        (self.dir / "there").mkdir()
+        for name in ("grain.wav", "plan.json"):
+            (self.dir / name).rename(self.dir / "there" / name)
+        self.assertEqual(self.rendered("there/plan.json").data, before)
+        (self.dir / "there/grain.wav").write_bytes(wav_bytes([0.0, 1.0, -1.0]))
+        self.assertEqual(self.run_tool("render", "there/plan.json", "-o", "x.wav").returncode, 2)
+
+    def test_a_pipe_is_no_recording(self):
+        os.mkfifo(self.dir / "grain.wav")
+        self.refused(2, "plan", *LINE, "--waveform", "grain.wav", says=("grain.wav: is a pipe (name a WAV file",))
 
     def test_noise_has_a_seed(self):
         args = (*LINE, "--waveform", "noise:80-300")

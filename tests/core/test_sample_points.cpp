@@ -60,10 +60,10 @@ TEST_CASE("timed points are given back as they are, or stretched")
         CHECK(same[i].position == own[i].position);
         CHECK(same[i].intensity == own[i].intensity);
     }
-    const auto longer = detail::sample_points(trajectory::timed(own).with_duration(0.8).with_intensity(2.0));
+    const auto longer = detail::sample_points(trajectory::timed(own).with_duration(0.8).with_intensity(0.5));
     CHECK(longer[1].t_s == doctest::Approx(0.2));
     CHECK(longer[2].t_s == 0.8);
-    CHECK(longer[1].intensity == 1.0);
+    CHECK(longer[1].intensity == 0.25);
 }
 
 TEST_CASE("paths are sampled closely, and lines not at all")

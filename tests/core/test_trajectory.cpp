@@ -104,6 +104,9 @@ TEST_CASE("intensity is scaled with the movement as it was")
     CHECK_THROWS_AS(t.with_intensity(-1.0), tactor::error);
     CHECK_THROWS_AS(t.with_intensity(nan_value), tactor::error);
     CHECK_THROWS_AS(t.with_intensity(infinite), tactor::error);
+    CHECK_THROWS_AS(t.with_intensity(1.01), tactor::error);
+    CHECK(t.with_intensity(0.5).with_intensity(2.0).intensity(0.0) == 1.0);
+    CHECK_THROWS_AS(trajectory::timed({{0.0, {}, 1.0}, {1.0, {}, 1.01}}), tactor::error);
 }
 
 TEST_CASE("trajectories give the times at which the target meets a line of the grid")

@@ -171,7 +171,11 @@ TEST_CASE("outside the array the nearest point plays and is counted, or is an er
     CHECK(r.live->to({10.0, 10.0}, 1.0));
     CHECK(r.live->to({1e300, -1e300}, 1.0));
     CHECK(r.live->points == 3);
-    CHECK(r.live->outside_points == 2);
+    CHECK(r.live->to({-0.005, 0.0}, 1.0)); // on the edge, as far as anybody can draw
+    CHECK(r.live->voice.outside_points() == 2);
+    r.live->voice.request(engine::live_voice::action::end);
+    r.play_out();
+    CHECK(r.end({1}).outside_points == 2);
     live_options strict;
     strict.plan.outside = outside_kind::error;
     auto s = r.add(strict);

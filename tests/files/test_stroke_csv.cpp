@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <doctest/doctest.h>
 
+#include <cmath>
 #include <random>
 #include <string>
 #include <vector>
@@ -129,13 +130,13 @@ TEST_CASE("faults of a CSV file are named by line and column")
         {"t_s,x_mm,y_mm\n0,0,0\n1,nan,1\n", "f.csv:3: 1 of at least 2 points"},
         {"t_s,x_mm,y_mm\n0,0,0\nnan,1,1\n", "f.csv:3:1: t_s is not a number: 'nan'"},
         {"t_s,x_mm,y_mm\n0,0,0\n1,1,inf\n", "f.csv:3:5: y_mm is not a number: 'inf'"},
-        {"t_s,x_mm,y_mm\n0,0,0\n1,1,-1e999\n", "f.csv:3:5: y_mm -1e999"},
+        {"t_s,x_mm,y_mm\n0,0,0\n1,1,-1e999\n", "f.csv:3:5: y_mm -inf"},
         {"t_s,x_mm,y_mm\n0,0,0\n1,1000001,0\n", "f.csv:3:3: x_mm 1000001 (it is between -1e+06 and 1e+06)"},
         {"t_s,x_mm,y_mm\n0,0,0\n86401,1,0\n",
          "f.csv:3:1: time 86401 s is 86401 s after the first line (a stroke lasts at most 86400 s)"},
         {"t_s,x_mm,y_mm\n1000000,0,0\n1086400.5,1,0\n",
          "f.csv:3:1: time 1086400.5 s is 86400.5 s after the first line"},
-        {"t_s,x_mm,y_mm\n0,0,0\n1e11,1,0\n", "f.csv:3:1: t_s 1e11 (it is between -1e+10 and 1e+10)"},
+        {"t_s,x_mm,y_mm\n0,0,0\n1e11,1,0\n", "f.csv:3:1: t_s 100000000000 (it is between -1e+10 and 1e+10)"},
         {"t_s,x_mm,y_mm\n-1,0,0\n-2,1,0\n", "f.csv:3:1: time -2 s is before -1 s"},
         {"t_s,x_mm,y_mm\n1e10,0,0\n10000000000.0000001,1,0\n",
          "f.csv:3: 1 of at least 2 points with times of their own"},
@@ -143,8 +144,13 @@ TEST_CASE("faults of a CSV file are named by line and column")
          "f.csv:5:1: time 0.5 s is before 1 s of the line before (times ascend)"},
         {"x_mm,t_s,y_mm\n0,0,0\n1,2,0\n2,2,0\n2,1.5,0\n", "f.csv:5:3: time 1.5 s is before 2 s"},
         {"t_s,x_mm,y_mm\n7,0,0\n7,1,0\n7,2,0\n", "f.csv:4: 1 of at least 2 points with times of their own"},
-        {"t_s,x_mm,y_mm,intensity\n0,0,0,1\n1,1,0,-0.5\n",
-         "f.csv:3:7: intensity -0.5 (it is between 0 and 1000)"},
+        {"t_s,x_mm,y_mm,intensity\n0,0,0,1\n1,1,0,-0.5\n", "f.csv:3:7: intensity -0.5 (it is 0 or more)"},
+        {"t_s,x_mm,y_mm,intensity\n0,0,0,1\n1,1,0,255\n",
+         "f.csv:3:7: intensity 255 is above 1, which means the level asked for (say which value means 1: "
+         "intensity_max = 100 for per cent, intensity_max = 127 for MIDI, intensity_max = 255 for 8 bits)"},
+        {"t_ms,x_mm,y_mm\n", "f.csv:1:1: unknown column 't_ms' ('t_s' is in s, not ms: divide by 1000)"},
+        {"t_s,x_cm,y_mm\n", "f.csv:1:5: unknown column 'x_cm' ('x_mm' is in mm, not cm: multiply by 10)"},
+        {"t_s,x_px,y_px\n", "f.csv:1:5: unknown column 'x_px' ('x_mm' is in mm, not px)"},
         {"t_s,x_mm,y_mm\n0,\"0,0\n", "f.csv:2:3: a quote that does not end"},
         {"t_s,x_mm,y_mm\n0,\"0\"0,0\n", "f.csv:2:6: text behind a quote"},
     };
@@ -192,6 +198,37 @@ TEST_CASE("lines without a place are gaps, in which the touch is lifted")
     CHECK(half.motion.intensity(2.0) == 0.5);
     CHECK(half.motion.intensity(3.0) == 0.0);
     CHECK(half.motion.duration_s() == 4.0);
+}
+
+TEST_CASE("rows that a spreadsheet leaves empty are skipped")
+{
+    const stroke s = one("\n,,\nt_s,x_mm,y_mm\n0,5,5\n,,\n1,35,35\n,,\r\n , ,\n");
+    CHECK(s.motion.duration_s() == 1.0);
+    CHECK(s.motion.position(1.0) == point{35.0, 35.0});
+    CHECK(s.warnings.empty());
+}
+
+TEST_CASE("the greatest intensity of a recorder's scale is 1")
+{
+    const auto read = [](double most) {
+        return tactor::parse_strokes_csv("t_s,x_mm,y_mm,intensity\n0,0,0,255\n1,1,1,51\n", "f.csv", most);
+    };
+    CHECK(read(255.0).front().motion.intensity(0.0) == 1.0);
+    CHECK(read(255.0).front().motion.intensity(1.0) == 0.2);
+    CHECK(caught_message([&] {
+              static_cast<void>(read(127.0));
+          }).starts_with("f.csv:2:7: intensity 255 is above 127"));
+    for (const double most : {0.0, -1.0, std::nan("")})
+        CHECK(caught_message([&] { static_cast<void>(read(most)); }).starts_with("intensity_max: "));
+}
+
+TEST_CASE("a long stroke of few points is asked for its unit of time")
+{
+    const stroke s = one("t_s,x_mm,y_mm\n0,0,0\n3700,1,1\n7400,2,2\n");
+    REQUIRE(s.warnings.size() == 1);
+    CHECK(s.warnings[0] == "dir/finger.csv:4: only 3 points in 7400 s: times are in seconds; if these are "
+                           "milliseconds, divide them by 1000");
+    CHECK(one("t_s,x_mm,y_mm\n0,0,0\n3600,1,1\n").warnings.empty());
 }
 
 TEST_CASE("a million lines are read unchanged")

@@ -20,9 +20,10 @@ std::vector<stroke> read(const std::string& text)
     return parse_strokes_toml(text, "dir/wave.toml");
 }
 
-stroke one(const std::string& body)
+stroke one(const std::string& body, double intensity_max = 1.0)
 {
-    const std::vector<stroke> all = read("[stroke]\n" + body + "\n");
+    const std::vector<stroke> all =
+        parse_strokes_toml("[stroke]\n" + body + "\n", "dir/wave.toml", intensity_max);
     REQUIRE(all.size() == 1);
     return all.front();
 }
@@ -185,18 +186,29 @@ TEST_CASE("refusals of geometry have their line")
               .starts_with("w.toml:2:7: "));
 }
 
+TEST_CASE("timed points are a recording, as lines of a CSV file are")
+{
+    const stroke s = one("timed = [\n[5, 0, 0, 51], [5, 1, 1, 255],\n[6, nan, 2],\n[7, 3, 3, 0]]", 255.0);
+    CHECK(s.motion.duration_s() == 2.0);
+    CHECK(s.motion.position(0.0) == tactor::point{1.0, 1.0});
+    CHECK(s.motion.intensity(0.0) == 1.0);
+    CHECK(s.motion.intensity(1.0) == 0.0);
+    REQUIRE(s.warnings.size() == 2);
+    CHECK(s.warnings[0] == "dir/wave.toml:4:1: no place (nan) in this point: the touch is lifted there");
+    CHECK(s.warnings[1] == "dir/wave.toml:3:17: repeats the time of the point before, which does not count");
+    CHECK(one("timed = [[0, 0, 0], [1, 1, 1]]\nintensity = 0.5", 255.0).motion.intensity(0.5) == 0.5);
+}
+
 TEST_CASE("timed points out of order are refused with the line of the point")
 {
-    CHECK(
-        complaint("timed = [\n[0, 0, 0],\n[1, 1, 1],\n[1, 2, 2]]") ==
-        "w.toml:5:1: the time 1 s does not come after 1 s (put the points in order of time, each time once)");
-    CHECK(complaint("timed = [[0.5, 0, 0], [1, 1, 1]]") ==
-          "w.toml:2:10: the first time is 0.5 s (times count from 0 at the start of the stroke; start_s "
-          "moves all of it)");
+    CHECK(complaint("timed = [\n[0, 0, 0],\n[1, 1, 1],\n[0.5, 2, 2]]") ==
+          "w.toml:5:2: time 0.5 s is before 1 s of the point before (times ascend)");
     CHECK(complaint("timed = [\n[0, 0]]") ==
           "w.toml:3:1: a timed point is a list (give [t_s, x_mm, y_mm] or [t_s, x_mm, y_mm, intensity])");
-    CHECK(complaint("timed = [[0, 0, 0, -1], [1, 1, 1]]").starts_with("w.toml:2:20: intensity is -1"));
-    CHECK(complaint("timed = [[0, 0, 0], [nan, 1, 1]]").starts_with("w.toml:2:22: t_s is nan"));
+    CHECK(complaint("timed = [[0, 0, 0, -1], [1, 1, 1]]").starts_with("w.toml:2:20: intensity -1 ("));
+    CHECK(complaint("timed = [[0, 0, 0, 1.5], [1, 1, 1]]")
+              .starts_with("w.toml:2:20: intensity 1.5 is above 1"));
+    CHECK(complaint("timed = [[0, 0, 0], [nan, 1, 1]]").starts_with("w.toml:2:22: t_s nan"));
     CHECK(complaint("timed = [[0, 0, 0]]").starts_with("w.toml:2:9: "));
     CHECK(complaint("timed = []").starts_with("w.toml:2:9: "));
     // A path of no length has no speed.

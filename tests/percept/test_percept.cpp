@@ -223,7 +223,7 @@ TEST_CASE("any plan is felt like in a search at each time")
         for (unsigned i = 1; i <= 4; ++i)
             points.push_back({i * between(g, 0.2, 0.25),
                               {between(g, 0, corner.x_mm), between(g, 0, corner.y_mm)},
-                              between(g, 0.0, 2.0)});
+                              between(g, 0.0, 1.0)});
         const stroke s = timed(points);
         plan_options o;
         o.algorithm = static_cast<algorithm_kind>(round % 3);

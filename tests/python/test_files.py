@@ -19,7 +19,7 @@ def drawn():
     yield tactor.Stroke.along(path, 1.7, intensity=0.3).reversed().with_duration(0.123456789)
     yield tactor.Stroke.along(path, 1.0, easing="minimum-jerk")
     yield tactor.Stroke.along(path, 2.0, pauses=[(0.2, 0.1), (0.5, 0.3, 0.0)], intensity=[(0, 0.2), (1, 1)], easing="in-out")
-    yield tactor.Stroke.timed([0, 0.1, 0.5], [0, 10, 40], [0, 20, 5], [1, 3.5, 0], name="t")
+    yield tactor.Stroke.timed([0, 0.1, 0.5], [0, 10, 40], [0, 20, 5], [1, 0.35, 0], name="t")
     yield tactor.Stroke.timed([0, 0.1, 0.5], [0, 10, 40], [0, 20, 5]).with_duration(0.7)
     yield tactor.Stroke.preset("park2016-3")
     yield tactor.Stroke.preset("wave-2x4")

@@ -153,6 +153,16 @@ def test_an_intensity_above_1_sounds_as_1_and_is_reported_once(player, short):
     assert player.play(short).held_points == 0
 
 
+def test_points_outside_the_array_are_counted_and_said_once(player):
+    with warnings.catch_warnings(record=True) as said:
+        warnings.simplefilter("always")
+        with player.live(intensity_max=255) as finger:
+            assert finger.to(640, 480, 255) and finger.to(20, 20) and finger.to(640, 480, 300)
+    assert [str(w.message) for w in said] == [
+        "the place (640, 480) mm is outside the array: moved to its edge", "an intensity of 300 sounds as 255: the level asked for is the ceiling"]
+    assert finger.report.outside_points == 2 and finger.report.held_points == 1
+
+
 def test_a_live_strokes_report_has_the_delay_of_its_points(player, short):
     with player.live() as finger:
         stamp = time.monotonic() - 1.0

@@ -80,6 +80,19 @@ def test_a_pickled_array_is_as_loud_as_that_of_its_file(tmp_path, stroke):
     assert np.abs(samples[0]).max() > 0.01 and (samples[0] == samples[1]).all()
 
 
+def test_a_recording_is_read_as_a_csv_file_is(tmp_path):
+    rows = [(7, 0, 0, 51), (7, 5, 5, 255), (7.5, float("nan"), 20, 9), (8, 40, 40, 0)]
+    csv = "t_s,x_mm,y_mm,intensity\n" + "".join(f"{t},{x},{y},{i}\n" for t, x, y, i in rows)
+    (tmp_path / "r.csv").write_text(csv)
+    recorded = tactor.Stroke.timed(*zip(*rows), intensity_max=255, name="r")
+    [loaded] = tactor.load(tmp_path / "r.csv", intensity_max=255)
+    for t in (0.0, 0.2, 0.9, 1.0):
+        assert recorded.position(t) == loaded.position(t) and recorded.intensity(t) == loaded.intensity(t)
+    assert recorded.duration == 1.0 and len(recorded.warnings) == len(loaded.warnings) == 2
+    with pytest.raises(tactor.InputError, match="point 2: intensity 255 is above 1.*intensity_max=255 for 8 bits"):
+        tactor.Stroke.timed([0, 1], [0, 1], [0, 1], [1, 255])
+
+
 @pytest.mark.parametrize("make", [
     lambda: tactor.Array("none", []),
     lambda: tactor.Array.from_points([(0, 0), (0, 0)]),
@@ -207,7 +220,7 @@ def test_damaged_pickles_are_refused(stroke):
     lambda: tactor.Stroke.along(tactor.Path.svg("M 0 0 L 1 1"), duration=0), lambda: tactor.Stroke.along(tactor.Path.svg("M 0 0 L 1 1"), speed=0),
     lambda: tactor.Stroke.along(tactor.Path.svg("M 0 0 L 1 1"), duration=1, speed=1),
     lambda: tactor.Stroke.timed([0, 1], [0, 1], [0]), lambda: tactor.Stroke.timed([0], [0], [0]),
-    lambda: tactor.Stroke.timed([1, 2], [0, 1], [0, 1]), lambda: tactor.Stroke.timed([0, 1], [0, 1], [0, 1], [1, 2, 3]),
+    lambda: tactor.Stroke.timed([2, 1], [0, 1], [0, 1]), lambda: tactor.Stroke.timed([0, 1], [0, 1], [0, 1], [1, 255]), lambda: tactor.Stroke.timed([0, 1], [0, 1], [0, 1], [1, 2, 3]),
     lambda: tactor.Stroke.preset("park"), lambda: tactor.Stroke.shape("square"),
 ])
 def test_impossible_paths_and_strokes_are_refused(make):

@@ -90,10 +90,13 @@ TEST_CASE("all clients together stay below the ceiling on every channel")
     const json loud{{"stroke", live}, {"x_mm", 20}, {"y_mm", 20}, {"intensity", 1000}};
     CHECK(rig.ok(b, "to", loud).empty());
     CHECK(rig.ok(b, "to", loud).empty());
+    CHECK(rig.ok(b, "to", {{"stroke", live}, {"x_mm", 640}, {"y_mm", 20}}).empty());
     rig.find_end(a, x);
     rig.find_end(b, y);
     rig.ok(b, "end", {{"stroke", live}});
-    CHECK(rig.find_end(b, live)["held_points"] == 2);
+    const json end = rig.find_end(b, live);
+    CHECK(end["held_points"] == 2);
+    CHECK(end["outside_points"] == 1);
     CHECK(find_peak(card) <= -12.0 + 0.01);
     CHECK(find_peak(card) > -12.5);
 }

@@ -24,10 +24,12 @@ namespace {
 
 const array palm = preset_array("palm-3x3");
 
-plan continuous(std::vector<timed_point> points, plan_options o = {})
+/// \param level_db the stroke's own level, which takes it above intensity 1
+plan continuous(std::vector<timed_point> points, double level_db, plan_options o = {})
 {
     o.algorithm = algorithm_kind::continuous;
-    return make_plan(palm, {"", trajectory::timed(std::move(points)), {}, {}, {}}, o);
+    return make_plan(palm,
+                     {.motion = trajectory::timed(std::move(points)), .choices = {.level_db = level_db}}, o);
 }
 
 /// Hides everything of a plan except its values.
@@ -50,14 +52,14 @@ std::string refusal(std::vector<placed_plan> plans, double level_dbfs)
     return {};
 }
 
-/// Makes intensity 0.5 over the array, except for 8 ms round a time.
+/// Makes intensity 0.0005 over the array, except for 8 ms round a time.
 std::vector<timed_point> with_spike(double duration_s, double at_s, double intensity)
 {
     const auto place = [&](double t) { return point{40.0 * t / duration_s, 20.0}; };
-    std::vector<timed_point> points{{0.0, place(0.0), 0.5}};
-    for (const auto& [off, i] : {std::pair{-0.004, 0.5}, {0.0, intensity}, {0.004, 0.5}})
+    std::vector<timed_point> points{{0.0, place(0.0), 0.0005}};
+    for (const auto& [off, i] : {std::pair{-0.004, 0.0005}, {0.0, intensity}, {0.004, 0.0005}})
         points.push_back({at_s + off, place(at_s + off), i});
-    points.push_back({duration_s, place(duration_s), 0.5});
+    points.push_back({duration_s, place(duration_s), 0.0005});
     return points;
 }
 
@@ -72,13 +74,13 @@ TEST_CASE("a spike of 8 ms is found in strokes of ten seconds to a day, and acce
             const double at = ms(random) * 0.001;
             CAPTURE(duration);
             CAPTURE(at);
-            const plan p = continuous(with_spike(duration, at, 1000.0));
+            const plan p = continuous(with_spike(duration, at, 1.0), 60.0);
             CHECK(refusal({{p, {}}}, -40.0).find("dBFS, above full scale (0 dBFS)") != std::string::npos);
             CHECK(refusal({{p, {}}}, -60.0).empty());
         }
     }
     // On a tactor that one gets the whole amplitude, and the message has the value.
-    const plan p = continuous(with_spike(3600.0, 1800.0, 1000.0));
+    const plan p = continuous(with_spike(3600.0, 1800.0, 1.0), 60.0);
     CHECK(refusal({{p, {}}}, -40.0).find("tactor 4: would be driven at 20 dBFS, above full scale") !=
           std::string::npos);
 }
@@ -87,18 +89,20 @@ TEST_CASE("a plan is left unseen only where its intensity is above no limit: as 
 {
     std::mt19937_64 random(12);
     std::uniform_real_distribution<double> unit(0.0, 1.0);
+    const double stronger_db = 20.0 * std::log10(1.7);
     int refused = 0;
     for (int n = 0; n < 120; ++n) {
         CAPTURE(n);
         std::vector<timed_point> points;
         for (double t = 0.0; t < 1.0 + unit(random); t += 1e-4 + 0.2 * std::pow(unit(random), 3.0))
-            points.push_back({t, {40.0 * unit(random), 40.0 * unit(random)}, 1.7 * unit(random)});
+            points.push_back({t, {40.0 * unit(random), 40.0 * unit(random)}, unit(random)});
         points.push_back({2.5, {20.0, 20.0}, 0.0});
         plan_options o;
         o.phantom = static_cast<phantom_kind>(n % 5);
-        plan p = continuous(points, o);
+        plan p = continuous(points, stronger_db, o);
         if (n % 3 == 0) {
-            const stroke s{"", trajectory::timed(points).with_duration(0.7).with_intensity(0.9), {}, {}, {}};
+            const stroke s{.motion = trajectory::timed(points).with_duration(0.7).with_intensity(0.9),
+                           .choices = {.level_db = stronger_db}};
             o.algorithm = algorithm_kind::continuous;
             p = make_plan(palm, s, o);
         }
@@ -114,11 +118,12 @@ TEST_CASE("a plan is left unseen only where its intensity is above no limit: as 
 TEST_CASE("a stroke with a spike that no tactor alone could have is played where two share it")
 {
     // On a diagonal; harmless before and after.
-    const plan p = continuous({{0.0, {0.0, 10.0}, 0.5},
-                               {5.0, {10.0, 10.0}, 0.5},
-                               {5.1, {10.0, 10.0}, 1.3},
-                               {5.2, {10.0, 10.0}, 0.5},
-                               {10.0, {40.0, 10.0}, 0.5}});
+    const plan p = continuous({{0.0, {0.0, 10.0}, 0.25},
+                               {5.0, {10.0, 10.0}, 0.25},
+                               {5.1, {10.0, 10.0}, 0.65},
+                               {5.2, {10.0, 10.0}, 0.25},
+                               {10.0, {40.0, 10.0}, 0.25}},
+                              20.0 * std::log10(2.0));
     CHECK(refusal({{p, {}}}, 0.0).empty());
     const std::vector<double> peaks = synth::continuous_peaks(p, 9);
     CHECK(peaks[0] == doctest::Approx(1.3 / std::sqrt(2.0)));
@@ -167,7 +172,8 @@ TEST_CASE("strokes that are harmless alone are added up where they overlap, even
         const plan late = continuous({{0.0, {20.0, 20.0}, 0.0},
                                       {rest, {20.0, 20.0}, 0.0},
                                       {rest + 0.5, {20.0, 20.0}, 0.7},
-                                      {rest + 1.0, {20.0, 20.0}, 0.0}});
+                                      {rest + 1.0, {20.0, 20.0}, 0.0}},
+                                     0.0);
         const auto with = [&](double amplitude, double at) {
             plan p = pieces::make_plan({pieces::make_burst(0.0, 0.07, {{4, amplitude}})});
             return refusal({{late, 0.0}, {p, at}}, 0.0);

@@ -293,6 +293,34 @@ TEST_CASE("a carrier along the path follows its list, without a jump")
     CHECK(has(caught_message([&] { static_cast<void>(make_plan(row(3), s, {})); }), "not a carrier"));
 }
 
+TEST_CASE("a modulation at a harmonic that the wave has is refused: it would be a displacement")
+{
+    const auto refusal = [](const waveform& w, double am_hz, const std::vector<carrier_point>& course = {}) {
+        plan p = tone(w, 250.0, 0.1);
+        p.am = {am_hz, 1.0};
+        p.course = course;
+        return caught_message([&] { static_cast<void>(played(p)); });
+    };
+    const waveform sine = shape(waveform_kind::sine);
+    for (const double hz : {245.0, 250.0, 255.0})
+        CHECK(has(refusal(sine, hz),
+                  "am: " + fmt::format("{}", hz) + " Hz is within 5 Hz of the carrier, 250 Hz"));
+    for (const double hz : {30.0, 244.9, 255.1, 500.0, 750.0})
+        CHECK(refusal(sine, hz).empty());
+    for (const waveform_kind k : shapes) {
+        CHECK(has(refusal(shape(k), 752.0), "harmonic 3 of the carrier, 750 Hz"));
+        CHECK(refusal(shape(k), 600.0).empty());
+        CHECK(refusal(shape(k), 500.0).empty() == (k != waveform_kind::sawtooth));
+    }
+    const waveform twice = recorded({0.0F, 1.0F, 0.0F, -1.0F, 0.0F, 1.0F, 0.0F, -1.0F}, texture_kind::cycle);
+    CHECK(refusal(twice, 250.0).empty());
+    CHECK(has(refusal(twice, 500.0), "harmonic 2"));
+    CHECK(has(refusal(sine, 150.0, {{0.0, 100.0}, {0.1, 200.0}}),
+              "the carrier passes 150 Hz on its way from 100"));
+    CHECK(refusal(sine, 94.0, {{0.0, 100.0}, {0.1, 200.0}}).empty());
+    CHECK(refusal(noise(100, 300), 200.0).empty());
+}
+
 TEST_CASE("waves that cannot be rendered are refused with a hint")
 {
     const auto refused = [](const waveform& w, const modulation& m, const std::string& part,

@@ -16,6 +16,7 @@
 #include "cli/say.hpp"
 #include "cli/settings.hpp"
 #include "cli/warnings.hpp"
+#include "session/live_remarks.hpp"
 #include "session/play_session.hpp"
 #include "session/threshold_carrier.hpp"
 
@@ -102,13 +103,14 @@ std::optional<error> play_all(session::play_session& session, bool as_json, cons
 stroke_report follow_lines(session::play_session& session, const live_options& o, live_lines& lines)
 {
     live_stroke stroke = session.begin(o);
+    session::live_remarks remarks(lines.intensity_max());
     bool begun = false;
     bool ended = false;
     return session.follow([&] {
         while (const auto p = lines.next()) {
             stroke.to(p->position.x_mm, p->position.y_mm, p->intensity);
-            if (p->intensity > 1.0 && stroke.counts().held == 1)
-                lines.warn_of_held(p->intensity);
+            for (const std::string& remark : remarks.take(stroke, p->position, p->intensity))
+                lines.warn(remark);
             begun = true;
         }
         if (lines.over() && !std::exchange(ended, true))
@@ -150,7 +152,7 @@ int play_live(settings& s, const play_options& o)
     return hold_run(
         s, e, l.render.channels, l.render.rate, o.json(), {{"live"}},
         [&](session::play_session& session, std::vector<stroke_outcome>& outcomes) -> std::optional<error> {
-            live_lines lines(STDIN_FILENO);
+            live_lines lines(STDIN_FILENO, s.intensity_max.value_or(1.0));
             stroke_outcome& out = outcomes.front();
             out.report = follow_lines(session, l, lines);
             out.length_frames = out.report->frames;

@@ -17,6 +17,7 @@
 #include "cli/say.hpp"
 #include "core/split.hpp"
 #include "core/words.hpp"
+#include "files/text_file.hpp"
 #include "session/pipes.hpp"
 
 namespace tactor::cli {
@@ -38,6 +39,14 @@ std::vector<std::string_view> split(std::string_view line)
             words.back().remove_suffix(1);
     }
     return words;
+}
+
+// Reads a number, also nan, and with a plus sign.
+std::optional<double> read_number(std::string_view word)
+{
+    if (word.starts_with('+') && !word.starts_with("+-"))
+        word.remove_prefix(1);
+    return detail::number_in<double>(word);
 }
 
 source_place line_place(std::size_t line)
@@ -76,7 +85,7 @@ std::optional<timed_point> live_lines::next()
             const std::string line = buffer_.substr(0, end);
             buffer_.erase(0, end + 1);
             ++line_;
-            if (const auto point = parse(line))
+            if (const auto point = parse(line_ == 1 ? detail::without_mark(line) : line))
                 return point;
         }
         if (buffer_.size() > longest_line)
@@ -87,7 +96,7 @@ std::optional<timed_point> live_lines::next()
     return std::nullopt;
 }
 
-std::optional<timed_point> live_lines::parse(const std::string& line)
+std::optional<timed_point> live_lines::parse(std::string_view line)
 {
     const auto words = split(line);
     if (words.empty() || words.front().front() == '#')
@@ -96,14 +105,14 @@ std::optional<timed_point> live_lines::parse(const std::string& line)
         throw error(error_kind::bad_input, line_place(line_), why,
                     "give x y [intensity]: two places in mm and a factor from 0 to 1, such as 20 12.5 0.8");
     };
-    double v[3] = {0.0, 0.0, 1.0};
+    double v[3] = {};
     bool lost = false;
     for (std::size_t i = 0; i < words.size(); ++i) {
         if (words[i].find(',') != std::string_view::npos)
             refuse(fmt::format("\"{}\" has a comma that could be a decimal one", words[i]));
         if (i == std::size(v))
             refuse(counted(words.size(), "word"));
-        const auto number = detail::number_in<double>(words[i]);
+        const auto number = read_number(words[i]);
         if (!number || std::isinf(*number))
             refuse(fmt::format("\"{}\" is not a number", words[i]));
         v[i] = *number;
@@ -118,15 +127,15 @@ std::optional<timed_point> live_lines::parse(const std::string& line)
     if (words.size() < 2)
         refuse(counted(words.size(), "word"));
     last_ = point{v[0], v[1]};
-    return timed_point{.position = *last_, .intensity = v[2]};
+    return timed_point{.position = *last_, .intensity = words.size() == 3 ? v[2] / intensity_max_ : 1.0};
 }
 
-void live_lines::warn_of_held(double intensity) const
+void live_lines::warn(const std::string& remark) const
 {
     say(stderr,
-        "tactor: warning: standard input:{}: {} (x y [intensity] is the order; further points of this "
-        "kind are counted)\n",
-        line_, held_text(intensity));
+        "tactor: warning: standard input:{}: {} (x y [intensity] is the order; further points of this kind "
+        "are counted)\n",
+        line_, remark);
 }
 
 } // namespace tactor::cli

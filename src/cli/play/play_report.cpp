@@ -42,6 +42,7 @@ json to_json(const stroke_outcome& s, unsigned rate)
             {"started_ns", ended && s.report->started_ns ? json(*s.report->started_ns) : json(nullptr)},
             {"delay", ended && s.report->delay ? to_json(*s.report->delay) : json(nullptr)},
             {"held_points", ended ? s.report->held_points : 0},
+            {"outside_points", ended ? s.report->outside_points : 0},
             {"reason", has_reason ? json(s.report->why) : json(nullptr)}};
 }
 
@@ -142,6 +143,9 @@ std::string describe(const stroke_outcome& s, unsigned rate)
     }
     if (s.report && s.report->held_points != 0)
         text += fmt::format("; {} above intensity 1 sounded as 1", counted(s.report->held_points, "point"));
+    if (s.report && s.report->outside_points != 0)
+        text += fmt::format("; {} outside the array moved to its edge",
+                            counted(s.report->outside_points, "point"));
     return text;
 }
 

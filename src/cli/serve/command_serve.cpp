@@ -155,6 +155,7 @@ server::planning make_planning(const settings& s, const environment& e, const op
 {
     server::planning p;
     p.owner = static_cast<const options::wishes&>(s);
+    p.owner.intensity_max.reset(); // each client says how its own numbers count
     p.owner.render = session::settle_render(s, e);
     p.max_level_dbfs = serve.max_level_dbfs.value_or(p.owner.render.level_dbfs);
     p.owner.render.level_dbfs = std::min(p.owner.render.level_dbfs, p.max_level_dbfs);

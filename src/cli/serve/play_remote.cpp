@@ -21,6 +21,7 @@
 #include "cli/serve/server_words.hpp"
 #include "cli/warnings.hpp"
 #include "session/interrupt.hpp"
+#include "session/live_remarks.hpp"
 #include "session/pipes.hpp"
 
 namespace tactor::cli {
@@ -72,6 +73,7 @@ public:
     {
         report_.strokes.push_back({"live"});
         stroke_outcome& out = report_.strokes.back();
+        asked_.erase("intensity_max"); // its lines are divided here
         net::json begin{{"options", asked_}, {"timeout_s", live_timeout_s}};
         if (stream_.smooth_s)
             begin["smooth_s"] = *stream_.smooth_s;
@@ -126,7 +128,7 @@ private:
                 std::this_thread::sleep_for(limit_pause);
             }
             if (p.intensity > 1.0 && !std::exchange(is_loud_, true))
-                lines.warn_of_held(p.intensity);
+                lines.warn(session::held_text(p.intensity * lines.intensity_max(), lines.intensity_max()));
             return true;
         } catch (const error& e) {
             if (e.subject() != "stroke")
@@ -190,7 +192,8 @@ private:
                         .frames = found->value("frames", std::uint64_t{0}),
                         .why = found->value("reason", ""),
                         .late_s = found->value("late_s", 0.0),
-                        .held_points = found->value("held_points", std::uint64_t{0})};
+                        .held_points = found->value("held_points", std::uint64_t{0}),
+                        .outside_points = found->value("outside_points", std::uint64_t{0})};
         if ((*found)["started_s"].is_number())
             r.started_ns = std::llround((*found)["started_s"].get<double>() * 1e9);
         ends_.erase(found);
@@ -269,7 +272,7 @@ int play_remote(const settings& s, const play_options& o)
     const auto pieces = s.stream.live ? decltype(stroke_params(s)){} : stroke_params(s);
     try {
         remote_player player(s, o);
-        live_lines lines(STDIN_FILENO);
+        live_lines lines(STDIN_FILENO, s.intensity_max.value_or(1.0));
         return s.stream.live ? player.live(lines) : player.play(pieces);
     } catch (const interrupted& i) {
         return session::interrupt::status(i.signal);

@@ -32,6 +32,9 @@ struct timed_points {
 /// Throw error (bad_input) for values that no stroke can have. `what` names the value in messages.
 void check_duration(double duration_s);
 void check_intensity(std::string_view what, double intensity);
+/// Returns the same movement with every intensity multiplied by a factor. Unlike with_intensity() it has no
+/// ceiling: a stroke's own level_db may be above 0.
+trajectory scaled(const trajectory& t, double factor);
 /// Throws error (bad_input) that requests a duration, because the path is a single place.
 [[noreturn]] void refuse_one_place();
 

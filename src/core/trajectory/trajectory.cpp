@@ -48,6 +48,16 @@ void check_point(const std::vector<timed_point>& points, std::size_t i)
         refuse(fmt::format("time {} s is not after {} s", p.t_s, points[i - 1].t_s), "times ascend");
 }
 
+double greatest_intensity(const trajectory::impl& i)
+{
+    if (const auto* c = std::get_if<drawn_path>(&i.law))
+        return i.gain * c->intensity * (c->moves ? c->moves->greatest(0.0, 1.0) : 1.0);
+    double most = 0.0;
+    for (const timed_point& p : *std::get<timed_points>(i.law).points)
+        most = std::max(most, p.intensity);
+    return i.gain * most;
+}
+
 // Points as nodes for line_meetings.
 class timed_nodes {
 public:
@@ -103,6 +113,13 @@ void check_intensity(std::string_view what, double intensity)
         throw error(error_kind::bad_input, what, fmt::format("intensity {:g}", intensity),
                     fmt::format("it is a factor from 0 to {:g}", max_intensity))
             .with_field("intensity");
+}
+
+trajectory scaled(const trajectory& t, double factor)
+{
+    trajectory::impl made = access::of(t);
+    made.gain *= factor;
+    return access::make<trajectory>(std::make_shared<const trajectory::impl>(std::move(made)));
 }
 
 } // namespace tactor::detail
@@ -202,8 +219,8 @@ trajectory trajectory::with_duration(double duration_s) const
 
 trajectory trajectory::with_intensity(double factor) const
 {
-    check_intensity("stroke", factor);
-    return trajectory(std::make_shared<impl>(impl{impl_->law, impl_->duration_s, impl_->gain * factor}));
+    check_intensity("stroke", factor < 0.0 ? factor : factor * greatest_intensity(*impl_));
+    return detail::scaled(*this, factor);
 }
 
 double trajectory::duration_s() const noexcept

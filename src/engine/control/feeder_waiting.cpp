@@ -176,7 +176,8 @@ void feeder::over(const active& a, const report& r)
                        .late_s = a.late_s.value_or(0.0),
                        .started_ns = {},
                        .delay = {},
-                       .held_points = 0};
+                       .held_points = 0,
+                       .outside_points = 0};
     if (r.started)
         done.started_ns = r.started_ns;
     if (r.delay.points != 0)
@@ -192,8 +193,10 @@ void feeder::over(const active& a, const report& r)
 void feeder::report_end(stroke_report r)
 {
     for (const live_map* live : {&playing_live_, &waiting_live_})
-        if (const auto found = live->find(r.id); found != live->end())
+        if (const auto found = live->find(r.id); found != live->end()) {
             r.held_points = found->second->held_points();
+            r.outside_points = found->second->outside_points();
+        }
     reports_.push_back(std::move(r));
 }
 

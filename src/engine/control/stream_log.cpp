@@ -106,13 +106,17 @@ void stream_log::look_at_limits()
 
 void stream_log::look_at_end(const stroke_report& r) noexcept
 {
-    if (!on() || r.held_points == 0)
+    if (!on())
         return;
     try {
-        add(log_kind::warning,
-            fmt::format(
-                "live stroke {}: {} above intensity 1 sounded as 1: the level asked for is the ceiling",
-                r.id.number, counted(r.held_points, "point")));
+        if (r.held_points != 0)
+            add(log_kind::warning,
+                fmt::format(
+                    "live stroke {}: {} above intensity 1 sounded as 1: the level asked for is the ceiling",
+                    r.id.number, counted(r.held_points, "point")));
+        if (r.outside_points != 0)
+            add(log_kind::warning, fmt::format("live stroke {}: {} outside the array moved to its edge",
+                                               r.id.number, counted(r.outside_points, "point")));
     } catch (...) { // NOLINT(bugprone-empty-catch): no memory, no line
     }
 }

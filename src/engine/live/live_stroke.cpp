@@ -166,12 +166,13 @@ bool live_stroke::impl::to(point p, double intensity, std::optional<std::int64_t
     const std::lock_guard lock(mutex);
     if (voice.closed() || voice.requested() != engine::live_voice::action::go_on)
         return false;
-    const bool inside = faces.contains(p);
+    const point there = faces.contains(p) ? p : faces.nearest(p);
+    const bool inside = distance_mm(p, there) <= edge_tolerance_mm;
     if (!inside && outside == outside_kind::error)
         throw refused("outside", fmt::format("({:.6g}, {:.6g}) is outside the array", p.x_mm, p.y_mm),
                       "{outside=clamp} plays the nearest point of the array");
     const bool held = intensity > 1.0 && std::isfinite(intensity);
-    const bool limited = write_course(inside ? p : faces.nearest(p), held ? 1.0 : intensity);
+    const bool limited = write_course(there, held ? 1.0 : intensity);
     if (!excess.empty()) {
         voice.fail(std::move(excess));
         return false;
@@ -179,10 +180,11 @@ bool live_stroke::impl::to(point p, double intensity, std::optional<std::int64_t
     voice.draft().at_ns = stamp;
     voice.publish();
     points.fetch_add(1, std::memory_order_relaxed);
-    outside_points.fetch_add(inside ? 0 : 1, std::memory_order_relaxed);
     limited_points.fetch_add(limited ? 1 : 0, std::memory_order_relaxed);
     if (held)
         voice.count_held();
+    if (!inside)
+        voice.count_outside();
     return true;
 }
 
@@ -294,7 +296,7 @@ bool live_stroke::open() const noexcept
 live_counts live_stroke::counts() const noexcept
 {
     return {.points = impl_->points.load(std::memory_order_relaxed),
-            .outside = impl_->outside_points.load(std::memory_order_relaxed),
+            .outside = impl_->voice.outside_points(),
             .limited = impl_->limited_points.load(std::memory_order_relaxed),
             .held = impl_->voice.held_points()};
 }

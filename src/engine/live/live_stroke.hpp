@@ -93,7 +93,6 @@ struct live_stroke::impl {
     std::vector<drive> drives;
     std::string excess; ///< reason why the stroke is about to fail
     std::atomic<std::uint64_t> points{0};
-    std::atomic<std::uint64_t> outside_points{0};
     std::atomic<std::uint64_t> limited_points{0};
 };
 

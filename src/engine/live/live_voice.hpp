@@ -77,8 +77,9 @@ public:
     /// on.
     std::uint64_t rendered() const noexcept { return rendered_.load(std::memory_order_relaxed); }
 
-    /// Counts a point whose intensity was above 1.
+    /// Counts a point whose intensity was above 1, and a point outside the array.
     void count_held() noexcept { held_points_.fetch_add(1, std::memory_order_relaxed); }
+    void count_outside() noexcept { outside_points_.fetch_add(1, std::memory_order_relaxed); }
 
     /// Ends the stroke as interrupted, for this reason. Call it once.
     void fail(std::string why) noexcept;
@@ -86,6 +87,7 @@ public:
     // Any thread.
     void request(action w) noexcept;
     std::uint64_t held_points() const noexcept { return held_points_.load(std::memory_order_relaxed); }
+    std::uint64_t outside_points() const noexcept { return outside_points_.load(std::memory_order_relaxed); }
     /// Returns why it failed. Only for a caller that knows that it failed.
     const std::string& failure() const noexcept { return failure_; }
     bool closed() const noexcept { return closed_.load(std::memory_order_acquire); }
@@ -149,6 +151,7 @@ private:
     std::atomic<action> requested_{action::go_on};
     std::atomic<bool> closed_{false};
     std::atomic<std::uint64_t> held_points_{0};
+    std::atomic<std::uint64_t> outside_points_{0};
     std::string failure_;
 
     ticket ticket_ = 0;

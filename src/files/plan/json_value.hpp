@@ -34,6 +34,8 @@ public:
     json_value(const nlohmann::ordered_json&, std::string&&, const char*, std::string = {}) = delete;
 
     bool there() const noexcept { return value_ != nullptr && !value_->is_null(); }
+    /// Returns the name of the file.
+    const std::string& file() const noexcept { return *file_; }
     bool is_list() const noexcept { return there() && value_->is_array(); }
 
     /// A member of an object; not there where this is not.

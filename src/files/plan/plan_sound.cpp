@@ -5,6 +5,8 @@
 #include <cmath>
 #include <cstdint>
 #include <filesystem>
+#include <memory>
+#include <optional>
 #include <string>
 #include <system_error>
 
@@ -107,12 +109,35 @@ void take_threshold(const json_value& t, tactor_spec& into)
 
 namespace {
 
+bool is_same(const json_value& said, const recording& r)
+{
+    return said["sha256"].need_text() == r.sha256 &&
+           said["frames"].need_number() == static_cast<double>(r.samples.size()) &&
+           said["rate"].need_number() == r.rate_hz;
+}
+
+// Returns the recording if it lies beside the plan, where both may have been moved.
+std::optional<waveform> find_beside(const json_value& stroke, const std::string& text)
+{
+    namespace fs = std::filesystem;
+    const fs::path beside = fs::path(stroke.file()).parent_path() / fs::path(text).filename();
+    std::error_code unknown;
+    if (!stroke["recording"].there() || !fs::is_regular_file(beside, unknown))
+        return {};
+    try {
+        waveform w;
+        w.kind = waveform_kind::recording;
+        w.recorded = std::make_shared<const recording>(load_recording(beside));
+        return is_same(stroke["recording"], *w.recorded) ? std::optional(w) : std::nullopt;
+    } catch (const error&) { // another file of that name
+        return {};
+    }
+}
+
 // Refuses a recording that has changed: other samples would sound under the plan's name.
 void check_recording(const json_value& said, const recording& r)
 {
-    if (said["sha256"].need_text() != r.sha256 ||
-        said["frames"].need_number() != static_cast<double>(r.samples.size()) ||
-        said["rate"].need_number() != r.rate_hz)
+    if (!is_same(said, r))
         throw error(error_kind::bad_input, source_place{r.file},
                     "the recording has changed since the plan was made",
                     "plan the stroke again, or bring the old file back");
@@ -125,9 +150,10 @@ void take_sound(const json_value& stroke, plan& p, recordings_kind recordings)
     const auto text = stroke["waveform"].text();
     if (text && recordings == recordings_kind::refuse && waveform_names_file(*text))
         stroke["waveform"].refuse(fmt::format("is a file, {}, and this text is none", *text));
+    const auto found = text ? find_beside(stroke, *text) : std::nullopt;
     try {
         if (text)
-            p.wave = parse_waveform(*text);
+            p.wave = found ? *found : parse_waveform(*text);
     } catch (const error& e) {
         stroke["waveform"].refuse(fmt::format("{}: {}", e.subject(), e.why()));
     }

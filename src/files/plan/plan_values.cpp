@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "files/plan/plan_values.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <utility>
@@ -226,7 +227,18 @@ stroke read_stroke(const json_value& f, const plan& p, const std::optional<compe
     if (way.empty())
         f["bursts"].refuse("there are none");
     way.push_back({p.stroke_duration_s, last.position, last.intensity});
-    stroke s{drawn["name"].need_text(), trajectory::timed(std::move(way))};
+    stroke s{.name = drawn["name"].need_text()};
+    // A level of its own takes a stroke above the others.
+    const double most =
+        std::max_element(way.begin(), way.end(), [](const timed_point& a, const timed_point& b) {
+            return a.intensity < b.intensity;
+        })->intensity;
+    if (most > 1.0) {
+        for (timed_point& q : way)
+            q.intensity /= most;
+        s.choices.level_db = 20.0 * std::log10(most);
+    }
+    s.motion = trajectory::timed(std::move(way));
     s.sound.carrier_hz = p.carrier_hz;
     s.sound.wave = p.wave;
     s.sound.am = p.am;

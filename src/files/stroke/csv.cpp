@@ -4,17 +4,23 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <cstddef>
+#include <limits>
 #include <optional>
 #include <span>
+#include <string>
+#include <string_view>
 #include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 
 #include <tactor/error.hpp>
 
-#include "core/limits.hpp"
 #include "core/path/number.hpp"
 #include "core/suggest.hpp"
+#include "core/trajectory/recorded_points.hpp"
 #include "core/words.hpp"
 #include "files/stroke/parts.hpp"
 #include "files/text_file.hpp"
@@ -26,6 +32,7 @@ namespace {
 enum column : std::size_t { t_s, x_mm, y_mm, intensity, columns };
 
 constexpr std::array<std::string_view, columns> names{"t_s", "x_mm", "y_mm", "intensity"};
+static_assert(columns == static_cast<std::size_t>(detail::recorded::row));
 
 struct field {
     std::string_view text;
@@ -34,8 +41,11 @@ struct field {
 
 class csv_reader {
 public:
-    csv_reader(std::string_view text, const std::string& name)
-        : rest_(detail::without_mark(text)), name_(name)
+    csv_reader(std::string_view text, const std::string& name, double intensity_max)
+        : rest_(detail::without_mark(text)),
+          name_(name),
+          points_(
+              intensity_max, [this](detail::recorded value) { return find_place(value); }, "line")
     {
     }
 
@@ -45,29 +55,20 @@ public:
             fail({}, "is empty", header_hint);
         header();
         // Exactly: a vector that grows needs three times as much for a moment.
-        points_.reserve(std::min<std::size_t>(std::count(rest_.begin(), rest_.end(), '\n') + 1, most_points));
+        points_.reserve(std::min<std::size_t>(std::count(rest_.begin(), rest_.end(), '\n') + 1, most_lines));
         while (next_line())
-            if (const std::optional<timed_point> p = row())
-                add_behind_gap(*p);
-        if (points_.size() < 2)
-            fail({},
-                 fmt::format("{} of at least 2 points{}", points_.size(),
-                             repeated_ != 0 ? " with times of their own" : ""),
-                 "give where the stroke starts and where it ends");
-        return {{.name = detail::stem(name_),
-                 .motion = trajectory::timed(std::move(points_)),
-                 .warnings = warnings()}};
+            row();
+        trajectory motion = trajectory::timed(points_.take());
+        return {{.name = detail::stem(name_), .motion = std::move(motion), .warnings = warnings()}};
     }
 
 private:
-    /// Seconds since 1970 are 1.8e9; farther from zero a time does not hold microseconds.
-    static constexpr double farthest_time_s = 1e10;
     static constexpr std::size_t most_fields = 1000;
-    static constexpr std::size_t most_points = 10'000'000;
+    static constexpr std::size_t most_lines = 10'000'000;
     static constexpr std::string_view header_hint =
         "the first line names the columns: t_s,x_mm,y_mm,intensity";
 
-    // Reads the next line with something on it into line_.
+    // Reads the next line with something on it into line_. A spreadsheet writes its empty rows as commas.
     bool next_line()
     {
         while (!rest_.empty()) {
@@ -77,7 +78,7 @@ private:
             ++line_number_;
             std::size_t at = 0;
             detail::skip_blanks(line_, at);
-            if (at < line_.size() && line_[at] != '#')
+            if (line_.find_first_not_of(", \t\r\f") != std::string_view::npos && line_[at] != '#')
                 return true;
         }
         return false;
@@ -149,67 +150,26 @@ private:
     {
         if (const std::string_view near = detail::nearest_name(f.text, absent); !near.empty())
             fail(f.column, fmt::format("unknown column {}", detail::quoted(f.text)),
-                 fmt::format("did you mean {}?", detail::quoted(near)));
+                 detail::meant_name(f.text, near));
         constexpr std::size_t most_named = 5;
         if (++left_out_ <= most_named)
             left_out_names_ += fmt::format("{}{}", left_out_ == 1 ? "" : ", ", detail::quoted(f.text));
         header_line_ = line_number_;
     }
 
-    // Adds a point. Touch screens give several places the time of one report: the last is where the finger
-    // is.
-    void add(const timed_point& p)
-    {
-        if (points_.empty() || p.t_s != points_.back().t_s) {
-            if (points_.size() == most_points)
-                fail({}, fmt::format("more than {} points", most_points), "thin them out, or cut it in two");
-            points_.push_back(p);
-            return;
-        }
-        points_.back() = p;
-        if (repeated_++ == 0)
-            first_repeated_ = line_number_;
-    }
-
-    // Adds a point. Behind a gap the touch is lifted from the last place to this one.
-    void add_behind_gap(const timed_point& p)
-    {
-        constexpr double at_once_s = 1e-6;
-        if (std::exchange(in_gap_, false) && !points_.empty() && p.t_s > points_.back().t_s) {
-            const timed_point last = points_.back();
-            const double edge_s = std::min(at_once_s, (p.t_s - last.t_s) / 4.0);
-            add({last.t_s + edge_s, last.position, 0.0});
-            add({p.t_s - edge_s, p.position, 0.0});
-        }
-        add(p);
-    }
-
     std::vector<std::string> warnings() const
     {
-        std::vector<std::string> all;
-        const auto warn = [&](unsigned line, const std::string& text) {
-            all.push_back(fmt::format("{}: {}", source_place{name_, line, 0}.text(), text));
-        };
+        std::vector<std::string> all = points_.warnings();
         if (left_out_ != 0)
-            warn(header_line_,
-                 fmt::format("{} left out: {}{}", left_out_ == 1 ? "this column is" : "these columns are",
-                             left_out_names_, left_out_ > 5 ? ", ..." : ""));
-        if (gaps_ != 0)
-            warn(first_gap_,
-                 fmt::format("no place (nan) in {}: the touch is lifted there",
-                             gaps_ == 1 ? "this line"
-                                        : fmt::format("{} from here on", counted(gaps_, "line"))));
-        if (repeated_ == 1)
-            warn(first_repeated_, "repeats the time of the line before, which does not count");
-        if (repeated_ > 1)
-            warn(first_repeated_, fmt::format("repeats the time of the line before, as {} lines do in all; "
-                                              "the last of equal times counts",
-                                              repeated_));
+            all.insert(all.begin(),
+                       fmt::format("{}: {} left out: {}{}", source_place{name_, header_line_, 0}.text(),
+                                   left_out_ == 1 ? "this column is" : "these columns are", left_out_names_,
+                                   left_out_ > 5 ? ", ..." : ""));
         return all;
     }
 
-    // Returns none for a line in which a tracker had lost its target.
-    std::optional<timed_point> row()
+    // Adds the point of a line.
+    void row()
     {
         split();
         if (fields_.size() != order_.size())
@@ -217,43 +177,25 @@ private:
                  fmt::format("{} where the header names {}", counted(fields_.size(), "value"),
                              counted(order_.size(), "column")),
                  "numbers have a decimal point, and a comma stands only between them");
-        for (std::size_t i = 0; i < order_.size(); ++i)
-            if (order_[i] != columns && order_[i] != t_s && detail::is_missing(fields_[i].text)) {
-                in_gap_ = true;
-                if (gaps_++ == 0)
-                    first_gap_ = line_number_;
-                return std::nullopt;
-            }
         timed_point p;
-        for (std::size_t i = 0; i < order_.size(); ++i) {
-            if (order_[i] == columns)
-                continue;
-            double v = value(fields_[i], order_[i]);
-            if (order_[i] == t_s)
-                v = since_first(fields_[i], v);
-            (order_[i] == t_s    ? p.t_s
-             : order_[i] == x_mm ? p.position.x_mm
-             : order_[i] == y_mm ? p.position.y_mm
-                                 : p.intensity) = v;
-        }
-        return p;
+        for (std::size_t i = 0; i < order_.size(); ++i)
+            if (order_[i] != columns && order_[i] != t_s && detail::is_missing(fields_[i].text))
+                p.intensity = std::numeric_limits<double>::quiet_NaN(); // a tracker had lost its target
+        for (std::size_t i = 0; i < order_.size() && !std::isnan(p.intensity); ++i)
+            if (order_[i] != columns)
+                (order_[i] == t_s    ? p.t_s
+                 : order_[i] == x_mm ? p.position.x_mm
+                 : order_[i] == y_mm ? p.position.y_mm
+                                     : p.intensity) = value(fields_[i], order_[i]);
+        points_.add(p);
     }
 
-    // Recorders count from any moment, so the first line is the stroke's zero. Order is that of the
-    // differences: two times far from zero may have the same.
-    double since_first(const field& f, double time)
+    source_place find_place(detail::recorded value) const
     {
-        if (points_.empty())
-            first_time_ = time;
-        const double t = time - first_time_;
-        if (!points_.empty() && t < points_.back().t_s)
-            fail(f.column, fmt::format("time {} s is before {} s of the line before", time, last_time_),
-                 "times ascend");
-        if (t > detail::longest_stroke_s)
-            fail(f.column, fmt::format("time {} s is {} s after the first line", time, t),
-                 fmt::format("a stroke lasts at most {:g} s", detail::longest_stroke_s));
-        last_time_ = time;
-        return t;
+        const auto at = std::find(order_.begin(), order_.end(), static_cast<column>(value));
+        const auto i = static_cast<std::size_t>(at - order_.begin());
+        const bool whole = value == detail::recorded::row || i >= fields_.size();
+        return {name_, line_number_, whole ? 0 : static_cast<unsigned>(fields_[i].column)};
     }
 
     double value(const field& f, column c) const
@@ -266,13 +208,6 @@ private:
         if (!v || end != f.text.size())
             fail(f.column, fmt::format("{} is not a number: {}", names[c], detail::quoted(f.text)),
                  "e.g. 12.5");
-        const bool place = c == x_mm || c == y_mm;
-        const double high = place ? detail::max_mm : c == t_s ? farthest_time_s : detail::max_intensity;
-        const double low = c == intensity ? 0.0 : -high;
-        if (!(*v >= low && *v <= high))
-            fail(f.column,
-                 fmt::format("{} {}", names[c], f.text.size() > 40 ? detail::quoted(f.text) : f.text),
-                 fmt::format("it is between {:g} and {:g}", low, high));
         return *v;
     }
 
@@ -291,25 +226,18 @@ private:
     std::size_t left_out_ = 0;
     std::string left_out_names_;
     unsigned header_line_ = 0;
-    std::vector<timed_point> points_;
-    double first_time_ = 0.0;
-    double last_time_ = 0.0;
-    std::size_t repeated_ = 0; ///< lines that replaced the one before
-    unsigned first_repeated_ = 0;
-    bool in_gap_ = false;
-    std::size_t gaps_ = 0; ///< lines without a place
-    unsigned first_gap_ = 0;
+    detail::recorded_points points_;
 };
 
 } // namespace
 
-std::vector<stroke> parse_strokes_csv(std::string_view text, const std::string& name)
+std::vector<stroke> parse_strokes_csv(std::string_view text, const std::string& name, double intensity_max)
 {
     detail::check_size(text, name, detail::max_stroke_bytes, "is it the right file?");
     if (!detail::without_blanks(text).empty())
         detail::refuse_other_form(text, name, "csv");
     detail::refuse_other_columns(detail::without_mark(text), name);
-    return csv_reader(text, name).read();
+    return csv_reader(text, name, intensity_max).read();
 }
 
 } // namespace v0

@@ -29,34 +29,36 @@ std::string_view guess_format(std::string_view text)
     return form == "json" ? "toml" : form;
 }
 
-std::vector<stroke> parse_as(std::string_view format, std::string_view text, const std::string& name)
+std::vector<stroke> parse_as(std::string_view format, std::string_view text, const std::string& name,
+                             double intensity_max)
 {
     return format == "svg"   ? parse_strokes_svg(text, name)
-           : format == "csv" ? parse_strokes_csv(text, name)
-                             : parse_strokes_toml(text, name);
+           : format == "csv" ? parse_strokes_csv(text, name, intensity_max)
+                             : parse_strokes_toml(text, name, intensity_max);
 }
 
 } // namespace
 
-std::vector<stroke> parse_strokes(std::string_view text, const std::string& name)
+std::vector<stroke> parse_strokes(std::string_view text, const std::string& name, double intensity_max)
 {
-    return parse_as(guess_format(text), text, name);
+    return parse_as(guess_format(text), text, name, intensity_max);
 }
 
-std::vector<stroke> load_strokes(const std::filesystem::path& file)
+std::vector<stroke> load_strokes(const std::filesystem::path& file, double intensity_max)
 {
     const detail::whole_text text = detail::read_text_file(file, detail::max_stroke_bytes);
     const std::string name = file.string();
     const std::string_view format = format_in_name(file);
     if (format == "toml")
-        return detail::strokes_of_toml_file(text, name);
-    return format.empty() ? parse_strokes(text, name) : parse_as(format, text, name);
+        return detail::strokes_of_toml_file(text, name, intensity_max);
+    return format.empty() ? parse_strokes(text, name, intensity_max)
+                          : parse_as(format, text, name, intensity_max);
 }
 
-std::vector<stroke> load_strokes(int descriptor, const std::string& name)
+std::vector<stroke> load_strokes(int descriptor, const std::string& name, double intensity_max)
 {
     detail::note_input(fmt::format("/dev/fd/{}", descriptor));
-    return parse_strokes(detail::read_text(descriptor, name, detail::max_stroke_bytes), name);
+    return parse_strokes(detail::read_text(descriptor, name, detail::max_stroke_bytes), name, intensity_max);
 }
 
 } // namespace v0

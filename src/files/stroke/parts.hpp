@@ -99,7 +99,8 @@ inline constexpr std::array<std::string_view, 7> sound_keys{
 void read_sound(const toml_table& t, const std::filesystem::path* folder, stroke& s);
 
 /// Reads a file as parse_strokes_toml() does a text; it may name other files.
-std::vector<stroke> strokes_of_toml_file(std::string_view text, const std::string& name);
+std::vector<stroke> strokes_of_toml_file(std::string_view text, const std::string& name,
+                                         double intensity_max);
 
 inline constexpr std::array<std::string_view, 8> choice_keys{
     "algorithm", "phantom", "faces", "soa_s", "burst_s", "level_db", "fit", "fit_margin_mm"};

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
 
-#include <algorithm>
 #include <filesystem>
 #include <optional>
 #include <span>
@@ -97,19 +96,12 @@ void add_path(lines& out, const stroke& s, const trajectory::impl& i, const draw
     out.add("path", law.way.svg());
     const bool varies = law.moves && !law.moves->given().intensity.empty();
     const double strength = law.intensity * i.gain;
-    double most = strength;
-    if (varies) {
-        std::vector<profile_point> points = law.moves->given().intensity;
-        most = 0.0;
-        for (profile_point& p : points)
-            most = std::max(most, p.value *= strength);
-        out.rows("intensity", points, pair);
-    } else if (strength != 1.0) {
+    if (varies)
+        out.rows("intensity", law.moves->given().intensity, [strength](const profile_point& p) {
+            return pair({p.part, p.value * strength});
+        });
+    else if (strength != 1.0)
         out.add("intensity", strength);
-    }
-    if (most > 1.0)
-        refuse(s, fmt::format("its intensity of {} is above 1, which no path in a file has", most),
-               "lower it, or plan it at a higher level");
     if (law.moves)
         add_movement(out, i, law);
     else if (s.speed_mm_s && law.way.length_mm() / *s.speed_mm_s == i.duration_s)

@@ -18,6 +18,7 @@
 #include "core/profile.hpp"
 #include "core/suggest.hpp"
 #include "core/trajectory/impl.hpp"
+#include "core/trajectory/recorded_points.hpp"
 #include "files/stroke/parts.hpp"
 #include "files/text_file.hpp"
 #include "files/toml_reader.hpp"
@@ -26,16 +27,16 @@ namespace tactor {
 inline namespace v0 {
 namespace {
 
-/// Folder in which a file's recordings are; null for text that is no file's.
-using folder_of_file = const std::filesystem::path*;
+/// Circumstances of a text.
+struct reading {
+    const std::filesystem::path* folder; ///< of its WAV files; null for text that is no file's
+    double intensity_max;                ///< value of a timed point that means 1
+};
 
-using detail::bounds;
 using detail::max_mm;
 using detail::told_pace;
 using detail::toml_table;
 
-constexpr double day_s = detail::longest_stroke_s;
-constexpr bounds anywhere{-max_mm, max_mm};
 constexpr unsigned deepest_group = 8;
 
 path read_points(const toml_table& t)
@@ -62,36 +63,39 @@ path read_arc(const toml_table& t)
     return t.at_key("arc", [&] { return path::arc(centre, radius, from, sweep); });
 }
 
-timed_point read_timed_point(const toml_table& t, const toml::node& entry, double intensity)
+double number_in(const toml::node& n)
 {
-    const toml::array* a = entry.as_array();
-    if (!a || a->size() < 3 || a->size() > 4)
-        detail::fail_at(t.where(entry), fmt::format("a timed point is {}", detail::shown(entry)),
-                        "give [t_s, x_mm, y_mm] or [t_s, x_mm, y_mm, intensity]");
-    timed_point p;
-    p.t_s = t.to_number((*a)[0], "t_s", {0.0, day_s});
-    p.position = {t.to_number((*a)[1], "x_mm", anywhere), t.to_number((*a)[2], "y_mm", anywhere)};
-    p.intensity =
-        intensity * (a->size() == 4 ? t.to_number((*a)[3], "intensity", {0.0, detail::max_intensity}) : 1.0);
-    return p;
+    const auto* whole = n.as_integer();
+    return whole != nullptr ? static_cast<double>(whole->get()) : n.as_floating_point()->get();
 }
 
-trajectory read_timed(const toml_table& t, double intensity)
+// Reads a recording, whose intensities are multiplied by `intensity`. Adds remarks to `warnings`.
+trajectory read_timed(const toml_table& t, double intensity, double intensity_max,
+                      std::vector<std::string>& warnings)
 {
-    std::vector<timed_point> points;
+    const toml::node* row = t.node("timed");
+    detail::recorded_points recorded(intensity_max, [&](detail::recorded value) {
+        const toml::array* a = row->as_array();
+        const auto i = static_cast<std::size_t>(value);
+        return t.where(a != nullptr && i < a->size() ? (*a)[i] : *row);
+    });
     const toml::array& list = *t.list("timed", "[t_s, x_mm, y_mm]");
-    points.reserve(list.size());
+    recorded.reserve(list.size());
     for (const toml::node& entry : list) {
-        const timed_point p = read_timed_point(t, entry, intensity);
-        if (points.empty() && p.t_s != 0.0)
-            detail::fail_at(t.where(entry), fmt::format("the first time is {} s", p.t_s),
-                            "times count from 0 at the start of the stroke; start_s moves all of it");
-        if (!points.empty() && p.t_s <= points.back().t_s)
-            detail::fail_at(t.where(entry),
-                            fmt::format("the time {} s does not come after {} s", p.t_s, points.back().t_s),
-                            "put the points in order of time, each time once");
-        points.push_back(p);
+        const toml::array* a = entry.as_array();
+        if (!a || a->size() < 3 || a->size() > 4 ||
+            !std::all_of(a->begin(), a->end(), [](const toml::node& n) { return n.is_number(); }))
+            detail::fail_at(t.where(entry), fmt::format("a timed point is {}", detail::shown(entry)),
+                            "give [t_s, x_mm, y_mm] or [t_s, x_mm, y_mm, intensity]");
+        row = &entry;
+        const auto value = [a](std::size_t i) { return number_in((*a)[i]); };
+        recorded.add({value(0), {value(1), value(2)}, a->size() == 4 ? value(3) : intensity_max});
     }
+    row = t.node("timed");
+    std::vector<timed_point> points = recorded.take();
+    warnings = recorded.warnings();
+    for (timed_point& p : points)
+        p.intensity *= intensity;
     return t.at_key("timed", [&] { return trajectory::timed(std::move(points)); });
 }
 
@@ -138,7 +142,7 @@ constexpr std::array<std::string_view, 7> placed_keys{"name",         "start_s",
                                                       "translate_mm", "mirror",  "about_mm"};
 
 // Reads a stroke before it is placed.
-stroke read_drawn(const toml_table& t, std::string name)
+stroke read_drawn(const toml_table& t, std::string name, double intensity_max)
 {
     if (t.has("stroke"))
         t.one_of(join_keys(kinds, std::array<std::string_view, 1>{"stroke"})); // refuses two
@@ -158,7 +162,10 @@ stroke read_drawn(const toml_table& t, std::string name)
     };
     if (kind == "timed") {
         refuse_uneven(t, asked);
-        return described(paced(t, asked, read_timed(t, asked.intensity)));
+        std::vector<std::string> warnings;
+        stroke s = described(paced(t, asked, read_timed(t, asked.intensity, intensity_max, warnings)));
+        s.warnings = std::move(warnings);
+        return s;
     }
     if (kind == "preset") {
         const std::string preset = *t.text("preset");
@@ -183,13 +190,13 @@ stroke read_drawn(const toml_table& t, std::string name)
     return s;
 }
 
-detail::entry read_one(const toml_table& t, std::string name, folder_of_file folder)
+detail::entry read_one(const toml_table& t, std::string name, const reading& r)
 {
     t.only(join_keys(kinds, drawing_keys, placed_keys, detail::movement_keys, detail::order_keys,
                      detail::choice_keys, detail::sound_keys,
                      std::array<std::string_view, 2>{"stroke", "reverse"}));
-    stroke s = detail::levelled(t, detail::chosen(t, read_drawn(t, std::move(name))));
-    detail::read_sound(t, folder, s);
+    stroke s = detail::levelled(t, detail::chosen(t, read_drawn(t, std::move(name), r.intensity_max)));
+    detail::read_sound(t, r.folder, s);
     if (t.boolean("reverse").value_or(false)) {
         s.motion = t.at_key("reverse", [&] { return s.motion.reversed(); });
         s.sound.carrier_profile = detail::from_the_end(s.sound.carrier_profile);
@@ -199,20 +206,20 @@ detail::entry read_one(const toml_table& t, std::string name, folder_of_file fol
     return detail::repeated(t, std::move(e));
 }
 
-detail::entry read_entry(const toml_table& t, const std::string& name, folder_of_file folder, unsigned depth);
+detail::entry read_entry(const toml_table& t, const std::string& name, const reading& r, unsigned depth);
 
 detail::entry read_all(const std::vector<toml_table>& tables, detail::sequence::of what,
-                       const std::string& name, folder_of_file folder, unsigned depth)
+                       const std::string& name, const reading& r, unsigned depth)
 {
     detail::sequence all(what);
     std::size_t number = 0;
     for (const toml_table& t : tables)
-        all.add(t, read_entry(t, fmt::format("{}-{}", name, ++number), folder, depth));
+        all.add(t, read_entry(t, fmt::format("{}-{}", name, ++number), r, depth));
     return std::move(all).take();
 }
 
 // Reads strokes that are placed, made weaker and repeated together.
-detail::entry read_group(const toml_table& t, const std::string& name, folder_of_file folder, unsigned depth)
+detail::entry read_group(const toml_table& t, const std::string& name, const reading& r, unsigned depth)
 {
     t.only(join_keys(placed_keys, detail::order_keys,
                      std::array<std::string_view, 4>{"stroke", "level_db", "fit", "fit_margin_mm"}));
@@ -222,7 +229,7 @@ detail::entry read_group(const toml_table& t, const std::string& name, folder_of
     if (inside.empty())
         t.fail("stroke", "a group without a stroke", "add [[stroke.stroke]]");
     detail::entry e =
-        read_all(inside, detail::sequence::of::group, t.text("name").value_or(name), folder, depth + 1);
+        read_all(inside, detail::sequence::of::group, t.text("name").value_or(name), r, depth + 1);
     auto fit = detail::read_fit(t);
     if (fit)
         fit->group = t.where().line; // no other group of the file begins there
@@ -238,15 +245,14 @@ detail::entry read_group(const toml_table& t, const std::string& name, folder_of
     return detail::repeated(t, std::move(e));
 }
 
-detail::entry read_entry(const toml_table& t, const std::string& name, folder_of_file folder, unsigned depth)
+detail::entry read_entry(const toml_table& t, const std::string& name, const reading& r, unsigned depth)
 {
     const bool group = t.has("stroke") && std::none_of(kinds.begin(), kinds.end(),
                                                        [&t](std::string_view k) { return t.has(k); });
-    return group ? read_group(t, name, folder, depth) : read_one(t, name, folder);
+    return group ? read_group(t, name, r, depth) : read_one(t, name, r);
 }
 
-std::vector<stroke> read_strokes(std::string_view text, const std::string& name,
-                                 const std::filesystem::path* folder)
+std::vector<stroke> read_strokes(std::string_view text, const std::string& name, const reading& r)
 {
     detail::check_size(text, name, detail::max_tree_bytes,
                        "timed points by the million belong in a CSV file");
@@ -264,20 +270,20 @@ std::vector<stroke> read_strokes(std::string_view text, const std::string& name,
     if (root.node("stroke")->is_table()) {
         detail::sequence one(detail::sequence::of::piece);
         const toml_table t = *root.table("stroke", "[stroke]", "[stroke]");
-        one.add(t, read_entry(t, stem, folder, 0));
+        one.add(t, read_entry(t, stem, r, 0));
         return std::move(one).take().strokes;
     }
     const std::vector<toml_table> tables = root.tables("stroke");
     if (tables.empty())
         root.fail("stroke", "there is no stroke in it", "add [stroke] or [[stroke]]");
-    return read_all(tables, detail::sequence::of::piece, stem, folder, 0).strokes;
+    return read_all(tables, detail::sequence::of::piece, stem, r, 0).strokes;
 }
 
 } // namespace
 
-std::vector<stroke> parse_strokes_toml(std::string_view text, const std::string& name)
+std::vector<stroke> parse_strokes_toml(std::string_view text, const std::string& name, double intensity_max)
 {
-    return read_strokes(text, name, nullptr);
+    return read_strokes(text, name, {nullptr, intensity_max});
 }
 
 } // namespace v0
@@ -285,10 +291,10 @@ std::vector<stroke> parse_strokes_toml(std::string_view text, const std::string&
 
 namespace tactor::detail {
 
-std::vector<stroke> strokes_of_toml_file(std::string_view text, const std::string& name)
+std::vector<stroke> strokes_of_toml_file(std::string_view text, const std::string& name, double intensity_max)
 {
     const std::filesystem::path folder = std::filesystem::path(name).parent_path();
-    return read_strokes(text, name, &folder);
+    return read_strokes(text, name, {&folder, intensity_max});
 }
 
 } // namespace tactor::detail

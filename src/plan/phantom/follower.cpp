@@ -16,9 +16,10 @@ point follower::at(double t_s)
         inside_s_ = t_s;
         return p;
     }
-    if (job_.options.outside == outside_kind::error)
+    const point there = job_.faces.nearest(p);
+    if (job_.options.outside == outside_kind::error && distance_mm(p, there) > edge_tolerance_mm)
         refuse(t_s);
-    return job_.faces.nearest(p);
+    return there;
 }
 
 double follower::farthest_outside_mm(double from_s) const

@@ -11,7 +11,7 @@ import typing as _t
 from tactor._errors import Error, InputError
 
 
-def _floats(what: str, values: _t.Any) -> _t.Any:
+def _floats(what: str, values: _t.Any, nan: bool = False) -> _t.Any:
     """Returns numbers as an array of float64; refuses those that would lose something, as complex numbers, times and masks do."""
     import numpy as np
     try:
@@ -21,7 +21,7 @@ def _floats(what: str, values: _t.Any) -> _t.Any:
         numbers: _t.Any = np.ascontiguousarray(raw, dtype=np.float64) if raw.ndim else np.float64(raw)
     except (TypeError, ValueError, OverflowError) as e:
         raise InputError(what, f"it is no array of numbers: {e}", "give real numbers", field=what) from None
-    if np.isnan(numbers).any():  # which None becomes, too
+    if np.isnan(numbers).any() and not (nan and raw.dtype.kind == "f"):  # which None becomes, too
         raise InputError(what, "there is what is no number in it", field=what)
     return numbers
 

@@ -117,24 +117,28 @@ class Stroke(_Stated):
         return cls._wrap(core.same_as(*placing))
 
     @classmethod
-    def timed(cls, t: _ArrayLike, x: _ArrayLike, y: _ArrayLike, intensity: _ArrayLike | None = None, *, name: str = "timed",
-              start: float | None = None, carrier: float | None = None) -> Stroke:
-        """Linear between points of a time, a place and an intensity.
+    def timed(cls, t: _ArrayLike, x: _ArrayLike, y: _ArrayLike, intensity: _ArrayLike | None = None, *, intensity_max: float = 1.0,
+              name: str = "timed", start: float | None = None, carrier: float | None = None) -> Stroke:
+        """Linear between points of a time, a place and an intensity, as a recorder gives them.
 
         Parameters
         ----------
         t : array_like
-            Seconds, strictly ascending from 0; at least two.
+            Seconds, ascending; at least two. The first becomes 0. Of points with equal times the last counts.
         x, y : array_like
-            Places, mm.
+            Places, mm. Where one is nan, the touch is lifted.
         intensity : array_like, optional
-            Linear, one for each point or one for all; 1 without.
+            Linear, one for each point or one for all; `intensity_max` without. Where it is nan, the touch is lifted.
+        intensity_max : float
+            The intensity that means 1, the level that is asked for: 100 for per cent, 127 for MIDI, 255 for 8 bits.
         name, start, carrier
             See `along`.
         """
         import numpy as np
         placing = _placed(name, start, carrier)
-        columns = [np.atleast_1d(_floats(n, v)) for n, v in (("t", t), ("x", x), ("y", y), ("intensity", 1.0 if intensity is None else intensity))]
+        intensity_max = _number("intensity_max", intensity_max)
+        columns = [np.atleast_1d(_floats(n, v, nan=n != "t"))
+                   for n, v in (("t", t), ("x", x), ("y", y), ("intensity", intensity_max if intensity is None else intensity))]
         count = columns[0].size
         for what, column in zip(("t", "x", "y"), columns):
             if column.ndim != 1 or column.size != count:
@@ -142,7 +146,7 @@ class Stroke(_Stated):
         if columns[3].size not in (1, count) or columns[3].ndim != 1:
             raise InputError("intensity", f"it has the shape {columns[3].shape}, not ({count},)", "one for each point, or one for all")
         columns[3] = np.broadcast_to(columns[3], (count,))
-        return cls._wrap(_tactor.Stroke.timed(name, np.column_stack(columns)).same_as(*placing))
+        return cls._wrap(_tactor.Stroke.timed(name, np.column_stack(columns), intensity_max).same_as(*placing))
 
     @classmethod
     def preset(cls, name: str) -> Stroke:
@@ -211,7 +215,7 @@ class Stroke(_Stated):
         return self._wrap(self._core.reversed())
 
     def with_intensity(self, factor: float) -> Stroke:
-        """Returns the same movement with every intensity times a factor."""
+        """Returns the same movement with every intensity times a factor; none may get above 1."""
         return self._wrap(self._core.with_intensity(_number("factor", factor)))
 
     def write(self, file: str | os.PathLike[str]) -> None:
@@ -227,7 +231,7 @@ class Stroke(_Stated):
         Raises
         ------
         InputError
-            For another extension, a folder that does not exist, and what no file can say: along a path an intensity above 1.
+            For another extension, and a folder that does not exist.
         StreamError
             For what the file system refuses.
         """
@@ -310,8 +314,14 @@ def _cores(strokes: _t.Any) -> list[_t.Any]:
     return [s._core for s in strokes]
 
 
-def load(file: str | os.PathLike[str]) -> list[Stroke]:
+def load(file: str | os.PathLike[str], *, intensity_max: float = 1.0) -> list[Stroke]:
     """Reads a stroke file by its extension: .toml, .csv or .svg, see tactor.toml(5).
+
+    Parameters
+    ----------
+    file : path-like
+    intensity_max : float
+        The intensity in a recording (CSV, timed points) that means 1, see `Stroke.timed`.
 
     Returns
     -------
@@ -324,14 +334,14 @@ def load(file: str | os.PathLike[str]) -> list[Stroke]:
         With file, line and column.
     """
     with reading(file) as name:
-        return [Stroke._wrap(s) for s in _tactor.Stroke.load(name)]
+        return [Stroke._wrap(s) for s in _tactor.Stroke.load(name, _number("intensity_max", intensity_max))]
 
 
-def parse(text: str, name: str = "text") -> list[Stroke]:
-    """Reads strokes from the text of a stroke file: SVG, CSV or TOML, which its beginning tells."""
+def parse(text: str, name: str = "text", *, intensity_max: float = 1.0) -> list[Stroke]:
+    """Reads strokes from the text of a stroke file: SVG, CSV or TOML, which its beginning tells. `intensity_max` as for `load`."""
     _need(text, str, "text")
     _need(name, str, "name")
-    return [Stroke._wrap(s) for s in _tactor.Stroke.parse(text, name)]
+    return [Stroke._wrap(s) for s in _tactor.Stroke.parse(text, name, _number("intensity_max", intensity_max))]
 
 
 def stroke_presets() -> list[str]:

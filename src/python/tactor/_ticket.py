@@ -60,6 +60,8 @@ class Report(_t.NamedTuple):
         Of a live stroke's points; None where none has sounded, and for other strokes.
     held_points : int
         Points of a live stroke with an intensity above 1, which sounded as 1.
+    outside_points : int
+        Points of a live stroke outside the array, which were moved to its edge.
     """
 
     state: _State
@@ -69,6 +71,7 @@ class Report(_t.NamedTuple):
     late_s: float
     delay: Delay | None = None
     held_points: int = 0
+    outside_points: int = 0
 
 
 class _Awaited(_Unique, _t.Generic[_T]):
@@ -231,17 +234,18 @@ class LiveStroke(Ticket):
     def __init__(self, player: _Shared, core: _t.Any) -> None:
         super().__init__(player, core.id)
         self._core = core
-        self._warned = False
+        self._intensity_max = core.intensity_max
 
-    def to(self, x_mm: float, y_mm: float, intensity: float = 1.0, *, at_s: float | None = None) -> bool:
+    def to(self, x_mm: float, y_mm: float, intensity: float | None = None, *, at_s: float | None = None) -> bool:
         """Moves it to a place.
 
         Parameters
         ----------
         x_mm, y_mm : float
-        intensity : float
-            Linear; 1 is the level that was asked for. What is above 1 sounds as 1: a UserWarning at the first such point, and
-            counted in the report's `held_points`.
+        intensity : float, optional
+            Linear; 1, or `intensity_max`, is the level that was asked for, which is also the default. What is above sounds as that
+            level: a UserWarning at the first such point, and counted in the report's `held_points`. A place outside the array
+            moves to its edge: a UserWarning at the first, and counted in `outside_points`.
         at_s : float, optional
             When the touch was there, s of CLOCK_MONOTONIC (`time.monotonic()`), which the report's delay counts from; else now.
 
@@ -258,14 +262,17 @@ class LiveStroke(Ticket):
             What a phantom model of your own raises, InputError where it returns rubbish, and StreamError where it calls this for the
             stroke that asks it; then the stroke ends with that as its reason.
         """
+        if intensity is None:
+            intensity = self._intensity_max
         if not (type(x_mm) is type(y_mm) is type(intensity) is float):
             x_mm, y_mm, intensity = _number("x_mm", x_mm), _number("y_mm", y_mm), _number("intensity", intensity, 0.0)
+        intensity /= self._intensity_max
         if at_s is not None:
             at_s = _number("at_s", at_s, 0.0, 8e9, "seconds as time.monotonic() gives them, or none for now")
         moved: bool = self._core.to(x_mm, y_mm, intensity, at_s)
-        if moved and intensity > 1.0 and not self._warned:
-            self._warned = True
-            warnings.warn(f"an intensity of {intensity:g} sounds as 1: the level asked for is the ceiling", stacklevel=2)
+        if moved:
+            for remark in self._core.remarks(x_mm, y_mm, intensity):
+                warnings.warn(remark, stacklevel=2)
         return moved
 
     def end(self) -> None:
@@ -366,11 +373,11 @@ class _Shared:
                 if held.log is not None:
                     _call(held.log, *event)
                 continue
-            number, state, reason, frames, started_s, late_s, delay, held_points = event
+            number, state, reason, frames, started_s, late_s, delay, *points = event
             with self.lock:  # whoever submitted it has its ticket in there first
                 ticket = held.tickets.pop(number, None)
             if ticket is not None:
-                ticket._end(Report(state, reason, frames, started_s, late_s, None if delay is None else Delay(*delay), held_points))
+                ticket._end(Report(state, reason, frames, started_s, late_s, None if delay is None else Delay(*delay), *points))
 
 
 def _call(function: _t.Callable[..., object], *arguments: _t.Any) -> None:

@@ -10,6 +10,7 @@
 
 #include <fmt/format.h>
 
+#include "core/bounds.hpp"
 #include "core/trajectory/sample_points.hpp"
 #include "core/words.hpp"
 #include "files/plan/plan_file.hpp"
@@ -57,6 +58,12 @@ std::string content(const std::string& source, const json& v)
     return *std::move(bytes);
 }
 
+double intensity_max(const json& params)
+{
+    const json* said = member(params, "intensity_max");
+    return said == nullptr ? 1.0 : number(*said, "intensity_max", detail::bounds_of::intensity_max);
+}
+
 bool is_plan(std::string_view bytes, const std::string& name)
 {
     const std::string extension = in_small_letters(std::filesystem::path(name).extension().string());
@@ -74,7 +81,7 @@ std::vector<stroke> read_plan_strokes(std::string_view bytes, const std::string&
     return std::move(f.strokes);
 }
 
-read_file read_bytes(std::string bytes, const std::string& name)
+read_file read_bytes(std::string bytes, const std::string& name, double intensity_max)
 {
     if (is_plan(bytes, name))
         return {read_plan_strokes(bytes, name)};
@@ -82,8 +89,10 @@ read_file read_bytes(std::string bytes, const std::string& name)
     if (format == "svg")
         return {parse_strokes_svg(bytes, name)};
     if (format == "csv")
-        return {parse_strokes_csv(bytes, name)};
-    std::vector<stroke> strokes = parse_strokes_toml(bytes, name);
+        return {parse_strokes_csv(bytes, name, intensity_max)};
+    std::vector<stroke> strokes = parse_strokes_toml(bytes, name, intensity_max);
+    if (intensity_max != 1.0)
+        bytes.clear(); // its intensities are not what others would read
     return {std::move(strokes), std::move(bytes)};
 }
 
@@ -140,9 +149,10 @@ net::rpc_fault content_fault(const std::string& source, const std::string& name)
 
 void check_import(const json& params)
 {
-    allow_only(params, {"name", "text", "base64", "stroke", "fit"});
+    allow_only(params, {"name", "text", "base64", "stroke", "fit", "intensity_max"});
     static_cast<void>(text(params[find_content(params)], find_content(params)));
     static_cast<void>(flag(params, "fit"));
+    static_cast<void>(intensity_max(params));
     if (file_name(params).size() > longest_name)
         bad_param("name", fmt::format("it has more than {} bytes", longest_name), "shorten it");
 }
@@ -154,8 +164,9 @@ std::string import_strokes(const planning& with, const layout& faces, const json
     const std::string name = source == "stroke" ? source : file_name(params);
     const bool fit = flag(params, "fit");
     try {
-        read_file f = source == "stroke" ? read_file{read_strokes(source, params[source], with.owner)}
-                                         : read_bytes(content(source, params[source]), name);
+        read_file f = source == "stroke"
+                          ? read_file{read_strokes(source, params[source], with.owner)}
+                          : read_bytes(content(source, params[source]), name, intensity_max(params));
         if (fit)
             f.toml.clear();
         f.strokes = settle_strokes(with, faces, std::move(f.strokes), with.owner, fit);

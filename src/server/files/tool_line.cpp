@@ -35,6 +35,7 @@ options::wishes for_command(options::wishes s, const array& a, const tool_files&
         s.config_file = files.config;
     s.duration_s.reset();
     s.speed_mm_s.reset();
+    s.intensity_max.reset();
     s.fit = false;
     s.array_name.reset();
     if (!files.array.empty())

@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: MIT
 // Requests to the service, its answers, and the senders.
+#include <cstdint>
+#include <string>
 #include <utility>
 
 #include <boost/asio/post.hpp>
 #include <fmt/format.h>
 
+#include "core/words.hpp"
 #include "net/access.hpp"
 #include "server/faults.hpp"
 #include "server/osc/clients.hpp"
@@ -150,6 +153,10 @@ void osc_clients::deliver_news(sender& s, const endpoint& to, const net::json& m
             return;
         const std::int32_t number = found->second;
         const std::string state = p["state"];
+        if (const auto n = p.value("outside_points", std::uint64_t{0}); n != 0 && state != "started")
+            refuse(to, "/tactor/to",
+                   fmt::format("stroke {}: {} outside the array moved to its edge", number,
+                               counted(n, "point")));
         if (state != "started") {
             s.numbers.erase(found);
             s.drawn_as.erase(number);

@@ -12,6 +12,7 @@
 
 #include "core/words.hpp"
 #include "server/faults.hpp"
+#include "session/live_remarks.hpp"
 
 namespace tactor::server {
 
@@ -44,6 +45,19 @@ bool has_stop(std::string_view packet)
         }
     }
     return false;
+}
+
+} // namespace
+
+namespace {
+
+// Returns the option of a stroke that begins; its other values are the service's to refuse.
+double find_intensity_max(const net::json& params)
+{
+    const auto said = params.find("options");
+    const bool has_it = said != params.end() && said->contains("intensity_max");
+    const net::json& v = has_it ? (*said)["intensity_max"] : net::json();
+    return v.is_number() ? v.get<double>() : 1.0;
 }
 
 } // namespace
@@ -176,8 +190,10 @@ void osc_clients::move(osc_request r, std::optional<std::int64_t> at_ns, const e
         bad_param("number", fmt::format("no stroke {} of this sender goes on", r.number),
                   "it is the one that play or begin gave, from this address and port");
     drawn& d = found->second;
-    if (const double asked = r.params.value("intensity", 0.0); asked > 1.0 && !std::exchange(d.is_loud, true))
-        refuse(from, r.address, fmt::format("stroke {}: {}", r.number, held_text(asked)));
+    if (const double asked = r.params.value("intensity", 0.0);
+        asked > d.intensity_max && !std::exchange(d.is_loud, true))
+        refuse(from, r.address,
+               fmt::format("stroke {}: {}", r.number, session::held_text(asked, d.intensity_max)));
     if (d.held && !at_ns && r.method == "cancel")
         return drop_held([&](const held& h) { return h.from == from && h.request.number == r.number; });
     if (!at_ns)
@@ -197,7 +213,9 @@ void osc_clients::draw(osc_request r, std::optional<std::int64_t> at_ns, const e
     if (waits)
         hold(s, *at_ns - lead_ns(), {from, r});
     if (r.number != 0)
-        s.drawn_as[r.number] = {.begins_unix_ns = waits ? r.unix_ns : std::nullopt, .held = waits};
+        s.drawn_as[r.number] = {.begins_unix_ns = waits ? r.unix_ns : std::nullopt,
+                                .held = waits,
+                                .intensity_max = find_intensity_max(r.params)};
     if (waits)
         return;
     if (at_ns)

@@ -154,6 +154,7 @@ struct osc_clients::drawn {
     std::optional<std::uint32_t> stroke = {};        ///< number of the service, once it is known
     std::optional<std::int64_t> begins_unix_ns = {}; ///< time tag of a live stroke
     bool held = false;                               ///< it waits for that time
+    double intensity_max = 1.0;                      ///< value of its points that means 1
     bool is_loud = false;                            ///< a point above intensity 1 was reported
     std::deque<osc_request> waiting = {};            ///< messages until its number is known
 };

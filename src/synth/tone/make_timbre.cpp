@@ -4,6 +4,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
+#include <span>
+#include <string>
 #include <utility>
 
 #include <fmt/format.h>
@@ -11,6 +14,7 @@
 #include <tactor/error.hpp>
 
 #include "core/recording_name.hpp"
+#include "core/refused.hpp"
 #include "synth/tone/waves.hpp"
 
 namespace tactor::synth {
@@ -22,6 +26,14 @@ constexpr std::size_t most_places = 64;
 
 /// Most frames of a recording at the rate of the stream: 32 MB.
 constexpr double most_loop_frames = 8388608.0;
+
+/// A modulation that is no farther from a harmonic, Hz, multiplies it into a displacement that stands still
+/// or follows the difference: it heats the actuator and presses on the skin, and nobody feels it as a
+/// vibration.
+constexpr double least_beat_hz = 5.0;
+
+/// Least amplitude of a harmonic that counts, as a part of the peak.
+constexpr double least_harmonic = 0.01;
 
 /// Returns the integral of the frequency from a point to the next, cycles: coefficients of u, u^2, ..., u^6.
 std::array<double, 6> integrate(const carrier_point& from, const carrier_point& to)
@@ -67,6 +79,48 @@ double highest_hz(const plan& p)
                : std::max_element(p.course.begin(), p.course.end(),
                                   [](const carrier_point& a, const carrier_point& b) { return a.hz < b.hz; })
                      ->hz;
+}
+
+double lowest_hz(const plan& p)
+{
+    return p.course.empty()
+               ? p.carrier_hz
+               : std::min_element(p.course.begin(), p.course.end(),
+                                  [](const carrier_point& a, const carrier_point& b) { return a.hz < b.hz; })
+                     ->hz;
+}
+
+/// Refuses a modulation at a harmonic of the carrier, or which a varying carrier's harmonic passes.
+void refuse_displacement(const timbre& t, const plan& p)
+{
+    const double low_hz = lowest_hz(p);
+    const double high_hz = highest_hz(p);
+    const std::size_t points = t.is_sine() ? 4 : t.samples->size() - cycle_margin;
+    const double first = std::max(std::ceil((p.am.hz - least_beat_hz) / high_hz), 1.0);
+    const double last = std::min(std::floor((p.am.hz + least_beat_hz) / low_hz), 0.5 * points - 1.0);
+    if (!(first <= last))
+        return;
+    spectrum harmonics{0.0, 0.5};
+    if (!t.is_sine())
+        harmonics =
+            fourier_coefficients(std::span(t.samples->data(), points), static_cast<std::size_t>(last) + 1);
+    for (auto k = static_cast<std::size_t>(first); k <= static_cast<std::size_t>(last); ++k) {
+        if (2.0 * std::abs(harmonics[k]) < least_harmonic)
+            continue;
+        const auto n = static_cast<double>(k);
+        const std::string what = k == 1 ? "the carrier" : fmt::format("harmonic {} of the carrier", k);
+        throw detail::bad_field(
+            "am",
+            p.course.empty()
+                ? fmt::format(
+                      "{} Hz is within {} Hz of {}, {} Hz: their product is a displacement that hardly "
+                      "moves, not a vibration",
+                      p.am.hz, least_beat_hz, what, n * p.carrier_hz)
+                : fmt::format("{} passes {} Hz on its way from {} to {} Hz: their product is there a "
+                              "displacement that hardly moves, not a vibration",
+                              what, p.am.hz, n * low_hz, n * high_hz),
+            "choose a rate farther from the carrier, such as 30 Hz");
+    }
 }
 
 void check_length(const recording& r, unsigned rate)
@@ -146,6 +200,11 @@ std::shared_ptr<const timbre> make_timbre(const plan& p, unsigned rate)
         t->am_depth = p.am.depth;
     }
     fill_in(*t, p, rate);
+    const bool has_carrier =
+        t->form != timbre::form_kind::loop &&
+        !(p.wave.kind == waveform_kind::recording && p.wave.texture == texture_kind::length);
+    if (modulated && has_carrier)
+        refuse_displacement(*t, p);
     return t;
 }
 

@@ -19,7 +19,7 @@ const TABS = {Place: "method", Timing: "timing", Sound: "vibration", Level: "vib
 const IN_METHOD = new Set(["algorithm", "phantom", "faces", "snap", "drop_points", "overlap", "compensate", "sigma_mm",
   "sigma_v_mm_s", "observer"]);
 const OWN = new Set(["algorithm", "phantom", "soa", "burst", "waveform", "carrier", "attack", "release", "phase", "level_dbfs",
-  "duration", "speed"]);
+  "duration", "speed", "intensity_max"]); // the last is of recordings: what is drawn here is 0 to 1
 // Options that only one algorithm knows.
 const ONLY = {snap: "tactile-brush", drop_points: "tactile-brush", overlap: "tactile-brush", soa: "park2016", burst: "park2016"};
 

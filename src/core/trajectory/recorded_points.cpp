@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: MIT
+#include "core/trajectory/recorded_points.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "core/bounds.hpp"
+#include "core/limits.hpp"
+#include "core/refused.hpp"
+#include "core/words.hpp"
+
+namespace tactor::detail {
+namespace {
+
+/// Seconds since 1970 are 1.8e9. Farther from zero a time does not hold microseconds.
+constexpr double farthest_time_s = 1e10;
+constexpr std::size_t most_points = 10'000'000;
+constexpr double edge_of_gap_s = 1e-6;
+
+// Longer strokes with fewer points are most likely in milliseconds.
+constexpr double long_s = 3600.0;
+constexpr double sparse_s = 30.0; // between two points
+
+} // namespace
+
+recorded_points::recorded_points(double intensity_max, find_place where, std::string_view unit)
+    : intensity_max_(intensity_max), where_(std::move(where)), unit_(unit)
+{
+    if (!bounds_of::intensity_max.holds(intensity_max))
+        throw bad_field("intensity_max", fmt::format("{:g} cannot mean intensity 1", intensity_max),
+                        "give a number above 0, such as 255");
+}
+
+std::string recorded_points::here() const
+{
+    return where_ ? where_(recorded::row).text() : fmt::format("point {}", added_);
+}
+
+void recorded_points::note(oddity& o)
+{
+    if (o.count++ == 0)
+        o.first = here();
+}
+
+void recorded_points::refuse(recorded value, std::string_view why, std::string_view hint) const
+{
+    if (where_)
+        throw error(error_kind::bad_input, where_(value), why, hint);
+    throw error(error_kind::bad_input, value == recorded::row ? "timed points" : here(), why, hint);
+}
+
+void recorded_points::check(const timed_point& p) const
+{
+    const auto within = [this](recorded value, std::string_view name, double v, double most) {
+        if (!(std::abs(v) <= most))
+            refuse(value, fmt::format("{} {}", name, v),
+                   fmt::format("it is between {:g} and {:g}", -most, most));
+    };
+    within(recorded::t_s, "t_s", p.t_s, farthest_time_s);
+    within(recorded::x_mm, "x_mm", p.position.x_mm, max_mm);
+    within(recorded::y_mm, "y_mm", p.position.y_mm, max_mm);
+    if (!(p.intensity >= 0.0))
+        refuse(recorded::intensity, fmt::format("intensity {}", p.intensity), "it is 0 or more");
+    if (p.intensity > intensity_max_)
+        refuse(recorded::intensity,
+               fmt::format("intensity {} is above {:g}, which means the level asked for", p.intensity,
+                           intensity_max_),
+               "say which value means 1: {intensity_max=100} for per cent, {intensity_max=127} for MIDI, "
+               "{intensity_max=255} for 8 bits");
+}
+
+double recorded_points::since_first(double t_s)
+{
+    if (points_.empty())
+        first_time_s_ = t_s;
+    const double t = t_s - first_time_s_;
+    // Two times far from zero may have the same difference.
+    if (!points_.empty() && t < points_.back().t_s)
+        refuse(recorded::t_s,
+               fmt::format("time {} s is before {} s of the {} before", t_s, last_time_s_, unit_),
+               "times ascend");
+    if (t > longest_stroke_s)
+        refuse(recorded::t_s, fmt::format("time {} s is {} s after the first {}", t_s, t, unit_),
+               fmt::format("a stroke lasts at most {:g} s", longest_stroke_s));
+    last_time_s_ = t_s;
+    return t;
+}
+
+void recorded_points::add(const timed_point& p)
+{
+    ++added_;
+    if (std::isnan(p.position.x_mm) || std::isnan(p.position.y_mm) || std::isnan(p.intensity)) {
+        in_gap_ = true;
+        note(gaps_);
+        return;
+    }
+    check(p);
+    add_behind_gap({since_first(p.t_s), p.position, p.intensity / intensity_max_});
+}
+
+// Behind a gap the touch is lifted from the last place to this one.
+void recorded_points::add_behind_gap(const timed_point& p)
+{
+    if (std::exchange(in_gap_, false) && !points_.empty() && p.t_s > points_.back().t_s) {
+        const timed_point last = points_.back();
+        const double edge_s = std::min(edge_of_gap_s, (p.t_s - last.t_s) / 4.0);
+        append({last.t_s + edge_s, last.position, 0.0});
+        append({p.t_s - edge_s, p.position, 0.0});
+    }
+    append(p);
+}
+
+// Touch screens give several places the time of one report: the last is where the finger is.
+void recorded_points::append(const timed_point& p)
+{
+    if (!points_.empty() && p.t_s == points_.back().t_s) {
+        points_.back() = p;
+        note(repeated_);
+        return;
+    }
+    if (points_.size() == most_points)
+        refuse(recorded::row, fmt::format("more than {} points", most_points),
+               "thin them out, or cut it in two");
+    points_.push_back(p);
+}
+
+void recorded_points::warn()
+{
+    if (gaps_.count != 0)
+        warnings_.push_back(fmt::format("{}: no place (nan) in {}: the touch is lifted there", gaps_.first,
+                                        gaps_.count == 1
+                                            ? fmt::format("this {}", unit_)
+                                            : fmt::format("{} from here on", counted(gaps_.count, unit_))));
+    if (repeated_.count == 1)
+        warnings_.push_back(fmt::format("{}: repeats the time of the {} before, which does not count",
+                                        repeated_.first, unit_));
+    if (repeated_.count > 1)
+        warnings_.push_back(fmt::format("{}: repeats the time of the {} before, as {} {}s do in all; the "
+                                        "last of equal times counts",
+                                        repeated_.first, unit_, repeated_.count, unit_));
+    const double length_s = points_.back().t_s;
+    if (length_s > long_s && static_cast<double>(points_.size()) < length_s / sparse_s)
+        warnings_.push_back(fmt::format("{}: only {} points in {}: times are in seconds; if these are "
+                                        "milliseconds, divide them by 1000",
+                                        here(), points_.size(), seconds_text(length_s)));
+}
+
+std::vector<timed_point> recorded_points::take()
+{
+    if (points_.size() < 2)
+        refuse(recorded::row,
+               fmt::format("{} of at least 2 points{}", points_.size(),
+                           repeated_.count != 0 ? " with times of their own" : ""),
+               "give where the stroke starts and where it ends");
+    warn();
+    return std::move(points_);
+}
+
+} // namespace tactor::detail

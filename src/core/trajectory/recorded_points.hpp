@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: MIT
+/// \file
+/// Points as a recorder gave them. The same rules hold in files, messages and arrays.
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <tactor/error.hpp>
+#include <tactor/stroke.hpp>
+
+namespace tactor::detail {
+
+/// Value of a recorded point. `row` is the point as a whole.
+enum class recorded : std::size_t { t_s, x_mm, y_mm, intensity, row };
+
+/// Points of one recording. The first time becomes 0. Of equal times the last counts. The touch is lifted
+/// where a place or an intensity is no number (nan).
+class recorded_points {
+public:
+    /// Returns the place of a value of the newest point in its file.
+    using find_place = std::function<source_place(recorded)>;
+
+    /// \param intensity_max value that means intensity 1, above 0
+    /// \param where none: messages count points from 1
+    /// \param unit word for a point in messages
+    /// \throws error (bad_input) for an impossible intensity_max.
+    explicit recorded_points(double intensity_max, find_place where = {}, std::string_view unit = "point");
+
+    void reserve(std::size_t points) { points_.reserve(points); }
+
+    /// Adds a point.
+    /// \throws error (bad_input) for values out of range and times that descend.
+    void add(const timed_point& p);
+
+    /// Returns the points.
+    /// \throws error (bad_input) for fewer than two.
+    std::vector<timed_point> take();
+
+    /// Returns remarks on what was accepted. Call it after take().
+    const std::vector<std::string>& warnings() const noexcept { return warnings_; }
+
+private:
+    /// Points of one kind: how many, and the place of the first.
+    struct oddity {
+        std::size_t count = 0;
+        std::string first = {};
+    };
+
+    void check(const timed_point& p) const;
+    double since_first(double t_s);
+    void add_behind_gap(const timed_point& p);
+    void append(const timed_point& p);
+    void warn();
+    std::string here() const;
+    void note(oddity& o);
+    [[noreturn]] void refuse(recorded value, std::string_view why, std::string_view hint) const;
+
+    double intensity_max_;
+    find_place where_;
+    std::string_view unit_;
+    std::vector<timed_point> points_;
+    std::size_t added_ = 0;
+    bool in_gap_ = false;
+    double first_time_s_ = 0.0;
+    double last_time_s_ = 0.0;
+    oddity gaps_;
+    oddity repeated_;
+    std::vector<std::string> warnings_;
+};
+
+} // namespace tactor::detail
