@@ -361,6 +361,8 @@ class Person(CalibrateTest):
         until("trial 1: interval 1 interval 2 which\\? ")
         os.write(fd, b"1")
         until("trial 2: interval 1 interval 2 which\\? ")
+        os.write(fd, b"1" * 60)  # held down: it answers nothing
+        until("tactor: a key is held down")
         os.write(fd, b"2")
         until("trial 3: interval 1")
         os.write(fd, b"\x03")

@@ -198,6 +198,23 @@ class AtTheTerminal(PersonTest):
         self.assertIn("<target>\n", lines)
         self.assertIn("<no_answer>: 1 ", lines)
 
+    def test_a_held_key_answers_nothing(self):
+        t = self.start()
+        t.answer("Do you agree", "y")
+        t.answer("0: Did you feel it", "y")
+        t.answer("1: Did you feel it", "y")
+        t.answer("Any key begins", " ")
+        t.answer("Which one\\? 1 or 2: ", "1" * 200)  # faster than a terminal repeats it
+        self.until(lambda: "a key is held down" in t.said())
+        t.key("2")  # another key is pressed, not held
+        for _ in (1, 2):
+            t.answer("Which one\\? 1 or 2: ", "1" * 50 + "2")
+        t.answer("Any key begins", "q")
+        self.assertEqual(t.end(), 130)
+        self.assertEqual([r["response"] for r in self.rows("01", "pairs")], ["2", "2"])
+        self.assertEqual([r["response"] for r in read_table(self.dir / "study/sourcedata/sub-01/practice.tsv")], ["2"])
+        self.assertEqual(t.said().count("a key is held down"), 1)
+
     def test_nothing_tells_the_method(self):
         t = self.start()
         t.begin()

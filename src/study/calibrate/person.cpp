@@ -130,8 +130,12 @@ void person::on_page(page_screen s)
 // With a page the terminal is the experimenter's, who has Ctrl-C.
 std::optional<std::string> person::read_keys()
 {
-    if (!page_)
-        return keys_.next();
+    if (!page_) {
+        std::optional<std::string> key = keys_.next();
+        for (; key && keys_.is_repeated(); key = keys_.next())
+            keys_.tell_of_repeats();
+        return key;
+    }
     while (keys_.typed())
         ;
     while (const auto key = keys_.pressed())
