@@ -421,6 +421,18 @@ class Page(CalibrateTest):
         self.assertEqual([r["response"] for r in self.rows("me.tsv")], ["1"] * 3)
         self.assertIn("trial 1: interval 1 interval 2 which? 1", s.shown)
 
+    def test_the_page_speaks_the_words_of_an_experiment(self):
+        self.write("mine.toml", '[page]\nbegin = "Los"\ncalibrate_choose = "Zwei"\ncalibrate_interval = "Abschnitt"\n'
+                                'calibrate_which = "Welcher?"\ncalibrate_right = "Ja"\ncalibrate_wrong = "Nein"\n')
+        s = self.start("--page-words", "mine.toml")
+        asked = self.page.answer("introduce", 1)
+        self.assertEqual((asked["text"], asked["choices"]), ("Zwei", ["Los"]))
+        self.until_text("Abschnitt 2$")
+        self.assertEqual(self.page.answer("question", 1)["question"], "Welcher?")
+        self.until_text("Ja|Nein")
+        s.process.send_signal(signal.SIGINT)
+        self.assertEqual(s.end(), 130)
+
     def test_a_level_is_set_on_the_page(self):
         s = self.start("--method", "adjustment")
         self.page.answer("introduce", 1)
@@ -436,6 +448,10 @@ class Page(CalibrateTest):
 
     def test_bad_options_are_refused(self):
         self.refused(2, *Person.ARGS, "--page", "0.0.0.0:0")
+        self.write("none.toml", '[experiment]\nname = "x"\n')
+        self.refused(2, *Person.ARGS, "--display", "page", "--page-words", "none.toml", says=["none.toml", "there is no [page]"])
+        self.write("some.toml", '[page]\nbegin = "Los"\n')
+        self.refused(2, *Person.ARGS, "--page-words", "some.toml", says=["--page-words", "there is no page"])
         self.refused(2, *Person.ARGS, "--page", "0", "--display", "terminal")
         self.refused(2, "calibrate", "--participant", "P07", "-o", "me.toml", "--simulate", OBSERVER, "--display", "page")
 

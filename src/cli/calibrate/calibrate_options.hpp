@@ -10,6 +10,7 @@
 #include "cli/input.hpp"
 #include "cli/session/page_options.hpp"
 #include "study/calibrate/calibration.hpp"
+#include "study/experiment/definition.hpp"
 #include "study/masking/masking_stream.hpp"
 
 namespace CLI {
@@ -27,7 +28,8 @@ struct calibrate_options {
     std::optional<std::uint32_t> seed;
     std::vector<std::string> keypads; ///< input devices of the participant's
     page_options page;
-    std::string masker; ///< PCM of the masking noise; empty: none
+    std::optional<study::page_words> words; ///< of the page; none: English
+    std::string masker;                     ///< PCM of the masking noise; empty: none
     study::masking_options masking;
     std::vector<std::string> of_masker;    ///< options given that only a masker has
     std::vector<std::string> of_staircase; ///< options given that an adjustment does not have

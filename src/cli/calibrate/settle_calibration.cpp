@@ -167,6 +167,8 @@ study::calibration_settings settle_calibration(const calibrate_options& o, const
     check_staircase(c);
     check_masker(o);
     check_page_options(o.page, o.simulate.has_value());
+    if (o.words && !o.page.shown())
+        refuse_option("--page-words", "there is no page", "--display page, or leave it out");
     if (const std::string asked = asked_of_stream(s); o.simulate && !asked.empty())
         refuse_option(asked, "nothing is played", "leave it out, or --simulate");
     if (o.simulate && !o.keypads.empty())

@@ -202,6 +202,21 @@ constexpr std::array english{
     page_word{"repeated", "again"},
     page_word{"later", "Once more, later."},
     page_word{"no_answer", "That is no answer"},
+    // On the page of calibrate only.
+    page_word{"calibrate_choose",
+              "There are two intervals, one of which vibrates. Which one? Guess where you do not know."},
+    page_word{"calibrate_interval", "Interval"},
+    page_word{"calibrate_which", "Which one vibrated?"},
+    page_word{"calibrate_right", "That was right."},
+    page_word{"calibrate_wrong", "That was wrong."},
+    page_word{"calibrate_adjust", "Something vibrates again and again. Set it so that you just feel it."},
+    page_word{"calibrate_set", "Set it so that you just feel it."},
+    page_word{"calibrate_much_weaker", "Much weaker"},
+    page_word{"calibrate_weaker", "Weaker"},
+    page_word{"calibrate_stronger", "Stronger"},
+    page_word{"calibrate_much_stronger", "Much stronger"},
+    page_word{"calibrate_that_is_it", "That is it"},
+    page_word{"calibrate_not_felt", "Not felt at any level"},
 };
 
 std::size_t find_word(std::string_view key)
@@ -279,7 +294,7 @@ std::span<const page_word> page_words_in_english()
     return english;
 }
 
-page_words::page_words()
+page_words::page_words() : set_(english.size(), false)
 {
     for (const page_word& w : english)
         texts_.emplace_back(w.english);
@@ -293,6 +308,33 @@ const std::string& page_words::operator[](std::string_view key) const
 void page_words::set(std::string_view key, std::string text)
 {
     texts_.at(find_word(key)) = std::move(text);
+    set_.at(find_word(key)) = true;
+}
+
+std::vector<std::string_view> page_words::missing() const
+{
+    std::vector<std::string_view> all;
+    for (std::size_t i = 0; i < english.size(); ++i)
+        if (!set_[i])
+            all.push_back(english[i].key);
+    return all.size() < english.size() ? all : std::vector<std::string_view>();
+}
+
+page_words load_page_words(const std::string& file)
+{
+    const detail::whole_text text = detail::read_text_file(file, most_bytes_of_text);
+    const toml::table document = detail::parse_toml(text, file);
+    const toml_table root(document, "the file", file);
+    if (!root.has("page"))
+        root.fail("there is no [page]", "a definition of an experiment with the participant's words");
+    return read_page(root);
+}
+
+std::string missing_words(const experiment_definition& d)
+{
+    const std::vector<std::string_view> missing = d.page.missing();
+    return missing.empty() ? ""
+                           : fmt::format("[page] lacks {}, which stay English", fmt::join(missing, ", "));
 }
 
 } // namespace tactor::study

@@ -44,10 +44,17 @@ public:
     /// \pre `key` is one of page_words_in_english().
     const std::string& operator[](std::string_view key) const;
     void set(std::string_view key, std::string text);
+    /// Lists the keys that stay English although others were set.
+    std::vector<std::string_view> missing() const;
 
 private:
     std::vector<std::string> texts_; // in the same order
+    std::vector<bool> set_;
 };
+
+/// Reads [page] of a definition; passes over all else in it. \throws error (bad_input) with line and column,
+/// also if there is no [page].
+page_words load_page_words(const std::string& file);
 
 /// [masking]: noise from loudspeakers or headphones, so that nobody hears the array.
 struct masking_definition {
@@ -74,7 +81,8 @@ struct method_definition {
 /// [[run]]. Motions and methods are places in those of the definition.
 struct run_definition {
     run_outline outline;
-    std::string attribute = {}; ///< similarity or uniformity; may be empty for identify
+    std::string attribute = {};   ///< what is asked about, in any words; may be empty for identify
+    std::string simulate_as = {}; ///< similarity, uniformity; empty: nothing that an observer can judge
     std::string question = {};
     bool animation = false;
     unsigned practice = 0; ///< trials before that do not count
@@ -148,6 +156,10 @@ run_definition read_run_definition(const detail::toml_table& t, const experiment
 
 /// Reads of it what the analysis needs, and passes over other keys. \throws error (bad_input).
 run_definition read_run_outline(const detail::toml_table& t, const experiment_definition& d);
+
+/// Returns a warning for sentences of the participant's that stay English although [page] has others; empty
+/// if there are none.
+std::string missing_words(const experiment_definition& d);
 
 /// Returns the experiment that is built in, as it stands among the examples.
 std::string_view park2016_text() noexcept;

@@ -172,6 +172,8 @@ prepared_experiment prepare(const session_request& r, session::settings& s)
         doubts = calibration_doubts(r.participant, e, stimuli);
     std::vector<std::string> warnings = stimuli.warnings();
     warnings.insert(warnings.end(), doubts.begin(), doubts.end());
+    if (std::string words = missing_words(d); !words.empty() && r.who != audience::observer)
+        warnings.push_back(std::move(words));
     if (assumed)
         warnings.push_back(
             fmt::format("tactors without a threshold: {} dBFS is taken for it", assumed_threshold_dbfs));
