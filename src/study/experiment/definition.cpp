@@ -53,6 +53,24 @@ void read_level(const toml_table& t, experiment_definition& d)
         d.sl_db = *level->number(kind, {-60.0, 100.0});
 }
 
+// Reads one time, or the least and the greatest of a pause that is drawn.
+rest_range read_rest(const toml_table& t)
+{
+    constexpr detail::bounds possible{0.0, 60.0};
+    const toml::node* n = t.node("rest_s");
+    if (n == nullptr || !n->is_array()) {
+        const double rest_s = t.number("rest_s", possible).value_or(0.0);
+        return {rest_s, rest_s};
+    }
+    std::vector<double> range;
+    for (const toml::node& one : *n->as_array())
+        range.push_back(t.to_number(one, "rest_s", possible));
+    if (range.size() != 2 || range[0] > range[1])
+        t.fail("rest_s", fmt::format("rest_s is {}", detail::shown(*n)),
+               "one time, or the least and the greatest: [2, 4]");
+    return {range[0], range[1]};
+}
+
 std::optional<std::uint64_t> read_seed(const toml_table& t)
 {
     constexpr std::int64_t most = (std::int64_t{1} << 53) - 1; // JSON's numbers go so far
@@ -80,7 +98,7 @@ void read_head(const toml_table& root, const extent& e, experiment_definition& d
         d.array = array_in(*t, *e.folder);
     read_level(*t, d);
     d.gap_s = t->number("gap_s", {0.0, 60.0}).value_or(d.gap_s);
-    d.rest_s = t->number("rest_s", {0.0, 60.0}).value_or(d.rest_s);
+    d.rest = read_rest(*t);
     d.seed = read_seed(*t);
     d.consent = t->text("consent").value_or("");
     d.authors = texts_in(*t, "authors", 1000);
@@ -162,7 +180,7 @@ experiment_definition definition_in(std::string_view toml, const std::string& na
     }
     d.motions = read_all<motion_definition>(root, "motion", [&](const toml_table& t) {
         return e.folder != nullptr ? read_motion(t, *e.folder)
-                                   : motion_definition{name_in(t, "name"), {}, t.where()};
+                                   : motion_definition{name_in(t, "name"), {}, is_mirrored(t), t.where()};
     });
     d.methods = read_all<method_definition>(root, "method", [&](const toml_table& t) {
         return e.outline_only ? method_definition{name_in(t, "name"), {}, t.where()} : read_method(t);

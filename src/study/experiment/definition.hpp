@@ -68,6 +68,7 @@ struct masking_definition {
 struct motion_definition {
     std::string name;
     stroke drawn;
+    bool mirror = false; ///< left and right are exchanged for left hands
     source_place where = {};
 };
 
@@ -85,12 +86,21 @@ struct run_definition {
     std::string simulate_as = {}; ///< similarity, uniformity; empty: nothing that an observer can judge
     std::string question = {};
     bool animation = false;
-    unsigned practice = 0; ///< trials before that do not count
-    double break_s = 0.0;  ///< after the run
+    unsigned practice = 0;        ///< trials before that do not count
+    double break_s = 0.0;         ///< after the run
+    double min_response_s = 0.15; ///< an earlier answer is marked early
     std::vector<std::string> labels = {};
     std::vector<std::size_t> motions = {};
     std::vector<std::size_t> methods = {};
     source_place where = {};
+};
+
+/// Pause before a trial. Drawn for each trial if its bounds differ.
+struct rest_range {
+    double least_s = 0.0;
+    double most_s = 0.0;
+
+    bool is_random() const noexcept { return most_s > least_s; }
 };
 
 struct experiment_definition {
@@ -100,7 +110,7 @@ struct experiment_definition {
     std::optional<double> level_dbfs = {};  ///< none: sl_db
     double sl_db = 7.0;                     ///< above each tactor's threshold
     double gap_s = 1.0;                     ///< choose: from the first stimulus' end to the second's begin
-    double rest_s = 0.0;                    ///< before each trial
+    rest_range rest = {};                   ///< before each trial
     std::optional<std::uint64_t> seed = {}; ///< none: default_seed(code)
     std::string consent = {};
     std::vector<std::string> authors = {};
@@ -147,6 +157,9 @@ std::vector<std::string> texts_in(const detail::toml_table& t, std::string_view 
 
 /// Reads [[motion]]: a stroke from a preset, path data or a file, with its duration or speed.
 motion_definition read_motion(const detail::toml_table& t, const std::filesystem::path& folder);
+
+/// Returns true if a [[motion]] is to be mirrored for left hands.
+bool is_mirrored(const detail::toml_table& motion);
 
 /// Reads [[method]]: options of a plan.
 method_definition read_method(const detail::toml_table& t);
