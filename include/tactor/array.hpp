@@ -48,6 +48,9 @@ struct tactor_spec {
     std::vector<threshold_point> thresholds = {};
     std::optional<double> rise_s = {}; ///< time until the vibration reaches 1 - 1/e of its strength, s
     source_place where = {};           ///< place in the array file, for error messages
+    /// Measured peak displacement (zero to peak) of a sine at 0 dBFS at the working carrier, with the skin on
+    /// it, um. Reports state it; no sample depends on it.
+    std::optional<double> displacement_um_at_0dbfs = {};
 };
 
 /// A set of tactors. A plain value.

@@ -23,6 +23,7 @@ constexpr unsigned least_period_frames(unsigned rate)
 
 inline constexpr double min_db = -200.0; ///< below the noise of any converter
 inline constexpr double max_gain_db = 60.0;
+inline constexpr double max_displacement_um = 10000.0;
 
 inline constexpr double longest_stroke_s = 86400.0;
 

@@ -22,6 +22,7 @@ namespace {
 constexpr std::size_t longest_chain = 16;
 constexpr bounds anywhere{-max_mm, max_mm};
 constexpr bounds limit_db{min_db, 0.0};
+constexpr bounds displacement_um{0.0, max_displacement_um, true};
 
 array read_grid(const toml_table& grid)
 {
@@ -129,6 +130,8 @@ void read_tactor(const toml_table& entry, tactor_spec& t)
     read_threshold(entry, t);
     if (const auto rise = entry.number("rise_ms", {0.0, 1000.0, true}))
         t.rise_s = *rise / 1e3;
+    if (const auto um = entry.number("displacement_um_at_0dbfs", displacement_um))
+        t.displacement_um_at_0dbfs = um;
     if (const auto sign = entry.number("polarity", {-1.0, 1.0})) {
         if (*sign != 1.0 && *sign != -1.0)
             entry.fail("polarity", fmt::format("polarity is {}", *sign),
@@ -143,7 +146,7 @@ void append_tactors(const std::vector<toml_table>& entries, array& a)
 {
     for (const toml_table& e : entries) {
         e.only({"x_mm", "y_mm", "channel", "gain_db", "max_dbfs", "threshold_dbfs", "polarity", "actuator",
-                "rise_ms", "tactor"});
+                "rise_ms", "displacement_um_at_0dbfs", "tactor"});
         const unsigned i = static_cast<unsigned>(a.tactors.size());
         if (i == max_tactors)
             e.fail(fmt::format("more than {} tactors", max_tactors));
@@ -169,7 +172,7 @@ void adjust_tactors(const std::vector<toml_table>& entries, std::string_view bas
                 e.fail(key, fmt::format("[[tactor]] says {}, but its place comes from the {}", key, base),
                        fmt::format("leave {} out, or the {}", key, base));
         e.only({"tactor", "channel", "gain_db", "max_dbfs", "threshold_dbfs", "polarity", "actuator",
-                "rise_ms"});
+                "rise_ms", "displacement_um_at_0dbfs"});
         if (!e.has("tactor"))
             e.fail("[[tactor]] does not say which tactor it is",
                    fmt::format("add tactor = INDEX, 0 to {}", last));
@@ -230,7 +233,8 @@ void read_array(const toml_table& root, const setup_source& source, located_setu
         root.table("array", "[array]", "[array]").value_or(toml_table(none, "[array]", source.name));
     if (table.has("tactor"))
         table.fail("tactor", "tactors inside [array]", "write [[tactor]], which stands beside [array]");
-    table.only({"name", "site", "up", "grid", "preset", "file", "actuator", "mirror", "rotate_deg"});
+    table.only({"name", "site", "up", "grid", "preset", "file", "actuator", "mirror", "rotate_deg",
+                "displacement_um_at_0dbfs"});
     const std::vector<toml_table> entries = root.tables("tactor");
 
     std::string_view base;
@@ -257,6 +261,10 @@ void read_array(const toml_table& root, const setup_source& source, located_setu
         for (tactor_spec& t : a.tactors)
             if (t.actuator == actuator_kind::unknown)
                 t.actuator = *actuator;
+    if (const auto um = table.number("displacement_um_at_0dbfs", displacement_um))
+        for (tactor_spec& t : a.tactors)
+            if (!t.displacement_um_at_0dbfs)
+                t.displacement_um_at_0dbfs = um;
     a.where = root.has("array") ? table.where() : entries.front().where();
     out.said.array = std::move(a);
 }

@@ -95,6 +95,7 @@ std::string tactor_text(const tactor_spec& t)
         s += fmt::format("actuator = \"{}\"\n", to_string(t.actuator));
     if (t.rise_s)
         s += fmt::format("rise_ms = {}\n", ms(*t.rise_s));
+    add(s, "displacement_um_at_0dbfs", t.displacement_um_at_0dbfs);
     return s;
 }
 

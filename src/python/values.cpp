@@ -20,8 +20,9 @@
 namespace tactor::python {
 namespace {
 
-using tactor_row = std::tuple<double, double, unsigned, double, double, std::optional<double>, int,
-                              std::string, std::vector<std::pair<double, double>>, std::optional<double>>;
+using tactor_row =
+    std::tuple<double, double, unsigned, double, double, std::optional<double>, int, std::string,
+               std::vector<std::pair<double, double>>, std::optional<double>, std::optional<double>>;
 
 array_handle make_array(const std::string& name, const std::vector<tactor_row>& rows, const std::string& site,
                         const std::string& up)
@@ -30,12 +31,14 @@ array_handle make_array(const std::string& name, const std::vector<tactor_row>& 
     a.name = name;
     a.site = site;
     a.up = up;
-    for (const auto& [x, y, channel, gain, most, threshold, polarity, actuator, thresholds, rise_s] : rows) {
+    for (const auto& [x, y, channel, gain, most, threshold, polarity, actuator, thresholds, rise_s, um] :
+         rows) {
         a.tactors.push_back(
             {{x, y}, channel, gain, most, threshold, polarity, from_string<actuator_kind>(actuator)});
         for (const auto& [hz, dbfs] : thresholds)
             a.tactors.back().thresholds.push_back({hz, dbfs});
         a.tactors.back().rise_s = rise_s;
+        a.tactors.back().displacement_um_at_0dbfs = um;
     }
     return array_handle(std::move(a));
 }
@@ -49,7 +52,7 @@ std::vector<tactor_row> list_rows(const array_handle& h)
             thresholds.emplace_back(p.hz, p.dbfs);
         rows.emplace_back(t.position.x_mm, t.position.y_mm, t.channel, t.gain_db, t.max_dbfs,
                           t.threshold_dbfs, t.polarity, to_string(t.actuator), std::move(thresholds),
-                          t.rise_s);
+                          t.rise_s, t.displacement_um_at_0dbfs);
     }
     return rows;
 }

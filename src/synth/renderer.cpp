@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <memory>
 #include <span>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -9,6 +10,7 @@
 #include <tactor/render.hpp>
 
 #include "core/access.hpp"
+#include "synth/mix/limits_met.hpp"
 #include "synth/mix/mixer.hpp"
 #include "synth/mix/oscillator.hpp"
 #include "synth/score/event_source.hpp"
@@ -24,31 +26,26 @@ double plain_ramp_s(double onset_s, double duration_s, const plan& p, const rend
                            : o.ramp_s.value_or(default_ramp_s);
 }
 
-} // namespace tactor::synth
-
-namespace tactor {
-inline namespace v0 {
-
-struct renderer::impl {
+/// A mixer that is fed with the drives of a score.
+struct score_mixer {
     /// Makes a mixer with space for the drives that sound at once and for those that begin in the block.
-    impl(const score& s, format_kind f)
+    score_mixer(const score& s, format_kind f)
         : source(s),
           mix(detail::access::of(s).limits, f, detail::access::of(s).open_events + 256,
-              guards(detail::access::of(s))),
+              find_guards(detail::access::of(s))),
           frame_bytes(s.channels() * sample_bytes(f))
     {
     }
 
-    static synth::guard_settings guards(const score::impl& s)
+    static guard_settings find_guards(const score::impl& s)
     {
-        return s.guards ? synth::make_guards(*s.guards, s.rate) : synth::guard_settings{};
+        return s.guards ? make_guards(*s.guards, s.rate) : guard_settings{};
     }
 
     /// Hands over the drives that start before a frame. Returns the frame up to which none is missing.
     std::uint64_t feed(std::uint64_t until)
     {
-        for (const synth::drive_event* e = source.peek(); e != nullptr && e->start < until;
-             e = source.peek()) {
+        for (const drive_event* e = source.peek(); e != nullptr && e->start < until; e = source.peek()) {
             if (!mix.add(*e))
                 return e->start;
             source.pop();
@@ -56,9 +53,45 @@ struct renderer::impl {
         return until;
     }
 
-    synth::event_source source;
-    synth::mixer mix;
+    /// Renders the next frames.
+    void process(std::size_t frames, std::byte* to)
+    {
+        // Whole blocks of the mixer, several at once: short to wait for, with little work in between.
+        constexpr std::uint64_t stride = std::uint64_t{8} * block_frames;
+        while (frames > 0) {
+            const std::uint64_t at = mix.position();
+            const std::uint64_t until = std::min(at + frames, at / stride * stride + stride);
+            const auto n = static_cast<std::size_t>(std::max(feed(until), at + 1) - at);
+            mix.process(n, to);
+            to += n * frame_bytes;
+            frames -= n;
+        }
+    }
+
+    event_source source;
+    mixer mix;
     std::size_t frame_bytes;
+};
+
+limits_met find_limits_met(const score& s)
+{
+    constexpr std::uint64_t most_frames = 4096;
+    score_mixer m(s, format_kind::float32);
+    std::vector<std::byte> unused(most_frames * m.frame_bytes);
+    const auto acts = [&] { return m.mix.power_limited() != 0 || m.mix.drives_cut() != 0; };
+    while (m.mix.position() < s.frames() && !acts())
+        m.process(static_cast<std::size_t>(std::min(most_frames, s.frames() - m.mix.position())),
+                  unused.data());
+    return {m.mix.power_limited() != 0, m.mix.drives_cut() != 0};
+}
+
+} // namespace tactor::synth
+
+namespace tactor {
+inline namespace v0 {
+
+struct renderer::impl : synth::score_mixer {
+    using score_mixer::score_mixer;
 };
 
 namespace {
@@ -89,18 +122,7 @@ void renderer::process(std::span<std::byte> out)
         throw error(error_kind::bad_input, "renderer",
                     fmt::format("{} bytes are no whole number of frames of {}", out.size(), r.frame_bytes),
                     "give space for whole frames");
-    std::size_t frames = out.size() / r.frame_bytes;
-    std::byte* to = out.data();
-    // Whole blocks of the mixer, several at once: short to wait for, with little work in between.
-    constexpr std::uint64_t stride = std::uint64_t{8} * synth::block_frames;
-    while (frames > 0) {
-        const std::uint64_t at = r.mix.position();
-        const std::uint64_t until = std::min(at + frames, at / stride * stride + stride);
-        const auto n = static_cast<std::size_t>(std::max(r.feed(until), at + 1) - at);
-        r.mix.process(n, to);
-        to += n * r.frame_bytes;
-        frames -= n;
-    }
+    r.process(out.size() / r.frame_bytes, out.data());
 }
 
 std::uint64_t renderer::position() const

@@ -5,7 +5,7 @@ import pathlib
 
 from harness import ToolTest
 
-COLUMNS = ("onset duration trial attempt motion method_1 method_2 response response_time rating void xruns stream "
+COLUMNS = ("onset duration trial attempt motion method_1 method_2 response response_time early rating void xruns stream "
            "frame_1 frame_2 plan_1 plan_2").split()
 
 SMALL = """[experiment]

@@ -127,6 +127,16 @@ class DryRun(ExperimentTest):
                     self.assertEqual(row[key], "n/a" if trial[key] is None else str(trial[key]))
                 self.assertAlmostEqual(float(row["duration"]), trial["duration_s"], 6)
 
+    def test_random_rests_are_listed_and_recorded(self):
+        told, _ = self.dry(self.small(SMALL.replace("gap_s = 0.25", "gap_s = 0.25\nrest_s = [2, 4]")), "--participant", "01")
+        self.assertEqual(told["rest_s"], [2, 4])
+        rests = {r["name"]: [t["rest_s"] for t in r["trials"]] for r in told["runs"]}
+        self.assertTrue(all(2 <= t <= 4 for r in rests.values() for t in r))
+        self.simulate("01", definition="small.toml")
+        self.assertEqual(self.session()["rests_s"], rests)
+        self.simulate("01", "--resume", definition="small.toml")
+        self.assertIn("Rest before each trial: 2 to 4 s, drawn for each trial.", self.ok("report", "study").stdout)
+
     def test_times_count_leads_animations_and_rests(self):
         small = self.small(SMALL.replace("gap_s = 0.25", "gap_s = 0.25\nrest_s = 6"))
         told, _ = self.dry(small)

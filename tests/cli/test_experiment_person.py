@@ -198,6 +198,23 @@ class AtTheTerminal(PersonTest):
         self.assertIn("<target>\n", lines)
         self.assertIn("<no_answer>: 1 ", lines)
 
+    def test_a_held_key_answers_nothing(self):
+        t = self.start()
+        t.answer("Do you agree", "y")
+        t.answer("0: Did you feel it", "y")
+        t.answer("1: Did you feel it", "y")
+        t.answer("Any key begins", " ")
+        t.answer("Which one\\? 1 or 2: ", "1" * 200)  # faster than a terminal repeats it
+        self.until(lambda: "a key is held down" in t.said())
+        t.key("2")  # another key is pressed, not held
+        for _ in (1, 2):
+            t.answer("Which one\\? 1 or 2: ", "1" * 50 + "2")
+        t.answer("Any key begins", "q")
+        self.assertEqual(t.end(), 130)
+        self.assertEqual([r["response"] for r in self.rows("01", "pairs")], ["2", "2"])
+        self.assertEqual([r["response"] for r in read_table(self.dir / "study/sourcedata/sub-01/practice.tsv")], ["2"])
+        self.assertEqual(t.said().count("a key is held down"), 1)
+
     def test_nothing_tells_the_method(self):
         t = self.start()
         t.begin()
@@ -523,6 +540,33 @@ class Masking(PersonTest):
         self.assertEqual([w["tactor"] for w in s["walk"]], [0, 1, 0, 1])
         self.assertIn("Masking noise: white noise of -20 dBFS (root mean square), faded over 0.05 s, while stimuli played, from "
                       "raw:two.raw.", self.ok("report", "study").stdout)
+
+    def test_an_early_answer_is_marked_counted_and_reported(self):
+        self.write("short.toml", SHORT.replace("trials = 2\npractice = 1", "trials = 2\npractice = 1\nmin_response_s = 10")
+                   .replace("scale = 3", "scale = 3\nmin_response_s = 0"))
+        self.ok(*self.args(), stdin=ByLines.ANSWERS)
+        self.assertEqual([r["early"] for r in self.rows("01", "pairs")], ["true"] * 2)
+        self.assertEqual([r["early"] for r in self.rows("01", "marks")], ["false"] * 2)
+        runs = json.loads(self.ok("analyze", "study", "--format", "json").stdout)["runs"]
+        self.assertEqual((runs["pairs"]["early"], runs["marks"]["early"]), (2, 0))
+        self.assertIn("2 answers early (sooner after the stimulus than min_response_s), counted", self.ok("analyze", "study").stdout)
+        self.assertIn("Answers marked early, which count: 2 in pairs (sooner than 10 s after the stimulus).", self.ok("report", "study").stdout)
+        described = json.loads((self.dir / "study/task-pairs_beh.json").read_text())["early"]
+        self.assertEqual(described["Levels"]["true"], "sooner than 10 s")
+
+    def test_a_left_hand_has_mirrored_motions_and_is_recorded(self):
+        text = SHORT.replace('path = "M0 0H20"', 'path = "M0 0H15"\nmirror = true')
+        self.write("left.toml", text)
+        self.write("right.toml", text.replace("M0 0H15", "M20 0H5"))
+        self.refused(2, *self.args(definition="left.toml"), says=("--hand", "--hand left, or --hand right"))
+        plans = [{(s["motion"], s["method"]): s["sha256"] for s in json.loads(self.ok(
+            "experiment", name, "--dry-run", "--format", "json", *more).stdout)["stimuli"]}
+            for name, more in (("left.toml", ("--hand", "left")), ("right.toml", ()), ("left.toml", ("--hand", "right")))]
+        self.assertEqual(plans[0], plans[1])
+        self.assertNotEqual(plans[0], plans[2])
+        self.ok(*self.args("--hand", "left", definition="left.toml"), stdin=ByLines.ANSWERS)
+        self.assertEqual(self.session("01")["hand"], "left")
+        self.assertIn("Hand: left, mirrored: east.", self.ok("report", "study").stdout)
 
     def test_noise_that_did_not_play_is_not_reported_as_played(self):
         self.ok(*self.args(definition=self.noisy()), stdin=ByLines.ANSWERS)

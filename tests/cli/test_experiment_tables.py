@@ -196,6 +196,8 @@ class Tables(ExperimentTest):
         _, table, _ = self.broken_off()
         good = table.read_text()
         for column in COLUMNS:
+            if column == "early":  # tables of older versions lack it
+                continue
             table.write_text(good.replace(f"\t{column}", "\tother", 1) if column != "onset" else "other" + good[5:])
             self.simulate("01", "--resume", run=lambda *a: self.refused(2, *a, says=(f"{table.name}:1: there is no column {column}",)))
         table.write_text(good)

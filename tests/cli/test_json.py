@@ -26,7 +26,7 @@ SAMPLES = pathlib.Path(sys.argv[4]).resolve()
 PAGE = (ROOT / "man/tactor-json.5").read_text(encoding="utf-8")
 
 # Keys that an object may lack. All others are always there, null where there is no value.
-OPTIONAL = {"tactor-plan/1": {"faces", "stroke.note", "stroke.fit", "continuous", "bursts[].tau_s", "compensation", "render.envelope", "array.tactors[].rise_s",
+OPTIONAL = {"tactor-plan/1": {"faces", "stroke.note", "stroke.fit", "continuous", "bursts[].tau_s", "compensation", "render.envelope", "array.tactors[].rise_s", "array.tactors[].displacement_um_at_0dbfs",
                               *(f"stroke.{key}" for key in ("waveform", "recording", "noise_seed", "texture", "texture_mm", "am_hz", "am_depth", "course", "course[].bend"))},
             "tactor-compare/1": {"faces", "stroke.note"},
             "tactor-check/1": {"walk"}}
@@ -144,7 +144,7 @@ class Schemas(ToolTest):
         self.write("grid.toml", GRID)
         self.write("sounds.toml", SOUNDS)
         self.write("eased.toml", EASED)
-        self.write("slow.toml", PAIR.replace("threshold_dbfs = -30", "rise_ms = 15"))
+        self.write("slow.toml", PAIR.replace("threshold_dbfs = -30", "rise_ms = 15\ndisplacement_um_at_0dbfs = 35"))
         (self.dir / "grain.wav").write_bytes(wav_bytes([0.5, 0.5, -0.5, -0.5] * 20))
 
     def outputs(self):

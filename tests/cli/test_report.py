@@ -285,6 +285,33 @@ class Differences(ReportTest):
         self.assertIn("Thresholds: from the array file, none assumed.", text)
 
 
+    def test_the_measured_displacement_is_stated_in_um_and_as_an_acceleration(self):
+        self.write("own.toml", '[array]\npreset = "palm-3x3"\ndisplacement_um_at_0dbfs = 35.5\n[[tactor]]\ntactor = 4\n'
+                               "displacement_um_at_0dbfs = 20\n")
+        self.ok("calibrate", "--participant", "04", "-o", "04.toml", "--array", "own.toml", "--simulate", "threshold=-45,spread=2")
+        self.simulate("04", "--array", "04.toml", folder="own")
+        told = [t["displacement_um_at_0dbfs"] for t in self.session("04", "own")["array"]["tactors"]]
+        self.assertEqual(told, [35.5] * 4 + [20] + [35.5] * 4)
+        self.assertIn("Peak displacement of a sine at 0 dBFS, as measured: 20 to 35.5 um, which is 49.348 to 87.5927 m/s2 at 250 Hz.",
+                      self.report("own"))
+        self.simulate("04", folder="other")
+        self.assertNotIn("displacement", self.report("other"))
+
+    def test_the_data_of_a_participant_who_withdraws_are_gone(self):
+        for code in ("01", "02", "03"):
+            self.simulate(code, folder="left")
+        for name in ("sub-02", "sourcedata/sub-02"):
+            shutil.rmtree(self.dir / "left" / name)
+        people = self.dir / "left/participants.tsv"
+        people.write_text("".join(line for line in people.read_text().splitlines(True) if not line.startswith("sub-02\t")))
+        self.assertFalse([name for name, text in contents(self.dir / "left").items() if b"sub-02" in text or "sub-02" in name])
+        told = json.loads(self.ok("analyze", "left", "--format", "json").stdout)
+        self.assertEqual((told["participants"], {r["n"] for r in told["runs"].values()}), (2, {2}))
+        text = self.report("left")
+        self.assertIn("sub-01", text)
+        self.assertNotIn("sub-02", text)
+        self.assertRegex(text, r"\b2 participants\b")
+
     def test_the_measurement_of_thresholds_is_described(self):
         self.ok("calibrate", "--participant", "P1", "-o", "P1.toml", "--simulate", "threshold=-45,spread=2")
         made = (self.dir / "P1.toml").read_text()

@@ -154,7 +154,7 @@ TEST_CASE("an unknown key names the nearest, or lists the known ones")
     CHECK(complaint(one + "Threshold-dBFS = 3\n").ends_with("(did you mean 'threshold_dbfs'?)"));
     CHECK(complaint(one + "colour = 3\n") ==
           "palm.toml:4:1: unknown key 'colour' in [[tactor]] (known keys: x_mm, y_mm, channel, gain_db, "
-          "max_dbfs, threshold_dbfs, polarity, actuator, rise_ms, tactor)");
+          "max_dbfs, threshold_dbfs, polarity, actuator, rise_ms, displacement_um_at_0dbfs, tactor)");
     CHECK(complaint("[aray]\nname = \"x\"\n") ==
           "palm.toml:1:2: unknown key 'aray' in the file (did you mean 'array'?)");
     CHECK(complaint("[array]\ngrid = { rows = 3, colums = 3, pitch_mm = 20 }\n") ==
@@ -216,6 +216,17 @@ TEST_CASE("wrong types and ranges are reported at the value")
     CHECK(complaint("tactor = 3\n") == "palm.toml:1:10: tactor is 3 (give [[tactor]] entries)");
     CHECK(complaint("array = \"palm-3x3\"\n") ==
           "palm.toml:1:9: array is 'palm-3x3' (give a table, [array])");
+}
+
+TEST_CASE("an array file keeps the measured displacement, of all tactors or of one")
+{
+    const array a = parse_array(grid + "displacement_um_at_0dbfs = 35.5\n[[tactor]]\ntactor = 1\n"
+                                       "displacement_um_at_0dbfs = 20\n");
+    CHECK(a.tactors[0].displacement_um_at_0dbfs == 35.5);
+    CHECK(a.tactors[1].displacement_um_at_0dbfs == 20.0);
+    CHECK(parse_array(detail::array_text(a)).tactors[1].displacement_um_at_0dbfs == 20.0);
+    CHECK(complaint(grid + "displacement_um_at_0dbfs = 0\n") ==
+          "palm.toml:3:28: displacement_um_at_0dbfs is 0 (allowed: more than 0, at most 10000)");
 }
 
 TEST_CASE("an array says where on the body it is, and which way up")

@@ -48,7 +48,8 @@ def test_an_array_knows_its_faces(palm):
 
 def test_the_values_of_a_tactor_are_kept():
     one = tactor.Tactor(tactor.Point(1.0, 2.0), 3, -1.0, -2.0, -40.0, -1, "piezo")
-    more = one._replace(position=tactor.Point(9.0, 2.0), channel=0, threshold_dbfs=None, thresholds=((100.0, -20.0), (250.0, -41.0)), rise_s=0.02)
+    more = one._replace(position=tactor.Point(9.0, 2.0), channel=0, threshold_dbfs=None, thresholds=((100.0, -20.0), (250.0, -41.0)), rise_s=0.02,
+                        displacement_um_at_0dbfs=35.5)
     array = tactor.Array("two", [one, more])
     assert array[0] == one and array[1] == more and array.channels == 4
     again = pickle.loads(pickle.dumps(array))

@@ -2,6 +2,7 @@
 #include "study/experiment/definition.hpp"
 
 #include <string>
+#include <utility>
 
 #include <doctest/doctest.h>
 
@@ -92,6 +93,46 @@ TEST_CASE("a method takes the options of a plan")
     CHECK(d.methods[1].options.drop_points);
     CHECK(d.methods[1].options.snap);
     CHECK(d.methods[1].options.faces == faces_kind::nearest);
+}
+
+TEST_CASE("an attribute is any words, and says what an observer judges where it is a known one")
+{
+    const experiment_definition known = read(head + motion + methods + run);
+    CHECK(known.runs[0].simulate_as == "similarity");
+    CHECK(known.runs[0].min_response_s == 0.15);
+    const std::string pleasant =
+        "[[run]]\nname = \"r\"\ntask = \"rate\"\nattribute = \"pleasant, or not\"\ntrials = 4\n";
+    const std::string asked = "question = \"How pleasant?\"\nmin_response_s = 0.3\n";
+    const experiment_definition d = read(head + motion + methods + pleasant + asked);
+    CHECK(d.runs[0].attribute == "pleasant, or not");
+    CHECK(d.runs[0].simulate_as.empty());
+    CHECK(d.runs[0].min_response_s == 0.3);
+    const std::string as = "simulate_as = \"uniformity\"\n";
+    CHECK(read(head + motion + methods + pleasant + asked + as).runs[0].simulate_as == "uniformity");
+    CHECK(has(refusal(head + motion + methods + pleasant), "no question"));
+}
+
+TEST_CASE("a rest is one time, or two between which it is drawn")
+{
+    const auto rest = [](const std::string& text) {
+        const rest_range r = read(head + "rest_s = " + text + "\n" + motion + methods + run).rest;
+        return std::pair(r.least_s, r.most_s);
+    };
+    CHECK(rest("2.5") == std::pair(2.5, 2.5));
+    CHECK(rest("[2, 4]") == std::pair(2.0, 4.0));
+    for (const char* wrong : {"[4, 2]", "[2]", "[1, 2, 3]", "[-1, 2]", "[1, 61]", "\"2\""})
+        CHECK(has(refusal(head + "rest_s = " + wrong + "\n" + motion + methods + run), "e.toml:3:"));
+}
+
+TEST_CASE("the words that stay English are listed where others are given")
+{
+    CHECK(missing_words(read(head + motion + methods + run)).empty());
+    std::string words = "[page]\n";
+    for (const page_word& w : page_words_in_english())
+        if (w.key != "felt" && w.key != "calibrate_which")
+            words += std::string(w.key) + " = \"x\"\n";
+    CHECK(missing_words(read(head + words + motion + methods + run)) ==
+          "[page] lacks felt, calibrate_which, which stay English");
 }
 
 TEST_CASE("faults have their line")

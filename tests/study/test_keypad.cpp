@@ -22,6 +22,23 @@ TEST_CASE("keys of a keyboard, a number block, a button box and a joystick answe
             CHECK(study::find_answer(static_cast<std::uint16_t>(code)) == static_cast<char>('1' + i));
 }
 
+TEST_CASE("a key of a terminal counts after 100 ms without it, so one that is held down does not")
+{
+    study::repeat_guard keys;
+    const auto repeated = [&](char key, std::int64_t at_ms, bool again = false) {
+        return keys.is_repeated(key, at_ms * 1000000, again);
+    };
+    CHECK_FALSE(repeated('1', 1000));
+    for (std::int64_t at_ms = 1033; at_ms < 2000; at_ms += 33)
+        CHECK(repeated('1', at_ms));
+    CHECK_FALSE(repeated('2', 2000)); // another key is pressed, not repeated
+    CHECK_FALSE(repeated('1', 2001));
+    CHECK(repeated('1', 2100));
+    CHECK_FALSE(repeated('1', 2200));
+    CHECK(repeated('1', 2400, true)); // read together: nobody knows when each came
+    CHECK(repeated('1', 2400));
+}
+
 TEST_CASE("an adjustment uses signs or arrows, and most keys answer nothing")
 {
     std::map<char, unsigned> of;

@@ -215,5 +215,25 @@ TEST_CASE("long runs try fewer orders, so that the refusal comes soon")
     CHECK(has(caught_message([&] { make_run(with_run(many, 2), 0, "01", 1); }), "no order of 10000 trials"));
 }
 
+TEST_CASE("random rests are in their range, the same each time, and leave the order as it is")
+{
+    experiment_definition d =
+        with_run("task = \"rate\"\nattribute = \"similarity\"\ntrials = 40\npractice = 4\n");
+    const run_sequence without = make_run(d, 0, "01", 7);
+    d.rest = {2.0, 4.0};
+    const run_sequence drawn = make_run(d, 0, "01", 7);
+    CHECK(drawn == make_run(d, 0, "01", 7));
+    std::set<double> rests;
+    for (std::size_t i = 0; i < drawn.trials.size(); ++i) {
+        CHECK(drawn.trials[i].motion == without.trials[i].motion);
+        CHECK(drawn.trials[i].method_1 == without.trials[i].method_1);
+        CHECK(without.trials[i].rest_s == 0.0);
+        rests.insert(drawn.trials[i].rest_s);
+    }
+    CHECK(rests.size() > 20);
+    CHECK(*rests.begin() >= 2.0);
+    CHECK(*rests.rbegin() <= 4.0);
+}
+
 } // namespace
 } // namespace tactor::study::test_sequence

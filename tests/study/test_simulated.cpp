@@ -42,6 +42,20 @@ TEST_CASE("a choice takes the larger -ln cost plus noise, as often as the normal
     CHECK(chosen / static_cast<double>(n) == doctest::Approx(p).epsilon(0.03));
 }
 
+TEST_CASE("an observer judges what simulate_as says, and refuses an attribute that it does not know")
+{
+    rig r;
+    r.d.runs[0].attribute = "pleasantness";
+    r.d.runs[0].simulate_as = "uniformity";
+    r.d.runs[0].outline.name = r.d.runs[1].outline.name; // a part of the seed
+    const auto answer = [&](std::size_t run) {
+        return r.observer(run, "sigma=0").answer({0, 0, 1}, 1, 1, false).response;
+    };
+    CHECK(answer(0) == answer(1));
+    r.d.runs[0].simulate_as.clear();
+    CHECK(has(caught_message([&] { answer(0); }), "how to judge \"pleasantness\" (simulate_as = "));
+}
+
 TEST_CASE("without noise the better one is chosen, in either place")
 {
     const rig r;

@@ -58,6 +58,21 @@ TEST_CASE("text is appended, and a missing file is reported")
     CHECK_THROWS_AS(append_text("/dev/full", "1\n"), error);
 }
 
+TEST_CASE("a table of an older version has no column early")
+{
+    trial_row row;
+    row.trial = 1;
+    row.early = true;
+    const named_cells cells = make_cells(row);
+    named_cells older = cells;
+    std::erase_if(older, [](const auto& c) { return c.first == "early"; });
+    const auto read = [](const named_cells& c) {
+        return read_rows(text_table("t.tsv", text_table("", header_line(c)).with_line(c))).front().early;
+    };
+    CHECK(read(cells) == true);
+    CHECK(read(older) == std::nullopt);
+}
+
 // A table with one line, without its end.
 bool cut_in_plan(const std::string& columns, const std::string& line)
 {

@@ -155,6 +155,7 @@ json run_json(const study::run_analysis& r)
         break;
     }
     j["trials"] = r.trials;
+    j["early"] = r.early;
     j["left_out"] = json::array();
     for (const study::left_out& l : r.missing)
         j["left_out"].push_back({{"participant", l.participant}, {"why", l.why}});

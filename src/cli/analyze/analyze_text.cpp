@@ -163,6 +163,9 @@ void print_run(std::FILE* out, const study::analysis& a, const study::run_analys
 {
     say(out, "\n{}: {}, {}, {}\n", r.run.name, to_string(r.run.task), counted(r.n, "participant"),
         counted(r.trials, "trial"));
+    if (r.early != 0)
+        fmt::print(out, "  {} early (sooner after the stimulus than min_response_s), counted\n",
+                   counted(r.early, "answer"));
     if (r.n == 0)
         return;
     switch (r.run.task) {

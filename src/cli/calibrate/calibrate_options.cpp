@@ -130,6 +130,9 @@ void add_calibrate_options(CLI::App& c, calibrate_options& o)
     add_staircase_options(c, o);
     add_masker_options(c, o);
     add_page_options(c, o.page);
+    add_text(c, "--page-words", "FILE",
+             "take the words of the page from [page] of this experiment's definition",
+             [&o](const std::string& t) { o.words = study::load_page_words(t); });
     add_keypad_option(c, o.keypads);
     add_text(c, "--log", "FILE.tsv",
              "table with a line for each trial (default: the output's name with .tsv)",

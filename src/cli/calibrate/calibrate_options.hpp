@@ -10,6 +10,7 @@
 #include "cli/input.hpp"
 #include "cli/session/page_options.hpp"
 #include "study/calibrate/calibration.hpp"
+#include "study/experiment/definition.hpp"
 #include "study/masking/masking_stream.hpp"
 
 namespace CLI {
@@ -27,7 +28,8 @@ struct calibrate_options {
     std::optional<std::uint32_t> seed;
     std::vector<std::string> keypads; ///< input devices of the participant's
     page_options page;
-    std::string masker; ///< PCM of the masking noise; empty: none
+    std::optional<study::page_words> words; ///< of the page; none: English
+    std::string masker;                     ///< PCM of the masking noise; empty: none
     study::masking_options masking;
     std::vector<std::string> of_masker;    ///< options given that only a masker has
     std::vector<std::string> of_staircase; ///< options given that an adjustment does not have
@@ -43,5 +45,8 @@ void settle_names(calibrate_options& o);
 /// Returns the settings for this array, within its limits. \throws error (bad_input).
 study::calibration_settings settle_calibration(const calibrate_options& o, const settings& s,
                                                const environment& e);
+
+/// Says the highest level of each tactor, and warns where nothing but full scale or [limits] holds it.
+void tell_of_ceilings(const study::calibration_settings& c, const environment& e);
 
 } // namespace tactor::cli

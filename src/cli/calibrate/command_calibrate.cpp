@@ -90,7 +90,8 @@ int ask_person(study::calibration& c, study::calibration_log& log, const setting
     const session::stream_options& o = s.stream;
     const alsa_options device = session::device_options(s, o, e, render.channels, render.rate);
     const std::string server = session::settle_server(device.pcm);
-    study::person who(device, o, e, render, c.settings(), asked.keypads, open_page(asked.page));
+    study::person who(device, o, e, render, c.settings(), asked.keypads, open_page(asked.page),
+                      asked.words.value_or(study::page_words()));
     session::warn_of_server(server);
     if (!asked.masker.empty()) {
         study::masking_options noise = asked.masking;
@@ -165,6 +166,7 @@ int calibrate(settings& s, calibrate_options& o)
         say(stdout, "{} is there: the session is finished\n", o.output);
         return status_ok;
     }
+    tell_of_ceilings(begun, e);
     tell_of_others(e, begun);
 
     study::calibration_log log(o.log, o.resume, begun);

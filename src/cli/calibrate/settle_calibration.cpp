@@ -4,7 +4,10 @@
 #include <charconv>
 #include <cmath>
 #include <numeric>
+#include <string>
 #include <string_view>
+#include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -99,17 +102,23 @@ double find_ceiling(const array& a, std::size_t tactor, const drive_limits& l)
     return std::min({0.0, a.tactors[tactor].max_dbfs, l.power_dbfs - power_margin_db});
 }
 
-void tell_of_power(const study::calibration_settings& c, const array& a, const drive_limits& l)
+// Lists the measured tactors by their ceilings, in the order of the first of each.
+std::vector<std::pair<double, std::vector<unsigned>>> group_by_ceiling(const study::calibration_settings& c)
 {
-    std::vector<unsigned> lower;
-    for (std::size_t i = 0; i < c.tactors.size(); ++i)
-        if (c.ceilings_dbfs[i] < std::min(0.0, a.tactors[c.tactors[i]].max_dbfs))
-            lower.push_back(c.tactors[i]);
-    if (!lower.empty())
-        say(stderr,
-            "tactor: warning: no level is above {:.4g} dBFS, which power_dbfs in [limits] allows, and "
-            "max_dbfs does not, of {} {}\n",
-            l.power_dbfs, lower.size() == 1 ? "tactor" : "tactors", fmt::join(lower, ", "));
+    std::vector<std::pair<double, std::vector<unsigned>>> groups;
+    for (std::size_t i = 0; i < c.tactors.size(); ++i) {
+        auto at = std::find_if(groups.begin(), groups.end(),
+                               [&](const auto& g) { return g.first == c.ceilings_dbfs[i]; });
+        if (at == groups.end())
+            at = groups.insert(at, {c.ceilings_dbfs[i], {}});
+        at->second.push_back(c.tactors[i]);
+    }
+    return groups;
+}
+
+std::string name_tactors(const std::vector<unsigned>& tactors)
+{
+    return fmt::format("{} {}", tactors.size() == 1 ? "tactor" : "tactors", fmt::join(tactors, ", "));
 }
 
 // Returns the longest time that a tactor is driven in any window: in one trial of a staircase, before which
@@ -158,6 +167,8 @@ study::calibration_settings settle_calibration(const calibrate_options& o, const
     check_staircase(c);
     check_masker(o);
     check_page_options(o.page, o.simulate.has_value());
+    if (o.words && !o.page.shown())
+        refuse_option("--page-words", "there is no page", "--display page, or leave it out");
     if (const std::string asked = asked_of_stream(s); o.simulate && !asked.empty())
         refuse_option(asked, "nothing is played", "leave it out, or --simulate");
     if (o.simulate && !o.keypads.empty())
@@ -184,11 +195,38 @@ study::calibration_settings settle_calibration(const calibrate_options& o, const
                 "start lower");
         c.ceilings_dbfs.push_back(ceiling);
     }
-    tell_of_power(c, a, limits);
     c.simulate = o.simulate.value_or("");
     c.seed = o.seed.value_or(static_cast<std::uint32_t>(study::default_seed(c.participant)));
     c.date = today();
     return c;
+}
+
+void tell_of_ceilings(const study::calibration_settings& c, const environment& e)
+{
+    std::string all;
+    for (const auto& [ceiling_dbfs, tactors] : group_by_ceiling(c))
+        all +=
+            fmt::format("{}{:.4g} dBFS at {}", all.empty() ? "" : "; ", ceiling_dbfs, name_tactors(tactors));
+    say(stderr, "tactor: highest level: {}\n", all);
+    std::vector<unsigned> unlimited;
+    std::vector<unsigned> lower;
+    for (std::size_t i = 0; i < c.tactors.size(); ++i) {
+        const double most_dbfs = std::min(0.0, e.tactors.tactors[c.tactors[i]].max_dbfs);
+        if (c.ceilings_dbfs[i] < most_dbfs)
+            lower.push_back(c.tactors[i]);
+        else if (most_dbfs == 0.0)
+            unlimited.push_back(c.tactors[i]);
+    }
+    if (!unlimited.empty())
+        say(stderr,
+            "tactor: warning: no max_dbfs below 0 limits {}: the level may go to full scale (set max_dbfs in "
+            "[[tactor]] of the array file)\n",
+            name_tactors(unlimited));
+    if (!lower.empty())
+        say(stderr,
+            "tactor: warning: no level is above {:.4g} dBFS, which power_dbfs in [limits] allows, and "
+            "max_dbfs does not, of {}\n",
+            session::settle_limits({}, e).power_dbfs, name_tactors(lower));
 }
 
 } // namespace tactor::cli

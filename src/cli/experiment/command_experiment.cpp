@@ -87,7 +87,8 @@ int run(const experiment_options& o, const power_options& power, settings& s)
     const auto who = o.dry_run    ? study::audience::nobody
                      : o.simulate ? study::audience::observer
                                   : study::audience::person;
-    const study::prepared_experiment p = study::prepare({o.definition, o.participant, o.seed, who}, s);
+    const study::prepared_experiment p =
+        study::prepare({o.definition, o.participant, o.seed, who, o.hand}, s);
     say_warnings(p.warnings);
     if (!power.participants.empty())
         return tell_power(p, power, o);

@@ -30,6 +30,7 @@ json trials_json(const study::prepared_experiment& p, const std::vector<study::p
                        {"method_1", r.method_1},
                        {"method_2", files::or_null(r.method_2)},
                        {"duration_s", r.duration_s},
+                       {"rest_s", t.rest_s},
                        {"plan_1", r.plan_1},
                        {"plan_2", files::or_null(r.plan_2)}});
     }
@@ -50,6 +51,7 @@ json run_json(const study::prepared_experiment& p, const study::run_sequence& s,
     j["attribute"] = files::or_null(r.attribute);
     j["question"] = r.question;
     j["animation"] = r.animation;
+    j["min_response_s"] = r.min_response_s;
     j["scale"] = r.outline.task == study::task_kind::rate ? json(r.outline.scale) : json(nullptr);
     j["break_s"] = r.break_s;
     j.update(time_json(t));
@@ -80,7 +82,7 @@ void print_dry_run_json(std::FILE* out, const study::prepared_experiment& p)
     j["thresholds_assumed"] = p.assumed;
     j["rate"] = p.render.rate;
     j["gap_s"] = d.gap_s;
-    j["rest_s"] = d.rest_s;
+    j["rest_s"] = d.rest.is_random() ? json{d.rest.least_s, d.rest.most_s} : json(d.rest.least_s);
     j["masking"] = study::masking_facts(d.masking);
     j["runs"] = json::array();
     const std::vector<study::run_time> times = study::session_times(p, 0.0);

@@ -40,6 +40,12 @@ void add_experiment_options(CLI::App& command, experiment_options& o)
     command.add_option("-o,--output", o.folder, "folder of the study (BIDS), the same for all participants")
         ->type_name("DIR");
     command.add_flag("--resume", o.resume, "continue the participant's session at its next trial");
+    add_text(command, "--hand", "left|right",
+             "hand that wears the array; a left one has the mirrored motions of the definition",
+             [&o](const std::string& t) {
+                 o.hand = choose("--hand", t, {"left", "right"}) == 0 ? study::hand_kind::left
+                                                                      : study::hand_kind::right;
+             });
     add_page_options(command, o.page);
     add_keypad_option(command, o.keypads);
     add_text(command, "--masker", "PCM",

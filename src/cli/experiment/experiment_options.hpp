@@ -36,6 +36,7 @@ struct experiment_options {
     std::string masker = {};               ///< PCM of the masking noise; empty: none
     std::optional<std::uint64_t> seed = {};
     std::optional<study::simulation> simulate = {};
+    std::optional<study::hand_kind> hand = {};
 };
 
 /// `o` must live as long as the command.

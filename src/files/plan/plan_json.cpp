@@ -183,6 +183,8 @@ json array_json(const array& a)
                            {"threshold_dbfs", threshold_json(t)}});
         if (t.rise_s)
             tactors.back()["rise_s"] = *t.rise_s;
+        if (t.displacement_um_at_0dbfs)
+            tactors.back()["displacement_um_at_0dbfs"] = *t.displacement_um_at_0dbfs;
     }
     return {{"name", a.name}, {"tactors", tactors}};
 }

@@ -112,6 +112,7 @@ array read_array(const json_value& plan)
         s.max_dbfs = t["max_dbfs"].need_number();
         take_threshold(t, s);
         s.rise_s = t["rise_s"].number();
+        s.displacement_um_at_0dbfs = t["displacement_um_at_0dbfs"].number();
         a.tactors.push_back(s);
     }
     validate(a);

@@ -48,6 +48,8 @@ class Tactor(_t.NamedTuple):
         Measured at several frequencies, Hz and dBFS, ascending; in place of threshold_dbfs.
     rise_s : float or None
         Time until it moves with 1 - 1/e of its strength.
+    displacement_um_at_0dbfs : float or None
+        Measured peak displacement at 0 dBFS, um, for reports.
     """
 
     position: Point
@@ -59,6 +61,7 @@ class Tactor(_t.NamedTuple):
     actuator: _Actuator = "unknown"
     thresholds: tuple[tuple[float, float], ...] = ()
     rise_s: float | None = None
+    displacement_um_at_0dbfs: float | None = None
 
 
 class Array(_Value):
@@ -90,8 +93,8 @@ class Array(_Value):
         self._besides = besides
         self._origin = origin
         self._setup = None
-        self._tactors = tuple(Tactor._make((Point(x, y), *rest, tuple(thresholds), rise_s))
-                              for x, y, *rest, thresholds, rise_s in core.rows)
+        self._tactors = tuple(Tactor._make((Point(x, y), *rest, tuple(thresholds), rise_s, um))
+                              for x, y, *rest, thresholds, rise_s, um in core.rows)
 
     @classmethod
     def _wrap(cls, core: _t.Any, file: str | None = None, besides: str = "", origin: str = "") -> Array:
@@ -364,7 +367,8 @@ def _row(t: Tactor) -> tuple[_t.Any, ...]:
             raise
         raise InputError("thresholds", f"{_shown(t.thresholds)} are none", "give [(Hz, dBFS), ...]", field="thresholds") from None
     return (*_place("position", t.position), _whole("channel", t.channel, 0, 16383), _number("gain_db", t.gain_db), _number("max_dbfs", t.max_dbfs),
-            level("threshold_dbfs"), _whole("polarity", t.polarity, -1, 1, "1 or -1"), t.actuator, thresholds, level("rise_s"))
+            level("threshold_dbfs"), _whole("polarity", t.polarity, -1, 1, "1 or -1"), t.actuator, thresholds, level("rise_s"),
+            level("displacement_um_at_0dbfs"))
 
 
 def _checked_tactors(tactors: _t.Iterable[Tactor]) -> tuple[Tactor, ...]:

@@ -100,6 +100,7 @@ run_analysis analyse_run(const dataset& d, std::size_t which)
     for (std::size_t i = 0; i < d.participants.size(); ++i) {
         const run_data& own = d.data[i][which];
         r.voids += own.voids;
+        r.early += own.early;
         std::optional<cell_values> v = compute_cells(r.run, own.trials);
         if (!v) {
             r.missing.push_back({d.participants[i], own.trials.empty()

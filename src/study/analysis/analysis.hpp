@@ -30,6 +30,7 @@ struct run_analysis {
     std::vector<left_out> missing = {}; ///< have trials that are not in the figures
     std::size_t trials = 0;             ///< that count, of the n
     std::size_t voids = 0;              ///< of everybody who was selected
+    std::size_t early = 0;              ///< answers marked early, of the same; they count
 
     /// choose: per cent of trials in which the last method was chosen, against 50.
     /// rate: mean ratings by method, not tested. identify: per cent correct by method, against chance.

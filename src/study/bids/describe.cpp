@@ -120,6 +120,7 @@ std::string task_text(const run_definition& r, bool simulated)
         j["Labels"] = r.labels;
     for (const trial_column& c : trial_columns)
         j[std::string(c.name)] = column_json(c.meaning.empty() ? response_meaning(r) : c.meaning, c.unit);
+    j["early"]["Levels"] = {{"true", fmt::format("sooner than {} s", r.min_response_s)}, {"false", "later"}};
     j["void"]["Levels"] = {{"true", "does not count"}, {"false", "counts"}};
     return json_text(j);
 }

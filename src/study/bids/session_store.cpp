@@ -51,19 +51,6 @@ std::string new_table(const named_cells& cells)
     return text_table("", header_line(cells)).with_line(cells);
 }
 
-// Returns what to append for a line. A table that cannot be read any more, because somebody changed it in the
-// middle of a session, takes an answer nevertheless: in the order of a new table.
-std::string text_behind(const fs::path& table, const named_cells& cells)
-{
-    try {
-        const text_table t(table, last_line::may_be_cut);
-        return t.missing_end() + t.line(cells);
-    } catch (const error&) {
-        const std::string text = new_table(cells);
-        return text.substr(text.find('\n'));
-    }
-}
-
 } // namespace
 
 session_store::session_store(study_folder& folder, std::string code, const ordered& facts, bool resume)
@@ -185,14 +172,14 @@ void session_store::append(const run_definition& r, const trial_row& row, const 
     const fs::path file = table(r);
     keeping([&] {
         if (there(file)) {
-            append_text(file, text_behind(file, make_cells(row)));
+            append_line(file, make_cells(row));
             return;
         }
         make_folder(file.parent_path().parent_path());
         make_folder(file.parent_path());
         folder_.add_participant(code_);
         folder_.add_scan(code_, scan_name(r), acq_time);
-        write_whole(file, new_table(make_cells(row)));
+        begin_table(file, make_cells(row));
     });
 }
 
@@ -203,10 +190,52 @@ void session_store::append_practice(const run_definition& r, const trial_row& ro
     cells.insert(cells.begin(), {"run", r.outline.name});
     keeping([&] {
         if (there(practice))
-            append_text(practice, text_behind(practice, cells));
+            append_line(practice, cells);
         else
-            write_whole(practice, new_table(cells));
+            begin_table(practice, cells);
     });
+}
+
+void session_store::begin_table(const fs::path& table, const named_cells& cells)
+{
+    write_whole(table, new_table(cells));
+    remember(table, header_line(cells));
+}
+
+// Reads the table only the first time, and after somebody else has changed it. A table that cannot be read
+// any more takes an answer nevertheless: in the order of a new table.
+void session_store::append_line(const fs::path& table, const named_cells& cells)
+{
+    std::error_code ignored;
+    const auto known = known_.find(table);
+    if (known != known_.end() && fs::file_size(table, ignored) == known->second.bytes &&
+        fs::last_write_time(table, ignored) == known->second.changed) {
+        append_text(table, known->second.header.line(cells));
+        known->second.bytes = fs::file_size(table, ignored);
+        known->second.changed = fs::last_write_time(table, ignored);
+        return;
+    }
+    std::string text;
+    std::optional<std::string> header;
+    try {
+        const text_table t(table, last_line::may_be_cut);
+        text = t.missing_end() + t.line(cells);
+        header = t.header();
+    } catch (const error&) {
+        text = new_table(cells);
+        text.erase(0, text.find('\n'));
+    }
+    append_text(table, text);
+    if (header)
+        remember(table, *header);
+}
+
+void session_store::remember(const fs::path& table, std::string header)
+{
+    std::error_code ignored;
+    known_.insert_or_assign(table,
+                            known_table{text_table(table, std::move(header)), fs::file_size(table, ignored),
+                                        fs::last_write_time(table, ignored)});
 }
 
 void session_store::make_last_void(const run_definition& r)

@@ -4,8 +4,10 @@
 /// which is there before the next begins.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -14,6 +16,7 @@
 
 #include "study/bids/study_folder.hpp"
 #include "study/data/columns.hpp"
+#include "study/data/text_table.hpp"
 #include "study/experiment/session_flow.hpp"
 #include "study/experiment/stimuli.hpp"
 
@@ -80,6 +83,17 @@ private:
     void reserve();
     void release() noexcept;
     void keeping(const std::function<void()>& write);
+    void append_line(const std::filesystem::path& table, const named_cells& cells);
+    void begin_table(const std::filesystem::path& table, const named_cells& cells);
+    void remember(const std::filesystem::path& table, std::string header);
+
+    /// A table as this process left it: the next line needs its header alone, unless it has another size or
+    /// time by then, because somebody else changed it.
+    struct known_table {
+        text_table header;
+        std::uintmax_t bytes;
+        std::filesystem::file_time_type changed;
+    };
 
     study_folder& folder_;
     std::string code_;
@@ -87,6 +101,7 @@ private:
     std::filesystem::path source_; ///< sourcedata/sub-CODE
     bool resumed_ = false;
     bool begun_ = false; ///< by this process
+    std::map<std::filesystem::path, known_table> known_ = {};
 };
 
 } // namespace tactor::study

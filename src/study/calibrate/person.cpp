@@ -20,12 +20,12 @@ constexpr const char* go_on = "what was answered is kept; --resume goes on";
 // In the order of adjust_screen()'s choices.
 constexpr const char* level_keys = "-<>+an";
 
-page_screen adjust_screen()
+page_screen adjust_screen(const page_words& w)
 {
     return {.name = "question",
-            .question = "Set it so that you just feel it.",
-            .choices = {"Much weaker", "Weaker", "Stronger", "Much stronger", "That is it",
-                        "Not felt at any level"},
+            .question = w["calibrate_set"],
+            .choices = {w["calibrate_much_weaker"], w["calibrate_weaker"], w["calibrate_stronger"],
+                        w["calibrate_much_stronger"], w["calibrate_that_is_it"], w["calibrate_not_felt"]},
             .keys = level_keys};
 }
 
@@ -33,12 +33,13 @@ page_screen adjust_screen()
 
 person::person(const alsa_options& device, const session::stream_options& o, const session::environment& e,
                const render_options& render, const calibration_settings& s,
-               const std::vector<std::string>& keypads, net::owned_fd listening)
+               const std::vector<std::string>& keypads, net::owned_fd listening, const page_words& words)
     : environment_(e),
       render_(render),
       settings_(s),
+      words_(words),
       stage_(device, o, e),
-      page_(listening ? std::make_unique<participant_page>(page_words(), e.tactors, std::move(listening))
+      page_(listening ? std::make_unique<participant_page>(words_, e.tactors, std::move(listening))
                       : nullptr),
       keys_(keypads, page_ ? page_->descriptor() : -1)
 {
@@ -103,10 +104,8 @@ void person::begin()
     begun_ = true;
     const bool stairs = settings_.method == calibration_method::staircase;
     on_page({.name = "introduce",
-             .text = stairs ? "There are two intervals, one of which vibrates. Which one? Guess where you do "
-                              "not know."
-                            : "Something vibrates again and again. Set it so that you just feel it.",
-             .choices = {"Begin"},
+             .text = words_[stairs ? "calibrate_choose" : "calibrate_adjust"],
+             .choices = {words_["begin"]},
              .keys = " "});
     session::show(
         stairs ? "Two intervals, one of which vibrates. Which one? 1 or 2; guess where you do not know.\n"
@@ -130,8 +129,12 @@ void person::on_page(page_screen s)
 // With a page the terminal is the experimenter's, who has Ctrl-C.
 std::optional<std::string> person::read_keys()
 {
-    if (!page_)
-        return keys_.next();
+    if (!page_) {
+        std::optional<std::string> key = keys_.next();
+        for (; key && keys_.is_repeated(); key = keys_.next())
+            keys_.tell_of_repeats();
+        return key;
+    }
     while (keys_.typed())
         ;
     while (const auto key = keys_.pressed())
@@ -171,7 +174,7 @@ calibration_answer person::choose(const calibration_trial& t)
         for (; shown < now; ++shown) {
             session::show(fmt::format(" interval {}", shown + 1));
             on_page({.name = "stimulus",
-                     .text = fmt::format("Interval {}", shown + 1),
+                     .text = fmt::format("{} {}", words_["calibrate_interval"], shown + 1),
                      .stimuli = 2,
                      .playing = shown + 1});
         }
@@ -183,7 +186,7 @@ calibration_answer person::choose(const calibration_trial& t)
     show_until(2); // where the process was too slow to look
     noise.reset();
     keys_.forget();
-    on_page({.name = "question", .question = "Which one vibrated?", .choices = {"", ""}, .keys = "12"});
+    on_page({.name = "question", .question = words_["calibrate_which"], .choices = {"", ""}, .keys = "12"});
     session::show(" which? ");
     for (;;) {
         const std::string answered = wait_for_answer(t);
@@ -227,7 +230,7 @@ calibration_answer person::adjust(const calibration_trial& t)
     keys_.forget();
     session::show(fmt::format("series {}: + - > < a n\n", t.number));
     const noise_around noise(stage_);
-    on_page(adjust_screen());
+    on_page(adjust_screen(words_));
     while (!out) {
         const score s = trial_score(t.tactor, level, 0.0, settings_.interval_s + interval_gap_s);
         const auto take = [&] {
@@ -235,7 +238,7 @@ calibration_answer person::adjust(const calibration_trial& t)
                 const auto keys = read_keys();
                 if (!keys || change_level(*keys, t, level, out))
                     return;
-                on_page(adjust_screen()); // each change is an answer
+                on_page(adjust_screen(words_)); // each change is an answer
             }
         };
         const given_stimulus p = play(t, s, [&](double) { take(); });
@@ -254,13 +257,13 @@ void person::tell(const calibration_record& r)
     if (!settings_.feedback || !r.correct)
         return;
     session::show(*r.correct ? "right\n" : "wrong\n");
-    on_page(
-        {.name = *r.correct ? "right" : "wrong", .text = *r.correct ? "That was right." : "That was wrong."});
+    on_page({.name = *r.correct ? "right" : "wrong",
+             .text = words_[*r.correct ? "calibrate_right" : "calibrate_wrong"]});
 }
 
 void person::thank()
 {
-    on_page({.name = "over", .text = page_words()["over"]});
+    on_page({.name = "over", .text = words_["over"]});
 }
 
 } // namespace tactor::study

@@ -11,6 +11,7 @@
 
 #include "session/environment.hpp"
 #include "study/calibrate/calibration.hpp"
+#include "study/experiment/definition.hpp"
 #include "study/session/key_input.hpp"
 #include "study/session/participant_page.hpp"
 #include "study/session/stage.hpp"
@@ -20,10 +21,10 @@ namespace tactor::study {
 class person {
 public:
     /// Opens the device and the keypads. `render` has the array's options except the level. Serves a page if
-    /// `listening` is a socket. \throws error.
+    /// `listening` is a socket, with these words. \throws error.
     person(const alsa_options& device, const session::stream_options& o, const session::environment& e,
            const render_options& render, const calibration_settings& s,
-           const std::vector<std::string>& keypads, net::owned_fd listening);
+           const std::vector<std::string>& keypads, net::owned_fd listening, const page_words& words);
 
     /// Plays noise through both intervals of each trial from now on. \throws error as open_alsa().
     void mask(const std::string& pcm, const masking_options& o) { stage_.mask(pcm, o); }
@@ -57,6 +58,7 @@ private:
     const session::environment& environment_;
     render_options render_;
     calibration_settings settings_;
+    page_words words_;
     stage stage_;
     /// Null: none. Its thread has the signals blocked that the stage takes.
     std::unique_ptr<participant_page> page_;

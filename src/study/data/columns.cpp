@@ -42,6 +42,11 @@ struct cell_reader {
 
     void into(std::string& v) const { v = table.cell(row, column.name).value_or(""); }
     void into(bool& v) const { v = table.truth(row, column.name); }
+    void into(std::optional<bool>& v) const
+    {
+        if (table.cell(row, column.name))
+            v = table.truth(row, column.name);
+    }
     void into(std::optional<double>& v) const { v = table.number(row, column.name); }
     void into(double& v) const { v = table.number(row, column.name).value_or(v); }
     void into(std::optional<unsigned>& v) const
@@ -60,7 +65,7 @@ struct cell_reader {
 
 } // namespace
 
-const std::array<trial_column, 17> trial_columns{{
+const std::array<trial_column, 18> trial_columns{{
     {"onset", "First frame of the first stimulus at the DAC, since the run's first sample there", "s",
      &trial_row::onset_s},
     {"duration", "From the first frame of the first stimulus to the last of the last, the gap included", "s",
@@ -73,6 +78,8 @@ const std::array<trial_column, 17> trial_columns{{
     {"response", "", "", &trial_row::response},
     {"response_time", "From the last stimulus frame at the DAC to the answer", "s",
      &trial_row::response_time_s},
+    {"early", "Whether the answer came sooner after the stimulus than min_response_s; n/a without an answer",
+     "", &trial_row::early, 0, true},
     {"rating", "The rating; n/a where nothing is rated", "", &trial_row::rating, 1},
     {"void", "Whether the trial does not count; it comes again at the end of the run", "",
      &trial_row::is_void},
@@ -95,10 +102,11 @@ named_cells make_cells(const trial_row& r)
 std::vector<trial_row> read_rows(const text_table& t)
 {
     for (const trial_column& c : trial_columns)
-        t.need_column(c.name);
+        if (!c.may_lack)
+            t.need_column(c.name);
     std::vector<trial_row> all(t.rows());
-    for (std::size_t i = 0; i < all.size(); ++i)
-        for (const trial_column& c : trial_columns)
+    for (const trial_column& c : trial_columns)
+        for (std::size_t i = 0; i < all.size() && t.has(c.name); ++i)
             std::visit([&](auto member) { cell_reader{t, i, c}.into(all[i].*member); }, c.member);
     return all;
 }

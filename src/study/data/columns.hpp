@@ -27,6 +27,7 @@ struct trial_row {
     std::string method_2 = {};
     std::string response = {};
     std::optional<double> response_time_s = {};
+    std::optional<bool> early = {}; ///< none: without an answer, or of a version that did not record it
     std::optional<unsigned> rating = {};
     bool is_void = false;
     unsigned xruns = 0;
@@ -43,13 +44,15 @@ struct trial_column {
     std::string_view unit;    ///< empty: none
     std::variant<std::string trial_row::*, double trial_row::*, std::optional<double> trial_row::*,
                  unsigned trial_row::*, std::optional<unsigned> trial_row::*,
-                 std::optional<std::uint64_t> trial_row::*, bool trial_row::*>
+                 std::optional<std::uint64_t> trial_row::*, bool trial_row::*,
+                 std::optional<bool> trial_row::*>
         member;
-    unsigned least = 0; ///< of whole numbers
+    unsigned least = 0;    ///< of whole numbers
+    bool may_lack = false; ///< tables of older versions do not have it
 };
 
 /// Columns in the order of a new table.
-extern const std::array<trial_column, 17> trial_columns;
+extern const std::array<trial_column, 18> trial_columns;
 
 /// Returns the cells of a row, in the order of a new table.
 named_cells make_cells(const trial_row& r);

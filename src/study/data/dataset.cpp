@@ -257,6 +257,8 @@ run_data read_run(const text_table& t, const run_outline& run)
         }
         if (!seen.insert(*place).second)
             t.refuse(i, fmt::format("trial {} counts twice", *place), "all its attempts but one are void");
+        if (t.has("early") && t.cell(i, "early"))
+            d.early += t.truth(i, "early") ? 1 : 0;
         trial r = read_trial(t, i, run);
         r.place = *place;
         r.attempt = attempt;

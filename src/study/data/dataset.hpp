@@ -4,7 +4,8 @@
 ///
 ///   participants.tsv                          participant_id: who takes part, in this order
 ///   sub-CODE/beh/sub-CODE_task-NAME_beh.tsv   the trials; columns trial attempt motion method_1 method_2
-///                                             response rating void response_time, others are left alone
+///                                             response rating void response_time, early if it is there,
+///                                             others are left alone
 ///   task-NAME_beh.json                        where it is there: an object whose TaskName is the run's
 ///   sourcedata/sub-CODE/session.json          {"simulated": bool, "experiment": {"text": TOML}}, others are
 ///                                             left alone: the order of motions and methods, and the runs
@@ -36,6 +37,7 @@ struct trial {
 struct run_data {
     std::vector<trial> trials = {};
     std::size_t voids = 0; ///< lines that do not count
+    std::size_t early = 0; ///< of the trials, answers that are marked early
 };
 
 /// Somebody whose trials are left out, and why.

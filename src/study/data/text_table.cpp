@@ -259,6 +259,14 @@ std::string text_table::line(const named_cells& cells) const
     return text;
 }
 
+std::string text_table::header() const
+{
+    std::string text;
+    for (const std::string& column : columns_)
+        text += written_cell(column) + (&column == &columns_.back() ? line_end_ : "\t");
+    return text;
+}
+
 std::string text_table::missing_end() const
 {
     if (text_.ends_with('\n') || text_.ends_with('\r'))

@@ -111,6 +111,8 @@ public:
     /// Refuses the line that is cut off. There is one.
     [[noreturn]] void refuse_cut(std::string_view hint) const;
 
+    /// Returns the table's first line with its end.
+    std::string header() const;
     /// Returns a line with its end: n/a where nothing is named, and no column that is not there.
     std::string line(const named_cells& cells) const;
     /// Returns what the file's last line lacks before another one can follow: mostly nothing.

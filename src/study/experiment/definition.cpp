@@ -53,6 +53,24 @@ void read_level(const toml_table& t, experiment_definition& d)
         d.sl_db = *level->number(kind, {-60.0, 100.0});
 }
 
+// Reads one time, or the least and the greatest of a pause that is drawn.
+rest_range read_rest(const toml_table& t)
+{
+    constexpr detail::bounds possible{0.0, 60.0};
+    const toml::node* n = t.node("rest_s");
+    if (n == nullptr || !n->is_array()) {
+        const double rest_s = t.number("rest_s", possible).value_or(0.0);
+        return {rest_s, rest_s};
+    }
+    std::vector<double> range;
+    for (const toml::node& one : *n->as_array())
+        range.push_back(t.to_number(one, "rest_s", possible));
+    if (range.size() != 2 || range[0] > range[1])
+        t.fail("rest_s", fmt::format("rest_s is {}", detail::shown(*n)),
+               "one time, or the least and the greatest: [2, 4]");
+    return {range[0], range[1]};
+}
+
 std::optional<std::uint64_t> read_seed(const toml_table& t)
 {
     constexpr std::int64_t most = (std::int64_t{1} << 53) - 1; // JSON's numbers go so far
@@ -80,7 +98,7 @@ void read_head(const toml_table& root, const extent& e, experiment_definition& d
         d.array = array_in(*t, *e.folder);
     read_level(*t, d);
     d.gap_s = t->number("gap_s", {0.0, 60.0}).value_or(d.gap_s);
-    d.rest_s = t->number("rest_s", {0.0, 60.0}).value_or(d.rest_s);
+    d.rest = read_rest(*t);
     d.seed = read_seed(*t);
     d.consent = t->text("consent").value_or("");
     d.authors = texts_in(*t, "authors", 1000);
@@ -164,7 +182,7 @@ experiment_definition definition_in(std::string_view toml, const std::string& na
     }
     d.motions = read_all<motion_definition>(root, "motion", [&](const toml_table& t) {
         return e.folder != nullptr ? read_motion(t, *e.folder)
-                                   : motion_definition{name_in(t, "name"), {}, t.where()};
+                                   : motion_definition{name_in(t, "name"), {}, is_mirrored(t), t.where()};
     });
     d.methods = read_all<method_definition>(root, "method", [&](const toml_table& t) {
         return e.outline_only ? method_definition{name_in(t, "name"), {}, t.where()} : read_method(t);
@@ -204,6 +222,21 @@ constexpr std::array english{
     page_word{"repeated", "again"},
     page_word{"later", "Once more, later."},
     page_word{"no_answer", "That is no answer"},
+    // On the page of calibrate only.
+    page_word{"calibrate_choose",
+              "There are two intervals, one of which vibrates. Which one? Guess where you do not know."},
+    page_word{"calibrate_interval", "Interval"},
+    page_word{"calibrate_which", "Which one vibrated?"},
+    page_word{"calibrate_right", "That was right."},
+    page_word{"calibrate_wrong", "That was wrong."},
+    page_word{"calibrate_adjust", "Something vibrates again and again. Set it so that you just feel it."},
+    page_word{"calibrate_set", "Set it so that you just feel it."},
+    page_word{"calibrate_much_weaker", "Much weaker"},
+    page_word{"calibrate_weaker", "Weaker"},
+    page_word{"calibrate_stronger", "Stronger"},
+    page_word{"calibrate_much_stronger", "Much stronger"},
+    page_word{"calibrate_that_is_it", "That is it"},
+    page_word{"calibrate_not_felt", "Not felt at any level"},
 };
 
 std::size_t find_word(std::string_view key)
@@ -281,7 +314,7 @@ std::span<const page_word> page_words_in_english()
     return english;
 }
 
-page_words::page_words()
+page_words::page_words() : set_(english.size(), false)
 {
     for (const page_word& w : english)
         texts_.emplace_back(w.english);
@@ -295,6 +328,33 @@ const std::string& page_words::operator[](std::string_view key) const
 void page_words::set(std::string_view key, std::string text)
 {
     texts_.at(find_word(key)) = std::move(text);
+    set_.at(find_word(key)) = true;
+}
+
+std::vector<std::string_view> page_words::missing() const
+{
+    std::vector<std::string_view> all;
+    for (std::size_t i = 0; i < english.size(); ++i)
+        if (!set_[i])
+            all.push_back(english[i].key);
+    return all.size() < english.size() ? all : std::vector<std::string_view>();
+}
+
+page_words load_page_words(const std::string& file)
+{
+    const detail::whole_text text = detail::read_text_file(file, most_bytes_of_text);
+    const toml::table document = detail::parse_toml(text, file);
+    const toml_table root(document, "the file", file);
+    if (!root.has("page"))
+        root.fail("there is no [page]", "a definition of an experiment with the participant's words");
+    return read_page(root);
+}
+
+std::string missing_words(const experiment_definition& d)
+{
+    const std::vector<std::string_view> missing = d.page.missing();
+    return missing.empty() ? ""
+                           : fmt::format("[page] lacks {}, which stay English", fmt::join(missing, ", "));
 }
 
 } // namespace tactor::study

@@ -44,10 +44,17 @@ public:
     /// \pre `key` is one of page_words_in_english().
     const std::string& operator[](std::string_view key) const;
     void set(std::string_view key, std::string text);
+    /// Lists the keys that stay English although others were set.
+    std::vector<std::string_view> missing() const;
 
 private:
     std::vector<std::string> texts_; // in the same order
+    std::vector<bool> set_;
 };
+
+/// Reads [page] of a definition; passes over all else in it. \throws error (bad_input) with line and column,
+/// also if there is no [page].
+page_words load_page_words(const std::string& file);
 
 /// [masking]: noise from loudspeakers or headphones, so that nobody hears the array.
 struct masking_definition {
@@ -61,6 +68,7 @@ struct masking_definition {
 struct motion_definition {
     std::string name;
     stroke drawn;
+    bool mirror = false; ///< left and right are exchanged for left hands
     source_place where = {};
 };
 
@@ -74,15 +82,25 @@ struct method_definition {
 /// [[run]]. Motions and methods are places in those of the definition.
 struct run_definition {
     run_outline outline;
-    std::string attribute = {}; ///< similarity or uniformity; may be empty for identify
+    std::string attribute = {};   ///< what is asked about, in any words; may be empty for identify
+    std::string simulate_as = {}; ///< similarity, uniformity; empty: nothing that an observer can judge
     std::string question = {};
     bool animation = false;
-    unsigned practice = 0; ///< trials before that do not count
-    double break_s = 0.0;  ///< after the run
+    unsigned practice = 0;        ///< trials before that do not count
+    double break_s = 0.0;         ///< after the run
+    double min_response_s = 0.15; ///< an earlier answer is marked early
     std::vector<std::string> labels = {};
     std::vector<std::size_t> motions = {};
     std::vector<std::size_t> methods = {};
     source_place where = {};
+};
+
+/// Pause before a trial. Drawn for each trial if its bounds differ.
+struct rest_range {
+    double least_s = 0.0;
+    double most_s = 0.0;
+
+    bool is_random() const noexcept { return most_s > least_s; }
 };
 
 struct experiment_definition {
@@ -92,7 +110,7 @@ struct experiment_definition {
     std::optional<double> level_dbfs = {};  ///< none: sl_db
     double sl_db = 7.0;                     ///< above each tactor's threshold
     double gap_s = 1.0;                     ///< choose: from the first stimulus' end to the second's begin
-    double rest_s = 0.0;                    ///< before each trial
+    rest_range rest = {};                   ///< before each trial
     std::optional<std::uint64_t> seed = {}; ///< none: default_seed(code)
     std::string consent = {};
     std::vector<std::string> authors = {};
@@ -140,6 +158,9 @@ std::vector<std::string> texts_in(const detail::toml_table& t, std::string_view 
 /// Reads [[motion]]: a stroke from a preset, path data or a file, with its duration or speed.
 motion_definition read_motion(const detail::toml_table& t, const std::filesystem::path& folder);
 
+/// Returns true if a [[motion]] is to be mirrored for left hands.
+bool is_mirrored(const detail::toml_table& motion);
+
 /// Reads [[method]]: options of a plan.
 method_definition read_method(const detail::toml_table& t);
 
@@ -148,6 +169,10 @@ run_definition read_run_definition(const detail::toml_table& t, const experiment
 
 /// Reads of it what the analysis needs, and passes over other keys. \throws error (bad_input).
 run_definition read_run_outline(const detail::toml_table& t, const experiment_definition& d);
+
+/// Returns a warning for sentences of the participant's that stay English although [page] has others; empty
+/// if there are none.
+std::string missing_words(const experiment_definition& d);
 
 /// Returns the experiment that is built in, as it stands among the examples.
 std::string_view park2016_text() noexcept;

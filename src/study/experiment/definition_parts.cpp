@@ -95,9 +95,12 @@ std::string write_choice(const options::option& o, std::string_view value)
 
 constexpr unsigned most_trials = 10000;
 
+// Returns the default question in English, if there is one for the attribute.
 std::string usual_question(const run_definition& r)
 {
     const bool similar = r.attribute == "similarity";
+    if (!similar && r.attribute != "uniformity" && r.outline.task != task_kind::identify)
+        return {};
     if (r.outline.task == task_kind::choose)
         return similar ? "Which of the two was more like the target?" : "Which of the two was more even?";
     if (r.outline.task == task_kind::rate)
@@ -143,9 +146,14 @@ std::string name_in(const toml_table& t, std::string_view key)
     return text;
 }
 
+bool is_mirrored(const toml_table& motion)
+{
+    return motion.boolean("mirror").value_or(false);
+}
+
 motion_definition read_motion(const toml_table& t, const std::filesystem::path& folder)
 {
-    t.only({"name", "preset", "path", "file", "duration", "duration_s", "speed", "speed_mm_s"});
+    t.only({"name", "preset", "path", "file", "duration", "duration_s", "speed", "speed_mm_s", "mirror"});
     const std::string_view kind = t.one_of({"preset", "path", "file"});
     const std::string_view duration_key = spelled(t, "duration", "duration_s");
     const std::string_view speed_key = spelled(t, "speed", "speed_mm_s");
@@ -163,7 +171,7 @@ motion_definition read_motion(const toml_table& t, const std::filesystem::path& 
         drawn.motion = at_key(t, speed_key, [&] { return drawn.motion.with_speed(*speed); });
     drawn.start_s.reset();                                // it is played alone
     drawn.choices = {.level_db = drawn.choices.level_db}; // methods choose the rest
-    return {name_in(t, "name"), std::move(drawn), t.where()};
+    return {name_in(t, "name"), std::move(drawn), is_mirrored(t), t.where()};
 }
 
 method_definition read_method(const toml_table& t)
@@ -240,7 +248,7 @@ run_definition read_run_outline(const toml_table& t, const experiment_definition
 run_definition read_run_definition(const toml_table& t, const experiment_definition& d)
 {
     t.only({"name", "task", "attribute", "question", "animation", "trials", "practice", "scale", "labels",
-            "break_s", "motions", "methods"});
+            "break_s", "motions", "methods", "simulate_as", "min_response_s"});
     run_definition r = read_run_outline(t, d);
     // Some disks treat capitals and small letters as equal.
     for (const run_definition& other : d.runs)
@@ -251,10 +259,14 @@ run_definition read_run_definition(const toml_table& t, const experiment_definit
     for (const std::string_view key : {"scale", "labels"})
         if (r.outline.task != task_kind::rate && t.has(key))
             t.fail(key, fmt::format("{} is of runs that rate", key), "leave it out, or task = \"rate\"");
-    r.attribute = t.choice("attribute", {"similarity", "uniformity"}).value_or("");
-    if (r.attribute.empty() && r.outline.task != task_kind::identify)
-        t.need(std::optional<std::string>{}, "attribute");
+    if (t.has("attribute") || r.outline.task != task_kind::identify)
+        r.attribute = name_in(t, "attribute");
+    const bool known = r.attribute == "similarity" || r.attribute == "uniformity";
+    r.simulate_as = t.choice("simulate_as", {"similarity", "uniformity"}).value_or(known ? r.attribute : "");
     r.question = t.text("question").value_or(usual_question(r));
+    if (r.question.empty())
+        t.need(std::optional<std::string>{}, "question");
+    r.min_response_s = t.number("min_response_s", {0.0, 10.0}).value_or(r.min_response_s);
     r.animation = t.boolean("animation").value_or(false);
     if (r.outline.trials == 0)
         t.need(std::optional<unsigned>{}, "trials");

@@ -2,6 +2,7 @@
 #include "study/experiment/sequence.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 #include <span>
 
@@ -69,6 +70,17 @@ std::vector<planned_trial> balanced(const run_definition& run, std::size_t n, ra
     return all;
 }
 
+// Draws the pause before each trial, in whole milliseconds; draws nothing if it is always the same.
+void draw_rests(std::vector<planned_trial>& trials, const rest_range& range, random_numbers& r)
+{
+    constexpr double steps_per_s = 1000.0;
+    for (planned_trial& t : trials) {
+        t.rest_s = range.least_s;
+        if (range.is_random())
+            t.rest_s += std::round((range.most_s - range.least_s) * r.unit() * steps_per_s) / steps_per_s;
+    }
+}
+
 bool too_many_in_a_row(const std::vector<planned_trial>& trials)
 {
     std::size_t row = 0;
@@ -130,6 +142,8 @@ run_sequence make_run(const experiment_definition& d, std::size_t run, std::stri
     } while (r.motions.size() > 1 && too_many_in_a_row(s.trials));
     s.practice = balanced(r, r.practice, numbers);
     shuffle(std::span(s.practice), numbers);
+    draw_rests(s.practice, d.rest, numbers);
+    draw_rests(s.trials, d.rest, numbers);
     return s;
 }
 

@@ -19,6 +19,7 @@ struct planned_trial {
     std::size_t motion = 0;
     std::size_t method_1 = 0;
     std::optional<std::size_t> method_2 = {}; ///< of choose only
+    double rest_s = 0.0;                      ///< pause before it
 
     friend bool operator==(const planned_trial&, const planned_trial&) = default;
 };

@@ -170,6 +170,10 @@ simulated_observer::simulated_observer(const simulation& s, const experiment_def
             targets_.push_back(target_path(d.motions[m].drawn));
         return;
     }
+    if (r.simulate_as.empty())
+        throw error(error_kind::bad_input, r.where,
+                    fmt::format("simulate: the observer does not know how to judge \"{}\"", r.attribute),
+                    "simulate_as = \"similarity\" or \"uniformity\"");
     double sum = 0.0;
     for (const std::size_t motion : r.motions)
         for (const std::size_t method : r.methods)
@@ -180,12 +184,12 @@ simulated_observer::simulated_observer(const simulation& s, const experiment_def
 double simulated_observer::cost(std::size_t motion, std::size_t method) const
 {
     const percept_summary& felt = stimuli_.at(motion, method).felt;
-    const std::optional<double> c = run_.attribute == "uniformity" ? felt.speed_cv : felt.rms_error_mm;
+    const std::optional<double> c = run_.simulate_as == "uniformity" ? felt.speed_cv : felt.rms_error_mm;
     if (!c)
         throw error(error_kind::bad_input, definition_.motions[motion].where,
                     fmt::format("simulate: motion \"{}\" by method \"{}\" is not predicted to {}",
                                 definition_.motions[motion].name, definition_.methods[method].name,
-                                run_.attribute == "uniformity" ? "be felt to move" : "be felt"),
+                                run_.simulate_as == "uniformity" ? "be felt to move" : "be felt"),
                     "people may be asked about it; the simulated observer cannot");
     return std::max(*c, least_cost);
 }

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numbers>
 #include <set>
 
 #include <fmt/format.h>
@@ -74,6 +75,35 @@ std::string arrays_text(const study_facts& f)
         if (tables.size() > 1)
             text += fmt::format("\n{}:\n", subjects(codes));
         text += table.empty() ? "\nThe places of the tactors are not recorded.\n" : "\n" + table;
+    }
+    return text;
+}
+
+// Describes the measured displacement at full scale, and the acceleration that it is at each carrier; empty
+// if the array does not state it.
+std::string strength_text(const session_facts& s)
+{
+    std::vector<double> um;
+    if (s.tactors)
+        for (const tactor_spec& t : s.tactors->tactors)
+            if (t.displacement_um_at_0dbfs)
+                um.push_back(*t.displacement_um_at_0dbfs);
+    if (um.empty())
+        return "";
+    std::string text = fmt::format("{} um", range_text(um));
+    if (um.size() < s.tactors->tactors.size())
+        text += fmt::format(" at {} of {}", um.size(), counted(s.tactors->tactors.size(), "tactor"));
+    std::set<double> carriers;
+    for (const planned_stimulus& p : s.stimuli)
+        if (const auto hz = p.facts()["stroke"]["carrier_hz"].number())
+            carriers.insert(*hz);
+    for (const double hz : carriers) {
+        constexpr double m_per_um = 1e-6;
+        const double angular = 2.0 * std::numbers::pi * hz;
+        std::vector<double> m_s2;
+        for (const double d : um)
+            m_s2.push_back(d * m_per_um * angular * angular);
+        text += fmt::format(", which is {} m/s2 at {} Hz", range_text(m_s2), digits(hz));
     }
     return text;
 }
@@ -229,6 +259,8 @@ std::string apparatus_section(const study_facts& f)
     text += "\n### Levels and thresholds\n\n";
     text +=
         fmt::format("Level: {}. Thresholds: {}.\n\n", join_texts(f, level_text), join_texts(f, assumed_text));
+    if (const std::string strength = join_texts(f, strength_text); strength != not_recorded)
+        text += fmt::format("Peak displacement of a sine at 0 dBFS, as measured: {}.\n\n", strength);
     text += thresholds_table(f);
     if (const std::string how = join_texts(f, origin_text); how != not_recorded)
         text += fmt::format("\nCalibration: {}.\n", how);

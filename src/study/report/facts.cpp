@@ -35,6 +35,7 @@ tactor_spec tactor_in(const json_value& t)
     one.gain_db = t["gain_db"].number().value_or(0.0);
     one.max_dbfs = t["max_dbfs"].number().value_or(0.0);
     one.actuator = t["actuator"].kind<actuator_kind>().value_or(one.actuator);
+    one.displacement_um_at_0dbfs = t["displacement_um_at_0dbfs"].number();
     return one;
 }
 

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <tactor/error.hpp>
 #include <tactor/version.hpp>
@@ -77,6 +78,26 @@ std::string without_runs_of_blanks(const std::string& text)
     return out;
 }
 
+// Counts the answers that are marked early, by run.
+std::string early_text(const study_facts& f, const dataset& d)
+{
+    std::vector<std::string> runs;
+    for (std::size_t i = 0; i < d.experiment.runs.size(); ++i) {
+        std::size_t n = 0;
+        for (const std::vector<run_data>& own : d.data)
+            n += own[i].early;
+        if (n == 0)
+            continue;
+        const std::string least = join_texts(f, [&](const session_facts& s) {
+            return s.design ? digits(s.design->runs.at(i).min_response_s) + " s" : std::string();
+        });
+        runs.push_back(fmt::format("{} in {} (sooner than {} after the stimulus)", n,
+                                   plain(d.experiment.runs[i].name), least));
+    }
+    return runs.empty() ? "No answer is marked early. "
+                        : fmt::format("Answers marked early, which count: {}. ", fmt::join(runs, ", "));
+}
+
 std::string data_section(const study_facts& f, const dataset& d)
 {
     std::string text = "\n## Data\n\n";
@@ -90,6 +111,7 @@ std::string data_section(const study_facts& f, const dataset& d)
     else
         text += fmt::format("Void trials: {}, of which had gaps in the sound: {}; they do not count. {}. ",
                             all.voids, gaps_text(all), again_text(all));
+    text += early_text(f, d);
     text += "Trials that count / void / void\nwith gaps in the sound:\n\n";
     text += trials_table(f, d);
     text += "\n### Versions and hashes\n\n";

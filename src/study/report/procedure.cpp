@@ -236,6 +236,25 @@ std::string randomisation(const study_facts& f)
     return text;
 }
 
+std::string rest_text(const rest_range& r)
+{
+    if (r.is_random())
+        return fmt::format("{} to {} s, drawn for each trial", digits(r.least_s), digits(r.most_s));
+    return r.least_s > 0.0 ? digits(r.least_s) + " s" : std::string("none");
+}
+
+// Returns the hand that wore the array, with the motions that were mirrored for it.
+std::string hand_text(const session_facts& s)
+{
+    const std::string hand = plain(s.facts()["hand"].words());
+    std::vector<std::string> mirrored;
+    if (s.design && hand == "left")
+        for (const motion_definition& m : s.design->motions)
+            if (m.mirror)
+                mirrored.push_back(m.name);
+    return mirrored.empty() ? hand : fmt::format("{}, mirrored: {}", hand, plain_list(mirrored));
+}
+
 } // namespace
 
 std::string procedure_section(const study_facts& f, const dataset& d)
@@ -247,10 +266,10 @@ std::string procedure_section(const study_facts& f, const dataset& d)
                             return s.design ? digits(s.design->gap_s) + " s" : std::string();
                         }));
     text += fmt::format("Rest before each trial: {}.\n", join_texts(f, [](const session_facts& s) {
-                            return !s.design              ? std::string()
-                                   : s.design->rest_s > 0 ? digits(s.design->rest_s) + " s"
-                                                          : std::string("none");
+                            return s.design ? rest_text(s.design->rest) : std::string();
                         }));
+    if (const std::string hand = join_texts(f, hand_text); hand != not_recorded)
+        text += fmt::format("Hand: {}.\n", hand);
     for (std::size_t i = 0; i < d.experiment.runs.size(); ++i)
         text += run_text(f, d.experiment.runs[i], i);
     text += randomisation(f);

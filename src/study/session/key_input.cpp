@@ -20,6 +20,7 @@
 
 #include "rt/clock.hpp"
 #include "session/pipes.hpp"
+#include "session/say.hpp"
 
 namespace tactor::study {
 namespace {
@@ -105,14 +106,17 @@ key_input::~key_input()
         ::tcsetattr(STDIN_FILENO, TCSANOW, &before_);
 }
 
+// Reads the keys of a terminal, so that a key which is still held down is known to be.
 void key_input::forget()
 {
-    while (pressed())
+    while (terminal_ ? next().has_value() : pressed().has_value())
         ;
-    if (!terminal_)
-        return;
-    ::tcflush(STDIN_FILENO, TCIFLUSH);
-    text_.clear();
+}
+
+void key_input::tell_of_repeats()
+{
+    if (!std::exchange(told_, true))
+        session::say(stderr, "tactor: a key is held down: it answers nothing until it is let go\n");
 }
 
 void key_input::fill()
@@ -127,6 +131,7 @@ void key_input::fill()
             session::refuse_standard_input(errno);
         if (n == 0)
             end();
+        read_ns_ = rt::monotonic_ns();
         text_.append(bytes, static_cast<std::size_t>(n));
         if (terminal_ || text_.find('\n') != text_.npos)
             return;
@@ -150,6 +155,7 @@ std::optional<char> key_input::pressed()
 
 std::optional<std::string> key_input::next()
 {
+    repeated_ = false;
     const auto key = pressed();
     return key ? std::string(1, *key) : typed();
 }
@@ -163,7 +169,9 @@ std::optional<std::string> key_input::typed()
         return std::nullopt;
     std::string line = text_.substr(0, end);
     text_.erase(0, end == text_.npos ? end : end + (terminal_ ? 0 : 1));
-    if (!terminal_)
+    if (terminal_)
+        repeated_ = guard_.is_repeated(line.front(), read_ns_, text_.starts_with(line));
+    else
         std::erase_if(line, [](char c) { return c == ' ' || c == '\t' || c == '\r'; });
     return line;
 }
@@ -240,23 +248,31 @@ void session_keys::drop_pressed()
 
 std::optional<session_key> session_keys::poll()
 {
-    if (page_ == nullptr)
-        return read_key(input_.next());
+    if (page_ == nullptr) {
+        std::optional<session_key> k = read_key(input_.next());
+        if (k)
+            k->repeated = input_.is_repeated() && !k->asked;
+        return k;
+    }
     while (const auto key = input_.pressed())
         page_->press(*key);
     while (const auto k = read_key(input_.typed()))
         if (k->asked)
             return session_key{.asked = k->asked, .at_ns = k->at_ns};
     if (const auto a = page_->poll())
-        return session_key{a->key, {}, digit(a->key), a->at_ns};
+        return session_key{.character = a->key, .answer = digit(a->key), .at_ns = a->at_ns};
     return {};
 }
 
 session_key session_keys::wait()
 {
     for (;;) {
-        if (const auto k = poll())
-            return *k;
+        if (const auto k = poll()) {
+            if (!k->repeated)
+                return *k;
+            input_.tell_of_repeats();
+            continue;
+        }
         if (page_ == nullptr && input_.ended())
             throw error(error_kind::runtime, "the session", "there is no answer any more",
                         "what was answered is kept; --resume goes on");

@@ -24,6 +24,29 @@ namespace tactor::study {
 /// nothing for other keys.
 std::optional<char> find_answer(std::uint16_t code) noexcept;
 
+/// Time without a key after which a terminal's key counts as pressed again. A terminal repeats a held key
+/// faster, 10 to 60 times a second.
+inline constexpr std::int64_t quiet_ns = 100'000'000;
+
+/// Tells keys that a terminal repeats, because they are held down, from keys that are pressed. A value
+/// without a clock.
+class repeat_guard {
+public:
+    /// Takes a key that was read at a time; `again`: the same key was read with it, right behind it. Returns
+    /// true if it is repeated.
+    bool is_repeated(char key, std::int64_t at_ns, bool again) noexcept
+    {
+        const bool repeated = again || (key == last_ && at_ns - last_ns_ < quiet_ns);
+        last_ = key;
+        last_ns_ = at_ns;
+        return repeated;
+    }
+
+private:
+    char last_ = '\0'; ///< no key yet
+    std::int64_t last_ns_ = 0;
+};
+
 /// A keypad, whose keys no other program gets while this lives. One thread.
 class keypad {
 public:
@@ -68,6 +91,11 @@ public:
     /// Returns the next key, or the next line without blanks; nothing if there is none yet. Does not wait.
     /// \throws error (runtime) if it cannot be read.
     std::optional<std::string> next();
+    /// Returns true if the last key from next() or typed() is one that the terminal repeats. Never true of
+    /// lines and keypads.
+    bool is_repeated() const noexcept { return repeated_; }
+    /// Says, the first time, that a held key does not answer.
+    void tell_of_repeats();
     /// Returns the next key of the keypads alone.
     std::optional<char> pressed();
     /// Returns the next key or line of standard input alone.
@@ -84,6 +112,10 @@ private:
     termios before_{};     // before terminal_, whose initializer fills it
     bool terminal_;
     std::string text_ = {};
+    std::int64_t read_ns_ = 0; ///< CLOCK_MONOTONIC at which text_ was read
+    repeat_guard guard_ = {};
+    bool repeated_ = false;
+    bool told_ = false;
     bool ended_ = false;
 };
 
@@ -100,6 +132,7 @@ struct session_key {
     char character = 0;
     std::optional<operator_key> asked = {};
     unsigned answer = 0;    ///< 1 to 9, or 0
+    bool repeated = false;  ///< held down: it answers nothing. Never true of the experimenter's keys
     std::int64_t at_ns = 0; ///< CLOCK_MONOTONIC
 };
 
@@ -121,7 +154,7 @@ public:
     bool come_early() const noexcept { return is_terminal() || page_ != nullptr; }
     /// Returns the next key or line, if any; also an unknown one that may be the participant's.
     std::optional<session_key> poll();
-    /// Waits for a key. \throws stage::left; error (runtime) if nothing more can come.
+    /// Waits for a key that is not held down. \throws stage::left; error (runtime) if nothing more can come.
     session_key wait();
 
     /// Drops keys that were pressed on a keypad up to now.

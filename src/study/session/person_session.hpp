@@ -78,8 +78,8 @@ private:
         unsigned choice = 0; ///< 0: the experimenter repeats the trial
         double time_s = 0.0;
     };
-    /// Lets the definition's rest pass. Returns false if the device is gone.
-    bool rest_before(const session_step& s);
+    /// Lets the rest before a trial pass. Returns false if the device is gone.
+    bool rest_before(const session_step& s, const planned_trial& t);
     /// Waits until the limits allow the drive time. Returns false if the device is gone.
     bool make_room(const session_step& s, const planned_trial& t, const score& stimuli);
     /// Returns a watcher that asks for a moment's patience when it is first called.

@@ -53,12 +53,12 @@ std::string person_session::animate(const session_step& s, const planned_trial& 
     return passed ? "" : gone;
 }
 
-bool person_session::rest_before(const session_step& s)
+bool person_session::rest_before(const session_step& s, const planned_trial& t)
 {
-    if (p_.definition.rest_s == 0.0)
+    if (t.rest_s == 0.0)
         return true;
     on_page(stimulus_screen(p_, s));
-    return stage_.pass(p_.definition.rest_s, [&](double) { return heed(); });
+    return stage_.pass(t.rest_s, [&](double) { return heed(); });
 }
 
 // Waits before the target, because the stimulus follows it at once.
@@ -98,7 +98,7 @@ std::function<void(std::uint64_t)> person_session::marks(const session_step& s, 
 given_stimulus person_session::give(const session_step& s, const planned_trial& t)
 {
     const score stimuli = p_.stimuli.make_score(t);
-    if (!rest_before(s) || !make_room(s, t, stimuli))
+    if (!rest_before(s, t) || !make_room(s, t, stimuli))
         return {.flaw = "the device is gone"};
     if (p_.run_at(s.run).animation)
         if (std::string flaw = animate(s, t); !flaw.empty())
@@ -150,8 +150,8 @@ void person_session::trial(const session_step& s)
             flaw = "the experimenter repeats it";
         } else {
             const bool named = r.outline.task == task_kind::identify;
-            set_response(row, p_, r, named ? static_cast<unsigned>(r.motions[a.choice - 1]) : a.choice);
-            row.response_time_s = a.time_s;
+            set_response(row, p_, r, named ? static_cast<unsigned>(r.motions[a.choice - 1]) : a.choice,
+                         a.time_s);
         }
     }
     row.is_void = !flaw.empty();

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "study/session/prepared.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -14,10 +15,13 @@
 
 #include <tactor/error.hpp>
 
+#include "core/moved.hpp"
+#include "core/path/shape.hpp"
 #include "files/plan/plan_json.hpp"
 #include "session/device.hpp"
 #include "session/walk.hpp"
 #include "study/experiment/definition.hpp"
+#include "synth/mix/limits_met.hpp"
 #include "synth/score/drive_room.hpp"
 
 namespace tactor::study {
@@ -52,33 +56,44 @@ bool assume_thresholds(array& a, bool nobody_feels)
     return true;
 }
 
-constexpr std::size_t block_frames = 4096;
-
-bool sound_alike(const score& a, const score& b)
+// Exchanges left and right, about the middle of the array, of the motions that say so.
+void mirror_motions(experiment_definition& d, const array& a)
 {
-    const std::size_t bytes = block_frames * a.channels() * sample_bytes(format_kind::float32);
-    std::vector<std::byte> of_a(bytes);
-    std::vector<std::byte> of_b(bytes);
-    renderer one(a, format_kind::float32);
-    renderer other(b, format_kind::float32);
-    for (std::uint64_t at = 0; at < a.frames(); at += block_frames) {
-        one.process(of_a);
-        other.process(of_b);
-        if (of_a != of_b)
-            return false;
-    }
-    return true;
+    const auto [least, most] =
+        std::minmax_element(a.tactors.begin(), a.tactors.end(), [](const auto& one, const auto& other) {
+            return one.position.x_mm < other.position.x_mm;
+        });
+    const double middle_mm = 0.5 * (least->position.x_mm + most->position.x_mm);
+    const detail::affine exchanged{-1.0, 0.0, 0.0, 1.0, middle_mm, 0.0};
+    for (motion_definition& m : d.motions)
+        if (m.mirror)
+            m.drawn.motion = detail::moved(m.drawn.motion, {middle_mm, 0.0}, exchanged, {},
+                                           [&] { return fmt::format("motion \"{}\"", m.name); });
+}
+
+// Mirrors the motions for a left hand. A person's hand must be said if that matters.
+void settle_hand(experiment_definition& d, const array& a, const session_request& r)
+{
+    const auto mirrored =
+        std::find_if(d.motions.begin(), d.motions.end(), [](const motion_definition& m) { return m.mirror; });
+    if (mirrored == d.motions.end())
+        return;
+    if (r.who == audience::person && !r.hand)
+        throw error(
+            error_kind::bad_input, "--hand",
+            fmt::format("motion \"{}\" is mirrored for left hands, and the hand is not said", mirrored->name),
+            "--hand left, or --hand right");
+    if (r.hand == hand_kind::left)
+        mirror_motions(d, a);
 }
 
 void check(const experiment_definition& d, const planned_trial& t, const stimulus_set& stimuli,
            const drive_limits& l)
 {
-    const score planned = stimuli.make_score(t);
-    if (sound_alike(planned, stimuli.make_score(t, l)))
+    const synth::limits_met met = synth::find_limits_met(stimuli.make_score(t, l));
+    if (!met.power && !met.time)
         return;
-    drive_limits without_time = l;
-    without_time.max_drive_s = l.window_s;
-    const bool of_time = sound_alike(planned, stimuli.make_score(t, without_time));
+    const bool of_time = !met.power;
     const motion_definition& m = d.motions[t.motion];
     std::string by = fmt::format("method \"{}\"", d.methods[t.method_1].name);
     if (t.method_2)
@@ -121,7 +136,7 @@ private:
         const score stimuli = p_.stimuli.make_score(one);
         const double shown_s =
             r.animation ? p_.definition.motions[one.motion].drawn.motion.duration_s() : 0.0;
-        now_ += frames(p_.definition.rest_s);
+        now_ += frames(one.rest_s);
         const std::uint64_t wait = room_.wait(stimuli, now_ + frames(shown_s + stimulus_lead_s)).value_or(0);
         t.waits += wait > 0 ? 1 : 0;
         t.waits_s += seconds(wait);
@@ -150,6 +165,7 @@ prepared_experiment prepare(const session_request& r, session::settings& s)
     if (!s.array_name)
         s.array_name = d.array;
     session::environment e = session::read_environment(s);
+    settle_hand(d, e.tactors, r);
     const bool assumed = !d.level_dbfs && assume_thresholds(e.tactors, r.who != audience::person);
     render_options render = session::settle_render(s, e);
     if (d.level_dbfs)
@@ -172,6 +188,8 @@ prepared_experiment prepare(const session_request& r, session::settings& s)
         doubts = calibration_doubts(r.participant, e, stimuli);
     std::vector<std::string> warnings = stimuli.warnings();
     warnings.insert(warnings.end(), doubts.begin(), doubts.end());
+    if (std::string words = missing_words(d); !words.empty() && r.who != audience::observer)
+        warnings.push_back(std::move(words));
     if (assumed)
         warnings.push_back(
             fmt::format("tactors without a threshold: {} dBFS is taken for it", assumed_threshold_dbfs));
@@ -188,7 +206,13 @@ prepared_experiment prepare(const session_request& r, session::settings& s)
             std::move(runs),
             std::move(stimuli),
             std::move(warnings),
-            std::move(doubts)};
+            std::move(doubts),
+            r.hand};
+}
+
+std::string_view to_string(hand_kind h) noexcept
+{
+    return h == hand_kind::left ? "left" : "right";
 }
 
 score walk_score(const experiment_definition& d, const array& a, const render_options& o, unsigned tactor)

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <nlohmann/json.hpp>
@@ -29,12 +30,17 @@ enum class audience {
     nobody,   ///< a dry run
 };
 
+/// Hand that wears the array.
+enum class hand_kind { left, right };
+std::string_view to_string(hand_kind h) noexcept;
+
 /// Request for a session.
 struct session_request {
     std::string definition;                 ///< a name that is built in, or a file
     std::string participant = {};           ///< empty only of a dry run
     std::optional<std::uint64_t> seed = {}; ///< else that of the definition, else one of the participant's
     audience who = audience::person;
+    std::optional<hand_kind> hand = {}; ///< none: not said
 };
 
 /// Sound servers between the program and its cards; empty: none.
@@ -55,6 +61,7 @@ struct prepared_experiment {
     stimulus_set stimuli;
     std::vector<std::string> warnings;
     std::vector<std::string> calibration_doubts; ///< of the warnings, those about the thresholds' origin
+    std::optional<hand_kind> hand = {};          ///< motions that say so are mirrored for a left one
 
     /// Returns the run at a place in the session's order.
     const run_definition& run_at(std::size_t place) const { return definition.runs[runs[place].run]; }

@@ -22,7 +22,7 @@ using json = nlohmann::ordered_json;
 json array_facts(const array& a)
 {
     json tactors = json::array();
-    for (const tactor_spec& t : a.tactors)
+    for (const tactor_spec& t : a.tactors) {
         tactors.push_back({{"x_mm", t.position.x_mm},
                            {"y_mm", t.position.y_mm},
                            {"channel", t.channel},
@@ -31,7 +31,22 @@ json array_facts(const array& a)
                            {"max_dbfs", t.max_dbfs},
                            {"threshold_dbfs", files::threshold_json(t)},
                            {"actuator", std::string(to_string(t.actuator))}});
+        if (t.displacement_um_at_0dbfs) // else absent: sessions of older versions go on
+            tactors.back()["displacement_um_at_0dbfs"] = *t.displacement_um_at_0dbfs;
+    }
     return {{"name", a.name}, {"tactors", tactors}};
+}
+
+// Returns the pauses before the trials of each run, in the order of the trials.
+json rest_facts(const prepared_experiment& p)
+{
+    json all = json::object();
+    for (const run_sequence& r : p.runs) {
+        json& rests = all[p.definition.runs[r.run].outline.name] = json::array();
+        for (const planned_trial& t : r.trials)
+            rests.push_back(t.rest_s);
+    }
+    return all;
 }
 
 } // namespace
@@ -82,6 +97,11 @@ json describe_session(const prepared_experiment& p, const std::optional<simulati
     j["seed"] = p.seed;
     j["order"] = order;
     j["level"] = level_facts(d);
+    // These are absent where they say nothing: sessions of older versions go on.
+    if (p.hand)
+        j["hand"] = std::string(to_string(*p.hand));
+    if (d.rest.is_random())
+        j["rests_s"] = rest_facts(p);
     j["array"] = array_facts(p.where.tactors);
     j["thresholds_dbfs"] = thresholds;
     j["thresholds_assumed"] = p.assumed;

@@ -67,10 +67,8 @@ private:
             row.frame_2 = now_ + p_.stimuli.second(t);
         row.is_void = a.is_void;
         row.xruns = a.is_void ? 1 : 0;
-        if (!a.is_void) {
-            set_response(row, p_, r, a.response);
-            row.response_time_s = a.response_time_ms * 1e-3;
-        }
+        if (!a.is_void)
+            set_response(row, p_, r, a.response, a.response_time_ms * 1e-3);
         return row;
     }
 
@@ -141,12 +139,15 @@ trial_row planned_row(const prepared_experiment& p, const planned_trial& t, cons
     return row;
 }
 
-void set_response(trial_row& row, const prepared_experiment& p, const run_definition& r, unsigned response)
+void set_response(trial_row& row, const prepared_experiment& p, const run_definition& r, unsigned response,
+                  double time_s)
 {
     const bool named = r.outline.task == task_kind::identify;
     row.response = named ? p.definition.motions.at(response).name : fmt::format("{}", response);
     if (r.outline.task == task_kind::rate)
         row.rating = response;
+    row.response_time_s = time_s;
+    row.early = time_s < r.min_response_s;
 }
 
 run_queue replay(const prepared_experiment& p, const run_sequence& s, const std::vector<trial_row>& rows)

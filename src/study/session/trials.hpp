@@ -16,8 +16,9 @@ namespace tactor::study {
 /// Returns a trial's line, as far as the plan of the session determines it.
 trial_row planned_row(const prepared_experiment& p, const planned_trial& t, const pending_trial& which);
 
-/// Writes an answer into the columns response and rating.
-void set_response(trial_row& row, const prepared_experiment& p, const run_definition& r, unsigned response);
+/// Writes an answer, and the time until it came, into the columns of the response.
+void set_response(trial_row& row, const prepared_experiment& p, const run_definition& r, unsigned response,
+                  double time_s);
 
 /// Returns the rest of a run after the lines that are there. \throws error (bad_input) for lines that are not
 /// of this session.
