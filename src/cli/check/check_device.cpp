@@ -25,7 +25,7 @@ finding check_open(const alsa_options& device, const session::stream_options& o,
                    bool named)
 {
     const std::string server = session::settle_server(device.pcm);
-    const stream_setup made = session::open_device(device)->setup();
+    const stream_setup made = session::open_device(device, e.tactors)->setup();
     if (const std::string lost = lost_tactor(e.tactors, made.wiring); !lost.empty())
         return refuse_lost_tactor(device, lost);
     const std::string found = describe(made) + (server.empty() ? "" : "; " + session::server_note(server));
