@@ -3,9 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdlib>
 #include <map>
-#include <memory>
 #include <optional>
 #include <vector>
 
@@ -33,35 +31,6 @@ constexpr double rounding = 1e-6;
 
 // For each channel: the device's channels that it reaches, and the factor on its samples there.
 using outputs = std::vector<std::map<unsigned, double>>;
-
-snd_config_t* member(snd_config_t* compound, const char* id)
-{
-    snd_config_t* found = nullptr;
-    return snd_config_get_type(compound) == SND_CONFIG_TYPE_COMPOUND &&
-                   snd_config_search(compound, id, &found) == 0
-               ? found
-               : nullptr;
-}
-
-std::string text(snd_config_t* value)
-{
-    char* text = nullptr;
-    if (value == nullptr || snd_config_get_ascii(value, &text) < 0 || text == nullptr)
-        return {};
-    const std::unique_ptr<char, deleter<std::free>> freed(text);
-    return text;
-}
-
-// Reads a number as libasound does: any base, and no other text. Returns most_channels for a number that no
-// device has.
-std::optional<unsigned> channel_number(const std::string& s)
-{
-    char* end = nullptr;
-    const long n = std::strtol(s.c_str(), &end, 0);
-    if (s.empty() || *end != '\0')
-        return {};
-    return n < 0 || n > long{most_channels} ? most_channels : static_cast<unsigned>(n);
-}
 
 // A plugin on the route that is not understood.
 struct hidden {
@@ -100,10 +69,10 @@ private:
         const char* other = nullptr;
         if (snd_config_get_string(definition, &other) >= 0 && other != nullptr)
             return named("pcm", other, channels, depth + 1);
-        const std::string type = text(member(definition, "type"));
+        const std::string type = value_text(member(definition, "type"));
         if (type == "hw")
-            return device(fmt::format("{},{}", text(member(definition, "card")),
-                                      channel_number(text(member(definition, "device"))).value_or(0)),
+            return device(fmt::format("{},{}", value_text(member(definition, "card")),
+                                      channel_number(value_text(member(definition, "device"))).value_or(0)),
                           channels);
         if (type == "null")
             return device(fmt::format("null {}", definitions_), channels);
@@ -189,7 +158,7 @@ private:
         each_member(member(definition, "bindings"), [&](const std::string& client, snd_config_t* to) {
             const auto from = channel_number(client);
             if (from && *from < channels)
-                link(all[*from], inner, channel_number(text(to)));
+                link(all[*from], inner, channel_number(value_text(to)));
         });
         return all;
     }
@@ -207,9 +176,9 @@ private:
         });
         each_member(bindings, [&](const std::string& client, snd_config_t* to) {
             const auto from = channel_number(client);
-            const auto one = slaves.find(text(member(to, "slave")));
+            const auto one = slaves.find(value_text(member(to, "slave")));
             if (from && *from < channels && one != slaves.end())
-                link(all[*from], one->second, channel_number(text(member(to, "channel"))));
+                link(all[*from], one->second, channel_number(value_text(member(to, "channel"))));
         });
         return all;
     }
@@ -263,13 +232,6 @@ stream_wiring find_wiring(snd_config_t* top, const std::string& name, unsigned c
         w.hidden_by = h.by;
     }
     return w;
-}
-
-stream_wiring find_wiring(const alsa_options& o, unsigned device_channels)
-{
-    if (o.config_text.empty())
-        return find_wiring(system_configuration().read(), o.pcm, o.channels, device_channels);
-    return find_wiring(parse(o.config_text).get(), o.pcm, o.channels, device_channels);
 }
 
 } // namespace tactor::alsa
