@@ -265,6 +265,25 @@ channels heard(const alsa_options& o, const folder& here, const std::vector<std:
 
 } // namespace
 
+TEST_CASE("the largest factor after a table counts, not only the one at the device")
+{
+    const std::string half =
+        "pcm.n { type null }\npcm.half { type route slave.pcm n ttable { 0.0 0.5 1.1 0.5 } }\n";
+    const auto most = [&](const std::string& table) {
+        return wired(half + "pcm.t { type route slave.pcm half ttable { " + table + " } }", "t", 2).most_gain;
+    };
+    CHECK(most("0.0 2 1.1 1") == 2.0);
+    CHECK(most("0.0 1 1.1 -4") == 4.0);
+    CHECK(most("0.0 1 1.1 0.5") == 1.0);
+    CHECK(most("0.0 0.5 1.1 0.5 2.2 4") == 1.0); // of a channel that the stream does not have
+    // Two ways to one channel add up.
+    CHECK(wired(half + "pcm.two { type route slave.pcm half ttable { 0.0 0.9 1.0 0.9 } }\n"
+                       "pcm.t { type route slave { pcm two channels 2 } ttable { 0.0 1 0.1 1 } }",
+                "t", 1)
+              .most_gain == doctest::Approx(1.8));
+    CHECK(wired(half + "pcm.t { type plug slave.pcm half ttable { 0.0 2 1.1 2 } }", "t", 2).outputs.empty());
+}
+
 TEST_CASE("for random chains of plugins the wiring is that of libasound")
 {
     constexpr unsigned n = 4;

@@ -18,7 +18,7 @@ namespace tactor::alsa {
 namespace {
 
 constexpr int most_definitions = 64;         // of one PCM; also stops definitions that double at each step
-constexpr std::size_t most_links = 1U << 18; // a table may connect each channel to each
+constexpr std::size_t most_links = 1U << 19; // a table may connect each channel to each
 
 // These pass each channel on unchanged.
 constexpr std::array straight{"plug",  "linear", "lfloat", "copy",  "rate",    "mulaw", "alaw",
@@ -29,7 +29,10 @@ constexpr std::array binding{"dmix", "dshare", "share"};
 constexpr double least_gain = 1e-3; // -60 dB: less is not felt
 constexpr double rounding = 1e-6;
 
-// For each channel: the device's channels that it reaches, and the factor on its samples there.
+// First number of an output that is the end of a table, where ALSA clips, and no channel of a device.
+constexpr unsigned first_end = 1U << 30;
+
+// For each channel: the outputs that it reaches, and the factor on its samples there.
 using outputs = std::vector<std::map<unsigned, double>>;
 
 // A plugin on the route that is not understood.
@@ -133,7 +136,9 @@ private:
 
     outputs of_table(snd_config_t* definition, unsigned channels, int depth)
     {
-        const outputs inner = slave(member(definition, "slave"), channels, depth);
+        outputs inner = slave(member(definition, "slave"), channels, depth);
+        for (std::map<unsigned, double>& one : inner)
+            one[next_end_++] = 1.0;
         outputs all(channels);
         snd_config_t* table = member(definition, "ttable");
         if (table == nullptr)
@@ -186,6 +191,7 @@ private:
     snd_config_t* top_;
     int definitions_ = 0;
     std::size_t links_ = 0;
+    unsigned next_end_ = first_end;
     std::string level_by_ = {};
     std::map<std::string, unsigned> devices_ = {}; ///< with the number of the first output of each
 };
@@ -197,6 +203,19 @@ bool is_straight(const outputs& all)
             std::abs(all[c].begin()->second - 1.0) > rounding)
             return false;
     return true;
+}
+
+// Removes the ends of tables. Returns the largest factor there, 1 or more.
+double take_ends(outputs& all)
+{
+    double most = 1.0;
+    for (std::map<unsigned, double>& one : all) {
+        const auto ends = one.lower_bound(first_end);
+        for (auto i = ends; i != one.end(); ++i)
+            most = std::max(most, std::abs(i->second));
+        one.erase(ends, one.end());
+    }
+    return most;
 }
 
 void write_down(const outputs& all, stream_wiring& w)
@@ -225,6 +244,7 @@ stream_wiring find_wiring(snd_config_t* top, const std::string& name, unsigned c
         tracer t(top);
         outputs all = t.named("pcm", name, device_channels, 0);
         all.resize(channels);
+        w.most_gain = take_ends(all);
         if (!is_straight(all))
             write_down(all, w);
         w.level_by = t.level_by();
