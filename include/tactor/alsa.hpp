@@ -39,12 +39,13 @@ struct alsa_options {
     log_function log = {};
 };
 
-/// Opens a PCM with exactly these options. Blocks shortly (ALSA reads its configuration). The sink keeps the
-/// PCM's own descriptors and one more.
+/// Opens a PCM with exactly these options. Blocks shortly (each call reads ALSA's configuration as it is now,
+/// and leaves libasound's own copy alone). The sink keeps the PCM's own descriptors and one more.
 /// \throws error: not_available if the PCM does not exist, is busy, may not be opened or cannot do all that
-///         was requested (the message prints the request and what the device can do); bad_input for numbers
-///         that no PCM can have and for configuration text that ALSA cannot read; runtime when the process
-///         has no descriptors left.
+///         was requested (the message prints the request and what the device can do), if ALSA cannot read its
+///         configuration (the message has file and line), and for a definition on which libasound would end
+///         the process; bad_input for numbers that no PCM can have, and for configuration text or a name's
+///         arguments that ALSA cannot read; runtime when the process has no descriptors left.
 [[nodiscard]] TACTOR_API std::unique_ptr<sink> open_alsa(const alsa_options& o);
 
 /// Waits until a lost PCM is back, and opens it. Tries after 0.1 s, then after twice as long each time, up to
@@ -108,7 +109,7 @@ struct pcm_info {
 /// Any thread, but one at a time.
 /// \throws error: bad_input for numbers in `wanted` that no PCM can have; runtime, as all functions below,
 ///         when the process has no descriptors left. For PCMs that cannot be opened, the list holds the
-///         reason.
+///         reason, also if ALSA cannot read its configuration.
 [[nodiscard]] TACTOR_API std::vector<pcm_info> list_pcms(const std::optional<alsa_options>& wanted = {});
 
 /// Plugins between a PCM and its device, from ALSA's configuration.
@@ -126,6 +127,7 @@ struct pcm_route {
 /// ALSA's configuration and follows tables, bindings and everything else that passes channels on. Blocks for
 /// some milliseconds, opens nothing, and does not throw for names that are not defined. Any thread, but one
 /// at a time.
+/// \throws error (not_available) if ALSA cannot read its configuration.
 [[nodiscard]] TACTOR_API stream_wiring read_wiring(const std::string& pcm, unsigned channels);
 
 /// Checks the name of a PCM that somebody else has chosen, for example in an array file. Such names are

@@ -179,8 +179,8 @@ struct player_lines {
 /// (stream_wiring::hidden_by).
 [[nodiscard]] TACTOR_API std::string lost_tactor(const array& a, const stream_wiring& w);
 
-/// Returns sentences about tactors that arrive changed: weaker, with reversed polarity, or through several
-/// channels of the device.
+/// Returns sentences about tactors that arrive changed: weaker, with reversed polarity, through several
+/// channels of the device, or clipped on the way (stream_wiring::most_gain).
 [[nodiscard]] TACTOR_API std::vector<std::string> wiring_warnings(const array& a, const stream_wiring& w);
 
 /// Owns the sink, the audio thread and the control thread. Any thread but the audio thread may call its

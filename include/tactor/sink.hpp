@@ -33,6 +33,9 @@ struct stream_wiring {
     /// Plugin on the route that may move channels, so that `outputs` is not known: "type pulse". Empty:
     /// `outputs` is known.
     std::string hidden_by = {};
+    /// Largest factor on the samples of any channel after one of the tables on the route, 1 or more. Above 1
+    /// ALSA may clip them there, whatever `gains` are at the end.
+    double most_gain = 1.0;
 };
 
 /// Negotiated stream. While the sink lives, only has_clock may change.

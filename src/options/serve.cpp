@@ -51,20 +51,50 @@ double read_number(const written_value& d, detail::bounds b, bool whole)
     return *v;
 }
 
+// Returns true for a name, an address, or an IPv6 address in brackets, without a port.
+bool is_host(std::string_view text)
+{
+    std::string_view others = "._-";
+    if (text.size() > 2 && text.front() == '[' && text.back() == ']' && text.find(':') != text.npos) {
+        text = text.substr(1, text.size() - 2);
+        others = "._-:%";
+    }
+    return !text.empty() && std::all_of(text.begin(), text.end(), [&](char c) {
+        return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
+               others.find(c) != others.npos;
+    });
+}
+
+bool is_port(std::string_view text)
+{
+    std::uint16_t port = 0;
+    const auto r = std::from_chars(text.data(), text.data() + text.size(), port);
+    return r.ec == std::errc() && r.ptr == text.data() + text.size();
+}
+
 // Returns whether it is [HOST:]PORT. Whether this machine has such a host shows when it listens there.
 bool is_address(std::string_view text)
 {
     const auto colon = text.rfind(':');
-    if (colon != std::string_view::npos) {
-        const std::string_view host = text.substr(0, colon);
-        const bool bracketed = host.size() > 2 && host.front() == '[' && host.back() == ']';
-        if (host.empty() || (!bracketed && host.find(':') != std::string_view::npos))
-            return false;
-        text.remove_prefix(colon + 1);
-    }
-    std::uint16_t port = 0;
-    const auto r = std::from_chars(text.data(), text.data() + text.size(), port);
-    return r.ec == std::errc() && r.ptr == text.data() + text.size();
+    if (colon == std::string_view::npos)
+        return is_port(text);
+    return is_host(text.substr(0, colon)) && is_port(text.substr(colon + 1));
+}
+
+// Returns a host with or without a port, to be compared with the Host headers of browsers.
+std::string read_host(const written_value& d)
+{
+    std::string text = read_text_value(d);
+    const std::string_view all(text);
+    const auto colon = all.rfind(':');
+    // Browsers write a port as it is counted, and no other.
+    const bool has_port = colon != all.npos && is_port(all.substr(colon + 1)) && all[colon + 1] != '0';
+    if (!is_host(all) && !(has_port && is_host(all.substr(0, colon))))
+        fail(
+            d, fmt::format("\"{}\" is no host", text),
+            "HOST[:PORT] without a scheme and a path, such as pi.lan, pi.lan:8080 or \"[fd00::7]\"; it holds "
+            "for http and https");
+    return text;
 }
 
 // "127.0.0.1:4001", or a bare 4001.
@@ -109,7 +139,7 @@ const std::array keys{
     key{"osc", &serve_settings::osc, {}, read_address},
     key{"http", &serve_settings::http, {}, read_address},
     key{"token_file", &serve_settings::token_file},
-    key{"allow_hosts", &serve_settings::allow_hosts},
+    key{"allow_hosts", &serve_settings::allow_hosts, {}, read_host},
     key{"osc_peers", &serve_settings::osc_peers, {}, read_prefix},
     key{"max_level_dbfs", &serve_settings::max_level_dbfs, detail::bounds_of::level_dbfs},
     key{"idle_stop_s", &serve_settings::idle_stop_s, detail::bounds_of::timeout_s},

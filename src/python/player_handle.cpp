@@ -56,7 +56,7 @@ player_handle::player_handle(const array& a, session::settings s, const drive_hi
     o.require_realtime = s.stream.require_realtime;
     o.driven = driven;
     o.log = device.log;
-    open_->stream = std::make_unique<player>(session::open_device(device), a, o, open_->lines.lend());
+    open_->stream = std::make_unique<player>(session::open_device(device, a), a, o, open_->lines.lend());
     open_->stream->on_report([events](const stroke_report& r) { events->put(r); });
     setup_ = open_->stream->setup();
 }

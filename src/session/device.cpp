@@ -100,33 +100,41 @@ std::string latency_warning(std::optional<double> asked_ms, const stream_setup& 
                        latency_ms(made));
 }
 
-std::string find_array_that_fits(alsa_options o)
+std::string find_fit(alsa_options o, const array& a)
 {
+    o.log = {};
+    const auto opens = [&o](unsigned channels) {
+        o.channels = channels;
+        try {
+            return open_alsa(o) != nullptr;
+        } catch (const error&) {
+            return false;
+        }
+    };
+    const unsigned needed = o.channels;
+    if (a.channels() < needed)
+        return opens(a.channels()) ? fmt::format("the array {} fits, but not channel {}, which a marker or a "
+                                                 "plan asks for: choose a spare channel of the device",
+                                                 a.name, needed - 1)
+                                   : "";
     std::multimap<unsigned, std::string> by_channels;
     for (const std::string& name : array_presets())
         by_channels.emplace(preset_array(name).channels(), name);
-    o.log = {};
-    const unsigned needed = o.channels;
-    for (auto a = by_channels.rbegin(); a != by_channels.rend(); ++a) {
-        o.channels = a->first;
-        try {
-            if (o.channels < needed && open_alsa(o) != nullptr)
-                return a->second;
-        } catch (const error&) { // NOLINT(bugprone-empty-catch): not that one
-        }
-    }
+    for (auto one = by_channels.rbegin(); one != by_channels.rend(); ++one)
+        if (one->first < needed && opens(one->first))
+            return fmt::format("the array {} fits", one->second);
     return {};
 }
 
-std::unique_ptr<sink> open_device(const alsa_options& o)
+std::unique_ptr<sink> open_device(const alsa_options& o, const array& a)
 {
     try {
         return open_alsa(o);
     } catch (const error& e) {
-        const std::string smaller = e.field() == "channels" && o.wider ? find_array_that_fits(o) : "";
-        if (smaller.empty())
+        const std::string fit = e.field() == "channels" && o.wider ? find_fit(o, a) : "";
+        if (fit.empty())
             throw;
-        throw e.reworded(e.subject(), e.why(), fmt::format("{}; the array {} fits", e.hint(), smaller));
+        throw e.reworded(e.subject(), e.why(), fmt::format("{}; {}", e.hint(), fit));
     }
 }
 

@@ -36,10 +36,11 @@ std::string latency_warning(std::optional<double> asked_ms, const stream_setup& 
 /// Returns the time that the buffer holds, ms.
 double latency_ms(const stream_setup& s);
 
-/// Names the largest built-in array that the PCM can play as `o` asks for; empty: none.
-std::string find_array_that_fits(alsa_options o);
+/// Returns a hint for a PCM that has fewer channels than `o` asks for: the largest built-in array that fits;
+/// or, if `a` needs fewer, the channel that a marker or a plan adds to it. Empty: none.
+std::string find_fit(alsa_options o, const array& a);
 
-/// Opens like open_alsa(); if the PCM has too few channels, the hint names an array that fits.
-std::unique_ptr<sink> open_device(const alsa_options& o);
+/// Opens like open_alsa() for this array; if the PCM has too few channels, the hint says what fits.
+std::unique_ptr<sink> open_device(const alsa_options& o, const array& a);
 
 } // namespace tactor::session

@@ -74,8 +74,8 @@ void look_behind(const array& a, alsa_options wanted, pcm_info& p)
         return;
     }
     wanted.pcm = p.name;
-    if (const std::string smaller = find_array_that_fits(wanted); !smaller.empty())
-        p.misfit += fmt::format("; the array {} fits", smaller);
+    if (const std::string fit = find_fit(wanted, a); !fit.empty())
+        p.misfit += "; " + fit;
 }
 
 } // namespace

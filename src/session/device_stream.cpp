@@ -42,7 +42,7 @@ void add_stats(player_stats& sum, const player_stats& more)
 stream_parts open_parts(const alsa_options& device, const stream_options& o, const environment& e, bool arm)
 {
     stream_parts p;
-    p.open = [device] { return open_device(device); };
+    p.open = [device, tactors = e.tactors] { return open_device(device, tactors); };
     p.lines = lent_lines(open_lines(o, e, arm));
     p.tactors = e.tactors;
     p.player.limits = settle_limits(o, e);

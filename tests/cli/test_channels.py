@@ -51,6 +51,15 @@ class Channels(ToolTest):
         self.assertIn(12, sounding)
         self.assertFalse(sounding & {9, 10, 11, 13, 14, 15})
 
+    def test_a_marker_beyond_the_device_is_named(self):
+        self.write("a.toml", 'array.preset = "palm-2x4"\nsync.channel = 12\n')
+        says = "the array palm-2x4 fits, but not channel 12, which a marker or a plan asks for"
+        self.refused(3, "play", "--path", "M 0 0 L 60 0", "--duration", "0.2", "--array", "a.toml", "-D", "eight", says=[says])
+        pcms = json.loads(self.ok("devices", "--format", "json", "--array", "a.toml").stdout)["pcms"]
+        self.assertIn(says, next(p for p in pcms if p["name"] == "eight")["misfit"])
+        r = self.run_tool("check", "--array", "a.toml", "-D", "eight", "--format", "json")
+        self.assertIn(says, next(f for f in json.loads(r.stdout)["findings"] if f["check"] == "device")["cure"])
+
     def test_a_given_number_is_exact(self):
         self.assertIn(": 16 channels,", self.ok("play", *self.STROKE, "-D", "sixteen", "--channels", "16").stdout)
         says = ["cannot play 9 channels", "it can do channels 16", "without a number of channels it leaves the other channels silent"]

@@ -53,6 +53,21 @@ class Devices(ToolTest):
         self.assertEqual([n for n, p in pcms.items() if p["configured"]], ["eight"])
         self.assertEqual([n for n, p in self.devices("--array", "a.toml", "-D", "null")[1].items() if p["configured"]], ["null"])
 
+    def test_a_definition_on_which_libasound_ends_the_process_is_refused_and_the_rest_listed(self):
+        self.write("alsa.conf", ALSA_CONFIG + """pcm.hole { type multi slaves.a { pcm "null" channels 4 }
+            bindings { 0 { slave a channel 0 } 1 { slave a channel 1 } 3 { slave a channel 3 } } }\n""")
+        _, pcms = self.devices()
+        self.assertIn("type multi leaves a hole in its bindings: it binds no channel 2", pcms["hole"]["error"])
+        self.assertTrue(pcms["null"]["fits"])
+        self.refused(3, "play", "park2016-1", "-D", "hole", says=["it binds no channel 2"])
+        self.assertEqual(self.run_tool("check", "-D", "hole").returncode, 3)
+
+    def test_a_configuration_that_alsa_cannot_read_is_reported_with_file_and_line(self):
+        self.write("alsa.conf", ALSA_CONFIG + "pcm.output {\n  type hw\n  card \n}\n")
+        said = f"alsa.conf:{(ALSA_CONFIG + 'pcm.output {').count(chr(10)) + 5}: ALSA cannot read its configuration"
+        self.assertIn(said, self.devices()[1]["null"]["error"])
+        self.refused(3, "play", "park2016-1", "-D", "null", says=[said])
+
     def test_mixers_are_named_and_not_started(self):
         self.write("alsa.conf", ALSA_CONFIG + MORE_PCMS)
         _, pcms = self.devices()

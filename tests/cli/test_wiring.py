@@ -82,6 +82,17 @@ class Wiring(ToolTest):
         pcms = {p["name"]: p for p in json.loads(self.ok("devices", "--format", "json").stdout)["pcms"]}
         self.assertEqual((pcms["loud"]["fits"], pcms["loud"]["misfit"]), (False, louder))
 
+    def test_samples_that_alsa_clips_on_the_way_are_a_warning(self):
+        tables = [" ".join(f"{c}.{c} {gain}" for c in range(9)) for gain in (0.5, 2)]
+        self.write("alsa.conf", ALSA_CONFIG + 'pcm.half { type route slave { pcm "null" channels 9 } ttable { %s } }\n'
+                   'pcm.twice { type route slave { pcm "half" channels 9 } ttable { %s } }\n' % tuple(tables)
+                   + 'pcm.kept { type file slave.pcm "twice" file "kept.raw" format raw }\n')
+        says = "raises samples by up to 6.02 dB on the way to the device, and clips them there"
+        found = self.device("twice")
+        self.assertEqual((found["level"], found["found"].count(says)), ("warning", 1))
+        self.assertEqual(self.ok("play", *self.STROKE, "-D", "twice").stderr.count(says), 1)
+        self.assertIn(says, self.device("kept")["found"])  # which is not opened
+
     def test_below_60_db_a_tactor_is_lost(self):
         self.assertIn(LOST, self.device("below", status=3)["found"])
         self.refused(3, "play", *self.STROKE, "-D", "below", says=[LOST])

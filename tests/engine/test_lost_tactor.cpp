@@ -59,6 +59,10 @@ TEST_CASE("a tactor that arrives louder is refused, other changes are warned of"
           "tactor 1 of line is on channel 1, which ALSA's configuration plays at 6.02 dB with its polarity "
           "reversed: louder than its limit allows");
     CHECK(wiring_warnings(line_of_three(), {}).empty());
+    CHECK(wiring_warnings(line_of_three(), {.most_gain = 2.0}) ==
+          std::vector<std::string>{
+              "ALSA's configuration raises samples by up to 6.02 dB on the way to the device, "
+              "and clips them there at full scale"});
     CHECK(wiring_warnings(line_of_three(), {.level_by = "type softvol"}) ==
           std::vector<std::string>{"a mixer control sets the level of all tactors: type softvol is between"});
 }

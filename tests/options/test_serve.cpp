@@ -86,6 +86,16 @@ TEST_CASE("[serve]: impossible values are refused with their place")
               fmt::format("t:2:21: \"{}\" is neither an address nor a prefix (such as 192.168.1.7, "
                           "192.168.1.0/24 or fd00::/8)",
                           bad));
+    for (const char* bad : {"https://draw.example", "draw.example/", "draw.example/page", "*.example", "a b",
+                            "pi.lan:", "pi.lan:0", "pi.lan:080", "pi.lan:65536", "pi.lan:http", ":80", "::1",
+                            "user@pi.lan", "[]", "[pi.lan]", "pi.lan?x"})
+        CHECK(says(fmt::format("allow_hosts = ['pi.lan', '{}']", bad))
+                  .find(fmt::format("t:2:26: \"{}\" is no host (HOST[:PORT] without a scheme", bad)) == 0);
+    CHECK(says("http = 'http://pi.lan:80'").find("t:2:8: \"http://pi.lan:80\" is no address") == 0);
+    CHECK(says("tcp = 'pi.lan/x:80'").find("t:2:7: \"pi.lan/x:80\" is no address") == 0);
+    const auto hosts = parse_setup(
+        "[serve]\nallow_hosts = ['pi.lan', 'pi.lan:8080', '10.0.0.7:80', '[fd00::7]', '[::1]:80']\n", "t");
+    CHECK(options::read_serve(hosts.serve).allow_hosts.size() == 5);
     const auto s =
         parse_setup("[serve]\nosc_peers = ['1.2.3.4', '::/0', '0.0.0.0/0', 'fe80::1%eth0']\n", "t");
     CHECK(options::read_serve(s.serve).osc_peers.size() == 4);

@@ -21,11 +21,19 @@ finding refuse_lost_tactor(const alsa_options& device, const std::string& lost)
                               "(ttable, bindings), or play on the card itself: -D hw:CARD=NAME"});
 }
 
+std::string note_text(const std::vector<session::device_note>& notes)
+{
+    std::string text;
+    for (const session::device_note& n : notes)
+        text += "; " + n.text;
+    return text;
+}
+
 finding check_open(const alsa_options& device, const session::stream_options& o, const environment& e,
                    bool named)
 {
     const std::string server = session::settle_server(device.pcm);
-    const stream_setup made = session::open_device(device)->setup();
+    const stream_setup made = session::open_device(device, e.tactors)->setup();
     if (const std::string lost = lost_tactor(e.tactors, made.wiring); !lost.empty())
         return refuse_lost_tactor(device, lost);
     const std::string found = describe(made) + (server.empty() ? "" : "; " + session::server_note(server));
@@ -38,11 +46,8 @@ finding check_open(const alsa_options& device, const session::stream_options& o,
     if (!server.empty())
         return warning("device", found, session::server_cure);
     const std::vector<session::device_note> notes = session::wiring_notes(e.tactors, made);
-    std::string told = found;
-    for (const session::device_note& n : notes)
-        told += "; " + n.text;
     if (!notes.empty())
-        return warning("device", told, notes.front().cure);
+        return warning("device", found + note_text(notes), notes.front().cure);
     return fine("device", found);
 }
 
@@ -73,13 +78,14 @@ finding check_device(const alsa_options& device, const session::stream_options& 
                      bool named)
 {
     if (read_route(device.pcm).writes) {
-        const std::string lost = lost_tactor(e.tactors, read_wiring(device.pcm, device.channels));
-        return lost.empty()
-                   ? warning("device",
-                             fmt::format("{}: not opened, for that would empty its file or start its command",
-                                         device.pcm),
-                             "play opens it: is it meant?")
-                   : refuse_lost_tactor(device, lost);
+        const stream_setup there{.name = device.pcm, .wiring = read_wiring(device.pcm, device.channels)};
+        if (const std::string lost = lost_tactor(e.tactors, there.wiring); !lost.empty())
+            return refuse_lost_tactor(device, lost);
+        return warning(
+            "device",
+            fmt::format("{}: not opened, for that would empty its file or start its command", device.pcm) +
+                note_text(session::wiring_notes(e.tactors, there)),
+            "play opens it: is it meant?");
     }
     try {
         return check_open(device, o, e, named);

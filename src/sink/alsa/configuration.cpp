@@ -2,13 +2,16 @@
 #include "sink/alsa/configuration.hpp"
 
 #include <cerrno>
+#include <string_view>
 
+#include <fmt/format.h>
 #include <sys/eventfd.h>
 
 #include <tactor/error.hpp>
 
 #include "core/owned.hpp"
 #include "core/refused.hpp"
+#include "core/split.hpp"
 #include "sink/alsa/error_text.hpp"
 #include "sink/alsa/library_messages.hpp"
 
@@ -23,13 +26,30 @@ int lack_of_descriptors() noexcept
     return one ? 0 : -errno;
 }
 
-bool defines_pcms(snd_config_t* top)
+// Returns the error for files that cannot be read, from libasound's messages: "_toplevel_:LINE:COLUMN:WHY"
+// comes first and "FILE may be old or corrupted: ..." after it.
+error unreadable(int code, const library_messages& messages)
 {
-    snd_config_t* pcms = nullptr;
-    return top != nullptr && snd_config_search(top, "pcm", &pcms) == 0;
+    constexpr std::string_view nameless = "_toplevel_:";
+    std::string why = messages.first();
+    std::string file;
+    const std::string all = messages.all();
+    for (const std::string_view line : tactor::detail::split(all, '\n'))
+        if (const auto end = line.find(" may be old or corrupted"); end != line.npos && file.empty())
+            file = line.substr(0, end);
+    if (!file.empty() && why.rfind(nameless, 0) == 0) {
+        why.erase(0, nameless.size());
+        const auto line = why.find(':');
+        const auto column = line == why.npos ? line : why.find(':', line + 1);
+        if (column != why.npos) {
+            file += ":" + why.substr(0, line);
+            why.erase(0, column + 1);
+        }
+    }
+    return {error_kind::not_available, file.empty() ? "ALSA's configuration" : file,
+            with_detail("ALSA cannot read its configuration", why.empty() ? snd_strerror(code) : why),
+            "mend or remove this file, or one that it includes; ALSA plays nothing until then"};
 }
-
-} // namespace
 
 configuration parse(const std::string& text)
 {
@@ -44,35 +64,26 @@ configuration parse(const std::string& text)
     return configuration(c);
 }
 
-system_configuration::system_configuration() : refused_(lack_of_descriptors())
-{
-    const library_messages silent;
-    if (refused_ != 0)
-        return;
-    snd_config_update_ref(&top_);
-    if (defines_pcms(top_))
-        return;
-    // The configuration was read without descriptors by another part of the program, or is really empty.
-    if (top_ != nullptr)
-        snd_config_unref(top_);
-    top_ = nullptr;
-    snd_config_update_free_global();
-    const int code = snd_config_update_ref(&top_);
-    if (code == -EMFILE || code == -ENFILE) // the first file was opened, but not one that it includes
-        refused_ = code;
-}
+} // namespace
 
-snd_config_t* system_configuration::read() const
+configuration read_configuration(const std::string& text)
 {
-    if (refused_ != 0)
-        tactor::detail::refused_by_system("ALSA's configuration", -refused_, snd_strerror(refused_));
-    return top_;
-}
-
-system_configuration::~system_configuration()
-{
-    if (top_ != nullptr)
-        snd_config_unref(top_);
+    if (!text.empty())
+        return parse(text);
+    const library_messages messages;
+    snd_config_t* top = nullptr;
+    snd_config_update_t* files = nullptr;
+    int code = lack_of_descriptors();
+    if (code == 0)
+        code = snd_config_update_r(&top, &files, nullptr);
+    if (files != nullptr)
+        snd_config_update_free(files);
+    configuration c(top);
+    if (code == -EMFILE || code == -ENFILE)
+        tactor::detail::refused_by_system("ALSA's configuration", -code, snd_strerror(code));
+    if (code < 0)
+        detail::throw_caused(unreadable(code, messages), -code);
+    return c;
 }
 
 } // namespace tactor::alsa

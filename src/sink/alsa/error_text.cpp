@@ -12,6 +12,7 @@
 
 #include "core/refused.hpp"
 #include "core/suggest.hpp"
+#include "sink/alsa/devices/plain_name.hpp"
 #include "sink/alsa/devices/route.hpp"
 
 namespace tactor::alsa {
@@ -32,6 +33,24 @@ std::string near(const std::string& name, const std::vector<std::string>& known)
     const std::vector<std::string_view> views(known.begin(), known.end());
     const std::string_view like = detail::nearest_name(name, views);
     return like.empty() ? "" : fmt::format("did you mean {}? ", like);
+}
+
+// Returns a hint of the PCM that may be meant: one that is defined, or a card of which only the id or the
+// name is written.
+std::string near(const std::string& name, const std::vector<card>& cards,
+                 const std::vector<std::string>& pcms)
+{
+    std::vector<std::string_view> views;
+    for (const card& c : cards)
+        views.insert(views.end(), {c.id, c.name});
+    views.insert(views.end(), pcms.begin(), pcms.end());
+    const std::string_view like = detail::nearest_name(name, views);
+    if (like.empty())
+        return {};
+    for (const card& c : cards)
+        if (like == c.id || like == c.name)
+            return fmt::format("did you mean hw:CARD={}? ", c.id);
+    return fmt::format("did you mean {}? ", like);
 }
 
 std::vector<std::string> ids(const std::vector<card>& cards)
@@ -134,7 +153,7 @@ error no_pcm(const std::string& name, const std::string& detail, const surroundi
         return {error_kind::not_available, thing(name),
                 with_detail("ALSA's configuration defines it, but not all that it refers to", detail),
                 "look at its slave in /etc/asound.conf and ~/.asoundrc; {command:devices} lists all"};
-    std::string hint = near(plain, s.pcms);
+    std::string hint = near(plain, cards, s.pcms);
     if (hint.empty() && !s.pcms.empty() && s.pcms.size() <= most_names)
         hint = fmt::format("known: {}; ", fmt::join(s.pcms, ", "));
     if (!cards.empty())
@@ -147,6 +166,15 @@ bool is_sound_server(const std::string& program)
 {
     constexpr std::array servers{"pipewire", "pipewire-pulse", "wireplumber", "pulseaudio", "jackd"};
     return std::find(servers.begin(), servers.end(), program) != servers.end();
+}
+
+// Returns the error of a name such as "hw:CARD=Tactor,", whose arguments its definition does not take.
+error bad_arguments(const std::string& name, const std::string& detail)
+{
+    const bool has_reason = detail.rfind("Parse arguments error", 0) != 0;
+    return {error_kind::bad_input, thing(name),
+            with_detail("ALSA cannot read the part after the colon", has_reason ? detail : not_plain(name)),
+            "write a device as hw:CARD=NAME,DEV=NUMBER, or as hw:CARD=NAME; {command:devices} lists all"};
 }
 
 error busy(const std::string& name, const surroundings& s)
@@ -203,6 +231,8 @@ std::string with_detail(const std::string& text, const std::string& detail)
 
 error open_error(const std::string& name, int code, const std::string& detail, const surroundings& s)
 {
+    if (s.bad_arguments)
+        return bad_arguments(name, detail);
     switch (-code) {
     case ENOENT:
     case ENODEV:

@@ -20,6 +20,7 @@ struct surroundings {
     std::vector<std::string> pcms = {}; ///< names that the configuration defines
     system_root root = "/";
     std::vector<std::string> route = {}; ///< types of the plugins on the name's route
+    bool bad_arguments = false;          ///< the name's definition does not take the text after its colon
 };
 
 /// Returns why a PCM could not be opened (negative errno) and what to do. `detail`: libasound's own words.

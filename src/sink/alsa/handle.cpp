@@ -4,8 +4,11 @@
 #include <new>
 #include <string>
 
+#include <fmt/format.h>
+
+#include <tactor/error.hpp>
+
 #include "core/refused.hpp"
-#include "sink/alsa/configuration.hpp"
 #include "sink/alsa/devices/route.hpp"
 #include "sink/alsa/error_text.hpp"
 #include "sink/alsa/library_messages.hpp"
@@ -26,9 +29,12 @@ T* made(Make make)
     return p;
 }
 
-surroundings around(snd_config_t* top, const std::string& name)
+surroundings around(snd_config_t* top, const std::string& name, const std::string& messages)
 {
-    return {.pcms = defined_pcms(top), .route = find_route(top, name)};
+    const auto has = [&messages](const std::string& text) { return messages.find(text) != messages.npos; };
+    return {.pcms = defined_pcms(top),
+            .route = find_route(top, name),
+            .bad_arguments = has(fmt::format("Unknown PCM {}\n", name)) && has("Parse arguments error")};
 }
 
 } // namespace
@@ -55,27 +61,18 @@ status make_status()
     return status(made<snd_pcm_status_t>(snd_pcm_status_malloc));
 }
 
-handle open(const alsa_options& o)
+handle open(const alsa_options& o, snd_config_t* top)
 {
+    if (const std::string fault = find_fault(top, o.pcm); !fault.empty())
+        throw error(error_kind::not_available, fmt::format("PCM \"{}\"", o.pcm), fault,
+                    "mend its definition in /etc/asound.conf or ~/.asoundrc: ALSA's library would end this "
+                    "program");
     const library_messages messages;
     snd_pcm_t* p = nullptr;
-    int code = 0;
-    surroundings there;
-    if (o.config_text.empty()) {
-        const system_configuration system;
-        code = system.refused();
-        if (code == 0)
-            code = snd_pcm_open(&p, o.pcm.c_str(), SND_PCM_STREAM_PLAYBACK, mode);
-        if (code < 0)
-            there = around(system.get(), o.pcm);
-    } else {
-        const configuration c = parse(o.config_text);
-        code = snd_pcm_open_lconf(&p, o.pcm.c_str(), SND_PCM_STREAM_PLAYBACK, mode, c.get());
-        if (code < 0)
-            there = around(c.get(), o.pcm);
-    }
+    int code = snd_pcm_open_lconf(&p, o.pcm.c_str(), SND_PCM_STREAM_PLAYBACK, mode, top);
     if (code < 0)
-        tactor::detail::throw_caused(open_error(o.pcm, code, messages.first(), there), -code);
+        tactor::detail::throw_caused(
+            open_error(o.pcm, code, messages.first(), around(top, o.pcm, messages.all())), -code);
     handle h(p);
     // Plugins made from other plugins do not always obey the flag of open().
     if (code = snd_pcm_nonblock(h.get(), 1); code < 0)

@@ -37,8 +37,8 @@ hw_params copy(const hw_params& p);
 sw_params make_sw_params();
 status make_status();
 
-/// Opens a PCM for playback: non-blocking, without hidden conversion.
+/// Opens a PCM of this configuration for playback: non-blocking, without hidden conversion.
 /// \throws error as open_alsa() does.
-handle open(const alsa_options& o);
+handle open(const alsa_options& o, snd_config_t* top);
 
 } // namespace tactor::alsa

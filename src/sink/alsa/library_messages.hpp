@@ -4,10 +4,10 @@
 ///
 /// libasound has one message handler for the process, which belongs to the host program. The default one
 /// passes messages to a handler of each thread. That one is replaced during the calls, and then restored.
-/// passes messages to a handler of each thread: this one is replaced during the calls, and then put back.
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <string>
 
 #include <alsa/asoundlib.h>
@@ -35,7 +35,7 @@ private:
     snd_local_error_handler_t before_;
 };
 
-/// Collects libasound's first message on this thread while an object lives. A second object takes the
+/// Collects libasound's messages on this thread while an object lives. A second object takes the
 /// messages while it lives.
 class library_messages : quiet {
 public:
@@ -47,12 +47,15 @@ public:
     /// Returns the first message since construction, or nothing. Always nothing if the host has its own
     /// handler.
     std::string first() const;
+    /// Returns the messages, a line each, as far as they fit in 1000 bytes.
+    std::string all() const;
 
 private:
     [[gnu::format(printf, 5, 0)]] static void collect(const char*, int, const char*, int, const char* format,
                                                       va_list arguments) noexcept;
 
-    std::array<char, 200> text_{};
+    std::array<char, 1000> text_{};
+    std::size_t length_ = 0;
     library_messages* outer_;
 };
 

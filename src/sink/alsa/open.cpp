@@ -13,6 +13,7 @@
 #include "core/refused.hpp"
 #include "core/words.hpp"
 #include "sink/alsa/adopt.hpp"
+#include "sink/alsa/configuration.hpp"
 #include "sink/alsa/devices/route.hpp"
 #include "sink/alsa/handle.hpp"
 #include "sink/alsa/library_messages.hpp"
@@ -29,12 +30,13 @@ bool is_on_card(snd_pcm_t* p)
     return snd_pcm_info(p, info) == 0 && snd_pcm_info_get_card(info) >= 0;
 }
 
-std::unique_ptr<sink> configure(handle h, const alsa_options& o, bool is_defined, bool as_card)
+// Configures a PCM. `top`: the configuration that defines it; null: none does.
+std::unique_ptr<sink> configure(handle h, const alsa_options& o, snd_config_t* top, bool as_card)
 try {
     const library_messages silent;
     stream_setup s = negotiate(h.get(), o);
-    if (is_defined)
-        s.wiring = find_wiring(o, s.device_channels);
+    if (top != nullptr)
+        s.wiring = find_wiring(top, o.pcm, o.channels, s.device_channels);
     set_software(h.get(), s);
     detail::log(o.log, log_kind::info, "PCM \"{}\": {}, {} Hz, {}, {} of {} frames{}", o.pcm,
                 s.device_channels == s.channels
@@ -64,7 +66,7 @@ std::unique_ptr<sink> adopt(snd_pcm_t* p, const alsa_options& o, bool as_card)
 {
     handle h(p);
     check(o);
-    return configure(std::move(h), o, false, as_card);
+    return configure(std::move(h), o, nullptr, as_card);
 }
 
 } // namespace tactor::alsa
@@ -75,8 +77,8 @@ inline namespace v0 {
 std::unique_ptr<sink> open_alsa(const alsa_options& o)
 {
     alsa::check(o);
-    alsa::handle h = alsa::open(o);
-    return alsa::configure(std::move(h), o, true, false);
+    const alsa::configuration top = alsa::read_configuration(o.config_text);
+    return alsa::configure(alsa::open(o, top.get()), o, top.get(), false);
 }
 
 std::unique_ptr<sink> reopen_alsa(const alsa_options& o, const std::function<bool(double)>& pause)

@@ -6,6 +6,7 @@
 #include <boost/math/distributions/chi_squared.hpp>
 #include <boost/math/distributions/fisher_f.hpp>
 
+#include "study/statistics/precision.hpp"
 #include "study/statistics/tests.hpp"
 
 namespace tactor::study {
@@ -157,16 +158,16 @@ double determinant(matrix m)
 
 double upper_chi_squared(double x, double df)
 {
-    return boost::math::cdf(
-        boost::math::complement(boost::math::chi_squared_distribution<>(df), std::max(0.0, x)));
+    return boost::math::cdf(boost::math::complement(
+        boost::math::chi_squared_distribution<double, in_double>(df), std::max(0.0, x)));
 }
 
 } // namespace
 
 double p_of_f(double f, double df1, double df2)
 {
-    return boost::math::cdf(
-        boost::math::complement(boost::math::fisher_f_distribution<>(df1, df2), std::max(0.0, f)));
+    return boost::math::cdf(boost::math::complement(
+        boost::math::fisher_f_distribution<double, in_double>(df1, df2), std::max(0.0, f)));
 }
 
 anova repeated_measures(const cell_table& t)

@@ -13,6 +13,8 @@
 #include <boost/math/distributions/students_t.hpp>
 #include <boost/math/tools/roots.hpp>
 
+#include "study/statistics/precision.hpp"
+
 namespace tactor::study {
 namespace {
 
@@ -20,7 +22,8 @@ namespace {
 double noncentrality(double t, double df, double below)
 {
     const auto off = [&](double delta) {
-        return boost::math::cdf(boost::math::non_central_t_distribution<>(df, delta), t) - below;
+        return boost::math::cdf(boost::math::non_central_t_distribution<double, in_double>(df, delta), t) -
+               below;
     };
     // Near t, as wide as the estimate of a standard deviation is uncertain.
     double width = 1.0 + std::abs(t) / std::sqrt(df);
@@ -103,7 +106,7 @@ bool varies(std::span<const double> values, double rounding)
 
 double p_of_t(double t, double df)
 {
-    const boost::math::students_t_distribution<> dist(df);
+    const boost::math::students_t_distribution<double, in_double> dist(df);
     return std::min(1.0, 2.0 * boost::math::cdf(boost::math::complement(dist, std::abs(t))));
 }
 
@@ -152,7 +155,8 @@ t_test test_mean(std::span<const double> values, double against, double rounding
         return r;
     const double root_n = std::sqrt(static_cast<double>(r.n));
     const double sd = deviation(values, *r.mean);
-    const double wide = boost::math::quantile(boost::math::students_t_distribution<>(*r.df), 0.975) * *r.se;
+    const double wide =
+        boost::math::quantile(boost::math::students_t_distribution<double, in_double>(*r.df), 0.975) * *r.se;
     r.ci = interval{*r.mean - wide, *r.mean + wide};
     r.d = (*r.mean - against) / sd;
     if (const auto delta = noncentrality_interval(*r.t, *r.df))
@@ -212,8 +216,8 @@ interval binomial_interval(std::size_t hits, std::size_t n)
     constexpr double tail = 0.025;
     const auto trials = static_cast<double>(n);
     const auto successes = static_cast<double>(hits);
-    return {binomial_distribution<>::find_lower_bound_on_p(trials, successes, tail),
-            binomial_distribution<>::find_upper_bound_on_p(trials, successes, tail)};
+    return {binomial_distribution<double, in_double>::find_lower_bound_on_p(trials, successes, tail),
+            binomial_distribution<double, in_double>::find_upper_bound_on_p(trials, successes, tail)};
 }
 
 } // namespace tactor::study

@@ -219,6 +219,15 @@ TEST_CASE("up to twelve names are all proposed, more are not")
     CHECK(s.says("something", -ENOENT, names).find("known") == std::string::npos);
 }
 
+TEST_CASE("a card's id or name alone proposes the card's PCM")
+{
+    const fake_system s;
+    s.two_cards();
+    for (const char* name : {"DAC8x", "dac8x", "DAC8", "snd_rpi_hifiberry_dac8x"})
+        has(s.says(name, -ENOENT, {"default", "null"}), "no such PCM (did you mean hw:CARD=DAC8x? ");
+    has(s.says("nul", -ENOENT, {"default", "null"}), "did you mean null? ");
+}
+
 TEST_CASE("names defined in a configuration text are proposed")
 {
     try {

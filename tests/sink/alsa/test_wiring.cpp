@@ -17,6 +17,7 @@
 
 #include "folder.hpp"
 #include "has.hpp"
+#include "sink/alsa/configuration.hpp"
 #include "sink/alsa/devices/route.hpp"
 #include "sink/alsa/handle.hpp"
 #include "sink/alsa/negotiate.hpp"
@@ -30,7 +31,7 @@ namespace {
 
 stream_wiring wired(const std::string& text, const std::string& name, unsigned n)
 {
-    return alsa::find_wiring({.pcm = name, .channels = n, .config_text = text}, n);
+    return alsa::find_wiring(alsa::read_configuration(text).get(), name, n, n);
 }
 
 constexpr const char* definitions = R"(
@@ -239,7 +240,8 @@ channels heard(const alsa_options& o, const folder& here, const std::vector<std:
 {
     {
         const alsa::library_messages silent;
-        const alsa::handle h = alsa::open(o);
+        const alsa::configuration top = alsa::read_configuration(o.config_text);
+        const alsa::handle h = alsa::open(o, top.get());
         static_cast<void>(alsa::negotiate(h.get(), o));
         REQUIRE(snd_pcm_prepare(h.get()) >= 0);
         std::vector<std::int16_t> frames(std::size_t{o.channels} * o.channels);
@@ -263,6 +265,25 @@ channels heard(const alsa_options& o, const folder& here, const std::vector<std:
 
 } // namespace
 
+TEST_CASE("the largest factor after a table counts, not only the one at the device")
+{
+    const std::string half =
+        "pcm.n { type null }\npcm.half { type route slave.pcm n ttable { 0.0 0.5 1.1 0.5 } }\n";
+    const auto most = [&](const std::string& table) {
+        return wired(half + "pcm.t { type route slave.pcm half ttable { " + table + " } }", "t", 2).most_gain;
+    };
+    CHECK(most("0.0 2 1.1 1") == 2.0);
+    CHECK(most("0.0 1 1.1 -4") == 4.0);
+    CHECK(most("0.0 1 1.1 0.5") == 1.0);
+    CHECK(most("0.0 0.5 1.1 0.5 2.2 4") == 1.0); // of a channel that the stream does not have
+    // Two ways to one channel add up.
+    CHECK(wired(half + "pcm.two { type route slave.pcm half ttable { 0.0 0.9 1.0 0.9 } }\n"
+                       "pcm.t { type route slave { pcm two channels 2 } ttable { 0.0 1 0.1 1 } }",
+                "t", 1)
+              .most_gain == doctest::Approx(1.8));
+    CHECK(wired(half + "pcm.t { type plug slave.pcm half ttable { 0.0 2 1.1 2 } }", "t", 2).outputs.empty());
+}
+
 TEST_CASE("for random chains of plugins the wiring is that of libasound")
 {
     constexpr unsigned n = 4;
@@ -273,7 +294,7 @@ TEST_CASE("for random chains of plugins the wiring is that of libasound")
         const alsa_options o{
             .pcm = "t", .channels = n, .format = format_kind::s16, .config_text = made.text()};
         INFO(o.config_text);
-        const stream_wiring w = alsa::find_wiring(o, o.channels);
+        const stream_wiring w = wired(o.config_text, o.pcm, n);
         CHECK(w.hidden_by == "");
         channels expected = w.outputs;
         for (unsigned c = 0; expected.size() < n; ++c)

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "core/suggest.hpp"
+#include "sink/alsa/configuration.hpp"
 #include "sink/alsa/devices/plain_name.hpp"
 #include "sink/alsa/devices/route.hpp"
 #include "sink/alsa/error_text.hpp"
@@ -158,9 +159,9 @@ std::string why_not_tried(const std::vector<std::string>& route, bool wanted)
                : fmt::format("not tried: opening a PCM of type {} may start a card or a server", lasting);
 }
 
-void probe(const std::optional<alsa_options>& wanted, pcm_info& p)
+void probe(const std::optional<alsa_options>& wanted, snd_config_t* top, pcm_info& p)
 {
-    p.error = p.hardware ? "" : why_not_tried(find_route(p.name), p.wanted);
+    p.error = p.hardware ? "" : why_not_tried(find_route(top, p.name), p.wanted);
     p.tried = p.error.empty();
     if (!p.tried)
         return;
@@ -168,7 +169,8 @@ void probe(const std::optional<alsa_options>& wanted, pcm_info& p)
     if (!p.wanted || p.hardware)
         o.pcm = p.name;
     try {
-        const handle h = open(o);
+        const configuration own = o.config_text.empty() ? nullptr : read_configuration(o.config_text);
+        const handle h = open(o, own == nullptr ? top : own.get());
         look_at(h.get(), wanted, p);
     } catch (const error& e) {
         p.error = without_name(e.what(), o.pcm);
@@ -198,7 +200,16 @@ void look_at(snd_pcm_t* pcm, const std::optional<alsa_options>& wanted, pcm_info
 std::vector<pcm_info> list(const system_root& root, const std::optional<alsa_options>& wanted)
 {
     std::vector<pcm_info> all = card_devices(root);
-    for (const known_name& n : known_names())
+    configuration top;
+    std::string unread;
+    try {
+        top = read_configuration();
+    } catch (const error& e) {
+        if (e.kind() != error_kind::not_available)
+            throw;
+        unread = e.what();
+    }
+    for (const known_name& n : known_names(top.get()))
         if (!is_listed(all, listed_name(root, n.name)))
             all.push_back({.name = n.name, .description = n.description});
     if (wanted) {
@@ -208,8 +219,11 @@ std::vector<pcm_info> list(const system_root& root, const std::optional<alsa_opt
         for (pcm_info& p : all)
             p.wanted = p.name == name;
     }
-    for (pcm_info& p : all)
-        probe(wanted, p);
+    for (pcm_info& p : all) {
+        p.error = unread;
+        if (top != nullptr)
+            probe(wanted, top.get(), p);
+    }
     return all;
 }
 
@@ -233,7 +247,7 @@ tactor::pcm_route tactor::read_route(const std::string& pcm)
 
 tactor::stream_wiring tactor::read_wiring(const std::string& pcm, unsigned channels)
 {
-    return alsa::find_wiring({.pcm = pcm, .channels = channels}, channels);
+    return alsa::find_wiring(alsa::read_configuration().get(), pcm, channels, channels);
 }
 
 void tactor::require_device_name(const std::string& pcm)

@@ -5,7 +5,6 @@
 #include <memory>
 #include <string_view>
 
-#include "sink/alsa/configuration.hpp"
 #include "sink/alsa/devices/route.hpp"
 #include "sink/alsa/handle.hpp"
 #include "sink/alsa/library_messages.hpp"
@@ -62,13 +61,11 @@ std::vector<std::string> defined_pcms(snd_config_t* top)
     return names;
 }
 
-std::vector<known_name> known_names()
+std::vector<known_name> known_names(snd_config_t* top)
 {
     const library_messages silent;
-    // Comes before the hints, which read the configuration even without descriptors.
-    const system_configuration system;
     snd_config_t* pcms = nullptr;
-    if (system.read() == nullptr || snd_config_search(system.get(), "pcm", &pcms) < 0)
+    if (top == nullptr || snd_config_search(top, "pcm", &pcms) < 0)
         return {};
     std::vector<known_name> names = hinted();
     each_member(pcms, [&](const std::string& id, snd_config_t* definition) {

@@ -3,9 +3,16 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdlib>
 #include <memory>
+#include <optional>
+#include <set>
 #include <string_view>
 #include <utility>
+
+#include <fmt/format.h>
+
+#include <tactor/error.hpp>
 
 #include "sink/alsa/configuration.hpp"
 #include "sink/alsa/handle.hpp"
@@ -16,7 +23,7 @@ namespace {
 
 using types = std::vector<std::string>;
 
-constexpr std::size_t most_types = 64; // of one PCM; also stops definitions that double at each step
+constexpr std::size_t most_types = 1024; // of one PCM; also stops definitions that double at each step
 
 // These affect only the device at their end.
 constexpr std::array harmless{"hw",    "null",  "plug", "linear", "lfloat", "copy",  "route", "rate",
@@ -24,10 +31,54 @@ constexpr std::array harmless{"hw",    "null",  "plug", "linear", "lfloat", "cop
 // These start a card's mixer, set it ("ctl_elems" is the type of hooks), or talk to a server.
 constexpr std::array lasting{"dmix", "dshare", "softvol", "hooks", "ctl_elems", "pulse", "pipewire", "jack"};
 
+// Returns the number of channels of a slave by its definition or its name; most_channels if it gives none.
+unsigned slave_channels(snd_config_t* top, snd_config_t* slave)
+{
+    configuration named;
+    const char* name = nullptr;
+    snd_config_t* definition = nullptr;
+    if (slave != nullptr && snd_config_get_string(slave, &name) >= 0 && name != nullptr &&
+        snd_config_search_definition(top, "pcm_slave", name, &definition) >= 0) {
+        named.reset(definition);
+        slave = definition;
+    }
+    return channel_number(value_text(member(slave, "channels"))).value_or(most_channels);
+}
+
+// Returns the fault of a definition's tables of channels, as libasound does not check them; empty if it has
+// none.
+std::string find_table_fault(snd_config_t* top, snd_config_t* definition)
+{
+    const std::string type = value_text(member(definition, "type"));
+    std::set<unsigned> bound;
+    std::string fault;
+    const auto below = [&](std::optional<unsigned> channel, unsigned most) {
+        if (channel && *channel >= most && fault.empty())
+            fault = fmt::format("type {} has a channel beyond the {} that there can be", type, most);
+    };
+    for (const char* table : {"ttable", "bindings"})
+        each_member(member(definition, table), [&](const std::string& client, snd_config_t* row) {
+            const std::optional<unsigned> channel = channel_number(client);
+            below(channel, most_channels);
+            bound.insert(channel.value_or(0));
+            each_member(
+                row, [&](const std::string& to, snd_config_t*) { below(channel_number(to), most_channels); });
+            if (type == "share")
+                below(channel_number(value_text(row)), slave_channels(top, member(definition, "slave")));
+        });
+    unsigned next = 0;
+    while (bound.count(next) != 0)
+        ++next;
+    if (type == "multi" && fault.empty() && next < bound.size())
+        fault = fmt::format("type multi leaves a hole in its bindings: it binds no channel {}", next);
+    return fault;
+}
+
 class walker {
 public:
     explicit walker(snd_config_t* top) : top_(top) {}
 
+    // Visits the definition of a name and those behind it.
     void name(const char* base, const std::string& name, int depth)
     {
         snd_config_t* definition = nullptr;
@@ -42,20 +93,27 @@ public:
     }
 
     types found() && { return std::move(found_); }
+    std::string fault() const
+    {
+        return contains(found_, endless) ? "its definition leads to itself, or to too many others" : fault_;
+    }
 
 private:
     bool full(int depth)
     {
+        if (!found_.empty() && found_.back() == endless)
+            return true;
         if (depth <= deepest && found_.size() < most_types)
             return false;
-        if (found_.empty() || found_.back() != endless)
-            found_.emplace_back(endless);
+        found_.emplace_back(endless);
         return true;
     }
 
     // Adds the plugins of a definition. `slaves`: each member names a slave.
     void add_definition(snd_config_t* definition, int depth, bool slaves)
     {
+        if (fault_.empty())
+            fault_ = find_table_fault(top_, definition);
         each_member(definition, [&](const std::string& id, snd_config_t* member) {
             const char* text = nullptr;
             if (id == "capture" || id == "hint")
@@ -76,6 +134,7 @@ private:
 
     snd_config_t* top_;
     types found_ = {};
+    std::string fault_ = {};
 };
 
 } // namespace
@@ -91,9 +150,47 @@ std::vector<std::string> find_route(snd_config_t* top, const std::string& name)
 }
 
 std::vector<std::string> find_route(const std::string& name)
+try {
+    return find_route(read_configuration().get(), name);
+} catch (const error& e) {
+    if (e.kind() != error_kind::not_available)
+        throw;
+    return {};
+}
+
+std::string find_fault(snd_config_t* top, const std::string& name)
 {
     const library_messages silent;
-    return find_route(system_configuration().read(), name);
+    walker w(top);
+    w.name("pcm", name, 0);
+    return w.fault();
+}
+
+snd_config_t* member(snd_config_t* compound, const char* id)
+{
+    snd_config_t* found = nullptr;
+    return compound != nullptr && snd_config_get_type(compound) == SND_CONFIG_TYPE_COMPOUND &&
+                   snd_config_search(compound, id, &found) == 0
+               ? found
+               : nullptr;
+}
+
+std::string value_text(snd_config_t* value)
+{
+    char* text = nullptr;
+    if (value == nullptr || snd_config_get_ascii(value, &text) < 0 || text == nullptr)
+        return {};
+    const std::unique_ptr<char, deleter<std::free>> freed(text);
+    return text;
+}
+
+std::optional<unsigned> channel_number(const std::string& s)
+{
+    char* end = nullptr;
+    const long n = std::strtol(s.c_str(), &end, 0);
+    if (s.empty() || *end != '\0')
+        return {};
+    return n < 0 || n > long{most_channels} ? most_channels : static_cast<unsigned>(n);
 }
 
 std::string unsafe_type(const std::vector<std::string>& route)

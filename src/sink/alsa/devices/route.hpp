@@ -4,6 +4,7 @@
 #pragma once
 
 #include <algorithm>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -15,11 +16,11 @@
 
 namespace tactor::alsa {
 
-/// Calls `visit` for each member of a compound, with its name. Does nothing for other nodes.
+/// Calls `visit` for each member of a compound, with its name. Does nothing for other nodes and for none.
 template <typename Visit>
 void each_member(snd_config_t* compound, Visit visit)
 {
-    if (snd_config_get_type(compound) != SND_CONFIG_TYPE_COMPOUND)
+    if (compound == nullptr || snd_config_get_type(compound) != SND_CONFIG_TYPE_COMPOUND)
         return;
     snd_config_iterator_t i = snd_config_iterator_first(compound);
     for (; i != snd_config_iterator_end(compound); i = snd_config_iterator_next(i)) {
@@ -30,8 +31,18 @@ void each_member(snd_config_t* compound, Visit visit)
     }
 }
 
+/// Returns the member of a compound with that name, or null. Takes null and other nodes.
+snd_config_t* member(snd_config_t* compound, const char* id);
+
+/// Returns a value as text; empty for null and for a compound.
+std::string value_text(snd_config_t* value);
+
+/// Reads a number as libasound does: any base, and no other text. Returns most_channels for a number that no
+/// device has.
+std::optional<unsigned> channel_number(const std::string& s);
+
 /// Deepest nesting of plugins that is followed: a definition may name itself.
-inline constexpr int deepest = 8;
+inline constexpr int deepest = 32;
 
 template <typename Names>
 bool contains(const Names& names, std::string_view type)
@@ -45,8 +56,13 @@ inline constexpr const char* endless = "?";
 /// Returns the types of the plugins through which a PCM plays, as their definitions name them: "plug", "hw".
 /// Empty for a PCM that is not defined.
 std::vector<std::string> find_route(snd_config_t* top, const std::string& name);
-/// Returns the same from the system's configuration.
+/// Returns the same from the system's configuration; nothing if ALSA cannot read that.
+/// \throws error (runtime) without a free descriptor.
 std::vector<std::string> find_route(const std::string& name);
+
+/// Returns why libasound 1.2 would end the process, by a failed assertion or beyond a table, when it opens
+/// this PCM; empty if nothing is known. Looks at all definitions on the route.
+std::string find_fault(snd_config_t* top, const std::string& name);
 
 /// Returns the first type with effects other than sound: "file", which writes a file or starts a command, or
 /// any unknown type. Empty if there is none.
@@ -68,8 +84,8 @@ struct known_name {
 };
 
 /// Returns the PCMs for playback that the configuration names and that need no argument: those with a hint in
-/// the order of ALSA, then the others.
-std::vector<known_name> known_names();
+/// the order of ALSA, then the others. None without a configuration.
+std::vector<known_name> known_names(snd_config_t* top);
 
 /// Returns all PCMs that a configuration defines under `pcm`, including those that need arguments, as hints
 /// for a mistyped name.
@@ -79,7 +95,5 @@ std::vector<std::string> defined_pcms(snd_config_t* top);
 /// converted, as open() does.
 stream_wiring find_wiring(snd_config_t* top, const std::string& name, unsigned channels,
                           unsigned device_channels);
-/// Finds the wiring of the options' channels, by their text or the system's configuration.
-stream_wiring find_wiring(const alsa_options& o, unsigned device_channels);
 
 } // namespace tactor::alsa

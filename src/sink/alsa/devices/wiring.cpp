@@ -3,9 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdlib>
 #include <map>
-#include <memory>
 #include <optional>
 #include <vector>
 
@@ -20,7 +18,7 @@ namespace tactor::alsa {
 namespace {
 
 constexpr int most_definitions = 64;         // of one PCM; also stops definitions that double at each step
-constexpr std::size_t most_links = 1U << 18; // a table may connect each channel to each
+constexpr std::size_t most_links = 1U << 19; // a table may connect each channel to each
 
 // These pass each channel on unchanged.
 constexpr std::array straight{"plug",  "linear", "lfloat", "copy",  "rate",    "mulaw", "alaw",
@@ -31,37 +29,11 @@ constexpr std::array binding{"dmix", "dshare", "share"};
 constexpr double least_gain = 1e-3; // -60 dB: less is not felt
 constexpr double rounding = 1e-6;
 
-// For each channel: the device's channels that it reaches, and the factor on its samples there.
+// First number of an output that is the end of a table, where ALSA clips, and no channel of a device.
+constexpr unsigned first_end = 1U << 30;
+
+// For each channel: the outputs that it reaches, and the factor on its samples there.
 using outputs = std::vector<std::map<unsigned, double>>;
-
-snd_config_t* member(snd_config_t* compound, const char* id)
-{
-    snd_config_t* found = nullptr;
-    return snd_config_get_type(compound) == SND_CONFIG_TYPE_COMPOUND &&
-                   snd_config_search(compound, id, &found) == 0
-               ? found
-               : nullptr;
-}
-
-std::string text(snd_config_t* value)
-{
-    char* text = nullptr;
-    if (value == nullptr || snd_config_get_ascii(value, &text) < 0 || text == nullptr)
-        return {};
-    const std::unique_ptr<char, deleter<std::free>> freed(text);
-    return text;
-}
-
-// Reads a number as libasound does: any base, and no other text. Returns most_channels for a number that no
-// device has.
-std::optional<unsigned> channel_number(const std::string& s)
-{
-    char* end = nullptr;
-    const long n = std::strtol(s.c_str(), &end, 0);
-    if (s.empty() || *end != '\0')
-        return {};
-    return n < 0 || n > long{most_channels} ? most_channels : static_cast<unsigned>(n);
-}
 
 // A plugin on the route that is not understood.
 struct hidden {
@@ -100,10 +72,10 @@ private:
         const char* other = nullptr;
         if (snd_config_get_string(definition, &other) >= 0 && other != nullptr)
             return named("pcm", other, channels, depth + 1);
-        const std::string type = text(member(definition, "type"));
+        const std::string type = value_text(member(definition, "type"));
         if (type == "hw")
-            return device(fmt::format("{},{}", text(member(definition, "card")),
-                                      channel_number(text(member(definition, "device"))).value_or(0)),
+            return device(fmt::format("{},{}", value_text(member(definition, "card")),
+                                      channel_number(value_text(member(definition, "device"))).value_or(0)),
                           channels);
         if (type == "null")
             return device(fmt::format("null {}", definitions_), channels);
@@ -164,7 +136,9 @@ private:
 
     outputs of_table(snd_config_t* definition, unsigned channels, int depth)
     {
-        const outputs inner = slave(member(definition, "slave"), channels, depth);
+        outputs inner = slave(member(definition, "slave"), channels, depth);
+        for (std::map<unsigned, double>& one : inner)
+            one[next_end_++] = 1.0;
         outputs all(channels);
         snd_config_t* table = member(definition, "ttable");
         if (table == nullptr)
@@ -189,7 +163,7 @@ private:
         each_member(member(definition, "bindings"), [&](const std::string& client, snd_config_t* to) {
             const auto from = channel_number(client);
             if (from && *from < channels)
-                link(all[*from], inner, channel_number(text(to)));
+                link(all[*from], inner, channel_number(value_text(to)));
         });
         return all;
     }
@@ -207,9 +181,9 @@ private:
         });
         each_member(bindings, [&](const std::string& client, snd_config_t* to) {
             const auto from = channel_number(client);
-            const auto one = slaves.find(text(member(to, "slave")));
+            const auto one = slaves.find(value_text(member(to, "slave")));
             if (from && *from < channels && one != slaves.end())
-                link(all[*from], one->second, channel_number(text(member(to, "channel"))));
+                link(all[*from], one->second, channel_number(value_text(member(to, "channel"))));
         });
         return all;
     }
@@ -217,6 +191,7 @@ private:
     snd_config_t* top_;
     int definitions_ = 0;
     std::size_t links_ = 0;
+    unsigned next_end_ = first_end;
     std::string level_by_ = {};
     std::map<std::string, unsigned> devices_ = {}; ///< with the number of the first output of each
 };
@@ -228,6 +203,19 @@ bool is_straight(const outputs& all)
             std::abs(all[c].begin()->second - 1.0) > rounding)
             return false;
     return true;
+}
+
+// Removes the ends of tables. Returns the largest factor there, 1 or more.
+double take_ends(outputs& all)
+{
+    double most = 1.0;
+    for (std::map<unsigned, double>& one : all) {
+        const auto ends = one.lower_bound(first_end);
+        for (auto i = ends; i != one.end(); ++i)
+            most = std::max(most, std::abs(i->second));
+        one.erase(ends, one.end());
+    }
+    return most;
 }
 
 void write_down(const outputs& all, stream_wiring& w)
@@ -256,6 +244,7 @@ stream_wiring find_wiring(snd_config_t* top, const std::string& name, unsigned c
         tracer t(top);
         outputs all = t.named("pcm", name, device_channels, 0);
         all.resize(channels);
+        w.most_gain = take_ends(all);
         if (!is_straight(all))
             write_down(all, w);
         w.level_by = t.level_by();
@@ -263,13 +252,6 @@ stream_wiring find_wiring(snd_config_t* top, const std::string& name, unsigned c
         w.hidden_by = h.by;
     }
     return w;
-}
-
-stream_wiring find_wiring(const alsa_options& o, unsigned device_channels)
-{
-    if (o.config_text.empty())
-        return find_wiring(system_configuration().read(), o.pcm, o.channels, device_channels);
-    return find_wiring(parse(o.config_text).get(), o.pcm, o.channels, device_channels);
 }
 
 } // namespace tactor::alsa
