@@ -37,6 +37,7 @@ std::vector<score> make_scores(std::vector<piece>& pieces, const settings& s, co
     return scores;
 }
 
+constexpr int max_strokes = 10000; // on one command line
 constexpr const char* wait_hint = "--reopen-s S waits for the device to come back";
 
 // Plays a piece, once again if the device went away before it began, and reports when it waits for its
@@ -190,7 +191,7 @@ command add_play(CLI::App& app)
     CLI::App* c = app.add_subcommand("play", "Play strokes on the array");
     auto s = std::make_shared<settings>();
     auto o = std::make_shared<play_options>();
-    add_strokes(*c, *s);
+    add_strokes(*c, *s, max_strokes);
     add_options(*c, *s, options::on_play);
     c->add_option("--socket", o->socket, "play through the server at this socket")->type_name("PATH");
     add_format_option(*c, o->format, {"text", "json"}, "format of the report (default text)");
