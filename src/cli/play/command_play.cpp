@@ -90,6 +90,7 @@ std::optional<error> play_all(session::play_session& session, bool as_json, cons
         if (!there && session.signal() == 0)
             return error(error_kind::runtime, shown_name(pieces[i].name), "not played: the device is gone",
                          session.waits() ? "it did not come back in time" : wait_hint);
+        session.log_end(shown_name(pieces[i].name), *outcomes[i].report);
         tell(outcomes[i], session.setup().rate, as_json);
         if (session.signal() != 0)
             return {};
@@ -155,6 +156,7 @@ int play_live(settings& s, const play_options& o)
             stroke_outcome& out = outcomes.front();
             out.report = follow_lines(session, l, lines);
             out.length_frames = out.report->frames;
+            session.log_end(out.name, *out.report);
             tell(out, session.setup().rate, o.json());
             return {};
         });
