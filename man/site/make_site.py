@@ -51,8 +51,7 @@ def with_manuals(text, pages):
 
 
 def find_page(folder, name, section):
-    """The page of a manual, None if there is none; tactor-serve describes two more commands."""
-    name = {"tactor-status": "tactor-serve", "tactor-stop": "tactor-serve"}.get(name, name)
+    """Returns the page of a manual, or None if there is none."""
     page = folder / f"{name}.{section}"
     return page if page.exists() else None
 

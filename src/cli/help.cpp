@@ -2,6 +2,7 @@
 #include <array>
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <memory>
 #include <span>
 #include <string>
@@ -82,6 +83,17 @@ std::string describe_row(const options::option& o)
     const std::string python = places_text(python_names, o.where);
     line("Python:", python.empty() ? "" : fmt::format("{} of {}", o.name, python));
     return text;
+}
+
+// Returns all options of all commands by name, each once, with its line of --help.
+std::map<std::string, std::string> list_options(const CLI::App& app)
+{
+    std::map<std::string, std::string> all;
+    for (const CLI::App* command : app.get_subcommands({}))
+        for (const CLI::Option* o : command->get_options())
+            for (const std::string& name : o->get_lnames())
+                all.emplace(name, describe_line(*o));
+    return all;
 }
 
 /// Writes --help so that it fits a screen: the options that a command alone has and those that most people
@@ -187,9 +199,9 @@ void use_help_pages(CLI::App& app)
     app.set_help_all_flag("--help-all", "print all options and exit");
 }
 
-std::string describe_option(const CLI::App& app, std::string_view name)
+std::string describe_options(const CLI::App& app, std::string_view given)
 {
-    name = bare_name(name);
+    const std::string_view name = bare_name(given);
     const options::option* row = options::find(name);
     if (row != nullptr && (row->where & options::on_any_command) == 0)
         row = nullptr;
@@ -201,7 +213,15 @@ std::string describe_option(const CLI::App& app, std::string_view name)
                 fmt::format("tactor {}: {}\n  {}\n", command->get_name(),
                             with_type(fmt::format("--{}", name), o->get_type_name()), o->get_description());
     }
-    return text;
+    if (!text.empty())
+        return text;
+    for (const auto& [known, line] : list_options(app))
+        if (known.find(name) != std::string::npos)
+            text += line;
+    if (text.empty() || name.empty())
+        throw no_such_command(app, std::string(given));
+    return fmt::format("Options with \"{}\" in their names; tactor help OPTION explains one:\n{}", name,
+                       text);
 }
 
 std::string first_steps()

@@ -81,15 +81,6 @@ piece read_piece(const settings& s, const environment& e, const layout& faces, c
     return p;
 }
 
-std::string only_argument(const settings& s)
-{
-    const auto arguments = stroke_arguments(s);
-    if (arguments.size() > 1)
-        throw error(error_kind::bad_input, arguments[1], "one argument too many",
-                    "only play takes several strokes");
-    return arguments.front();
-}
-
 // Adds the number of the stroke that an error is about: the planner knows only its name.
 error in_piece(const error& x, const std::string& argument, std::size_t number, const std::string& name)
 {
@@ -239,12 +230,12 @@ std::vector<piece> open_pieces(const settings& s, const environment& e, const la
 
 piece open_one_piece(const settings& s, const environment& e, const layout& faces)
 {
-    return open_argument(s, e, faces, only_argument(s));
+    return open_argument(s, e, faces, stroke_arguments(s).front());
 }
 
 piece read_one_piece(const settings& s, const environment& e, const layout& faces)
 {
-    return read_piece(s, e, faces, only_argument(s));
+    return read_piece(s, e, faces, stroke_arguments(s).front());
 }
 
 piece plan_one_piece(const settings& s, const environment& e)

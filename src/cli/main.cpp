@@ -25,6 +25,7 @@
 #include "cli/commands.hpp"
 #include "cli/option_words.hpp"
 #include "cli/say.hpp"
+#include "cli/slips.hpp"
 #include "cli/usage.hpp"
 #include "session/pipes.hpp"
 
@@ -90,6 +91,17 @@ std::vector<std::string> arguments(int argc, char** argv)
     return all;
 }
 
+// Returns the slip that the words show, or else the error that they led to.
+error explain(const error& e, const std::vector<std::string>& words)
+{
+    if (e.kind() != error_kind::bad_input)
+        return e;
+    std::vector<std::string> names;
+    for (const named_command& c : commands)
+        names.emplace_back(c.name);
+    return find_slip(words, names).value_or(e);
+}
+
 int run(const std::vector<std::string>& given)
 {
     const std::string_view first = given.empty() ? "" : std::string_view(given.front());
@@ -97,7 +109,7 @@ int run(const std::vector<std::string>& given)
         fmt::print("{}\n", version_text());
         return status_ok;
     }
-    const bool asks = first == "help" && given.size() == 2; // about an option
+    const bool asks = first == "help" && given.size() == 2; // about options
     if (given.empty()) {
         say_error("tactor: {}\n\n{}", no_command().what(), first_steps());
         return status_usage;
@@ -120,14 +132,12 @@ int run(const std::vector<std::string>& given)
             fmt::print("{}\n", line);
         return status_ok;
     }
-    if (const std::string text = asks ? describe_option(app, given[1]) : ""; !text.empty()) {
-        fmt::print("{}", text);
+    if (asks) {
+        say_text(stdout, describe_options(app, given[1]));
         return status_ok;
     }
     try {
         std::vector<std::string> words(given.rbegin(), given.rend()); // the last first, as it wants them
-        if (asks)
-            words.pop_back(); // a name that is no option is no command either
         app.parse(words);
     } catch (const CLI::Success& e) {
         std::ostringstream text; // of --help or --version
@@ -198,7 +208,7 @@ int main(int argc, char** argv)
     } catch (const tactor::error& e) {
         if (is_unread(e))
             return status_unread;
-        const tactor::error said = in_options(e);
+        const tactor::error said = explain(in_options(e), {argv + 1, argv + argc});
         say_error("tactor: {}{}\n", said.subject().empty() ? R"("")" : "", said.what()); // an empty name
         return exit_status_for(e.kind());
     } catch (const std::system_error& e) {

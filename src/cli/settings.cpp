@@ -14,8 +14,6 @@
 namespace tactor::cli {
 namespace {
 
-constexpr int max_strokes = 10000; // on one command line
-
 void add_one(CLI::App& command, settings& into, const options::option& o)
 {
     const std::string name =
@@ -89,14 +87,14 @@ std::string asked_of_stream(const settings& s)
     return {};
 }
 
-void add_strokes(CLI::App& command, settings& into)
+void add_strokes(CLI::App& command, settings& into, int most)
 {
     auto* strokes =
         command.add_option("STROKE", into.strokes,
                            "preset (park2016-1 ... park2016-4; wave-2x4 and round-2x4 on palm-2x4), "
                            "file (.toml, .csv, .svg; .json: a plan), or - for such a file on standard input");
     strokes->type_name("");
-    strokes->expected(0, max_strokes);
+    strokes->expected(1, most)->allow_extra_args(most > 1);
 }
 
 void require_device(CLI::App& command)

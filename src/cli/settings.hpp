@@ -33,8 +33,8 @@ void add_options(CLI::App& command, settings& into, std::uint64_t place);
 /// played. Empty: none was given.
 std::string asked_of_stream(const settings& s);
 
-/// Adds the argument STROKE.
-void add_strokes(CLI::App& command, settings& into);
+/// Adds the argument STROKE, which may be given `most` times.
+void add_strokes(CLI::App& command, settings& into, int most = 1);
 
 /// Says in the help that the command needs a device where a person takes part.
 void require_device(CLI::App& command);

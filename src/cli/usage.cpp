@@ -3,8 +3,10 @@
 
 #include <algorithm>
 #include <array>
-#include <cstdint>
+#include <cctype>
+#include <cstddef>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <CLI/CLI.hpp>
@@ -40,16 +42,47 @@ std::vector<std::string> option_names(const CLI::App& command)
     return names;
 }
 
+// Names that other programs have for such options.
+struct foreign_name {
+    std::string_view name;
+    std::string_view here;
+};
+constexpr std::array foreign_names{
+    foreign_name{"volume", "level-dbfs"}, foreign_name{"gain", "level-dbfs"}, foreign_name{"port", "http"},
+    foreign_name{"frequency", "carrier"}, foreign_name{"card", "device"},     foreign_name{"pcm", "device"},
+};
+
 // The option that a name is a slip of, or nothing. Of a short name one letter makes another word: then its
 // beginning must agree ("seed" is not "speed", "sped" may be).
 std::string nearest_option(const std::string& given, const std::vector<std::string>& names)
 {
     constexpr std::size_t short_name = 4;
     const std::string bare(bare_name(given));
+    for (const foreign_name& f : foreign_names)
+        if (f.name == bare && std::find(names.begin(), names.end(), f.here) != names.end())
+            return fmt::format("--{}", f.here);
     const std::string like = nearest(bare, names);
     if (like.empty() || (bare.size() <= short_name && bare.substr(0, 2) != like.substr(0, 2)))
         return {};
     return "--" + like;
+}
+
+// Returns the options that a letter may stand for: the one that has it in the other case, else those that
+// begin with it, unless there are many.
+std::string options_by_letter(char letter, const CLI::App& command)
+{
+    constexpr std::size_t many = 3;
+    const auto lower = [](char c) { return static_cast<char>(std::tolower(static_cast<unsigned char>(c))); };
+    std::vector<std::string> like;
+    for (const CLI::Option* o : command.get_options()) {
+        for (const std::string& s : o->get_snames())
+            if (lower(s.front()) == lower(letter))
+                return "-" + s;
+        for (const std::string& l : o->get_lnames())
+            if (l.front() == lower(letter))
+                like.push_back("--" + l);
+    }
+    return like.size() < many ? fmt::format("{}", fmt::join(like, " or ")) : "";
 }
 
 std::string help_command(const CLI::App& app, const CLI::App& command)
@@ -96,19 +129,18 @@ error unknown(const CLI::App& app, const CLI::App& command)
     const std::string help = help_command(app, command) + " lists them";
     if (given.starts_with('-')) {
         const std::string name = given.substr(0, given.find('='));
-        const std::string like = nearest_option(name, option_names(command));
+        const std::string like = name.size() == 2 ? options_by_letter(name[1], command)
+                                                  : nearest_option(name, option_names(command));
         return {error_kind::bad_input, name, "no such option",
                 like.empty() ? help : fmt::format("did you mean {}? {}", like, help)};
     }
-    if (&command == &app) {
-        std::vector<std::string> names;
-        for (const CLI::App* c : app.get_subcommands({}))
-            names.push_back(c->get_name());
-        const std::string like = nearest(given, names);
-        return {error_kind::bad_input, given, "no such command",
-                like.empty() ? help : fmt::format("did you mean {}? {}", like, help)};
-    }
-    return {error_kind::bad_input, given, "one argument too many", help};
+    if (&command == &app)
+        return no_such_command(app, given);
+    const auto takes = command.get_options([](const CLI::Option* o) { return o->get_positional(); });
+    return {error_kind::bad_input, given, "one argument too many",
+            takes.empty() ? help
+                          : fmt::format("{} takes one {}; quote a name that has blanks", command.get_name(),
+                                        takes.front()->get_name(true))};
 }
 
 } // namespace
@@ -118,13 +150,24 @@ error no_command()
     return {error_kind::bad_input, "command line", "no command", "tactor --help lists them"};
 }
 
+error no_such_command(const CLI::App& app, const std::string& given)
+{
+    std::vector<std::string> names;
+    for (const CLI::App* c : app.get_subcommands({}))
+        names.push_back(c->get_name());
+    const std::string like = nearest(given, names);
+    const std::string help = help_command(app, app) + " lists them";
+    return {error_kind::bad_input, given, "no such command",
+            like.empty() ? help : fmt::format("did you mean {}? {}", like, help)};
+}
+
 error usage_error(const CLI::App& app, const CLI::ParseError& e)
 {
     const CLI::App& command = used_command(app);
+    if (!app.remaining().empty()) // words before the command
+        return unknown(app, app);
     if (dynamic_cast<const CLI::ExtrasError*>(&e) != nullptr)
         return unknown(app, command);
-    if (app.get_subcommands().empty() && !app.remaining().empty())
-        return unknown(app, app);
     if (dynamic_cast<const CLI::RequiredError*>(&e) != nullptr)
         return missing(app, command);
     if (dynamic_cast<const CLI::ArgumentMismatch*>(&e) != nullptr)

@@ -162,6 +162,10 @@ host_and_port parse_host(std::string_view text, const std::string& what)
         port = text.substr(colon + 1);
     }
     const auto number = detail::number_in<decltype(at.port)>(port);
+    const bool is_digits = !port.empty() && port.find_first_not_of("0123456789") == std::string_view::npos;
+    if (!at.host.empty() && !number && is_digits)
+        throw error(error_kind::bad_input, what, fmt::format("{} is no port", port),
+                    "ports are 0 to 65535; 0 takes a free one");
     if (at.host.empty() || !number)
         throw error(error_kind::bad_input, what, fmt::format("\"{}\" is no address", all),
                     "[HOST:]PORT, such as 4001, 0.0.0.0:4001 or [::1]:4001; port 0 takes a free one");

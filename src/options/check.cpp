@@ -31,7 +31,7 @@ value check_number(const option& o, const value& v)
     if (d == nullptr)
         throw refusal(o, shown(v) + " is not a number", range_text(o));
     if (!std::isfinite(*d) || !o.allowed.holds(*d))
-        throw refusal(o, shown(v) + " is out of range", range_text(o));
+        throw refusal(o, shown(v) + " is out of range", sign_hint(o.allowed, *d) + range_text(o));
     if (o.what == kind::whole && *d != std::floor(*d))
         throw refusal(o, shown(v) + " is not a whole number",
                       fmt::format("give one, as {}", plain_number(std::max(o.allowed.low, std::floor(*d)))));

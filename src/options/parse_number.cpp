@@ -83,7 +83,8 @@ double parse_number(const std::string& what, const std::string& text, detail::bo
                     meant.empty() ? range : fmt::format("{}; {}", meant, range));
     }
     if (r.ec != std::errc() || !std::isfinite(v) || !b.holds(v))
-        throw error(error_kind::bad_input, what, fmt::format("{} is out of range", text), range);
+        throw error(error_kind::bad_input, what, fmt::format("{} is out of range", text),
+                    sign_hint(b, v) + range);
     return v;
 }
 
@@ -96,4 +97,10 @@ double parse_whole(const std::string& what, const std::string& text, detail::bou
                     fmt::format("give one, as {}", plain_number(std::max(b.low, std::floor(v)))));
     return v;
 }
+
+std::string sign_hint(detail::bounds b, double v)
+{
+    return v > 0.0 && b.holds(-v) ? fmt::format("did you mean {}? ", plain_number(-v)) : "";
+}
+
 } // namespace tactor::options

@@ -17,4 +17,7 @@ double parse_number(const std::string& what, const std::string& text, detail::bo
 double parse_whole(const std::string& what, const std::string& text, detail::bounds b,
                    const std::string& unit);
 
+/// Returns "did you mean -12? " for a number that is out of bounds without its minus sign, else nothing.
+std::string sign_hint(detail::bounds b, double v);
+
 } // namespace tactor::options

@@ -105,7 +105,8 @@ std::string read_address(const written_value& d)
     std::string text = read_text_value(d);
     if (!is_address(text))
         fail(d, fmt::format("\"{}\" is no address", text),
-             "[HOST:]PORT, such as 4001, \"0.0.0.0:4001\" or \"[::1]:4001\"; port 0 takes a free one");
+             "[HOST:]PORT, such as 4001, \"0.0.0.0:4001\" or \"[::1]:4001\"; ports are 0 to 65535, 0 takes a "
+             "free one");
     return text;
 }
 

@@ -10,6 +10,7 @@
 #include <tactor/setup.hpp>
 
 #include "options/check.hpp"
+#include "options/parse_number.hpp"
 #include "options/settle.hpp"
 #include "options/words.hpp"
 #include "session/device.hpp"
@@ -57,7 +58,8 @@ double number(const option& o, py::handle v)
         refuse(o.name, fmt::format("{} is not a number", shown(v)), range_text(o));
     const bool is_rounded = PyLong_Check(v.ptr()) && !py::float_(d).equal(v);
     if (is_rounded || !o.allowed.holds(d))
-        refuse(o.name, fmt::format("{} is out of range", shown(v)), range_text(o));
+        refuse(o.name, fmt::format("{} is out of range", shown(v)),
+               options::sign_hint(o.allowed, d) + range_text(o));
     return d;
 }
 

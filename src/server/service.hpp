@@ -23,6 +23,7 @@
 #include <boost/asio/steady_timer.hpp>
 #include <boost/asio/thread_pool.hpp>
 
+#include <tactor/error.hpp>
 #include <tactor/live.hpp>
 #include <tactor/phantom.hpp>
 #include <tactor/player.hpp>
@@ -89,6 +90,7 @@ struct service_options {
     std::function<std::string(const planned&, std::size_t most_bytes)> plan_text = {};
     /// CLOCK_MONOTONIC, ns.
     std::function<std::int64_t()> now_ns = {};
+    log_function log = {}; ///< gets a line for each stroke that ends
 };
 
 /// Kind of connection of a client.

@@ -4,7 +4,10 @@
 #include <cmath>
 #include <utility>
 
+#include <fmt/format.h>
+
 #include "server/service_impl.hpp"
+#include "session/log.hpp"
 
 namespace tactor::server {
 
@@ -109,6 +112,9 @@ void service::finish(stroke_record& r, const stroke_report& how)
     end_touch(r);
     stroke_report report = how;
     report.why = reason(r, how);
+    if (options_.log)
+        options_.log(log_kind::info, session::stroke_text(fmt::format("{} of client {}", r.number, owner),
+                                                          report, options_.plans.owner.render.rate));
     tell_stroke(r, to_string(report.state), report);
     if (r.released)
         strokes_.erase(r.number);

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cerrno>
+#include <cstdint>
 #include <cstring>
 #include <ctime>
 #include <string_view>
@@ -16,19 +17,26 @@
 #include <tactor/error.hpp>
 
 #include "files/input_files.hpp"
+#include "rt/clock.hpp"
 #include "session/say.hpp"
 
 namespace tactor::session {
 namespace {
 
-std::string time_text()
+std::int64_t unix_ns()
 {
     timespec now{};
     clock_gettime(CLOCK_REALTIME, &now);
+    return std::int64_t{now.tv_sec} * rt::ns_per_s + now.tv_nsec;
+}
+
+std::string time_text(std::int64_t at_ns)
+{
+    const std::time_t s = at_ns / rt::ns_per_s;
     std::tm t{};
-    gmtime_r(&now.tv_sec, &t);
+    gmtime_r(&s, &t);
     return fmt::format("{:04}-{:02}-{:02}T{:02}:{:02}:{:02}.{:03}Z", t.tm_year + 1900, t.tm_mon + 1,
-                       t.tm_mday, t.tm_hour, t.tm_min, t.tm_sec, now.tv_nsec / 1'000'000);
+                       t.tm_mday, t.tm_hour, t.tm_min, t.tm_sec, at_ns % rt::ns_per_s / 1'000'000);
 }
 
 // Returns true if a text begins like a line of this log.
@@ -62,6 +70,17 @@ void take_back(int fd, ssize_t written)
 }
 
 } // namespace
+
+std::string stroke_text(std::string_view name, const stroke_report& r, unsigned rate)
+{
+    const std::string began = r.started_ns
+                                  ? fmt::format("began {} ({:.6f} s by CLOCK_MONOTONIC)",
+                                                time_text(unix_ns() - rt::monotonic_ns() + *r.started_ns),
+                                                static_cast<double>(*r.started_ns) * 1e-9)
+                                  : "did not begin";
+    return fmt::format("stroke {}: {}, {} after {:.3f} s{}{}", name, began, to_string(r.state),
+                       static_cast<double>(r.frames) / rate, r.why.empty() ? "" : ": ", r.why);
+}
 
 session_log::session_log(bool verbose, std::string file) : verbose_(verbose), file_(std::move(file))
 {
@@ -102,7 +121,7 @@ log_function session_log::function()
 
 void session_log::write(log_kind k, std::string_view text)
 {
-    const std::string line = fmt::format("{} {} {}\n", time_text(), to_string(k), shown(text));
+    const std::string line = fmt::format("{} {} {}\n", time_text(unix_ns()), to_string(k), shown(text));
     if (verbose_)
         say_text(stderr, goes_to_journal(stderr) ? shown(text) + "\n" : line, k);
     if (!fd_)

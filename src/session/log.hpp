@@ -4,12 +4,18 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 
 #include <tactor/error.hpp>
+#include <tactor/report.hpp>
 
 #include "core/owned.hpp"
 
 namespace tactor::session {
+
+/// Returns the text of a line about a stroke that has ended: its name, when its first sample was at the DAC
+/// (UTC and CLOCK_MONOTONIC), how it ended, and how much of it was played at `rate`, Hz.
+std::string stroke_text(std::string_view name, const stroke_report& r, unsigned rate);
 
 /// "2026-03-01T09:30:00.125Z warning xrun 1: ...": UTC, kind, text. Outlives the player that writes to it.
 class session_log {

@@ -93,6 +93,11 @@ void play_session::cancel()
         stream_.current()->cancel(playing_);
 }
 
+void play_session::log_end(std::string_view name, const stroke_report& r)
+{
+    detail::log(log_.function(), log_kind::info, "{}", stroke_text(name, r, setup().rate));
+}
+
 player_position play_session::position() const
 {
     return stream_.current() != nullptr ? stream_.current()->position() : player_position{};
@@ -194,11 +199,12 @@ run_facts play_session::finish()
     run_facts r{setup(), stats(), reopened_, locked_};
     const drive_limits l = settle_limits(options_, environment_);
     if (r.stats.drives_cut != 0)
-        fmt::print(
-            stderr,
-            "tactor: warning: tactors were driven for longer than {} s in {} s: {} cut short or silent "
-            "([limits] max_drive_s in the array file or configuration)\n",
-            l.max_drive_s, l.window_s, counted(r.stats.drives_cut, "drive"));
+        say(stderr,
+            "tactor: warning: wait {0} s before the next stroke: {1} cut short or silent, because a tactor "
+            "may be driven for {2} s in {0} s ([limits] max_drive_s in the array file or configuration)\n",
+            l.window_s,
+            r.stats.drives_cut == 1 ? "1 drive was" : fmt::format("{} drives were", r.stats.drives_cut),
+            l.max_drive_s);
     return r;
 }
 

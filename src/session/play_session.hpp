@@ -8,6 +8,7 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <string_view>
 
 #include <tactor/tactor.hpp>
 
@@ -66,6 +67,8 @@ public:
     std::optional<std::uint64_t> stroke_frame() const;
     /// Fades out what plays.
     void cancel();
+    /// Writes to the log what became of a stroke.
+    void log_end(std::string_view name, const stroke_report& r);
 
     /// Returns true if the device is gone, or failed: nothing can be played until reopen().
     bool lost() const { return stream_.current() == nullptr || stream_.current()->ended().has_value(); }

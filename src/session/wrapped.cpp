@@ -26,21 +26,30 @@ std::size_t count_blanks(std::string_view line, std::size_t at)
     return std::min(line.find_first_not_of(' ', at), line.size()) - at;
 }
 
-// The column of the line's last words that two blanks or more separate from what stands before, in the left
-// half; else that of its first word.
-std::size_t find_hang(std::string_view line, std::size_t width)
+// Parts of a line, which two blanks or more separate.
+struct line_parts {
+    std::size_t hang = 0;   ///< column of the last part in the left half, else of the first word
+    std::size_t beyond = 0; ///< place in the line of the only part in the right half; 0: none, or several
+};
+
+line_parts find_parts(std::string_view line, std::size_t width)
 {
-    std::size_t hang = 0;
+    line_parts p;
+    unsigned count = 0; // in the right half
     for (std::size_t at = 0; at < line.size();) {
         const std::size_t word = at + count_blanks(line, at);
-        const std::size_t column = count_columns(line.substr(0, word));
-        if (word == line.size() || column > width / 2)
+        if (word == line.size())
             break;
-        if (at == 0 || word - at > 1)
-            hang = column;
+        if (at == 0 || word - at > 1) {
+            const std::size_t column = count_columns(line.substr(0, word));
+            if (column <= width / 2)
+                p.hang = column;
+            else
+                p.beyond = ++count == 1 ? word : 0;
+        }
         at = std::min(line.find(' ', word), line.size());
     }
-    return hang;
+    return p;
 }
 
 void append_line(std::string& all, std::string_view line, std::size_t hang, std::size_t width)
@@ -60,6 +69,22 @@ void append_line(std::string& all, std::string_view line, std::size_t hang, std:
         }
         at = end;
     }
+}
+
+// Breaks a line. The only part in its right half goes below.
+void append_parts(std::string& all, std::string_view line, std::size_t width)
+{
+    constexpr std::size_t deeper = 2;
+    const line_parts p = find_parts(line, width);
+    std::string_view left = line.substr(0, p.beyond);
+    left.remove_suffix(left.size() - std::min(left.find_last_not_of(' ') + 1, left.size()));
+    const std::size_t hang = p.beyond == 0 ? p.hang : (left.empty() ? deeper : p.hang) + deeper;
+    if (!left.empty()) {
+        append_line(all, left, p.hang, width);
+        all += '\n';
+    }
+    append_line(all, p.beyond == 0 ? std::string(line) : std::string(hang, ' ').append(line.substr(p.beyond)),
+                hang, width);
 }
 
 } // namespace
@@ -84,7 +109,10 @@ std::string wrap_lines(std::string_view text, std::size_t width)
     for (std::size_t at = 0; at < text.size();) {
         const std::size_t end = std::min(text.find('\n', at), text.size());
         const std::string_view line = text.substr(at, end - at);
-        append_line(all, line, find_hang(line, width), width);
+        if (count_columns(line) > width)
+            append_parts(all, line, width);
+        else
+            all += line;
         if (end < text.size())
             all += '\n';
         at = end + 1;

@@ -19,7 +19,8 @@ std::size_t line_width(std::FILE* to);
 std::string wrapped(std::string_view first, std::string_view text, std::size_t width = line_width(stdout));
 
 /// Breaks each line of `text` like wrapped(). A line goes on below its last column of words, as in a table
-/// or a list of options, or below its own beginning.
+/// or a list of options, or below its own beginning. If that column lies in the right half of the width, its
+/// words go below the others.
 std::string wrap_lines(std::string_view text, std::size_t width);
 
 /// Returns `text` as it is printed to `to`: on a terminal wrap_lines(), else unchanged.

@@ -8,8 +8,6 @@ import subprocess
 
 from harness import ROOT, ToolTest, main
 
-# Commands that are described in the page of another one, in subsections of their own.
-WITHIN = {"status": "serve", "stop": "serve"}
 SECTIONS = ["NAME", "SYNOPSIS", "DESCRIPTION", "OPTIONS", "FILES", "EXIT STATUS", "EXAMPLES", "SEE ALSO"]
 
 
@@ -18,7 +16,7 @@ def read_page(name):
 
 
 def find_page(command):
-    return read_page(f"tactor-{WITHIN.get(command, command)}.1")
+    return read_page(f"tactor-{command}.1")
 
 
 def section(page, title):
@@ -32,12 +30,7 @@ def options_in(text):
 
 
 def man_options(command):
-    """Returns the options of a command: those in subsections that name another one are not its own."""
-    first, *others = re.split(r"^\.Ss ", section(find_page(command), "OPTIONS"), flags=re.M)
-    named = {other.splitlines()[0].removeprefix("tactor "): other for other in others if other.startswith("tactor ")}
-    if command in named:
-        return options_in(named[command])
-    return options_in(first + "".join(other for other in others if not other.startswith("tactor ")))
+    return options_in(section(find_page(command), "OPTIONS"))
 
 
 class Manual(ToolTest):
@@ -85,12 +78,13 @@ class Manual(ToolTest):
     def test_pages_read_as_intended(self):
         for page in sorted((ROOT / "man").glob("*.[1-8]")):
             with self.subTest(page=page.name):
-                # .Dq takes the whole line, "No" or not: .Do ... Dc ends before.
-                self.assertEqual(re.findall(r"^.*\b[DS]q \S+ No .*$", page.read_text(encoding="utf-8"), re.M), [])
+                # .Dq takes the whole line, also what follows "No" or another .Dq: .Do ... Dc ends before.
+                self.assertEqual(re.findall(r"^\..*\b(?:[DQS]q|Ql) .* (?:No|[DQS]q|Ql) .*$", page.read_text(encoding="utf-8"), re.M), [])
                 text = subprocess.run(["man", "-E", "UTF-8", "-l", "-Tutf8", page], capture_output=True, encoding="utf-8", check=True,
                                       env=self.env | {"MANWIDTH": "80"}).stdout
                 self.assertGreater(len(text), 1000)
                 self.assertEqual(re.findall(r"^.*[\w”] +[,;:)](?:\s.*)?$", text, re.M), [])
+                self.assertEqual(re.findall("“[^”]*“|”[^“]*”", text), [])
 
 
 def parse_number(text):

@@ -65,6 +65,12 @@ class Terminal(ToolTest):
                 for line in text.splitlines():
                     self.assertTrue(len(line) < columns or " " not in line.strip(), f"{args} {columns}: {line}")
 
+    def test_a_narrow_terminal_has_the_text_of_an_option_below_it(self):
+        for args in (("play", "--help"), ("help", "soa")):
+            text = self.on_terminal(40, *args)[1]
+            self.assertRegex(text, r"(?m)^  (--path DATA|Range:)\n    \S")
+            self.assertNotRegex(text, r"(?m)^ {20}")
+
     def test_widths_are_bounded(self):
         for columns, least, most in ((10, 25, 39), (300, 85, 199), (0, 60, 79)):
             longest = max(map(len, self.on_terminal(columns, "check", "-D", "null")[1].splitlines()))

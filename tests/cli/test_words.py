@@ -72,6 +72,72 @@ class Options(ToolTest):
             self.assertNotIn("did you mean", self.refused(2, "plan", "park2016-1", other).stderr)
 
 
+class Slips(ToolTest):
+    """A command line that is nearly right: the message has what was probably meant."""
+
+    def test_the_command_comes_first(self):
+        for args, says in ((("--config", "f.toml", "plan", "park2016-1"), "tactor plan --config f.toml park2016-1"),
+                           (("park2016-1", "play"), "tactor play park2016-1"),
+                           (("--path", "M 0 0 L 9 9", "plan"), 'tactor plan --path "M 0 0 L 9 9"')):
+            self.refused(2, *args, says=["the command comes first: " + says])
+        self.refused(2, "plam", "plan", says=["did you mean plan?"])
+
+    def test_blanks_need_quotes(self):
+        for command in (("plan",), ("play", "-D", "null")):
+            self.refused(2, *command, "--path", "M", "0", "10", "L", "40", "-30", "--duration", "1",
+                         says=['quote the path: --path "M 0 10 L 40 -30"'])
+        self.write("my last drawing.toml", '[stroke]\npath = "M 0 0 L 9 9"\n')
+        self.write("my array.toml", GRID)
+        for args, name in ((("plan", "my", "last", "drawing.toml"), "my last drawing.toml"),
+                           (("play", "my", "last", "drawing.toml", "-D", "null"), "my last drawing.toml"),
+                           (("plan", "park2016-1", "--array", "my", "array.toml"), "my array.toml")):
+            self.refused(2, *args, says=[f'quote it: "{name}"'])
+        # A name that no file has yet.
+        self.refused(2, "render", "park2016-1", "-o", "my", "sound.wav", says=["render takes one STROKE", "blanks"])
+
+    def test_characters_of_print_are_named(self):
+        for args, says in ((("plan", "park2016-1", "\u2013\u2013duration", "2"), "type --duration"),
+                           (("plan", "park2016-1", "\u2013duration", "2"), "type --duration"),
+                           (("plan", "park2016-1", "\u2014duration", "2"), "type --duration"),
+                           (("play", "park2016-1", "\u2011D", "null"), "type -D"),
+                           (("plan", "park2016-1", "--level-dbfs", "\u221212"), "type -12"),
+                           (("plan", "park2016-1", "--level-dbfs=\u201312"), "type --level-dbfs=-12"),
+                           (("plan", "--path", "M 20 20 L 20 \u20135"), "type M 20 20 L 20 -5"),
+                           (("plan", "--path", "\u201cM", "0", "0", "L", "9", "9\u201d"), 'type " on the keyboard')):
+            self.refused(2, *args, says=[says, "as in print"])
+
+    def test_options_by_their_letter_and_by_other_names(self):
+        for args, says in ((("play", "park2016-1", "-d", "null"), "did you mean -D?"),
+                           (("play", "park2016-1", "-v"), "did you mean --void-on-xrun or --verbose?"),
+                           (("-v",), "did you mean --version?"),
+                           (("play", "park2016-1", "--volume", "3"), "did you mean --level-dbfs?"),
+                           (("serve", "--port", "4003"), "did you mean --http?"),
+                           (("play", "park2016-1", "-duration", "1"), "did you mean --duration?")):
+            self.refused(2, *args, says=[says])
+        self.assertNotIn("did you mean", self.refused(2, "plan", "park2016-1", "-s").stderr)
+
+    def test_values_that_lack_a_sign_or_are_no_port(self):
+        self.refused(2, "play", "park2016-1", "--level-dbfs", "12", says=["did you mean -12?"])
+        self.write("d.toml", "[defaults]\nlevel-dbfs = 12\n")
+        self.refused(2, "plan", "park2016-1", "--config", "d.toml", says=["did you mean -12?"])
+        for option in ("--http", "--tcp", "--osc"):
+            self.refused(2, "serve", option, "80000", says=["80000 is no port", "0 to 65535"])
+
+    def test_help_lists_the_options_that_have_a_word(self):
+        text = self.ok("help", "level").stdout
+        self.assertIn("  --level-dbfs DB ", text)
+        self.assertEqual(re.findall(r"^  (?:-\w,)?--([a-z-]+)", self.ok("help", "reopen").stdout, re.M), ["reopen-s"])
+        self.assertTrue(self.ok("help", "soa").stdout.startswith("--soa S\n"))
+        self.refused(2, "help", "nosuchthing")
+
+    def test_usage_has_as_many_strokes_as_a_command_takes(self):
+        for command in ("plan", "render", "plot", "compare"):
+            self.assertIn(f"Usage: tactor {command} [OPTIONS] [STROKE]\n", self.ok(command, "--help").stdout)
+            more = {"render": ("-o", "x.wav"), "plot": ("-o", "x.svg")}.get(command, ())
+            self.refused(2, command, "park2016-1", "park2016-2", *more, says=[f"{command} takes one STROKE"])
+        self.assertIn("Usage: tactor play [OPTIONS] [STROKE...]\n", self.ok("play", "--help").stdout)
+
+
 class Files(ToolTest):
     def test_open_quotes_are_found_where_they_open(self):
         for text, place in (('[array]\nname = "palm\ngrid = { rows = 3, columns = 3, pitch_mm = 20.0 }\n', "2:8"),

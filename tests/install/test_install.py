@@ -49,8 +49,7 @@ class Install(FolderTest):
         for page in (ROOT / "man").glob("*.[1-8]"):
             section = page.suffix[1:]
             self.assertTrue({f"share/man/man{section}/{page.name}", f"share/man/man{section}/{page.name}.gz"} & there, page)
-        for name in ("bin/tactor", "share/man/man1/tactor-status.1", "share/man/man1/tactor-stop.1",
-                     "lib/udev/rules.d/70-tactor.rules", "lib/sysusers.d/tactor.conf",
+        for name in ("bin/tactor", "lib/udev/rules.d/70-tactor.rules", "lib/sysusers.d/tactor.conf",
                      "share/bash-completion/completions/tactor", "share/zsh/site-functions/_tactor",
                      "share/fish/vendor_completions.d/tactor.fish"):
             self.assertIn(name, there)

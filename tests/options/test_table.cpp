@@ -10,6 +10,7 @@
 #include "caught.hpp"
 #include "core/marks.hpp"
 #include "options/check.hpp"
+#include "options/parse_number.hpp"
 #include "options/settle.hpp"
 #include "options/words.hpp"
 
@@ -87,7 +88,8 @@ TEST_CASE("each number ends at its bounds, typed and as a value, and comes back"
         for (const double v : {below, above, std::nan(""), double(INFINITY)}) {
             const std::string said = caught_message([&] { static_cast<void>(read_value(o, v)); });
             CHECK(said.starts_with(fmt::format("{}: ", o.name)));
-            CHECK(said.find(" is out of range (" + detail::plain(range_text(o)) + ")") != std::string::npos);
+            CHECK(said.find(" is out of range (" + sign_hint(o.allowed, v) + detail::plain(range_text(o)) +
+                            ")") != std::string::npos);
             CHECK_THROWS_AS(read_text(o, fmt::format("{}", v)), error);
         }
         if (o.what == kind::whole)

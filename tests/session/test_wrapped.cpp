@@ -35,6 +35,17 @@ TEST_CASE("a list of options goes on below its explanations")
           "                   bursts\n"
           "  --fit            scale\n");
     CHECK(wrap_lines("    one two three four", 14) == "    one two\n    three four");
+    // On a narrow terminal they stand below the option.
+    CHECK(wrap_lines("  --soa S          onset to onset of two bursts\n  --fit            scale\n", 23) ==
+          "  --soa S\n"
+          "    onset to onset of\n"
+          "    two bursts\n"
+          "  --fit\n"
+          "    scale\n");
+    CHECK(wrap_lines("  --level-dbfs DB\n                   peak at intensity 1", 23) ==
+          "  --level-dbfs DB\n"
+          "    peak at intensity 1");
+    CHECK(wrap_lines("   1.0   2.0   3.0   4.0", 16) == "   1.0   2.0\n   3.0   4.0"); // a table's row
 }
 
 TEST_CASE("lines that fit, empty lines and their ends stay as they are")

@@ -111,6 +111,7 @@ private:
         const stroke_report r =
             play_drawn(session_, environment_.tactors, p, make_score(p, environment_, render_),
                        !options_.json && !options_.stream.verbose);
+        session_.log_end(p.name, r);
         if (session_.signal() != 0)
             throw interrupted{};
         if (r.state == state_kind::interrupted && session_.lost())

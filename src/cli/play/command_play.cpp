@@ -38,6 +38,7 @@ std::vector<score> make_scores(std::vector<piece>& pieces, const settings& s, co
     return scores;
 }
 
+constexpr int max_strokes = 10000; // on one command line
 constexpr const char* wait_hint = "--reopen-s S waits for the device to come back";
 
 // Plays a piece, once again if the device went away before it began, and reports when it waits for its
@@ -90,6 +91,7 @@ std::optional<error> play_all(session::play_session& session, bool as_json, cons
         if (!there && session.signal() == 0)
             return error(error_kind::runtime, shown_name(pieces[i].name), "not played: the device is gone",
                          session.waits() ? "it did not come back in time" : wait_hint);
+        session.log_end(shown_name(pieces[i].name), *outcomes[i].report);
         tell(outcomes[i], session.setup().rate, as_json);
         if (session.signal() != 0)
             return {};
@@ -156,6 +158,7 @@ int play_live(settings& s, const play_options& o)
             stroke_outcome& out = outcomes.front();
             out.report = follow_lines(session, l, lines);
             out.length_frames = out.report->frames;
+            session.log_end(out.name, *out.report);
             tell(out, session.setup().rate, o.json());
             return {};
         });
@@ -192,7 +195,7 @@ command add_play(CLI::App& app)
     CLI::App* c = app.add_subcommand("play", "Play strokes on the array");
     auto s = std::make_shared<settings>();
     auto o = std::make_shared<play_options>();
-    add_strokes(*c, *s);
+    add_strokes(*c, *s, max_strokes);
     add_options(*c, *s, options::on_play);
     c->add_option("--socket", o->socket, "play through the server at this socket")->type_name("PATH");
     add_format_option(*c, o->format, {"text", "json"}, "format of the report (default text)");

@@ -96,6 +96,16 @@ std::string xruns_text(const player_stats& s)
     return fmt::format("{}, the longest {:.1f} ms", s.xruns, *longest * 1e3);
 }
 
+// Returns true if nothing disturbed or limited the strokes.
+bool is_clean(const run_report& r)
+{
+    const player_stats& s = r.stats;
+    return s.xruns + s.limited_frames + s.power_limited_frames + s.drives_cut + s.stalls + s.off_failures +
+                   s.sync_missed + r.reopened ==
+               0 &&
+           !s.left_on;
+}
+
 // Prints a short table of the counters.
 void print_table(std::FILE* to, const run_report& r)
 {
@@ -213,7 +223,10 @@ int hold_run(const settings& s, const environment& e, unsigned channels, unsigne
     r.strokes = std::move(strokes);
     const auto broken = play(session, r.strokes);
     static_cast<session::run_facts&>(r) = session.finish();
-    (as_json ? print_json : print_table)(stdout, r);
+    if (as_json)
+        print_json(stdout, r);
+    else if (s.stream.verbose || !is_clean(r))
+        print_table(stdout, r);
     return judge_run(r, session.signal(), broken);
 }
 

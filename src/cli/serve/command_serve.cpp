@@ -276,6 +276,7 @@ int serve(settings& s, const serve_options& o)
     const render_options& sound = service.plans.owner.render;
     alsa_options device = session::device_options(s, play, e, sound.channels, sound.rate);
     device.log = log.function();
+    service.log = device.log;
     session::tell_of_no_device(s, e);
     session::warn_of_server(session::settle_server(device.pcm));
     const bool armed = !play.no_gpio && e.config.sync && e.config.sync->in;

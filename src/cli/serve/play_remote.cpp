@@ -244,7 +244,7 @@ private:
         }
         if (options_.json())
             print_json(stdout, report_);
-        else
+        else if (report_.stats.xruns != 0)
             say(stdout, "xruns           {}\n", report_.stats.xruns);
         return judge_run(report_, signal_, broken_);
     }

@@ -112,6 +112,7 @@ given_stimulus stage::give(const score& s, double lead_s, const watcher& watch)
             watch(*frame);
         return session::look{.most_ms = session::frame_ms};
     });
+    log_end("stimulus", r);
     check_signal();
     const player_stats after = stats();
     g.xruns = static_cast<unsigned>(after.xruns - before.xruns);
