@@ -71,9 +71,9 @@ std::optional<std::size_t> svg_document::offset(pugi::xml_node n) const
 std::string svg_document::called(pugi::xml_node n)
 {
     const std::string_view id = n.attribute("id").value();
-    const std::string tag = quoted(n.name());
+    const std::string tag = detail::quoted(n.name());
     return fmt::format("<{}>{}", std::string_view(tag).substr(1, tag.size() - 2),
-                       id.empty() ? std::string() : fmt::format(" {}", quoted(id)));
+                       id.empty() ? std::string() : fmt::format(" {}", detail::quoted(id)));
 }
 
 error svg_document::to_error(const left_out& f) const
@@ -131,7 +131,7 @@ void svg_document::note_unknown(pugi::xml_node n, const char* property, std::str
 {
     note(fmt::format("unknown {}", property), ", nor of", ": that is taken as hidden", [&] {
         return fmt::format("{}: {} of {} is not understood ({})", where(n).text(), property, called(n),
-                           quoted(value));
+                           detail::quoted(value));
     });
 }
 

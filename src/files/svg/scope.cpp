@@ -23,7 +23,7 @@ easing_kind read_easing(const svg_document& doc, xml_node n, std::string_view na
 {
     if (const auto k = find_kind<easing_kind>(name))
         return *k;
-    doc.fail(n, fmt::format("data-easing of {}: {}", svg_document::called(n), quoted(name)),
+    doc.fail(n, fmt::format("data-easing of {}: {}", svg_document::called(n), detail::quoted(name)),
              "linear, in-out or minimum-jerk");
 }
 
@@ -40,7 +40,7 @@ affine own_transform(const svg_document& doc, xml_node n, const svg_viewport& v,
     if (!own)
         return {};
     if (const std::string_view box = doc.property(n, "transform-box"); !box.empty() && box != "view-box")
-        doc.note_unfollowed(n, fmt::format("transform-box: {}", quoted(box)));
+        doc.note_unfollowed(n, fmt::format("transform-box: {}", detail::quoted(box)));
     auto origin = doc.follow(n, "transform-origin", doc.property(n, "transform-origin"),
                              [&v](std::string_view t) { return parse_svg_origin(t, v); });
     if (!origin)
@@ -70,7 +70,7 @@ std::optional<svg_length> read_side(const svg_document& doc, xml_node n, const c
     const auto styled = doc.follow(n, name, said, [](std::string_view text) {
         const svg_length l = parse_svg_length(text);
         if (l.in != svg_length::unit::mm)
-            throw value_fault{0, fmt::format("{} is no length", quoted(text)), ""};
+            throw value_fault{0, fmt::format("{} is no length", detail::quoted(text)), ""};
         return l;
     });
     return styled ? styled : attribute;
@@ -218,7 +218,8 @@ void inherit_svg_look(const svg_document& doc, pugi::xml_node n, const svg_viewp
     else if (asked == "none")
         look.asked = svg_strength::none;
     else if (n.attribute("data-intensity-from"))
-        doc.fail(n, fmt::format("data-intensity-from of {}: {}", svg_document::called(n), quoted(asked)),
+        doc.fail(n,
+                 fmt::format("data-intensity-from of {}: {}", svg_document::called(n), detail::quoted(asked)),
                  "stroke-width, opacity or none");
     if (const auto text = doc.property(n, "stroke-width"); !text.empty() && text != "inherit")
         look.width = read_width(text, v);

@@ -204,7 +204,7 @@ void svg_style_sheet::add(pugi::xml_node style)
 void svg_style_sheet::skip(pugi::xml_node style, std::string_view what)
 {
     if (skipped_.size() < most_skipped)
-        skipped_.push_back({style, quoted(what)});
+        skipped_.push_back({style, detail::quoted(what)});
 }
 
 void svg_style_sheet::add_rules(pugi::xml_node style, std::string_view css)

@@ -63,7 +63,8 @@ double in_degrees(double value, std::string_view unit)
          {angle{"deg", 1.0}, {"grad", 0.9}, {"turn", 360.0}, {"rad", 180.0 / 3.14159265358979323846}})
         if (a.name == unit)
             return value * a.degrees;
-    throw value_fault{0, fmt::format("{} is no unit of an angle", quoted(unit)), "deg, grad, rad or turn"};
+    throw value_fault{0, fmt::format("{} is no unit of an angle", detail::quoted(unit)),
+                      "deg, grad, rad or turn"};
 }
 
 double in_user_units(double value, std::string_view unit, const svg_viewport& v, svg_extent e)
@@ -83,7 +84,8 @@ double with_unit(std::string_view name, double value, std::string_view unit, std
         return in_degrees(value, unit);
     if (name.starts_with("scale") && unit == "%")
         return value / 100.0;
-    throw value_fault{0, fmt::format("unit {} in {}()", quoted(unit), name), "a number without a unit"};
+    throw value_fault{0, fmt::format("unit {} in {}()", detail::quoted(unit), name),
+                      "a number without a unit"};
 }
 
 affine one(std::string_view name, const std::vector<double>& v, std::size_t offset)
@@ -117,7 +119,7 @@ affine one(std::string_view name, const std::vector<double>& v, std::size_t offs
                                          "rotate", "skew", "skewx", "skewy"})
         if (name == known)
             wrong_count(name, n, offset);
-    throw value_fault{offset, fmt::format("{} is not a transform", quoted(name)),
+    throw value_fault{offset, fmt::format("{} is not a transform", detail::quoted(name)),
                       "known: matrix, translate, scale, rotate, skewX, skewY"};
 }
 
@@ -135,7 +137,7 @@ affine parse_svg_transform(std::string_view text, const svg_viewport& v)
         const std::size_t open = text.find('(', at);
         const std::size_t close = text.find(')', at);
         if (close == std::string_view::npos || !(open < close))
-            throw value_fault{begin, fmt::format("{} is not a transform", quoted(text.substr(begin))),
+            throw value_fault{begin, fmt::format("{} is not a transform", detail::quoted(text.substr(begin))),
                               "e.g. translate(20, 20) rotate(90)"};
         std::string_view name = text.substr(begin, open - begin);
         while (!name.empty() && blank(name.back()))
@@ -162,7 +164,7 @@ point parse_svg_origin(std::string_view text, const svg_viewport& v)
 {
     const auto words = split_words(text);
     if (words.empty() || words.size() > 3)
-        throw value_fault{0, fmt::format("{} is not an origin", quoted(text)),
+        throw value_fault{0, fmt::format("{} is not an origin", detail::quoted(text)),
                           "e.g. 20 20, 50% 50% or center"};
     std::optional<double> x;
     std::optional<double> y;

@@ -19,7 +19,8 @@ double number_at(std::string_view text, std::size_t& at)
     const std::size_t begin = at;
     const auto v = scan_number(text, at);
     if (!v)
-        throw value_fault{at, fmt::format("{} is not a number", quoted(text.substr(at))), "e.g. 12.5"};
+        throw value_fault{at, fmt::format("{} is not a number", detail::quoted(text.substr(at))),
+                          "e.g. 12.5"};
     if (!(std::abs(*v) <= max_user_units))
         throw value_fault{begin, fmt::format("{:g} is beyond {:g}", *v, max_user_units),
                           "is it the right unit?"};
@@ -52,7 +53,8 @@ double alignment(std::string_view name, std::string_view whole)
         return 0.5;
     if (name == "Max")
         return 1.0;
-    throw value_fault{0, fmt::format("{} is not an alignment", quoted(whole)), "e.g. xMidYMid meet, or none"};
+    throw value_fault{0, fmt::format("{} is not an alignment", detail::quoted(whole)),
+                      "e.g. xMidYMid meet, or none"};
 }
 
 } // namespace
@@ -63,7 +65,8 @@ double svg_number(std::string_view text)
     skip_blanks(text, at);
     const double v = number_at(text, at);
     if (const auto rest = word_at(text, at); !rest.empty())
-        throw value_fault{at, fmt::format("{} behind the number", quoted(rest)), "a number without a unit"};
+        throw value_fault{at, fmt::format("{} behind the number", detail::quoted(rest)),
+                          "a number without a unit"};
     return v;
 }
 
@@ -116,7 +119,7 @@ svg_length parse_svg_length(std::string_view text)
     for (const known_unit& u : units)
         if (u.name == unit)
             return {v * u.mm, svg_length::unit::mm};
-    throw value_fault{at, fmt::format("unit {} is not known", quoted(unit)),
+    throw value_fault{at, fmt::format("unit {} is not known", detail::quoted(unit)),
                       "known units: mm, cm, in, pt, pc, px, Q, %"};
 }
 
@@ -156,7 +159,8 @@ svg_aspect parse_svg_aspect(std::string_view text)
     const std::string_view align = rest.substr(0, gap);
     const std::string_view how = word_at(rest, gap);
     if (!how.empty() && how != "meet" && how != "slice")
-        throw value_fault{0, fmt::format("{} is neither meet nor slice", quoted(how)), "e.g. xMidYMid meet"};
+        throw value_fault{0, fmt::format("{} is neither meet nor slice", detail::quoted(how)),
+                          "e.g. xMidYMid meet"};
     if (align == "none")
         return {false, false, 0.0, 0.0};
     if (align.size() != 8 || align[0] != 'x' || align[4] != 'Y')
