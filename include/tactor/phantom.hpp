@@ -29,7 +29,7 @@ struct drive {
 
 /// Distance outside the array, mm, at which a stroke still counts as on its edge. Drawing programs and
 /// converted units leave less.
-inline constexpr double edge_tolerance_mm = 0.01;
+inline constexpr double edge_tolerance_mm = 0.01 - same_place_mm; // 0.01 itself is outside, rounded or not
 
 /// Delaunay faces of an array (rendering model, section 4). Tactors on one circumcircle form one face.
 /// Immutable. Copies and moves share it, so a moved-from layout keeps its value. Any thread.

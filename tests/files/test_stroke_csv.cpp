@@ -150,7 +150,6 @@ TEST_CASE("faults of a CSV file are named by line and column")
          "intensity_max = 100 for per cent, intensity_max = 127 for MIDI, intensity_max = 255 for 8 bits)"},
         {"t_ms,x_mm,y_mm\n", "f.csv:1:1: unknown column 't_ms' ('t_s' is in s, not ms: divide by 1000)"},
         {"t_s,x_cm,y_mm\n", "f.csv:1:5: unknown column 'x_cm' ('x_mm' is in mm, not cm: multiply by 10)"},
-        {"t_s,x_px,y_px\n", "f.csv:1:5: unknown column 'x_px' ('x_mm' is in mm, not px)"},
         {"t_s,x_mm,y_mm\n0,\"0,0\n", "f.csv:2:3: a quote that does not end"},
         {"t_s,x_mm,y_mm\n0,\"0\"0,0\n", "f.csv:2:6: text behind a quote"},
     };

@@ -195,7 +195,7 @@ TEST_CASE("timed points are a recording, as lines of a CSV file are")
     CHECK(s.motion.intensity(1.0) == 0.0);
     REQUIRE(s.warnings.size() == 2);
     CHECK(s.warnings[0] == "dir/wave.toml:4:1: no place (nan) in this point: the touch is lifted there");
-    CHECK(s.warnings[1] == "dir/wave.toml:3:17: repeats the time of the point before, which does not count");
+    CHECK(s.warnings[1] == "dir/wave.toml:3:16: repeats the time of the point before, which does not count");
     CHECK(one("timed = [[0, 0, 0], [1, 1, 1]]\nintensity = 0.5", 255.0).motion.intensity(0.5) == 0.5);
 }
 
