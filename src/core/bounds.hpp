@@ -38,7 +38,7 @@ inline constexpr bounds part{0.0, 1.0};
 inline constexpr bounds level_dbfs{min_db, 0.0};
 inline constexpr bounds sl_db{-60.0, 100.0};
 inline constexpr bounds stevens_exponent{0.1, 3.0};
-inline constexpr bounds intensity_max{0.0, 1e9, true};
+inline constexpr bounds intensity_max{0.001, 1e6};
 
 inline constexpr bounds people{2.0, 100000.0};
 inline constexpr bounds spread_seed{0.0, 4294967295.0};

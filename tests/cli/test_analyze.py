@@ -346,7 +346,7 @@ class Refusals(AnalyzeTest):
     def test_incomplete_tables_are_refused(self):
         text = (self.folder / BEH).read_text()
         for broken, why in ((text[:-20], ":41: the last line is cut off (tactor experiment --resume keeps what"), (text.replace("\t", " ", 1), ":2: it has"),
-                            ("", ": it is empty"), (text.replace("void", "vo\x00id", 1), ":1: "),
+                            ("", ": it is empty"), (text.replace("void", "vo\x00id", 1), ":1:87: is binary"),
                             (text.replace("\tvoid", "\tmotion", 1), ":1: the column motion is there twice"),
                             (text.replace("\tvoid", "\tVoid", 1), ":1: there is no column void")):
             (self.folder / BEH).write_text(broken)

@@ -106,7 +106,7 @@ class Figures(CompareTest):
         self.assertGreater(result["intensity_cv"], 0.5)
 
     def test_changing_speed_and_intensity(self):
-        points = [(0, 0, 20, 1.0), (0.3, 20, 20, 0.4), (0.9017, 20, 30, 2.0), (1.2, 20, 40, 0.7)]
+        points = [(0, 0, 20, 1.0), (0.3, 20, 20, 0.4), (0.9017, 20, 30, 0.9), (1.2, 20, 40, 0.7)]
         self.write("s.csv", "t_s,x_mm,y_mm,intensity\n" + "".join(f"{t},{x},{y},{i}\n" for t, x, y, i in points))
 
         def target(t):

@@ -67,6 +67,7 @@ TEST_CASE("each option of [defaults] is read as it may be typed, and no other")
                                                  {"ramp", "0.005"},
                                                  {"sl", "7"},
                                                  {"intensity-scale", "sl"},
+                                                 {"intensity-max", "255"},
                                                  {"stevens-exponent", "0.9"},
                                                  {"rate", "44100"},
                                                  {"sample-format", "s24-4"},
@@ -116,7 +117,8 @@ TEST_CASE("a value of [defaults] that cannot be names its place")
           "t.toml:2:9: burst: \"0,07\" is not a number (write a decimal point, as 0.07; 0.0001 to 10 s)");
     CHECK(complaint("rate = 44100.5") ==
           "t.toml:2:8: rate: 44100.5 is not a whole number (give one, as 44100)");
-    CHECK(complaint("level-dbfs = 1") == "t.toml:2:14: level-dbfs: 1 is out of range (did you mean -1? -200 to 0 dBFS)");
+    CHECK(complaint("level-dbfs = 1") ==
+          "t.toml:2:14: level-dbfs: 1 is out of range (did you mean -1? -200 to 0 dBFS)");
     CHECK(complaint("snap = 1") == "t.toml:2:8: snap: 1 is neither true nor false");
     CHECK(complaint("envelope = \"linear:0.3\"") ==
           "t.toml:2:12: envelope: \"linear:0.3\" is not known (only tukey has a part, 0 to 1, as tukey:0.5)");
