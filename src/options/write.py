@@ -172,7 +172,7 @@ LIVE = '''
         smooth : float
             For points that come in bursts, s, 0 (off) to 1: it moves evenly, and is at each point so long after that came.
         intensity_max : float
-            The intensity of a point that means 1, above 0: 255 for a sensor of 8 bits.
+            The intensity of a point that means 1, 0.001 to 1e6; 255 for a sensor of 8 bits. None: as the file says, else 1.
 {parameters}
 
         What nobody says is as the array's file says; but `algorithm` is "continuous", and `outside` "clamp".
@@ -278,7 +278,7 @@ def calls():
         call(PLAYER, rows("player"), ["self", "device: str", "array: Array", "*"],
              ["config: _t.Union[str, os.PathLike[str], None] = None",
               "log: _t.Callable[[_LogKind, str], object] | None = None", "after: Player | None = None"]),
-        call(LIVE, of_live, ["self", "*"], ["timeout: float = 0.5", "longest: float | None = None", "smooth: float = 0.0", "intensity_max: float = 1.0"], own_phantom=True),
+        call(LIVE, of_live, ["self", "*"], ["timeout: float = 0.5", "longest: float | None = None", "smooth: float = 0.0", "intensity_max: float | None = None"], own_phantom=True),
     ))
 
 

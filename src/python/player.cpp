@@ -145,7 +145,8 @@ struct live_handle {
 };
 
 live_handle begin(const std::shared_ptr<player_handle>& h, const array_handle& on, const py::dict& options,
-                  double timeout_s, std::optional<double> longest_s, double smooth_s, const setup* file)
+                  double timeout_s, std::optional<double> longest_s, double smooth_s,
+                  std::optional<double> most, const setup* file)
 {
     wishes w;
     w.place = options::live;
@@ -155,7 +156,7 @@ live_handle begin(const std::shared_ptr<player_handle>& h, const array_handle& o
         return d.name == "algorithm" || d.name == "outside";
     });
     take_options(w, options, on.value().tactors.size(), &said);
-    const double intensity_max = w.intensity_max.value_or(1.0);
+    const double intensity_max = most ? *most : w.intensity_max.value_or(1.0);
     const without_lock free;
     return {h, h->use([&](player& p) {
                 return p.begin({.plan = w.plan,

@@ -79,7 +79,7 @@ def test_sound_does_not_replace_a_file_that_was_read(tmp_path, palm, stroke):
 
 
 def test_strokes_that_no_file_can_hold_are_refused(tmp_path, stroke):
-    with pytest.raises(tactor.InputError, match="above 1"):
+    with pytest.raises(tactor.InputError, match="factor from 0 to 1"):
         stroke.with_intensity(2.0).write(tmp_path / "s.toml")
     with pytest.raises(tactor.InputError, match="TOML"):
         stroke.write(tmp_path / "s.svg")

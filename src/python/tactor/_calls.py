@@ -298,7 +298,7 @@ class PlayerCalls:
              texture: _Texture | None = None, phase: _Phase | None = None, ramp: float | None = None, envelope: str | None = None,
              attack: float | None = None, release: float | None = None, tukey_part: float | None = None, level_dbfs: float | None = None,
              sl: float | None = None, intensity_scale: _IntensityScale | None = None, stevens_exponent: float | None = None,
-             timeout: float = 0.5, longest: float | None = None, smooth: float = 0.0, intensity_max: float = 1.0) -> LiveStroke:
+             timeout: float = 0.5, longest: float | None = None, smooth: float = 0.0, intensity_max: float | None = None) -> LiveStroke:
         """Begins a stroke that is fed point by point; silent until the first.
 
         Parameters
@@ -310,7 +310,7 @@ class PlayerCalls:
         smooth : float
             For points that come in bursts, s, 0 (off) to 1: it moves evenly, and is at each point so long after that came.
         intensity_max : float
-            The intensity of a point that means 1, above 0: 255 for a sensor of 8 bits.
+            The intensity of a point that means 1, 0.001 to 1e6; 255 for a sensor of 8 bits. None: as the file says, else 1.
         outside, algorithm, phantom, faces, soa, burst, slope, intercept, carrier, waveform, am, noise_seed, texture, phase, ramp, envelope, attack
             As in `plan`.
         release, tukey_part, level_dbfs, sl, intensity_scale, stevens_exponent

@@ -156,8 +156,9 @@ class Player(PlayerCalls, _Unique):
     def _begin(self, given: dict[str, _t.Any]) -> LiveStroke:
         shared = self._get()
         timeout, longest, smooth = (given.pop(name) for name in ("timeout", "longest", "smooth"))
+        most = given.pop("intensity_max")
         times = (_number("timeout", timeout, 0.001, 86400.0), None if longest is None else _number("longest", longest, 0.001, 86400.0),
-                 _number("smooth", smooth, 0.0, 1.0))
+                 _number("smooth", smooth, 0.0, 1.0), None if most is None else _number("intensity_max", most, 0.001, 1e6))
         with shared.lock:
             core = shared.core.live(self._array._core, _split_envelope(given), *times, self._array._settings())
             stroke = LiveStroke(shared, core)
