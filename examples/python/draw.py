@@ -6,11 +6,13 @@
 """
 import sys
 import tkinter
+import warnings
 
 import tactor
 
 PIXELS = 10  # of a millimetre
 MARGIN_MM = 8
+warnings.filterwarnings("ignore", "the place .* is outside the array")  # end() counts them
 
 
 class Drawing(tkinter.Canvas):
