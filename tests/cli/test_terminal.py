@@ -119,6 +119,23 @@ class Terminal(ToolTest):
         self.assertEqual(status, 0, text)
         self.assertIn(f"waiting: process {os.getpid()} (python3) is installing", text)
 
+    def test_an_interrupted_install_says_that_apt_goes_on(self):
+        os.mkfifo(self.dir / "end")
+        self.make_machine(APT_GET.replace("echo \"Unpacking it\"", "trap 'echo Setting it up' INT; echo \"Unpacking it\"; until read -r _ <end; do :; done"))
+        child, terminal = pty.fork()
+        if child == 0:
+            os.chdir(self.dir)
+            os.execve(ROOT / "tests/install-packages", ["install-packages", "library"], os.environ | self.env)
+        self.addCleanup(os.close, terminal)
+        text = b""
+        for word, then in ((b"Unpacking it", lambda: os.write(terminal, b"\x03")),
+                           (b"interrupted: apt ends what it has begun", lambda: (self.dir / "end").write_text("go\n", encoding="utf-8"))):
+            while word not in text:
+                text += os.read(terminal, 4096)
+            then()
+        self.assertNotEqual(os.waitpid(child, 0)[1], 0)
+        self.assertNotIn(b"trying again", text)
+
 
 if __name__ == "__main__":
     main()
