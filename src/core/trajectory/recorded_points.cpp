@@ -31,7 +31,8 @@ recorded_points::recorded_points(double intensity_max, find_place where, std::st
 {
     if (!bounds_of::intensity_max.holds(intensity_max))
         throw bad_field("intensity_max", fmt::format("{:g} cannot mean intensity 1", intensity_max),
-                        "give a number above 0, such as 255");
+                        fmt::format("{:.9g} to {:.9g}, such as 255", bounds_of::intensity_max.low,
+                                    bounds_of::intensity_max.high));
 }
 
 std::string recorded_points::here() const
