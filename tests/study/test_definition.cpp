@@ -7,6 +7,7 @@
 #include <doctest/doctest.h>
 
 #include "caught.hpp"
+#include "folder.hpp"
 #include "has.hpp"
 
 namespace tactor::study::test_definition {
@@ -47,6 +48,21 @@ TEST_CASE("the shipped experiment is the paper's")
     CHECK(d.methods[0].options.algorithm == algorithm_kind::tactile_brush);
     CHECK(d.text == shipped_experiment("park2016"));
     CHECK(d.masking.noise == noise_kind::white);
+}
+
+TEST_CASE("a recording of a motion may have intensities of another scale")
+{
+    const folder f;
+    f.write("r.csv", "t_s,x_mm,y_mm,intensity\n0,0,0,255\n0.5,20,0,51\n");
+    const auto with = [&f](const std::string& more) {
+        return read_definition(head + "[[motion]]\nname = \"m\"\n" + more + methods + run, "e.toml",
+                               f.path());
+    };
+    const experiment_definition d = with("file = \"r.csv\"\nintensity_max = 255\n");
+    CHECK(d.motions[0].drawn.motion.intensity(0.5) == doctest::Approx(0.2));
+    CHECK(has(caught_message([&] { with("file = \"r.csv\"\n"); }), "intensity_max"));
+    CHECK(has(caught_message([&] { with("preset = \"park2016-1\"\nintensity_max = 255\n"); }),
+              "[[motion]] has no file"));
 }
 
 TEST_CASE("missing keys have defaults")

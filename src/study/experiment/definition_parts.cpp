@@ -52,8 +52,9 @@ auto at_key(const toml_table& t, std::string_view key, F make)
 
 stroke read_file_stroke(const toml_table& t, const std::filesystem::path& folder)
 {
-    std::vector<stroke> all =
-        at_key(t, "file", [&] { return load_strokes(folder / *t.text("file")); }); // relative, or not
+    const double intensity_max = t.number("intensity_max", detail::bounds_of::intensity_max).value_or(1.0);
+    std::vector<stroke> all = at_key(
+        t, "file", [&] { return load_strokes(folder / *t.text("file"), intensity_max); }); // relative, or not
     if (all.size() != 1)
         t.fail("file", fmt::format("there are {} strokes in it", all.size()), "a motion is one stroke");
     return std::move(all.front());
@@ -153,8 +154,12 @@ bool is_mirrored(const toml_table& motion)
 
 motion_definition read_motion(const toml_table& t, const std::filesystem::path& folder)
 {
-    t.only({"name", "preset", "path", "file", "duration", "duration_s", "speed", "speed_mm_s", "mirror"});
+    t.only({"name", "preset", "path", "file", "duration", "duration_s", "speed", "speed_mm_s",
+            "intensity_max", "mirror"});
     const std::string_view kind = t.one_of({"preset", "path", "file"});
+    if (kind != "file" && t.has("intensity_max"))
+        t.fail("intensity_max", fmt::format("{} has no file", t.title()),
+               "it is the scale of a recording's intensities");
     const std::string_view duration_key = spelled(t, "duration", "duration_s");
     const std::string_view speed_key = spelled(t, "speed", "speed_mm_s");
     const auto duration = t.number(duration_key, detail::bounds_of::duration_s);
