@@ -549,6 +549,8 @@ class Masking(PersonTest):
         self.assertEqual([r["early"] for r in self.rows("01", "marks")], ["false"] * 2)
         runs = json.loads(self.ok("analyze", "study", "--format", "json").stdout)["runs"]
         self.assertEqual((runs["pairs"]["early"], runs["marks"]["early"]), (2, 0))
+        trials = [line.split("\t") for line in self.ok("analyze", "study", "--format", "tsv").stdout.splitlines() if not line.startswith("#")]
+        self.assertEqual([(t[1], t[-1]) for t in trials], [("run", "early"), *[("pairs", "true")] * 2, *[("marks", "false")] * 2])
         self.assertIn("2 answers early (sooner after the stimulus than min_response_s), counted", self.ok("analyze", "study").stdout)
         self.assertIn("Answers marked early, which count: 2 in pairs (sooner than 10 s after the stimulus).", self.ok("report", "study").stdout)
         described = json.loads((self.dir / "study/task-pairs_beh.json").read_text())["early"]

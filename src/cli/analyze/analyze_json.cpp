@@ -173,6 +173,8 @@ void print_analysis_json(std::FILE* out, const study::analysis& a)
         j["void"][r.run.name] = r.voids;
     }
     j["warnings"] = a.warnings;
+    for (const std::string& w : a.no_figures)
+        j["warnings"].push_back(w);
     fmt::print(out, "{}\n", j.dump(2, ' ', false, json::error_handler_t::replace));
 }
 

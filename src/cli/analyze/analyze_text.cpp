@@ -203,4 +203,15 @@ void print_analysis_text(std::FILE* out, const study::analysis& a)
         fmt::print(out, "\n{}", wrapped("Columns: ", column_legend));
 }
 
+void print_warnings(const study::analysis& a)
+{
+    for (const std::string& w : a.warnings)
+        say(stderr, "tactor: warning: {}\n", w);
+    if (a.no_figures.empty())
+        return;
+    const std::size_t more = a.no_figures.size() - 1;
+    say(stderr, "tactor: warning: {}{}\n", a.no_figures.front(),
+        more == 0 ? "" : fmt::format(" ({}: --format json)", counted(more, "more warning")));
+}
+
 } // namespace tactor::cli

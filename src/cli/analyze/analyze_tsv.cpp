@@ -81,14 +81,15 @@ void print_trials(std::FILE* out, const study::dataset& d)
     for (const study::run_outline& r : d.experiment.runs)
         text += fmt::format("# {}\n", write_model(r));
     text += "participant\trun\ttask\ttrial\tattempt\tmotion\tmethod\torder\tresponse\tchosen\trating\tcorrect"
-            "\tresponse_time\n";
+            "\tresponse_time\tearly\n";
     for (std::size_t i = 0; i < d.participants.size(); ++i)
         for (std::size_t k = 0; k < d.experiment.runs.size(); ++k) {
             const study::run_outline& r = d.experiment.runs[k];
             for (const study::trial& t : d.data[i][k].trials)
-                text += fmt::format("{}\t{}\t{}\t{}\t{}\t{}\t{}\t{}\n", d.participants[i], r.name,
+                text += fmt::format("{}\t{}\t{}\t{}\t{}\t{}\t{}\t{}\t{}\n", d.participants[i], r.name,
                                     to_string(r.task), t.place, t.attempt, r.motions[t.motion], answer(t, r),
-                                    t.response_time_s ? fmt::format("{}", *t.response_time_s) : "n/a");
+                                    t.response_time_s ? fmt::format("{}", *t.response_time_s) : "n/a",
+                                    t.early ? (*t.early ? "true" : "false") : "n/a");
         }
     fmt::print(out, "{}", text);
 }

@@ -1,13 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
-#include <cstdint>
 #include <memory>
 #include <string>
-#include <utility>
-#include <vector>
 
 #include <CLI/CLI.hpp>
-#include <fmt/format.h>
 
 #include <tactor/error.hpp>
 
@@ -15,9 +11,7 @@
 #include "cli/analyze/study_options.hpp"
 #include "cli/commands.hpp"
 #include "cli/picture_options.hpp"
-#include "cli/say.hpp"
 #include "cli/settings.hpp"
-#include "core/words.hpp"
 #include "plot/paint/output.hpp"
 #include "session/pipes.hpp"
 
@@ -42,35 +36,13 @@ void draw(const analyze_options& o, const study::analysis& a)
     plot::save(draw_analysis(a, o.picture), o.picture.file, o.picture.dpi, o.picture.force);
 }
 
-/// Prints the warnings about participants, and the first of those about missing figures, which the text shows
-/// as dashes.
-void print_warnings(const std::vector<std::string>& warnings)
-{
-    const auto is_of_figure = [](const std::string& w) {
-        return w.rfind("sub-", 0) != 0 && w.find(": sub-") == std::string::npos;
-    };
-    const auto figures = std::count_if(warnings.begin(), warnings.end(), is_of_figure);
-    bool first = true;
-    for (const std::string& w : warnings) {
-        if (!is_of_figure(w)) {
-            say(stderr, "tactor: warning: {}\n", w);
-        } else if (std::exchange(first, false)) {
-            const std::string more =
-                figures == 1 ? ""
-                             : fmt::format(" ({}: --format json)",
-                                           counted(static_cast<std::uint64_t>(figures - 1), "more warning"));
-            say(stderr, "tactor: warning: {}{}\n", w, more);
-        }
-    }
-}
-
 int run(const analyze_options& o)
 {
     const study::dataset d = study::read_dataset(o.folder, o.who);
     const study::analysis a = study::analyse(d);
     if (!o.picture.file.empty())
         draw(o, a);
-    print_warnings(a.warnings);
+    print_warnings(a);
     if (o.format == "json")
         print_analysis_json(stdout, a);
     else if (o.format == "tsv")

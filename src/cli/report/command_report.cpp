@@ -3,9 +3,9 @@
 
 #include <CLI/CLI.hpp>
 
+#include "cli/analyze/analyze_output.hpp"
 #include "cli/analyze/study_options.hpp"
 #include "cli/commands.hpp"
-#include "cli/say.hpp"
 #include "cli/settings.hpp"
 #include "session/pipes.hpp"
 #include "study/report/sections.hpp"
@@ -33,8 +33,7 @@ int run(const report_options& o)
         session::tell_of_pipe_to_write(o.file);
         study::write_report(o.file, text, o.force);
     }
-    for (const std::string& w : a.warnings)
-        say(stderr, "tactor: warning: {}\n", w);
+    print_warnings(a);
     return status_ok;
 }
 

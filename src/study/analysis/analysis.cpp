@@ -100,7 +100,7 @@ run_analysis analyse_run(const dataset& d, std::size_t which)
     for (std::size_t i = 0; i < d.participants.size(); ++i) {
         const run_data& own = d.data[i][which];
         r.voids += own.voids;
-        r.early += own.early;
+        r.early += count_early(own);
         std::optional<cell_values> v = compute_cells(r.run, own.trials);
         if (!v) {
             r.missing.push_back({d.participants[i], own.trials.empty()
@@ -140,7 +140,7 @@ void warn_of_people(analysis& a, const run_analysis& r, const dataset& d, std::s
 void warn_of_figures(analysis& a, const run_analysis& r)
 {
     const auto warn = [&](std::string_view figure, std::string_view why) {
-        a.warnings.push_back(fmt::format("{}: {}: {}", r.run.name, figure, why));
+        a.no_figures.push_back(fmt::format("{}: {}: {}", r.run.name, figure, why));
     };
     const auto warn_of_test = [&](std::string_view figure, const t_test& t) {
         if (t.n < 2)
@@ -178,7 +178,7 @@ void warn_of_figures(analysis& a, const run_analysis& r)
             warn(r.run.task == task_kind::choose ? "motion" : r.run.methods[row],
                  "the error has no variance, so no Tukey");
     if (r.n == 1)
-        a.warnings.push_back(r.run.name + ": one participant: tests need two");
+        a.no_figures.push_back(r.run.name + ": one participant: tests need two");
 }
 
 // Returns the value of a trial in its cell: a rating, or per cent.

@@ -54,7 +54,8 @@ struct analysis {
     bool simulated = false;
     std::vector<left_out> excluded = {}; ///< by whoever asked for the analysis
     std::vector<run_analysis> runs = {};
-    std::vector<std::string> warnings = {};
+    std::vector<std::string> warnings = {};   ///< about files and participants
+    std::vector<std::string> no_figures = {}; ///< why figures are missing
 };
 
 /// Returns the per cent that guessing gives.

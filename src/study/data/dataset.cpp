@@ -257,14 +257,20 @@ run_data read_run(const text_table& t, const run_outline& run)
         }
         if (!seen.insert(*place).second)
             t.refuse(i, fmt::format("trial {} counts twice", *place), "all its attempts but one are void");
-        if (t.has("early") && t.cell(i, "early"))
-            d.early += t.truth(i, "early") ? 1 : 0;
         trial r = read_trial(t, i, run);
+        if (t.has("early") && t.cell(i, "early"))
+            r.early = t.truth(i, "early");
         r.place = *place;
         r.attempt = attempt;
         d.trials.push_back(r);
     }
     return d;
+}
+
+std::size_t count_early(const run_data& d) noexcept
+{
+    return static_cast<std::size_t>(std::count_if(d.trials.begin(), d.trials.end(),
+                                                  [](const trial& t) { return t.early.value_or(false); }));
 }
 
 dataset read_dataset(const fs::path& folder, const selection& who)

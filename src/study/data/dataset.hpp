@@ -32,13 +32,16 @@ struct trial {
     std::size_t method_2 = 0; ///< of choose only
     unsigned response = 0;    ///< choose: interval 1 or 2; rate: the rating; identify: the motion answered
     std::optional<double> response_time_s = {};
+    std::optional<bool> early = {}; ///< sooner than min_response_s; none: not recorded
 };
 
 struct run_data {
     std::vector<trial> trials = {};
     std::size_t voids = 0; ///< lines that do not count
-    std::size_t early = 0; ///< of the trials, answers that are marked early
 };
+
+/// Returns how many of the trials were answered sooner than min_response_s.
+std::size_t count_early(const run_data& d) noexcept;
 
 /// Somebody whose trials are left out, and why.
 struct left_out {

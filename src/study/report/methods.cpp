@@ -85,7 +85,7 @@ std::string early_text(const study_facts& f, const dataset& d)
     for (std::size_t i = 0; i < d.experiment.runs.size(); ++i) {
         std::size_t n = 0;
         for (const std::vector<run_data>& own : d.data)
-            n += own[i].early;
+            n += count_early(own[i]);
         if (n == 0)
             continue;
         const std::string least = join_texts(f, [&](const session_facts& s) {

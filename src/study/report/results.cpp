@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include <array>
+#include <string>
 #include <string_view>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -201,11 +203,11 @@ std::string results_section(const analysis& a)
             "generalised\n(Olejnik and Algina 2003); pairs of motions by Tukey's studentized range.\n";
     for (const run_analysis& r : a.runs)
         text += run_results(r, a.simulated);
-    if (!a.warnings.empty()) {
+    if (!a.warnings.empty() || !a.no_figures.empty())
         text += "\n### Warnings of the analysis\n\n";
-        for (const std::string& w : a.warnings)
+    for (const std::vector<std::string>* all : {&a.warnings, &a.no_figures})
+        for (const std::string& w : *all)
             text += fmt::format("- {}\n", plain(w));
-    }
     return text;
 }
 
