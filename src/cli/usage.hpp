@@ -25,9 +25,9 @@ void use_help_pages(CLI::App& app);
 std::string first_steps();
 
 /// Describes an option: its values, the places where it may be given and its names there; of options that
-/// only some commands have, the line of their help. `name` may begin with dashes. If no option has this name,
-/// lists those with it in their names. \throws error (bad_input) if there is none.
-std::string describe_options(const CLI::App& app, std::string_view name);
+/// only some commands have, the line of their help. `given` may begin with dashes. If no option has this
+/// name, lists those with it in their names. \throws error (bad_input) if there is none.
+std::string describe_options(const CLI::App& app, std::string_view given);
 
 /// Returns the error for a command line without a command.
 error no_command();

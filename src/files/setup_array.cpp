@@ -2,7 +2,6 @@
 // [array] and [[tactor]].
 #include <algorithm>
 #include <optional>
-#include <ranges>
 #include <string_view>
 #include <utility>
 #include <vector>
@@ -211,11 +210,13 @@ void turn_array(const toml_table& table, array& a)
     if (!table.has("mirror") && !table.has("rotate_deg"))
         return;
     affine m = read_turn(table);
-    const auto [left, right] = std::ranges::minmax(
-        a.tactors | std::views::transform([](const tactor_spec& t) { return t.position.x_mm; }));
-    const auto [top, bottom] = std::ranges::minmax(
-        a.tactors | std::views::transform([](const tactor_spec& t) { return t.position.y_mm; }));
-    const point middle{(left + right) / 2.0, (top + bottom) / 2.0};
+    point least = a.tactors.front().position;
+    point most = least;
+    for (const tactor_spec& t : a.tactors) {
+        least = {std::min(least.x_mm, t.position.x_mm), std::min(least.y_mm, t.position.y_mm)};
+        most = {std::max(most.x_mm, t.position.x_mm), std::max(most.y_mm, t.position.y_mm)};
+    }
+    const point middle{(least.x_mm + most.x_mm) / 2.0, (least.y_mm + most.y_mm) / 2.0};
     m.e = middle.x_mm;
     m.f = middle.y_mm;
     for (tactor_spec& t : a.tactors)

@@ -121,7 +121,7 @@ struct web_session final : web_connection, std::enable_shared_from_this<web_sess
     std::size_t room() const override { return unread.room(); }
     void finish() override;
     /// Closes with status 1008.
-    void turn_out(const char* why) override;
+    void turn_out(const char* reason) override;
 
     // Request.
     void read_request();

@@ -203,8 +203,8 @@ stroke timed(const std::string& name, const numbers& rows, double intensity_max)
              return timed_point{r[0], {r[1], r[2]}, r[3]};
          }))
         recorded.add(p);
-    trajectory motion = trajectory::timed(recorded.take());
-    return {.name = name, .motion = std::move(motion), .warnings = recorded.warnings()};
+    const trajectory motion = trajectory::timed(recorded.take());
+    return {.name = name, .motion = motion, .warnings = recorded.warnings()};
 }
 
 stroke along(const std::string& name, const path& p, std::optional<double> duration_s,

@@ -58,8 +58,8 @@ public:
         points_.reserve(std::min<std::size_t>(std::count(rest_.begin(), rest_.end(), '\n') + 1, most_lines));
         while (next_line())
             row();
-        trajectory motion = trajectory::timed(points_.take());
-        return {{.name = detail::stem(name_), .motion = std::move(motion), .warnings = warnings()}};
+        const trajectory motion = trajectory::timed(points_.take());
+        return {{.name = detail::stem(name_), .motion = motion, .warnings = warnings()}};
     }
 
 private:

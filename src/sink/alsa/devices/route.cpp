@@ -67,7 +67,7 @@ std::string find_table_fault(snd_config_t* top, snd_config_t* definition)
                 below(channel_number(value_text(row)), slave_channels(top, member(definition, "slave")));
         });
     unsigned next = 0;
-    while (bound.count(next) != 0)
+    while (bound.contains(next))
         ++next;
     if (type == "multi" && fault.empty() && next < bound.size())
         fault = fmt::format("type multi leaves a hole in its bindings: it binds no channel {}", next);
