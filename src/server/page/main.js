@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The page to draw on: what belongs to no part of it, and the start.
 import {state, changed, on_change, on_toast, current_take, current_stroke, say, remember, remembered} from "./state.js";
-import {by_id} from "../../net/page/dom.js";
+import {by_id, make} from "../../net/page/dom.js";
 import {place_icons, forget_colours, is_dark} from "./look.js";
 import {connect, call, on_hello} from "./service/connection.js";
 import {open_takes, undo, redo, can_undo, can_redo} from "./takes/takes.js";
@@ -10,7 +10,7 @@ import {set_array, look_at_all, zoom, resize, place_in_page} from "./drawing/vie
 import {draw_lanes, clock_text} from "./time/lanes.js";
 import "./time/timeline.js";
 import {LEAST_LEVEL_DB} from "./service/planner.js";
-import {play, stop, tick, silence_speaker} from "./service/player.js";
+import {play, stop, tick, silence_speaker, unanswered_s} from "./service/player.js";
 import {change_point, remove_point, on_tactor_held} from "./drawing/pointer.js";
 import {show_examples, open_example} from "./takes/takes_panel.js";
 import {show_tactor, own_name} from "./service/device.js";
@@ -22,6 +22,7 @@ import {seconds_text} from "./words.js";
 import {length_mm, editable, total_s} from "./takes/stroke.js";
 
 const TOAST_MS = 2200;
+const DONE_MS = 600; // for which the button says that it has stopped
 
 // Light and dark.
 const dark = matchMedia("(prefers-color-scheme: dark)");
@@ -55,7 +56,9 @@ on_toast(text => {
 // Buttons.
 const on = (id, f) => by_id(id).addEventListener("click", f);
 on("play", () => play());
-on("stop", () => stop());
+// It stops when it is touched, whatever other fingers do; a click by itself comes from keys and assistive technology.
+by_id("stop").addEventListener("pointerdown", e => { if (e.button === 0) stop(); });
+on("stop", e => { if (e.detail === 0) stop(); });
 on("undo", undo);
 on("redo", redo);
 on("new-take", () => { new_take(); say("Draw a new take"); });
@@ -102,6 +105,7 @@ on_change(() => {
   by_id("play").disabled = !take?.strokes.length;
   by_id("play").dataset.on = p !== null;
   by_id("play").querySelector("span").textContent = p ? "Playing" : "Play";
+  show_stop();
   by_id("loop").setAttribute("aria-pressed", state.loop);
   by_id("speaker").setAttribute("aria-pressed", state.speaker);
   by_id("show-speed").setAttribute("aria-pressed", state.show_speed);
@@ -118,6 +122,13 @@ on_change(() => {
   by_id("hint").hidden = hint_closed || state.takes.length > 0 || state.drawing !== null || !by_id("banner").hidden;
   show_point();
 });
+function show_stop() {
+  const late_s = unanswered_s(), done = !state.stopping && state.stopped && performance.now() - state.stopped.at < DONE_MS;
+  by_id("stop").dataset.state = late_s ? "late" : done ? "done" : "";
+  by_id("stop").querySelector("span").replaceChildren(late_s ? "Stop again" : done ? "Stopped" : "Stop",
+    ...late_s ? [make("small", {}, `no answer, ${late_s.toFixed(1)} s`)] : []);
+  if (done) setTimeout(() => changed("link"), DONE_MS);
+}
 function take_facts(take) {
   if (!take?.strokes.length) return "";
   const bursts = state.plan && !state.plan.continuous ? `${state.plan.onsets.length} bursts, ` : "";

@@ -7,6 +7,7 @@ export const state = {
   lost_reason: "", retry_at: 0, // of a connection that is tried again
   fault: null,           // what failed, for the banner
   stopped: null,         // {name, at}
+  stopping: null,        // a stop that was not answered yet: {since_ms, sent_ms}
   touches: new Map(),    // of other people, by stroke: {x, y, at}
   dbfs: [],              // of each tactor, as it is driven
   options: [],           // the rows of the table of options that a client may give
@@ -59,3 +60,5 @@ export const ceiling_dbfs = () => state.hello?.max_level_dbfs ?? -12;
 export const level_dbfs = () => ceiling_dbfs() + state.level_db;
 // The level as a factor on what sounds at the ceiling.
 export const level_gain = () => 10 ** (state.level_db / 20);
+// The same of the take that is shown, with its own gain.
+export const take_gain = () => level_gain() * 10 ** ((current_take()?.gain_db ?? 0) / 20);

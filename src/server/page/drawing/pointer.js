@@ -30,6 +30,7 @@ const seconds = ms => +(ms / 1000).toFixed(4);
 
 function down(id, px, e) {
   if (!array || fingers.has(id)) return;
+  if (e.pointerType === "touch" && [...fingers.values()].some(f => f.kind === "pen")) return; // it is the hand of the pen
   const mm = to_mm(...px);
   const f = {id, px, from: mm, at: mm, strength: strength(e), kind: e.pointerType ?? "key", down_ms: e.timeStamp
     ?? performance.now(), mode: "tap",
@@ -86,7 +87,7 @@ function record(f, mm, at_ms) {
 function begin_live(f) {
   // The level takes effect while the finger moves: the stroke begins at the ceiling, and its points are weaker.
   f.scaled = current_take()?.options.sl === undefined && (value("intensity_scale") ?? "amplitude") === "amplitude";
-  const o = request_options(current_take(), f.scaled ? ceiling_dbfs() : level_dbfs());
+  const o = request_options({options: current_take()?.options}, f.scaled ? ceiling_dbfs() : level_dbfs());
   if (o.algorithm === "tactile-brush") o.algorithm = "continuous"; // it has to know the end first
   const live = new Set(state.options.filter(r => r.live).map(r => r.name));
   const options = Object.fromEntries(Object.entries(o).filter(([name]) => live.has(name) || !live.size));
@@ -119,6 +120,17 @@ function up(id, cancelled = false) {
   if (f.number !== null) tell("end", {stroke: f.number});
   if ([...fingers.values()].some(o => o.mode === "draw")) return changed("drawing");
   finish();
+}
+// A touch that the system cancels beside others is a palm, and nothing of it stays. A drawing of one finger is kept.
+function take_back(id) {
+  const f = fingers.get(id), others = [...fingers.values()].some(o => o !== f && o.mode === "draw");
+  if (f?.mode !== "draw" || !(others || f.kind === "touch" && state.drawing.kind === "pen")) return up(id, true);
+  fingers.delete(id);
+  state.drawing.tracks = state.drawing.tracks.filter(k => k !== f.track);
+  f.track.down = false;
+  if (f.number !== null) tell("cancel", {stroke: f.number});
+  if (!others) return finish();
+  changed("drawing");
 }
 function tap(f) {
   if (state.tool === "points" && choose_stroke(f.from)) return;
@@ -230,8 +242,8 @@ field.addEventListener(raw ? "pointerrawupdate" : "pointermove", follow);
 if (raw) field.addEventListener("pointermove", e => { if (fingers.has(e.pointerId)) moved(e.pointerId, to_pixel(e), e); });
 field.addEventListener("pointerup", e => { middle = null; if (fingers.has(e.pointerId)) { moved(e.pointerId, to_pixel(e), e);
   up(e.pointerId); } });
-for (const end of ["pointercancel", "lostpointercapture"]) field.addEventListener(end,
-  e => { middle = null; up(e.pointerId, true); });
+field.addEventListener("pointercancel", e => { middle = null; take_back(e.pointerId); });
+field.addEventListener("lostpointercapture", e => { middle = null; up(e.pointerId, true); });
 field.addEventListener("pointerleave", () => set_hot(-1));
 field.addEventListener("contextmenu", e => e.preventDefault());
 field.addEventListener("wheel", e => {

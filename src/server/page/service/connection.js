@@ -2,7 +2,7 @@
 // The WebSocket to the service: calls, answers, and what comes by itself.
 import {state, changed} from "../state.js";
 
-const SLOW_MS = 300;
+export const SLOW_MS = 300; // without an answer
 const POLL_MS = 500;
 const LONGEST_RETRY_MS = 5000;
 const CODE_TOKEN = -32003;

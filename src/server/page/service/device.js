@@ -4,7 +4,7 @@ import {state, on_change, changed, ceiling_dbfs, say, remember, remembered} from
 import {by_id, make} from "../../../net/page/dom.js";
 import {icon} from "../look.js";
 import {connect_with, connect, rename_client} from "./connection.js";
-import {test_tactor} from "./player.js";
+import {test_tactor, unanswered_s} from "./player.js";
 import {array_name, number_text} from "../words.js";
 
 const STOPPED_MS = 6000;
@@ -16,7 +16,7 @@ function describe() {
   if (state.link === "token") return ["barred", "Locked", "warn", "a token is needed"];
   if (state.link === "lost") return ["broken", "No connection", "bad",
     `again in ${Math.max(0, Math.ceil((state.retry_at - performance.now()) / 1000))} s`];
-  if (state.slow) return ["waiting", "No answer", "warn", "waiting for tactor"];
+  if (unanswered_s() || state.slow) return ["waiting", "No answer", "warn", "waiting for tactor"];
   if (s.state === "lost") return state.hello?.stream.format === null ? ["barred", "No card", "bad",
     "it is looked for"] : ["broken", "Card lost", "bad", "it is looked for"];
   if (s.state === "muted") return ["muted", "Muted", "warn", s.reason];
@@ -33,6 +33,7 @@ const who = client => { const w = state.status?.who?.find(x => x.client === clie
 // Returns what the banner says: [text, tone, details], or null.
 function warn() {
   const s = state.stream;
+  if (unanswered_s()) return ["Stop is sent, but tactor does not answer. Switch the amplifier off.", "bad", ""];
   if (state.link === "token") return [state.asks_token, "warn",
     "The owner has it, in the file that token_file names; or open the link that ends in #token=…"];
   if (state.link === "lost") return ["No connection to tactor. It is tried again; nothing is lost.", "bad", state.lost_reason

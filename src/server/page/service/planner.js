@@ -2,7 +2,8 @@
 // Plans for the picture: one question at a time, always about what is newest.
 import {state, changed, on_change, current_take} from "../state.js";
 import {call, is_connected} from "./connection.js";
-import {make_request, take_s} from "../takes/takes.js";
+import {make_request, put_take, take_s} from "../takes/takes.js";
+import {number_text} from "../words.js";
 import {thin} from "../takes/stroke.js";
 import {row, value} from "../settings/values.js";
 
@@ -57,13 +58,15 @@ async function ask() {
 // Returns by how much strokes that add up on a tactor are too strong.
 export const too_strong_db = f => f.data?.what === "options.level_dbfs" ? Number(/by ([\d.]+) dB/.exec(f.data.hint ?? "")?.[1]
   ?? 0) : 0;
-// Lowers the level until the take can be played: a refusal names one tactor at a time.
-export async function lower_level(refusal) {
-  for (let by = too_strong_db(refusal); by > 0 && state.level_db > LEAST_LEVEL_DB;) {
-    state.level_db = Math.max(LEAST_LEVEL_DB, state.level_db - Math.ceil(2 * by) / 2);
-    by = await call("plan", {...request(), view: "peaks"}).then(() => 0, too_strong_db);
+// Gives a take a gain with which it can be played: a refusal names one tactor at a time. The level of all others stays.
+export async function weaken_take(take, refusal) {
+  let gain_db = take.gain_db ?? 0;
+  for (let by = too_strong_db(refusal); by > 0 && gain_db > LEAST_LEVEL_DB;) {
+    gain_db = Math.max(LEAST_LEVEL_DB, gain_db - Math.ceil(2 * by) / 2);
+    by = await call("plan", {...make_request({...take, gain_db}), view: "peaks"}).then(() => 0, too_strong_db);
   }
-  changed("level");
+  put_take({...take, gain_db});
+  say(`“${take.name}” ${number_text(gain_db)} dB: together its strokes are too strong`);
 }
 const observer = () => state.observer ? {observer: state.observer} : {};
 

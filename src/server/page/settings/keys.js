@@ -11,11 +11,11 @@ import {remove_point} from "../drawing/pointer.js";
 const KEYS = [["Space", "stop everything"], ["P", "play"], ["L", "loop"], ["D, S, E", "draw, straight line, edit points"],
   ["F", "feel on or off"], ["N", "new take"], ["0", "show all"],
   [", .", "one burst back, on"], ["Ctrl Z, Ctrl Shift Z", "undo, redo"], ["Delete", "delete the point"],
-    ["Enter, arrows", "in the array: touch and lift, move"], ["Esc", "close"]];
+    ["Enter, arrows", "in the array: touch and lift, move"], ["Esc", "close; where nothing is open, stop"]];
 by_id("keys").replaceChildren(...KEYS.flatMap(([k, what]) => [make("dt", {}, k), make("dd", {}, what)]));
 
 const is_text = e => e instanceof HTMLInputElement && ["text", "password", "search"].includes(e.type)
-  || e instanceof HTMLTextAreaElement || e?.isContentEditable;
+  && e.inputMode !== "decimal" || e instanceof HTMLTextAreaElement || e?.isContentEditable;
 const press = id => () => by_id(id).click();
 export function new_take() {
   state.append = false;
@@ -26,6 +26,15 @@ const ACTIONS = {
     f: press("feel"), n: new_take,
   0: () => { look_at_all(); show_all_time(); }, ",": () => step_burst(-1), ".": () => step_burst(1),
 };
+const STEPS = new Set([",", "."]);
+// Closes what is open; where nothing is, it stops.
+function leave(e) {
+  const open = document.querySelector(":popover-open");
+  if (open) return open.hidePopover();
+  if (!document.body.dataset.sheetOpen) { if (!e.repeat) stop(); return; }
+  document.body.dataset.sheetOpen = "";
+  changed("layout");
+}
 export function choose_tool(tool) {
   Object.assign(state, {tool, knot: -1});
   changed("tool");
@@ -49,7 +58,9 @@ addEventListener("keydown", e => {
   if (e.ctrlKey || e.metaKey || e.altKey) return;
   if ((e.key === "Delete" || e.key === "Backspace") && state.tool === "points" && state.knot >= 0) { e.preventDefault();
     remove_point(); return; }
-  if (e.key === "Escape") { document.body.dataset.sheetOpen = ""; changed("layout"); return; }
+  if (e.key === "Escape") return leave(e);
   const f = ACTIONS[e.key.toLowerCase()];
-  if (f) { e.preventDefault(); f(); }
+  if (!f) return;
+  e.preventDefault();
+  if (!e.repeat || STEPS.has(e.key)) f(); // a key that is held does one thing once
 });

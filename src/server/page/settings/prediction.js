@@ -4,7 +4,7 @@ import {state, changed, on_change, current_take, current_stroke} from "../state.
 import {by_id, make} from "../../../net/page/dom.js";
 import {icon} from "../look.js";
 import {set_option, edit_take, fit_take} from "../takes/takes.js";
-import {too_strong_db, lower_level} from "../service/planner.js";
+import {too_strong_db, weaken_take} from "../service/planner.js";
 import {spark} from "./diagrams.js";
 import {place_word, even_word, number_text, plain_name} from "../words.js";
 import {duration_s, length_mm, outside_mm, interpolate} from "../takes/stroke.js";
@@ -76,7 +76,7 @@ function plain_fault(f) {
 const to_continuous = ["Use Continuous", () => set_option("algorithm", "continuous")];
 function mending(f) {
   const name = /^options\.(\w+)/.exec(f.data?.what ?? "")?.[1];
-  if (too_strong_db(f) > 0) return [["Lower the level", () => lower_level(f)]];
+  if (too_strong_db(f) > 0) return [["Make this take weaker", () => weaken_take(current_take(), f)]];
   if (/options\.snap/.test(f.data?.hint ?? f.data?.why ?? "")) return [["Move its ends there", () => set_option("snap", true)], to_continuous];
   const list = name ? [["Use the usual value", () => set_option(name, null)]] : [];
   if (algorithm() !== "continuous") list.push(to_continuous);

@@ -68,6 +68,8 @@ export function add_take(strokes, {name, origin, options} = {}) {
   edit({takes: [take, ...state.takes], current: take.id, stroke: 0});
   return take;
 }
+// Takes over a take that has changed, whether it is the one that is shown or not.
+export function put_take(take, same) { edit({takes: state.takes.map(t => t.id === take.id ? take : t)}, same); }
 function replace_take(take, same) {
   edit({takes: state.takes.map(t => t.id === take.id ? take : t), current: take.id}, same);
 }
@@ -116,9 +118,11 @@ export const take_s = t => t ? total_s(t.strokes) : 0;
 
 // Makes what the service plays, plans and writes: the same for all three.
 export const make_request = take => ({toml: strokes_toml(take.strokes), options: request_options(take, level_dbfs())});
+// A take's gain is there so that strokes that add up are not too strong.
 export function request_options(take, dbfs) {
   const o = {outside: "clamp", ...take?.options};
-  if (o.sl === undefined) o.level_dbfs = dbfs;
+  const gain_db = take?.gain_db ?? 0;
+  if (o.sl === undefined) o.level_dbfs = dbfs + gain_db; else o.sl += gain_db;
   return o;
 }
 // Returns the strokes of an answer to import.
