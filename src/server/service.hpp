@@ -168,6 +168,7 @@ private:
         std::size_t bytes = 0;
         bool play = false;
         stop_mark asked = {};
+        double gain_db = 0.0; ///< of all its strokes
         view_choice view = {};
         std::optional<double> draft = {}; ///< its number
         double steps = 0.0;               ///< see planning_work; 0 until its text is read
@@ -236,9 +237,13 @@ private:
     // service_strokes.cpp
     void drive(client& c, const net::json& params, const answer& to);
     std::vector<std::uint32_t> submit(client_number owner, const net::json& start, const planned& p,
-                                      const std::vector<score>& scores, const char* ended_by);
+                                      const std::vector<score>& scores, const char* ended_by,
+                                      double gain_db = 0.0);
     void check_free_place(const client& c) const;
     void once_ready(client_number number, const answer& to, const char* source, std::function<void()> then);
+    void level(client& c, const net::json& params, const answer& to);
+    void set_level(stroke_record& r, double db);
+    static double level_db(const stroke_record& r) noexcept;
     void cancel(client& c, const net::json& params, const answer& to);
     void cancel_all(client& c);
     void cancel(stroke_record& r, const char* why);

@@ -117,6 +117,27 @@ class Play(StudioTest):
         self.assertLess(p.value(f"{TAKE}.gain_db"), 0)
         self.assertEqual(p.value("tactor.state.level_db"), 0)
 
+    def test_what_plays_follows_the_level(self):
+        p, watcher = self.ready(self.serve())
+        p.value("[...document.querySelectorAll('#examples button')].at(-1).click()")
+        self.planned(p)
+        p.key("KeyL", "l")
+        number = self.play(p, watcher)
+        loudest = "Math.max(...tactor.state.dbfs.filter(v => v !== null))"
+        p.until(f"{loudest} > -30")
+        for level_db, test in ((-40, f"{loudest} < -45"), (0, f"{loudest} > -30")):
+            p.value(f"(tactor.state.level_db = {level_db}, tactor.changed('level'), 0)")
+            p.until(test)
+        self.assertIn(number, p.value("[...tactor.state.playing.numbers]"))
+        p.click("#stop")
+        # A page that is opened again is no louder than it was.
+        p.value("(tactor.state.level_db = -40, tactor.changed('level'), 0)")
+        p.reload()
+        self.await_service(p)
+        self.play(p, watcher)
+        p.until(f"{loudest} > -80")
+        self.assertLess(p.value(loudest), -45)
+
     def test_another_take_that_is_chosen_stands_still(self):
         p, watcher = self.ready(self.serve())
         self.draw(p, *self.way([5, 5], [35, 5]))

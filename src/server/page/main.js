@@ -17,6 +17,7 @@ import {show_tactor, own_name} from "./service/device.js";
 import {choose_tool, new_take} from "./settings/keys.js";
 import "./takes/files.js";
 import "./settings/inspector.js";
+import {draw_meter} from "./settings/level.js";
 import "./settings/prediction.js";
 import {seconds_text} from "./words.js";
 import {length_mm, editable, total_s} from "./takes/stroke.js";
@@ -151,6 +152,7 @@ function frame() {
   tick();
   draw_frame();
   draw_lanes();
+  draw_meter();
   const [now, total] = clock_text();
   if (now + total !== told_clock) {
     told_clock = now + total;

@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: MIT
 // Fingers, pen, mouse and keys on the array: drawing, straight lines, points, tests of single tactors.
-import {state, changed, current_take, current_stroke, ceiling_dbfs, level_dbfs, level_gain, say} from "../state.js";
+import {state, changed, current_take, current_stroke, ceiling_dbfs, say} from "../state.js";
 import {by_id} from "../../../net/page/dom.js";
 import {call, tell, is_connected, on_lost} from "../service/connection.js";
 import {array, to_mm, to_px, px_per_mm, tactor_at, zoom, pan} from "./view.js";
 import {add_take, edit_take, edit_stroke, end_edit, request_options, moved_knot} from "../takes/takes.js";
 import {from_drawing, straight, editable, nearest_knot, insert_knot, rebuild, total_s} from "../takes/stroke.js";
-import {value} from "../settings/values.js";
-import {test_tactor, on_stop} from "../service/player.js";
+import {test_tactor, tell_level, on_stop} from "../service/player.js";
 
 const RESTING_MS = 100;    // a finger that rests says so, or its stroke would end
 const LEAST_MM = 1;        // a shorter touch is a tap
@@ -85,9 +84,8 @@ function record(f, mm, at_ms) {
 
 // Live strokes: what is drawn is felt.
 function begin_live(f) {
-  // The level takes effect while the finger moves: the stroke begins at the ceiling, and its points are weaker.
-  f.scaled = current_take()?.options.sl === undefined && (value("intensity_scale") ?? "amplitude") === "amplitude";
-  const o = request_options({options: current_take()?.options}, f.scaled ? ceiling_dbfs() : level_dbfs());
+  tell_level();
+  const o = request_options({options: current_take()?.options}, ceiling_dbfs());
   if (o.algorithm === "tactile-brush") o.algorithm = "continuous"; // it has to know the end first
   const live = new Set(state.options.filter(r => r.live).map(r => r.name));
   const options = Object.fromEntries(Object.entries(o).filter(([name]) => live.has(name) || !live.size));
@@ -101,7 +99,7 @@ function send(f, at_ms, always = false) {
   if (f.number === null || (!always && at_ms - f.sent_ms < LEAST_STEP_MS)) return;
   f.sent_ms = at_ms;
   tell("to", {stroke: f.number, x_mm: f.at[0], y_mm: f.at[1],
-    intensity: f.strength * (f.scaled ? level_gain() : 1)});
+    intensity: f.strength});
 }
 setInterval(() => fingers.forEach(f => f.mode === "draw" && send(f, performance.now(), true)), RESTING_MS);
 

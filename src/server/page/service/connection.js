@@ -73,6 +73,7 @@ async function hello() {
     const asked = server_now_s(), h = await introduce();
     set_clock(h.clock.monotonic_s, asked);
     state.hello = h;
+    tell("level", {db: state.level_db}); // before anything plays: a connection begins at the ceiling
     state.asks_token = "";
     await call("subscribe", {events: ["levels", "stream", "strokes", "touches", "stops"], levels_hz: 30});
     await poll();

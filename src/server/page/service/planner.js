@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Plans for the picture: one question at a time, always about what is newest.
-import {state, changed, on_change, current_take} from "../state.js";
+import {state, ceiling_dbfs, changed, on_change, current_take} from "../state.js";
 import {call, is_connected} from "./connection.js";
 import {make_request, put_take, take_s} from "../takes/takes.js";
 import {number_text} from "../words.js";
@@ -63,7 +63,7 @@ export async function weaken_take(take, refusal) {
   let gain_db = take.gain_db ?? 0;
   for (let by = too_strong_db(refusal); by > 0 && gain_db > LEAST_LEVEL_DB;) {
     gain_db = Math.max(LEAST_LEVEL_DB, gain_db - Math.ceil(2 * by) / 2);
-    by = await call("plan", {...make_request({...take, gain_db}), view: "peaks"}).then(() => 0, too_strong_db);
+    by = await call("plan", {...make_request({...take, gain_db}, ceiling_dbfs()), view: "peaks"}).then(() => 0, too_strong_db);
   }
   put_take({...take, gain_db});
   say(`“${take.name}” ${number_text(gain_db)} dB: together its strokes are too strong`);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Plays takes, tests tactors, stops; and says where the moment is.
-import {state, changed, current_take, level_gain, take_gain, say} from "../state.js";
+import {state, changed, on_change, current_take, ceiling_dbfs, take_gain, say} from "../state.js";
 import {call, tell, is_connected, server_now_s, from_server_ms, on_notification, on_lost, SLOW_MS} from "./connection.js";
 import {make_request, take_s} from "../takes/takes.js";
 import {too_strong_db, weaken_take} from "./planner.js";
@@ -31,10 +31,21 @@ export async function play() {
   changed("playing");
 }
 
+// All that this page plays is played at the ceiling, and the service turns it down: what sounds follows the level, too.
+let told_db = null; // as the service knows it
+export function tell_level() {
+  if (!is_connected() || told_db === state.level_db) return;
+  told_db = state.level_db;
+  tell("level", {db: told_db});
+}
+on_change(tell_level);
+on_lost(() => { told_db = null; });
+
 async function ask_to_play() {
   const own = state.playing, take = state.takes.find(t => t.id === own.take);
   try {
-    const r = await call("play", make_request(take));
+    tell_level();
+    const r = await call("play", make_request(take, ceiling_dbfs()));
     if (state.playing !== own) return cancel_strokes(r.strokes);
     own.total_s = r.total_s;
     own.numbers = new Set(r.strokes.filter(n => !ended.has(n)));
@@ -84,7 +95,7 @@ async function next_round(p) {
   p.next = true;
   const at = Math.max(server_now_s() + 0.05, server_now_s() + p.total_s - (performance.now() - p.began_ms) / 1000);
   try {
-    const r = await call("play", {...make_request(take), start: {monotonic_s: at}});
+    const r = await call("play", {...make_request(take, ceiling_dbfs()), start: {monotonic_s: at}});
     if (state.playing !== p) return cancel_strokes(r.strokes);
     r.strokes.forEach(n => p.numbers.add(n));
     p.next = {number: r.stroke, total_s: r.total_s};
@@ -162,7 +173,8 @@ export function on_stop(f) { lift_fingers = f; }
 
 export function test_tactor(i) {
   if (!is_connected()) return say("No connection: nothing is driven");
-  call("drive", {tactor: i, intensity: level_gain(), duration_s: TEST_S})
+  tell_level();
+  call("drive", {tactor: i, duration_s: TEST_S})
     .then(() => say(`Tactor ${i}, ${TEST_S} s`), e => say(e.message));
 }
 

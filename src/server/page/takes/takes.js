@@ -117,7 +117,7 @@ export function fit_take(edge) {
 export const take_s = t => t ? total_s(t.strokes) : 0;
 
 // Makes what the service plays, plans and writes: the same for all three.
-export const make_request = take => ({toml: strokes_toml(take.strokes), options: request_options(take, level_dbfs())});
+export const make_request = (take, dbfs = level_dbfs()) => ({toml: strokes_toml(take.strokes), options: request_options(take, dbfs)});
 // A take's gain is there so that strokes that add up are not too strong.
 export function request_options(take, dbfs) {
   const o = {outside: "clamp", ...take?.options};
