@@ -10,6 +10,7 @@
 #include <deque>
 #include <functional>
 #include <limits>
+#include <list>
 #include <map>
 #include <memory>
 #include <optional>
@@ -202,6 +203,7 @@ private:
 
     // service_methods.cpp
     void hello(client& c, const net::json& params, const answer& to);
+    void refuse_token(client& c, const answer& to, const net::rpc_fault& wrong);
     void status(client& c, const net::json& params, const answer& to);
     void list_options(client& c, const net::json& params, const answer& to);
     void subscribe(client& c, const net::json& params, const answer& to);
@@ -300,6 +302,8 @@ private:
     std::set<std::uint32_t> touches_due_ = {}; ///< live strokes whose last place others were not told
     allowance touches_ = {};
     std::size_t touch_listeners_ = 0;
+    std::map<std::string, double> wrong_token_wait_s_ = {}; ///< by address; the last answer's
+    std::list<boost::asio::steady_timer> late_answers_ = {};
     std::size_t planning_bytes_ = 0;
     std::size_t jobs_ = 0;
     bool closing_ = false;

@@ -358,8 +358,10 @@ TEST_CASE("cancel of all ends strokes being planned, even of a client that has g
 TEST_CASE("a client's level holds for its strokes that sound and that come, and for no others")
 {
     service_rig rig;
-    auto me = rig.client();
-    auto you = rig.client();
+    rig.plug();
+    rig.start();
+    const auto me = rig.client();
+    const auto you = rig.client();
     const json stroke{{"stroke", "park2016-1"}, {"options", {{"duration", 5}}}};
     const json mine = rig.ok(me, "play", stroke)["stroke"];
     CHECK(rig.ok(me, "level", {{"db", -20}}).empty());
