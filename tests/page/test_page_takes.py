@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
 """The studio's takes in a real Chromium: edited, kept, named, undone, set, by the thousand. Usage: test_page_takes.py TOOL SOURCE_ROOT"""
+import math
 import sys
 
 del sys.argv[3:]
@@ -82,9 +83,42 @@ class Takes(StudioTest):
         self.assertAlmostEqual(self.take(p)["strokes"][1]["start_s"], end + 0.1, places=3)  # a pause for the last burst
         self.assertEqual(p.value("tactor.state.takes.length"), 1)
 
+    def test_small_drawings_are_kept_as_drawn_fitted_and_edited(self):
+        p, _ = self.ready(self.serve())
+        self.draw(p, *[[20 + 3 * math.cos(a / 10), 20 + 3 * math.sin(a / 10)] for a in range(64)])
+        self.planned(p)
+        drawn = self.take(p)["strokes"][0]
+        places = [q[1:3] for q in drawn["timed"]]
+        # On the circle all along: the pointer's places are those of pixels.
+        self.assertLess(max(abs(math.dist(q, (20, 20)) - 3) for q in places), 0.2)
+        self.assertGreater(sum(map(math.dist, places, places[1:])), 18)
+        self.assertGreater(len(drawn["ink"]), 50)
+        text = "document.querySelector('#shape-curve').textContent"
+        pressed = "document.querySelector('#shape [aria-pressed=true]').id"
+        p.until("!document.querySelector('#shape').hidden")
+        self.assertEqual(p.value(f"[{pressed}, {text}]"), ["shape-ink", "Fitted, within 0.2 mm"])
+        p.click("#shape-curve")
+        p.until(f"{pressed} === 'shape-curve'")
+        fitted = self.take(p)["strokes"][0]
+        self.assertEqual(fitted["ink"], drawn["ink"])
+        self.assertLess(max(abs(math.dist(q[1:3], (20, 20)) - 3) for q in fitted["timed"]), 0.4)
+        # A point is moved; As drawn takes it back, and the edit is kept beside it.
+        knot = drawn["knots"][2]
+        self.edit_point(p, [knot["x"], knot["y"]], [knot["x"] + 8, knot["y"] + 8])
+        p.until(f"{text} === 'Edited, 1 point'")
+        edited = self.take(p)["strokes"][0]
+        p.click("#shape-ink")
+        p.until(f"{pressed} === 'shape-ink' && {text} === 'Edited, 1 point'")
+        self.assertEqual(self.take(p)["strokes"][0]["timed"], drawn["timed"])
+        p.click("#shape-curve")
+        p.until(f"{pressed} === 'shape-curve'")
+        self.assertEqual(self.take(p)["strokes"][0]["timed"], edited["timed"])
+        p.click("#undo")
+        p.until(f"{pressed} === 'shape-ink'")
+
     def test_points_are_moved_made_corners_added_and_deleted(self):
         p, _ = self.ready(self.serve())
-        self.draw(p, *self.way([4, 20], [36, 20]))
+        self.draw(p, *[[4 + x, 20 + 4 * math.sin(x / 3)] for x in range(33)])
         knots = self.take(p)["strokes"][0]["knots"]
         self.edit_point(p, [knots[1]["x"], knots[1]["y"]], [knots[1]["x"], knots[1]["y"] - 8])
         p.until("!document.querySelector('#points').hidden")

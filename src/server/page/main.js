@@ -16,6 +16,7 @@ import {show_examples, open_example} from "./takes/takes_panel.js";
 import {show_tactor, own_name} from "./service/device.js";
 import {choose_tool, new_take} from "./settings/keys.js";
 import "./takes/files.js";
+import "./takes/shape_switch.js";
 import "./settings/inspector.js";
 import "./settings/prediction.js";
 import {seconds_text} from "./words.js";

@@ -4,8 +4,8 @@ import {state, changed, current_take, current_stroke, ceiling_dbfs, level_dbfs, 
 import {by_id} from "../../../net/page/dom.js";
 import {call, tell, is_connected, on_lost} from "../service/connection.js";
 import {array, to_mm, to_px, px_per_mm, tactor_at, zoom, pan} from "./view.js";
-import {add_take, edit_take, edit_stroke, end_edit, request_options, moved_knot} from "../takes/takes.js";
-import {from_drawing, straight, editable, nearest_knot, insert_knot, rebuild, total_s} from "../takes/stroke.js";
+import {add_take, edit_take, edit_stroke, end_edit, request_options} from "../takes/takes.js";
+import {from_drawing, straight, editable, nearest_knot, insert_knot, changed_knot, without_knot, total_s} from "../takes/stroke.js";
 import {value} from "../settings/values.js";
 import {test_tactor, on_stop} from "../service/player.js";
 
@@ -176,7 +176,7 @@ function grasp(f, mm) {
   changed("knot");
   return true;
 }
-function drag_knot(f, mm) { edit_stroke(s => moved_knot(s, f.knot, mm.map(v => +v.toFixed(3))), f.key); }
+function drag_knot(f, [x, y]) { edit_stroke(s => changed_knot(s, f.knot, {x: +x.toFixed(3), y: +y.toFixed(3)}), f.key); }
 function add_point(mm) {
   const s = edited_stroke();
   if (!s) return;
@@ -186,12 +186,12 @@ function add_point(mm) {
   changed("knot");
 }
 export function change_point(how) {
-  edit_stroke(s => rebuild({...s, knots: s.knots.map((k, i) => i === state.knot ? {...k, ...how} : k)}));
+  edit_stroke(s => changed_knot(s, state.knot, how));
 }
 export function remove_point() {
   const s = edited_stroke();
   if (!s || state.knot < 0 || s.knots.length <= 2) return;
-  edit_stroke(t => rebuild({...t, knots: t.knots.filter((_, i) => i !== state.knot)}));
+  edit_stroke(t => without_knot(t, state.knot));
   state.knot = Math.min(state.knot, s.knots.length - 2);
   changed("knot");
 }
@@ -265,7 +265,7 @@ field.addEventListener("keydown", e => {
   const mm = Math.max(...array.box.size, 10) / (e.shiftKey ? 100 : 25);
   if (state.tool === "points" && state.knot >= 0 && edited_stroke()) {
     const k = edited_stroke().knots[state.knot];
-    return edit_stroke(s => moved_knot(s, state.knot, [k.x + step[0] * mm, k.y + step[1] * mm]), `key knot ${state.knot}`);
+    return edit_stroke(s => changed_knot(s, state.knot, {x: k.x + step[0] * mm, y: k.y + step[1] * mm}), `key knot ${state.knot}`);
   }
   if (!key) return;
   key = [key[0] + step[0] * mm, key[1] + step[1] * mm];

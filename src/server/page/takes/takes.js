@@ -2,7 +2,7 @@
 // Takes: {id, name, origin, strokes, options}. They are values: a change makes a new one, so that all can be undone.
 import {state, changed, current_take, level_dbfs, say} from "../state.js";
 import {open_storage} from "./storage.js";
-import {total_s, strokes_toml, fitted, rebuild, editable} from "./stroke.js";
+import {total_s, strokes_toml, fitted, editable} from "./stroke.js";
 
 const done = [], undone = [];
 let storage = null, number = 0;
@@ -123,4 +123,3 @@ export function request_options(take, dbfs) {
 }
 // Returns the strokes of an answer to import.
 export const imported_strokes = r => r.points.map((timed, i) => ({name: r.strokes[i].name, start_s: r.strokes[i].start_s, timed}));
-export const moved_knot = (s, index, [x, y]) => rebuild({...s, knots: s.knots.map((k, i) => i === index ? {...k, x, y} : k)});
