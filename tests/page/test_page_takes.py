@@ -249,6 +249,136 @@ class Takes(StudioTest):
         p.until(f"{TAKE}.strokes[0].timed.at(-1)[0] < {before} - 0.1")
 
 
+class Kept(StudioTest):
+    REFUSE = """globalThis.put = IDBObjectStore.prototype.put; globalThis.closing = () => dispatchEvent(new Event("beforeunload", {cancelable: true}));
+        IDBObjectStore.prototype.put = () => { throw new DOMException("full", "QuotaExceededError"); }"""
+
+    def test_a_full_storage_says_so_until_a_write_works(self):
+        p, _ = self.ready(self.serve())
+        self.draw(p, *self.way([5, 5], [35, 5]))
+        self.toast(p, "Kept as")
+        p.value(self.REFUSE)
+        self.assertTrue(p.value("closing()"))
+        for y in (20, 35):
+            self.draw(p, *self.way([5, y], [35, y]))
+        self.toast(p, "Not kept: this browser's storage is full")
+        self.banner(p, "Takes are not kept: this browser's storage is full.")
+        p.until("[...document.querySelectorAll('#takes .note')].map(e => e.textContent).join() === 'not kept,not kept'")
+        self.assertFalse(p.value("closing()"))  # the page asks
+        self.assertTrue(p.value("document.querySelector('#banner-close').hidden"))
+        p.value("IDBObjectStore.prototype.put = put")
+        self.toast(p, "Kept again, all 2")
+        p.until("document.querySelector('#banner').hidden && !document.querySelector('#takes .note')")
+        self.assertTrue(p.value("closing()"))
+        p.reload()
+        self.await_service(p)
+        p.until("document.querySelectorAll('#takes li').length === 3")
+
+    def test_takes_are_kept_again_after_their_data_were_deleted(self):
+        p, _ = self.ready(self.serve())
+        for y in (5, 20):
+            self.draw(p, *self.way([5, y], [35, y]))
+        self.toast(p, "Kept as")
+        p.value("new Promise((done, failed) => Object.assign(indexedDB.deleteDatabase('tactor'), {onsuccess: done, onerror: failed})).then(() => 1)")
+        self.toast(p, "Kept again, all 2")
+        p.reload()
+        self.await_service(p)
+        p.until("document.querySelectorAll('#takes li').length === 2")
+
+    def test_where_the_browser_keeps_nothing_the_page_says_so(self):
+        p = self.page("about:blank", size=DESKTOP)
+        p.call("Page.addScriptToEvaluateOnNewDocument", source="IDBFactory.prototype.open = () => { throw new DOMException('no', 'SecurityError'); }")
+        p.call("Page.navigate", url=self.serve().where["http"])
+        p.until("globalThis.tactor?.state")
+        self.await_service(p)
+        self.draw(p, *self.way([5, 5], [35, 5]))
+        self.banner(p, "Takes are not kept: this browser keeps nothing for this page.")
+        self.toast(p, "Not kept")
+
+    def test_undo_outlasts_the_page(self):
+        p, _ = self.ready(self.serve())
+        for y in (5, 20):
+            self.draw(p, *self.way([5, y], [35, y]))
+        p.click("#undo")
+        p.until("tactor.state.takes.length === 1")
+        p.reload()
+        self.await_service(p)
+        p.click("#redo")
+        p.until("tactor.state.takes.length === 2")
+        p.click("#undo")
+        p.click("#undo")
+        p.until("tactor.state.takes.length === 0 && document.querySelector('#undo').disabled")
+
+    def test_a_drawing_in_progress_survives_a_reload(self):
+        p, _ = self.ready(self.serve())
+        self.press(p, *self.way([5, 5], [35, 35]))
+        p.until("tactor.state.drawing.tracks[0].points.length > 3")
+        p.reload()
+        self.await_service(p)
+        p.until("tactor.state.takes.length === 1")
+        self.assertRegex(self.take(p)["name"], r"^Drawing of \d\d:\d\d, not finished$")
+        self.assertGreater(self.take(p)["strokes"][0]["timed"][-1][1], 25)
+
+    def test_what_was_deleted_is_in_a_bin_for_thirty_days(self):
+        p, _ = self.ready(self.serve())
+        for y in (5, 20):
+            self.draw(p, *self.way([5, y], [35, y]))
+        p.value("document.querySelector('#takes .more-button').click()")
+        p.value("[...document.querySelectorAll('#p-take button')].find(b => b.textContent.includes('Delete')).click()")
+        self.toast(p, "Deleted “Take 2”Undo")
+        p.until("document.querySelector('#bin-text').textContent === '1, kept for 30 days'")
+        p.click("#toast button")
+        p.until("tactor.state.takes.length === 2 && document.querySelector('#bin').hidden")
+        p.value("document.querySelector('#takes .more-button').click()")
+        p.value("[...document.querySelectorAll('#p-take button')].find(b => b.textContent.includes('Delete')).click()")
+        p.until("tactor.state.takes.length === 1")
+        p.reload()
+        self.await_service(p)
+        p.until("!document.querySelector('#bin').hidden")
+        p.click("#bin summary")
+        p.until("document.querySelector('#binned small').textContent === 'deleted today, 29 days left'")
+        p.click("#binned button")
+        p.until("tactor.state.takes.length === 2")
+        self.assertEqual(self.names(p), ["Take 2", "Take 1"])
+        # After thirty days it is gone.
+        p.value("document.querySelector('#takes .more-button').click()")
+        p.value("[...document.querySelectorAll('#p-take button')].find(b => b.textContent.includes('Delete')).click()")
+        p.until("tactor.state.bin.length === 1")
+        p.call("Page.addScriptToEvaluateOnNewDocument", source="{ const now = Date.now; Date.now = () => now() + 31 * 24 * 3600e3; }")
+        p.reload()
+        self.await_service(p)
+        p.until("tactor.state.takes.length === 1 && tactor.state.bin.length === 0")
+
+    def test_two_tabs_see_each_other_s_takes_and_never_undo_them(self):
+        s = self.serve()
+        a, _ = self.ready(s)
+        self.draw(a, *self.way([5, 5], [35, 5]))
+        self.toast(a, "Kept as")
+        b, _ = self.ready(s)
+        b.until("tactor.state.takes.length === 1")
+        self.draw(b, *self.way([5, 20], [35, 20]))
+        a.until("tactor.state.takes.length === 2")
+        self.assertEqual(a.value("tactor.state.takes.map(t => t.name)"), ["Take 2", "Take 1"])
+        # An edit in the other tab is not undone here.
+        a.call("Page.bringToFront")
+        a.value(f"tactor.rename({TAKE}.id, 'Slow S')")
+        b.until("tactor.state.takes[1].name === 'Slow S'")
+        b.value("tactor.rename(tactor.state.takes[1].id, 'Slow S, edited')")
+        a.until(f"{TAKE}.name === 'Slow S, edited'")
+        a.until("[...document.querySelectorAll('#takes .note')].some(e => e.textContent === 'changed in another tab')")
+        a.click("#undo")
+        self.toast(a, "was changed in another tab; that stays")
+        self.assertEqual(a.value(f"{TAKE}.name"), "Slow S, edited")
+        # Both change one take before they hear of each other: both stay.
+        a.value("BroadcastChannel.prototype.postMessage = () => {}")
+        a.value(f"tactor.rename({TAKE}.id, 'Slow S')")
+        a.until("tactor.state.unkept.size === 0")
+        a.value("new Promise(done => setTimeout(done))")
+        b.value("tactor.rename(tactor.state.takes[1].id, 'Fast S')")
+        b.until("tactor.state.takes.length === 3")
+        self.assertEqual(sorted(b.value("tactor.state.takes.map(t => t.name)")), ["Fast S, other tab", "Slow S", "Take 2"])
+
+
 class Many(StudioTest):
     def test_a_thousand_takes(self):
         self.check_thousand(size=DESKTOP)

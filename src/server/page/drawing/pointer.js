@@ -5,6 +5,7 @@ import {by_id} from "../../../net/page/dom.js";
 import {call, tell, is_connected, on_lost} from "../service/connection.js";
 import {array, to_mm, to_px, px_per_mm, tactor_at, zoom, pan} from "./view.js";
 import {add_take, edit_take, edit_stroke, end_edit, request_options} from "../takes/takes.js";
+import {say_if_kept} from "../takes/keeping.js";
 import {from_drawing, straight, editable, nearest_knot, insert_knot, changed_knot, without_knot, total_s} from "../takes/stroke.js";
 import {value} from "../settings/values.js";
 import {test_tactor, on_stop} from "../service/player.js";
@@ -126,7 +127,7 @@ function tap(f) {
 }
 
 // Makes a take, or more strokes of this one, of all fingers that touched until none did any more.
-function finish() {
+function finish(take_name) {
   const d = state.drawing;
   state.drawing = null;
   document.body.classList.remove("touching");
@@ -148,11 +149,17 @@ function finish() {
   } else {
     const first = Math.min(...strokes.map(s => s.start_s));
     const take = add_take(strokes.map(s => ({...s, start_s: +(s.start_s - first).toFixed(4)})),
-      {origin: NAMES[d.kind] ?? "drawn"});
-    say(`Kept as “${take.name}”`);
+      {name: take_name, origin: NAMES[d.kind] ?? "drawn"});
+    say_if_kept(take);
   }
   state.at_s = 0;
   changed("drawing", "take");
+}
+// Makes a take of a drawing while the page goes away.
+export function finish_early() {
+  if (!state.drawing) return;
+  fingers.clear();
+  finish(`Drawing of ${new Date().toTimeString().slice(0, 5)}, not finished`);
 }
 function lift_all() {
   key = null;
