@@ -131,7 +131,7 @@ function set_fault(text) {
 // Says whether a take is kept, once that is known.
 export async function say_if_kept(take) {
   await write_owed();
-  say(state.unkept.has(take.id) ? `Not kept: ${state.storage_fault}` : `Kept as “${take.name}”`);
+  if (!find_take(take.id)?.deleted) say(state.unkept.has(take.id) ? `Not kept: ${state.storage_fault}` : `Kept as “${take.name}”`);
 }
 // Writes all at once, without an answer, while the page goes away.
 export function write_at_once() {
