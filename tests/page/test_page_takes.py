@@ -144,8 +144,8 @@ class Takes(StudioTest):
         self.draw(p, *self.way([4, 20], [36, 20]))
         p.click("[data-tab=timing]")
         for place in (0, 1000):
-            p.until("(globalThis.slider = [...document.querySelectorAll('#pane .slider')].find(s => s.textContent.startsWith('Duration'))?.querySelector('input'))")
-            p.value(f"slider.value = {place}, slider.dispatchEvent(new Event('input')), slider.dispatchEvent(new Event('change'))")
+            p.until("(globalThis.found = [...document.querySelectorAll('#pane .slider')].find(s => s.textContent.startsWith('Duration'))?.querySelector('input'))")
+            p.value(f"found.value = {place}, found.dispatchEvent(new Event('input')), found.dispatchEvent(new Event('change'))")
             p.until(f"tactor.state.plan_of === {TAKE} || tactor.state.plan_fault")
             self.assertIsNone(p.value("tactor.state.plan_fault"))
 
@@ -308,6 +308,15 @@ class Kept(StudioTest):
         p.click("#undo")
         p.click("#undo")
         p.until("tactor.state.takes.length === 0 && document.querySelector('#undo').disabled")
+
+    def test_undo_has_three_hundred_steps(self):
+        p, _ = self.ready(self.serve())
+        self.draw(p, *self.way([5, 5], [35, 5]))
+        p.value(f"for (let i = 1; i <= 310; ++i) tactor.rename({TAKE}.id, `name ${{i}}`)")
+        p.until("!document.querySelector('#undo').disabled")
+        p.value("for (let i = 0; i < 400; ++i) document.querySelector('#undo').click()")
+        p.until("document.querySelector('#undo').disabled")
+        self.assertEqual(self.names(p), ["name 10"])
 
     def test_a_drawing_in_progress_survives_a_reload(self):
         p, _ = self.ready(self.serve())

@@ -12,6 +12,7 @@ export const DAY_MS = 24 * 3600e3;
 
 let all = [];                 // takes with those of the bin, newest first
 let storage = null, writing = null, asked_for = {history: () => null, restore: () => {}};
+const NEWEST = "newest";     // no take has this id: the first one is shown
 const unwritten = new Map();       // takes that are not written yet, by id; null where one was removed
 const known = new Map();      // versions in the storage, by id
 let current_owed = false, history_timer = 0, tabs = {}; // times of the last write of each tab
@@ -21,8 +22,8 @@ export const find_take = id => all.find(t => t.id === id);
 export const all_takes = () => all;
 
 // Shows takes, and which one is edited.
-function show(by_id, current = state.current) {
-  all = [...by_id.values()].sort((a, b) => b.made - a.made);
+function show(takes, current = state.current) {
+  all = [...takes.values()].sort((a, b) => b.made - a.made);
   const at = state.takes.findIndex(t => t.id === current);
   state.takes = all.filter(t => !t.deleted);
   state.bin = all.filter(t => t.deleted);
@@ -56,6 +57,17 @@ async function open() {
   const kept = await opened.load(), current = await opened.get("current");
   tabs = await opened.get("tabs") ?? {};
   const takes = by_ids();
+  let late = null;
+  // What a page could not write while it went away.
+  for (const [id, take, version] of JSON.parse(remembered("unwritten") || "[]")) {
+    if (kept.find(t => t.id === id)?.version === take?.version) continue;
+    known.set(id, version ?? undefined);
+    unwritten.set(id, take);
+    if (!take) continue;
+    takes.set(id, take);
+    late = id;
+  }
+  remember("unwritten", "");
   for (const t of kept) {
     if (unwritten.has(t.id)) continue;
     known.set(t.id, t.version);
@@ -68,7 +80,7 @@ async function open() {
     delete tabs[name];
   }
   storage = opened;
-  show(takes, state.current ?? current ?? kept.sort((a, b) => b.made - a.made)[0]?.id);
+  show(takes, state.current ?? late ?? current ?? NEWEST);
 }
 const tab = (() => {
   const id = new_id();
@@ -133,9 +145,12 @@ export async function say_if_kept(take) {
   await write_owed();
   if (!find_take(take.id)?.deleted) say(state.unkept.has(take.id) ? `Not kept: ${state.storage_fault}` : `Kept as “${take.name}”`);
 }
-// Writes all at once, without an answer, while the page goes away.
+// Writes all at once while the page goes away: the browser may drop what is written to the database then, so it is
+// written to the local storage, too.
 export function write_at_once() {
   const removed = [...unwritten.keys()].filter(id => !unwritten.get(id));
+  if (unwritten.size) remember("unwritten", JSON.stringify([...JSON.parse(remembered("unwritten") || "[]"),
+    ...[...unwritten].map(([id, take]) => [id, take, known.get(id)])]));
   storage?.write({takes: [...unwritten.values()].filter(t => t), removed, values: {current: state.current, ...history_values()}}).catch(() => {});
 }
 
