@@ -4,25 +4,27 @@ import {state, changed, on_change, on_toast, current_take, current_stroke, say, 
 import {by_id, make} from "../../net/page/dom.js";
 import {place_icons, forget_colours, is_dark} from "./look.js";
 import {connect, call, on_hello} from "./service/connection.js";
-import {open_takes, undo, redo, can_undo, can_redo} from "./takes/takes.js";
+import {undo, redo, can_undo, can_redo, steps_of_undo, restore_undo, rename_take} from "./takes/takes.js";
+import {open_takes, write_at_once} from "./takes/keeping.js";
 import {draw_frame, moves} from "./drawing/canvas.js";
 import {set_array, look_at_all, zoom, resize, place_in_page} from "./drawing/view.js";
 import {draw_lanes, clock_text} from "./time/lanes.js";
 import "./time/timeline.js";
 import {LEAST_LEVEL_DB} from "./service/planner.js";
 import {play, stop, tick, silence_speaker, unanswered_s} from "./service/player.js";
-import {change_point, remove_point, on_tactor_held} from "./drawing/pointer.js";
+import {change_point, remove_point, on_tactor_held, finish_early} from "./drawing/pointer.js";
 import {show_examples, open_example} from "./takes/takes_panel.js";
 import {show_tactor, own_name} from "./service/device.js";
 import {choose_tool, new_take} from "./settings/keys.js";
 import "./takes/files.js";
+import "./takes/shape_switch.js";
 import "./settings/inspector.js";
 import {draw_meter} from "./settings/level.js";
 import "./settings/prediction.js";
 import {seconds_text} from "./words.js";
 import {length_mm, editable, total_s} from "./takes/stroke.js";
 
-const TOAST_MS = 2200;
+const TOAST_MS = 2200, UNDO_MS = 6000;
 const DONE_MS = 600; // for which the button says that it has stopped
 
 // Light and dark.
@@ -47,11 +49,13 @@ place_icons();
 
 // Messages that go away.
 let toast_timer = 0;
-on_toast(text => {
-  by_id("toast").textContent = text;
+const hide_toast = () => by_id("toast").classList.remove("on");
+on_toast((text, take_back) => {
+  by_id("toast").replaceChildren(text, ...take_back ? [make("button", {type: "button", onclick: () => { take_back(); hide_toast(); }},
+    "Undo")] : []);
   by_id("toast").classList.add("on");
   clearTimeout(toast_timer);
-  toast_timer = setTimeout(() => by_id("toast").classList.remove("on"), TOAST_MS);
+  toast_timer = setTimeout(hide_toast, take_back ? UNDO_MS : TOAST_MS);
 });
 
 // Buttons.
@@ -171,7 +175,8 @@ on_change(wake);
 setInterval(() => { if (state.dbfs.some(v => v !== null) || state.touches.size) wake(); }, 33);
 
 new ResizeObserver(() => { resize(); changed("frame"); }).observe(by_id("stage"));
-addEventListener("beforeunload", e => { if (!state.storage_lasts && state.takes.length) e.preventDefault(); });
+addEventListener("beforeunload", e => { if (state.unkept.size) e.preventDefault(); });
+addEventListener("pagehide", () => { finish_early(); write_at_once(); });
 
 // The start.
 on_hello(async h => {
@@ -180,7 +185,7 @@ on_hello(async h => {
   changed("array", "options", "take");
   show_examples();
 });
-open_takes().catch(() => say("This browser keeps no takes"));
+open_takes(steps_of_undo, restore_undo);
 connect(own_name());
 changed("takes", "take", "theme", "tool");
 
@@ -194,4 +199,4 @@ document.head.append(Object.assign(document.createElement("link"), {rel: "manife
   icons: [{src: icon_url, sizes: "any", type: "image/svg+xml"}]})], {type: "application/manifest+json"}))}));
 
 // For the console, and for tests.
-globalThis.tactor = {state, changed, place_in_page};
+globalThis.tactor = {state, changed, place_in_page, rename: rename_take};

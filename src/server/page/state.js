@@ -12,7 +12,9 @@ export const state = {
   dbfs: [],              // of each tactor, as it is driven
   options: [],           // the rows of the table of options that a client may give
   // Takes.
-  takes: [], current: null, storage_lasts: true,
+  takes: [], current: null, bin: [],
+  unkept: new Set(), storage_fault: "", // ids of takes that the browser has not kept, and why
+  elsewhere: new Set(),  // ids of takes that another tab has just changed
   stroke: 0,             // the one that is edited
   knot: -1, tool: "draw", feel: true, append: false, level_db: 0, // below the ceiling
   // Drawing, prediction and play.
@@ -44,10 +46,10 @@ function flush() {
   listeners.forEach(f => f(now));
 }
 
-// Messages: a toast that goes away, and a banner that stays.
+// Messages: a toast that goes away, with a button if something can be undone, and a banner that stays.
 let toast = null;
 export function on_toast(f) { toast = f; }
-export function say(text) { toast?.(text); }
+export function say(text, take_back = null) { toast?.(text, take_back); }
 
 // Small things that the browser remembers, where it does.
 export const remembered = name => { try { return localStorage.getItem(`tactor-${name}`); } catch { return null; } };

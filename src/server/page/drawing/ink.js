@@ -3,6 +3,7 @@
 import {state, current_take} from "../state.js";
 import {colour, is_dark, font} from "../look.js";
 import {array, view, layers, start_layer, trace, disc, to_px} from "./view.js";
+import {editable, shape} from "../takes/stroke.js";
 import {viridis} from "../../../net/page/viridis.js";
 
 export function draw_ink() {
@@ -52,10 +53,20 @@ function draw_felt(p, plan) {
   p.restore();
 }
 function draw_stroke(p, s, own) {
+  if (own && shape(s) && shape(s) !== "drawn") draw_ghost(p, s.ink);
   trace(p, s.timed.map(q => [q[1], q[2]]));
   p.strokeStyle = own ? colour("ink") : colour("ink2");
   p.lineWidth = own ? 2 : 1.5;
   p.stroke();
+}
+// Draws the ink below a path that has left it.
+function draw_ghost(p, ink) {
+  trace(p, ink.map(q => [q[1], q[2]]));
+  p.globalAlpha = 0.2;
+  p.strokeStyle = colour("ink");
+  p.lineWidth = 3;
+  p.stroke();
+  p.globalAlpha = 1;
 }
 function draw_dots(p, plan) {
   if (plan.continuous || !plan.onsets) return;
@@ -75,16 +86,15 @@ function draw_dots(p, plan) {
 }
 function draw_marks(p, s, i) {
   const own = i === state.stroke, first = to_px(s.timed[0].slice(1)), last = to_px(s.timed.at(-1).slice(1));
-  if (own && s.knots && (state.tool === "points" || s.knots.length < 14)) s.knots.forEach((k, n) => draw_knot(p, k,
-    state.tool === "points", n === state.knot));
+  if (own && state.tool === "points") editable(s).knots.forEach((k, n) => draw_knot(p, k, n === state.knot));
   if (!own) return;
   p.font = font(12, 600);
   // Names lie on the side of the stroke that is away from its way.
   label(p, "start", first, s.timed, 0);
   if (Math.hypot(first[0] - last[0], first[1] - last[1]) > 24) label(p, "end", last, s.timed, s.timed.length - 1);
 }
-function draw_knot(p, k, large, chosen) {
-  const [x, y] = to_px([k.x, k.y]), r = large ? 6.5 : 4;
+function draw_knot(p, k, chosen) {
+  const [x, y] = to_px([k.x, k.y]), r = 6.5;
   p.beginPath();
   if (k.corner) p.rect(x - r * 0.9, y - r * 0.9, r * 1.8, r * 1.8); else p.arc(x, y, r, 0, 2 * Math.PI);
   p.fillStyle = chosen ? colour("ink") : colour("raised");

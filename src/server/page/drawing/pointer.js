@@ -4,8 +4,9 @@ import {state, changed, current_take, current_stroke, ceiling_dbfs, say} from ".
 import {by_id} from "../../../net/page/dom.js";
 import {call, tell, is_connected, on_lost} from "../service/connection.js";
 import {array, to_mm, to_px, px_per_mm, tactor_at, zoom, pan} from "./view.js";
-import {add_take, edit_take, edit_stroke, end_edit, request_options, moved_knot} from "../takes/takes.js";
-import {from_drawing, straight, editable, nearest_knot, insert_knot, rebuild, total_s} from "../takes/stroke.js";
+import {add_take, edit_take, edit_stroke, end_edit, request_options} from "../takes/takes.js";
+import {say_if_kept} from "../takes/keeping.js";
+import {from_drawing, straight, editable, nearest_knot, insert_knot, changed_knot, without_knot, total_s} from "../takes/stroke.js";
 import {test_tactor, tell_level, on_stop} from "../service/player.js";
 
 const RESTING_MS = 100;    // a finger that rests says so, or its stroke would end
@@ -136,7 +137,7 @@ function tap(f) {
 }
 
 // Makes a take, or more strokes of this one, of all fingers that touched until none did any more.
-function finish() {
+function finish(take_name) {
   const d = state.drawing;
   state.drawing = null;
   document.body.classList.remove("touching");
@@ -158,11 +159,17 @@ function finish() {
   } else {
     const first = Math.min(...strokes.map(s => s.start_s));
     const take = add_take(strokes.map(s => ({...s, start_s: +(s.start_s - first).toFixed(4)})),
-      {origin: NAMES[d.kind] ?? "drawn"});
-    say(`Kept as “${take.name}”`);
+      {name: take_name, origin: NAMES[d.kind] ?? "drawn"});
+    say_if_kept(take);
   }
   state.at_s = 0;
   changed("drawing", "take");
+}
+// Makes a take of a drawing while the page goes away.
+export function finish_early() {
+  if (!state.drawing) return;
+  fingers.clear();
+  finish(`Drawing of ${new Date().toTimeString().slice(0, 5)}, not finished`);
 }
 function lift_all() {
   key = null;
@@ -186,7 +193,7 @@ function grasp(f, mm) {
   changed("knot");
   return true;
 }
-function drag_knot(f, mm) { edit_stroke(s => moved_knot(s, f.knot, mm.map(v => +v.toFixed(3))), f.key); }
+function drag_knot(f, [x, y]) { edit_stroke(s => changed_knot(s, f.knot, {x: +x.toFixed(3), y: +y.toFixed(3)}), f.key); }
 function add_point(mm) {
   const s = edited_stroke();
   if (!s) return;
@@ -196,12 +203,12 @@ function add_point(mm) {
   changed("knot");
 }
 export function change_point(how) {
-  edit_stroke(s => rebuild({...s, knots: s.knots.map((k, i) => i === state.knot ? {...k, ...how} : k)}));
+  edit_stroke(s => changed_knot(s, state.knot, how));
 }
 export function remove_point() {
   const s = edited_stroke();
   if (!s || state.knot < 0 || s.knots.length <= 2) return;
-  edit_stroke(t => rebuild({...t, knots: t.knots.filter((_, i) => i !== state.knot)}));
+  edit_stroke(t => without_knot(t, state.knot));
   state.knot = Math.min(state.knot, s.knots.length - 2);
   changed("knot");
 }
@@ -275,7 +282,7 @@ field.addEventListener("keydown", e => {
   const mm = Math.max(...array.box.size, 10) / (e.shiftKey ? 100 : 25);
   if (state.tool === "points" && state.knot >= 0 && edited_stroke()) {
     const k = edited_stroke().knots[state.knot];
-    return edit_stroke(s => moved_knot(s, state.knot, [k.x + step[0] * mm, k.y + step[1] * mm]), `key knot ${state.knot}`);
+    return edit_stroke(s => changed_knot(s, state.knot, {x: k.x + step[0] * mm, y: k.y + step[1] * mm}), `key knot ${state.knot}`);
   }
   if (!key) return;
   key = [key[0] + step[0] * mm, key[1] + step[1] * mm];

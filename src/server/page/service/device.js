@@ -38,6 +38,8 @@ function warn() {
     "The owner has it, in the file that token_file names; or open the link that ends in #token=…"];
   if (state.link === "lost") return ["No connection to tactor. It is tried again; nothing is lost.", "bad", state.lost_reason
     || "The WebSocket to the service is closed."];
+  if (state.unkept.size) return [`Takes are not kept: ${state.storage_fault}.`, "warn",
+    "It is tried again with each change. Save what you need as a file; the page asks before it closes."];
   if (state.link === "connected" && state.slow) return null;
   if (s.state === "lost") return [state.hello?.stream.format === null
     ? "No sound card. Plug it in and it goes on by itself." : "The sound card is gone. Drawings are kept; plug it in again.",
@@ -66,6 +68,7 @@ function show_device() {
   by_id("others").setAttribute("aria-label", `${others} ${others === 1 ? "other" : "others"}`);
   const b = warn(), key = b ? b[0] : "";
   if (key !== closed && key === "") closed = "";
+  by_id("banner-close").hidden = state.unkept.size > 0;
   by_id("banner").hidden = !b || closed === key;
   if (b && closed !== key && key !== said.banner) {
     by_id("banner").dataset.tone = b[1];
@@ -101,7 +104,7 @@ function show_facts() {
       ...fact("Amplifier", s?.amplifier), ...fact("Xruns", s?.stream.xruns),
     ...fact("Real time", s ? s.stream.realtime ? "yes" : "no" : null), ...fact("Ceiling",
       `${number_text(ceiling_dbfs(), 0)} dBFS`), ...fact("Version", h.version),
-    ...fact("Takes", state.storage_lasts ? "kept in this browser" : "this browser keeps nothing: save what you need")]);
+    ...fact("Takes", state.storage_fault ? `not kept: ${state.storage_fault}` : "kept in this browser")]);
 }
 on_change(what => {
   if (!what.has("array") || !state.hello) return;

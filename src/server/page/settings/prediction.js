@@ -50,11 +50,10 @@ function show_warnings() {
     const worst = s.timed.reduce((w, q) => { const off = outside_mm(array.edge, [q[1], q[2]]);
       return off > w.off ? {off, place: [q[1], q[2]]} : w; }, {off: OUTSIDE_MM, place: null});
     if (!worst.place) return;
-    state.outside.push(worst);
-    if (take.leaves_array) return;
-    found.push({text: `“${take.strokes.length === 1 ? take.name : s.name}” is up to ${worst.off.toFixed(0) || 1} mm outside the array. There it is felt at the edge.`,
-      buttons: [["Fit to array", () => fit_take(array.edge)], ["Leave it", () => edit_take(() => ({leaves_array: true}))]]});
+    state.outside.push({...worst, name: take.strokes.length === 1 ? take.name : s.name});
   });
+  if (state.outside.length && !take.leaves_array) found.push({text: outside_text(),
+    buttons: [["Fit to array", () => fit_take(array.edge)], ["Leave it", () => edit_take(() => ({leaves_array: true}))]]});
   for (const w of state.plan?.warnings ?? []) if (!/outside/.test(w)) found.push({text: w, buttons: []});
   const some = found.slice(0, 3);
   by_id("warnings").replaceChildren(...some.map(w => make("div", {class: "warning"}, icon("warn"),
@@ -62,6 +61,11 @@ function show_warnings() {
       make("button", {type: "button", class: i === 0 ? "button outlined" : "button", onclick: f}, t)))))));
   by_id("pill").dataset.warn = found.length > 0;
   changed("frame");
+}
+function outside_text() {
+  const n = state.outside.length, far = `up to ${Math.max(1, Math.round(Math.max(...state.outside.map(w => w.off))))} mm outside the array.`;
+  return n === 1 ? `“${state.outside[0].name}” is ${far} There it is felt at the edge.`
+    : `${n} strokes are ${far} There they are felt at the edge.`;
 }
 // Says a refusal for people: what is too much, and not in the terms of files.
 function plain_fault(f) {
