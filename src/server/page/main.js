@@ -14,7 +14,9 @@ import {play, stop, tick, silence_speaker} from "./service/player.js";
 import {change_point, remove_point, on_tactor_held} from "./drawing/pointer.js";
 import {show_examples, open_example} from "./takes/takes_panel.js";
 import {show_tactor, own_name} from "./service/device.js";
-import {choose_tool, new_take} from "./settings/keys.js";
+import {choose_tool, new_take, open_sheet, fold_time} from "./settings/keys.js";
+import {show_all_time, zoom_time} from "./time/time_axis.js";
+import "./drawing/point_keys.js";
 import "./takes/files.js";
 import "./settings/inspector.js";
 import "./settings/prediction.js";
@@ -75,6 +77,13 @@ on("show-strength", () => { state.show_strength = !state.show_strength; changed(
 on("point-curve", () => change_point({corner: false}));
 on("point-corner", () => change_point({corner: true}));
 on("point-bin", remove_point);
+on("play-from", () => play({from_s: state.at_s}));
+on("time-out", () => zoom_time(1.5));
+on("time-in", () => zoom_time(1 / 1.5));
+on("time-all", show_all_time);
+on("time-fold", fold_time);
+for (const b of document.querySelectorAll("[data-press]")) b.addEventListener("click",
+  () => { by_id("p-more").hidePopover(); by_id(b.dataset.press).click(); });
 on("pill", () => open_sheet("inspector"));
 on("settings", () => open_sheet(document.body.dataset.sheetOpen ? "" : state.sheet || "inspector"));
 on("sheet-close", () => open_sheet(""));
@@ -83,14 +92,6 @@ on("hint-example", () => { open_example(); setTimeout(play, 0); });
 let hint_closed = false;
 for (const b of document.querySelectorAll("button[data-tool]")) b.addEventListener("click", () => choose_tool(b.dataset.tool));
 for (const b of document.querySelectorAll("button[data-sheet]")) b.addEventListener("click", () => open_sheet(b.dataset.sheet));
-function open_sheet(name) {
-  if (state.drawing) return; // the canvas never changes under a finger
-  if (name) state.sheet = name;
-  document.body.dataset.sheetOpen = name;
-  for (const b of document.querySelectorAll("button[data-sheet]")) b.setAttribute("aria-pressed", b.dataset.sheet === name);
-  by_id("settings").setAttribute("aria-expanded", name !== "");
-  changed("layout");
-}
 document.body.dataset.sheetOpen = "";
 on_tactor_held(show_tactor);
 
@@ -99,7 +100,7 @@ on_change(() => {
   const take = current_take(), p = state.playing;
   by_id("undo").disabled = !can_undo();
   by_id("redo").disabled = !can_redo();
-  by_id("play").disabled = !take?.strokes.length;
+  by_id("play").disabled = by_id("play-from").disabled = !take?.strokes.length;
   by_id("play").dataset.on = p !== null;
   by_id("play").querySelector("span").textContent = p ? "Playing" : "Play";
   by_id("loop").setAttribute("aria-pressed", state.loop);
@@ -158,6 +159,11 @@ on_change(wake);
 setInterval(() => { if (state.dbfs.some(v => v !== null) || state.touches.size) wake(); }, 33);
 
 new ResizeObserver(() => { resize(); changed("frame"); }).observe(by_id("stage"));
+// A screen of another density, or the browser's zoom: all is drawn again.
+function watch_density() {
+  matchMedia(`(resolution: ${devicePixelRatio}dppx)`).addEventListener("change", () => { changed("layout"); watch_density(); }, {once: true});
+}
+watch_density();
 addEventListener("beforeunload", e => { if (!state.storage_lasts && state.takes.length) e.preventDefault(); });
 
 // The start.

@@ -3,6 +3,7 @@
 import {state, current_take} from "../state.js";
 import {colour, is_dark, font} from "../look.js";
 import {array, view, layers, start_layer, trace, disc, to_px} from "./view.js";
+import {draw_labels} from "./labels.js";
 import {viridis} from "../../../net/page/viridis.js";
 
 export function draw_ink() {
@@ -23,6 +24,7 @@ export function draw_ink() {
   });
   if (plan) draw_dots(p, plan);
   if (!drawing) strokes.forEach((s, i) => draw_marks(p, s, i));
+  draw_labels(p, drawing ? [] : strokes);
 }
 function draw_ring(p, q, i) {
   const c = to_px(q), r = array.radius * view.scale;
@@ -40,7 +42,8 @@ export function draw_number(p, [x, y], i, tone) {
   p.textAlign = "center";
   p.textBaseline = "middle";
   p.fillStyle = colour(tone);
-  p.fillText(array.tactors[i].tactor ?? i, x, y + 0.5);
+  const number = String(array.tactors[i].tactor ?? i);
+  if (p.measureText(number).width < 2 * array.radius * view.scale) p.fillText(number, x, y + 0.5);
   p.textBaseline = "alphabetic";
 }
 function draw_felt(p, plan) {
@@ -74,14 +77,8 @@ function draw_dots(p, plan) {
   }
 }
 function draw_marks(p, s, i) {
-  const own = i === state.stroke, first = to_px(s.timed[0].slice(1)), last = to_px(s.timed.at(-1).slice(1));
-  if (own && s.knots && (state.tool === "points" || s.knots.length < 14)) s.knots.forEach((k, n) => draw_knot(p, k,
+  if (i === state.stroke && s.knots && (state.tool === "points" || s.knots.length < 14)) s.knots.forEach((k, n) => draw_knot(p, k,
     state.tool === "points", n === state.knot));
-  if (!own) return;
-  p.font = font(12, 600);
-  // Names lie on the side of the stroke that is away from its way.
-  label(p, "start", first, s.timed, 0);
-  if (Math.hypot(first[0] - last[0], first[1] - last[1]) > 24) label(p, "end", last, s.timed, s.timed.length - 1);
 }
 function draw_knot(p, k, large, chosen) {
   const [x, y] = to_px([k.x, k.y]), r = large ? 6.5 : 4;
@@ -92,15 +89,4 @@ function draw_knot(p, k, large, chosen) {
   p.strokeStyle = colour("ink");
   p.lineWidth = 2;
   p.stroke();
-}
-function label(p, text, [x, y], timed, at) {
-  const other = timed[at === 0 ? Math.min(timed.length - 1, 3) : Math.max(0, timed.length - 4)], [ox, oy] = to_px(other.slice(1));
-  const d = Math.hypot(x - ox, y - oy) || 1, dx = (x - ox) / d, dy = (y - oy) / d;
-  p.textAlign = dx > 0.4 ? "left" : dx < -0.4 ? "right" : "center";
-  p.lineWidth = 4;
-  p.strokeStyle = colour("skin");
-  const tx = x + dx * 11, ty = y + dy * 16 + 4;
-  p.strokeText(text, tx, ty);
-  p.fillStyle = colour("ink");
-  p.fillText(text, tx, ty);
 }

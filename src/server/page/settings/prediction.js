@@ -18,9 +18,9 @@ const OUTSIDE_MM = 0.5;
 function show_predicted() {
   const e = state.plan?.errors, box = by_id("predicted");
   const numbers = e && typeof e.rms_error_mm === "number" ? [
-    tile(number_text(e.rms_error_mm), "mm off", `${place_word(e.rms_error_mm)}, RMS`, spark(errors_over_time())),
-    e.speed_cv === undefined || e.speed_cv === null ? tile("–", "", "speed is not predicted", spark([]))
-      : tile(`${Math.round(100 / (1 + e.speed_cv))}`, "% even", `${even_word(e.speed_cv)}, CV ${e.speed_cv.toFixed(2)}`,
+    tile(number_text(e.rms_error_mm), "mm off", [place_word(e.rms_error_mm / array.pitch), ", RMS"], spark(errors_over_time())),
+    e.speed_cv === undefined || e.speed_cv === null ? tile("–", "", ["speed is not predicted"], spark([]))
+      : tile(`${Math.round(100 / (1 + e.speed_cv))}`, "% even", [even_word(e.speed_cv), `, CV ${e.speed_cv.toFixed(2)}`],
         spark(felt_speed(), mean_speed()))]
     : [make("p", {class: "hint-text"}, state.plan_fault ? "There is no plan." : "Draw, and the prediction shows here.")];
   box.replaceChildren(...numbers);
@@ -28,7 +28,7 @@ function show_predicted() {
   by_id("pill-text").textContent = e && typeof e.rms_error_mm === "number" ? `${number_text(e.rms_error_mm)} mm off` : "";
 }
 const tile = (figure, unit, word, picture) => make("div", {class: "tile"}, make("div", {}, make("b", {}, figure),
-  make("small", {}, unit)), make("p", {}, word), picture);
+  make("small", {}, unit)), make("p", {}, word[0], make("i", {}, word[1] ?? "")), picture);
 function errors_over_time() {
   const take = current_take(), plan = state.plan;
   if (!take) return [];
@@ -52,14 +52,17 @@ function show_warnings() {
     if (!worst.place) return;
     state.outside.push(worst);
     if (take.leaves_array) return;
-    found.push({text: `“${take.strokes.length === 1 ? take.name : s.name}” is up to ${worst.off.toFixed(0) || 1} mm outside the array. There it is felt at the edge.`,
+    const about = `“${take.strokes.length === 1 ? take.name : s.name}” is up to ${worst.off.toFixed(0) || 1} mm outside`;
+    found.push({text: `${about} the array. There it is felt at the edge.`, short: about,
       buttons: [["Fit to array", () => fit_take(array.edge)], ["Leave it", () => edit_take(() => ({leaves_array: true}))]]});
   });
   for (const w of state.plan?.warnings ?? []) if (!/outside/.test(w)) found.push({text: w, buttons: []});
-  const some = found.slice(0, 3);
-  by_id("warnings").replaceChildren(...some.map(w => make("div", {class: "warning"}, icon("warn"),
-    make("div", {}, make("p", {}, w.text), w.buttons.length > 0 && make("div", {class: "row"}, ...w.buttons.map(([t, f], i) =>
-      make("button", {type: "button", class: i === 0 ? "button outlined" : "button", onclick: f}, t)))))));
+  const box = by_id("warnings");
+  box.toggleAttribute("data-all", false);
+  box.replaceChildren(...found.map(w => make("div", {class: "warning"}, icon("warn"),
+    make("div", {}, make("p", {}, make("span", {class: w.short && "long"}, w.text), w.short && make("span", {class: "short"}, w.short)), w.buttons.length > 0 && make("div", {class: "row"}, ...w.buttons.map(([t, f], i) =>
+      make("button", {type: "button", class: i === 0 ? "button outlined" : "button", onclick: f}, t)))))),
+    found.length > 1 && make("button", {type: "button", class: "button small", onclick: () => box.toggleAttribute("data-all", true)}, `and ${found.length - 1} more`));
   by_id("pill").dataset.warn = found.length > 0;
   changed("frame");
 }
