@@ -215,6 +215,28 @@ class Shapes(StudioTest):
                         p.key("KeyT", "t")
                         p.until("document.body.dataset.timeOpen === 'false'")
 
+    def test_settings_with_a_warning_show_the_settings(self):
+        p = self.warned(self.serve())
+        for size, touch in (((1024, 768), True), ((960, 540), False), ((1093, 614), False), ((820, 1180), True), ((600, 501), False),
+                            ((390, 844), True), ((360, 640), True), ((844, 390), True)):
+            self.resize(p, size, touch)
+            if p.value("document.querySelector('#settings').checkVisibility() && document.body.dataset.sheetOpen !== 'inspector'"):
+                p.click("#settings")
+                p.until("document.querySelector('#tabs').checkVisibility()")
+                p.until("document.getAnimations().length === 0")
+            for theme in ("light", "dark"):
+                p.call("Emulation.setEmulatedMedia", features=DARK if theme == "dark" else [])
+                p.until(f"document.documentElement.dataset.theme === '{theme}'")
+                p.value("new Promise(f => requestAnimationFrame(() => requestAnimationFrame(() => setTimeout(f, 0))))")
+                name = f"{size[0]}x{size[1]}-{theme}"
+                if PICTURES:
+                    p.picture(PICTURES / f"settings-{name}.png")
+            with self.subTest(shape=name):
+                # The tabs and the head of the chosen method are on the screen, above the level.
+                self.assertTrue(p.value("""[document.querySelector("#tab-method"), document.querySelector(".warning button"),
+                    document.querySelector("#pane .cards [aria-checked=true] b")].every(e => { const r = e.getBoundingClientRect();
+                    return e.contains(document.elementFromPoint(r.x + r.width / 2, r.y + r.height / 2)); })"""))
+
 
 if __name__ == "__main__":
     main()

@@ -52,17 +52,18 @@ function show_warnings() {
     if (!worst.place) return;
     state.outside.push(worst);
     if (take.leaves_array) return;
-    const about = `“${take.strokes.length === 1 ? take.name : s.name}” is up to ${worst.off.toFixed(0) || 1} mm outside`;
-    found.push({text: `${about} the array. There it is felt at the edge.`, short: about,
-      buttons: [["Fit to array", () => fit_take(array.edge)], ["Leave it", () => edit_take(() => ({leaves_array: true}))]]});
+    const name = take.strokes.length === 1 ? take.name : s.name, mm = `${worst.off.toFixed(0) || 1} mm outside`;
+    found.push({text: `“${name}” is up to ${mm} the array. There it is felt at the edge.`, short: `“${name}” is ${mm}`,
+      buttons: [[["Fit", make("span", {class: "long"}, " to array")], () => fit_take(array.edge)], ["Leave it", () => edit_take(() => ({leaves_array: true}))]]});
   });
   for (const w of state.plan?.warnings ?? []) if (!/outside/.test(w)) found.push({text: w, buttons: []});
   const box = by_id("warnings");
   box.toggleAttribute("data-all", false);
   box.replaceChildren(...found.map(w => make("div", {class: "warning"}, icon("warn"),
     make("div", {}, make("p", {}, make("span", {class: w.short && "long"}, w.text), w.short && make("span", {class: "short"}, w.short)), w.buttons.length > 0 && make("div", {class: "row"}, ...w.buttons.map(([t, f], i) =>
-      make("button", {type: "button", class: i === 0 ? "button outlined" : "button", onclick: f}, t)))))),
-    found.length > 1 && make("button", {type: "button", class: "button small", onclick: () => box.toggleAttribute("data-all", true)}, `and ${found.length - 1} more`));
+      make("button", {type: "button", class: i === 0 ? "button outlined" : "button", onclick: f}, ...[t].flat())))))),
+    ...found.length > 1 ? [make("button", {type: "button", class: "button small", onclick: () => box.toggleAttribute("data-all", true)},
+      `and ${found.length - 1} more`)] : []);
   by_id("pill").dataset.warn = found.length > 0;
   changed("frame");
 }

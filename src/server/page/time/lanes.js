@@ -32,7 +32,10 @@ function draw_layer(l) {
     p.textAlign = "right";
     p.fillStyle = colour(i === state.hot ? "ink" : "ink2");
     p.font = font(12, i === state.hot ? 700 : 600);
-    p.fillText(`${row === 0 ? "tactor " : ""}${array.tactors[i].tactor ?? i}`, left(l) - 8, y - 2);
+    const number = String(array.tactors[i].tactor ?? i);
+    p.fillText(number, left(l) - 8, y - 2);
+    const x = left(l) - 12 - p.measureText(number).width;
+    if (row === 0) { p.font = font(11); p.fillText("tactor", x, y - 2); }
   });
   if (silent_count() && !l.thin) {
     p.font = font(12); p.textAlign = "left"; p.fillStyle = colour("ink3");

@@ -14,7 +14,7 @@ const MANY_TACTORS = 16;   // above this only those that play have a lane
 export const LEAST_AMPLITUDE = 0.004;
 export const LEAST_S = 0.06;
 export const MOST_S = 599.9; // with its last burst a stroke has at most 600 s
-const LABEL = 58, RIGHT = 58, EDGE = 14;
+const LABEL = 64, RIGHT = 58, EDGE = 14;
 
 function make_lanes(canvas, mini) {
   const own = {canvas, mini, layer: document.createElement("canvas"), width: 0, height: 0, stale: true, from: 0, span: null, scroll: 0};
