@@ -6,7 +6,8 @@ import {place_icons, forget_colours, is_dark} from "./look.js";
 import {connect, call, on_hello} from "./service/connection.js";
 import {open_takes, undo, redo, can_undo, can_redo} from "./takes/takes.js";
 import {draw_frame, moves} from "./drawing/canvas.js";
-import {set_array, look_at_all, zoom, resize, place_in_page} from "./drawing/view.js";
+import {view, set_array, look_at_all, zoom, resize, place_in_page} from "./drawing/view.js";
+import {label_boxes} from "./drawing/labels.js";
 import {draw_lanes, clock_text} from "./time/lanes.js";
 import "./time/timeline.js";
 import {LEAST_LEVEL_DB} from "./service/planner.js";
@@ -15,7 +16,7 @@ import {change_point, remove_point, on_tactor_held} from "./drawing/pointer.js";
 import {show_examples, open_example} from "./takes/takes_panel.js";
 import {show_tactor, own_name} from "./service/device.js";
 import {choose_tool, new_take, open_sheet, fold_time} from "./settings/keys.js";
-import {show_all_time, zoom_time} from "./time/time_axis.js";
+import {full, lane_tactors, lane_height, show_all_time, zoom_time} from "./time/time_axis.js";
 import "./drawing/point_keys.js";
 import "./takes/files.js";
 import "./settings/inspector.js";
@@ -159,7 +160,7 @@ on_change(wake);
 setInterval(() => { if (state.dbfs.some(v => v !== null) || state.touches.size) wake(); }, 33);
 
 new ResizeObserver(() => { resize(); changed("frame"); }).observe(by_id("stage"));
-// A screen of another density, or the browser's zoom: all is drawn again.
+// Another density of the screen changes no size of the page: all is drawn again.
 function watch_density() {
   matchMedia(`(resolution: ${devicePixelRatio}dppx)`).addEventListener("change", () => { changed("layout"); watch_density(); }, {once: true});
 }
@@ -187,4 +188,4 @@ document.head.append(Object.assign(document.createElement("link"), {rel: "manife
   icons: [{src: icon_url, sizes: "any", type: "image/svg+xml"}]})], {type: "application/manifest+json"}))}));
 
 // For the console, and for tests.
-globalThis.tactor = {state, changed, place_in_page};
+globalThis.tactor = {state, changed, place_in_page, view, lanes: full, label_boxes, lane_tactors, lane_height};
