@@ -7,7 +7,7 @@ import {interpolate} from "../takes/stroke.js";
 import {array, view, layers, stale, trace, disc, to_px} from "./view.js";
 import {draw_ground} from "./ground.js";
 import {draw_ink, draw_number} from "./ink.js";
-import {draw_share} from "./labels.js";
+import {draw_share, number_place} from "./labels.js";
 
 const pen = by_id("field").getContext("2d");
 
@@ -65,7 +65,8 @@ function draw_disc(q, i, share) {
     disc(p, c, r * Math.sqrt(share) * 0.93);
     p.fillStyle = colour("felt"); p.fill();
     draw_share(p, i, share);
-    draw_number(p, c, i, share > 0.06 ? "on-felt" : "ink");
+    const [x, y] = number_place(i), reach = Math.hypot(x - c[0], y - c[1]);
+    draw_number(p, i, Math.sqrt(share) * 0.93 * r > reach + Math.min(6, 0.2 * r) ? "on-felt" : "ink");
   }
 }
 function draw_arms(now) {

@@ -3,7 +3,7 @@
 import {state, current_take} from "../state.js";
 import {colour, is_dark, font} from "../look.js";
 import {array, view, layers, start_layer, trace, disc, to_px} from "./view.js";
-import {draw_labels} from "./labels.js";
+import {place_labels, number_place, draw_labels} from "./labels.js";
 import {viridis} from "../../../net/page/viridis.js";
 
 export function draw_ink() {
@@ -12,6 +12,7 @@ export function draw_ink() {
   const take = current_take(), plan = state.plan;
   const drawing = state.drawing;
   // Tactors are the ground of the lines, which stay above them.
+  place_labels(drawing ? [] : take?.strokes ?? []);
   array.places.forEach((q, i) => draw_ring(p, q, i));
   if (plan) draw_felt(p, plan);
   const strokes = drawing ? drawing.before : take?.strokes ?? [];
@@ -34,10 +35,11 @@ function draw_ring(p, q, i) {
   p.strokeStyle = colour(i === state.hot ? "ink" : "ink3");
   p.lineWidth = i === state.hot ? 2.5 : 1.5;
   p.stroke();
-  draw_number(p, c, i, "ink");
+  draw_number(p, i, "ink");
 }
 // Writes a tactor's number: under strokes and points, and over its disc while it is driven.
-export function draw_number(p, [x, y], i, tone) {
+export function draw_number(p, i, tone) {
+  const [x, y] = number_place(i);
   p.font = font(Math.max(11, Math.min(16, array.radius * view.scale * 0.5)), 600);
   p.textAlign = "center";
   p.textBaseline = "middle";

@@ -9,7 +9,7 @@ const FAR_PX = [9, 20, 34];
 const ANGLES = 16;
 const POINTS = 200; // of a stroke, that labels avoid
 
-let circles = [], boxes = [], share_places = [];
+let circles = [], boxes = [], share_places = [], number_places = [];
 
 export const labels_touch = (a, b) => a[0] < b[2] && b[0] < a[2] && a[1] < b[3] && b[1] < a[3];
 export const circle_touches = ([x, y, r], b) => Math.hypot(x - Math.min(b[2], Math.max(b[0], x)), y - Math.min(b[3], Math.max(b[1], y))) < r;
@@ -31,20 +31,27 @@ function* places_round([x, y], w, first) {
     yield [x + c * (far + w / 2), y + s * (far + HIGH_PX / 2)];
   }
 }
-// Finds places for what each tactor may show, then for the ends of the chosen stroke, and draws those.
-export function draw_labels(p, strokes) {
+// Finds places for the number of each tactor, where no stroke hides it, and for what the tactor may show.
+export function place_labels(strokes) {
   const r = array.radius * view.scale, centres = array.places.map(to_px);
   circles = [...centres.map(c => [...c, r + 2]), ...(state.outside ?? []).map(w => [...to_px(w.place), 13])];
   boxes = [];
   if (array.up) { const [x, y] = to_px([array.box.middle[0], array.box.least[1] - array.radius]); boxes.push([x - 50, y - 21, x + 50, y - 2]); }
   const away = HIGH_PX / 2 + r + 3, beside = r + SHARE_PX / 2 + 4;
   share_places = centres.map(([x, y]) => take_place(SHARE_PX, [[x, y + away], [x, y - away], [x + beside, y], [x - beside, y]]));
+  const path = strokes.flatMap(s => {
+    const step = Math.max(1, Math.floor(s.timed.length / POINTS));
+    return s.timed.filter((_, i) => i % step === 0).map(q => [...to_px(q.slice(1)), 6]);
+  });
+  const off = r * 0.6, hidden = ([x, y]) => path.some(q => Math.hypot(q[0] - x, q[1] - y) < 13);
+  number_places = centres.map(([x, y]) => [[x, y], [x, y - off], [x, y + off], [x - off, y], [x + off, y]].find(q => !hidden(q)) ?? [x, y]);
+  circles.push(...path);
+}
+export const number_place = i => number_places[i];
+// Draws the names of the ends of the chosen stroke, where there is a place.
+export function draw_labels(p, strokes) {
   const own = strokes[state.stroke];
   if (!own) return;
-  for (const s of strokes) {
-    const step = Math.max(1, Math.floor(s.timed.length / POINTS));
-    for (let i = 0; i < s.timed.length; i += step) circles.push([...to_px(s.timed[i].slice(1)), 6]);
-  }
   p.font = font(12, 600);
   p.textAlign = "center";
   const rows = own.timed, first = to_px(rows[0].slice(1)), last = to_px(rows.at(-1).slice(1));

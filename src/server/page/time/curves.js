@@ -16,8 +16,8 @@ export function draw_curves(p, l) {
   p.strokeStyle = colour("line2"); p.lineWidth = 1;
   p.beginPath(); p.moveTo(left(l), bottom + 0.5); p.lineTo(l.width - right(l), bottom + 0.5); p.stroke();
   p.font = font(11);
-  p.textAlign = "left"; p.fillStyle = colour("ink3");
-  p.fillText(`${Math.round(most)} mm/s`, l.width - right(l) + 3, top + 16); p.fillText("0", l.width - right(l) + 3, bottom);
+  p.textAlign = "right"; p.fillStyle = colour("ink3");
+  p.fillText(`${Math.round(most)} mm/s`, l.width - 4, top + 16); p.fillText("0", l.width - 4, bottom);
   p.textAlign = "right";
   [["speed", "ink", state.show_speed], ["as felt", "felt-ink", state.show_speed],
     ["strength", "ink2", state.show_strength]].forEach(([w, c, on], i) => {
