@@ -43,7 +43,7 @@ export function place_labels(strokes) {
     const step = Math.max(1, Math.floor(s.timed.length / POINTS));
     return s.timed.filter((_, i) => i % step === 0).map(q => [...to_px(q.slice(1)), 6]);
   });
-  const off = r * 0.6, hidden = ([x, y]) => path.some(q => Math.hypot(q[0] - x, q[1] - y) < 13);
+  const off = r > 16 ? r * 0.6 : 0, hidden = ([x, y]) => path.some(q => Math.hypot(q[0] - x, q[1] - y) < 13);
   number_places = centres.map(([x, y]) => [[x, y], [x, y - off], [x, y + off], [x - off, y], [x + off, y]].find(q => !hidden(q)) ?? [x, y]);
   circles.push(...path);
 }
