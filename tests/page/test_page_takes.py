@@ -199,7 +199,7 @@ class Takes(StudioTest):
     def test_examples_have_names_for_people_and_play(self):
         p, watcher = self.ready(self.serve())
         self.assertEqual(p.value("[...document.querySelectorAll('#examples b')].map(b => b.textContent)"),
-                         ["Half circle, left", "Half circle, right", "Three-quarter circle", "Three-quarter circle, mirrored"])
+                         ["Half circle, left", "Half circle, right", "Three-quarter circle", "Three-quarter circle, mirrored", "Wave", "Round"])
         p.click("#hint-example")
         number = self.next_stroke(watcher, "started")
         self.assertEqual(self.next_stroke(watcher, "finished"), number)

@@ -7,7 +7,8 @@ import {connect, call, on_hello} from "./service/connection.js";
 import {undo, redo, can_undo, can_redo, steps_of_undo, restore_undo, rename_take} from "./takes/takes.js";
 import {open_takes, write_at_once} from "./takes/keeping.js";
 import {draw_frame, moves} from "./drawing/canvas.js";
-import {set_array, look_at_all, zoom, resize, place_in_page} from "./drawing/view.js";
+import {view, set_array, look_at_all, zoom, resize, place_in_page} from "./drawing/view.js";
+import {label_boxes} from "./drawing/labels.js";
 import {draw_lanes, clock_text} from "./time/lanes.js";
 import "./time/timeline.js";
 import {LEAST_LEVEL_DB} from "./service/planner.js";
@@ -15,7 +16,9 @@ import {play, stop, tick, silence_speaker, unanswered_s} from "./service/player.
 import {change_point, remove_point, on_tactor_held, finish_early} from "./drawing/pointer.js";
 import {show_examples, open_example} from "./takes/takes_panel.js";
 import {show_tactor, own_name} from "./service/device.js";
-import {choose_tool, new_take} from "./settings/keys.js";
+import {choose_tool, new_take, open_sheet, fold_time} from "./settings/keys.js";
+import {full, lane_tactors, lane_height, show_all_time, zoom_time} from "./time/time_axis.js";
+import "./drawing/point_keys.js";
 import "./takes/files.js";
 import "./takes/shape_switch.js";
 import "./settings/inspector.js";
@@ -83,6 +86,13 @@ on("show-strength", () => { state.show_strength = !state.show_strength; changed(
 on("point-curve", () => change_point({corner: false}));
 on("point-corner", () => change_point({corner: true}));
 on("point-bin", remove_point);
+on("play-from", () => play({from_s: state.at_s}));
+on("time-out", () => zoom_time(1.5));
+on("time-in", () => zoom_time(1 / 1.5));
+on("time-all", show_all_time);
+on("time-fold", fold_time);
+for (const b of document.querySelectorAll("[data-press]")) b.addEventListener("click",
+  () => { by_id("p-more").hidePopover(); by_id(b.dataset.press).click(); });
 on("pill", () => open_sheet("inspector"));
 on("settings", () => open_sheet(document.body.dataset.sheetOpen ? "" : state.sheet || "inspector"));
 on("sheet-close", () => open_sheet(""));
@@ -91,14 +101,6 @@ on("hint-example", () => { open_example(); setTimeout(play, 0); });
 let hint_closed = false;
 for (const b of document.querySelectorAll("button[data-tool]")) b.addEventListener("click", () => choose_tool(b.dataset.tool));
 for (const b of document.querySelectorAll("button[data-sheet]")) b.addEventListener("click", () => open_sheet(b.dataset.sheet));
-function open_sheet(name) {
-  if (state.drawing) return; // the canvas never changes under a finger
-  if (name) state.sheet = name;
-  document.body.dataset.sheetOpen = name;
-  for (const b of document.querySelectorAll("button[data-sheet]")) b.setAttribute("aria-pressed", b.dataset.sheet === name);
-  by_id("settings").setAttribute("aria-expanded", name !== "");
-  changed("layout");
-}
 document.body.dataset.sheetOpen = "";
 on_tactor_held(show_tactor);
 
@@ -107,7 +109,7 @@ on_change(() => {
   const take = current_take(), p = state.playing;
   by_id("undo").disabled = !can_undo();
   by_id("redo").disabled = !can_redo();
-  by_id("play").disabled = !take?.strokes.length;
+  by_id("play").disabled = by_id("play-from").disabled = !take?.strokes.length;
   by_id("play").dataset.on = p !== null;
   by_id("play").querySelector("span").textContent = p ? "Playing" : "Play";
   show_stop();
@@ -177,6 +179,11 @@ setInterval(() => { if (state.dbfs.some(v => v !== null) || state.touches.size) 
 new ResizeObserver(() => { resize(); changed("frame"); }).observe(by_id("stage"));
 addEventListener("beforeunload", e => { if (state.unkept.size) e.preventDefault(); });
 addEventListener("pagehide", () => { finish_early(); write_at_once(); });
+// Another density of the screen changes no size of the page: all is drawn again.
+function watch_density() {
+  matchMedia(`(resolution: ${devicePixelRatio}dppx)`).addEventListener("change", () => { changed("layout"); watch_density(); }, {once: true});
+}
+watch_density();
 
 // The start.
 on_hello(async h => {
@@ -199,4 +206,4 @@ document.head.append(Object.assign(document.createElement("link"), {rel: "manife
   icons: [{src: icon_url, sizes: "any", type: "image/svg+xml"}]})], {type: "application/manifest+json"}))}));
 
 // For the console, and for tests.
-globalThis.tactor = {state, changed, place_in_page, rename: rename_take};
+globalThis.tactor = {state, changed, place_in_page, rename: rename_take, view, lanes: full, label_boxes, lane_tactors, lane_height};

@@ -7,6 +7,7 @@ import {interpolate} from "../takes/stroke.js";
 import {array, view, layers, stale, trace, disc, to_px} from "./view.js";
 import {draw_ground} from "./ground.js";
 import {draw_ink, draw_number} from "./ink.js";
+import {draw_share, number_place} from "./labels.js";
 
 const pen = by_id("field").getContext("2d");
 
@@ -65,14 +66,9 @@ function draw_disc(q, i, share) {
     p.strokeStyle = colour("felt"); p.lineWidth = 2.5; p.stroke();
     disc(p, c, r * Math.sqrt(share) * 0.93);
     p.fillStyle = colour("felt"); p.fill();
-    p.font = font(12, 600);
-    p.textAlign = "center";
-    p.lineWidth = 4;
-    p.strokeStyle = colour("skin");
-    p.fillStyle = colour("felt-ink");
-    const text = `${Math.round(share * 100)} %`;
-    p.strokeText(text, c[0], c[1] + r + 16); p.fillText(text, c[0], c[1] + r + 16);
-    draw_number(p, c, i, share > 0.06 ? "on-felt" : "ink");
+    draw_share(p, i, share);
+    const [x, y] = number_place(i), reach = Math.hypot(x - c[0], y - c[1]);
+    draw_number(p, i, Math.sqrt(share) * 0.93 * r > reach + Math.min(6, 0.2 * r) ? "on-felt" : "ink");
   }
 }
 function draw_arms(now) {

@@ -3,10 +3,10 @@
 import {state, changed, current_take, current_stroke, ceiling_dbfs, say} from "../state.js";
 import {by_id} from "../../../net/page/dom.js";
 import {call, tell, is_connected, on_lost} from "../service/connection.js";
-import {array, to_mm, to_px, px_per_mm, tactor_at, zoom, pan} from "./view.js";
+import {array, to_mm, to_px, px_per_mm, tactor_at, zoom, zoom_by_two, pan} from "./view.js";
 import {add_take, edit_take, edit_stroke, end_edit, request_options} from "../takes/takes.js";
 import {say_if_kept} from "../takes/keeping.js";
-import {from_drawing, straight, editable, nearest_knot, insert_knot, changed_knot, without_knot, total_s} from "../takes/stroke.js";
+import {from_drawing, straight, editable, nearest_knot, insert_knot, changed_knot, without_knot, total_s, outside_mm} from "../takes/stroke.js";
 import {test_tactor, tell_level, on_stop} from "../service/player.js";
 
 const RESTING_MS = 100;    // a finger that rests says so, or its stroke would end
@@ -40,12 +40,22 @@ function down(id, px, e) {
   if (tactor >= 0) f.hold = setTimeout(() => { if (f.mode === "tap") { f.mode = "held"; show_held(tactor, px); } }, HOLD_MS);
   f.tactor = tactor;
   fingers.set(id, f);
+  // Two fingers that begin together on the ground zoom; they draw nothing.
+  f.ground = f.kind === "touch" && outside_mm(array.edge, mm) > array.radius;
+  const other = f.ground && [...fingers.values()].find(o => o !== f && o.ground && o.mode === "tap");
+  if (other) [f, other].forEach(o => { clearTimeout(o.hold); o.mode = "zoom"; });
 }
 
 function moved(id, px, e) {
   const f = fingers.get(id);
   if (!f) return;
   const mm = to_mm(...px);
+  if (f.mode === "zoom") {
+    const other = [...fingers.values()].find(o => o !== f && o.mode === "zoom");
+    if (other) zoom_by_two([f.px, other.px], [px, other.px]);
+    f.px = px;
+    return;
+  }
   f.at = mm;
   f.strength = strength(e);
   if (f.mode === "knot") return drag_knot(f, mm);
@@ -280,10 +290,6 @@ field.addEventListener("keydown", e => {
   if (!step) return;
   e.preventDefault();
   const mm = Math.max(...array.box.size, 10) / (e.shiftKey ? 100 : 25);
-  if (state.tool === "points" && state.knot >= 0 && edited_stroke()) {
-    const k = edited_stroke().knots[state.knot];
-    return edit_stroke(s => changed_knot(s, state.knot, {x: k.x + step[0] * mm, y: k.y + step[1] * mm}), `key knot ${state.knot}`);
-  }
   if (!key) return;
   key = [key[0] + step[0] * mm, key[1] + step[1] * mm];
   moved("key", to_px(key), {pointerType: "key", timeStamp: performance.now()});

@@ -2,18 +2,19 @@
 // Plays takes, tests tactors, stops; and says where the moment is.
 import {state, changed, on_change, current_take, ceiling_dbfs, take_gain, say} from "../state.js";
 import {call, tell, is_connected, server_now_s, from_server_ms, on_notification, on_lost, SLOW_MS} from "./connection.js";
-import {make_request, take_s} from "../takes/takes.js";
-import {too_strong_db, weaken_take} from "./planner.js";
+import {make_request, take_s, take_from} from "../takes/takes.js";
+import {weaken_take} from "./planner.js";
 import {number_text} from "../words.js";
 import {start_loudspeaker} from "./loudspeaker.js";
 
 const TEST_S = 0.5;
 const AHEAD_S = 0.4;      // before the end, when the next round of a loop is asked for
-const AGAIN_MS = 500;      // between stops that are not answered
+const STOP_AGAIN_MS = 500;      // between stops that are not answered
 const ended = new Set();  // numbers whose end came before the answer that named them
 let speaker = null;
 
-export async function play() {
+// Plays the take, from a moment on if it is said.
+export async function play({from_s = 0} = {}) {
   const take = current_take();
   if (!take?.strokes.length) return;
   // It begins anew: copies of it never add up.
@@ -21,10 +22,9 @@ export async function play() {
   silence_speaker();
   const felt = is_connected() && !["lost", "muted", "closing"].includes(state.stream.state);
   state.stopped = null;
-  // After a look at one moment it plays from the start.
-  state.playing = {take: take.id, began_ms: performance.now(), total_s: state.plan?.total_s ?? take_s(take), numbers: new Set(),
-    felt};
-  state.at_s = 0;
+  state.playing = {take: take.id, began_ms: performance.now(), total_s: (state.plan?.total_s ?? take_s(take)) - from_s, numbers: new Set(),
+    felt, from_s};
+  state.at_s = from_s;
   if (felt) await ask_to_play(); else say(state.link === "connected"
     ? "No card: shown, not felt" : "No connection: shown, not felt");
   if (!felt) hear_it();
@@ -45,7 +45,7 @@ async function ask_to_play() {
   const own = state.playing, take = state.takes.find(t => t.id === own.take);
   try {
     tell_level();
-    const r = await call("play", make_request(take, ceiling_dbfs()));
+    const r = await call("play", make_request(take_from(take, own.from_s), ceiling_dbfs()));
     if (state.playing !== own) return cancel_strokes(r.strokes);
     own.total_s = r.total_s;
     own.numbers = new Set(r.strokes.filter(n => !ended.has(n)));
@@ -55,12 +55,11 @@ async function ask_to_play() {
   } catch (e) {
     if (state.playing !== own) return;
     // Strokes of several fingers add up: the take is played as strong as it may be.
-    if (too_strong_db(e) > 0 && !own.lowered) {
-      own.lowered = true;
-      await weaken_take(take, e);
-      if (state.playing === own) return ask_to_play();
-      return;
+    if (e.code !== 0 && !own.weakened && await weaken_take(take).catch(() => false)) {
+      own.weakened = true;
+      return state.playing === own ? ask_to_play() : undefined;
     }
+    if (state.playing !== own) return;
     state.playing = null;
     if (state.plan_fault) say("It cannot be played: the warning at its settings says why");
     else if (e.code !== 0) { state.fault = e.message; changed("link"); }
@@ -75,11 +74,14 @@ export function tick() {
   const p = state.playing;
   if (!p) return;
   const t = (performance.now() - p.began_ms) / 1000;
-  if (is_shown(p)) state.at_s = p.waits ? 0 : Math.max(0, Math.min(p.total_s, t));
+  if (is_shown(p)) state.at_s = p.from_s + (p.waits ? 0 : Math.max(0, Math.min(p.total_s, t)));
   if (state.loop && p.felt && !p.waits && !p.next && t > p.total_s - AHEAD_S && p.numbers.size) next_round(p);
   if (t < p.total_s || p.waits) return;
   if (p.next) return;
-  if (state.loop && !p.felt) { p.began_ms += p.total_s * 1000; hear_it(); return; }
+  if (state.loop && !p.felt) {
+    Object.assign(p, {began_ms: p.began_ms + p.total_s * 1000, total_s: p.total_s + p.from_s, from_s: 0});
+    return hear_it();
+  }
   if (p.felt && p.numbers.size && t < p.total_s + 1) return; // its end is told
   end_playing();
 }
@@ -107,7 +109,7 @@ on_notification("stroke", s => {
   if (s.state === "started") {
     if (p?.numbers.has(s.stroke) && s.started_s !== null) {
       const is_next = !p.waits && p.next?.number === s.stroke;
-      if (is_next) Object.assign(p, {total_s: p.next.total_s, next: null});
+      if (is_next) Object.assign(p, {total_s: p.next.total_s, next: null, from_s: 0});
       if (p.waits || is_next) {
         Object.assign(p, {began_ms: from_server_ms(s.started_s), waits: false});
         hear_it();
@@ -121,7 +123,7 @@ on_notification("stroke", s => {
       if (s.state === "interrupted") { state.fault = `The stroke was interrupted: ${s.reason}`; changed("link"); }
       end_playing();
     } else if (!p.numbers.size && !(state.loop && p.next)) {
-      if (is_shown(p)) state.at_s = p.total_s;
+      if (is_shown(p)) state.at_s = p.from_s + p.total_s;
       end_playing();
     }
   } else if (state.playing) ended.add(s.stroke);
@@ -165,7 +167,7 @@ export const unanswered_s = () => state.stopping && is_unanswered(state.stopping
   ? (performance.now() - state.stopping.since_ms) / 1000 : 0;
 setInterval(() => {
   if (!unanswered_s()) return;
-  if (is_connected() && performance.now() - state.stopping.sent_ms > AGAIN_MS) stop();
+  if (is_connected() && performance.now() - state.stopping.sent_ms > STOP_AGAIN_MS) stop();
   changed("link");
 }, 100);
 let lift_fingers = null;

@@ -3,8 +3,9 @@
 // that all can be undone.
 import {state, changed, current_take, level_dbfs, say} from "../state.js";
 import {put_takes, keep_current, find_take, all_takes, new_id} from "./keeping.js";
-import {total_s, strokes_toml, fitted, editable} from "./stroke.js";
+import {total_s, end_s, trimmed, strokes_toml, fitted, editable} from "./stroke.js";
 
+const LEAST_REST_S = 0.05; // of a stroke that is played from within
 const MOST_STEPS = 300, MOST_UNDO_BYTES = 8 << 20; // of undo
 const ROW_BYTES = 40;         // of a list of points, in memory
 
@@ -108,6 +109,9 @@ export function fit_take(edge) {
   edit_take(t => ({strokes: fitted(t.strokes, edge)}));
   say("Fitted", undo);
 }
+// Returns the rest of a take from a moment on.
+export const take_from = (take, s) => s <= 0 ? take : {...take, strokes: take.strokes.filter(k => end_s(k) > s + LEAST_REST_S)
+  .map(k => k.start_s >= s ? {...k, start_s: k.start_s - s} : {...trimmed(k, s - k.start_s, end_s(k) - k.start_s), start_s: 0})};
 export const take_s = t => t ? total_s(t.strokes) : 0;
 
 // Makes what the service plays, plans and writes: the same for all three.

@@ -5,7 +5,7 @@ import {by_id, make} from "../../../net/page/dom.js";
 import {icon, is_dark, colour} from "../look.js";
 import {BIN_DAYS, DAY_MS} from "./keeping.js";
 import {choose_take, rename_take, duplicate_take, delete_take, bring_back, add_take, fit_take, imported_strokes, take_s} from "./takes.js";
-import {total_s} from "./stroke.js";
+import {total_s, fitted, outside_mm, box} from "./stroke.js";
 import {array} from "../drawing/view.js";
 import {viridis} from "../../../net/page/viridis.js";
 import {PRESETS, plain_name, seconds_text} from "../words.js";
@@ -110,22 +110,32 @@ function show_takes() {
 }
 function draw_thumbs() { for (const c of document.querySelectorAll(".thumb")) c.draw?.(); }
 
-// Examples: the presets that fit this array.
+// Examples: the presets, made as large as this array where they do not fit it.
 const examples = new Map();
 export async function show_examples() {
   const found = [];
   for (const name of state.hello.presets) {
     try {
-      const strokes = imported_strokes(await call("import", {stroke: name}));
-      if (strokes.flatMap(s => s.timed).every(q => inside(q))) { examples.set(name, strokes); found.push(name); }
+      examples.set(name, sized(imported_strokes(await call("import", {stroke: name}))));
+      found.push(name);
     } catch (e) { if (e.code === 0) return; }
   }
   by_id("examples").replaceChildren(...found.map(name => make("li", {}, make("button",
     {type: "button", class: "take", onclick: () => open_example(name)}, thumb(examples.get(name)),
     make("span", {}, make("b", {}, PRESETS[name] ?? plain_name(name)), make("small", {}, name))))));
 }
-const inside = q => q[1] >= array.box.least[0] - 1 && q[1] <= array.box.most[0] + 1 && q[2] >= array.box.least[1] - 1
-  && q[2] <= array.box.most[1] + 1;
+function sized(strokes) {
+  const {size, middle} = array.box, places = list => list.flatMap(s => s.timed.map(q => [q[1], q[2]]));
+  const fits = list => places(list).every(q => outside_mm(array.edge, q) < 1);
+  const spans = box(places(strokes)).size;
+  if (fits(strokes) && Math.max(...spans) > Math.max(...size) / 2) return strokes;
+  for (let part = 0.9; ; part *= 0.9) {
+    // On a line of tactors only its direction is left.
+    const made = fitted(strokes, array.edge.map(q => q.map((v, k) => middle[k] + (v - middle[k]) * part)))
+      .map(s => ({...s, timed: s.timed.map(([t, x, y, v]) => [t, size[0] ? x : middle[0], size[1] ? y : middle[1], v])}));
+    if (fits(made) || part < 0.3) return made;
+  }
+}
 export function open_example(name) {
   const id = name ?? examples.keys().next().value;
   if (!examples.has(id)) return say("There is no example for this array");
