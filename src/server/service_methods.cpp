@@ -21,6 +21,7 @@ using net::json;
 using net::reply_json;
 
 constexpr unsigned most_wrong_tokens = 3;
+constexpr const char* many_wrong_tokens = "three wrong tokens";
 constexpr double first_wrong_token_s = 0.2; // until one is answered; doubles with each
 constexpr double longest_wrong_token_s = 10.0;
 constexpr std::size_t most_addresses = 1024;
@@ -85,7 +86,12 @@ void service::hello(client& c, const json& params, const answer& to)
             const net::rpc_fault owed{net::code_no_token, "token", "token",
                                       token == nullptr ? "it is owed" : "it is wrong",
                                       "give what the server's token_file holds"};
-            return token == nullptr ? to.fault(owed) : refuse_token(c, to, owed);
+            if (token != nullptr)
+                return refuse_token(c, to, owed);
+            to.fault(owed);
+            if (++c.wrong_tokens == most_wrong_tokens)
+                c.link->turn_out(many_wrong_tokens);
+            return;
         }
         c.admitted = true;
         wrong_token_wait_s_.erase(c.from);
@@ -115,7 +121,7 @@ void service::refuse_token(client& c, const answer& to, const net::rpc_fault& wr
             return; // the service ends
         to.fault(wrong);
         if (client* const guest = find(number); guest != nullptr && last)
-            guest->link->turn_out("three wrong tokens");
+            guest->link->turn_out(many_wrong_tokens);
         late_answers_.erase(timer);
     });
 }
