@@ -14,17 +14,17 @@ DROP = """(() => { const d = new DataTransfer(); d.items.add(new File([%s], %s))
 
 
 class FromDrawingToFile(StudioTest):
-    def test_strokes_that_are_too_strong_together_play_at_a_lower_level(self):
+    def test_strokes_that_are_too_strong_together_play_with_a_gain(self):
         s = self.serve()
         p, watcher = self.ready(s)
         line = "[[stroke]]\nstart_s = 0\nstart_from = 'piece'\npath = 'M 0 20 L 40 20'\nduration_s = 0.3\n"
         p.value("(t => { const d = new DataTransfer(); d.items.add(new File([t], 'three.toml'));"
                 " const f = document.querySelector('#file'); f.files = d.files; f.dispatchEvent(new Event('change')); })(%s)" % quoted(3 * line))
-        p.until(f"{TAKE}?.strokes.length === 3 && tactor.state.plan_fault")
+        p.until(f"{TAKE}?.strokes.length === 3 && tactor.state.plan?.warnings.some(w => w.kind === 'level')")
         p.click("#play")
         for _ in range(3):
             self.next_stroke(watcher, "started")
-        self.assertLess(p.value("tactor.state.level_db"), -9)
+        self.assertLess(p.value(f"{TAKE}.gain_db"), -9)
         for _ in range(3):
             self.next_stroke(watcher, "finished")
 
@@ -53,7 +53,7 @@ class FromDrawingToFile(StudioTest):
         self.mend(p, "Fit to array")
         p.until(f"{TAKE}.strokes.every(s => s.timed.every(q => q[2] > -0.1 && q[2] < 40.1))")
         p.until("document.querySelector('#warnings').textContent.includes('dB stronger')")
-        self.mend(p, "Lower the level")
+        self.mend(p, "Make this take weaker")
         p.until("document.querySelector('#warnings').textContent === '' && tactor.state.plan")
 
         # Heard by loudspeakers, too.

@@ -142,7 +142,7 @@ class Play(StudioTest):
         p, watcher = self.ready(self.serve())
         self.draw(p, *self.way([5, 5], [35, 5]))
         first = p.value("tactor.state.current")
-        self.draw(p, *self.way([5, 20], [35, 35]))
+        p.value("[...document.querySelectorAll('#examples button')].at(-1).click()")
         self.planned(p)
         p.key("KeyL", "l")
         self.play(p, watcher)
