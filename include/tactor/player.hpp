@@ -206,17 +206,25 @@ public:
 
     [[nodiscard]] const stream_setup& setup() const noexcept;
 
+    static constexpr double least_level_db = -60.0; ///< of submit() and set_level()
+
     /// Plays a score as soon as possible, from a frame or a time on, or when triggered. Several scores may
     /// sound at once. Does not block: drives that do not fit into the ring wait on the control side.
     ///
     /// With N periods in the buffer, the first sample of a score that starts now is in the device's buffer at
     /// most one period after this call, and at the DAC after at most N + 1 periods. A score that starts at a
-    /// given time is punctual if this call comes N + 1 periods before it.
+    /// given time is punctual if this call comes N + 1 periods before it. `level_db`: as set_level().
     /// \throws error: bad_input if rate or channels differ from the stream's, or if the player's array cannot
     ///         play the whole score: it drives a channel without a tactor there (a continuous stroke counts
     ///         for all tactors of the score's array), it drives a tactor above its limit there, or it has its
     ///         marker on a tactor's channel; runtime if the stream has ended.
-    stroke_id submit(const score& s, start_at start = start_at::now());
+    stroke_id submit(const score& s, start_at start = start_at::now(), double level_db = 0.0);
+
+    /// Leads a stroke, planned or live, to a level below what it asks for, within 20 ms from the next period
+    /// on: -60 to 0 dB, 0 at its beginning if submit() was given no other. It never gets stronger than it
+    /// asks for. Returns false if the stroke has ended or is not known. Does not block.
+    /// \throws error (bad_input) for another level.
+    bool set_level(stroke_id id, double db);
 
     /// Starts all armed strokes: their first samples are at the DAC at a CLOCK_MONOTONIC time, ns, or as soon
     /// as possible if that time has passed. Returns the number of strokes. An edge at the trigger line does

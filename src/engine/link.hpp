@@ -5,6 +5,7 @@
 
 #include <array>
 #include <atomic>
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 
@@ -72,6 +73,30 @@ struct counters {
     }
 };
 
+/// Factors that scores are to have, by place in the audio thread's table. The control side writes them, at
+/// any rate: the newest counts.
+class asked_gains {
+public:
+    void set(ticket t, float gain) noexcept
+    {
+        by_place_[ticket_place(t)].store((std::uint64_t{t} << 32U) | std::bit_cast<std::uint32_t>(gain),
+                                         std::memory_order_relaxed);
+        changed_.store(true, std::memory_order_release);
+    }
+    /// Returns 1 for a score without one.
+    float get(ticket t) const noexcept
+    {
+        const std::uint64_t v = by_place_[ticket_place(t)].load(std::memory_order_relaxed);
+        return static_cast<ticket>(v >> 32U) == t ? std::bit_cast<float>(static_cast<std::uint32_t>(v))
+                                                  : 1.0F;
+    }
+    bool take_changed() noexcept { return changed_.exchange(false, std::memory_order_acquire); }
+
+private:
+    std::array<std::atomic<std::uint64_t>, voices> by_place_{};
+    std::atomic<bool> changed_{false};
+};
+
 struct link {
     explicit link(std::size_t commands_in_ring = 2048) : commands(commands_in_ring) {}
 
@@ -81,6 +106,7 @@ struct link {
     rt::spsc_ring<request> requests{std::size_t{4} * voices};
     // Cannot overflow: a ticket has at most two reports, and is reused only after its last one was read.
     rt::spsc_ring<report> reports{std::size_t{4} * voices};
+    asked_gains gains;
     rt::event_fd to_audio;
     rt::event_fd to_control;
     /// Set by the feeder when the command ring is full. The audio thread then signals when there is space.

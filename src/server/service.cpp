@@ -259,17 +259,12 @@ void service::handle(client& c, net::rpc_request& r, const answer& to, std::size
 {
     using handler = void (service::*)(client&, const json&, const answer&);
     static constexpr std::pair<std::string_view, handler> handlers[] = {
-        {"hello", &service::hello},
-        {"to", &service::to},
-        {"cancel", &service::cancel},
-        {"stop", &service::stop},
-        {"fire", &service::fire},
-        {"begin", &service::begin},
-        {"end", &service::end},
-        {"drive", &service::drive},
-        {"status", &service::status},
-        {"subscribe", &service::subscribe},
-        {"options", &service::list_options},
+        {"hello", &service::hello},         {"to", &service::to},
+        {"cancel", &service::cancel},       {"level", &service::level},
+        {"stop", &service::stop},           {"fire", &service::fire},
+        {"begin", &service::begin},         {"end", &service::end},
+        {"drive", &service::drive},         {"status", &service::status},
+        {"subscribe", &service::subscribe}, {"options", &service::list_options},
     };
     if (!c.admitted && r.method != "hello")
         throw fault_error({net::code_no_token, "token", "token", "hello with the token comes first", ""});
@@ -284,7 +279,7 @@ void service::handle(client& c, net::rpc_request& r, const answer& to, std::size
             return (this->*handle)(c, r.params, to);
     throw fault_error({net::code_no_method, "bad-input", "method",
                        fmt::format("there is no \"{}\"", r.method),
-                       "one of hello, play, plan, cancel, stop, fire, begin, to, end, drive, status, "
+                       "one of hello, play, plan, level, cancel, stop, fire, begin, to, end, drive, status, "
                        "subscribe, options, import, export"});
 }
 

@@ -10,6 +10,7 @@
 #include <deque>
 #include <functional>
 #include <limits>
+#include <list>
 #include <map>
 #include <memory>
 #include <optional>
@@ -168,6 +169,7 @@ private:
         std::size_t bytes = 0;
         bool play = false;
         stop_mark asked = {};
+        double gain_db = 0.0; ///< of all its strokes
         view_choice view = {};
         std::optional<double> draft = {}; ///< its number
         double steps = 0.0;               ///< see planning_work; 0 until its text is read
@@ -201,6 +203,7 @@ private:
 
     // service_methods.cpp
     void hello(client& c, const net::json& params, const answer& to);
+    void refuse_token(client& c, const answer& to, const net::rpc_fault& wrong);
     void status(client& c, const net::json& params, const answer& to);
     void list_options(client& c, const net::json& params, const answer& to);
     void subscribe(client& c, const net::json& params, const answer& to);
@@ -236,9 +239,13 @@ private:
     // service_strokes.cpp
     void drive(client& c, const net::json& params, const answer& to);
     std::vector<std::uint32_t> submit(client_number owner, const net::json& start, const planned& p,
-                                      const std::vector<score>& scores, const char* ended_by);
+                                      const std::vector<score>& scores, const char* ended_by,
+                                      double gain_db = 0.0);
     void check_free_place(const client& c) const;
     void once_ready(client_number number, const answer& to, const char* source, std::function<void()> then);
+    void level(client& c, const net::json& params, const answer& to);
+    void set_level(stroke_record& r, double db);
+    static double level_db(const stroke_record& r) noexcept;
     void cancel(client& c, const net::json& params, const answer& to);
     void cancel_all(client& c);
     void cancel(stroke_record& r, const char* why);
@@ -295,6 +302,8 @@ private:
     std::set<std::uint32_t> touches_due_ = {}; ///< live strokes whose last place others were not told
     allowance touches_ = {};
     std::size_t touch_listeners_ = 0;
+    std::map<std::string, double> wrong_token_wait_s_ = {}; ///< by address; the last answer's
+    std::list<boost::asio::steady_timer> late_answers_ = {};
     std::size_t planning_bytes_ = 0;
     std::size_t jobs_ = 0;
     bool closing_ = false;

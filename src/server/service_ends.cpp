@@ -18,8 +18,10 @@ service::stroke_record& service::add_record(client_number owner)
     auto r = std::make_unique<stroke_record>();
     r->number = ++last_stroke_;
     r->owner = owner;
-    if (client* c = find(owner))
+    if (client* c = find(owner)) {
         c->strokes.insert(r->number);
+        r->level_db = c->level_db;
+    }
     return *strokes_.emplace(r->number, std::move(r)).first->second;
 }
 
@@ -58,7 +60,7 @@ void service::start_followers(stroke_record& first, std::int64_t at_ns)
         try {
             if (out == nullptr)
                 no_stream("");
-            r.id = out->submit(later, start_at::time(at_ns + std::llround(after_s * 1e9)));
+            r.id = out->submit(later, start_at::time(at_ns + std::llround(after_s * 1e9)), level_db(r));
             r.state = "waiting";
             by_player_[{r.player, r.id}] = r.number;
         } catch (const error& e) {

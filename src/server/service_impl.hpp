@@ -49,6 +49,7 @@ struct service::client {
     /// Count of its cancels of all. Its requests share it, and may outlive the client.
     std::shared_ptr<std::uint64_t> cancels = std::make_shared<std::uint64_t>(0);
     allowance points = {}; ///< that it may send
+    double level_db = 0.0; ///< of its strokes, below what they ask for
 };
 
 struct service::stroke_record {
@@ -59,6 +60,8 @@ struct service::stroke_record {
     std::string state = "waiting"; ///< "armed", "started"
     std::optional<live_stroke> live = {};
     double intensity_max = 1.0;                     ///< value of its points' intensity that means 1
+    double level_db = 0.0;                          ///< as its client set it ...
+    double gain_db = 0.0;                           ///< ... and as it was played
     std::optional<point> touched = {};              ///< its last point
     std::optional<std::int64_t> touch_told_ns = {}; ///< when others were told a point
     bool released = false;                          ///< its number was sent

@@ -67,7 +67,7 @@ service::planner_lane& service::lane_for(const plan_job& j) noexcept
 void service::plan_or_play(client& c, json&& params, const answer& to, bool play, std::size_t bytes)
 {
     if (play)
-        allow_only(params, {"stroke", "path", "points", "toml", "csv", "svg", "options", "start"});
+        allow_only(params, {"stroke", "path", "points", "toml", "csv", "svg", "options", "start", "gain_db"});
     else
         allow_only(params, {"stroke", "path", "points", "toml", "csv", "svg", "options", "start", "view",
                             "draft", "bins", "observer"});
@@ -81,6 +81,8 @@ void service::plan_or_play(client& c, json&& params, const answer& to, bool play
     plan_job job{to, {}, start == nullptr ? json("now") : *start, bytes, play, mark(c)};
     job.view = read_view(params);
     job.draft = draft;
+    if (const json* gain = member(params, "gain_db"))
+        job.gain_db = number(*gain, "gain_db", {player::least_level_db, 0.0});
     job.params = std::move(params);
     admit_job(c, std::move(job));
 }
@@ -340,7 +342,8 @@ void service::submit_all(const plan_job& job, const planned& p, const std::vecto
                       fmt::format("{} strokes are more than the {} that a client may have at once",
                                   scores.size(), options_.limits.max_strokes),
                       "send fewer");
-    const auto numbers = submit(number, job.start, p, scores, stop_reason_since(job.asked, number));
+    const auto numbers =
+        submit(number, job.start, p, scores, stop_reason_since(job.asked, number), job.gain_db);
     auto warnings = p.warnings();
     for (std::string& w : warnings)
         w = net::cut_echo(w);

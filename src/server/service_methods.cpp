@@ -21,6 +21,10 @@ using net::json;
 using net::reply_json;
 
 constexpr unsigned most_wrong_tokens = 3;
+constexpr const char* many_wrong_tokens = "three wrong tokens";
+constexpr double first_wrong_token_s = 0.2; // until one is answered; doubles with each
+constexpr double longest_wrong_token_s = 10.0;
+constexpr std::size_t most_addresses = 1024;
 constexpr double most_levels_hz = 100.0;
 constexpr std::array event_names{"strokes", "levels", "stream", "touches", "stops"};
 
@@ -31,6 +35,16 @@ bool same_secret(const std::string& a, const std::string& b)
     for (std::size_t i = 0; i < b.size(); ++i)
         differs |= static_cast<unsigned char>(b[i] ^ (i < a.size() ? a[i] : 0));
     return differs == 0;
+}
+
+// Returns true for a name without a letter, and for those by which pages call their own reader and the owner.
+bool is_taken_name(std::string_view name)
+{
+    std::string small;
+    for (const char c : name)
+        if (c != ' ')
+            small += c >= 'A' && c <= 'Z' ? static_cast<char>(c + ('a' - 'A')) : c;
+    return small.empty() || small == "you" || small == "theowner";
 }
 
 } // namespace
@@ -65,19 +79,51 @@ void service::hello(client& c, const json& params, const answer& to)
     const json* name = member(params, "name");
     if (const std::string why = name == nullptr ? "" : label_fault(text(*name, "name")); !why.empty())
         bad_param("name", "it " + why, label_hint);
+    if (name != nullptr && is_taken_name(name->get<std::string>()))
+        bad_param("name", "pages call somebody else so, or nobody", "a name that others know you by");
     if (!c.admitted) {
         if (token == nullptr || !same_secret(token->get<std::string>(), options_.token)) {
-            to.fault({net::code_no_token, "token", "token", token == nullptr ? "it is owed" : "it is wrong",
-                      "give what the server's token_file holds"});
-            if (++c.wrong_tokens >= most_wrong_tokens)
-                c.link->turn_out("three wrong tokens");
+            const net::rpc_fault owed{net::code_no_token, "token", "token",
+                                      token == nullptr ? "it is owed" : "it is wrong",
+                                      "give what the server's token_file holds"};
+            if (token != nullptr)
+                return refuse_token(c, to, owed);
+            to.fault(owed);
+            if (++c.wrong_tokens == most_wrong_tokens)
+                c.link->turn_out(many_wrong_tokens);
             return;
         }
         c.admitted = true;
+        wrong_token_wait_s_.erase(c.from);
     }
     if (name != nullptr)
         c.name = name->get<std::string>();
     to.result(hello_result(c));
+}
+
+// Answers a wrong token late, and later each time that one comes from the same address.
+void service::refuse_token(client& c, const answer& to, const net::rpc_fault& wrong)
+{
+    if (++c.wrong_tokens > most_wrong_tokens)
+        return; // it is turned out when the one before is answered
+    if (wrong_token_wait_s_.size() > most_addresses)
+        wrong_token_wait_s_.clear();
+    double& wait_s = wrong_token_wait_s_[c.from];
+    wait_s = wait_s == 0.0 ? first_wrong_token_s : std::min(2.0 * wait_s, longest_wrong_token_s);
+    if (options_.log)
+        options_.log(log_kind::warning, fmt::format("a wrong token from {}", c.from));
+    const auto timer = late_answers_.emplace(late_answers_.end(), io_);
+    timer->expires_after(
+        std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::duration<double>(wait_s)));
+    timer->async_wait([this, timer, to, wrong, number = c.number,
+                       last = c.wrong_tokens == most_wrong_tokens](const boost::system::error_code& gone) {
+        if (gone)
+            return; // the service ends
+        to.fault(wrong);
+        if (client* const guest = find(number); guest != nullptr && last)
+            guest->link->turn_out(many_wrong_tokens);
+        late_answers_.erase(timer);
+    });
 }
 
 reply_json service::limits_json() const

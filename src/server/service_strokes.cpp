@@ -31,7 +31,8 @@ void service::check_free_place(const client& c) const
 }
 
 std::vector<std::uint32_t> service::submit(client_number owner, const json& start, const planned& p,
-                                           const std::vector<score>& scores, const char* ended_by)
+                                           const std::vector<score>& scores, const char* ended_by,
+                                           double gain_db)
 {
     if (closing_)
         no_stream("the server ends");
@@ -55,6 +56,7 @@ std::vector<std::uint32_t> service::submit(client_number owner, const json& star
         numbers.push_back(r.number);
         records.push_back(&r);
         r.player = stream_.number();
+        r.gain_db = gain_db;
         if (ended_by != nullptr) {
             r.ended_by = ended_by;
             continue;
@@ -74,7 +76,7 @@ std::vector<std::uint32_t> service::submit(client_number owner, const json& star
                 r.asked_ns = at;
         }
         try {
-            r.id = out->submit(scores[i], when);
+            r.id = out->submit(scores[i], when, level_db(r));
         } catch (const error& e) {
             refused[i] = e.what(); // the stream may just have ended: the number ends below
             continue;
@@ -146,6 +148,37 @@ const char* service::stop_reason_since(const stop_mark& m, client_number owner) 
     if (*m.cancels != m.own)
         return cancelled_by_client;
     return m.stops != stops_ ? stop_reason(owner) : nullptr;
+}
+
+// Returns how far below what it asks for a stroke sounds.
+double service::level_db(const stroke_record& r) noexcept
+{
+    return std::max(player::least_level_db, r.level_db + r.gain_db);
+}
+
+void service::set_level(stroke_record& r, double db)
+{
+    r.level_db = db;
+    if (player* p = stream_.current(); p != nullptr && r.player == stream_.number())
+        p->set_level(r.id, level_db(r));
+}
+
+// Sets the level of a client's strokes, those to come too, or of one.
+void service::level(client& c, const json& params, const answer& to)
+{
+    allow_only(params, {"db", "stroke"});
+    const double db = need_number(params, "db", {player::least_level_db, 0.0});
+    if (params.contains("stroke")) {
+        const std::uint32_t n = need_stroke(params);
+        if (!c.strokes.contains(n))
+            no_such_stroke(n);
+        set_level(*strokes_.at(n), db);
+    } else {
+        c.level_db = db;
+        for (const std::uint32_t n : c.strokes)
+            set_level(*strokes_.at(n), db);
+    }
+    to.result(reply_json::object());
 }
 
 void service::cancel(client& c, const json& params, const answer& to)

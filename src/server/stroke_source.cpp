@@ -22,6 +22,8 @@ namespace {
 using net::json;
 
 constexpr double rounding_db = 1e-9;
+constexpr double most_excess_db = 100.0; // above it lies no sum of strokes that is planned
+constexpr double least_excess_db = 0.01;
 constexpr double moving = 4.0;           // time of a burst that `compensate` moves, against another
 constexpr double tactors_a_step = 128.0; // that a phantom model looks at in the time of a step
 constexpr double crossings = 4.0;        // of a grid's lines in one pitch of a path, at most
@@ -209,18 +211,55 @@ const char* find_source(const json& params)
     return found;
 }
 
+namespace {
+
+// Returns the highest level of any tactor.
+double highest_level(const planning& with, const options::wishes& s, double carrier_hz)
+{
+    if (!s.render.sl_db)
+        return s.render.level_dbfs;
+    double level = -1e9; // where none was measured, which is refused elsewhere
+    for (const tactor_spec& t : with.tactors.tactors)
+        level = std::max(level, threshold_at(t, carrier_hz).value_or(-1e9) + *s.render.sl_db);
+    return level;
+}
+
+// Returns how much weaker plans must be so that they can be played, dB; 0: not at all. \throws error for what
+// no level mends.
+double find_excess_db(const planning& with, const planned& p)
+{
+    const auto can_play = [&](double weaker_db) {
+        render_options weaker = p.render;
+        (weaker.sl_db ? *weaker.sl_db : weaker.level_dbfs) -= weaker_db;
+        try {
+            static_cast<void>(score(with.tactors, p.plans, weaker));
+            return true;
+        } catch (const error& e) {
+            if (e.field() != "level_dbfs" && e.field() != "sl_db")
+                throw;
+            return false;
+        }
+    };
+    if (can_play(0.0))
+        return 0.0;
+    double low = 0.0;
+    double high = most_excess_db;
+    while (high - low > least_excess_db) {
+        const double middle = (low + high) / 2.0;
+        (can_play(middle) ? high : low) = middle;
+    }
+    return high;
+}
+
+} // namespace
+
 void check_level(const planning& with, const options::wishes& s, double intensity, double carrier_hz,
                  const std::string& source)
 {
     if (intensity <= 0.0)
         return;
     const double over_db = 20.0 * std::log10(intensity);
-    double level = s.render.level_dbfs;
-    if (s.render.sl_db) {
-        level = -1e9; // where none was measured, which is refused elsewhere
-        for (const tactor_spec& t : with.tactors.tactors)
-            level = std::max(level, threshold_at(t, carrier_hz).value_or(-1e9) + *s.render.sl_db);
-    }
+    const double level = highest_level(with, s, carrier_hz);
     if (level + over_db <= with.max_level_dbfs + rounding_db)
         return;
     const char* const option = s.render.sl_db ? "options.sl" : "options.level_dbfs";
@@ -284,7 +323,7 @@ score planned::make_score(const array& a, std::size_t i) const
 }
 
 void plan_strokes(const planning& with, const layout& faces, planned& p, const options::wishes& s,
-                  const std::string& source, const planning_checks& checks)
+                  const std::string& source, const planning_checks& checks, bool picture)
 {
     const auto between = [&] {
         if (checks.go_on)
@@ -299,11 +338,19 @@ void plan_strokes(const planning& with, const layout& faces, planned& p, const o
             p.plans.push_back({make_plan(with.tactors, faces, k, s.plan), k.start_s, k.anchor});
         }
         const plan& made = p.plans.back().plan;
-        check_level(with, s, loudest(k, made, s.plan.scale), made.carrier_hz, source);
+        const double intensity = loudest(k, made, s.plan.scale);
+        if (!picture)
+            check_level(with, s, intensity, made.carrier_hz, source);
+        else if (intensity > 0.0)
+            p.over_db = std::max(p.over_db, highest_level(with, s, made.carrier_hz) +
+                                                20.0 * std::log10(intensity) - with.max_level_dbfs);
     }
     check_duration(with, p.total_s());
     between();
-    static_cast<void>(score(with.tactors, p.plans, p.render)); // levels and carriers
+    if (picture)
+        p.over_db = std::max(p.over_db, find_excess_db(with, p));
+    else
+        static_cast<void>(score(with.tactors, p.plans, p.render)); // levels and carriers
 }
 
 planned make_planned(const planning& with, const layout& faces, const json& params,
@@ -317,9 +364,10 @@ planned make_planned(const planning& with, const layout& faces, const json& para
         if (source == "stroke")
             p.name = p.strokes.front().name;
         p.strokes = settle_strokes(with, faces, std::move(p.strokes), s, false);
-        if (checks.weigh && !checks.weigh(estimate_work(p.strokes, s, faces, read_view(params))))
+        const view_choice view = read_view(params);
+        if (checks.weigh && !checks.weigh(estimate_work(p.strokes, s, faces, view)))
             return p;
-        plan_strokes(with, faces, p, s, source, checks);
+        plan_strokes(with, faces, p, s, source, checks, view.kind != view_kind::full);
         return p;
     } catch (const fault_error&) {
         throw;

@@ -39,6 +39,7 @@ struct planned {
     /// Moves of `compensate` in each plan; empty without it. The plans themselves are moved to `plans`.
     std::vector<compensated_plan> moved = {};
     detail::observer_choice observer = {}; ///< of the view percept
+    double over_db = 0.0;                  ///< of a view: how much weaker it must be to be played
 
     /// Returns the start of each plan, s from the start of all.
     std::vector<double> starts_s() const;
@@ -88,10 +89,11 @@ struct planning_checks {
     std::function<bool(const planning_work&)> weigh = {};
 };
 
-/// Plans p.strokes into p.plans and p.moved. `source`: parameter that said them. \throws fault_error for a
-/// level above the owner's; error.
+/// Plans p.strokes into p.plans and p.moved. `source`: parameter that said them. With `picture` a level that
+/// may not be played is no fault: p.over_db has the excess. \throws fault_error for a level above the
+/// owner's; error.
 void plan_strokes(const planning& with, const layout& faces, planned& p, const options::wishes& s,
-                  const std::string& source, const planning_checks& checks);
+                  const std::string& source, const planning_checks& checks, bool picture = false);
 
 /// Reads and plans. Returns no plans if `weigh` returns false. \throws fault_error, and what checks throw.
 planned make_planned(const planning& with, const layout& faces, const net::json& params,

@@ -159,6 +159,7 @@ class Sessions(PageTest):
         s.key("g")  # begins, too
         p.until("question")
         s.key("q")
+        p.until("over", asked=False)
         self.assertEqual(s.end(), 130)
         self.assertEqual(self.answers(), [("1", "1", "true", "n/a"), ("2", "1", "true", "2"), ("1", "2", "false", "1"),
                                           ("2", "2", "false", "1")])
@@ -168,6 +169,8 @@ class Sessions(PageTest):
         p = s.participant()
         p.answer("consent", 1)
         p.answer("walk", 2)
+        p.answer("walk", 2)  # the first No offers it once more
+        p.until("over", asked=False)
         self.assertEqual(s.end(), 1)
         self.assertIn("tactor 0: it was not felt", s.said)
 

@@ -179,8 +179,10 @@ class Web(ToolTest):
         self.assertEqual(p.call("hello", token="secret")["result"]["protocol"], "tactor/1")
         self.assertIn("result", p.call("status"))
         p = self.websocket(s)
+        began = time.monotonic()
         for _ in range(3):
             self.assertEqual(p.call("hello", token="guess")["error"]["code"], -32003)
+        self.assertGreater(time.monotonic() - began, 0.2 + 0.4 + 0.8)  # each comes later
         self.assertEqual((p.end(), p.reason), (1008, "three wrong tokens"))
 
     def test_beyond_loopback_takes_a_token(self):

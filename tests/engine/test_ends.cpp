@@ -116,6 +116,41 @@ TEST_CASE("a cancel before, in, and after the hand-over ends a stroke once and w
     }
 }
 
+TEST_CASE(
+    "a stroke's level is what sounds within two periods and 20 ms, from its first frame if it was given")
+{
+    rig r({.format = format_kind::s32});
+    const auto peak = [&](std::uint64_t from, std::uint64_t frames) {
+        const std::vector<std::byte> bytes = r.captured(from, frames);
+        double most = 0.0;
+        for (std::size_t i = 0; i < bytes.size() / 4; ++i)
+            most = std::max(most, std::abs(static_cast<double>(sample(bytes, i))) / 2147483648.0);
+        return most;
+    };
+    const std::uint64_t from = r.status().written;
+    const stroke_id id = r.submit(tone(10.0)); // -12 dBFS
+    r.play(9600);
+    const std::uint64_t asked = r.status().written;
+    CHECK(r.feed.set_gain(id, 0.1F));
+    r.play(9600);
+    const std::uint64_t quiet = asked + 2 * r.options.period + 960;
+    CHECK(peak(quiet, 4800) == doctest::Approx(0.02512).epsilon(0.01));
+    CHECK(largest_step(r.captured(from, quiet - from), 9) < 0.2512 * 2 * 3.14159265 * 250 / rate * 1.1);
+    CHECK(r.feed.set_gain(id, 1.0F));
+    r.play(9600);
+    CHECK(peak(r.status().played - 4800, 4000) == doctest::Approx(0.2512).epsilon(0.01));
+    // An xrun gives a later stroke another ticket: it keeps its level.
+    const stroke_id later = r.submit(tone(0.2), r.status().written + 9600);
+    CHECK(r.feed.set_gain(later, 0.5F));
+    CHECK(r.feed.cancel(id));
+    r.play(4800);
+    const std::uint64_t second = r.status().written;
+    r.play_out();
+    CHECK(peak(second, 9600) == doctest::Approx(0.1256).epsilon(0.01));
+    CHECK(r.end(later).state == state_kind::finished);
+    CHECK_FALSE(r.feed.set_gain(later, 0.5F));
+}
+
 TEST_CASE("an unknown stroke cannot be cancelled")
 {
     rig r;

@@ -50,7 +50,7 @@ def rpc_seeds():
              '"play","params":{"points":[[0,0,0],[0.1,20,20,0.5]]}', '"play","params":{"csv":"t_s,x_mm,y_mm\\n0,0,0\\n1,10,10\\n"}',
              '"play","params":{"svg":"<svg><path d=\\"M 0 0 L 9 9\\"/></svg>"}',
              '"play","params":{"toml":"[[stroke]]\\npath = \\"M 0 0 L 9 9\\"\\n"}', '"begin","params":{"timeout_s":0.01}',
-             '"to","params":{"stroke":1,"x_mm":20,"y_mm":20,"intensity":0.5}', '"end","params":{"stroke":1}', '"cancel","params":{"stroke":1}',
+             '"to","params":{"stroke":1,"x_mm":20,"y_mm":20,"intensity":0.5}', '"end","params":{"stroke":1}', '"cancel","params":{"stroke":1}', '"level","params":{"db":-6.5,"stroke":1}',
              '"drive","params":{"tactor":4,"intensity":0.5,"duration_s":0.01,"start":"now"}',
              '"subscribe","params":{"events":["strokes","levels","stream","touches","stops"],"levels_hz":100}']
     lines = [f'{{"jsonrpc":"2.0","id":{i},"method":{call}}}' for i, call in enumerate(calls)]

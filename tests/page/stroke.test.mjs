@@ -10,12 +10,83 @@ const circle = (seconds = 2, n = 200) => Array.from({length: n + 1}, (_, i) => {
 const farthest = (timed, target) => Math.max(...timed.map(p => { const q = s.interpolate(target, p[0]); return Math.hypot(p[1] - q[1], p[2] - q[2]); }));
 const ascends = timed => timed.every((p, i) => i === 0 ? p[0] === 0 : p[0] > timed[i - 1][0]);
 
-test("a drawing is smoothed, has a knot each 8 mm, and keeps its timing", () => {
-  const drawn = s.from_drawing(circle(), "round");
-  assert.ok(ascends(drawn.timed));
-  assert.ok(Math.abs(s.duration_s(drawn) - 2) < 1e-3);
-  assert.ok(farthest(drawn.timed, circle()) < 0.3, `${farthest(drawn.timed, circle())} mm`);
-  assert.ok(Math.abs(drawn.knots.length - 1 - 75.4 / 8) < 1);
+// A drawing at 60 Hz: f makes a place of a part, 0 to 1.
+const drawing = (f, seconds = 2) => Array.from({length: Math.round(seconds * 60) + 1},
+  (_, i) => [+(i / 60).toFixed(4), ...f(i / (seconds * 60)).map(v => +v.toFixed(3)), 1]);
+const small_circle = a => [20 + 3 * Math.cos(2 * Math.PI * a), 20 + 3 * Math.sin(2 * Math.PI * a)];
+const vibrato = a => [5 + 30 * a, 20 + Math.sin(2 * Math.PI * 8 * a)];
+const zigzag = a => { const k = 10 * a % 2; return [5 + 20 * a, 20 + 3 * (k < 1 ? k : 2 - k)]; };
+// The largest distance of the places of one path from another, mm.
+const off_line = (from, to) => Math.max(...from.map(p => Math.min(...to.slice(1).map((b, i) => {
+  const a = to[i], dx = b[1] - a[1], dy = b[2] - a[2], part = Math.min(1, Math.max(0, ((p[1] - a[1]) * dx + (p[2] - a[2]) * dy) / (dx * dx + dy * dy || 1)));
+  return Math.hypot(p[1] - a[1] - part * dx, p[2] - a[2] - part * dy);
+}))));
+const both_ways = (a, b) => Math.max(off_line(a, b), off_line(b, a));
+
+test("a drawing plays its ink, in its time, and keeps it", () => {
+  for (const f of [small_circle, vibrato, zigzag]) {
+    const ink = drawing(f), drawn = s.from_drawing(ink, "as drawn");
+    assert.equal(drawn.ink, ink);
+    assert.ok(ascends(drawn.timed));
+    assert.ok(Math.abs(s.duration_s(drawn) - 2) < 1e-3);
+    assert.ok(farthest(drawn.timed, ink) < 0.05, `${farthest(drawn.timed, ink)} mm`);
+    assert.ok(Math.abs(s.length_mm(drawn.timed) / s.length_mm(ink) - 1) < 0.01);
+    assert.equal(s.shape(drawn), "drawn");
+  }
+});
+
+test("noise of a fast pointer is smoothed over 12 ms, and a pen's pressure, too", () => {
+  const ink = Array.from({length: 1001}, (_, i) => [i / 1000, 0.03 * i, i % 2 ? 0.3 : -0.3, i % 2 ? 1 : 0.6]);
+  const drawn = s.from_drawing(ink, "noise").timed.filter(p => p[0] > 0.01 && p[0] < 0.99);
+  assert.ok(drawn.every(p => Math.abs(p[2]) < 0.06 && Math.abs(p[3] - 0.8) < 0.05));
+});
+
+test("points lie so close that the curve stays within 0.2 mm of the drawing, both ways", () => {
+  for (const [f, most] of [[small_circle, 10], [vibrato, 60], [zigzag, 14], [a => [5 + 30 * a, 20], 2]]) {
+    const ink = drawing(f), drawn = s.from_drawing(ink, "fitted"), fitted = s.as_edited(drawn);
+    assert.equal(s.shape(fitted), "fitted");
+    assert.ok(both_ways(fitted.timed, ink) <= 0.2, `${both_ways(fitted.timed, ink)} mm`);
+    assert.ok(farthest(fitted.timed, ink) < 0.5, `${farthest(fitted.timed, ink)} mm`);
+    assert.ok(Math.abs(s.length_mm(fitted.timed) / s.length_mm(ink) - 1) < 0.05, `${s.length_mm(fitted.timed)} for ${s.length_mm(ink)} mm`);
+    assert.ok(drawn.knots.length <= most, `${drawn.knots.length} points`);
+    assert.deepEqual(s.as_drawn(fitted), drawn);
+  }
+  const fitted = s.as_edited(s.from_drawing(drawing(zigzag), "zigzag")), ink = drawing(zigzag);
+  assert.equal(fitted.knots.filter(k => k.corner).length, 9);
+  assert.ok(Math.abs(s.length_mm(fitted.timed) / s.length_mm(ink) - 1) < 0.01);
+});
+
+test("a moved point changes the path to its neighbours, and nothing else", () => {
+  const drawn = s.from_drawing(drawing(vibrato), "vibrato"), i = Math.floor(drawn.knots.length / 2), k = drawn.knots;
+  const moved = s.changed_knot(drawn, i, {x: k[i].x, y: k[i].y + 3});
+  for (const p of drawn.timed) if (p[0] < k[i - 1].at || p[0] > k[i + 1].at)
+    assert.ok(Math.hypot(...[1, 2].map(n => s.interpolate(moved.timed, p[0])[n] - p[n])) < 0.03);
+  assert.ok(off_line([[0, k[i].x, k[i].y + 3]], moved.timed) < 0.03);
+  assert.equal(s.duration_s(moved), s.duration_s(drawn));
+  assert.deepEqual([s.shape(moved), s.points_moved(moved), moved.ink], ["edited", 1, drawn.ink]);
+  const back = s.as_drawn(moved);
+  assert.deepEqual(back.timed, drawn.timed);
+  assert.deepEqual(s.as_edited(back), moved);
+  assert.deepEqual(s.changed_knot(back, 0, {corner: true}).edited, moved);
+});
+
+test("what is fitted or trimmed plays as it was drawn, again", () => {
+  const drawn = s.from_drawing(drawing(small_circle), "circle");
+  for (const edited of [s.fitted([drawn], [[0, 0], [40, 0], [40, 40], [0, 40]])[0], s.trimmed(drawn, 0.5, 1.5)]) {
+    assert.equal(s.shape(edited), "edited");
+    assert.deepEqual(s.as_drawn(edited).timed, drawn.timed);
+    assert.deepEqual(s.as_edited(s.as_drawn(edited)).timed, edited.timed);
+  }
+});
+
+test("a stroke that was kept with its points and without its ink can be edited", () => {
+  const old = {name: "old", start_s: 0, timed: circle(), knots: [{x: 36, y: 20, corner: false}, {x: 4, y: 20, corner: false}, {x: 20, y: 4, corner: false}],
+    pace: {kind: "even"}, strength: [[0, 1], [1, 1]]};
+  const ready = s.editable(old);
+  assert.equal(ready.timed, old.timed);
+  assert.equal(s.shape(ready), null);
+  assert.ok(farthest(s.rebuild(ready).timed, old.timed) < 0.05);
+  assert.ok(off_line([[0, 1, 1]], s.changed_knot(ready, 1, {x: 1, y: 1}).timed) < 0.03);
 });
 
 test("a drawing that stops half-way keeps its pace", () => {
@@ -42,7 +113,7 @@ test("imported points are played as they are until they are edited", () => {
 
 test("a moved knot moves the path there and leaves the duration", () => {
   const stroke = s.from_drawing(circle(), "round"), k = 4;
-  const moved = s.rebuild({...stroke, knots: stroke.knots.map((q, i) => i === k ? {...q, x: 5, y: 5} : q)});
+  const moved = s.changed_knot(stroke, k, {x: 5, y: 5});
   assert.ok(Math.min(...moved.timed.map(p => Math.hypot(p[1] - 5, p[2] - 5))) < 0.5);
   assert.ok(Math.abs(s.duration_s(moved) - s.duration_s(stroke)) < 1e-3);
 });

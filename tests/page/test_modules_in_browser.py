@@ -56,17 +56,16 @@ class Storage(ModulesTest):
         p = self.open()
         self.assertTrue(self.storage(p, """
             const points = Array.from({length: 200}, (_, i) => [i / 100, i, i, 1]);
-            await Promise.all(Array.from({length: 2000}, (_, i) => s.save({id: i, name: `take ${i}`, points})));
-            await s.save({id: 7, name: "again"});
-            await s.remove(8);
-            await s.set("current", 7);
-            return s.lasting; """))
+            await Promise.all(Array.from({length: 2000}, (_, i) => s.write({takes: [{id: i, name: `take ${i}`, points}]})));
+            await s.write({takes: [{id: 7, name: "again"}], removed: [8], values: {current: 7, gone: 1}});
+            await s.write({values: {gone: undefined}});
+            return await s.get("gone") === undefined; """))
         p.reload()
         count, ids, again, current, asked = self.storage(p, """
             let asked = 0;
             const get_all = IDBObjectStore.prototype.getAll;
             IDBObjectStore.prototype.getAll = function () { ++asked; return get_all.call(this); };
-            const {takes, current} = await s.load();
+            const takes = await s.load(), current = await s.get("current");
             return [takes.length, takes.slice(0, 9).map(t => t.id), takes[7], current, asked]; """)
         self.assertEqual((count, ids, again, current, asked), (1999, [0, 1, 2, 3, 4, 5, 6, 7, 9], {"id": 7, "name": "again"}, 7, 1))
 
@@ -74,20 +73,29 @@ class Storage(ModulesTest):
         p = self.open()
         # First: the browser remembers for a while how much there was.
         p.call("Storage.overrideQuotaForOrigin", origin=self.address, quotaSize=100_000)
-        self.storage(p, "await s.save({id: 1, name: 'kept'});")
+        self.storage(p, "await s.write({takes: [{id: 1, name: 'kept'}]});")
         self.assertEqual(self.storage(p, """
-            try { await s.save({id: 2, bytes: new Uint8Array(5e6).map(() => 256 * Math.random())}); } catch (e) { return e.name; } """), "QuotaExceededError")
-        self.assertEqual(self.storage(p, "return (await s.load()).takes;"), [{"id": 1, "name": "kept"}])
+            try { await s.write({takes: [{id: 2, bytes: new Uint8Array(5e6).map(() => 256 * Math.random())}]}); } catch (e) { return e.name; } """), "QuotaExceededError")
+        self.assertEqual(self.storage(p, "return s.load();"), [{"id": 1, "name": "kept"}])
 
     def test_a_database_that_is_deleted_meanwhile_rejects(self):
         p = self.open()
-        self.assertEqual(self.storage(p, """
+        self.assertEqual(self.call(p, f"{self.address}/takes/storage.js", """
+            let gone = 0;
+            const s = await m.open_storage("takes", () => { ++gone; });
             await new Promise((done, failed) => Object.assign(indexedDB.deleteDatabase("takes"), {onsuccess: done, onerror: failed, onblocked: failed}));
-            try { await s.save({id: 1}); } catch (e) { return e.name; } """), "InvalidStateError")
+            try { await s.write({takes: [{id: 1}]}); } catch (e) { return e.name + gone; } """), "InvalidStateError1")
 
-    def test_where_the_browser_keeps_nothing_the_storage_says_so(self):
+    def test_a_take_that_another_tab_has_changed_is_not_replaced(self):
+        p = self.open()
+        self.assertEqual(self.storage(p, """
+            await s.write({takes: [{id: 1, version: "theirs"}, {id: 2, version: "known"}]});
+            const others = await s.write({takes: [{id: 1, version: "own"}, {id: 2, version: "own"}, {id: 3, version: "own"}]}, new Map([[1, "before"], [2, "known"]]));
+            return [others, (await s.load()).map(t => t.version)]; """), [[{"id": 1, "version": "theirs"}], ["theirs", "own", "own"]])
+
+    def test_where_the_browser_keeps_nothing_there_is_no_storage(self):
         p = self.open("?sandbox")
-        self.assertEqual(self.storage(p, "await s.save({id: 1}); return [s.lasting, (await s.load()).takes];"), [False, [{"id": 1}]])
+        self.assertTrue(self.call(p, f"{self.address}/takes/storage.js", "return m.open_storage('takes').then(() => false, () => true);"))
 
 
 class Sound(ModulesTest):

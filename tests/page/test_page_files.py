@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """The studio's files in a real Chromium: from a drawing to the file that the tool renders, and files that are opened.
 Usage: test_page_files.py TOOL SOURCE_ROOT"""
+import base64
 import shlex
 import sys
 
@@ -13,17 +14,17 @@ DROP = """(() => { const d = new DataTransfer(); d.items.add(new File([%s], %s))
 
 
 class FromDrawingToFile(StudioTest):
-    def test_strokes_that_are_too_strong_together_play_at_a_lower_level(self):
+    def test_strokes_that_are_too_strong_together_play_with_a_gain(self):
         s = self.serve()
         p, watcher = self.ready(s)
         line = "[[stroke]]\nstart_s = 0\nstart_from = 'piece'\npath = 'M 0 20 L 40 20'\nduration_s = 0.3\n"
         p.value("(t => { const d = new DataTransfer(); d.items.add(new File([t], 'three.toml'));"
                 " const f = document.querySelector('#file'); f.files = d.files; f.dispatchEvent(new Event('change')); })(%s)" % quoted(3 * line))
-        p.until(f"{TAKE}?.strokes.length === 3 && tactor.state.plan_fault")
+        p.until(f"{TAKE}?.strokes.length === 3 && tactor.state.plan?.warnings.some(w => w.kind === 'level')")
         p.click("#play")
         for _ in range(3):
             self.next_stroke(watcher, "started")
-        self.assertLess(p.value("tactor.state.level_db"), -9)
+        self.assertLess(p.value(f"{TAKE}.gain_db"), -9)
         for _ in range(3):
             self.next_stroke(watcher, "finished")
 
@@ -52,7 +53,7 @@ class FromDrawingToFile(StudioTest):
         self.mend(p, "Fit to array")
         p.until(f"{TAKE}.strokes.every(s => s.timed.every(q => q[2] > -0.1 && q[2] < 40.1))")
         p.until("document.querySelector('#warnings').textContent.includes('dB stronger')")
-        self.mend(p, "Lower the level")
+        self.mend(p, "Make this take weaker")
         p.until("document.querySelector('#warnings').textContent === '' && tactor.state.plan")
 
         # Heard by loudspeakers, too.
@@ -106,6 +107,40 @@ class FromDrawingToFile(StudioTest):
                 self.assertEqual(file.name, f"take-1.{kind}")
                 self.assertTrue(file.read_bytes().lstrip().startswith((head, b"<svg") if kind == "svg" else head), file.read_bytes()[:40])
 
+    def test_a_name_of_any_language_is_the_file_s(self):
+        p, _ = self.ready(self.serve())
+        self.draw(p, *self.way([5, 5], [35, 30]))
+        for name, file in (("Übung größer", "übung-größer.toml"), ("触覚 1", "触覚-1.toml"), ("../a: µ\u202eb", "a-b.toml"), ("-?", "take.toml"), ("あ" * 60, "あ" * 30 + ".toml")):
+            with self.subTest(name=name):
+                p.value(f"tactor.rename({TAKE}.id, {quoted(name)})")
+                self.assertEqual(self.saved(p, "toml").name, file)
+
+    def test_a_table_is_not_offered_for_several_strokes(self):
+        p, _ = self.ready(self.serve())
+        for strokes, hidden in ((1, False), (2, True)):
+            text = "[[stroke]]\npath = 'M 5 5 L 35 5'\n" * strokes
+            p.value(DROP % (quoted(text), quoted("some.toml")))
+            p.until(f"{TAKE}?.strokes.length === {strokes}")
+            p.click("#save")
+            p.until(f"document.querySelector('#p-save').matches(':popover-open') && document.querySelector('[data-kind=csv]').hasAttribute('hidden') === {str(hidden).lower()}")
+            p.value("document.querySelector('#p-save').hidePopover()")
+
+    def test_a_figure_opens_as_its_take_or_is_named(self):
+        p, _ = self.ready(self.serve())
+        self.draw(p, *self.way([5, 5], [35, 30]))
+        drawn = self.take(p)["strokes"][0]
+        figure = self.saved(p, "svg").read_text()
+        p.value(DROP % (quoted(figure), quoted("figure.svg")))
+        p.until("tactor.state.takes.length === 2")
+        self.assertEqual(self.take(p)["strokes"][0]["timed"], drawn["timed"])
+        # A figure of the tool itself, and one of pixels.
+        p.value(DROP % (quoted(figure.split("<!-- stroke of")[0]), quoted("plot.svg")))
+        self.banner(p, "“plot.svg” was not opened: it is a figure; open the stroke from which it was drawn (.toml).")
+        for kind in ("png", "pdf"):
+            data = base64.b64encode(self.saved(p, kind).read_bytes()).decode()
+            p.value(DROP % (f"Uint8Array.from(atob({quoted(data)}), c => c.charCodeAt(0))", quoted(f"plot.{kind}")))
+            self.banner(p, f"“plot.{kind}” was not opened: it is a figure")
+
     def test_without_a_connection_a_stroke_is_saved_nevertheless(self):
         s = self.serve()
         p, _ = self.ready(s)
@@ -148,6 +183,23 @@ class Files(StudioTest):
         self.drop(p, "notes.exe", "MZ")
         self.banner(p, "“notes.exe” was not opened")
         self.assertEqual(p.value("tactor.state.takes.length"), 0)
+
+    def test_each_of_several_bad_files_is_told_in_one_sentence(self):
+        p, _ = self.ready(self.serve())
+        p.value("""(() => { const d = new DataTransfer();
+            for (const [name, data] of [["a.toml", "[[stroke]]\\npath = 'M 5 5 L 35 5'\\ncolour = 3\\n"], ["b.csv", "t_s,x_mm,y_mm\\n0,0,0\\n0.2,40,40\\n"],
+                ["c.jpg", new Uint8Array([0xff, 0xd8, 0xff, 0xe0, 0, 16, 74, 70, 73, 70])], ["d.csv", "t_s,x_mm,y_mm\\n0,zero,0\\n"]]) d.items.add(new File([data], name));
+            const f = document.querySelector("#file"); f.files = d.files; f.dispatchEvent(new Event("change")); })()""")
+        self.banner(p, "“a.toml” was not opened: line 3: unknown key 'colour' in [[stroke]]. “c.jpg” was not opened: it is not text; strokes are SVG, CSV, TOML or a plan. "
+                       "“d.csv” was not opened: line 2")
+        self.assertEqual(self.names(p), ["b"])
+
+    def test_many_shapes_outside_are_one_warning(self):
+        p, _ = self.ready(self.serve())
+        self.drop(p, "many.svg", '<svg xmlns="http://www.w3.org/2000/svg" width="400mm" height="400mm" viewBox="0 0 400 400">' +
+                  "".join(f'<path d="M {100 + i} 105 L 135 135"/>' for i in range(41)) + "</svg>")
+        p.until("document.querySelector('#warnings').textContent.includes('41 strokes are up to')")
+        self.assertEqual(p.value("[...document.querySelectorAll('#warnings p')].filter(e => /outside/.test(e.textContent)).length"), 1)
 
     def test_the_button_opens_files_too(self):
         p, _ = self.ready(self.serve())

@@ -167,5 +167,76 @@ class Looks(StudioTest):
         self.look(p, "locked")
 
 
+class Shapes(StudioTest):
+    """In each shape of window the canvas keeps half of the height, and nothing lies on the transport."""
+    SHAPES = ((1440, 900), (1366, 768), (1280, 600), (1100, 700), (1093, 614), (1024, 768), (960, 540), (899, 900), (820, 1180),
+              (768, 1024), (600, 960), (600, 501), (390, 844), (844, 390), (360, 640))
+    # Buttons that lie on others, or are cut off, and those of the transport that something covers.
+    COVERED = """[...document.querySelectorAll(".transport button, #level input")].filter(b => b.checkVisibility() && !b.disabled).filter(b => {
+        const r = b.getBoundingClientRect();
+        return [[0.5, 0.5], [0.05, 0.2], [0.95, 0.8]].some(([x, y]) => !b.contains(document.elementFromPoint(r.x + x * r.width, r.y + y * r.height)));
+    }).map(b => b.id || b.type)"""
+
+    def resize(self, p, size, touch, density=1):
+        p.call("Emulation.setDeviceMetricsOverride", width=size[0], height=size[1], deviceScaleFactor=density, mobile=False)
+        p.call("Emulation.setTouchEmulationEnabled", enabled=touch, maxTouchPoints=5)
+        p.until(f"innerWidth === {size[0]} && innerHeight === {size[1]} && matchMedia('(pointer: coarse)').matches === {str(touch).lower()}"
+                " && (f => f.clientHeight === f.parentElement.clientHeight)(document.querySelector('#field'))")
+        p.value("new Promise(f => requestAnimationFrame(() => requestAnimationFrame(() => setTimeout(f, 0))))")
+
+    def warned(self, s):
+        """Returns a page with a take that leaves the array."""
+        p, _ = self.ready(s)
+        self.draw(p, *self.way([5, 5], [35, 12]), *self.way([35, 12], [8, 30]), *self.way([8, 30], [48, 36]))
+        self.planned(p)
+        p.until("document.querySelector('#warnings').textContent.includes('outside')")
+        return p
+
+    def test_the_canvas_keeps_half_of_the_height(self):
+        p = self.warned(self.serve())
+        for touch in (False, True):
+            for size in self.SHAPES:
+                self.resize(p, size, touch)
+                for unfolded in (False, True) if p.value("document.querySelector('#time-fold').checkVisibility()") else (False,):
+                    if unfolded:
+                        p.key("KeyT", "t")
+                        p.until("document.body.dataset.timeOpen === 'true'")
+                        self.resize(p, size, touch)
+                    name = f"{size[0]}x{size[1]}{'-touch' if touch else ''}{'-unfolded' if unfolded else ''}"
+                    if PICTURES:
+                        p.picture(PICTURES / f"shape-{name}.png")
+                    with self.subTest(shape=name):
+                        self.assertGreaterEqual(p.value("document.querySelector('#field').clientHeight / innerHeight"), 0.5)
+                        self.assertEqual(p.value("[document.documentElement.scrollWidth, document.documentElement.scrollHeight]"), list(size))
+                        self.assertEqual(p.value(self.COVERED), [])
+                        self.assertGreaterEqual(p.value("document.querySelector('#level').offsetHeight"), 56)
+                        self.assertTrue(p.value("document.querySelector('#level').checkVisibility()"))
+                    if unfolded:
+                        p.key("KeyT", "t")
+                        p.until("document.body.dataset.timeOpen === 'false'")
+
+    def test_settings_with_a_warning_show_the_settings(self):
+        p = self.warned(self.serve())
+        for size, touch in (((1024, 768), True), ((960, 540), False), ((1093, 614), False), ((820, 1180), True), ((600, 501), False),
+                            ((390, 844), True), ((360, 640), True), ((844, 390), True)):
+            self.resize(p, size, touch)
+            if p.value("document.querySelector('#settings').checkVisibility() && document.body.dataset.sheetOpen !== 'inspector'"):
+                p.click("#settings")
+                p.until("document.querySelector('#tabs').checkVisibility()")
+                p.until("document.getAnimations().length === 0")
+            for theme in ("light", "dark"):
+                p.call("Emulation.setEmulatedMedia", features=DARK if theme == "dark" else [])
+                p.until(f"document.documentElement.dataset.theme === '{theme}'")
+                p.value("new Promise(f => requestAnimationFrame(() => requestAnimationFrame(() => setTimeout(f, 0))))")
+                name = f"{size[0]}x{size[1]}-{theme}"
+                if PICTURES:
+                    p.picture(PICTURES / f"settings-{name}.png")
+            with self.subTest(shape=name):
+                # The tabs and the head of the chosen method are on the screen, above the level.
+                self.assertTrue(p.value("""[document.querySelector("#tab-method"), document.querySelector(".warning button"),
+                    document.querySelector("#pane .cards [aria-checked=true] b")].every(e => { const r = e.getBoundingClientRect();
+                    return e.contains(document.elementFromPoint(r.x + r.width / 2, r.y + r.height / 2)); })"""))
+
+
 if __name__ == "__main__":
     main()

@@ -6,7 +6,7 @@ import signal
 import sys
 
 del sys.argv[3:]
-from studio import LIVE, MISSING, StudioTest, quoted  # noqa: E402
+from studio import TAKE, LIVE, MISSING, StudioTest, quoted  # noqa: E402
 from harness import main  # noqa: E402
 
 
@@ -193,6 +193,163 @@ class Others(StudioTest):
         p.call("Input.insertText", text="Ada's laptop")
         p.value("document.querySelector('#own-name-text').blur()")
         self.until(lambda: "Ada's laptop" in [w["name"] for w in watcher.ok("status")["who"]])
+
+
+class Everywhere(StudioTest):
+    """Zoom by fingers and keys, many tactors, labels, and all of it by the keyboard."""
+
+    def many(self, columns, rows, pitch=8):
+        return self.write("many.toml", '[array]\nname = "many"\n' + "".join(
+            f"[[tactor]]\nx_mm = {pitch * (i % columns)}\ny_mm = {pitch * (i // columns)}\n" for i in range(columns * rows)))
+
+    def test_two_fingers_on_the_ground_zoom_and_draw_nothing(self):
+        p, _ = self.ready(self.serve(), size=(390, 844), fingers=True)
+        scale = p.value("tactor.view.scale")
+        p.touch("touchStart", (1, 120, 130), (2, 270, 130))
+        for k in range(1, 6):
+            p.touch("touchMove", (1, 120 - 15 * k, 130), (2, 270 + 15 * k, 130))
+        p.touch("touchEnd")
+        self.assertAlmostEqual(p.until(f"tactor.view.scale > {1.5 * scale} && tactor.view.scale") / scale, 2, delta=0.1)
+        self.assertEqual(p.value("[tactor.state.takes.length, tactor.state.drawing]"), [0, None])
+        p.click("#zoom-all")
+        p.until(f"Math.abs(tactor.view.scale - {scale}) < 0.01")
+        p.key("Minus", "-")
+        p.until(f"tactor.view.scale < {0.8 * scale}")
+
+    def test_two_fingers_keys_and_buttons_zoom_the_timeline(self):
+        p, _ = self.ready(self.serve(), fingers=True)
+        self.draw(p, *self.way([5, 5], [35, 35]))
+        self.planned(p)
+        x, y, w, h = p.value("(r => [r.x, r.y, r.width, r.height])(document.querySelector('#lanes').getBoundingClientRect())")
+        y += 100
+        p.touch("touchStart", (1, x + w / 2 - 50, y), (2, x + w / 2 + 50, y))
+        p.touch("touchMove", (1, x + w / 2 - 100, y), (2, x + w / 2 + 100, y))
+        p.touch("touchEnd")
+        span = p.until("tactor.lanes.span")
+        self.assertAlmostEqual(p.value("tactor.state.plan.total_s") * 1.02 / span, 2, delta=0.1)
+        p.key("KeyZ", "z")
+        p.until("tactor.lanes.span === null")
+        p.key("BracketRight", "]")
+        p.until("tactor.lanes.span")
+        p.click("#time-all")
+        p.until("tactor.lanes.span === null")
+
+    def test_another_density_draws_again(self):
+        p, _ = self.ready(self.serve())
+        p.value("for (const e of document.querySelectorAll('#stage, .lanes')) e.style.cssText = 'position: fixed; width: 600px; height: 300px'")
+        p.until("document.querySelector('#lanes').width === 600 && document.querySelector('#field').width === 600")
+        # The emulated browser tells of another density only with another size; that of the canvases stays.
+        for density in (2, 1):
+            p.call("Emulation.setDeviceMetricsOverride", width=1440 + density, height=900, deviceScaleFactor=density, mobile=False)
+            p.until(f"['field', 'lanes'].every(id => (c => Math.abs(c.width - c.clientWidth * {density}) < 2)(document.getElementById(id)))")
+
+    def test_lanes_of_many_tactors(self):
+        p, _ = self.ready(self.serve("--array", self.many(8, 8)))
+        self.assertGreater(p.value("document.querySelectorAll('#examples li').length"), 3)
+        p.click("#hint-example")
+        p.until("tactor.state.plan && !tactor.state.playing")
+        lanes = p.value("tactor.lane_tactors()")
+        first = p.value("""tactor.lane_tactors().map(k => tactor.state.plan.onsets.find((t, i) =>
+            tactor.state.plan.amplitudes[i * tactor.state.plan.tactors + k] >= 0.004))""")
+        self.assertTrue(2 < len(lanes) < 64, lanes)
+        self.assertEqual(first, sorted(first))
+        # The example is as large as the array, and none of it lies outside.
+        xs = [q[1] for q in self.take(p)["strokes"][0]["timed"]] + [q[2] for q in self.take(p)["strokes"][0]["timed"]]
+        self.assertTrue(max(xs) - min(xs) > 28 and min(xs) > -1 and max(xs) < 57, (min(xs), max(xs)))
+        self.assertEqual(p.value("tactor.state.outside.length"), 0)
+        # Lanes are high enough, and scroll.
+        self.assertGreaterEqual(p.value("tactor.lane_height(tactor.lanes)"), 18)
+        p.value("tactor.lanes.scroll = 1e6, tactor.changed('take')")
+        p.until("tactor.lanes.scroll < 1e6 && tactor.lanes.scroll > 0")
+
+    def test_labels_never_lie_on_each_other(self):
+        p, _ = self.ready(self.serve())
+        for way in ([[20, 20], [24, 20]], [[20, 40], [20, 20]], [[2, 2], [38, 38]]):
+            self.draw(p, *self.way(*way))
+            self.planned(p)
+            for size in ((1440, 900), (390, 844), (960, 540)):
+                p.call("Emulation.setDeviceMetricsOverride", width=size[0], height=size[1], deviceScaleFactor=1, mobile=False)
+                p.until(f"innerWidth === {size[0]} && (f => f.clientHeight === f.parentElement.clientHeight)(document.querySelector('#field'))")
+                p.value("new Promise(f => requestAnimationFrame(() => requestAnimationFrame(() => setTimeout(f, 0))))")
+                boxes = p.value("tactor.label_boxes()")
+                self.assertGreater(len(boxes), 9)
+                r = p.value("0.215 * 20 * tactor.view.scale")
+                left, top = p.value("(r => [r.x, r.y])(document.querySelector('#field').getBoundingClientRect())")
+                discs = [(x - left, y - top) for x, y in self.at(p, *([20 * i, 20 * j] for i in range(3) for j in range(3)))]
+                for i, a in enumerate(boxes):
+                    for b in boxes[:i]:
+                        self.assertFalse(a[0] < b[2] and b[0] < a[2] and a[1] < b[3] and b[1] < a[3], (a, b))
+                    for x, y in discs:
+                        near = (min(a[2], max(a[0], x)), min(a[3], max(a[1], y)))
+                        self.assertGreaterEqual(((near[0] - x) ** 2 + (near[1] - y) ** 2) ** 0.5, r - 0.01)
+            p.call("Emulation.setDeviceMetricsOverride", width=1440, height=900, deviceScaleFactor=1, mobile=False)
+            p.until("innerWidth === 1440 && document.querySelector('#field').clientWidth > 800")
+
+    def test_an_empty_page_has_no_time(self):
+        p, _ = self.ready(self.serve())
+        self.assertEqual(p.value("document.querySelector('.clock').textContent"), "0.00 / 0.00 s")
+
+    def test_near_and_far_are_relative_to_the_pitch(self):
+        p, _ = self.ready(self.serve("--array", self.many(3, 3, 60)))
+        self.draw(p, *self.way([10, 10], [110, 90]))
+        self.planned(p)
+        part = p.until("tactor.state.plan.errors?.rms_error_mm") / 60
+        word = "close to" if part < 0.06 else "near" if part < 0.15 else "far from"
+        self.assertEqual(p.until("document.querySelector('#predicted .tile p').textContent"), f"{word} the path, RMS")
+
+    def test_points_by_the_keyboard(self):
+        p, _ = self.ready(self.serve())
+        self.draw(p, *self.way([5, 5], [35, 12]), *self.way([35, 12], [8, 30]))
+        p.value("document.querySelector('#field').focus()")
+        p.key("KeyE", "e")
+        p.key("Tab")
+        p.key("Tab")
+        p.until("tactor.state.knot === 1")
+        p.key("ArrowRight")
+        p.key("ArrowDown", modifiers=8)
+        p.until(f"{TAKE}.strokes[0].knots")
+        x, y = p.value(f"(k => [k.x, k.y])({TAKE}.strokes[0].knots[1])")
+        p.key("ArrowRight")
+        p.key("ArrowDown", modifiers=8)
+        p.until(f"Math.abs({TAKE}.strokes[0].knots[1].x - {x} - 0.5) < 0.002 && Math.abs({TAKE}.strokes[0].knots[1].y - {y} - 0.1) < 0.002")
+        corner = p.value(f"Boolean({TAKE}.strokes[0].knots[1].corner)")
+        p.key("Enter")
+        p.until(f"Boolean({TAKE}.strokes[0].knots[1].corner) === {str(not corner).lower()}")
+        p.key("Tab", modifiers=8)
+        p.until("tactor.state.knot === 0")
+        # Shift Tab before the first point leaves the canvas.
+        p.key("Tab", modifiers=8)
+        p.until("document.activeElement.id !== 'field'")
+
+    def test_clips_by_the_keyboard(self):
+        p, _ = self.ready(self.serve())
+        self.draw(p, *self.way([5, 5], [35, 12]))
+        p.until("document.querySelectorAll('#clips button').length === 2")
+        p.value("document.querySelector('#clips button').focus()")
+        p.key("ArrowRight")
+        p.key("ArrowRight", modifiers=8)
+        p.until(f"Math.abs({TAKE}.strokes[0].start_s - 0.11) < 1e-6")
+        self.assertTrue(p.value("document.activeElement.getAttribute('aria-label').includes('starts at 0.11 s')"))
+        p.value("document.querySelector('#clips button:last-child').focus()")
+        p.call("Input.dispatchKeyEvent", type="keyDown", code="Enter", key="Enter", text="\r")
+        p.call("Input.dispatchKeyEvent", type="keyUp", code="Enter", key="Enter")
+        p.until("tactor.state.append")
+
+    def test_forced_colours_mark_what_is_chosen(self):
+        p, _ = self.ready(self.serve())
+        p.call("Emulation.setEmulatedMedia", features=[{"name": "forced-colors", "value": "active"}])
+        p.until("matchMedia('(forced-colors: active)').matches")
+        self.assertEqual(p.value("""(e => [getComputedStyle(e("#tab-method")).outlineWidth, getComputedStyle(e("#play")).borderTopWidth,
+            getComputedStyle(e("#field")).forcedColorAdjust])(s => document.querySelector(s))"""), ["3px", "1px", "none"])
+
+    def test_a_phone_that_lies_has_open_share_and_help(self):
+        p, _ = self.ready(self.serve(), size=(844, 390), fingers=True)
+        p.click("#more")
+        p.until("document.querySelector('#p-more').matches(':popover-open')")
+        self.assertEqual(p.value("[...document.querySelectorAll('#p-more button')].map(b => b.textContent)"),
+                         ["Open", "Share", "Light or dark", "Keys and help"])
+        p.click("#p-more [data-press=help]")
+        p.until("document.querySelector('#p-keys').matches(':popover-open') && !document.querySelector('#p-more').matches(':popover-open')")
 
 
 if __name__ == "__main__":

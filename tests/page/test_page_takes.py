@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
 """The studio's takes in a real Chromium: edited, kept, named, undone, set, by the thousand. Usage: test_page_takes.py TOOL SOURCE_ROOT"""
+import math
 import sys
 
 del sys.argv[3:]
@@ -82,9 +83,42 @@ class Takes(StudioTest):
         self.assertAlmostEqual(self.take(p)["strokes"][1]["start_s"], end + 0.1, places=3)  # a pause for the last burst
         self.assertEqual(p.value("tactor.state.takes.length"), 1)
 
+    def test_small_drawings_are_kept_as_drawn_fitted_and_edited(self):
+        p, _ = self.ready(self.serve())
+        self.draw(p, *[[20 + 3 * math.cos(a / 10), 20 + 3 * math.sin(a / 10)] for a in range(64)])
+        self.planned(p)
+        drawn = self.take(p)["strokes"][0]
+        places = [q[1:3] for q in drawn["timed"]]
+        # On the circle all along: the pointer's places are those of pixels.
+        self.assertLess(max(abs(math.dist(q, (20, 20)) - 3) for q in places), 0.2)
+        self.assertGreater(sum(map(math.dist, places, places[1:])), 18)
+        self.assertGreater(len(drawn["ink"]), 50)
+        text = "document.querySelector('#shape-curve').textContent"
+        pressed = "document.querySelector('#shape [aria-pressed=true]').id"
+        p.until("!document.querySelector('#shape').hidden")
+        self.assertEqual(p.value(f"[{pressed}, {text}]"), ["shape-ink", "Fitted, within 0.2 mm"])
+        p.click("#shape-curve")
+        p.until(f"{pressed} === 'shape-curve'")
+        fitted = self.take(p)["strokes"][0]
+        self.assertEqual(fitted["ink"], drawn["ink"])
+        self.assertLess(max(abs(math.dist(q[1:3], (20, 20)) - 3) for q in fitted["timed"]), 0.4)
+        # A point is moved; As drawn takes it back, and the edit is kept beside it.
+        knot = drawn["knots"][2]
+        self.edit_point(p, [knot["x"], knot["y"]], [knot["x"] + 8, knot["y"] + 8])
+        p.until(f"{text} === 'Edited, 1 point'")
+        edited = self.take(p)["strokes"][0]
+        p.click("#shape-ink")
+        p.until(f"{pressed} === 'shape-ink' && {text} === 'Edited, 1 point'")
+        self.assertEqual(self.take(p)["strokes"][0]["timed"], drawn["timed"])
+        p.click("#shape-curve")
+        p.until(f"{pressed} === 'shape-curve'")
+        self.assertEqual(self.take(p)["strokes"][0]["timed"], edited["timed"])
+        p.click("#undo")
+        p.until(f"{pressed} === 'shape-ink'")
+
     def test_points_are_moved_made_corners_added_and_deleted(self):
         p, _ = self.ready(self.serve())
-        self.draw(p, *self.way([4, 20], [36, 20]))
+        self.draw(p, *[[4 + x, 20 + 4 * math.sin(x / 3)] for x in range(33)])
         knots = self.take(p)["strokes"][0]["knots"]
         self.edit_point(p, [knots[1]["x"], knots[1]["y"]], [knots[1]["x"], knots[1]["y"] - 8])
         p.until("!document.querySelector('#points').hidden")
@@ -110,8 +144,8 @@ class Takes(StudioTest):
         self.draw(p, *self.way([4, 20], [36, 20]))
         p.click("[data-tab=timing]")
         for place in (0, 1000):
-            p.until("(globalThis.slider = [...document.querySelectorAll('#pane .slider')].find(s => s.textContent.startsWith('Duration'))?.querySelector('input'))")
-            p.value(f"slider.value = {place}, slider.dispatchEvent(new Event('input')), slider.dispatchEvent(new Event('change'))")
+            p.until("(globalThis.found = [...document.querySelectorAll('#pane .slider')].find(s => s.textContent.startsWith('Duration'))?.querySelector('input'))")
+            p.value(f"found.value = {place}, found.dispatchEvent(new Event('input')), found.dispatchEvent(new Event('change'))")
             p.until(f"tactor.state.plan_of === {TAKE} || tactor.state.plan_fault")
             self.assertIsNone(p.value("tactor.state.plan_fault"))
 
@@ -165,7 +199,7 @@ class Takes(StudioTest):
     def test_examples_have_names_for_people_and_play(self):
         p, watcher = self.ready(self.serve())
         self.assertEqual(p.value("[...document.querySelectorAll('#examples b')].map(b => b.textContent)"),
-                         ["Half circle, left", "Half circle, right", "Three-quarter circle", "Three-quarter circle, mirrored"])
+                         ["Half circle, left", "Half circle, right", "Three-quarter circle", "Three-quarter circle, mirrored", "Wave", "Round"])
         p.click("#hint-example")
         number = self.next_stroke(watcher, "started")
         self.assertEqual(self.next_stroke(watcher, "finished"), number)
@@ -213,6 +247,145 @@ class Takes(StudioTest):
         p.move_to((x + 90, y + 43), (x + 150, y + 43))
         p.mouse("mouseReleased", x + 150, y + 43)
         p.until(f"{TAKE}.strokes[0].timed.at(-1)[0] < {before} - 0.1")
+
+
+class Kept(StudioTest):
+    REFUSE = """globalThis.put = IDBObjectStore.prototype.put; globalThis.closing = () => dispatchEvent(new Event("beforeunload", {cancelable: true}));
+        IDBObjectStore.prototype.put = () => { throw new DOMException("full", "QuotaExceededError"); }"""
+
+    def test_a_full_storage_says_so_until_a_write_works(self):
+        p, _ = self.ready(self.serve())
+        self.draw(p, *self.way([5, 5], [35, 5]))
+        self.toast(p, "Kept as")
+        p.value(self.REFUSE)
+        self.assertTrue(p.value("closing()"))
+        for y in (20, 35):
+            self.draw(p, *self.way([5, y], [35, y]))
+        self.toast(p, "Not kept: this browser's storage is full")
+        self.banner(p, "Takes are not kept: this browser's storage is full.")
+        p.until("[...document.querySelectorAll('#takes .note')].map(e => e.textContent).join() === 'not kept,not kept'")
+        self.assertFalse(p.value("closing()"))  # the page asks
+        self.assertTrue(p.value("document.querySelector('#banner-close').hidden"))
+        p.value("IDBObjectStore.prototype.put = put")
+        self.toast(p, "Kept again, all 2")
+        p.until("document.querySelector('#banner').hidden && !document.querySelector('#takes .note')")
+        self.assertTrue(p.value("closing()"))
+        p.reload()
+        self.await_service(p)
+        p.until("document.querySelectorAll('#takes li').length === 3")
+
+    def test_takes_are_kept_again_after_their_data_were_deleted(self):
+        p, _ = self.ready(self.serve())
+        for y in (5, 20):
+            self.draw(p, *self.way([5, y], [35, y]))
+        self.toast(p, "Kept as")
+        p.value("new Promise((done, failed) => Object.assign(indexedDB.deleteDatabase('tactor'), {onsuccess: done, onerror: failed})).then(() => 1)")
+        self.toast(p, "Kept again, all 2")
+        p.reload()
+        self.await_service(p)
+        p.until("document.querySelectorAll('#takes li').length === 2")
+
+    def test_where_the_browser_keeps_nothing_the_page_says_so(self):
+        p = self.page("about:blank", size=DESKTOP)
+        p.call("Page.addScriptToEvaluateOnNewDocument", source="IDBFactory.prototype.open = () => { throw new DOMException('no', 'SecurityError'); }")
+        p.call("Page.navigate", url=self.serve().where["http"])
+        p.until("globalThis.tactor?.state")
+        self.await_service(p)
+        self.draw(p, *self.way([5, 5], [35, 5]))
+        self.banner(p, "Takes are not kept: this browser keeps nothing for this page.")
+        self.toast(p, "Not kept")
+
+    def test_undo_outlasts_the_page(self):
+        p, _ = self.ready(self.serve())
+        for y in (5, 20):
+            self.draw(p, *self.way([5, y], [35, y]))
+        p.click("#undo")
+        p.until("tactor.state.takes.length === 1")
+        p.reload()
+        self.await_service(p)
+        p.click("#redo")
+        p.until("tactor.state.takes.length === 2")
+        p.click("#undo")
+        p.click("#undo")
+        p.until("tactor.state.takes.length === 0 && document.querySelector('#undo').disabled")
+
+    def test_undo_has_three_hundred_steps(self):
+        p, _ = self.ready(self.serve())
+        self.draw(p, *self.way([5, 5], [35, 5]))
+        p.value(f"for (let i = 1; i <= 310; ++i) tactor.rename({TAKE}.id, `name ${{i}}`)")
+        p.until("!document.querySelector('#undo').disabled")
+        p.value("for (let i = 0; i < 400; ++i) document.querySelector('#undo').click()")
+        p.until("document.querySelector('#undo').disabled")
+        self.assertEqual(self.names(p), ["name 10"])
+
+    def test_a_drawing_in_progress_survives_a_reload(self):
+        p, _ = self.ready(self.serve())
+        self.press(p, *self.way([5, 5], [35, 35]))
+        p.until("tactor.state.drawing.tracks[0].points.length > 3")
+        p.reload()
+        self.await_service(p)
+        p.until("tactor.state.takes.length === 1")
+        self.assertRegex(self.take(p)["name"], r"^Drawing of \d\d:\d\d, not finished$")
+        self.assertGreater(self.take(p)["strokes"][0]["timed"][-1][1], 25)
+
+    def test_what_was_deleted_is_in_a_bin_for_thirty_days(self):
+        p, _ = self.ready(self.serve())
+        for y in (5, 20):
+            self.draw(p, *self.way([5, y], [35, y]))
+        p.value("document.querySelector('#takes .more-button').click()")
+        p.value("[...document.querySelectorAll('#p-take button')].find(b => b.textContent.includes('Delete')).click()")
+        self.toast(p, "Deleted “Take 2”Undo")
+        p.until("document.querySelector('#bin-text').textContent === '1, kept for 30 days'")
+        p.click("#toast button")
+        p.until("tactor.state.takes.length === 2 && document.querySelector('#bin').hidden")
+        p.value("document.querySelector('#takes .more-button').click()")
+        p.value("[...document.querySelectorAll('#p-take button')].find(b => b.textContent.includes('Delete')).click()")
+        p.until("tactor.state.takes.length === 1")
+        p.reload()
+        self.await_service(p)
+        p.until("!document.querySelector('#bin').hidden")
+        p.click("#bin summary")
+        p.until("document.querySelector('#binned small').textContent === 'deleted today, 29 days left'")
+        p.click("#binned button")
+        p.until("tactor.state.takes.length === 2")
+        self.assertEqual(self.names(p), ["Take 2", "Take 1"])
+        # After thirty days it is gone.
+        p.value("document.querySelector('#takes .more-button').click()")
+        p.value("[...document.querySelectorAll('#p-take button')].find(b => b.textContent.includes('Delete')).click()")
+        p.until("tactor.state.bin.length === 1")
+        p.call("Page.addScriptToEvaluateOnNewDocument", source="{ const now = Date.now; Date.now = () => now() + 31 * 24 * 3600e3; }")
+        p.reload()
+        self.await_service(p)
+        p.until("tactor.state.takes.length === 1 && tactor.state.bin.length === 0")
+
+    def test_two_tabs_see_each_other_s_takes_and_never_undo_them(self):
+        s = self.serve()
+        a, _ = self.ready(s)
+        self.draw(a, *self.way([5, 5], [35, 5]))
+        self.toast(a, "Kept as")
+        b, _ = self.ready(s)
+        b.until("tactor.state.takes.length === 1")
+        self.draw(b, *self.way([5, 20], [35, 20]))
+        a.until("tactor.state.takes.length === 2")
+        self.assertEqual(a.value("tactor.state.takes.map(t => t.name)"), ["Take 2", "Take 1"])
+        # An edit in the other tab is not undone here.
+        a.call("Page.bringToFront")
+        a.value(f"tactor.rename({TAKE}.id, 'Slow S')")
+        b.until("tactor.state.takes[1].name === 'Slow S'")
+        b.value("tactor.rename(tactor.state.takes[1].id, 'Slow S, edited')")
+        a.until(f"{TAKE}.name === 'Slow S, edited'")
+        a.until("[...document.querySelectorAll('#takes .note')].some(e => e.textContent === 'changed in another tab')")
+        a.click("#undo")
+        self.toast(a, "was changed in another tab; that stays")
+        self.assertEqual(a.value(f"{TAKE}.name"), "Slow S, edited")
+        # Both change one take before they hear of each other: both stay.
+        a.value("BroadcastChannel.prototype.postMessage = () => {}")
+        a.value(f"tactor.rename({TAKE}.id, 'Slow S')")
+        a.until("tactor.state.unkept.size === 0")
+        a.value("new Promise(done => setTimeout(done))")
+        b.value("tactor.rename(tactor.state.takes[1].id, 'Fast S')")
+        b.until("tactor.state.takes.length === 3")
+        self.assertEqual(sorted(b.value("tactor.state.takes.map(t => t.name)")), ["Fast S, other tab", "Slow S", "Take 2"])
 
 
 class Many(StudioTest):

@@ -63,6 +63,17 @@ public:
 
 } // namespace
 
+TEST_CASE("a name is somebody's own: not blank, and none that pages give themselves")
+{
+    service_rig rig;
+    rig.plug();
+    rig.start();
+    const auto a = rig.client();
+    for (const char* name : {" ", "you", "You", "the owner", "The Owner "})
+        CHECK(rig.code(a, "hello", {{"name", name}}) == -32602);
+    CHECK(rig.ok(a, "hello", {{"name", "Youna"}})["client"] == a.number);
+}
+
 TEST_CASE("a client has a number, and the name that it gives, for others to see")
 {
     service_rig rig;

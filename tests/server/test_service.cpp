@@ -355,6 +355,28 @@ TEST_CASE("cancel of all ends strokes being planned, even of a client that has g
         CHECK(rig.code(you, "cancel", params) == -32602);
 }
 
+TEST_CASE("a client's level holds for its strokes that sound and that come, and for no others")
+{
+    service_rig rig;
+    rig.plug();
+    rig.start();
+    const auto me = rig.client();
+    const auto you = rig.client();
+    const json stroke{{"stroke", "park2016-1"}, {"options", {{"duration", 5}}}};
+    const json mine = rig.ok(me, "play", stroke)["stroke"];
+    CHECK(rig.ok(me, "level", {{"db", -20}}).empty());
+    CHECK(rig.ok(me, "level", {{"db", -3.5}, {"stroke", mine}}).empty());
+    CHECK(rig.code(you, "level", {{"db", -6}, {"stroke", mine}}) == -32002);
+    for (const json& params : {json::object(), json{{"db", 1}}, json{{"db", -61}}, json{{"db", "-6"}},
+                               json{{"db", -6}, {"gain_db", 0}}})
+        CHECK(rig.code(me, "level", params) == -32602);
+    json weaker = stroke;
+    weaker["gain_db"] = -6;
+    CHECK(rig.ok(me, "play", weaker).contains("stroke"));
+    weaker["gain_db"] = 0.5;
+    CHECK(rig.code(me, "play", weaker) == -32602);
+}
+
 TEST_CASE("what is too large by its durations and options is refused before it is planned")
 {
     service_rig rig([](server::service_options& o, server::stream_options&) {

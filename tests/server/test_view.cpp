@@ -6,6 +6,7 @@
 #include <vector>
 
 #include <doctest/doctest.h>
+
 #include <fmt/format.h>
 
 #include "core/kind_names.hpp"
@@ -14,6 +15,7 @@
 #include "server/faults.hpp"
 #include "server/stroke_source.hpp"
 #include "server/view/view.hpp"
+#include "service_rig.hpp"
 
 namespace view_test {
 
@@ -186,6 +188,30 @@ double loudest_at(const planned& p, std::size_t tactor, double t_s, double befor
 }
 
 } // namespace
+
+TEST_CASE("a view answers where play would refuse for the level, and says by how much")
+{
+    const json both{{"toml", "[[stroke]]\npath = 'M 0 0 H 40'\nduration_s = 1.0\nstart_s = 0.0\n"
+                             "[[stroke]]\npath = 'M 0 0 H 40'\nduration_s = 1.0\nstart_s = 0.0\n"},
+                    {"options", {{"level_dbfs", -1.0}}}};
+    tactor::test::service_rig rig([](service_options& o, stream_options&) { o.plans.max_level_dbfs = -1.0; });
+    rig.plug();
+    rig.start();
+    const auto c = rig.client();
+    CHECK(rig.code(c, "plan", both) == -32602);
+    json picture = both;
+    picture["view"] = "peaks";
+    const json told = rig.ok(c, "plan", picture)["warnings"].back();
+    CHECK(told["kind"] == "level");
+    // Two strokes are 6.02 dB stronger than one of -1 dBFS.
+    CHECK(told["over_db"].get<double>() == doctest::Approx(5.02).epsilon(0.01));
+    picture["options"]["level_dbfs"] = -6.1;
+    CHECK(rig.ok(c, "plan", picture)["warnings"].empty());
+    // The owner's ceiling counts, too.
+    picture["options"]["level_dbfs"] = 0.0;
+    picture["toml"] = "[stroke]\npath = 'M 0 0 H 40'\nduration_s = 1.0\n";
+    CHECK(rig.ok(c, "plan", picture)["warnings"].back()["over_db"] == 1.0);
+}
 
 TEST_CASE("bursts: each burst of each stroke, by the clock of all together")
 {

@@ -288,6 +288,53 @@ TEST_CASE("a faded score goes to zero without a step and is forgotten")
     }
 }
 
+TEST_CASE("a score's gain ramps to the frame, for what sounds and what comes, and leaves others alone")
+{
+    for (const std::size_t block : {48, 96, 1000}) {
+        CAPTURE(block);
+        mixer m = make_mixer();
+        drive_event e = make_event(0, 48000);
+        e.score = 3;
+        m.add(e);
+        drive_event other = make_event(0, 48000, 1, 0.5, 0.5);
+        other.score = 4;
+        m.add(other);
+        take(m, 1000, block);
+        CHECK(m.set_gain(3, 0.25, 960));
+        e.start = 2500;
+        m.add(e);
+        const auto x = take(m, 3000, block);
+        for (std::size_t k = 0; k < 3000; ++k) {
+            const auto at = static_cast<double>(1000 + k);
+            const double g = k < 960 ? 1.0 - 0.75 * static_cast<double>(k) / 960.0 : 0.25;
+            const double tone = 0.5 * std::sin(2.0 * pi * 250.0 * at / 48000.0);
+            const double late = k < 1500 ? 0.0 : 0.5 * std::sin(2.0 * pi * 250.0 * (at - 2500.0) / 48000.0);
+            REQUIRE(std::abs(static_cast<double>(x[2 * k]) - g * (tone + late)) < 1e-6);
+            REQUIRE(std::abs(static_cast<double>(x[2 * k + 1]) - tone) < 1e-6);
+        }
+        CHECK(m.set_gain(3, 1.0, 0));
+        const auto whole = take(m, 480, block);
+        CHECK(std::abs(*std::max_element(whole.begin(), whole.end())) > 0.9F);
+    }
+}
+
+TEST_CASE("512 scores have gains at once, and a reset ends ramps")
+{
+    mixer m = make_mixer();
+    for (std::uint32_t i = 0; i < 512; ++i)
+        CHECK(m.set_gain(i, 0.5, 100));
+    CHECK_FALSE(m.set_gain(512, 0.5, 100));
+    CHECK(m.set_gain(512, 1.0, 100)); // which it has
+    m.forget_gain(7);
+    CHECK(m.set_gain(512, 0.5, 48000));
+    m.reset();
+    drive_event e = make_event(0, 48000);
+    e.score = 512;
+    m.add(e);
+    const auto x = take(m, 480, 96);
+    CHECK(*std::max_element(x.begin(), x.end()) == doctest::Approx(0.25).epsilon(0.001));
+}
+
 TEST_CASE("a cut is immediate, and fades are refused beyond 256")
 {
     mixer m = make_mixer(600);

@@ -33,6 +33,9 @@ void lower_to(std::atomic<T>& a, T value) noexcept
         a.store(value, std::memory_order_relaxed);
 }
 
+// A level changes within 20 ms.
+constexpr unsigned ramps_per_s = 50;
+
 } // namespace
 
 audio_loop::audio_loop(sink& s, link& l, std::span<const double> limits, const loop_options& o)
@@ -41,7 +44,7 @@ audio_loop::audio_loop(sink& s, link& l, std::span<const double> limits, const l
       options_(o),
       setup_(s.setup()),
       mixer_(limits, setup_.format, o.drives + live_reserve(setup_), o.guards),
-      scores_(mixer_, l, o.fade_frames, live_reserve(setup_)),
+      scores_(mixer_, l, o.fade_frames, live_reserve(setup_), setup_.rate / ramps_per_s),
       clock_(setup_.rate, setup_.batch ? setup_.period_frames : 0),
       frame_bytes_(setup_.frame_bytes()),
       block_(setup_.period_frames * frame_bytes_)
@@ -172,6 +175,7 @@ bool audio_loop::take(const command& c) noexcept
 
 void audio_loop::mix_period() noexcept
 {
+    scores_.follow_gains();
     scores_.render_live(setup_.period_frames, offset_, clock_.line());
     // Drives that wait for space in the mixer are there in time.
     if (link_.commands.size() == 0)

@@ -44,9 +44,33 @@ void score_table::begin(const command& c, std::uint64_t offset) noexcept
          .used = true};
     ++used_;
     top_ = std::max(top_, ticket_place(c.score) + 1);
+    follow_gain(e, 0);
     link_.reports.push({.what = report::kind::begun, .score = c.score, .frame = offset + base});
     if (stopping_)
         over(e, stop_state_, stop_reason_, 0, 0); // nothing may begin any more
+}
+
+void score_table::follow_gain(entry& e, std::uint32_t ramp) noexcept
+{
+    const float gain = link_.gains.get(e.score);
+    if (gain != e.gain && mixer_.set_gain(e.score, gain, ramp))
+        e.gain = gain;
+}
+
+void score_table::follow_gains() noexcept
+{
+    if (!link_.gains.take_changed())
+        return;
+    for (std::uint32_t i = 0; i < top_; ++i)
+        if (entries_[i].used)
+            follow_gain(entries_[i], ramp_);
+}
+
+void score_table::forget(entry& e) noexcept
+{
+    mixer_.forget_gain(e.score);
+    e.used = false;
+    --used_;
 }
 
 bool score_table::add(const command& c) noexcept
@@ -203,8 +227,7 @@ void score_table::mute() noexcept
             want_fade(e, state_kind::interrupted, reason_kind::muted);
         } else if (mixer_.fade_out(e.score, 0)) {
             link_.reports.push({.what = report::kind::returned, .score = e.score});
-            e.used = false;
-            --used_;
+            forget(e);
         }
     }
 }
@@ -250,8 +273,7 @@ void score_table::interrupt(reason_kind why, int code, std::uint64_t played, boo
             continue; // a live stroke that waits for its first point continues to wait
         if (give_back && !e.fade_wanted && e.live == nullptr && e.base >= mixer_.position()) {
             link_.reports.push({.what = report::kind::returned, .score = e.score});
-            e.used = false;
-            --used_;
+            forget(e);
             continue;
         }
         const std::uint64_t frames = frames_until(played, e.base, e.length);
@@ -281,8 +303,7 @@ void score_table::over(entry& e, state_kind s, reason_kind why, int code, std::u
          .started = started,
          .started_ns = e.started_ns,
          .delay = e.voice != nullptr && started ? e.voice->delay(e.started_ns) : live_delay{}});
-    e.used = false;
-    --used_;
+    forget(e);
 }
 
 void score_table::describe(std::uint64_t played, stream_status& s) const noexcept

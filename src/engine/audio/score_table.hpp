@@ -18,8 +18,10 @@ namespace tactor::engine {
 class score_table {
 public:
     /// Makes an empty table. `reserve`: drives of the mixer that are kept for live strokes.
-    score_table(synth::mixer& m, link& l, std::uint32_t fade_frames, std::size_t reserve = 0) noexcept
-        : mixer_(m), link_(l), fade_(fade_frames), reserve_(reserve)
+    /// `ramp_frames`: in which a gain changes.
+    score_table(synth::mixer& m, link& l, std::uint32_t fade_frames, std::size_t reserve = 0,
+                std::uint32_t ramp_frames = 960) noexcept
+        : mixer_(m), link_(l), fade_(fade_frames), ramp_(ramp_frames), reserve_(reserve)
     {
     }
 
@@ -39,6 +41,8 @@ public:
     void begin_live(const request& r) noexcept;
     /// Ends live strokes whose producer requests it or is silent for too long, and those that last too long.
     void handle_live_requests() noexcept;
+    /// Leads scores to the gains that the control side asks for. Called before each mix.
+    void follow_gains() noexcept;
     /// Adds the live strokes' drives of the next frames. Called before each mix. `offset` as in begin();
     /// `clock` may be unknown.
     void render_live(std::uint64_t frames, std::uint64_t offset, const clock_line& clock) noexcept;
@@ -96,6 +100,7 @@ private:
         bool fading = false;
         bool started = false; ///< its first sample has been at the DAC ...
         std::int64_t started_ns = 0;
+        float gain = 1.0F;
         bool sounds = false;               ///< counts against live_voices
         live_voice* live = nullptr;        ///< live strokes that still get points
         const live_voice* voice = nullptr; ///< live strokes, to their end
@@ -109,6 +114,8 @@ private:
     void close_live(entry& e) noexcept;
     reason_kind why_late() const noexcept;
     static void cover(entry& e, const synth::drive_event& d) noexcept;
+    void follow_gain(entry& e, std::uint32_t ramp) noexcept;
+    void forget(entry& e) noexcept;
     void want_fade(entry& e, state_kind s, reason_kind why) noexcept;
     void fade(entry& e) noexcept;
     void over(entry& e, state_kind s, reason_kind why, int code, std::uint64_t frames) noexcept;
@@ -116,6 +123,7 @@ private:
     synth::mixer& mixer_;
     link& link_;
     std::uint32_t fade_;
+    std::uint32_t ramp_;
     std::size_t reserve_;
     std::array<entry, voices> entries_{};
     std::uint64_t full_until_ = 0; ///< drives that are late before this frame had to wait for space

@@ -22,6 +22,7 @@ void score_table::begin_live(const request& r) noexcept
     ++used_;
     top_ = std::max(top_, ticket_place(r.score) + 1);
     live_[live_count_++] = &e;
+    follow_gain(e, 0);
     if (stopping_)
         over(e, stop_state_, stop_reason_, 0, 0);
 }

@@ -45,6 +45,18 @@ void feeder::cancel_playing(std::uint32_t place) noexcept
     link_.requests.push({.what = request::kind::cancel, .score = current_ticket(place), .closing = false});
 }
 
+bool feeder::set_gain(stroke_id id, float gain)
+{
+    const auto playing = std::find_if(in_use_.begin(), in_use_.end(),
+                                      [&](std::uint32_t place) { return slots_[place].use->id == id; });
+    if (playing == in_use_.end() && !waits(id))
+        return false;
+    gains_[id] = gain;
+    if (playing != in_use_.end())
+        link_.gains.set(current_ticket(*playing), gain);
+    return true;
+}
+
 void feeder::cancel_all(stroke_id last) noexcept
 {
     for (const std::uint32_t place : in_use_)
@@ -143,6 +155,8 @@ std::uint32_t feeder::take_slot(active a)
     free->use = std::move(a);
     const auto place = static_cast<std::uint32_t>(free - slots_.begin());
     in_use_.push_back(place);
+    if (const auto gain = gains_.find(free->use->id); gain != gains_.end())
+        link_.gains.set(current_ticket(place), gain->second);
     return place;
 }
 

@@ -40,6 +40,8 @@ public:
 
     /// Cancels a stroke. Returns false if it has ended, is not known, or is being cancelled already.
     bool cancel(stroke_id id);
+    /// Sets the factor of a stroke's amplitudes. Returns false if it has ended or is not known.
+    bool set_gain(stroke_id id, float gain);
     /// Cancels all strokes up to `last`. The audio thread gets its requests at once; strokes that wait end
     /// with the next pump(), because thousands may wait.
     void cancel_all(stroke_id last) noexcept;
@@ -167,6 +169,7 @@ private:
     std::vector<std::uint32_t> in_use_; ///< places, in the order in which they began
     std::vector<next_drive> next_;      ///< a heap, the earliest first; of fixed capacity
     std::vector<command> batch_;        ///< of fixed capacity
+    std::map<stroke_id, float> gains_;  ///< of strokes that have one
     std::list<stroke_report> reports_;
     std::list<first_frame> beginnings_;
     bool keeps_beginnings_ = false;

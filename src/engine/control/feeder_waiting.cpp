@@ -197,6 +197,7 @@ void feeder::report_end(stroke_report r)
             r.held_points = found->second->held_points();
             r.outside_points = found->second->outside_points();
         }
+    gains_.erase(r.id);
     reports_.push_back(std::move(r));
 }
 

@@ -46,9 +46,14 @@ const stream_setup& player::setup() const noexcept
     return impl_->made;
 }
 
-stroke_id player::submit(const score& s, start_at start)
+stroke_id player::submit(const score& s, start_at start, double level_db)
 {
-    return impl_->submit(s, start);
+    return impl_->submit(s, start, level_db);
+}
+
+bool player::set_level(stroke_id id, double db)
+{
+    return impl_->set_level(id, db);
 }
 
 std::size_t player::fire(std::int64_t monotonic_ns)

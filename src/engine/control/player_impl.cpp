@@ -8,6 +8,7 @@
 #include <new>
 #include <utility>
 
+#include <fmt/format.h>
 #include <poll.h>
 
 #include <tactor/error.hpp>
@@ -27,6 +28,14 @@ std::chrono::steady_clock::time_point deadline(double timeout_s)
     constexpr double century_s = 100.0 * 365.0 * 86400.0;
     const double wait_s = timeout_s > 0.0 ? std::min(timeout_s, century_s) : 0.0;
     return std::chrono::steady_clock::now() + std::chrono::nanoseconds(std::llround(wait_s * 1e9));
+}
+
+float to_gain(double level_db)
+{
+    if (!(level_db >= player::least_level_db && level_db <= 0.0))
+        throw error(error_kind::bad_input, "level_db", fmt::format("it is {}", level_db),
+                    fmt::format("{} to 0 dB", player::least_level_db));
+    return static_cast<float>(std::pow(10.0, level_db / 20.0));
 }
 
 } // namespace
@@ -62,13 +71,16 @@ std::shared_ptr<const drive_history::impl> player::impl::history()
     return std::make_shared<drive_history::impl>(drive_history::impl{loop.driven(), rt::monotonic_ns()});
 }
 
-stroke_id player::impl::submit(const score& s, start_at start)
+stroke_id player::impl::submit(const score& s, start_at start, double level_db)
 {
+    const float gain = to_gain(level_db);
     engine::check_fits(s, out->setup(), limits);
     const std::lock_guard lock(mutex);
     check_open();
     const stroke_id id = next_id();
     feed.submit(id, s, start);
+    if (level_db != 0.0)
+        feed.set_gain(id, gain);
     pump(); // if memory runs out here, the control thread does it later
     return id;
 }
@@ -98,6 +110,16 @@ bool player::impl::cancel(stroke_id id)
         link.to_control.signal(); // a stroke that had not been handed over is reported at once
     }
     return known;
+}
+
+bool player::impl::set_level(stroke_id id, double db)
+{
+    const float gain = to_gain(db);
+    const std::lock_guard lock(mutex);
+    if (!feed.set_gain(id, gain))
+        return false;
+    link.to_audio.signal();
+    return true;
 }
 
 bool player::impl::cancel_all()

@@ -71,7 +71,8 @@ struct player::impl : std::enable_shared_from_this<player::impl> {
     /// Ends all threads, and closes the sink and the lines. Call it once, after start().
     void close();
 
-    stroke_id submit(const score& s, start_at start);
+    stroke_id submit(const score& s, start_at start, double level_db);
+    bool set_level(stroke_id id, double db);
     std::size_t fire(std::int64_t time_ns);
     live_stroke begin(const live_options& o);
     bool on_end(stroke_id id, report_handler done);

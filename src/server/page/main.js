@@ -1,27 +1,34 @@
 // SPDX-License-Identifier: MIT
 // The page to draw on: what belongs to no part of it, and the start.
 import {state, changed, on_change, on_toast, current_take, current_stroke, say, remember, remembered} from "./state.js";
-import {by_id} from "../../net/page/dom.js";
+import {by_id, make} from "../../net/page/dom.js";
 import {place_icons, forget_colours, is_dark} from "./look.js";
 import {connect, call, on_hello} from "./service/connection.js";
-import {open_takes, undo, redo, can_undo, can_redo} from "./takes/takes.js";
+import {undo, redo, can_undo, can_redo, steps_of_undo, restore_undo, rename_take} from "./takes/takes.js";
+import {open_takes, write_at_once} from "./takes/keeping.js";
 import {draw_frame, moves} from "./drawing/canvas.js";
-import {set_array, look_at_all, zoom, resize, place_in_page} from "./drawing/view.js";
+import {view, set_array, look_at_all, zoom, resize, place_in_page} from "./drawing/view.js";
+import {label_boxes} from "./drawing/labels.js";
 import {draw_lanes, clock_text} from "./time/lanes.js";
 import "./time/timeline.js";
 import {LEAST_LEVEL_DB} from "./service/planner.js";
-import {play, stop, tick, silence_speaker} from "./service/player.js";
-import {change_point, remove_point, on_tactor_held} from "./drawing/pointer.js";
+import {play, stop, tick, silence_speaker, unanswered_s} from "./service/player.js";
+import {change_point, remove_point, on_tactor_held, finish_early} from "./drawing/pointer.js";
 import {show_examples, open_example} from "./takes/takes_panel.js";
 import {show_tactor, own_name} from "./service/device.js";
-import {choose_tool, new_take} from "./settings/keys.js";
+import {choose_tool, new_take, open_sheet, fold_time} from "./settings/keys.js";
+import {full, lane_tactors, lane_height, show_all_time, zoom_time} from "./time/time_axis.js";
+import "./drawing/point_keys.js";
 import "./takes/files.js";
+import "./takes/shape_switch.js";
 import "./settings/inspector.js";
+import {draw_meter} from "./settings/level.js";
 import "./settings/prediction.js";
 import {seconds_text} from "./words.js";
 import {length_mm, editable, total_s} from "./takes/stroke.js";
 
-const TOAST_MS = 2200;
+const TOAST_MS = 2200, UNDO_MS = 6000;
+const DONE_MS = 600; // for which the button says that it has stopped
 
 // Light and dark.
 const dark = matchMedia("(prefers-color-scheme: dark)");
@@ -45,17 +52,21 @@ place_icons();
 
 // Messages that go away.
 let toast_timer = 0;
-on_toast(text => {
-  by_id("toast").textContent = text;
+const hide_toast = () => by_id("toast").classList.remove("on");
+on_toast((text, take_back) => {
+  by_id("toast").replaceChildren(text, ...take_back ? [make("button", {type: "button", onclick: () => { take_back(); hide_toast(); }},
+    "Undo")] : []);
   by_id("toast").classList.add("on");
   clearTimeout(toast_timer);
-  toast_timer = setTimeout(() => by_id("toast").classList.remove("on"), TOAST_MS);
+  toast_timer = setTimeout(hide_toast, take_back ? UNDO_MS : TOAST_MS);
 });
 
 // Buttons.
 const on = (id, f) => by_id(id).addEventListener("click", f);
 on("play", () => play());
-on("stop", () => stop());
+// It stops when it is touched, whatever other fingers do; a click by itself comes from keys and assistive technology.
+by_id("stop").addEventListener("pointerdown", e => { if (e.button === 0) stop(); });
+on("stop", e => { if (e.detail === 0) stop(); });
 on("undo", undo);
 on("redo", redo);
 on("new-take", () => { new_take(); say("Draw a new take"); });
@@ -75,6 +86,13 @@ on("show-strength", () => { state.show_strength = !state.show_strength; changed(
 on("point-curve", () => change_point({corner: false}));
 on("point-corner", () => change_point({corner: true}));
 on("point-bin", remove_point);
+on("play-from", () => play({from_s: state.at_s}));
+on("time-out", () => zoom_time(1.5));
+on("time-in", () => zoom_time(1 / 1.5));
+on("time-all", show_all_time);
+on("time-fold", fold_time);
+for (const b of document.querySelectorAll("[data-press]")) b.addEventListener("click",
+  () => { by_id("p-more").hidePopover(); by_id(b.dataset.press).click(); });
 on("pill", () => open_sheet("inspector"));
 on("settings", () => open_sheet(document.body.dataset.sheetOpen ? "" : state.sheet || "inspector"));
 on("sheet-close", () => open_sheet(""));
@@ -83,14 +101,6 @@ on("hint-example", () => { open_example(); setTimeout(play, 0); });
 let hint_closed = false;
 for (const b of document.querySelectorAll("button[data-tool]")) b.addEventListener("click", () => choose_tool(b.dataset.tool));
 for (const b of document.querySelectorAll("button[data-sheet]")) b.addEventListener("click", () => open_sheet(b.dataset.sheet));
-function open_sheet(name) {
-  if (state.drawing) return; // the canvas never changes under a finger
-  if (name) state.sheet = name;
-  document.body.dataset.sheetOpen = name;
-  for (const b of document.querySelectorAll("button[data-sheet]")) b.setAttribute("aria-pressed", b.dataset.sheet === name);
-  by_id("settings").setAttribute("aria-expanded", name !== "");
-  changed("layout");
-}
 document.body.dataset.sheetOpen = "";
 on_tactor_held(show_tactor);
 
@@ -99,9 +109,10 @@ on_change(() => {
   const take = current_take(), p = state.playing;
   by_id("undo").disabled = !can_undo();
   by_id("redo").disabled = !can_redo();
-  by_id("play").disabled = !take?.strokes.length;
+  by_id("play").disabled = by_id("play-from").disabled = !take?.strokes.length;
   by_id("play").dataset.on = p !== null;
   by_id("play").querySelector("span").textContent = p ? "Playing" : "Play";
+  show_stop();
   by_id("loop").setAttribute("aria-pressed", state.loop);
   by_id("speaker").setAttribute("aria-pressed", state.speaker);
   by_id("show-speed").setAttribute("aria-pressed", state.show_speed);
@@ -118,6 +129,13 @@ on_change(() => {
   by_id("hint").hidden = hint_closed || state.takes.length > 0 || state.drawing !== null || !by_id("banner").hidden;
   show_point();
 });
+function show_stop() {
+  const late_s = unanswered_s(), done = !state.stopping && state.stopped && performance.now() - state.stopped.at < DONE_MS;
+  by_id("stop").dataset.state = late_s ? "late" : done ? "done" : "";
+  by_id("stop").querySelector("span").replaceChildren(late_s ? "Stop again" : done ? "Stopped" : "Stop",
+    ...late_s ? [make("small", {}, `no answer, ${late_s.toFixed(1)} s`)] : []);
+  if (done) setTimeout(() => changed("link"), DONE_MS);
+}
 function take_facts(take) {
   if (!take?.strokes.length) return "";
   const bursts = state.plan && !state.plan.continuous ? `${state.plan.onsets.length} bursts, ` : "";
@@ -140,6 +158,7 @@ function frame() {
   tick();
   draw_frame();
   draw_lanes();
+  draw_meter();
   const [now, total] = clock_text();
   if (now + total !== told_clock) {
     told_clock = now + total;
@@ -158,7 +177,13 @@ on_change(wake);
 setInterval(() => { if (state.dbfs.some(v => v !== null) || state.touches.size) wake(); }, 33);
 
 new ResizeObserver(() => { resize(); changed("frame"); }).observe(by_id("stage"));
-addEventListener("beforeunload", e => { if (!state.storage_lasts && state.takes.length) e.preventDefault(); });
+addEventListener("beforeunload", e => { if (state.unkept.size) e.preventDefault(); });
+addEventListener("pagehide", () => { finish_early(); write_at_once(); });
+// Another density of the screen changes no size of the page: all is drawn again.
+function watch_density() {
+  matchMedia(`(resolution: ${devicePixelRatio}dppx)`).addEventListener("change", () => { changed("layout"); watch_density(); }, {once: true});
+}
+watch_density();
 
 // The start.
 on_hello(async h => {
@@ -167,7 +192,7 @@ on_hello(async h => {
   changed("array", "options", "take");
   show_examples();
 });
-open_takes().catch(() => say("This browser keeps no takes"));
+open_takes(steps_of_undo, restore_undo);
 connect(own_name());
 changed("takes", "take", "theme", "tool");
 
@@ -181,4 +206,4 @@ document.head.append(Object.assign(document.createElement("link"), {rel: "manife
   icons: [{src: icon_url, sizes: "any", type: "image/svg+xml"}]})], {type: "application/manifest+json"}))}));
 
 // For the console, and for tests.
-globalThis.tactor = {state, changed, place_in_page};
+globalThis.tactor = {state, changed, place_in_page, rename: rename_take, view, lanes: full, label_boxes, lane_tactors, lane_height};

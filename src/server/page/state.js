@@ -7,11 +7,14 @@ export const state = {
   lost_reason: "", retry_at: 0, // of a connection that is tried again
   fault: null,           // what failed, for the banner
   stopped: null,         // {name, at}
+  stopping: null,        // a stop that was not answered yet: {since_ms, sent_ms}
   touches: new Map(),    // of other people, by stroke: {x, y, at}
   dbfs: [],              // of each tactor, as it is driven
   options: [],           // the rows of the table of options that a client may give
   // Takes.
-  takes: [], current: null, storage_lasts: true,
+  takes: [], current: null, bin: [],
+  unkept: new Set(), storage_fault: "", // ids of takes that the browser has not kept, and why
+  elsewhere: new Set(),  // ids of takes that another tab has just changed
   stroke: 0,             // the one that is edited
   knot: -1, tool: "draw", feel: true, append: false, level_db: 0, // below the ceiling
   // Drawing, prediction and play.
@@ -43,10 +46,10 @@ function flush() {
   listeners.forEach(f => f(now));
 }
 
-// Messages: a toast that goes away, and a banner that stays.
+// Messages: a toast that goes away, with a button if something can be undone, and a banner that stays.
 let toast = null;
 export function on_toast(f) { toast = f; }
-export function say(text) { toast?.(text); }
+export function say(text, take_back = null) { toast?.(text, take_back); }
 
 // Small things that the browser remembers, where it does.
 export const remembered = name => { try { return localStorage.getItem(`tactor-${name}`); } catch { return null; } };
@@ -59,3 +62,5 @@ export const ceiling_dbfs = () => state.hello?.max_level_dbfs ?? -12;
 export const level_dbfs = () => ceiling_dbfs() + state.level_db;
 // The level as a factor on what sounds at the ceiling.
 export const level_gain = () => 10 ** (state.level_db / 20);
+// The same of the take that is shown, with its own gain.
+export const take_gain = () => level_gain() * 10 ** ((current_take()?.gain_db ?? 0) / 20);

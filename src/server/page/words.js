@@ -27,7 +27,8 @@ export const OPTION_NAMES = {
   release: "Release", sl: "Level above the threshold", intensity_scale: "Scale of strength",
     stevens_exponent: "Exponent of felt strength",
 };
-export const place_word = mm => mm < 1.2 ? "close to the path" : mm < 3 ? "near the path" : "far from the path";
+// An error as a part of the pitch.
+export const place_word = part => part < 0.06 ? "close to the path" : part < 0.15 ? "near the path" : "far from the path";
 export const even_word = cv => cv < 0.25 ? "even speed" : cv < 0.5 ? "slightly uneven" : "uneven speed";
 export function seconds_text(s) {
   if (s < 59.995) return `${s.toFixed(2)} s`;

@@ -17,7 +17,8 @@ using net::reply_json;
 
 constexpr double number_bytes = 2.0;  // least size of a number with the comma after it
 constexpr double burst_numbers = 5.0; // of each burst, beside its amplitudes
-constexpr double time_edge = 1e-6;    // of a step: a duration so little above is none
+constexpr double level_parts = 100.0;
+constexpr double time_edge = 1e-6; // of a step: a duration so little above is none
 
 // Bursts of all strokes, list by list.
 class burst_lists {
@@ -134,6 +135,8 @@ std::string view_text(const planned& p, const array& a, const view_choice& v, st
     for (std::string& w : warnings)
         w = net::cut_echo(w);
     head["warnings"] = warnings;
+    if (const double over_db = rounded(p.over_db, level_parts); over_db > 0.0)
+        head["warnings"].push_back({{"kind", "level"}, {"over_db", over_db}});
     std::string lists;
     if (v.kind == view_kind::peaks)
         lists = add_peaks(head, p, tactors, v.bins);

@@ -54,11 +54,16 @@ void person_session::hold()
 {
     session::say(stderr, "Keys of the experimenter: r repeats the trial, v makes the one before void, p "
                          "pauses, g goes on, q or Ctrl-C stops.\n");
-    do {
-        for (session_step s = flow_.next(); s.what != step_kind::over; s = flow_.next())
-            step(s);
-        stage_.fade_out();
-    } while (!end());
+    try {
+        do {
+            for (session_step s = flow_.next(); s.what != step_kind::over; s = flow_.next())
+                step(s);
+            stage_.fade_out();
+        } while (!end());
+    } catch (...) {
+        on_page(idle_screen(p_, "over")); // however it ends, for the participant it is over
+        throw;
+    }
 }
 
 void person_session::on_page(page_screen s)
@@ -85,11 +90,9 @@ void person_session::step(const session_step& s)
     case step_kind::pause:
         return pause();
     case step_kind::refused:
-        on_page(idle_screen(p_, "over"));
         throw error(error_kind::runtime, "sub-" + p_.participant, "did not agree",
                     "there are no data of the session");
     case step_kind::not_felt:
-        on_page(idle_screen(p_, "wait"));
         throw error(error_kind::runtime, fmt::format("tactor {}", s.tactor), "it was not felt",
                     "tactor check --walk finds out why; then begin again");
     case step_kind::over:

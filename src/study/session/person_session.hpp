@@ -115,6 +115,7 @@ private:
     std::optional<run_table> practice_ = {}; ///< of the run that is on
     std::optional<run_table> table_ = {};
     nlohmann::ordered_json walked_ = nlohmann::ordered_json::array();
+    std::optional<unsigned> doubted_ = {}; ///< tactor whose first No offered it again
     unsigned stream_ = 0;
     std::string agreed_at_ = {}; ///< time of the yes; empty: not asked
     bool begun_ = false;         ///< of the store

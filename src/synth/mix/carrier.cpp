@@ -17,7 +17,8 @@ void carrier_block::forget() noexcept
     }
 }
 
-const double* carrier_block::get(const voice& v, const fade* f, std::uint64_t at, unsigned n, wave w) noexcept
+const double* carrier_block::get(const voice& v, const fade* f, const score_gain* g, std::uint64_t at,
+                                 unsigned n, wave w) noexcept
 {
     kept& k = kept_[static_cast<std::size_t>(w)];
     const place here{at, n, v.cycles_per_frame, v.phase, v.stroke_place, v.sound};
@@ -32,9 +33,9 @@ const double* carrier_block::get(const voice& v, const fade* f, std::uint64_t at
     }
     const auto first = static_cast<std::int64_t>(v.window_place + at);
     const bool modulated = v.sound != nullptr && v.sound->am_depth != 0.0;
-    if (f == nullptr && !modulated && window_is_flat(first, first + n, v.window))
+    if (f == nullptr && g == nullptr && !modulated && window_is_flat(first, first + n, v.window))
         return k.plain.data();
-    shape wanted{v.window_place, v.window, 0, 0};
+    shape wanted{v.window_place, v.window, 0, 0, g == nullptr ? score_gain{} : *g};
     if (f != nullptr) {
         wanted.fade_place = static_cast<std::int64_t>(at - f->start);
         wanted.fade_length = f->length;
@@ -48,6 +49,8 @@ const double* carrier_block::get(const voice& v, const fade* f, std::uint64_t at
     window_block(tables_, first, v.window, 0, n, k.shaped.data());
     if (f != nullptr)
         fade_block(tables_, wanted.fade_place, f->length, 0, n, k.shaped.data());
+    if (g != nullptr)
+        g->apply(at, n, k.shaped.data());
     k.shaped_place = here;
     k.shaped_shape = wanted;
     return k.shaped.data();

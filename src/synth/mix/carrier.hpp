@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// Carrier of a voice, window and fade included, shared by the voices that have it in common.
+/// Carrier of a voice, window, fade and gain included, shared by the voices that have it in common.
 #pragma once
 
 #include <array>
@@ -8,6 +8,7 @@
 
 #include "synth/mix/fades.hpp"
 #include "synth/mix/oscillator.hpp"
+#include "synth/mix/score_gains.hpp"
 #include "synth/mix/voice.hpp"
 
 namespace tactor::synth {
@@ -16,10 +17,10 @@ namespace tactor::synth {
 class carrier_block {
 public:
     /// Returns the samples of the n frames (at most block_frames) from frame `at` of the stream on. Valid
-    /// until the next call for the same wave.
-    const double* get(const voice& v, const fade* f, std::uint64_t at, unsigned n,
+    /// until the next call for the same wave. `f`, `g`: null: none.
+    const double* get(const voice& v, const fade* f, const score_gain* g, std::uint64_t at, unsigned n,
                       wave w = wave::sine) noexcept;
-    /// Returns true if `s`, which get() returned for the sine, has neither a window nor a fade.
+    /// Returns true if `s`, which get() returned for the sine, has no window, fade or gain.
     bool is_plain(const double* s) const noexcept { return s == kept_[0].plain.data(); }
     void forget() noexcept;
 
@@ -38,6 +39,7 @@ private:
         burst_window window = {};
         std::int64_t fade_place = 0;
         std::uint64_t fade_length = 0;
+        score_gain gain = {};
         bool operator==(const shape&) const = default;
     };
     struct kept {

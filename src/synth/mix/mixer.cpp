@@ -98,6 +98,16 @@ bool mixer::fade_out(std::uint32_t score, std::uint32_t fade) noexcept
     return true;
 }
 
+bool mixer::set_gain(std::uint32_t score, double gain, std::uint32_t ramp) noexcept
+{
+    return impl_->gains.set(score, gain, impl_->position, ramp);
+}
+
+void mixer::forget_gain(std::uint32_t score) noexcept
+{
+    impl_->gains.forget(score);
+}
+
 // Removes all scores that leave in one pass over the voices: a stop may end hundreds.
 void mixer::impl::let_go() noexcept
 {
@@ -136,6 +146,7 @@ void mixer::cut() noexcept
     impl_->fading.clear();
     impl_->leaving.clear();
     impl_->carrier.forget();
+    impl_->gains.settle();
 }
 
 void mixer::reset() noexcept

@@ -48,6 +48,13 @@ public:
     /// already.
     bool fade_out(std::uint32_t score, std::uint32_t fade) noexcept;
 
+    /// Leads the factor of all drives of a score, those to come too, linearly to `gain` (0 ... 1), within
+    /// `ramp` frames from the next one on; until then it is 1. The limits still count with the drives' full
+    /// amplitudes where they look at amplitudes alone. Returns false if 512 scores have one already.
+    bool set_gain(std::uint32_t score, double gain, std::uint32_t ramp) noexcept;
+    /// Forgets the factor of a score of which nothing sounds any more.
+    void forget_gain(std::uint32_t score) noexcept;
+
     /// Returns the drive times of each channel, for the next mixer of the same array. Allocates; no thread
     /// may be in process().
     drive_history history() const;

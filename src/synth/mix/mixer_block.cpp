@@ -34,9 +34,7 @@ void mixer::impl::mix(const voice& v, bool last, unsigned n) noexcept
 {
     const auto from = static_cast<unsigned>(std::max(v.start, position) - position);
     const auto to = static_cast<unsigned>(std::min(v.end, position + n) - position);
-    const double* s = v.cycles_per_frame == 0.0
-                          ? ones.data()
-                          : carrier.get(v, v.fade == fades::none ? nullptr : &fading[v.fade], position, n);
+    const double* s = v.cycles_per_frame == 0.0 ? ones.data() : shaped(v, position, n, wave::sine);
     if (v.points != 0) {
         mix_line(v, s, n);
         return;

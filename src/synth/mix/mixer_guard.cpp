@@ -65,7 +65,7 @@ void mixer::impl::add_wave(const voice& v, const stretch& p, wave w, unsigned lo
     const std::uint64_t at = position + look;
     if (p.end <= at || p.start >= position + n)
         return;
-    const double* s = carrier.get(v, v.fade == fades::none ? nullptr : &fading[v.fade], at, n - look, w);
+    const double* s = shaped(v, at, n - look, w);
     add_stretch(s, p, at, n - look, sum);
 }
 

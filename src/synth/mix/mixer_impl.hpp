@@ -21,6 +21,7 @@
 #include "synth/mix/converter.hpp"
 #include "synth/mix/fades.hpp"
 #include "synth/mix/mixer.hpp"
+#include "synth/mix/score_gains.hpp"
 #include "synth/mix/voice.hpp"
 #include "synth/tone/timbre.hpp"
 
@@ -124,6 +125,12 @@ struct mixer::impl {
                                [](double sum, double l) { return sum + clean_limit(l) * clean_limit(l); });
     }
 
+    /// Returns the carrier of a voice as it sounds.
+    const double* shaped(const voice& v, std::uint64_t at, unsigned n, wave w) noexcept
+    {
+        return carrier.get(v, v.fade == fades::none ? nullptr : &fading[v.fade], gains.find(v.score, at), at,
+                           n, w);
+    }
     void segment(unsigned n, std::byte* out) noexcept;
     void mix(const voice& v, bool last, unsigned n) noexcept;
     void limit(unsigned n) noexcept;
@@ -153,6 +160,7 @@ struct mixer::impl {
     std::vector<std::uint32_t> sounding;
     voice_list voices;
     fades fading;
+    score_gains gains;
     std::vector<leaver> leaving; ///< since the last pass over the voices
     carrier_block carrier;
     power_guard power;

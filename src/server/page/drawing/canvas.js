@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: MIT
 // The picture of the array at one moment: over ground and strokes, what is driven and felt.
-import {state, current_take, ceiling_dbfs, level_gain} from "../state.js";
+import {state, current_take, ceiling_dbfs, take_gain} from "../state.js";
 import {by_id} from "../../../net/page/dom.js";
 import {colour, font} from "../look.js";
 import {interpolate} from "../takes/stroke.js";
 import {array, view, layers, stale, trace, disc, to_px} from "./view.js";
 import {draw_ground} from "./ground.js";
 import {draw_ink, draw_number} from "./ink.js";
+import {draw_share, number_place} from "./labels.js";
 
 const pen = by_id("field").getContext("2d");
 
@@ -19,8 +20,8 @@ function shares() {
   }
   const plan = state.plan;
   if (!plan?.onsets?.length || (state.playing?.felt && !state.playing.waits)) return out;
-  if (state.at_s <= 0 && !state.playing) return out;
-  const level = level_gain();
+  if (!shows_moment()) return out;
+  const level = take_gain();
   for (const i of bursts_at(plan, state.at_s)) for (let k = 0; k < t; ++k) out[k] = Math.max(out[k],
     Math.min(1, plan.amplitudes[i * t + k] * level));
   return out;
@@ -35,6 +36,8 @@ function bursts_at(plan, t) {
   }
   return found;
 }
+// A moment is shown that was chosen, or at which this take plays; of another take that plays only what is driven.
+const shows_moment = () => state.at_s > 0 || state.playing?.take === state.current;
 // Places where the strokes are felt at a moment.
 const felt_at = (plan, t) => (plan?.felt_rows ?? []).filter(rows => rows.length && t >= rows[0][0] && t <= rows.at(-1)[0] + 0.1)
   .map(rows => interpolate(rows, t));
@@ -63,20 +66,15 @@ function draw_disc(q, i, share) {
     p.strokeStyle = colour("felt"); p.lineWidth = 2.5; p.stroke();
     disc(p, c, r * Math.sqrt(share) * 0.93);
     p.fillStyle = colour("felt"); p.fill();
-    p.font = font(12, 600);
-    p.textAlign = "center";
-    p.lineWidth = 4;
-    p.strokeStyle = colour("skin");
-    p.fillStyle = colour("felt-ink");
-    const text = `${Math.round(share * 100)} %`;
-    p.strokeText(text, c[0], c[1] + r + 16); p.fillText(text, c[0], c[1] + r + 16);
-    draw_number(p, c, i, share > 0.06 ? "on-felt" : "ink");
+    draw_share(p, i, share);
+    const [x, y] = number_place(i), reach = Math.hypot(x - c[0], y - c[1]);
+    draw_number(p, i, Math.sqrt(share) * 0.93 * r > reach + Math.min(6, 0.2 * r) ? "on-felt" : "ink");
   }
 }
 function draw_arms(now) {
   if (!state.plan || state.drawing) return;
   const places = felt_at(state.plan, state.at_s);
-  if (!places.length || (state.at_s <= 0 && !state.playing)) return;
+  if (!places.length || !shows_moment()) return;
   pen.strokeStyle = colour("felt");
   pen.globalAlpha = 0.35;
   for (const f of places) now.forEach((share, i) => {
@@ -90,7 +88,7 @@ function draw_arms(now) {
 // Draws the target of this moment as a ring, and where it is felt as a dot.
 function draw_moment() {
   const take = current_take();
-  if (!take || state.drawing || (state.at_s <= 0 && !state.playing)) return;
+  if (!take || state.drawing || !shows_moment()) return;
   for (const s of take.strokes) {
     const t = state.at_s - s.start_s;
     if (t < 0 || t > s.timed.at(-1)[0]) continue;

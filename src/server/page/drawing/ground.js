@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
 // Ground of the strokes: the body part, the skin between the tactors with its grid, the scale.
-import {by_id} from "../../../net/page/dom.js";
 import {colour, font} from "../look.js";
 import {array, view, layers, start_layer, trace, to_px} from "./view.js";
 
@@ -70,7 +69,7 @@ function draw_hand(p) {
 }
 function draw_scale(p) {
   const mm = [1, 2, 5, 10, 20, 50, 100].find(v => v * view.scale > 46) ?? 100, width = mm * view.scale;
-  const narrow = view.width < 600, x = 18, y = view.height - (parseFloat(getComputedStyle(by_id("stage")).getPropertyValue("--scale-bottom")) || 20);
+  const x = 18, y = view.height - view.scale_bottom;
   p.strokeStyle = colour("ink2");
   p.fillStyle = colour("ink2");
   p.lineWidth = 1.5;
@@ -79,8 +78,5 @@ function draw_scale(p) {
   p.stroke();
   p.font = font(12);
   p.textAlign = "left";
-  const site = array.site ? `${array.site}, to scale` : "to scale";
-  if (narrow) p.fillText(`${mm} mm${array.site ? `, ${array.site}` : ""}`, x + width + 10, y);
-  else { p.textAlign = "center"; p.fillText(`${mm} mm`, x + width / 2, y - 7); p.textAlign = "left";
-    p.fillText(site, x + width + 14, y); }
+  p.fillText(`${mm} mm${array.site && view.width >= 760 ? `, ${array.site}` : ""}${view.width >= 760 ? ", to scale" : ""}`, x + width + 10, y);
 }

@@ -3,6 +3,8 @@
 import {state, current_take} from "../state.js";
 import {colour, is_dark, font} from "../look.js";
 import {array, view, layers, start_layer, trace, disc, to_px} from "./view.js";
+import {editable, shape} from "../takes/stroke.js";
+import {place_labels, number_place, draw_labels} from "./labels.js";
 import {viridis} from "../../../net/page/viridis.js";
 
 export function draw_ink() {
@@ -11,6 +13,7 @@ export function draw_ink() {
   const take = current_take(), plan = state.plan;
   const drawing = state.drawing;
   // Tactors are the ground of the lines, which stay above them.
+  place_labels(drawing ? [] : take?.strokes ?? []);
   array.places.forEach((q, i) => draw_ring(p, q, i));
   if (plan) draw_felt(p, plan);
   const strokes = drawing ? drawing.before : take?.strokes ?? [];
@@ -23,6 +26,7 @@ export function draw_ink() {
   });
   if (plan) draw_dots(p, plan);
   if (!drawing) strokes.forEach((s, i) => draw_marks(p, s, i));
+  draw_labels(p, drawing ? [] : strokes);
 }
 function draw_ring(p, q, i) {
   const c = to_px(q), r = array.radius * view.scale;
@@ -32,15 +36,17 @@ function draw_ring(p, q, i) {
   p.strokeStyle = colour(i === state.hot ? "ink" : "ink3");
   p.lineWidth = i === state.hot ? 2.5 : 1.5;
   p.stroke();
-  draw_number(p, c, i, "ink");
+  draw_number(p, i, "ink");
 }
 // Writes a tactor's number: under strokes and points, and over its disc while it is driven.
-export function draw_number(p, [x, y], i, tone) {
+export function draw_number(p, i, tone) {
+  const [x, y] = number_place(i);
   p.font = font(Math.max(11, Math.min(16, array.radius * view.scale * 0.5)), 600);
   p.textAlign = "center";
   p.textBaseline = "middle";
   p.fillStyle = colour(tone);
-  p.fillText(array.tactors[i].tactor ?? i, x, y + 0.5);
+  const number = String(array.tactors[i].tactor ?? i);
+  if (p.measureText(number).width < 2 * array.radius * view.scale) p.fillText(number, x, y + 0.5);
   p.textBaseline = "alphabetic";
 }
 function draw_felt(p, plan) {
@@ -52,10 +58,20 @@ function draw_felt(p, plan) {
   p.restore();
 }
 function draw_stroke(p, s, own) {
+  if (own && shape(s) && shape(s) !== "drawn") draw_ghost(p, s.ink);
   trace(p, s.timed.map(q => [q[1], q[2]]));
   p.strokeStyle = own ? colour("ink") : colour("ink2");
   p.lineWidth = own ? 2 : 1.5;
   p.stroke();
+}
+// Draws the ink below a path that has left it.
+function draw_ghost(p, ink) {
+  trace(p, ink.map(q => [q[1], q[2]]));
+  p.globalAlpha = 0.2;
+  p.strokeStyle = colour("ink");
+  p.lineWidth = 3;
+  p.stroke();
+  p.globalAlpha = 1;
 }
 function draw_dots(p, plan) {
   if (plan.continuous || !plan.onsets) return;
@@ -74,17 +90,10 @@ function draw_dots(p, plan) {
   }
 }
 function draw_marks(p, s, i) {
-  const own = i === state.stroke, first = to_px(s.timed[0].slice(1)), last = to_px(s.timed.at(-1).slice(1));
-  if (own && s.knots && (state.tool === "points" || s.knots.length < 14)) s.knots.forEach((k, n) => draw_knot(p, k,
-    state.tool === "points", n === state.knot));
-  if (!own) return;
-  p.font = font(12, 600);
-  // Names lie on the side of the stroke that is away from its way.
-  label(p, "start", first, s.timed, 0);
-  if (Math.hypot(first[0] - last[0], first[1] - last[1]) > 24) label(p, "end", last, s.timed, s.timed.length - 1);
+  if (i === state.stroke && state.tool === "points") editable(s).knots.forEach((k, n) => draw_knot(p, k, n === state.knot));
 }
-function draw_knot(p, k, large, chosen) {
-  const [x, y] = to_px([k.x, k.y]), r = large ? 6.5 : 4;
+function draw_knot(p, k, chosen) {
+  const [x, y] = to_px([k.x, k.y]), r = 6.5;
   p.beginPath();
   if (k.corner) p.rect(x - r * 0.9, y - r * 0.9, r * 1.8, r * 1.8); else p.arc(x, y, r, 0, 2 * Math.PI);
   p.fillStyle = chosen ? colour("ink") : colour("raised");
@@ -92,15 +101,4 @@ function draw_knot(p, k, large, chosen) {
   p.strokeStyle = colour("ink");
   p.lineWidth = 2;
   p.stroke();
-}
-function label(p, text, [x, y], timed, at) {
-  const other = timed[at === 0 ? Math.min(timed.length - 1, 3) : Math.max(0, timed.length - 4)], [ox, oy] = to_px(other.slice(1));
-  const d = Math.hypot(x - ox, y - oy) || 1, dx = (x - ox) / d, dy = (y - oy) / d;
-  p.textAlign = dx > 0.4 ? "left" : dx < -0.4 ? "right" : "center";
-  p.lineWidth = 4;
-  p.strokeStyle = colour("skin");
-  const tx = x + dx * 11, ty = y + dy * 16 + 4;
-  p.strokeText(text, tx, ty);
-  p.fillStyle = colour("ink");
-  p.fillText(text, tx, ty);
 }

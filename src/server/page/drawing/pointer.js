@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
 // Fingers, pen, mouse and keys on the array: drawing, straight lines, points, tests of single tactors.
-import {state, changed, current_take, current_stroke, ceiling_dbfs, level_dbfs, level_gain, say} from "../state.js";
+import {state, changed, current_take, current_stroke, ceiling_dbfs, say} from "../state.js";
 import {by_id} from "../../../net/page/dom.js";
 import {call, tell, is_connected, on_lost} from "../service/connection.js";
-import {array, to_mm, to_px, px_per_mm, tactor_at, zoom, pan} from "./view.js";
-import {add_take, edit_take, edit_stroke, end_edit, request_options, moved_knot} from "../takes/takes.js";
-import {from_drawing, straight, editable, nearest_knot, insert_knot, rebuild, total_s} from "../takes/stroke.js";
-import {value} from "../settings/values.js";
-import {test_tactor, on_stop} from "../service/player.js";
+import {array, to_mm, to_px, px_per_mm, tactor_at, zoom, zoom_by_two, pan} from "./view.js";
+import {add_take, edit_take, edit_stroke, end_edit, request_options} from "../takes/takes.js";
+import {say_if_kept} from "../takes/keeping.js";
+import {from_drawing, straight, editable, nearest_knot, insert_knot, changed_knot, without_knot, total_s, outside_mm} from "../takes/stroke.js";
+import {test_tactor, tell_level, on_stop} from "../service/player.js";
 
 const RESTING_MS = 100;    // a finger that rests says so, or its stroke would end
 const LEAST_MM = 1;        // a shorter touch is a tap
@@ -30,6 +30,7 @@ const seconds = ms => +(ms / 1000).toFixed(4);
 
 function down(id, px, e) {
   if (!array || fingers.has(id)) return;
+  if (e.pointerType === "touch" && [...fingers.values()].some(f => f.kind === "pen")) return; // it is the hand of the pen
   const mm = to_mm(...px);
   const f = {id, px, from: mm, at: mm, strength: strength(e), kind: e.pointerType ?? "key", down_ms: e.timeStamp
     ?? performance.now(), mode: "tap",
@@ -39,12 +40,22 @@ function down(id, px, e) {
   if (tactor >= 0) f.hold = setTimeout(() => { if (f.mode === "tap") { f.mode = "held"; show_held(tactor, px); } }, HOLD_MS);
   f.tactor = tactor;
   fingers.set(id, f);
+  // Two fingers that begin together on the ground zoom; they draw nothing.
+  f.ground = f.kind === "touch" && outside_mm(array.edge, mm) > array.radius;
+  const other = f.ground && [...fingers.values()].find(o => o !== f && o.ground && o.mode === "tap");
+  if (other) [f, other].forEach(o => { clearTimeout(o.hold); o.mode = "zoom"; });
 }
 
 function moved(id, px, e) {
   const f = fingers.get(id);
   if (!f) return;
   const mm = to_mm(...px);
+  if (f.mode === "zoom") {
+    const other = [...fingers.values()].find(o => o !== f && o.mode === "zoom");
+    if (other) zoom_by_two([f.px, other.px], [px, other.px]);
+    f.px = px;
+    return;
+  }
   f.at = mm;
   f.strength = strength(e);
   if (f.mode === "knot") return drag_knot(f, mm);
@@ -84,9 +95,8 @@ function record(f, mm, at_ms) {
 
 // Live strokes: what is drawn is felt.
 function begin_live(f) {
-  // The level takes effect while the finger moves: the stroke begins at the ceiling, and its points are weaker.
-  f.scaled = current_take()?.options.sl === undefined && (value("intensity_scale") ?? "amplitude") === "amplitude";
-  const o = request_options(current_take(), f.scaled ? ceiling_dbfs() : level_dbfs());
+  tell_level();
+  const o = request_options({options: current_take()?.options}, ceiling_dbfs());
   if (o.algorithm === "tactile-brush") o.algorithm = "continuous"; // it has to know the end first
   const live = new Set(state.options.filter(r => r.live).map(r => r.name));
   const options = Object.fromEntries(Object.entries(o).filter(([name]) => live.has(name) || !live.size));
@@ -100,7 +110,7 @@ function send(f, at_ms, always = false) {
   if (f.number === null || (!always && at_ms - f.sent_ms < LEAST_STEP_MS)) return;
   f.sent_ms = at_ms;
   tell("to", {stroke: f.number, x_mm: f.at[0], y_mm: f.at[1],
-    intensity: f.strength * (f.scaled ? level_gain() : 1)});
+    intensity: f.strength});
 }
 setInterval(() => fingers.forEach(f => f.mode === "draw" && send(f, performance.now(), true)), RESTING_MS);
 
@@ -120,13 +130,24 @@ function up(id, cancelled = false) {
   if ([...fingers.values()].some(o => o.mode === "draw")) return changed("drawing");
   finish();
 }
+// A touch that the system cancels beside others is a palm, and nothing of it stays. A drawing of one finger is kept.
+function take_back(id) {
+  const f = fingers.get(id), others = [...fingers.values()].some(o => o !== f && o.mode === "draw");
+  if (f?.mode !== "draw" || !(others || f.kind === "touch" && state.drawing.kind === "pen")) return up(id, true);
+  fingers.delete(id);
+  state.drawing.tracks = state.drawing.tracks.filter(k => k !== f.track);
+  f.track.down = false;
+  if (f.number !== null) tell("cancel", {stroke: f.number});
+  if (!others) return finish();
+  changed("drawing");
+}
 function tap(f) {
   if (state.tool === "points" && choose_stroke(f.from)) return;
   if (f.tactor >= 0) test_tactor(f.tactor);
 }
 
 // Makes a take, or more strokes of this one, of all fingers that touched until none did any more.
-function finish() {
+function finish(take_name) {
   const d = state.drawing;
   state.drawing = null;
   document.body.classList.remove("touching");
@@ -148,11 +169,17 @@ function finish() {
   } else {
     const first = Math.min(...strokes.map(s => s.start_s));
     const take = add_take(strokes.map(s => ({...s, start_s: +(s.start_s - first).toFixed(4)})),
-      {origin: NAMES[d.kind] ?? "drawn"});
-    say(`Kept as “${take.name}”`);
+      {name: take_name, origin: NAMES[d.kind] ?? "drawn"});
+    say_if_kept(take);
   }
   state.at_s = 0;
   changed("drawing", "take");
+}
+// Makes a take of a drawing while the page goes away.
+export function finish_early() {
+  if (!state.drawing) return;
+  fingers.clear();
+  finish(`Drawing of ${new Date().toTimeString().slice(0, 5)}, not finished`);
 }
 function lift_all() {
   key = null;
@@ -176,7 +203,7 @@ function grasp(f, mm) {
   changed("knot");
   return true;
 }
-function drag_knot(f, mm) { edit_stroke(s => moved_knot(s, f.knot, mm.map(v => +v.toFixed(3))), f.key); }
+function drag_knot(f, [x, y]) { edit_stroke(s => changed_knot(s, f.knot, {x: +x.toFixed(3), y: +y.toFixed(3)}), f.key); }
 function add_point(mm) {
   const s = edited_stroke();
   if (!s) return;
@@ -186,12 +213,12 @@ function add_point(mm) {
   changed("knot");
 }
 export function change_point(how) {
-  edit_stroke(s => rebuild({...s, knots: s.knots.map((k, i) => i === state.knot ? {...k, ...how} : k)}));
+  edit_stroke(s => changed_knot(s, state.knot, how));
 }
 export function remove_point() {
   const s = edited_stroke();
   if (!s || state.knot < 0 || s.knots.length <= 2) return;
-  edit_stroke(t => rebuild({...t, knots: t.knots.filter((_, i) => i !== state.knot)}));
+  edit_stroke(t => without_knot(t, state.knot));
   state.knot = Math.min(state.knot, s.knots.length - 2);
   changed("knot");
 }
@@ -230,8 +257,8 @@ field.addEventListener(raw ? "pointerrawupdate" : "pointermove", follow);
 if (raw) field.addEventListener("pointermove", e => { if (fingers.has(e.pointerId)) moved(e.pointerId, to_pixel(e), e); });
 field.addEventListener("pointerup", e => { middle = null; if (fingers.has(e.pointerId)) { moved(e.pointerId, to_pixel(e), e);
   up(e.pointerId); } });
-for (const end of ["pointercancel", "lostpointercapture"]) field.addEventListener(end,
-  e => { middle = null; up(e.pointerId, true); });
+field.addEventListener("pointercancel", e => { middle = null; take_back(e.pointerId); });
+field.addEventListener("lostpointercapture", e => { middle = null; up(e.pointerId, true); });
 field.addEventListener("pointerleave", () => set_hot(-1));
 field.addEventListener("contextmenu", e => e.preventDefault());
 field.addEventListener("wheel", e => {
@@ -263,10 +290,6 @@ field.addEventListener("keydown", e => {
   if (!step) return;
   e.preventDefault();
   const mm = Math.max(...array.box.size, 10) / (e.shiftKey ? 100 : 25);
-  if (state.tool === "points" && state.knot >= 0 && edited_stroke()) {
-    const k = edited_stroke().knots[state.knot];
-    return edit_stroke(s => moved_knot(s, state.knot, [k.x + step[0] * mm, k.y + step[1] * mm]), `key knot ${state.knot}`);
-  }
   if (!key) return;
   key = [key[0] + step[0] * mm, key[1] + step[1] * mm];
   moved("key", to_px(key), {pointerType: "key", timeStamp: performance.now()});

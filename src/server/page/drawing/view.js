@@ -6,15 +6,16 @@ import {hull, box} from "../takes/stroke.js";
 
 const canvas = by_id("field");
 export const layers = {ground: document.createElement("canvas"), ink: document.createElement("canvas")};
-export const view = {zoom: 1, x: 0, y: 0, scale: 1, left: 0, top: 0, width: 0, height: 0, dpr: 1};
+export const view = {zoom: 1, x: 0, y: 0, scale: 1, left: 0, top: 0, width: 0, height: 0, dpr: 1, scale_bottom: 20};
 export const stale = {ground: true, ink: true};
 export let array = null; // {tactors, edge, pitch, radius}
 
 export function set_array(a) {
   const places = a.tactors.map(t => [t.x_mm, t.y_mm]);
-  let pitch = 40;
+  let pitch = Infinity;
   places.forEach((p, i) => places.slice(i + 1).forEach(q => { pitch = Math.min(pitch, Math.hypot(p[0] - q[0], p[1] - q[1])
-    || pitch); }));
+    || Infinity); }));
+  if (pitch === Infinity) pitch = 40;
   array = {...a, places, edge: hull(places), box: box(places), pitch, radius: pitch * 0.215};
   look_at_all();
 }
@@ -37,14 +38,22 @@ export function zoom(by, at = null) {
   if (before) { const now = to_px(before); view.x += at[0] - now[0]; view.y += at[1] - now[1]; place(); }
   outdated("ground", "ink");
 }
+// Keeps two places of the array under two fingers that move from a and b to c and d, in pixels.
+export function zoom_by_two([a, b], [c, d]) {
+  const apart = (p, q) => Math.max(20, Math.hypot(p[0] - q[0], p[1] - q[1])), middle = (p, q) => [(p[0] + q[0]) / 2, (p[1] + q[1]) / 2];
+  const from = middle(a, b), to = middle(c, d);
+  pan(to[0] - from[0], to[1] - from[1]);
+  zoom(apart(c, d) / apart(a, b), to);
+}
 export function pan(dx, dy) { view.x += dx; view.y += dy; place(); outdated("ground", "ink"); }
 
 // The free part of the stage: what tools, title and an open sheet leave.
 function insets() {
-  const s = getComputedStyle(by_id("stage")), v = name => parseFloat(s.getPropertyValue(name)) || 0;
+  const s = getComputedStyle(canvas), v = name => parseFloat(s.getPropertyValue(name)) || 0;
+  view.scale_bottom = v("--scale-bottom") || 20;
   const free = {left: v("--free-left"), right: v("--free-right"), top: v("--free-top"), bottom: v("--free-bottom")};
   const stage = by_id("stage").getBoundingClientRect(), sheet = by_id("sheet-head").getBoundingClientRect();
-  if (!sheet.width) return free;
+  if (!sheet.width || sheet.left >= stage.right) return free;
   if (sheet.left > stage.left + 10) return {...free, right: stage.right - sheet.left + 10};
   return {...free, top: 12, bottom: stage.bottom - sheet.top + 8};
 }

@@ -2,7 +2,7 @@
 // The WebSocket to the service: calls, answers, and what comes by itself.
 import {state, changed} from "../state.js";
 
-const SLOW_MS = 300;
+export const SLOW_MS = 300; // without an answer
 const POLL_MS = 500;
 const LONGEST_RETRY_MS = 5000;
 const CODE_TOKEN = -32003;
@@ -73,6 +73,7 @@ async function hello() {
     const asked = server_now_s(), h = await introduce();
     set_clock(h.clock.monotonic_s, asked);
     state.hello = h;
+    tell("level", {db: state.level_db}); // before anything plays: a connection begins at the ceiling
     state.asks_token = "";
     await call("subscribe", {events: ["levels", "stream", "strokes", "touches", "stops"], levels_hz: 30});
     await poll();

@@ -4,7 +4,7 @@ import {state, on_change, changed, ceiling_dbfs, say, remember, remembered} from
 import {by_id, make} from "../../../net/page/dom.js";
 import {icon} from "../look.js";
 import {connect_with, connect, rename_client} from "./connection.js";
-import {test_tactor} from "./player.js";
+import {test_tactor, unanswered_s} from "./player.js";
 import {array_name, number_text} from "../words.js";
 
 const STOPPED_MS = 6000;
@@ -16,7 +16,7 @@ function describe() {
   if (state.link === "token") return ["barred", "Locked", "warn", "a token is needed"];
   if (state.link === "lost") return ["broken", "No connection", "bad",
     `again in ${Math.max(0, Math.ceil((state.retry_at - performance.now()) / 1000))} s`];
-  if (state.slow) return ["waiting", "No answer", "warn", "waiting for tactor"];
+  if (unanswered_s() || state.slow) return ["waiting", "No answer", "warn", "waiting for tactor"];
   if (s.state === "lost") return state.hello?.stream.format === null ? ["barred", "No card", "bad",
     "it is looked for"] : ["broken", "Card lost", "bad", "it is looked for"];
   if (s.state === "muted") return ["muted", "Muted", "warn", s.reason];
@@ -33,10 +33,13 @@ const who = client => { const w = state.status?.who?.find(x => x.client === clie
 // Returns what the banner says: [text, tone, details], or null.
 function warn() {
   const s = state.stream;
+  if (unanswered_s()) return ["Stop is sent, but tactor does not answer. Switch the amplifier off.", "bad", ""];
   if (state.link === "token") return [state.asks_token, "warn",
     "The owner has it, in the file that token_file names; or open the link that ends in #token=…"];
   if (state.link === "lost") return ["No connection to tactor. It is tried again; nothing is lost.", "bad", state.lost_reason
     || "The WebSocket to the service is closed."];
+  if (state.unkept.size) return [`Takes are not kept: ${state.storage_fault}.`, "warn",
+    "It is tried again with each change. Save what you need as a file; the page asks before it closes."];
   if (state.link === "connected" && state.slow) return null;
   if (s.state === "lost") return [state.hello?.stream.format === null
     ? "No sound card. Plug it in and it goes on by itself." : "The sound card is gone. Drawings are kept; plug it in again.",
@@ -65,6 +68,7 @@ function show_device() {
   by_id("others").setAttribute("aria-label", `${others} ${others === 1 ? "other" : "others"}`);
   const b = warn(), key = b ? b[0] : "";
   if (key !== closed && key === "") closed = "";
+  by_id("banner-close").hidden = state.unkept.size > 0;
   by_id("banner").hidden = !b || closed === key;
   if (b && closed !== key && key !== said.banner) {
     by_id("banner").dataset.tone = b[1];
@@ -100,7 +104,7 @@ function show_facts() {
       ...fact("Amplifier", s?.amplifier), ...fact("Xruns", s?.stream.xruns),
     ...fact("Real time", s ? s.stream.realtime ? "yes" : "no" : null), ...fact("Ceiling",
       `${number_text(ceiling_dbfs(), 0)} dBFS`), ...fact("Version", h.version),
-    ...fact("Takes", state.storage_lasts ? "kept in this browser" : "this browser keeps nothing: save what you need")]);
+    ...fact("Takes", state.storage_fault ? `not kept: ${state.storage_fault}` : "kept in this browser")]);
 }
 on_change(what => {
   if (!what.has("array") || !state.hello) return;

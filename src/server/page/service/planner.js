@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
 // Plans for the picture: one question at a time, always about what is newest.
-import {state, changed, on_change, current_take} from "../state.js";
+import {state, ceiling_dbfs, changed, on_change, current_take} from "../state.js";
 import {call, is_connected} from "./connection.js";
-import {make_request, take_s} from "../takes/takes.js";
+import {make_request, put_take, take_s} from "../takes/takes.js";
+import {number_text} from "../words.js";
 import {thin} from "../takes/stroke.js";
 import {row, value} from "../settings/values.js";
 
@@ -54,16 +55,16 @@ async function ask() {
   if (owed) return ask();
   if (!was_drawing) compare_timer = setTimeout(compare, COMPARED_MS);
 }
-// Returns by how much strokes that add up on a tactor are too strong.
-export const too_strong_db = f => f.data?.what === "options.level_dbfs" ? Number(/by ([\d.]+) dB/.exec(f.data.hint ?? "")?.[1]
-  ?? 0) : 0;
-// Lowers the level until the take can be played: a refusal names one tactor at a time.
-export async function lower_level(refusal) {
-  for (let by = too_strong_db(refusal); by > 0 && state.level_db > LEAST_LEVEL_DB;) {
-    state.level_db = Math.max(LEAST_LEVEL_DB, state.level_db - Math.ceil(2 * by) / 2);
-    by = await call("plan", {...request(), view: "peaks"}).then(() => 0, too_strong_db);
-  }
-  changed("level");
+// Returns by how much the strokes of a plan are too strong, dB.
+export const excess_db = plan => plan?.warnings.find(w => w.kind === "level")?.over_db ?? 0;
+// Gives a take the gain with which it can be played; the level of all others stays. Returns false if it is not too strong.
+export async function weaken_take(take) {
+  const over_db = excess_db(await call("plan", {...make_request(take, ceiling_dbfs()), view: "peaks", bins: 1}));
+  if (!over_db) return false;
+  const gain_db = (take.gain_db ?? 0) - Math.ceil(2 * over_db) / 2;
+  put_take({...take, gain_db});
+  say(`“${take.name}” ${number_text(gain_db)} dB: together its strokes are too strong`);
+  return true;
 }
 const observer = () => state.observer ? {observer: state.observer} : {};
 

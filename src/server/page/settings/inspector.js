@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
 // Settings of the take. Options come from the service's table: those with a control of their own are named in OWN, all
 // others are made from their rows.
-import {state, changed, on_change, current_take, current_stroke, ceiling_dbfs} from "../state.js";
+import {state, changed, on_change, current_take, current_stroke} from "../state.js";
 import {by_id, make} from "../../../net/page/dom.js";
 import {icon} from "../look.js";
 import {slider, choice, toggle, entry, button} from "./controls.js";
 import {set_option, end_edit, edit_stroke, edit_take, put_stroke} from "../takes/takes.js";
-import {predicted_key, LEAST_LEVEL_DB} from "../service/planner.js";
+import {predicted_key} from "../service/planner.js";
 import {algorithm_picture, phantom_picture, wave_picture, timing_picture, envelope_picture} from "./diagrams.js";
 import {ALGORITHMS, PHANTOMS, OPTION_NAMES, number_text, plain_name, seconds_text} from "../words.js";
 import {duration_s, length_mm, with_duration, rebuild, find_speeds, editable, trimmed} from "../takes/stroke.js";
@@ -231,18 +231,10 @@ by_id("tabs").addEventListener("keydown", e => {
   next.click();
 });
 
-// The level: a part of the owner's ceiling.
-const level = slider({label: "Level", least: LEAST_LEVEL_DB, most: 0, step: 0.5, get: () => state.level_db,
-  set: v => { state.level_db = v; changed("level"); },
-  text: v => [`${Math.round(100 * 10 ** (v / 20))} %`, v === 0 ? "0 dB" : `${number_text(v)} dB`]});
-by_id("level").prepend(level.element);
-
 on_change(what => {
   const all = ["take", "plan", "predicted", "tab", "array", "options", "theme", "level", "observer", "drawing"];
   if (!all.some(w => what.has(w))) return;
   state.shape = algorithm();
   build();
   controls.forEach(c => c.update());
-  level.update();
-  by_id("ceiling").textContent = `ceiling ${number_text(ceiling_dbfs(), 0)} dBFS`;
 });

@@ -4,28 +4,58 @@ import {state, changed} from "../state.js";
 import {by_id, make} from "../../../net/page/dom.js";
 import {play, stop} from "../service/player.js";
 import {undo, redo, choose_take} from "../takes/takes.js";
-import {look_at_all} from "../drawing/view.js";
-import {step_burst, show_all_time} from "../time/lanes.js";
+import {look_at_all, zoom} from "../drawing/view.js";
+import {show_all_time, zoom_time} from "../time/time_axis.js";
+import {step_burst} from "../time/lanes.js";
 import {remove_point} from "../drawing/pointer.js";
 
-const KEYS = [["Space", "stop everything"], ["P", "play"], ["L", "loop"], ["D, S, E", "draw, straight line, edit points"],
-  ["F", "feel on or off"], ["N", "new take"], ["0", "show all"],
+const KEYS = [["Space", "stop everything"], ["P, Shift P", "play, play from here"], ["L", "loop"], ["D, S, E", "draw, straight line, edit points"],
+  ["F", "feel on or off"], ["N", "new take"], ["0, +, −", "show all, larger, smaller"], ["T", "timeline: open, close"], ["[, ], Z", "more time, less time, all of it"],
   [", .", "one burst back, on"], ["Ctrl Z, Ctrl Shift Z", "undo, redo"], ["Delete", "delete the point"],
-    ["Enter, arrows", "in the array: touch and lift, move"], ["Esc", "close"]];
+    ["Enter, arrows", "in the array: touch and lift, move"], ["Tab, arrows, Enter", "with Points: next point, move it (shift: less), curve or corner"],
+    ["Esc", "close; where nothing is open, stop"]];
 by_id("keys").replaceChildren(...KEYS.flatMap(([k, what]) => [make("dt", {}, k), make("dd", {}, what)]));
 
 const is_text = e => e instanceof HTMLInputElement && ["text", "password", "search"].includes(e.type)
-  || e instanceof HTMLTextAreaElement || e?.isContentEditable;
+  && e.inputMode !== "decimal" || e instanceof HTMLTextAreaElement || e?.isContentEditable;
 const press = id => () => by_id(id).click();
 export function new_take() {
   state.append = false;
   choose_take(null);
 }
 const ACTIONS = {
-  p: () => play(), l: press("loop"), d: () => choose_tool("draw"), s: () => choose_tool("line"), e: () => choose_tool("points"),
+  p: e => play(e.shiftKey ? {from_s: state.at_s} : undefined), l: press("loop"), d: () => choose_tool("draw"), s: () => choose_tool("line"), e: () => choose_tool("points"),
     f: press("feel"), n: new_take,
-  0: () => { look_at_all(); show_all_time(); }, ",": () => step_burst(-1), ".": () => step_burst(1),
+  0: () => { look_at_all(); show_all_time(); }, "+": () => zoom(1.3), "=": () => zoom(1.3), "-": () => zoom(1 / 1.3),
+  t: () => fold_time(), "[": () => zoom_time(1.5), "]": () => zoom_time(1 / 1.5), z: show_all_time,
+  ",": () => step_burst(-1), ".": () => step_burst(1),
 };
+const STEPS = new Set([",", ".", "+", "=", "-", "[", "]"]);
+// Closes what is open; where nothing is, it stops.
+function leave(e) {
+  const open = document.querySelector(":popover-open");
+  if (open) return open.hidePopover();
+  if (document.body.dataset.sheetOpen) return open_sheet("");
+  if (!e.repeat) stop();
+}
+// Sheets of small windows, and the dock of middle ones.
+export function open_sheet(name) {
+  if (state.drawing) return; // the canvas never changes under a finger
+  if (name) state.sheet = name;
+  document.body.dataset.sheetOpen = name;
+  for (const b of document.querySelectorAll("button[data-sheet]")) b.setAttribute("aria-pressed", b.dataset.sheet === (name || "inspector"));
+  by_id("settings").setAttribute("aria-expanded", name !== "");
+  changed("layout");
+}
+// Folds or unfolds the timeline: a sheet, or the strip of a low window.
+export function fold_time() {
+  const body = document.body.dataset;
+  if (by_id("settings").checkVisibility()) return open_sheet(body.sheetOpen === "time" ? "" : "time");
+  if (state.drawing) return;
+  body.timeOpen = body.timeOpen !== "true";
+  by_id("time-fold").setAttribute("aria-expanded", body.timeOpen);
+  changed("layout");
+}
 export function choose_tool(tool) {
   Object.assign(state, {tool, knot: -1});
   changed("tool");
@@ -49,7 +79,9 @@ addEventListener("keydown", e => {
   if (e.ctrlKey || e.metaKey || e.altKey) return;
   if ((e.key === "Delete" || e.key === "Backspace") && state.tool === "points" && state.knot >= 0) { e.preventDefault();
     remove_point(); return; }
-  if (e.key === "Escape") { document.body.dataset.sheetOpen = ""; changed("layout"); return; }
+  if (e.key === "Escape") return leave(e);
   const f = ACTIONS[e.key.toLowerCase()];
-  if (f) { e.preventDefault(); f(); }
+  if (!f) return;
+  e.preventDefault();
+  if (!e.repeat || STEPS.has(e.key)) f(e); // a key that is held does one thing once
 });

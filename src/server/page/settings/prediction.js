@@ -4,7 +4,7 @@ import {state, changed, on_change, current_take, current_stroke} from "../state.
 import {by_id, make} from "../../../net/page/dom.js";
 import {icon} from "../look.js";
 import {set_option, edit_take, fit_take} from "../takes/takes.js";
-import {too_strong_db, lower_level} from "../service/planner.js";
+import {excess_db, weaken_take} from "../service/planner.js";
 import {spark} from "./diagrams.js";
 import {place_word, even_word, number_text, plain_name} from "../words.js";
 import {duration_s, length_mm, outside_mm, interpolate} from "../takes/stroke.js";
@@ -18,9 +18,9 @@ const OUTSIDE_MM = 0.5;
 function show_predicted() {
   const e = state.plan?.errors, box = by_id("predicted");
   const numbers = e && typeof e.rms_error_mm === "number" ? [
-    tile(number_text(e.rms_error_mm), "mm off", `${place_word(e.rms_error_mm)}, RMS`, spark(errors_over_time())),
-    e.speed_cv === undefined || e.speed_cv === null ? tile("–", "", "speed is not predicted", spark([]))
-      : tile(`${Math.round(100 / (1 + e.speed_cv))}`, "% even", `${even_word(e.speed_cv)}, CV ${e.speed_cv.toFixed(2)}`,
+    tile(number_text(e.rms_error_mm), "mm off", [place_word(e.rms_error_mm / array.pitch), ", RMS"], spark(errors_over_time())),
+    e.speed_cv === undefined || e.speed_cv === null ? tile("–", "", ["speed is not predicted"], spark([]))
+      : tile(`${Math.round(100 / (1 + e.speed_cv))}`, "% even", [even_word(e.speed_cv), `, CV ${e.speed_cv.toFixed(2)}`],
         spark(felt_speed(), mean_speed()))]
     : [make("p", {class: "hint-text"}, state.plan_fault ? "There is no plan." : "Draw, and the prediction shows here.")];
   box.replaceChildren(...numbers);
@@ -28,7 +28,7 @@ function show_predicted() {
   by_id("pill-text").textContent = e && typeof e.rms_error_mm === "number" ? `${number_text(e.rms_error_mm)} mm off` : "";
 }
 const tile = (figure, unit, word, picture) => make("div", {class: "tile"}, make("div", {}, make("b", {}, figure),
-  make("small", {}, unit)), make("p", {}, word), picture);
+  make("small", {}, unit)), make("p", {}, word[0], make("i", {}, word[1] ?? "")), picture);
 function errors_over_time() {
   const take = current_take(), plan = state.plan;
   if (!take) return [];
@@ -50,25 +50,34 @@ function show_warnings() {
     const worst = s.timed.reduce((w, q) => { const off = outside_mm(array.edge, [q[1], q[2]]);
       return off > w.off ? {off, place: [q[1], q[2]]} : w; }, {off: OUTSIDE_MM, place: null});
     if (!worst.place) return;
-    state.outside.push(worst);
-    if (take.leaves_array) return;
-    found.push({text: `“${take.strokes.length === 1 ? take.name : s.name}” is up to ${worst.off.toFixed(0) || 1} mm outside the array. There it is felt at the edge.`,
-      buttons: [["Fit to array", () => fit_take(array.edge)], ["Leave it", () => edit_take(() => ({leaves_array: true}))]]});
+    state.outside.push({...worst, name: take.strokes.length === 1 ? take.name : s.name});
   });
-  for (const w of state.plan?.warnings ?? []) if (!/outside/.test(w)) found.push({text: w, buttons: []});
-  const some = found.slice(0, 3);
-  by_id("warnings").replaceChildren(...some.map(w => make("div", {class: "warning"}, icon("warn"),
-    make("div", {}, make("p", {}, w.text), w.buttons.length > 0 && make("div", {class: "row"}, ...w.buttons.map(([t, f], i) =>
-      make("button", {type: "button", class: i === 0 ? "button outlined" : "button", onclick: f}, t)))))));
+  if (state.outside.length && !take.leaves_array) found.push({text: outside_text().long, short: outside_text().short,
+    buttons: [[["Fit", make("span", {class: "long"}, " to array")], () => fit_take(array.edge)], ["Leave it", () => edit_take(() => ({leaves_array: true}))]]});
+  const over_db = excess_db(state.plan);
+  if (over_db && take) found.push({text: `Together the strokes are ${number_text(over_db)} dB stronger than they may be played.`,
+    short: `${number_text(over_db)} dB too strong together`, buttons: [["Make this take weaker", () => weaken_take(take)]]});
+  for (const w of state.plan?.warnings ?? []) if (!w.kind && !/outside/.test(w)) found.push({text: w, buttons: []});
+  const box = by_id("warnings");
+  box.toggleAttribute("data-all", false);
+  box.replaceChildren(...found.map(w => make("div", {class: "warning"}, icon("warn"),
+    make("div", {}, make("p", {}, make("span", {class: w.short && "long"}, w.text), w.short && make("span", {class: "short"}, w.short)), w.buttons.length > 0 && make("div", {class: "row"}, ...w.buttons.map(([t, f], i) =>
+      make("button", {type: "button", class: i === 0 ? "button outlined" : "button", onclick: f}, ...[t].flat())))))),
+    ...found.length > 1 ? [make("button", {type: "button", class: "button small", onclick: () => box.toggleAttribute("data-all", true)},
+      `and ${found.length - 1} more`)] : []);
   by_id("pill").dataset.warn = found.length > 0;
   changed("frame");
+}
+function outside_text() {
+  const n = state.outside.length, mm = Math.max(1, Math.round(Math.max(...state.outside.map(w => w.off))));
+  const who = n === 1 ? `“${state.outside[0].name}” is` : `${n} strokes are`;
+  return {long: `${who} up to ${mm} mm outside the array. There ${n === 1 ? "it is" : "they are"} felt at the edge.`,
+    short: `${who} ${mm} mm outside`};
 }
 // Says a refusal for people: what is too much, and not in the terms of files.
 function plain_fault(f) {
   const {what = "", why, hint} = f.data ?? {};
   if (!why) return f.message;
-  const by = too_strong_db(f);
-  if (by > 0) return `Together the strokes are ${number_text(by)} dB stronger than ${/^tactor \d+/.exec(why)?.[0] ?? "a tactor"} may be driven.`;
   if (/no line of the grid/.test(why)) return "The Tactile Brush begins and ends on lines of the grid, and this stroke does not.";
   const about = what === "toml" ? "" : `${plain_name(what.replace(/^options\./, ""))}: `;
   return `${about}${why}${hint ? ` (${hint})` : ""}.`;
@@ -76,7 +85,6 @@ function plain_fault(f) {
 const to_continuous = ["Use Continuous", () => set_option("algorithm", "continuous")];
 function mending(f) {
   const name = /^options\.(\w+)/.exec(f.data?.what ?? "")?.[1];
-  if (too_strong_db(f) > 0) return [["Lower the level", () => lower_level(f)]];
   if (/options\.snap/.test(f.data?.hint ?? f.data?.why ?? "")) return [["Move its ends there", () => set_option("snap", true)], to_continuous];
   const list = name ? [["Use the usual value", () => set_option(name, null)]] : [];
   if (algorithm() !== "continuous") list.push(to_continuous);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Files that come in, and files that go out: read and written by the service, so that they are the tool's.
-import {state, current_take, say} from "../state.js";
+import {state, changed, current_take, say} from "../state.js";
 import {by_id, make, show_only_if} from "../../../net/page/dom.js";
 import {call, is_connected} from "../service/connection.js";
 import {add_take, make_request, imported_strokes} from "./takes.js";
@@ -9,24 +9,45 @@ import {is_own_host} from "./address.js";
 import {make_qr} from "./qr.js";
 
 const MOST_BYTES = 700 << 10; // a message is at most 1 MiB
+const SHORT_HINT = 80;        // characters
 const KINDS = [["toml", "Stroke", "for the tool, a study and this page"], ["csv", "Timed points",
   "a table: time, place, intensity"], ["svg", "Figure, SVG", "for a paper, to be edited"],
   ["png", "Figure, PNG", ""], ["pdf", "Figure, PDF", ""], ["wav", "Samples", "exactly what each channel plays"],
     ["json", "Plan", "all bursts as numbers"]];
 
+// A figure of this page has its stroke, as TOML in base64, in a comment at its end.
+const STROKE_OF_FIGURE = /<!-- stroke of this figure: ([\w+/=]+) -->\s*$/;
+const FIGURE = "it is a figure; open the stroke from which it was drawn (.toml)";
+
 async function open_files(files) {
+  const faults = [];
+  let said = "";
   for (const file of files) {
     try {
-      if (file.size > MOST_BYTES) throw new Error(`${file.name} is larger than ${MOST_BYTES >> 10} KiB`);
-      const r = await call("import", {name: file.name, text: await file.text()});
-      add_take(imported_strokes(r),
-        {name: file.name.replace(/\.[^.]*$/, "").slice(0, 60), origin: "file"});
-      say(r.warnings.length ? r.warnings[0] : `Opened “${file.name}”`);
-    } catch (e) {
-      state.fault = `“${file.name}” was not opened: ${e.message}`;
-      say(state.fault);
-    }
+      const r = await call("import", await what_to_import(file));
+      add_take(imported_strokes(r), {name: file.name.replace(/\.[^.]*$/, "").slice(0, 60), origin: "file"});
+      said = r.warnings[0] ?? `Opened “${file.name}”`;
+    } catch (e) { faults.push(`“${file.name}” was not opened: ${fault_text(e)}.`); }
   }
+  if (said) say(said);
+  if (!faults.length) return;
+  // After the changes of the takes, which end the faults of former ones.
+  requestAnimationFrame(() => { state.fault = faults.join(" "); changed("link"); });
+}
+// Returns the name and the text of the strokes of a file; throws what it is instead.
+async function what_to_import(file) {
+  const text = await file.text(), head = text.slice(0, 400), own = STROKE_OF_FIGURE.exec(text);
+  if (own) return {name: "figure.toml", text: new TextDecoder().decode(decoded(own[1]))};
+  if (head.includes("<!-- Drawn by tactor -->") || head.startsWith("%PDF") || head.slice(1).startsWith("PNG\r\n")) throw new Error(FIGURE);
+  if (text.includes("\0") || /^\ufffd\ufffd/.test(head)) throw new Error("it is not text; strokes are SVG, CSV, TOML or a plan");
+  if (file.size > MOST_BYTES) throw new Error(`it is larger than ${MOST_BYTES >> 10} KiB`);
+  return {name: file.name, text};
+}
+// One sentence: why, with the line, and a short hint.
+function fault_text({message, data}) {
+  if (!data?.why) return message;
+  const why = data.why.replace(/^(\d+):\d+: /, "line $1: ");
+  return data.hint?.length < SHORT_HINT ? `${why} (${data.hint})` : why;
 }
 by_id("open").addEventListener("click", () => by_id("file").click());
 by_id("file").addEventListener("change", () => { open_files([...by_id("file").files]); by_id("file").value = ""; });
@@ -37,8 +58,12 @@ addEventListener("dragover", e => e.preventDefault());
 addEventListener("drop", e => { e.preventDefault(); over = 0; by_id("drop").hidden = true;
   open_files([...e.dataTransfer?.files ?? []]); });
 
-const file_name = take => take.name.replace(/[^\p{L}\p{N} _-]/gu, "").replace(/[^\x20-\x7e]/g, "").trim().replace(/ +/g,
-  "-").toLowerCase() || "take";
+// Letters and digits of all languages, at most 100 bytes: what the service takes as a name.
+function file_name(take) {
+  let name = take.name.normalize("NFC").replace(/[^\p{L}\p{M}\p{N} _-]|[\x80-\xbf]/gu, "").trim().replace(/ +/g, "-").toLowerCase().replace(/^-+/, "");
+  while (new TextEncoder().encode(name).length > 90) name = [...name].slice(0, -1).join("");
+  return name || "take";
+}
 function give(name, blob) {
   const a = make("a", {download: name, href: URL.createObjectURL(blob)});
   a.click();
@@ -52,8 +77,9 @@ async function save_as(kind) {
   by_id("p-save").hidePopover();
   try {
     if (is_connected()) {
-      const r = await call("export", {...make_request(take), as: kind, name: file_name(take)});
-      give(r.name, new Blob([decoded(r.base64)], {type: r.mime}));
+      const ask = as => call("export", {...make_request(take), as, name: file_name(take)});
+      const r = await ask(kind), stroke = kind === "svg" ? `<!-- stroke of this figure: ${(await ask("toml")).base64} -->\n` : "";
+      give(r.name, new Blob([decoded(r.base64), stroke], {type: r.mime}));
     } else if (kind === "toml") give(`${file_name(take)}.toml`, new Blob([strokes_toml(take.strokes)],
       {type: "application/toml"}));
     else if (kind === "csv" && take.strokes.length === 1) give(`${file_name(take)}.csv`,
@@ -68,6 +94,7 @@ by_id("save-list").replaceChildren(...KINDS.map(([kind, name, why]) => make("but
 by_id("p-save").addEventListener("toggle", async e => {
   if (e.newState !== "open") return;
   const take = current_take();
+  show_only_if(document.querySelector("#save-list [data-kind=csv]"), !(take?.strokes.length > 1));
   by_id("command").textContent = take?.strokes.length ? "…" : "There is nothing to save yet.";
   if (!take?.strokes.length) return;
   try { by_id("command").textContent = (await call("export", {...make_request(take), as: "toml",

@@ -1,18 +1,41 @@
 // SPDX-License-Identifier: MIT
-// Takes kept by the browser: in IndexedDB, because localStorage holds 5 MB only, or in memory where there is none.
+// Takes kept by the browser, in IndexedDB, because localStorage holds 5 MB only.
 
-// Opens the storage of a name and resolves to
-//   load(): resolves to {takes, current}: all takes in the order of their ids, and the value of the key "current"
-//   save(take), remove(id): a take is any object with an `id`; one with the same id is replaced
-//   get(key), set(key, value): anything else
-//   lasting: false where all is lost with the page, as in some private windows
-// Promises of writes resolve when the browser has accepted the data, and reject when it does not (a full disk, say).
-export async function open_storage(name) {
-  try {
-    return database_storage(await open_database(name));
-  } catch {
-    return memory_storage();
-  }
+// Opens the storage of a name; rejects where the browser has none, as in some private windows. Resolves to
+//   load(): resolves to all takes, in the order of their ids; a take is any object with an `id`, and a `version` or none
+//   get(key): resolves to a value
+//   write({takes, removed, values}, known): replaces takes, removes those with the ids `removed`, and sets the values of
+//     an object; undefined removes one. With `known`, a map of versions by id, a kept take of another version, from
+//     another tab, is not replaced; resolves to these.
+// A write resolves when the browser has accepted the data, and rejects when it does not (a full disk, say).
+// Calls on_gone when the browser or another page takes the storage away.
+export async function open_storage(name, on_gone = () => {}) {
+  const database = await open_database(name);
+  // A page that wants to change or delete the database is not held up.
+  database.onversionchange = () => { database.close(); on_gone(); };
+  database.onclose = on_gone;
+  // Resolves to what `ask` returns, once all that it asks for is done. A page that goes away at once has done it nevertheless.
+  const transact = (mode, ask) => new Promise((done, failed) => {
+    const transaction = database.transaction(["takes", "values"], mode);
+    const asked = ask(transaction.objectStore("takes"), transaction.objectStore("values"));
+    transaction.oncomplete = () => done(asked);
+    transaction.onabort = () => failed(transaction.error ?? new Error("the browser's storage gave up"));
+    transaction.commit();
+  });
+  return {
+    load: async () => (await transact("readonly", all => all.getAll())).result,
+    get: async key => (await transact("readonly", (_, values) => values.get(key))).result,
+    write: async ({takes = [], removed = [], values = {}}, known) => {
+      const kept = known ? await transact("readonly", all => takes.map(t => all.get(t.id))) : [];
+      const others = kept.map(a => a.result).filter((k, i) => k && k.version !== known.get(k.id) && k.version !== takes[i].version);
+      await transact("readwrite", (all, kept_values) => {
+        for (const t of takes) if (!others.some(k => k.id === t.id)) all.put(t);
+        removed.forEach(id => all.delete(id));
+        for (const [key, v] of Object.entries(values)) if (v === undefined) kept_values.delete(key); else kept_values.put(v, key);
+      });
+      return others;
+    },
+  };
 }
 
 function open_database(name) {
@@ -26,41 +49,4 @@ function open_database(name) {
     asked.onerror = () => failed(asked.error);
     asked.onblocked = () => failed(new Error("another page keeps an older version open"));
   });
-}
-
-function database_storage(database) {
-  // A page that wants to change or delete the database is not held up; writes of this one are then refused.
-  database.onversionchange = () => database.close();
-  // Resolves to the results of the requests that `ask` makes, once they are written.
-  const transact = (mode, ask) => new Promise((done, failed) => {
-    const transaction = database.transaction(["takes", "values"], mode);
-    const asked = ask(transaction.objectStore("takes"), transaction.objectStore("values"));
-    transaction.oncomplete = () => done(asked.map(a => a.result));
-    if (mode === "readwrite") transaction.commit(); // a page that goes away at once has written it nevertheless
-    transaction.onabort = () => failed(transaction.error ?? new Error("the browser's storage gave up"));
-  });
-  return {
-    lasting: true,
-    load: async () => {
-      const [takes, current] = await transact("readonly", (all, values) => [all.getAll(), values.get("current")]);
-      return {takes, current};
-    },
-    save: async take => { await transact("readwrite", all => [all.put(take)]); },
-    remove: async id => { await transact("readwrite", all => [all.delete(id)]); },
-    get: async key => (await transact("readonly", (_, values) => [values.get(key)]))[0],
-    set: async (key, value) => { await transact("readwrite", (_, values) => [values.put(value, key)]); },
-  };
-}
-
-function memory_storage() {
-  const takes = new Map(), values = new Map();
-  const by_id = (a, b) => a.id < b.id ? -1 : 1;
-  return {
-    lasting: false,
-    load: async () => structuredClone({takes: [...takes.values()].sort(by_id), current: values.get("current")}),
-    save: async take => { takes.set(take.id, structuredClone(take)); },
-    remove: async id => { takes.delete(id); },
-    get: async key => structuredClone(values.get(key)),
-    set: async (key, value) => { values.set(key, structuredClone(value)); },
-  };
 }

@@ -1,14 +1,20 @@
 // SPDX-License-Identifier: MIT
-// Strokes as values. A stroke is {name, start_s, timed} and, once it can be edited, {knots, pace, strength}:
-// timed is [[t_s, x_mm, y_mm, intensity], ...] and what is played; knots [{x, y, corner}] lie on its path;
-// pace says when which part of the path is reached; strength is [[part, factor], ...].
+// Strokes as values. A stroke is {name, start_s, timed} and, once it can be edited, {base, knots, pace, strength}:
+// timed is [[t_s, x_mm, y_mm, intensity], ...] and what is played; base is `timed` as it was before all edits;
+// knots [{x, y, corner, at, curve, moved}] lie on its path, `at` seconds of the base; with `curve` the path from a knot
+// to the next one is a spline, otherwise it is the base; pace says when which part of the path is reached; strength is
+// [[part, factor], ...]. A drawing has {ink} too, [[t_s, x_mm, y_mm, pressure], ...], which never changes, and
+// {edited} while it plays as drawn: what it was before.
 
-const KNOT_MM = 8;
+const SMOOTH_S = 0.012;
+const FIT_MM = 0.2;        // between the curve and the base, both ways
+const LOOK_MM = 0.25;      // between the places where they are compared
+const LONGEST_MM = 40;     // between two knots
 const STEP_MM = 0.5;
 const STEP_S = 0.02;
 const MOST_POINTS = 20000;
 const TIMED_WEIGHTS = [1, 1, 4]; // of x, y and intensity
-const CORNER_RAD = 0.9;
+const CORNER_RAD = 50 * Math.PI / 180; // within 1 mm
 
 export const duration_s = s => s.timed.at(-1)[0];
 export const end_s = s => s.start_s + duration_s(s);
@@ -52,36 +58,51 @@ export const parts_reached = kept_for(timed => {
   return timed.map((p, i) => [total > 0 ? lengths_mm(timed)[i] / total : p[0] / seconds, p[0] / seconds]);
 });
 
-// Returns [[length so far, x, y], ...] without points that stay.
+// Returns [[length so far, x, y, ...], ...] of [[x, y, ...], ...], without points that stay.
 function along(places) {
   const rows = [];
   let sum = 0;
-  for (const [x, y] of places) {
+  for (const place of places) {
     if (rows.length) {
-      const d = distance([x, y], rows.at(-1).slice(1));
+      const d = distance(place, rows.at(-1).slice(1));
       if (d < 1e-6) continue;
       sum += d;
     }
-    rows.push([sum, x, y]);
+    rows.push([sum, ...place]);
   }
   return rows;
 }
 
-// A spline through the knots (Catmull-Rom, centripetal), with corners, as places STEP_MM apart.
-function curve_through(knots) {
-  const out = [];
-  for (let i = 0; i + 1 < knots.length; ++i) {
-    const b = knots[i], c = knots[i + 1];
-    const ends = c.corner || i + 2 === knots.length, begins = b.corner || i === 0;
-    const a = !begins ? knots[i - 1] : ends ? mirrored(b, c) : bent(b, c, knots[i + 2]);
-    const d = !ends ? knots[i + 2] : begins ? mirrored(c, b) : bent(c, b, knots[i - 1]);
-    const steps = Math.max(1, Math.ceil(Math.hypot(c.x - b.x, c.y - b.y) / STEP_MM));
-    for (let k = 0; k < steps; ++k) out.push(catmull_rom(a, b, c, d, k / steps));
-  }
-  const last = knots.at(-1);
-  out.push([last.x, last.y]);
-  return out;
+// Returns the spline (Catmull-Rom, centripetal) from knot i to the next one as places STEP_MM apart, with both ends.
+function spline_piece(knots, i) {
+  const b = knots[i], c = knots[i + 1], out = [];
+  const ends = c.corner || i + 2 === knots.length, begins = b.corner || i === 0;
+  const a = !begins ? knots[i - 1] : ends ? mirrored(b, c) : bent(b, c, knots[i + 2]);
+  const d = !ends ? knots[i + 2] : begins ? mirrored(c, b) : bent(c, b, knots[i - 1]);
+  const steps = Math.max(1, Math.ceil(Math.hypot(c.x - b.x, c.y - b.y) / STEP_MM));
+  for (let k = 0; k < steps; ++k) out.push(catmull_rom(a, b, c, d, k / steps));
+  return [...out, [c.x, c.y]];
 }
+// Returns the rows of the base from knot i to the next one.
+function base_piece({base, knots}, i) {
+  const from = knots[i].at, to = knots[i + 1].at;
+  return [interpolate(base, from), ...base.slice(row_before(base, from) + 1, row_before(base, to) + 1).filter(p => p[0] < to),
+    interpolate(base, to)];
+}
+// Returns the path from knot i to the next one: rows like those of the base, in its time.
+function path_piece(s, i) {
+  const rows = base_piece(s, i);
+  if (!s.knots[i].curve) return rows;
+  const line = along(spline_piece(s.knots, i)), long = line.at(-1)[0], from = rows[0][0], span = rows.at(-1)[0] - from;
+  const reached = lengths_mm(rows), total = reached.at(-1);
+  const by_time = rows.map(([t], k) => [t, total > 0 ? reached[k] / total : (t - from) / span]);
+  const n = Math.max(1, Math.ceil(long / STEP_MM), Math.ceil(span / STEP_S));
+  const times = [...rows.map(r => r[0]), ...Array.from({length: n - 1}, (_, k) => from + span * (k + 1) / n)];
+  return times.sort((a, b) => a - b).map(t => [t, ...interpolate(line, long * interpolate(by_time, t)[1]).slice(1),
+    interpolate(rows, t)[3]]);
+}
+const path_pieces = s => s.knots.slice(1).map((_, i) => path_piece(s, i));
+
 // A place beyond an end, on the bend of the three knots there.
 const bent = (at, next, then) => ({x: 3 * (at.x - next.x) + then.x, y: 3 * (at.y - next.y) + then.y});
 const mirrored = (at, from) => ({x: 2 * at.x - from.x, y: 2 * at.y - from.y});
@@ -95,33 +116,67 @@ function catmull_rom(a, b, c, d, part) {
   });
 }
 
-// Knots each KNOT_MM along a path, and at its corners.
-function find_knots(places, step = KNOT_MM) {
-  const rows = along(places);
-  if (rows.length < 2) return [{x: places[0][0], y: places[0][1], corner: false},
-    {x: places.at(-1)[0] + 0.01, y: places.at(-1)[1], corner: false}];
-  const total = rows.at(-1)[0], cuts = [0];
-  const look = Math.min(2, total / 4);
-  let last_corner = -look;
-  for (let i = 1; i + 1 < rows.length; ++i) {
-    const at = rows[i][0];
-    if (at < look || at > total - look || at - last_corner < look) continue;
-    if (turn(rows, at, look) > CORNER_RAD && turn(rows, at, look / 4) > CORNER_RAD * 0.8) { cuts.push(at); last_corner = at; }
+// Finds knots on a base: at its corners, and between them so many that the spline stays within FIT_MM, both ways.
+function find_knots(base) {
+  const rows = along(base.map(([t, x, y]) => [x, y, t]));
+  const end_s = base.at(-1)[0];
+  if (rows.length < 2) return [{x: base[0][1], y: base[0][2], corner: false, at: 0},
+    {x: base[0][1] + 0.01, y: base[0][2], corner: false, at: end_s}];
+  const total = rows.at(-1)[0], knot = (mm, corner) => {
+    const [, x, y, t] = interpolate(rows, mm);
+    return {mm, x, y, corner, at: mm === 0 ? 0 : mm === total ? end_s : t};
+  };
+  let knots = [knot(0, false), ...corners(rows).map(mm => knot(mm, true)), knot(total, false)];
+  const fits = new Set(); // pieces that have been looked at, by the knots on which they depend
+  for (let more = true; more;) {
+    more = false;
+    knots = knots.flatMap((k, i) => {
+      const next = knots[i + 1], key = knots.slice(Math.max(0, i - 1), i + 3).map(q => q.mm).join();
+      if (!next || fits.has(key)) return [k];
+      const cut = place_to_cut(rows, knots, i);
+      if (cut === null) { fits.add(key); return [k]; }
+      more = true;
+      return [k, knot(cut, false)];
+    });
   }
-  cuts.push(total);
-  const knots = [];
-  cuts.forEach((cut, i) => {
-    if (i > 0) {
-      const span = cut - cuts[i - 1], n = Math.max(1, Math.round(span / step));
-      for (let k = 1; k < n; ++k) knots.push(knot_at(rows, cuts[i - 1] + span * k / n, false));
-    }
-    knots.push(knot_at(rows, cut, i > 0 && i + 1 < cuts.length));
-  });
-  return knots;
+  return knots.map(({x, y, corner, at}) => ({x, y, corner, at}));
 }
-function knot_at(rows, at, corner) {
-  const [, x, y] = interpolate(rows, at);
-  return {x, y, corner};
+// Returns where a further knot is wanted between knot i and the next one, mm along the path, or null.
+function place_to_cut(rows, knots, i) {
+  const from = knots[i].mm, to = knots[i + 1].mm, long = to - from;
+  if (long > LONGEST_MM) return (from + to) / 2;
+  if (long < 2 * LOOK_MM) return null;
+  const n = Math.ceil(long / LOOK_MM), curve = along(spline_piece(knots, i)), whole = curve.at(-1)[0];
+  const sampled = (table, first, length) => Array.from({length: n + 1}, (_, k) => interpolate(table, first + length * k / n).slice(1, 3));
+  const path = sampled(rows, from, long), spline = sampled(curve, 0, whole);
+  let worst = {off: FIT_MM * 0.9, k: 0}; // a part is left for what lies between the samples
+  for (let k = 0; k <= n; ++k) {
+    const off = Math.max(from_line_mm(path[k], spline, k), from_line_mm(spline[k], path, k));
+    if (off > worst.off) worst = {off, k};
+  }
+  if (!worst.k) return null;
+  return from + long * Math.min(0.8, Math.max(0.2, worst.k / n));
+}
+// Returns the distance of a place from a line, near the number k of its places.
+function from_line_mm(p, line, k) {
+  const reach = 2 + Math.ceil(line.length / 4);
+  let off = Infinity;
+  for (let j = Math.max(0, k - reach); j < Math.min(line.length - 1, k + reach); ++j)
+    off = Math.min(off, segment_mm(line[j], line[j + 1], p));
+  return off;
+}
+// Returns where a path turns by more than CORNER_RAD within 1 mm, mm along it.
+function corners(rows) {
+  const total = rows.at(-1)[0], look = 0.5, found = [];
+  for (const [mm] of rows) {
+    if (mm < look || mm > total - look) continue;
+    const by = turn(rows, mm, look);
+    if (by <= CORNER_RAD) continue;
+    const last = found.at(-1);
+    if (!last || mm - last.mm > 2 * look) found.push({mm, by});
+    else if (by > last.by) Object.assign(last, {mm, by});
+  }
+  return found.map(c => c.mm);
 }
 function turn(rows, at, look) {
   const [, ax, ay] = interpolate(rows, at - look), [, bx, by] = interpolate(rows, at), [, cx, cy] = interpolate(rows, at + look);
@@ -160,14 +215,26 @@ export function find_speeds(pace, n = 5) {
 
 // Makes timed points of knots, pace, strength and duration.
 export function rebuild(s, seconds = duration_s(s)) {
-  const rows = along(curve_through(s.knots));
-  const total = rows.at(-1)[0] || 1e-6, table = pace_table(s.pace).map(([part, t]) => [t, part]);
-  const n = Math.min(MOST_POINTS, Math.max(2, Math.ceil(total / STEP_MM), Math.ceil(seconds / STEP_S)));
+  const path = path_pieces(s).flatMap((rows, i) => i ? rows.slice(1) : rows);
+  const own = JSON.stringify(s.strength) !== JSON.stringify(strength_table(s.base));
+  const rows = along(path.map(([t, x, y, v]) => [x, y, v, t])), total = rows.at(-1)[0] || 1e-6;
+  const strong = (part, v) => own ? interpolate(s.strength, part)[1] : v;
+  if (s.pace.kind === "drawn") {
+    let mm = 0;
+    const by = seconds / duration_s({timed: s.base});
+    return {...s, timed: thin(path.map(([t, x, y, v], i) => {
+      if (i) mm += distance([x, y], path[i - 1].slice(1));
+      return [t * by, x, y, strong(mm / total, v)];
+    }))};
+  }
+  const table = pace_table(s.pace), by_time = table.map(([part, t]) => [t, part]);
+  const n = Math.min(MOST_POINTS, Math.max(2, Math.ceil(seconds / STEP_S)));
   const cuts = new Set(Array.from({length: n + 1}, (_, i) => i / n));
-  for (const [t] of table) if (table.length < 400) cuts.add(t);
+  for (const [, t] of table) cuts.add(t);
+  for (const [mm] of rows) cuts.add(interpolate(table, mm / total)[1]);
   const timed = [...cuts].sort((a, b) => a - b).map(t => {
-    const part = interpolate(table, t)[1], [, x, y] = interpolate(rows, part * total);
-    return [t * seconds, x, y, interpolate(s.strength, part)[1]];
+    const part = interpolate(by_time, t)[1], [, x, y, v] = interpolate(rows, part * total);
+    return [t * seconds, x, y, strong(part, v)];
   });
   return {...s, timed: thin(timed)};
 }
@@ -209,40 +276,71 @@ function farthest(rows, a, b, weights) {
   return {off, at};
 }
 
-// Gives a stroke what editing needs, found from its timed points. The path comes within some tenths of a millimetre.
-export function editable(s) {
-  if (s.knots) return s;
-  const rows = along(s.timed.map(p => [p[1], p[2]]));
-  const table = [], strength = [];
-  parts_reached(s.timed).forEach(([part, time], i) => {
-    if (!table.length || part > table.at(-1)[0]) { table.push([part, time]); strength.push([part, s.timed[i][3] ?? 1]); }
+// Gives a stroke what editing needs, found from its timed points, which stay as they are.
+export const editable = kept_for(s => {
+  if (s.base) return s;
+  const base = s.timed, table = [];
+  for (const [part, time] of parts_reached(base)) {
+    if (!table.length || part > table.at(-1)[0]) table.push([part, time]);
     else table.at(-1)[1] = Math.max(table.at(-1)[1], time);
-  });
-  table[0][1] = 0; table.at(-1)[0] = 1; table.at(-1)[1] = 1; strength.at(-1)[0] = 1;
-  const even = table.every(([part, t]) => Math.abs(part - t) < 0.01);
-  return {...s, knots: find_knots(rows.length > 1 ? rows.map(r => [r[1], r[2]]) : s.timed.map(p => [p[1], p[2]])),
-    pace: even ? {kind: "even"} : {kind: "drawn", table: fewer(table, 0.004)}, strength: fewer(strength, 0.03)};
-}
+  }
+  table[0][1] = 0; table.at(-1)[0] = 1; table.at(-1)[1] = 1;
+  const even = !s.ink && table.every(([part, t]) => Math.abs(part - t) < 0.01);
+  return {pace: even ? {kind: "even"} : {kind: "drawn", table: fewer(table, 0.004)}, strength: strength_table(base), ...s,
+    base, knots: find_knots(base)};
+});
+// Returns the strength along a path, as it is drawn: [[part, factor], ...].
+const strength_table = kept_for(base => {
+  const strength = [];
+  parts_reached(base).forEach(([part], i) => { if (!i || part > strength.at(-1)[0]) strength.push([part, base[i][3] ?? 1]); });
+  strength.at(-1)[0] = 1;
+  return fewer(strength, 0.03);
+});
 // The fewest rows [v, w] that stay within a tolerance.
 function fewer(rows, tolerance) {
   const out = [rows[0], ...needed_rows(rows, 0, rows.length - 1, tolerance, [1])];
   return out.length > 1 ? out : [[0, rows[0][1]], [1, rows[0][1]]];
 }
-// A stroke as it was drawn: raw is [[t_s, x, y, intensity], ...]; smoothed, its timing kept.
-export function from_drawing(raw, name, start_s = 0) {
-  const smooth = raw.map((p, i) => {
-    if (i === 0 || i + 1 === raw.length) return p;
-    const mean = k => (raw[i - 1][k] + 2 * p[k] + raw[i + 1][k]) / 4;
-    return [p[0], mean(1), mean(2), mean(3)];
+// Makes a stroke that plays ink, [[t_s, x, y, intensity], ...], smoothed; its timing and its ends are kept.
+export function from_drawing(ink, name, start_s = 0) {
+  let low = 0;
+  const smooth = ink.map(p => {
+    const reach = Math.min(SMOOTH_S / 2, p[0] - ink[0][0], ink.at(-1)[0] - p[0]) + 1e-9, sum = [0, 0, 0, 0];
+    while (ink[low][0] < p[0] - reach) ++low;
+    while (low > 0 && ink[low - 1][0] >= p[0] - reach) --low;
+    for (let i = low; i < ink.length && ink[i][0] <= p[0] + reach; ++i) {
+      const weight = 1 - Math.abs(ink[i][0] - p[0]) / (reach + 1e-9);
+      [1, ink[i][1], ink[i][2], ink[i][3]].forEach((v, k) => { sum[k] += weight * v; });
+    }
+    return [p[0], ...sum.slice(1).map(v => v / sum[0])];
   });
-  return rebuild(editable({name, start_s, timed: smooth}));
+  return editable({name, start_s, timed: thin(smooth), ink});
 }
 
+// Returns how the path of a stroke differs from its ink: "drawn", "fitted", "edited", or null without ink.
+export function shape(s) {
+  if (!s?.ink) return null;
+  if (s.placed || s.knots.some(k => k.moved)) return "edited";
+  return s.knots[0].curve ? "fitted" : "drawn";
+}
+export const points_moved = s => (s.knots ?? []).filter(k => k.moved).length;
+// Makes a stroke play its ink again; what it was before is kept beside it.
+export function as_drawn(s) {
+  const {edited: _, ...before} = s;
+  return {...from_drawing(s.ink, s.name, s.start_s), ...shape(s) === "edited" && {edited: before}};
+}
+// Makes a stroke as it was edited, or, without edits, play the spline through its knots.
+export const as_edited = s => s.edited ? {...s.edited, name: s.name, start_s: s.start_s} : rebuild({...s, knots: s.knots.map(k => ({...k, curve: true}))});
+
+// Changes knot i; the path is a spline on both sides of it, to its neighbours, and stays as it is elsewhere.
+export const changed_knot = (s, i, change) => rebuild({...s, knots: s.knots.map((k, n) => ({...k,
+  ...n === i && {...change, moved: true}, ...(n === i || n === i - 1) && {curve: true}}))});
+export const without_knot = (s, i) => rebuild({...s, knots: s.knots.map((k, n) => n === i - 1 ? {...k, curve: true, moved: true} : k)
+  .filter((_, n) => n !== i).map((k, n, all) => n === 0 ? {...k, at: 0} : n + 1 === all.length ? {...k, at: s.knots.at(-1).at} : k)});
+
 export function straight(from, to, speed_mm_s, name, start_s, strength = 1) {
-  const knots = [{x: from[0], y: from[1], corner: false}, {x: to[0], y: to[1], corner: false}];
   const seconds = Math.max(0.06, Math.hypot(to[0] - from[0], to[1] - from[1]) / speed_mm_s);
-  return rebuild({name, start_s, knots, pace: {kind: "even"}, strength: [[0, strength], [1, strength]],
-    timed: [[0, 0, 0, 1], [seconds, 0, 0, 1]]});
+  return editable({name, start_s, timed: [[0, ...from, strength], [+seconds.toFixed(4), ...to, strength]]});
 }
 
 export const with_duration = (s, seconds) => ({...s, timed: scaled(s.timed, seconds / duration_s(s))});
@@ -256,31 +354,26 @@ export function trimmed(s, from_s, to_s) {
   const inside = s.timed.filter(p => p[0] > from_s && p[0] < to_s);
   const rows = [interpolate(s.timed, from_s), ...inside, interpolate(s.timed, to_s)];
   const timed = rows.map((p, i) => [i === 0 ? 0 : +((i === rows.length - 1 ? to_s : p[0]) - from_s).toFixed(5), ...p.slice(1)]);
-  return {name: s.name, start_s: s.start_s + from_s, timed};
+  return {name: s.name, start_s: s.start_s + from_s, timed, ...s.ink && {ink: s.ink, placed: true}};
 }
 
-// The knot, or the place between two, that is nearest to a place: {index, off} and {after, off}.
+// Returns the knot that is nearest to a place: {index, off}.
 export function nearest_knot(knots, [x, y]) {
   return knots.reduce((best, k, index) => {
     const off = Math.hypot(k.x - x, k.y - y);
     return off < best.off ? {index, off} : best;
   }, {index: -1, off: Infinity});
 }
-export function insert_knot(s, [x, y]) {
-  let best = {after: 0, off: Infinity};
-  for (let i = 0; i + 1 < s.knots.length; ++i)
-    for (const [px, py] of curve_through(s.knots.slice(Math.max(0, i - 1), i + 3)))
-      if (Math.hypot(px - x, py - y) < best.off) best = {after: i, off: Math.hypot(px - x, py - y), x: px, y: py};
-  // It lies between the pair of neighbours whose way through it is the shortest.
-  let pair = {after: 0, way: Infinity};
-  for (let i = 0; i + 1 < s.knots.length; ++i) {
-    const a = s.knots[i], b = s.knots[i + 1];
-    const way = Math.hypot(a.x - best.x, a.y - best.y) + Math.hypot(b.x - best.x, b.y - best.y) - Math.hypot(a.x - b.x,
-      a.y - b.y);
-    if (way < pair.way) pair = {after: i, way};
-  }
-  const knots = [...s.knots.slice(0, pair.after + 1), {x: best.x, y: best.y, corner: false}, ...s.knots.slice(pair.after + 1)];
-  return {stroke: rebuild({...s, knots}), index: pair.after + 1};
+export function insert_knot(s, place) {
+  let best = {off: Infinity};
+  path_pieces(s).forEach((rows, after) => rows.forEach(([at, x, y]) => {
+    const off = distance([x, y], place);
+    if (off < best.off && at > s.knots[after].at && at < s.knots[after + 1].at) best = {after, off, at, x, y};
+  }));
+  if (best.off === Infinity) return {stroke: s, index: 0};
+  const {after, at, x, y} = best;
+  const knots = s.knots.toSpliced(after + 1, 0, {x, y, corner: false, at, curve: s.knots[after].curve});
+  return {stroke: rebuild({...s, knots}), index: after + 1};
 }
 
 // The convex hull of places, counter-clockwise in the mathematical sense.
@@ -322,8 +415,8 @@ export function fitted(strokes, edge) {
   const room = k => to.size[k] > 1e-9 ? to.size[k] / Math.max(from.size[k], 1e-9) : Infinity;
   const by = Math.min(1e3, ...[room(0), room(1)].filter(v => Number.isFinite(v)));
   const move = (x, y) => [(x - from.middle[0]) * by + to.middle[0], (y - from.middle[1]) * by + to.middle[1]];
-  return strokes.map(s => ({...s,
-    timed: s.timed.map(([t, x, y, v]) => [t, ...move(x, y).map(c => +c.toFixed(3)), v]),
+  const moved = timed => timed.map(([t, x, y, v]) => [t, ...move(x, y).map(c => +c.toFixed(3)), v]);
+  return strokes.map(s => ({...s, timed: moved(s.timed), ...s.base && {base: moved(s.base)}, ...s.ink && {placed: true},
     ...s.knots && {knots: s.knots.map(k => { const [x, y] = move(k.x, k.y); return {...k, x, y}; })}}));
 }
 export function box(places) {

@@ -1,52 +1,42 @@
 // SPDX-License-Identifier: MIT
-// Takes: {id, name, origin, strokes, options}. They are values: a change makes a new one, so that all can be undone.
+// Takes: {id, version, name, origin, strokes, options}. They are values: a change makes a new one with a new version, so
+// that all can be undone.
 import {state, changed, current_take, level_dbfs, say} from "../state.js";
-import {open_storage} from "./storage.js";
-import {total_s, strokes_toml, fitted, rebuild, editable} from "./stroke.js";
+import {put_takes, keep_current, find_take, all_takes, new_id} from "./keeping.js";
+import {total_s, end_s, trimmed, strokes_toml, fitted, editable} from "./stroke.js";
 
-const done = [], undone = [];
-let storage = null, number = 0;
+const LEAST_REST_S = 0.05; // of a stroke that is played from within
+const MOST_STEPS = 300, MOST_UNDO_BYTES = 8 << 20; // of undo
+const ROW_BYTES = 40;         // of a list of points, in memory
 
-export async function open_takes() {
-  storage = await open_storage("tactor");
-  const kept = await storage.load();
-  const mine = state.takes;                      // drawn before the storage was open
-  state.takes = [...kept.takes.sort((a, b) => b.made - a.made), ...mine];
-  state.current = kept.current ?? state.takes[0]?.id ?? null;
-  state.storage_lasts = storage.lasting !== false;
-  number = state.takes.reduce((most, t) => Math.max(most, Number(/^Take (\d+)$/.exec(t.name)?.[1] ?? 0)), 0);
-  changed("takes", "take");
+// Steps: {changes: [[id, take before, take after], ...], current: [before, after], stroke}.
+let done = [], undone = [];
+
+export const steps_of_undo = () => ({done, undone});
+export function restore_undo(steps) {
+  done = [...steps.done, ...done];
+  undone = steps.undone;
 }
-
-const snapshot = () => ({takes: state.takes, current: state.current, stroke: state.stroke});
-
-// Takes over new lists, and writes down what differs from before.
-function put(next) {
-  const before = new Map(state.takes.map(t => [t.id, t]));
-  Object.assign(state, next);
-  for (const t of state.takes) {
-    if (before.get(t.id) !== t) keep(s => s.save(t));
-    before.delete(t.id);
-  }
-  for (const id of before.keys()) keep(s => s.remove(id));
-  keep(s => s.set("current", state.current));
-  state.stroke = Math.min(state.stroke, Math.max(0, (current_take()?.strokes.length ?? 1) - 1));
-  changed("takes", "take");
+// Drops the oldest steps: what they share with later ones is not counted.
+function bound_undo() {
+  const seen = new Set();
+  let bytes = 0, i = done.length;
+  for (; i > 0 && done.length - i < MOST_STEPS && bytes < MOST_UNDO_BYTES; --i)
+    for (const s of done[i - 1].changes.flatMap(([, before, after]) => [...before?.strokes ?? [], ...after?.strokes ?? []]))
+      for (const rows of [s.timed, s.base, s.ink, s.knots]) if (rows && !seen.has(rows)) { seen.add(rows); bytes += ROW_BYTES * rows.length; }
+  done = done.slice(i);
 }
-let told = false;
-function keep(f) {
-  Promise.resolve().then(() => storage && f(storage)).catch(() => {
-    if (!told) say("The browser keeps no more takes; save what you need as a file");
-    told = true;
-  });
-}
-// The edits of one drag are one step: `same` names it.
+// Changes takes. The edits of one drag are one step: `same` names it.
 let last_same = null;
-export function edit(next, same = null) {
-  if (!same || same !== last_same) done.push(snapshot());
+function edit(takes, {current = state.current, stroke = state.stroke, same = null} = {}) {
+  const changes = takes.map(t => [t.id, find_take(t.id) ?? null, {...t, version: new_id()}]);
+  if (same && same === last_same) done.at(-1).changes.forEach((c, i) => { c[2] = changes[i][2]; });
+  else done.push({changes, current: [state.current, current], stroke: state.stroke});
   last_same = same;
-  undone.length = 0;
-  put(next);
+  undone = [];
+  bound_undo();
+  state.stroke = stroke;
+  put_takes(changes.map(([id,, take]) => [id, take]), current);
 }
 export const end_edit = () => { last_same = null; };
 export const can_undo = () => done.length > 0;
@@ -54,26 +44,31 @@ export const can_redo = () => undone.length > 0;
 export function undo() { step(done, undone); }
 export function redo() { step(undone, done); }
 function step(from, to) {
-  if (!from.length) return;
+  const s = from.pop();
+  if (!s) return;
   last_same = null;
-  to.push(snapshot());
-  put(from.pop());
+  const other = s.changes.find(([id,, after]) => find_take(id)?.version !== after?.version || !find_take(id) !== !after);
+  if (other) {
+    say(`“${(other[2] ?? other[1]).name}” was changed in another tab; that stays`);
+    return changed("take");
+  }
+  to.push({changes: s.changes.map(([id, before, after]) => [id, after, before]), current: [s.current[1], s.current[0]], stroke: state.stroke});
+  state.stroke = s.stroke;
+  put_takes(s.changes.map(([id, before]) => [id, before]), s.current[0]);
 }
-
-const new_id = () => `${Date.now().toString(36)}-${Math.floor(Math.random() * 1e9).toString(36)}`;
 
 export function add_take(strokes, {name, origin, options} = {}) {
-  const take = {id: new_id(), made: Date.now(), name: name || `Take ${++number}`, origin: origin ?? "drawn", strokes,
+  const number = 1 + all_takes().reduce((most, t) => Math.max(most, Number(/^Take (\d+)$/.exec(t.name)?.[1] ?? 0)), 0);
+  const take = {id: new_id(), made: Date.now(), name: name || `Take ${number}`, origin: origin ?? "drawn", strokes,
     options: options ?? current_take()?.options ?? {}};
-  edit({takes: [take, ...state.takes], current: take.id, stroke: 0});
+  edit([take], {current: take.id, stroke: 0});
   return take;
 }
-function replace_take(take, same) {
-  edit({takes: state.takes.map(t => t.id === take.id ? take : t), current: take.id}, same);
-}
+// Takes over a take that has changed, whether it is the one that is shown or not.
+export const put_take = (take, same) => edit([take], {same});
 export function edit_take(change, same) {
   const take = current_take();
-  if (take) replace_take({...take, ...change(take)}, same);
+  if (take) edit([{...take, ...change(take)}], {same});
 }
 // Changes a stroke as it is, or once it can be edited by points.
 export function put_stroke(change, same, index = state.stroke) {
@@ -84,43 +79,49 @@ export function set_option(name, value, same = `option ${name}`) {
   const take = current_take() ?? add_take([], {name: "Settings"});
   const options = {...take.options};
   if (value === undefined || value === null) delete options[name]; else options[name] = value;
-  replace_take({...take, options}, same);
+  edit([{...take, options}], {same});
 }
 export function choose_take(id) {
   if (id === state.current) return;
   Object.assign(state, {current: id, stroke: 0, knot: -1, append: false, at_s: 0});
   last_same = null;
-  keep(s => s.set("current", id));
+  keep_current();
   changed("takes", "take");
 }
 export function rename_take(id, name) {
-  const take = state.takes.find(t => t.id === id);
-  if (take && name.trim()) edit({takes: state.takes.map(t => t.id === id ? {...t, name: name.trim().slice(0, 60)} : t)});
+  const take = find_take(id);
+  if (take && name.trim()) edit([{...take, name: name.trim().slice(0, 60)}]);
 }
 export function duplicate_take(id) {
-  const take = state.takes.find(t => t.id === id), at = state.takes.indexOf(take);
-  const copy = {...take, id: new_id(), made: Date.now(), name: `${take.name}, copy`};
-  edit({takes: [...state.takes.slice(0, at), copy, ...state.takes.slice(at)], current: copy.id});
+  const take = find_take(id), copy = {...take, id: new_id(), made: take.made + 0.001, name: `${take.name}, copy`};
+  edit([copy], {current: copy.id});
 }
 export function delete_take(id) {
-  const at = state.takes.findIndex(t => t.id === id), take = state.takes[at];
-  const takes = state.takes.filter(t => t.id !== id);
-  edit({takes, current: id === state.current ? takes[Math.min(at, takes.length - 1)]?.id ?? null : state.current, stroke: 0});
-  say(`Deleted “${take.name}”; Ctrl Z brings it back`);
+  const take = find_take(id);
+  edit([{...take, deleted: Date.now()}], {stroke: id === state.current ? 0 : state.stroke});
+  say(`Deleted “${take.name}”`, () => bring_back(id));
+}
+export function bring_back(id) {
+  const {deleted: _, ...take} = find_take(id);
+  edit([take], {current: id, stroke: 0});
 }
 export function fit_take(edge) {
   edit_take(t => ({strokes: fitted(t.strokes, edge)}));
-  say("Fitted; Ctrl Z takes it back");
+  say("Fitted", undo);
 }
+// Returns the rest of a take from a moment on.
+export const take_from = (take, s) => s <= 0 ? take : {...take, strokes: take.strokes.filter(k => end_s(k) > s + LEAST_REST_S)
+  .map(k => k.start_s >= s ? {...k, start_s: k.start_s - s} : {...trimmed(k, s - k.start_s, end_s(k) - k.start_s), start_s: 0})};
 export const take_s = t => t ? total_s(t.strokes) : 0;
 
 // Makes what the service plays, plans and writes: the same for all three.
-export const make_request = take => ({toml: strokes_toml(take.strokes), options: request_options(take, level_dbfs())});
+export const make_request = (take, dbfs = level_dbfs()) => ({toml: strokes_toml(take.strokes), options: request_options(take, dbfs)});
+// A take's gain is there so that strokes that add up are not too strong.
 export function request_options(take, dbfs) {
   const o = {outside: "clamp", ...take?.options};
-  if (o.sl === undefined) o.level_dbfs = dbfs;
+  const gain_db = take?.gain_db ?? 0;
+  if (o.sl === undefined) o.level_dbfs = dbfs + gain_db; else o.sl += gain_db;
   return o;
 }
 // Returns the strokes of an answer to import.
 export const imported_strokes = r => r.points.map((timed, i) => ({name: r.strokes[i].name, start_s: r.strokes[i].start_s, timed}));
-export const moved_knot = (s, index, [x, y]) => rebuild({...s, knots: s.knots.map((k, i) => i === index ? {...k, x, y} : k)});

@@ -3,8 +3,9 @@
 import {state, on_change, say} from "../state.js";
 import {by_id, make} from "../../../net/page/dom.js";
 import {icon, is_dark, colour} from "../look.js";
-import {choose_take, rename_take, duplicate_take, delete_take, add_take, fit_take, imported_strokes, take_s} from "./takes.js";
-import {total_s} from "./stroke.js";
+import {BIN_DAYS, DAY_MS} from "./keeping.js";
+import {choose_take, rename_take, duplicate_take, delete_take, bring_back, add_take, fit_take, imported_strokes, take_s} from "./takes.js";
+import {total_s, fitted, outside_mm, box} from "./stroke.js";
 import {array} from "../drawing/view.js";
 import {viridis} from "../../../net/page/viridis.js";
 import {PRESETS, plain_name, seconds_text} from "../words.js";
@@ -42,14 +43,16 @@ function draw(c, strokes) {
 }
 const facts = t => `${t.strokes.length > 1 ? `${t.strokes.length} strokes` : t.origin}, ${seconds_text(take_s(t))}`;
 
+const row_note = t => state.unkept.has(t.id) ? "not kept" : state.elsewhere.has(t.id) ? "changed in another tab" : "";
+
 function make_row(take) {
-  const kept = rows.get(take.id);
-  if (kept?.take === take) return kept.element;
+  const kept = rows.get(take.id), note = row_note(take);
+  if (kept?.take === take && kept.note === note) return kept.element;
   const element = make("li", {}, make("button", {type: "button", class: "take", onclick: () => choose_take(take.id)},
-    thumb(take.strokes), make("span", {}, make("b", {}, take.name), make("small", {}, facts(take)))),
+    thumb(take.strokes), make("span", {}, make("b", {}, take.name), make("small", {class: note && "note"}, note || facts(take)))),
     make("button", {type: "button", class: "button more-button", "aria-label": `More about ${take.name}`,
       onclick: e => menu(take, e.currentTarget)}, icon("more")));
-  rows.set(take.id, {take, element});
+  rows.set(take.id, {take, note, element});
   return element;
 }
 function menu(take, at) {
@@ -74,10 +77,26 @@ function rename(take) {
   input.select();
 }
 
-let listed = [];
+// What was deleted.
+const days = t => Math.floor((Date.now() - t.deleted) / DAY_MS);
+const when = n => n === 0 ? "today" : n === 1 ? "yesterday" : `${n} days ago`;
+let binned = [];
+function show_bin() {
+  by_id("bin").hidden = !state.bin.length;
+  if (binned.length === state.bin.length && binned.every((t, i) => t === state.bin[i])) return;
+  binned = state.bin;
+  by_id("bin-text").textContent = `${binned.length}, kept for ${BIN_DAYS} days`;
+  by_id("binned").replaceChildren(...binned.toSorted((a, b) => b.deleted - a.deleted).map(t => make("li", {}, thumb(t.strokes),
+    make("span", {}, make("b", {}, t.name), make("small", {}, `deleted ${when(days(t))}, ${BIN_DAYS - 1 - days(t)} days left`)),
+    make("button", {type: "button", class: "button outlined", onclick: () => bring_back(t.id)}, "Bring back"))));
+}
+
+let listed = [], noted = "";
 function show_takes() {
-  const list = by_id("takes"), now = state.takes;
-  if (listed.length !== now.length || now.some((t, i) => t !== listed[i])) {
+  show_bin();
+  const list = by_id("takes"), now = state.takes, notes = [...state.unkept, "", ...state.elsewhere].join();
+  if (listed.length !== now.length || notes !== noted || now.some((t, i) => t !== listed[i])) {
+    noted = notes;
     const elements = now.map(make_row), wanted = new Set(now.map(t => t.id));
     for (const id of [...rows.keys()]) if (!wanted.has(id)) rows.delete(id);
     // Moves only what differs, which keeps a list of a thousand quick.
@@ -91,22 +110,32 @@ function show_takes() {
 }
 function draw_thumbs() { for (const c of document.querySelectorAll(".thumb")) c.draw?.(); }
 
-// Examples: the presets that fit this array.
+// Examples: the presets, made as large as this array where they do not fit it.
 const examples = new Map();
 export async function show_examples() {
   const found = [];
   for (const name of state.hello.presets) {
     try {
-      const strokes = imported_strokes(await call("import", {stroke: name}));
-      if (strokes.flatMap(s => s.timed).every(q => inside(q))) { examples.set(name, strokes); found.push(name); }
+      examples.set(name, sized(imported_strokes(await call("import", {stroke: name}))));
+      found.push(name);
     } catch (e) { if (e.code === 0) return; }
   }
   by_id("examples").replaceChildren(...found.map(name => make("li", {}, make("button",
     {type: "button", class: "take", onclick: () => open_example(name)}, thumb(examples.get(name)),
     make("span", {}, make("b", {}, PRESETS[name] ?? plain_name(name)), make("small", {}, name))))));
 }
-const inside = q => q[1] >= array.box.least[0] - 1 && q[1] <= array.box.most[0] + 1 && q[2] >= array.box.least[1] - 1
-  && q[2] <= array.box.most[1] + 1;
+function sized(strokes) {
+  const {size, middle} = array.box, places = list => list.flatMap(s => s.timed.map(q => [q[1], q[2]]));
+  const fits = list => places(list).every(q => outside_mm(array.edge, q) < 1);
+  const spans = box(places(strokes)).size;
+  if (fits(strokes) && Math.max(...spans) > Math.max(...size) / 2) return strokes;
+  for (let part = 0.9; ; part *= 0.9) {
+    // On a line of tactors only its direction is left.
+    const made = fitted(strokes, array.edge.map(q => q.map((v, k) => middle[k] + (v - middle[k]) * part)))
+      .map(s => ({...s, timed: s.timed.map(([t, x, y, v]) => [t, size[0] ? x : middle[0], size[1] ? y : middle[1], v])}));
+    if (fits(made) || part < 0.3) return made;
+  }
+}
 export function open_example(name) {
   const id = name ?? examples.keys().next().value;
   if (!examples.has(id)) return say("There is no example for this array");

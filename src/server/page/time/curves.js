@@ -2,7 +2,7 @@
 // Speed and strength along the strokes: as asked for, as felt, and the points by which they are changed.
 import {state, current_take, current_stroke} from "../state.js";
 import {colour, font} from "../look.js";
-import {CURVES, left, right, to_x} from "./time_axis.js";
+import {left, right, to_x} from "./time_axis.js";
 import {edit_stroke} from "../takes/takes.js";
 import {editable, rebuild, interpolate, duration_s, find_speeds, length_mm, parts_reached, kept_for} from "../takes/stroke.js";
 
@@ -10,18 +10,18 @@ const FELT_STEP_S = 0.07; // the SOA of the paper
 
 // Speed as asked for and as felt, and strength with its points.
 export function draw_curves(p, l) {
-  const take = current_take(), top = l.height - CURVES, bottom = l.height - 8;
-  if (!take?.strokes.length) return;
+  const take = current_take(), top = l.height - l.curves, bottom = l.height - 8;
+  if (!take?.strokes.length || !l.curves) return;
   const most = most_speed(take), y_speed = v => bottom - Math.min(1, v / most) * (bottom - top - 12);
   p.strokeStyle = colour("line2"); p.lineWidth = 1;
   p.beginPath(); p.moveTo(left(l), bottom + 0.5); p.lineTo(l.width - right(l), bottom + 0.5); p.stroke();
   p.font = font(11);
-  p.textAlign = "left"; p.fillStyle = colour("ink3");
-  p.fillText(`${Math.round(most)} mm/s`, l.width - right(l) + 3, top + 16); p.fillText("0", l.width - right(l) + 3, bottom);
+  p.textAlign = "right"; p.fillStyle = colour("ink3");
+  p.fillText(`${Math.round(most)} mm/s`, l.width - 4, top + 16); p.fillText("0", l.width - 4, bottom);
   p.textAlign = "right";
   [["speed", "ink", state.show_speed], ["as felt", "felt-ink", state.show_speed],
     ["strength", "ink2", state.show_strength]].forEach(([w, c, on], i) => {
-    if (on) { p.fillStyle = colour(c); p.fillText(w, left(l) - 8, top + 18 + 15 * i); }
+    if (on) { p.fillStyle = colour(c); p.fillText(w, left(l) - 8, top + 16 + 15 * i); }
   });
   take.strokes.forEach((s, i) => {
     if (state.show_speed) draw_speed(p, l, s, i, y_speed);
@@ -66,8 +66,8 @@ function draw_speed(p, l, s, i, y) {
 // Returns the points that can be dragged: {x, y, kind, index}.
 export function handles(l) {
   const s = current_stroke();
-  if (!s) return [];
-  const e = editable(s), d = duration_s(s), top = l.height - CURVES, bottom = l.height - 8, found = [];
+  if (!s || !l.curves) return [];
+  const e = editable(s), d = duration_s(s), top = l.height - l.curves, bottom = l.height - 8, found = [];
   const mean = length_mm(s.timed) / d, most = most_speed(current_take());
   if (state.show_speed) find_speeds(e.pace).forEach(([part, v], index) => found.push({kind: "speed", index,
     x: to_x(l, s.start_s + d * reached(e, part)), y: y_strength(Math.min(1, v * mean / most), top, bottom), mean, most}));

@@ -5,39 +5,52 @@ import {state, changed, current_take} from "../state.js";
 import {colour, is_dark, font} from "../look.js";
 import {array} from "../drawing/view.js";
 import {viridis} from "../../../net/page/viridis.js";
-import {full, mini, total, shown, left, right, to_x, RULER, CLIP, CURVES} from "./time_axis.js";
+import {full, mini, total, shown, left, right, to_x, clip_box, lane_tactors, silent_count, lane_height, most_scroll, CLIP, LEAST_AMPLITUDE} from "./time_axis.js";
 import {draw_curves} from "./curves.js";
+import {place_clips} from "./clips.js";
 import {end_s} from "../takes/stroke.js";
 import {look_at} from "../service/player.js";
 import {seconds_text} from "../words.js";
 
-function lane_height(l) {
-  const n = Math.max(1, array?.places.length ?? 1);
-  return l.mini ? (l.height - 16) / n : Math.max(3, (l.height - RULER - CLIP - CURVES - 16) / n);
-}
-const lanes_top = l => l.mini ? 8 : RULER + CLIP + 8;
 function draw_layer(l) {
   const p = l.layer.getContext("2d");
   p.setTransform(l.dpr, 0, 0, l.dpr, 0, 0);
   p.clearRect(0, 0, l.width, l.height);
   if (!array) return;
-  const n = array.places.length, h = lane_height(l), top = lanes_top(l), end = l.width - right(l);
-  p.font = font(11);
-  if (!l.mini) draw_ruler(p, l, top + n * h);
-  for (let i = 0; i < n; ++i) {
-    const y = top + (i + 1) * h;
-    if (l.mini) { p.fillStyle = colour("well"); p.fillRect(left(l), y - h * 0.8, end - left(l), Math.max(1, h * 0.6)); continue; }
+  const lanes = lane_tactors(), h = lane_height(l), end = l.width - right(l), most = most_scroll(l);
+  l.scroll = Math.min(l.scroll, most);
+  const top = l.top - l.scroll;
+  if (!l.thin && total()) draw_ruler(p, l, l.bottom);
+  p.save();
+  p.beginPath(); p.rect(0, l.top - 2, l.width, l.bottom - l.top + 2); p.clip();
+  lanes.forEach((i, row) => {
+    const y = top + (row + 1) * h;
+    if (l.thin) { p.fillStyle = colour("well"); p.fillRect(left(l), y - h * 0.8, end - left(l), Math.max(1, h * 0.6)); return; }
     p.strokeStyle = colour(i === state.hot ? "ink2" : "grid");
     p.lineWidth = 1;
     p.beginPath(); p.moveTo(left(l), y - 0.5); p.lineTo(end, y - 0.5); p.stroke();
     p.textAlign = "right";
     p.fillStyle = colour(i === state.hot ? "ink" : "ink2");
     p.font = font(12, i === state.hot ? 700 : 600);
-    if (i % Math.ceil(11 / h) === 0) p.fillText(`${i === 0 && h > 12 ? "tactor " : ""}${array.tactors[i].tactor ?? i}`,
-      left(l) - 8, y - 2);
+    const number = String(array.tactors[i].tactor ?? i);
+    p.fillText(number, left(l) - 8, y - 2);
+    const x = left(l) - 12 - p.measureText(number).width;
+    if (row === 0) { p.font = font(11); p.fillText("tactor", x, y - 2); }
+  });
+  if (silent_count() && !l.thin) {
+    p.font = font(12); p.textAlign = "left"; p.fillStyle = colour("ink3");
+    p.fillText(`${silent_count()} silent of ${array.places.length}; the others in the order they begin`, left(l), top + (lanes.length + 1) * h - 4);
   }
-  if (state.plan) draw_bars(p, l, h, top);
-  if (!l.mini && !state.drawing) { draw_clips(p, l); draw_curves(p, l); }
+  if (state.plan) draw_bars(p, l, h, top, lanes);
+  p.restore();
+  if (most && !l.thin) {
+    const room = l.bottom - l.top;
+    p.fillStyle = colour("ink3");
+    p.beginPath(); p.roundRect(l.width - 9, l.top + room * l.scroll / (most + room), 4, room * room / (most + room), 2); p.fill();
+  }
+  if (l.mini) return;
+  if (!state.drawing) { draw_clips(p, l); draw_curves(p, l); }
+  place_clips(l);
 }
 function draw_ruler(p, l, bottom) {
   const s = shown(l), step = [0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 30, 60,
@@ -47,7 +60,7 @@ function draw_ruler(p, l, bottom) {
   for (let i = Math.ceil(l.from / step); i * step <= l.from + s; ++i) {
     const x = to_x(l, i * step);
     p.strokeStyle = colour("grid"); p.lineWidth = 1;
-    p.beginPath(); p.moveTo(x, RULER); p.lineTo(x, bottom); p.stroke();
+    p.beginPath(); p.moveTo(x, l.ruler); p.lineTo(x, bottom); p.stroke();
     p.fillStyle = colour("ink2");
     p.fillText(`${(i * step).toFixed(step < 0.1 ? 2 : step < 1 ? 1 : 0)}${i === 0 ? " s" : ""}`, x, 12);
   }
@@ -57,17 +70,17 @@ function draw_ruler(p, l, bottom) {
   p.fillStyle = g;
   p.beginPath(); p.roundRect(from, 18, Math.max(1, until - from), 5, 2.5); p.fill();
 }
-function draw_bars(p, l, h, top) {
-  const plan = state.plan, t = plan.tactors, n = plan.onsets.length;
+function draw_bars(p, l, h, top, lanes) {
+  const plan = state.plan, t = plan.tactors, n = plan.onsets.length, row = new Map(lanes.map((k, i) => [k, i]));
   const from = l.from, to = l.from + shown(l), all = plan.total_s || 1;
   // Draws the largest burst of each pixel where they are narrower than that.
   const merged = n * 2 > (l.width - left(l)) && !plan.continuous && (l.width / n < 1.5);
   const rows = merged ? merged_rows(l, plan, t) : null;
   const one = (onset, seconds, k, a) => {
-    if (a < 0.004) return;
-    const x = to_x(l, onset), w = Math.max(0.75, to_x(l, onset + seconds) - x), y = top + (k + 1) * h;
+    if (a < LEAST_AMPLITUDE) return;
+    const x = to_x(l, onset), w = Math.max(0.75, to_x(l, onset + seconds) - x), y = top + (row.get(k) + 1) * h;
     p.fillStyle = viridis(onset / all, is_dark());
-    if (l.mini) { p.globalAlpha = 0.25 + 0.75 * Math.min(1, a);
+    if (l.thin) { p.globalAlpha = 0.25 + 0.75 * Math.min(1, a);
       p.fillRect(x, y - h * 0.8, w - (w > 3 ? 0.5 : 0), Math.max(1, h * 0.6)); p.globalAlpha = 1; return; }
     const tall = Math.min(1, a) * (h - 3);
     if (state.shape === "tactile-brush") {
@@ -77,7 +90,7 @@ function draw_bars(p, l, h, top) {
       return;
     }
     p.fillRect(x, y - 1 - tall, w - (w > 3 && !plan.continuous ? 0.75 : -0.3), tall);
-    if (w > 4 && !plan.continuous) { p.fillStyle = is_dark() ? "#eceeef61" : "#17181a61";
+    if (w > 4 && tall > 5 && !plan.continuous) { p.fillStyle = is_dark() ? "#eceeef61" : "#17181a61";
       p.fillRect(x, y - 1 - tall, w - 0.75, 1); }
   };
   if (rows) { for (const r of rows) one(...r); return; }
@@ -99,7 +112,6 @@ function merged_rows(l, plan, t) {
   }
   return [...bins].map(([key, a]) => [l.from + Math.floor(key / t) * width, width * 1.4, key % t, a]);
 }
-export const clip_box = (l, s) => [to_x(l, s.start_s), to_x(l, end_s(s))];
 function draw_clips(p, l) {
   const take = current_take();
   if (!take) return;
@@ -107,29 +119,29 @@ function draw_clips(p, l) {
   const order = [...take.strokes.entries()].sort((a, b) => (a[0] === state.stroke) - (b[0] === state.stroke));
   order.forEach(([i, s]) => {
     const [a, b] = clip_box(l, s), own = i === state.stroke, w = Math.max(6, b - a);
-    p.beginPath(); p.roundRect(a, RULER, w, CLIP - 4, 6);
+    p.beginPath(); p.roundRect(a, l.ruler, w, CLIP - 4, 6);
     p.fillStyle = colour(own ? "raised" : "well"); p.fill();
     p.strokeStyle = colour(own ? "ink" : "line2"); p.lineWidth = own ? 2 : 1.5; p.stroke();
     if (own && w > 24) { p.fillStyle = colour("ink"); for (const x of [a + 4, b - 7]) { p.beginPath();
-      p.roundRect(x, RULER + 5, 3, CLIP - 14, 1.5); p.fill(); } }
+      p.roundRect(x, l.ruler + 5, 3, CLIP - 14, 1.5); p.fill(); } }
     p.save();
-    p.beginPath(); p.rect(a + 10, RULER, Math.max(0, w - 20), CLIP); p.clip();
+    p.beginPath(); p.rect(a + 10, l.ruler, Math.max(0, w - 20), CLIP); p.clip();
     p.fillStyle = colour(own ? "ink" : "ink2"); p.textAlign = "left";
     p.font = font(12, own ? 600 : 500);
-    p.fillText(take.strokes.length === 1 ? take.name : s.name, a + 13, RULER + 15);
+    p.fillText(take.strokes.length === 1 ? take.name : s.name, a + 13, l.ruler + 15);
     p.restore();
     const before = take.strokes.filter((_, k) => k !== i).map(end_s).filter(e => e <= s.start_s + 1e-9);
     const gap = before.length ? s.start_s - Math.max(...before) : 0;
     if (gap > 0.005 && to_x(l, gap) - to_x(l, 0) > 34) { p.font = font(11);
       p.fillStyle = colour("ink3"); p.textAlign = "center";
-      p.fillText(`${gap.toFixed(2)} s`, to_x(l, s.start_s - gap / 2), RULER + 15); }
+      p.fillText(`${gap.toFixed(2)} s`, to_x(l, s.start_s - gap / 2), l.ruler + 15); }
   });
   const x = to_x(l, total()) + 8;
   if (x < l.width - 24) {
     p.setLineDash([3, 3]); p.strokeStyle = colour(state.append ? "felt" : "line2"); p.lineWidth = 1.5;
-    p.beginPath(); p.roundRect(x, RULER, 28, CLIP - 4, 6); p.stroke(); p.setLineDash([]);
+    p.beginPath(); p.roundRect(x, l.ruler, 28, CLIP - 4, 6); p.stroke(); p.setLineDash([]);
     p.strokeStyle = colour(state.append ? "felt" : "ink2"); p.beginPath();
-    p.moveTo(x + 9, RULER + 11); p.lineTo(x + 19, RULER + 11); p.moveTo(x + 14, RULER + 6); p.lineTo(x + 14, RULER + 16);
+    p.moveTo(x + 9, l.ruler + 11); p.lineTo(x + 19, l.ruler + 11); p.moveTo(x + 14, l.ruler + 6); p.lineTo(x + 14, l.ruler + 16);
       p.stroke();
   }
 }
@@ -147,23 +159,14 @@ export function draw_lanes() {
     if (x < left(l) - 1 || x > l.width - right(l) + 20) continue;
     p.fillStyle = p.strokeStyle = colour("ink");
     p.lineWidth = 2;
-    p.beginPath(); p.moveTo(x, l.mini ? 2 : 20); p.lineTo(x, l.height - (l.mini ? 2 : 8)); p.stroke();
-    if (!l.mini) { p.beginPath(); p.moveTo(x - 6, 15); p.lineTo(x + 6, 15); p.lineTo(x + 6, 21); p.lineTo(x, 27);
+    p.beginPath(); p.moveTo(x, l.thin ? 2 : 20); p.lineTo(x, l.height - (l.thin ? 2 : 8)); p.stroke();
+    if (!l.thin) { p.beginPath(); p.moveTo(x - 6, 15); p.lineTo(x + 6, 15); p.lineTo(x + 6, 21); p.lineTo(x, 27);
       p.lineTo(x - 6, 21); p.closePath(); p.fill(); }
   }
   // The moment follows where it leaves what is shown.
   if (state.playing && full.span && (state.at_s > full.from + full.span * 0.95
     || state.at_s < full.from)) { full.from = Math.max(0, state.at_s - full.span * 0.1); full.stale = true; }
 }
-export function show_all_time() { Object.assign(full, {from: 0, span: null, stale: true}); changed("frame"); }
-export function zoom_time(by, at_s = state.at_s) {
-  const span = Math.min(total() * 1.02, Math.max(0.1, shown(full) * by));
-  full.from = Math.max(0, Math.min(total() * 1.02 - span, at_s - (at_s - full.from) * span / shown(full)));
-  full.span = span >= total() * 1.02 ? null : span;
-  full.stale = true;
-  changed("frame");
-}
-
 // Goes one burst on or back.
 export function step_burst(by) {
   const onsets = [...(state.plan?.onsets ?? [])].sort((a, b) => a - b);

@@ -1,0 +1,180 @@
+// SPDX-License-Identifier: MIT
+// Takes in the browser's storage and in other tabs: each change is written, and what is not written is said.
+import {state, changed, say, remember, remembered} from "../state.js";
+import {open_storage} from "./storage.js";
+
+const AGAIN_MS = 3000;        // after a write that failed
+const HISTORY_MS = 1000;      // after an edit, until the steps of undo are written
+const TOLD_MS = 10000;        // of a change in another tab
+const TAB_MS = 24 * 3600e3;   // a tab that wrote nothing for so long is closed
+export const BIN_DAYS = 30;
+export const DAY_MS = 24 * 3600e3;
+
+let all = [];                 // takes with those of the bin, newest first
+let storage = null, writing = null, asked_for = {history: () => null, restore: () => {}};
+const NEWEST = "newest";     // no take has this id: the first one is shown
+const unwritten = new Map();       // takes that are not written yet, by id; null where one was removed
+const known = new Map();      // versions in the storage, by id
+let current_owed = false, history_timer = 0, tabs = {}; // times of the last write of each tab
+
+export const new_id = () => `${Date.now().toString(36)}-${Math.floor(Math.random() * 1e9).toString(36)}`;
+export const find_take = id => all.find(t => t.id === id);
+export const all_takes = () => all;
+
+// Shows takes, and which one is edited.
+function show(takes, current = state.current) {
+  all = [...takes.values()].sort((a, b) => b.made - a.made);
+  const at = state.takes.findIndex(t => t.id === current);
+  state.takes = all.filter(t => !t.deleted);
+  state.bin = all.filter(t => t.deleted);
+  const found = state.takes.find(t => t.id === current) ?? (current && state.takes[Math.min(Math.max(0, at), state.takes.length - 1)]);
+  Object.assign(state, {current: found?.id ?? null, stroke: Math.min(state.stroke, Math.max(0, (found?.strokes.length ?? 1) - 1))});
+  changed("takes", "take");
+}
+const by_ids = () => new Map(all.map(t => [t.id, t]));
+
+// Takes over changes, [[id, take or null], ...], and writes them.
+export function put_takes(changes, current) {
+  const takes = by_ids();
+  for (const [id, take] of changes) {
+    unwritten.set(id, take);
+    if (take) takes.set(id, take); else takes.delete(id);
+  }
+  show(takes, current);
+  keep_current();
+  clearTimeout(history_timer);
+  history_timer = setTimeout(() => storage?.write({values: history_values()}).catch(() => {}), HISTORY_MS);
+}
+export function keep_current() { current_owed = true; write_owed(); }
+
+// Opens the storage, reads it, and calls restore(steps of undo); history() returns the steps to be written.
+export function open_takes(history, restore) {
+  asked_for = {history, restore};
+  return write_owed();
+}
+async function open() {
+  const opened = await open_storage("tactor", storage_lost);
+  const kept = await opened.load(), current = await opened.get("current");
+  tabs = await opened.get("tabs") ?? {};
+  const takes = by_ids();
+  let late = null;
+  // What a page could not write while it went away.
+  for (const [id, take, version] of JSON.parse(remembered("unwritten") || "[]")) {
+    if (kept.find(t => t.id === id)?.version === take?.version) continue;
+    known.set(id, version ?? undefined);
+    unwritten.set(id, take);
+    if (!take) continue;
+    takes.set(id, take);
+    late = id;
+  }
+  remember("unwritten", "");
+  for (const t of kept) {
+    if (unwritten.has(t.id)) continue;
+    known.set(t.id, t.version);
+    if (t.deleted < Date.now() - BIN_DAYS * DAY_MS) unwritten.set(t.id, null); else takes.set(t.id, t);
+  }
+  const steps = await opened.get(`history ${tab}`);
+  if (steps) asked_for.restore(steps);
+  for (const name of Object.keys(tabs)) if (tabs[name] < Date.now() - TAB_MS) {
+    opened.write({values: {[`history ${name}`]: undefined}});
+    delete tabs[name];
+  }
+  storage = opened;
+  show(takes, state.current ?? late ?? current ?? NEWEST);
+}
+const tab = (() => {
+  const id = new_id();
+  try { return sessionStorage.getItem("tactor-tab") ?? (sessionStorage.setItem("tactor-tab", id), id); } catch { return id; }
+})();
+function history_values() {
+  tabs[tab] = Date.now();
+  return {tabs, [`history ${tab}`]: asked_for.history()};
+}
+
+// Somebody deleted what was kept: all takes are written again.
+function storage_lost() {
+  storage = null;
+  known.clear();
+  all.forEach(t => unwritten.set(t.id, t));
+  set_fault("its data were deleted");
+  setTimeout(write_owed, 0);
+}
+
+// Writes what is unwritten; resolves when it is written or has failed.
+export function write_owed() {
+  return writing ??= write_all().finally(() => {
+    writing = null;
+    if (unwritten.size && !state.storage_fault) write_owed();
+  });
+}
+async function write_all() {
+  try {
+    if (!storage) await open();
+    while (unwritten.size || current_owed) {
+      const batch = new Map(unwritten), takes = [...batch.values()].filter(t => t), removed = [...batch.keys()].filter(id => !batch.get(id));
+      current_owed = false;
+      const others = await storage.write({takes, removed, values: {current: state.current}}, known);
+      const own = takes.filter(t => !others.some(o => o.id === t.id));
+      own.forEach(t => known.set(t.id, t.version));
+      removed.forEach(id => known.delete(id));
+      for (const [id, take] of batch) if (unwritten.get(id) === take) unwritten.delete(id);
+      others.forEach(keep_both);
+      if (batch.size) channel?.postMessage({takes: own, removed});
+      if (takes.length && !remembered("asked-to-persist")) {
+        remember("asked-to-persist", 1);
+        navigator.storage?.persist?.();
+      }
+    }
+    set_fault("");
+  } catch (e) {
+    if (storage && e.name === "InvalidStateError") return storage_lost();
+    set_fault(e.name === "QuotaExceededError" ? "this browser's storage is full" : storage
+      ? `this browser's storage says: ${e.message}` : "this browser keeps nothing for this page");
+  }
+}
+setInterval(() => { if (state.storage_fault && unwritten.size) write_owed(); }, AGAIN_MS);
+function set_fault(text) {
+  const before = state.unkept.size;
+  state.storage_fault = text;
+  state.unkept = new Set(text ? [...unwritten.keys()].filter(id => unwritten.get(id)) : []);
+  if (before && !state.unkept.size) say(before === 1 ? "Kept again" : `Kept again, all ${before}`);
+  if (text || before) changed("takes", "link");
+}
+// Says whether a take is kept, once that is known.
+export async function say_if_kept(take) {
+  await write_owed();
+  if (!find_take(take.id)?.deleted) say(state.unkept.has(take.id) ? `Not kept: ${state.storage_fault}` : `Kept as “${take.name}”`);
+}
+// Writes all at once while the page goes away: the browser may drop what is written to the database then, so it is
+// written to the local storage, too.
+export function write_at_once() {
+  const removed = [...unwritten.keys()].filter(id => !unwritten.get(id));
+  if (unwritten.size) remember("unwritten", JSON.stringify([...JSON.parse(remembered("unwritten") || "[]"),
+    ...[...unwritten].map(([id, take]) => [id, take, known.get(id)])]));
+  storage?.write({takes: [...unwritten.values()].filter(t => t), removed, values: {current: state.current, ...history_values()}}).catch(() => {});
+}
+
+// Other tabs.
+const channel = globalThis.BroadcastChannel && new BroadcastChannel("tactor-takes");
+channel?.addEventListener("message", ({data}) => {
+  const takes = by_ids();
+  for (const t of data.takes) {
+    if (unwritten.has(t.id)) continue; // this tab's own change finds the other one when it is written
+    known.set(t.id, t.version);
+    takes.set(t.id, t);
+    state.elsewhere.add(t.id);
+    setTimeout(() => { state.elsewhere.delete(t.id); changed("takes"); }, TOLD_MS);
+  }
+  for (const id of data.removed) if (!unwritten.has(id)) { known.delete(id); takes.delete(id); }
+  show(takes);
+});
+// Both tabs changed a take: this tab's change becomes a take of its own.
+function keep_both(other) {
+  const own = find_take(other.id), takes = by_ids();
+  const copy = {...own, id: new_id(), made: own.made + 0.001, name: `${own.name}, other tab`};
+  known.set(other.id, other.version);
+  unwritten.delete(other.id);
+  unwritten.set(copy.id, copy);
+  show(takes.set(other.id, other).set(copy.id, copy), state.current === other.id ? copy.id : state.current);
+  say(`“${own.name}” was changed in another tab, too; both are kept`);
+}

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: MIT
+// Buttons of the strokes in time, for the keyboard: they lie over the drawn clips, and pointers go through them to the canvas.
+import {state, changed, current_take, say} from "../state.js";
+import {by_id, make} from "../../../net/page/dom.js";
+import {put_stroke, end_edit} from "../takes/takes.js";
+import {duration_s} from "../takes/stroke.js";
+import {seconds_text} from "../words.js";
+import {clip_box, to_x, total, CLIP} from "./time_axis.js";
+
+const MOVE_S = 0.1, FINE_MOVE_S = 0.01;
+const clips_box = by_id("clips");
+
+export function choose_clip(i) {
+  if (i !== state.stroke) Object.assign(state, {stroke: i, knot: -1});
+  changed("take");
+}
+export function toggle_append() {
+  state.append = !state.append;
+  say(state.append ? "Draw: it follows the last stroke" : "Drawings are takes of their own");
+  changed("curves");
+}
+const clip_button = i => make("button", {type: "button", onclick: () => choose_clip(i), onblur: end_edit, onkeydown: e => {
+  const step = {ArrowLeft: -1, ArrowRight: 1}[e.key];
+  if (!step) return;
+  e.preventDefault();
+  put_stroke(s => ({...s, start_s: Math.max(0, +(s.start_s + step * (e.shiftKey ? FINE_MOVE_S : MOVE_S)).toFixed(3))}), `clip key ${i}`, i);
+}});
+const add_button = make("button", {type: "button", onclick: toggle_append, "aria-label": "Add the next drawing to this take"});
+
+// Lays the buttons over the clips as they are drawn.
+export function place_clips(l) {
+  const strokes = state.drawing ? [] : current_take()?.strokes ?? [];
+  while (clips_box.childElementCount - 1 > strokes.length || (!strokes.length && clips_box.firstChild)) clips_box.firstChild.remove();
+  if (!strokes.length) return;
+  clips_box.append(add_button);
+  while (clips_box.childElementCount - 1 < strokes.length) add_button.before(clip_button(clips_box.childElementCount - 1));
+  const put = (b, x, width) => Object.assign(b.style, {left: `${x}px`, top: `${l.ruler}px`, width: `${width}px`, height: `${CLIP - 4}px`});
+  strokes.forEach((s, i) => {
+    const [a, b] = clip_box(l, s), button = clips_box.children[i];
+    put(button, a, Math.max(6, b - a));
+    button.setAttribute("aria-label", `${s.name}, starts at ${seconds_text(s.start_s)}, lasts ${seconds_text(duration_s(s))}; arrows move it`);
+    button.setAttribute("aria-pressed", i === state.stroke);
+  });
+  put(add_button, to_x(l, total()) + 8, 28);
+  add_button.setAttribute("aria-pressed", state.append);
+}

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: MIT
+#include "synth/mix/score_gains.hpp"
+
+namespace tactor::synth {
+
+void score_gain::apply(std::uint64_t frame, unsigned n, double* samples) const noexcept
+{
+    for (unsigned j = 0; j < n; ++j)
+        samples[j] *= at(frame + j);
+}
+
+const score_gain* score_gains::find(std::uint32_t score, std::uint64_t frame) const noexcept
+{
+    const std::size_t i = place(score);
+    return i == used_ || gains_[i].is_one(frame) ? nullptr : &gains_[i];
+}
+
+bool score_gains::set(std::uint32_t score, double to, std::uint64_t at, std::uint64_t length) noexcept
+{
+    const std::size_t i = place(score);
+    if (i == used_) {
+        if (to == 1.0)
+            return true;
+        if (used_ == gains_.size())
+            return false;
+        gains_[used_++] = {};
+    }
+    score_gain& g = gains_[i];
+    g = {.score = score, .from = length == 0 ? to : g.at(at), .to = to, .start = at, .length = length};
+    return true;
+}
+
+void score_gains::forget(std::uint32_t score) noexcept
+{
+    if (const std::size_t i = place(score); i != used_)
+        gains_[i] = gains_[--used_];
+}
+
+void score_gains::settle() noexcept
+{
+    for (std::size_t i = 0; i < used_; ++i)
+        gains_[i] = {.score = gains_[i].score, .from = gains_[i].to, .to = gains_[i].to};
+}
+
+} // namespace tactor::synth

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: MIT
+/// \file
+/// Scores that sound weaker than their drives say.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+namespace tactor::synth {
+
+/// Factor of a score: `from` until frame `start`, then linear to `to`, which it reaches `length` frames
+/// later.
+struct score_gain {
+    std::uint32_t score = 0;
+    double from = 1.0;
+    double to = 1.0;
+    std::uint64_t start = 0;
+    std::uint64_t length = 0;
+
+    double at(std::uint64_t frame) const noexcept
+    {
+        if (frame < start)
+            return from;
+        if (frame - start >= length)
+            return to;
+        return from + (to - from) * static_cast<double>(frame - start) / static_cast<double>(length);
+    }
+    /// Returns true if the factor is 1 from a frame on.
+    bool is_one(std::uint64_t frame) const noexcept
+    {
+        return to == 1.0 && frame >= start && frame - start >= length;
+    }
+    /// Multiplies the n samples from frame `at` on.
+    void apply(std::uint64_t at, unsigned n, double* samples) const noexcept;
+    bool operator==(const score_gain&) const = default;
+};
+
+/// A fixed number of factors. Scores without one have the factor 1.
+class score_gains {
+public:
+    /// Returns the factor of a score that is not 1 for ever after a frame; null: it is.
+    const score_gain* find(std::uint32_t score, std::uint64_t frame) const noexcept;
+    /// Leads the factor of a score to `to`, from frame `at` on. Returns false if all are in use.
+    bool set(std::uint32_t score, double to, std::uint64_t at, std::uint64_t length) noexcept;
+    void forget(std::uint32_t score) noexcept;
+    /// Ends what goes on: each factor is the one that it was led to.
+    void settle() noexcept;
+
+private:
+    /// Returns the place of a score's factor; used_: there is none.
+    std::size_t place(std::uint32_t score) const noexcept
+    {
+        const auto end = gains_.begin() + static_cast<std::ptrdiff_t>(used_);
+        return static_cast<std::size_t>(
+            std::find_if(gains_.begin(), end, [score](const score_gain& g) { return g.score == score; }) -
+            gains_.begin());
+    }
+
+    std::array<score_gain, 512> gains_{};
+    std::size_t used_ = 0; ///< the first so many
+};
+
+} // namespace tactor::synth

@@ -1,0 +1,202 @@
+# SPDX-License-Identifier: MIT
+"""Stop under any hand, and Play that never adds up, in a real Chromium. Usage: test_page_stop.py TOOL SOURCE_ROOT"""
+import os
+import signal
+import sys
+
+del sys.argv[3:]
+from studio import TAKE, StudioTest  # noqa: E402
+from harness import main  # noqa: E402
+
+LONG = "[[stroke]]\npath = 'M 0 0 L 40 40'\nduration_s = 60.0\n"
+MOST_MS = 20.0  # from the touch, once the page has it, to the message
+WATCH = """globalThis.sent = []; globalThis.touched = 0;
+    (send => { WebSocket.prototype.send = function (text) { sent.push([JSON.parse(text).method, performance.now()]); return send.call(this, text); }; })
+        (WebSocket.prototype.send);
+    addEventListener("pointerdown", () => { touched = performance.now(); }, {capture: true});"""
+SOUNDING = "(tactor.state.status?.strokes ?? []).filter(s => s.state === 'started').length"
+
+
+class Stop(StudioTest):
+    def begin(self, fingers=True):
+        """Returns a page of a touched screen, a client that watches, and a long stroke that sounds."""
+        s = self.serve()
+        p, watcher = self.ready(s, fingers=fingers)
+        number = s.client().ok("play", toml=LONG)["stroke"]
+        watcher.stroke(number, "started")
+        p.value(WATCH)
+        return p, watcher, number
+
+    def stopped(self, p, watcher, number):
+        self.assertEqual(watcher.await_end(number)["state"], "cancelled")
+        self.assertLess(p.value("sent.find(([m]) => m === 'stop')[1] - touched"), MOST_MS)
+
+    def test_it_stops_while_a_finger_rests_on_the_array(self):
+        p, watcher, number = self.begin()
+        [finger] = self.at(p, [10, 10])
+        p.touch("touchStart", (0, *finger))
+        p.touch("touchStart", (0, *finger), (1, *p.middle("#stop")))
+        self.stopped(p, watcher, number)
+
+    def test_it_stops_though_the_finger_slides_away(self):
+        p, watcher, number = self.begin()
+        x, y = p.middle("#stop")
+        p.touch("touchStart", (0, x, y))
+        for step in range(1, 8):
+            p.touch("touchMove", (0, x - 20 * step, y + 30 * step))
+        p.touch("touchEnd")
+        self.stopped(p, watcher, number)
+        self.assertEqual(p.value("sent.filter(([m]) => m === 'stop').length"), 1)
+
+    def test_it_stops_before_the_finger_is_lifted(self):
+        p, watcher, number = self.begin()
+        p.touch("touchStart", (0, *p.middle("#stop")))
+        self.stopped(p, watcher, number)
+        p.until("document.querySelector('#stop').dataset.state === 'done'")
+        p.touch("touchEnd")
+        p.until("document.querySelector('#stop').textContent.startsWith('Stop') && !document.querySelector('#stop').dataset.state")
+        self.assertEqual(p.value("sent.filter(([m]) => m === 'stop').length"), 1)
+
+    def test_escape_stops_where_nothing_is_open(self):
+        p, watcher, number = self.begin(fingers=False)
+        p.click("#device")
+        p.until("document.querySelector('#p-device').matches(':popover-open')")
+        p.key("Escape")
+        p.until("!document.querySelector(':popover-open')")
+        self.assertEqual(p.value("sent.filter(([m]) => m === 'stop').length"), 0)
+        p.key("Escape")
+        self.assertEqual(watcher.await_end(number)["state"], "cancelled")
+
+    def test_no_answer_names_the_switch_and_is_sent_again(self):
+        s = self.serve()
+        p, watcher = self.ready(s)
+        number = s.client().ok("play", toml=LONG)["stroke"]
+        watcher.stroke(number, "started")
+        p.value(WATCH)
+        os.kill(s.process.pid, signal.SIGSTOP)
+        p.click("#stop")
+        self.banner(p, "Switch the amplifier off")
+        p.until("document.querySelector('#stop').textContent.startsWith('Stop again')")
+        p.until("sent.filter(([m]) => m === 'stop').length > 2")
+        os.kill(s.process.pid, signal.SIGCONT)
+        self.assertEqual(watcher.await_end(number)["state"], "cancelled")
+        p.until("document.querySelector('#banner').hidden && !document.querySelector('#stop').dataset.state")
+
+
+class Play(StudioTest):
+    def play(self, p, watcher):
+        """Plays the take; returns the number of its stroke."""
+        p.key("KeyP", "p")
+        return self.next_stroke(watcher, "started")
+
+    def test_playing_again_begins_anew(self):
+        p, watcher = self.ready(self.serve())
+        p.value("[...document.querySelectorAll('#examples button')].at(-1).click()")
+        self.planned(p)
+        p.key("KeyL", "l")
+        numbers = [self.play(p, watcher) for _ in range(4)]
+        self.assertEqual([watcher.await_end(n)["state"] for n in numbers[:3]], ["cancelled"] * 3)
+        p.until(f"{SOUNDING} === 1")
+        # A key that is held does it once.
+        for _ in range(10):
+            p.call("Input.dispatchKeyEvent", type="rawKeyDown", code="KeyP", key="p", autoRepeat=True)
+        p.until("tactor.state.playing && !tactor.state.playing.waits")
+        self.assertEqual(p.value("tactor.state.playing.numbers.has(%d)" % numbers[3]), True)
+        p.click("#stop")
+
+    def test_strokes_that_add_up_lower_their_take_and_not_the_level(self):
+        p, watcher = self.ready(self.serve(), fingers=True)
+        p.touch("touchStart", *((i, *q) for i, q in enumerate(self.at(p, [10, 10], [12, 10], [14, 10]))))
+        for k in range(1, 10):
+            p.touch("touchMove", *((i, *q) for i, q in enumerate(self.at(p, [10 + k, 10 + k], [12 + k, 10 + k], [14 + k, 10 + k]))))
+        p.touch("touchEnd")
+        p.until(f"({TAKE})?.strokes.length === 3 && !tactor.state.drawing")
+        p.click("#play")
+        self.next_stroke(watcher, "started")
+        self.toast(p, "together its strokes are too strong")
+        self.assertLess(p.value(f"{TAKE}.gain_db"), 0)
+        self.assertEqual(p.value("tactor.state.level_db"), 0)
+
+    def test_what_plays_follows_the_level(self):
+        p, watcher = self.ready(self.serve())
+        p.value("[...document.querySelectorAll('#examples button')].at(-1).click()")
+        self.planned(p)
+        p.key("KeyL", "l")
+        number = self.play(p, watcher)
+        loudest = "Math.max(...tactor.state.dbfs.filter(v => v !== null))"
+        p.until(f"{loudest} > -30")
+        for level_db, test in ((-40, f"{loudest} < -45"), (0, f"{loudest} > -30")):
+            p.value(f"(tactor.state.level_db = {level_db}, tactor.changed('level'), 0)")
+            p.until(test)
+        self.assertIn(number, p.value("[...tactor.state.playing.numbers]"))
+        p.click("#stop")
+        # A page that is opened again is no louder than it was.
+        p.value("(tactor.state.level_db = -40, tactor.changed('level'), 0)")
+        p.reload()
+        self.await_service(p)
+        self.play(p, watcher)
+        p.until(f"{loudest} > -80")
+        self.assertLess(p.value(loudest), -45)
+
+    def test_another_take_that_is_chosen_stands_still(self):
+        p, watcher = self.ready(self.serve())
+        self.draw(p, *self.way([5, 5], [35, 5]))
+        first = p.value("tactor.state.current")
+        p.value("[...document.querySelectorAll('#examples button')].at(-1).click()")
+        self.planned(p)
+        p.key("KeyL", "l")
+        self.play(p, watcher)
+        p.until("tactor.state.at_s > 0")
+        p.value("document.querySelectorAll('#takes .take')[1].click()")
+        p.until(f"tactor.state.current === {first!r} && tactor.state.plan_of === {TAKE}")
+        p.until("performance.now() - tactor.state.playing.began_ms > 200")
+        self.assertEqual(p.value("tactor.state.at_s"), 0)
+        p.click("#stop")
+
+    def test_a_take_that_plays_can_be_deleted(self):
+        p, watcher = self.ready(self.serve())
+        self.draw(p, *self.way([5, 5], [35, 5]))
+        self.planned(p)
+        p.key("KeyL", "l")
+        number = self.play(p, watcher)
+        p.value("document.querySelector('#takes .more-button').click(), [...document.querySelectorAll('#p-take button')].at(-1).click()")
+        watcher.await_end(number)
+        p.until("!tactor.state.playing")
+
+    def test_a_loop_goes_on_in_a_tab_that_is_not_shown(self):
+        p, watcher = self.ready(self.serve())
+        self.draw(p, *self.way([5, 5], [35, 5]))
+        self.planned(p)
+        p.key("KeyL", "l")
+        self.play(p, watcher)
+        p.value("Object.defineProperty(document, 'hidden', {value: true}), requestAnimationFrame = () => 0")
+        for _ in range(3):
+            self.next_stroke(watcher, "started")
+        p.click("#stop")
+
+    def test_a_palm_that_the_system_cancels_leaves_nothing(self):
+        p, _ = self.ready(self.serve(), fingers=True)
+        f = "document.querySelector('#field')"
+        p.value(f"""(({f}).setPointerCapture = () => 0, globalThis.touch = (kind, id, type, x, y) => {f}.dispatchEvent(new PointerEvent(kind,
+            {{pointerId: id, pointerType: type, clientX: x, clientY: y, bubbles: true, isPrimary: id === 1, pressure: 0.5}})), 0)""")
+        (ax, ay), (bx, by), (cx, cy) = self.at(p, [10, 10], [20, 20], [30, 30])
+        # Two fingers, of which the system cancels one.
+        p.value(f"touch('pointerdown', 1, 'touch', {ax}, {ay}), touch('pointerdown', 2, 'touch', {cx}, {cy})")
+        for kind, x, y in (("pointermove", bx, by), ("pointerrawupdate", bx, by + 3)):
+            p.value(f"touch('{kind}', 1, 'touch', {x}, {y}), touch('{kind}', 2, 'touch', {ax}, {y})")
+        p.until("tactor.state.drawing?.tracks.length === 2")
+        p.value("touch('pointercancel', 2, 'touch', 0, 0)")
+        p.until("tactor.state.drawing?.tracks.length === 1")
+        p.value(f"touch('pointerup', 1, 'touch', {bx}, {by})")
+        p.until(f"({TAKE})?.strokes.length === 1")
+        # While a pen draws touches do not.
+        p.value(f"touch('pointerdown', 3, 'pen', {ax}, {ay}), touch('pointermove', 3, 'pen', {bx}, {by}), touch('pointerdown', 4, 'touch', {cx}, {cy})")
+        p.value(f"touch('pointerrawupdate', 3, 'pen', {bx}, {by + 4}), touch('pointermove', 4, 'touch', {ax}, {ay}), touch('pointerrawupdate', 4, 'touch', {ax}, {ay})")
+        p.until("tactor.state.drawing")
+        self.assertEqual(p.value("tactor.state.drawing.tracks.length"), 1)
+        p.value(f"touch('pointerup', 3, 'pen', {bx}, {by})")
+        p.until("tactor.state.takes.length === 2 && !tactor.state.drawing")
+
+
+if __name__ == "__main__":
+    main()
