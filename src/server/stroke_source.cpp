@@ -228,20 +228,23 @@ double highest_level(const planning& with, const options::wishes& s, double carr
 // no level mends.
 double find_excess_db(const planning& with, const planned& p)
 {
-    const auto can_play = [&](double weaker_db) {
+    const auto try_to_play = [&](double weaker_db) {
         render_options weaker = p.render;
         (weaker.sl_db ? *weaker.sl_db : weaker.level_dbfs) -= weaker_db;
+        static_cast<void>(score(with.tactors, p.plans, weaker));
+    };
+    const auto can_play = [&](double weaker_db) {
         try {
-            static_cast<void>(score(with.tactors, p.plans, weaker));
+            try_to_play(weaker_db);
             return true;
-        } catch (const error& e) {
-            if (e.field() != "level_dbfs" && e.field() != "sl_db")
-                throw;
+        } catch (const error&) {
             return false;
         }
     };
     if (can_play(0.0))
         return 0.0;
+    if (!can_play(most_excess_db))
+        try_to_play(0.0); // throws
     double low = 0.0;
     double high = most_excess_db;
     while (high - low > least_excess_db) {

@@ -130,7 +130,7 @@ class NothingIsLost(StudioTest):
         p.call("Input.insertText", text="another")
         p.click("#token button")
         self.says(p, "Running")
-        self.assertEqual(p.value("[location.hash, tactor.state.takes.length]"), ["#token=another", 2])
+        self.assertEqual(p.value("[location.hash, tactor.state.takes.length]"), ["", 2])
         self.plays(p, again)
 
 
@@ -163,7 +163,7 @@ class Others(StudioTest):
             phone.ok("to", stroke=number, x_mm=x, y_mm=25)
         p.until("[...tactor.state.touches.values()].some(t => t.x_mm === 30 && t.y_mm === 25)")
         self.says(p, "Someone is playing")
-        self.why(p, "A phone")
+        self.why(p, "“A phone”")
         p.click("#others")
         p.until("document.querySelector('#people').textContent.includes('A phone')")
         self.assertIn("playing", p.value("[...document.querySelectorAll('#people li')].find(l => l.textContent.includes('A phone')).textContent"))
@@ -179,8 +179,8 @@ class Others(StudioTest):
         self.other(s, "A phone").ok("stop")
         self.assertIn(watcher.await_end(number)["state"], ("cancelled", "finished"))
         self.says(p, "Stopped")
-        self.why(p, "by A phone")
-        self.toast(p, "Stopped by A phone")
+        self.why(p, "by “A phone”")
+        self.toast(p, "Stopped by “A phone”")
         p.until("!tactor.state.playing")
 
     def test_the_own_name_is_told_to_others(self):

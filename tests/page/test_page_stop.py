@@ -113,7 +113,7 @@ class Play(StudioTest):
         p.until(f"({TAKE})?.strokes.length === 3 && !tactor.state.drawing")
         p.click("#play")
         self.next_stroke(watcher, "started")
-        self.toast(p, "together its strokes are too strong")
+        self.toast(p, "it would be too strong")
         self.assertLess(p.value(f"{TAKE}.gain_db"), 0)
         self.assertEqual(p.value("tactor.state.level_db"), 0)
 

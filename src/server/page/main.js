@@ -3,7 +3,7 @@
 import {state, changed, on_change, on_toast, current_take, current_stroke, say, remember, remembered} from "./state.js";
 import {by_id, make} from "../../net/page/dom.js";
 import {place_icons, forget_colours, is_dark} from "./look.js";
-import {connect, call, on_hello} from "./service/connection.js";
+import {connect, call, on_hello, page_link} from "./service/connection.js";
 import {undo, redo, can_undo, can_redo, steps_of_undo, restore_undo, rename_take} from "./takes/takes.js";
 import {open_takes, write_at_once} from "./takes/keeping.js";
 import {draw_frame, moves} from "./drawing/canvas.js";
@@ -201,7 +201,7 @@ const icon_url = `data:image/svg+xml,${encodeURIComponent('<svg xmlns="http://ww
 document.querySelector('link[rel="icon"]').href = icon_url;
 document.head.append(Object.assign(document.createElement("link"), {rel: "manifest",
   href: URL.createObjectURL(new Blob([JSON.stringify({
-  name: "tactor", short_name: "tactor", start_url: location.href, display: "standalone", background_color: "#efeeea",
+  name: "tactor", short_name: "tactor", start_url: page_link(), display: "standalone", background_color: "#efeeea",
     theme_color: "#f8f7f4",
   icons: [{src: icon_url, sizes: "any", type: "image/svg+xml"}]})], {type: "application/manifest+json"}))}));
 

@@ -119,7 +119,7 @@ function draw_others() {
     pen.strokeStyle = colour("info"); pen.lineWidth = 3; pen.stroke();
     const who = state.status?.who?.find(w => w.client === t.client)?.name;
     if (who) { pen.font = font(12, 600); pen.textAlign = "center"; pen.fillStyle = colour("info");
-      pen.fillText(who, c[0], c[1] - 20); }
+      pen.fillText(`“${who}”`, c[0], c[1] - 20); }
   }
 }
 // A mark where the end of a stroke lies beyond the array.

@@ -43,17 +43,27 @@ export function tell(method, params) {
   if (socket?.readyState === WebSocket.OPEN) socket.send(JSON.stringify({jsonrpc: "2.0", method, params}));
 }
 
+// The token leaves the address, which others see; the tab keeps it for a reload.
+function take_token(t) {
+  token = t;
+  if (location.hash) history.replaceState(null, "", location.pathname);
+  try { if (token) sessionStorage.setItem("tactor-token", token); } catch { /* for this visit only */ }
+}
+const remembered_token = () => { try { return sessionStorage.getItem("tactor-token"); } catch { return null; } };
+// The address with the token: who has it can draw.
+export const page_link = () => location.origin + location.pathname + (token ? `#token=${encodeURIComponent(token)}` : "");
+
 export function connect(own_name = name) {
   name = own_name;
   clearTimeout(retry_timer);
-  token = new URLSearchParams(location.hash.slice(1)).get("token");
+  take_token(new URLSearchParams(location.hash.slice(1)).get("token") ?? token ?? remembered_token());
   const own = socket = new WebSocket(`${location.protocol === "https:" ? "wss" : "ws"}://${location.host}/rpc`);
   own.onopen = () => hello();
   own.onmessage = m => own === socket && hear(JSON.parse(m.data));
   own.onclose = e => own === socket && lost(e.reason);
 }
 export function connect_with(new_token) {
-  history.replaceState(null, "", new_token ? `#token=${encodeURIComponent(new_token)}` : location.pathname);
+  take_token(new_token || null);
   state.asks_token = "";
   const old = socket;
   socket = null;

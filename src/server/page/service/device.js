@@ -28,7 +28,7 @@ function describe() {
   return s.state === "idle" ? ["ready", "Ready", "ok", state.hello?.stream.pcm ?? ""] : ["running", "Running", "ok",
     state.hello?.stream.pcm ?? ""];
 }
-const who = client => { const w = state.status?.who?.find(x => x.client === client); return w ? w.name || w.from : ""; };
+const who = client => { const w = state.status?.who?.find(x => x.client === client); return w ? w.name ? `“${w.name}”` : w.from : ""; };
 
 // Returns what the banner says: [text, tone, details], or null.
 function warn() {
@@ -114,7 +114,7 @@ on_change(what => {
 });
 by_id("p-others").addEventListener("toggle", () => {
   by_id("people").replaceChildren(...(state.status?.who ?? []).map(w => make("li", {},
-    make("b", {}, w.client === state.hello?.client ? `${w.name || "You"} (this page)` : w.name || "no name"),
+    make("b", {}, w.client === state.hello?.client ? `${w.name || "You"} (this page)` : w.name ? `“${w.name}”` : "no name"),
     make("small", {}, `${w.from}${state.status.strokes.some(k => k.client === w.client && k.state === "started") ? ", playing" : ", silent"}`))));
 });
 by_id("own-name").addEventListener("submit", e => e.preventDefault());

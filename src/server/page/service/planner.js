@@ -63,7 +63,7 @@ export async function weaken_take(take) {
   if (!over_db) return false;
   const gain_db = (take.gain_db ?? 0) - Math.ceil(2 * over_db) / 2;
   put_take({...take, gain_db});
-  say(`“${take.name}” ${number_text(gain_db)} dB: together its strokes are too strong`);
+  say(`“${take.name}” ${number_text(gain_db)} dB: it would be too strong`);
   return true;
 }
 const observer = () => state.observer ? {observer: state.observer} : {};

@@ -136,7 +136,7 @@ function end_playing() {
 on_lost(() => { if (state.playing?.felt) end_playing(); });
 on_notification("stops", s => {
   const own = s.client === state.hello?.client;
-  state.stopped = {name: own ? "you" : s.client === 0 ? "the owner" : s.name || "somebody", at: performance.now()};
+  state.stopped = {name: own ? "you" : s.client === 0 ? "the owner" : s.name ? `“${s.name}”` : "somebody", at: performance.now()};
   say(own ? "Stopped, everybody's strokes" : `Stopped by ${state.stopped.name}`);
   changed("link", "playing");
 });

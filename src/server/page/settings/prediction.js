@@ -55,8 +55,8 @@ function show_warnings() {
   if (state.outside.length && !take.leaves_array) found.push({text: outside_text().long, short: outside_text().short,
     buttons: [[["Fit", make("span", {class: "long"}, " to array")], () => fit_take(array.edge)], ["Leave it", () => edit_take(() => ({leaves_array: true}))]]});
   const over_db = excess_db(state.plan);
-  if (over_db && take) found.push({text: `Together the strokes are ${number_text(over_db)} dB stronger than they may be played.`,
-    short: `${number_text(over_db)} dB too strong together`, buttons: [["Make this take weaker", () => weaken_take(take)]]});
+  if (over_db && take) found.push({text: `${take.strokes.length > 1 ? "Together the strokes are" : "It is"} ${number_text(over_db)} dB stronger than may be played.`,
+    short: `${number_text(over_db)} dB too strong`, buttons: [["Make this take weaker", () => weaken_take(take)]]});
   for (const w of state.plan?.warnings ?? []) if (!w.kind && !/outside/.test(w)) found.push({text: w, buttons: []});
   const box = by_id("warnings");
   box.toggleAttribute("data-all", false);

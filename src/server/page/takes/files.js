@@ -2,7 +2,7 @@
 // Files that come in, and files that go out: read and written by the service, so that they are the tool's.
 import {state, changed, current_take, say} from "../state.js";
 import {by_id, make, show_only_if} from "../../../net/page/dom.js";
-import {call, is_connected} from "../service/connection.js";
+import {call, is_connected, page_link} from "../service/connection.js";
 import {add_take, make_request, imported_strokes} from "./takes.js";
 import {strokes_toml, stroke_csv} from "./stroke.js";
 import {is_own_host} from "./address.js";
@@ -114,12 +114,12 @@ by_id("p-share").addEventListener("toggle", e => {
   if (e.newState !== "open") return;
   const own = is_own_host(location.hostname);
   show_only_if(by_id("qr"), !own);
-  by_id("link").textContent = location.href;
+  by_id("link").textContent = page_link();
   by_id("share-text").textContent = own ? "This address is this computer's own. For a phone, start the service with " +
     "--http 0.0.0.0:4003 and a token_file, and open the page by the computer's address."
-    : location.hash.includes("token=") ? "The link has the token: who has it can draw." : "Open it on a phone in the same network.";
+    : page_link().includes("#token=") ? "The link has the token: who has it can draw." : "Open it on a phone in the same network.";
   try {
-    const qr = make_qr(location.href);
+    const qr = make_qr(page_link());
     let d = "";
     for (let y = 0; y < qr.size; ++y) for (let x = 0; x < qr.size; ++x) if (qr.dark(y, x)) d += `M${x} ${y}h1v1h-1z`;
     by_id("qr").replaceChildren(make("svg", {viewBox: `0 0 ${qr.size} ${qr.size}`, role: "img",

@@ -32,7 +32,7 @@ export function place_clips(l) {
   const strokes = state.drawing ? [] : current_take()?.strokes ?? [];
   while (clips_box.childElementCount - 1 > strokes.length || (!strokes.length && clips_box.firstChild)) clips_box.firstChild.remove();
   if (!strokes.length) return;
-  clips_box.append(add_button);
+  if (clips_box.lastChild !== add_button) clips_box.append(add_button); // one that is put again loses the focus
   while (clips_box.childElementCount - 1 < strokes.length) add_button.before(clip_button(clips_box.childElementCount - 1));
   const put = (b, x, width) => Object.assign(b.style, {left: `${x}px`, top: `${l.ruler}px`, width: `${width}px`, height: `${CLIP - 4}px`});
   strokes.forEach((s, i) => {
