@@ -4,7 +4,6 @@ import {state, changed, on_change, current_take, ceiling_dbfs, take_gain, say} f
 import {call, tell, is_connected, server_now_s, from_server_ms, on_notification, on_lost, SLOW_MS} from "./connection.js";
 import {make_request, take_s, take_from} from "../takes/takes.js";
 import {weaken_take} from "./planner.js";
-import {number_text} from "../words.js";
 import {start_loudspeaker} from "./loudspeaker.js";
 
 const TEST_S = 0.5;
@@ -153,7 +152,6 @@ export function stop() {
   own.sent_ms = performance.now();
   sent.then(() => {
     if (state.stopping !== own) return;
-    if (is_unanswered(own)) say(`Stopped, after ${number_text((performance.now() - own.since_ms) / 1000)} s`);
     state.stopping = null;
     changed("link");
   }, () => { if (!is_connected()) say("No connection: use the amplifier's switch"); });
