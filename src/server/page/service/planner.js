@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Plans for the picture: one question at a time, always about what is newest.
-import {state, ceiling_dbfs, changed, on_change, current_take} from "../state.js";
+import {state, ceiling_dbfs, changed, on_change, current_take, say} from "../state.js";
 import {call, is_connected} from "./connection.js";
 import {make_request, put_take, take_s} from "../takes/takes.js";
 import {number_text} from "../words.js";

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Prediction of what is felt, and faults of the take in plain words, with what mends them.
-import {state, changed, on_change, current_take, current_stroke} from "../state.js";
+import {state, changed, on_change, current_take, current_stroke, say} from "../state.js";
 import {by_id, make} from "../../../net/page/dom.js";
 import {icon} from "../look.js";
 import {set_option, edit_take, fit_take} from "../takes/takes.js";
@@ -56,7 +56,7 @@ function show_warnings() {
     buttons: [[["Fit", make("span", {class: "long"}, " to array")], () => fit_take(array.edge)], ["Leave it", () => edit_take(() => ({leaves_array: true}))]]});
   const over_db = excess_db(state.plan);
   if (over_db && take) found.push({text: `${take.strokes.length > 1 ? "Together the strokes are" : "It is"} ${number_text(over_db)} dB stronger than may be played.`,
-    short: `${number_text(over_db)} dB too strong`, buttons: [["Make this take weaker", () => weaken_take(take)]]});
+    short: `${number_text(over_db)} dB too strong`, buttons: [["Make this take weaker", () => weaken_take(take).catch(e => say(e.message))]]});
   for (const w of state.plan?.warnings ?? []) if (!w.kind && !/outside/.test(w)) found.push({text: w, buttons: []});
   const box = by_id("warnings");
   box.toggleAttribute("data-all", false);
