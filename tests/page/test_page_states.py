@@ -329,7 +329,7 @@ class Everywhere(StudioTest):
         p.key("ArrowRight")
         p.key("ArrowRight", modifiers=8)
         p.until(f"Math.abs({TAKE}.strokes[0].start_s - 0.11) < 1e-6")
-        self.assertTrue(p.value("document.activeElement.getAttribute('aria-label').includes('starts at 0.11 s')"))
+        p.until("document.activeElement.getAttribute('aria-label').includes('starts at 0.11 s')")
         p.value("document.querySelector('#clips button:last-child').focus()")
         p.call("Input.dispatchKeyEvent", type="keyDown", code="Enter", key="Enter", text="\r")
         p.call("Input.dispatchKeyEvent", type="keyUp", code="Enter", key="Enter")
