@@ -89,6 +89,12 @@ class Play(StudioTest):
         p.key("KeyP", "p")
         return self.next_stroke(watcher, "started")
 
+    def loop(self, p, watcher):
+        """Plays the take again and again; returns the number of its first stroke."""
+        self.planned(p)
+        p.key("KeyL", "l")
+        return self.play(p, watcher)
+
     def test_playing_again_begins_anew(self):
         p, watcher = self.ready(self.serve())
         p.value("[...document.querySelectorAll('#examples button')].at(-1).click()")
@@ -120,9 +126,7 @@ class Play(StudioTest):
     def test_what_plays_follows_the_level(self):
         p, watcher = self.ready(self.serve())
         p.value("[...document.querySelectorAll('#examples button')].at(-1).click()")
-        self.planned(p)
-        p.key("KeyL", "l")
-        number = self.play(p, watcher)
+        number = self.loop(p, watcher)
         loudest = "Math.max(...tactor.state.dbfs.filter(v => v !== null))"
         p.until(f"{loudest} > -30")
         for level_db, test in ((-40, f"{loudest} < -45"), (0, f"{loudest} > -30")):
@@ -143,9 +147,7 @@ class Play(StudioTest):
         self.draw(p, *self.way([5, 5], [35, 5]))
         first = p.value("tactor.state.current")
         p.value("[...document.querySelectorAll('#examples button')].at(-1).click()")
-        self.planned(p)
-        p.key("KeyL", "l")
-        self.play(p, watcher)
+        self.loop(p, watcher)
         p.until("tactor.state.at_s > 0")
         p.value("document.querySelectorAll('#takes .take')[1].click()")
         p.until(f"tactor.state.current === {first!r} && tactor.state.plan_of === {TAKE}")
@@ -156,9 +158,7 @@ class Play(StudioTest):
     def test_a_take_that_plays_can_be_deleted(self):
         p, watcher = self.ready(self.serve())
         self.draw(p, *self.way([5, 5], [35, 5]))
-        self.planned(p)
-        p.key("KeyL", "l")
-        number = self.play(p, watcher)
+        number = self.loop(p, watcher)
         p.value("document.querySelector('#takes .more-button').click(), [...document.querySelectorAll('#p-take button')].at(-1).click()")
         watcher.await_end(number)
         p.until("!tactor.state.playing")
@@ -166,9 +166,7 @@ class Play(StudioTest):
     def test_a_loop_goes_on_in_a_tab_that_is_not_shown(self):
         p, watcher = self.ready(self.serve())
         self.draw(p, *self.way([5, 5], [35, 5]))
-        self.planned(p)
-        p.key("KeyL", "l")
-        self.play(p, watcher)
+        self.loop(p, watcher)
         p.value("Object.defineProperty(document, 'hidden', {value: true}), requestAnimationFrame = () => 0")
         for _ in range(3):
             self.next_stroke(watcher, "started")

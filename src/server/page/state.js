@@ -60,7 +60,5 @@ export const current_take = () => state.takes.find(t => t.id === state.current) 
 export const current_stroke = () => current_take()?.strokes[state.stroke] ?? null;
 export const ceiling_dbfs = () => state.hello?.max_level_dbfs ?? -12;
 export const level_dbfs = () => ceiling_dbfs() + state.level_db;
-// The level as a factor on what sounds at the ceiling.
-export const level_gain = () => 10 ** (state.level_db / 20);
-// The same of the take that is shown, with its own gain.
-export const take_gain = () => level_gain() * 10 ** ((current_take()?.gain_db ?? 0) / 20);
+// Level and gain of the take that is shown, as a factor on what sounds at the ceiling.
+export const take_gain = () => 10 ** ((state.level_db + (current_take()?.gain_db ?? 0)) / 20);

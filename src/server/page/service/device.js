@@ -16,7 +16,7 @@ function describe() {
   if (state.link === "token") return ["barred", "Locked", "warn", "a token is needed"];
   if (state.link === "lost") return ["broken", "No connection", "bad",
     `again in ${Math.max(0, Math.ceil((state.retry_at - performance.now()) / 1000))} s`];
-  if (unanswered_s() || state.slow) return ["waiting", "No answer", "warn", "waiting for tactor"];
+  if (state.slow) return ["waiting", "No answer", "warn", "waiting for tactor"];
   if (s.state === "lost") return state.hello?.stream.format === null ? ["barred", "No card", "bad",
     "it is looked for"] : ["broken", "Card lost", "bad", "it is looked for"];
   if (s.state === "muted") return ["muted", "Muted", "warn", s.reason];

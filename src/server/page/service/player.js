@@ -8,7 +8,7 @@ import {start_loudspeaker} from "./loudspeaker.js";
 
 const TEST_S = 0.5;
 const AHEAD_S = 0.4;      // before the end, when the next round of a loop is asked for
-const STOP_AGAIN_MS = 500;      // between stops that are not answered
+const STOP_AGAIN_MS = 500; // between stops that are not answered
 const ended = new Set();  // numbers whose end came before the answer that named them
 let speaker = null;
 
@@ -30,7 +30,8 @@ export async function play({from_s = 0} = {}) {
   changed("playing");
 }
 
-// All that this page plays is played at the ceiling, and the service turns it down: what sounds follows the level, too.
+// Tells the service the level: all that this page plays is played at the ceiling and turned down there, so that what sounds
+// follows, too.
 let told_db = null; // as the service knows it
 export function tell_level() {
   if (!is_connected() || told_db === state.level_db) return;

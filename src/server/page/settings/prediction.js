@@ -52,7 +52,7 @@ function show_warnings() {
     if (!worst.place) return;
     state.outside.push({...worst, name: take.strokes.length === 1 ? take.name : s.name});
   });
-  if (state.outside.length && !take.leaves_array) found.push({text: outside_text().long, short: outside_text().short,
+  if (state.outside.length && !take.leaves_array) found.push({...outside_text(),
     buttons: [[["Fit", make("span", {class: "long"}, " to array")], () => fit_take(array.edge)], ["Leave it", () => edit_take(() => ({leaves_array: true}))]]});
   const over_db = excess_db(state.plan);
   if (over_db && take) found.push({text: `${take.strokes.length > 1 ? "Together the strokes are" : "It is"} ${number_text(over_db)} dB stronger than may be played.`,
@@ -71,7 +71,7 @@ function show_warnings() {
 function outside_text() {
   const n = state.outside.length, mm = Math.max(1, Math.round(Math.max(...state.outside.map(w => w.off))));
   const who = n === 1 ? `“${state.outside[0].name}” is` : `${n} strokes are`;
-  return {long: `${who} up to ${mm} mm outside the array. There ${n === 1 ? "it is" : "they are"} felt at the edge.`,
+  return {text: `${who} up to ${mm} mm outside the array. There ${n === 1 ? "it is" : "they are"} felt at the edge.`,
     short: `${who} ${mm} mm outside`};
 }
 // Says a refusal for people: what is too much, and not in the terms of files.

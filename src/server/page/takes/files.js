@@ -43,7 +43,7 @@ async function what_to_import(file) {
   if (file.size > MOST_BYTES) throw new Error(`it is larger than ${MOST_BYTES >> 10} KiB`);
   return {name: file.name, text};
 }
-// One sentence: why, with the line, and a short hint.
+// Says why in one sentence, with the line and a short hint.
 function fault_text({message, data}) {
   if (!data?.why) return message;
   const why = data.why.replace(/^(\d+):\d+: /, "line $1: ");

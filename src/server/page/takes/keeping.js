@@ -58,7 +58,7 @@ async function open() {
   tabs = await opened.get("tabs") ?? {};
   const takes = by_ids();
   let late = null;
-  // What a page could not write while it went away.
+  // Takes in what a page could not write while it went away.
   for (const [id, take, version] of JSON.parse(remembered("unwritten") || "[]")) {
     if (kept.find(t => t.id === id)?.version === take?.version) continue;
     known.set(id, version ?? undefined);

@@ -77,7 +77,7 @@ function rename(take) {
   input.select();
 }
 
-// What was deleted.
+// The bin.
 const days = t => Math.floor((Date.now() - t.deleted) / DAY_MS);
 const when = n => n === 0 ? "today" : n === 1 ? "yesterday" : `${n} days ago`;
 let binned = [];

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Lanes that show who plays when: a ruler, the strokes as clips, a lane for each tactor. The lanes are drawn again only when something
 // has changed; the moment is drawn over them each frame.
-import {state, changed, current_take} from "../state.js";
+import {state, current_take} from "../state.js";
 import {colour, is_dark, font} from "../look.js";
 import {array} from "../drawing/view.js";
 import {viridis} from "../../../net/page/viridis.js";
