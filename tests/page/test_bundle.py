@@ -11,13 +11,14 @@ import unittest
 PAGES = [pathlib.Path(p) for p in sys.argv[3:]]
 del sys.argv[3:]
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "cli"))
-from harness import TOOL, ToolTest, main  # noqa: E402
+from harness import ROOT, TOOL, ToolTest, main  # noqa: E402
 
 LARGEST = 190_000  # bytes of a page
 # An address with a host, other than the names of XML's languages, and what asks for another file.
 ELSEWHERE = re.compile(r"\b(?:https?|wss?|ftp)://(?!www\.w3\.org/)[\w\[.-]+|(?:src|href|url)\W{1,3}//[\w.-]+|@import|^import\b.*|\bimport\(.*", re.M)
 # Code for which a policy would have to allow 'unsafe-inline' or 'unsafe-eval', in markup that a script makes, too.
 UNSAFE = re.compile(r"""<\w[^<>]*\s(?:style|on\w+)=["'$\\]|setAttribute\(["'](?:style|on\w+)["']|\beval\(|\bnew Function\(""")
+EXPORTED = r"^export (?:async )?(?:function\*?|const|let|class) (\w+)"
 NODE = shutil.which("node")
 ESBUILD = shutil.which("esbuild")
 
@@ -112,6 +113,23 @@ class Elements(html.parser.HTMLParser):
     def handle_data(self, data):
         if self.all:
             self.all[-1][2] += data
+
+
+class Modules(ToolTest):
+    def test_a_module_imports_what_it_uses_and_no_more(self):
+        """Without esbuild modules are joined as they are, and one sees what it does not import; with it the name is missing."""
+        files = {f: f.read_text(encoding="utf-8") for f in ROOT.glob("src/**/page/**/*.js")}
+        exported = {name for text in files.values() for name in re.findall(EXPORTED, text, re.M)}
+        self.assertGreater(len(exported), 100)
+        for file, text in files.items():
+            imported = {name.strip() for names in re.findall(r"^import \{(.*?)\} from", text, re.M) for name in names.split(",")}
+            # Without comments and texts, those between the values of templates, too.
+            code = re.sub(r"^import .*$|//.*$|\"(?:[^\"\\\n]|\\.)*\"|(?<=[`}])[ \w,.%“”-]+(?=[`$])", "", text, flags=re.M)
+            used = {name for name in exported if re.search(rf"(?:(?<=\.\.\.)|(?<![\w.$])){name}\b(?!\s*:)", code)}
+            self.assertEqual(imported - used, set(), f"{file} imports what it does not use")
+            # A name of a module's own, or of a function's, is another one.
+            own = {name for name in used if re.search(rf"(?:const|let|var|function\*?|class|[(,{{\[])\s*{name}\b\s*(?:[=,;)}}\](]|of\b)|\b{name} =>", code)}
+            self.assertEqual(used - imported - own, set(), f"{file} uses what it does not import")
 
 
 class Pages(ToolTest):
