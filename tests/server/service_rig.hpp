@@ -229,4 +229,16 @@ private:
     int last_id = 0;
 };
 
+/// A service with a card, whose stream runs.
+class running_rig : public service_rig {
+public:
+    explicit running_rig(
+        const std::function<void(server::service_options&, server::stream_options&)>& change = {})
+        : service_rig(change)
+    {
+        plug();
+        start();
+    }
+};
+
 } // namespace tactor::test

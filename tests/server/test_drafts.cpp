@@ -261,9 +261,7 @@ TEST_CASE("waiting drafts are refused when the server ends")
 
 TEST_CASE("the number of a draft is whole, and play has none")
 {
-    service_rig rig;
-    rig.plug();
-    rig.start();
+    running_rig rig;
     const auto c = rig.client();
     for (const json& number : {json(-1), json(1.5), json("1"), json(nullptr)}) {
         json params = small;

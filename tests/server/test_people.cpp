@@ -65,9 +65,7 @@ public:
 
 TEST_CASE("a name is somebody's own: not blank, and none that pages give themselves")
 {
-    service_rig rig;
-    rig.plug();
-    rig.start();
+    running_rig rig;
     const auto a = rig.client();
     for (const char* name : {" ", "you", "You", "the owner", "The Owner "})
         CHECK(rig.code(a, "hello", {{"name", name}}) == -32602);
@@ -211,9 +209,7 @@ TEST_CASE("many who draw before many share 10000 touches a second")
 
 TEST_CASE("everybody who asks learns who stopped everything")
 {
-    service_rig rig;
-    rig.plug();
-    rig.start();
+    running_rig rig;
     const auto a = rig.client();
     const auto b = rig.client();
     rig.ok(a, "hello", {{"name", "Ann"}});

@@ -40,9 +40,7 @@ double find_peak(const fake_dac& card)
 
 TEST_CASE("a stroke: the reply, its beginning, its end, each once and in this order")
 {
-    service_rig rig;
-    rig.plug();
-    rig.start();
+    running_rig rig;
     const auto c = rig.client();
     const json n = rig.ok(c, "play", stroke)["stroke"];
     CHECK(c.box->stroke_messages(n).empty()); // none came before the reply
@@ -58,9 +56,7 @@ TEST_CASE("a stroke: the reply, its beginning, its end, each once and in this or
 
 TEST_CASE("a batch's reply comes before reports of its strokes")
 {
-    service_rig rig;
-    rig.plug();
-    rig.start();
+    running_rig rig;
     const auto c = rig.client();
     json batch = json::array();
     for (int i = 0; i < 20; ++i)
@@ -103,9 +99,7 @@ TEST_CASE("all clients together stay below the ceiling on every channel")
 
 TEST_CASE("other people's strokes are not touched, but stop is everybody's")
 {
-    service_rig rig;
-    rig.plug();
-    rig.start();
+    running_rig rig;
     const auto a = rig.client();
     const auto b = rig.client();
     const json n = rig.ok(a, "play", with(stroke, "start", "armed"))["stroke"];
@@ -120,9 +114,7 @@ TEST_CASE("other people's strokes are not touched, but stop is everybody's")
 
 TEST_CASE("the reason of an end says who ended it")
 {
-    service_rig rig;
-    rig.plug();
-    rig.start();
+    running_rig rig;
     const auto a = rig.client();
     const auto b = rig.client();
     const json armed = with(stroke, "start", "armed");
@@ -187,9 +179,7 @@ TEST_CASE("a stroke handed over twice, as after an xrun before it sounds, is rep
 
 TEST_CASE("a large message is read on another thread, and answered as a small one")
 {
-    service_rig rig;
-    rig.plug();
-    rig.start();
+    running_rig rig;
     const auto c = rig.client();
     json points = json::array();
     for (int i = 0; i < 1000; ++i)
@@ -225,9 +215,7 @@ TEST_CASE("a large message is read on another thread, and answered as a small on
 
 TEST_CASE("one tactor alone has a start, too")
 {
-    service_rig rig;
-    rig.plug();
-    rig.start();
+    running_rig rig;
     const auto c = rig.client();
     const json drive{{"tactor", 4}, {"duration_s", 0.05}};
     const json n = rig.ok(c, "drive", with(drive, "start", "armed"))["stroke"];
@@ -241,9 +229,7 @@ TEST_CASE("one tactor alone has a start, too")
 
 TEST_CASE("stop holds for what is being planned, too")
 {
-    service_rig rig;
-    rig.plug();
-    rig.start();
+    running_rig rig;
     const auto c = rig.client();
     rig.send(c, {{"jsonrpc", "2.0"}, {"id", 1000}, {"method", "play"}, {"params", stroke}});
     rig.send(c, {{"jsonrpc", "2.0"}, {"id", 1001}, {"method", "stop"}});
@@ -282,9 +268,7 @@ TEST_CASE("stop ends all strokes of an armed file, also when the first has begun
 
 TEST_CASE("a stop in a message that is refused as a whole stops all the same")
 {
-    service_rig rig;
-    rig.plug();
-    rig.start();
+    running_rig rig;
     const auto a = rig.client();
     const auto b = rig.client();
     json batch = json::array();
@@ -316,9 +300,7 @@ TEST_CASE("a stop in a message that is refused as a whole stops all the same")
 
 TEST_CASE("cancel of all ends strokes being planned, even of a client that has gone, and only its own")
 {
-    service_rig rig;
-    rig.plug();
-    rig.start();
+    running_rig rig;
     const auto me = rig.client();
     const auto you = rig.client();
     rig.ok(you, "subscribe", {{"events", {"strokes"}}});
@@ -357,9 +339,7 @@ TEST_CASE("cancel of all ends strokes being planned, even of a client that has g
 
 TEST_CASE("a client's level holds for its strokes that sound and that come, and for no others")
 {
-    service_rig rig;
-    rig.plug();
-    rig.start();
+    running_rig rig;
     const auto me = rig.client();
     const auto you = rig.client();
     const json stroke{{"stroke", "park2016-1"}, {"options", {{"duration", 5}}}};
@@ -379,13 +359,11 @@ TEST_CASE("a client's level holds for its strokes that sound and that come, and 
 
 TEST_CASE("what is too large by its durations and options is refused before it is planned")
 {
-    service_rig rig([](server::service_options& o, server::stream_options&) {
+    running_rig rig([](server::service_options& o, server::stream_options&) {
         o.plan_text = [](const server::planned&, std::size_t) -> std::string {
             throw std::logic_error("planned");
         };
     });
-    rig.plug();
-    rig.start();
     const auto c = rig.client();
     const auto refused = [&](const char* method, const json& options) {
         const json e = rig.call(c, method, {{"path", "M 0 0 L 40 40"}, {"options", options}})["error"];
@@ -421,9 +399,7 @@ TEST_CASE("what is too large by its durations and options is refused before it i
 
 TEST_CASE("a client that goes: its played strokes play on, also those that were not planned yet")
 {
-    service_rig rig;
-    rig.plug();
-    rig.start();
+    running_rig rig;
     const auto gone = rig.client();
     const auto watcher = rig.client();
     rig.ok(watcher, "subscribe", {{"events", {"strokes"}}});
@@ -444,9 +420,7 @@ TEST_CASE("a client that goes: its played strokes play on, also those that were 
 
 TEST_CASE("those that go leave one turn of the planner behind, however much they asked for")
 {
-    service_rig rig;
-    rig.plug();
-    rig.start();
+    running_rig rig;
     const auto watcher = rig.client();
     for (int i = 0; i < 3; ++i) {
         const auto gone = rig.client();
@@ -460,11 +434,9 @@ TEST_CASE("those that go leave one turn of the planner behind, however much they
 
 TEST_CASE("many points and many strokes are refused, not queued")
 {
-    service_rig rig([](server::service_options& o, server::stream_options&) {
+    running_rig rig([](server::service_options& o, server::stream_options&) {
         o.now_ns = [] { return std::int64_t{1'000'000'000}; };
     });
-    rig.plug();
-    rig.start();
     const auto c = rig.client();
     const json n = rig.ok(c, "begin", {{"timeout_s", 86400}})["stroke"];
     const json point{{"stroke", n}, {"x_mm", 1}, {"y_mm", 1}};
@@ -483,9 +455,7 @@ TEST_CASE("many points and many strokes are refused, not queued")
 
 TEST_CASE("max_stroke_s holds for live strokes, too, however many points come")
 {
-    service_rig rig([](server::service_options& o, server::stream_options&) { o.limits.max_stroke_s = 0.2; });
-    rig.plug();
-    rig.start();
+    running_rig rig([](server::service_options& o, server::stream_options&) { o.limits.max_stroke_s = 0.2; });
     const auto c = rig.client();
     const json n = rig.ok(c, "begin", {{"timeout_s", 86400}})["stroke"];
     const json point{
@@ -502,9 +472,7 @@ TEST_CASE("max_stroke_s holds for live strokes, too, however many points come")
 
 TEST_CASE("smooth_s: an end waits until the last point is reached")
 {
-    service_rig rig;
-    rig.plug();
-    rig.start();
+    running_rig rig;
     const auto c = rig.client();
     for (const json& bad : {json(-0.1), json(1.1), json("0.1")})
         CHECK(rig.call(c, "begin", {{"smooth_s", bad}})["error"]["data"]["what"] == "smooth_s");
@@ -522,9 +490,7 @@ TEST_CASE("smooth_s: an end waits until the last point is reached")
 
 TEST_CASE("over a network hello comes first, and the token where one is owed")
 {
-    service_rig rig([](server::service_options& o, server::stream_options&) { o.token = "right"; });
-    rig.plug();
-    rig.start();
+    running_rig rig([](server::service_options& o, server::stream_options&) { o.token = "right"; });
     const auto post = rig.client(server::client_kind::network);
     CHECK_FALSE(rig.all->receive(post.number, "POST / HTTP/1.1"));
     CHECK(post.box->all.empty());
@@ -558,14 +524,12 @@ TEST_CASE("places: some are for the socket of this machine alone")
 
 TEST_CASE("who sends no more and waits for the end of a stroke takes no place, and there are so many of them")
 {
-    service_rig rig([](server::service_options& o, server::stream_options&) {
+    running_rig rig([](server::service_options& o, server::stream_options&) {
         o.limits.max_clients = 2;
         o.limits.kept_clients = 0;
     });
     std::vector<server::client_number> let_go;
     rig.all->on_all_sent([&](server::client_number n) { let_go.push_back(n); });
-    rig.plug();
-    rig.start();
     std::vector<service_rig::connected> gone;
     for (int i = 0; i < 3; ++i) {
         REQUIRE(rig.all->has_place(server::client_kind::network));

@@ -91,9 +91,7 @@ TEST_CASE("no card at the start, then one, then another in its place")
 
 TEST_CASE("at the end each number has had exactly one end, whoever is still there")
 {
-    service_rig rig;
-    rig.plug();
-    rig.start();
+    running_rig rig;
     const auto c = rig.client();
     std::vector<json> numbers;
     for (int i = 0; i < 10; ++i)
@@ -124,9 +122,7 @@ TEST_CASE("at the end each number has had exactly one end, whoever is still ther
 
 TEST_CASE("an idle stream is closed, and opened by the next stroke")
 {
-    service_rig rig([](server::service_options&, server::stream_options& s) { s.times.idle_stop_s = 0.001; });
-    rig.plug();
-    rig.start();
+    running_rig rig([](server::service_options&, server::stream_options& s) { s.times.idle_stop_s = 0.001; });
     const auto c = rig.client();
     rig.sleep_and_plug();
     CHECK(rig.find_end(c, rig.ok(c, "drive", {{"tactor", 0}, {"duration_s", 0.1}})["stroke"])["state"] ==
@@ -135,9 +131,7 @@ TEST_CASE("an idle stream is closed, and opened by the next stroke")
 
 TEST_CASE("requests that want no stream do not keep it from being idle")
 {
-    service_rig rig([](server::service_options&, server::stream_options& s) { s.times.idle_stop_s = 0.02; });
-    rig.plug();
-    rig.start();
+    running_rig rig([](server::service_options&, server::stream_options& s) { s.times.idle_stop_s = 0.02; });
     const auto c = rig.client();
     rig.until([&] {
         rig.ok(c, "plan", brief);
@@ -187,9 +181,7 @@ TEST_CASE("a suspended device is no reason for the watchdog to end the service")
 
 TEST_CASE("of an idle stream there is nothing to fire, which is no error")
 {
-    service_rig rig([](server::service_options&, server::stream_options& s) { s.times.idle_stop_s = 0.001; });
-    rig.plug();
-    rig.start();
+    running_rig rig([](server::service_options&, server::stream_options& s) { s.times.idle_stop_s = 0.001; });
     const auto c = rig.client();
     rig.sleep_and_plug();
     CHECK(rig.ok(c, "fire") == json{{"count", 0}});
@@ -208,9 +200,7 @@ TEST_CASE("what does not fit at the start is refused, once")
 TEST_CASE("a card that does not fit in the place of one that did is tried again")
 {
     misfit card;
-    service_rig rig([&](server::service_options&, server::stream_options& s) { card.replace(s); });
-    rig.plug();
-    rig.start();
+    running_rig rig([&](server::service_options&, server::stream_options& s) { card.replace(s); });
     rig.until([&] { return rig.all->output().state() == server::stream_state::running; });
     card.bad = true;
     rig.unplug();
@@ -256,15 +246,13 @@ TEST_CASE("a card that opens and then fails is tried less and less often, and do
 TEST_CASE("with an amplifier that may be on, a lost card is not opened again")
 {
     std::atomic<int> opened{0};
-    service_rig rig([&](server::service_options&, server::stream_options& s) {
+    running_rig rig([&](server::service_options&, server::stream_options& s) {
         s.lines = session::lent_lines({.amplifier = std::make_unique<stuck_line>()});
         s.open = [&opened, open = s.open] {
             ++opened;
             return open();
         };
     });
-    rig.plug();
-    rig.start();
     const auto c = rig.client();
     rig.ok(c, "subscribe", {{"events", {"stream"}}});
     rig.until([&] { return rig.all->output().amplifier() == session::amplifier_state::on; });
@@ -285,7 +273,7 @@ TEST_CASE("stop reaches what waits for an idle stream to start")
 {
     std::promise<void> gate;
     std::atomic<int> opened{0};
-    service_rig rig([&](server::service_options&, server::stream_options& s) {
+    running_rig rig([&](server::service_options&, server::stream_options& s) {
         s.times.idle_stop_s = 0.001;
         s.open = [&, open = s.open, started = gate.get_future().share()] {
             if (opened++ == 1)
@@ -293,8 +281,6 @@ TEST_CASE("stop reaches what waits for an idle stream to start")
             return open();
         };
     });
-    rig.plug();
-    rig.start();
     const auto c = rig.client();
     rig.sleep_and_plug();
     const std::vector<std::pair<std::string, json>> asked{

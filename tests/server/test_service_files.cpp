@@ -52,9 +52,7 @@ TEST_CASE("files are made without a device, and in batches")
 
 TEST_CASE("a file that other answers leave no room for is refused")
 {
-    service_rig rig;
-    rig.plug();
-    rig.start();
+    running_rig rig;
     const auto c = rig.client();
     c.box->left = 100'000;
     const json r = rig.call(c, "export", ask_sound(1.0));
@@ -66,14 +64,12 @@ TEST_CASE("a file that other answers leave no room for is refused")
 TEST_CASE("files for a client that left are not made, and its strokes are played")
 {
     std::atomic<int> made = 0;
-    service_rig rig([&](server::service_options& o, server::stream_options&) {
+    running_rig rig([&](server::service_options& o, server::stream_options&) {
         o.plan_text = [&made](const server::planned&, std::size_t) {
             ++made;
             return std::string("{}");
         };
     });
-    rig.plug();
-    rig.start();
     const auto a = rig.client();
     const auto b = rig.client();
     rig.ok(b, "subscribe", {{"events", {"strokes"}}});
@@ -94,9 +90,7 @@ TEST_CASE("files for a client that left are not made, and its strokes are played
 
 TEST_CASE("the end of the server refuses files that wait")
 {
-    service_rig rig;
-    rig.plug();
-    rig.start();
+    running_rig rig;
     const auto c = rig.client();
     for (int i = 1; i <= 10; ++i)
         rig.send(c, export_request(i, 20.0));

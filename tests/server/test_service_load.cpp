@@ -53,9 +53,7 @@ struct asker {
 
 TEST_CASE("a hundred clients at once: each request has one reply, each stroke one end, nothing is left")
 {
-    service_rig rig;
-    rig.plug();
-    rig.start();
+    running_rig rig;
     std::vector<asker> all;
     for (int i = 0; i < clients; ++i)
         all.push_back({rig.client()});

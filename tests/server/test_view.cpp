@@ -194,9 +194,7 @@ TEST_CASE("a view answers where play would refuse for the level, and says by how
     const json both{{"toml", "[[stroke]]\npath = 'M 0 0 H 40'\nduration_s = 1.0\nstart_s = 0.0\n"
                              "[[stroke]]\npath = 'M 0 0 H 40'\nduration_s = 1.0\nstart_s = 0.0\n"},
                     {"options", {{"level_dbfs", -1.0}}}};
-    tactor::test::service_rig rig([](service_options& o, stream_options&) { o.plans.max_level_dbfs = -1.0; });
-    rig.plug();
-    rig.start();
+    tactor::test::running_rig rig([](service_options& o, stream_options&) { o.plans.max_level_dbfs = -1.0; });
     const auto c = rig.client();
     CHECK(rig.code(c, "plan", both) == -32602);
     json picture = both;
