@@ -255,12 +255,12 @@ void person_session::walk(unsigned tactor)
         if (k.character == 'y')
             walked_.push_back({{"tactor", tactor}, {"asked", acq_time_text(utc_now_ns())}});
         // On a page a finger slips: the first No offers the tactor once more.
-        const bool slipped =
-            k.character == 'n' && page_ != nullptr && std::exchange(doubted_, tactor) != tactor;
-        return flow_.felt(k.character == 'y'               ? walk_answer::felt
-                          : k.character == 'n' && !slipped ? walk_answer::not_felt
-                          : k.character == 'r' || slipped  ? walk_answer::again
-                                                           : walk_answer::back);
+        if (k.character == 'n' && page_ != nullptr && std::exchange(doubted_, tactor) != tactor)
+            return flow_.felt(walk_answer::again);
+        return flow_.felt(k.character == 'y'   ? walk_answer::felt
+                          : k.character == 'n' ? walk_answer::not_felt
+                          : k.character == 'r' ? walk_answer::again
+                                               : walk_answer::back);
     }
 }
 

@@ -5,6 +5,11 @@ namespace tactor::synth {
 
 void score_gain::apply(std::uint64_t frame, unsigned n, double* samples) const noexcept
 {
+    if (is_over(frame)) { // as nearly always
+        for (unsigned j = 0; j < n; ++j)
+            samples[j] *= to;
+        return;
+    }
     for (unsigned j = 0; j < n; ++j)
         samples[j] *= at(frame + j);
 }
@@ -12,7 +17,7 @@ void score_gain::apply(std::uint64_t frame, unsigned n, double* samples) const n
 const score_gain* score_gains::find(std::uint32_t score, std::uint64_t frame) const noexcept
 {
     const std::size_t i = place(score);
-    return i == used_ || gains_[i].is_one(frame) ? nullptr : &gains_[i];
+    return i == used_ || (gains_[i].to == 1.0 && gains_[i].is_over(frame)) ? nullptr : &gains_[i];
 }
 
 bool score_gains::set(std::uint32_t score, double to, std::uint64_t at, std::uint64_t length) noexcept

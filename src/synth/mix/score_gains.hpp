@@ -19,18 +19,15 @@ struct score_gain {
     std::uint64_t start = 0;
     std::uint64_t length = 0;
 
+    /// Returns true if `to` is reached at a frame.
+    bool is_over(std::uint64_t frame) const noexcept { return frame >= start && frame - start >= length; }
     double at(std::uint64_t frame) const noexcept
     {
         if (frame < start)
             return from;
-        if (frame - start >= length)
+        if (is_over(frame))
             return to;
         return from + (to - from) * static_cast<double>(frame - start) / static_cast<double>(length);
-    }
-    /// Returns true if the factor is 1 from a frame on.
-    bool is_one(std::uint64_t frame) const noexcept
-    {
-        return to == 1.0 && frame >= start && frame - start >= length;
     }
     /// Multiplies the n samples from frame `at` on.
     void apply(std::uint64_t at, unsigned n, double* samples) const noexcept;
