@@ -242,7 +242,9 @@ private:
                                       const std::vector<score>& scores, const char* ended_by,
                                       double gain_db = 0.0);
     void check_free_place(const client& c) const;
-    void once_ready(client_number number, const answer& to, const char* source, std::function<void()> then);
+    std::vector<std::uint32_t> end_unbegun(client_number owner, std::size_t n, const char* why);
+    void once_ready(client_number number, const answer& to, const char* source, const stop_mark& asked,
+                    std::function<void()> then);
     void level(client& c, const net::json& params, const answer& to);
     void set_level(stroke_record& r, double db);
     static double level_db(const stroke_record& r) noexcept;

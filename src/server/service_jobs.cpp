@@ -322,7 +322,7 @@ void service::job_done(planner_lane& lane, const plan_job& job, std::shared_ptr<
     } else {
         forget_job(job);
         // The stream may have to be started first.
-        once_ready(number, job.to, "stream", [this, job, p, scores = std::move(scores)] {
+        once_ready(number, job.to, "stream", job.asked, [this, job, p, scores = std::move(scores)] {
             const std::shared_ptr<void> after(nullptr, [&](void*) {
                 boost::asio::post(reader_, [p] {}); // which frees it
             });

@@ -46,7 +46,8 @@ void service::begin(client& c, const json& params, const answer& to)
     ++c.coming;
     ++c.live;
     const double intensity_max = s.intensity_max.value_or(1.0);
-    once_ready(c.number, to, "options", [this, number = c.number, o, to, asked = mark(c), intensity_max] {
+    const stop_mark asked = mark(c);
+    once_ready(c.number, to, "options", asked, [this, number = c.number, o, to, asked, intensity_max] {
         client* then = find(number);
         if (then == nullptr)
             return;
@@ -63,10 +64,8 @@ void service::begin_now(client& c, const live_options& o, double intensity_max, 
         no_stream(closing_ ? "the server ends" : stream_.reason());
     if (ended_by != nullptr) {
         // It was cancelled while the stream was being started.
-        stroke_record& r = add_record(c.number);
-        r.ended_by = ended_by;
-        finish(r, {.state = state_kind::cancelled});
-        to.result({{"stroke", r.number}}, {r.number});
+        const auto numbers = end_unbegun(c.number, 1, ended_by);
+        to.result({{"stroke", numbers.front()}}, numbers);
         return;
     }
     live_stroke live = out->begin(o);

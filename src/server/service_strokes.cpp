@@ -36,6 +36,8 @@ std::vector<std::uint32_t> service::submit(client_number owner, const json& star
 {
     if (closing_)
         no_stream("the server ends");
+    if (ended_by != nullptr)
+        return end_unbegun(owner, scores.size(), ended_by);
     player* out = stream_.current();
     if (out == nullptr || out->ended())
         no_stream(stream_.reason());
@@ -57,10 +59,6 @@ std::vector<std::uint32_t> service::submit(client_number owner, const json& star
         records.push_back(&r);
         r.player = stream_.number();
         r.gain_db = gain_db;
-        if (ended_by != nullptr) {
-            r.ended_by = ended_by;
-            continue;
-        }
         if (asked.armed && i != first) {
             r.submits_later = scores[i];
             r.state = "armed";
@@ -90,20 +88,33 @@ std::vector<std::uint32_t> service::submit(client_number owner, const json& star
     const auto end = out->ended();
     for (std::size_t i = 0; i < records.size(); ++i)
         if (records[i]->id == stroke_id{} && !records[i]->submits_later && records[i]->state != "ended")
-            finish(*records[i], ended_by != nullptr
-                                    ? stroke_report{.state = state_kind::cancelled}
-                                    : stroke_report{.state = state_kind::interrupted,
-                                                    .reason = end ? end->reason : reason_kind::failed,
-                                                    .why = end ? end->why : refused[i]});
+            finish(*records[i], {.state = state_kind::interrupted,
+                                 .reason = end ? end->reason : reason_kind::failed,
+                                 .why = end ? end->why : refused[i]});
+    return numbers;
+}
+
+// Numbers strokes that were stopped before the stream had them, and ends them.
+std::vector<std::uint32_t> service::end_unbegun(client_number owner, std::size_t n, const char* why)
+{
+    std::vector<std::uint32_t> numbers;
+    std::vector<stroke_record*> records;
+    for (std::size_t i = 0; i < n; ++i) {
+        records.push_back(&add_record(owner));
+        records.back()->ended_by = why;
+        numbers.push_back(records.back()->number);
+    }
+    for (stroke_record* r : records)
+        finish(*r, {.state = state_kind::cancelled});
     return numbers;
 }
 
 // Calls `then` for a request of a client that is `coming`, once the stream runs or it is known that it does
-// not. Answers with the fault that it throws, about `source`.
-void service::once_ready(client_number number, const answer& to, const char* source,
+// not; at once if it was stopped since it was `asked`. Answers with the fault that it throws, about `source`.
+void service::once_ready(client_number number, const answer& to, const char* source, const stop_mark& asked,
                          std::function<void()> then)
 {
-    stream_.when_ready([this, number, to, source, then = std::move(then)] {
+    std::function<void()> ready = [this, number, to, source, then = std::move(then)] {
         if (client* c = find(number))
             --c->coming;
         try {
@@ -112,7 +123,10 @@ void service::once_ready(client_number number, const answer& to, const char* sou
             to.fault(current_fault(source));
         }
         note_busy();
-    });
+    };
+    if (stop_reason_since(asked, number) != nullptr)
+        return ready(); // it must not start a device that is closed
+    stream_.when_ready(std::move(ready));
 }
 
 void service::drive(client& c, const json& params, const answer& to)
@@ -125,7 +139,8 @@ void service::drive(client& c, const json& params, const answer& to)
         no_stream(stream_.reason());
     const std::vector<score> scores{p->make_score(options_.plans.tactors, 0)};
     ++c.coming;
-    once_ready(c.number, to, "stream", [this, number = c.number, to, p, scores, start, asked = mark(c)] {
+    const stop_mark asked = mark(c);
+    once_ready(c.number, to, "stream", asked, [this, number = c.number, to, p, scores, start, asked] {
         const auto numbers = submit(number, start, *p, scores, stop_reason_since(asked, number));
         to.result({{"stroke", numbers.front()}}, numbers);
     });

@@ -309,4 +309,28 @@ TEST_CASE("stop reaches what waits for an idle stream to start")
     CHECK(rig.ok(c, "status")["strokes"].empty());
 }
 
+TEST_CASE("what is stopped before it is planned does not start an idle stream")
+{
+    std::atomic<int> opened{0};
+    running_rig rig([&](server::service_options&, server::stream_options& s) {
+        s.times.idle_stop_s = 0.001;
+        s.open = [&opened, open = s.open] {
+            ++opened;
+            return open();
+        };
+    });
+    const auto c = rig.client();
+    rig.sleep_and_plug();
+    // Both arrive before the context's thread hears of the plan.
+    rig.send(c, {{"jsonrpc", "2.0"}, {"id", 1000}, {"method", "play"}, {"params", brief}});
+    rig.send(c, {{"jsonrpc", "2.0"}, {"id", 1001}, {"method", "stop"}});
+    rig.until([&] { return c.box->reply(1000).has_value(); });
+    const json end = rig.find_end(c, (*c.box->reply(1000))["result"]["stroke"]);
+    CHECK(end["state"] == "cancelled");
+    CHECK(end["reason"] == "cancelled by its client");
+    rig.io.poll();
+    CHECK(rig.all->output().state() == server::stream_state::idle);
+    CHECK(opened == 1);
+}
+
 } // namespace service_faults_test
