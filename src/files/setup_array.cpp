@@ -21,6 +21,8 @@ namespace {
 constexpr std::size_t longest_chain = 16;
 constexpr bounds anywhere{-max_mm, max_mm};
 constexpr bounds limit_db{min_db, 0.0};
+constexpr bounds turn_deg{-3600.0, 3600.0};
+constexpr bounds body_mm{1.0, 3000.0};
 constexpr bounds displacement_um{0.0, max_displacement_um, true};
 
 array read_grid(const toml_table& grid)
@@ -234,8 +236,8 @@ void read_array(const toml_table& root, const setup_source& source, located_setu
         root.table("array", "[array]", "[array]").value_or(toml_table(none, "[array]", source.name));
     if (table.has("tactor"))
         table.fail("tactor", "tactors inside [array]", "write [[tactor]], which stands beside [array]");
-    table.only({"name", "site", "up", "grid", "preset", "file", "actuator", "mirror", "rotate_deg",
-                "displacement_um_at_0dbfs"});
+    table.only({"name", "site", "up", "place", "turn", "body", "grid", "preset", "file", "actuator", "mirror",
+                "rotate_deg", "displacement_um_at_0dbfs"});
     const std::vector<toml_table> entries = root.tables("tactor");
 
     std::string_view base;
@@ -258,6 +260,12 @@ void read_array(const toml_table& root, const setup_source& source, located_setu
         a.name = std::filesystem::path(source.name).stem().string();
     a.site = read_label(table, "site").value_or(a.site);
     a.up = read_label(table, "up").value_or(a.up);
+    if (const auto place = table.place("place"))
+        a.place = place;
+    if (const auto turn = table.number("turn", turn_deg))
+        a.turn_deg = turn;
+    if (const auto length = table.number("body", body_mm))
+        a.body_mm = length;
     if (const auto actuator = read_actuator(table))
         for (tactor_spec& t : a.tactors)
             if (t.actuator == actuator_kind::unknown)

@@ -136,6 +136,10 @@ std::string array_text(const array& a)
     for (const auto& [key, text] : {std::pair("site", &a.site), std::pair("up", &a.up)})
         if (!text->empty())
             s += fmt::format("{} = {}\n", key, toml_string(*text));
+    if (a.place)
+        s += fmt::format("place = [{}, {}]\n", a.place->x_mm, a.place->y_mm);
+    add(s, "turn", a.turn_deg);
+    add(s, "body", a.body_mm);
     for (const tactor_spec& t : a.tactors)
         s += tactor_text(t);
     return s;

@@ -24,13 +24,18 @@ using tactor_row =
     std::tuple<double, double, unsigned, double, double, std::optional<double>, int, std::string,
                std::vector<std::pair<double, double>>, std::optional<double>, std::optional<double>>;
 
-array_handle make_array(const std::string& name, const std::vector<tactor_row>& rows, const std::string& site,
-                        const std::string& up)
+// Place of an array on the body: site, up, place, turn_deg, body_mm.
+using worn_row = std::tuple<std::string, std::string, std::optional<std::pair<double, double>>,
+                            std::optional<double>, std::optional<double>>;
+
+array_handle make_array(const std::string& name, const std::vector<tactor_row>& rows, const worn_row& worn)
 {
     array a;
     a.name = name;
-    a.site = site;
-    a.up = up;
+    std::optional<std::pair<double, double>> place;
+    std::tie(a.site, a.up, place, a.turn_deg, a.body_mm) = worn;
+    if (place)
+        a.place = point{place->first, place->second};
     for (const auto& [x, y, channel, gain, most, threshold, polarity, actuator, thresholds, rise_s, um] :
          rows) {
         a.tactors.push_back(
@@ -41,6 +46,15 @@ array_handle make_array(const std::string& name, const std::vector<tactor_row>& 
         a.tactors.back().displacement_um_at_0dbfs = um;
     }
     return array_handle(std::move(a));
+}
+
+worn_row worn(const array_handle& h)
+{
+    const array& a = h.value();
+    std::optional<std::pair<double, double>> place;
+    if (a.place)
+        place = std::pair(a.place->x_mm, a.place->y_mm);
+    return {a.site, a.up, place, a.turn_deg, a.body_mm};
 }
 
 std::vector<tactor_row> list_rows(const array_handle& h)
@@ -129,8 +143,7 @@ void bind_array(py::module_& m)
                         return array_handle(make_grid(std::move(name), rows, columns, x, y));
                     })
         .def_property_readonly("name", [](const array_handle& h) { return h.value().name; })
-        .def_property_readonly("site", [](const array_handle& h) { return h.value().site; })
-        .def_property_readonly("up", [](const array_handle& h) { return h.value().up; })
+        .def_property_readonly("worn", &worn)
         .def_property_readonly("channels", [](const array_handle& h) { return h.value().channels(); })
         .def_property_readonly("rows", &list_rows)
         .def("text", [](const array_handle& h) { return detail::array_text(h.value()); })

@@ -347,11 +347,12 @@ class Protocol(ServeTest):
         self.check_error(a.error("hello", name="a\x1bb"), -32602, "name")
 
     def test_the_array_s_place_on_the_body_is_told(self):
-        palm = self.write("palm.toml", '[array]\nsite = "left palm"\nup = "fingers"\npreset = "palm-3x3"\n')
+        palm = self.write("palm.toml", '[array]\nsite = "left palm"\nup = "fingers"\nplace = [1, -56]\nturn = 15\n'
+                          'body = 180\npreset = "palm-3x3"\n')
         self.ok("check", "--array", palm, "-D", "null")
         c = self.serve("--array", palm).client()
         array = c.ok("hello")["array"]
-        self.assertEqual((array.pop("site"), array.pop("up")), ("left palm", "fingers"))
+        self.assertEqual([array.pop(k) for k in ("site", "up", "place", "turn", "body")], ["left palm", "fingers", [1, -56], 15, 180])
         self.assertEqual(array, self.plan("park2016-1", "--array", palm)["array"])
 
     def test_touches_and_stops_of_others_are_told(self):

@@ -237,6 +237,18 @@ TEST_CASE("an array says where on the body it is, and which way up")
     const array again = parse_array(detail::array_text(a));
     CHECK(again.site == a.site);
     CHECK(again.up == a.up);
+    const array placed = parse_array(grid + "place = [1, -56.5]\nturn = 15\nbody = 180\n");
+    const array again_placed = parse_array(detail::array_text(placed));
+    for (const array& p : {placed, again_placed}) {
+        REQUIRE(p.place);
+        CHECK(p.place->x_mm == 1.0);
+        CHECK(p.place->y_mm == -56.5);
+        CHECK(p.turn_deg == 15.0);
+        CHECK(p.body_mm == 180.0);
+    }
+    CHECK_FALSE(a.place);
+    CHECK(complaint(grid + "place = [1]\n") == "palm.toml:3:9: place is a list (give a list of 2 numbers)");
+    CHECK(complaint(grid + "body = 0\n") == "palm.toml:3:8: body is 0 (allowed: 1 to 3000)");
     CHECK(parse_array(grid).site.empty());
     CHECK(detail::array_text(parse_array(grid)).find("site") == std::string::npos);
     CHECK(parse_array("[array]\npreset = \"palm-3x3\"\nsite = \"\u5de6\u624b\"\n").site ==

@@ -60,12 +60,13 @@ def test_the_values_of_a_tactor_are_kept():
 
 def test_the_place_on_the_body_is_kept(tmp_path):
     file = tmp_path / "palm.toml"
-    file.write_text('[array]\nsite = "left palm"\nup = "fingers"\npreset = "palm-3x3"\n')
+    file.write_text('[array]\nsite = "left palm"\nup = "fingers"\nplace = [1, -56]\nturn = 15\nbody = 180\npreset = "palm-3x3"\n')
     array = tactor.Array.from_file(file)
-    assert (array.site, array.up) == ("left palm", "fingers")
+    worn = ("left palm", "fingers", (1, -56), 15, 180)
+    assert (array.site, array.up, array.place, array.turn_deg, array.body_mm) == worn
     array.replace(name="again").write(file)
     for again in (tactor.Array.from_file(file), pickle.loads(pickle.dumps(array)), array.replace(gains=-1.0)):
-        assert (again.site, again.up) == ("left palm", "fingers")
+        assert (again.site, again.up, again.place, again.turn_deg, again.body_mm) == worn
     assert pickle.loads(pickle.dumps(array)) == array != tactor.Array(array.name, array)
     assert tactor.Array.preset("palm-3x3").site == ""
 

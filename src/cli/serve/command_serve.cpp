@@ -261,6 +261,12 @@ int serve(settings& s, const serve_options& o)
     for (const auto& [key, text] : {std::pair("site", &e.tactors.site), std::pair("up", &e.tactors.up)})
         if (!text->empty())
             service.array[key] = *text;
+    if (e.tactors.place)
+        service.array["place"] = {e.tactors.place->x_mm, e.tactors.place->y_mm};
+    for (const auto& [key, value] :
+         {std::pair("turn", e.tactors.turn_deg), std::pair("body", e.tactors.body_mm)})
+        if (value)
+            service.array[key] = *value;
     service.plans = make_planning(s, e, serve, service.limits);
     service.named.array = e.array_file.empty() ? e.tactors.name : e.array_file;
     if (service.plans.owner.render.marker_channel) // which no option of the tool says

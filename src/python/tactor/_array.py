@@ -15,6 +15,7 @@ if _t.TYPE_CHECKING:
     from tactor._parts import PerceptMap as _PerceptMap
     _Actuator = _t.Literal["unknown", "piezo", "voice-coil", "lra", "erm"]
     _EachTactor = _t.Union[float, _t.Iterable[float], None]
+    _Worn = tuple[str, str, _t.Optional[tuple[float, float]], _t.Optional[float], _t.Optional[float]]
     _Thresholds = _t.Union[float, _t.Iterable[_t.Union[float, _t.Sequence[tuple[float, float]], None]], None]
 
 
@@ -75,7 +76,7 @@ class Array(_Value):
         For no tactors, two on one place or channel, and numbers out of range.
     """
 
-    __slots__ = ("_core", "_file", "_besides", "_origin", "_setup", "_tactors")
+    __slots__ = ("_core", "_file", "_besides", "_origin", "_setup", "_tactors", "_worn")
 
     _core: _t.Any
     _file: str | None
@@ -93,6 +94,7 @@ class Array(_Value):
         self._besides = besides
         self._origin = origin
         self._setup = None
+        self._worn: _Worn = core.worn
         self._tactors = tuple(Tactor._make((Point(x, y), *rest, tuple(thresholds), rise_s, um))
                               for x, y, *rest, thresholds, rise_s, um in core.rows)
 
@@ -152,10 +154,33 @@ class Array(_Value):
         return cls(name, [Tactor(Point(x, y), i) for i, (x, y) in enumerate(_places("points", points).tolist())])
 
     name: _Member[str] = _Member("name", "Name, for plans and pictures.")
-    site: _Member[str] = _Member("site", "Place on the body that its file says, such as \"left palm\"; else empty.")
-    up: _Member[str] = _Member("up", "Direction of its upper edge on the body that its file says, such as \"fingers\"; else empty.")
     positions: _Member[_NDArray[_np.float64]] = _Member("positions", "Places, shape (n, 2), mm; a view that cannot be written.")
     channels: _Member[int] = _Member("channels", "Channels that the map needs, the highest and one.")
+
+    @property
+    def site(self) -> str:
+        """Place on the body that its file says, such as "left palm"; else empty."""
+        return self._worn[0]
+
+    @property
+    def up(self) -> str:
+        """Direction of its upper edge on the body that its file says, such as "fingers"; else empty."""
+        return self._worn[1]
+
+    @property
+    def place(self) -> tuple[float, float] | None:
+        """Place of its middle that its file says, from the site's landmark, mm; for pictures."""
+        return self._worn[2]
+
+    @property
+    def turn_deg(self) -> float | None:
+        """Turn of the body part under it that its file says, clockwise on a screen; for pictures."""
+        return self._worn[3]
+
+    @property
+    def body_mm(self) -> float | None:
+        """Length of the body part that its file says, such as the hand's; for pictures."""
+        return self._worn[4]
 
     @property
     def tactors(self) -> tuple[Tactor, ...]:
@@ -293,7 +318,7 @@ class Array(_Value):
                 listed = hasattr(one, "__len__") and not isinstance(one, str)
                 made = (*made[:i], made[i]._replace(**{"thresholds" if listed else "threshold_dbfs": one}), *made[i + 1:])
         origin = self._origin if tactors is None and thresholds is None else ""
-        return Array._wrap(_make_core(self.name if name is None else name, made, self.site, self.up), self._file, self._besides, origin)
+        return Array._wrap(_make_core(self.name if name is None else name, made, self._worn), self._file, self._besides, origin)
 
     def write(self, file: str | os.PathLike[str]) -> None:
         """Writes an array file that `from_file` and the tool read, with all that `replace` keeps. It needs no other file.
@@ -336,7 +361,7 @@ class Array(_Value):
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, Array):
             return NotImplemented
-        return all(getattr(self, what) == getattr(other, what) for what in ("name", "site", "up", "_tactors", "_besides"))
+        return all(getattr(self, what) == getattr(other, what) for what in ("name", "_worn", "_tactors", "_besides"))
 
     def __hash__(self) -> int:
         return hash((self.name, self._tactors))
@@ -345,7 +370,7 @@ class Array(_Value):
         return f"<tactor.Array {self.name!r}: {_counted(len(self), 'tactor')}, {_counted(self.channels, 'channel')}>"
 
     def __reduce__(self) -> tuple[_t.Callable[..., _t.Any], tuple[_t.Any, ...]]:
-        return _array_again, (self.name, self._tactors, self._file, self._besides, self._origin, self.site, self.up)
+        return _array_again, (self.name, self._tactors, self._file, self._besides, self._origin, self._worn)
 
 
 def _places(what: str, points: _t.Any) -> _t.Any:
@@ -378,10 +403,10 @@ def _checked_tactors(tactors: _t.Iterable[Tactor]) -> tuple[Tactor, ...]:
     return tactors
 
 
-def _make_core(name: str, tactors: _t.Iterable[Tactor], site: str = "", up: str = "") -> _t.Any:
+def _make_core(name: str, tactors: _t.Iterable[Tactor], worn: _Worn = ("", "", None, None, None)) -> _t.Any:
     tactors = _checked_tactors(tactors)
     _need(name, str, "name")
-    return _tactor.Array(name, [_row(t) for t in tactors], site, up)
+    return _tactor.Array(name, [_row(t) for t in tactors], worn)
 
 
 def _each(what: str, values: _t.Any, count: int) -> list[_t.Any]:
@@ -398,8 +423,8 @@ def _each(what: str, values: _t.Any, count: int) -> list[_t.Any]:
 
 
 def _array_again(name: str, tactors: tuple[Tactor, ...], file: str | None, besides: str, origin: str,
-                 site: str = "", up: str = "") -> Array:
-    return Array._wrap(_make_core(name, tactors, site, up), file, besides, origin)
+                 worn: _Worn) -> Array:
+    return Array._wrap(_make_core(name, tactors, worn), file, besides, origin)
 
 
 def array_presets() -> list[str]:
