@@ -26,7 +26,7 @@ constexpr line_limits page_limits{.message_bytes = 4096, .message_s = 10.0, .wai
 } // namespace
 
 struct page_server::state {
-    state(owned_fd listening, std::string_view page, handlers h)
+    state(owned_fd listening, const page_document& page, handlers h)
         : fd(std::move(listening)),
           document(page),
           calls(std::move(h)),
@@ -40,7 +40,7 @@ struct page_server::state {
 
     asio::io_context io{1};
     owned_fd fd;
-    std::string_view document;
+    page_document document;
     handlers calls;
     asio::executor_work_guard<asio::io_context::executor_type> work;
     listener door;
@@ -78,7 +78,7 @@ void page_server::state::take(listener::socket_type s)
                   }});
 }
 
-page_server::page_server(owned_fd listening, std::string_view document, handlers h)
+page_server::page_server(owned_fd listening, const page_document& document, handlers h)
     : state_(std::make_unique<state>(std::move(listening), document, std::move(h)))
 {
     state_->door.start();

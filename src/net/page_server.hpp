@@ -12,6 +12,8 @@
 
 namespace tactor::net {
 
+struct page_document;
+
 /// Server on its own thread, which inherits the signals that its maker has blocked.
 class page_server {
 public:
@@ -26,9 +28,8 @@ public:
         std::function<void(visitor)> left;
     };
 
-    /// Starts the server. `listening` is a TCP socket. `document` is as make_page() needs it, and must live
-    /// as long.
-    page_server(owned_fd listening, std::string_view document, handlers h);
+    /// Starts the server. `listening` is a TCP socket.
+    page_server(owned_fd listening, const page_document& document, handlers h);
     /// Ends all connections when everything is sent, or after a second.
     ~page_server();
     page_server(const page_server&) = delete;

@@ -60,6 +60,8 @@ struct web_reply {
     std::string type = "text/plain; charset=utf-8";
     std::string body = {};
     std::string policy = {}; ///< Content-Security-Policy; empty: the page may load nothing
+    std::string gzip = {};   ///< the body, compressed, for browsers that take it; empty: there is none
+    double after_s = 0.0;    ///< it is sent so late
 };
 
 /// Calls of a connection to its server.

@@ -26,9 +26,16 @@ std::shared_ptr<web_connection> connect_browser(boost::asio::io_context& io,
                                                 line_connection::socket_type accepted, const line_limits& l,
                                                 shared_by_peers& all, std::vector<std::string> allowed_hosts);
 
-/// Makes a document for a browser that calls this server `host`. The document may run its own script and
-/// style, which carry nonce="NONCE", and talk to that host only.
-web_reply make_page(std::string_view document, std::string_view host);
+/// A document for browsers, as bundle.py makes it. Its texts live on.
+struct page_document {
+    std::string_view text;
+    std::string_view policy; ///< that its own script and style may run
+    std::string_view gzip;   ///< the text, compressed
+};
+
+/// Makes a document for a browser that calls this server `host`: it may run its own script and style, and
+/// talk to that host only.
+web_reply make_page(const page_document& document, std::string_view host);
 
 /// Sends a browser on this socket the reply that there is no place, as far as the socket takes it.
 void turn_away(int socket);

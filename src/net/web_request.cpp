@@ -3,7 +3,6 @@
 #include <chrono>
 #include <cstddef>
 #include <limits>
-#include <random>
 #include <span>
 #include <utility>
 
@@ -27,15 +26,6 @@ constexpr std::size_t most_header_bytes = 8U << 10;
 std::string_view view(boost::string_view s)
 {
     return {s.data(), s.size()};
-}
-
-constexpr std::string_view place_of_nonce = "NONCE";
-
-// Returns a nonce that an injected script could not guess.
-std::string make_nonce()
-{
-    std::random_device chance;
-    return fmt::format("{:08x}{:08x}{:08x}{:08x}", chance(), chance(), chance(), chance());
 }
 
 // Returns a whole reply.
@@ -131,12 +121,30 @@ void web_session::respond(web_reply r)
         response.set(http::field::upgrade, "websocket");
         response.set(http::field::connection, "upgrade, close");
     }
+    if (!r.gzip.empty()) {
+        response.set(http::field::vary, "Accept-Encoding");
+        if (http::ext_list(parser.get()[http::field::accept_encoding]).exists("gzip")) {
+            response.set(http::field::content_encoding, "gzip");
+            r.body = std::move(r.gzip);
+        }
+    }
     response.body() = std::move(r.body);
     if (r.status != 426)
         response.keep_alive(false);
     response.prepare_payload();
     if (parser.get().method() == http::verb::head)
         response.body().clear(); // the header still gives its length
+    if (r.after_s == 0.0)
+        return send_response();
+    lingering.expires_after(steady_seconds(r.after_s));
+    lingering.async_wait([self = shared_from_this()](const beast::error_code& e) {
+        if (!e && !self->closed)
+            self->send_response();
+    });
+}
+
+void web_session::send_response()
+{
     arm(limits.message_s);
     http::async_write(socket, response,
                       [self = shared_from_this()](const beast::error_code&, std::size_t) { self->close(); });
@@ -184,19 +192,14 @@ void web_session::upgrade()
     });
 }
 
-web_reply make_page(std::string_view document, std::string_view host)
+web_reply make_page(const page_document& document, std::string_view host)
 {
-    const std::string nonce = make_nonce();
-    std::string text(document);
-    for (std::size_t at = text.find(place_of_nonce); at != std::string::npos;
-         at = text.find(place_of_nonce, at))
-        text.replace(at, place_of_nonce.size(), nonce);
-    return {200, "text/html; charset=utf-8", std::move(text),
-            fmt::format("default-src 'none'; script-src 'nonce-{0}'; style-src 'nonce-{0}'; img-src data:; "
-                        "manifest-src blob:; "
-                        "connect-src 'self' ws://{1}; frame-ancestors 'none'; base-uri 'none'; "
+    return {200, "text/html; charset=utf-8", std::string(document.text),
+            fmt::format("default-src 'none'; {}; img-src data:; manifest-src blob:; "
+                        "connect-src 'self' ws://{}; frame-ancestors 'none'; base-uri 'none'; "
                         "form-action 'none'",
-                        nonce, host)};
+                        document.policy, host),
+            std::string(document.gzip)};
 }
 
 void turn_away(int socket)

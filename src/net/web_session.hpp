@@ -127,6 +127,7 @@ struct web_session final : web_connection, std::enable_shared_from_this<web_sess
     void read_request();
     void answer_request();
     void respond(web_reply r);
+    void send_response();
     void upgrade();
     // WebSocket.
     void read();

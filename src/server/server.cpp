@@ -224,8 +224,8 @@ private:
             visitors_.erase(weak.lock());
             closed(*n);
         };
-        h.get = [this](std::string_view path, std::string_view host, std::string_view token) {
-            return page(path, host, token);
+        h.get = [this, from](std::string_view path, std::string_view host, std::string_view token) {
+            return page(path, host, token, from);
         };
         h.upgrade = [this, n, from, weak = std::weak_ptr(c)] {
             if (!service_.has_place(client_kind::web))
@@ -238,14 +238,16 @@ private:
         c->start(std::move(h));
     }
 
-    net::web_reply page(std::string_view path, std::string_view host, std::string_view token)
+    net::web_reply page(std::string_view path, std::string_view host, std::string_view token,
+                        const std::string& from)
     {
         if (path == "/")
             return net::make_page(studio_page, host);
         if (path != "/status")
             return {404, "text/plain", "there are / and /rpc and /status\n", ""};
         if (!service_.admits(token))
-            return {401, "text/plain", "the token is owed: Authorization: Bearer TOKEN\n", ""};
+            return {401, "text/plain", "the token is owed: Authorization: Bearer TOKEN\n",
+                    "",  "",           token.empty() ? 0.0 : service_.count_wrong_token(from)};
         return {200, "application/json", net::json_line(service_.status_now()) + "\n", ""};
     }
 

@@ -134,6 +134,9 @@ public:
     net::reply_json status_now();
     /// Returns true if a token is the right one, or none is needed.
     bool admits(std::string_view token) const;
+    /// Counts and logs a wrong token from an address. Returns the time after which it is to be answered, s:
+    /// the later, the more of them came from there.
+    double count_wrong_token(const std::string& from);
 
 private:
     using reply_json = net::reply_json;
@@ -169,7 +172,8 @@ private:
         std::size_t bytes = 0;
         bool play = false;
         stop_mark asked = {};
-        double gain_db = 0.0; ///< of all its strokes
+        double gain_db = 0.0;     ///< of all its strokes
+        std::uint64_t rounds = 1; ///< 0: until they are cancelled
         view_choice view = {};
         std::optional<double> draft = {}; ///< its number
         double steps = 0.0;               ///< see planning_work; 0 until its text is read
@@ -198,6 +202,7 @@ private:
     /// Returns the options of a stream that calls this service.
     stream_options with_handlers(stream_options s);
     void tell_stream(stream_state s, const std::string& reason);
+    void end_with_client(stroke_record& r);
     void check_all_sent(client_number number);
     void give_memory_back_when_quiet();
 
@@ -231,6 +236,7 @@ private:
     void job_done(planner_lane& lane, const plan_job& job, std::shared_ptr<planned> p,
                   std::vector<score> scores, std::string text, std::optional<net::rpc_fault> fault);
     void submit_all(const plan_job& job, const planned& p, const std::vector<score>& scores);
+    std::uint64_t count_rounds(const plan_job& job, const planned& p) const;
 
     // service_files.cpp
     void import_file(client& c, net::json&& params, const answer& to, std::size_t bytes);
@@ -240,7 +246,8 @@ private:
     void drive(client& c, const net::json& params, const answer& to);
     std::vector<std::uint32_t> submit(client_number owner, const net::json& start, const planned& p,
                                       const std::vector<score>& scores, const char* ended_by,
-                                      double gain_db = 0.0);
+                                      double gain_db = 0.0, std::optional<double> again_s = {});
+    void submit_next(stroke_record& r);
     void check_free_place(const client& c) const;
     std::vector<std::uint32_t> end_unbegun(client_number owner, std::size_t n, const char* why);
     void once_ready(client_number number, const answer& to, const char* source, const stop_mark& asked,
@@ -279,6 +286,8 @@ private:
     void begun(std::uint64_t player, stroke_id id, std::optional<std::int64_t> at_ns);
     void ended(std::uint64_t player, const stroke_report& r);
     void start_followers(stroke_record& first, std::int64_t at_ns);
+    void end_rounds(stroke_record& r);
+    void add_submission(stroke_record& r, stroke_id id);
     void finish(stroke_record& r, const stroke_report& how);
     void tell_stroke(stroke_record& r, std::string_view state, const stroke_report& how);
     void send_to_listeners(const stroke_record& r, const net::reply_json& message);

@@ -101,17 +101,23 @@ void service::hello(client& c, const json& params, const answer& to)
     to.result(hello_result(c));
 }
 
-// Answers a wrong token late, and later each time that one comes from the same address.
+double service::count_wrong_token(const std::string& from)
+{
+    if (wrong_token_wait_s_.size() > most_addresses)
+        wrong_token_wait_s_.clear();
+    double& wait_s = wrong_token_wait_s_[from];
+    wait_s = wait_s == 0.0 ? first_wrong_token_s : std::min(2.0 * wait_s, longest_wrong_token_s);
+    if (options_.log)
+        options_.log(log_kind::warning, fmt::format("a wrong token from {}", from));
+    return wait_s;
+}
+
+// Answers a wrong token late.
 void service::refuse_token(client& c, const answer& to, const net::rpc_fault& wrong)
 {
     if (++c.wrong_tokens > most_wrong_tokens)
         return; // it is turned out when the one before is answered
-    if (wrong_token_wait_s_.size() > most_addresses)
-        wrong_token_wait_s_.clear();
-    double& wait_s = wrong_token_wait_s_[c.from];
-    wait_s = wait_s == 0.0 ? first_wrong_token_s : std::min(2.0 * wait_s, longest_wrong_token_s);
-    if (options_.log)
-        options_.log(log_kind::warning, fmt::format("a wrong token from {}", c.from));
+    const double wait_s = count_wrong_token(c.from);
     const auto timer = late_answers_.emplace(late_answers_.end(), io_);
     timer->expires_after(
         std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::duration<double>(wait_s)));

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
 """The script that joins pages, and the pages that it makes. Usage: test_bundle.py BUNDLE SOURCE_ROOT PAGE..."""
+import gzip
 import html.parser
 import pathlib
 import re
@@ -47,8 +48,8 @@ class Joining(ToolTest):
         text = self.joined(page_html=page, a_css="/* a comment */\np {\n  color: red; }\n\n",
                            main_js='import {twice} from "./b.js";\n\n// A comment.\nlet two = twice(1); // stays\n',
                            b_js="export function twice(x) {\n  return 2 * x;\n}\n")
-        self.assertEqual(text, '<!DOCTYPE html>\n<style nonce="NONCE">\np {\ncolor: red; }\n</style>\n<p>text</p>\n'
-                               '<script nonce="NONCE">\n"use strict";\nfunction twice(x) {\n  return 2 * x;\n}\nlet two = twice(1); // stays\n</script>\n</html>\n')
+        self.assertEqual(text, '<!DOCTYPE html>\n<style>\np {\ncolor: red; }\n</style>\n<p>text</p>\n'
+                               '<script>\n"use strict";\nfunction twice(x) {\n  return 2 * x;\n}\nlet two = twice(1); // stays\n</script>\n</html>\n')
         self.assertEqual((self.dir / "out.d").read_text(encoding="utf-8").split(":")[0], "out.html")
         self.assertEqual({pathlib.Path(f).name for f in (self.dir / "out.d").read_text(encoding="utf-8").split(":", 1)[1].split()},
                          {"page.html", "a.css", "main.js", "b.js"})
@@ -73,8 +74,8 @@ class Joining(ToolTest):
         text = self.joined(**page)
         smaller = self.joined(esbuild=[ESBUILD], **page)
         self.assertLess(len(smaller), len(text))
-        self.assertIn('<style nonce="NONCE">\np{color:red}\n</style>', smaller)
-        self.assertRegex(smaller, r'(?s)<script nonce="NONCE">\n"use strict";\n.*log\(.*</script>')
+        self.assertIn('<style>\np{color:red}\n</style>', smaller)
+        self.assertRegex(smaller, r'(?s)<script>\n"use strict";\n.*log\(.*</script>')
         (self.dir / "out.html").unlink()
         self.refused(r".*main\.js:1: \./a\.js does not export twice", esbuild=[ESBUILD], **page | {"a_js": "function twice() {}\n"})
 
@@ -97,7 +98,11 @@ class Joining(ToolTest):
 
     def test_a_literal_of_c_plus_plus(self):
         self.assertEqual(self.bundle(page_html="<p>x</p>\n", output="out.inc").returncode, 0)
-        self.assertEqual((self.dir / "out.inc").read_text(encoding="utf-8"), 'R"page(<p>x</p>\n)page"\n')
+        written = (self.dir / "out.inc").read_text(encoding="utf-8")
+        text, policy, octal = re.fullmatch(r'\{R"page\((.*?)\)page",\n"(.*?)",\n\{(.*),\n\d+\}\}\n', written, re.DOTALL).groups()
+        self.assertEqual(text, "<p>x</p>\n")
+        self.assertEqual(policy, "script-src 'none'; style-src 'none'")
+        self.assertEqual(gzip.decompress(bytes(int(o, 8) for o in re.findall(r"\\(\d{3})", octal))), text.encode())
         self.refused(r'page\.html: \)page" would end the literal', output="end.inc", main_js="f(')page\"');\n")
 
 
@@ -155,11 +160,11 @@ class Pages(ToolTest):
                     self.assertRegex(attributes.get(name, "#"), "^(#|data:)", tag)
         self.look(at)
 
-    def test_styles_and_scripts_have_the_nonce_and_nothing_stands_in_attributes(self):
+    def test_nothing_that_runs_stands_in_attributes(self):
         def at(_, elements):
             for tag, attributes, body in elements:
                 if tag in ("style", "script"):
-                    self.assertEqual(attributes, {"nonce": "NONCE"})
+                    self.assertEqual(attributes, {})
                 self.assertEqual([a for a in attributes if a == "style" or a.startswith("on")], [], (tag, attributes))
                 if tag == "script":
                     self.assertEqual([found[:80] for found in UNSAFE.findall(body)], [])

@@ -4,12 +4,16 @@
 
 With esbuild, styles and modules are made smaller. Without it the page does the same, and is half as long again.
 
-An output whose name ends in .inc is a C++ literal. Lines of the page that are only
+An output whose name ends in .inc is a C++ initialiser of a page_document: the page, what its Content-Security-Policy says of its script and style,
+and the page compressed. Lines of the page that are only
     <link rel="stylesheet" href="FILE.css">  and  <script src="FILE.js">...</script>
-become the files' contents, with the nonce that the server fills in. A module imports by lines such as
+become the files' contents. A module imports by lines such as
     import {name, other} from "./FILE.js";   or   import "./FILE.js";
 and exports declarations. Names at the top of modules are unique in the page, so that modules can be joined as they are.
 Blank lines and lines that are only a comment are left out."""
+import base64
+import gzip
+import hashlib
 import pathlib
 import re
 import subprocess
@@ -34,14 +38,14 @@ class Bundle:
 
     def page(self, file):
         text = "".join(self.line(file.parent, line) for line in self.text(file).splitlines(keepends=True))
-        return text.replace('</style>\n<style nonce="NONCE">\n', "")
+        return text.replace("</style>\n<style>\n", "")
 
     def line(self, folder, line):
         if m := STYLE.fullmatch(line):
-            return f'<style nonce="NONCE">\n{self.smaller(folder / m[1], self.style(folder / m[1]))}</style>\n'
+            return f'<style>\n{self.smaller(folder / m[1], self.style(folder / m[1]))}</style>\n'
         if m := SCRIPT.fullmatch(line):
             file = (folder / m[1]).resolve()
-            return f'<script nonce="NONCE">\n"use strict";\n{self.smaller(file, self.module(file))}</script>\n'
+            return f'<script>\n"use strict";\n{self.smaller(file, self.module(file))}</script>\n'
         return line
 
     def smaller(self, file, joined):
@@ -93,13 +97,27 @@ class Bundle:
         self.declared[name] = place
 
 
+def policy(text):
+    """Returns the sources of script and style: the hashes of what the page has."""
+    def allowed(kind):
+        found = re.findall(rf"<{kind}>(.*?)</{kind}>", text, re.DOTALL)
+        return " ".join(f"'sha256-{base64.b64encode(hashlib.sha256(t.encode()).digest()).decode()}'" for t in found) or "'none'"
+    return f"script-src {allowed('script')}; style-src {allowed('style')}"
+
+
+def initialiser(text):
+    smaller = gzip.compress(text.encode(), mtime=0)
+    lines = ["".join(f"\\{b:03o}" for b in smaller[at:at + 32]) for at in range(0, len(smaller), 32)]
+    return (f'{{R"page({text})page",\n"{policy(text)}",\n{{' + "\n".join(f'"{line}"' for line in lines) + f",\n{len(smaller)}}}}}\n")
+
+
 def main(page, output, depfile=None, esbuild=None):
     b = Bundle(esbuild)
     text = b.page(pathlib.Path(page))
     if output.endswith(".inc"):
         if ')page"' in text:
             sys.exit(f'{page}: )page" would end the literal')
-        text = f'R"page({text})page"\n'
+        text = initialiser(text)
     pathlib.Path(output).write_text(text, encoding="utf-8")
     if depfile:
         pathlib.Path(depfile).write_text(f"{output}: {' '.join(map(str, b.read))}\n", encoding="utf-8")

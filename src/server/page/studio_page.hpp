@@ -3,11 +3,11 @@
 /// The page to draw on: studio.html with its styles and modules, as one document.
 #pragma once
 
-#include <string_view>
+#include "net/web_connection.hpp"
 
 namespace tactor::server {
 
-inline constexpr std::string_view studio_page =
+inline constexpr net::page_document studio_page =
 #include "server/studio_page.inc"
     ;
 

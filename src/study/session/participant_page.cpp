@@ -3,13 +3,14 @@
 
 #include <utility>
 
+#include "net/web_connection.hpp"
 #include "rt/clock.hpp"
 
 namespace tactor::study {
 namespace {
 
 // page/participant.html with its styles and modules, as one document.
-constexpr std::string_view document =
+constexpr net::page_document document =
 #include "study/participant_page.inc"
     ;
 
