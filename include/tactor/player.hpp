@@ -226,6 +226,10 @@ public:
     /// \throws error (bad_input) for another level.
     bool set_level(stroke_id id, double db);
 
+    /// Returns the frame of the stream with which a planned stroke began, while it sounds; nothing before and
+    /// after that. A stroke for start_at::frame() so many frames later joins it to the frame.
+    [[nodiscard]] std::optional<std::uint64_t> first_frame(stroke_id id) const;
+
     /// Starts all armed strokes: their first samples are at the DAC at a CLOCK_MONOTONIC time, ns, or as soon
     /// as possible if that time has passed. Returns the number of strokes. An edge at the trigger line does
     /// the same, player_lines::trigger_delay_s after its own time. Does not block.

@@ -290,14 +290,21 @@ bool service::input_ended(client_number number)
         return true;
     c->input_over = true;
     for (const std::uint32_t n : c->strokes)
-        if (const auto& r = strokes_.at(n); r->live)
-            r->live->end();
+        end_with_client(*strokes_.at(n));
     // There are more of them than places: lets the first one go. Its strokes play on.
     if (all_sent_ && count_silent() > options_.limits.max_clients)
         all_sent_(std::find_if(clients_.begin(), clients_.end(), [](const auto& one) {
                       return one.second->input_over;
                   })->first);
     return c->unanswered == 0 && c->strokes.empty();
+}
+
+// Ends a stroke that has no end of its own when its client sends no more.
+void service::end_with_client(stroke_record& r)
+{
+    if (r.live)
+        r.live->end();
+    end_rounds(r);
 }
 
 void service::check_all_sent(client_number number)

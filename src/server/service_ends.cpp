@@ -31,8 +31,10 @@ void service::begun(std::uint64_t player, stroke_id id, std::optional<std::int64
     if (found == by_player_.end())
         return;
     stroke_record& r = *strokes_.at(found->second);
-    if (r.state == "started")
-        return; // it began again after an xrun
+    if (r.id == id)
+        r.next_waits = false;
+    if (r.state == "started") // it began again after an xrun, or with the next round
+        return submit_next(r);
     r.state = "started";
     const std::int64_t now = options_.now_ns();
     r.started_ns = at_ns.value_or(now);
@@ -41,6 +43,7 @@ void service::begun(std::uint64_t player, stroke_id id, std::optional<std::int64
         how.late_s = std::max(0.0, static_cast<double>(*r.started_ns - *r.asked_ns) * 1e-9);
     tell_stroke(r, "started", how);
     start_followers(r, *r.started_ns);
+    submit_next(r);
 }
 
 // Submits the other strokes of an armed file, whose times are known only now.
@@ -60,9 +63,9 @@ void service::start_followers(stroke_record& first, std::int64_t at_ns)
         try {
             if (out == nullptr)
                 no_stream("");
-            r.id = out->submit(later, start_at::time(at_ns + std::llround(after_s * 1e9)), level_db(r));
+            add_submission(
+                r, out->submit(later, start_at::time(at_ns + std::llround(after_s * 1e9)), level_db(r)));
             r.state = "waiting";
-            by_player_[{r.player, r.id}] = r.number;
         } catch (const error& e) {
             finish(r, {.state = state_kind::interrupted,
                        .reason = reason_kind::failed,
@@ -86,8 +89,41 @@ void service::ended(std::uint64_t player, const stroke_report& report)
         r.started_ns = report.started_ns;
         tell_stroke(r, "started", {});
     }
-    finish(r, report);
+    std::erase(r.open, report.id);
+    r.next_waits = r.next_waits && report.id != r.id;
+    r.frames += report.frames;
+    if (report.state != state_kind::finished && !r.broken) {
+        r.broken = report;
+        end_rounds(r);
+    }
+    if (!r.open.empty())
+        return;
+    stroke_report whole = r.broken.value_or(report);
+    if (whole.frames != r.frames) // it began with an earlier round
+        whole.started_ns = r.started_ns;
+    whole.frames = r.frames;
+    finish(r, whole);
     note_busy();
+}
+
+// Notes a submission of a stroke: its only one, or its next round.
+void service::add_submission(stroke_record& r, stroke_id id)
+{
+    r.id = id;
+    r.open.push_back(id);
+    by_player_[{r.player, id}] = r.number;
+}
+
+// Lets no round begin any more.
+void service::end_rounds(stroke_record& r)
+{
+    r.again.reset();
+    if (!std::exchange(r.next_waits, false))
+        return;
+    if (player* p = stream_.current(); p != nullptr && r.player == stream_.number())
+        p->cancel(r.id);
+    by_player_.erase({r.player, r.id});
+    std::erase(r.open, r.id);
 }
 
 void service::finish(stroke_record& r, const stroke_report& how)

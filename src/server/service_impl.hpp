@@ -52,12 +52,19 @@ struct service::client {
     double level_db = 0.0; ///< of its strokes, below what they ask for
 };
 
+/// Rounds that are submitted again and again, so many frames after the last time.
+struct repeated {
+    score rounds;
+    std::uint64_t frames = 0;
+};
+
 struct service::stroke_record {
     std::uint32_t number = 0;
     client_number owner = 0;
     std::uint64_t player = 0;
-    stroke_id id = {};
-    std::string state = "waiting"; ///< "armed", "started"
+    stroke_id id = {};                ///< its newest submission ...
+    std::vector<stroke_id> open = {}; ///< ... and all that have not ended
+    std::string state = "waiting";    ///< "armed", "started"
     std::optional<live_stroke> live = {};
     double intensity_max = 1.0;                     ///< value of its points' intensity that means 1
     double level_db = 0.0;                          ///< as its client set it ...
@@ -71,7 +78,11 @@ struct service::stroke_record {
     std::optional<std::int64_t> started_ns = {};
     /// Other strokes of an armed file, and their starts after this one, s.
     std::vector<std::pair<std::uint32_t, double>> followers = {};
-    std::optional<score> submits_later = {}; ///< score of a follower, until it is submitted
+    std::optional<score> submits_later = {};  ///< score of a follower, until it is submitted
+    std::optional<repeated> again = {};       ///< until it is to end
+    bool next_waits = false;                  ///< the newest submission is a round that has not begun
+    std::uint64_t frames = 0;                 ///< of the submissions that have ended
+    std::optional<stroke_report> broken = {}; ///< end of the first one that did not finish
 };
 
 /// The replies to one message.

@@ -67,7 +67,8 @@ service::planner_lane& service::lane_for(const plan_job& j) noexcept
 void service::plan_or_play(client& c, json&& params, const answer& to, bool play, std::size_t bytes)
 {
     if (play)
-        allow_only(params, {"stroke", "path", "points", "toml", "csv", "svg", "options", "start", "gain_db"});
+        allow_only(params, {"stroke", "path", "points", "toml", "csv", "svg", "options", "start", "gain_db",
+                            "repeat"});
     else
         allow_only(params, {"stroke", "path", "points", "toml", "csv", "svg", "options", "start", "view",
                             "draft", "bins", "observer"});
@@ -83,6 +84,9 @@ void service::plan_or_play(client& c, json&& params, const answer& to, bool play
     job.draft = draft;
     if (const json* gain = member(params, "gain_db"))
         job.gain_db = number(*gain, "gain_db", {player::least_level_db, 0.0});
+    if (const json* repeat = member(params, "repeat"))
+        job.rounds =
+            *repeat == json(true) ? 0 : static_cast<std::uint64_t>(whole(*repeat, "repeat", {1.0, 1e6}));
     job.params = std::move(params);
     admit_job(c, std::move(job));
 }
@@ -281,9 +285,10 @@ void service::post_job(planner_lane& lane, plan_job j)
                 p = std::make_shared<planned>(make_planned(options_.plans, faces_, job->params, checks));
             if (p ? p->plans.empty() : text.empty())
                 return boost::asio::post(io_, [this, &lane, job] { move_up(lane, std::move(*job)); });
+            const std::uint64_t rounds = job->play ? count_rounds(*job, *p) : 0;
             for (std::size_t i = 0; job->play && i < p->plans.size(); ++i) {
                 go_on();
-                scores.push_back(p->make_score(options_.plans.tactors, i));
+                scores.push_back(p->make_score(options_.plans.tactors, i, rounds));
             }
             if (p && !job->play)
                 text = answer_text(*p, job->view);
@@ -332,6 +337,23 @@ void service::job_done(planner_lane& lane, const plan_job& job, std::shared_ptr<
     next_job(lane);
 }
 
+// Returns how often strokes are played by one submission. What has no end is submitted again while the last
+// one sounds, and that must be long enough.
+std::uint64_t service::count_rounds(const plan_job& job, const planned& p) const
+{
+    constexpr double endless_s = 2.0;
+    const double round_s = p.total_s();
+    if (job.rounds == 0)
+        return static_cast<std::uint64_t>(std::ceil(endless_s / round_s));
+    const double all_s = static_cast<double>(job.rounds) * round_s;
+    if (job.rounds > 1 && all_s > options_.plans.max_stroke_s)
+        limit_reached("max_stroke_s",
+                      fmt::format("{} times last {}, and at most {} are played", job.rounds,
+                                  seconds_text(all_s), seconds_text(options_.plans.max_stroke_s)),
+                      "repeat less, or with true until it is cancelled");
+    return job.rounds;
+}
+
 void service::submit_all(const plan_job& job, const planned& p, const std::vector<score>& scores)
 {
     const client_number number = job.to.all->to;
@@ -342,8 +364,11 @@ void service::submit_all(const plan_job& job, const planned& p, const std::vecto
                       fmt::format("{} strokes are more than the {} that a client may have at once",
                                   scores.size(), options_.limits.max_strokes),
                       "send fewer");
+    std::optional<double> again_s;
+    if (job.rounds == 0)
+        again_s = static_cast<double>(count_rounds(job, p)) * p.total_s();
     const auto numbers =
-        submit(number, job.start, p, scores, stop_reason_since(job.asked, number), job.gain_db);
+        submit(number, job.start, p, scores, stop_reason_since(job.asked, number), job.gain_db, again_s);
     auto warnings = p.warnings();
     for (std::string& w : warnings)
         w = net::cut_echo(w);

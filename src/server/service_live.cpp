@@ -71,12 +71,11 @@ void service::begin_now(client& c, const live_options& o, double intensity_max, 
     live_stroke live = out->begin(o);
     stroke_record& r = add_record(c.number);
     r.player = stream_.number();
-    r.id = live.id();
+    add_submission(r, live.id());
     r.live = live;
     r.intensity_max = intensity_max;
     if (r.level_db != 0.0)
         out->set_level(r.id, r.level_db);
-    by_player_[{r.player, r.id}] = r.number;
     ++c.live;
     if (c.input_over)
         live.end();

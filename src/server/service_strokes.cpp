@@ -32,7 +32,7 @@ void service::check_free_place(const client& c) const
 
 std::vector<std::uint32_t> service::submit(client_number owner, const json& start, const planned& p,
                                            const std::vector<score>& scores, const char* ended_by,
-                                           double gain_db)
+                                           double gain_db, std::optional<double> again_s)
 {
     if (closing_)
         no_stream("the server ends");
@@ -59,6 +59,8 @@ std::vector<std::uint32_t> service::submit(client_number owner, const json& star
         records.push_back(&r);
         r.player = stream_.number();
         r.gain_db = gain_db;
+        if (const client* c = find(owner); again_s && c != nullptr && !c->input_over)
+            r.again = repeated{scores[i], static_cast<std::uint64_t>(std::llround(*again_s * s.rate))};
         if (asked.armed && i != first) {
             r.submits_later = scores[i];
             r.state = "armed";
@@ -74,13 +76,12 @@ std::vector<std::uint32_t> service::submit(client_number owner, const json& star
                 r.asked_ns = at;
         }
         try {
-            r.id = out->submit(scores[i], when, level_db(r));
+            add_submission(r, out->submit(scores[i], when, level_db(r)));
         } catch (const error& e) {
             refused[i] = e.what(); // the stream may just have ended: the number ends below
             continue;
         }
         r.state = asked.armed ? "armed" : "waiting";
-        by_player_[{r.player, r.id}] = r.number;
     }
     for (std::size_t i = 0; i < records.size(); ++i)
         if (records[i]->submits_later)
@@ -92,6 +93,26 @@ std::vector<std::uint32_t> service::submit(client_number owner, const json& star
                                  .reason = end ? end->reason : reason_kind::failed,
                                  .why = end ? end->why : refused[i]});
     return numbers;
+}
+
+// Submits what is repeated for the frame after it, which begins now.
+void service::submit_next(stroke_record& r)
+{
+    player* out = stream_.number() == r.player ? stream_.current() : nullptr;
+    if (!r.again || r.next_waits || r.ended_by != nullptr || out == nullptr)
+        return;
+    const auto from = out->first_frame(r.id);
+    if (!from) // it has ended, and its report comes
+        return;
+    try {
+        add_submission(r,
+                       out->submit(r.again->rounds, start_at::frame(*from + r.again->frames), level_db(r)));
+        r.next_waits = true;
+    } catch (const error& e) {
+        r.again.reset();
+        r.broken =
+            stroke_report{.state = state_kind::interrupted, .reason = reason_kind::failed, .why = e.what()};
+    }
 }
 
 // Numbers strokes that were stopped before the stream had them, and ends them.
@@ -175,7 +196,8 @@ void service::set_level(stroke_record& r, double db)
 {
     r.level_db = db;
     if (player* p = stream_.current(); p != nullptr && r.player == stream_.number())
-        p->set_level(r.id, level_db(r));
+        for (const stroke_id id : r.open)
+            p->set_level(id, level_db(r));
 }
 
 // Sets the level of a client's strokes, those to come too, or of one.
@@ -227,8 +249,10 @@ void service::cancel(stroke_record& r, const char* why)
         r.ended_by = why;
     if (r.submits_later) // it waits for another to begin
         return finish(r, {.state = state_kind::cancelled});
+    r.again.reset();
     if (player* p = stream_.current(); p != nullptr && r.player == stream_.number())
-        p->cancel(r.id);
+        for (const stroke_id id : r.open)
+            p->cancel(id);
 }
 
 void service::stop(client& c, const json& /*params*/, const answer& to)

@@ -320,9 +320,13 @@ std::vector<std::string> planned::warnings() const
     return all;
 }
 
-score planned::make_score(const array& a, std::size_t i) const
+score planned::make_score(const array& a, std::size_t i, std::uint64_t rounds) const
 {
-    return {a, plans[i].plan, render};
+    score_builder made(a, render);
+    const double round_s = total_s();
+    for (std::uint64_t k = 0; k < rounds; ++k)
+        made.add(plans[i].plan, static_cast<double>(k) * round_s);
+    return made.take();
 }
 
 void plan_strokes(const planning& with, const layout& faces, planned& p, const options::wishes& s,

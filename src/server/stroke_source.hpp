@@ -45,8 +45,9 @@ struct planned {
     std::vector<double> starts_s() const;
     double total_s() const;
     std::vector<std::string> warnings() const;
-    /// Returns the score of a plan alone, to be submitted by itself.
-    score make_score(const array& a, std::size_t i) const;
+    /// Returns the score of a plan alone, to be submitted by itself, so many times: each total_s() after the
+    /// last.
+    score make_score(const array& a, std::size_t i, std::uint64_t rounds = 1) const;
 };
 
 /// Reads the strokes that a parameter says, as parse_strokes_toml() and its kin do. \throws error,

@@ -95,6 +95,7 @@ call_table player_calls(player_things& t)
          }},
         {"player::cancel", [&t, &p] { return p.cancel(t.id); }, plain, armed},
         {"player::set_level", [&t, &p] { return p.set_level(t.id, -6.0); }, plain, armed},
+        {"player::first_frame", [&t, &p] { return !p.first_frame(t.id); }, plain, armed},
         {"player::cancel_all", [&p] { return p.cancel_all(); }, plain, armed},
         {"player::wait", [&t, &p] { return p.wait(t.id); }, plain, submitted},
         {"player::on_begin", [&p] { p.on_begin([](stroke_id, std::optional<std::int64_t>) {}); }},

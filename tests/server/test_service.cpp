@@ -357,6 +357,70 @@ TEST_CASE("a client's level holds for its strokes that sound and that come, and 
     CHECK(rig.code(me, "play", weaker) == -32602);
 }
 
+TEST_CASE("a stroke that repeats has one beginning and one end")
+{
+    running_rig rig;
+    const auto c = rig.client();
+    const json r = rig.ok(c, "play", with(stroke, "repeat", 3));
+    CHECK(r["total_s"] == doctest::Approx(0.1));
+    const json end = rig.find_end(c, r["stroke"]);
+    CHECK(end["state"] == "finished");
+    CHECK(end["frames"] == 3 * 4800);
+    CHECK(c.box->stroke_messages(r["stroke"]).size() == 2);
+    for (const json& wrong : {json(0), json(-1), json(1.5), json(false), json("3"), json(nullptr)})
+        CHECK(rig.code(c, "play", with(stroke, "repeat", wrong)) == -32602);
+    CHECK(rig.code(c, "play", with(stroke, "repeat", 1'000'000)) == -32001);
+    CHECK(rig.code(c, "plan", with(stroke, "repeat", 2)) == -32602);
+}
+
+TEST_CASE("what repeats until it is cancelled has no gap")
+{
+    service_rig rig;
+    rig.captures = running_clock::capture_kind::kept;
+    fake_dac& card = rig.plug();
+    rig.start();
+    const auto c = rig.client();
+    rig.ok(c, "subscribe", {{"events", {"levels"}}});
+    const json n = rig.ok(c, "play", with(stroke, "repeat", true))["stroke"];
+    rig.until([&] { return rig.all->output().stats().frames > 8 * 48000; });
+    CHECK(rig.ok(c, "status")["strokes"].size() == 1);
+    rig.ok(c, "cancel", {{"stroke", n}});
+    const json end = rig.find_end(c, n);
+    CHECK(end["state"] == "cancelled");
+    CHECK(end["reason"] == "cancelled by its client");
+    CHECK(end["frames"] > 7 * 48000);
+    CHECK(c.box->stroke_messages(n).size() == 2);
+    CHECK(rig.ok(c, "status")["strokes"].empty());
+    rig.clocks.clear();
+    const auto bytes = card.captured();
+    constexpr std::size_t frame = 9 * 4;
+    std::vector<std::size_t> sounds; // frames that are not silent
+    for (std::size_t i = 0; i + frame <= bytes.size(); i += frame)
+        if (std::any_of(bytes.begin() + static_cast<std::ptrdiff_t>(i),
+                        bytes.begin() + static_cast<std::ptrdiff_t>(i + frame),
+                        [](std::byte b) { return b != std::byte{0}; }))
+            sounds.push_back(i / frame);
+    REQUIRE(sounds.size() > 7 * 48000);
+    std::size_t longest = 0;
+    for (std::size_t i = 1; i < sounds.size(); ++i)
+        longest = std::max(longest, sounds[i] - sounds[i - 1]);
+    CHECK(longest <= 2); // the first frame of a round is silent
+}
+
+TEST_CASE("what repeats ends with its client, and is not cut")
+{
+    running_rig rig;
+    const auto goes = rig.client();
+    const auto looks = rig.client();
+    rig.ok(looks, "subscribe", {{"events", {"strokes", "levels"}}});
+    const json n = rig.ok(goes, "play", with(stroke, "repeat", true))["stroke"];
+    rig.until([&] { return rig.all->output().stats().frames > 5 * 48000; });
+    rig.all->disconnect(goes.number);
+    const json end = rig.find_end(looks, n);
+    CHECK(end["state"] == "finished");
+    CHECK(end["frames"].get<std::uint64_t>() % 96000 == 0);
+}
+
 TEST_CASE("what is too large by its durations and options is refused before it is planned")
 {
     running_rig rig([](server::service_options& o, server::stream_options&) {

@@ -57,6 +57,14 @@ bool feeder::set_gain(stroke_id id, float gain)
     return true;
 }
 
+std::optional<std::uint64_t> feeder::find_first_frame(stroke_id id) const
+{
+    for (const std::uint32_t place : in_use_)
+        if (const active& a = *slots_[place].use; a.id == id && a.begun && a.score)
+            return a.base;
+    return std::nullopt;
+}
+
 void feeder::cancel_all(stroke_id last) noexcept
 {
     for (const std::uint32_t place : in_use_)

@@ -42,6 +42,8 @@ public:
     bool cancel(stroke_id id);
     /// Sets the factor of a stroke's amplitudes. Returns false if it has ended or is not known.
     bool set_gain(stroke_id id, float gain);
+    /// Returns the frame of the stream with which a planned stroke that sounds began.
+    std::optional<std::uint64_t> find_first_frame(stroke_id id) const;
     /// Cancels all strokes up to `last`. The audio thread gets its requests at once; strokes that wait end
     /// with the next pump(), because thousands may wait.
     void cancel_all(stroke_id last) noexcept;

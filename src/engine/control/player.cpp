@@ -56,6 +56,11 @@ bool player::set_level(stroke_id id, double db)
     return impl_->set_level(id, db);
 }
 
+std::optional<std::uint64_t> player::first_frame(stroke_id id) const
+{
+    return impl_->first_frame(id);
+}
+
 std::size_t player::fire(std::int64_t monotonic_ns)
 {
     return impl_->fire(monotonic_ns);

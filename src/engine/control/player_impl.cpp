@@ -112,6 +112,12 @@ bool player::impl::cancel(stroke_id id)
     return known;
 }
 
+std::optional<std::uint64_t> player::impl::first_frame(stroke_id id)
+{
+    const std::lock_guard lock(mutex);
+    return feed.find_first_frame(id);
+}
+
 bool player::impl::set_level(stroke_id id, double db)
 {
     const float gain = to_gain(db);

@@ -73,6 +73,7 @@ struct player::impl : std::enable_shared_from_this<player::impl> {
 
     stroke_id submit(const score& s, start_at start, double level_db);
     bool set_level(stroke_id id, double db);
+    std::optional<std::uint64_t> first_frame(stroke_id id);
     std::size_t fire(std::int64_t time_ns);
     live_stroke begin(const live_options& o);
     bool on_end(stroke_id id, report_handler done);
