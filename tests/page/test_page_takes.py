@@ -266,6 +266,10 @@ class Kept(StudioTest):
         p.until("[...document.querySelectorAll('#takes .note')].map(e => e.textContent).join() === 'not kept,not kept'")
         self.assertFalse(p.value("closing()"))  # the page asks
         self.assertTrue(p.value("document.querySelector('#banner-close').hidden"))
+        p.value("globalThis.given = []; HTMLAnchorElement.prototype.click = function() { given.push(this.download); }; 1")
+        p.click("#save-all")
+        self.assertEqual(p.value("given.length"), 3)
+        self.assertTrue(p.value("given.every(n => /^[\\w-]+[.]toml$/.test(n))"))
         p.value("IDBObjectStore.prototype.put = put")
         self.toast(p, "Kept again, all 2")
         p.until("document.querySelector('#banner').hidden && !document.querySelector('#takes .note')")

@@ -69,6 +69,7 @@ function show_device() {
   const b = warn(), key = b ? b[0] : "";
   if (key !== closed && key === "") closed = "";
   by_id("banner-close").hidden = state.unkept.size > 0;
+  by_id("save-all").hidden = !state.unkept.size;
   by_id("banner").hidden = !b || closed === key;
   if (b && closed !== key && key !== said.banner) {
     by_id("banner").dataset.tone = b[1];

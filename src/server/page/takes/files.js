@@ -88,6 +88,12 @@ async function save_as(kind) {
     say(`Saved “${take.name}”`);
   } catch (e) { say(e.message); }
 }
+// A browser may ask first whether the page may give several files.
+by_id("save-all").addEventListener("click", () => {
+  const takes = state.takes.filter(t => t.strokes.length);
+  for (const t of takes) give(`${file_name(t)}.toml`, new Blob([strokes_toml(t.strokes)], {type: "application/toml"}));
+  say(`Saved ${takes.length} takes`);
+});
 by_id("save-list").replaceChildren(...KINDS.map(([kind, name, why]) => make("button",
   {type: "button", class: "save-item", "data-kind": kind, onclick: () => save_as(kind)}, make("b", {}, name),
   make("small", {}, why), make("span", {}, `.${kind}`))));
