@@ -16,7 +16,7 @@
 #include <boost/asio/steady_timer.hpp>
 #include <boost/asio/thread_pool.hpp>
 
-#include "server/page/level_meter.hpp"
+#include "server/level_meter.hpp"
 #include "session/device_stream.hpp"
 
 namespace tactor::server {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "server/page/level_meter.hpp"
+#include "server/level_meter.hpp"
 
 #include <algorithm>
 #include <cmath>
