@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: MIT
 // Lanes that show who plays when: a ruler, the strokes as clips, a lane for each tactor. The lanes are drawn again only when something
 // has changed; the moment is drawn over them each frame.
-import {state, current_take} from "../state.js";
+import {state, current_take, marks} from "../state.js";
 import {colour, is_dark, font} from "../look.js";
 import {array} from "../drawing/view.js";
 import {viridis} from "../../../net/page/viridis.js";
 import {full, mini, total, shown, left, right, to_x, clip_box, lane_tactors, silent_count, lane_height, most_scroll, CLIP, LEAST_AMPLITUDE} from "./time_axis.js";
 import {draw_curves} from "./curves.js";
 import {place_clips} from "./clips.js";
+import {draw_time_marks} from "./marks.js";
 import {end_s} from "../takes/stroke.js";
 import {look_at} from "../service/player.js";
 import {seconds_text} from "../words.js";
@@ -50,6 +51,7 @@ function draw_layer(l) {
   }
   if (l.mini) return;
   if (!state.drawing) { draw_clips(p, l); draw_curves(p, l); }
+  if (!l.thin) draw_time_marks(p, l);
   place_clips(l);
 }
 function draw_ruler(p, l, bottom) {
@@ -62,6 +64,7 @@ function draw_ruler(p, l, bottom) {
     p.strokeStyle = colour("grid"); p.lineWidth = 1;
     p.beginPath(); p.moveTo(x, l.ruler); p.lineTo(x, bottom); p.stroke();
     p.fillStyle = colour("ink2");
+    if (marks().range?.some(t => Math.abs(to_x(l, t) - x) < 26)) continue;
     p.fillText(`${(i * step).toFixed(step < 0.1 ? 2 : step < 1 ? 1 : 0)}${i === 0 ? " s" : ""}`, x, 12);
   }
   const until = to_x(l, Math.min(total(), l.from + s)), from = to_x(l, l.from);

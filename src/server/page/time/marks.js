@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: MIT
+// Marks of the time axis: where Play starts and the range that it plays; and the moments to which pointers snap.
+import {state, changed, current_take, marks} from "../state.js";
+import {colour, font} from "../look.js";
+import {end_s} from "../takes/stroke.js";
+import {seconds_text} from "../words.js";
+import {to_x, LEAST_S} from "./time_axis.js";
+
+const SNAP_PX = 5;
+
+export function set_marks(change) {
+  state.marks = {...marks(), ...change, take: state.current};
+  changed("curves");
+}
+export const clear_marks = () => set_marks({start_s: 0, range: null});
+export function set_range(a, b) { if (Math.abs(b - a) >= LEAST_S) set_marks({range: [a, b].sort((p, q) => p - q)}); }
+
+// Returns a moment, or what is so near to it that it snaps: the start, an end of a stroke but the one that is moved, a burst.
+export function snapped(l, t, e, moved) {
+  const ends = current_take()?.strokes.flatMap((s, i) => i === moved ? [] : [s.start_s, end_s(s)]) ?? [];
+  const off = v => Math.abs(to_x(l, v) - to_x(l, t)), near = [marks().start_s, ...ends, ...moved >= 0 ? [] : state.plan?.onsets ?? []];
+  return e.altKey ? t : near.filter(v => off(v) <= SNAP_PX).sort((a, b) => off(a) - off(b))[0] ?? t;
+}
+
+export function draw_time_marks(p, l) {
+  const {start_s, range} = marks(), bottom = l.height - 8, x = to_x(l, start_s);
+  if (range) {
+    const [a, b] = range.map(t => to_x(l, t));
+    p.fillStyle = colour("ink"); p.globalAlpha = 0.07; p.fillRect(a, 0, b - a, bottom); p.globalAlpha = 1;
+    p.fillRect(a - 3, 1, 3, l.ruler - 5); p.fillRect(b, 1, 3, l.ruler - 5); p.fillRect(a, 1, b - a, 14);
+    p.font = font(11, 600); p.textAlign = "center"; p.fillStyle = colour("panel");
+    if (b - a > 80) p.fillText(`${state.loop ? "loop " : ""}${seconds_text(range[1] - range[0])}`, (a + b) / 2, 12);
+  }
+  if (!start_s) return;
+  p.strokeStyle = p.fillStyle = colour("ink2"); p.lineWidth = 1; p.setLineDash([2, 3]);
+  p.beginPath(); p.moveTo(x, 14); p.lineTo(x, bottom); p.stroke(); p.setLineDash([]);
+  p.beginPath(); p.moveTo(x, 13); p.lineTo(x + 9, 18); p.lineTo(x, 24); p.fill();
+}
