@@ -76,7 +76,7 @@ on("zoom-all", look_at_all);
 on("loop", () => { state.loop = !state.loop; changed("playing", "curves"); });
 on("scrub", () => { state.scrub = !state.scrub; changed("tool"); });
 // The keys of a headset and of a screen that is locked.
-for (const key of ["pause", "stop"]) navigator.mediaSession?.setActionHandler(key, () => stop());
+for (const key of ["pause", "stop"]) navigator.mediaSession?.setActionHandler(key, stop);
 on("speaker", () => {
   state.speaker = !state.speaker;
   if (state.speaker) say("Play is heard on this computer's own loudspeakers; they must not be the array's card");

@@ -14,14 +14,14 @@ let speaker = null;
 
 // Returns what Play plays: the range, or all from the start on.
 const part_to_play = () => { const [from_s, until_s] = marks().range ?? [marks().start_s]; return {from_s, until_s}; };
-// Returns a round of a take: a part of it, how long that is, and how long it is silent at first (Infinity: all the time).
-const make_round = (take, {from_s, until_s = Infinity}) => ({from_s, until_s, total_s: Math.min(until_s, state.plan?.total_s ?? take_s(take)) - from_s,
+// Returns a round of a take: a part of it, how long that is, and how long it is silent at first (Infinity: always).
+const make_round = (take, {from_s, until_s = Infinity}) => ({from_s, until_s, total_s: Math.min(until_s, take_s(take)) - from_s,
   lead_s: Math.min(...take_part(take, from_s, until_s).strokes.map(s => s.start_s))});
 async function ask_for(p, round, start) {
   const take = take_part(state.takes.find(t => t.id === p.take), round.from_s, round.until_s);
-  const r = await call("play", {...make_request(take, ceiling_dbfs()), start}), end_s = round.until_s - round.from_s;
-  Object.assign(round, {sound_s: r.total_s, total_s: end_s < Infinity ? Math.max(r.total_s, end_s) : r.total_s});
-  return r;
+  const r = await call("play", {...make_request(take, ceiling_dbfs()), start});
+  Object.assign(round, {number: r.stroke, sound_s: r.total_s, total_s: Math.max(r.total_s, round.total_s)});
+  return r.strokes;
 }
 
 // Plays the take, from a moment on if it is said.
@@ -37,8 +37,7 @@ export async function play(part = part_to_play()) {
   state.stopped = null;
   state.playing = {take: take.id, began_ms: performance.now(), numbers: new Set(), felt, waits: felt, again: part_to_play(), ...round};
   state.at_s = round.from_s;
-  if (felt) await ask_to_play(); else say(state.link === "connected"
-    ? "No card: shown, not felt" : "No connection: shown, not felt");
+  if (felt) await ask_to_play(); else say(state.link === "connected" ? "No card: shown, not felt" : "No connection: shown, not felt");
   if (!felt) hear_it();
   changed("playing");
 }
@@ -59,12 +58,11 @@ async function ask_to_play() {
   try {
     tell_level();
     // Without a start the service leaves out the silence before the first stroke.
-    const r = await ask_for(own, own, own.lead_s ? {delay_s: 0} : "now");
-    if (state.playing !== own) return cancel_strokes(r.strokes);
+    const strokes = await ask_for(own, own, own.lead_s ? {delay_s: 0} : "now");
+    if (state.playing !== own) return cancel_strokes(strokes);
     own.began_ms = performance.now();
-    own.numbers = new Set(r.strokes.filter(n => !ended.has(n)));
+    own.numbers = new Set(strokes.filter(n => !ended.has(n)));
     ended.clear();
-    own.next = null;
   } catch (e) {
     if (state.playing !== own) return;
     // Strokes of several fingers add up: the take is played as strong as it may be.
@@ -117,10 +115,10 @@ async function next_round(p) {
   p.next = true;
   const at = Math.max(server_now_s() + 0.05, server_now_s() + p.total_s - (performance.now() - p.began_ms) / 1000);
   try {
-    const r = await ask_for(p, round, {monotonic_s: at});
-    if (state.playing !== p) return cancel_strokes(r.strokes);
-    r.strokes.forEach(n => p.numbers.add(n));
-    p.next = Object.assign(round, {number: r.stroke});
+    const strokes = await ask_for(p, round, {monotonic_s: at});
+    if (state.playing !== p) return cancel_strokes(strokes);
+    strokes.forEach(n => p.numbers.add(n));
+    p.next = round;
   } catch { p.next = null; state.loop = false; changed("playing"); }
 }
 
@@ -131,11 +129,7 @@ on_notification("stroke", s => {
       // It is told before it is heard: the round before goes on until its end.
       const round = p.waits ? p : p.next?.number === s.stroke && p.next;
       if (round) round.began_ms = from_server_ms(s.started_s) - round.lead_s * 1000;
-      if (p.waits) {
-        p.waits = false;
-        tick();
-        hear_it();
-      }
+      if (p.waits) { p.waits = false; tick(); hear_it(); }
       changed("playing");
     }
     return;
@@ -197,8 +191,7 @@ export function on_stop(f) { lift_fingers = f; }
 export function test_tactor(i) {
   if (!is_connected()) return say("No connection: nothing is driven");
   tell_level();
-  call("drive", {tactor: i, duration_s: TEST_S})
-    .then(() => say(`Tactor ${i}, ${TEST_S} s`), e => say(e.message));
+  call("drive", {tactor: i, duration_s: TEST_S}).then(() => say(`Tactor ${i}, ${TEST_S} s`), e => say(e.message));
 }
 
 // Plays on this computer's loudspeakers where that is asked for.

@@ -9,8 +9,7 @@ import {number_text} from "../words.js";
 const MOST_JUMP_DB = 3; // of a tap above the knob; to go further it is dragged
 
 let tapped = false;
-const level = slider({label: "Level", least: LEAST_LEVEL_DB, most: 0, step: 0.5, get: () => state.level_db,
-  set: v => {
+const level = slider({label: "Level", least: LEAST_LEVEL_DB, most: 0, step: 0.5, get: () => state.level_db, set: v => {
     state.level_db = tapped ? Math.min(v, state.level_db + MOST_JUMP_DB) : v;
     tapped = false;
     changed("level");

@@ -111,10 +111,9 @@ export function fit_take(edge) {
 }
 // Returns what a take has from one moment until another; its time begins there.
 export const take_part = (take, from_s, until_s) => ({...take, strokes: take.strokes.flatMap(k => {
-  const a = Math.max(0, from_s - k.start_s), b = Math.min(duration_s(k), until_s - k.start_s);
-  if (b - a < Math.min(LEAST_REST_S, duration_s(k))) return [];
-  const part = a > 0 || b < duration_s(k) ? trimmed(k, a, b) : k;
-  return {...part, start_s: Math.max(0, part.start_s - from_s)};
+  const d = duration_s(k), a = Math.max(0, from_s - k.start_s), b = Math.min(d, until_s - k.start_s);
+  if (b - a < Math.min(LEAST_REST_S, d)) return [];
+  return {...a > 0 || b < d ? trimmed(k, a, b) : k, start_s: Math.max(0, k.start_s - from_s)};
 })});
 export const take_s = t => t ? total_s(t.strokes) : 0;
 

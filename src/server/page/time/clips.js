@@ -19,13 +19,10 @@ export function choose_clip(i) {
 export const starting_at = (s, t) => ({...s, start_s: +Math.min(MOST_S - duration_s(s), Math.max(0, t)).toFixed(3)});
 // Returns the strokes of a take, and copies of stroke i behind each other from a moment on.
 export function with_copies({name: take_name, strokes}, i, count, from_s = total_s(strokes) + PAUSE_S) {
-  const step_s = duration_s(strokes[i]) + PAUSE_S, out = [...strokes];
-  if (!out[1]) out[0] = {...out[0], name: take_name}; // by which it is shown
-  for (let k = 0, n = 2; k < count && out.length < MOST_STROKES && from_s + step_s < MOST_S; ++k, from_s += step_s) {
-    const name = () => `${out[i].name.replace(/ \d+$/, "")} ${n}`;
-    while (out.some(o => o.name === name())) ++n;
-    out.push(starting_at({...out[i], name: name()}, from_s));
-  }
+  // A stroke that is alone is shown by the name of its take.
+  const step_s = duration_s(strokes[i]) + PAUSE_S, name = strokes[1] ? strokes[i].name : take_name, out = strokes.with(i, {...strokes[i], name});
+  for (; count >= 1 && out.length < MOST_STROKES && from_s + step_s < MOST_S; --count, from_s += step_s)
+    out.push(starting_at({...out[i], name: `${name.replace(/ \d+$/, "")} ${out.length + 1}`}, from_s));
   return out;
 }
 // Copies the stroke that is edited, and edits the copy.
@@ -34,6 +31,7 @@ export function copy_clip(from_s, same) {
   if (!take?.strokes.length) return;
   edit_take(() => ({strokes: with_copies(take, state.stroke, 1, from_s)}), same);
   choose_clip(current_take().strokes.length - 1);
+  return state.stroke;
 }
 export function toggle_append() {
   state.append = !state.append;

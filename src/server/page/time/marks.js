@@ -4,23 +4,18 @@ import {state, changed, current_take, marks} from "../state.js";
 import {colour, font} from "../look.js";
 import {end_s} from "../takes/stroke.js";
 import {seconds_text} from "../words.js";
-import {to_x, LEAST_S} from "./time_axis.js";
+import {to_x, plot, LEAST_S} from "./time_axis.js";
 
 const SNAP_PX = 5;
 
-export function set_marks(change) {
-  state.marks = {...marks(), ...change, take: state.current};
-  changed("curves");
-}
+export function set_marks(change) { state.marks = {...marks(), ...change, take: state.current}; changed("curves"); }
 export const clear_marks = () => set_marks({start_s: 0, range: null});
 export function set_range(a, b) { if (Math.abs(b - a) >= LEAST_S) set_marks({range: [a, b].sort((p, q) => p - q)}); }
 
-// Returns a moment, or what is so near to it that it snaps: the start, an end of a stroke but the one that is moved, a burst.
-export function snapped(l, t, e, moved) {
-  const ends = current_take()?.strokes.flatMap((s, i) => i === moved ? [] : [s.start_s, end_s(s)]) ?? [];
-  const off = v => Math.abs(to_x(l, v) - to_x(l, t)), near = [marks().start_s, ...ends, ...moved >= 0 ? [] : state.plan?.onsets ?? []];
-  return e.altKey ? t : near.filter(v => off(v) <= SNAP_PX).sort((a, b) => off(a) - off(b))[0] ?? t;
-}
+// Returns a moment, or what it is so near to that it snaps: the start, an end of a stroke but the one that is moved, a burst.
+export const snapped = (l, t, e, moved) => e.altKey ? t : [marks().start_s,
+  ...current_take()?.strokes.flatMap((s, i) => i === moved ? [] : [s.start_s, end_s(s)]) ?? [],
+  ...moved >= 0 ? [] : state.plan?.onsets ?? []].find(v => Math.abs(to_x(l, v) - to_x(l, t)) <= SNAP_PX) ?? t;
 
 export function draw_time_marks(p, l) {
   const {start_s, range} = marks(), bottom = l.height - 8, x = to_x(l, start_s);
@@ -33,6 +28,6 @@ export function draw_time_marks(p, l) {
   }
   if (!start_s) return;
   p.strokeStyle = p.fillStyle = colour("ink2"); p.lineWidth = 1; p.setLineDash([2, 3]);
-  p.beginPath(); p.moveTo(x, 14); p.lineTo(x, bottom); p.stroke(); p.setLineDash([]);
-  p.beginPath(); p.moveTo(x, 13); p.lineTo(x + 9, 18); p.lineTo(x, 24); p.fill();
+  plot(p, [x, 14], [x, bottom]); p.stroke(); p.setLineDash([]);
+  plot(p, [x, 13], [x + 9, 18], [x, 24]); p.fill();
 }

@@ -12,10 +12,9 @@ import {set_marks, set_range, clear_marks, snapped} from "./marks.js";
 import {scrub_to, end_scrub} from "./scrub.js";
 
 const REACH = 14;
-const REPEAT_PX = 24; // for each copy
-const DOUBLE_MS = 350;
+const REPEAT_PX = 24, DOUBLE_MS = 350; // for each copy; of two taps
 
-let held = null;
+let held = null, tapped_ms = 0;
 const touching = new Map(); // pointers on the timeline, by id: x, px
 function lane_down(l, e) {
   const r = l.canvas.getBoundingClientRect(), x = e.clientX - r.left, y = e.clientY - r.top, take = current_take();
@@ -26,13 +25,12 @@ function lane_down(l, e) {
   if (most_scroll(l) && y > l.top && y < l.bottom && (x < left(l) || x > l.width - 24))
     return void Object.assign(held, {kind: "scroll", y, from: l.scroll, by: x < left(l) ? -1 : most_scroll(l) / (l.bottom - l.top) + 1});
   if (!l.mini && take) {
-    if (!l.thin && y < l.ruler - 2) return void Object.assign(held, hold_ruler(l, x, e));
+    if (y < l.ruler - 2) return void Object.assign(held, hold_ruler(l, x, e));
     const handle = handles(l).find(h => Math.hypot(h.x - x, h.y - y) < REACH);
     if (handle) return void Object.assign(held, handle);
     if (y >= l.ruler - 2 && y <= l.ruler + CLIP) {
       if (x > to_x(l, total()) + 4) { held = null; return toggle_append(); }
-      const is_under = s => { const [a, b] = clip_box(l, s); return x >= a - 6 && x <= b + 6; };
-      const under = [...take.strokes.keys()].filter(i => is_under(take.strokes[i]));
+      const under = [...take.strokes.keys()].filter(i => { const [a, b] = clip_box(l, take.strokes[i]); return x >= a - 6 && x <= b + 6; });
       if (under.length) {
         const again = under.includes(state.stroke), index = again ? state.stroke : under[0], stroke = take.strokes[index];
         choose_clip(index);
@@ -48,47 +46,38 @@ function lane_down(l, e) {
 function hold_ruler(l, x, e) {
   const is_near = (t, px) => Math.abs(to_x(l, t) - x) < px, {range} = marks();
   const end = range?.findIndex(t => is_near(t, e.pointerType === "touch" ? 22 : 8)) ?? -1;
-  return end < 0 && is_near(state.at_s, 8) ? {ruler: true}
-    : {ruler: true, kind: "range", fixed: end < 0 ? snapped(l, to_time(l, x), e) : range[1 - end]};
+  return {ruler: true, ...!(end < 0 && is_near(state.at_s, 8)) && {kind: "range", fixed: range?.[1 - end] ?? snapped(l, to_time(l, x), e)}};
 }
-let tapped_ms = 0;
-function tap_ruler(t) {
-  if (performance.now() - tapped_ms < DOUBLE_MS) return clear_marks();
-  tapped_ms = performance.now();
+function tap_ruler(t, now = performance.now()) {
+  if (now - tapped_ms < DOUBLE_MS) return clear_marks();
+  tapped_ms = now;
   set_marks({start_s: t});
   look_at(t);
 }
 // Trims a clip at its end, or repeats it where the end is pulled on.
 function pull_end({take, stroke, index, key}, px, t) {
   const end = t < end_s(stroke) ? trimmed(stroke, 0, Math.max(LEAST_S, t - stroke.start_s)) : stroke;
-  const strokes = with_copies({...take, strokes: take.strokes.with(index, end)}, index, px / REPEAT_PX - 1, end_s(stroke) + PAUSE_S);
+  const strokes = with_copies({...take, strokes: take.strokes.with(index, end)}, index, px / REPEAT_PX, end_s(stroke) + PAUSE_S);
   edit_take(() => ({strokes}), key);
   if (strokes[take.strokes.length]) say(`“${strokes[index].name}” × ${strokes.length - take.strokes.length + 1}`);
 }
 function lane_moved(e) {
   if (!held) return;
-  const r = held.l.canvas.getBoundingClientRect(), x = e.clientX - r.left, y = e.clientY - r.top, t = to_time(held.l, x),
-    s = held.stroke;
+  const r = held.l.canvas.getBoundingClientRect(), x = e.clientX - r.left, y = e.clientY - r.top, t = to_time(held.l, x), s = held.stroke;
+  const high = (held.l.height - 8 - y) / (held.l.curves - 20), limited = (v, a, b) => Math.min(b, Math.max(a, v));
   if (held.kind === "zoom") return zoom_lanes(held.l, e.pointerId, x);
   if (held.kind === "scroll") return scroll_to(held.l, held.from + (y - held.y) * held.by);
-  if (held.kind === "strength") {
-    const v = Math.min(1, Math.max(0, (held.l.height - 8 - y) / (held.l.curves - 20)));
-    return set_strength(held.index, v, held.key);
-  }
-  if (held.kind === "speed") return set_speed(held.index, Math.min(5,
-    Math.max(0.1, +((held.l.height - 8 - y) / (held.l.curves - 20) * held.most / held.mean).toFixed(2))), held.key);
+  if (held.kind === "strength") return set_strength(held.index, limited(high, 0, 1), held.key);
+  if (held.kind === "speed") return set_speed(held.index, limited(+(high * held.most / held.mean).toFixed(2), 0.1, 5), held.key);
   if (Math.abs(x - held.x) < 3 && !held.moved) return;
-  const copies = held.alt && !held.moved, d = s && duration_s(s), near = snapped(held.l, t, e);
+  const copies = held.alt && !held.moved && held.kind === "move", near = snapped(held.l, t, e);
   held.moved = true;
   if (held.kind === "look") return scrub_to(near, held.key);
-  if (held.kind === "range") return set_range(held.fixed, Math.min(total(), Math.max(0, near)));
-  if (held.kind === "trim-start") return put_stroke(() => trimmed(s, Math.min(d - LEAST_S, Math.max(0, near - s.start_s)), d), held.key, held.index);
+  if (held.kind === "range") return set_range(held.fixed, limited(near, 0, total()));
   if (held.kind === "trim-end") return pull_end(held, x - held.x, near);
-  if (copies) {
-    copy_clip(s.start_s, held.key);
-    held.index = state.stroke;
-  }
-  put_stroke(k => starting_at(k, snapped(held.l, s.start_s + t - held.t, e, held.index)), held.key, held.index);
+  if (copies) held.index = copy_clip(s.start_s, held.key);
+  put_stroke(held.kind === "trim-start" ? () => trimmed(s, limited(near - s.start_s, 0, duration_s(s) - LEAST_S), duration_s(s))
+    : k => starting_at(k, snapped(held.l, s.start_s + t - held.t, e, held.index)), held.key, held.index);
 }
 // Keeps the moments under two fingers where the fingers are.
 function zoom_lanes(l, id, x) {
