@@ -48,10 +48,9 @@ function draw_layer(l) {
     p.fillStyle = colour("ink3");
     p.beginPath(); p.roundRect(l.width - 9, l.top + room * l.scroll / (most + room), 4, room * room / (most + room), 2); p.fill();
   }
-  if (l.mini) return;
-  if (!state.drawing) { draw_clips(p, l); draw_curves(p, l); }
-  if (!l.thin) draw_time_marks(p, l);
-  place_clips(l);
+  if (!l.mini && !state.drawing) { draw_clips(p, l); draw_curves(p, l); }
+  draw_time_marks(p, l);
+  if (!l.mini) place_clips(l);
 }
 function draw_ruler(p, l, bottom) {
   const s = shown(l), step = [0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 30, 60,
@@ -83,8 +82,7 @@ function draw_bars(p, l, h, top, lanes) {
     p.fillStyle = viridis(onset / all, is_dark());
     if (l.thin) { p.globalAlpha = 0.25 + 0.75 * Math.min(1, a);
       p.fillRect(x, y - h * 0.8, w - (w > 3 ? 0.5 : 0), Math.max(1, h * 0.6)); p.globalAlpha = 1; return; }
-    const tall = Math.min(1, a) * (h - 3);
-    const ramp = Math.min(w * 0.2, 6);
+    const tall = Math.min(1, a) * (h - 3), ramp = Math.min(w * 0.2, 6);
     if (state.shape === "tactile-brush")
       return plot(p, [x, y - 1], [x + ramp, y - 1 - tall], [x + w - ramp, y - 1 - tall], [x + w, y - 1]), p.fill();
     p.fillRect(x, y - 1 - tall, w - (w > 3 && !plan.continuous ? 0.75 : -0.3), tall);
