@@ -57,6 +57,20 @@ class Stop(StudioTest):
         p.until("document.querySelector('#stop').textContent.startsWith('Stop') && !document.querySelector('#stop').dataset.state")
         self.assertEqual(p.value("sent.filter(([m]) => m === 'stop').length"), 1)
 
+    def test_media_keys_stop(self):
+        s = self.serve()
+        p = self.open(s)
+        p.call("Page.addScriptToEvaluateOnNewDocument", source="globalThis.media_keys = {}; "
+               "MediaSession.prototype.setActionHandler = (key, f) => { media_keys[key] = f; }")
+        p.reload()
+        self.await_service(p)
+        c = s.client()
+        for key in ("pause", "stop"):
+            number = c.ok("play", toml=LONG)["stroke"]
+            c.stroke(number, "started")
+            p.value(f"media_keys.{key}({{action: '{key}'}})")
+            self.assertEqual(c.await_end(number)["state"], "cancelled")
+
     def test_escape_stops_where_nothing_is_open(self):
         p, watcher, number = self.begin(fingers=False)
         p.click("#device")
@@ -141,6 +155,14 @@ class Play(StudioTest):
         self.play(p, watcher)
         p.until(f"{loudest} > -80")
         self.assertLess(p.value(loudest), -45)
+
+    def test_a_touch_of_the_knob_binds_no_later_key(self):
+        p, _ = self.ready(self.serve())
+        p.value("(tactor.state.level_db = -20, tactor.changed('level'), 0)")
+        p.until("document.querySelector('#level output').textContent.startsWith('10 %')")
+        p.click("#level input")
+        p.key("End")
+        p.until("tactor.state.level_db === 0")
 
     def test_another_take_that_is_chosen_stands_still(self):
         p, watcher = self.ready(self.serve())

@@ -73,7 +73,10 @@ on("new-take", () => { new_take(); say("Draw a new take"); });
 on("zoom-in", () => zoom(1.3));
 on("zoom-out", () => zoom(1 / 1.3));
 on("zoom-all", look_at_all);
-on("loop", () => { state.loop = !state.loop; changed("playing"); });
+on("loop", () => { state.loop = !state.loop; changed("playing", "curves"); });
+on("scrub", () => { state.scrub = !state.scrub; changed("tool"); });
+// The keys of a headset and of a screen that is locked.
+for (const key of ["pause", "stop"]) navigator.mediaSession?.setActionHandler(key, stop);
 on("speaker", () => {
   state.speaker = !state.speaker;
   if (state.speaker) say("Play is heard on this computer's own loudspeakers; they must not be the array's card");
@@ -115,6 +118,7 @@ on_change(() => {
   show_stop();
   by_id("loop").setAttribute("aria-pressed", state.loop);
   by_id("speaker").setAttribute("aria-pressed", state.speaker);
+  by_id("scrub").setAttribute("aria-pressed", state.scrub);
   by_id("show-speed").setAttribute("aria-pressed", state.show_speed);
   by_id("show-strength").setAttribute("aria-pressed", state.show_strength);
   by_id("feel").setAttribute("aria-checked", state.feel);

@@ -23,7 +23,8 @@ export const state = {
   outside: [],           // places of strokes that are farthest from the array
   shape: "park2016",     // of the bars: the take's algorithm
   playing: null,         // {began_ms, total_s, numbers, felt, loop}
-  at_s: 0, loop: false, speaker: false, hot: -1,
+  at_s: 0, loop: false, speaker: false, scrub: true, hot: -1,
+  marks: {},             // on the time axis: {take, start_s, range: [from, until] or null}
   tab: "method", sheet: "", show_speed: true, show_strength: true,
 };
 
@@ -56,6 +57,7 @@ export const remembered = name => { try { return localStorage.getItem(`tactor-${
 export function remember(name, v) { try { localStorage.setItem(`tactor-${name}`, v); } catch { /* for this visit only */ } }
 
 export const current_take = () => state.takes.find(t => t.id === state.current) ?? null;
+export const marks = () => state.marks.take === state.current ? state.marks : {start_s: 0};
 // The stroke of the take that is edited.
 export const current_stroke = () => current_take()?.strokes[state.stroke] ?? null;
 export const ceiling_dbfs = () => state.hello?.max_level_dbfs ?? -12;

@@ -15,7 +15,7 @@ const HOLD_MS = 500;
 const LEAST_STEP_MS = 2;   // between points that are sent
 const REACH_PX = 22;
 const LINE_MM_S = 60;
-const PAUSE_S = 0.1;       // between strokes of a take that were drawn one after the other
+export const PAUSE_S = 0.1; // between strokes of a take that were drawn, or copied, one after the other
 const NAMES = {mouse: "drawn", touch: "drawn", pen: "drawn with a pen", key: "drawn with keys"};
 
 const field = by_id("field");
@@ -94,7 +94,7 @@ function record(f, mm, at_ms) {
 }
 
 // Live strokes: what is drawn is felt.
-function begin_live(f) {
+export function begin_live(f) {
   tell_level();
   const o = request_options({options: current_take()?.options}, ceiling_dbfs());
   if (o.algorithm === "tactile-brush") o.algorithm = "continuous"; // it has to know the end first
@@ -106,7 +106,7 @@ function begin_live(f) {
     if (!f.track.down) tell("end", {stroke: f.number});
   }, e => { if (!f.refused) say(e.message); f.refused = true; });
 }
-function send(f, at_ms, always = false) {
+export function send(f, at_ms, always = false) {
   if (f.number === null || (!always && at_ms - f.sent_ms < LEAST_STEP_MS)) return;
   f.sent_ms = at_ms;
   tell("to", {stroke: f.number, x_mm: f.at[0], y_mm: f.at[1],

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Plays takes, tests tactors, stops; and says where the moment is.
-import {state, changed, on_change, current_take, ceiling_dbfs, take_gain, say} from "../state.js";
+import {state, changed, on_change, current_take, ceiling_dbfs, take_gain, marks, say} from "../state.js";
 import {call, tell, is_connected, server_now_s, from_server_ms, on_notification, on_lost, SLOW_MS} from "./connection.js";
-import {make_request, take_s, take_from} from "../takes/takes.js";
+import {make_request, take_s, take_part} from "../takes/takes.js";
 import {weaken_take} from "./planner.js";
 import {start_loudspeaker} from "./loudspeaker.js";
 
@@ -12,20 +12,32 @@ const STOP_AGAIN_MS = 500; // between stops that are not answered
 const ended = new Set();  // numbers whose end came before the answer that named them
 let speaker = null;
 
+// Returns what Play plays: the range, or all from the start on.
+const part_to_play = () => { const [from_s, until_s] = marks().range ?? [marks().start_s]; return {from_s, until_s}; };
+// Returns a round of a take: a part of it, how long that is, and how long it is silent at first (Infinity: always).
+const make_round = (take, {from_s, until_s = Infinity}) => ({from_s, until_s, total_s: Math.min(until_s, take_s(take)) - from_s,
+  lead_s: Math.min(...take_part(take, from_s, until_s).strokes.map(s => s.start_s))});
+async function ask_for(p, round, start) {
+  const take = take_part(state.takes.find(t => t.id === p.take), round.from_s, round.until_s);
+  const r = await call("play", {...make_request(take, ceiling_dbfs()), start});
+  Object.assign(round, {number: r.stroke, sound_s: r.total_s, total_s: Math.max(r.total_s, round.total_s)});
+  return r.strokes;
+}
+
 // Plays the take, from a moment on if it is said.
-export async function play({from_s = 0} = {}) {
+export async function play(part = part_to_play()) {
   const take = current_take();
   if (!take?.strokes.length) return;
+  const round = make_round(take, part);
+  if (round.lead_s === Infinity) return say("Nothing plays in this part of the time");
   // It begins anew: copies of it never add up.
   end_round(state.playing);
   silence_speaker();
   const felt = is_connected() && !["lost", "muted", "closing"].includes(state.stream.state);
   state.stopped = null;
-  state.playing = {take: take.id, began_ms: performance.now(), total_s: (state.plan?.total_s ?? take_s(take)) - from_s, numbers: new Set(),
-    felt, from_s};
-  state.at_s = from_s;
-  if (felt) await ask_to_play(); else say(state.link === "connected"
-    ? "No card: shown, not felt" : "No connection: shown, not felt");
+  state.playing = {take: take.id, began_ms: performance.now(), numbers: new Set(), felt, waits: felt, again: part_to_play(), ...round};
+  state.at_s = round.from_s;
+  if (felt) await ask_to_play(); else say(state.link === "connected" ? "No card: shown, not felt" : "No connection: shown, not felt");
   if (!felt) hear_it();
   changed("playing");
 }
@@ -45,13 +57,12 @@ async function ask_to_play() {
   const own = state.playing, take = state.takes.find(t => t.id === own.take);
   try {
     tell_level();
-    const r = await call("play", make_request(take_from(take, own.from_s), ceiling_dbfs()));
-    if (state.playing !== own) return cancel_strokes(r.strokes);
-    own.total_s = r.total_s;
-    own.numbers = new Set(r.strokes.filter(n => !ended.has(n)));
+    // Without a start the service leaves out the silence before the first stroke.
+    const strokes = await ask_for(own, own, own.lead_s ? {delay_s: 0} : "now");
+    if (state.playing !== own) return cancel_strokes(strokes);
+    own.began_ms = performance.now();
+    own.numbers = new Set(strokes.filter(n => !ended.has(n)));
     ended.clear();
-    own.next = null;
-    own.waits = true; // until it sounds
   } catch (e) {
     if (state.playing !== own) return;
     // Strokes of several fingers add up: the take is played as strong as it may be.
@@ -74,14 +85,15 @@ export function tick() {
   const p = state.playing;
   if (!p) return;
   const t = (performance.now() - p.began_ms) / 1000;
-  if (is_shown(p)) state.at_s = p.from_s + (p.waits ? 0 : Math.max(0, Math.min(p.total_s, t)));
-  if (state.loop && p.felt && !p.waits && !p.next && t > p.total_s - AHEAD_S && p.numbers.size) next_round(p);
+  if (is_shown(p)) state.at_s = p.from_s + Math.max(0, Math.min(p.waits ? p.lead_s : p.total_s, t));
+  if (state.loop && p.felt && !p.waits && !p.next && t > p.total_s - AHEAD_S) next_round(p);
   if (t < p.total_s || p.waits) return;
-  if (p.next) return;
-  if (state.loop && !p.felt) {
-    Object.assign(p, {began_ms: p.began_ms + p.total_s * 1000, total_s: p.total_s + p.from_s, from_s: 0});
+  const round = p.next?.number ? p.next : state.loop && !p.felt && round_after(p);
+  if (round) {
+    Object.assign(p, {began_ms: p.began_ms + p.total_s * 1000, waits: p.felt && !round.began_ms}, round, {next: null});
     return hear_it();
   }
+  if (p.next) return;
   if (p.felt && p.numbers.size && t < p.total_s + 1) return; // its end is told
   end_playing();
 }
@@ -91,16 +103,22 @@ function end_round(p) {
   cancel_strokes([...p.numbers]);
   p.numbers.clear();
 }
-async function next_round(p) {
+// Returns what plays next; the marks may have changed meanwhile.
+function round_after(p) {
   const take = state.takes.find(t => t.id === p.take);
-  if (!take) return;
+  if (is_shown(p)) p.again = part_to_play();
+  return take && make_round(take, p.again);
+}
+async function next_round(p) {
+  const round = round_after(p);
+  if (!round) return;
   p.next = true;
   const at = Math.max(server_now_s() + 0.05, server_now_s() + p.total_s - (performance.now() - p.began_ms) / 1000);
   try {
-    const r = await call("play", {...make_request(take, ceiling_dbfs()), start: {monotonic_s: at}});
-    if (state.playing !== p) return cancel_strokes(r.strokes);
-    r.strokes.forEach(n => p.numbers.add(n));
-    p.next = {number: r.stroke, total_s: r.total_s};
+    const strokes = await ask_for(p, round, {monotonic_s: at});
+    if (state.playing !== p) return cancel_strokes(strokes);
+    strokes.forEach(n => p.numbers.add(n));
+    p.next = round;
   } catch { p.next = null; state.loop = false; changed("playing"); }
 }
 
@@ -108,12 +126,10 @@ on_notification("stroke", s => {
   const p = state.playing;
   if (s.state === "started") {
     if (p?.numbers.has(s.stroke) && s.started_s !== null) {
-      const is_next = !p.waits && p.next?.number === s.stroke;
-      if (is_next) Object.assign(p, {total_s: p.next.total_s, next: null, from_s: 0});
-      if (p.waits || is_next) {
-        Object.assign(p, {began_ms: from_server_ms(s.started_s), waits: false});
-        hear_it();
-      }
+      // It is told before it is heard: the round before goes on until its end.
+      const round = p.waits ? p : p.next?.number === s.stroke && p.next;
+      if (round) round.began_ms = from_server_ms(s.started_s) - round.lead_s * 1000;
+      if (p.waits) { p.waits = false; tick(); hear_it(); }
       changed("playing");
     }
     return;
@@ -122,7 +138,7 @@ on_notification("stroke", s => {
     if (s.state !== "finished") {
       if (s.state === "interrupted") { state.fault = `The stroke was interrupted: ${s.reason}`; changed("link"); }
       end_playing();
-    } else if (!p.numbers.size && !(state.loop && p.next)) {
+    } else if (!p.numbers.size && p.total_s === p.sound_s && !(state.loop && p.next)) {
       if (is_shown(p)) state.at_s = p.from_s + p.total_s;
       end_playing();
     }
@@ -175,8 +191,7 @@ export function on_stop(f) { lift_fingers = f; }
 export function test_tactor(i) {
   if (!is_connected()) return say("No connection: nothing is driven");
   tell_level();
-  call("drive", {tactor: i, duration_s: TEST_S})
-    .then(() => say(`Tactor ${i}, ${TEST_S} s`), e => say(e.message));
+  call("drive", {tactor: i, duration_s: TEST_S}).then(() => say(`Tactor ${i}, ${TEST_S} s`), e => say(e.message));
 }
 
 // Plays on this computer's loudspeakers where that is asked for.

@@ -13,6 +13,7 @@ import {duration_s, length_mm, with_duration, rebuild, find_speeds, editable, tr
 import {set_strength, strengths, set_speed} from "../time/curves.js";
 import {row, value, algorithm} from "./values.js";
 import {LEAST_S, MOST_S} from "../time/time_axis.js";
+import {starting_at} from "../time/clips.js";
 
 // Tabs of the headings of the table.
 const TABS = {Place: "method", Timing: "timing", Sound: "vibration", Level: "vibration", Stroke: "timing"};
@@ -101,7 +102,7 @@ function stroke_controls() {
   const own = f => current_stroke() ? text(f(current_stroke())) : "";
   const list = [
     entry({label: "Starts at", unit: "s", numeric: true, get: () => own(s => s.start_s),
-      set: v => put_stroke(s => ({...s, start_s: Math.max(0, v ?? 0)}))}),
+      set: v => put_stroke(s => starting_at(s, v ?? 0))}),
     entry({label: "Cut off its start", unit: "s", numeric: true, get: () => "", hint: "0", set: v => v > 0
       && put_stroke(s => trimmed(s, Math.min(v, duration_s(s) - LEAST_S), duration_s(s)))}),
     entry({label: "Cut off its end", unit: "s", numeric: true, get: () => "", hint: "0", set: v => v > 0

@@ -7,10 +7,13 @@ import {undo, redo, choose_take} from "../takes/takes.js";
 import {look_at_all, zoom} from "../drawing/view.js";
 import {show_all_time, zoom_time} from "../time/time_axis.js";
 import {step_burst} from "../time/lanes.js";
+import {copy_clip} from "../time/clips.js";
+import {clear_marks} from "../time/marks.js";
 import {remove_point} from "../drawing/pointer.js";
 
 const KEYS = [["Space", "stop everything"], ["P, Shift P", "play, play from here"], ["L", "loop"], ["D, S, E", "draw, straight line, edit points"],
-  ["F", "feel on or off"], ["N", "new take"], ["0, +, −", "show all, larger, smaller"], ["T", "timeline: open, close"], ["[, ], Z", "more time, less time, all of it"],
+  ["F", "feel on or off"], ["N", "new take"], ["0, +, −", "show all, larger, smaller"], ["T", "timeline: open, close"], ["J", "scrub is felt"],
+    ["Enter, Shift Enter", "in the timeline: start, range"], ["Shift Home", "clear both"], ["Ctrl D", "copy the stroke"], ["[, ], Z", "more time, less time, all of it"],
   [", .", "one burst back, on"], ["Ctrl Z, Ctrl Shift Z", "undo, redo"], ["Delete", "delete the point"],
     ["Enter, arrows", "in the array: touch and lift, move"], ["Tab, arrows, Enter", "with Points: next point, move it (shift: less), curve or corner"],
     ["Esc", "close; where nothing is open, stop"]];
@@ -25,7 +28,7 @@ export function new_take() {
 }
 const ACTIONS = {
   p: e => play(e.shiftKey ? {from_s: state.at_s} : undefined), l: press("loop"), d: () => choose_tool("draw"), s: () => choose_tool("line"), e: () => choose_tool("points"),
-    f: press("feel"), n: new_take,
+    f: press("feel"), j: press("scrub"), n: new_take,
   0: () => { look_at_all(); show_all_time(); }, "+": () => zoom(1.3), "=": () => zoom(1.3), "-": () => zoom(1 / 1.3),
   t: () => fold_time(), "[": () => zoom_time(1.5), "]": () => zoom_time(1 / 1.5), z: show_all_time,
   ",": () => step_burst(-1), ".": () => step_burst(1),
@@ -73,12 +76,15 @@ addEventListener("keyup", e => { if ((e.code === "Space" || e.key === " ") && !i
   e.stopImmediatePropagation(); } }, {capture: true});
 addEventListener("keydown", e => {
   if (is_text(e.target)) return;
-  if ((e.ctrlKey || e.metaKey) && e.key.toLowerCase() === "z") { e.preventDefault(); if (e.shiftKey) redo(); else undo(); return;
-    }
-  if ((e.ctrlKey || e.metaKey) && e.key.toLowerCase() === "y") { e.preventDefault(); redo(); return; }
-  if (e.ctrlKey || e.metaKey || e.altKey) return;
-  if ((e.key === "Delete" || e.key === "Backspace") && state.tool === "points" && state.knot >= 0) { e.preventDefault();
-    remove_point(); return; }
+  if (e.ctrlKey || e.metaKey) {
+    const edit = {z: e.shiftKey ? redo : undo, y: redo, d: () => copy_clip()}[e.key.toLowerCase()];
+    if (edit) e.preventDefault();
+    return edit?.();
+  }
+  if (e.altKey) return;
+  if (e.shiftKey && e.key === "Home") return clear_marks();
+  if ((e.key === "Delete" || e.key === "Backspace") && state.tool === "points" && state.knot >= 0) {
+    e.preventDefault(); return remove_point(); }
   if (e.key === "Escape") return leave(e);
   const f = ACTIONS[e.key.toLowerCase()];
   if (!f) return;

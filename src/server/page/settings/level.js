@@ -9,14 +9,15 @@ import {number_text} from "../words.js";
 const MOST_JUMP_DB = 3; // of a tap above the knob; to go further it is dragged
 
 let tapped = false;
-const level = slider({label: "Level", least: LEAST_LEVEL_DB, most: 0, step: 0.5, get: () => state.level_db,
-  set: v => {
+const level = slider({label: "Level", least: LEAST_LEVEL_DB, most: 0, step: 0.5, get: () => state.level_db, set: v => {
     state.level_db = tapped ? Math.min(v, state.level_db + MOST_JUMP_DB) : v;
     tapped = false;
     changed("level");
   },
   text: v => [`${Math.round(100 * 10 ** (v / 20))} %`, v === 0 ? "0 dB" : `${number_text(v)} dB`]});
 level.input.addEventListener("pointerdown", () => { tapped = true; });
+// The browser tells what a finger has tapped after it is up.
+for (const end of ["click", "keydown"]) level.input.addEventListener(end, () => { tapped = false; });
 const bar = make("i"), meter = make("div", {class: "meter", "aria-hidden": "true"}, bar);
 level.element.append(meter);
 by_id("level").prepend(level.element);

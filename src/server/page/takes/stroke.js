@@ -431,8 +431,8 @@ const max = list => list.reduce((a, b) => Math.max(a, b), -Infinity);
 // TOML and CSV of strokes.
 const quoted = text => `"${String(text).replace(/[\u0000-\u001f\u007f]/g, " ").replace(/[\\"]/g, "\\$&")}"`;
 export function strokes_toml(strokes) {
-  const ordered = [...strokes].sort((a, b) => a.start_s - b.start_s), first = ordered[0]?.start_s ?? 0;
-  return ordered.map(s => `[[stroke]]\nname = ${quoted(s.name)}\nstart_s = ${+(s.start_s - first).toFixed(4)}\nstart_from = "piece"\n` +
+  const ordered = [...strokes].sort((a, b) => a.start_s - b.start_s);
+  return ordered.map(s => `[[stroke]]\nname = ${quoted(s.name)}\nstart_s = ${+s.start_s.toFixed(4)}\nstart_from = "piece"\n` +
     `timed = [${s.timed.map(p => `[${p.join(", ")}]`).join(", ")}]\n`).join("\n");
 }
 export const stroke_csv = s => "t_s,x_mm,y_mm,intensity\n" + s.timed.map(p => p.join(",")).join("\n") + "\n";

@@ -3,7 +3,7 @@
 // that all can be undone.
 import {state, changed, current_take, level_dbfs, say} from "../state.js";
 import {put_takes, keep_current, find_take, all_takes, new_id} from "./keeping.js";
-import {total_s, end_s, trimmed, strokes_toml, fitted, editable} from "./stroke.js";
+import {total_s, duration_s, trimmed, strokes_toml, fitted, editable} from "./stroke.js";
 
 const LEAST_REST_S = 0.05; // of a stroke that is played from within
 const MOST_STEPS = 300, MOST_UNDO_BYTES = 8 << 20; // of undo
@@ -109,9 +109,12 @@ export function fit_take(edge) {
   edit_take(t => ({strokes: fitted(t.strokes, edge)}));
   say("Fitted", undo);
 }
-// Returns the rest of a take from a moment on.
-export const take_from = (take, s) => s <= 0 ? take : {...take, strokes: take.strokes.filter(k => end_s(k) > s + LEAST_REST_S)
-  .map(k => k.start_s >= s ? {...k, start_s: k.start_s - s} : {...trimmed(k, s - k.start_s, end_s(k) - k.start_s), start_s: 0})};
+// Returns what a take has from one moment until another; its time begins there.
+export const take_part = (take, from_s, until_s) => ({...take, strokes: take.strokes.flatMap(k => {
+  const d = duration_s(k), a = Math.max(0, from_s - k.start_s), b = Math.min(d, until_s - k.start_s);
+  if (b - a < Math.min(LEAST_REST_S, d)) return [];
+  return {...a > 0 || b < d ? trimmed(k, a, b) : k, start_s: Math.max(0, k.start_s - from_s)};
+})});
 export const take_s = t => t ? total_s(t.strokes) : 0;
 
 // Makes what the service plays, plans and writes: the same for all three.

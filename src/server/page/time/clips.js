@@ -2,17 +2,36 @@
 // Buttons of the strokes in time, for the keyboard: they lie over the drawn clips, and pointers go through them to the canvas.
 import {state, changed, current_take, say} from "../state.js";
 import {by_id, make} from "../../../net/page/dom.js";
-import {put_stroke, end_edit} from "../takes/takes.js";
-import {duration_s} from "../takes/stroke.js";
+import {put_stroke, edit_take, end_edit} from "../takes/takes.js";
+import {duration_s, total_s} from "../takes/stroke.js";
+import {PAUSE_S} from "../drawing/pointer.js";
 import {seconds_text} from "../words.js";
-import {clip_box, to_x, total, CLIP} from "./time_axis.js";
+import {clip_box, to_x, total, CLIP, MOST_S} from "./time_axis.js";
 
 const MOVE_S = 0.1, FINE_MOVE_S = 0.01;
+const MOST_STROKES = 32; // two rounds of a loop are within the service's limit
 const clips_box = by_id("clips");
 
 export function choose_clip(i) {
   if (i !== state.stroke) Object.assign(state, {stroke: i, knot: -1});
   changed("take");
+}
+export const starting_at = (s, t) => ({...s, start_s: +Math.min(MOST_S - duration_s(s), Math.max(0, t)).toFixed(3)});
+// Returns the strokes of a take, and copies of stroke i behind each other from a moment on.
+export function with_copies({name: take_name, strokes}, i, count, from_s = total_s(strokes) + PAUSE_S) {
+  // A stroke that is alone is shown by the name of its take.
+  const step_s = duration_s(strokes[i]) + PAUSE_S, name = strokes[1] ? strokes[i].name : take_name, out = strokes.with(i, {...strokes[i], name});
+  for (; count >= 1 && out.length < MOST_STROKES && from_s + step_s < MOST_S; --count, from_s += step_s)
+    out.push(starting_at({...out[i], name: `${name.replace(/ \d+$/, "")} ${out.length + 1}`}, from_s));
+  return out;
+}
+// Copies the stroke that is edited, and edits the copy.
+export function copy_clip(from_s, same) {
+  const take = current_take();
+  if (!take?.strokes.length) return;
+  edit_take(() => ({strokes: with_copies(take, state.stroke, 1, from_s)}), same);
+  choose_clip(current_take().strokes.length - 1);
+  return state.stroke;
 }
 export function toggle_append() {
   state.append = !state.append;
@@ -23,7 +42,7 @@ const clip_button = i => make("button", {type: "button", onclick: () => choose_c
   const step = {ArrowLeft: -1, ArrowRight: 1}[e.key];
   if (!step) return;
   e.preventDefault();
-  put_stroke(s => ({...s, start_s: Math.max(0, +(s.start_s + step * (e.shiftKey ? FINE_MOVE_S : MOVE_S)).toFixed(3))}), `clip key ${i}`, i);
+  put_stroke(s => starting_at(s, s.start_s + step * (e.shiftKey ? FINE_MOVE_S : MOVE_S)), `clip key ${i}`, i);
 }});
 const add_button = make("button", {type: "button", onclick: toggle_append, "aria-label": "Add the next drawing to this take"});
 

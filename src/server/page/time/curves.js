@@ -2,7 +2,7 @@
 // Speed and strength along the strokes: as asked for, as felt, and the points by which they are changed.
 import {state, current_take, current_stroke} from "../state.js";
 import {colour, font} from "../look.js";
-import {left, right, to_x} from "./time_axis.js";
+import {left, right, to_x, plot} from "./time_axis.js";
 import {edit_stroke} from "../takes/takes.js";
 import {editable, rebuild, interpolate, duration_s, find_speeds, length_mm, parts_reached, kept_for} from "../takes/stroke.js";
 
@@ -14,11 +14,10 @@ export function draw_curves(p, l) {
   if (!take?.strokes.length || !l.curves) return;
   const most = most_speed(take), y_speed = v => bottom - Math.min(1, v / most) * (bottom - top - 12);
   p.strokeStyle = colour("line2"); p.lineWidth = 1;
-  p.beginPath(); p.moveTo(left(l), bottom + 0.5); p.lineTo(l.width - right(l), bottom + 0.5); p.stroke();
+  plot(p, [left(l), bottom + 0.5], [l.width - right(l), bottom + 0.5]); p.stroke();
   p.font = font(11);
   p.textAlign = "right"; p.fillStyle = colour("ink3");
   p.fillText(`${Math.round(most)} mm/s`, l.width - 4, top + 16); p.fillText("0", l.width - 4, bottom);
-  p.textAlign = "right";
   [["speed", "ink", state.show_speed], ["as felt", "felt-ink", state.show_speed],
     ["strength", "ink2", state.show_strength]].forEach(([w, c, on], i) => {
     if (on) { p.fillStyle = colour(c); p.fillText(w, left(l) - 8, top + 16 + 15 * i); }
@@ -56,8 +55,7 @@ const speeds_felt = kept_for(plan => plan.felt_rows.map(felt => {
 export const felt_speeds = plan => plan ? speeds_felt(plan) : [];
 function draw_speed(p, l, s, i, y) {
   const line = (rows, from, tone) => {
-    p.beginPath();
-    rows.forEach(([t, v], k) => { const x = to_x(l, from + t); if (k) p.lineTo(x, y(v)); else p.moveTo(x, y(v)); });
+    plot(p, ...rows.map(([t, v]) => [to_x(l, from + t), y(v)]));
     p.strokeStyle = colour(tone); p.lineWidth = 1.5; p.lineJoin = "round"; p.stroke();
   };
   line(felt_speeds(state.plan)[i] ?? [], 0, "felt");
@@ -82,11 +80,8 @@ const y_strength = (v, top, bottom) => bottom - v * (bottom - top - 12);
 // Returns when a part of the path is reached, as a part of the time.
 const reached = (s, part) => interpolate(s.pace.kind === "even" ? [[0, 0], [1, 1]] : parts_reached(s.timed), part)[1];
 function draw_strength(p, l, s, top, bottom) {
-  p.beginPath();
-  s.timed.length > 400 ? Array.from({length: 200}, (_, k) => interpolate(s.timed,
-    duration_s(s) * k / 199)).forEach(step) : s.timed.forEach(step);
-  function step(q, k) { const x = to_x(l, s.start_s + q[0]), y = y_strength(Math.min(1, q[3] ?? 1), top, bottom);
-    if (k) p.lineTo(x, y); else p.moveTo(x, y); }
+  const rows = s.timed.length > 400 ? Array.from({length: 200}, (_, k) => interpolate(s.timed, duration_s(s) * k / 199)) : s.timed;
+  plot(p, ...rows.map(q => [to_x(l, s.start_s + q[0]), y_strength(Math.min(1, q[3] ?? 1), top, bottom)]));
   p.setLineDash([1, 4]); p.lineCap = "round"; p.strokeStyle = colour("ink2"); p.lineWidth = 2; p.stroke(); p.setLineDash([]);
 }
 function draw_handles(p, l) {
@@ -98,18 +93,12 @@ function draw_handles(p, l) {
 }
 
 export function set_strength(index, v, key) {
-  edit_stroke(s => {
-    const points = strength_points(s).map((q, i) => i === index ? [q[0], +v.toFixed(3)] : q);
-    return rebuild({...s, strength: points});
-  }, key);
+  edit_stroke(s => rebuild({...s, strength: strength_points(s).map((q, i) => i === index ? [q[0], +v.toFixed(3)] : q)}), key);
 }
 export function strengths() {
   const s = current_stroke();
   return s ? strength_points(editable(s)) : [];
 }
 export function set_speed(index, v, key) {
-  edit_stroke(s => {
-    const speeds = find_speeds(s.pace).map((q, i) => i === index ? [q[0], v] : q);
-    return rebuild({...s, pace: {kind: "points", speeds}});
-  }, key);
+  edit_stroke(s => rebuild({...s, pace: {kind: "points", speeds: find_speeds(s.pace).map((q, i) => i === index ? [q[0], v] : q)}}), key);
 }

@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: MIT
 // Lanes that show who plays when: a ruler, the strokes as clips, a lane for each tactor. The lanes are drawn again only when something
 // has changed; the moment is drawn over them each frame.
-import {state, current_take} from "../state.js";
+import {state, current_take, marks} from "../state.js";
 import {colour, is_dark, font} from "../look.js";
 import {array} from "../drawing/view.js";
 import {viridis} from "../../../net/page/viridis.js";
-import {full, mini, total, shown, left, right, to_x, clip_box, lane_tactors, silent_count, lane_height, most_scroll, CLIP, LEAST_AMPLITUDE} from "./time_axis.js";
+import {full, mini, total, shown, left, right, to_x, clip_box, lane_tactors, plot, silent_count, lane_height, most_scroll, CLIP, LEAST_AMPLITUDE} from "./time_axis.js";
 import {draw_curves} from "./curves.js";
 import {place_clips} from "./clips.js";
+import {draw_time_marks} from "./marks.js";
 import {end_s} from "../takes/stroke.js";
 import {look_at} from "../service/player.js";
 import {seconds_text} from "../words.js";
@@ -28,13 +29,12 @@ function draw_layer(l) {
     if (l.thin) { p.fillStyle = colour("well"); p.fillRect(left(l), y - h * 0.8, end - left(l), Math.max(1, h * 0.6)); return; }
     p.strokeStyle = colour(i === state.hot ? "ink2" : "grid");
     p.lineWidth = 1;
-    p.beginPath(); p.moveTo(left(l), y - 0.5); p.lineTo(end, y - 0.5); p.stroke();
+    plot(p, [left(l), y - 0.5], [end, y - 0.5]); p.stroke();
     p.textAlign = "right";
     p.fillStyle = colour(i === state.hot ? "ink" : "ink2");
     p.font = font(12, i === state.hot ? 700 : 600);
-    const number = String(array.tactors[i].tactor ?? i);
+    const number = String(array.tactors[i].tactor ?? i), x = left(l) - 12 - p.measureText(number).width;
     p.fillText(number, left(l) - 8, y - 2);
-    const x = left(l) - 12 - p.measureText(number).width;
     if (row === 0) { p.font = font(11); p.fillText("tactor", x, y - 2); }
   });
   if (silent_count() && !l.thin) {
@@ -48,9 +48,9 @@ function draw_layer(l) {
     p.fillStyle = colour("ink3");
     p.beginPath(); p.roundRect(l.width - 9, l.top + room * l.scroll / (most + room), 4, room * room / (most + room), 2); p.fill();
   }
-  if (l.mini) return;
-  if (!state.drawing) { draw_clips(p, l); draw_curves(p, l); }
-  place_clips(l);
+  if (!l.mini && !state.drawing) { draw_clips(p, l); draw_curves(p, l); }
+  draw_time_marks(p, l);
+  if (!l.mini) place_clips(l);
 }
 function draw_ruler(p, l, bottom) {
   const s = shown(l), step = [0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 30, 60,
@@ -60,8 +60,9 @@ function draw_ruler(p, l, bottom) {
   for (let i = Math.ceil(l.from / step); i * step <= l.from + s; ++i) {
     const x = to_x(l, i * step);
     p.strokeStyle = colour("grid"); p.lineWidth = 1;
-    p.beginPath(); p.moveTo(x, l.ruler); p.lineTo(x, bottom); p.stroke();
+    plot(p, [x, l.ruler], [x, bottom]); p.stroke();
     p.fillStyle = colour("ink2");
+    if (marks().range?.some(t => Math.abs(to_x(l, t) - x) < 26)) continue;
     p.fillText(`${(i * step).toFixed(step < 0.1 ? 2 : step < 1 ? 1 : 0)}${i === 0 ? " s" : ""}`, x, 12);
   }
   const until = to_x(l, Math.min(total(), l.from + s)), from = to_x(l, l.from);
@@ -74,26 +75,21 @@ function draw_bars(p, l, h, top, lanes) {
   const plan = state.plan, t = plan.tactors, n = plan.onsets.length, row = new Map(lanes.map((k, i) => [k, i]));
   const from = l.from, to = l.from + shown(l), all = plan.total_s || 1;
   // Draws the largest burst of each pixel where they are narrower than that.
-  const merged = n * 2 > (l.width - left(l)) && !plan.continuous && (l.width / n < 1.5);
-  const rows = merged ? merged_rows(l, plan, t) : null;
+  const rows = !plan.continuous && l.width / n < 1.5 && merged_rows(l, plan, t);
   const one = (onset, seconds, k, a) => {
     if (a < LEAST_AMPLITUDE) return;
     const x = to_x(l, onset), w = Math.max(0.75, to_x(l, onset + seconds) - x), y = top + (row.get(k) + 1) * h;
     p.fillStyle = viridis(onset / all, is_dark());
     if (l.thin) { p.globalAlpha = 0.25 + 0.75 * Math.min(1, a);
       p.fillRect(x, y - h * 0.8, w - (w > 3 ? 0.5 : 0), Math.max(1, h * 0.6)); p.globalAlpha = 1; return; }
-    const tall = Math.min(1, a) * (h - 3);
-    if (state.shape === "tactile-brush") {
-      const ramp = Math.min(w * 0.2, 6);
-      p.beginPath(); p.moveTo(x, y - 1); p.lineTo(x + ramp, y - 1 - tall); p.lineTo(x + w - ramp, y - 1 - tall);
-        p.lineTo(x + w, y - 1); p.fill();
-      return;
-    }
+    const tall = Math.min(1, a) * (h - 3), ramp = Math.min(w * 0.2, 6);
+    if (state.shape === "tactile-brush")
+      return plot(p, [x, y - 1], [x + ramp, y - 1 - tall], [x + w - ramp, y - 1 - tall], [x + w, y - 1]), p.fill();
     p.fillRect(x, y - 1 - tall, w - (w > 3 && !plan.continuous ? 0.75 : -0.3), tall);
     if (w > 4 && tall > 5 && !plan.continuous) { p.fillStyle = is_dark() ? "#eceeef61" : "#17181a61";
       p.fillRect(x, y - 1 - tall, w - 0.75, 1); }
   };
-  if (rows) { for (const r of rows) one(...r); return; }
+  if (rows) return rows.forEach(r => one(...r));
   for (let i = 0; i < n; ++i) {
     if (plan.onsets[i] > to || plan.onsets[i] + plan.durations[i] < from) continue;
     for (let k = 0; k < t; ++k) one(plan.onsets[i], plan.durations[i], k, plan.amplitudes[i * t + k]);
@@ -102,9 +98,8 @@ function draw_bars(p, l, h, top, lanes) {
 function merged_rows(l, plan, t) {
   const bins = new Map(), width = shown(l) / (l.width - left(l) - right(l));
   for (let i = 0; i < plan.onsets.length; ++i) {
-    const at = plan.onsets[i];
+    const at = plan.onsets[i], bin = Math.floor((at - l.from) / width);
     if (at < l.from || at > l.from + shown(l)) continue;
-    const bin = Math.floor((at - l.from) / width);
     for (let k = 0; k < t; ++k) {
       const a = plan.amplitudes[i * t + k], key = bin * t + k;
       if (a > (bins.get(key) ?? 0)) bins.set(key, a);
@@ -122,8 +117,7 @@ function draw_clips(p, l) {
     p.beginPath(); p.roundRect(a, l.ruler, w, CLIP - 4, 6);
     p.fillStyle = colour(own ? "raised" : "well"); p.fill();
     p.strokeStyle = colour(own ? "ink" : "line2"); p.lineWidth = own ? 2 : 1.5; p.stroke();
-    if (own && w > 24) { p.fillStyle = colour("ink"); for (const x of [a + 4, b - 7]) { p.beginPath();
-      p.roundRect(x, l.ruler + 5, 3, CLIP - 14, 1.5); p.fill(); } }
+    if (own && w > 24) { p.fillStyle = colour("ink"); for (const x of [a + 4, b - 7]) p.fillRect(x, l.ruler + 5, 3, CLIP - 14); }
     p.save();
     p.beginPath(); p.rect(a + 10, l.ruler, Math.max(0, w - 20), CLIP); p.clip();
     p.fillStyle = colour(own ? "ink" : "ink2"); p.textAlign = "left";
@@ -132,17 +126,16 @@ function draw_clips(p, l) {
     p.restore();
     const before = take.strokes.filter((_, k) => k !== i).map(end_s).filter(e => e <= s.start_s + 1e-9);
     const gap = before.length ? s.start_s - Math.max(...before) : 0;
-    if (gap > 0.005 && to_x(l, gap) - to_x(l, 0) > 34) { p.font = font(11);
-      p.fillStyle = colour("ink3"); p.textAlign = "center";
-      p.fillText(`${gap.toFixed(2)} s`, to_x(l, s.start_s - gap / 2), l.ruler + 15); }
+    if (gap <= 0.005 || to_x(l, gap) - to_x(l, 0) < 34) return;
+    p.font = font(11); p.fillStyle = colour("ink3"); p.textAlign = "center";
+    p.fillText(`${gap.toFixed(2)} s`, to_x(l, s.start_s - gap / 2), l.ruler + 15);
   });
   const x = to_x(l, total()) + 8;
   if (x < l.width - 24) {
     p.setLineDash([3, 3]); p.strokeStyle = colour(state.append ? "felt" : "line2"); p.lineWidth = 1.5;
     p.beginPath(); p.roundRect(x, l.ruler, 28, CLIP - 4, 6); p.stroke(); p.setLineDash([]);
-    p.strokeStyle = colour(state.append ? "felt" : "ink2"); p.beginPath();
-    p.moveTo(x + 9, l.ruler + 11); p.lineTo(x + 19, l.ruler + 11); p.moveTo(x + 14, l.ruler + 6); p.lineTo(x + 14, l.ruler + 16);
-      p.stroke();
+    p.strokeStyle = colour(state.append ? "felt" : "ink2");
+    for (const [dx, dy] of [[5, 0], [0, 5]]) { plot(p, [x + 14 - dx, l.ruler + 11 - dy], [x + 14 + dx, l.ruler + 11 + dy]); p.stroke(); }
   }
 }
 
@@ -159,9 +152,8 @@ export function draw_lanes() {
     if (x < left(l) - 1 || x > l.width - right(l) + 20) continue;
     p.fillStyle = p.strokeStyle = colour("ink");
     p.lineWidth = 2;
-    p.beginPath(); p.moveTo(x, l.thin ? 2 : 20); p.lineTo(x, l.height - (l.thin ? 2 : 8)); p.stroke();
-    if (!l.thin) { p.beginPath(); p.moveTo(x - 6, 15); p.lineTo(x + 6, 15); p.lineTo(x + 6, 21); p.lineTo(x, 27);
-      p.lineTo(x - 6, 21); p.closePath(); p.fill(); }
+    plot(p, [x, l.thin ? 2 : 20], [x, l.height - (l.thin ? 2 : 8)]); p.stroke();
+    if (!l.thin) { plot(p, [x - 6, 15], [x + 6, 15], [x + 6, 21], [x, 27], [x - 6, 21]); p.fill(); }
   }
   // The moment follows where it leaves what is shown.
   if (state.playing && full.span && (state.at_s > full.from + full.span * 0.95

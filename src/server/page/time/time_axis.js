@@ -7,7 +7,7 @@ import {end_s, kept_for} from "../takes/stroke.js";
 import {array} from "../drawing/view.js";
 
 export const CLIP = 26;
-const RULER = 30, CURVES = 58;
+const RULER = 30, TOUCHED_RULER = 44, CURVES = 58;
 const STRIP_PX = 100, ROOM_FOR_CURVES_PX = 230; // heights of the timeline
 const LEAST_LANE_PX = 18, MOST_LANE_PX = 30;
 const MANY_TACTORS = 16;   // above this only those that play have a lane
@@ -28,7 +28,8 @@ function measure(l) {
   const r = l.canvas.getBoundingClientRect(), dpr = Math.min(3, devicePixelRatio || 1);
   // A strip has a thin line for each tactor, and no ruler.
   const thin = l.mini || r.height < STRIP_PX;
-  Object.assign(l, {width: r.width, height: r.height, dpr, stale: true, thin, ruler: thin ? 4 : RULER,
+  Object.assign(l, {width: r.width, height: r.height, dpr, stale: true, thin,
+    ruler: thin ? 4 : matchMedia("(pointer: coarse)").matches ? TOUCHED_RULER : RULER,
     curves: !thin && r.height >= ROOM_FOR_CURVES_PX ? CURVES : 0});
   l.top = l.mini ? 8 : l.ruler + CLIP + (thin ? 0 : 8);
   l.bottom = l.height - l.curves - (thin ? 6 : 2);
@@ -42,6 +43,8 @@ export const left = l => l.thin ? EDGE : LABEL;
 export const right = l => l.mini ? EDGE : RIGHT;
 export const to_x = (l, t) => left(l) + (t - l.from) / shown(l) * (l.width - left(l) - right(l));
 export const to_time = (l, x) => l.from + (x - left(l)) / (l.width - left(l) - right(l)) * shown(l);
+// Begins a path along places in pixels.
+export function plot(p, ...places) { p.beginPath(); for (const q of places) p.lineTo(...q); }
 export const clip_box = (l, s) => [to_x(l, s.start_s), to_x(l, end_s(s))];
 
 // Lanes: the tactors in the order in which they begin where there are many, else all.

@@ -1,62 +1,83 @@
 // SPDX-License-Identifier: MIT
 // Pointers and keys on the timelines: look at a moment, move and trim clips, drag points of speed and strength.
-import {state, changed, current_take} from "../state.js";
-import {put_stroke, end_edit} from "../takes/takes.js";
-import {trimmed, duration_s} from "../takes/stroke.js";
+import {state, changed, current_take, marks, say} from "../state.js";
+import {put_stroke, edit_take, end_edit} from "../takes/takes.js";
+import {trimmed, duration_s, end_s} from "../takes/stroke.js";
 import {look_at} from "../service/player.js";
+import {PAUSE_S} from "../drawing/pointer.js";
 import {full, mini, total, shown, left, to_x, to_time, clip_box, most_scroll, scroll_to, show_time, zoom_time, CLIP, LEAST_S} from "./time_axis.js";
 import {handles, set_strength, set_speed} from "./curves.js";
-import {choose_clip, toggle_append} from "./clips.js";
+import {choose_clip, toggle_append, copy_clip, with_copies, starting_at} from "./clips.js";
+import {set_marks, set_range, clear_marks, snapped} from "./marks.js";
+import {scrub_to, end_scrub} from "./scrub.js";
 
 const REACH = 14;
+const REPEAT_PX = 24, DOUBLE_MS = 350; // for each copy; of two taps
 
-let held = null;
+let held = null, tapped_ms = 0;
 const touching = new Map(); // pointers on the timeline, by id: x, px
 function lane_down(l, e) {
   const r = l.canvas.getBoundingClientRect(), x = e.clientX - r.left, y = e.clientY - r.top, take = current_take();
   l.canvas.setPointerCapture(e.pointerId);
   touching.set(e.pointerId, x);
   if (touching.size === 2 && !l.mini) { held = {l, kind: "zoom"}; return; }
-  held = {l, kind: "look", key: `lane ${performance.now()}`, x};
+  held = {l, kind: "look", key: performance.now(), x};
   if (most_scroll(l) && y > l.top && y < l.bottom && (x < left(l) || x > l.width - 24))
     return void Object.assign(held, {kind: "scroll", y, from: l.scroll, by: x < left(l) ? -1 : most_scroll(l) / (l.bottom - l.top) + 1});
   if (!l.mini && take) {
+    if (y < l.ruler - 2) return void Object.assign(held, hold_ruler(l, x, e));
     const handle = handles(l).find(h => Math.hypot(h.x - x, h.y - y) < REACH);
     if (handle) return void Object.assign(held, handle);
     if (y >= l.ruler - 2 && y <= l.ruler + CLIP) {
       if (x > to_x(l, total()) + 4) { held = null; return toggle_append(); }
-      const is_under = s => { const [a, b] = clip_box(l, s); return x >= a - 6 && x <= b + 6; };
-      const under = [...take.strokes.keys()].filter(i => is_under(take.strokes[i]));
+      const under = [...take.strokes.keys()].filter(i => { const [a, b] = clip_box(l, take.strokes[i]); return x >= a - 6 && x <= b + 6; });
       if (under.length) {
         const again = under.includes(state.stroke), index = again ? state.stroke : under[0], stroke = take.strokes[index];
         choose_clip(index);
         const [a, b] = clip_box(l, stroke), ends = b - a > 30;
         return void Object.assign(held, {kind: ends && x < a + 10 ? "trim-start" : ends && x > b - 10 ? "trim-end" : "move",
-          stroke, index, t: to_time(l, x), next: again ? under[(under.indexOf(index) + 1) % under.length] : index});
+          stroke, index, take, alt: e.altKey, t: to_time(l, x), next: again ? under[(under.indexOf(index) + 1) % under.length] : index});
       }
     }
   }
   look_at(to_time(l, x));
 }
+// Takes hold of what lies on the ruler: an end of the range, the moment, or a place where a range begins.
+function hold_ruler(l, x, e) {
+  const is_near = (t, px) => Math.abs(to_x(l, t) - x) < px, {range} = marks();
+  const end = range?.findIndex(t => is_near(t, e.pointerType === "touch" ? 22 : 8)) ?? -1;
+  return {ruler: true, ...!(end < 0 && is_near(state.at_s, 8)) && {kind: "range", fixed: range?.[1 - end] ?? snapped(l, to_time(l, x), e)}};
+}
+function tap_ruler(t, now = performance.now()) {
+  if (now - tapped_ms < DOUBLE_MS) return clear_marks();
+  tapped_ms = now;
+  set_marks({start_s: t});
+  look_at(t);
+}
+// Trims a clip at its end, or repeats it where the end is pulled on.
+function pull_end({take, stroke, index, key}, px, t) {
+  const end = t < end_s(stroke) ? trimmed(stroke, 0, Math.max(LEAST_S, t - stroke.start_s)) : stroke;
+  const strokes = with_copies({...take, strokes: take.strokes.with(index, end)}, index, px / REPEAT_PX, end_s(stroke) + PAUSE_S);
+  edit_take(() => ({strokes}), key);
+  if (strokes[take.strokes.length]) say(`“${strokes[index].name}” × ${strokes.length - take.strokes.length + 1}`);
+}
 function lane_moved(e) {
   if (!held) return;
-  const r = held.l.canvas.getBoundingClientRect(), x = e.clientX - r.left, y = e.clientY - r.top, t = to_time(held.l, x),
-    s = held.stroke;
+  const r = held.l.canvas.getBoundingClientRect(), x = e.clientX - r.left, y = e.clientY - r.top, t = to_time(held.l, x), s = held.stroke;
+  const high = (held.l.height - 8 - y) / (held.l.curves - 20), limited = (v, a, b) => Math.min(b, Math.max(a, v));
   if (held.kind === "zoom") return zoom_lanes(held.l, e.pointerId, x);
   if (held.kind === "scroll") return scroll_to(held.l, held.from + (y - held.y) * held.by);
-  if (held.kind === "look") return look_at(t);
-  if (held.kind === "strength") {
-    const v = Math.min(1, Math.max(0, (held.l.height - 8 - y) / (held.l.curves - 20)));
-    return set_strength(held.index, v, held.key);
-  }
-  if (held.kind === "speed") return set_speed(held.index, Math.min(5,
-    Math.max(0.1, +((held.l.height - 8 - y) / (held.l.curves - 20) * held.most / held.mean).toFixed(2))), held.key);
+  if (held.kind === "strength") return set_strength(held.index, limited(high, 0, 1), held.key);
+  if (held.kind === "speed") return set_speed(held.index, limited(+(high * held.most / held.mean).toFixed(2), 0.1, 5), held.key);
   if (Math.abs(x - held.x) < 3 && !held.moved) return;
+  const copies = held.alt && !held.moved && held.kind === "move", near = snapped(held.l, t, e);
   held.moved = true;
-  if (held.kind === "move") return put_stroke(() => ({...s, start_s: Math.max(0, +(s.start_s + t - held.t).toFixed(3))}), held.key, held.index);
-  const d = duration_s(s);
-  if (held.kind === "trim-start") put_stroke(() => trimmed(s, Math.min(d - LEAST_S, Math.max(0, t - s.start_s)), d), held.key, held.index);
-  else put_stroke(() => trimmed(s, 0, Math.max(LEAST_S, Math.min(d, t - s.start_s))), held.key, held.index);
+  if (held.kind === "look") return scrub_to(near, held.key);
+  if (held.kind === "range") return set_range(held.fixed, limited(near, 0, total()));
+  if (held.kind === "trim-end") return pull_end(held, x - held.x, near);
+  if (copies) held.index = copy_clip(s.start_s, held.key);
+  put_stroke(held.kind === "trim-start" ? () => trimmed(s, limited(near - s.start_s, 0, duration_s(s) - LEAST_S), duration_s(s))
+    : k => starting_at(k, snapped(held.l, s.start_s + t - held.t, e, held.index)), held.key, held.index);
 }
 // Keeps the moments under two fingers where the fingers are.
 function zoom_lanes(l, id, x) {
@@ -71,7 +92,9 @@ function lane_up(e) {
   if (held?.kind === "zoom" && touching.size) return;
   // Another tap takes the next of those that lie at the same time.
   if (held?.next !== undefined && !held.moved) choose_clip(held.next);
-  if (held) { end_edit(); changed("take"); }
+  if (held?.ruler && !held.moved) tap_ruler(snapped(held.l, to_time(held.l, held.x), e));
+  else if (held) { end_edit(); changed("take"); }
+  end_scrub();
   held = null;
 }
 for (const l of [full, mini]) {
@@ -89,8 +112,9 @@ for (const l of [full, mini]) {
   l.canvas.addEventListener("keydown", e => {
     const step = {ArrowLeft: -1, ArrowRight: 1}[e.key], rows = {ArrowUp: -1, ArrowDown: 1}[e.key];
     if (rows) { e.preventDefault(); return scroll_to(l, l.scroll + rows * 36); }
-    if (!step && e.key !== "Home" && e.key !== "End") return;
+    if (!step && !["Home", "End", "Enter"].includes(e.key)) return;
     e.preventDefault();
-    look_at(e.key === "Home" ? 0 : e.key === "End" ? total() : state.at_s + step * total() / (e.shiftKey ? 500 : 50));
+    if (e.key === "Enter") return e.shiftKey ? set_range(marks().start_s, state.at_s) : set_marks({start_s: state.at_s});
+    scrub_to(e.key === "Home" ? 0 : e.key === "End" ? total() : state.at_s + step * total() / (e.shiftKey ? 500 : 50), performance.now());
   });
 }
