@@ -1,14 +1,16 @@
 // SPDX-License-Identifier: MIT
 // Ground of the strokes: the body part, the skin between the tactors with its grid, the scale.
+import {state} from "../state.js";
 import {colour, font} from "../look.js";
-import {array, view, layers, start_layer, trace, to_px} from "./view.js";
+import {array, view, layers, start_layer, trace, disc, to_px, handle_px} from "./view.js";
+import {body, part, body_matrix, place_name, up_word} from "./body.js";
 
 export function draw_ground() {
   const p = start_layer(layers.ground);
   p.fillStyle = colour("outside");
   p.fillRect(0, 0, view.width, view.height);
   if (!array) return;
-  draw_hand(p);
+  draw_body(p);
   const {least, most} = array.box;
   // The skin between the tactors, with a grid of 2 and 10 mm.
   p.save();
@@ -33,39 +35,37 @@ export function draw_ground() {
   p.lineWidth = 1.5;
   p.stroke();
   draw_scale(p);
-  if (array.up) {
+  if (state.placing) draw_place(p);
+  else if (array.up) {
     p.font = font(12);
     p.fillStyle = colour("ink2");
     p.textAlign = "center";
     const [x, y] = to_px([array.box.middle[0], least[1] - array.radius]);
-    p.fillText(`↑ ${array.up}`, x, y - 7);
+    p.fillText(`↑ ${up_word()}`, x, y - 7);
   }
 }
-// Draws some of the body part around the array, where the array says that it is a palm.
-function draw_hand(p) {
-  const palm = /palm|hand/.test(array.site ?? "");
-  const [w, h] = array.box.size.map(v => Math.max(v, array.pitch)), m = array.box.middle, left = /left/.test(array.site ?? "")
-    ? -1 : 1;
+// Draws the part of the body that is under the array, to scale.
+function draw_body(p) {
+  const {outline, lines} = part(), whole = new Path2D(), within = new Path2D(), m = body_matrix(to_px(array.box.middle), view.scale);
   p.fillStyle = colour("hand");
-  if (!palm) return p.fillRect(0, 0, view.width, view.height);
-  const at = (x, y) => to_px([m[0] + left * x * w, m[1] + y * h]);
-  p.strokeStyle = colour("handline");
-  p.lineWidth = 1.5;
-  const curve = (...c) => p.bezierCurveTo(...c.flatMap(([x, y]) => at(x, y)));
-  p.beginPath();
-  p.moveTo(...at(-1.02, -3));
-  p.lineTo(...at(-1.02, -1.1));
-  curve([-1.06, -0.4], [-1.02, 0.5], [-0.86, 1.1]);
-  curve([-0.78, 1.5], [-0.76, 2], [-0.8, 3]);
-  p.lineTo(...at(0.76, 3));
-  curve([0.72, 2], [0.78, 1.5], [0.98, 1.15]);
-  curve([1.4, 0.5], [1.7, 0], [2.2, -0.9]);
-  p.lineTo(...at(1.9, -1.2));
-  curve([1.5, -0.5], [1.3, -0.2], [1.12, -0.35]);
-  curve([1.02, -0.5], [1.0, -0.9], [1.0, -3]);
-  p.closePath();
-  p.fill();
-  p.stroke();
+  if (!lines) return p.fillRect(0, 0, view.width, view.height);
+  whole.addPath(new Path2D(outline), m); within.addPath(new Path2D(lines), m);
+  p.lineWidth = 1.5; p.strokeStyle = colour("handline");
+  p.fill(whole); p.stroke(within);
+  if (state.placing) p.strokeStyle = colour("ink3");
+  p.stroke(whole);
+}
+// Draws the handle that turns the body, and a measure from the landmark.
+function draw_place(p) {
+  const far = handle_px(), down = -body.y * view.scale, {from} = part();
+  p.save();
+  p.translate(...to_px(array.box.middle)); p.rotate(body.turn * Math.PI / 180);
+  disc(p, [0, -far], 20);
+  p.fillStyle = colour("raised"); p.fill();
+  p.strokeStyle = p.fillStyle = colour("ink"); p.stroke();
+  p.font = font(14, 600); p.textAlign = "center"; p.fillText("↻", 0, 5 - far);
+  if (from) { p.stroke(new Path2D(`M${far - 28} 0h12v${down}h-12`)); p.fillText(`${Math.abs(body.y)} mm`, far + 16, down / 2 + 5); }
+  p.restore();
 }
 function draw_scale(p) {
   const mm = [1, 2, 5, 10, 20, 50, 100].find(v => v * view.scale > 46) ?? 100, width = mm * view.scale;
@@ -78,5 +78,5 @@ function draw_scale(p) {
   p.stroke();
   p.font = font(12);
   p.textAlign = "left";
-  p.fillText(`${mm} mm${array.site && view.width >= 760 ? `, ${array.site}` : ""}${view.width >= 760 ? ", to scale" : ""}`, x + width + 10, y);
+  p.fillText(`${mm} mm${view.width >= 760 ? `, ${place_name()}, to scale` : ""}`, x + width + 10, y);
 }

@@ -26,7 +26,7 @@ export function draw_ink() {
   });
   if (plan) draw_dots(p, plan);
   if (!drawing) strokes.forEach((s, i) => draw_marks(p, s, i));
-  draw_labels(p, drawing ? [] : strokes);
+  draw_labels(p, drawing || state.placing ? [] : strokes);
 }
 function draw_ring(p, q, i) {
   const c = to_px(q), r = array.radius * view.scale;
@@ -46,7 +46,7 @@ export function draw_number(p, i, tone) {
   p.textBaseline = "middle";
   p.fillStyle = colour(tone);
   const number = String(array.tactors[i].tactor ?? i);
-  if (p.measureText(number).width < 2 * array.radius * view.scale) p.fillText(number, x, y + 0.5);
+  if (!state.placing && p.measureText(number).width < 2 * array.radius * view.scale) p.fillText(number, x, y + 0.5);
   p.textBaseline = "alphabetic";
 }
 function draw_felt(p, plan) {

@@ -8,10 +8,10 @@ import {editable, changed_knot} from "../takes/stroke.js";
 import {change_point} from "./pointer.js";
 
 const MOVE_MM = 0.5, FINE_MOVE_MM = 0.1;
-const ARROWS = {ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1]};
+export const ARROWS = {ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1]};
 
 function act(e) {
-  if (state.tool !== "points" || !current_stroke() || e.ctrlKey || e.metaKey || e.altKey) return false;
+  if (state.tool !== "points" || state.placing || !current_stroke() || e.ctrlKey || e.metaKey || e.altKey) return false;
   const knots = editable(current_stroke()).knots, at = state.knot, k = knots[at], step = ARROWS[e.key];
   if (e.key === "Tab") {
     const next = at < 0 && e.shiftKey ? knots.length - 1 : at + (e.shiftKey ? -1 : 1);

@@ -29,7 +29,7 @@ const strength = e => e.pointerType === "pen" && e.pressure > 0 ? Math.min(1, +e
 const seconds = ms => +(ms / 1000).toFixed(4);
 
 function down(id, px, e) {
-  if (!array || fingers.has(id)) return;
+  if (!array || state.placing || fingers.has(id)) return;
   if (e.pointerType === "touch" && [...fingers.values()].some(f => f.kind === "pen")) return; // it is the hand of the pen
   const mm = to_mm(...px);
   const f = {id, px, from: mm, at: mm, strength: strength(e), kind: e.pointerType ?? "key", down_ms: e.timeStamp
@@ -278,7 +278,7 @@ function set_hot(i) {
 // Keys within the canvas: Enter touches and lifts, arrows move.
 let key = null;
 field.addEventListener("keydown", e => {
-  if (!array || e.ctrlKey || e.metaKey || e.altKey) return;
+  if (!array || state.placing || e.ctrlKey || e.metaKey || e.altKey) return;
   if (e.key === "Enter") {
     e.preventDefault();
     if (key) { key = null; up("key"); return; }

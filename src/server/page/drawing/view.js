@@ -3,6 +3,7 @@
 import {state, changed, on_change} from "../state.js";
 import {by_id} from "../../../net/page/dom.js";
 import {hull, box} from "../takes/stroke.js";
+import {body_corners} from "./body.js";
 
 const canvas = by_id("field");
 export const layers = {ground: document.createElement("canvas"), ink: document.createElement("canvas")};
@@ -25,6 +26,7 @@ export const to_mm = (px, py) => [(px - view.left) / view.scale + array.box.midd
   (py - view.top) / view.scale + array.box.middle[1]];
 export const place_in_page = p => { const r = canvas.getBoundingClientRect(), [x, y] = to_px(p); return [r.left + x, r.top + y];
   };
+export const handle_px = () => Math.max(...array.box.size) / 2 * view.scale + 44; // from the middle of the array, where the body is placed
 export const px_per_mm = () => view.scale;
 export function tactor_at([x, y]) {
   return array ? array.places.findIndex(p => Math.hypot(p[0] - x, p[1] - y) <= array.radius * 1.05) : -1;
@@ -52,7 +54,7 @@ function insets() {
   const s = getComputedStyle(canvas), v = name => parseFloat(s.getPropertyValue(name)) || 0;
   view.scale_bottom = v("--scale-bottom") || 20;
   const free = {left: v("--free-left"), right: v("--free-right"), top: v("--free-top"), bottom: v("--free-bottom")};
-  const stage = by_id("stage").getBoundingClientRect(), sheet = by_id("sheet-head").getBoundingClientRect();
+  const stage = by_id("stage").getBoundingClientRect(), sheet = by_id(state.placing ? "place-bar" : "sheet-head").getBoundingClientRect();
   if (!sheet.width || sheet.left >= stage.right) return free;
   if (sheet.left > stage.left + 10) return {...free, right: stage.right - sheet.left + 10};
   return {...free, top: 12, bottom: stage.bottom - sheet.top + 8};
@@ -61,10 +63,11 @@ function place() {
   if (!array || !view.width) return;
   const i = insets(), margin = 2 * (array.radius + array.pitch * 0.1);
   const width = Math.max(60, view.width - i.left - i.right), height = Math.max(60, view.height - i.top - i.bottom);
-  const fit = Math.min(width / (array.box.size[0] + margin), height / (array.box.size[1] + margin + array.pitch * 0.12));
+  const shown = state.placing ? box(body_corners(array.box.middle)) : array.box;
+  const fit = Math.min(width / (shown.size[0] + margin), height / (shown.size[1] + margin + array.pitch * 0.12));
   view.scale = fit * view.zoom;
-  view.left = i.left + width / 2 + view.x;
-  view.top = i.top + height / 2 - array.pitch * 0.03 * view.scale + view.y;
+  view.left = i.left + width / 2 + (array.box.middle[0] - shown.middle[0]) * view.scale + view.x;
+  view.top = i.top + height / 2 + (array.box.middle[1] - shown.middle[1] - array.pitch * 0.03) * view.scale + view.y;
 }
 export function resize() {
   if (state.drawing) return; // the canvas never moves under a finger
