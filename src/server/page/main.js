@@ -22,6 +22,7 @@ import "./drawing/point_keys.js";
 import "./takes/files.js";
 import "./takes/shape_switch.js";
 import "./settings/inspector.js";
+import "./takes/study.js";
 import {draw_meter} from "./settings/level.js";
 import "./settings/prediction.js";
 import {seconds_text} from "./words.js";

@@ -24,6 +24,7 @@ export const state = {
   shape: "park2016",     // of the bars: the take's algorithm
   playing: null,         // {began_ms, total_s, numbers, felt, loop}
   at_s: 0, loop: false, speaker: false, hot: -1,
+  compare: null,         // of two methods, see settings/compare.js
   tab: "method", sheet: "", show_speed: true, show_strength: true,
 };
 

@@ -2,14 +2,15 @@
 // Plays takes, tests tactors, stops; and says where the moment is.
 import {state, changed, on_change, current_take, ceiling_dbfs, take_gain, say} from "../state.js";
 import {call, tell, is_connected, server_now_s, from_server_ms, on_notification, on_lost, SLOW_MS} from "./connection.js";
-import {make_request, take_s, take_from} from "../takes/takes.js";
+import {make_request, take_s, take_from, with_side} from "../takes/takes.js";
 import {weaken_take} from "./planner.js";
 import {start_loudspeaker} from "./loudspeaker.js";
 
 const TEST_S = 0.5;
 const AHEAD_S = 0.4;      // before the end, when the next round of a loop is asked for
+const SILENT_DB = -60, TOGETHER_S = 0.3; // of sides of a comparison: the level of one, and the time until both begin
 const STOP_AGAIN_MS = 500; // between stops that are not answered
-const ended = new Set();  // numbers whose end came before the answer that named them
+const ended = new Set(), begun = new Map(); // of strokes: ends and starts that came before the answer that named them
 let speaker = null;
 
 // Plays the take, from a moment on if it is said.
@@ -32,26 +33,33 @@ export async function play({from_s = 0} = {}) {
 
 // Tells the service the level: all that this page plays is played at the ceiling and turned down there, so that what sounds
 // follows, too.
-let told_db = null; // as the service knows it
-export function tell_level() {
-  if (!is_connected() || told_db === state.level_db) return;
-  told_db = state.level_db;
-  tell("level", {db: told_db});
+// Strokes of both sides of a comparison begin silent; those of one are raised after all were lowered. All ramps take 20 ms, so that
+// the sum is never above the level. `anew`: there are new strokes.
+let told = null; // as the service knows it
+const side_of = new Map(); // by number of a stroke
+export function tell_level(anew = false) {
+  const on = state.compare?.on, now = `${on} ${state.level_db}`;
+  if (!is_connected() || !anew && told === now) return;
+  if (!state.compare || !told?.startsWith(`${on} `)) tell("level", {db: state.compare ? SILENT_DB : state.level_db});
+  told = now;
+  if (state.compare) for (const n of state.playing?.numbers ?? []) if (side_of.get(n) === on) tell("level", {db: state.level_db, stroke: n});
 }
-on_change(tell_level);
-on_lost(() => { told_db = null; });
+on_change(() => tell_level());
+on_lost(() => { told = null; });
 
 async function ask_to_play() {
   const own = state.playing, take = state.takes.find(t => t.id === own.take);
   try {
     tell_level();
-    const r = await call("play", make_request(take_from(take, own.from_s), ceiling_dbfs()));
+    const r = await submit(take_from(take, own.from_s), state.compare && server_now_s() + TOGETHER_S);
     if (state.playing !== own) return cancel_strokes(r.strokes);
     own.total_s = r.total_s;
     own.numbers = new Set(r.strokes.filter(n => !ended.has(n)));
     ended.clear();
+    tell_level(state.compare);
     own.next = null;
     own.waits = true; // until it sounds
+    hear_starts(r.strokes);
   } catch (e) {
     if (state.playing !== own) return;
     // Strokes of several fingers add up: the take is played as strong as it may be.
@@ -67,6 +75,23 @@ async function ask_to_play() {
   changed("playing");
 }
 
+// Asks for a round: of the take, or of both sides of a comparison, which begin together.
+async function submit(take, at_s) {
+  const start = at_s && {start: {monotonic_s: at_s}}, strokes = [];
+  const answers = await Promise.allSettled((state.compare ? [0, 1] : [0]).map(async side => {
+    const r = await call("play", {...make_request(with_side(take, side), ceiling_dbfs()), ...start});
+    r.strokes.forEach(n => { strokes.push(n); side_of.set(n, side); });
+    return r.total_s;
+  })), refused = answers.find(a => a.reason);
+  if (!refused) return {strokes, total_s: Math.max(...answers.map(a => a.value))};
+  cancel_strokes(strokes);
+  throw refused.reason;
+}
+function hear_starts(strokes) {
+  strokes.forEach(n => begun.has(n) && hear_stroke(begun.get(n)));
+  begun.clear();
+}
+
 // A take that was chosen meanwhile is not the one that sounds.
 const is_shown = p => p.take === state.current;
 // Moves the moment on; called once a frame.
@@ -75,7 +100,7 @@ export function tick() {
   if (!p) return;
   const t = (performance.now() - p.began_ms) / 1000;
   if (is_shown(p)) state.at_s = p.from_s + (p.waits ? 0 : Math.max(0, Math.min(p.total_s, t)));
-  if (state.loop && p.felt && !p.waits && !p.next && t > p.total_s - AHEAD_S && p.numbers.size) next_round(p);
+  if (state.loop && p.felt && !p.waits && !p.next && t > p.total_s - (state.compare ? 1 : AHEAD_S) && p.numbers.size) next_round(p);
   if (t < p.total_s || p.waits) return;
   if (p.next) return;
   if (state.loop && !p.felt) {
@@ -97,18 +122,22 @@ async function next_round(p) {
   p.next = true;
   const at = Math.max(server_now_s() + 0.05, server_now_s() + p.total_s - (performance.now() - p.began_ms) / 1000);
   try {
-    const r = await call("play", {...make_request(take, ceiling_dbfs()), start: {monotonic_s: at}});
+    const r = await submit(take, at);
     if (state.playing !== p) return cancel_strokes(r.strokes);
     r.strokes.forEach(n => p.numbers.add(n));
-    p.next = {number: r.stroke, total_s: r.total_s};
+    tell_level(state.compare);
+    p.next = {strokes: r.strokes, total_s: r.total_s};
+    hear_starts(r.strokes);
   } catch { p.next = null; state.loop = false; changed("playing"); }
 }
 
-on_notification("stroke", s => {
+on_notification("stroke", hear_stroke);
+function hear_stroke(s) {
   const p = state.playing;
   if (s.state === "started") {
+    if (p && !p.numbers.has(s.stroke)) begun.set(s.stroke, s);
     if (p?.numbers.has(s.stroke) && s.started_s !== null) {
-      const is_next = !p.waits && p.next?.number === s.stroke;
+      const is_next = !p.waits && p.next?.strokes?.includes(s.stroke);
       if (is_next) Object.assign(p, {total_s: p.next.total_s, next: null, from_s: 0});
       if (p.waits || is_next) {
         Object.assign(p, {began_ms: from_server_ms(s.started_s), waits: false});
@@ -127,7 +156,12 @@ on_notification("stroke", s => {
       end_playing();
     }
   } else if (state.playing) ended.add(s.stroke);
-});
+}
+// Ends what this page plays.
+export function quit_playing() {
+  end_round(state.playing);
+  end_playing();
+}
 function end_playing() {
   state.playing = null;
   silence_speaker();
@@ -176,11 +210,14 @@ export function test_tactor(i) {
   if (!is_connected()) return say("No connection: nothing is driven");
   tell_level();
   call("drive", {tactor: i, duration_s: TEST_S})
-    .then(() => say(`Tactor ${i}, ${TEST_S} s`), e => say(e.message));
+    .then(r => {
+      if (state.compare) tell("level", {db: state.level_db, stroke: r.stroke});
+      say(`Tactor ${i}, ${TEST_S} s`);
+    }, e => say(e.message));
 }
 
 // Plays on this computer's loudspeakers where that is asked for.
-function hear_it() {
+export function hear_it() {
   silence_speaker();
   if (!state.speaker || !state.plan || !state.hello) return;
   speaker = start_loudspeaker({...state.plan, places: state.hello.array.tactors}, state.at_s, {gain: take_gain()});

@@ -429,7 +429,7 @@ const min = list => list.reduce((a, b) => Math.min(a, b), Infinity);
 const max = list => list.reduce((a, b) => Math.max(a, b), -Infinity);
 
 // TOML and CSV of strokes.
-const quoted = text => `"${String(text).replace(/[\u0000-\u001f\u007f]/g, " ").replace(/[\\"]/g, "\\$&")}"`;
+export const quoted = text => `"${String(text).replace(/[\u0000-\u001f\u007f]/g, " ").replace(/[\\"]/g, "\\$&")}"`;
 export function strokes_toml(strokes) {
   const ordered = [...strokes].sort((a, b) => a.start_s - b.start_s), first = ordered[0]?.start_s ?? 0;
   return ordered.map(s => `[[stroke]]\nname = ${quoted(s.name)}\nstart_s = ${+(s.start_s - first).toFixed(4)}\nstart_from = "piece"\n` +
