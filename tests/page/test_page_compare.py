@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The studio in a real Chromium: two methods compared by feeling. Usage: test_page_compare.py TOOL SOURCE_ROOT"""
+"""The studio in a real Chromium: two methods compared by feeling, and what is felt moved. Usage: test_page_compare.py TOOL SOURCE_ROOT"""
 import json
 import sys
 
@@ -104,6 +104,54 @@ class Compare(StudioTest):
         r = self.run_tool("experiment", folder / "two-methods.toml", "--dry-run", "--format", "json")
         self.assertEqual(r.returncode, 0, r.stderr)
         self.assertIn('Which \\"one\\"?', (folder / "two-methods.toml").read_text())
+
+
+class Felt(StudioTest):
+    def diamonds(self, p):
+        p.until(f"tactor.state.plan_of === {TAKE} && tactor.felt_points().length")
+        return [[q["x"], q["y"]] for q in p.value("tactor.felt_points()")]
+
+    def pull(self, p, start, end):
+        p.value("document.querySelector('#toast').textContent = ''")
+        p.mouse("mouseReleased", *self.press(p, start, end))
+        p.until("/mm/.test(document.querySelector('#toast').textContent)")
+        return p.value("document.querySelector('#toast').textContent")
+
+    def felt(self):
+        """Returns a page with an example and the tool Felt."""
+        p, _ = self.ready(self.serve())
+        p.value("document.querySelector('#examples li:nth-child(3) button').click()")
+        p.until("tactor.state.takes.length")
+        p.key("KeyW", "w")
+        p.until("tactor.state.tool === 'felt'")
+        return p
+
+    def test_a_diamond_is_felt_where_it_is_put(self):
+        p = self.felt()
+        points, before = self.diamonds(p), p.value(f"JSON.stringify({TAKE}.strokes[0].timed)")
+        at = len(points) // 2
+        wish = [points[at][0] + 2, points[at][1] + 2]
+        self.assertIn("Felt here, within", self.pull(p, points[at], wish))
+        for a, b in zip(self.diamonds(p)[at], wish):
+            self.assertAlmostEqual(a, b, delta=0.3)
+        p.until("document.querySelector('#shape-curve').textContent === 'Edited, 1 point'")
+        # Keys do the same. Each is one step.
+        p.key("ArrowLeft", "ArrowLeft")
+        p.until(f"tactor.felt_points()[{at}].x < {wish[0] - 0.4}")
+        for _ in range(2):
+            p.click("#undo")
+        p.until(f"JSON.stringify({TAKE}.strokes[0].timed) === {quoted(before)}")
+        p.click("#redo")
+        p.until("!document.querySelector('#shape').hidden")
+        p.click("#shape-ink")
+        p.until("document.querySelector('#shape-ink').getAttribute('aria-pressed') === 'true'")
+
+    def test_a_place_that_cannot_be_felt_says_how_near_it_comes(self):
+        p = self.felt()
+        points = self.diamonds(p)
+        at = len(points) // 2
+        self.assertRegex(self.pull(p, points[at], [-6, points[at][1]]), r"Nearest there is: [6-9]\.\d mm short")
+        self.assertEqual(p.value("tactor.state.outside.length"), 0)
 
 
 if __name__ == "__main__":

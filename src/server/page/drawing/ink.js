@@ -5,6 +5,7 @@ import {colour, is_dark, font} from "../look.js";
 import {array, view, layers, start_layer, trace, trace_rows, disc, to_px} from "./view.js";
 import {editable, shape} from "../takes/stroke.js";
 import {place_labels, number_place, draw_labels} from "./labels.js";
+import {draw_felt_points} from "./felt.js";
 import {viridis} from "../../../net/page/viridis.js";
 
 export function draw_ink() {
@@ -94,6 +95,7 @@ function draw_dots(p, plan) {
   }
 }
 function draw_marks(p, s, i) {
+  if (i === state.stroke && state.tool === "felt") draw_felt_points(p, s);
   if (i === state.stroke && state.tool === "points") editable(s).knots.forEach((k, n) => draw_knot(p, k, n === state.knot));
 }
 function draw_knot(p, k, chosen) {
