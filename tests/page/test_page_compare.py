@@ -55,6 +55,10 @@ class Compare(StudioTest):
             loudest = max([loudest, *(v for v in levels["dbfs"] if v is not None)])
         self.assertLess(loudest, -17.9)
         self.assertGreater(loudest, -24)
+        # A stop before the change stays one.
+        p.value("['1', ' '].forEach(key => dispatchEvent(new KeyboardEvent('keydown', {key})))")
+        p.until("tactor.state.compare.on === 0")
+        self.assertIsNone(p.value("tactor.state.playing"))
         p.key("Escape", "Escape")
         p.until("!tactor.state.compare && !tactor.state.playing && document.querySelector('#compare').hidden")
         self.assertEqual(p.value("sent_levels.at(-1)")["db"], -6)
