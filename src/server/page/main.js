@@ -9,6 +9,7 @@ import {open_takes, write_at_once} from "./takes/keeping.js";
 import {draw_frame, moves} from "./drawing/canvas.js";
 import {view, set_array, look_at_all, zoom, resize, place_in_page} from "./drawing/view.js";
 import {label_boxes} from "./drawing/labels.js";
+import {felt_points} from "./drawing/felt.js";
 import {draw_lanes, clock_text} from "./time/lanes.js";
 import "./time/timeline.js";
 import {LEAST_LEVEL_DB} from "./service/planner.js";
@@ -22,6 +23,7 @@ import "./drawing/point_keys.js";
 import "./takes/files.js";
 import "./takes/shape_switch.js";
 import "./settings/inspector.js";
+import "./takes/study.js";
 import {draw_meter} from "./settings/level.js";
 import "./settings/prediction.js";
 import {seconds_text} from "./words.js";
@@ -210,4 +212,4 @@ document.head.append(Object.assign(document.createElement("link"), {rel: "manife
   icons: [{src: icon_url, sizes: "any", type: "image/svg+xml"}]})], {type: "application/manifest+json"}))}));
 
 // For the console, and for tests.
-globalThis.tactor = {state, changed, place_in_page, rename: rename_take, view, lanes: full, label_boxes, lane_tactors, lane_height};
+globalThis.tactor = {state, changed, place_in_page, rename: rename_take, view, lanes: full, label_boxes, lane_tactors, lane_height, felt_points};

@@ -25,6 +25,7 @@ export const state = {
   playing: null,         // {began_ms, total_s, numbers, felt, loop}
   at_s: 0, loop: false, speaker: false, scrub: true, hot: -1,
   marks: {},             // on the time axis: {take, start_s, range: [from, until] or null}
+  compare: null,         // of two methods, see settings/compare.js
   tab: "method", sheet: "", placing: false, show_speed: true, show_strength: true,
 };
 

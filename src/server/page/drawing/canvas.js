@@ -51,6 +51,7 @@ export function draw_frame() {
   if (!array) return;
   pen.drawImage(layers.ink, 0, 0);
   pen.setTransform(view.dpr, 0, 0, view.dpr, 0, 0);
+  if (state.compare?.blind) return;
   const now = shares();
   draw_arms(now);
   array.places.forEach((q, i) => draw_disc(q, i, now[i]));

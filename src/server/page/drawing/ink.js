@@ -2,15 +2,16 @@
 // Strokes, their bursts, and where they are predicted to be felt.
 import {state, current_take} from "../state.js";
 import {colour, is_dark, font} from "../look.js";
-import {array, view, layers, start_layer, trace, disc, to_px} from "./view.js";
+import {array, view, layers, start_layer, trace, trace_rows, disc, to_px} from "./view.js";
 import {editable, shape} from "../takes/stroke.js";
 import {place_labels, number_place, draw_labels} from "./labels.js";
+import {draw_felt_points} from "./felt.js";
 import {viridis} from "../../../net/page/viridis.js";
 
 export function draw_ink() {
   const p = start_layer(layers.ink);
   if (!array) return;
-  const take = current_take(), plan = state.plan;
+  const take = current_take(), plan = state.compare?.blind ? null : state.plan;
   const drawing = state.drawing;
   // Tactors are the ground of the lines, which stay above them.
   place_labels(drawing ? [] : take?.strokes ?? []);
@@ -19,7 +20,7 @@ export function draw_ink() {
   const strokes = drawing ? drawing.before : take?.strokes ?? [];
   strokes.forEach((s, i) => draw_stroke(p, s, i === state.stroke || drawing !== null));
   drawing?.tracks.forEach(k => {
-    trace(p, k.points.map(q => [q[1], q[2]]));
+    trace_rows(p, k.points);
     p.strokeStyle = colour("ink");
     p.lineWidth = 2.5;
     p.stroke();
@@ -54,19 +55,23 @@ function draw_felt(p, plan) {
   p.globalAlpha = is_dark() ? 0.5 : 0.45;
   p.strokeStyle = colour("felt");
   p.lineWidth = Math.min(9, Math.max(5, view.scale * 0.8));
-  for (const rows of plan.felt_rows) { trace(p, rows.map(f => [f[1], f[2]])); p.stroke(); }
+  for (const rows of plan.felt_rows) { trace_rows(p, rows); p.stroke(); }
   p.restore();
+  // What it is compared with is hollow.
+  for (const rows of state.compare?.rest?.felt_rows ?? []) for (const [tone, width] of [["felt", 8], ["skin", 5]]) {
+    trace_rows(p, rows); p.strokeStyle = colour(tone); p.lineWidth = width; p.stroke();
+  }
 }
 function draw_stroke(p, s, own) {
   if (own && shape(s) && shape(s) !== "drawn") draw_ghost(p, s.ink);
-  trace(p, s.timed.map(q => [q[1], q[2]]));
+  trace_rows(p, s.timed);
   p.strokeStyle = own ? colour("ink") : colour("ink2");
   p.lineWidth = own ? 2 : 1.5;
   p.stroke();
 }
 // Draws the ink below a path that has left it.
 function draw_ghost(p, ink) {
-  trace(p, ink.map(q => [q[1], q[2]]));
+  trace_rows(p, ink);
   p.globalAlpha = 0.2;
   p.strokeStyle = colour("ink");
   p.lineWidth = 3;
@@ -90,6 +95,7 @@ function draw_dots(p, plan) {
   }
 }
 function draw_marks(p, s, i) {
+  if (i === state.stroke && state.tool === "felt") draw_felt_points(p, s);
   if (i === state.stroke && state.tool === "points") editable(s).knots.forEach((k, n) => draw_knot(p, k, n === state.knot));
 }
 function draw_knot(p, k, chosen) {

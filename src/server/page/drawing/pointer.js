@@ -7,6 +7,7 @@ import {array, to_mm, to_px, px_per_mm, tactor_at, zoom, zoom_by_two, pan} from 
 import {add_take, edit_take, edit_stroke, end_edit, request_options} from "../takes/takes.js";
 import {say_if_kept} from "../takes/keeping.js";
 import {from_drawing, straight, editable, nearest_knot, insert_knot, changed_knot, without_knot, total_s, outside_mm} from "../takes/stroke.js";
+import {grasp_felt, pull} from "./felt.js";
 import {test_tactor, tell_level, on_stop} from "../service/player.js";
 
 const RESTING_MS = 100;    // a finger that rests says so, or its stroke would end
@@ -35,7 +36,8 @@ function down(id, px, e) {
   const f = {id, px, from: mm, at: mm, strength: strength(e), kind: e.pointerType ?? "key", down_ms: e.timeStamp
     ?? performance.now(), mode: "tap",
     straight: state.tool === "line" || e.shiftKey, sent_ms: 0, number: null};
-  if (state.tool === "points" && grasp(f, mm)) { fingers.set(id, f); return; }
+  if (state.tool === "felt") { f.mode = "felt"; if (!grasp_felt(mm)) return; }
+  if (f.mode === "felt" || state.tool === "points" && grasp(f, mm)) { fingers.set(id, f); return; }
   const tactor = tactor_at(mm);
   if (tactor >= 0) f.hold = setTimeout(() => { if (f.mode === "tap") { f.mode = "held"; show_held(tactor, px); } }, HOLD_MS);
   f.tactor = tactor;
@@ -58,6 +60,7 @@ function moved(id, px, e) {
   }
   f.at = mm;
   f.strength = strength(e);
+  if (f.mode === "felt") return pull(mm);
   if (f.mode === "knot") return drag_knot(f, mm);
   if (f.mode === "tap" && Math.hypot(mm[0] - f.from[0], mm[1] - f.from[1]) > LEAST_MM && state.tool !== "points") begin(f);
   if (f.mode === "draw") record(f, mm, e.timeStamp);

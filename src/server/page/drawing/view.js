@@ -107,5 +107,6 @@ export function trace(p, places, closed = false) {
   places.forEach((q, i) => { const [x, y] = to_px(q); if (i) p.lineTo(x, y); else p.moveTo(x, y); });
   if (closed) p.closePath();
 }
+export const trace_rows = (p, rows) => trace(p, rows.map(q => [q[1], q[2]]));
 export function disc(p, [x, y], r) { p.beginPath(); p.arc(x, y, Math.max(0, r), 0, 2 * Math.PI); }
 

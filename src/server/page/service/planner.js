@@ -2,7 +2,7 @@
 // Plans for the picture: one question at a time, always about what is newest.
 import {state, ceiling_dbfs, changed, on_change, current_take, say} from "../state.js";
 import {call, is_connected} from "./connection.js";
-import {make_request, put_take, take_s} from "../takes/takes.js";
+import {make_request, put_take, take_s, with_side} from "../takes/takes.js";
 import {number_text} from "../words.js";
 import {thin} from "../takes/stroke.js";
 import {row, value} from "../settings/values.js";
@@ -17,7 +17,7 @@ let draft = 0, busy = false, owed = false, compare_timer = 0, round = 0;
 
 function request() {
   const take = current_take(), strokes = state.drawing ? draw_so_far(state.drawing) : take?.strokes;
-  return strokes?.length ? make_request({...take, strokes}) : null;
+  return strokes?.length ? make_request(with_side({...take, strokes})) : null;
 }
 // Returns the strokes of a drawing that goes on.
 function draw_so_far({before, tracks}) {
@@ -25,6 +25,12 @@ function draw_so_far({before, tracks}) {
     timed: k.points.length > DRAFTED_POINTS ? thin(k.points, 0.1) : k.points}))];
 }
 
+// Returns the plan of a request, with what is predicted to be felt: rows for each stroke.
+export async function predict(what, more = {}) {
+  const plan = await call("plan", {...what, view: "percept", ...more, ...state.observer && {observer: state.observer}});
+  plan.felt_rows = plan.strokes.map(s => plan.felt.slice(s.felt_first, s.felt_first + s.felt_count));
+  return plan;
+}
 function plan_soon() {
   if (busy) { owed = true; return; }
   if (is_connected()) ask();
@@ -41,10 +47,11 @@ async function ask() {
   const began = performance.now();
   const take = current_take(), was_drawing = state.drawing !== null;
   try {
-    const plan = await call("plan", {...what, view: "percept", draft: ++draft, ...observer()});
-    plan.felt_rows = plan.strokes.map(s => plan.felt.slice(s.felt_first, s.felt_first + s.felt_count));
-    if (was_drawing || current_take() === take) Object.assign(state, {plan, plan_fault: null,
+    const c = state.compare, on = c?.on, plan = await predict(what, {draft: ++draft});
+    const rest = c && await predict(make_request(with_side(take, 1 - on))).catch(() => null);
+    if (was_drawing || current_take() === take && state.compare?.on === on) Object.assign(state, {plan, plan_fault: null,
       plan_of: was_drawing ? null : take});
+    if (c) c.rest = rest;
   } catch (e) {
     if (e.code !== 0 && e.data?.why !== "outdated") Object.assign(state, {plan: null, plan_fault: e});
   }
@@ -66,7 +73,6 @@ export async function weaken_take(take) {
   say(`“${take.name}” ${number_text(gain_db)} dB: it would be too strong`);
   return true;
 }
-const observer = () => state.observer ? {observer: state.observer} : {};
 
 // Predicts the other algorithms and phantoms, one after the other, while nothing else is asked for.
 async function compare() {
@@ -78,9 +84,9 @@ async function compare() {
     if (own !== round || busy || current_take() !== take || !is_connected()) return;
     const key = predicted_key(take, name, v);
     if (state.predicted.has(key)) continue;
-    const what = make_request({...take, options: {...take.options, [name]: v}});
+    const what = make_request({...take, options: {...with_side(take).options, [name]: v}});
     let found;
-    try { found = (await call("plan", {...what, view: "percept", ...observer()})).errors; } catch (e) {
+    try { found = (await predict(what)).errors; } catch (e) {
       if (e.code === 0) return;
       found = {refused: e.message};
     }
@@ -93,7 +99,7 @@ const numbers = new WeakMap();
 let last_number = 0;
 export function predicted_key(take, name, v) {
   if (!numbers.has(take)) numbers.set(take, ++last_number);
-  return `${numbers.get(take)} ${name} ${v} ${state.observer ?? ""} ${state.level_db}`;
+  return `${numbers.get(take)} ${name} ${v} ${state.observer ?? ""} ${state.level_db}${state.compare?.on ? JSON.stringify(state.compare.other) : ""}`;
 }
 
 on_change(what => {

@@ -2,14 +2,15 @@
 // Plays takes, tests tactors, stops; and says where the moment is.
 import {state, changed, on_change, current_take, ceiling_dbfs, take_gain, marks, say} from "../state.js";
 import {call, tell, is_connected, server_now_s, from_server_ms, on_notification, on_lost, SLOW_MS} from "./connection.js";
-import {make_request, take_s, take_part} from "../takes/takes.js";
+import {make_request, take_s, take_part, with_side} from "../takes/takes.js";
 import {weaken_take} from "./planner.js";
 import {start_loudspeaker} from "./loudspeaker.js";
 
 const TEST_S = 0.5;
 const AHEAD_S = 0.4;      // before the end, when the next round of a loop is asked for
+const SILENT_DB = -60, TOGETHER_S = 0.3, COMPARED_AHEAD_S = 1; // of sides of a comparison: the level of one, the time until both begin
 const STOP_AGAIN_MS = 500; // between stops that are not answered
-const ended = new Set();  // numbers whose end came before the answer that named them
+const ended = new Set(), begun = new Map(); // of strokes: ends and starts that came before the answer that named them
 let speaker = null;
 
 // Returns what Play plays: the range, or all from the start on.
@@ -18,10 +19,10 @@ const part_to_play = () => { const [from_s, until_s] = marks().range ?? [marks()
 const make_round = (take, {from_s, until_s = Infinity}) => ({from_s, until_s, total_s: Math.min(until_s, take_s(take)) - from_s,
   lead_s: Math.min(...take_part(take, from_s, until_s).strokes.map(s => s.start_s))});
 async function ask_for(p, round, start) {
-  const take = take_part(state.takes.find(t => t.id === p.take), round.from_s, round.until_s);
-  const r = await call("play", {...make_request(take, ceiling_dbfs()), start});
-  Object.assign(round, {number: r.stroke, sound_s: r.total_s, total_s: Math.max(r.total_s, round.total_s)});
-  return r.strokes;
+  const take = take_part(state.takes.find(t => t.id === p.take), round.from_s, round.until_s), answers = await submit(take, start);
+  const sound_s = Math.max(...answers.map(r => r.total_s));
+  Object.assign(round, {firsts: answers.map(r => r.stroke), sound_s, total_s: Math.max(sound_s, round.total_s)});
+  return answers.flatMap(r => r.strokes);
 }
 
 // Plays the take, from a moment on if it is said.
@@ -44,25 +45,32 @@ export async function play(part = part_to_play()) {
 
 // Tells the service the level: all that this page plays is played at the ceiling and turned down there, so that what sounds
 // follows, too.
-let told_db = null; // as the service knows it
-export function tell_level() {
-  if (!is_connected() || told_db === state.level_db) return;
-  told_db = state.level_db;
-  tell("level", {db: told_db});
+// Strokes of both sides of a comparison begin silent; those of one are raised after all were lowered. All ramps take 20 ms, so that
+// the sum is never above the level. `anew`: there are new strokes.
+let told = null; // as the service knows it
+const side_of = new Map(); // by number of a stroke
+export function tell_level(anew = false) {
+  const on = state.compare?.on, now = `${on} ${state.level_db}`;
+  if (!is_connected() || !anew && told === now) return;
+  if (!state.compare || !told?.startsWith(`${on} `)) tell("level", {db: state.compare ? SILENT_DB : state.level_db});
+  told = now;
+  if (state.compare) for (const n of state.playing?.numbers ?? []) if (side_of.get(n) === on) tell("level", {db: state.level_db, stroke: n});
 }
-on_change(tell_level);
-on_lost(() => { told_db = null; });
+on_change(() => tell_level());
+on_lost(() => { told = null; });
 
 async function ask_to_play() {
   const own = state.playing, take = state.takes.find(t => t.id === own.take);
   try {
     tell_level();
     // Without a start the service leaves out the silence before the first stroke.
-    const strokes = await ask_for(own, own, own.lead_s ? {delay_s: 0} : "now");
+    const strokes = await ask_for(own, own, state.compare ? {monotonic_s: server_now_s() + TOGETHER_S} : own.lead_s ? {delay_s: 0} : "now");
     if (state.playing !== own) return cancel_strokes(strokes);
     own.began_ms = performance.now();
     own.numbers = new Set(strokes.filter(n => !ended.has(n)));
     ended.clear();
+    tell_level(state.compare);
+    hear_starts(strokes);
   } catch (e) {
     if (state.playing !== own) return;
     // Strokes of several fingers add up: the take is played as strong as it may be.
@@ -78,6 +86,21 @@ async function ask_to_play() {
   changed("playing");
 }
 
+// Asks for the strokes of a take, or of both sides of a comparison, which begin together. Returns the answers.
+async function submit(take, start) {
+  const sides = state.compare ? [0, 1] : [0];
+  const all = await Promise.allSettled(sides.map(side => call("play", {...make_request(with_side(take, side), ceiling_dbfs()), start})));
+  const answers = all.flatMap((a, side) => a.value ? [{...a.value, side}] : []), refused = all.find(a => a.reason);
+  for (const r of answers) r.strokes.forEach(n => side_of.set(n, r.side));
+  if (!refused) return answers;
+  answers.forEach(r => cancel_strokes(r.strokes));
+  throw refused.reason;
+}
+function hear_starts(strokes) {
+  strokes.forEach(n => begun.has(n) && hear_stroke(begun.get(n)));
+  begun.clear();
+}
+
 // A take that was chosen meanwhile is not the one that sounds.
 const is_shown = p => p.take === state.current;
 // Moves the moment on; called once a frame.
@@ -86,9 +109,9 @@ export function tick() {
   if (!p) return;
   const t = (performance.now() - p.began_ms) / 1000;
   if (is_shown(p)) state.at_s = p.from_s + Math.max(0, Math.min(p.waits ? p.lead_s : p.total_s, t));
-  if (state.loop && p.felt && !p.waits && !p.next && t > p.total_s - AHEAD_S) next_round(p);
+  if (state.loop && p.felt && !p.waits && !p.next && t > p.total_s - (state.compare ? COMPARED_AHEAD_S : AHEAD_S)) next_round(p);
   if (t < p.total_s || p.waits) return;
-  const round = p.next?.number ? p.next : state.loop && !p.felt && round_after(p);
+  const round = p.next?.firsts ? p.next : state.loop && !p.felt && round_after(p);
   if (round) {
     Object.assign(p, {began_ms: p.began_ms + p.total_s * 1000, waits: p.felt && !round.began_ms}, round, {next: null});
     return hear_it();
@@ -118,16 +141,20 @@ async function next_round(p) {
     const strokes = await ask_for(p, round, {monotonic_s: at});
     if (state.playing !== p) return cancel_strokes(strokes);
     strokes.forEach(n => p.numbers.add(n));
+    tell_level(state.compare);
     p.next = round;
+    hear_starts(strokes);
   } catch { p.next = null; state.loop = false; changed("playing"); }
 }
 
-on_notification("stroke", s => {
+on_notification("stroke", hear_stroke);
+function hear_stroke(s) {
   const p = state.playing;
   if (s.state === "started") {
+    if (p && !p.numbers.has(s.stroke)) begun.set(s.stroke, s);
     if (p?.numbers.has(s.stroke) && s.started_s !== null) {
       // It is told before it is heard: the round before goes on until its end.
-      const round = p.waits ? p : p.next?.number === s.stroke && p.next;
+      const round = p.waits ? p : p.next?.firsts?.includes(s.stroke) && p.next;
       if (round) round.began_ms = from_server_ms(s.started_s) - round.lead_s * 1000;
       if (p.waits) { p.waits = false; tick(); hear_it(); }
       changed("playing");
@@ -143,7 +170,12 @@ on_notification("stroke", s => {
       end_playing();
     }
   } else if (state.playing) ended.add(s.stroke);
-});
+}
+// Ends what this page plays.
+export function quit_playing() {
+  end_round(state.playing);
+  end_playing();
+}
 function end_playing() {
   state.playing = null;
   silence_speaker();
@@ -191,11 +223,15 @@ export function on_stop(f) { lift_fingers = f; }
 export function test_tactor(i) {
   if (!is_connected()) return say("No connection: nothing is driven");
   tell_level();
-  call("drive", {tactor: i, duration_s: TEST_S}).then(() => say(`Tactor ${i}, ${TEST_S} s`), e => say(e.message));
+  call("drive", {tactor: i, duration_s: TEST_S})
+    .then(r => {
+      if (state.compare) tell("level", {db: state.level_db, stroke: r.stroke});
+      say(`Tactor ${i}, ${TEST_S} s`);
+    }, e => say(e.message));
 }
 
 // Plays on this computer's loudspeakers where that is asked for.
-function hear_it() {
+export function hear_it() {
   silence_speaker();
   if (!state.speaker || !state.plan || !state.hello) return;
   speaker = start_loudspeaker({...state.plan, places: state.hello.array.tactors}, state.at_s, {gain: take_gain()});

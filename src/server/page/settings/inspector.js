@@ -12,6 +12,7 @@ import {ALGORITHMS, PHANTOMS, OPTION_NAMES, number_text, plain_name, seconds_tex
 import {duration_s, length_mm, with_duration, rebuild, find_speeds, editable, trimmed} from "../takes/stroke.js";
 import {set_strength, strengths, set_speed} from "../time/curves.js";
 import {row, value, algorithm} from "./values.js";
+import {toggle_compare} from "./compare.js";
 import {LEAST_S, MOST_S} from "../time/time_axis.js";
 import {starting_at} from "../time/clips.js";
 
@@ -208,7 +209,7 @@ function build() {
   if (now === structure) return;
   structure = now;
   const section = {
-    method: () => [algorithm_choice(), phantom_choice(), observer_choice(), others("method")],
+    method: () => [algorithm_choice(), phantom_choice(), {element: button("Compare two by feeling", null, toggle_compare, {class: "button outlined"}), update() {}}, observer_choice(), others("method")],
     timing: () => [current_stroke() && pace_controls(), current_stroke() && stroke_controls(), algorithm() === "park2016"
       && burst_controls(), others("timing")],
     vibration: () => [vibration_controls(), others("vibration")],

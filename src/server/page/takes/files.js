@@ -59,12 +59,12 @@ addEventListener("drop", e => { e.preventDefault(); over = 0; by_id("drop").hidd
   open_files([...e.dataTransfer?.files ?? []]); });
 
 // Letters and digits of all languages, at most 100 bytes: what the service takes as a name.
-function file_name(take) {
+export function file_name(take) {
   let name = take.name.normalize("NFC").replace(/[^\p{L}\p{M}\p{N} _-]|[\x80-\xbf]/gu, "").trim().replace(/ +/g, "-").toLowerCase().replace(/^-+/, "");
   while (new TextEncoder().encode(name).length > 90) name = [...name].slice(0, -1).join("");
   return name || "take";
 }
-function give(name, blob) {
+export function give(name, blob) {
   const a = make("a", {download: name, href: URL.createObjectURL(blob)});
   a.click();
   setTimeout(() => URL.revokeObjectURL(a.href), 10000);

@@ -239,6 +239,14 @@ export function rebuild(s, seconds = duration_s(s)) {
   return {...s, timed: thin(timed)};
 }
 
+// Returns when a stroke that can be edited passes its knots, s from its start.
+export const knot_times = kept_for(s => {
+  if (s.pace.kind === "drawn") return s.knots.map(k => k.at * duration_s(s) / s.base.at(-1)[0]);
+  let mm = 0;
+  const reached = [0, ...path_pieces(s).map(rows => mm += length_mm(rows))];
+  return reached.map(v => interpolate(pace_table(s.pace), v / (mm || 1))[1] * duration_s(s));
+});
+
 // Leaves out points that lie on the line of their neighbours in time, place and intensity.
 export function thin(timed, tolerance = 0.02) {
   for (;;) {
@@ -402,11 +410,15 @@ export function outside_mm(edge, p) {
   });
   return inside ? 0 : off;
 }
-function segment_mm(a, b, p) {
+function nearest_on(a, b, p) {
   const dx = b[0] - a[0], dy = b[1] - a[1];
   const part = Math.min(1, Math.max(0, ((p[0] - a[0]) * dx + (p[1] - a[1]) * dy) / (dx * dx + dy * dy || 1)));
-  return Math.hypot(p[0] - a[0] - part * dx, p[1] - a[1] - part * dy);
+  return [a[0] + part * dx, a[1] + part * dy];
 }
+const segment_mm = (a, b, p) => distance(nearest_on(a, b, p), p);
+// Returns the place of a hull that is nearest to p.
+export const within = (edge, p) => outside_mm(edge, p) === 0 ? p : edge.map((a, i) => nearest_on(a, edge[(i + 1) % edge.length], p))
+  .reduce((best, q) => distance(q, p) < distance(best, p) ? q : best);
 
 // Scales and centres strokes to the box of a hull, and keeps their shape and their times.
 export function fitted(strokes, edge) {
@@ -429,7 +441,7 @@ const min = list => list.reduce((a, b) => Math.min(a, b), Infinity);
 const max = list => list.reduce((a, b) => Math.max(a, b), -Infinity);
 
 // TOML and CSV of strokes.
-const quoted = text => `"${String(text).replace(/[\u0000-\u001f\u007f]/g, " ").replace(/[\\"]/g, "\\$&")}"`;
+export const quoted = text => `"${String(text).replace(/[\u0000-\u001f\u007f]/g, " ").replace(/[\\"]/g, "\\$&")}"`;
 export function strokes_toml(strokes) {
   const ordered = [...strokes].sort((a, b) => a.start_s - b.start_s);
   return ordered.map(s => `[[stroke]]\nname = ${quoted(s.name)}\nstart_s = ${+s.start_s.toFixed(4)}\nstart_from = "piece"\n` +

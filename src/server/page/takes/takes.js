@@ -75,7 +75,13 @@ export function put_stroke(change, same, index = state.stroke) {
   edit_take(t => ({strokes: t.strokes.map((s, i) => i === index ? change(s) : s)}), same);
 }
 export const edit_stroke = (change, same) => put_stroke(s => change(editable(s)), same);
+// Returns a take as a side of a comparison plays it: 0 is the take itself. Without a number, the side that sounds.
+export const with_side = (take, side = state.compare?.on) => side && take ? {...take, options: {...take.options, ...state.compare.other}} : take;
 export function set_option(name, value, same = `option ${name}`) {
+  if (state.compare?.on) {
+    state.compare.other = {...state.compare.other, [name]: value ?? undefined};
+    return changed("take");
+  }
   const take = current_take() ?? add_take([], {name: "Settings"});
   const options = {...take.options};
   if (value === undefined || value === null) delete options[name]; else options[name] = value;

@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: MIT
+// What is felt, moved: a diamond for each point of the stroke, where it is felt. The point moves until it is felt where the diamond
+// was put, or as near as can be.
+import {state, changed, on_change, current_take, current_stroke, say} from "../state.js";
+import {colour} from "../look.js";
+import {array, trace_rows, disc, to_px, px_per_mm} from "./view.js";
+import {edit_stroke} from "../takes/takes.js";
+import {editable, changed_knot, nearest_knot, knot_times, interpolate, within} from "../takes/stroke.js";
+import {number_text} from "../words.js";
+
+const GRASP_PX = 22, WISH_STEPS = 24, LEAST_PART = 0.2;
+const HERE_MM = 0.25, SOLVED_MM = 0.05;
+
+let wish = null; // {knot, at, steps, part, best, before, after, key}: so many steps are left
+
+// Returns the places where the points of the stroke are felt.
+export function felt_points(s = current_stroke()) {
+  const i = state.stroke, rows = s && state.plan?.felt_rows[i];
+  return !rows?.length ? [] : knot_times(editable(s)).map(t => interpolate(rows, state.plan.strokes[i].start_s + t)).map(([, x, y]) => ({x, y}));
+}
+function start_wish(knot) {
+  wish = {knot, before: current_stroke().timed, key: `felt ${performance.now()}`};
+  state.knot = knot;
+  changed("knot");
+}
+// Takes the diamond at a place, if there is one.
+export function grasp_felt(mm) {
+  const near = nearest_knot(felt_points(), mm);
+  if (near.off * px_per_mm() > GRASP_PX) return false;
+  start_wish(near.index);
+  return true;
+}
+// Lets the point of the wish be felt at a place.
+export function pull(at) {
+  Object.assign(wish, {at, steps: WISH_STEPS, part: 1, best: null});
+  changed("knot");
+  solve();
+}
+export function step_felt(knot, [dx, dy]) {
+  const felt = felt_points()[knot];
+  if (!felt) return;
+  start_wish(knot);
+  pull([felt.x + dx, felt.y + dy]);
+}
+// Adds the error to the point, or less of it, from where it was felt nearest; where that brings it no nearer, for the felt place jumps
+// between triangles, it looks round about. The plan of that comes here again.
+function solve() {
+  if (!(wish?.steps >= 0) || wish.knot !== state.knot || state.plan_of !== current_take()) return;
+  const s = current_stroke(), felt = felt_points()[wish.knot], k = editable(s).knots[wish.knot];
+  const error = [wish.at[0] - felt.x, wish.at[1] - felt.y], off = Math.hypot(...error);
+  if (off >= wish.best?.off) wish.part /= 2; else Object.assign(wish, {best: {off, at: [k.x, k.y], error}, part: 1});
+  const {best, part, steps} = wish, solved = !steps || best.off < SOLVED_MM, far = best.off * steps / WISH_STEPS;
+  const by = solved ? [0, 0] : part > LEAST_PART ? best.error.map(v => v * part) : [far * Math.cos(2.4 * steps), far * Math.sin(2.4 * steps)];
+  const [x, y] = within(array.edge, best.at.map((v, i) => v + by[i])).map(v => +v.toFixed(3));
+  wish.steps = solved ? -1 : steps - 1;
+  if (solved) say(best.off < HERE_MM ? `Felt here, within ${number_text(Math.max(0.1, best.off))} mm` : `Nearest there is: ${number_text(best.off)} mm short`);
+  if (x !== k.x || y !== k.y) edit_stroke(q => changed_knot({...q, ink: q.ink ?? q.timed}, wish.knot, {x, y}), wish.key);
+  else if (!solved) solve();
+  wish.after = current_stroke();
+}
+on_change(what => {
+  if (what.has("tool")) wish = null;
+  if (what.has("plan")) solve();
+});
+
+// Draws the diamonds, and of a wish its ring, how far it is from there, and the former path.
+export function draw_felt_points(p, s) {
+  const places = felt_points(s).map(q => to_px([q.x, q.y]));
+  p.strokeStyle = colour("felt");
+  if (wish?.at && wish.after === s && places.length) {
+    const at = to_px(wish.at);
+    p.lineWidth = 1.5;
+    p.setLineDash([4, 4]);
+    trace_rows(p, wish.before); p.stroke();
+    disc(p, at, 13); p.stroke();
+    p.setLineDash([]);
+    p.beginPath(); p.moveTo(...at); p.lineTo(...places[wish.knot]); p.stroke();
+  }
+  places.forEach(([x, y], i) => {
+    p.beginPath(); p.moveTo(x, y - 9); p.lineTo(x + 9, y); p.lineTo(x, y + 9); p.lineTo(x - 9, y); p.closePath();
+    p.fillStyle = colour(i === state.knot ? "felt" : "raised"); p.fill();
+    p.lineWidth = 2; p.stroke();
+  });
+}

@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: MIT
+// Comparison of two methods on one stroke: side 0 is the take as it is, side 1 has other options. Both loop in step, and one is silent.
+import {state, changed, on_change, current_take, say} from "../state.js";
+import {by_id} from "../../../net/page/dom.js";
+import {row, value} from "./values.js";
+import {with_side} from "../takes/takes.js";
+import {play, quit_playing, tell_level, hear_it} from "../service/player.js";
+import {ALGORITHMS, PHANTOMS, number_text} from "../words.js";
+
+const LONGEST_WAIT_S = 0.07; // for the next burst; message and ramp take up to 30 ms more
+const LEAD_S = 0.02;         // before the burst
+const FEW = 20;              // answers
+
+export function toggle_compare() {
+  if (state.compare) return close_compare();
+  if (!current_take()?.strokes.length) return say("Draw or choose a take to compare");
+  quit_playing();
+  // order: the side of each card; rest: the plan of the side that is silent.
+  state.compare = {take: state.current, on: 0, order: [0, 1], blind: false, heard: new Set(), answers: [], rest: null, looped: state.loop,
+    other: value("algorithm") === "park2016" ? {algorithm: "tactile-brush", snap: true} : {algorithm: "park2016"}};
+  state.loop = true;
+  document.body.dataset.sheetOpen = "";
+  changed("take", "layout");
+  play();
+}
+export function close_compare() {
+  quit_playing();
+  clearTimeout(state.compare.timer);
+  Object.assign(state, {compare: null, loop: state.compare.looped});
+  tell_level();
+  changed("take", "layout");
+}
+const plan_of_side = side => side === state.compare.on ? state.plan : state.compare.rest;
+// Lets the side of a card sound from the next burst on, where the other one is at that moment.
+export function choose_side(card) {
+  const c = state.compare, side = c?.order[card];
+  if (!c) return;
+  const next = (plan_of_side(side)?.onsets ?? []).reduce((t, v) => v > state.at_s + LEAD_S ? Math.min(t, v) : t, Infinity);
+  const played = state.playing !== null;
+  clearTimeout(c.timer);
+  c.timer = setTimeout(() => {
+    if (c.on !== side) [state.plan, c.rest] = [c.rest, state.plan];
+    c.on = side;
+    c.heard.add(card);
+    tell_level();
+    if (!played) play(); else if (state.playing) hear_it(); // or it was stopped meanwhile
+    changed("take", "plan");
+  }, played ? 1000 * Math.min(LONGEST_WAIT_S, next - state.at_s - LEAD_S) : 0);
+}
+// Shuffles the cards, which have to be heard anew.
+function ask_again() {
+  state.compare.order = Math.random() < 0.5 ? [0, 1] : [1, 0];
+  state.compare.heard.clear();
+  choose_side(0);
+}
+by_id("blind").addEventListener("click", () => {
+  const c = state.compare;
+  c.blind = !c.blind;
+  if (c.blind) { c.answers = []; ask_again(); } else c.order = [0, 1];
+  changed("take");
+});
+// Returns how often the same side was chosen, and, after a reveal, which.
+function tally_text({answers, blind}) {
+  const n = answers.length, often = [0, 1].map(side => answers.filter(v => v === side).length), most = Math.max(...often);
+  const who = blind || often[0] === often[1] ? "the same one" : side_name(often.indexOf(most));
+  return !n ? blind ? "Which one?" : "" : `${most} of ${n} for ${who}${n < FEW ? ". A look, not a study" : ""}`;
+}
+function side_name(side) {
+  const word = (words, name) => words[with_side(current_take(), side).options[name] ?? row(name)?.default]?.[0];
+  return `${word(ALGORITHMS, "algorithm")}, ${word(PHANTOMS, "phantom")}`;
+}
+const side_facts = e => !e ? "not possible"
+  : `${number_text(e.rms_error_mm)} mm off${e.speed_cv ? ` · ${Math.round(100 / (1 + e.speed_cv))} % even` : ""}`;
+
+const side_cards = document.querySelectorAll(".side"), votes = by_id("votes");
+side_cards.forEach((b, card) => b.addEventListener("click", () => choose_side(card)));
+votes.childNodes.forEach((b, card) => b.addEventListener("click", () => {
+  state.compare.answers.push(state.compare.order[card]);
+  ask_again();
+}));
+by_id("compare-end").addEventListener("click", close_compare);
+on_change(() => {
+  const c = state.compare, blind = c?.blind ?? false;
+  // Whoever draws compares no longer.
+  if (c && (c.take !== state.current || state.drawing)) return close_compare();
+  by_id("compare").hidden = !c;
+  document.body.toggleAttribute("data-blind", blind);
+  if (!c) return;
+  side_cards.forEach((b, card) => {
+    b.setAttribute("aria-pressed", c.order[card] === c.on);
+    b.childNodes[1].textContent = blind ? "hidden" : side_name(card);
+    b.childNodes[2].textContent = blind ? "" : side_facts(plan_of_side(card)?.errors);
+  });
+  votes.hidden = !blind;
+  votes.childNodes.forEach(b => { b.disabled = c.heard.size < 2; });
+  by_id("study-open").hidden = blind;
+  by_id("blind").textContent = blind ? "Reveal" : "Blind";
+  by_id("tally").textContent = tally_text(c);
+});

@@ -1,0 +1,162 @@
+# SPDX-License-Identifier: MIT
+"""The studio in a real Chromium: two methods compared by feeling, and what is felt moved. Usage: test_page_compare.py TOOL SOURCE_ROOT"""
+import json
+import sys
+
+del sys.argv[3:]
+from studio import TAKE, StudioTest, quoted  # noqa: E402
+from harness import main  # noqa: E402
+
+# Levels that the page tells the service, and when, ms.
+SPY = """globalThis.sent_levels = []; globalThis.plain_send = WebSocket.prototype.send; WebSocket.prototype.send = function (text) {
+  const m = JSON.parse(text);
+  if (m.method === 'level') sent_levels.push({at: performance.now(), ...m.params});
+  return plain_send.call(this, text);
+}"""
+TEXT = "document.querySelector('{}').textContent"
+
+
+class Compare(StudioTest):
+    def compare(self, s):
+        """Returns a page that compares the methods of an example, and a client."""
+        p, watcher = self.ready(s)
+        p.value("document.querySelector('#examples li:nth-child(3) button').click()")
+        p.until(f"tactor.state.plan_of && tactor.state.plan_of === {TAKE}")
+        p.value(SPY)
+        p.key("KeyB", "b")
+        p.until("tactor.state.playing?.numbers.size === 2 && !tactor.state.playing.waits && tactor.state.compare.rest")
+        return p, watcher
+
+    def test_two_methods_loop_in_step_and_one_of_them_sounds(self):
+        s = self.serve()
+        p, watcher = self.compare(s)
+        p.value("tactor.state.level_db = -6; tactor.changed('level')")
+        p.until("sent_levels.some(m => m.db === -6 && m.stroke)")
+        asker = s.client()
+        a, b = sorted(x["stroke"] for x in asker.ok("status")["strokes"])
+        asker.ok("subscribe", events=["levels"], levels_hz=100)
+        loudest, since = -100, asker.notification(lambda m: m["method"] == "levels")["params"]["t_s"]
+        for key, stroke in ("2", b), ("1", a), ("2", b):
+            at_s = p.value("sent_levels.length = 0, globalThis.pressed = performance.now(), "
+                           f"dispatchEvent(new KeyboardEvent('keydown', {{key: '{key}'}})), tactor.state.at_s")
+            p.until("sent_levels.length === 2")
+            # The page lowers all before it raises the other one.
+            low, high = p.value("sent_levels")
+            self.assertEqual((low["db"], low.get("stroke"), high["db"], high["stroke"]), (-60, None, -6, stroke))
+            self.assertLess(high["at"] - p.value("pressed"), 100)
+            self.assertGreater(p.value("tactor.state.at_s"), at_s)  # it goes on where it was
+            p.until(f"document.querySelector('.side[aria-pressed=true] kbd').textContent === {quoted(key)}")
+        # It loops, and the sum is never above the level, 6 dB below the ceiling of -12 dBFS.
+        p.until(f"tactor.state.playing.numbers.size === 2 && !tactor.state.playing.numbers.has({a})")
+        t = since
+        while t < since + 2.5:
+            levels = asker.notification(lambda m: m["method"] == "levels")["params"]
+            t = levels["t_s"]
+            loudest = max([loudest, *(v for v in levels["dbfs"] if v is not None)])
+        self.assertLess(loudest, -17.9)
+        self.assertGreater(loudest, -24)
+        # A stop before the change stays one.
+        p.value("['1', ' '].forEach(key => dispatchEvent(new KeyboardEvent('keydown', {key})))")
+        p.until("tactor.state.compare.on === 0")
+        self.assertIsNone(p.value("tactor.state.playing"))
+        p.key("Escape", "Escape")
+        p.until("!tactor.state.compare && !tactor.state.playing && document.querySelector('#compare').hidden")
+        self.assertEqual(p.value("sent_levels.at(-1)")["db"], -6)
+
+    def test_both_ribbons_are_drawn_and_settings_are_those_of_the_side_that_sounds(self):
+        p, _ = self.compare(self.serve())
+        p.key("Digit2", "2")
+        p.until("tactor.state.compare.on === 1")
+        p.value("document.querySelector('[data-value=continuous]').click()")
+        p.until(f"{TEXT.format('.side:nth-child(2)')}.includes('Continuous') && /mm off/.test({TEXT.format('.side:nth-child(2)')})")
+        self.assertIn("Park 2016", p.value(TEXT.format(".side")))
+        self.assertEqual(self.take(p)["options"], {})
+        p.until("tactor.state.plan.continuous && !tactor.state.compare.rest.continuous")
+        rows = p.value("[tactor.state.plan, tactor.state.compare.rest].map(x => x.felt_rows[0].length)")
+        self.assertTrue(all(rows))
+
+    def test_a_blind_comparison_counts_and_reveals(self):
+        p, _ = self.compare(self.serve())
+        p.click("#blind")
+        p.until("document.body.hasAttribute('data-blind')")
+        self.assertNotIn("Park", p.value("document.querySelector('#compare').innerText"))
+        for i in range(3):
+            p.until("tactor.state.compare.heard.size === 1")
+            p.until("document.querySelector('#votes button').disabled")
+            p.key("Digit2", "2")
+            p.until("!document.querySelector('#votes button').disabled")
+            card = p.value("tactor.state.compare.order.indexOf(0)")
+            p.click(f"#votes button:nth-child({3 if i == 2 else card + 1})")
+            p.until(f"tactor.state.compare.answers.length === {i + 1}")
+        p.until(f"{TEXT.format('#tally')} === '2 of 3 for the same one. A look, not a study'")
+        p.click("#blind")
+        p.until(f"{TEXT.format('#tally')}.startsWith('2 of 3 for Park 2016')")
+
+    def test_a_study_of_it_runs(self):
+        p, _ = self.compare(self.serve())
+        p.click("#study-open")
+        p.until("document.querySelector('#p-study').matches(':popover-open')")
+        folder = self.dir / "study"
+        folder.mkdir()
+        p.browser.call("Browser.setDownloadBehavior", behavior="allow", downloadPath=str(folder), eventsEnabled=True)
+        since = len(p.browser.events)
+        p.value("document.querySelector('#study [name=question]').value = 'Which \"one\"?'")
+        p.click("#study button")
+        while sum(e["method"] == "Browser.downloadProgress" and e["params"]["state"] == "completed" for e in p.browser.events[since:]) < 2:
+            p.browser.events.append(json.loads(p.browser.channel.text()))
+        self.assertEqual(p.value(TEXT.format("#study-command")), "tactor experiment two-methods.toml --participant P01 -o results")
+        r = self.run_tool("experiment", folder / "two-methods.toml", "--dry-run", "--format", "json")
+        self.assertEqual(r.returncode, 0, r.stderr)
+        self.assertIn('Which \\"one\\"?', (folder / "two-methods.toml").read_text())
+
+
+class Felt(StudioTest):
+    def diamonds(self, p):
+        p.until(f"tactor.state.plan_of === {TAKE} && tactor.felt_points().length")
+        return [[q["x"], q["y"]] for q in p.value("tactor.felt_points()")]
+
+    def pull(self, p, start, end):
+        p.value("document.querySelector('#toast').textContent = ''")
+        p.mouse("mouseReleased", *self.press(p, start, end))
+        p.until("/mm/.test(document.querySelector('#toast').textContent)")
+        return p.value("document.querySelector('#toast').textContent")
+
+    def felt(self):
+        """Returns a page with an example and the tool Felt."""
+        p, _ = self.ready(self.serve())
+        p.value("document.querySelector('#examples li:nth-child(3) button').click()")
+        p.until("tactor.state.takes.length")
+        p.key("KeyW", "w")
+        p.until("tactor.state.tool === 'felt'")
+        return p
+
+    def test_a_diamond_is_felt_where_it_is_put(self):
+        p = self.felt()
+        points, before = self.diamonds(p), p.value(f"JSON.stringify({TAKE}.strokes[0].timed)")
+        at = len(points) // 2
+        wish = [points[at][0] + 2, points[at][1] + 2]
+        self.assertIn("Felt here, within", self.pull(p, points[at], wish))
+        for a, b in zip(self.diamonds(p)[at], wish):
+            self.assertAlmostEqual(a, b, delta=0.3)
+        p.until("document.querySelector('#shape-curve').textContent === 'Edited, 1 point'")
+        # Keys do the same. Each is one step.
+        p.key("ArrowLeft", "ArrowLeft")
+        p.until(f"tactor.felt_points()[{at}].x < {wish[0] - 0.4}")
+        for _ in range(2):
+            p.click("#undo")
+        p.until(f"JSON.stringify({TAKE}.strokes[0].timed) === {quoted(before)}")
+        p.click("#redo")
+        p.until("!document.querySelector('#shape').hidden")
+        p.click("#shape-ink")
+        p.until("document.querySelector('#shape-ink').getAttribute('aria-pressed') === 'true'")
+
+    def test_a_place_that_cannot_be_felt_says_how_near_it_comes(self):
+        p = self.felt()
+        points = self.diamonds(p)
+        at = len(points) // 2
+        self.assertRegex(self.pull(p, points[at], [-6, points[at][1]]), r"Nearest there is: [6-9]\.\d mm short")
+        self.assertEqual(p.value("tactor.state.outside.length"), 0)
+
+
+if __name__ == "__main__":
+    main()
