@@ -46,7 +46,7 @@ async function ask() {
     if (was_drawing || current_take() === take) Object.assign(state, {plan, plan_fault: null,
       plan_of: was_drawing ? null : take});
   } catch (e) {
-    if (e.code !== 0 && e.data?.why !== "outdated") Object.assign(state, {plan: null, plan_fault: e});
+    if (e.code !== 0 && e.data?.why !== "outdated") Object.assign(state, {plan: null, plan_fault: e, plan_of: take});
   }
   changed("plan");
   // A long drawing is planned less often: its picture must not hold the hand up.

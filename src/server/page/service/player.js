@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Plays takes, tests tactors, stops; and says where the moment is.
-import {state, changed, on_change, current_take, ceiling_dbfs, take_gain, say} from "../state.js";
+import {state, changed, on_change, current_take, take_by_id, is_simulated, ceiling_dbfs, take_gain, say} from "../state.js";
 import {call, tell, is_connected, server_now_s, from_server_ms, on_notification, on_lost, SLOW_MS} from "./connection.js";
 import {make_request, take_s, take_from} from "../takes/takes.js";
 import {weaken_take} from "./planner.js";
@@ -24,11 +24,19 @@ export async function play({from_s = 0} = {}) {
   state.playing = {take: take.id, began_ms: performance.now(), total_s: (state.plan?.total_s ?? take_s(take)) - from_s, numbers: new Set(),
     felt, from_s};
   state.at_s = from_s;
-  if (felt) await ask_to_play(); else say(state.link === "connected"
-    ? "No card: shown, not felt" : "No connection: shown, not felt");
-  if (!felt) hear_it();
+  if (felt) await ask_to_play();
+  else await play_unfelt(take, state.playing);
   changed("playing");
 }
+async function play_unfelt(take, own) {
+  if (!is_simulated() || !state.speaker) say(state.link === "connected" ? "No card: shown, not felt" : "No connection: shown, not felt");
+  // What is new waits for its plan.
+  for (own.waits = true; is_connected() && state.playing === own && is_shown(own) && state.plan_of !== take;)
+    await new Promise(done => setTimeout(done, 10));
+  Object.assign(own, {began_ms: performance.now(), total_s: (state.plan?.total_s ?? take_s(take)) - own.from_s, waits: false});
+  if (state.playing === own) hear_it();
+}
+on_change(what => { if (what.has("level")) speaker?.set_gain(take_gain()); });
 
 // Tells the service the level: all that this page plays is played at the ceiling and turned down there, so that what sounds
 // follows, too.
@@ -42,7 +50,7 @@ on_change(tell_level);
 on_lost(() => { told_db = null; });
 
 async function ask_to_play() {
-  const own = state.playing, take = state.takes.find(t => t.id === own.take);
+  const own = state.playing, take = take_by_id(own.take);
   try {
     tell_level();
     const r = await call("play", make_request(take_from(take, own.from_s), ceiling_dbfs()));
@@ -92,7 +100,7 @@ function end_round(p) {
   p.numbers.clear();
 }
 async function next_round(p) {
-  const take = state.takes.find(t => t.id === p.take);
+  const take = take_by_id(p.take);
   if (!take) return;
   p.next = true;
   const at = Math.max(server_now_s() + 0.05, server_now_s() + p.total_s - (performance.now() - p.began_ms) / 1000);
@@ -130,6 +138,7 @@ on_notification("stroke", s => {
 });
 function end_playing() {
   state.playing = null;
+  state.tapped = -1;
   silence_speaker();
   changed("playing");
 }
@@ -141,7 +150,7 @@ on_notification("stops", s => {
   changed("link", "playing");
 });
 // They come in a tab that is hidden, too, where there are no frames: a loop goes on.
-on_notification("levels", l => { state.dbfs = l.dbfs; if (document.hidden) tick(); });
+on_notification("levels", l => { if (!is_simulated()) state.dbfs = l.dbfs; if (document.hidden) tick(); });
 on_notification("stream", s => { state.stream = s; changed("stream", "link"); });
 on_notification("touches", t => {
   if (t.down) state.touches.set(t.stroke, {...t, at: performance.now()}); else state.touches.delete(t.stroke);
@@ -174,16 +183,23 @@ export function on_stop(f) { lift_fingers = f; }
 
 export function test_tactor(i) {
   if (!is_connected()) return say("No connection: nothing is driven");
+  if (is_simulated()) return tap_tactor(i);
   tell_level();
   call("drive", {tactor: i, duration_s: TEST_S})
     .then(() => say(`Tactor ${i}, ${TEST_S} s`), e => say(e.message));
 }
 
+// Without a card a tactor that is tried is a sound.
+function tap_tactor(i) {
+  state.tapped = i;
+  changed("playing");
+  if (i >= 0) setTimeout(tap_tactor, 1000 * TEST_S, -1);
+}
 // Plays on this computer's loudspeakers where that is asked for.
 function hear_it() {
   silence_speaker();
   if (!state.speaker || !state.plan || !state.hello) return;
-  speaker = start_loudspeaker({...state.plan, places: state.hello.array.tactors}, state.at_s, {gain: take_gain()});
+  speaker = start_loudspeaker({...state.plan, places: state.hello.array.tactors}, state.at_s, {gain: take_gain(), pitched: is_simulated()});
 }
 export function silence_speaker() { speaker?.stop(); speaker = null; }
 export function look_at(s) {

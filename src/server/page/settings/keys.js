@@ -10,7 +10,7 @@ import {step_burst} from "../time/lanes.js";
 import {remove_point} from "../drawing/pointer.js";
 
 const KEYS = [["Space", "stop everything"], ["P, Shift P", "play, play from here"], ["L", "loop"], ["D, S, E", "draw, straight line, edit points"],
-  ["F", "feel on or off"], ["N", "new take"], ["0, +, −", "show all, larger, smaller"], ["T", "timeline: open, close"], ["[, ], Z", "more time, less time, all of it"],
+  ["F", "feel, or hear, on or off"], ["N", "new take"], ["G", "gallery"], ["0, +, −", "show all, larger, smaller"], ["T", "timeline: open, close"], ["[, ], Z", "more time, less time, all of it"],
   [", .", "one burst back, on"], ["Ctrl Z, Ctrl Shift Z", "undo, redo"], ["Delete", "delete the point"],
     ["Enter, arrows", "in the array: touch and lift, move"], ["Tab, arrows, Enter", "with Points: next point, move it (shift: less), curve or corner"],
     ["Esc", "close; where nothing is open, stop"]];
@@ -25,7 +25,7 @@ export function new_take() {
 }
 const ACTIONS = {
   p: e => play(e.shiftKey ? {from_s: state.at_s} : undefined), l: press("loop"), d: () => choose_tool("draw"), s: () => choose_tool("line"), e: () => choose_tool("points"),
-    f: press("feel"), n: new_take,
+    f: press("feel"), n: new_take, g: press("gallery-open"),
   0: () => { look_at_all(); show_all_time(); }, "+": () => zoom(1.3), "=": () => zoom(1.3), "-": () => zoom(1 / 1.3),
   t: () => fold_time(), "[": () => zoom_time(1.5), "]": () => zoom_time(1 / 1.5), z: show_all_time,
   ",": () => step_burst(-1), ".": () => step_burst(1),
