@@ -5,7 +5,7 @@ import sys
 
 del sys.argv[3:]
 from studio import MISSING, PHONE, StudioTest  # noqa: E402
-from harness import main  # noqa: E402
+from harness import ROOT, main  # noqa: E402
 
 # Keeps the oscillators that the page makes.
 LISTEN = """(make => { globalThis.heard = []; AudioContext.prototype.createOscillator = function () {
@@ -88,7 +88,8 @@ class Gallery(StudioTest):
 
     def test_a_row_of_tactors_has_what_makes_sense_there(self):
         for file, fitting in (("arm-line-4", 10), ("two", 6)):
-            array = f"examples/arrays/{file}.toml" if file != "two" else self.write("two.toml", "[array]\n[[tactor]]\nx_mm = 0\ny_mm = 0\n[[tactor]]\nx_mm = 0\ny_mm = 30\n")
+            array = ROOT / f"examples/arrays/{file}.toml" if file != "two" else self.write(
+                "two.toml", "[array]\n[[tactor]]\nx_mm = 0\ny_mm = 0\n[[tactor]]\nx_mm = 0\ny_mm = 30\n")
             with self.subTest(array=file):
                 p, watcher = self.ready(self.serve("--array", array))
                 self.assertEqual(p.value(f"{CARDS}.filter(b => !b.disabled).length"), fitting)
