@@ -8,7 +8,7 @@ import {play, silence_speaker} from "./player.js";
 import {start_tones} from "./loudspeaker.js";
 import {open_example, try_entry} from "../takes/gallery.js";
 
-let simulated = false, tones = null;
+let simulated = false, hinted = false, tones = null;
 
 by_id("hint-example").addEventListener("click", () => {
   if (simulated) return try_entry();
@@ -31,7 +31,9 @@ on_change(() => {
   const on = simulated ? state.speaker : state.feel;
   by_id("feel").setAttribute("aria-checked", on);
   by_id("feel-text").textContent = `${simulated ? "Hear" : "Feel"} ${on ? "on" : "off"}`;
-  by_id("hint").hidden = state.takes.length || state.trial || state.drawing || !by_id("banner").hidden;
+  const hint = by_id("hint");
+  hint.hidden = state.takes.length || state.trial || state.drawing || !by_id("banner").hidden;
+  if (hinted === hint.hidden && !state.drawing) { hinted = !hint.hidden; changed("layout"); } // the canvas never moves under a finger
   if (!by_id("banner").hidden) by_id("p-gallery").hidePopover();
   hear_touches();
 });

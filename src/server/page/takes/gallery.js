@@ -48,7 +48,7 @@ const GALLERY = [
   ["Brush", "Three soft passes, strong in the middle of each.", 3,
     in_turn(1.3, PARTS.map(v => PARTS.map(p => [p, p, v, p === 0.5 ? 1 : 0.3])))],
   ["Rain", "Twenty-four short drops, never two in one place.", 2,
-    curve(p => [3.4 * p + 0.05 * wave(9 * p), resting((161 * p % 24) / 24, 0.03, (115 * p % 24) / 24)], 23), SHORT],
+    curve(p => [3.4 * p + 0.05 * wave(9 * p), resting((161 * p % 24) / 24, 0.03, 14.2 * p % 1)], 23), SHORT],
   ["Heartbeat", "Two beats, then a rest. Loop it.", 1,
     [[0, resting(0.5, 0.08)], [0.18, resting(0.5, 0.08)], [0.3, resting(0.5, 0.7, 0.5, 0)]], CONTINUOUS],
   ["Breath", "It swells to the edge in 4 s, and draws back in 6.", 2,

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The tour: six steps on a card beside the array, each with something to try.
-import {state, is_simulated} from "../state.js";
+import {state, changed, is_simulated} from "../state.js";
 import {by_id, make} from "../../../net/page/dom.js";
 import {array} from "../drawing/view.js";
 import {choose_take} from "./takes.js";
@@ -37,9 +37,11 @@ function show_step(n) {
 export function open_tour() {
   gallery.hidePopover();
   card.showPopover();
+  changed("layout");
   show_step(0);
 }
 function leave_tour() {
   card.hidePopover();
+  changed("layout");
   if (state.trial?.id === state.current) choose_take(state.takes[0]?.id ?? null);
 }
