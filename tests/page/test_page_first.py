@@ -91,7 +91,7 @@ class Gallery(StudioTest):
             array = ROOT / f"examples/arrays/{file}.toml" if file != "two" else self.write(
                 "two.toml", "[array]\n[[tactor]]\nx_mm = 0\ny_mm = 0\n[[tactor]]\nx_mm = 0\ny_mm = 30\n")
             with self.subTest(array=file):
-                p, watcher = self.ready(self.serve("--array", array))
+                p, watcher = self.ready(self.serve("--array", array, "--socket", self.dir / f"{file}.sock"))
                 self.assertEqual(p.value(f"{CARDS}.filter(b => !b.disabled).length"), fitting)
                 self.assertIn("needs two rows", p.value(f"{CARDS}[2].textContent"))
                 p.value(f"{CARDS}[5].click()")

@@ -31,10 +31,11 @@ export async function play({from_s = 0} = {}) {
 async function play_unfelt(take, own) {
   if (!is_simulated() || !state.speaker) say(state.link === "connected" ? "No card: shown, not felt" : "No connection: shown, not felt");
   // What is new waits for its plan.
-  for (own.waits = true; is_connected() && state.playing === own && is_shown(own) && state.plan_of !== take;)
+  for (own.waits = true; is_connected() && state.playing === own && is_shown(own) && state.plan_of?.id !== take.id;)
     await new Promise(done => setTimeout(done, 10));
   Object.assign(own, {began_ms: performance.now(), total_s: (state.plan?.total_s ?? take_s(take)) - own.from_s, waits: false});
-  if (state.playing === own) hear_it();
+  if (state.playing !== own) return;
+  if (is_shown(own)) hear_it(); else end_playing();
 }
 on_change(what => { if (what.has("level")) speaker?.set_gain(take_gain()); });
 
@@ -192,8 +193,8 @@ export function test_tactor(i) {
 // Without a card a tactor that is tried is a sound.
 function tap_tactor(i) {
   state.tapped = i;
-  changed("playing");
   if (i >= 0) setTimeout(tap_tactor, 1000 * TEST_S, -1);
+  changed("playing");
 }
 // Plays on this computer's loudspeakers where that is asked for.
 function hear_it() {

@@ -10,15 +10,9 @@ import {open_example, try_entry} from "../takes/gallery.js";
 
 let simulated = false, hinted = false, tones = null;
 
-by_id("hint-example").addEventListener("click", () => {
-  if (simulated) return try_entry();
-  open_example();
-  setTimeout(play, 0);
-});
+by_id("hint-example").addEventListener("click", () => { if (simulated) try_entry(); else { open_example(); setTimeout(play, 0); } });
 by_id("feel").addEventListener("click", () => {
-  if (simulated) return by_id("speaker").click();
-  state.feel = !state.feel;
-  changed("tool");
+  if (simulated) by_id("speaker").click(); else { state.feel = !state.feel; changed("tool"); }
 });
 on_change(() => {
   if (simulated !== is_simulated()) {

@@ -12,8 +12,8 @@ const BURST_S = 0.07; // by Park's law its interval is as long
 
 // Rows of a stroke, [t_s, u, v, strength], where u and v go from 0 to 1: along places at one speed, or at one place.
 export function path(seconds, places) {
-  const rows = places.map((p, i) => [i, ...p, 1]), parts = parts_reached(rows);
-  return rows.map(([i, ...q]) => [seconds * parts[i][0], ...q]);
+  const rows = places.map((p, i) => [i, ...p, 1]);
+  return rows.map(([i, ...q]) => [seconds * parts_reached(rows)[i][0], ...q]);
 }
 export const resting = (u, seconds, v = 0.5, strength = 1) => [[0, u, v, strength], [seconds, u, v, strength]];
 const curve = (f, n = 60) => Array.from({length: n + 1}, (_, i) => f(i / n));
@@ -31,8 +31,8 @@ export function at_law(rows, part, start_s = 0) {
 export const ROW = [[0, 0.5], [1, 0.5]];
 const BACK = [...ROW, ROW[0]], PARTS = [0, 0.5, 1], CONTINUOUS = {algorithm: "continuous"}, SHORT = {soa: 0.05, burst: 0.03};
 
-// Name, what it shows, what u and v go over (0: two neighbours, 1: the array, 2: the array, which is three tactors or more, 3: the
-// array, which is two rows or more, 4: a square in such an array), strokes, options, and gain.
+// Name, what it shows, what u and v go over (0: two neighbours; the array, 1: of two tactors, 2: of three, 3: of two rows, or more;
+// 4: a square in two rows), strokes, options, and gain.
 const GALLERY = [
   ["Line across", "One line at one speed: the plainest motion.", 1, one(1.2, ROW)],
   ["Fast and slow", "In 0.4 s and in 1.6 s: speed is felt, too.", 2, [[0, path(0.4, ROW)], [0.8, path(1.6, ROW)]]],
@@ -82,14 +82,11 @@ function on_array(strokes, over) {
     if (made.every(s => s.timed.every(([, ...q]) => outside_mm(edge, q) < 0.1))) return made;
   }
 }
-const as_take = ([name,, over, strokes, options = {}, gain_db]) =>
-  ({name, origin: "one stroke", strokes: on_array(strokes, over), options, gain_db});
+const as_take = ([name,, over, made, options = {}, gain_db]) =>
+  ({name, origin: "one stroke", strokes: on_array(made, over), options, gain_db});
 let example = GALLERY[0];
-export const open_example = () => { const {strokes, ...more} = as_take(example); add_take(strokes, more); };
-export function try_entry(entry = example) {
-  try_take(as_take(entry));
-  play();
-}
+export const open_example = () => { const take = as_take(example); add_take(take.strokes, take); };
+export const try_entry = (entry = example) => { try_take(as_take(entry)); play(); };
 
 on_change(what => {
   if (!what.has("array") || !array) return;

@@ -34,14 +34,13 @@ function show_step(n) {
   card.lastChild.lastChild.focus();
   if (actions[0][0] === "Again") actions[0][1]();
 }
+card.addEventListener("toggle", () => changed("layout"));
 export function open_tour() {
   gallery.hidePopover();
   card.showPopover();
-  changed("layout");
   show_step(0);
 }
 function leave_tour() {
   card.hidePopover();
-  changed("layout");
   if (state.trial?.id === state.current) choose_take(state.takes[0]?.id ?? null);
 }
