@@ -132,11 +132,13 @@ class Looks(StudioTest):
 
     def test_devices(self):
         p = self.open(self.serve(device=MISSING))
-        self.banner(p, "No sound card")
+        self.says(p, "Simulated")
+        p.until("document.querySelectorAll('#examples li').length && !document.querySelector('#hint').hidden")
         self.look(p, "no-card")
-        p.click("#banner-more")
-        p.until("!document.querySelector('#banner-details').hidden")
-        self.look(p, "no-card-details")
+        p.value("document.querySelector('#gallery-open').click()")
+        self.look(p, "gallery")
+        p.value("document.querySelector('#tour-open').click()")
+        self.look(p, "tour")
 
     def test_streams_that_break(self):
         p, _ = self.drawn(self.serve())

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The page to draw on: what belongs to no part of it, and the start.
-import {state, changed, on_change, on_toast, current_take, current_stroke, say, remember, remembered} from "./state.js";
+import {state, changed, on_change, on_toast, current_take, current_stroke, is_simulated, say, remember, remembered} from "./state.js";
 import {by_id, make} from "../../net/page/dom.js";
 import {place_icons, forget_colours, is_dark} from "./look.js";
 import {connect, call, on_hello, page_link} from "./service/connection.js";
@@ -15,7 +15,9 @@ import "./time/timeline.js";
 import {LEAST_LEVEL_DB} from "./service/planner.js";
 import {play, stop, tick, silence_speaker, unanswered_s} from "./service/player.js";
 import {change_point, remove_point, on_tactor_held, finish_early} from "./drawing/pointer.js";
-import {show_examples, open_example} from "./takes/takes_panel.js";
+import "./takes/takes_panel.js";
+import {open_tour} from "./takes/tour.js";
+import "./service/simulated.js";
 import {show_tactor, own_name} from "./service/device.js";
 import {choose_tool, new_take, open_sheet, fold_time} from "./settings/keys.js";
 import {full, lane_tactors, lane_height, show_all_time, zoom_time} from "./time/time_axis.js";
@@ -81,11 +83,11 @@ on("scrub", () => { state.scrub = !state.scrub; changed("tool"); });
 for (const key of ["pause", "stop"]) navigator.mediaSession?.setActionHandler(key, stop);
 on("speaker", () => {
   state.speaker = !state.speaker;
-  if (state.speaker) say("Play is heard on this computer's own loudspeakers; they must not be the array's card");
+  if (state.speaker) say(is_simulated() ? "You hear it while you draw"
+    : "Play is heard on this computer's own loudspeakers; they must not be the array's card");
     else silence_speaker();
   changed("playing");
 });
-on("feel", () => { state.feel = !state.feel; changed("tool"); });
 on("show-speed", () => { state.show_speed = !state.show_speed; changed("curves"); });
 on("show-strength", () => { state.show_strength = !state.show_strength; changed("curves"); });
 on("point-curve", () => change_point({corner: false}));
@@ -101,9 +103,8 @@ for (const b of document.querySelectorAll("[data-press]")) b.addEventListener("c
 on("pill", () => open_sheet("inspector"));
 on("settings", () => open_sheet(document.body.dataset.sheetOpen ? "" : state.sheet || "inspector"));
 on("sheet-close", () => open_sheet(""));
-on("hint-close", () => { hint_closed = true; by_id("hint").hidden = true; });
-on("hint-example", () => { open_example(); setTimeout(play, 0); });
-let hint_closed = false;
+on("gallery-open", () => open_sheet(""));
+on("tour-open", () => { open_sheet(""); open_tour(); });
 for (const b of document.querySelectorAll("button[data-tool]")) b.addEventListener("click", () => choose_tool(b.dataset.tool));
 for (const b of document.querySelectorAll("button[data-sheet]")) b.addEventListener("click", () => open_sheet(b.dataset.sheet));
 document.body.dataset.sheetOpen = "";
@@ -123,8 +124,6 @@ on_change(() => {
   by_id("scrub").setAttribute("aria-pressed", state.scrub);
   by_id("show-speed").setAttribute("aria-pressed", state.show_speed);
   by_id("show-strength").setAttribute("aria-pressed", state.show_strength);
-  by_id("feel").setAttribute("aria-checked", state.feel);
-  by_id("feel-text").textContent = state.feel ? "Feel on" : "Feel off";
   for (const b of document.querySelectorAll("button[data-tool]")) b.setAttribute("aria-pressed", b.dataset.tool === state.tool);
   by_id("field").dataset.tool = state.tool;
   const anew = state.drawing !== null && !state.drawing.append;
@@ -132,7 +131,6 @@ on_change(() => {
   by_id("take-facts").textContent = anew ? "" : take_facts(take);
   by_id("take-origin").textContent = !anew && take?.origin.includes("-") ? ` · ${take.origin}` : "";
   by_id("no-lanes").hidden = Boolean(take?.strokes.length || state.drawing);
-  by_id("hint").hidden = hint_closed || state.takes.length > 0 || state.drawing !== null || !by_id("banner").hidden;
   show_point();
 });
 function show_stop() {
@@ -196,7 +194,6 @@ on_hello(async h => {
   set_array(h.array);
   try { state.options = (await call("options")).options; } catch (e) { if (e.code === 0) throw e; }
   changed("array", "options", "take");
-  show_examples();
 });
 open_takes(steps_of_undo, restore_undo);
 connect(own_name());

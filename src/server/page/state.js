@@ -13,6 +13,7 @@ export const state = {
   options: [],           // the rows of the table of options that a client may give
   // Takes.
   takes: [], current: null, bin: [],
+  trial: null,           // strokes to try, like a take; they become one with the first change
   unkept: new Set(), storage_fault: "", // ids of takes that the browser has not kept, and why
   elsewhere: new Set(),  // ids of takes that another tab has just changed
   stroke: 0,             // the one that is edited
@@ -23,7 +24,7 @@ export const state = {
   outside: [],           // places of strokes that are farthest from the array
   shape: "park2016",     // of the bars: the take's algorithm
   playing: null,         // {began_ms, total_s, numbers, felt, loop}
-  at_s: 0, loop: false, speaker: false, scrub: true, hot: -1,
+  at_s: 0, loop: false, speaker: false, scrub: true, hot: -1, tapped: -1,
   marks: {},             // on the time axis: {take, start_s, range: [from, until] or null}
   compare: null,         // of two methods, see settings/compare.js
   tab: "method", sheet: "", placing: false, show_speed: true, show_strength: true,
@@ -57,10 +58,13 @@ export function say(text, take_back = null) { toast?.(text, take_back); }
 export const remembered = name => { try { return localStorage.getItem(`tactor-${name}`); } catch { return null; } };
 export function remember(name, v) { try { localStorage.setItem(`tactor-${name}`, v); } catch { /* for this visit only */ } }
 
-export const current_take = () => state.takes.find(t => t.id === state.current) ?? null;
+export const take_by_id = id => state.takes.find(t => t.id === id) ?? (state.trial?.id === id ? state.trial : null);
+export const current_take = () => take_by_id(state.current);
 export const marks = () => state.marks.take === state.current ? state.marks : {start_s: 0};
 // The stroke of the take that is edited.
 export const current_stroke = () => current_take()?.strokes[state.stroke] ?? null;
+// Returns true where the service has never had a card: the page itself plays then.
+export const is_simulated = () => state.link === "connected" && state.stream.state === "lost" && state.hello.stream.format === null;
 export const ceiling_dbfs = () => state.hello?.max_level_dbfs ?? -12;
 export const level_dbfs = () => ceiling_dbfs() + state.level_db;
 // Level and gain of the take that is shown, as a factor on what sounds at the ceiling.

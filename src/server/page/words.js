@@ -13,10 +13,6 @@ export const PHANTOMS = {
   "log": ["Logarithmic", "Amplitudes fall with the logarithm of the distance."],
   "gaussian": ["Gaussian", "Each tactor reaches smoothly around itself, so its neighbours join in."],
 };
-export const PRESETS = {
-  "park2016-1": "Half circle, left", "park2016-2": "Half circle, right", "park2016-3": "Three-quarter circle",
-  "park2016-4": "Three-quarter circle, mirrored", "wave-2x4": "Wave", "round-2x4": "Round",
-};
 export const OPTION_NAMES = {
   faces: "Tactors of a point", compensate: "Move bursts to where they are felt", sigma_mm: "Uncertainty of a place",
   sigma_v_mm_s: "Spread of speeds", outside: "Beyond the array", snap: "Move ends onto the grid", drop_points: "Drop crossings",

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The picture of the array at one moment: over ground and strokes, what is driven and felt.
-import {state, current_take, ceiling_dbfs, take_gain} from "../state.js";
+import {state, current_take, ceiling_dbfs, take_gain, is_simulated} from "../state.js";
 import {by_id} from "../../../net/page/dom.js";
 import {colour, font} from "../look.js";
 import {interpolate} from "../takes/stroke.js";
@@ -65,6 +65,9 @@ function draw_disc(q, i, share) {
   if (share > 0.001) {
     disc(p, c, r);
     p.strokeStyle = colour("felt"); p.lineWidth = 2.5; p.stroke();
+    p.globalAlpha = 0.4;
+    if (is_simulated()) for (const far of [0.3, 0.6]) { disc(p, c, r * (1 + far * share)); p.stroke(); }
+    p.globalAlpha = 1;
     disc(p, c, r * Math.sqrt(share) * 0.93);
     p.fillStyle = colour("felt"); p.fill();
     draw_share(p, i, share);

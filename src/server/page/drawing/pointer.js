@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Fingers, pen, mouse and keys on the array: drawing, straight lines, points, tests of single tactors.
-import {state, changed, current_take, current_stroke, ceiling_dbfs, say} from "../state.js";
+import {state, changed, current_take, current_stroke, ceiling_dbfs, is_simulated, say} from "../state.js";
 import {by_id} from "../../../net/page/dom.js";
 import {call, tell, is_connected, on_lost} from "../service/connection.js";
 import {array, to_mm, to_px, px_per_mm, tactor_at, zoom, zoom_by_two, pan} from "./view.js";
@@ -82,7 +82,7 @@ function begin(f) {
     strength: f.strength};
   state.drawing.tracks.push(f.track);
   f.track.points.push([0, ...rounded(f.from), f.strength]);
-  if (state.feel && is_connected()) begin_live(f);
+  if (state.feel && is_connected() && !is_simulated()) begin_live(f);
   changed("drawing", "link");
 }
 const rounded = p => p.map(v => +v.toFixed(3));

@@ -143,6 +143,7 @@ async function poll() {
   const s = await call("status");
   state.status = s;
   state.stream = {state: s.stream.state, reason: s.stream.reason};
+  if (s.stream.state !== "lost") state.hello.stream.format ??= ""; // a card has come
   changed("status");
 }
 setInterval(() => {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // State of the service: one word and one reason each, a banner where something is to be done.
-import {state, on_change, changed, ceiling_dbfs, say, remember, remembered} from "../state.js";
+import {state, on_change, changed, ceiling_dbfs, is_simulated, say, remember, remembered} from "../state.js";
 import {by_id, make} from "../../../net/page/dom.js";
 import {icon} from "../look.js";
 import {connect_with, connect, rename_client} from "./connection.js";
@@ -17,8 +17,8 @@ function describe() {
   if (state.link === "lost") return ["broken", "No connection", "bad",
     `again in ${Math.max(0, Math.ceil((state.retry_at - performance.now()) / 1000))} s`];
   if (state.slow) return ["waiting", "No answer", "warn", "waiting for tactor"];
-  if (s.state === "lost") return state.hello?.stream.format === null ? ["barred", "No card", "bad",
-    "it is looked for"] : ["broken", "Card lost", "bad", "it is looked for"];
+  if (is_simulated()) return ["barred", "Simulated", "off", "no card"];
+  if (s.state === "lost") return ["broken", "Card lost", "bad", "it is looked for"];
   if (s.state === "muted") return ["muted", "Muted", "warn", s.reason];
   if (s.state === "closing") return ["stop", "Closing", "warn", "tactor ends"];
   if (state.stopped && performance.now() - state.stopped.at < STOPPED_MS) return ["stop", "Stopped", "off",
@@ -41,9 +41,7 @@ function warn() {
   if (state.unkept.size) return [`Takes are not kept: ${state.storage_fault}.`, "warn",
     "It is tried again with each change. Save what you need as a file; the page asks before it closes."];
   if (state.link === "connected" && state.slow) return null;
-  if (s.state === "lost") return [state.hello?.stream.format === null
-    ? "No sound card. Plug it in and it goes on by itself." : "The sound card is gone. Drawings are kept; plug it in again.",
-    "bad", s.reason];
+  if (s.state === "lost" && !is_simulated()) return ["The sound card is gone. Drawings are kept; plug it in again.", "bad", s.reason];
   if (s.state === "muted") return ["Muted: the sound broke up. It comes back when it is steady.", "warn", s.reason];
   if (s.state === "closing") return ["Tactor ends. Drawings are kept.", "warn", s.reason];
   if (state.fault) return [state.fault, "bad", ""];

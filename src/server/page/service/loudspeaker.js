@@ -7,21 +7,22 @@ const SOUND_AHEAD_S = 2.5;   // gains are scheduled so far ahead; browsers call 
 const SOUND_CHECK_S = 0.25;
 const SOUND_START_S = 0.05;
 const SOUND_LEVEL = 0.25;    // the largest sample, full scale 1
+const LOW_HZ = 330, HIGH_HZ = 880; // of places, from below to above
 
-// Starts at a time of the plan and returns {stop(), now_s()}; now_s() is the time of the plan that is heard. Call it from a
-// user's gesture: browsers allow sound only then.
+// Starts at a time of the plan and returns {stop(), now_s(), set_gain(gain)}; now_s() is the time of the plan that is heard.
+// Call it from a user's gesture: browsers allow sound only then.
 //   plan: what the method `plan` gives for the view "bursts", and its `places`: the array's tactors, [{x_mm, y_mm}, ...]
-//   options: carrier_hz (250); gain (1, at most); ended, called at the end of the plan, but not after stop(); context, the AudioContext
+//   options: carrier_hz (250); pitched: each tactor has a frequency by its place instead; gain (1, at most); ended, called at the end of the plan, but not after stop(); context, the AudioContext
 export function start_loudspeaker(plan, at_s = 0, options = {}) {
   const context = options.context ?? new AudioContext();
   const ramps = plan_ramps(plan), slices = ramps_by_slice(ramps);
   const begin = context.currentTime + SOUND_START_S;
   const master = context.createGain();
   master.gain.setValueAtTime(0, begin);
-  const level = SOUND_LEVEL * Math.min(1, options.gain ?? 1) / Math.max(1, largest_sum(plan, ramps));
-  master.gain.linearRampToValueAtTime(level, begin + SOUND_ENVELOPE_S);
+  const largest = largest_sum(plan, ramps), level = gain => SOUND_LEVEL * Math.min(1, gain) / Math.max(1, largest);
+  master.gain.linearRampToValueAtTime(level(options.gain ?? 1), begin + SOUND_ENVELOPE_S);
   master.connect(context.destination);
-  const gains = connect_places(context, plan.places, options.carrier_hz ?? 250, master);
+  const gains = connect_places(context, plan.places, options.pitched ? 0 : options.carrier_hz ?? 250, master);
   const elapsed_s = () => at_s + context.currentTime - begin;
   let next_s = at_s, stopped = false;
   const stop = () => {
@@ -47,23 +48,33 @@ export function start_loudspeaker(plan, at_s = 0, options = {}) {
   const timer = setInterval(schedule, 1000 * SOUND_CHECK_S);
   context.resume().catch(() => {}); // stopped before it could start
   schedule();
-  return {stop, now_s: () => Math.min(plan.total_s, Math.max(at_s, elapsed_s() - (context.outputLatency || 0)))};
+  const set_gain = gain => { if (!stopped) master.gain.setTargetAtTime(level(gain), context.currentTime, SOUND_ENVELOPE_S); };
+  return {stop, set_gain, now_s: () => Math.min(plan.total_s, Math.max(at_s, elapsed_s() - (context.outputLatency || 0)))};
 }
 
-// Connects one oscillator through a gain and a panner for each tactor; returns the gains.
+// Starts a sound whose tactors are given gains as it goes on: set(gains, level), with a level of at most 1, and stop().
+export function start_tones(places, context = new AudioContext()) {
+  const gains = connect_places(context, places, 0, context.destination);
+  const set = (parts, level) => gains.forEach((gain, i) => gain.setTargetAtTime(parts[i] * SOUND_LEVEL * Math.min(1, level)
+    / Math.max(1, parts.reduce((sum, v) => sum + v)), context.currentTime, SOUND_ENVELOPE_S));
+  context.resume().catch(() => {}); // stopped before it could start
+  return {set, stop() { set(places.map(() => 0), 0); setTimeout(() => context.close(), 100); }};
+}
+
+// Connects one oscillator through a gain and a panner for each tactor; returns the gains. Without a carrier each tactor has an
+// oscillator of a frequency by its place.
 function connect_places(context, places, carrier_hz, master) {
-  const carrier = context.createOscillator();
-  carrier.frequency.value = carrier_hz;
+  const oscillator = hz => { const o = context.createOscillator(); o.frequency.value = hz; o.start(); return o; };
+  const carrier = carrier_hz && oscillator(carrier_hz);
+  const ys = places.map(p => p.y_mm), below = Math.max(...ys), height = below - Math.min(...ys);
   const xs = places.map(p => p.x_mm), left = Math.min(...xs), width = Math.max(...xs) - left;
-  const gains = places.map(({x_mm}) => {
+  return places.map(({x_mm, y_mm}) => {
     const gain = context.createGain(), panner = context.createStereoPanner();
     gain.gain.value = 0;
     panner.pan.value = width > 0 ? 2 * (x_mm - left) / width - 1 : 0;
-    carrier.connect(gain).connect(panner).connect(master);
+    (carrier || oscillator(LOW_HZ * (HIGH_HZ / LOW_HZ) ** (height > 0 ? (below - y_mm) / height : 0.5))).connect(gain).connect(panner).connect(master);
     return gain.gain;
   });
-  carrier.start();
-  return gains;
 }
 
 // Schedules the gains of a slice. A page that gets no time for the next slice falls silent; the next slice takes that back.

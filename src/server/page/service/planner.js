@@ -53,7 +53,7 @@ async function ask() {
       plan_of: was_drawing ? null : take});
     if (c) c.rest = rest;
   } catch (e) {
-    if (e.code !== 0 && e.data?.why !== "outdated") Object.assign(state, {plan: null, plan_fault: e});
+    if (e.code !== 0 && e.data?.why !== "outdated") Object.assign(state, {plan: null, plan_fault: e, plan_of: take});
   }
   changed("plan");
   // A long drawing is planned less often: its picture must not hold the hand up.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Plays takes, tests tactors, stops; and says where the moment is.
-import {state, changed, on_change, current_take, ceiling_dbfs, take_gain, marks, say} from "../state.js";
+import {state, changed, on_change, current_take, take_by_id, is_simulated, ceiling_dbfs, take_gain, marks, say} from "../state.js";
 import {call, tell, is_connected, server_now_s, from_server_ms, on_notification, on_lost, SLOW_MS} from "./connection.js";
 import {make_request, take_s, take_part, with_side} from "../takes/takes.js";
 import {weaken_take} from "./planner.js";
@@ -19,7 +19,7 @@ const part_to_play = () => { const [from_s, until_s] = marks().range ?? [marks()
 const make_round = (take, {from_s, until_s = Infinity}) => ({from_s, until_s, total_s: Math.min(until_s, take_s(take)) - from_s,
   lead_s: Math.min(...take_part(take, from_s, until_s).strokes.map(s => s.start_s))});
 async function ask_for(p, round, start) {
-  const take = take_part(state.takes.find(t => t.id === p.take), round.from_s, round.until_s), answers = await submit(take, start);
+  const take = take_part(take_by_id(p.take), round.from_s, round.until_s), answers = await submit(take, start);
   const sound_s = Math.max(...answers.map(r => r.total_s));
   Object.assign(round, {firsts: answers.map(r => r.stroke), sound_s, total_s: Math.max(sound_s, round.total_s)});
   return answers.flatMap(r => r.strokes);
@@ -38,10 +38,20 @@ export async function play(part = part_to_play()) {
   state.stopped = null;
   state.playing = {take: take.id, began_ms: performance.now(), numbers: new Set(), felt, waits: felt, again: part_to_play(), ...round};
   state.at_s = round.from_s;
-  if (felt) await ask_to_play(); else say(state.link === "connected" ? "No card: shown, not felt" : "No connection: shown, not felt");
-  if (!felt) hear_it();
+  if (felt) await ask_to_play();
+  else await play_unfelt(take, state.playing);
   changed("playing");
 }
+async function play_unfelt(take, own) {
+  if (!is_simulated() || !state.speaker) say(state.link === "connected" ? "No card: shown, not felt" : "No connection: shown, not felt");
+  // What is new waits for its plan.
+  for (own.waits = true; is_connected() && state.playing === own && is_shown(own) && state.plan_of?.id !== take.id;)
+    await new Promise(done => setTimeout(done, 10));
+  Object.assign(own, {began_ms: performance.now(), total_s: Math.min(own.until_s, state.plan?.total_s ?? take_s(take)) - own.from_s, waits: false});
+  if (state.playing !== own) return;
+  if (is_shown(own)) hear_it(); else end_playing();
+}
+on_change(what => { if (what.has("level")) speaker?.set_gain(take_gain()); });
 
 // Tells the service the level: all that this page plays is played at the ceiling and turned down there, so that what sounds
 // follows, too.
@@ -60,7 +70,7 @@ on_change(() => tell_level());
 on_lost(() => { told = null; });
 
 async function ask_to_play() {
-  const own = state.playing, take = state.takes.find(t => t.id === own.take);
+  const own = state.playing, take = take_by_id(own.take);
   try {
     tell_level();
     // Without a start the service leaves out the silence before the first stroke.
@@ -128,7 +138,7 @@ function end_round(p) {
 }
 // Returns what plays next; the marks may have changed meanwhile.
 function round_after(p) {
-  const take = state.takes.find(t => t.id === p.take);
+  const take = take_by_id(p.take);
   if (is_shown(p)) p.again = part_to_play();
   return take && make_round(take, p.again);
 }
@@ -178,6 +188,7 @@ export function quit_playing() {
 }
 function end_playing() {
   state.playing = null;
+  state.tapped = -1;
   silence_speaker();
   changed("playing");
 }
@@ -189,7 +200,7 @@ on_notification("stops", s => {
   changed("link", "playing");
 });
 // They come in a tab that is hidden, too, where there are no frames: a loop goes on.
-on_notification("levels", l => { state.dbfs = l.dbfs; if (document.hidden) tick(); });
+on_notification("levels", l => { if (!is_simulated()) state.dbfs = l.dbfs; if (document.hidden) tick(); });
 on_notification("stream", s => { state.stream = s; changed("stream", "link"); });
 on_notification("touches", t => {
   if (t.down) state.touches.set(t.stroke, {...t, at: performance.now()}); else state.touches.delete(t.stroke);
@@ -222,6 +233,7 @@ export function on_stop(f) { lift_fingers = f; }
 
 export function test_tactor(i) {
   if (!is_connected()) return say("No connection: nothing is driven");
+  if (is_simulated()) return tap_tactor(i);
   tell_level();
   call("drive", {tactor: i, duration_s: TEST_S})
     .then(r => {
@@ -230,11 +242,17 @@ export function test_tactor(i) {
     }, e => say(e.message));
 }
 
+// Without a card a tactor that is tried is a sound.
+function tap_tactor(i) {
+  state.tapped = i;
+  if (i >= 0) setTimeout(tap_tactor, 1000 * TEST_S, -1);
+  changed("playing");
+}
 // Plays on this computer's loudspeakers where that is asked for.
 export function hear_it() {
   silence_speaker();
   if (!state.speaker || !state.plan || !state.hello) return;
-  speaker = start_loudspeaker({...state.plan, places: state.hello.array.tactors}, state.at_s, {gain: take_gain()});
+  speaker = start_loudspeaker({...state.plan, places: state.hello.array.tactors}, state.at_s, {gain: take_gain(), pitched: is_simulated()});
 }
 export function silence_speaker() { speaker?.stop(); speaker = null; }
 export function look_at(s) {

@@ -57,7 +57,7 @@ function show_warnings() {
   const over_db = excess_db(state.plan);
   if (over_db && take) found.push({text: `${take.strokes.length > 1 ? "Together the strokes are" : "It is"} ${number_text(over_db)} dB stronger than may be played.`,
     short: `${number_text(over_db)} dB too strong`, buttons: [["Make this take weaker", () => weaken_take(take).catch(e => say(e.message))]]});
-  for (const w of state.plan?.warnings ?? []) if (!w.kind && !/outside/.test(w)) found.push({text: w, buttons: []});
+  for (const w of new Set(state.plan?.warnings)) if (!w.kind && !/outside/.test(w)) found.push({text: w, buttons: []});
   const box = by_id("warnings");
   box.toggleAttribute("data-all", false);
   box.replaceChildren(...found.map(w => make("div", {class: "warning"}, icon("warn"),

@@ -120,9 +120,8 @@ by_id("p-share").addEventListener("toggle", e => {
   if (e.newState !== "open") return;
   const own = is_own_host(location.hostname);
   show_only_if(by_id("qr"), !own);
-  by_id("link").textContent = page_link();
-  by_id("share-text").textContent = own ? "This address is this computer's own. For a phone, start the service with " +
-    "--http 0.0.0.0:4003 and a token_file, and open the page by the computer's address."
+  by_id("link").textContent = own ? `tactor serve --http 0.0.0.0:${location.port} --config FILE` : page_link();
+  by_id("share-text").textContent = own ? "Only this computer opens this address. For a phone, start the service so, with a token_file under [serve] in FILE."
     : page_link().includes("#token=") ? "The link has the token: who has it can draw." : "Open it on a phone in the same network.";
   try {
     const qr = make_qr(page_link());

@@ -27,7 +27,7 @@ function show(takes, current = state.current) {
   const at = state.takes.findIndex(t => t.id === current);
   state.takes = all.filter(t => !t.deleted);
   state.bin = all.filter(t => t.deleted);
-  const found = state.takes.find(t => t.id === current) ?? (current && state.takes[Math.min(Math.max(0, at), state.takes.length - 1)]);
+  const found = state.takes.find(t => t.id === current) ?? (current && state.trial?.id === current ? state.trial : current && state.takes[Math.min(Math.max(0, at), state.takes.length - 1)]);
   Object.assign(state, {current: found?.id ?? null, stroke: Math.min(state.stroke, Math.max(0, (found?.strokes.length ?? 1) - 1))});
   changed("takes", "take");
 }

@@ -362,7 +362,7 @@ export function trimmed(s, from_s, to_s) {
   const inside = s.timed.filter(p => p[0] > from_s && p[0] < to_s);
   const rows = [interpolate(s.timed, from_s), ...inside, interpolate(s.timed, to_s)];
   const timed = rows.map((p, i) => [i === 0 ? 0 : +((i === rows.length - 1 ? to_s : p[0]) - from_s).toFixed(5), ...p.slice(1)]);
-  return {name: s.name, start_s: s.start_s + from_s, timed, ...s.ink && {ink: s.ink, placed: true}};
+  return {name: s.name, start_s: s.start_s + from_s, timed, ...s.ink && {ink: s.ink, placed: true}, ...s.keys && {keys: s.keys}};
 }
 
 // Returns the knot that is nearest to a place: {index, off}.
@@ -442,9 +442,12 @@ const max = list => list.reduce((a, b) => Math.max(a, b), -Infinity);
 
 // TOML and CSV of strokes.
 export const quoted = text => `"${String(text).replace(/[\u0000-\u001f\u007f]/g, " ").replace(/[\\"]/g, "\\$&")}"`;
-export function strokes_toml(strokes) {
+// Strokes may have `keys` of their own, such as {soa_s: 0.4}; an option that is set for all of them wins.
+const own_keys = (s, options) => Object.entries(s.keys ?? {}).filter(([key]) => options[key.replace(/_s$/, "")] === undefined)
+  .map(([key, v]) => `${key} = ${v}\n`).join("");
+export function strokes_toml(strokes, options = {}) {
   const ordered = [...strokes].sort((a, b) => a.start_s - b.start_s);
   return ordered.map(s => `[[stroke]]\nname = ${quoted(s.name)}\nstart_s = ${+s.start_s.toFixed(4)}\nstart_from = "piece"\n` +
-    `timed = [${s.timed.map(p => `[${p.join(", ")}]`).join(", ")}]\n`).join("\n");
+    `${own_keys(s, options)}timed = [${s.timed.map(p => `[${p.join(", ")}]`).join(", ")}]\n`).join("\n");
 }
 export const stroke_csv = s => "t_s,x_mm,y_mm,intensity\n" + s.timed.map(p => p.join(",")).join("\n") + "\n";

@@ -94,6 +94,11 @@ export function choose_take(id) {
   keep_current();
   changed("takes", "take");
 }
+// Shows strokes to try, which are no take until they are changed.
+export function try_take(take) {
+  state.trial = {id: new_id(), made: Date.now(), options: {}, ...take};
+  choose_take(state.trial.id);
+}
 export function rename_take(id, name) {
   const take = find_take(id);
   if (take && name.trim()) edit([{...take, name: name.trim().slice(0, 60)}]);
@@ -124,7 +129,7 @@ export const take_part = (take, from_s, until_s) => ({...take, strokes: take.str
 export const take_s = t => t ? total_s(t.strokes) : 0;
 
 // Makes what the service plays, plans and writes: the same for all three.
-export const make_request = (take, dbfs = level_dbfs()) => ({toml: strokes_toml(take.strokes), options: request_options(take, dbfs)});
+export const make_request = (take, dbfs = level_dbfs()) => ({toml: strokes_toml(take.strokes, take.options), options: request_options(take, dbfs)});
 // A take's gain is there so that strokes that add up are not too strong.
 export function request_options(take, dbfs) {
   const o = {outside: "clamp", ...take?.options};

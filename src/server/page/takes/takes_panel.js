@@ -1,15 +1,14 @@
 // SPDX-License-Identifier: MIT
-// The list of takes and examples.
-import {state, on_change, say} from "../state.js";
+// The list of takes.
+import {state, on_change} from "../state.js";
 import {by_id, make} from "../../../net/page/dom.js";
 import {icon, is_dark, colour} from "../look.js";
 import {BIN_DAYS, DAY_MS} from "./keeping.js";
-import {choose_take, rename_take, duplicate_take, delete_take, bring_back, add_take, fit_take, imported_strokes, take_s} from "./takes.js";
-import {total_s, fitted, outside_mm, box} from "./stroke.js";
+import {choose_take, rename_take, duplicate_take, delete_take, bring_back, fit_take, take_s} from "./takes.js";
+import {total_s} from "./stroke.js";
 import {array} from "../drawing/view.js";
 import {viridis} from "../../../net/page/viridis.js";
-import {PRESETS, plain_name, seconds_text} from "../words.js";
-import {call} from "../service/connection.js";
+import {seconds_text} from "../words.js";
 
 const SIZE = 48;
 const rows = new Map(); // by take: {take, element}
@@ -17,7 +16,7 @@ const seen = new IntersectionObserver(list => list.filter(e => e.isIntersecting)
   e.target.draw?.(); }), {rootMargin: "300px"});
 
 // A small picture of strokes over the tactors, drawn when it comes into view.
-function thumb(strokes) {
+export function thumb(strokes) {
   const c = make("canvas", {class: "thumb", width: SIZE * 2, height: SIZE * 2, "aria-hidden": "true"});
   c.draw = () => draw(c, strokes);
   seen.observe(c);
@@ -37,26 +36,26 @@ function draw(c, strokes) {
     for (let i = 0; i + 1 < s.timed.length; i += step) {
       const a = s.timed[i], b = s.timed[Math.min(s.timed.length - 1, i + step)];
       p.strokeStyle = viridis((s.start_s + a[0]) / total, is_dark());
-      p.beginPath(); p.moveTo(...at(a[1], a[2])); p.lineTo(...at(b[1], b[2])); p.stroke();
+      p.beginPath(); p.moveTo(...at(a[1], a[2])); p.lineTo(...at(b[1] + 1e-3, b[2])); p.stroke();
     }
   }
 }
-const facts = t => `${t.strokes.length > 1 ? `${t.strokes.length} strokes` : t.origin}, ${seconds_text(take_s(t))}`;
+export const facts = t => `${t.strokes.length > 1 ? `${t.strokes.length} strokes` : t.origin}, ${seconds_text(take_s(t))}`;
 
 const row_note = t => state.unkept.has(t.id) ? "not kept" : state.elsewhere.has(t.id) ? "changed in another tab" : "";
 
 function make_row(take) {
   const kept = rows.get(take.id), note = row_note(take);
   if (kept?.take === take && kept.note === note) return kept.element;
-  const element = make("li", {}, make("button", {type: "button", class: "take", onclick: () => choose_take(take.id)},
+  const element = make("li", {}, make("button", {class: "take", onclick: () => choose_take(take.id)},
     thumb(take.strokes), make("span", {}, make("b", {}, take.name), make("small", {class: note && "note"}, note || facts(take)))),
-    make("button", {type: "button", class: "button more-button", "aria-label": `More about ${take.name}`,
+    make("button", {class: "button more-button", "aria-label": `More about ${take.name}`,
       onclick: e => menu(take, e.currentTarget)}, icon("more")));
   rows.set(take.id, {take, note, element});
   return element;
 }
 function menu(take, at) {
-  const m = by_id("p-take"), item = (text, name, f) => make("button", {type: "button", class: "button",
+  const m = by_id("p-take"), item = (text, name, f) => make("button", {class: "button",
     onclick: () => { m.hidePopover(); f(); }}, icon(name), text);
   m.replaceChildren(item("Rename", "rename", () => rename(take)), item("Duplicate", "copy", () => duplicate_take(take.id)),
     item("Fit to array", "all", () => { choose_take(take.id); if (array && take.strokes.length) fit_take(array.edge); }),
@@ -88,7 +87,7 @@ function show_bin() {
   by_id("bin-text").textContent = `${binned.length}, kept for ${BIN_DAYS} days`;
   by_id("binned").replaceChildren(...binned.toSorted((a, b) => b.deleted - a.deleted).map(t => make("li", {}, thumb(t.strokes),
     make("span", {}, make("b", {}, t.name), make("small", {}, `deleted ${when(days(t))}, ${BIN_DAYS - 1 - days(t)} days left`)),
-    make("button", {type: "button", class: "button outlined", onclick: () => bring_back(t.id)}, "Bring back"))));
+    make("button", {class: "button outlined", onclick: () => bring_back(t.id)}, "Bring back"))));
 }
 
 let listed = [], noted = "";
@@ -110,37 +109,6 @@ function show_takes() {
 }
 function draw_thumbs() { for (const c of document.querySelectorAll(".thumb")) c.draw?.(); }
 
-// Examples: the presets, made as large as this array where they do not fit it.
-const examples = new Map();
-export async function show_examples() {
-  const found = [];
-  for (const name of state.hello.presets) {
-    try {
-      examples.set(name, sized(imported_strokes(await call("import", {stroke: name}))));
-      found.push(name);
-    } catch (e) { if (e.code === 0) return; }
-  }
-  by_id("examples").replaceChildren(...found.map(name => make("li", {}, make("button",
-    {type: "button", class: "take", onclick: () => open_example(name)}, thumb(examples.get(name)),
-    make("span", {}, make("b", {}, PRESETS[name] ?? plain_name(name)), make("small", {}, name))))));
-}
-function sized(strokes) {
-  const {size, middle} = array.box, places = list => list.flatMap(s => s.timed.map(q => [q[1], q[2]]));
-  const fits = list => places(list).every(q => outside_mm(array.edge, q) < 1);
-  const spans = box(places(strokes)).size;
-  if (fits(strokes) && Math.max(...spans) > Math.max(...size) / 2) return strokes;
-  for (let part = 0.9; ; part *= 0.9) {
-    // On a line of tactors only its direction is left.
-    const made = fitted(strokes, array.edge.map(q => q.map((v, k) => middle[k] + (v - middle[k]) * part)))
-      .map(s => ({...s, timed: s.timed.map(([t, x, y, v]) => [t, size[0] ? x : middle[0], size[1] ? y : middle[1], v])}));
-    if (fits(made) || part < 0.3) return made;
-  }
-}
-export function open_example(name) {
-  const id = name ?? examples.keys().next().value;
-  if (!examples.has(id)) return say("There is no example for this array");
-  add_take(examples.get(id), {name: PRESETS[id] ?? plain_name(id), origin: id});
-}
 on_change(what => {
   if (what.has("takes") || what.has("take")) show_takes();
   if (what.has("theme") || what.has("array")) draw_thumbs();

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: MIT
+// A page without a card plays by itself: each tactor is a sound at its place.
+import {state, changed, on_change, is_simulated, ceiling_dbfs, take_gain} from "../state.js";
+import {by_id} from "../../../net/page/dom.js";
+import {icon} from "../look.js";
+import {array} from "../drawing/view.js";
+import {play, silence_speaker} from "./player.js";
+import {start_tones} from "./loudspeaker.js";
+import {open_example, try_entry} from "../takes/gallery.js";
+
+let simulated = false, hinted = false, tones = null;
+
+by_id("hint-example").addEventListener("click", () => { if (simulated) try_entry(); else { open_example(); setTimeout(play, 0); } });
+by_id("feel").addEventListener("click", () => {
+  if (simulated) by_id("speaker").click(); else { state.feel = !state.feel; changed("tool"); }
+});
+on_change(() => {
+  if (simulated !== is_simulated()) {
+    state.speaker = simulated = is_simulated();
+    silence_speaker();
+    document.body.toggleAttribute("data-simulated", simulated);
+    by_id("feel").firstChild.replaceWith(icon(simulated ? "speaker" : "feel"));
+    by_id("hint-example").textContent = simulated ? "Hear where it moves" : "Play an example";
+  }
+  const on = simulated ? state.speaker : state.feel;
+  by_id("feel").setAttribute("aria-checked", on);
+  by_id("feel-text").textContent = `${simulated ? "Hear" : "Feel"} ${on ? "on" : "off"}`;
+  const hint = by_id("hint");
+  hint.hidden = state.takes.length || state.trial || state.drawing || !by_id("banner").hidden;
+  if (hinted === hint.hidden && !state.drawing) { hinted = !hint.hidden; changed("layout"); } // the canvas never moves under a finger
+  if (!by_id("banner").hidden) by_id("p-gallery").hidePopover();
+  hear_touches();
+});
+
+// Sounds where fingers draw, or a tactor is tried. Near tactors have most of the energy of a place.
+function hear_touches() {
+  const touches = state.tapped >= 0 ? [[0, ...array.places[state.tapped], 1]]
+    : state.drawing?.tracks.filter(k => k.down).map(k => k.points.at(-1)) ?? [];
+  if (!simulated || !state.speaker || !touches.length) {
+    if (tones) { tones.stop(); tones = null; state.dbfs = []; }
+    return;
+  }
+  const parts = array.places.map(() => 0);
+  for (const [, x, y, strength] of touches) {
+    const near = array.places.map(p => 1 / (Math.hypot(p[0] - x, p[1] - y) + 0.1) ** 4), sum = near.reduce((a, b) => a + b);
+    near.forEach((v, i) => { parts[i] = Math.max(parts[i], strength * Math.sqrt(v / sum)); });
+  }
+  tones ??= start_tones(array.tactors);
+  tones.set(parts, take_gain());
+  state.dbfs = parts.map(v => v > 0.01 ? ceiling_dbfs() + 20 * Math.log10(v * take_gain()) : null);
+}

@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: MIT
+// The gallery: strokes to try, made for the array. A tap plays one; the first change makes it a take.
+import {on_change} from "../state.js";
+import {by_id, make} from "../../../net/page/dom.js";
+import {array} from "../drawing/view.js";
+import {play} from "../service/player.js";
+import {add_take, try_take} from "./takes.js";
+import {thumb, facts} from "./takes_panel.js";
+import {box, outside_mm, parts_reached, trimmed} from "./stroke.js";
+
+const BURST_S = 0.07; // by Park's law its interval is as long
+
+// Rows of a stroke, [t_s, u, v, strength], where u and v go from 0 to 1: along places at one speed, or at one place.
+export function path(seconds, places) {
+  const rows = places.map((p, i) => [i, ...p, 1]);
+  return rows.map(([i, ...q]) => [seconds * parts_reached(rows)[i][0], ...q]);
+}
+export const resting = (u, seconds, v = 0.5, strength = 1) => [[0, u, v, strength], [seconds, u, v, strength]];
+const curve = (f, n = 60) => Array.from({length: n + 1}, (_, i) => f(i / n));
+const wave = turns => Math.sin(2 * Math.PI * turns);
+const ring = (turn, radius = 0.5) => [0.5 + radius * wave(turn), 0.5 - radius * wave(turn + 0.25)]; // clockwise from the top
+// Strokes, [start_s, rows, keys].
+const one = (...of) => [[0, path(...of)]];
+const in_turn = (step_s, list) => list.map((rows, i) => [step_s * i, rows]);
+export const taps = soa_s => ({soa_s, burst_s: BURST_S});
+// Bursts at a part of the law's interval. Those that overlap are two strokes, whose bursts come in turn.
+export function at_law(rows, part, start_s = 0) {
+  const step_s = part * BURST_S, keys = taps(part < 1 ? 2 * step_s : step_s), own = [start_s, rows, keys];
+  return part < 1 ? [own, [start_s + step_s, trimmed({timed: rows}, step_s, rows.at(-1)[0]).timed, keys]] : [own];
+}
+export const ROW = [[0, 0.5], [1, 0.5]];
+const BACK = [...ROW, ROW[0]], PARTS = [0, 0.5, 1], CONTINUOUS = {algorithm: "continuous"}, SHORT = {soa: 0.05, burst: 0.03};
+
+// Name, what it shows, what u and v go over (0: two neighbours; the array, 1: of two tactors, 2: of three, 3: of two rows, or more;
+// 4: a square in two rows), strokes, options, and gain.
+const GALLERY = [
+  ["Line across", "One line at one speed: the plainest motion.", 1, one(1.2, ROW)],
+  ["Fast and slow", "In 0.4 s and in 1.6 s: speed is felt, too.", 2, [[0, path(0.4, ROW)], [0.8, path(1.6, ROW)]]],
+  ["Half circle", "A curve from three tactors at a time.", 4, one(1.4, curve(p => ring(-p / 2)))],
+  ["Three-quarter circle", "Where does it begin, and which way does it turn?", 4, one(2.1, curve(p => ring(0.5 + 0.75 * p)))],
+  ["Nothing there", "Two tactors, felt as one point between them.", 0, [[0, resting(0.5, 1)]], CONTINUOUS],
+  ["Between two", "The point wanders to a neighbour and back.", 0, one(1.6, BACK), CONTINUOUS],
+  ["Taps to motion", "Intervals of 400 to 70 ms: taps become a stroke.", 1,
+    [0.4, 0.2, 0.13, 0.1, 0.07].map((s, i) => [1.6 * i, path(1.2, ROW), taps(s)])],
+  ["Three laws", "0.6, 1 and 1.6 of Park’s law: blurs, flows, breaks up.", 4,
+    [0.6, 1, 1.6].flatMap((part, i) => at_law(path(1.6, curve(p => ring(p))), part, 2 * i)), {}, -6],
+  ["Rabbit", "Three taps in three places, felt between them, too.", 2, in_turn(0.15, PARTS.map(u => resting(u, 0.12))), SHORT],
+  ["Brush", "Three soft passes, strong in the middle of each.", 3,
+    in_turn(1.3, PARTS.map(v => PARTS.map(p => [p, p, v, p === 0.5 ? 1 : 0.3])))],
+  ["Rain", "Twenty-four short drops, never two in one place.", 2,
+    curve(p => [3.4 * p + 0.05 * wave(9 * p), resting((161 * p % 24) / 24, 0.03, 14.2 * p % 1)], 23), SHORT],
+  ["Heartbeat", "Two beats, then a rest. Loop it.", 1,
+    [[0, resting(0.5, 0.08)], [0.18, resting(0.5, 0.08)], [0.3, resting(0.5, 0.7, 0.5, 0)]], CONTINUOUS],
+  ["Breath", "It swells to the edge in 4 s, and draws back in 6.", 2,
+    [[0, 4, 0], [4.1, 6, 1]].map(([start, s, from]) => [start, curve(p => [s * p, ...ring(5 * p, Math.abs(from - p) / 2), 1], 200)])],
+  ["Spiral in", "Three turns to the centre.", 4, one(4, curve(p => ring(3 * p, (1 - p) / 2), 150))],
+  ["Figure of eight", "It crosses itself; time tells the passes apart.", 3,
+    one(2.4, curve(p => [0.5 + wave(p) / 2, 0.5 + 0.4 * wave(2 * p)]))],
+  ["Zigzag", "Are its corners felt as corners, or as bends?", 3, one(1.8, curve(p => [6 * p % 2 > 0.5 ? 1 : 0, p], 6))],
+  ["Compass", "Out from the middle: up, right, down, left.", 3,
+    in_turn(0.8, [0, 0.25, 0.5, 0.75].map(turn => path(0.5, [[0.5, 0.5], ring(turn)])))],
+  ["Letter S", "As it is written on the skin.", 3, one(2.6, curve(p => [0.5 + wave(1.5 * p - 0.75) / 2, p]))],
+  ["Sandpaper", "Noise, 30 grains a second.", 1, one(2, BACK), {...CONTINUOUS, waveform: "noise:60-400", am: "30"}],
+  ["Two fingers", "Together, apart and together again.", 3,
+    [1, -1].map(sign => [0, path(2.4, curve(p => [p, 0.5 + sign * wave(p / 2) ** 2 / 2]))]), {}, -6]];
+
+// Returns two neighbours near the middle of the array; the second one is nearer, and a level pair wins over an upright one.
+export function middle_pair() {
+  const {places, box: {middle}} = array, apart = (p, q) => Math.hypot(p[0] - q[0], p[1] - q[1]);
+  return places.flatMap((p, i) => places.map((q, k) => [i, k, i === k ? Infinity : apart(p, q) + apart(p, middle) + 1.01 * apart(q, middle)
+    + 0.001 * Math.abs(p[1] - q[1])])).sort((a, b) => a[2] - b[2])[0].slice(0, 2);
+}
+// Returns strokes as large as the array without a tenth at each edge, or less where its hull is not as wide as its box.
+function on_array(strokes, over) {
+  const {edge, places} = array, {size} = array.box, line = over ? edge.length < 3 && edge : middle_pair().map(i => places[i]);
+  const {middle} = box(line || places);
+  const span = line ? [0, 1].map(k => line[1][k] - line[0][k]) : over > 3 ? [Math.min(...size), Math.min(...size)] : size;
+  for (let part = over ? 0.8 : 1; ; part *= 0.95) {
+    const at = (w, k) => +(middle[k] + span[k] * part * (w[line ? 0 : k] - 0.5)).toFixed(3);
+    const made = strokes.map(([start_s, rows, keys], i) => ({name: `stroke ${i + 1}`, start_s, keys,
+      timed: rows.map(([t, ...w]) => [+t.toFixed(4), at(w, 0), at(w, 1), w[2]])}));
+    if (made.every(s => s.timed.every(([, ...q]) => outside_mm(edge, q) < 0.1))) return made;
+  }
+}
+const as_take = ([name,, over, made, options = {}, gain_db]) =>
+  ({name, origin: "one stroke", strokes: on_array(made, over), options, gain_db});
+let example = GALLERY[0];
+export const open_example = () => { const take = as_take(example); add_take(take.strokes, take); };
+export const try_entry = (entry = example) => { try_take(as_take(entry)); play(); };
+
+on_change(what => {
+  if (!what.has("array") || !array) return;
+  const allows = array.edge.length > 2 ? 4 : array.places.length > 2 ? 2 : 1;
+  example = GALLERY[allows > 2 ? 3 : 0];
+  const entry = (g, kind, onclick) => make("li", {}, make("button", {class: `take ${kind}`, disabled: g[2] > allows, onclick},
+    thumb(as_take(g).strokes), make("span", {}, make("b", {}, g[0]), make("small", {},
+    g[2] > allows ? "needs two rows" : facts(as_take(g)))), kind && make("p", {}, g[1])));
+  by_id("strokes").replaceChildren(...GALLERY.map(g => entry(g, "card", () => try_entry(g))));
+  by_id("examples").replaceChildren(entry(example, "", open_example));
+});
