@@ -44,8 +44,8 @@ on_change(what => {
   tiles.update(); sides.update(); sides.element.hidden = !part().sides;
   title.textContent = `Where is the array? ${from ? `${Math.abs(y)} mm from ${from}` : ""}`;
   length.textContent = `${name} ${body.length} mm`; angle.textContent = `turned ${turn}°`;
-  const site = JSON.stringify(place_name());
-  lines.textContent = `[array]\nsite = ${site}\nup = "${up_word()}"\nplace = [${x}, ${y}]\nturn = ${turn}\nbody = ${body.length}`;
+  const site = JSON.stringify(place_name()), up = up_word();
+  lines.textContent = `[array]\nsite = ${site}\nup = "${up}"\nplace = [${x}, ${y}]\nturn = ${turn}\nbody = ${body.length}`;
   outdated("ground");
 });
 // Hands and keys on the canvas.
