@@ -346,7 +346,7 @@ class Everywhere(StudioTest):
         p.click("#more")
         p.until("document.querySelector('#p-more').matches(':popover-open')")
         self.assertEqual(p.value("[...document.querySelectorAll('#p-more button')].map(b => b.textContent)"),
-                         ["Open", "Share", "Place on the body", "Light or dark", "Keys and help"])
+                         ["Open", "Share", "Place on the body", "Gallery", "Tour", "Light or dark", "Keys and help"])
         p.click("#p-more [data-press=help]")
         p.until("document.querySelector('#p-keys').matches(':popover-open') && !document.querySelector('#p-more').matches(':popover-open')")
 

@@ -8,7 +8,7 @@ import {play, silence_speaker} from "./player.js";
 import {start_tones} from "./loudspeaker.js";
 import {open_example, try_entry} from "../takes/gallery.js";
 
-let simulated = false, hinted = false, tones = null;
+let simulated = false, hinted = false, warned = false, tones = null;
 
 by_id("hint-example").addEventListener("click", () => { if (simulated) try_entry(); else { open_example(); setTimeout(play, 0); } });
 by_id("feel").addEventListener("click", () => {
@@ -28,7 +28,8 @@ on_change(() => {
   const hint = by_id("hint");
   hint.hidden = state.takes.length || state.trial || state.drawing || !by_id("banner").hidden;
   if (hinted === hint.hidden && !state.drawing) { hinted = !hint.hidden; changed("layout"); } // the canvas never moves under a finger
-  if (!by_id("banner").hidden) by_id("p-gallery").hidePopover();
+  if (!warned && !by_id("banner").hidden) by_id("p-gallery").hidePopover(); // a new banner is seen
+  warned = !by_id("banner").hidden;
   hear_touches();
 });
 
