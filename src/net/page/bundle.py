@@ -46,13 +46,13 @@ class Bundle:
         if m := SCRIPT.fullmatch(line):
             file = (folder / m[1]).resolve()
             return f'<script>\n"use strict";\n{self.smaller(file, self.module(file))}</script>\n'
-        return line
+        return f"{line.strip()}\n" if self.esbuild else line
 
     def smaller(self, file, joined):
         """Returns what esbuild makes of a file, or the joined text without it."""
         if not self.esbuild:
             return joined
-        return subprocess.run([self.esbuild, "--bundle", "--minify", "--log-level=error", str(file)], check=True, capture_output=True,
+        return subprocess.run([self.esbuild, "--bundle", "--minify", "--charset=utf8", "--log-level=error", str(file)], check=True, capture_output=True,
                               text=True).stdout
 
     def style(self, file):

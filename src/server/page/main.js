@@ -58,7 +58,7 @@ place_icons();
 let toast_timer = 0;
 const hide_toast = () => by_id("toast").classList.remove("on");
 on_toast((text, take_back) => {
-  by_id("toast").replaceChildren(text, ...take_back ? [make("button", {type: "button", onclick: () => { take_back(); hide_toast(); }},
+  by_id("toast").replaceChildren(text, ...take_back ? [make("button", {onclick: () => { take_back(); hide_toast(); }},
     "Undo")] : []);
   by_id("toast").classList.add("on");
   clearTimeout(toast_timer);

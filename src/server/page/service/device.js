@@ -108,7 +108,7 @@ function show_facts() {
 on_change(what => {
   if (!what.has("array") || !state.hello) return;
   by_id("try").replaceChildren(...state.hello.array.tactors.map((t, i) => make("button",
-    {type: "button", class: "button outlined", "aria-label": `Try tactor ${t.tactor ?? i}`, onclick: () => test_tactor(i)},
+    {class: "button outlined", "aria-label": `Try tactor ${t.tactor ?? i}`, onclick: () => test_tactor(i)},
     String(t.tactor ?? i))));
 });
 by_id("p-others").addEventListener("toggle", () => {

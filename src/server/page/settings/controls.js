@@ -32,7 +32,7 @@ export function slider({label, get, set, least, most, text, done, step = 0, log 
 
 // Buttons of which one is chosen; arrows move, as in any group of radio buttons.
 export function choice({label, get, set, values, shape = "segments", visible_label = true}) {
-  const buttons = values.map(v => make("button", {type: "button", role: "radio", "data-value": v.value,
+  const buttons = values.map(v => make("button", {role: "radio", "data-value": v.value,
     onclick: () => pick(v.value)}, ...v.content ?? [v.name]));
   const group = make("div", {role: "radiogroup", "aria-label": label, class: shape}, ...buttons);
   group.addEventListener("keydown", e => {
@@ -60,7 +60,7 @@ export function choice({label, get, set, values, shape = "segments", visible_lab
 }
 
 export function toggle({label, hint, get, set}) {
-  const b = make("button", {type: "button", role: "switch", class: "switch", onclick: () => { set(!get()); update(); }},
+  const b = make("button", {role: "switch", class: "switch", onclick: () => { set(!get()); update(); }},
     make("span", {}, label, hint && make("small", {}, hint)), make("i"));
   const update = () => b.setAttribute("aria-checked", Boolean(get()));
   update();
@@ -83,5 +83,5 @@ export function entry({label, get, set, hint, unit, numeric}) {
   return {element: make("div", {class: "entry"}, make("label", {for: id}, label), input, unit && make("span", {}, unit)), update};
 }
 
-export const button = (text, name, onclick, more = {}) => make("button", {type: "button", class: "button", onclick, ...more},
+export const button = (text, name, onclick, more = {}) => make("button", {class: "button", onclick, ...more},
   name && icon(name), text);

@@ -134,7 +134,7 @@ function burst_controls() {
     const sum = `${+slope().toFixed(3)} × ${Math.round(burst() * 1000)} + ${Math.round(intercept() * 1000)} = ${Math.round(wanted * 1000)} ms`;
     law.replaceChildren(icon(off === 0 ? "check" : "warn"), off === 0 ? make("span", {}, "On the law: ", make("b", {}, sum))
       : make("span", {}, `${Math.abs(off)} ms ${off < 0 ? "shorter than the law: may blur" : "longer than the law: may be felt as taps"}`),
-      ...off === 0 ? [] : [make("button", {type: "button", class: "button", onclick: () => set_option("soa",
+      ...off === 0 ? [] : [make("button", {class: "button", onclick: () => set_option("soa",
         +wanted.toFixed(4))}, `Use ${Math.round(wanted * 1000)} ms`)]);
   }
   update();

@@ -62,8 +62,8 @@ function show_warnings() {
   box.toggleAttribute("data-all", false);
   box.replaceChildren(...found.map(w => make("div", {class: "warning"}, icon("warn"),
     make("div", {}, make("p", {}, make("span", {class: w.short && "long"}, w.text), w.short && make("span", {class: "short"}, w.short)), w.buttons.length > 0 && make("div", {class: "row"}, ...w.buttons.map(([t, f], i) =>
-      make("button", {type: "button", class: i === 0 ? "button outlined" : "button", onclick: f}, ...[t].flat())))))),
-    ...found.length > 1 ? [make("button", {type: "button", class: "button small", onclick: () => box.toggleAttribute("data-all", true)},
+      make("button", {class: i === 0 ? "button outlined" : "button", onclick: f}, ...[t].flat())))))),
+    ...found.length > 1 ? [make("button", {class: "button small", onclick: () => box.toggleAttribute("data-all", true)},
       `and ${found.length - 1} more`)] : []);
   by_id("pill").dataset.warn = found.length > 0;
   changed("frame");

@@ -95,7 +95,7 @@ by_id("save-all").addEventListener("click", () => {
   say(`Saved ${takes.length} takes`);
 });
 by_id("save-list").replaceChildren(...KINDS.map(([kind, name, why]) => make("button",
-  {type: "button", class: "save-item", "data-kind": kind, onclick: () => save_as(kind)}, make("b", {}, name),
+  {class: "save-item", "data-kind": kind, onclick: () => save_as(kind)}, make("b", {}, name),
   make("small", {}, why), make("span", {}, `.${kind}`))));
 by_id("p-save").addEventListener("toggle", async e => {
   if (e.newState !== "open") return;

@@ -38,13 +38,13 @@ export function toggle_append() {
   say(state.append ? "Draw: it follows the last stroke" : "Drawings are takes of their own");
   changed("curves");
 }
-const clip_button = i => make("button", {type: "button", onclick: () => choose_clip(i), onblur: end_edit, onkeydown: e => {
+const clip_button = i => make("button", {onclick: () => choose_clip(i), onblur: end_edit, onkeydown: e => {
   const step = {ArrowLeft: -1, ArrowRight: 1}[e.key];
   if (!step) return;
   e.preventDefault();
   put_stroke(s => starting_at(s, s.start_s + step * (e.shiftKey ? FINE_MOVE_S : MOVE_S)), `clip key ${i}`, i);
 }});
-const add_button = make("button", {type: "button", onclick: toggle_append, "aria-label": "Add the next drawing to this take"});
+const add_button = make("button", {onclick: toggle_append, "aria-label": "Add the next drawing to this take"});
 
 // Lays the buttons over the clips as they are drawn.
 export function place_clips(l) {
