@@ -14,7 +14,7 @@ SIZES = (DESKTOP, TABLET, PHONE, LYING)
 DARK = [{"name": "prefers-color-scheme", "value": "dark"}]
 LIVE = {"algorithm": "continuous"}  # options of a live stroke
 MISSING = ("-D", "hw:CARD=NotThere")
-TAKE = "tactor.state.takes.find(t => t.id === tactor.state.current)"
+TAKE = "(tactor.state.takes.find(t => t.id === tactor.state.current) ?? tactor.state.trial)"
 
 
 def quoted(text):

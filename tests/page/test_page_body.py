@@ -136,8 +136,8 @@ class Body(StudioTest):
             with self.subTest(size=size):
                 p, _ = self.ready(self.serve("--socket", self.dir / f"{size[0]}.sock"), size=size, fingers=size != DESKTOP)
                 p.until("document.querySelector('#locator .outline rect')")
-                if not p.value("document.querySelector('#hint').hidden"):
-                    p.click("#hint-close")
+                p.value("document.querySelector('#examples button').click()")
+                p.until("document.querySelector('#hint').hidden")
                 left, top, right, bottom = p.value("(r => [r.left, r.top, r.right, r.bottom])(document.querySelector('#locator').getBoundingClientRect())")
                 self.assertEqual((right - left, bottom - top), (74, 86))
                 r = 20 * 0.215 * p.value("tactor.view.scale")
@@ -155,6 +155,8 @@ class Body(StudioTest):
 
     def test_drawing_draws_the_outline_once(self):
         p, _ = self.ready(self.serve())
+        self.draw(p, *self.way([5, 30], [35, 5]))
+        p.until("document.querySelector('#hint').hidden")
         p.value("""(f => { globalThis.outlines = 0; CanvasRenderingContext2D.prototype.fill = function (...a) {
             outlines += a[0] instanceof Path2D; return f.apply(this, a); }; })(CanvasRenderingContext2D.prototype.fill)""")
         self.draw(p, *self.way([5, 5], [35, 30]))

@@ -20,7 +20,7 @@ class Compare(StudioTest):
     def compare(self, s):
         """Returns a page that compares the methods of an example, and a client."""
         p, watcher = self.ready(s)
-        p.value("document.querySelector('#examples li:nth-child(3) button').click()")
+        p.value("document.querySelector('#examples button').click()")
         p.until(f"tactor.state.plan_of && tactor.state.plan_of === {TAKE}")
         p.value(SPY)
         p.key("KeyB", "b")
@@ -124,7 +124,7 @@ class Felt(StudioTest):
     def felt(self):
         """Returns a page with an example and the tool Felt."""
         p, _ = self.ready(self.serve())
-        p.value("document.querySelector('#examples li:nth-child(3) button').click()")
+        p.value("document.querySelector('#examples button').click()")
         p.until("tactor.state.takes.length")
         p.key("KeyW", "w")
         p.until("tactor.state.tool === 'felt'")

@@ -47,7 +47,7 @@ function cards(label, name, ids, words, picture, large) {
         update: () => { error.textContent = predicted_text(name, id); }};
     })});
   c.element.classList.toggle("large", large);
-  return {element: make("section", {}, make("h3", {}, label, large && make("span", {}, "predicted error")), c.element),
+  return {element: make("section", {}, make("h2", {}, label, large && make("span", {}, "predicted error")), c.element),
     update: c.update};
 }
 function predicted_text(name, id) {
@@ -91,7 +91,7 @@ function pace_controls() {
   }
   speeds.append(...rows.map(r => r.element), strong);
   update();
-  return {element: make("section", {}, make("h3", {}, "Stroke"), duration.element, along, movement.element, speeds), update};
+  return {element: make("section", {}, make("h2", {}, "Stroke"), duration.element, along, movement.element, speeds), update};
 }
 // The strokes of the take: which one is edited, when it starts, and what of it is left.
 function stroke_controls() {
@@ -138,7 +138,7 @@ function burst_controls() {
         +wanted.toFixed(4))}, `Use ${Math.round(wanted * 1000)} ms`)]);
   }
   update();
-  return {element: make("section", {}, make("h3", {}, "Bursts"), picture, bursts.element, interval.element, law), update};
+  return {element: make("section", {}, make("h2", {}, "Bursts"), picture, bursts.element, interval.element, law), update};
 }
 
 const WAVE_NAMES = [["sine", "Sine"], ["square", "Square"], ["triangle", "Triangle"], ["sawtooth", "Saw"], ["noise", "Noise"]];
@@ -170,7 +170,7 @@ function vibration_controls() {
   }
   update();
   return {element: make("section", {}, wave.element, noise.element, carrier.element, near,
-    make("h3", {class: "apart"}, "Envelope of a burst"), picture, rise.element, fall.element, phase.element), update};
+    make("h2", {class: "apart"}, "Envelope of a burst"), picture, rise.element, fall.element, phase.element), update};
 }
 
 // A control made from a row of the table.

@@ -56,6 +56,8 @@ async function open() {
   const opened = await open_storage("tactor", storage_lost);
   const kept = await opened.load(), current = await opened.get("current");
   tabs = await opened.get("tabs") ?? {};
+  const steps = await opened.get(`history ${tab}`);
+  // From here on nothing is waited for: what is drawn meanwhile would be lost.
   const takes = by_ids();
   let late = null;
   // Takes in what a page could not write while it went away.
@@ -73,7 +75,6 @@ async function open() {
     known.set(t.id, t.version);
     if (t.deleted < Date.now() - BIN_DAYS * DAY_MS) unwritten.set(t.id, null); else takes.set(t.id, t);
   }
-  const steps = await opened.get(`history ${tab}`);
   if (steps) asked_for.restore(steps);
   for (const name of Object.keys(tabs)) if (tabs[name] < Date.now() - TAB_MS) {
     opened.write({values: {[`history ${name}`]: undefined}});

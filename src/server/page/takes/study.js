@@ -7,14 +7,14 @@ import {quoted, strokes_toml} from "./stroke.js";
 import {file_name, give} from "./files.js";
 
 // Options of a method, see tactor-experiment(5).
-const OF_METHOD = /^(algorithm|phantom|faces|soa|burst|slope|intercept|timing|min_duration|outside|snap|drop_points|overlap|carrier)$/;
+const OF_METHOD = "algorithm phantom faces soa burst slope intercept timing min_duration outside snap drop_points overlap carrier".split(" ");
 const form = by_id("study"), study_name = () => file_name({name: form.elements.name.value});
 
 const table = (head, values) => `${head}\n${Object.entries(values).map(([k, v]) => `${k} = ${typeof v === "string" ? quoted(v) : v}\n`).join("")}`;
 function definition(name) {
   const {question, trials} = form.elements, preset = /^palm-/.test(state.hello.array.name) && {array: state.hello.array.name};
   const methods = [0, 1].map(side => {
-    const o = Object.entries(request_options(with_side(current_take(), side))).filter(([k, v]) => OF_METHOD.test(k) && v !== undefined);
+    const o = Object.entries(request_options(with_side(current_take(), side))).filter(([k, v]) => OF_METHOD.includes(k) && v !== undefined);
     return table("[[method]]", {name: `method ${side + 1}`, ...Object.fromEntries(o)});
   });
   return [`${table("[experiment]", {name, ...preset})}level = { dbfs = ${level_dbfs()} }\n`,
