@@ -46,7 +46,7 @@ class Bundle:
         if m := SCRIPT.fullmatch(line):
             file = (folder / m[1]).resolve()
             return f'<script>\n"use strict";\n{self.smaller(file, self.module(file))}</script>\n'
-        return f"{line.strip()}\n" if self.esbuild else line
+        return re.sub(r'="([\w-]+)"', r"=\1", line.strip()) + "\n" if self.esbuild else line
 
     def smaller(self, file, joined):
         """Returns what esbuild makes of a file, or the joined text without it."""

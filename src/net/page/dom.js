@@ -4,6 +4,8 @@
 const SVG_NAMES = "http://www.w3.org/2000/svg";
 
 export const by_id = id => document.getElementById(id);
+export function on_click(id, f) { by_id(id).addEventListener("click", f); }
+export function show_pressed(e, is) { e.setAttribute("aria-pressed", is); }
 
 // Makes an element: attributes, properties that begin with a dot, and listeners that begin with on.
 export function make(tag, attributes = {}, ...children) {

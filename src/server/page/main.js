@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The page to draw on: what belongs to no part of it, and the start.
 import {state, changed, on_change, on_toast, current_take, current_stroke, is_simulated, say, remember, remembered} from "./state.js";
-import {by_id, make} from "../../net/page/dom.js";
+import {by_id, make, on_click, show_pressed} from "../../net/page/dom.js";
 import {place_icons, forget_colours, is_dark} from "./look.js";
 import {connect, call, on_hello, page_link} from "./service/connection.js";
 import {undo, redo, can_undo, can_redo, steps_of_undo, restore_undo, rename_take} from "./takes/takes.js";
@@ -47,7 +47,7 @@ set_theme(remembered("theme"));
 state.level_db = Math.min(0, Math.max(LEAST_LEVEL_DB, Number(remembered("level") ?? 0) || 0));
 on_change(what => { if (what.has("level")) remember("level", state.level_db); });
 dark.addEventListener("change", () => { if (!remembered("theme")) set_theme(null); });
-by_id("theme").addEventListener("click", () => {
+on_click("theme", () => {
   const theme = is_dark() ? "light" : "dark";
   remember("theme", theme);
   set_theme(theme);
@@ -66,45 +66,44 @@ on_toast((text, take_back) => {
 });
 
 // Buttons.
-const on = (id, f) => by_id(id).addEventListener("click", f);
-on("play", () => play());
+on_click("play", () => play());
 // It stops when it is touched, whatever other fingers do; a click by itself comes from keys and assistive technology.
 by_id("stop").addEventListener("pointerdown", e => { if (e.button === 0) stop(); });
-on("stop", e => { if (e.detail === 0) stop(); });
-on("undo", undo);
-on("redo", redo);
-on("new-take", () => { new_take(); say("Draw a new take"); });
-on("zoom-in", () => zoom(1.3));
-on("zoom-out", () => zoom(1 / 1.3));
-on("zoom-all", look_at_all);
-on("loop", () => { state.loop = !state.loop; changed("playing", "curves"); });
-on("scrub", () => { state.scrub = !state.scrub; changed("tool"); });
+on_click("stop", e => { if (e.detail === 0) stop(); });
+on_click("undo", undo);
+on_click("redo", redo);
+on_click("new-take", () => { new_take(); say("Draw a new take"); });
+on_click("zoom-in", () => zoom(1.3));
+on_click("zoom-out", () => zoom(1 / 1.3));
+on_click("zoom-all", look_at_all);
+on_click("loop", () => { state.loop = !state.loop; changed("playing", "curves"); });
+on_click("scrub", () => { state.scrub = !state.scrub; changed("tool"); });
 // The keys of a headset and of a screen that is locked.
 for (const key of ["pause", "stop"]) navigator.mediaSession?.setActionHandler(key, stop);
-on("speaker", () => {
+on_click("speaker", () => {
   state.speaker = !state.speaker;
   if (state.speaker) say(is_simulated() ? "You hear it while you draw"
     : "Play is heard on this computer's own loudspeakers; they must not be the array's card");
     else silence_speaker();
   changed("playing");
 });
-on("show-speed", () => { state.show_speed = !state.show_speed; changed("curves"); });
-on("show-strength", () => { state.show_strength = !state.show_strength; changed("curves"); });
-on("point-curve", () => change_point({corner: false}));
-on("point-corner", () => change_point({corner: true}));
-on("point-bin", remove_point);
-on("play-from", () => play({from_s: state.at_s}));
-on("time-out", () => zoom_time(1.5));
-on("time-in", () => zoom_time(1 / 1.5));
-on("time-all", show_all_time);
-on("time-fold", fold_time);
+on_click("show-speed", () => { state.show_speed = !state.show_speed; changed("curves"); });
+on_click("show-strength", () => { state.show_strength = !state.show_strength; changed("curves"); });
+on_click("point-curve", () => change_point({corner: false}));
+on_click("point-corner", () => change_point({corner: true}));
+on_click("point-bin", remove_point);
+on_click("play-from", () => play({from_s: state.at_s}));
+on_click("time-out", () => zoom_time(1.5));
+on_click("time-in", () => zoom_time(1 / 1.5));
+on_click("time-all", show_all_time);
+on_click("time-fold", fold_time);
 for (const b of document.querySelectorAll("[data-press]")) b.addEventListener("click",
   () => { by_id("p-more").hidePopover(); by_id(b.dataset.press).click(); });
-on("pill", () => open_sheet("inspector"));
-on("settings", () => open_sheet(document.body.dataset.sheetOpen ? "" : state.sheet || "inspector"));
-on("sheet-close", () => open_sheet(""));
-on("gallery-open", () => open_sheet(""));
-on("tour-open", () => { open_sheet(""); open_tour(); });
+on_click("pill", () => open_sheet("inspector"));
+on_click("settings", () => open_sheet(document.body.dataset.sheetOpen ? "" : state.sheet || "inspector"));
+on_click("sheet-close", () => open_sheet(""));
+on_click("gallery-open", () => open_sheet(""));
+on_click("tour-open", () => { open_sheet(""); open_tour(); });
 for (const b of document.querySelectorAll("button[data-tool]")) b.addEventListener("click", () => choose_tool(b.dataset.tool));
 for (const b of document.querySelectorAll("button[data-sheet]")) b.addEventListener("click", () => open_sheet(b.dataset.sheet));
 document.body.dataset.sheetOpen = "";
@@ -119,12 +118,12 @@ on_change(() => {
   by_id("play").dataset.on = p !== null;
   by_id("play").querySelector("span").textContent = p ? "Playing" : "Play";
   show_stop();
-  by_id("loop").setAttribute("aria-pressed", state.loop);
-  by_id("speaker").setAttribute("aria-pressed", state.speaker);
-  by_id("scrub").setAttribute("aria-pressed", state.scrub);
-  by_id("show-speed").setAttribute("aria-pressed", state.show_speed);
-  by_id("show-strength").setAttribute("aria-pressed", state.show_strength);
-  for (const b of document.querySelectorAll("button[data-tool]")) b.setAttribute("aria-pressed", b.dataset.tool === state.tool);
+  show_pressed(by_id("loop"), state.loop);
+  show_pressed(by_id("speaker"), state.speaker);
+  show_pressed(by_id("scrub"), state.scrub);
+  show_pressed(by_id("show-speed"), state.show_speed);
+  show_pressed(by_id("show-strength"), state.show_strength);
+  for (const b of document.querySelectorAll("button[data-tool]")) show_pressed(b, b.dataset.tool === state.tool);
   by_id("field").dataset.tool = state.tool;
   const anew = state.drawing !== null && !state.drawing.append;
   by_id("take-name").textContent = anew ? "New take" : take?.name ?? "New take";
@@ -152,8 +151,8 @@ function show_point() {
   if (!on_point) return;
   const knots = editable(s).knots, k = knots[Math.min(state.knot, knots.length - 1)];
   by_id("point-text").textContent = `Point ${state.knot + 1} of ${knots.length}`;
-  by_id("point-curve").setAttribute("aria-pressed", !k.corner);
-  by_id("point-corner").setAttribute("aria-pressed", k.corner);
+  show_pressed(by_id("point-curve"), !k.corner);
+  show_pressed(by_id("point-corner"), k.corner);
 }
 
 // Frames: only while something moves or has changed.

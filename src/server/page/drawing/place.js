@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // "Where is the array?": the locator, and the mode in which the body is moved and turned under the array.
 import {state, on_change} from "../state.js";
-import {by_id, make} from "../../../net/page/dom.js";
+import {by_id, make, on_click} from "../../../net/page/dom.js";
 import {plain_name} from "../words.js";
 import {choice, button} from "../settings/controls.js";
 import {array, view, to_px, handle_px, look_at_all, outdated} from "./view.js";
@@ -34,7 +34,7 @@ export function show_place(on = !state.placing) {
   document.body.classList.toggle("placing", state.placing = on);
   set_and_fit({}); skin.focus();
 }
-by_id("locator").addEventListener("click", () => show_place(true));
+on_click("locator", () => show_place(true));
 on_change(what => {
   if (!array || !(what.has("body") || what.has("array"))) return;
   // The whole part with the array's square on it.

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // State of the service: one word and one reason each, a banner where something is to be done.
 import {state, on_change, changed, ceiling_dbfs, is_simulated, say, remember, remembered} from "../state.js";
-import {by_id, make} from "../../../net/page/dom.js";
+import {by_id, make, on_click} from "../../../net/page/dom.js";
 import {icon} from "../look.js";
 import {connect_with, connect, rename_client} from "./connection.js";
 import {test_tactor, unanswered_s} from "./player.js";
@@ -79,9 +79,9 @@ function show_device() {
   }
   said.banner = by_id("banner").hidden ? "" : key;
 }
-by_id("banner-close").addEventListener("click", () => { closed = by_id("banner-text").textContent; state.fault = null;
+on_click("banner-close", () => { closed = by_id("banner-text").textContent; state.fault = null;
   changed("link"); });
-by_id("banner-more").addEventListener("click", () => {
+on_click("banner-more", () => {
   const d = by_id("banner-details");
   d.hidden = !d.hidden;
   by_id("banner-more").setAttribute("aria-expanded", !d.hidden);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // A page without a card plays by itself: each tactor is a sound at its place.
 import {state, changed, on_change, is_simulated, ceiling_dbfs, take_gain} from "../state.js";
-import {by_id} from "../../../net/page/dom.js";
+import {by_id, on_click} from "../../../net/page/dom.js";
 import {icon} from "../look.js";
 import {array} from "../drawing/view.js";
 import {play, silence_speaker} from "./player.js";
@@ -10,8 +10,8 @@ import {open_example, try_entry} from "../takes/gallery.js";
 
 let simulated = false, hinted = false, warned = false, tones = null;
 
-by_id("hint-example").addEventListener("click", () => { if (simulated) try_entry(); else { open_example(); setTimeout(play, 0); } });
-by_id("feel").addEventListener("click", () => {
+on_click("hint-example", () => { if (simulated) try_entry(); else { open_example(); setTimeout(play, 0); } });
+on_click("feel", () => {
   if (simulated) by_id("speaker").click(); else { state.feel = !state.feel; changed("tool"); }
 });
 on_change(() => {

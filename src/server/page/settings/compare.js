@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Comparison of two methods on one stroke: side 0 is the take as it is, side 1 has other options. Both loop in step, and one is silent.
 import {state, changed, on_change, current_take, say} from "../state.js";
-import {by_id} from "../../../net/page/dom.js";
+import {by_id, on_click, show_pressed} from "../../../net/page/dom.js";
 import {row, value} from "./values.js";
 import {with_side} from "../takes/takes.js";
 import {play, quit_playing, tell_level, hear_it} from "../service/player.js";
@@ -53,7 +53,7 @@ function ask_again() {
   state.compare.heard.clear();
   choose_side(0);
 }
-by_id("blind").addEventListener("click", () => {
+on_click("blind", () => {
   const c = state.compare;
   c.blind = !c.blind;
   if (c.blind) { c.answers = []; ask_again(); } else c.order = [0, 1];
@@ -78,7 +78,7 @@ votes.childNodes.forEach((b, card) => b.addEventListener("click", () => {
   state.compare.answers.push(state.compare.order[card]);
   ask_again();
 }));
-by_id("compare-end").addEventListener("click", close_compare);
+on_click("compare-end", close_compare);
 on_change(() => {
   const c = state.compare, blind = c?.blind ?? false;
   // Whoever draws compares no longer.
@@ -87,7 +87,7 @@ on_change(() => {
   document.body.toggleAttribute("data-blind", blind);
   if (!c) return;
   side_cards.forEach((b, card) => {
-    b.setAttribute("aria-pressed", c.order[card] === c.on);
+    show_pressed(b, c.order[card] === c.on);
     b.childNodes[1].textContent = blind ? "hidden" : side_name(card);
     b.childNodes[2].textContent = blind ? "" : side_facts(plan_of_side(card)?.errors);
   });

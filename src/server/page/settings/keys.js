@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Keys, wherever the focus is.
 import {state, changed} from "../state.js";
-import {by_id, make} from "../../../net/page/dom.js";
+import {by_id, make, show_pressed} from "../../../net/page/dom.js";
 import {play, stop} from "../service/player.js";
 import {undo, redo, choose_take} from "../takes/takes.js";
 import {look_at_all, zoom} from "../drawing/view.js";
@@ -51,7 +51,7 @@ export function open_sheet(name) {
   if (state.drawing) return; // the canvas never changes under a finger
   if (name) state.sheet = name;
   document.body.dataset.sheetOpen = name;
-  for (const b of document.querySelectorAll("button[data-sheet]")) b.setAttribute("aria-pressed", b.dataset.sheet === (name || "inspector"));
+  for (const b of document.querySelectorAll("button[data-sheet]")) show_pressed(b, b.dataset.sheet === (name || "inspector"));
   by_id("settings").setAttribute("aria-expanded", name !== "");
   changed("layout");
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Files that come in, and files that go out: read and written by the service, so that they are the tool's.
 import {state, changed, current_take, say} from "../state.js";
-import {by_id, make, show_only_if} from "../../../net/page/dom.js";
+import {by_id, make, show_only_if, on_click} from "../../../net/page/dom.js";
 import {call, is_connected, page_link} from "../service/connection.js";
 import {add_take, make_request, imported_strokes} from "./takes.js";
 import {strokes_toml, stroke_csv} from "./stroke.js";
@@ -49,7 +49,7 @@ function fault_text({message, data}) {
   const why = data.why.replace(/^(\d+):\d+: /, "line $1: ");
   return data.hint?.length < SHORT_HINT ? `${why} (${data.hint})` : why;
 }
-by_id("open").addEventListener("click", () => by_id("file").click());
+on_click("open", () => by_id("file").click());
 by_id("file").addEventListener("change", () => { open_files([...by_id("file").files]); by_id("file").value = ""; });
 let over = 0;
 addEventListener("dragenter", e => { if (e.dataTransfer?.types.includes("Files")) { ++over; by_id("drop").hidden = false; } });
@@ -89,7 +89,7 @@ async function save_as(kind) {
   } catch (e) { say(e.message); }
 }
 // A browser may ask first whether the page may give several files.
-by_id("save-all").addEventListener("click", () => {
+on_click("save-all", () => {
   const takes = state.takes.filter(t => t.strokes.length);
   for (const t of takes) give(`${file_name(t)}.toml`, new Blob([strokes_toml(t.strokes)], {type: "application/toml"}));
   say(`Saved ${takes.length} takes`);
@@ -112,8 +112,8 @@ async function copy(id) {
     say("Marked; copy it with Ctrl C");
   }
 }
-by_id("copy-command").addEventListener("click", () => copy("command"));
-by_id("copy-link").addEventListener("click", () => copy("link"));
+on_click("copy-command", () => copy("command"));
+on_click("copy-link", () => copy("link"));
 
 // A link, with the token, for a phone beside the array: its code is shown where a phone can open it.
 by_id("p-share").addEventListener("toggle", e => {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Buttons of the strokes in time, for the keyboard: they lie over the drawn clips, and pointers go through them to the canvas.
 import {state, changed, current_take, say} from "../state.js";
-import {by_id, make} from "../../../net/page/dom.js";
+import {by_id, make, show_pressed} from "../../../net/page/dom.js";
 import {put_stroke, edit_take, end_edit} from "../takes/takes.js";
 import {duration_s, total_s} from "../takes/stroke.js";
 import {PAUSE_S} from "../drawing/pointer.js";
@@ -58,8 +58,8 @@ export function place_clips(l) {
     const [a, b] = clip_box(l, s), button = clips_box.children[i];
     put(button, a, Math.max(6, b - a));
     button.setAttribute("aria-label", `${s.name}, starts at ${seconds_text(s.start_s)}, lasts ${seconds_text(duration_s(s))}; arrows move it`);
-    button.setAttribute("aria-pressed", i === state.stroke);
+    show_pressed(button, i === state.stroke);
   });
   put(add_button, to_x(l, total()) + 8, 28);
-  add_button.setAttribute("aria-pressed", state.append);
+  show_pressed(add_button, state.append);
 }
