@@ -128,8 +128,8 @@ class Modules(ToolTest):
         self.assertGreater(len(exported), 100)
         for file, text in files.items():
             imported = {name.strip() for names in re.findall(r"^import \{(.*?)\} from", text, re.M) for name in names.split(",")}
-            # Without comments and texts, those between the values of templates, too.
-            code = re.sub(r"^import .*$|//.*$|\"(?:[^\"\\\n]|\\.)*\"|(?<=[`}])[ \w,.%“”-]+(?=[`$])", "", text, flags=re.M)
+            # Without comments, patterns and texts, those between the values of templates, too.
+            code = re.sub(r"^import .*$|//.*$|(?<=[:=] )/[^/\n]+/[a-z]*(?=[,;.])|\"(?:[^\"\\\n]|\\.)*\"|(?<=[`}])[ \w,.%“”-]+(?=[`$])", "", text, flags=re.M)
             used = {name for name in exported if re.search(rf"(?:(?<=\.\.\.)|(?<![\w.$])){name}\b(?!\s*:)", code)}
             self.assertEqual(imported - used, set(), f"{file} imports what it does not use")
             # A name of a module's own, or of a function's, is another one.

@@ -2,7 +2,7 @@
 // Strokes, their bursts, and where they are predicted to be felt.
 import {state, current_take} from "../state.js";
 import {colour, is_dark, font} from "../look.js";
-import {array, view, layers, start_layer, trace, trace_rows, disc, to_px} from "./view.js";
+import {array, view, layers, start_layer, trace_rows, disc, to_px} from "./view.js";
 import {editable, shape} from "../takes/stroke.js";
 import {place_labels, number_place, draw_labels} from "./labels.js";
 import {draw_felt_points} from "./felt.js";

@@ -27,7 +27,8 @@ function feel_moment() {
   const now = performance.now(), plan = state.plan, t = state.at_s + 1e-4;
   const row = plan?.onsets.findLastIndex((onset, i) => onset <= t && t < onset + plan.durations[i]) ?? -1;
   if (row < 0 || now - moved_ms > REST_MS || has_stopped(moved_ms)) return end_scrub();
-  const feel = live ? send : begin_live;
+  const is_new = !live;
   live ??= {number: null, sent_ms: 0, track: {down: true}};
-  feel(Object.assign(live, {at: plan.positions.slice(2 * row, 2 * row + 2), strength: plan.intensities[row]}), now);
+  Object.assign(live, {at: plan.positions.slice(2 * row, 2 * row + 2), strength: plan.intensities[row]});
+  if (is_new) begin_live(live); else send(live, now);
 }
