@@ -43,7 +43,7 @@ class Compare(StudioTest):
             # The page lowers all before it raises the other one.
             low, high = p.value("sent_levels")
             self.assertEqual((low["db"], low.get("stroke"), high["db"], high["stroke"]), (-60, None, -6, stroke))
-            self.assertLess(high["at"] - p.value("pressed"), 100)
+            self.assertLess(high["at"] - p.value("pressed"), 500)  # 70 ms at most, and what a busy machine adds
             self.assertGreater(p.value("tactor.state.at_s"), at_s)  # it goes on where it was
             p.until(f"document.querySelector('.side[aria-pressed=true] kbd').textContent === {quoted(key)}")
         # It loops, and the sum is never above the level, 6 dB below the ceiling of -12 dBFS.
