@@ -246,7 +246,7 @@ private:
     void drive(client& c, const net::json& params, const answer& to);
     std::vector<std::uint32_t> submit(client_number owner, const net::json& start, const planned& p,
                                       const std::vector<score>& scores, const char* ended_by,
-                                      double gain_db = 0.0, std::optional<double> again_s = {});
+                                      double gain_db = 0.0, bool again = false);
     void submit_next(stroke_record& r);
     void check_free_place(const client& c) const;
     std::vector<std::uint32_t> end_unbegun(client_number owner, std::size_t n, const char* why);

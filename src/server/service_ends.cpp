@@ -31,7 +31,7 @@ void service::begun(std::uint64_t player, stroke_id id, std::optional<std::int64
     if (found == by_player_.end())
         return;
     stroke_record& r = *strokes_.at(found->second);
-    if (r.id == id)
+    if (!r.open.empty() && r.open.back() == id)
         r.next_waits = false;
     if (r.state == "started") // it began again after an xrun, or with the next round
         return submit_next(r);
@@ -89,8 +89,8 @@ void service::ended(std::uint64_t player, const stroke_report& report)
         r.started_ns = report.started_ns;
         tell_stroke(r, "started", {});
     }
+    r.next_waits = r.next_waits && report.id != r.open.back();
     std::erase(r.open, report.id);
-    r.next_waits = r.next_waits && report.id != r.id;
     r.frames += report.frames;
     if (report.state != state_kind::finished && !r.broken) {
         r.broken = report;
@@ -109,7 +109,6 @@ void service::ended(std::uint64_t player, const stroke_report& report)
 // Notes a submission of a stroke: its only one, or its next round.
 void service::add_submission(stroke_record& r, stroke_id id)
 {
-    r.id = id;
     r.open.push_back(id);
     by_player_[{r.player, id}] = r.number;
 }
@@ -121,9 +120,9 @@ void service::end_rounds(stroke_record& r)
     if (!std::exchange(r.next_waits, false))
         return;
     if (player* p = stream_.current(); p != nullptr && r.player == stream_.number())
-        p->cancel(r.id);
-    by_player_.erase({r.player, r.id});
-    std::erase(r.open, r.id);
+        p->cancel(r.open.back());
+    by_player_.erase({r.player, r.open.back()});
+    r.open.pop_back();
 }
 
 void service::finish(stroke_record& r, const stroke_report& how)

@@ -62,8 +62,7 @@ struct service::stroke_record {
     std::uint32_t number = 0;
     client_number owner = 0;
     std::uint64_t player = 0;
-    stroke_id id = {};                ///< its newest submission ...
-    std::vector<stroke_id> open = {}; ///< ... and all that have not ended
+    std::vector<stroke_id> open = {}; ///< its submissions that have not ended, the newest last
     std::string state = "waiting";    ///< "armed", "started"
     std::optional<live_stroke> live = {};
     double intensity_max = 1.0;                     ///< value of its points' intensity that means 1

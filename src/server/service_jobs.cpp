@@ -231,6 +231,8 @@ bool service::weigh(plan_job& j, const planner_lane& in, const planning_work& w)
 {
     constexpr double text_bytes = 64.0; // least size of a burst or a sample in tactor-plan/1
     constexpr double burst_bytes = 256.0;
+    constexpr double plan_bytes = 1024.0; // of each further round
+    const double rounds = std::max(1.0, static_cast<double>(j.rounds));
     const service_limits& l = options_.limits;
     j.steps = w.steps;
     const double least_bytes = j.view.kind == view_kind::full
@@ -238,10 +240,13 @@ bool service::weigh(plan_job& j, const planner_lane& in, const planning_work& w)
                                    : least_view_bytes(j.view, w, options_.plans.tactors.tactors.size());
     if (!j.play && !j.make_text && least_bytes > static_cast<double>(l.max_unread_bytes) / 2.0)
         throw fault_error(too_large_to_send());
-    if (w.bursts * burst_bytes > static_cast<double>(l.max_all_unread_bytes))
-        limit_reached("max_all_unread_bytes",
-                      fmt::format("its {:.0f} bursts take more memory than all requests may", w.bursts),
-                      "make it shorter, or the SOA longer");
+    if (rounds * w.bursts * burst_bytes + (rounds - 1.0) * plan_bytes >
+        static_cast<double>(l.max_all_unread_bytes))
+        limit_reached(
+            "max_all_unread_bytes",
+            fmt::format("its {:.0f} bursts take more memory than all requests may", rounds * w.bursts),
+            rounds > 1.0 ? "repeat less, or with true until it is cancelled"
+                         : "make it shorter, or the SOA longer");
     return &lane_for(j) == &in;
 }
 
@@ -285,10 +290,11 @@ void service::post_job(planner_lane& lane, plan_job j)
                 p = std::make_shared<planned>(make_planned(options_.plans, faces_, job->params, checks));
             if (p ? p->plans.empty() : text.empty())
                 return boost::asio::post(io_, [this, &lane, job] { move_up(lane, std::move(*job)); });
-            const std::uint64_t rounds = job->play ? count_rounds(*job, *p) : 0;
+            if (job->play)
+                p->rounds = count_rounds(*job, *p);
             for (std::size_t i = 0; job->play && i < p->plans.size(); ++i) {
                 go_on();
-                scores.push_back(p->make_score(options_.plans.tactors, i, rounds));
+                scores.push_back(p->make_score(options_.plans.tactors, i));
             }
             if (p && !job->play)
                 text = answer_text(*p, job->view);
@@ -364,11 +370,8 @@ void service::submit_all(const plan_job& job, const planned& p, const std::vecto
                       fmt::format("{} strokes are more than the {} that a client may have at once",
                                   scores.size(), options_.limits.max_strokes),
                       "send fewer");
-    std::optional<double> again_s;
-    if (job.rounds == 0)
-        again_s = static_cast<double>(count_rounds(job, p)) * p.total_s();
-    const auto numbers =
-        submit(number, job.start, p, scores, stop_reason_since(job.asked, number), job.gain_db, again_s);
+    const auto numbers = submit(number, job.start, p, scores, stop_reason_since(job.asked, number),
+                                job.gain_db, job.rounds == 0);
     auto warnings = p.warnings();
     for (std::string& w : warnings)
         w = net::cut_echo(w);

@@ -75,7 +75,7 @@ void service::begin_now(client& c, const live_options& o, double intensity_max, 
     r.live = live;
     r.intensity_max = intensity_max;
     if (r.level_db != 0.0)
-        out->set_level(r.id, r.level_db);
+        out->set_level(live.id(), r.level_db);
     ++c.live;
     if (c.input_over)
         live.end();

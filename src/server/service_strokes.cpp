@@ -32,7 +32,7 @@ void service::check_free_place(const client& c) const
 
 std::vector<std::uint32_t> service::submit(client_number owner, const json& start, const planned& p,
                                            const std::vector<score>& scores, const char* ended_by,
-                                           double gain_db, std::optional<double> again_s)
+                                           double gain_db, bool again)
 {
     if (closing_)
         no_stream("the server ends");
@@ -50,6 +50,8 @@ std::vector<std::uint32_t> service::submit(client_number owner, const json& star
     const std::int64_t base_ns = asked.at_ns.value_or(now + lead_ns);
     const auto first =
         static_cast<std::size_t>(std::min_element(starts.begin(), starts.end()) - starts.begin());
+    const auto rounds_frames =
+        static_cast<std::uint64_t>(std::llround(static_cast<double>(p.rounds) * p.total_s() * s.rate));
     std::vector<std::uint32_t> numbers;
     std::vector<stroke_record*> records;
     std::vector<std::string> refused(scores.size());
@@ -59,8 +61,8 @@ std::vector<std::uint32_t> service::submit(client_number owner, const json& star
         records.push_back(&r);
         r.player = stream_.number();
         r.gain_db = gain_db;
-        if (const client* c = find(owner); again_s && c != nullptr && !c->input_over)
-            r.again = repeated{scores[i], static_cast<std::uint64_t>(std::llround(*again_s * s.rate))};
+        if (const client* c = find(owner); again && c != nullptr && !c->input_over)
+            r.again = repeated{scores[i], rounds_frames};
         if (asked.armed && i != first) {
             r.submits_later = scores[i];
             r.state = "armed";
@@ -88,7 +90,7 @@ std::vector<std::uint32_t> service::submit(client_number owner, const json& star
             records[first]->followers.emplace_back(records[i]->number, starts[i] - starts[first]);
     const auto end = out->ended();
     for (std::size_t i = 0; i < records.size(); ++i)
-        if (records[i]->id == stroke_id{} && !records[i]->submits_later && records[i]->state != "ended")
+        if (records[i]->open.empty() && !records[i]->submits_later && records[i]->state != "ended")
             finish(*records[i], {.state = state_kind::interrupted,
                                  .reason = end ? end->reason : reason_kind::failed,
                                  .why = end ? end->why : refused[i]});
@@ -99,9 +101,9 @@ std::vector<std::uint32_t> service::submit(client_number owner, const json& star
 void service::submit_next(stroke_record& r)
 {
     player* out = stream_.number() == r.player ? stream_.current() : nullptr;
-    if (!r.again || r.next_waits || r.ended_by != nullptr || out == nullptr)
+    if (!r.again || r.next_waits || r.open.empty() || r.ended_by != nullptr || out == nullptr)
         return;
-    const auto from = out->first_frame(r.id);
+    const auto from = out->first_frame(r.open.back());
     if (!from) // it has ended, and its report comes
         return;
     try {

@@ -320,7 +320,7 @@ std::vector<std::string> planned::warnings() const
     return all;
 }
 
-score planned::make_score(const array& a, std::size_t i, std::uint64_t rounds) const
+score planned::make_score(const array& a, std::size_t i) const
 {
     score_builder made(a, render);
     const double round_s = total_s();

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <functional>
 #include <string>
 #include <vector>
@@ -36,6 +37,7 @@ struct planned {
     std::vector<stroke> strokes;
     std::vector<placed_plan> plans;
     render_options render;
+    std::uint64_t rounds = 1; ///< how often one submission plays them, each total_s() after the last
     /// Moves of `compensate` in each plan; empty without it. The plans themselves are moved to `plans`.
     std::vector<compensated_plan> moved = {};
     detail::observer_choice observer = {}; ///< of the view percept
@@ -45,9 +47,8 @@ struct planned {
     std::vector<double> starts_s() const;
     double total_s() const;
     std::vector<std::string> warnings() const;
-    /// Returns the score of a plan alone, to be submitted by itself, so many times: each total_s() after the
-    /// last.
-    score make_score(const array& a, std::size_t i, std::uint64_t rounds = 1) const;
+    /// Returns the score of all rounds of a plan alone, to be submitted by itself.
+    score make_score(const array& a, std::size_t i) const;
 };
 
 /// Reads the strokes that a parameter says, as parse_strokes_toml() and its kin do. \throws error,

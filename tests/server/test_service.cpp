@@ -436,6 +436,10 @@ TEST_CASE("what is too large by its durations and options is refused before it i
     };
     const json bursts{{"duration", 600}, {"soa", 0.001}, {"burst", 0.001}};
     CHECK(refused("play", bursts) == "max_all_unread_bytes");
+    const json often{{"path", "M 0 0 L 1 1"},
+                     {"options", {{"duration", 0.001}, {"soa", 0.0005}, {"burst", 0.0005}}},
+                     {"repeat", 1'000'000}};
+    CHECK(rig.call(c, "play", often)["error"]["data"]["what"] == "max_all_unread_bytes");
     CHECK(refused("plan", bursts) == "plan");
     CHECK(refused("plan", {{"duration", 60}, {"algorithm", "continuous"}}) == "plan");
     CHECK(rig.code(c, "plan",
