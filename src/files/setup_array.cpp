@@ -21,7 +21,6 @@ namespace {
 constexpr std::size_t longest_chain = 16;
 constexpr bounds anywhere{-max_mm, max_mm};
 constexpr bounds limit_db{min_db, 0.0};
-constexpr bounds turn_deg{-3600.0, 3600.0};
 constexpr bounds body_mm{1.0, 3000.0};
 constexpr bounds displacement_um{0.0, max_displacement_um, true};
 

@@ -104,7 +104,6 @@ constexpr double shortest_burst_s = 0.0001;
 constexpr bounds levels_db{-120.0, 60.0};
 
 constexpr double largest_scale = 1e6;
-constexpr double most_degrees = 3600.0;
 constexpr std::array<std::string_view, 4> placing_keys{"scale", "rotate_deg", "translate_mm", "mirror"};
 
 struct turned {
@@ -173,7 +172,7 @@ stroke levelled(const toml_table& t, stroke s)
 
 affine read_turn(const toml_table& t, double scale)
 {
-    const turned turn = make_turn(t.number("rotate_deg", {-most_degrees, most_degrees}).value_or(0.0));
+    const turned turn = make_turn(t.number("rotate_deg", turn_deg).value_or(0.0));
     const std::string mirror = t.choice("mirror", {"x", "y"}).value_or("");
     const double x = mirror == "x" ? -scale : scale;
     const double y = mirror == "y" ? -scale : scale;

@@ -22,6 +22,9 @@ namespace tactor::detail {
 
 inline constexpr std::array<std::string_view, 3> order_keys{"repeat", "pause_s", "start_from"};
 
+/// Range of turns and angles, degrees.
+inline constexpr bounds turn_deg{-3600.0, 3600.0};
+
 /// Most strokes of a file: more are the wrong file, or a slip in `repeat`.
 inline constexpr std::size_t most_strokes = 100'000;
 

@@ -58,7 +58,7 @@ path read_arc(const toml_table& t)
     a.only({"centre", "radius_mm", "from_deg", "sweep_deg"});
     const point centre = a.need(a.place("centre"), "centre");
     const double radius = a.need(a.number("radius_mm", {0.0, max_mm, true}), "radius_mm");
-    const double from = a.need(a.number("from_deg", {-3600.0, 3600.0}), "from_deg");
+    const double from = a.need(a.number("from_deg", detail::turn_deg), "from_deg");
     const double sweep = a.need(a.number("sweep_deg", {-360.0, 360.0}), "sweep_deg");
     return t.at_key("arc", [&] { return path::arc(centre, radius, from, sweep); });
 }

@@ -106,6 +106,7 @@ def policy(text):
 
 
 def initialiser(text):
+    """Returns a page_document of C++: the text, its policy, and the text compressed."""
     smaller = gzip.compress(text.encode(), mtime=0)
     lines = ["".join(f"\\{b:03o}" for b in smaller[at:at + 32]) for at in range(0, len(smaller), 32)]
     return (f'{{R"page({text})page",\n"{policy(text)}",\n{{' + "\n".join(f'"{line}"' for line in lines) + f",\n{len(smaller)}}}}}\n")

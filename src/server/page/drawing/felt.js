@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What is felt, moved: a diamond for each point of the stroke, where it is felt. The point moves until it is felt where the diamond
+// Moves what is felt: a diamond for each point of the stroke, where it is felt. The point moves until it is felt where the diamond
 // was put, or as near as can be.
 import {state, changed, on_change, current_take, current_stroke, say} from "../state.js";
 import {colour} from "../look.js";

@@ -57,7 +57,7 @@ function draw_felt(p, plan) {
   p.lineWidth = Math.min(9, Math.max(5, view.scale * 0.8));
   for (const rows of plan.felt_rows) { trace_rows(p, rows); p.stroke(); }
   p.restore();
-  // What it is compared with is hollow.
+  // The ribbon of the other method is hollow.
   for (const rows of state.compare?.rest?.felt_rows ?? []) for (const [tone, width] of [["felt", 8], ["skin", 5]]) {
     trace_rows(p, rows); p.strokeStyle = colour(tone); p.lineWidth = width; p.stroke();
   }

@@ -12,7 +12,8 @@ const LOW_HZ = 330, HIGH_HZ = 880; // of places, from below to above
 // Starts at a time of the plan and returns {stop(), now_s(), set_gain(gain)}; now_s() is the time of the plan that is heard.
 // Call it from a user's gesture: browsers allow sound only then.
 //   plan: what the method `plan` gives for the view "bursts", and its `places`: the array's tactors, [{x_mm, y_mm}, ...]
-//   options: carrier_hz (250); pitched: each tactor has a frequency by its place instead; gain (1, at most); ended, called at the end of the plan, but not after stop(); context, the AudioContext
+//   options: carrier_hz (250); pitched: each tactor has a frequency by its place instead; gain (1, at most); ended, called at the
+//   end of the plan, but not after stop(); context, the AudioContext
 export function start_loudspeaker(plan, at_s = 0, options = {}) {
   const context = options.context ?? new AudioContext();
   const ramps = plan_ramps(plan), slices = ramps_by_slice(ramps);

@@ -44,8 +44,9 @@ export async function play(part = part_to_play()) {
 }
 async function play_unfelt(take, own) {
   if (!is_simulated() || !state.speaker) say(state.link === "connected" ? "No card: shown, not felt" : "No connection: shown, not felt");
-  // What is new waits for its plan.
-  for (own.waits = true; is_connected() && state.playing === own && is_shown(own) && state.plan_of?.id !== take.id;)
+  // A new take waits for its plan.
+  own.waits = true;
+  while (is_connected() && state.playing === own && is_shown(own) && state.plan_of?.id !== take.id)
     await new Promise(done => setTimeout(done, 10));
   Object.assign(own, {began_ms: performance.now(), total_s: Math.min(own.until_s, state.plan?.total_s ?? take_s(take)) - own.from_s, waits: false});
   if (state.playing !== own) return;
@@ -171,6 +172,7 @@ function hear_stroke(s) {
     }
     return;
   }
+  side_of.delete(s.stroke);
   if (p?.numbers.delete(s.stroke)) {
     if (s.state !== "finished") {
       if (s.state === "interrupted") { state.fault = `The stroke was interrupted: ${s.reason}`; changed("link"); }

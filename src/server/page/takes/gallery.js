@@ -88,9 +88,11 @@ on_change(what => {
   if (!what.has("array") || !array) return;
   const allows = array.edge.length > 2 ? 4 : array.places.length > 2 ? 2 : 1;
   example = GALLERY[allows > 2 ? 3 : 0];
-  const entry = (g, kind, onclick) => make("li", {}, make("button", {class: `take ${kind}`, disabled: g[2] > allows, onclick},
-    thumb(as_take(g).strokes), make("span", {}, make("b", {}, g[0]), make("small", {},
-    g[2] > allows ? "needs two rows" : facts(as_take(g)))), kind && make("p", {}, g[1])));
+  const entry = (g, kind, onclick) => {
+    const take = as_take(g), disabled = g[2] > allows;
+    return make("li", {}, make("button", {class: `take ${kind}`, disabled, onclick}, thumb(take.strokes), make("span", {},
+      make("b", {}, g[0]), make("small", {}, disabled ? "needs two rows" : facts(take))), kind && make("p", {}, g[1])));
+  };
   by_id("strokes").replaceChildren(...GALLERY.map(g => entry(g, "card", () => try_entry(g))));
   by_id("examples").replaceChildren(entry(example, "", open_example));
 });
