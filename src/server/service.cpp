@@ -265,6 +265,7 @@ void service::handle(client& c, net::rpc_request& r, const answer& to, std::size
         {"begin", &service::begin},         {"end", &service::end},
         {"drive", &service::drive},         {"status", &service::status},
         {"subscribe", &service::subscribe}, {"options", &service::list_options},
+        {"qr", &service::make_qr},
     };
     if (!c.admitted && r.method != "hello")
         throw fault_error({net::code_no_token, "token", "token", "hello with the token comes first", ""});
@@ -280,7 +281,7 @@ void service::handle(client& c, net::rpc_request& r, const answer& to, std::size
     throw fault_error({net::code_no_method, "bad-input", "method",
                        fmt::format("there is no \"{}\"", r.method),
                        "one of hello, play, plan, level, cancel, stop, fire, begin, to, end, drive, status, "
-                       "subscribe, options, import, export"});
+                       "subscribe, options, qr, import, export"});
 }
 
 bool service::input_ended(client_number number)

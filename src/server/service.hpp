@@ -211,6 +211,7 @@ private:
     void refuse_token(client& c, const answer& to, const net::rpc_fault& wrong);
     void status(client& c, const net::json& params, const answer& to);
     void list_options(client& c, const net::json& params, const answer& to);
+    void make_qr(client& c, const net::json& params, const answer& to);
     void subscribe(client& c, const net::json& params, const answer& to);
     void send_levels(client_number number);
     void gather_levels();

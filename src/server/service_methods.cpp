@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: MIT
-// hello, status, options, subscribe and what follows from it.
+// hello, status, options, qr, subscribe and what follows from it.
 #include <algorithm>
 #include <array>
 #include <chrono>
 #include <cmath>
+#include <memory>
+#include <new>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <qrencode.h>
 
 #include <tactor/stroke.hpp>
 
@@ -185,6 +188,30 @@ void service::list_options(client& /*c*/, const json& params, const answer& to)
 {
     allow_only(params, {});
     to.result({{"options", option_rows(options_.plans.owner)}});
+}
+
+// Returns a QR code of a text as SVG path data, a unit square for each dark module.
+void service::make_qr(client& /*c*/, const json& params, const answer& to)
+{
+    allow_only(params, {"text"});
+    constexpr std::size_t most_bytes = 400;
+    const json* given = member(params, "text");
+    const std::string of = given == nullptr ? std::string() : text(*given, "text");
+    if (of.empty() || of.size() > most_bytes)
+        bad_param("text", of.empty() ? "it is missing" : fmt::format("it has {} bytes", of.size()),
+                  fmt::format("1 to {} bytes", most_bytes));
+    const std::unique_ptr<QRcode, decltype(&QRcode_free)> symbol(
+        QRcode_encodeData(static_cast<int>(of.size()), reinterpret_cast<const unsigned char*>(of.data()), 0,
+                          QR_ECLEVEL_L),
+        &QRcode_free);
+    if (!symbol)
+        throw std::bad_alloc();
+    std::string path;
+    for (int y = 0; y < symbol->width; ++y)
+        for (int x = 0; x < symbol->width; ++x)
+            if ((symbol->data[y * symbol->width + x] & 1U) != 0)
+                path += fmt::format("M{} {}h1v1h-1z", x, y);
+    to.result({{"size", symbol->width}, {"path", std::move(path)}});
 }
 
 void service::subscribe(client& c, const json& params, const answer& to)

@@ -54,7 +54,7 @@ class Protocol(ServeTest):
 
     def test_missing_parameters_are_empty_ones_for_every_method(self):
         c = self.serve().client()
-        for method in ("hello", "play", "plan", "level", "cancel", "stop", "fire", "begin", "to", "end", "drive", "status", "subscribe", "options", "import", "export"):
+        for method in ("hello", "play", "plan", "level", "cancel", "stop", "fire", "begin", "to", "end", "drive", "status", "subscribe", "options", "qr", "import", "export"):
             told = []
             for raw in (b"", b',"params":{}', b',"params":[]', b',"params":null'):
                 c.raw(b'{"jsonrpc":"2.0","id":1,"method":"%s"%s}\n' % (method.encode(), raw))

@@ -24,6 +24,7 @@ class Browser:
         self.process = subprocess.Popen(
             [PROGRAM, "--headless=new", "--no-sandbox", "--disable-gpu", "--disable-dev-shm-usage", "--no-first-run",
              "--disable-background-networking", "--disable-component-update", "--remote-debugging-port=0",
+             "--host-resolver-rules=MAP pi.test 127.0.0.1",
              f"--user-data-dir={self.folder}", "about:blank"], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
         told = pathlib.Path(self.folder) / "DevToolsActivePort"
         until = time.monotonic() + PATIENCE_S

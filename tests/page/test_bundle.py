@@ -14,7 +14,7 @@ del sys.argv[3:]
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "cli"))
 from harness import ROOT, TOOL, ToolTest, main  # noqa: E402
 
-LARGEST = 190 * 1024  # bytes of a page
+LARGEST = 190_000  # bytes of a page
 # An address with a host, other than the names of XML's languages, and what asks for another file.
 ELSEWHERE = re.compile(r"\b(?:https?|wss?|ftp)://(?!www\.w3\.org/)[\w\[.-]+|(?:src|href|url)\W{1,3}//[\w.-]+|@import|^import\b.*|\bimport\(.*", re.M)
 # Code for which a policy would have to allow 'unsafe-inline' or 'unsafe-eval', in markup that a script makes, too.
@@ -25,76 +25,36 @@ ESBUILD = shutil.which("esbuild")
 
 
 class Joining(ToolTest):
-    def bundle(self, output="out.html", esbuild=(), **files):
+    def bundle(self, output="out.html", **files):
         """Writes files (page_html is page.html) and bundles page.html; returns what became of the process."""
         for name, text in files.items():
             base, _, kind = name.rpartition("_")
             self.write(f"{base}.{kind}", text)
-        return subprocess.run([sys.executable, TOOL, "page.html", output, "out.d", *esbuild], cwd=self.dir, capture_output=True, text=True, check=False)
+        return subprocess.run([sys.executable, TOOL, ESBUILD, "page.html", output, "out.d"], cwd=self.dir, capture_output=True, text=True, check=False)
 
-    def joined(self, **files):
-        result = self.bundle(**files)
-        self.assertEqual(result.returncode, 0, result.stderr)
-        return (self.dir / "out.html").read_text(encoding="utf-8")
-
-    def refused(self, why, **files):
-        result = self.bundle(**{"page_html": '<script src="main.js"></script>\n'} | files)
+    def refused(self, why, output="out.html", **files):
+        result = self.bundle(output, **{"page_html": '<script src="main.js"></script>\n'} | files)
         self.assertEqual(result.returncode, 1, result.stderr)
-        self.assertRegex(result.stderr, f"^{why}\n$")
-        self.assertFalse((self.dir / files.get("output", "out.html")).exists())
+        self.assertRegex(result.stderr, why)
+        self.assertFalse((self.dir / output).exists())
 
     def test_a_page_with_its_style_and_modules(self):
-        page = '<!DOCTYPE html>\n  <link rel="stylesheet" href="a.css">\n<p>text</p>\n<script type="module" src="main.js"></script>\n</html>\n'
-        text = self.joined(page_html=page, a_css="/* a comment */\np {\n  color: red; }\n\n",
-                           main_js='import {twice} from "./b.js";\n\n// A comment.\nlet two = twice(1); // stays\n',
-                           b_js="export function twice(x) {\n  return 2 * x;\n}\n")
-        self.assertEqual(text, '<!DOCTYPE html>\n<style>\np {\ncolor: red; }\n</style>\n<p>text</p>\n'
-                               '<script>\n"use strict";\nfunction twice(x) {\n  return 2 * x;\n}\nlet two = twice(1); // stays\n</script>\n</html>\n')
+        page = '<!DOCTYPE html>\n  <link rel="stylesheet" href="a.css">\n<p id="one">text</p>\n<script type="module" src="main.js"></script>\n</html>\n'
+        result = self.bundle(page_html=page, a_css="/* a comment */\np {\n  color: red; }\n\n",
+                             main_js='import {twice} from "./b.js";\nconst NUMBER = 3;\nlog(twice(NUMBER));\n',
+                             b_js="const NUMBER = 2;\nexport function twice(x) {\n  return NUMBER * x;\n}\n")
+        self.assertEqual(result.returncode, 0, result.stderr)
+        text = (self.dir / "out.html").read_text(encoding="utf-8")
+        self.assertRegex(text, r'(?s)^<!DOCTYPE html>\n<style>\np\{color:red\}\n</style>\n<p id=one>text</p>\n<script>\n"use strict";\n.*log\(.*</script>\n</html>\n$')
         self.assertEqual((self.dir / "out.d").read_text(encoding="utf-8").split(":")[0], "out.html")
         self.assertEqual({pathlib.Path(f).name for f in (self.dir / "out.d").read_text(encoding="utf-8").split(":", 1)[1].split()},
                          {"page.html", "a.css", "main.js", "b.js"})
 
-    def test_modules_stand_once_and_after_those_that_they_import(self):
-        text = self.joined(page_html='<script src="main.js"></script>\n',
-                           main_js='import {a} from "./a.js";\nimport {b, c} from "./b.js";\nconst main = 1;\n',
-                           a_js='import {d} from "./d.js";\nexport const a = d;\n',
-                           b_js='import {d} from "./d.js";\nexport let b = d;\nexport class c {}\n',
-                           d_js="export async function d() {}\nexport function* e() {}\n")
-        self.assertEqual(re.findall(r"(?m)^(?:async function|function\*|const|let|class) (\w+)", text), ["d", "e", "a", "b", "c", "main"])
-        self.assertNotRegex(text, r"\b(import|export)\b")
-
-    def test_a_module_that_is_imported_for_what_it_does(self):
-        text = self.joined(page_html='<script src="main.js"></script>\n', main_js='import "./a.js";\nimport "./a.js";\nlet main;\n', a_js="f();\n")
-        self.assertIn('"use strict";\nf();\nlet main;\n</script>', text)
-
-    @unittest.skipIf(ESBUILD is None, "esbuild is not there (install esbuild)")
-    def test_esbuild_makes_it_smaller_and_all_is_checked_nevertheless(self):
-        page = {"page_html": '<link rel="stylesheet" href="a.css">\n<script src="main.js"></script>\n', "a_css": "p {\n  color: red; }\n",
-                "main_js": 'import {twice} from "./a.js";\nlog(twice(1));\n', "a_js": "export function twice(number) {\n  return 2 * number;\n}\n"}
-        text = self.joined(**page)
-        smaller = self.joined(esbuild=[ESBUILD], **page)
-        self.assertLess(len(smaller), len(text))
-        self.assertIn('<style>\np{color:red}\n</style>', smaller)
-        self.assertRegex(smaller, r'(?s)<script>\n"use strict";\n.*log\(.*</script>')
-        (self.dir / "out.html").unlink()
-        self.refused(r".*main\.js:1: \./a\.js does not export twice", esbuild=[ESBUILD], **page | {"a_js": "function twice() {}\n"})
-
-    def test_what_a_module_does_not_export_is_refused(self):
-        self.refused(r".*main\.js:1: \./a\.js does not export b, c", main_js='import {a, b, c} from "./a.js";\n', a_js="export const a = 1;\nconst b = 2;\n")
-
-    def test_a_name_of_two_modules_is_refused(self):
-        for line in ("const a = 1;", "export class a {}", "async function a() {}", "let a;"):
-            with self.subTest(line):
-                self.refused(r".*main\.js:2: a stands at .*a\.js:1, too", main_js=f'import {{b}} from "./a.js";\n{line}\n', a_js="function a() {}\nexport const b = 1;\n")
-
-    def test_other_forms_of_import_and_export_are_refused(self):
-        for line in ('import a from "./a.js";', 'import * as a from "./a.js";', 'import {', 'import {a} from "./a.js"'):
-            with self.subTest(line):
-                self.refused(r'.*main\.js:1: write import \{name\} from "\./file\.js"; on one line', main_js=line + "\n", a_js="export const a = 1;\n")
-        self.refused(r".*main\.js:1: \./a\.js does not export a as b", main_js='import {a as b} from "./a.js";\n', a_js="export const a = 1;\n")
-        for line in ("export default 1;", "export {a};", 'export * from "./a.js";'):
-            with self.subTest(line):
-                self.refused(r".*main\.js:2: export a declaration", main_js=f"const a = 1;\n{line}\n")
+    def test_what_is_not_there_is_refused(self):
+        main_js = 'import {a} from "./a.js";\nlog(a);\n'
+        self.refused("Could not resolve \"./a.js\"", main_js=main_js)
+        self.refused('Import "a" will always be undefined', main_js=main_js, a_js="const a = 1;\n")
+        self.refused('No matching export in "a.js" for import "a"', main_js=main_js, a_js="export const b = 1;\n")
 
     def test_a_literal_of_c_plus_plus(self):
         self.assertEqual(self.bundle(page_html="<p>x</p>\n", output="out.inc").returncode, 0)
@@ -122,7 +82,7 @@ class Elements(html.parser.HTMLParser):
 
 class Modules(ToolTest):
     def test_a_module_imports_what_it_uses_and_no_more(self):
-        """Without esbuild modules are joined as they are, and one sees what it does not import; with it the name is missing."""
+        """What a module uses and does not import is a name that is missing when it runs."""
         files = {f: f.read_text(encoding="utf-8") for f in ROOT.glob("src/**/page/**/*.js")}
         exported = {name for text in files.values() for name in re.findall(EXPORTED, text, re.M)}
         self.assertGreater(len(exported), 100)
@@ -148,7 +108,6 @@ class Pages(ToolTest):
                 text = re.search(r'R"page\((.*)\)page"', file.read_text(encoding="utf-8"), re.S)[1]
                 at(text, Elements(text).all)
 
-    @unittest.skipIf(ESBUILD is None, "esbuild is not there (install esbuild)")
     def test_a_page_is_small(self):
         self.look(lambda text, _: self.assertLessEqual(len(text.encode()), LARGEST))
 

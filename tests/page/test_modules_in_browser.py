@@ -36,8 +36,8 @@ class ModulesTest(BrowserTest, ToolTest):
         self.address = f"http://127.0.0.1:{server.server_port}"
 
     def open(self, more=""):
-        p = self.page(f"{self.address}/takes/qr.js{more}")
-        p.until("location.pathname === '/takes/qr.js' && document.readyState === 'complete'")
+        p = self.page(f"{self.address}/takes/address.js{more}")
+        p.until("location.pathname === '/takes/address.js' && document.readyState === 'complete'")
         return p
 
     @staticmethod

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """The studio in a real Chromium: two methods compared by feeling, and what is felt moved. Usage: test_page_compare.py TOOL SOURCE_ROOT"""
 import json
+import math
 import sys
 
 del sys.argv[3:]
@@ -149,6 +150,25 @@ class Felt(StudioTest):
         p.until("!document.querySelector('#shape').hidden")
         p.click("#shape-ink")
         p.until("document.querySelector('#shape-ink').getAttribute('aria-pressed') === 'true'")
+
+    def test_fewer_points_stay_within_their_tolerance_of_the_ink(self):
+        p, _ = self.ready(self.serve())
+        self.draw(p, *[[20 + 15 * math.cos(a / 10), 20 + 12 * math.sin(a / 5)] for a in range(64)])
+        p.until(f"{TAKE}")
+        p.click("[data-tool=points]")
+        p.until("document.querySelector('#fit-mm').checkVisibility()")
+        counts = []
+        for mm in (0.2, 1, 2):
+            p.value(f"(() => {{ const e = document.querySelector('#fit-mm'); e.value = {mm}; e.dispatchEvent(new Event('input')); }})()")
+            p.until(f"document.querySelector('#shape-curve').textContent.endsWith('points, at most {mm} mm from the ink')")
+            counts.append(p.value(f"{TAKE}.strokes[0].knots.length"))
+            off = p.value(f"""(() => {{ const {{base, timed}} = {TAKE}.strokes[0], to = (q, rows) => Math.min(...rows.slice(1).map((b, i) => {{
+                    const a = rows[i], d = [b[1] - a[1], b[2] - a[2]], part = ((q[1] - a[1]) * d[0] + (q[2] - a[2]) * d[1]) / (d[0] ** 2 + d[1] ** 2 || 1), u = Math.min(1, Math.max(0, part));
+                    return Math.hypot(a[1] + u * d[0] - q[1], a[2] + u * d[1] - q[2]); }}));
+                return Math.max(...base.map(q => to(q, timed))); }})()""")
+            self.assertLessEqual(off, mm + 0.05)
+        self.assertGreater(counts[0], counts[1])
+        self.assertGreaterEqual(counts[1], counts[2])
 
     def test_a_place_that_cannot_be_felt_says_how_near_it_comes(self):
         p = self.felt()

@@ -73,15 +73,16 @@ class FromDrawingToFile(StudioTest):
         toml, wav = self.saved(p, "toml"), self.saved(p, "wav")
         p.click("#save")
         command = p.until("document.querySelector('#command').textContent.startsWith('tactor render') && document.querySelector('#command').textContent")
+        play = p.value("document.querySelector('#play-line').textContent")
         self.write(toml.name, toml.read_bytes())
         kept = self.take(p)
 
         # The page is loaded again: what was drawn is there, and plays.
         p.reload()
         self.await_service(p)
+        p.until("!document.querySelector('#play').disabled")
         self.assertEqual(self.take(p), kept)
         self.assertEqual(self.names(p), [kept["name"]])
-        p.until("!document.querySelector('#play').disabled")
         p.click("#play")
         for _ in rows:
             self.next_stroke(watcher, "started")
@@ -95,6 +96,8 @@ class FromDrawingToFile(StudioTest):
         rendered = self.dir / args[args.index("-o") + 1]
         self.assertEqual(rendered.read_bytes(), wav.read_bytes())
         self.assertGreater(len(wav.read_bytes()), 1000)
+        self.assertEqual(play, command.split(" -o ")[0].replace(" render ", " play "))
+        self.ok(*shlex.split(play)[1:], "-D", "null")
 
     def test_all_kinds_of_files_are_saved(self):
         p, _ = self.ready(self.serve())

@@ -59,6 +59,14 @@ class Simulated(StudioTest):
         self.assertRegex(p.value("document.querySelector('#link').textContent"), r"^tactor serve --http 0\.0\.0\.0:\d+ --config FILE$")
         self.assertFalse(p.value("document.querySelector('#qr').checkVisibility()"))
 
+    def test_share_shows_a_code_of_an_address_that_a_phone_opens(self):
+        s = self.serve(config='[serve]\nallow_hosts = ["pi.test"]\n')
+        s.where["http"] = s.where["http"].replace("127.0.0.1", "pi.test")
+        p, _ = self.ready(s)
+        p.click("#share")
+        p.until("document.querySelector('#qr path')?.getAttribute('d').startsWith('M0 0h1v1h-1z')")
+        self.assertEqual(p.value("document.querySelector('#link').textContent"), s.where["http"])
+
 
 class Gallery(StudioTest):
     def test_a_tap_plays_and_the_first_change_makes_a_take(self):

@@ -202,7 +202,7 @@ class Shapes(StudioTest):
                 for unfolded in (False, True) if p.value("document.querySelector('#time-fold').checkVisibility()") else (False,):
                     if unfolded:
                         p.key("KeyT", "t")
-                        p.until("document.body.dataset.timeOpen === 'true'")
+                        p.until("'timeOpen' in document.body.dataset")
                         self.resize(p, size, touch)
                     name = f"{size[0]}x{size[1]}{'-touch' if touch else ''}{'-unfolded' if unfolded else ''}"
                     if PICTURES:
@@ -215,7 +215,7 @@ class Shapes(StudioTest):
                         self.assertTrue(p.value("document.querySelector('#level').checkVisibility()"))
                     if unfolded:
                         p.key("KeyT", "t")
-                        p.until("document.body.dataset.timeOpen === 'false'")
+                        p.until("!('timeOpen' in document.body.dataset)")
 
     def test_settings_with_a_warning_show_the_settings(self):
         p = self.warned(self.serve())

@@ -152,7 +152,7 @@ class Play(StudioTest):
         p.value("(tactor.state.level_db = -40, tactor.changed('level'), 0)")
         p.reload()
         self.await_service(p)
-        self.play(p, watcher)
+        self.loop(p, watcher)
         p.until(f"{loudest} > -80")
         self.assertLess(p.value(loudest), -45)
 

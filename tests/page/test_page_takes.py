@@ -350,7 +350,7 @@ class Kept(StudioTest):
         p.click("#bin summary")
         p.until("document.querySelector('#binned small').textContent === 'deleted today, 29 days left'")
         p.value("document.querySelector('#binned button').click()")
-        p.until("tactor.state.takes.length === 2")
+        p.until("document.querySelectorAll('#takes li').length === 2")
         self.assertEqual(self.names(p), ["Take 2", "Take 1"])
         # After thirty days it is gone.
         p.value("document.querySelector('#takes .more-button').click()")

@@ -146,7 +146,7 @@ class Time(StudioTest):
         p.until("Math.abs(tactor.state.at_s - 0.2) < 0.02")
         self.assertEqual(p.value(begun), before)
 
-    def test_moments_and_clips_snap_but_with_alt(self):
+    def test_moments_and_clips_snap_but_with_alt_or_the_button(self):
         p, _ = self.drawn()
         onset = p.value("tactor.state.plan.onsets[5]")
         x, y = self.at_time(p, onset, LANES)
@@ -155,6 +155,11 @@ class Time(StudioTest):
             p.call("Input.dispatchMouseEvent", type="mouseMoved", x=x + 4, y=y, button="left", buttons=1, modifiers=modifiers)
             p.until(f"Math.abs(tactor.state.at_s - {onset}) < 0.03 && tactor.state.at_s {test} {onset}")
             p.mouse("mouseReleased", x, y)
+        p.click("#snap")
+        self.drag(p, 0.1, 0.2, LANES, up=False)
+        p.mouse("mouseMoved", x + 4, y)
+        p.until(f"Math.abs(tactor.state.at_s - {onset}) < 0.03 && tactor.state.at_s !== {onset}")
+        p.mouse("mouseReleased", x, y)
 
     def test_clips_are_copied_and_repeated(self):
         p, _ = self.drawn()

@@ -337,6 +337,21 @@ TEST_CASE("cancel of all ends strokes being planned, even of a client that has g
         CHECK(rig.code(you, "cancel", params) == -32602);
 }
 
+TEST_CASE("a QR code of a text is that of the program qrencode")
+{
+    running_rig rig;
+    const auto me = rig.client();
+    const json small = rig.ok(me, "qr", {{"text", "tactor 4cc71bb"}});
+    CHECK(small["size"] == 21);
+    const std::string path = small["path"];
+    CHECK(path.starts_with("M0 0h1v1h-1zM1 0h1v1h-1zM2 0h1v1h-1z"));
+    CHECK(path.size() == 2975);
+    CHECK(rig.ok(me, "qr", {{"text", std::string(400, 'a')}})["size"] == 69);
+    for (const json& params : {json::object(), json{{"text", ""}}, json{{"text", std::string(401, 'a')}},
+                               json{{"text", 7}}, json{{"text", "a"}, {"level", "H"}}})
+        CHECK(rig.code(me, "qr", params) == -32602);
+}
+
 TEST_CASE("a client's level holds for its strokes that sound and that come, and for no others")
 {
     running_rig rig;

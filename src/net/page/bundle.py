@@ -1,100 +1,49 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Joins a page, its styles and its modules into one document. Usage: bundle.py PAGE.html OUTPUT [DEPFILE [ESBUILD]]
-
-With esbuild, styles and modules are made smaller. Without it the page does the same, and is half as long again.
+"""Joins a page, its styles and its modules into one document, by esbuild. Usage: bundle.py ESBUILD PAGE.html OUTPUT [DEPFILE]
 
 An output whose name ends in .inc is a C++ initialiser of a page_document: the page, what its Content-Security-Policy says of its script and style,
 and the page compressed. Lines of the page that are only
     <link rel="stylesheet" href="FILE.css">  and  <script src="FILE.js">...</script>
-become the files' contents. A module imports by lines such as
-    import {name, other} from "./FILE.js";   or   import "./FILE.js";
-and exports declarations. Names at the top of modules are unique in the page, so that modules can be joined as they are.
-Blank lines and lines that are only a comment are left out."""
+become the files' contents, with what those import."""
 import base64
 import gzip
 import hashlib
+import json
 import pathlib
 import re
 import subprocess
 import sys
+import tempfile
 
 STYLE = re.compile(r'\s*<link rel="stylesheet" href="([\w./-]+)">\s*')
 SCRIPT = re.compile(r'\s*<script(?: type="module")? src="([\w./-]+)"></script>\s*')
-IMPORT = re.compile(r'import (?:\{([\w, ]+)\} from )?"([\w./-]+)";')
-DECLARATION = re.compile(r"(export )?(?:async )?(?:function\*?|const|let|class) (\w+)")
 
 
 class Bundle:
-    def __init__(self, esbuild=None):
+    def __init__(self, esbuild, page):
         self.esbuild = esbuild
-        self.read = []       # files, in the order in which they were read
-        self.exported = {}   # file: names
-        self.declared = {}   # name: place
+        self.read = [page]
+        self.text = "".join(self.line(line) for line in page.read_text(encoding="utf-8").splitlines()).replace("</style>\n<style>\n", "")
 
-    def text(self, file):
-        self.read.append(file)
-        return file.read_text(encoding="utf-8")
-
-    def page(self, file):
-        text = "".join(self.line(file.parent, line) for line in self.text(file).splitlines(keepends=True))
-        return text.replace("</style>\n<style>\n", "")
-
-    def line(self, folder, line):
+    def line(self, line):
         if m := STYLE.fullmatch(line):
-            return f'<style>\n{self.smaller(folder / m[1], self.style(folder / m[1]))}</style>\n'
+            return f"<style>\n{self.joined(m[1])}</style>\n"
         if m := SCRIPT.fullmatch(line):
-            file = (folder / m[1]).resolve()
-            return f'<script>\n"use strict";\n{self.smaller(file, self.module(file))}</script>\n'
-        return re.sub(r'="([\w-]+)"', r"=\1", line.strip()) + "\n" if self.esbuild else line
+            return f'<script>\n"use strict";\n{self.joined(m[1])}</script>\n'
+        return re.sub(r'="([\w-]+)"', r"=\1", line.strip()) + "\n"
 
-    def smaller(self, file, joined):
-        """Returns what esbuild makes of a file, or the joined text without it."""
-        if not self.esbuild:
-            return joined
-        return subprocess.run([self.esbuild, "--bundle", "--minify", "--charset=utf8", "--log-level=error", str(file)], check=True, capture_output=True,
-                              text=True).stdout
-
-    def style(self, file):
-        return "".join(f"{line.strip()}\n" for line in self.text(file).splitlines()
-                       if line.strip() and not re.fullmatch(r"\s*/\*.*\*/\s*", line))
-
-    def module(self, file):
-        """Returns a module after all those that it imports and that were not returned before."""
-        if file in self.exported:
-            return ""
-        self.exported[file] = set()
-        before, own = [], []
-        for number, line in enumerate(self.text(file).splitlines(), 1):
-            place = f"{file}:{number}"
-            if line.startswith("import "):
-                before.append(self.imported(file, line, place))
-                continue
-            if m := DECLARATION.match(line):
-                self.declare(m[2], place)
-                if m[1]:
-                    self.exported[file].add(m[2])
-                    line = line[len(m[1]):]
-            elif line.startswith("export "):
-                sys.exit(f"{place}: export a declaration")
-            if line.strip() and not line.lstrip().startswith("//"):
-                own.append(line + "\n")
-        return "".join(before + own)
-
-    def imported(self, file, line, place):
-        m = IMPORT.fullmatch(line)
-        if not m:
-            sys.exit(f'{place}: write import {{name}} from "./file.js"; on one line')
-        other = (file.parent / m[2]).resolve()
-        text = self.module(other)
-        if missing := {n.strip() for n in (m[1] or "").split(",") if n.strip()} - self.exported[other]:
-            sys.exit(f"{place}: {m[2]} does not export {', '.join(sorted(missing))}")
-        return text
-
-    def declare(self, name, place):
-        if name in self.declared:
-            sys.exit(f"{place}: {name} stands at {self.declared[name]}, too")
-        self.declared[name] = place
+    def joined(self, name):
+        """Returns a style or a module with all that it imports."""
+        file = self.read[0].parent / name
+        with tempfile.TemporaryDirectory() as folder:
+            out, about = pathlib.Path(folder) / "out", pathlib.Path(folder) / "about"
+            done = subprocess.run([self.esbuild, "--bundle", "--minify", "--charset=utf8", "--log-level=warning", f"--outfile={out}", f"--metafile={about}",
+                                   str(file)], stderr=subprocess.PIPE, text=True, check=False)
+            if done.stderr or done.returncode:  # a warning, too
+                sys.exit(done.stderr)
+            self.read += map(pathlib.Path, json.loads(about.read_text(encoding="utf-8"))["inputs"])
+            return out.read_text(encoding="utf-8")
 
 
 def policy(text):
@@ -112,9 +61,9 @@ def initialiser(text):
     return (f'{{R"page({text})page",\n"{policy(text)}",\n{{' + "\n".join(f'"{line}"' for line in lines) + f",\n{len(smaller)}}}}}\n")
 
 
-def main(page, output, depfile=None, esbuild=None):
-    b = Bundle(esbuild)
-    text = b.page(pathlib.Path(page))
+def main(esbuild, page, output, depfile=None):
+    b = Bundle(esbuild, pathlib.Path(page))
+    text = b.text
     if output.endswith(".inc"):
         if ')page"' in text:
             sys.exit(f'{page}: )page" would end the literal')

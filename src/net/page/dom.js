@@ -4,7 +4,11 @@
 const SVG_NAMES = "http://www.w3.org/2000/svg";
 
 export const by_id = id => document.getElementById(id);
-export function on_click(id, f) { by_id(id).addEventListener("click", f); }
+export function set_text(id, text) { by_id(id).textContent = text; }
+export const all_of = selector => document.querySelectorAll(selector);
+// Listens to an element, or to that of an id.
+export function listen(to, event, f, options) { (typeof to === "string" ? by_id(to) : to).addEventListener(event, f, options); }
+export const on_click = (id, f) => listen(id, "click", f);
 export function show_pressed(e, is) { e.setAttribute("aria-pressed", is); }
 
 // Makes an element: attributes, properties that begin with a dot, and listeners that begin with on.
@@ -13,7 +17,7 @@ export function make(tag, attributes = {}, ...children) {
   const e = svg ? document.createElementNS(SVG_NAMES, tag) : document.createElement(tag);
   for (const [name, v] of Object.entries(attributes)) {
     if (v === undefined || v === null || v === false) continue;
-    if (name.startsWith("on")) e.addEventListener(name.slice(2), v);
+    if (name.startsWith("on")) listen(e, name.slice(2), v);
     else if (name.startsWith(".")) e[name.slice(1)] = v;
     else e.setAttribute(name, v === true ? "" : v);
   }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The page to draw on: what belongs to no part of it, and the start.
-import {state, changed, on_change, on_toast, current_take, current_stroke, is_simulated, say, remember, remembered} from "./state.js";
-import {by_id, make, on_click, show_pressed} from "../../net/page/dom.js";
+import {state, changed, on_change, on_toast, current_take, current_stroke, is_simulated, say, remember, remembered, now_ms} from "./state.js";
+import {by_id, make, on_click, show_pressed, all_of, listen, set_text} from "../../net/page/dom.js";
 import {place_icons, forget_colours, is_dark} from "./look.js";
 import {connect, call, on_hello, page_link} from "./service/connection.js";
 import {undo, redo, can_undo, can_redo, steps_of_undo, restore_undo, rename_take} from "./takes/takes.js";
@@ -46,7 +46,7 @@ set_theme(remembered("theme"));
 // A page that is opened again is no louder than it was.
 state.level_db = Math.min(0, Math.max(LEAST_LEVEL_DB, Number(remembered("level") ?? 0) || 0));
 on_change(what => { if (what.has("level")) remember("level", state.level_db); });
-dark.addEventListener("change", () => { if (!remembered("theme")) set_theme(null); });
+listen(dark, "change", () => { if (!remembered("theme")) set_theme(null); });
 on_click("theme", () => {
   const theme = is_dark() ? "light" : "dark";
   remember("theme", theme);
@@ -68,7 +68,7 @@ on_toast((text, take_back) => {
 // Buttons.
 on_click("play", () => play());
 // It stops when it is touched, whatever other fingers do; a click by itself comes from keys and assistive technology.
-by_id("stop").addEventListener("pointerdown", e => { if (e.button === 0) stop(); });
+listen("stop", "pointerdown", e => { if (e.button === 0) stop(); });
 on_click("stop", e => { if (e.detail === 0) stop(); });
 on_click("undo", undo);
 on_click("redo", redo);
@@ -77,7 +77,7 @@ on_click("zoom-in", () => zoom(1.3));
 on_click("zoom-out", () => zoom(1 / 1.3));
 on_click("zoom-all", look_at_all);
 on_click("loop", () => { state.loop = !state.loop; changed("playing", "curves"); });
-on_click("scrub", () => { state.scrub = !state.scrub; changed("tool"); });
+for (const id of ["scrub", "snap"]) on_click(id, () => { state[id] = !state[id]; changed("tool"); });
 // The keys of a headset and of a screen that is locked.
 for (const key of ["pause", "stop"]) navigator.mediaSession?.setActionHandler(key, stop);
 on_click("speaker", () => {
@@ -97,16 +97,15 @@ on_click("time-out", () => zoom_time(1.5));
 on_click("time-in", () => zoom_time(1 / 1.5));
 on_click("time-all", show_all_time);
 on_click("time-fold", fold_time);
-for (const b of document.querySelectorAll("[data-press]")) b.addEventListener("click",
+for (const b of all_of("[data-press]")) listen(b, "click",
   () => { by_id("p-more").hidePopover(); by_id(b.dataset.press).click(); });
 on_click("pill", () => open_sheet("inspector"));
 on_click("settings", () => open_sheet(document.body.dataset.sheetOpen ? "" : state.sheet || "inspector"));
 on_click("sheet-close", () => open_sheet(""));
 on_click("gallery-open", () => open_sheet(""));
 on_click("tour-open", () => { open_sheet(""); open_tour(); });
-for (const b of document.querySelectorAll("button[data-tool]")) b.addEventListener("click", () => choose_tool(b.dataset.tool));
-for (const b of document.querySelectorAll("button[data-sheet]")) b.addEventListener("click", () => open_sheet(b.dataset.sheet));
-document.body.dataset.sheetOpen = "";
+for (const b of all_of("button[data-tool]")) listen(b, "click", () => choose_tool(b.dataset.tool));
+for (const b of all_of("button[data-sheet]")) listen(b, "click", () => open_sheet(b.dataset.sheet));
 on_tactor_held(show_tactor);
 
 // Texts and states of buttons.
@@ -120,20 +119,20 @@ on_change(() => {
   show_stop();
   show_pressed(by_id("loop"), state.loop);
   show_pressed(by_id("speaker"), state.speaker);
-  show_pressed(by_id("scrub"), state.scrub);
+  for (const id of ["scrub", "snap"]) show_pressed(by_id(id), state[id]);
   show_pressed(by_id("show-speed"), state.show_speed);
   show_pressed(by_id("show-strength"), state.show_strength);
-  for (const b of document.querySelectorAll("button[data-tool]")) show_pressed(b, b.dataset.tool === state.tool);
+  for (const b of all_of("button[data-tool]")) show_pressed(b, b.dataset.tool === state.tool);
   by_id("field").dataset.tool = state.tool;
   const anew = state.drawing !== null && !state.drawing.append;
-  by_id("take-name").textContent = anew ? "New take" : take?.name ?? "New take";
-  by_id("take-facts").textContent = anew ? "" : take_facts(take);
-  by_id("take-origin").textContent = !anew && take?.origin.includes("-") ? ` · ${take.origin}` : "";
+  set_text("take-name", anew ? "New take" : take?.name ?? "New take");
+  set_text("take-facts", anew ? "" : take_facts(take));
+  set_text("take-origin", !anew && take?.origin.includes("-") ? ` · ${take.origin}` : "");
   by_id("no-lanes").hidden = Boolean(take?.strokes.length || state.drawing);
   show_point();
 });
 function show_stop() {
-  const late_s = unanswered_s(), done = !state.stopping && state.stopped && performance.now() - state.stopped.at < DONE_MS;
+  const late_s = unanswered_s(), done = !state.stopping && state.stopped && now_ms() - state.stopped.at < DONE_MS;
   by_id("stop").dataset.state = late_s ? "late" : done ? "done" : "";
   by_id("stop").querySelector("span").replaceChildren(late_s ? "Stop again" : done ? "Stopped" : "Stop",
     ...late_s ? [make("small", {}, `no answer, ${late_s.toFixed(1)} s`)] : []);
@@ -150,7 +149,7 @@ function show_point() {
   by_id("points").hidden = !on_point;
   if (!on_point) return;
   const knots = editable(s).knots, k = knots[Math.min(state.knot, knots.length - 1)];
-  by_id("point-text").textContent = `Point ${state.knot + 1} of ${knots.length}`;
+  set_text("point-text", `Point ${state.knot + 1} of ${knots.length}`);
   show_pressed(by_id("point-curve"), !k.corner);
   show_pressed(by_id("point-corner"), k.corner);
 }
@@ -165,8 +164,8 @@ function frame() {
   const [now, total] = clock_text();
   if (now + total !== told_clock) {
     told_clock = now + total;
-    by_id("clock").textContent = now;
-    by_id("total").textContent = total;
+    set_text("clock", now);
+    set_text("total", total);
     const slider = by_id("lanes");
     slider.setAttribute("aria-valuenow", now);
     slider.setAttribute("aria-valuemax", parseFloat(total) || 0);
@@ -184,7 +183,7 @@ addEventListener("beforeunload", e => { if (state.unkept.size) e.preventDefault(
 addEventListener("pagehide", () => { finish_early(); write_at_once(); });
 // Another density of the screen changes no size of the page: all is drawn again.
 function watch_density() {
-  matchMedia(`(resolution: ${devicePixelRatio}dppx)`).addEventListener("change", () => { changed("layout"); watch_density(); }, {once: true});
+  listen(matchMedia(`(resolution: ${devicePixelRatio}dppx)`), "change", () => { changed("layout"); watch_density(); }, {once: true});
 }
 watch_density();
 

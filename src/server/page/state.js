@@ -24,11 +24,13 @@ export const state = {
   outside: [],           // places of strokes that are farthest from the array
   shape: "park2016",     // of the bars: the take's algorithm
   playing: null,         // {began_ms, total_s, numbers, felt, loop}
-  at_s: 0, loop: false, speaker: false, scrub: true, hot: -1, tapped: -1,
+  at_s: 0, loop: false, speaker: false, scrub: true, snap: true, hot: -1, tapped: -1,
   marks: {},             // on the time axis: {take, start_s, range: [from, until] or null}
   compare: null,         // of two methods, see settings/compare.js
   tab: "method", sheet: "", placing: false, show_speed: true, show_strength: true,
 };
+
+export const now_ms = () => performance.now();
 
 const listeners = [];
 let asked = new Set(), waiting = false;
@@ -64,6 +66,8 @@ export const marks = () => state.marks.take === state.current ? state.marks : {s
 // The stroke of the take that is edited.
 export const current_stroke = () => current_take()?.strokes[state.stroke] ?? null;
 // Returns true where the service has never had a card: the page itself plays then.
+// The service plays to the PCM null where nothing names another.
+export const plays_to_nobody = () => state.hello?.stream.pcm === "null";
 export const is_simulated = () => state.link === "connected" && state.stream.state === "lost" && state.hello.stream.format === null;
 export const ceiling_dbfs = () => state.hello?.max_level_dbfs ?? -12;
 export const level_dbfs = () => ceiling_dbfs() + state.level_db;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The picture of the array at one moment: over ground and strokes, what is driven and felt.
-import {state, current_take, ceiling_dbfs, take_gain, is_simulated} from "../state.js";
+import {state, current_take, ceiling_dbfs, take_gain, is_simulated, now_ms} from "../state.js";
 import {by_id} from "../../../net/page/dom.js";
 import {colour, font} from "../look.js";
 import {interpolate} from "../takes/stroke.js";
@@ -117,7 +117,7 @@ function draw_fingers() {
 }
 function draw_others() {
   for (const [id, t] of state.touches) {
-    if (performance.now() - t.at > 3000) { state.touches.delete(id); continue; }
+    if (now_ms() - t.at > 3000) { state.touches.delete(id); continue; }
     const c = to_px([t.x_mm, t.y_mm]);
     disc(pen, c, 13);
     pen.strokeStyle = colour("info"); pen.lineWidth = 3; pen.stroke();

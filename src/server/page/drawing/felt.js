@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Moves what is felt: a diamond for each point of the stroke, where it is felt. The point moves until it is felt where the diamond
 // was put, or as near as can be.
-import {state, changed, on_change, current_take, current_stroke, say} from "../state.js";
+import {state, changed, on_change, current_take, current_stroke, say, now_ms} from "../state.js";
 import {colour} from "../look.js";
 import {array, trace_rows, disc, to_px, px_per_mm} from "./view.js";
 import {edit_stroke} from "../takes/takes.js";
@@ -19,7 +19,7 @@ export function felt_points(s = current_stroke()) {
   return !rows?.length ? [] : knot_times(editable(s)).map(t => interpolate(rows, state.plan.strokes[i].start_s + t)).map(([, x, y]) => ({x, y}));
 }
 function start_wish(knot) {
-  wish = {knot, before: current_stroke().timed, key: `felt ${performance.now()}`};
+  wish = {knot, before: current_stroke().timed, key: `felt ${now_ms()}`};
   state.knot = knot;
   changed("knot");
 }

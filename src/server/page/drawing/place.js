@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // "Where is the array?": the locator, and the mode in which the body is moved and turned under the array.
 import {state, on_change} from "../state.js";
-import {by_id, make, on_click} from "../../../net/page/dom.js";
+import {by_id, make, on_click, listen} from "../../../net/page/dom.js";
 import {plain_name} from "../words.js";
 import {choice, button} from "../settings/controls.js";
 import {array, view, to_px, handle_px, look_at_all, outdated} from "./view.js";
@@ -52,19 +52,19 @@ on_change(what => {
 let grip = null;
 const over_body = (x, y) => new DOMMatrix().rotate(-body.turn).transformPoint({x, y}); // a distance on the screen
 const move_from = ({x, y}, dx, dy, d = over_body(dx, dy)) => set_body({x: +(x - d.x).toFixed(1), y: +(y - d.y).toFixed(1)});
-skin.addEventListener("pointerdown", e => {
+listen(skin, "pointerdown", e => {
   if (!state.placing || e.button > 0 || grip) return;
   const [x, y] = to_px(array.box.middle), q = over_body(e.offsetX - x, e.offsetY - y);
   grip = {id: e.pointerId, x: e.offsetX, y: e.offsetY, from: {...body}, turns: Math.hypot(q.x, q.y + handle_px()) < REACH_OF_HANDLE_PX};
 });
-skin.addEventListener("pointermove", e => {
+listen(skin, "pointermove", e => {
   if (grip?.id !== e.pointerId) return;
   if (!grip.turns) return move_from(grip.from, (e.offsetX - grip.x) / view.scale, (e.offsetY - grip.y) / view.scale);
   const [x, y] = to_px(array.box.middle), step = e.altKey ? 1 : TURN_STEP;
   turn_to(Math.round(Math.atan2(e.offsetX - x, y - e.offsetY) * 180 / Math.PI / step) * step);
 });
-skin.addEventListener("lostpointercapture", () => { grip = null; });
-skin.addEventListener("keydown", e => {
+listen(skin, "lostpointercapture", () => { grip = null; });
+listen(skin, "keydown", e => {
   const d = state.placing && ARROWS[e.key];
   if (d) { e.preventDefault(); move_from(body, ...d.map(v => e.shiftKey ? v / 10 : v)); }
 });

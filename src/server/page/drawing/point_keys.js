@@ -2,7 +2,7 @@
 // Points by keys, while the tool is Points or Felt and the canvas has the focus: Tab walks them, arrows move the chosen one, Enter makes it
 // a curve or a corner. Tab after the last one leaves the canvas.
 import {state, changed, current_stroke} from "../state.js";
-import {by_id} from "../../../net/page/dom.js";
+import {listen} from "../../../net/page/dom.js";
 import {edit_stroke} from "../takes/takes.js";
 import {editable, changed_knot} from "../takes/stroke.js";
 import {change_point} from "./pointer.js";
@@ -28,6 +28,6 @@ function act(e) {
   else edit_stroke(s => changed_knot(s, at, {x: +(k.x + step[0] * mm).toFixed(3), y: +(k.y + step[1] * mm).toFixed(3)}), `key knot ${at}`);
   return true;
 }
-by_id("field").addEventListener("keydown", e => {
+listen("field", "keydown", e => {
   if (act(e)) { e.preventDefault(); e.stopImmediatePropagation(); }
 }, {capture: true});

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Fingers, pen, mouse and keys on the array: drawing, straight lines, points, tests of single tactors.
-import {state, changed, current_take, current_stroke, ceiling_dbfs, is_simulated, say} from "../state.js";
-import {by_id} from "../../../net/page/dom.js";
+import {state, changed, current_take, current_stroke, ceiling_dbfs, is_simulated, say, now_ms} from "../state.js";
+import {by_id, listen} from "../../../net/page/dom.js";
 import {call, tell, is_connected, on_lost} from "../service/connection.js";
 import {array, to_mm, to_px, px_per_mm, tactor_at, zoom, zoom_by_two, pan} from "./view.js";
 import {add_take, edit_take, edit_stroke, end_edit, request_options} from "../takes/takes.js";
@@ -34,7 +34,7 @@ function down(id, px, e) {
   if (e.pointerType === "touch" && [...fingers.values()].some(f => f.kind === "pen")) return; // it is the hand of the pen
   const mm = to_mm(...px);
   const f = {id, px, from: mm, at: mm, strength: strength(e), kind: e.pointerType ?? "key", down_ms: e.timeStamp
-    ?? performance.now(), mode: "tap",
+    ?? now_ms(), mode: "tap",
     straight: state.tool === "line" || e.shiftKey, sent_ms: 0, number: null};
   if (state.tool === "felt") { f.mode = "felt"; if (!grasp_felt(mm)) return; }
   if (f.mode === "felt" || state.tool === "points" && grasp(f, mm)) { fingers.set(id, f); return; }
@@ -105,7 +105,7 @@ export function begin_live(f) {
   const options = Object.fromEntries(Object.entries(o).filter(([name]) => live.has(name) || !live.size));
   call("begin", {options}).then(r => {
     f.number = r.stroke;
-    send(f, performance.now(), true);
+    send(f, now_ms(), true);
     if (!f.track.down) tell("end", {stroke: f.number});
   }, e => { if (!f.refused) say(e.message); f.refused = true; });
 }
@@ -115,7 +115,7 @@ export function send(f, at_ms, always = false) {
   tell("to", {stroke: f.number, x_mm: f.at[0], y_mm: f.at[1],
     intensity: f.strength});
 }
-setInterval(() => fingers.forEach(f => f.mode === "draw" && send(f, performance.now(), true)), RESTING_MS);
+setInterval(() => fingers.forEach(f => f.mode === "draw" && send(f, now_ms(), true)), RESTING_MS);
 
 function up(id, cancelled = false) {
   const f = fingers.get(id);
@@ -126,7 +126,7 @@ function up(id, cancelled = false) {
   if (f.mode === "tap" && !cancelled) return tap(f);
   if (f.mode !== "draw") return;
   f.track.down = false;
-  const t = seconds(performance.now() - f.track.began), last = f.track.points.at(-1);
+  const t = seconds(now_ms() - f.track.began), last = f.track.points.at(-1);
   // A finger that rests before it is lifted stays there as long.
   if (t > last[0] + 0.05) f.track.points.push([t, last[1], last[2], last[3]]);
   if (f.number !== null) tell("end", {stroke: f.number});
@@ -201,7 +201,7 @@ function grasp(f, mm) {
   if (near.off * px_per_mm() > REACH_PX) return false;
   f.mode = "knot";
   f.knot = near.index;
-  f.key = `knot ${f.id} ${performance.now()}`;
+  f.key = `knot ${f.id} ${now_ms()}`;
   state.knot = near.index;
   changed("knot");
   return true;
@@ -242,7 +242,7 @@ function choose_stroke(mm) {
 
 // Listeners. `pointerrawupdate` comes before the frame, where the browser has it.
 let middle = null;
-field.addEventListener("pointerdown", e => {
+listen(field, "pointerdown", e => {
   if (e.button === 1) { middle = [e.clientX, e.clientY]; field.setPointerCapture(e.pointerId); e.preventDefault(); return; }
   if (e.button > 0) return;
   try { field.setPointerCapture(e.pointerId); } catch { /* a pointer that is gone already */ }
@@ -256,15 +256,15 @@ function follow(e) {
   const all = e.getCoalescedEvents?.() ?? [];
   for (const p of all.length ? all : [e]) moved(e.pointerId, to_pixel(p), p);
 }
-field.addEventListener(raw ? "pointerrawupdate" : "pointermove", follow);
-if (raw) field.addEventListener("pointermove", e => { if (fingers.has(e.pointerId)) moved(e.pointerId, to_pixel(e), e); });
-field.addEventListener("pointerup", e => { middle = null; if (fingers.has(e.pointerId)) { moved(e.pointerId, to_pixel(e), e);
+listen(field, raw ? "pointerrawupdate" : "pointermove", follow);
+if (raw) listen(field, "pointermove", e => { if (fingers.has(e.pointerId)) moved(e.pointerId, to_pixel(e), e); });
+listen(field, "pointerup", e => { middle = null; if (fingers.has(e.pointerId)) { moved(e.pointerId, to_pixel(e), e);
   up(e.pointerId); } });
-field.addEventListener("pointercancel", e => { middle = null; take_back(e.pointerId); });
-field.addEventListener("lostpointercapture", e => { middle = null; up(e.pointerId, true); });
-field.addEventListener("pointerleave", () => set_hot(-1));
-field.addEventListener("contextmenu", e => e.preventDefault());
-field.addEventListener("wheel", e => {
+listen(field, "pointercancel", e => { middle = null; take_back(e.pointerId); });
+listen(field, "lostpointercapture", e => { middle = null; up(e.pointerId, true); });
+listen(field, "pointerleave", () => set_hot(-1));
+listen(field, "contextmenu", e => e.preventDefault());
+listen(field, "wheel", e => {
   e.preventDefault();
   if (state.drawing) return;
   const r = field.getBoundingClientRect();
@@ -280,13 +280,13 @@ function set_hot(i) {
 
 // Keys within the canvas: Enter touches and lifts, arrows move.
 let key = null;
-field.addEventListener("keydown", e => {
+listen(field, "keydown", e => {
   if (!array || state.placing || e.ctrlKey || e.metaKey || e.altKey) return;
   if (e.key === "Enter") {
     e.preventDefault();
     if (key) { key = null; up("key"); return; }
     key = array.box.middle.slice();
-    down("key", to_px(key), {pointerType: "key", timeStamp: performance.now()});
+    down("key", to_px(key), {pointerType: "key", timeStamp: now_ms()});
     return;
   }
   const step = {ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1]}[e.key];
@@ -295,6 +295,6 @@ field.addEventListener("keydown", e => {
   const mm = Math.max(...array.box.size, 10) / (e.shiftKey ? 100 : 25);
   if (!key) return;
   key = [key[0] + step[0] * mm, key[1] + step[1] * mm];
-  moved("key", to_px(key), {pointerType: "key", timeStamp: performance.now()});
+  moved("key", to_px(key), {pointerType: "key", timeStamp: now_ms()});
 });
-field.addEventListener("blur", () => { if (key) { key = null; up("key"); } });
+listen(field, "blur", () => { if (key) { key = null; up("key"); } });

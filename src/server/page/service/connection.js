@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The WebSocket to the service: calls, answers, and what comes by itself.
-import {state, changed} from "../state.js";
+import {state, changed, now_ms} from "../state.js";
 
 export const SLOW_MS = 300; // without an answer
 const POLL_MS = 500;
@@ -10,7 +10,7 @@ const CODE_TOKEN = -32003;
 let socket = null, last = 0, retry_ms = 500, retry_timer = 0, token = null, name = "";
 const calls = new Map();
 const hearers = {}, losers = [];
-let offset_s = 0, best_trip_s = Infinity; // of the server's monotonic clock against performance.now()
+let offset_s = 0, best_trip_s = Infinity; // of the server's monotonic clock against now_ms()
 
 export const is_connected = () => state.link === "connected";
 // Handles notifications of a method.
@@ -19,7 +19,7 @@ export function on_notification(method, f) { hearers[method] = f; }
 export function on_lost(f) { losers.push(f); }
 let greet = () => {};
 export function on_hello(f) { greet = f; }
-export const server_now_s = () => performance.now() / 1000 + offset_s;
+export const server_now_s = () => now_ms() / 1000 + offset_s;
 export const from_server_ms = s => (s - offset_s) * 1000;
 
 class Fault extends Error {
@@ -35,7 +35,7 @@ export function call(method, params = {}) {
   return new Promise((done, failed) => {
     if (socket?.readyState !== WebSocket.OPEN) return failed(new Fault({code: 0, message: "there is no connection to tactor"}));
     const id = ++last;
-    calls.set(id, {done, failed, at: performance.now(), method});
+    calls.set(id, {done, failed, at: now_ms(), method});
     socket.send(JSON.stringify({jsonrpc: "2.0", id, method, params}));
   });
 }
@@ -118,7 +118,7 @@ function lost(reason) {
   if (state.link !== "token" || !state.asks_token) {
     state.link = "lost";
     state.lost_reason = reason;
-    state.retry_at = performance.now() + retry_ms;
+    state.retry_at = now_ms() + retry_ms;
     retry_timer = setTimeout(() => connect(), retry_ms);
     retry_ms = Math.min(LONGEST_RETRY_MS, retry_ms * 2);
   }
@@ -151,7 +151,7 @@ setInterval(() => {
 }, POLL_MS);
 // No answer for a while is told while it lasts.
 setInterval(() => {
-  const now = performance.now();
+  const now = now_ms();
   const slow = [...calls.values()].some(c => (c.method === "status" || c.method === "stop") && now - c.at > SLOW_MS);
   if (slow !== state.slow) { state.slow = slow; changed("link"); }
   if (state.link === "lost") changed("link");

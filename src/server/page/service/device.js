@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // State of the service: one word and one reason each, a banner where something is to be done.
-import {state, on_change, changed, ceiling_dbfs, is_simulated, say, remember, remembered} from "../state.js";
-import {by_id, make, on_click} from "../../../net/page/dom.js";
+import {state, on_change, changed, ceiling_dbfs, is_simulated, plays_to_nobody, say, remember, remembered, now_ms} from "../state.js";
+import {by_id, make, on_click, listen, set_text} from "../../../net/page/dom.js";
 import {icon} from "../look.js";
 import {connect_with, connect, rename_client} from "./connection.js";
 import {test_tactor, unanswered_s} from "./player.js";
@@ -15,18 +15,18 @@ function describe() {
   if (state.link === "connecting") return ["waiting", "Connecting", "off", ""];
   if (state.link === "token") return ["barred", "Locked", "warn", "a token is needed"];
   if (state.link === "lost") return ["broken", "No connection", "bad",
-    `again in ${Math.max(0, Math.ceil((state.retry_at - performance.now()) / 1000))} s`];
+    `again in ${Math.max(0, Math.ceil((state.retry_at - now_ms()) / 1000))} s`];
   if (state.slow) return ["waiting", "No answer", "warn", "waiting for tactor"];
   if (is_simulated()) return ["barred", "Simulated", "off", "no card"];
   if (s.state === "lost") return ["broken", "Card lost", "bad", "it is looked for"];
   if (s.state === "muted") return ["muted", "Muted", "warn", s.reason];
   if (s.state === "closing") return ["stop", "Closing", "warn", "tactor ends"];
-  if (state.stopped && performance.now() - state.stopped.at < STOPPED_MS) return ["stop", "Stopped", "off",
+  if (state.stopped && now_ms() - state.stopped.at < STOPPED_MS) return ["stop", "Stopped", "off",
     `by ${state.stopped.name}`];
   const other = state.status?.strokes.find(k => k.state === "started" && k.client !== state.hello?.client);
   if (other) return ["people", "Someone is playing", "info", who(other.client)];
-  return s.state === "idle" ? ["ready", "Ready", "ok", state.hello?.stream.pcm ?? ""] : ["running", "Running", "ok",
-    state.hello?.stream.pcm ?? ""];
+  const why = plays_to_nobody() ? "no array connected" : state.hello?.stream.pcm ?? "";
+  return s.state === "idle" ? ["ready", "Ready", "ok", why] : ["running", "Running", "ok", why];
 }
 const who = client => { const w = state.status?.who?.find(x => x.client === client); return w ? w.name ? `“${w.name}”` : w.from : ""; };
 
@@ -55,11 +55,11 @@ function show_device() {
   if (text !== said.chip) {
     said.chip = text;
     by_id("device-icon").replaceChildren(icon(picture));
-    if (by_id("state").textContent !== word) by_id("state").textContent = word;
-    by_id("state-why").textContent = why ? ` · ${why}` : "";
+    if (by_id("state").textContent !== word) set_text("state", word);
+    set_text("state-why", why ? ` · ${why}` : "");
     by_id("device").dataset.tone = tone;
   }
-  by_id("array-name").textContent = state.hello ? array_name(state.hello.array) : "tactor";
+  set_text("array-name", state.hello ? array_name(state.hello.array) : "tactor");
   const others = Math.max(0, (state.status?.who?.length ?? state.status?.clients ?? 1) - 1);
   by_id("others").hidden = others === 0;
   by_id("others-text").replaceChildren(String(others), make("i", {}, others === 1 ? " other" : " others"));
@@ -72,8 +72,8 @@ function show_device() {
   if (b && closed !== key && key !== said.banner) {
     by_id("banner").dataset.tone = b[1];
     by_id("banner-icon").replaceChildren(icon("warn"));
-    by_id("banner-text").textContent = b[0];
-    by_id("banner-details").textContent = b[2];
+    set_text("banner-text", b[0]);
+    set_text("banner-details", b[2]);
     by_id("banner-more").hidden = !b[2];
     by_id("token").hidden = state.link !== "token";
   }
@@ -86,12 +86,12 @@ on_click("banner-more", () => {
   d.hidden = !d.hidden;
   by_id("banner-more").setAttribute("aria-expanded", !d.hidden);
 });
-by_id("token").addEventListener("submit", e => { e.preventDefault(); connect_with(by_id("token-text").value.trim());
+listen("token", "submit", e => { e.preventDefault(); connect_with(by_id("token-text").value.trim());
   by_id("token-text").value = ""; });
 addEventListener("hashchange", () => { if (state.link !== "connected") connect(); });
 
 const fact = (name, v) => v === null || v === undefined || v === "" ? [] : [make("dt", {}, name), make("dd", {}, String(v))];
-by_id("p-device").addEventListener("toggle", show_facts);
+listen("p-device", "toggle", show_facts);
 function show_facts() {
   const h = state.hello, s = state.status;
   by_id("facts").replaceChildren(...!h ? fact("State", "no connection") : [
@@ -111,13 +111,13 @@ on_change(what => {
     {class: "button outlined", "aria-label": `Try tactor ${t.tactor ?? i}`, onclick: () => test_tactor(i)},
     String(t.tactor ?? i))));
 });
-by_id("p-others").addEventListener("toggle", () => {
+listen("p-others", "toggle", () => {
   by_id("people").replaceChildren(...(state.status?.who ?? []).map(w => make("li", {},
     make("b", {}, w.client === state.hello?.client ? `${w.name || "You"} (this page)` : w.name ? `“${w.name}”` : "no name"),
     make("small", {}, `${w.from}${state.status.strokes.some(k => k.client === w.client && k.state === "started") ? ", playing" : ", silent"}`))));
 });
-by_id("own-name").addEventListener("submit", e => e.preventDefault());
-by_id("own-name-text").addEventListener("change", () => {
+listen("own-name", "submit", e => e.preventDefault());
+listen("own-name-text", "change", () => {
   remember("name", by_id("own-name-text").value.trim());
   rename_client(own_name()).catch(e => say(e.message));
 });
@@ -126,7 +126,7 @@ export const own_name = () => remembered("name") || (matchMedia("(pointer: coars
 export function show_tactor(i, at) {
   const t = state.hello?.array.tactors[i];
   if (!t) return;
-  by_id("tactor-title").textContent = `Tactor ${t.tactor ?? i}`;
+  set_text("tactor-title", `Tactor ${t.tactor ?? i}`);
   by_id("tactor-facts").replaceChildren(...fact("Place", `${t.x_mm}, ${t.y_mm} mm`), ...fact("Channel", t.channel),
     ...fact("Gain", t.gain_db === undefined ? null : `${number_text(t.gain_db)} dB`),
     ...fact("Limit", `${number_text(t.max_dbfs ?? 0)} dBFS`), ...fact("Threshold", typeof t.threshold_dbfs === "number"

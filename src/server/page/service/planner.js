@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Plans for the picture: one question at a time, always about what is newest.
-import {state, ceiling_dbfs, changed, on_change, current_take, say} from "../state.js";
+import {state, ceiling_dbfs, changed, on_change, current_take, say, now_ms} from "../state.js";
 import {call, is_connected} from "./connection.js";
 import {make_request, put_take, take_s, with_side} from "../takes/takes.js";
 import {number_text} from "../words.js";
@@ -44,7 +44,7 @@ async function ask() {
     return changed("plan");
   }
   busy = true;
-  const began = performance.now();
+  const began = now_ms();
   const take = current_take(), was_drawing = state.drawing !== null;
   try {
     const c = state.compare, on = c?.on, plan = await predict(what, {draft: ++draft});
@@ -57,7 +57,7 @@ async function ask() {
   }
   changed("plan");
   // A long drawing is planned less often: its picture must not hold the hand up.
-  if (was_drawing) await new Promise(done => setTimeout(done, Math.min(2000, 2 * (performance.now() - began) - 20)));
+  if (was_drawing) await new Promise(done => setTimeout(done, Math.min(2000, 2 * (now_ms() - began) - 20)));
   busy = false;
   if (owed) return ask();
   if (!was_drawing) compare_timer = setTimeout(compare, COMPARED_MS);

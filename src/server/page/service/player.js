@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Plays takes, tests tactors, stops; and says where the moment is.
-import {state, changed, on_change, current_take, take_by_id, is_simulated, ceiling_dbfs, take_gain, marks, say} from "../state.js";
+import {state, changed, on_change, current_take, take_by_id, is_simulated, plays_to_nobody, ceiling_dbfs, take_gain, marks, say, now_ms} from "../state.js";
 import {call, tell, is_connected, server_now_s, from_server_ms, on_notification, on_lost, SLOW_MS} from "./connection.js";
 import {make_request, take_s, take_part, with_side} from "../takes/takes.js";
 import {weaken_take} from "./planner.js";
@@ -36,7 +36,7 @@ export async function play(part = part_to_play()) {
   silence_speaker();
   const felt = is_connected() && !["lost", "muted", "closing"].includes(state.stream.state);
   state.stopped = null;
-  state.playing = {take: take.id, began_ms: performance.now(), numbers: new Set(), felt, waits: felt, again: part_to_play(), ...round};
+  state.playing = {take: take.id, began_ms: now_ms(), numbers: new Set(), felt, waits: felt, again: part_to_play(), ...round};
   state.at_s = round.from_s;
   if (felt) await ask_to_play();
   else await play_unfelt(take, state.playing);
@@ -48,7 +48,7 @@ async function play_unfelt(take, own) {
   own.waits = true;
   while (is_connected() && state.playing === own && is_shown(own) && state.plan_of?.id !== take.id)
     await new Promise(done => setTimeout(done, 10));
-  Object.assign(own, {began_ms: performance.now(), total_s: Math.min(own.until_s, state.plan?.total_s ?? take_s(take)) - own.from_s, waits: false});
+  Object.assign(own, {began_ms: now_ms(), total_s: Math.min(own.until_s, state.plan?.total_s ?? take_s(take)) - own.from_s, waits: false});
   if (state.playing !== own) return;
   if (is_shown(own)) hear_it(); else end_playing();
 }
@@ -70,6 +70,7 @@ export function tell_level(anew = false) {
 on_change(() => tell_level());
 on_lost(() => { told = null; });
 
+let told_silent = false;
 async function ask_to_play() {
   const own = state.playing, take = take_by_id(own.take);
   try {
@@ -77,11 +78,13 @@ async function ask_to_play() {
     // Without a start the service leaves out the silence before the first stroke.
     const strokes = await ask_for(own, own, state.compare ? {monotonic_s: server_now_s() + TOGETHER_S} : own.lead_s ? {delay_s: 0} : "now");
     if (state.playing !== own) return cancel_strokes(strokes);
-    own.began_ms = performance.now();
+    own.began_ms = now_ms();
     own.numbers = new Set(strokes.filter(n => !ended.has(n)));
     ended.clear();
     tell_level(state.compare);
     hear_starts(strokes);
+    if (plays_to_nobody() && !state.speaker && !told_silent) say("No array is connected, so nobody feels it. Listen makes it heard here.");
+    told_silent = true;
   } catch (e) {
     if (state.playing !== own) return;
     // Strokes of several fingers add up: the take is played as strong as it may be.
@@ -118,7 +121,7 @@ const is_shown = p => p.take === state.current;
 export function tick() {
   const p = state.playing;
   if (!p) return;
-  const t = (performance.now() - p.began_ms) / 1000;
+  const t = (now_ms() - p.began_ms) / 1000;
   if (is_shown(p)) state.at_s = p.from_s + Math.max(0, Math.min(p.waits ? p.lead_s : p.total_s, t));
   if (state.loop && p.felt && !p.waits && !p.next && t > p.total_s - (state.compare ? COMPARED_AHEAD_S : AHEAD_S)) next_round(p);
   if (t < p.total_s || p.waits) return;
@@ -147,7 +150,7 @@ async function next_round(p) {
   const round = round_after(p);
   if (!round) return;
   p.next = true;
-  const at = Math.max(server_now_s() + 0.05, server_now_s() + p.total_s - (performance.now() - p.began_ms) / 1000);
+  const at = Math.max(server_now_s() + 0.05, server_now_s() + p.total_s - (now_ms() - p.began_ms) / 1000);
   try {
     const strokes = await ask_for(p, round, {monotonic_s: at});
     if (state.playing !== p) return cancel_strokes(strokes);
@@ -197,7 +200,7 @@ function end_playing() {
 on_lost(() => { if (state.playing?.felt) end_playing(); });
 on_notification("stops", s => {
   const own = s.client === state.hello?.client;
-  state.stopped = {name: own ? "you" : s.client === 0 ? "the owner" : s.name ? `“${s.name}”` : "somebody", at: performance.now()};
+  state.stopped = {name: own ? "you" : s.client === 0 ? "the owner" : s.name ? `“${s.name}”` : "somebody", at: now_ms()};
   say(own ? "Stopped, everybody's strokes" : `Stopped by ${state.stopped.name}`);
   changed("link", "playing");
 });
@@ -205,13 +208,13 @@ on_notification("stops", s => {
 on_notification("levels", l => { if (!is_simulated()) state.dbfs = l.dbfs; if (document.hidden) tick(); });
 on_notification("stream", s => { state.stream = s; changed("stream", "link"); });
 on_notification("touches", t => {
-  if (t.down) state.touches.set(t.stroke, {...t, at: performance.now()}); else state.touches.delete(t.stroke);
+  if (t.down) state.touches.set(t.stroke, {...t, at: now_ms()}); else state.touches.delete(t.stroke);
 });
 
 // Sends a stop before anything else is done: nothing of this page's own may keep it back. It is sent again until it is answered.
 export function stop() {
-  const sent = call("stop"), own = state.stopping ??= {since_ms: performance.now()};
-  own.sent_ms = performance.now();
+  const sent = call("stop"), own = state.stopping ??= {since_ms: now_ms()};
+  own.sent_ms = now_ms();
   sent.then(() => {
     if (state.stopping !== own) return;
     state.stopping = null;
@@ -221,13 +224,13 @@ export function stop() {
   lift_fingers?.();
   return sent;
 }
-const is_unanswered = s => performance.now() - s.since_ms > SLOW_MS;
+const is_unanswered = s => now_ms() - s.since_ms > SLOW_MS;
 // Returns for how long a stop has not been answered, s; 0 where there is none, or it is young.
 export const unanswered_s = () => state.stopping && is_unanswered(state.stopping)
-  ? (performance.now() - state.stopping.since_ms) / 1000 : 0;
+  ? (now_ms() - state.stopping.since_ms) / 1000 : 0;
 setInterval(() => {
   if (!unanswered_s()) return;
-  if (is_connected() && performance.now() - state.stopping.sent_ms > STOP_AGAIN_MS) stop();
+  if (is_connected() && now_ms() - state.stopping.sent_ms > STOP_AGAIN_MS) stop();
   changed("link");
 }, 100);
 let lift_fingers = null;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // A page without a card plays by itself: each tactor is a sound at its place.
 import {state, changed, on_change, is_simulated, ceiling_dbfs, take_gain} from "../state.js";
-import {by_id, on_click} from "../../../net/page/dom.js";
+import {by_id, on_click, set_text} from "../../../net/page/dom.js";
 import {icon} from "../look.js";
 import {array} from "../drawing/view.js";
 import {play, silence_speaker} from "./player.js";
@@ -20,11 +20,11 @@ on_change(() => {
     silence_speaker();
     document.body.toggleAttribute("data-simulated", simulated);
     by_id("feel").firstChild.replaceWith(icon(simulated ? "speaker" : "feel"));
-    by_id("hint-example").textContent = simulated ? "Hear where it moves" : "Play an example";
+    set_text("hint-example", simulated ? "Hear where it moves" : "Play an example");
   }
   const on = simulated ? state.speaker : state.feel;
   by_id("feel").setAttribute("aria-checked", on);
-  by_id("feel-text").textContent = `${simulated ? "Hear" : "Feel"} ${on ? "on" : "off"}`;
+  set_text("feel-text", `${simulated ? "Hear" : "Feel"} ${on ? "on" : "off"}`);
   const hint = by_id("hint");
   hint.hidden = state.takes.length || state.trial || state.drawing || !by_id("banner").hidden;
   if (hinted === hint.hidden && !state.drawing) { hinted = !hint.hidden; changed("layout"); } // the canvas never moves under a finger

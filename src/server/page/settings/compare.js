@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Comparison of two methods on one stroke: side 0 is the take as it is, side 1 has other options. Both loop in step, and one is silent.
 import {state, changed, on_change, current_take, say} from "../state.js";
-import {by_id, on_click, show_pressed} from "../../../net/page/dom.js";
+import {by_id, on_click, show_pressed, all_of, listen, set_text} from "../../../net/page/dom.js";
 import {row, value} from "./values.js";
 import {with_side} from "../takes/takes.js";
 import {play, quit_playing, tell_level, hear_it} from "../service/player.js";
@@ -19,7 +19,7 @@ export function toggle_compare() {
   state.compare = {take: state.current, on: 0, order: [0, 1], blind: false, heard: new Set(), answers: [], rest: null, looped: state.loop,
     other: value("algorithm") === "park2016" ? {algorithm: "tactile-brush", snap: true} : {algorithm: "park2016"}};
   state.loop = true;
-  document.body.dataset.sheetOpen = "";
+  delete document.body.dataset.sheetOpen;
   changed("take", "layout");
   play();
 }
@@ -72,9 +72,9 @@ function side_name(side) {
 const side_facts = e => !e ? "not possible"
   : `${number_text(e.rms_error_mm)} mm off${e.speed_cv ? ` · ${Math.round(100 / (1 + e.speed_cv))} % even` : ""}`;
 
-const side_cards = document.querySelectorAll(".side"), votes = by_id("votes");
-side_cards.forEach((b, card) => b.addEventListener("click", () => choose_side(card)));
-votes.childNodes.forEach((b, card) => b.addEventListener("click", () => {
+const side_cards = all_of(".side"), votes = by_id("votes");
+side_cards.forEach((b, card) => listen(b, "click", () => choose_side(card)));
+votes.childNodes.forEach((b, card) => listen(b, "click", () => {
   state.compare.answers.push(state.compare.order[card]);
   ask_again();
 }));
@@ -94,6 +94,6 @@ on_change(() => {
   votes.hidden = !blind;
   votes.childNodes.forEach(b => { b.disabled = c.heard.size < 2; });
   by_id("study-open").hidden = blind;
-  by_id("blind").textContent = blind ? "Reveal" : "Blind";
-  by_id("tally").textContent = tally_text(c);
+  set_text("blind", blind ? "Reveal" : "Blind");
+  set_text("tally", tally_text(c));
 });

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Controls that stand for a value: each has an element, and an update that shows the value again.
-import {make} from "../../../net/page/dom.js";
+import {make, listen} from "../../../net/page/dom.js";
 import {icon} from "../look.js";
 
 let last_id = 0;
@@ -16,8 +16,8 @@ export function slider({label, get, set, least, most, text, done, step = 0, log 
   };
   const input = make("input", {id, type: "range", min: 0, max: 1000, step: step && !log ? 1000 * step / (most - least) : 1,
     "aria-describedby": described});
-  input.addEventListener("input", () => { set(from(Number(input.value))); update(); });
-  input.addEventListener("change", () => done?.());
+  listen(input, "input", () => { set(from(Number(input.value))); update(); });
+  listen(input, "change", () => done?.());
   function update() {
     const v = get(), p = Math.min(1000, Math.max(0, to(v)));
     if (document.activeElement !== input || Math.abs(Number(input.value) - p) > 2) input.value = p;
@@ -35,7 +35,7 @@ export function choice({label, get, set, values, shape = "segments", visible_lab
   const buttons = values.map(v => make("button", {role: "radio", "data-value": v.value,
     onclick: () => pick(v.value)}, ...v.content ?? [v.name]));
   const group = make("div", {role: "radiogroup", "aria-label": label, class: shape}, ...buttons);
-  group.addEventListener("keydown", e => {
+  listen(group, "keydown", e => {
     const step = {ArrowRight: 1, ArrowDown: 1, ArrowLeft: -1, ArrowUp: -1}[e.key];
     if (!step) return;
     e.preventDefault();
@@ -71,7 +71,7 @@ export function toggle({label, hint, get, set}) {
 export function entry({label, get, set, hint, unit, numeric}) {
   const id = ids(), input = make("input", {id, type: "text", inputmode: numeric ? "decimal" : null, autocomplete: "off",
     spellcheck: "false", placeholder: hint});
-  input.addEventListener("change", () => {
+  listen(input, "change", () => {
     const text = input.value.trim();
     if (text === "") return set(null);
     const v = numeric ? Number(text.replace(",", ".").replace("−", "-")) : text;

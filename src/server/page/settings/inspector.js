@@ -2,7 +2,7 @@
 // Settings of the take. Options come from the service's table: those with a control of their own are named in OWN, all
 // others are made from their rows.
 import {state, changed, on_change, current_take, current_stroke} from "../state.js";
-import {by_id, make} from "../../../net/page/dom.js";
+import {by_id, make, all_of, listen} from "../../../net/page/dom.js";
 import {icon} from "../look.js";
 import {slider, choice, toggle, entry, button} from "./controls.js";
 import {set_option, end_edit, edit_stroke, edit_take, put_stroke} from "../takes/takes.js";
@@ -217,15 +217,15 @@ function build() {
   controls = section.filter(Boolean);
   by_id("pane").replaceChildren(...controls.map(c => c.element));
   by_id("pane").setAttribute("aria-labelledby", `tab-${state.tab}`);
-  for (const b of document.querySelectorAll("[data-tab]")) {
+  for (const b of all_of("[data-tab]")) {
     b.setAttribute("aria-selected", b.dataset.tab === state.tab);
     b.tabIndex = b.dataset.tab === state.tab ? 0 : -1;
   }
 }
-for (const b of document.querySelectorAll("[data-tab]")) b.addEventListener("click",
+for (const b of all_of("[data-tab]")) listen(b, "click",
   () => { state.tab = b.dataset.tab; changed("tab"); });
-by_id("tabs").addEventListener("keydown", e => {
-  const all = [...document.querySelectorAll("[data-tab]")], step = {ArrowLeft: -1, ArrowRight: 1}[e.key];
+listen("tabs", "keydown", e => {
+  const all = [...all_of("[data-tab]")], step = {ArrowLeft: -1, ArrowRight: 1}[e.key];
   if (!step) return;
   e.preventDefault();
   const next = all[(all.indexOf(document.activeElement) + step + all.length) % all.length];

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Keys, wherever the focus is.
 import {state, changed} from "../state.js";
-import {by_id, make, show_pressed} from "../../../net/page/dom.js";
+import {by_id, make, show_pressed, all_of} from "../../../net/page/dom.js";
 import {play, stop} from "../service/player.js";
 import {undo, redo, choose_take} from "../takes/takes.js";
 import {look_at_all, zoom} from "../drawing/view.js";
@@ -50,8 +50,8 @@ function leave(e) {
 export function open_sheet(name) {
   if (state.drawing) return; // the canvas never changes under a finger
   if (name) state.sheet = name;
-  document.body.dataset.sheetOpen = name;
-  for (const b of document.querySelectorAll("button[data-sheet]")) show_pressed(b, b.dataset.sheet === (name || "inspector"));
+  if (name) document.body.dataset.sheetOpen = name; else delete document.body.dataset.sheetOpen;
+  for (const b of all_of("button[data-sheet]")) show_pressed(b, b.dataset.sheet === (name || "inspector"));
   by_id("settings").setAttribute("aria-expanded", name !== "");
   changed("layout");
 }
@@ -60,8 +60,7 @@ export function fold_time() {
   const body = document.body.dataset;
   if (by_id("settings").checkVisibility()) return open_sheet(body.sheetOpen === "time" ? "" : "time");
   if (state.drawing) return;
-  body.timeOpen = body.timeOpen !== "true";
-  by_id("time-fold").setAttribute("aria-expanded", body.timeOpen);
+  by_id("time-fold").setAttribute("aria-expanded", document.body.toggleAttribute("data-time-open"));
   changed("layout");
 }
 export function choose_tool(tool) {

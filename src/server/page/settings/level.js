@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The level, and on the same scale the loudest tactor: both end at the owner's ceiling. What sounds follows.
 import {state, changed, on_change, ceiling_dbfs} from "../state.js";
-import {by_id, make} from "../../../net/page/dom.js";
+import {by_id, make, listen, set_text} from "../../../net/page/dom.js";
 import {slider} from "./controls.js";
 import {LEAST_LEVEL_DB} from "../service/planner.js";
 import {number_text} from "../words.js";
@@ -15,9 +15,9 @@ const level = slider({label: "Level", least: LEAST_LEVEL_DB, most: 0, step: 0.5,
     changed("level");
   },
   text: v => [`${Math.round(100 * 10 ** (v / 20))} %`, v === 0 ? "0 dB" : `${number_text(v)} dB`]});
-level.input.addEventListener("pointerdown", () => { tapped = true; });
+listen(level.input, "pointerdown", () => { tapped = true; });
 // The browser tells what a finger has tapped after it is up.
-for (const end of ["click", "keydown"]) level.input.addEventListener(end, () => { tapped = false; });
+for (const end of ["click", "keydown"]) listen(level.input, end, () => { tapped = false; });
 const bar = make("i"), meter = make("div", {class: "meter", "aria-hidden": "true"}, bar);
 level.element.append(meter);
 by_id("level").prepend(level.element);
@@ -30,12 +30,12 @@ export function draw_meter() {
   const text = at < 0 ? "quiet" : `loudest: tactor ${state.hello.array.tactors[at].tactor ?? at}, ${Math.round(100 * 10 ** (below_db / 20))} %`;
   if (text === metered) return;
   metered = text;
-  by_id("loudest").textContent = text;
+  set_text("loudest", text);
   bar.style.width = `${100 * (1 - below_db / LEAST_LEVEL_DB)}%`;
 }
 
 on_change(what => {
   if (!what.has("level") && !what.has("array")) return;
   level.update();
-  by_id("ceiling").textContent = `ceiling ${number_text(ceiling_dbfs(), 0)} dBFS`;
+  set_text("ceiling", `ceiling ${number_text(ceiling_dbfs(), 0)} dBFS`);
 });

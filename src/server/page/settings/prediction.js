@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Prediction of what is felt, and faults of the take in plain words, with what mends them.
 import {state, changed, on_change, current_take, current_stroke, say} from "../state.js";
-import {by_id, make} from "../../../net/page/dom.js";
+import {by_id, make, set_text} from "../../../net/page/dom.js";
 import {icon} from "../look.js";
 import {set_option, edit_take, fit_take} from "../takes/takes.js";
 import {excess_db, weaken_take} from "../service/planner.js";
@@ -25,7 +25,7 @@ function show_predicted() {
     : [make("p", {class: "hint-text"}, state.plan_fault ? "There is no plan." : "Draw, and the prediction shows here.")];
   box.replaceChildren(...numbers);
   by_id("pill").hidden = typeof e?.rms_error_mm !== "number";
-  by_id("pill-text").textContent = e && typeof e.rms_error_mm === "number" ? `${number_text(e.rms_error_mm)} mm off` : "";
+  set_text("pill-text", e && typeof e.rms_error_mm === "number" ? `${number_text(e.rms_error_mm)} mm off` : "");
 }
 const tile = (figure, unit, word, picture) => make("div", {class: "tile"}, make("div", {}, make("b", {}, figure),
   make("small", {}, unit)), make("p", {}, word[0], make("i", {}, word[1] ?? "")), picture);

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: MIT
 // Files that come in, and files that go out: read and written by the service, so that they are the tool's.
 import {state, changed, current_take, say} from "../state.js";
-import {by_id, make, show_only_if, on_click} from "../../../net/page/dom.js";
+import {by_id, make, show_only_if, on_click, all_of, listen, set_text} from "../../../net/page/dom.js";
 import {call, is_connected, page_link} from "../service/connection.js";
 import {add_take, make_request, imported_strokes} from "./takes.js";
 import {strokes_toml, stroke_csv} from "./stroke.js";
 import {is_own_host} from "./address.js";
-import {make_qr} from "./qr.js";
 
 const MOST_BYTES = 700 << 10; // a message is at most 1 MiB
 const SHORT_HINT = 80;        // characters
@@ -50,7 +49,7 @@ function fault_text({message, data}) {
   return data.hint?.length < SHORT_HINT ? `${why} (${data.hint})` : why;
 }
 on_click("open", () => by_id("file").click());
-by_id("file").addEventListener("change", () => { open_files([...by_id("file").files]); by_id("file").value = ""; });
+listen("file", "change", () => { open_files([...by_id("file").files]); by_id("file").value = ""; });
 let over = 0;
 addEventListener("dragenter", e => { if (e.dataTransfer?.types.includes("Files")) { ++over; by_id("drop").hidden = false; } });
 addEventListener("dragleave", () => { over = Math.max(0, over - 1); if (!over) by_id("drop").hidden = true; });
@@ -85,7 +84,7 @@ async function save_as(kind) {
     else if (kind === "csv" && take.strokes.length === 1) give(`${file_name(take)}.csv`,
       new Blob([stroke_csv(take.strokes[0])], {type: "text/csv"}));
     else throw new Error("without a connection only a stroke, as TOML or CSV, can be saved");
-    say(`Saved “${take.name}”`);
+    say(`Saved “${take.name}” as ${file_name(take)}.${kind}`);
   } catch (e) { say(e.message); }
 }
 // A browser may ask first whether the page may give several files.
@@ -97,14 +96,17 @@ on_click("save-all", () => {
 by_id("save-list").replaceChildren(...KINDS.map(([kind, name, why]) => make("button",
   {class: "save-item", "data-kind": kind, onclick: () => save_as(kind)}, make("b", {}, name),
   make("small", {}, why), make("span", {}, `.${kind}`))));
-by_id("p-save").addEventListener("toggle", async e => {
+listen("p-save", "toggle", async e => {
   if (e.newState !== "open") return;
   const take = current_take();
   show_only_if(document.querySelector("#save-list [data-kind=csv]"), !(take?.strokes.length > 1));
-  by_id("command").textContent = take?.strokes.length ? "…" : "There is nothing to save yet.";
-  if (!take?.strokes.length) return;
-  try { by_id("command").textContent = (await call("export", {...make_request(take), as: "toml",
-    name: file_name(take)})).command; } catch (x) { by_id("command").textContent = x.message; }
+  const show = (render, play = render) => { set_text("command", render); set_text("play-line", play); };
+  if (!take?.strokes.length) return show("There is nothing to save yet.");
+  show("…");
+  try {
+    const {command} = await call("export", {...make_request(take), as: "toml", name: file_name(take)});
+    show(command, command.replace(/^(tactor) render (.*) -o .*/, "$1 play $2"));
+  } catch (x) { show(x.message); }
 });
 async function copy(id) {
   try { await navigator.clipboard.writeText(by_id(id).textContent); say("Copied"); } catch {
@@ -112,22 +114,20 @@ async function copy(id) {
     say("Marked; copy it with Ctrl C");
   }
 }
-on_click("copy-command", () => copy("command"));
-on_click("copy-link", () => copy("link"));
+all_of("[data-copy]").forEach(b => listen(b, "click", () => copy(b.dataset.copy)));
 
 // A link, with the token, for a phone beside the array: its code is shown where a phone can open it.
-by_id("p-share").addEventListener("toggle", e => {
+listen("p-share", "toggle", async e => {
   if (e.newState !== "open") return;
   const own = is_own_host(location.hostname);
   show_only_if(by_id("qr"), !own);
-  by_id("link").textContent = own ? `tactor serve --http 0.0.0.0:${location.port} --config FILE` : page_link();
-  by_id("share-text").textContent = own ? "Only this computer opens this address. For a phone, start the service so, with a token_file under [serve] in FILE."
-    : page_link().includes("#token=") ? "The link has the token: who has it can draw." : "Open it on a phone in the same network.";
+  set_text("link", own ? `tactor serve --http 0.0.0.0:${location.port} --config FILE` : page_link());
+  set_text("share-text", own ? "Only this computer opens this address. For a phone, start the service so, with a token_file under [serve] in FILE."
+    : page_link().includes("#token=") ? "The link has the token: who has it can draw." : "Open it on a phone in the same network.");
+  if (own) return;
   try {
-    const qr = make_qr(page_link());
-    let d = "";
-    for (let y = 0; y < qr.size; ++y) for (let x = 0; x < qr.size; ++x) if (qr.dark(y, x)) d += `M${x} ${y}h1v1h-1z`;
-    by_id("qr").replaceChildren(make("svg", {viewBox: `0 0 ${qr.size} ${qr.size}`, role: "img",
-      "aria-label": "QR code of the link", "shape-rendering": "crispEdges"}, make("path", {d, fill: "#000"})));
-  } catch { by_id("qr").replaceChildren(make("p", {class: "hint-text"}, "The link is too long for a QR code.")); }
+    const {size, path} = await call("qr", {text: page_link()});
+    by_id("qr").replaceChildren(make("svg", {viewBox: `0 0 ${size} ${size}`, role: "img", "aria-label": "QR code of the link",
+      "shape-rendering": "crispEdges"}, make("path", {d: path, fill: "#000"})));
+  } catch { show_only_if(by_id("qr"), false); }
 });

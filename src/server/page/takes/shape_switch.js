@@ -1,18 +1,23 @@
 // SPDX-License-Identifier: MIT
 // The switch at the bottom of the canvas: the stroke plays as it was drawn, or the curve through its points.
 import {state, on_change, current_stroke} from "../state.js";
-import {by_id, on_click, show_pressed} from "../../../net/page/dom.js";
+import {by_id, on_click, show_pressed, show_only_if, listen, set_text} from "../../../net/page/dom.js";
 import {edit_stroke} from "./takes.js";
-import {shape, as_drawn, as_edited, points_moved} from "./stroke.js";
+import {shape, as_drawn, as_edited, points_moved, fitted_within, FIT_MM} from "./stroke.js";
 
 function show_shape() {
   const s = current_stroke(), now = shape(s), edited = now === "edited" ? s : s?.edited, n = edited ? points_moved(edited) : 0;
-  by_id("shape").hidden = now === null || state.drawing !== null;
+  const points = s && state.tool === "points", fit = s?.fit_mm ?? FIT_MM;
+  by_id("shape").hidden = now === null && !points || state.drawing !== null;
   if (by_id("shape").hidden) return;
+  for (const id of ["shape-ink", "shape-curve"]) show_only_if(by_id(id), now !== null);
+  show_only_if(by_id("shape-fit"), points);
+  by_id("fit-mm").value = fit;
   show_pressed(by_id("shape-ink"), now === "drawn");
   show_pressed(by_id("shape-curve"), now !== "drawn");
-  by_id("shape-curve").textContent = !edited ? "Fitted, within 0.2 mm" : !n ? "Edited" : `Edited, ${n} ${n === 1 ? "point" : "points"}`;
+  set_text("shape-curve", !edited ? points && s.fit_mm ? `${s.knots.length} points, at most ${fit} mm from the ink` : `Fitted, within ${fit} mm` : !n ? "Edited" : `Edited, ${n} ${n === 1 ? "point" : "points"}`);
 }
 on_click("shape-ink", () => { if (shape(current_stroke()) !== "drawn") edit_stroke(as_drawn); });
 on_click("shape-curve", () => { if (shape(current_stroke()) === "drawn") edit_stroke(as_edited); });
-on_change(what => { if (what.has("take") || what.has("drawing")) show_shape(); });
+listen("fit-mm", "input", e => edit_stroke(s => fitted_within(s, +e.target.value), "fit"));
+on_change(what => { if (["take", "drawing", "tool"].some(w => what.has(w))) show_shape(); });

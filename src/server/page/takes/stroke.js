@@ -7,7 +7,7 @@
 // {edited} while it plays as drawn: what it was before.
 
 const SMOOTH_S = 0.012;
-const FIT_MM = 0.2;        // between the curve and the base, both ways
+export const FIT_MM = 0.2; // between the curve and the base, both ways
 const LOOK_MM = 0.25;      // between the places where they are compared
 const LONGEST_MM = 40;     // between two knots
 const STEP_MM = 0.5;
@@ -116,8 +116,8 @@ function catmull_rom(a, b, c, d, part) {
   });
 }
 
-// Finds knots on a base: at its corners, and between them so many that the spline stays within FIT_MM, both ways.
-function find_knots(base) {
+// Finds knots on a base: at its corners, and between them so many that the spline stays within a tolerance, both ways.
+function find_knots(base, fit_mm = FIT_MM) {
   const rows = along(base.map(([t, x, y]) => [x, y, t]));
   const end_s = base.at(-1)[0];
   if (rows.length < 2) return [{x: base[0][1], y: base[0][2], corner: false, at: 0},
@@ -133,7 +133,7 @@ function find_knots(base) {
     knots = knots.flatMap((k, i) => {
       const next = knots[i + 1], key = knots.slice(Math.max(0, i - 1), i + 3).map(q => q.mm).join();
       if (!next || fits.has(key)) return [k];
-      const cut = place_to_cut(rows, knots, i);
+      const cut = place_to_cut(rows, knots, i, fit_mm);
       if (cut === null) { fits.add(key); return [k]; }
       more = true;
       return [k, knot(cut, false)];
@@ -142,14 +142,14 @@ function find_knots(base) {
   return knots.map(({x, y, corner, at}) => ({x, y, corner, at}));
 }
 // Returns where a further knot is wanted between knot i and the next one, mm along the path, or null.
-function place_to_cut(rows, knots, i) {
+function place_to_cut(rows, knots, i, fit_mm) {
   const from = knots[i].mm, to = knots[i + 1].mm, long = to - from;
   if (long > LONGEST_MM) return (from + to) / 2;
   if (long < 2 * LOOK_MM) return null;
   const n = Math.ceil(long / LOOK_MM), curve = along(spline_piece(knots, i)), whole = curve.at(-1)[0];
   const sampled = (table, first, length) => Array.from({length: n + 1}, (_, k) => interpolate(table, first + length * k / n).slice(1, 3));
   const path = sampled(rows, from, long), spline = sampled(curve, 0, whole);
-  let worst = {off: FIT_MM * 0.9, k: 0}; // a part is left for what lies between the samples
+  let worst = {off: fit_mm * 0.9, k: 0}; // a part is left for what lies between the samples
   for (let k = 0; k <= n; ++k) {
     const off = Math.max(from_line_mm(path[k], spline, k), from_line_mm(spline[k], path, k));
     if (off > worst.off) worst = {off, k};
@@ -339,6 +339,9 @@ export function as_drawn(s) {
 }
 // Makes a stroke as it was edited, or, without edits, play the spline through its knots.
 export const as_edited = s => s.edited ? {...s.edited, name: s.name, start_s: s.start_s} : rebuild({...s, knots: s.knots.map(k => ({...k, curve: true}))});
+
+// Fits a curve of as few knots to the base as stay within a tolerance.
+export const fitted_within = (s, fit_mm) => rebuild({...s, fit_mm, knots: find_knots(s.base, fit_mm).map(k => ({...k, curve: true}))});
 
 // Changes knot i; the path is a spline on both sides of it, to its neighbours, and stays as it is elsewhere.
 export const changed_knot = (s, i, change) => rebuild({...s, knots: s.knots.map((k, n) => ({...k,

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The definition of a study of the two methods that are compared, for `tactor experiment`.
 import {state, current_take, current_stroke, level_dbfs} from "../state.js";
-import {by_id} from "../../../net/page/dom.js";
+import {by_id, listen, set_text} from "../../../net/page/dom.js";
 import {with_side, request_options} from "./takes.js";
 import {quoted, strokes_toml} from "./stroke.js";
 import {file_name, give} from "./files.js";
@@ -22,11 +22,11 @@ function definition(name) {
     table("[[run]]", {name: "choice", task: "choose", attribute: "preference", simulate_as: "uniformity", question: question.value,
       trials: Math.round(trials.value) || 20})].join("\n");
 }
-const show_command = () => { by_id("study-command").textContent = `tactor experiment ${study_name()}.toml --participant P01 -o results`; };
-by_id("p-study").addEventListener("beforetoggle", show_command);
-form.addEventListener("input", show_command);
+const show_command = () => { set_text("study-command", `tactor experiment ${study_name()}.toml --participant P01 -o results`); };
+listen("p-study", "beforetoggle", show_command);
+listen(form, "input", show_command);
 // The definition names the file of the stroke, which lies beside it.
-form.addEventListener("submit", e => {
+listen(form, "submit", e => {
   e.preventDefault();
   const name = study_name();
   for (const [file, text] of [[`${name}-stroke`, strokes_toml([current_stroke()])], [name, definition(name)]])

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The list of takes.
 import {state, on_change} from "../state.js";
-import {by_id, make} from "../../../net/page/dom.js";
+import {by_id, make, all_of, listen, set_text} from "../../../net/page/dom.js";
 import {icon, is_dark, colour} from "../look.js";
 import {BIN_DAYS, DAY_MS} from "./keeping.js";
 import {choose_take, rename_take, duplicate_take, delete_take, bring_back, fit_take, take_s} from "./takes.js";
@@ -68,9 +68,9 @@ function rename(take) {
   const li = rows.get(take.id).element, input = make("input", {class: "rename", type: "text", "aria-label": "Name",
     maxlength: 60, ".value": take.name});
   const end = keep => { input.remove(); if (keep) rename_take(take.id, input.value); };
-  input.addEventListener("keydown", e => { if (e.key === "Enter") input.blur();
+  listen(input, "keydown", e => { if (e.key === "Enter") input.blur();
     if (e.key === "Escape") { e.stopPropagation(); input.value = take.name; input.blur(); } });
-  input.addEventListener("blur", () => end(input.value !== take.name), {once: true});
+  listen(input, "blur", () => end(input.value !== take.name), {once: true});
   li.append(input);
   input.focus();
   input.select();
@@ -84,7 +84,7 @@ function show_bin() {
   by_id("bin").hidden = !state.bin.length;
   if (binned.length === state.bin.length && binned.every((t, i) => t === state.bin[i])) return;
   binned = state.bin;
-  by_id("bin-text").textContent = `${binned.length}, kept for ${BIN_DAYS} days`;
+  set_text("bin-text", `${binned.length}, kept for ${BIN_DAYS} days`);
   by_id("binned").replaceChildren(...binned.toSorted((a, b) => b.deleted - a.deleted).map(t => make("li", {}, thumb(t.strokes),
     make("span", {}, make("b", {}, t.name), make("small", {}, `deleted ${when(days(t))}, ${BIN_DAYS - 1 - days(t)} days left`)),
     make("button", {class: "button outlined", onclick: () => bring_back(t.id)}, "Bring back"))));
@@ -107,7 +107,7 @@ function show_takes() {
   rows.get(state.current)?.element.firstChild.setAttribute("aria-current", "true");
   by_id("no-takes").hidden = now.length > 0;
 }
-function draw_thumbs() { for (const c of document.querySelectorAll(".thumb")) c.draw?.(); }
+function draw_thumbs() { for (const c of all_of(".thumb")) c.draw?.(); }
 
 on_change(what => {
   if (what.has("takes") || what.has("take")) show_takes();

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The tour: six steps on a card beside the array, each with something to try.
 import {state, changed, is_simulated} from "../state.js";
-import {by_id, make} from "../../../net/page/dom.js";
+import {by_id, make, listen} from "../../../net/page/dom.js";
 import {array} from "../drawing/view.js";
 import {choose_take} from "./takes.js";
 import {path, resting, at_law, taps, middle_pair, try_entry, ROW} from "./gallery.js";
@@ -34,7 +34,7 @@ function show_step(n) {
   card.lastChild.lastChild.focus();
   if (actions[0][0] === "Again") actions[0][1]();
 }
-card.addEventListener("toggle", () => changed("layout"));
+listen(card, "toggle", () => changed("layout"));
 export function open_tour() {
   gallery.hidePopover();
   card.showPopover();

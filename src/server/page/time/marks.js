@@ -13,7 +13,7 @@ export const clear_marks = () => set_marks({start_s: 0, range: null});
 export function set_range(a, b) { if (Math.abs(b - a) >= LEAST_S) set_marks({range: [a, b].sort((p, q) => p - q)}); }
 
 // Returns a moment, or what it is so near to that it snaps: the start, an end of a stroke but the one that is moved, a burst.
-export const snapped = (l, t, e, moved) => e.altKey ? t : [marks().start_s,
+export const snapped = (l, t, e, moved) => e.altKey || !state.snap ? t : [marks().start_s,
   ...current_take()?.strokes.flatMap((s, i) => i === moved ? [] : [s.start_s, end_s(s)]) ?? [],
   ...moved >= 0 ? [] : state.plan?.onsets ?? []].find(v => Math.abs(to_x(l, v) - to_x(l, t)) <= SNAP_PX) ?? t;
 

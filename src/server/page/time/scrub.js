@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The moment that is dragged is felt: the burst under it, by a live stroke.
-import {state} from "../state.js";
+import {state, now_ms} from "../state.js";
 import {tell} from "../service/connection.js";
 import {look_at} from "../service/player.js";
 import {begin_live, send} from "../drawing/pointer.js";
@@ -14,7 +14,7 @@ export function scrub_to(s, began_ms) {
   const before = state.at_s;
   look_at(s);
   if (!state.scrub || state.at_s === before || state.link !== "connected" || has_stopped(began_ms)) return;
-  moved_ms = performance.now();
+  moved_ms = now_ms();
   timer ||= setInterval(feel_moment, STEP_MS);
 }
 export function end_scrub() {
@@ -24,7 +24,7 @@ export function end_scrub() {
   live = null;
 }
 function feel_moment() {
-  const now = performance.now(), plan = state.plan, t = state.at_s + 1e-4;
+  const now = now_ms(), plan = state.plan, t = state.at_s + 1e-4;
   const row = plan?.onsets.findLastIndex((onset, i) => onset <= t && t < onset + plan.durations[i]) ?? -1;
   if (row < 0 || now - moved_ms > REST_MS || has_stopped(moved_ms)) return end_scrub();
   const is_new = !live;

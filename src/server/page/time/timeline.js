@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Pointers and keys on the timelines: look at a moment, move and trim clips, drag points of speed and strength.
-import {state, changed, current_take, marks, say} from "../state.js";
+import {listen} from "../../../net/page/dom.js";
+import {state, changed, current_take, marks, say, now_ms} from "../state.js";
 import {put_stroke, edit_take, end_edit} from "../takes/takes.js";
 import {trimmed, duration_s, end_s} from "../takes/stroke.js";
 import {look_at} from "../service/player.js";
@@ -21,7 +22,7 @@ function lane_down(l, e) {
   l.canvas.setPointerCapture(e.pointerId);
   touching.set(e.pointerId, x);
   if (touching.size === 2 && !l.mini) { held = {l, kind: "zoom"}; return; }
-  held = {l, kind: "look", key: performance.now(), x};
+  held = {l, kind: "look", key: now_ms(), x};
   if (most_scroll(l) && y > l.top && y < l.bottom && (x < left(l) || x > l.width - 24))
     return void Object.assign(held, {kind: "scroll", y, from: l.scroll, by: x < left(l) ? -1 : most_scroll(l) / (l.bottom - l.top) + 1});
   if (!l.mini && take) {
@@ -48,7 +49,7 @@ function hold_ruler(l, x, e) {
   const end = range?.findIndex(t => is_near(t, e.pointerType === "touch" ? 22 : 8)) ?? -1;
   return {ruler: true, ...!(end < 0 && is_near(state.at_s, 8)) && {kind: "range", fixed: range?.[1 - end] ?? snapped(l, to_time(l, x), e)}};
 }
-function tap_ruler(t, now = performance.now()) {
+function tap_ruler(t, now = now_ms()) {
   if (now - tapped_ms < DOUBLE_MS) return clear_marks();
   tapped_ms = now;
   set_marks({start_s: t});
@@ -98,10 +99,10 @@ function lane_up(e) {
   held = null;
 }
 for (const l of [full, mini]) {
-  l.canvas.addEventListener("pointerdown", e => { if (e.button === 0) lane_down(l, e); });
-  l.canvas.addEventListener("pointermove", lane_moved);
-  for (const end of ["pointerup", "pointercancel"]) l.canvas.addEventListener(end, lane_up);
-  l.canvas.addEventListener("wheel", e => {
+  listen(l.canvas, "pointerdown", e => { if (e.button === 0) lane_down(l, e); });
+  listen(l.canvas, "pointermove", lane_moved);
+  for (const end of ["pointerup", "pointercancel"]) listen(l.canvas, end, lane_up);
+  listen(l.canvas, "wheel", e => {
     if (l.mini) return;
     e.preventDefault();
     const x = e.clientX - l.canvas.getBoundingClientRect().left;
@@ -109,12 +110,12 @@ for (const l of [full, mini]) {
     if (e.deltaX) show_time(full.from + e.deltaX / l.width * shown(l), shown(l));
     scroll_to(l, l.scroll + e.deltaY);
   }, {passive: false});
-  l.canvas.addEventListener("keydown", e => {
+  listen(l.canvas, "keydown", e => {
     const step = {ArrowLeft: -1, ArrowRight: 1}[e.key], rows = {ArrowUp: -1, ArrowDown: 1}[e.key];
     if (rows) { e.preventDefault(); return scroll_to(l, l.scroll + rows * 36); }
     if (!step && !["Home", "End", "Enter"].includes(e.key)) return;
     e.preventDefault();
     if (e.key === "Enter") return e.shiftKey ? set_range(marks().start_s, state.at_s) : set_marks({start_s: state.at_s});
-    scrub_to(e.key === "Home" ? 0 : e.key === "End" ? total() : state.at_s + step * total() / (e.shiftKey ? 500 : 50), performance.now());
+    scrub_to(e.key === "Home" ? 0 : e.key === "End" ? total() : state.at_s + step * total() / (e.shiftKey ? 500 : 50), now_ms());
   });
 }
