@@ -53,8 +53,8 @@ std::vector<stroke> read_points(const json& list, double intensity_max)
     recorded.reserve(list.size());
     for (std::size_t i = 0; i < list.size(); ++i)
         recorded.add(read_point(list[i], i, intensity_max));
-    trajectory motion = trajectory::timed(recorded.take());
-    return {stroke{.name = "points", .motion = std::move(motion), .warnings = recorded.warnings()}};
+    const trajectory motion = trajectory::timed(recorded.take());
+    return {stroke{.name = "points", .motion = motion, .warnings = recorded.warnings()}};
 }
 
 stroke stroke_of_path(const std::string& data, const options::wishes& s)
