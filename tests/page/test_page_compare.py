@@ -160,7 +160,7 @@ class Felt(StudioTest):
         counts = []
         for mm in (0.2, 1, 2):
             p.value(f"(() => {{ const e = document.querySelector('#fit-mm'); e.value = {mm}; e.dispatchEvent(new Event('input')); }})()")
-            p.until(f"document.querySelector('#shape-curve').textContent.endsWith('points, at most {mm} mm from the ink')")
+            p.until(f"document.querySelector('#shape-curve').textContent.endsWith('points, within {mm} mm')")
             counts.append(p.value(f"{TAKE}.strokes[0].knots.length"))
             off = p.value(f"""(() => {{ const {{base, timed}} = {TAKE}.strokes[0], to = (q, rows) => Math.min(...rows.slice(1).map((b, i) => {{
                     const a = rows[i], d = [b[1] - a[1], b[2] - a[2]], part = ((q[1] - a[1]) * d[0] + (q[2] - a[2]) * d[1]) / (d[0] ** 2 + d[1] ** 2 || 1), u = Math.min(1, Math.max(0, part));

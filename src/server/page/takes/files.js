@@ -100,7 +100,9 @@ listen("p-save", "toggle", async e => {
   if (e.newState !== "open") return;
   const take = current_take();
   show_only_if(document.querySelector("#save-list [data-kind=csv]"), !(take?.strokes.length > 1));
-  const show = (render, play = render) => { set_text("command", render); set_text("play-line", play); };
+  // A line is broken between words, not behind their dashes.
+  const show_words = (id, line) => by_id(id).replaceChildren(...line.split(" ").flatMap((w, i) => [i > 0 && " ", make("span", {}, w)]).filter(Boolean));
+  const show = (render, play = render) => { show_words("command", render); show_words("play-line", play); };
   if (!take?.strokes.length) return show("There is nothing to save yet.");
   show("…");
   try {

@@ -11,11 +11,12 @@ function show_shape() {
   by_id("shape").hidden = now === null && !points || state.drawing !== null;
   if (by_id("shape").hidden) return;
   for (const id of ["shape-ink", "shape-curve"]) show_only_if(by_id(id), now !== null);
-  show_only_if(by_id("shape-fit"), points);
+  show_only_if(by_id("fit-mm"), points);
   by_id("fit-mm").value = fit;
+  by_id("fit-mm").style.setProperty("--part", `${(fit - 0.2) / 0.018}%`);
   show_pressed(by_id("shape-ink"), now === "drawn");
   show_pressed(by_id("shape-curve"), now !== "drawn");
-  set_text("shape-curve", !edited ? points && s.fit_mm ? `${s.knots.length} points, at most ${fit} mm from the ink` : `Fitted, within ${fit} mm` : !n ? "Edited" : `Edited, ${n} ${n === 1 ? "point" : "points"}`);
+  set_text("shape-curve", !edited ? points && s.fit_mm ? `${s.knots.length} points, within ${fit} mm` : `Fitted, within ${fit} mm` : !n ? "Edited" : `Edited, ${n} ${n === 1 ? "point" : "points"}`);
 }
 on_click("shape-ink", () => { if (shape(current_stroke()) !== "drawn") edit_stroke(as_drawn); });
 on_click("shape-curve", () => { if (shape(current_stroke()) === "drawn") edit_stroke(as_edited); });

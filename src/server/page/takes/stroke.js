@@ -131,7 +131,7 @@ function find_knots(base, fit_mm = FIT_MM) {
   for (let more = true; more;) {
     more = false;
     knots = knots.flatMap((k, i) => {
-      const next = knots[i + 1], key = knots.slice(Math.max(0, i - 1), i + 3).map(q => q.mm).join();
+      const next = knots[i + 1], key = [k, ...knots.slice(Math.max(0, i - 1), i + 3)].map(q => q.mm).join();
       if (!next || fits.has(key)) return [k];
       const cut = place_to_cut(rows, knots, i, fit_mm);
       if (cut === null) { fits.add(key); return [k]; }
@@ -157,13 +157,17 @@ function place_to_cut(rows, knots, i, fit_mm) {
   if (!worst.k) return null;
   return from + long * Math.min(0.8, Math.max(0.2, worst.k / n));
 }
-// Returns the distance of a place from a line, near the number k of its places.
-function from_line_mm(p, line, k) {
-  const reach = 2 + Math.ceil(line.length / 4);
+// Returns the distance of a place from a line, near the number k of its places. In numbers, for it is most of the work.
+function from_line_mm([x, y], line, k) {
+  const reach = 2 + Math.ceil(line.length / 4), last = Math.min(line.length - 1, k + reach);
   let off = Infinity;
-  for (let j = Math.max(0, k - reach); j < Math.min(line.length - 1, k + reach); ++j)
-    off = Math.min(off, segment_mm(line[j], line[j + 1], p));
-  return off;
+  for (let j = Math.max(0, k - reach); j < last; ++j) {
+    const [ax, ay] = line[j], dx = line[j + 1][0] - ax, dy = line[j + 1][1] - ay;
+    const part = Math.min(1, Math.max(0, ((x - ax) * dx + (y - ay) * dy) / (dx * dx + dy * dy || 1)));
+    const ox = ax + part * dx - x, oy = ay + part * dy - y, square = ox * ox + oy * oy;
+    if (square < off) off = square;
+  }
+  return Math.sqrt(off);
 }
 // Returns where a path turns by more than CORNER_RAD within 1 mm, mm along it.
 function corners(rows) {
