@@ -43,7 +43,7 @@ class Body(StudioTest):
         """Returns true if a place, mm from the middle of the wrist crease, is drawn as hand. The array lies around 20, 20."""
         [[px, py]] = self.at(p, [x - place[0] + 20, y - place[1] + 20])
         colours = p.value(f"""(() => {{
-            const f = document.querySelector('#field'), r = f.getBoundingClientRect(), k = f.width / r.width;
+            const f = document.querySelector('#ground'), r = f.getBoundingClientRect(), k = f.width / r.width;
             const hex = name => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
             const d = f.getContext('2d').getImageData(Math.round(({px} - r.left) * k), Math.round(({py} - r.top) * k), 1, 1).data;
             return ['#' + [...d].slice(0, 3).map(v => v.toString(16).padStart(2, '0')).join(''), hex('--hand'), hex('--outside')];

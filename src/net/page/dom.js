@@ -4,7 +4,8 @@
 const SVG_NAMES = "http://www.w3.org/2000/svg";
 
 export const by_id = id => document.getElementById(id);
-export function set_text(id, text) { by_id(id).textContent = text; }
+// Does nothing where the text is the same, for the browser would lay out the page again.
+export function set_text(id, text) { if (by_id(id).textContent !== text) by_id(id).textContent = text; }
 export const all_of = selector => document.querySelectorAll(selector);
 // Listens to an element, or to that of an id.
 export function listen(to, event, f, options) { (typeof to === "string" ? by_id(to) : to).addEventListener(event, f, options); }

@@ -115,7 +115,7 @@ on_change(() => {
   by_id("redo").disabled = !can_redo();
   by_id("play").disabled = by_id("play-from").disabled = !take?.strokes.length;
   by_id("play").dataset.on = p !== null;
-  by_id("play").querySelector("span").textContent = p ? "Playing" : "Play";
+  set_text("play-text", p ? "Playing" : "Play");
   show_stop();
   show_pressed(by_id("loop"), state.loop);
   show_pressed(by_id("speaker"), state.speaker);
@@ -134,8 +134,8 @@ on_change(() => {
 function show_stop() {
   const late_s = unanswered_s(), done = !state.stopping && state.stopped && now_ms() - state.stopped.at < DONE_MS;
   by_id("stop").dataset.state = late_s ? "late" : done ? "done" : "";
-  by_id("stop").querySelector("span").replaceChildren(late_s ? "Stop again" : done ? "Stopped" : "Stop",
-    ...late_s ? [make("small", {}, `no answer, ${late_s.toFixed(1)} s`)] : []);
+  const label = late_s ? "Stop again" : done ? "Stopped" : "Stop", span = by_id("stop").querySelector("span");
+  if (span.textContent !== label) span.replaceChildren(label, ...late_s ? [make("small", {}, `no answer, ${late_s.toFixed(1)} s`)] : []);
   if (done) setTimeout(() => changed("link"), DONE_MS);
 }
 function take_facts(take) {
@@ -166,6 +166,7 @@ function frame() {
     told_clock = now + total;
     set_text("clock", now);
     set_text("total", total);
+    if (state.drawing || state.playing) { running = true; return requestAnimationFrame(frame); }
     const slider = by_id("lanes");
     slider.setAttribute("aria-valuenow", now);
     slider.setAttribute("aria-valuemax", parseFloat(total) || 0);

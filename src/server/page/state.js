@@ -36,7 +36,8 @@ const listeners = [];
 let asked = new Set(), waiting = false;
 
 // Calls f(changes) at most once a frame, with the set of what has changed.
-export function on_change(f) { listeners.push(f); }
+// A further point of a drawing, "ink", is told to those that ask for it.
+export function on_change(f, of_ink = false) { listeners.push({f, of_ink}); }
 export function changed(...what) {
   what.forEach(w => asked.add(w));
   if (waiting) return;
@@ -48,7 +49,8 @@ function flush() {
   waiting = false;
   const now = asked;
   asked = new Set();
-  listeners.forEach(f => f(now));
+  const only_ink = now.size === 1 && now.has("ink");
+  listeners.forEach(l => (l.of_ink || !only_ink) && l.f(now));
 }
 
 // Messages: a toast that goes away, with a button if something can be undone, and a banner that stays.

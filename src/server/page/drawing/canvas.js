@@ -4,7 +4,7 @@ import {state, current_take, ceiling_dbfs, take_gain, is_simulated, now_ms} from
 import {by_id} from "../../../net/page/dom.js";
 import {colour, font} from "../look.js";
 import {interpolate} from "../takes/stroke.js";
-import {array, view, layers, stale, trace, disc, to_px} from "./view.js";
+import {array, view, layers, stale, start_layer, trace, trace_rows, disc, to_px} from "./view.js";
 import {draw_ground} from "./ground.js";
 import {draw_ink, draw_number} from "./ink.js";
 import {draw_share, number_place} from "./labels.js";
@@ -46,17 +46,13 @@ export function draw_frame() {
   if (!view.width) return;
   if (stale.ground) { draw_ground(); stale.ground = false; }
   if (stale.ink) { draw_ink(); stale.ink = false; }
-  pen.setTransform(1, 0, 0, 1, 0, 0);
-  pen.drawImage(layers.ground, 0, 0);
-  if (!array) return;
-  pen.drawImage(layers.ink, 0, 0);
-  pen.setTransform(view.dpr, 0, 0, view.dpr, 0, 0);
-  if (state.compare?.blind) return;
+  start_layer(layers.moment);
+  if (!array || state.compare?.blind) return;
   const now = shares();
+  draw_fingers();
   draw_arms(now);
   array.places.forEach((q, i) => draw_disc(q, i, now[i]));
   draw_moment();
-  draw_fingers();
   draw_others();
   draw_outside();
 }
@@ -110,9 +106,9 @@ function felt_dot(c) {
 }
 function draw_fingers() {
   for (const k of state.drawing?.tracks ?? []) {
-    if (!k.down) continue;
-    const q = k.points.at(-1);
-    felt_dot(to_px([q[1], q[2]]));
+    trace_rows(pen, k.points);
+    pen.strokeStyle = colour("ink"); pen.lineWidth = 2.5; pen.stroke();
+    if (k.down) felt_dot(to_px(k.points.at(-1).slice(1, 3)));
   }
 }
 function draw_others() {

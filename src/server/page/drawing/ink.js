@@ -19,12 +19,6 @@ export function draw_ink() {
   if (plan) draw_felt(p, plan);
   const strokes = drawing ? drawing.before : take?.strokes ?? [];
   strokes.forEach((s, i) => draw_stroke(p, s, i === state.stroke || drawing !== null));
-  drawing?.tracks.forEach(k => {
-    trace_rows(p, k.points);
-    p.strokeStyle = colour("ink");
-    p.lineWidth = 2.5;
-    p.stroke();
-  });
   if (plan) draw_dots(p, plan);
   if (!drawing) strokes.forEach((s, i) => draw_marks(p, s, i));
   draw_labels(p, drawing || state.placing ? [] : strokes);

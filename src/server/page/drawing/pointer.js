@@ -93,7 +93,7 @@ function record(f, mm, at_ms) {
   if (t <= f.track.points.at(-1)[0]) return;
   f.track.points.push([t, ...rounded(mm), f.strength]);
   if (last[0] !== t) send(f, at_ms);
-  changed("drawing");
+  changed("ink");
 }
 
 // Live strokes: what is drawn is felt.

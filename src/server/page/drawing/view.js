@@ -6,7 +6,7 @@ import {hull, box} from "../takes/stroke.js";
 import {body_corners} from "./body.js";
 
 const canvas = by_id("field");
-export const layers = {ground: document.createElement("canvas"), ink: document.createElement("canvas")};
+export const layers = {ground: by_id("ground"), ink: by_id("ink"), moment: canvas}; // each lies over the one before
 export const view = {zoom: 1, x: 0, y: 0, scale: 1, left: 0, top: 0, width: 0, height: 0, dpr: 1, scale_bottom: 20};
 export const stale = {ground: true, ink: true};
 export let array = null; // {tactors, edge, pitch, radius}
@@ -74,12 +74,12 @@ export function resize() {
   const r = by_id("stage").getBoundingClientRect();
   view.dpr = Math.min(3, devicePixelRatio || 1);
   view.width = r.width; view.height = r.height;
-  for (const c of [canvas, layers.ground, layers.ink]) {
+  for (const c of Object.values(layers)) {
     c.width = Math.round(r.width * view.dpr);
     c.height = Math.round(r.height * view.dpr);
+    // A size of its own keeps it from being stretched where the screen changes under a finger.
+    Object.assign(c.style, {width: `${r.width}px`, height: `${r.height}px`});
   }
-  // A size of its own keeps it from being stretched where the screen changes under a finger.
-  Object.assign(canvas.style, {width: `${r.width}px`, height: `${r.height}px`});
   place();
   outdated("ground", "ink");
 }
@@ -94,7 +94,7 @@ on_change(what => {
   if (what.has("layout") || (what.has("drawing") && is_outgrown())) resize();
 });
 
-// Begins a layer, or the canvas, anew.
+// Begins a layer anew.
 export function start_layer(c) {
   const p = c.getContext("2d");
   p.setTransform(view.dpr, 0, 0, view.dpr, 0, 0);

@@ -55,7 +55,7 @@ function show_device() {
   if (text !== said.chip) {
     said.chip = text;
     by_id("device-icon").replaceChildren(icon(picture));
-    if (by_id("state").textContent !== word) set_text("state", word);
+    set_text("state", word);
     set_text("state-why", why ? ` · ${why}` : "");
     by_id("device").dataset.tone = tone;
   }

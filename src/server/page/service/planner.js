@@ -103,6 +103,6 @@ export function predicted_key(take, name, v) {
 }
 
 on_change(what => {
-  if (what.has("take") || what.has("drawing") || what.has("level") || what.has("link") || what.has("observer")) { ++round;
+  if (what.has("take") || what.has("drawing") || what.has("ink") || what.has("level") || what.has("link") || what.has("observer")) { ++round;
     plan_soon(); }
-});
+}, true);

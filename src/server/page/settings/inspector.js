@@ -235,7 +235,7 @@ listen("tabs", "keydown", e => {
 
 on_change(what => {
   const all = ["take", "plan", "predicted", "tab", "array", "options", "theme", "level", "observer", "drawing"];
-  if (!all.some(w => what.has(w))) return;
+  if (!all.some(w => what.has(w)) || state.drawing && !what.has("drawing")) return;
   state.shape = algorithm();
   build();
   controls.forEach(c => c.update());

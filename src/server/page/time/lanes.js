@@ -141,7 +141,7 @@ function draw_clips(p, l) {
 
 export function draw_lanes() {
   for (const l of [full, mini]) {
-    if (!l.width || !l.height) continue;
+    if (!l.width || !l.height || state.drawing && !l.stale) continue; // a drawing is longer with each of its plans
     if (l.stale) { draw_layer(l); l.stale = false; }
     const p = l.canvas.getContext("2d");
     p.setTransform(1, 0, 0, 1, 0, 0);
