@@ -9,7 +9,6 @@
 
 #include "cli/option_words.hpp"
 #include "cli/warnings.hpp"
-#include "core/asked_pace.hpp"
 #include "core/start_times.hpp"
 #include "session/pipes.hpp"
 
@@ -39,20 +38,11 @@ std::vector<stroke> read_one(const settings& s, const environment& e, const std:
     return load_strokes(argument, s.intensity_max.value_or(1.0));
 }
 
-stroke stroke_of_path(const settings& s, const std::string& data)
-{
-    const path p = path::from_svg(data);
-    const double speed = s.speed_mm_s.value_or(s.usual_speed_mm_s.value_or(default_speed_mm_s));
-    stroke k{"path", trajectory::along(p, s.duration_s.value_or(p.length_mm() / speed)), {}, {}, {}};
-    k.speed_mm_s = speed;
-    return k;
-}
-
-// The margin is the file's, not an option.
-std::vector<stroke> fitted_as_asked(std::vector<stroke> strokes, const layout& faces, const std::string& file)
+// Fits the strokes that a file fits: the margin is the file's, not an option.
+void fit_by_file(const std::string& file, piece& p, const layout& faces)
 {
     try {
-        return apply_fits(std::move(strokes), faces);
+        p.strokes = apply_fits(std::move(p.strokes), faces);
     } catch (const error& e) {
         if (e.field() != "margin_mm")
             throw;
@@ -60,24 +50,17 @@ std::vector<stroke> fitted_as_asked(std::vector<stroke> strokes, const layout& f
     }
 }
 
-// Times count where the stroke ends up: fitted first.
 piece read_piece(const settings& s, const environment& e, const layout& faces, const std::string& argument)
 {
-    piece p{argument, {}, {}};
+    piece p{argument};
     if (s.path_data)
-        p.strokes.push_back(stroke_of_path(s, *s.path_data));
+        p.strokes = session::read_strokes("path", *s.path_data, argument, s);
     else if (s.shape)
-        p.strokes.push_back(shape_stroke(*s.shape));
+        p.strokes = session::read_strokes("stroke", *s.shape, argument, s);
     else
         p.strokes = read_one(s, e, argument);
-    p.strokes = fitted_as_asked(std::move(p.strokes), faces, shown_name(argument));
-    if (s.fit) {
-        fitted_strokes fitted = fit_strokes(p.strokes, faces, s.fit_margin_mm);
-        p.strokes = std::move(fitted.strokes);
-        p.fit = fitted.placed;
-    }
-    for (stroke& k : p.strokes)
-        detail::set_pace(k, {s.duration_s, s.speed_mm_s, s.usual_speed_mm_s});
+    fit_by_file(shown_name(argument), p, faces);
+    session::place_strokes(p, faces, s);
     return p;
 }
 
@@ -130,7 +113,9 @@ piece open_argument(const settings& s, const environment& e, const layout& faces
         return read_piece(s, e, faces, argument);
     const files::plan_file& f = planned->second;
     files::check_same_array(argument, f.tactors, e.tactors);
-    return {argument, f.strokes, f.plans, f.fit, f.moved, true};
+    piece p{f.made, true};
+    p.name = argument;
+    return p;
 }
 
 bool has_own_carrier(const stroke& s)
@@ -138,7 +123,7 @@ bool has_own_carrier(const stroke& s)
     return s.sound.carrier_hz || !s.sound.carrier_profile.empty();
 }
 
-// Calls f(stroke), and says of which it is that it throws.
+// Calls f(i) for each stroke, and says of which it is that it throws.
 template <class F>
 void for_each_stroke(const piece& p, F f)
 {
@@ -146,7 +131,7 @@ void for_each_stroke(const piece& p, F f)
     for (std::size_t i = 0; i < p.strokes.size(); ++i) {
         line.update(i, p.strokes.size());
         try {
-            f(p.strokes[i]);
+            f(i);
         } catch (const error& x) {
             throw of_stroke(x, p, i);
         }
@@ -243,14 +228,7 @@ piece plan_one_piece(const settings& s, const environment& e)
     const layout faces(e.tactors);
     piece p = open_one_piece(s, e, faces);
     if (p.plans.empty())
-        for_each_stroke(p, [&](const stroke& k) {
-            if (!s.compensate) {
-                p.plans.push_back({make_plan(e.tactors, faces, k, s.plan), k.start_s, k.anchor});
-                return;
-            }
-            p.moved.push_back(make_compensated_plan(e.tactors, faces, k, s.plan, s.low_speed));
-            p.plans.push_back({std::move(p.moved.back().plan), k.start_s, k.anchor});
-        });
+        for_each_stroke(p, [&](std::size_t i) { session::plan_stroke(p, i, e.tactors, faces, s); });
     check_starts(p);
     return p;
 }
@@ -260,7 +238,8 @@ score plan_and_score(piece& p, const settings& s, const environment& e, const la
 {
     score_builder made(e.tactors, render);
     if (p.plans.empty())
-        for_each_stroke(p, [&](const stroke& k) {
+        for_each_stroke(p, [&](std::size_t i) {
+            const stroke& k = p.strokes[i];
             if (s.compensate)
                 made.add(make_compensated_plan(e.tactors, faces, k, s.plan, s.low_speed).plan, k.start_s,
                          k.anchor);
@@ -270,12 +249,6 @@ score plan_and_score(piece& p, const settings& s, const environment& e, const la
     for (placed_plan& q : std::exchange(p.plans, {}))
         made.add(std::move(q.plan), q.start_s, q.anchor);
     return made.take();
-}
-
-files::plan_record record_plans(const piece& p, const environment& e, const score& samples,
-                                const render_options& options)
-{
-    return {p.strokes, p.plans, p.moved, p.fit ? &*p.fit : nullptr, e.tactors, samples, options};
 }
 
 score make_score(const piece& p, const environment& e, const render_options& render)

@@ -3,25 +3,18 @@
 /// From STROKE arguments to strokes, plans and scores.
 #pragma once
 
-#include <optional>
 #include <string>
 #include <vector>
 
 #include <tactor/tactor.hpp>
 
 #include "cli/settings.hpp"
-#include "files/plan/plan_json.hpp"
+#include "session/piece.hpp"
 
 namespace tactor::cli {
 
-/// A piece: the strokes and plans of one STROKE argument.
-struct piece {
-    std::string name;
-    std::vector<stroke> strokes;
-    std::vector<placed_plan> plans;
-    std::optional<fitting> fit = {}; ///< what --fit did
-    /// Results of --compensate for each plan; empty without it. The plans themselves are in `plans`.
-    std::vector<compensated_plan> moved = {};
+/// The piece of one STROKE argument.
+struct piece : session::piece {
     bool from_plan = false; ///< the argument is a plan, which knows its stroke's name
 };
 
@@ -51,10 +44,6 @@ piece read_one_piece(const settings& s, const environment& e, const layout& face
 
 /// Reads and plans where only one STROKE is taken.
 piece plan_one_piece(const settings& s, const environment& e);
-
-/// Returns the piece as its JSON is written from; `samples` is made of it with `options`. Refers to all four.
-files::plan_record record_plans(const piece& p, const environment& e, const score& samples,
-                                const render_options& options);
 
 /// Makes the score of what was opened, with `render.rate` and channels settled. Nobody keeps any bursts: what
 /// is planned here is never there as a whole, and plans that were there leave the piece. \throws error.

@@ -8,6 +8,8 @@
 
 #include <fmt/format.h>
 
+#include <tactor/error.hpp>
+
 namespace tactor::net {
 namespace {
 
@@ -275,7 +277,7 @@ std::string cut_echo(std::string_view text)
 
 std::string fault_text(const rpc_fault& f)
 {
-    const std::string what = cut_echo(f.what);
+    const std::string what = source_place{cut_echo(f.what), f.line, f.column}.text();
     const std::string why = cut_echo(f.why);
     return f.hint.empty() ? fmt::format("{}: {}", what, why)
                           : fmt::format("{}: {} ({})", what, why, cut_echo(f.hint));
@@ -285,6 +287,9 @@ reply_json error_reply(const json& id, const rpc_fault& f)
 {
     reply_json data{
         {"kind", f.kind}, {"what", cut_echo(f.what)}, {"why", cut_echo(f.why)}, {"hint", cut_echo(f.hint)}};
+    for (const auto& [name, number] : {std::pair("line", f.line), std::pair("column", f.column)})
+        if (number != 0)
+            data[name] = number;
     return {{"jsonrpc", "2.0"},
             {"id", id},
             {"error", {{"code", f.code}, {"message", fault_text(f)}, {"data", std::move(data)}}}};

@@ -31,13 +31,16 @@ enum rpc_code : int {
     code_no_token = -32003,
 };
 
-/// An error, which becomes an error object with data {kind what why hint}.
+/// An error, which becomes an error object with data {kind what why hint}, and with line and column of the
+/// text of that parameter where they are known.
 struct rpc_fault {
     int code = code_internal;
     std::string kind = {};
     std::string what = {}; ///< parameter at fault
     std::string why = {};
     std::string hint = {};
+    unsigned line = 0; ///< from 1; 0: not known
+    unsigned column = 0;
 };
 
 struct rpc_request {

@@ -8,7 +8,6 @@
 
 #include <fmt/format.h>
 
-#include "core/asked_pace.hpp"
 #include "core/words.hpp"
 #include "files/plan/plan_file.hpp"
 #include "files/plan/plan_json.hpp"
@@ -26,8 +25,7 @@ plan_handle planned(const std::shared_ptr<array_handle>& on, const stroke& given
     w.place = options::in_plan | options::in_score;
     take_options(w, options, on->value().tactors.size(), file);
     const layout& faces = on->faces();
-    asked_stroke asked = stroke_as_asked(given_stroke, faces, w);
-    plan_handle p{on, std::move(asked.drawn), {}, asked.fit};
+    plan_handle p{on, place_stroke(given_stroke, faces, w)};
     p.sound = w.render;
     for (const options::option& o : options::all()) {
         const bool is_sound = (o.where & options::in_plan) != 0 && (o.where & options::planning) == 0;
@@ -35,22 +33,10 @@ plan_handle planned(const std::shared_ptr<array_handle>& on, const stroke& given
         if (is_sound && is_set)
             p.asked.emplace_back(o.name);
     }
-    p.placed.start_s = p.drawn.start_s;
-    p.placed.anchor = p.drawn.anchor;
-    const auto work = [&] {
-        if (!w.compensate) {
-            p.placed.plan = make_plan(on->value(), faces, p.drawn, w.plan);
-            return;
-        }
-        p.moved = make_compensated_plan(on->value(), faces, p.drawn, w.plan, w.low_speed);
-        p.placed.plan = std::move(p.moved->plan);
-    };
-    if (w.plan.custom_phantom) { // which takes the lock for each point
-        work();
-        return p;
-    }
-    const without_lock free;
-    work();
+    std::optional<without_lock> free;
+    if (!w.plan.custom_phantom) // which takes the lock for each point
+        free.emplace();
+    session::plan_stroke(p.one, 0, on->value(), faces, w);
     return p;
 }
 
@@ -156,7 +142,7 @@ py::tuple felt(const plan_handle& p)
     std::vector<double> t, targets, places, intensities, asked, shared, speeds;
     {
         const without_lock free;
-        for (const percept_sample& s : predict_percept(p.on->value(), p.drawn, p.plan())) {
+        for (const percept_sample& s : predict_percept(p.on->value(), p.drawn(), p.plan())) {
             t.push_back(s.t_s);
             targets.insert(targets.end(), {s.target.x_mm, s.target.y_mm});
             const point where = s.felt.value_or(point{none, none});
@@ -205,7 +191,7 @@ py::dict summary(const plan_handle& p)
     percept_summary s;
     {
         const without_lock free;
-        s = summarise(p.on->value(), p.drawn, p.plan());
+        s = summarise(p.on->value(), p.drawn(), p.plan());
     }
     return py::dict("rms_error_mm"_a = s.rms_error_mm, "largest_error_mm"_a = s.largest_error_mm,
                     "speed_cv"_a = s.speed_cv, "intensity_cv"_a = s.intensity_cv,
@@ -227,25 +213,18 @@ std::string write_json(const plan_handle& p)
     const without_lock free;
     const array& tactors = p.on->value();
     const render_options sound = settled(tactors, p.sound);
-    const score samples(tactors, std::vector{p.placed}, sound);
-    const std::span<const compensated_plan> moved(p.moved ? &*p.moved : nullptr, p.moved ? 1 : 0);
-    return files::plans_text(
-        {{&p.drawn, 1}, {&p.placed, 1}, moved, p.fit ? &*p.fit : nullptr, tactors, samples, sound});
+    return files::plans_text({p.one, tactors, score(tactors, p.one.plans, sound), sound});
 }
 
 plan_handle plan_from_json(const std::string& text, const std::string& named)
 {
     const without_lock free;
     files::plan_file f = files::read_plans(text, named);
-    if (f.plans.size() != 1)
-        throw error(error_kind::bad_input, named, "there are " + counted(f.plans.size(), "plan") + " in it",
+    if (f.made.plans.size() != 1)
+        throw error(error_kind::bad_input, named,
+                    "there are " + counted(f.made.plans.size(), "plan") + " in it",
                     "take one of its \"plans\"");
-    plan_handle p{std::make_shared<array_handle>(std::move(f.tactors)), std::move(f.strokes.front()),
-                  std::move(f.plans.front()), f.fit};
-    if (!f.moved.empty())
-        p.moved = std::move(f.moved.front());
-    p.sound = f.render;
-    return p;
+    return {std::make_shared<array_handle>(std::move(f.tactors)), std::move(f.made), f.render};
 }
 
 void check_same_array(const plan_handle& p, const array& in_use)
@@ -253,21 +232,15 @@ void check_same_array(const plan_handle& p, const array& in_use)
     files::check_same_array("plan", p.on->value(), in_use);
 }
 
-asked_stroke stroke_as_asked(const stroke& s, const layout& faces, const wishes& w)
+session::piece place_stroke(const stroke& s, const layout& faces, const wishes& w)
 {
     if (s.fit && s.fit->group != 0)
         throw error(error_kind::bad_input, fmt::format("stroke \"{}\"", s.name),
                     "it is fitted together with others of its group",
                     "give apply_fits() all strokes of the file, and what it returns here");
-    asked_stroke a{apply_fits({s}, faces).front()};
-    // The tool does the same: times count for the fitted stroke.
-    if (w.fit) {
-        fitted_strokes f = fit_strokes({a.drawn}, faces, w.fit_margin_mm);
-        a.drawn = std::move(f.strokes.front());
-        a.fit = f.placed;
-    }
-    detail::set_pace(a.drawn, {w.duration_s, w.speed_mm_s, w.usual_speed_mm_s});
-    return a;
+    session::piece p{.strokes = {s}};
+    session::place_strokes(p, faces, w);
+    return p;
 }
 
 void bind_plan(py::module_& m)
@@ -289,10 +262,10 @@ void bind_plan(py::module_& m)
                        std::vector<std::string> asked) {
                         plan_handle p = plan_from_json(text, "plan");
                         check_same_array(p, on->value());
-                        p.drawn = drawn;
+                        p.one.strokes = {drawn};
                         if (drawn.anchor != start_anchor{}) { // which a record does not know
-                            p.placed.start_s = drawn.start_s;
-                            p.placed.anchor = drawn.anchor;
+                            p.one.plans.front().start_s = drawn.start_s;
+                            p.one.plans.front().anchor = drawn.anchor;
                         }
                         p.on = on;
                         p.asked = std::move(asked);
@@ -301,17 +274,17 @@ void bind_plan(py::module_& m)
         .def("json", &write_json)
         .def("same",
              [](const plan_handle& a, const plan_handle& b) {
-                 return a.plan() == b.plan() && a.placed.anchor == b.placed.anchor;
+                 return a.plan() == b.plan() && a.placed().anchor == b.placed().anchor;
              })
         .def("sounds_like", [](const plan_handle& a, const plan_handle& b) { return a.plan() == b.plan(); })
         .def_property_readonly("recipe", &plan_recipe)
         .def_property_readonly("array", [](const plan_handle& p) { return p.on; })
-        .def_property_readonly("stroke", [](const plan_handle& p) { return p.drawn; })
+        .def_property_readonly("stroke", [](const plan_handle& p) { return p.drawn(); })
         .def_property_readonly("algorithm", member(&tactor::plan::algorithm))
         .def_property_readonly("phantom", member(&tactor::plan::phantom))
         .def_property_readonly("faces", member_name(&tactor::plan::faces))
         .def_property_readonly("overlap", member_name(&tactor::plan::overlap))
-        .def_property_readonly("start_s", [](const plan_handle& p) { return p.placed.start_s; })
+        .def_property_readonly("start_s", [](const plan_handle& p) { return p.placed().start_s; })
         .def_property_readonly("stroke_duration_s", member(&tactor::plan::stroke_duration_s))
         .def_property_readonly("stroke_length_mm", member(&tactor::plan::stroke_length_mm))
         .def_property_readonly("carrier_hz", member(&tactor::plan::carrier_hz))

@@ -10,24 +10,25 @@
 
 #include "python/binding.hpp"
 #include "python/options.hpp"
+#include "session/piece.hpp"
 
 namespace tactor::python {
 
 struct plan_handle {
     std::shared_ptr<array_handle> on;
-    stroke drawn;
-    placed_plan placed;
-    std::optional<fitting> fit = {};
-    std::optional<compensated_plan> moved = {}; ///< without its plan, which is in `placed`
-    render_options sound = {};                  ///< how it sounds where nobody says otherwise
-    std::vector<std::string> asked = {};        ///< names of the options of that which were set
+    session::piece one;                  ///< of one stroke
+    render_options sound = {};           ///< how it sounds where nobody says otherwise
+    std::vector<std::string> asked = {}; ///< names of the options of that which were set
 
     /// Returns the plan placed at `start_s`. Its own start counts from its stroke's anchor.
     placed_plan at(std::optional<double> start_s) const
     {
-        return {placed.plan, start_s, start_s == placed.start_s ? placed.anchor : start_anchor{}};
+        const placed_plan& p = placed();
+        return {p.plan, start_s, start_s == p.start_s ? p.anchor : start_anchor{}};
     }
-    const tactor::plan& plan() const noexcept { return placed.plan; }
+    const stroke& drawn() const noexcept { return one.strokes.front(); }
+    const placed_plan& placed() const noexcept { return one.plans.front(); }
+    const tactor::plan& plan() const noexcept { return placed().plan; }
 };
 
 /// Writes the tool's tactor-plan/1 object, and reads it. \throws error.
@@ -35,15 +36,9 @@ std::string write_json(const plan_handle& p);
 /// Reads a plan; `named` stands for it in messages.
 plan_handle plan_from_json(const std::string& text, const std::string& named);
 
-/// A stroke as it was asked for.
-struct asked_stroke {
-    stroke drawn;
-    std::optional<fitting> fit = {}; ///< of the options
-};
-
-/// Returns a stroke fitted and timed as its file and the options ask. \throws error (bad_input) where it is
-/// part of a group that is fitted as a single picture.
-asked_stroke stroke_as_asked(const stroke& s, const layout& faces, const wishes& w);
+/// Returns a piece of one stroke, fitted and timed as its file and the options ask. \throws error (bad_input)
+/// where it is part of a group that is fitted as a single picture.
+session::piece place_stroke(const stroke& s, const layout& faces, const wishes& w);
 
 /// Fills in the channels that the array and the marker need, if no number is given.
 render_options settled(const array& a, render_options o);

@@ -44,7 +44,7 @@ compared compare(const std::shared_ptr<array_handle>& on, const stroke& s, const
         throw error(error_kind::bad_input, "sl", "nothing here uses it", "say intensity_scale=\"sl\", too")
             .with_field("sl");
     const layout& faces = on->faces();
-    const stroke target = stroke_as_asked(s, faces, w).drawn;
+    const stroke target = place_stroke(s, faces, w).strokes.front();
     const without_lock free;
     static_cast<void>(burst_duration_s(w.plan)); // what nobody may ask for is no row
     const detail::comparison_choice choice{parse_kinds(algorithms, w.plan.algorithm),
@@ -96,19 +96,18 @@ plot::canvas draw(const array_handle& on, const plans& all, const std::string& n
                   const std::string& view, double width_mm)
 {
     check_width(width_mm);
-    std::vector<stroke> strokes;
-    std::vector<placed_plan> placed;
-    std::vector<compensated_plan> moved;
+    files::piece shown;
     for (const auto& [start_s, p] : all) {
         check_same_array(*p, on.value());
-        strokes.push_back(p->drawn);
-        placed.push_back(p->at(start_s));
-        if (p->moved)
-            moved.push_back(*p->moved);
+        shown.strokes.push_back(p->drawn());
+        shown.plans.push_back(p->at(start_s));
+        shown.moved.insert(shown.moved.end(), p->one.moved.begin(), p->one.moved.end());
     }
-    if (moved.size() != placed.size()) // some were moved, some were not: all are shown as they are played
-        moved.clear();
-    return plot::draw_figure({on.value(), name, strokes, placed, sound, moved}, {view_from(view), width_mm});
+    // Shows all as they are played where only some were moved.
+    if (shown.moved.size() != shown.plans.size())
+        shown.moved.clear();
+    return plot::draw_figure({on.value(), name, shown.strokes, shown.plans, sound, shown.moved},
+                             {view_from(view), width_mm});
 }
 
 std::string devices(const array_handle* on, const std::optional<std::string>& array_file,

@@ -98,8 +98,9 @@ rpc_fault library_fault(const error& e, const std::string& source)
         f.code = net::code_internal;
     if (e.kind() == error_kind::not_available)
         f.code = net::code_no_stream;
-    if (subject.starts_with(source + ":")) { // "toml:3:5": the place in the text
-        f.why = fmt::format("{}: {}", subject.substr(source.size() + 1), f.why);
+    if (e.place().line != 0 && e.place().file == source) {
+        f.line = e.place().line;
+        f.column = e.place().column;
         return f;
     }
     if (subject == source || subject == "stroke" || subject == fmt::format("stroke \"{}\"", source) ||

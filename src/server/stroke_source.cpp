@@ -10,7 +10,6 @@
 
 #include <tactor/phantom.hpp>
 
-#include "core/asked_pace.hpp"
 #include "core/start_times.hpp"
 #include "core/trajectory/recorded_points.hpp"
 #include "core/words.hpp"
@@ -57,21 +56,6 @@ std::vector<stroke> read_points(const json& list, double intensity_max)
     return {stroke{.name = "points", .motion = motion, .warnings = recorded.warnings()}};
 }
 
-stroke stroke_of_path(const std::string& data, const options::wishes& s)
-{
-    const path p = path::from_svg(data);
-    const double speed = s.speed_mm_s.value_or(s.usual_speed_mm_s.value_or(default_speed_mm_s));
-    stroke k{.name = "path", .motion = trajectory::along(p, s.duration_s.value_or(p.length_mm() / speed))};
-    k.speed_mm_s = speed;
-    return k;
-}
-
-bool is_shape(const std::string& name)
-{
-    const auto& shapes = stroke_shapes();
-    return std::find(shapes.begin(), shapes.end(), name) != shapes.end();
-}
-
 void check_duration(const planning& with, double seconds)
 {
     if (seconds > with.max_stroke_s)
@@ -90,14 +74,12 @@ void check_count(const planning& with, std::size_t strokes)
                       "send fewer");
 }
 
-// Sets the start of each stroke. Refuses strokes that last too long, alone or together: planning them takes
-// as long.
-void place_strokes(const planning& with, const options::wishes& s, std::vector<stroke>& strokes)
+// Refuses strokes that last too long, alone or together: planning them takes as long.
+void check_durations(const planning& with, const std::vector<stroke>& strokes)
 {
     detail::start_times times;
     double together_s = 0.0;
-    for (stroke& k : strokes) {
-        detail::set_pace(k, {s.duration_s, s.speed_mm_s, s.usual_speed_mm_s});
+    for (const stroke& k : strokes) {
         times.start(k.start_s, k.anchor);
         check_duration(with, times.lasts(k.motion.duration_s()));
         together_s += k.motion.duration_s();
@@ -156,27 +138,18 @@ std::vector<stroke> read_strokes(const std::string& source, const json& v, const
 {
     if (source == "points")
         return read_points(v, s.intensity_max.value_or(1.0));
-    const std::string& t = text(v, source);
-    if (source == "stroke")
-        return {is_shape(t) ? shape_stroke(t) : preset_stroke(t)};
-    if (source == "path")
-        return {stroke_of_path(t, s)};
-    if (source == "toml")
-        return parse_strokes_toml(t, source, s.intensity_max.value_or(1.0));
-    if (source == "csv")
-        return parse_strokes_csv(t, source, s.intensity_max.value_or(1.0));
-    return parse_strokes_svg(t, source);
+    return session::read_strokes(source, text(v, source), source, s);
 }
 
 std::vector<stroke> settle_strokes(const planning& with, const layout& faces, std::vector<stroke> strokes,
-                                   const options::wishes& s, bool fit)
+                                   options::wishes s, bool fit)
 {
     check_count(with, strokes.size());
-    strokes = apply_fits(std::move(strokes), faces);
-    if (fit)
-        strokes = fit_strokes(strokes, faces).strokes;
-    place_strokes(with, s, strokes);
-    return strokes;
+    s.fit = fit;
+    session::piece p{.strokes = std::move(strokes)};
+    session::place_strokes(p, faces, s);
+    check_durations(with, p.strokes);
+    return std::move(p.strokes);
 }
 
 std::vector<double> path_starts_s(const std::vector<stroke>& strokes)
@@ -298,20 +271,6 @@ planning_work estimate_work(const std::vector<stroke>& strokes, const options::w
     return w;
 }
 
-std::vector<double> planned::starts_s() const
-{
-    return start_times_s(plans);
-}
-
-double planned::total_s() const
-{
-    double end = 0.0;
-    const auto starts = starts_s();
-    for (std::size_t i = 0; i < plans.size(); ++i)
-        end = std::max(end, starts[i] + plans[i].plan.total_s);
-    return end;
-}
-
 std::vector<std::string> planned::warnings() const
 {
     std::vector<std::string> all;
@@ -336,16 +295,11 @@ void plan_strokes(const planning& with, const layout& faces, planned& p, const o
         if (checks.go_on)
             checks.go_on();
     };
-    for (const stroke& k : p.strokes) {
+    for (std::size_t i = 0; i < p.strokes.size(); ++i) {
         between();
-        if (s.compensate) {
-            p.moved.push_back(make_compensated_plan(with.tactors, faces, k, s.plan, s.low_speed));
-            p.plans.push_back({std::move(p.moved.back().plan), k.start_s, k.anchor});
-        } else {
-            p.plans.push_back({make_plan(with.tactors, faces, k, s.plan), k.start_s, k.anchor});
-        }
+        session::plan_stroke(p, i, with.tactors, faces, s);
         const plan& made = p.plans.back().plan;
-        const double intensity = loudest(k, made, s.plan.scale);
+        const double intensity = loudest(p.strokes[i], made, s.plan.scale);
         if (!picture)
             check_level(with, s, intensity, made.carrier_hz, source);
         else if (intensity > 0.0)
@@ -366,7 +320,7 @@ planned make_planned(const planning& with, const layout& faces, const json& para
     const std::string source = find_source(params);
     const options::wishes s = settle_options(with.owner, params);
     try {
-        planned p{source, read_strokes(source, params[source], s), {}, s.render};
+        planned p{{source, read_strokes(source, params[source], s)}, s.render};
         p.observer = {s.observer, s.low_speed};
         if (source == "stroke")
             p.name = p.strokes.front().name;
@@ -398,7 +352,7 @@ planned make_drive(const planning& with, const json& params)
         given == nullptr ? usual_s : number(*given, "duration_s", detail::bounds_of::duration_s);
     check_duration(with, seconds);
     check_level(with, with.owner, intensity, with.owner.plan.carrier_hz, "intensity");
-    planned p{"drive", {}, {}, with.owner.render};
+    planned p{{"drive"}, with.owner.render};
     const point where = with.tactors.tactors[static_cast<std::size_t>(tactor)].position;
     plan one{.algorithm = "drive", .phantom = "none"};
     one.stroke_duration_s = seconds;

@@ -10,15 +10,14 @@
 #include <vector>
 
 #include <tactor/array.hpp>
-#include <tactor/percept.hpp>
 #include <tactor/phantom.hpp>
-#include <tactor/plan.hpp>
 #include <tactor/render.hpp>
 #include <tactor/stroke.hpp>
 
 #include "net/rpc.hpp"
 #include "percept/compare.hpp"
 #include "server/stroke_options.hpp"
+#include "session/piece.hpp"
 
 namespace tactor::server {
 
@@ -32,33 +31,24 @@ struct planning {
 };
 
 /// The planned strokes of a request.
-struct planned {
-    std::string name;
-    std::vector<stroke> strokes;
-    std::vector<placed_plan> plans;
-    render_options render;
+struct planned : session::piece {
+    render_options render = {};
     std::uint64_t rounds = 1; ///< how often one submission plays them, each total_s() after the last
-    /// Moves of `compensate` in each plan; empty without it. The plans themselves are moved to `plans`.
-    std::vector<compensated_plan> moved = {};
     detail::observer_choice observer = {}; ///< of the view percept
     double over_db = 0.0;                  ///< of a view: how much weaker it must be to be played
 
-    /// Returns the start of each plan, s from the start of all.
-    std::vector<double> starts_s() const;
-    double total_s() const;
     std::vector<std::string> warnings() const;
     /// Returns the score of all rounds of a plan alone, to be submitted by itself.
     score make_score(const array& a, std::size_t i) const;
 };
 
-/// Reads the strokes that a parameter says, as parse_strokes_toml() and its kin do. \throws error,
-/// fault_error.
+/// Reads the strokes that a parameter says. \throws error, fault_error.
 std::vector<stroke> read_strokes(const std::string& source, const net::json& v, const options::wishes& s);
 
 /// Returns the strokes on the array, each with its pace: those that ask for it fitted, and with `fit` all of
 /// them together. \throws fault_error if there are too many or if they last too long; error.
 std::vector<stroke> settle_strokes(const planning& with, const layout& faces, std::vector<stroke> strokes,
-                                   const options::wishes& s, bool fit);
+                                   options::wishes s, bool fit);
 
 /// Returns the start of each stroke, s, as if each lasted as long as its path.
 std::vector<double> path_starts_s(const std::vector<stroke>& strokes);

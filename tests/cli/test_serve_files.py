@@ -111,7 +111,7 @@ class Import(ServeTest):
                                   ({"text": CSV, "name": "x" * 256}, "name", ""), ({"text": CSV, "options": {}}, "options", "")):
             said = c.error("import", **params)
             self.check_error(said, -32602, what)
-            self.assertIn(why, said["data"]["why"])
+            self.assertIn(why, said["message"])
 
     def test_no_text_makes_the_server_open_a_file(self):
         c = self.serve().client()

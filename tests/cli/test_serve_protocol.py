@@ -171,7 +171,8 @@ class Protocol(ServeTest):
             self.check_error(said, -32602, "toml")
             self.assertIn(word, said["message"])
             self.assertNotIn("options.", said["message"])
-            self.assertTrue(said["data"]["why"].startswith("3:1: "), said)
+            self.assertEqual((said["data"]["line"], said["data"]["column"]), (3, 1), said)
+            self.assertTrue(said["message"].startswith("toml:3:1: "), said)
 
     def test_a_number_that_no_double_holds_is_answered(self):
         c = self.serve().client()

@@ -20,7 +20,7 @@ struct rig {
                             "[[method]]\nname = \"b\"\nalgorithm = \"" +
                                 second + "\"\n" + runs,
                             "p.toml", {})),
-          stimuli(d, felt_array(), {}, [](const stroke&, const plan&, const score&) { return ""; })
+          stimuli(d, felt_array(), {})
     {
     }
 

@@ -16,9 +16,7 @@ namespace {
 
 struct rig {
     experiment_definition d = load_definition("park2016");
-    stimulus_set stimuli{d, felt_array(), {}, [](const stroke& s, const plan& p, const score&) {
-                             return s.name + p.algorithm;
-                         }};
+    stimulus_set stimuli{d, felt_array(), {}};
 
     simulated_observer observer(std::size_t run, const std::string& spec) const
     {
@@ -105,8 +103,7 @@ TEST_CASE("an identification names the nearest target: the right one without noi
                              "[[method]]\nname = \"park\"\n"
                              "[[run]]\nname = \"which\"\ntask = \"identify\"\ntrials = 9\n";
     const experiment_definition d = read_definition(text, "i.toml", {});
-    const stimulus_set stimuli(d, felt_array(), {},
-                               [](const stroke&, const plan&, const score&) { return ""; });
+    const stimulus_set stimuli(d, felt_array(), {});
     const simulation exact = parse_simulation("sigma=0");
     const simulation blurred = parse_simulation("sigma=5000");
     const simulated_observer sharp(exact, d, d.runs[0], stimuli, "01");
@@ -171,9 +168,7 @@ TEST_CASE("a stimulus that cannot be planned or played is refused with its motio
         o.level_dbfs = d.level_dbfs.value_or(-12.0);
         if (!d.level_dbfs)
             o.sl_db = d.sl_db;
-        return caught_message([&] {
-            stimulus_set(d, felt_array(), o, [](const stroke&, const plan&, const score&) { return ""; });
-        });
+        return caught_message([&] { stimulus_set(d, felt_array(), o); });
     };
     CHECK(refusal("path = \"M0 0H40\"", "{ dbfs = -12 }").empty());
     const std::string off = refusal("path = \"M0 0H90\"", "{ dbfs = -12 }");

@@ -128,8 +128,7 @@ TEST_CASE("both stimuli of a pair are at their reported frames, the gap between 
     render_options o;
     o.rate = rate;
     o.level_dbfs = *d.level_dbfs;
-    const study::stimulus_set stimuli(d, palm(), o,
-                                      [](const stroke&, const plan& p, const score&) { return p.algorithm; });
+    const study::stimulus_set stimuli(d, palm(), o);
     const auto gap = static_cast<std::size_t>(std::llround(0.0321 * rate));
     for (const study::planned_trial t : {study::planned_trial{0, 0, 1}, study::planned_trial{0, 1, 0}}) {
         const study::given_stimulus g = s.there.give(stimuli.make_score(t), lead_s, nobody);

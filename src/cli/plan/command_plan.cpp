@@ -124,7 +124,7 @@ int print_plan(settings& s, const std::string& format)
     const score samples = make_score(p, e, sound); // levels and carrier are checked when planned
     session::tell_of_other_carrier(e, sound, std::span(&samples, 1));
     if (format == "json")
-        files::write_plans(record_plans(p, e, samples, sound), write_part);
+        files::write_plans({p, e.tactors, samples, sound}, write_part);
     else if (format == "csv") {
         say_warnings(collect_warnings(p.plans)); // there is no place for them in a table
         print_csv(stdout, p, e);

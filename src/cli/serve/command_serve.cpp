@@ -126,14 +126,13 @@ void provide_descriptors(const server::service_limits& l)
 // above `most_bytes`.
 std::string plan_text(const server::planned& p, const environment& e, std::size_t most_bytes)
 {
-    const piece one{p.name, p.strokes, p.plans, {}, p.moved};
+    const score samples(e.tactors, p.plans, p.render);
     std::string text;
-    files::write_plans(record_plans(one, e, make_score(one, e, p.render), p.render),
-                       [&](std::string_view part) {
-                           if (text.size() + part.size() > most_bytes)
-                               throw std::bad_alloc();
-                           text += part;
-                       });
+    files::write_plans({p, e.tactors, samples, p.render}, [&](std::string_view part) {
+        if (text.size() + part.size() > most_bytes)
+            throw std::bad_alloc();
+        text += part;
+    });
     return text;
 }
 

@@ -57,7 +57,8 @@ error make_error(const net::json& e)
     const net::json data = e.value("data", net::json::object());
     if (!data.is_object() || !data.contains("why"))
         return {kind, "server", e.value("message", "it refuses")};
-    return {kind, data.value("what", "server"), data.value("why", ""), data.value("hint", "")};
+    return error(kind, data.value("what", "server"), data.value("why", ""), data.value("hint", ""))
+        .with_place({"", data.value("line", 0U), data.value("column", 0U)});
 }
 
 } // namespace

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cerrno>
-#include <charconv>
 #include <cstring>
 #include <filesystem>
 #include <string_view>
@@ -29,21 +28,6 @@
 namespace tactor::cli {
 
 namespace {
-
-/// Splits "3:5: no number" into 3, 5 and "no number"; line 0 for other texts.
-std::pair<source_place, std::string> split_place(const std::string& file, const std::string& why)
-{
-    source_place at{.file = file};
-    const char* const end = why.data() + why.size();
-    const auto line = std::from_chars(why.data(), end, at.line);
-    if (line.ec != std::errc() || line.ptr == end || *line.ptr != ':')
-        return {{}, why};
-    const auto column = std::from_chars(line.ptr + 1, end, at.column);
-    const char* const rest = column.ec == std::errc() ? column.ptr : line.ptr;
-    if (end - rest < 2 || rest[0] != ':' || rest[1] != ' ')
-        return {{}, why};
-    return {at, std::string(rest + 2, end)};
-}
 
 // Replaces "options.level_dbfs" with "--level-dbfs".
 std::string in_options(std::string_view text)
@@ -117,9 +101,9 @@ error in_words_of_the_tool(const error& e, const std::string& argument)
 {
     std::string what(e.subject());
     if (what == "stroke" || what == "path" || what == "toml" || what == "csv" || what == "svg") {
-        const auto [at, why] = split_place(argument, std::string(e.why()));
+        const source_place at{argument, e.place().line, e.place().column};
         if (at.line != 0)
-            return e.reworded(at.text(), why, e.hint()).with_place(at);
+            return e.reworded(at.text(), e.why(), e.hint()).with_place(at);
         what = argument;
     } else {
         what = in_options(what);

@@ -46,7 +46,7 @@ public:
 
     plan_file result() &&
     {
-        if (read_.plans.empty())
+        if (read_.made.plans.empty())
             throw error(error_kind::bad_input, file_, "there is no plan in it", how_to_make);
         return std::move(read_);
     }
@@ -77,20 +77,20 @@ private:
             throw error(error_kind::bad_input, file_,
                         fmt::format("its schema is {}, not tactor-plan/1", schema), how_to_make);
         array tactors = read_array(all);
-        if (read_.plans.empty()) {
+        if (read_.made.plans.empty()) {
             read_.tactors = std::move(tactors);
             read_.render = read_render(all);
-            read_.fit = read_fitting(all);
+            read_.made.fit = read_fitting(all);
         } else {
             check_same_array(file_, tactors, read_.tactors);
         }
-        read_.plans.push_back(read_plan(all, read_.tactors, std::exchange(bursts_, {}),
-                                        std::exchange(samples_, {}), recordings_));
+        read_.made.plans.push_back(read_plan(all, read_.tactors, std::exchange(bursts_, {}),
+                                             std::exchange(samples_, {}), recordings_));
         std::optional<compensated_plan> moved = read_compensation(all);
-        read_.strokes.push_back(read_stroke(all, read_.plans.back().plan, moved));
+        read_.made.strokes.push_back(read_stroke(all, read_.made.plans.back().plan, moved));
         if (moved)
-            read_.moved.push_back(*std::move(moved));
-        if (!read_.moved.empty() && read_.moved.size() != read_.plans.size())
+            read_.made.moved.push_back(*std::move(moved));
+        if (!read_.made.moved.empty() && read_.made.moved.size() != read_.made.plans.size())
             all["compensation"].refuse("is said of some plans and not of all");
         return false;
     }

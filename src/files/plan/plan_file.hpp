@@ -10,6 +10,8 @@
 
 #include <tactor/tactor.hpp>
 
+#include "files/plan/plan_json.hpp"
+
 namespace tactor::files {
 
 /// Treatment of a WAV file that a plan names as its waveform.
@@ -17,10 +19,7 @@ enum class recordings_kind { read, refuse };
 
 /// Contents of a file with one plan or several (schemas tactor-plan/1 and tactor-plans/1).
 struct plan_file {
-    std::vector<stroke> strokes; ///< as far as plans tell: where their bursts or samples are
-    std::vector<placed_plan> plans;
-    std::vector<compensated_plan> moved; ///< what --compensate did, without the plans; none or one a plan
-    std::optional<fitting> fit = {};     ///< what --fit did, to all
+    piece made; ///< its strokes as far as plans tell: where their bursts or samples are
     array tactors;
     render_options render; ///< with rate, channels and marker
 };

@@ -189,22 +189,37 @@ json array_json(const array& a)
     return {{"name", a.name}, {"tactors", tactors}};
 }
 
+std::vector<double> piece::starts_s() const
+{
+    return start_times_s(plans);
+}
+
+double piece::total_s() const
+{
+    double end = 0.0;
+    const std::vector<double> starts = starts_s();
+    for (std::size_t i = 0; i < plans.size(); ++i)
+        end = std::max(end, starts[i] + plans[i].plan.total_s);
+    return end;
+}
+
 void write_plans(const plan_record& r, const text_sink& out)
 {
-    const auto starts = start_times_s(r.plans);
+    const auto starts = r.made.starts_s();
     const auto write = [&](std::size_t i) {
-        write_plan(out, {r.strokes[i], r.plans[i].plan, starts[i], !r.plans[i].start_s, r.samples.starts()[i],
-                         r.tactors, r.samples, r.fit, r.moved.empty() ? nullptr : &r.moved[i], r.options});
+        write_plan(out, {r.made.strokes[i], r.made.plans[i].plan, starts[i], !r.made.plans[i].start_s,
+                         r.samples.starts()[i], r.tactors, r.samples, r.made.fit ? &*r.made.fit : nullptr,
+                         r.made.moved.empty() ? nullptr : &r.made.moved[i], r.options});
     };
-    if (r.plans.size() == 1) {
+    if (r.made.plans.size() == 1) {
         write(0);
         out("\n");
         return;
     }
     out("{\"schema\":\"tactor-plans/1\",\"plans\":[\n");
-    for (std::size_t i = 0; i < r.plans.size(); ++i) {
+    for (std::size_t i = 0; i < r.made.plans.size(); ++i) {
         write(i);
-        out(i + 1 < r.plans.size() ? ",\n" : "\n");
+        out(i + 1 < r.made.plans.size() ? ",\n" : "\n");
     }
     out("]}\n");
 }

@@ -4,7 +4,7 @@
 #pragma once
 
 #include <functional>
-#include <span>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -21,12 +21,23 @@ namespace tactor::files {
 /// Takes the next part of a text. Whatever it throws ends the writing.
 using text_sink = std::function<void(std::string_view)>;
 
-/// Plans of one score, and everything that its samples depend on. What it refers to must outlive it.
+/// Strokes, and the plans that were made of them.
+struct piece {
+    std::string name = {};
+    std::vector<stroke> strokes = {};
+    std::vector<placed_plan> plans = {}; ///< one a stroke; none before they are planned
+    std::optional<fitting> fit = {};     ///< what fitting did to all strokes together
+    /// Results of compensation without their plans; none, or one a stroke.
+    std::vector<compensated_plan> moved = {};
+
+    /// Returns the start of each plan and the end of the last, s from the start of all.
+    std::vector<double> starts_s() const;
+    double total_s() const;
+};
+
+/// A piece that is planned, and everything that its samples depend on. What it refers to must outlive it.
 struct plan_record {
-    std::span<const stroke> strokes;
-    std::span<const placed_plan> plans;      ///< one a stroke
-    std::span<const compensated_plan> moved; ///< what compensation did; none, or one a plan
-    const fitting* fit;                      ///< what fitting did to all strokes; null without
+    const piece& made;
     const array& tactors;
     const score& samples;          ///< of all plans, made with `options`
     const render_options& options; ///< with rate and channels

@@ -122,7 +122,7 @@ void place_by_plans(const exporting& e, const options::wishes& s, std::vector<st
 {
     if (std::none_of(strokes.begin(), strokes.end(), counts_from_group))
         return;
-    planned p{"", strokes, {}, s.render};
+    planned p{{"", strokes}, s.render};
     plan_strokes(e.with, e.faces, p, s, "stroke", checks);
     count_from_piece(strokes, p.starts_s());
 }
@@ -203,7 +203,7 @@ std::string make_bytes(const exporting& e, const file_kind& kind, const std::str
             return toml;
         strokes = read_again(toml, source, strokes);
     }
-    planned p{name, std::move(strokes), {}, s.render};
+    planned p{{name, std::move(strokes)}, s.render};
     plan_strokes(e.with, e.faces, p, s, source, checks);
     return file_bytes(e, kind, p, s);
 }

@@ -74,11 +74,11 @@ bool is_plan(std::string_view bytes, const std::string& name)
 std::vector<stroke> read_plan_strokes(std::string_view bytes, const std::string& name)
 {
     files::plan_file f = files::read_plans(bytes, name, files::recordings_kind::refuse);
-    for (std::size_t i = 0; i < f.strokes.size(); ++i) {
-        f.strokes[i].start_s = f.plans[i].start_s;
-        f.strokes[i].anchor = f.plans[i].anchor;
+    for (std::size_t i = 0; i < f.made.strokes.size(); ++i) {
+        f.made.strokes[i].start_s = f.made.plans[i].start_s;
+        f.made.strokes[i].anchor = f.made.plans[i].anchor;
     }
-    return std::move(f.strokes);
+    return std::move(f.made.strokes);
 }
 
 read_file read_bytes(std::string bytes, const std::string& name, double intensity_max)

@@ -11,6 +11,7 @@
 
 #include "core/marks.hpp"
 #include "core/sha256.hpp"
+#include "files/plan/plan_json.hpp"
 #include "study/experiment/definition.hpp"
 
 namespace tactor::study {
@@ -47,8 +48,7 @@ std::vector<point> target_path(const stroke& s)
     return parts;
 }
 
-stimulus_set::stimulus_set(const experiment_definition& d, const array& a, const render_options& o,
-                           const plan_writer& write)
+stimulus_set::stimulus_set(const experiment_definition& d, const array& a, const render_options& o)
     : array_(a),
       options_(o),
       gap_frames_(static_cast<std::uint64_t>(std::llround(d.gap_s * o.rate))),
@@ -59,23 +59,25 @@ stimulus_set::stimulus_set(const experiment_definition& d, const array& a, const
         for (const std::size_t motion : r.motions)
             for (const std::size_t method : r.methods)
                 if (!by_motion_[motion][method])
-                    by_motion_[motion][method] = make(d.motions[motion], d.methods[method], a, faces, write);
+                    by_motion_[motion][method] = make(d.motions[motion], d.methods[method], faces);
 }
 
-stimulus stimulus_set::make(const motion_definition& motion, const method_definition& method, const array& a,
-                            const layout& faces, const plan_writer& write)
+stimulus stimulus_set::make(const motion_definition& motion, const method_definition& method,
+                            const layout& faces)
 {
     try {
         if (motion.drawn.motion.duration_s() > longest_stimulus_s)
             throw error(error_kind::bad_input, "stroke", "it takes more than ten minutes", "a shorter one");
         const stroke& drawn = motion.drawn;
+        const files::piece one{.strokes = {drawn},
+                               .plans = {{make_plan(array_, faces, drawn, method.options), std::nullopt}}};
+        const score sounds(array_, one.plans, options_);
         stimulus s;
-        s.plan = make_plan(a, faces, drawn, method.options);
-        const score sounds(a, s.plan, options_);
+        s.plan = one.plans.front().plan;
         s.frames = sounds.frames();
-        s.text = write(drawn, s.plan, sounds);
+        s.text = files::plans_text({one, array_, sounds, options_});
         s.hash = detail::sha256_text(s.text);
-        const std::vector<percept_sample> samples = predict_percept(a, drawn, s.plan);
+        const std::vector<percept_sample> samples = predict_percept(array_, drawn, s.plan);
         s.felt = summarise(samples);
         s.felt_path = sample_path(samples);
         for (const std::string& w : s.plan.warnings) {

@@ -5,7 +5,6 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -35,16 +34,12 @@ inline constexpr std::size_t path_parts = 100;
 /// Returns the target's places at 0, 1, ... path_parts parts of its time.
 std::vector<point> target_path(const stroke& s);
 
-/// Writes a plan down as tactor-plan/1.
-using plan_writer = std::function<std::string(const stroke&, const plan&, const score&)>;
-
 class stimulus_set {
 public:
     /// Plans, predicts and checks all stimuli; keeps each warning of the planner once.
     /// \throws error (bad_input) with the motion's or method's line: it cannot be planned, or a level is too
     ///         high.
-    stimulus_set(const experiment_definition& d, const array& a, const render_options& o,
-                 const plan_writer& write);
+    stimulus_set(const experiment_definition& d, const array& a, const render_options& o);
 
     /// Returns a stimulus that a run asks for.
     const stimulus& at(std::size_t motion, std::size_t method) const;
@@ -59,8 +54,7 @@ public:
     score make_score(const planned_trial& t, const std::optional<drive_limits>& limits = {}) const;
 
 private:
-    stimulus make(const motion_definition& motion, const method_definition& method, const array& a,
-                  const layout& faces, const plan_writer& write);
+    stimulus make(const motion_definition& motion, const method_definition& method, const layout& faces);
 
     array array_;
     render_options options_;

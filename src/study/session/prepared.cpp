@@ -17,7 +17,6 @@
 
 #include "core/moved.hpp"
 #include "core/path/shape.hpp"
-#include "files/plan/plan_json.hpp"
 #include "session/device.hpp"
 #include "session/walk.hpp"
 #include "study/experiment/definition.hpp"
@@ -29,13 +28,6 @@ namespace tactor::study {
 namespace {
 
 // Returns a stroke's plan as `tactor plan --format json` prints it.
-std::string plan_text(const session::environment& e, const render_options& o, const stroke& s, const plan& p,
-                      const score& sounds)
-{
-    const placed_plan one{p, std::nullopt};
-    return files::plans_text({{&s, 1}, {&one, 1}, {}, nullptr, e.tactors, sounds, o});
-}
-
 // Sets thresholds that nobody measured at any frequency, in a session that nobody feels. Returns true if it
 // set any. A real session needs measured ones.
 bool assume_thresholds(array& a, bool nobody_feels)
@@ -176,9 +168,7 @@ prepared_experiment prepare(const session_request& r, session::settings& s)
     const std::string code = r.participant.empty() ? "01" : r.participant;
     const std::uint64_t seed = r.seed.value_or(d.seed.value_or(default_seed(code)));
     auto runs = make_sequence(d, code, seed);
-    stimulus_set stimuli(d, e.tactors, render, [&](const stroke& k, const plan& p, const score& sounds) {
-        return plan_text(e, render, k, p, sounds);
-    });
+    stimulus_set stimuli(d, e.tactors, render);
     if (r.who != audience::observer)
         for (unsigned i = 0; i < e.tactors.tactors.size(); ++i)
             static_cast<void>(walk_score(d, e.tactors, render, i));

@@ -45,7 +45,7 @@ async function what_to_import(file) {
 // Says why in one sentence, with the line and a short hint.
 function fault_text({message, data}) {
   if (!data?.why) return message;
-  const why = data.why.replace(/^(\d+):\d+: /, "line $1: ");
+  const why = `${data.line ? `line ${data.line}: ` : ""}${data.why}`;
   return data.hint?.length < SHORT_HINT ? `${why} (${data.hint})` : why;
 }
 on_click("open", () => by_id("file").click());

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: MIT
+#include "session/piece.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "core/asked_pace.hpp"
+
+namespace tactor::session {
+namespace {
+
+stroke stroke_of_path(const std::string& data, const options::wishes& o)
+{
+    const path p = path::from_svg(data);
+    const double speed = o.speed_mm_s.value_or(o.usual_speed_mm_s.value_or(default_speed_mm_s));
+    stroke k{.name = "path", .motion = trajectory::along(p, o.duration_s.value_or(p.length_mm() / speed))};
+    k.speed_mm_s = speed;
+    return k;
+}
+
+stroke named_stroke(const std::string& name)
+{
+    const auto& shapes = stroke_shapes();
+    const bool is_shape = std::find(shapes.begin(), shapes.end(), name) != shapes.end();
+    return is_shape ? shape_stroke(name) : preset_stroke(name);
+}
+
+} // namespace
+
+std::vector<stroke> read_strokes(std::string_view kind, const std::string& text, const std::string& named,
+                                 const options::wishes& o)
+{
+    const double intensity_max = o.intensity_max.value_or(1.0);
+    if (kind == "stroke")
+        return {named_stroke(text)};
+    if (kind == "path")
+        return {stroke_of_path(text, o)};
+    if (kind == "toml")
+        return parse_strokes_toml(text, named, intensity_max);
+    if (kind == "csv")
+        return parse_strokes_csv(text, named, intensity_max);
+    return parse_strokes_svg(text, named);
+}
+
+void place_strokes(piece& p, const layout& faces, const options::wishes& o)
+{
+    p.strokes = apply_fits(std::move(p.strokes), faces);
+    if (o.fit) {
+        fitted_strokes fitted = fit_strokes(p.strokes, faces, o.fit_margin_mm);
+        p.strokes = std::move(fitted.strokes);
+        p.fit = fitted.placed;
+    }
+    // Times count where a stroke ends up.
+    for (stroke& k : p.strokes)
+        detail::set_pace(k, {o.duration_s, o.speed_mm_s, o.usual_speed_mm_s});
+}
+
+void plan_stroke(piece& p, std::size_t i, const array& a, const layout& faces, const options::wishes& o)
+{
+    const stroke& k = p.strokes[i];
+    if (!o.compensate) {
+        p.plans.push_back({make_plan(a, faces, k, o.plan), k.start_s, k.anchor});
+        return;
+    }
+    p.moved.push_back(make_compensated_plan(a, faces, k, o.plan, o.low_speed));
+    p.plans.push_back({std::move(p.moved.back().plan), k.start_s, k.anchor});
+}
+
+} // namespace tactor::session
