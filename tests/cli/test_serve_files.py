@@ -102,6 +102,7 @@ class Import(ServeTest):
                                   ({"name": "a.svg", "text": "<svg>\n<path d='M 0 x'/></svg>"}, "text", "2:"),
                                   ({"name": "a.json", "text": "{\n"}, "text", "line 2"),
                                   ({"name": "a.json", "text": "{}"}, "text", "no plan"),
+                                  ({"name": "a.json", "text": '{"schema": "tactor-plan/1", "array": {"tactors": 7}}'}, "text", "text: array."),
                                   ({"text": "hello"}, "text", "1:"), ({"text": ""}, "text", ""),
                                   ({"base64": "aGVsbG8"}, "base64", "no base64"), ({"base64": "a b="}, "base64", "no base64"),
                                   ({"base64": base64.b64encode(b"\x89PNG\r\n\x1a\n").decode()}, "base64", "a PNG picture"),
@@ -112,6 +113,7 @@ class Import(ServeTest):
             said = c.error("import", **params)
             self.check_error(said, -32602, what)
             self.assertIn(why, said["message"])
+            self.assertNotIn("a.json", said["message"])
 
     def test_no_text_makes_the_server_open_a_file(self):
         c = self.serve().client()

@@ -27,13 +27,15 @@ ordered_json read_object(const std::string& text, const std::string& file)
     } catch (const ordered_json::exception&) { // a number that no double holds
     }
     const auto end = text.begin() + static_cast<std::ptrdiff_t>(byte);
-    throw error(error_kind::bad_input, fmt::format("{}:{}", file, 1 + std::count(text.begin(), end, '\n')),
-                why, "it was changed, or not written to its end");
+    const auto line = static_cast<unsigned>(1 + std::count(text.begin(), end, '\n'));
+    throw error(error_kind::bad_input, source_place{file, line}, why,
+                "it was changed, or not written to its end");
 }
 
 void json_value::refuse(std::string_view why, std::string_view hint) const
 {
-    throw error(error_kind::bad_input, place_.empty() ? *file_ : fmt::format("{}: {}", *file_, place_), why,
+    throw error(error_kind::bad_input, *file_,
+                place_.empty() ? std::string(why) : fmt::format("{}: {}", place_, why),
                 hint.empty() ? hint_ : hint)
         .with_field(place_)
         .with_place({*file_});

@@ -141,7 +141,6 @@ net::rpc_fault content_fault(const std::string& source, const std::string& name)
     net::rpc_fault f = current_fault(name);
     if (f.what == name)
         f.what = source;
-    f.why.erase(0, f.why.find_first_not_of(' '));
     return f;
 }
 

@@ -155,25 +155,21 @@ function show_point() {
 }
 
 // Frames: only while something moves or has changed.
-let told_clock = "", running = false;
+let running = false;
 function frame() {
   tick();
   draw_frame();
   draw_lanes();
   draw_meter();
-  const [now, total] = clock_text();
-  if (now + total !== told_clock) {
-    told_clock = now + total;
-    set_text("clock", now);
-    set_text("total", total);
-    if (state.drawing || state.playing) { running = true; return requestAnimationFrame(frame); }
-    const slider = by_id("lanes");
-    slider.setAttribute("aria-valuenow", now);
-    slider.setAttribute("aria-valuemax", parseFloat(total) || 0);
-    slider.setAttribute("aria-valuetext", `${now} of ${total}`);
-  }
+  const [now, total] = clock_text(), text = `${now} of ${total}`, slider = by_id("lanes");
+  set_text("clock", now);
+  set_text("total", total);
   running = moves();
-  if (running) requestAnimationFrame(frame);
+  if (running) return requestAnimationFrame(frame);
+  if (slider.getAttribute("aria-valuetext") === text) return;
+  slider.setAttribute("aria-valuenow", now);
+  slider.setAttribute("aria-valuemax", parseFloat(total) || 0);
+  slider.setAttribute("aria-valuetext", text);
 }
 function wake() { if (!running) { running = true; requestAnimationFrame(frame); } }
 on_change(wake);

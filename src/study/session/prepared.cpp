@@ -27,7 +27,6 @@ namespace tactor::study {
 
 namespace {
 
-// Returns a stroke's plan as `tactor plan --format json` prints it.
 // Sets thresholds that nobody measured at any frequency, in a session that nobody feels. Returns true if it
 // set any. A real session needs measured ones.
 bool assume_thresholds(array& a, bool nobody_feels)

@@ -39,7 +39,7 @@ class score_gains {
 public:
     /// Returns the factor of a score that is not 1 for ever after a frame; null: it is.
     const score_gain* find(std::uint32_t score, std::uint64_t frame) const noexcept;
-    /// Leads the factor of a score to `to`, from a frame on. Returns false if all are in use.
+    /// Leads the factor of a score to `to`, from frame `at` on. Returns false if all are in use.
     bool set(std::uint32_t score, double to, std::uint64_t at, std::uint64_t length) noexcept;
     void forget(std::uint32_t score) noexcept;
     /// Ends what goes on: each factor is the one that it was led to.

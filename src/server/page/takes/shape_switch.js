@@ -5,18 +5,23 @@ import {by_id, on_click, show_pressed, show_only_if, listen, set_text} from "../
 import {edit_stroke} from "./takes.js";
 import {shape, as_drawn, as_edited, points_moved, fitted_within, FIT_MM} from "./stroke.js";
 
+function curve_text(s, edited, points) {
+  const n = edited ? points_moved(edited) : s.knots?.length, within = `within ${s.fit_mm ?? FIT_MM} mm`;
+  if (edited) return n ? `Edited, ${n} ${n === 1 ? "point" : "points"}` : "Edited";
+  return points && s.fit_mm ? `${n} points, ${within}` : `Fitted, ${within}`;
+}
 function show_shape() {
-  const s = current_stroke(), now = shape(s), edited = now === "edited" ? s : s?.edited, n = edited ? points_moved(edited) : 0;
-  const points = s && state.tool === "points", fit = s?.fit_mm ?? FIT_MM;
+  const s = current_stroke(), now = shape(s), edited = now === "edited" ? s : s?.edited;
+  const points = s && state.tool === "points", slider = by_id("fit-mm");
   by_id("shape").hidden = now === null && !points || state.drawing !== null;
   if (by_id("shape").hidden) return;
   for (const id of ["shape-ink", "shape-curve"]) show_only_if(by_id(id), now !== null);
-  show_only_if(by_id("fit-mm"), points);
-  by_id("fit-mm").value = fit;
-  by_id("fit-mm").style.setProperty("--part", `${(fit - 0.2) / 0.018}%`);
+  show_only_if(slider, points);
+  slider.value = s.fit_mm ?? FIT_MM;
+  slider.style.setProperty("--part", `${100 * (slider.value - slider.min) / (slider.max - slider.min)}%`);
   show_pressed(by_id("shape-ink"), now === "drawn");
   show_pressed(by_id("shape-curve"), now !== "drawn");
-  set_text("shape-curve", !edited ? points && s.fit_mm ? `${s.knots.length} points, within ${fit} mm` : `Fitted, within ${fit} mm` : !n ? "Edited" : `Edited, ${n} ${n === 1 ? "point" : "points"}`);
+  set_text("shape-curve", curve_text(s, edited, points));
 }
 on_click("shape-ink", () => { if (shape(current_stroke()) !== "drawn") edit_stroke(as_drawn); });
 on_click("shape-curve", () => { if (shape(current_stroke()) === "drawn") edit_stroke(as_edited); });

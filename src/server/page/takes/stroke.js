@@ -157,17 +157,13 @@ function place_to_cut(rows, knots, i, fit_mm) {
   if (!worst.k) return null;
   return from + long * Math.min(0.8, Math.max(0.2, worst.k / n));
 }
-// Returns the distance of a place from a line, near the number k of its places. In numbers, for it is most of the work.
-function from_line_mm([x, y], line, k) {
-  const reach = 2 + Math.ceil(line.length / 4), last = Math.min(line.length - 1, k + reach);
+// Returns the distance of a place from a line, near the number k of its places.
+function from_line_mm(p, line, k) {
+  const reach = 2 + Math.ceil(line.length / 4);
   let off = Infinity;
-  for (let j = Math.max(0, k - reach); j < last; ++j) {
-    const [ax, ay] = line[j], dx = line[j + 1][0] - ax, dy = line[j + 1][1] - ay;
-    const part = Math.min(1, Math.max(0, ((x - ax) * dx + (y - ay) * dy) / (dx * dx + dy * dy || 1)));
-    const ox = ax + part * dx - x, oy = ay + part * dy - y, square = ox * ox + oy * oy;
-    if (square < off) off = square;
-  }
-  return Math.sqrt(off);
+  for (let j = Math.max(0, k - reach); j < Math.min(line.length - 1, k + reach); ++j)
+    off = Math.min(off, segment_mm(line[j], line[j + 1], p));
+  return off;
 }
 // Returns where a path turns by more than CORNER_RAD within 1 mm, mm along it.
 function corners(rows) {
@@ -417,12 +413,17 @@ export function outside_mm(edge, p) {
   });
   return inside ? 0 : off;
 }
-function nearest_on(a, b, p) {
+// Returns the part of a segment at which a place is nearest to it.
+function nearest_part(a, b, p) {
   const dx = b[0] - a[0], dy = b[1] - a[1];
-  const part = Math.min(1, Math.max(0, ((p[0] - a[0]) * dx + (p[1] - a[1]) * dy) / (dx * dx + dy * dy || 1)));
-  return [a[0] + part * dx, a[1] + part * dy];
+  return Math.min(1, Math.max(0, ((p[0] - a[0]) * dx + (p[1] - a[1]) * dy) / (dx * dx + dy * dy || 1)));
 }
-const segment_mm = (a, b, p) => distance(nearest_on(a, b, p), p);
+const nearest_on = (a, b, p) => [0, 1].map(k => between(a[k], b[k], nearest_part(a, b, p)));
+// In numbers: it is most of the work of a fit.
+function segment_mm(a, b, p) {
+  const part = nearest_part(a, b, p), x = between(a[0], b[0], part) - p[0], y = between(a[1], b[1], part) - p[1];
+  return Math.sqrt(x * x + y * y);
+}
 // Returns the place of a hull that is nearest to p.
 export const within = (edge, p) => outside_mm(edge, p) === 0 ? p : edge.map((a, i) => nearest_on(a, edge[(i + 1) % edge.length], p))
   .reduce((best, q) => distance(q, p) < distance(best, p) ? q : best);
