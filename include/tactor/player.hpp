@@ -111,9 +111,11 @@ struct player_options {
     int priority = 65;
     /// Limits on the power of all tactors and on the drive time of each, whatever the scores request.
     drive_limits limits = {};
-    /// History of an earlier player on the same array. When a lost device is opened again, it keeps a tactor
-    /// from getting its used drive time back. Channels count from 0 in both.
-    drive_history driven = {};
+    /// The drive time of each channel counts on from earlier players on the same device
+    /// (stream_setup::device), also those of other processes of this user, so that neither a new player nor a
+    /// new process gives a tactor its used drive time back. See drive_time_fault(). False: it begins with 0,
+    /// and is not kept.
+    bool keep_drive_time = true;
     /// Receives messages about the stream's start and end, xruns and recovery, mutes of the amplifier, and
     /// limits that acted.
     log_function log = {};
@@ -182,6 +184,12 @@ struct player_lines {
 /// Returns sentences about tactors that arrive changed: weaker, with reversed polarity, through several
 /// channels of the device, or clipped on the way (stream_wiring::most_gain).
 [[nodiscard]] TACTOR_API std::vector<std::string> wiring_warnings(const array& a, const stream_wiring& w);
+
+/// Returns the reason why other processes do not know of the drive time that players here add to a device;
+/// empty: they do. It is kept in a file of the folder `tactor` in the runtime folder (RUNTIME_DIRECTORY, else
+/// XDG_RUNTIME_DIR), which must be this user's alone. Without one, players of this process still know of each
+/// other. Blocks shortly. Any thread that reads the environment.
+[[nodiscard]] TACTOR_API std::string drive_time_fault(std::string_view device);
 
 /// Owns the sink, the audio thread and the control thread. Any thread but the audio thread may call its
 /// members. They lock, so several producers are safe. An impossible number gives an error, never a crash.
@@ -290,10 +298,6 @@ public:
 
     [[nodiscard]] player_position position() const noexcept;
     [[nodiscard]] player_stats stats() const;
-    /// Returns how long each channel was driven, for the next player on the array. Waits until the audio
-    /// thread has ended.
-    /// \throws error (runtime) while the stream runs: call stop() first.
-    [[nodiscard]] drive_history history() const;
 
 private:
     struct impl;

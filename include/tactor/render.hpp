@@ -35,11 +35,12 @@ struct drive_limits {
     /// Above it, the gain of all tactors falls within some 10 ms, without a click. It returns with a time
     /// constant of 50 ms. A drive that begins abruptly meanwhile is faded in.
     double power_dbfs = 4.771212547196624;
-    /// Longest time that one tactor is driven (above -40 dBFS) within any window. Then its channel fades out
-    /// and stays silent until half of that time has left the window. No window holds more than this time and
-    /// one fade of 20 ms.
-    /// Time is counted in steps of 1/256 of the window. A tactor that starts more than once in a step may be
-    /// cut up to one step too early. 0.1 to 3600 s; not below window_s: no limit.
+    /// Longest drive of a tactor (above -40 dBFS) without a rest. Drive time is a level for each channel that
+    /// rises by a second a second while the tactor is driven. While it rests, the level falls to 0 by
+    /// max_drive_s / (window_s - max_drive_s) seconds a second. At max_drive_s the channel fades out within
+    /// 20 ms; at half of it, it fades in again. So in the long run a tactor is driven for max_drive_s of each
+    /// window_s, and in no window for more than max_drive_s * (2 - max_drive_s / window_s), plus fades. 0.1
+    /// to 3600 s; not below window_s: no limit.
     double max_drive_s = 5.0;
     double window_s = 10.0; ///< 0.1 to 3600 s
 };

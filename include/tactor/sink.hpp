@@ -40,7 +40,8 @@ struct stream_wiring {
 
 /// Negotiated stream. While the sink lives, only has_clock may change.
 struct stream_setup {
-    std::string name; ///< as the user named it
+    std::string name;        ///< as the user named it
+    std::string device = {}; ///< name under which the drive time of its channels is kept; empty: it is not
     unsigned channels = 0;
     unsigned device_channels = 0; ///< of the PCM; those beyond `channels` are silent; 0: as many
     unsigned rate = 0;            ///< Hz

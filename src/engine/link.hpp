@@ -120,6 +120,9 @@ struct link {
     rt::triple_buffer<clock_line> clock;      ///< the DAC's clock as far as it is known, for the control side
     rt::triple_buffer<clock_line> sync_clock; ///< the same for the thread that sends sync pulses
     counters count;
+    /// Frames in which each channel was driven so far; empty where drive time is not counted.
+    std::vector<std::atomic<std::uint64_t>> driven;
+    std::atomic<bool> sounds{false}; ///< drives wait or sound
     amplifier_link amplifier;
 };
 

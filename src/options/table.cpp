@@ -342,11 +342,11 @@ constexpr std::array table{
            .where = in_player | playing | in_score,
            .to = reach([](auto& w) -> auto& { return w.stream.power_dbfs; })},
     option{.name = "max_drive_s", .unit = "s", .allowed = of::drive_s, .in = group::device,
-           .help = "limit on the time that one tactor is driven within the window (default 5)",
+           .help = "longest drive of one tactor without a rest (default 5)",
            .where = in_player | playing | in_score,
            .to = reach([](auto& w) -> auto& { return w.stream.max_drive_s; })},
     option{.name = "drive_window_s", .field = "window_s", .unit = "s", .allowed = of::drive_s, .in = group::device,
-           .help = "window of {max_drive_s} (default 10)",
+           .help = "time of which a tactor may be driven for {max_drive_s} in the long run (default 10)",
            .where = in_player | playing | in_score,
            .to = reach([](auto& w) -> auto& { return w.stream.drive_window_s; })},
 

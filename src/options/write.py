@@ -147,8 +147,9 @@ class PlayerCalls:
             Configuration; default: the tool's ($TACTOR_CONFIG, the user's, the system's), amplifier and limits included. os.devnull: none.
         log : callable, optional
             `log(kind, text)` is told of xruns, recovery, mutes and limits that act, in the player's thread of Python.
-        after : Player, optional
-            The player before on the same array, closed or stopped: what it gave each tactor lately counts.
+        keep_drive_time : bool
+            What earlier players and runs of this user drove on this device counts, and what this one drives counts for later ones. False: it
+            begins with 0, and is not kept.
 {parameters}
         """
         given = dict(locals())
@@ -277,7 +278,7 @@ def calls():
         call(SCORE, rows("score"), ["self", "array: Array", "plans: _Plans", "*"]),
         call(PLAYER, rows("player"), ["self", "device: str", "array: Array", "*"],
              ["config: _t.Union[str, os.PathLike[str], None] = None",
-              "log: _t.Callable[[_LogKind, str], object] | None = None", "after: Player | None = None"]),
+              "log: _t.Callable[[_LogKind, str], object] | None = None", "keep_drive_time: bool = True"]),
         call(LIVE, of_live, ["self", "*"], ["timeout: float = 0.5", "longest: float | None = None", "smooth: float = 0.0", "intensity_max: float | None = None"], own_phantom=True),
     ))
 

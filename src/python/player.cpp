@@ -10,6 +10,7 @@
 #include "python/options.hpp"
 #include "python/player_handle.hpp"
 #include "session/live_remarks.hpp"
+#include "session/sound_server.hpp"
 
 namespace tactor::python {
 namespace {
@@ -26,7 +27,7 @@ void take(const py::dict& given, const char* name, std::optional<T>& into)
 }
 
 std::shared_ptr<player_handle> open(const std::shared_ptr<array_handle>& on, const std::string& pcm,
-                                    const py::dict& given, const drive_history& driven)
+                                    const py::dict& given, bool keep)
 {
     session::settings s;
     s.place = options::in_player;
@@ -36,7 +37,7 @@ std::shared_ptr<player_handle> open(const std::shared_ptr<array_handle>& on, con
     give_player_options(s, given);
     const auto wants_log = given["log"].cast<bool>();
     const without_lock free;
-    return std::make_shared<player_handle>(on->value(), std::move(s), driven, wants_log);
+    return std::make_shared<player_handle>(on->value(), std::move(s), keep, wants_log);
 }
 
 py::tuple report_tuple(const stroke_report& r)
@@ -210,7 +211,9 @@ void bind_live(py::module_& m)
 
 void bind_player(py::module_& m)
 {
-    py::class_<drive_history>(m, "DriveHistory").def(py::init<>());
+    m.def("drive_time_fault", [](const std::string& pcm) {
+        return session::is_felt(pcm) ? drive_time_fault(pcm) : std::string();
+    });
     py::class_<player_handle, std::shared_ptr<player_handle>>(m, "Player")
         .def(py::init(&open))
         .def("next", &next_event)
@@ -228,7 +231,6 @@ void bind_player(py::module_& m)
         .def(
             "stop", [](const player_handle& h) { h.use([](player& p) { p.stop(); }); }, free_call())
         .def("ended", &player_handle::ended, free_call())
-        .def("history", &player_handle::history, free_call())
         .def("close", &player_handle::close, free_call())
         .def("refuse_child", &player_handle::refuse_child)
         .def_property_readonly("closed", &player_handle::closed)

@@ -36,7 +36,7 @@ session::environment read_environment(session::settings& s, const array* a)
     return e;
 }
 
-player_handle::player_handle(const array& a, session::settings s, const drive_history& driven, bool wants_log)
+player_handle::player_handle(const array& a, session::settings s, bool keep, bool wants_log)
     : owner_(::getpid()), events_(std::make_shared<event_queue>()), open_(std::make_unique<open_state>())
 {
     const session::environment e = read_environment(s, &a);
@@ -54,7 +54,7 @@ player_handle::player_handle(const array& a, session::settings s, const drive_hi
     player_options o;
     o.limits = session::settle_limits(s.stream, e);
     o.require_realtime = s.stream.require_realtime;
-    o.driven = driven;
+    o.keep_drive_time = keep;
     o.log = device.log;
     open_->stream = std::make_unique<player>(session::open_device(device, a), a, o, open_->lines.lend());
     open_->stream->on_report([events](const stroke_report& r) { events->put(r); });
@@ -116,13 +116,6 @@ std::optional<std::string> player_handle::ended() const
     return open_->stream != nullptr ? end_reason(*open_->stream) : open_->last.ended;
 }
 
-drive_history player_handle::history() const
-{
-    refuse_child();
-    const std::shared_lock lock(open_->mutex);
-    return open_->stream != nullptr ? open_->stream->history() : open_->last.history;
-}
-
 bool player_handle::cancel(stroke_id id) const
 {
     refuse_child();
@@ -143,7 +136,7 @@ void player_handle::close()
         const std::unique_lock lock(open_->mutex);
         ended = std::move(open_->stream);
         if (ended != nullptr)
-            open_->last = {ended->stats(), end_reason(*ended), ended->history()};
+            open_->last = {ended->stats(), end_reason(*ended)};
     }
     ended.reset();
     {

@@ -83,9 +83,9 @@ session::environment read_environment(session::settings& s, const array* a);
 /// of the parent's is touched when it ends.
 class player_handle {
 public:
-    /// Opens the device. What `s` does not set is the configuration's, then the tool's default; `driven` is
-    /// the history of the player before. Without the interpreter's lock. \throws error.
-    player_handle(const array& a, session::settings s, const drive_history& driven, bool wants_log);
+    /// Opens the device. What `s` does not set is the configuration's, then the tool's default. `keep`: as
+    /// player_options::keep_drive_time. Without the interpreter's lock. \throws error.
+    player_handle(const array& a, session::settings s, bool keep, bool wants_log);
     ~player_handle();
     player_handle(const player_handle&) = delete;
     player_handle& operator=(const player_handle&) = delete;
@@ -108,7 +108,6 @@ public:
     /// Return the player's; once it is closed, those of its end. \throws error in a forked process.
     player_stats stats() const;
     std::optional<std::string> ended() const;
-    drive_history history() const;
 
     /// Returns false if the stroke has ended, as all have once it is closed. \throws error in a forked
     /// process.
@@ -124,7 +123,6 @@ private:
     struct last_words {
         player_stats stats = {};
         std::optional<std::string> ended = {};
-        drive_history history = {};
     };
     static std::optional<std::string> end_reason(const player& p);
 

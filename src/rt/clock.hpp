@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// CLOCK_MONOTONIC, the only clock in use here. Async-signal-safe.
+/// CLOCK_MONOTONIC, the clock of everything that plays, and CLOCK_BOOTTIME, which goes on in sleep.
+/// Async-signal-safe.
 #pragma once
 
 #include <cstdint>
@@ -19,6 +20,13 @@ inline std::int64_t monotonic_ns() noexcept
 {
     timespec t{};
     ::clock_gettime(CLOCK_MONOTONIC, &t);
+    return to_ns(t);
+}
+
+inline std::int64_t boottime_ns() noexcept
+{
+    timespec t{};
+    ::clock_gettime(CLOCK_BOOTTIME, &t);
     return to_ns(t);
 }
 

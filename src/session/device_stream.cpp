@@ -9,6 +9,8 @@
 #include <utility>
 
 #include "session/device.hpp"
+#include "session/say.hpp"
+#include "session/sound_server.hpp"
 
 namespace tactor::session {
 
@@ -48,7 +50,6 @@ stream_parts open_parts(const alsa_options& device, const stream_options& o, con
     p.player.limits = settle_limits(o, e);
     p.player.require_realtime = o.require_realtime;
     p.player.log = device.log;
-    p.kept = kept_drive(device.pcm, p.player.limits);
     p.wished.name = device.pcm;
     p.wished.channels = device.channels;
     p.wished.rate = device.rate;
@@ -84,7 +85,7 @@ void device_stream::finish() noexcept
         end();
         step();
         work_here();
-    } catch (const std::exception&) { // NOLINT(bugprone-empty-catch): what is kept counts too much then
+    } catch (const std::exception&) { // NOLINT(bugprone-empty-catch): it has ended
     }
 }
 
@@ -102,11 +103,8 @@ std::optional<device_stream::time> device_stream::step(time now)
         if (const auto end = player_->ended())
             ended(end->reason == reason_kind::none ? "the stream was stopped" : end->why);
     due_ = stream_policy::step(now);
-    if (player_ != nullptr) {
+    if (player_ != nullptr)
         mute(amplifier() == amplifier_state::muted);
-        if (is_busy())
-            parts_.kept.going(setup_.channels);
-    }
     return again();
 }
 
@@ -137,7 +135,6 @@ bool device_stream::work_here()
 void device_stream::open(outcome& o, double proof_s)
 {
     try {
-        parts_.player.driven = parts_.kept.until_now();
         auto p = std::make_unique<player>(parts_.open(), parts_.tactors, parts_.player,
                                           parts_.lines.lend(proof_s));
         p->on_begin([this, number = number_ + 1](stroke_id id, std::optional<std::int64_t> at_ns) {
@@ -162,10 +159,6 @@ void device_stream::close(outcome& o)
 {
     o.player->stop();
     o.last = o.player->stats();
-    try {
-        parts_.kept.settled(o.player->history());
-    } catch (const std::exception&) { // NOLINT(bugprone-empty-catch): what is kept counts too much then
-    }
     o.player.reset(); // reports what is left; it holds the device and borrows the lines
     o.done = true;
 }
@@ -183,7 +176,18 @@ void device_stream::settle()
     player_ = std::move(o->player);
     ++number_;
     setup_ = player_->setup();
+    warn_of_drive_time();
     opened();
+}
+
+// Says once that the next run will not know for how long a device was driven.
+void device_stream::warn_of_drive_time()
+{
+    if (setup_.device.empty() || !is_felt(setup_.device) || std::exchange(drive_time_looked_at_, true))
+        return;
+    if (const std::string why = drive_time_fault(setup_.device); !why.empty())
+        say(stderr, "tactor: warning: {}: the next run will not know for how long the array was driven\n",
+            why);
 }
 
 player_stats device_stream::stats() const

@@ -13,7 +13,6 @@
 
 #include "rt/event_fd.hpp"
 #include "session/environment.hpp"
-#include "session/kept_drive.hpp"
 #include "session/lines.hpp"
 #include "session/stream_policy.hpp"
 
@@ -26,8 +25,7 @@ struct stream_parts {
     std::function<std::unique_ptr<sink>()> open = {}; ///< blocks shortly. \throws error
     lent_lines lines = {};
     array tactors = {};
-    player_options player = {}; ///< but `driven`
-    kept_drive kept = {};
+    player_options player = {};
     stream_times times = {};
     stream_setup wished = {}; ///< the setup before the device was ever there
     /// A stroke of the player with that number begins or has ended: as player::on_begin(), on_report().
@@ -50,7 +48,7 @@ public:
     using stream_policy::end, stream_policy::is_out, stream_policy::is_over, stream_policy::reason,
         stream_policy::set_busy, stream_policy::state, stream_policy::time, stream_policy::wake;
 
-    /// Looks at what has happened, and keeps drive time while strokes go on. Call it when descriptor() is
+    /// Looks at what has happened. Call it when descriptor() is
     /// readable, after work, and at the time that it returns. Does not block.
     std::optional<time> step(time now = time::clock::now());
     /// Returns what step() found to do, or nothing: opens or closes the device and blocks, in any thread.
@@ -85,6 +83,7 @@ private:
     void open(outcome& o, double proof_s);
     void close(outcome& o);
     void settle();
+    void warn_of_drive_time();
 
     rt::event_fd news_;
     stream_parts parts_;
@@ -95,6 +94,7 @@ private:
     std::exception_ptr failure_;
     stream_setup setup_;
     player_stats before_; ///< of the players before this one
+    bool drive_time_looked_at_ = false;
 };
 
 } // namespace tactor::session

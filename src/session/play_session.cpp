@@ -200,11 +200,11 @@ run_facts play_session::finish()
     const drive_limits l = settle_limits(options_, environment_);
     if (r.stats.drives_cut != 0)
         say(stderr,
-            "tactor: warning: wait {0} s before the next stroke: {1} cut short or silent, because a tactor "
-            "may be driven for {2} s in {0} s ([limits] max_drive_s in the array file or configuration)\n",
-            l.window_s,
+            "tactor: warning: wait {:.4g} s before the next stroke: {} cut short or silent, because a tactor "
+            "may be driven for {} s in {} s ([limits] max_drive_s in the array file or configuration)\n",
+            l.window_s - l.max_drive_s,
             r.stats.drives_cut == 1 ? "1 drive was" : fmt::format("{} drives were", r.stats.drives_cut),
-            l.max_drive_s);
+            l.max_drive_s, l.window_s);
     return r;
 }
 

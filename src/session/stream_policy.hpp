@@ -54,7 +54,6 @@ public:
     void mute(bool is);
     /// Strokes go on or wait, or there are none.
     void set_busy(bool is);
-    bool is_busy() const noexcept { return busy_; }
     /// A stroke waits for a stream that is closed, or is being closed.
     void wake() noexcept { wanted_ = true; }
     /// Close for good.

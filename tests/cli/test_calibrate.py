@@ -315,7 +315,7 @@ class Person(CalibrateTest):
         args = [TOOL, *map(str, self.ARGS), "--array", "a.toml"]
         result = self.refused(1, *args[1:], stdin="1\n2\n1\n")
         self.assertNotIn("a limit changed it", result.stdout)
-        self.write("a.toml", (self.dir / "a.toml").read_text().replace("0.14\nwindow_s = 2", "2.5\nwindow_s = 300"))
+        self.write("a.toml", (self.dir / "a.toml").read_text().replace("0.14\nwindow_s = 2", "2.5\nwindow_s = 1200"))
         args[args.index("me.toml")] = "you.toml"
         args[args.index("0.05")] = "1"
         with subprocess.Popen(args, cwd=self.dir, env=self.env, stdin=subprocess.PIPE, stdout=subprocess.PIPE,

@@ -73,7 +73,7 @@ class Play(ToolTest):
             self.write("s.toml", stroke * strokes)
             r = self.ok("play", "s.toml", "-D", "null", "--format", "json", *limits)
             self.assertEqual(json.loads(r.stdout)["counters"]["drives_cut"] > 0, cut)
-            self.assertEqual("wait 1 s before the next stroke" in r.stderr, cut, r.stderr)
+            self.assertEqual("wait 0.7 s before the next stroke" in r.stderr, cut, r.stderr)
 
     def test_ctrl_c_fades_out_and_exits_130(self):
         for number, status in ((signal.SIGINT, 130), (signal.SIGTERM, 143)):

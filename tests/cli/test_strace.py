@@ -70,9 +70,9 @@ class DriveTime(ToolTest):
         runtime = self.dir / "run"
         runtime.mkdir(mode=0o700)
         trace = self.dir / "trace"
-        subprocess.run(["strace", "-f", "-e", "trace=rename,fsync,fdatasync", "-o", trace, TOOL, "play", "park2016-1", "-D", "null"],
+        subprocess.run(["strace", "-f", "-e", "trace=pwrite64,fsync,fdatasync", "-o", trace, TOOL, "play", "park2016-1", "-D", "null"],
                        cwd=self.dir, env=self.env | {"XDG_RUNTIME_DIR": str(runtime)}, check=True, capture_output=True)
-        self.assertIn("rename(", trace.read_text())
+        self.assertIn("pwrite64(", trace.read_text())
         self.assertNotIn("sync(", trace.read_text())
 
 

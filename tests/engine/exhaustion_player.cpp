@@ -52,8 +52,6 @@ struct player_things {
     score s = tone(0.001);
     stroke_id id = {};
     std::optional<live_stroke> live = {};
-    drive_history driven = drive_history().with_ahead(9, 1.0);
-    std::string saved = driven.save();
 };
 
 std::shared_ptr<player_things> make_player_things()
@@ -105,8 +103,6 @@ call_table player_calls(player_things& t)
         {"player::stop", [&t] { t.anew.open->stop(); }, plain, [&t] { t.anew.make_player(); }},
         {"player::ended", [&t] { return t.anew.open->ended(); }, plain, stopped},
         {"player::stats", [&p] { return p.stats(); }},
-        {"player::history", [&t] { return t.anew.open->history(); }, plain, stopped},
-        {"player::history, while it plays", [&p] { return p.history(); }},
         {"live_stroke::to", [&t] { return t.live->to(20.0, 20.0); }, plain, begun},
         {"live_stroke::to, nowhere", [&t] { return t.live->to(1.0 / 0.0, 20.0); }, plain, begun},
         {"lost_tactor",
@@ -117,13 +113,7 @@ call_table player_calls(player_things& t)
          [] {
              return wiring_warnings(palm(), {.outputs = {{0}}, .gains = {{0.1}}, .level_by = "type softvol"});
          }},
-        {"drive_history::with", [&t] { return t.driven.with(t.driven); }},
-        {"drive_history::with_ahead", [&t] { return t.driven.with_ahead(9, 1.0); }},
-        {"drive_history::with_ahead, for ever", [&t] { return t.driven.with_ahead(9, 1e6); }},
-        {"drive_history::save", [&t] { return t.driven.save(); }, opens},
-        {"drive_history::restore", [&t] { return drive_history::restore(t.saved); }, opens},
-        {"drive_history::restore, of nothing",
-         [] { return drive_history::restore("a longer text than this"); }},
+        {"drive_time_fault", [] { return drive_time_fault("null"); }},
     };
 }
 

@@ -107,7 +107,7 @@ def test_impossible_values_are_refused_by_the_name_they_were_given(palm):
     (lambda: tactor.Path.svg(3), "data"), (lambda: tactor.Array.preset(3), "name"), (lambda: tactor.Stroke.preset(None), "name"), (lambda: tactor.parse(b""), "text"),
     (lambda: tactor.Stroke.along(LINE, name=3), "name"), (lambda: tactor.Stroke.along(LINE, easing=3), "easing"), (lambda: tactor.Array(3, []), "name"),
     (lambda: tactor.fit_strokes([3], tactor.Array.preset("palm-3x3")), "strokes"), (lambda: tactor.devices(3), "array"),
-    (lambda: tactor.devices(device=3), "device"), (lambda: tactor.Player("null", tactor.Array.preset("palm-3x3"), after=3), "after"),
+    (lambda: tactor.devices(device=3), "device"), (lambda: tactor.Player("null", tactor.Array.preset("palm-3x3"), keep_drive_time=3), "keep_drive_time"),
     (lambda: tactor.Player("null", tactor.Array.preset("palm-3x3"), sample_format=3), "sample_format"),
 ])
 def test_another_type_is_said_with_the_arguments_name(call, what):

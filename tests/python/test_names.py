@@ -163,7 +163,8 @@ HAS_NOT = {
     "sink paced_sink io_kind io_result stream_position": "what the audio thread calls cannot be Python",
     "enable_line edge_input gpio_edge gpio_line_name gpio_line_place find_gpio_line player_lines amplifier_settings sync_settings edge_kind pull_kind":
         "lines are the configuration's; a player opens them",
-    "reopen_alsa": "make a Player again, after=",
+    "reopen_alsa": "make a Player again",
+    "drive_time_fault": "a Player warns",
     "read_route pcm_route require_device_name read_card card_info card_holders count_range": "what devices and Player look at themselves",
     "probe_realtime_rights realtime_rights": "Player.stats()['realtime'], and `tactor check`",
     "parse_setup written_value": "Array.from_file reads files",

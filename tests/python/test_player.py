@@ -354,8 +354,21 @@ def test_a_closed_player_is_reported(palm, short, endless):
     for call in (lambda: p.submit(short), lambda: p.play(short), p.live, p.fire, p.stop, p.position):
         with pytest.raises(tactor.StreamError):
             call()
-    with tactor.Player("null", palm, config=os.devnull, after=p) as next_one:
-        assert next_one.play(short).state == "finished"
+
+
+def test_drive_time_counts_on_from_player_to_player(palm, tmp_path, monkeypatch):
+    monkeypatch.setenv("XDG_RUNTIME_DIR", str(tmp_path))
+    tmp_path.chmod(0o700)
+    still = tactor.Score(palm, tactor.plan(palm, tactor.Stroke.along(tactor.Path.svg("M 0 0 L 0.001 0"), duration=0.3), algorithm="continuous"))
+
+    def count_cuts(**more):
+        with tactor.Player("null", palm, config=os.devnull, max_drive_s=0.5, drive_window_s=3600, **more) as p:
+            p.play(still)
+            return p.stats()["drives_cut"]
+
+    assert [count_cuts(keep_drive_time=False) for _ in range(2)] == [0, 0]
+    assert [count_cuts() for _ in range(2)] == [0, 1]
+    assert [f.name for f in (tmp_path / "tactor").iterdir()] == ["drive-time-null"]
 
 
 def test_missing_devices_are_errors(palm):

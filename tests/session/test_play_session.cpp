@@ -3,13 +3,17 @@
 #include "session/play_session.hpp"
 
 #include <atomic>
+#include <cstddef>
+#include <cstdio>
 #include <functional>
 #include <list>
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <string>
 
 #include <doctest/doctest.h>
+#include <unistd.h>
 
 #include "clock_runner.hpp"
 #include "fake_dac.hpp"
@@ -47,7 +51,8 @@ struct run {
     session::environment where;
     std::optional<session::play_session> session;
 
-    explicit run(double reopen_s, bool stuck = false)
+    /// `device`: none: its drive time begins anew each time.
+    explicit run(double reopen_s, bool stuck = false, const std::string& device = {})
     {
         where.tactors = palm();
         where.config.limits.emplace();
@@ -55,12 +60,12 @@ struct run {
         where.config.limits->window_s = 3600.0; // of a clock that runs as fast as it can
         session::stream_options o;
         o.reopen_s = reopen_s;
-        session.emplace(nine(), o, where, [this, stuck](session::stream_parts& p) {
-            p.open = [this] {
+        session.emplace(nine(), o, where, [this, stuck, device](session::stream_parts& p) {
+            p.open = [this, device] {
                 before_open();
                 clocks.clear();
                 cards.emplace_back();
-                auto s = alsa::adopt(cards.back().pcm(), nine());
+                auto s = alsa::adopt(cards.back().pcm(), nine(), false, device);
                 clocks.emplace_back(cards.back());
                 return s;
             };
@@ -68,7 +73,6 @@ struct run {
                 p.lines = session::lent_lines({.amplifier = std::make_unique<stuck_line>(amplifier_on)});
             p.player = patient(p.player.limits);
             p.player.realtime = false;
-            p.kept = {};
             p.times.retry_s = 0.001;
             p.times.proof_s = 0.001;
         });
@@ -94,11 +98,47 @@ struct run {
     }
 };
 
+// Returns what is printed on standard error meanwhile.
+std::string capture_errors(const std::function<void()>& work)
+{
+    const int before = ::dup(STDERR_FILENO);
+    std::FILE* file = std::tmpfile();
+    REQUIRE(file != nullptr);
+    ::dup2(::fileno(file), STDERR_FILENO);
+    work();
+    ::dup2(before, STDERR_FILENO);
+    ::close(before);
+    std::string text(4096, '\0');
+    std::rewind(file);
+    text.resize(std::fread(text.data(), 1, text.size(), file));
+    std::fclose(file);
+    return text;
+}
+
 } // namespace
+
+TEST_CASE("that drive time does not count on is said once, of a device that may be felt")
+{
+    const auto count = [](const std::string& device) {
+        const std::string said = capture_errors([&] {
+            run r(60.0, false, device);
+            r.unplug();
+            r.session->reopen();
+            r.session->finish();
+        });
+        CAPTURE(said);
+        const std::string warning =
+            "there is no runtime folder (XDG_RUNTIME_DIR): the next run will not know";
+        const std::size_t first = said.find(warning);
+        return first == std::string::npos ? 0 : said.find(warning, first + 1) == std::string::npos ? 1 : 2;
+    };
+    CHECK(count("a card that somebody feels") == 1);
+    CHECK(count("null") == 0);
+}
 
 TEST_CASE("drive time and counters go on over a device that was lost")
 {
-    run r(60.0);
+    run r(60.0, false, "card that comes back");
     CHECK(r.play(0.3).state == state_kind::finished);
     const player_stats before = r.session->stats();
     r.unplug();

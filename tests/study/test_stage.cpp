@@ -238,7 +238,7 @@ TEST_CASE("a stimulus that has waited for room is whole")
     s.there.finish();
 }
 
-TEST_CASE("a tactor of the walk that a limit silenced is driven again when the window has passed")
+TEST_CASE("a tactor of the walk that a limit silenced is driven again when it has rested")
 {
     set_up s(0.3, 60.0);
     CHECK_FALSE(s.there.give(tone(0.25), 0.0, nobody).limited);

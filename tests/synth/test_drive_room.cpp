@@ -85,17 +85,31 @@ TEST_CASE("on a rested array nothing waits; a piece that is too long alone has n
     CHECK(wait_s(synth::drive_room(2, none, rate), pieces({one(0.0, 500.0)}, -12.0), 0.0) == 0.0);
 }
 
-TEST_CASE("a piece waits until enough drive time has left the window, counting its own tactors alone")
+TEST_CASE("a piece waits until the level leaves room for it, counting its own tactors alone")
 {
     synth::drive_room r(2, {}, rate);
     r.played(pieces({one(0.0, 4.0)}, -12.0), 0);
     const score three = pieces({one(0.0, 3.0)}, -12.0);
-    // When it ends, at most two of the four seconds may be in the window.
-    CHECK(wait_s(r, three, 4.0) == doctest::Approx(5.0).epsilon(0.02));
-    CHECK(wait_s(r, three, 8.0) == doctest::Approx(1.0).epsilon(0.06));
-    CHECK(wait_s(r, three, 9.1) == 0.0);
-    CHECK(wait_s(r, pieces({one(0.0, 0.9)}, -12.0), 4.0) == 0.0);
+    // It may begin at a level of 2 s.
+    CHECK(wait_s(r, three, 4.0) == doctest::Approx(2.0));
+    CHECK(wait_s(r, three, 5.0) == doctest::Approx(1.0));
+    CHECK(wait_s(r, three, 6.0) == 0.0);
+    CHECK(wait_s(r, pieces({one(0.0, 1.0)}, -12.0), 4.0) == 0.0);
     CHECK(wait_s(r, pieces({one(0.0, 3.0, 1)}, -12.0), 4.0) == 0.0);
+    // 2 s, a rest of 1 s, 3 s: 4 s more at the end.
+    const score parts = pieces({one(0.0, 2.0), one(3.0, 3.0)}, -12.0);
+    CHECK(wait_s(r, parts, 4.0) == doctest::Approx(3.0));
+    CHECK(wait_s(r, pieces({one(2.0, 2.0)}, -12.0), 4.0) == 0.0); // it rests within the piece
+    // A rest within a piece gives back no more than there was.
+    r.played(pieces({one(0.0, 0.5), one(9.0, 4.0)}, -12.0), 20 * rate);
+    CHECK(wait_s(r, three, 33.0) == doctest::Approx(2.0));
+    CHECK(r.rest_s() == 5.0);
+    drive_limits short_rest;
+    short_rest.max_drive_s = 4.0;
+    short_rest.window_s = 5.0; // a second of rest takes 4 s away
+    synth::drive_room s(2, short_rest, rate);
+    s.played(pieces({one(0.0, 4.0)}, -12.0), 0);
+    CHECK(wait_s(s, three, 4.0) == doctest::Approx(0.75).epsilon(1e-3));
 }
 
 TEST_CASE("the mixer's guard never changes a piece that has waited as long as computed")

@@ -213,7 +213,7 @@ TEST_CASE("the power is held in the same frames for any block size")
         const auto played = [&](std::size_t largest_block) {
             synth::guard_settings g = limit_power(-12.0);
             g.drive_frames = rate / 5;
-            g.window_frames = rate / 2;
+            g.leak = 2.0 / 3.0;
             synth::mixer m(std::vector<double>(9, 0.4), format_kind::s32, voices.size(), g);
             for (const synth::drive_event& e : voices)
                 m.add(e);

@@ -52,6 +52,15 @@ alsa_options device_for(const settings& s, const environment& e)
     return session::device_options(s, s.stream, e, r.channels, r.rate);
 }
 
+finding check_drive_time(const std::string& pcm)
+{
+    const std::string why = drive_time_fault(pcm);
+    return why.empty() ? fine("drive time", "counts on from run to run")
+                       : warning("drive time", why + ": each run begins with 0",
+                                 "log in as a user of this machine, or set XDG_RUNTIME_DIR to a folder of "
+                                 "that user alone");
+}
+
 std::vector<finding> check_all(const settings& s, const environment& e)
 {
     std::vector<finding> all = check_array(s, e, session::settle_limits(s.stream, e));
@@ -59,6 +68,8 @@ std::vector<finding> check_all(const settings& s, const environment& e)
     try {
         device = device_for(s, e);
         all.push_back(check_device(device, s.stream, e, session::names_device(s, e)));
+        if (session::is_felt(device.pcm))
+            all.push_back(check_drive_time(device.pcm));
     } catch (const error& x) {
         all.push_back(failure("device", x));
     }

@@ -49,7 +49,9 @@ audio_loop::audio_loop(sink& s, link& l, std::span<const double> limits, const l
       frame_bytes_(setup_.frame_bytes()),
       block_(setup_.period_frames * frame_bytes_)
 {
-    mixer_.resume(o.driven);
+    mixer_.resume(o.driven_s);
+    if (o.guards.drive_frames > 0.0)
+        l.driven = std::vector<std::atomic<std::uint64_t>>(limits.size());
     l.amplifier.ready.store(!o.amplifier, std::memory_order_relaxed);
 }
 
@@ -180,6 +182,7 @@ void audio_loop::mix_period() noexcept
     // Drives that wait for space in the mixer are there in time.
     if (link_.commands.size() == 0)
         scores_.fade_what_runs_out(setup_.period_frames);
+    link_.sounds.store(mixer_.size() != 0, std::memory_order_relaxed);
     mixer_.process(setup_.period_frames, block_.data());
     pending_ = setup_.period_frames;
     pending_from_ = 0;
@@ -187,6 +190,8 @@ void audio_loop::mix_period() noexcept
     link_.count.limited.store(mixer_.limited(), std::memory_order_relaxed);
     link_.count.power_limited.store(mixer_.power_limited(), std::memory_order_relaxed);
     link_.count.drives_cut.store(mixer_.drives_cut(), std::memory_order_relaxed);
+    for (std::size_t i = 0; i < link_.driven.size(); ++i)
+        link_.driven[i].store(mixer_.driven(i), std::memory_order_relaxed);
 }
 
 io_result audio_loop::write_pending() noexcept

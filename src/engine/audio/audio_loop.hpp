@@ -58,7 +58,7 @@ struct loop_options {
     /// that refuses is tried again for another.
     std::int64_t off_ns = 2'000'000'000;
     synth::guard_settings guards{};
-    synth::drive_history driven = {}; ///< drive times of channels before, as of now
+    std::vector<double> driven_s = {}; ///< levels of drive time, by channel
 };
 
 /// Owner of the mixer; decides everything that happens to the stream. After the constructor, no member but
@@ -77,8 +77,6 @@ public:
     bool over() const noexcept { return phase_ == phase::over; }
     /// Returns true if the sink's descriptors should be polled now.
     bool polls_sink() const noexcept;
-    /// Returns the drive times of the channels. Call it only after the audio thread has ended.
-    synth::drive_history driven() const { return mixer_.history(); }
     /// Returns the number of drives that wait or sound.
     std::size_t drives() const noexcept { return mixer_.size(); }
     /// Returns the longest time until the next wake-up, ns.

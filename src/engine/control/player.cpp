@@ -120,11 +120,6 @@ std::optional<stream_end> player::ended() const
     return impl_->end();
 }
 
-drive_history player::history() const
-{
-    return drive_history(impl_->history());
-}
-
 player_position player::position() const noexcept
 {
     const std::lock_guard lock(impl_->mutex);

@@ -61,16 +61,6 @@ void player::impl::close()
     out.reset();
 }
 
-std::shared_ptr<const drive_history::impl> player::impl::history()
-{
-    const std::lock_guard lock(mutex);
-    if (!feed.stream_over())
-        throw error(error_kind::runtime, "drive history", "the stream goes on", "stop() it first");
-    // The audio thread reports a little before its end. It never waits for this mutex.
-    audio.join();
-    return std::make_shared<drive_history::impl>(drive_history::impl{loop.driven(), rt::monotonic_ns()});
-}
-
 stroke_id player::impl::submit(const score& s, start_at start, double level_db)
 {
     const float gain = to_gain(level_db);
@@ -219,6 +209,7 @@ void player::impl::woken()
     gone.clear();
     news.notify_all();
     log.write();
+    book.enter(link.driven, !last && link.sounds.load(std::memory_order_relaxed));
     call_handlers();
     if (!done) {
         constexpr timespec soon{.tv_sec = 0, .tv_nsec = 10'000'000};

@@ -23,11 +23,11 @@
 #include "engine/audio/audio_thread.hpp"
 #include "engine/control/amplifier_driver.hpp"
 #include "engine/control/control_thread.hpp"
+#include "engine/control/drive_book.hpp"
 #include "engine/control/feeder.hpp"
 #include "engine/control/stream_log.hpp"
 #include "engine/control/trigger_thread.hpp"
 #include "engine/link.hpp"
-#include "synth/guard/drive_history.hpp"
 
 namespace tactor::engine {
 
@@ -45,18 +45,6 @@ void check_fits(const score& s, const stream_setup& stream, std::span<const doub
 
 namespace tactor {
 inline namespace v0 {
-
-/// Drive time of each channel, as of one moment.
-struct drive_history::impl {
-    synth::drive_history channels;
-    std::int64_t taken_ns = 0; ///< CLOCK_MONOTONIC
-
-    /// Returns the history as of `now_ns`: the time since `taken_ns` counts as silence, except drives that
-    /// were still ahead.
-    synth::drive_history as_of(std::int64_t now_ns) const;
-    /// Returns the history as of now, without the drives that are still ahead.
-    synth::drive_history until_now() const;
-};
 
 /// State of a player, shared with the control thread while that works, so that a handler can destroy the
 /// player.
@@ -81,7 +69,6 @@ struct player::impl : std::enable_shared_from_this<player::impl> {
     bool cancel_all();
     wait_result wait(stroke_id id, std::optional<double> timeout_s);
     void stop(bool closing);
-    std::shared_ptr<const drive_history::impl> history();
     /// Returns the end of the stream, also if it is only near. Under the mutex.
     stream_end end() const;
     void keep(const stroke_report& r);
@@ -120,7 +107,8 @@ struct player::impl : std::enable_shared_from_this<player::impl> {
     std::optional<std::int64_t> unfired;      ///< an edge for which there was no memory; control thread
     bool all_delivered = false;               ///< the stream is over and the handlers have got everything
 
-    engine::stream_log log; ///< control thread, once that runs
+    engine::stream_log log;  ///< control thread, once that runs
+    engine::drive_book book; ///< control thread, once that runs
 
     engine::audio_loop loop;
     engine::audio_thread audio;

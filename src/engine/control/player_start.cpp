@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <system_error>
 #include <utility>
 
@@ -36,7 +37,7 @@ std::uint64_t horizon_frames(const player_options& o, const stream_setup& s)
     return std::max<std::uint64_t>(to_frames(o.horizon_s, s.rate, "horizon_s"), least);
 }
 
-engine::loop_options loop_options(const player_options& o, const drive_history::impl* before,
+engine::loop_options loop_options(const player_options& o, const engine::drive_book& before,
                                   const stream_setup& s, bool amplifier)
 {
     engine::loop_options l;
@@ -48,7 +49,9 @@ engine::loop_options loop_options(const player_options& o, const drive_history::
     l.stall_ns = std::max(periods, asked);
     l.amplifier = amplifier;
     l.guards = synth::make_guards(o.limits, s.rate);
-    l.driven = before != nullptr ? before->until_now() : synth::drive_history{};
+    if (before.kept() && l.guards.drive_frames == 0.0)
+        l.guards.drive_frames = std::numeric_limits<double>::infinity(); // counted for others
+    l.driven_s = before.read();
     return l;
 }
 
@@ -111,8 +114,8 @@ player::impl::impl(std::unique_ptr<sink> s, const array& a, const player_options
       tactors(engine::fitting(a, out->setup())),
       limits(synth::channel_limits(a, out->setup().channels)),
       log(o.log, link, o.limits),
-      loop(*out, link, limits,
-           loop_options(o, o.driven.impl_.get(), out->setup(), lines.amplifier != nullptr)),
+      book(o.keep_drive_time ? out->setup().device : std::string(), o.limits, out->setup().rate),
+      loop(*out, link, limits, loop_options(o, book, out->setup(), lines.amplifier != nullptr)),
       audio(loop, *out, link, thread_options(o))
 {
 }

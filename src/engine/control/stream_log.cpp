@@ -94,7 +94,7 @@ void stream_log::look_at_limits()
 {
     if (const std::uint64_t n = grown(link_.count.drives_cut, cut_); n != 0)
         add(log_kind::warning,
-            fmt::format("{} cut short or silent: a tactor was driven for longer than {} in {}",
+            fmt::format("{} cut short or silent: a tactor was driven for too long ({} in {} at most)",
                         counted(n, "drive"), seconds_text(limits_.max_drive_s),
                         seconds_text(limits_.window_s)));
     if (const std::uint64_t n = grown(link_.count.power_limited, power_limited_); n != 0)

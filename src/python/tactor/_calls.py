@@ -9,7 +9,6 @@ if _t.TYPE_CHECKING:
     from tactor._array import Array
     from tactor._parts import PhantomModel
     from tactor._plan import Plan
-    from tactor._player import Player
     from tactor._score import _Plans
     from tactor._stroke import Stroke
     from tactor._ticket import LiveStroke, _LogKind
@@ -221,9 +220,9 @@ class ScoreCall:
         power_dbfs : float
             Limit on the power of all tactors together, above one channel's full scale (default 4.77). -120 to 60 dB.
         max_drive_s : float
-            Limit on the time that one tactor is driven within the window (default 5). 0.1 to 3600 s.
+            Longest drive of one tactor without a rest (default 5). 0.1 to 3600 s.
         drive_window_s : float
-            Window of max_drive_s (default 10). 0.1 to 3600 s.
+            Time of which a tactor may be driven for max_drive_s in the long run (default 10). 0.1 to 3600 s.
 
         Without any limit on power and drive time the piece is as it was designed: a player has its own.
         """
@@ -244,7 +243,7 @@ class PlayerCalls:
                  channels: int | None = None, no_gpio: bool | None = None, power_dbfs: float | None = None, max_drive_s: float | None = None,
                  drive_window_s: float | None = None, latency: float | None = None, period_frames: int | None = None, periods: int | None = None,
                  require_realtime: bool | None = None, sync_delay: float | None = None, config: _t.Union[str, os.PathLike[str], None] = None,
-                 log: _t.Callable[[_LogKind, str], object] | None = None, after: Player | None = None) -> None:
+                 log: _t.Callable[[_LogKind, str], object] | None = None, keep_drive_time: bool = True) -> None:
         """Opens a device.
 
         Parameters
@@ -257,8 +256,9 @@ class PlayerCalls:
             Configuration; default: the tool's ($TACTOR_CONFIG, the user's, the system's), amplifier and limits included. os.devnull: none.
         log : callable, optional
             `log(kind, text)` is told of xruns, recovery, mutes and limits that act, in the player's thread of Python.
-        after : Player, optional
-            The player before on the same array, closed or stopped: what it gave each tactor lately counts.
+        keep_drive_time : bool
+            What earlier players and runs of this user drove on this device counts, and what this one drives counts for later ones. False: it
+            begins with 0, and is not kept.
         rate
             As in `plan`.
         sample_format : str
@@ -270,9 +270,9 @@ class PlayerCalls:
         power_dbfs : float
             Limit on the power of all tactors together, above one channel's full scale (default 4.77). -120 to 60 dB.
         max_drive_s : float
-            Limit on the time that one tactor is driven within the window (default 5). 0.1 to 3600 s.
+            Longest drive of one tactor without a rest (default 5). 0.1 to 3600 s.
         drive_window_s : float
-            Window of max_drive_s (default 10). 0.1 to 3600 s.
+            Time of which a tactor may be driven for max_drive_s in the long run (default 10). 0.1 to 3600 s.
         latency : float
             Length of the device's buffer (periods x period). 0.0001 to 10 s.
         period_frames : int

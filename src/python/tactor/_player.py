@@ -47,23 +47,24 @@ class Player(PlayerCalls, _Unique):
 
     def _open(self, given: dict[str, _t.Any]) -> None:
         self._shared: _Shared | None = None
-        device, array, config, log, after = (given.pop(name) for name in ("device", "array", "config", "log", "after"))
+        device, array, config, log, keep = (given.pop(name) for name in ("device", "array", "config", "log", "keep_drive_time"))
         self._array: Array = array
         _need(array, Array, "array")
         _need(device, str, "device")
         encoded(device, "device")
         if given["sample_format"] is not None:
             _need(given["sample_format"], str, "sample_format")
-        if after is not None:
-            _need(after, Player, "after")
+        _need(keep, bool, "keep_drive_time")
         for name, least, hint in (("latency", 0.0001, "0.0001 to 10 s"), ("sync_delay", 0.0, "0 to 10 s")):
             value = given.pop(name)
             given[f"{name}_ms"] = None if value is None else 1e3 * _number(name, value, least, 10.0, hint)
         given.update(config=None if config is None else encoded(config, "config"),
                      array_file=None if array._file is None else encoded(array._file), log=log is not None)
-        driven = _tactor.DriveHistory() if after is None else after._history()
-        core = _tactor.Player(array._core, device, given, driven)
+        core = _tactor.Player(array._core, device, given, keep)
         self._setup: dict[str, _t.Any] = core.setup()
+        unkept = _tactor.drive_time_fault(device) if keep else ""
+        if unkept:
+            warnings.warn(f"{unkept}: the next run will not know for how long the array was driven", stacklevel=3)
         self._held = _Held(log)
         self._shared = _Shared(core, self._held)
         _open.add(self)
@@ -197,9 +198,6 @@ class Player(PlayerCalls, _Unique):
         if threading.current_thread() is not shared.thread:
             shared.wait_told()
             shared.held = weakref.ref(held)
-
-    def _history(self) -> _t.Any:
-        return self._get().core.history()
 
     def _get(self) -> _Shared:
         if self._shared is None:

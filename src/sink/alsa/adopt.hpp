@@ -4,6 +4,7 @@
 #pragma once
 
 #include <memory>
+#include <string_view>
 
 #include <alsa/asoundlib.h>
 
@@ -12,7 +13,9 @@
 namespace tactor::alsa {
 
 /// Configures `p` and owns it; closes it on failure, too. Throws as open_alsa() does; `o.pcm` is only a name.
-/// `as_card`: treats its clock as a card's, which never stops for this process.
-std::unique_ptr<sink> adopt(snd_pcm_t* p, const alsa_options& o, bool as_card = false);
+/// `as_card`: treats its clock as a card's, which never stops for this process. `device`: as
+/// stream_setup::device.
+std::unique_ptr<sink> adopt(snd_pcm_t* p, const alsa_options& o, bool as_card = false,
+                            std::string_view device = {});
 
 } // namespace tactor::alsa

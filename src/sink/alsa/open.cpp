@@ -2,6 +2,7 @@
 #include <tactor/alsa.hpp>
 
 #include <algorithm>
+#include <string_view>
 #include <system_error>
 #include <utility>
 
@@ -31,10 +32,12 @@ bool is_on_card(snd_pcm_t* p)
 }
 
 // Configures a PCM. `top`: the configuration that defines it; null: none does.
-std::unique_ptr<sink> configure(handle h, const alsa_options& o, snd_config_t* top, bool as_card)
+std::unique_ptr<sink> configure(handle h, const alsa_options& o, snd_config_t* top, bool as_card,
+                                std::string_view device)
 try {
     const library_messages silent;
     stream_setup s = negotiate(h.get(), o);
+    s.device = device;
     if (top != nullptr)
         s.wiring = find_wiring(top, o.pcm, o.channels, s.device_channels);
     set_software(h.get(), s);
@@ -62,11 +65,11 @@ try {
 
 } // namespace
 
-std::unique_ptr<sink> adopt(snd_pcm_t* p, const alsa_options& o, bool as_card)
+std::unique_ptr<sink> adopt(snd_pcm_t* p, const alsa_options& o, bool as_card, std::string_view device)
 {
     handle h(p);
     check(o);
-    return configure(std::move(h), o, nullptr, as_card);
+    return configure(std::move(h), o, nullptr, as_card, device);
 }
 
 } // namespace tactor::alsa
@@ -78,7 +81,7 @@ std::unique_ptr<sink> open_alsa(const alsa_options& o)
 {
     alsa::check(o);
     const alsa::configuration top = alsa::read_configuration(o.config_text);
-    return alsa::configure(alsa::open(o, top.get()), o, top.get(), false);
+    return alsa::configure(alsa::open(o, top.get()), o, top.get(), false, o.pcm);
 }
 
 std::unique_ptr<sink> reopen_alsa(const alsa_options& o, const std::function<bool(double)>& pause)

@@ -142,7 +142,7 @@ given_stimulus stage::give_after_limits(const score& s, const std::function<bool
         return give(s, 0.0, [](std::uint64_t) {});
     };
     given_stimulus g = once();
-    if (g.flaw.empty() && g.limited && pass(room_.window_s(), watch))
+    if (g.flaw.empty() && g.limited && pass(room_.rest_s(), watch))
         g = once();
     return g;
 }

@@ -62,8 +62,8 @@ public:
     /// the noise's device cannot be opened again.
     given_stimulus give(const score& s, double lead_s, const watcher& watch);
 
-    /// Plays a score as give(). If a limit changed it, lets the limits' window pass, which drive of earlier
-    /// runs may fill, and plays it once more. `watch`: as of pass().
+    /// Plays a score as give(). If a limit changed it, because earlier runs drove the tactors, lets these
+    /// rest completely and plays it once more. `watch`: as of pass().
     given_stimulus give_after_limits(const score& s, const std::function<bool(double passed_s)>& watch);
 
     /// Begins noise until fade_out(). Returns false if it does not sound. \throws as give().

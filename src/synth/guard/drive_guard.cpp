@@ -12,52 +12,35 @@ namespace {
 constexpr double fade_s = 0.02;
 constexpr double pause_s = 0.001; // longer than a sine stays at zero
 constexpr double counted = least_counted_drive * least_counted_drive;
+constexpr double rounding = 1e-6; // of a level, frames
 
 } // namespace
 
-drive_guard::drive_guard(std::size_t channels, std::uint64_t limit, std::uint64_t window, unsigned rate)
-    : rate_(rate),
-      limit_(static_cast<std::int64_t>(limit)),
-      window_(static_cast<std::int64_t>(window)),
-      grain_(window_ / static_cast<std::int64_t>(grains) + 1),
-      fade_(std::max<std::int64_t>(std::llround(fade_s * rate), 1)),
-      pause_(std::max<std::int64_t>(std::llround(pause_s * rate), 1)),
-      cells_(limit > 0 && limit < window ? channels : 0)
+drive_guard::drive_guard(std::size_t channels, const guard_settings& g)
+    : rate_(g.rate),
+      limit_(g.drive_frames),
+      leak_(g.leak),
+      fade_(std::max<std::int64_t>(std::llround(fade_s * g.rate), 1)),
+      pause_(std::max<std::int64_t>(std::llround(pause_s * g.rate), 1)),
+      cells_(g.drive_frames > 0.0 ? channels : 0)
 {
     for (cell& c : cells_)
         c.closed_at = c.opens_at = -fade_;
 }
 
-void drive_guard::add(cell& c, const stretch& s) const noexcept
+void drive_guard::rest(cell& c, std::int64_t until) const noexcept
 {
-    c.sum += s.driven;
-    if (c.count > 0) {
-        stretch& last = c.at(c.count - 1);
-        if (s.begin <= last.end || s.begin - last.begin < grain_ || c.count == c.ring.size()) {
-            last.end = std::max(last.end, s.end);
-            last.driven += s.driven;
-            return;
-        }
-    }
-    ++c.count;
-    c.at(c.count - 1) = s;
+    if (until <= c.at)
+        return;
+    c.level = std::max(c.level - leak_ * static_cast<double>(until - c.at), 0.0);
+    c.at = until;
 }
 
-// Releases old frames. Of a stretch that is left in part, keeps as many frames as may have been at its end.
-void drive_guard::release(cell& c, std::int64_t begin) noexcept
+void drive_guard::add(cell& c, std::int64_t frames) noexcept
 {
-    while (c.count > 0) {
-        stretch& s = c.at(0);
-        const std::int64_t left = std::min(s.driven, s.end - begin);
-        if (left > 0) {
-            c.sum -= s.driven - left;
-            s.driven = left;
-            return;
-        }
-        c.sum -= s.driven;
-        c.first = (c.first + 1) % c.ring.size();
-        --c.count;
-    }
+    c.level += static_cast<double>(frames);
+    c.at += frames;
+    c.driven += static_cast<std::uint64_t>(frames);
 }
 
 bool drive_guard::drive(std::size_t channel, std::uint64_t from, std::uint64_t to) noexcept
@@ -67,39 +50,28 @@ bool drive_guard::drive(std::size_t channel, std::uint64_t from, std::uint64_t t
     auto at = static_cast<std::int64_t>(from);
     while (at < end) {
         if (at >= c.closed_at && at < c.opens_at) {
-            at = c.opens_at; // counted when it was closed
+            at = c.opens_at; // its fade was counted when it was closed
             continue;
         }
-        release(c, at + 1 - window_);
-        const std::int64_t n = c.sum + (end - at) <= limit_ ? end - at : 1;
-        if (c.sum + n > limit_) {
-            close(c, at);
-        } else {
-            add(c, {at, at + n, n});
-            at += n;
-        }
+        rest(c, at);
+        const double room = std::floor(limit_ - c.level + rounding);
+        const std::int64_t n =
+            room < static_cast<double>(end - at) ? std::max<std::int64_t>(std::llround(room), 0) : end - at;
+        add(c, n);
+        at += n;
+        if (at < end)
+            close(c);
     }
     return end <= c.closed_at || static_cast<std::int64_t>(from) >= c.opens_at + fade_;
 }
 
-void drive_guard::close(cell& c, std::int64_t at) noexcept
+void drive_guard::close(cell& c) const noexcept
 {
-    add(c, {at, at + fade_, fade_});
-    c.closed_at = at;
-    c.opens_at = std::max(at + fade_, half_gone(c));
-}
-
-/// Returns the first frame whose window holds at most half of the limit, if nothing more is driven.
-std::int64_t drive_guard::half_gone(const cell& c) const noexcept
-{
-    std::int64_t left = limit_ / 2;
-    for (std::size_t i = c.count; i-- > 0;) {
-        const stretch& s = c.at(i);
-        if (s.driven > left)
-            return s.end - left + window_;
-        left -= s.driven;
-    }
-    return 0;
+    c.closed_at = c.at;
+    add(c, fade_);
+    const double over = c.level - 0.5 * limit_;
+    c.opens_at =
+        c.at + std::max<std::int64_t>(static_cast<std::int64_t>(std::ceil(over / leak_ - rounding)), 0);
 }
 
 void drive_guard::follow(std::size_t channel, std::uint64_t clock, const double* envelope,
@@ -151,42 +123,10 @@ void drive_guard::apply(std::size_t channel, std::uint64_t clock, unsigned n, do
     }
 }
 
-drive_history drive_guard::history(std::uint64_t clock) const
+void drive_guard::resume(std::span<const double> levels_s) noexcept
 {
-    const auto now = static_cast<std::int64_t>(clock);
-    const auto seconds = [&](std::int64_t frames) { return static_cast<double>(frames) / rate_; };
-    drive_history h;
-    h.channels.resize(cells_.size());
-    for (std::size_t i = 0; i < cells_.size(); ++i) {
-        const cell& c = cells_[i];
-        h.channels[i].opens_s = seconds(c.opens_at - now);
-        for (std::size_t k = 0; k < c.count; ++k) {
-            const stretch& s = c.at(k);
-            if (s.end <= now - window_)
-                continue;
-            h.channels[i].stretches.push_back(
-                {seconds(s.begin - now), seconds(s.end - now), seconds(s.driven)});
-        }
-    }
-    return h;
-}
-
-void drive_guard::resume(const drive_history& h) noexcept
-{
-    // A partly driven frame counts, but a rounding error above a whole number does not add a frame.
-    const auto up = [this](double s) { return static_cast<std::int64_t>(std::ceil(s * rate_ - 1e-4)); };
-    for (std::size_t i = 0; i < std::min(cells_.size(), h.channels.size()); ++i) {
-        cell& c = cells_[i];
-        for (const drive_history::stretch& s : h.channels[i].stretches)
-            add(c, {up(s.begin_s), up(s.end_s), up(s.driven_s)});
-        std::int64_t opens = up(h.channels[i].opens_s);
-        // A channel closed for a lower limit opens as soon as this guard's limit allows.
-        if (const std::int64_t half = half_gone(c); opens > half + fade_)
-            opens = half;
-        // An open channel starts from silence, so it needs no fade.
-        c.opens_at = opens > 0 ? opens : -fade_;
-        c.closed_at = std::min(c.opens_at, -fade_);
-    }
+    for (std::size_t i = 0; i < std::min(cells_.size(), levels_s.size()); ++i)
+        cells_[i].level = std::clamp(levels_s[i] * rate_, 0.0, limit_);
 }
 
 } // namespace tactor::synth

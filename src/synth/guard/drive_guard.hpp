@@ -3,13 +3,13 @@
 /// Limit on the time for which one tactor is driven.
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <span>
 #include <vector>
 
-#include "synth/guard/drive_history.hpp"
+#include "synth/guard/guard.hpp"
 
 namespace tactor::synth {
 
@@ -17,16 +17,14 @@ namespace tactor::synth {
 /// tactor.
 inline constexpr double least_counted_drive = 0.01 * (1.0 + 1e-9);
 
-/// Limits the time for which a channel is driven within a sliding window. A channel that has used its limit
-/// is faded out; it may go on when the window holds half of the limit. No window holds more than the limit
-/// and one fade of 20 ms. Time is counted in cells of 1/256 of the window: a channel that starts more than
-/// once in a cell may be cut up to a cell too early.
-/// Counts on its own clock, frames since the start; nothing depends on block sizes.
+/// Drive time as a bucket a channel: its level rises while the channel is driven and leaks while it rests. A
+/// frame that would bring it above the limit closes the channel: it is faded out, and opens again when the
+/// level is at half of the limit. Counts on its own clock, frames since the start; nothing depends on block
+/// sizes.
 class drive_guard {
 public:
-    /// Makes a guard. `limit` and `window` in frames; a limit of 0, or one not below the window, means no
-    /// limit.
-    drive_guard(std::size_t channels, std::uint64_t limit, std::uint64_t window, unsigned rate);
+    /// Makes a guard. Without guard_settings::drive_frames it is off and counts nothing.
+    drive_guard(std::size_t channels, const guard_settings& g);
 
     bool on() const noexcept { return !cells_.empty(); }
     /// Returns the longest block that may be passed.
@@ -45,48 +43,33 @@ public:
     /// on.
     void apply(std::size_t channel, std::uint64_t clock, unsigned n, double* x, double* envelope,
                unsigned known) noexcept;
-    /// Returns the number of changed drives: cut short, or silent because their channel was closed, also by
-    /// an earlier guard. A drive that sounds again within 1 ms is the same drive.
+    /// Returns the number of changed drives: cut short, or silent because their channel was closed. A drive
+    /// that sounds again within 1 ms is the same drive.
     std::uint64_t cuts() const noexcept { return cuts_; }
 
-    /// Returns the drives that were counted until frame `clock` and are still in the window. Allocates.
-    drive_history history(std::uint64_t clock) const;
-    /// Continues from a history with frame 0. Call it only before the first drive.
-    void resume(const drive_history& h) noexcept;
+    /// Returns the frames in which a channel was driven so far; 0 while the guard is off.
+    std::uint64_t driven(std::size_t channel) const noexcept { return on() ? cells_[channel].driven : 0; }
+    /// Begins with these levels, s, at frame 0. Call it only before the first drive.
+    void resume(std::span<const double> levels_s) noexcept;
 
 private:
-    static constexpr std::size_t grains = 256; ///< of the window
-
-    /// Frames begin ... end - 1, of which `driven` were driven: all, unless it started again within a grain.
-    struct stretch {
-        std::int64_t begin = 0;
-        std::int64_t end = 0;
-        std::int64_t driven = 0;
-    };
-    /// State of a channel. Stretches begin a grain or more apart, so those of one window fit.
     struct cell {
-        std::array<stretch, grains + 4> ring{};
-        std::size_t first = 0;
-        std::size_t count = 0;
-        std::int64_t sum = 0; ///< frames in the stretches
+        double level = 0.0;  ///< frames, at frame `at`
+        std::int64_t at = 0; ///< the end of what was counted
+        std::uint64_t driven = 0;
         std::int64_t closed_at = 0;
         std::int64_t opens_at = 0;
         /// Last sample that was changed.
         std::int64_t changed_at = std::numeric_limits<std::int64_t>::min() / 2;
-
-        stretch& at(std::size_t i) noexcept { return ring[(first + i) % ring.size()]; }
-        const stretch& at(std::size_t i) const noexcept { return ring[(first + i) % ring.size()]; }
     };
-    void add(cell& c, const stretch& s) const noexcept;
-    static void release(cell& c, std::int64_t begin) noexcept;
-    void close(cell& c, std::int64_t at) noexcept;
-    std::int64_t half_gone(const cell& c) const noexcept;
+    void rest(cell& c, std::int64_t until) const noexcept;
+    static void add(cell& c, std::int64_t frames) noexcept;
+    void close(cell& c) const noexcept;
     double gain(const cell& c, std::int64_t at) const noexcept;
 
-    unsigned rate_;
-    std::int64_t limit_;
-    std::int64_t window_;
-    std::int64_t grain_;
+    double rate_;
+    double limit_;
+    double leak_;
     std::int64_t fade_;
     std::int64_t pause_;
     std::vector<cell> cells_;

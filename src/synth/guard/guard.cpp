@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "core/bounds.hpp"
 #include "core/refused.hpp"
 #include "synth/mix/mixer.hpp"
 
@@ -13,15 +14,18 @@ namespace tactor::synth {
 guard_settings make_guards(const drive_limits& l, unsigned rate)
 {
     check_limits(l);
-    const auto frames = [rate](double s) { return static_cast<std::uint64_t>(std::llround(s * rate)); };
     guard_settings g;
     g.rate = rate;
     g.power = std::pow(10.0, l.power_dbfs / 10.0);
-    if (l.max_drive_s < l.window_s) {
-        g.drive_frames = frames(l.max_drive_s);
-        g.window_frames = frames(l.window_s);
-    }
+    if (l.max_drive_s < l.window_s)
+        g.drive_frames = std::round(l.max_drive_s * rate);
+    g.leak = find_leak(l);
     return g;
+}
+
+double find_leak(const drive_limits& l) noexcept
+{
+    return l.max_drive_s < l.window_s ? l.max_drive_s / (l.window_s - l.max_drive_s) : 1.0;
 }
 
 void check_limits(const drive_limits& l)

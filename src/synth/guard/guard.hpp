@@ -9,20 +9,18 @@
 
 #include <tactor/render.hpp>
 
-#include "core/bounds.hpp"
-
 namespace tactor::synth {
-
-/// Longest window that drive_limits may have, s.
-inline constexpr double longest_window_s = detail::bounds_of::drive_s.high;
 
 /// Limits in the mixer's units; as initialised: no limits.
 struct guard_settings {
     double power = std::numeric_limits<double>::infinity(); ///< greatest sum of squared envelopes
-    std::uint64_t drive_frames = 0;
-    std::uint64_t window_frames = 0;
+    double drive_frames = 0.0;                              ///< longest drive; 0: drive time is not counted
+    double leak = 1.0; ///< frames of drive time that a frame of rest takes away
     unsigned rate = 48000;
 };
+
+/// Drive time that a rest takes away, in seconds a second: 1 where there is no limit on it.
+double find_leak(const drive_limits& l) noexcept;
 
 /// Checks the limits.
 /// \throws error (bad_input) for impossible ones.

@@ -129,14 +129,14 @@ void mixer::impl::let_go() noexcept
     leaving.clear();
 }
 
-drive_history mixer::history() const
+std::uint64_t mixer::driven(std::size_t channel) const noexcept
 {
-    return impl_->duty.history(impl_->clock);
+    return impl_->duty.driven(channel);
 }
 
-void mixer::resume(const drive_history& h) noexcept
+void mixer::resume(std::span<const double> levels_s) noexcept
 {
-    impl_->duty.resume(h);
+    impl_->duty.resume(levels_s);
 }
 
 void mixer::cut() noexcept

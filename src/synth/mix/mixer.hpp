@@ -12,7 +12,6 @@
 #include <tactor/array.hpp>
 #include <tactor/choices.hpp>
 
-#include "synth/guard/drive_history.hpp"
 #include "synth/guard/guard.hpp"
 #include "synth/score/event.hpp"
 
@@ -55,12 +54,11 @@ public:
     /// Forgets the factor of a score of which nothing sounds any more.
     void forget_gain(std::uint32_t score) noexcept;
 
-    /// Returns the drive times of each channel, for the next mixer of the same array. Allocates; no thread
-    /// may be in process().
-    drive_history history() const;
-    /// Continues from the history of another mixer, at any rate. Call drive_history::pass() first for the
-    /// time in between. Only before the first process(). Does not allocate.
-    void resume(const drive_history& h) noexcept;
+    /// Returns the frames in which a channel was driven so far; 0 where drive time is not counted.
+    std::uint64_t driven(std::size_t channel) const noexcept;
+    /// Begins with these levels of drive time, s, by channel; those beyond are 0. Only before the first
+    /// process().
+    void resume(std::span<const double> levels_s) noexcept;
 
     /// Drops everything at once. Drive times still count.
     void cut() noexcept;

@@ -101,7 +101,7 @@ struct mixer::impl {
           strips(limits.size()),
           voices(capacity),
           power(limits.size(), g.power, most_power * reach(limits), g.rate),
-          duty(limits.size(), g.drive_frames, g.window_frames, g.rate),
+          duty(limits.size(), g),
           envelopes(power.on() || duty.on() ? limits.size() : 0),
           crests(power.on() ? limits.size() : 0)
     {

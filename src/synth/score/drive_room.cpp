@@ -3,14 +3,36 @@
 
 #include <algorithm>
 #include <cmath>
-#include <vector>
 
+#include "synth/guard/drive_guard.hpp"
+#include "synth/guard/guard.hpp"
 #include "synth/score/event_source.hpp"
 
 namespace tactor::synth {
 namespace {
 
 constexpr double strict = least_counted_drive / 2.0;
+
+/// Drive time that a piece adds to a channel, in frames. Its level after the piece is the greater of two: the
+/// level before plus `sum`, and `rested`, which it has if the channel had rested. So are the levels within.
+struct need {
+    double sum = 0.0;
+    double most = 0.0; ///< greatest of the sums within the piece
+    double rested = 0.0;
+    double most_rested = 0.0;
+    std::uint64_t until = 0; ///< frame of the piece
+
+    void drive(std::uint64_t from, std::uint64_t to, double leak) noexcept
+    {
+        const double gone = leak * static_cast<double>(from - until);
+        const auto driven = static_cast<double>(to - from);
+        sum += driven - gone;
+        rested = std::max(rested - gone, 0.0) + driven;
+        most = std::max(most, sum);
+        most_rested = std::max(most_rested, rested);
+        until = to;
+    }
+};
 
 // Calls f(channel, greatest amplitude) for each part of an event.
 template <class F>
@@ -25,64 +47,60 @@ void each_part(const drive_event& e, F f)
         f(e.line.channel, most);
 }
 
-// Drives the whole score. Returns true if the guard leaves all its channels open.
-bool drive_piece(drive_guard& g, const score& s, std::uint64_t clock)
+std::vector<need> find_needs(const score& s, double leak)
 {
-    std::vector<std::uint64_t> until(s.channels(), 0);
-    bool open = true;
+    std::vector<need> all(s.channels());
     event_source source(s);
     for (const drive_event* e = source.peek(); e != nullptr; source.pop(), e = source.peek())
         each_part(*e, [&](std::uint32_t channel, double amplitude) {
-            if (amplitude <= strict)
-                return;
-            const std::uint64_t end = clock + e->start + e->length;
-            for (std::uint64_t at = std::max(clock + e->start, until[channel]); at < end;) {
-                const std::uint64_t to = std::min(end, at + g.longest_block());
-                open = g.drive(channel, at, to) && open;
-                at = to;
-            }
-            until[channel] = std::max(until[channel], end);
+            need& n = all[channel];
+            const std::uint64_t end = e->start + e->length;
+            if (amplitude > strict && end > n.until)
+                n.drive(std::max(e->start, n.until), end, leak);
         });
-    return open;
+    return all;
 }
 
 } // namespace
 
-drive_room::drive_room(std::size_t channels, const drive_limits& l, unsigned rate)
-    : drive_room(channels, make_guards(l, rate))
+drive_room::drive_room(std::size_t channels, const drive_limits& l, unsigned rate) : rate_(rate)
 {
+    const guard_settings g = make_guards(l, rate);
+    limit_ = g.drive_frames;
+    leak_ = g.leak;
+    levels_.resize(limit_ > 0.0 ? channels : 0);
 }
 
-drive_room::drive_room(std::size_t channels, const guard_settings& g)
-    : guard_(channels, g.drive_frames, g.window_frames, g.rate), window_(g.window_frames), rate_(g.rate)
+double drive_room::level_at(std::size_t channel, std::uint64_t clock) const noexcept
 {
+    const level& l = levels_[channel];
+    return std::max(l.frames - leak_ * static_cast<double>(clock - std::min(clock, l.at)), 0.0);
 }
 
 std::optional<std::uint64_t> drive_room::wait(const score& s, std::uint64_t clock) const
 {
-    if (!guard_.on())
+    if (levels_.empty())
         return 0;
-    const auto fits = [&](std::uint64_t later) {
-        drive_guard g = guard_;
-        return drive_piece(g, s, clock + later);
-    };
-    if (fits(0))
-        return 0;
-    std::uint64_t least = 0;
-    std::uint64_t most = window_;
-    if (!fits(most))
-        return std::nullopt;
-    while (most - least > rate_ / 20) {
-        const std::uint64_t middle = least + (most - least) / 2;
-        (fits(middle) ? most : least) = middle;
+    double frames = 0.0;
+    const std::vector<need> needs = find_needs(s, leak_);
+    for (std::size_t i = 0; i < std::min(needs.size(), levels_.size()); ++i) {
+        if (needs[i].most_rested > limit_)
+            return std::nullopt;
+        if (needs[i].most > 0.0)
+            frames = std::max(frames, (level_at(i, clock) - (limit_ - needs[i].most)) / leak_);
     }
-    return most;
+    return static_cast<std::uint64_t>(std::ceil(frames));
 }
 
 void drive_room::played(const score& s, std::uint64_t clock)
 {
-    if (guard_.on())
-        drive_piece(guard_, s, clock);
+    if (levels_.empty())
+        return;
+    const std::vector<need> needs = find_needs(s, leak_);
+    for (std::size_t i = 0; i < std::min(needs.size(), levels_.size()); ++i)
+        if (needs[i].most > 0.0)
+            levels_[i] = {std::max(level_at(i, clock) + needs[i].sum, needs[i].rested),
+                          clock + needs[i].until};
 }
 
 } // namespace tactor::synth

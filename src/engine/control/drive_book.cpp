@@ -1,0 +1,294 @@
+// SPDX-License-Identifier: MIT
+#include "engine/control/drive_book.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <cmath>
+#include <cstdlib>
+#include <iterator>
+#include <limits>
+#include <map>
+#include <mutex>
+#include <system_error>
+#include <utility>
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <tactor/player.hpp>
+
+#include "core/limits.hpp"
+#include "core/owned.hpp"
+#include "core/split.hpp"
+#include "rt/clock.hpp"
+#include "synth/guard/guard.hpp"
+
+namespace tactor::engine {
+namespace {
+
+constexpr std::string_view first_line = "tactor-drive-time 1";
+constexpr std::string_view last_line = "end";
+constexpr double ahead_s = 0.5;
+constexpr std::int64_t renewed_ns = rt::ns_per_s / 4;
+constexpr std::size_t longest_name = 200; // longer ones share what begins alike
+
+double seconds(std::int64_t ns)
+{
+    return static_cast<double>(ns) * 1e-9;
+}
+
+bool is_own(const std::string& folder, mode_t closed_to)
+{
+    struct stat is = {};
+    return ::lstat(folder.c_str(), &is) == 0 && S_ISDIR(is.st_mode) && is.st_uid == ::geteuid() &&
+           (is.st_mode & closed_to) == 0;
+}
+
+std::string file_name(std::string_view device)
+{
+    std::string name;
+    for (const char c : device.substr(0, longest_name)) {
+        const bool plain = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
+                           c == '-' || c == '_' || c == '.';
+        name += plain ? std::string(1, c) : fmt::format("%{:02X}", static_cast<unsigned char>(c));
+    }
+    return "drive-time-" + name.substr(0, longest_name);
+}
+
+struct place {
+    std::string folder = {}; ///< empty: there is none
+    std::string why = {};    ///< then
+};
+
+/// Finds a folder that nobody else can put anything into: that of a service, else the user's.
+place find_folder()
+{
+    std::string runtime;
+    for (const char* variable : {"RUNTIME_DIRECTORY", "XDG_RUNTIME_DIR"})
+        if (const char* v = std::getenv(variable); runtime.empty() && v != nullptr)
+            runtime = std::string(v).substr(0, std::string_view(v).find(':'));
+    if (runtime.empty())
+        return {.why = "there is no runtime folder (XDG_RUNTIME_DIR)"};
+    if (!is_own(runtime, 0))
+        return {.why = fmt::format("{} is not a folder of this user", runtime)};
+    const std::string folder = runtime + "/tactor";
+    if (::mkdir(folder.c_str(), 0700) != 0 && errno != EEXIST)
+        return {.why = fmt::format("{}: {}", folder, std::generic_category().message(errno))};
+    if (!is_own(folder, S_IWGRP | S_IWOTH))
+        return {.why = fmt::format("{} is not a folder of this user alone", folder)};
+    return {.folder = folder};
+}
+
+std::string find_path(const place& p, std::string_view device)
+{
+    return p.folder.empty() ? std::string() : p.folder + "/" + file_name(device);
+}
+
+/// A file that is open and locked against other processes.
+class locked_file {
+public:
+    /// Opens and locks it, `flags` as for open(2). It is not open() if that fails.
+    locked_file(const std::string& path, int flags) noexcept
+        : fd_(::open(path.c_str(), flags | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK, 0600))
+    {
+        struct stat is = {};
+        if (!fd_ || ::fstat(fd_.get(), &is) != 0 || !S_ISREG(is.st_mode) || !lock())
+            fd_ = {};
+    }
+
+    bool open() const noexcept { return static_cast<bool>(fd_); }
+    std::string read() const
+    {
+        std::string text;
+        std::array<char, 4096> part{};
+        for (ssize_t n = 1; n > 0 && text.size() < most_bytes;) {
+            n = ::pread(fd_.get(), part.data(), part.size(), static_cast<off_t>(text.size()));
+            text.append(part.data(), static_cast<std::size_t>(std::max<ssize_t>(n, 0)));
+        }
+        return text;
+    }
+    /// Returns false if it could not be written as a whole. Then it counts as empty.
+    bool write(const std::string& text) const noexcept
+    {
+        const auto size = static_cast<ssize_t>(text.size());
+        return ::pwrite(fd_.get(), text.data(), text.size(), 0) == size && ::ftruncate(fd_.get(), size) == 0;
+    }
+
+private:
+    static constexpr std::size_t most_bytes = std::size_t{1} << 20;
+
+    // Others hold it for microseconds. One that was stopped meanwhile must not stop this player.
+    bool lock() const noexcept
+    {
+        constexpr int tries = 20;
+        constexpr useconds_t pause_us = 2000;
+        for (int i = 0; i < tries; ++i) {
+            if (::flock(fd_.get(), LOCK_EX | LOCK_NB) == 0)
+                return true;
+            ::usleep(pause_us);
+        }
+        return false;
+    }
+
+    detail::owned_fd fd_;
+};
+
+/// Levels of devices whose files cannot be written.
+struct memory {
+    std::mutex mutex;
+    std::map<std::string, drive_levels, std::less<>> by_device;
+};
+
+memory& here()
+{
+    static memory m;
+    return m;
+}
+
+/// Calls `change` with the levels of a device, and keeps them if it returns true. `path`: empty: in memory.
+template <class Change>
+void look_up(const std::string& device, const std::string& path, int flags, Change change)
+{
+    memory& m = here();
+    const std::lock_guard lock(m.mutex);
+    drive_levels& kept = m.by_device[device];
+    const locked_file file(path, flags);
+    drive_levels l = file.open() ? drive_levels::read(file.read()) : drive_levels();
+    if (l.levels_s.empty())
+        l = kept;
+    if (change(l) && !(file.open() && file.write(l.text())))
+        kept = std::move(l);
+}
+
+} // namespace
+
+bool drive_levels::is_foreign(std::int64_t now_ns) const noexcept
+{
+    return at_ns > now_ns + rt::ns_per_s;
+}
+
+std::vector<double> drive_levels::after_rest(std::int64_t now_ns, double limit_s, double leak) const
+{
+    if (is_foreign(now_ns))
+        return {};
+    const double rest_s = seconds(std::max<std::int64_t>(now_ns - at_ns, 0));
+    std::vector<double> now = levels_s;
+    for (double& l : now)
+        l = std::max(std::min(l, limit_s) - leak * rest_s, 0.0);
+    return now;
+}
+
+std::string drive_levels::text() const
+{
+    std::string t = fmt::format("{}\n{}\n", first_line, at_ns);
+    for (const double l : levels_s)
+        fmt::format_to(std::back_inserter(t), "{:.6f}\n", l);
+    return t.append(last_line).append("\n");
+}
+
+drive_levels drive_levels::read(std::string_view text)
+{
+    const std::vector<std::string_view> lines = detail::split(text, '\n');
+    if (lines.size() < 4 || lines.size() > detail::max_tactors + 4 || lines.front() != first_line ||
+        !lines.back().empty() || lines[lines.size() - 2] != last_line)
+        return {};
+    const auto at_ns = detail::number_in<std::int64_t>(lines[1]);
+    if (!at_ns)
+        return {};
+    drive_levels l{.at_ns = *at_ns};
+    for (std::size_t i = 2; i + 2 < lines.size(); ++i) {
+        const auto level = detail::number_in<double>(lines[i]);
+        if (!level || !(*level >= 0.0) || !std::isfinite(*level))
+            return {};
+        l.levels_s.push_back(*level);
+    }
+    return l;
+}
+
+void drive_share::enter(drive_levels& l, std::span<const std::uint64_t> all, double rate, double leak,
+                        double next_s, std::int64_t now_ns)
+{
+    if (l.is_foreign(now_ns))
+        l = {};
+    const bool alone = l.at_ns == left_ns;
+    const double passed_s = seconds(now_ns - (alone ? entered_ns : l.at_ns));
+    driven.resize(all.size());
+    l.levels_s.resize(std::max(l.levels_s.size(), all.size()));
+    for (std::size_t i = 0; i < l.levels_s.size(); ++i) {
+        const bool ours = i < all.size();
+        const double drive_s = ours ? static_cast<double>(all[i] - driven[i]) / rate : 0.0;
+        const double before_s = std::max(l.levels_s[i] - (ours ? ahead_s : 0.0), 0.0);
+        const double rest_s = std::max(passed_s - drive_s, 0.0);
+        l.levels_s[i] = std::max(before_s - leak * rest_s, 0.0) + drive_s + (ours ? next_s : 0.0);
+    }
+    driven.assign(all.begin(), all.end());
+    ahead_s = next_s;
+    entered_ns = now_ns;
+    const std::int64_t until_ns = now_ns + std::llround(next_s * 1e9);
+    l.at_ns = left_ns = alone ? until_ns : std::max(until_ns, l.at_ns);
+}
+
+drive_book::drive_book(std::string device, const drive_limits& l, unsigned rate)
+    : device_(std::move(device)),
+      path_(device_.empty() ? std::string() : find_path(find_folder(), device_)),
+      limit_s_(l.max_drive_s < l.window_s ? l.max_drive_s : std::numeric_limits<double>::infinity()),
+      leak_(synth::find_leak(l)),
+      rate_(rate)
+{
+}
+
+std::vector<double> drive_book::read() const
+{
+    std::vector<double> now;
+    if (kept())
+        look_up(device_, path_, O_RDWR, [&](drive_levels& l) {
+            now = l.after_rest(rt::boottime_ns(), limit_s_, leak_);
+            return false;
+        });
+    return now;
+}
+
+void drive_book::enter(std::span<const std::atomic<std::uint64_t>> driven, bool sounds) noexcept
+{
+    const std::int64_t now_ns = rt::boottime_ns();
+    const bool ahead = share_.ahead_s > 0.0;
+    if (!kept() || (sounds && ahead && now_ns - share_.entered_ns < renewed_ns))
+        return;
+    try {
+        std::vector<std::uint64_t> now(driven.size());
+        std::transform(driven.begin(), driven.end(), now.begin(),
+                       [](const auto& n) { return n.load(std::memory_order_relaxed); });
+        drive_share next = share_;
+        next.driven.resize(now.size());
+        if (!sounds && !ahead && now == next.driven)
+            return;
+        look_up(device_, path_, O_RDWR | O_CREAT, [&](drive_levels& l) {
+            next.enter(l, now, rate_, leak_, sounds ? ahead_s : 0.0, now_ns);
+            return true;
+        });
+        share_ = std::move(next);
+    } catch (const std::exception&) { // NOLINT(bugprone-empty-catch): no memory; the next call enters it
+    }
+}
+
+} // namespace tactor::engine
+
+namespace tactor {
+inline namespace v0 {
+
+std::string drive_time_fault(std::string_view device)
+{
+    const engine::place p = engine::find_folder();
+    if (p.folder.empty())
+        return p.why;
+    const std::string path = engine::find_path(p, device);
+    const bool good = ::access(path.c_str(), F_OK) != 0 || engine::locked_file(path, O_RDWR).open();
+    return good ? std::string() : fmt::format("{} cannot be written", path);
+}
+
+} // namespace v0
+} // namespace tactor
