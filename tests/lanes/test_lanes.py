@@ -32,6 +32,14 @@ def scripts():
 
 
 class Lanes(ToolTest):
+    def test_options_are_read_before_anything_is_done(self):
+        run = ROOT / "tests/run"
+        self.assertIn("tests/run [--all", said(run, "--help"))
+        for option, why in (("--hepl", "no such option: --hepl"), ("--all=nix", 'no lane "nix"')):
+            r = subprocess.run([run, option], capture_output=True, text=True, stdin=subprocess.DEVNULL)
+            self.assertEqual((r.returncode, r.stdout), (2, ""))
+            self.assertIn(why, r.stderr)
+
     def test_each_script_can_be_read(self):
         shells = [file for file, text in scripts() if re.match(r"#!/bin/sh|.*\n# shellcheck shell=sh", text)]
         pythons = [(file, text) for file, text in scripts() if file.suffix == ".py" or text.startswith("#!/usr/bin/env python3")]

@@ -99,6 +99,14 @@ public:
         if (!fd_ || ::fstat(fd_.get(), &is) != 0 || !S_ISREG(is.st_mode) || !lock())
             fd_ = {};
     }
+    /// Unlocks it, also where a process that was forked meanwhile has it open.
+    ~locked_file()
+    {
+        if (fd_)
+            ::flock(fd_.get(), LOCK_UN);
+    }
+    locked_file(const locked_file&) = delete;
+    locked_file& operator=(const locked_file&) = delete;
 
     bool open() const noexcept { return static_cast<bool>(fd_); }
     std::string read() const
