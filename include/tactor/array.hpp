@@ -84,7 +84,7 @@ struct grid_lines {
 
 /// Makes an array of rows x columns tactors: index = row * columns + column, channel = index, tactor 0 at (0,
 /// 0).
-/// \throws error (bad_input) for no rows or columns, more than 16384 tactors, or a pitch that is not positive
+/// \throws error (bad_input) for no rows or columns, more than 1024 tactors, or a pitch that is not positive
 ///         and finite.
 [[nodiscard]] TACTOR_API array make_grid(std::string name, unsigned rows, unsigned columns, double pitch_x_mm,
                                          double pitch_y_mm);
@@ -97,7 +97,7 @@ struct grid_lines {
 [[nodiscard]] TACTOR_API array preset_array(std::string_view name);
 
 /// Checks the rules for every array: at least one tactor, finite places, no two tactors on one place or one
-/// channel, limits and gains in range (max_dbfs <= 0, polarity 1 or -1, channel < 16384). Array files allow
+/// channel, limits and gains in range (max_dbfs <= 0, polarity 1 or -1, channel < 1024). Array files allow
 /// only channels below 1024, because no PCM has more. O(n log n).
 /// \throws error (bad_input) that names the tactors and their line.
 TACTOR_API void validate(const array& a);

@@ -173,12 +173,12 @@ struct compensated_places {
 
 /// Computes the places at which taps must be played to be felt at x: m = (I + K) x. If some m_i lies outside
 /// the array, the result is the m in its hull that minimises sum |x(m) - x|^2. This convex problem is solved
-/// until the sum is within 1e-15 of its minimum (2e-10 if links are very strong), in units of the array's
-/// size squared. O(n) in taps if all fit, else O(n h) in the h corners of the hull, some twenty times. Any
+/// until the sum changes by less than 1e-12 of itself in ten steps. Where the minimum is flat, as if links
+/// are strong, the m of another solver may differ though they are felt at the same places. O(n) in taps if
+/// all fit; else some 50 to 2000 such steps, at most 5000, and ten million divided by n for long chains. Any
 /// thread.
-/// \throws error (bad_input) as felt_places() does, for taps that begin together, for more than 4 million
-///         taps times corners, and if taps attract each other too strongly for an answer (k of ten million
-///         and more).
+/// \throws error (bad_input) as felt_places() does, for taps that begin together or nearly so for the
+///         observer (k of ten million and more), and for more than a million taps.
 [[nodiscard]] TACTOR_API compensated_places compensate(const layout& l, const low_speed_observer& o,
                                                        std::span<const double> onsets_s,
                                                        std::span<const point> targets);

@@ -69,10 +69,10 @@ std::optional<grid_lines> find_grid(const array& a)
 array make_grid(std::string name, unsigned rows, unsigned columns, double pitch_x_mm, double pitch_y_mm)
 {
     const std::size_t count = std::size_t{rows} * columns;
-    const auto possible = [](unsigned n) { return n >= 1 && n <= detail::max_tactors; };
-    if (!possible(rows) || !possible(columns) || count > detail::max_tactors)
+    const auto possible = [](unsigned n) { return n >= 1 && n <= detail::max_channels; };
+    if (!possible(rows) || !possible(columns) || count > detail::max_channels)
         throw error(error_kind::bad_input, "grid", fmt::format("{} rows x {} columns", rows, columns),
-                    fmt::format("1 to {} tactors", detail::max_tactors))
+                    fmt::format("1 to {} tactors", detail::max_channels))
             .with_field(!possible(rows)      ? "rows"
                         : !possible(columns) ? "columns"
                                              : "");

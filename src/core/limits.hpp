@@ -4,10 +4,7 @@
 
 namespace tactor::detail {
 
-inline constexpr unsigned max_tactors = 16384;
-
-/// Most channels of a PCM or a WAV file. A channel in a file must be below it. Channels that follow from the
-/// index may go up to max_tactors: such an array can be planned and rendered, but not played.
+/// Most channels of a PCM or a WAV file, and most tactors of an array.
 inline constexpr unsigned max_channels = 1024;
 
 /// Greatest coordinate or length, mm. More than a kilometre is a mistake in the unit.

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <cmath>
-#include <cstdint>
-#include <unordered_map>
-#include <utility>
+#include <cstddef>
 
 #include <fmt/format.h>
 
@@ -41,7 +39,7 @@ void check_values(const array& a, std::size_t i)
     if (!x_fits || !(std::abs(t.position.y_mm) <= max_mm))
         refuse(a, i, fmt::format("is at ({}, {}) mm", t.position.x_mm, t.position.y_mm),
                "coordinates are millimetres, within 1000000 of 0", x_fits ? "y_mm" : "x_mm");
-    if (t.channel >= detail::max_tactors)
+    if (t.channel >= detail::max_channels)
         refuse(a, i, fmt::format("is on channel {}", t.channel), "channels count from 0", "channel");
     if (!(t.gain_db >= detail::min_db && t.gain_db <= detail::max_gain_db))
         refuse(a, i, fmt::format("has a gain of {} dB", t.gain_db), "allowed: -200 to 60", "gain_db");
@@ -70,75 +68,37 @@ void check_values(const array& a, std::size_t i)
                "1, or -1 where it is wired the other way round", "polarity");
 }
 
-// Tactors by cells of the size of the tolerance. Tactors that are too near are in the same or a neighbouring
-// cell.
-class places_seen {
-public:
-    // Returns the tactor that is already at p, or null.
-    const std::size_t* at(const array& a, point p) const
-    {
-        const auto [cx, cy] = cell(p);
-        for (std::int64_t y = cy - 1; y <= cy + 1; ++y)
-            for (std::int64_t x = cx - 1; x <= cx + 1; ++x) {
-                const auto range = seen_.equal_range(key(x, y));
-                for (auto it = range.first; it != range.second; ++it)
-                    if (distance_mm(a.tactors[it->second].position, p) <= same_place_mm)
-                        return &it->second;
-            }
-        return nullptr;
-    }
-
-    void add(point p, std::size_t i)
-    {
-        const auto [cx, cy] = cell(p);
-        seen_.emplace(key(cx, cy), i);
-    }
-
-private:
-    static std::pair<std::int64_t, std::int64_t> cell(point p)
-    {
-        return {std::llround(p.x_mm / same_place_mm), std::llround(p.y_mm / same_place_mm)};
-    }
-
-    // Mixes the cell's coordinates (constants of splitmix64), so that a regular grid does not fall into few
-    // buckets.
-    static std::uint64_t key(std::int64_t x, std::int64_t y) noexcept
-    {
-        std::uint64_t h = static_cast<std::uint64_t>(x) * 0x9e3779b97f4a7c15u + static_cast<std::uint64_t>(y);
-        h = (h ^ (h >> 30)) * 0xbf58476d1ce4e5b9u;
-        h = (h ^ (h >> 27)) * 0x94d049bb133111ebu;
-        return h ^ (h >> 31);
-    }
-
-    std::unordered_multimap<std::uint64_t, std::size_t> seen_;
-};
+// Refuses a tactor that is where an earlier one is, or on its channel.
+void check_own(const array& a, std::size_t i)
+{
+    const tactor_spec& t = a.tactors[i];
+    for (std::size_t j = 0; j < i; ++j)
+        if (distance_mm(a.tactors[j].position, t.position) <= same_place_mm)
+            refuse(a, i,
+                   fmt::format("is at ({}, {}) mm, the place of {}", t.position.x_mm, t.position.y_mm,
+                               other(a, j)),
+                   "give each tactor a place of its own");
+    for (std::size_t j = 0; j < i; ++j)
+        if (a.tactors[j].channel == t.channel)
+            refuse(a, i, fmt::format("is on channel {}, that of {}", t.channel, other(a, j)),
+                   "give each tactor a channel of its own");
+}
 
 } // namespace
 
 void validate(const array& a)
 {
-    if (a.tactors.empty() || a.tactors.size() > detail::max_tactors)
+    if (a.tactors.empty() || a.tactors.size() > detail::max_channels)
         throw error(error_kind::bad_input,
                     a.where.line != 0 ? a.where.text() : "array " + detail::quoted(a.name),
                     fmt::format("{} tactors", a.tactors.size()),
-                    fmt::format("an array has 1 to {}", detail::max_tactors))
+                    fmt::format("an array has 1 to {}", detail::max_channels))
             .with_place(a.where)
             .with_field("tactors");
 
-    places_seen places;
-    std::unordered_map<unsigned, std::size_t> channels;
     for (std::size_t i = 0; i < a.tactors.size(); ++i) {
-        const tactor_spec& t = a.tactors[i];
         check_values(a, i);
-        if (const std::size_t* j = places.at(a, t.position))
-            refuse(a, i,
-                   fmt::format("is at ({}, {}) mm, the place of {}", t.position.x_mm, t.position.y_mm,
-                               other(a, *j)),
-                   "give each tactor a place of its own");
-        if (const auto [it, fresh] = channels.emplace(t.channel, i); !fresh)
-            refuse(a, i, fmt::format("is on channel {}, that of {}", t.channel, other(a, it->second)),
-                   "give each tactor a channel of its own");
-        places.add(t.position, i);
+        check_own(a, i);
     }
 }
 

@@ -27,8 +27,8 @@ constexpr bounds displacement_um{0.0, max_displacement_um, true};
 array read_grid(const toml_table& grid)
 {
     grid.only({"rows", "columns", "pitch_mm"});
-    const unsigned rows = grid.need(grid.whole("rows", 1, max_tactors), "rows");
-    const unsigned columns = grid.need(grid.whole("columns", 1, max_tactors), "columns");
+    const unsigned rows = grid.need(grid.whole("rows", 1, max_channels), "rows");
+    const unsigned columns = grid.need(grid.whole("columns", 1, max_channels), "columns");
     if (!grid.has("pitch_mm"))
         grid.need(std::optional<double>(), "pitch_mm");
     constexpr bounds positive{0.0, max_mm, true};
@@ -148,9 +148,9 @@ void append_tactors(const std::vector<toml_table>& entries, array& a)
         e.only({"x_mm", "y_mm", "channel", "gain_db", "max_dbfs", "threshold_dbfs", "polarity", "actuator",
                 "rise_ms", "displacement_um_at_0dbfs", "tactor"});
         const unsigned i = static_cast<unsigned>(a.tactors.size());
-        if (i == max_tactors)
-            e.fail(fmt::format("more than {} tactors", max_tactors));
-        if (const auto said = e.whole("tactor", 0, max_tactors - 1); said && *said != i)
+        if (i == max_channels)
+            e.fail(fmt::format("more than {} tactors", max_channels));
+        if (const auto said = e.whole("tactor", 0, max_channels - 1); said && *said != i)
             e.fail("tactor", fmt::format("tactor is {}, but this is entry {}", *said, i),
                    "without a grid, tactors are numbered from 0 in the order of the file");
         tactor_spec t;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstddef>
 #include <memory>
 #include <utility>
 
@@ -12,7 +14,6 @@
 #include "core/access.hpp"
 #include "core/refused.hpp"
 #include "core/words.hpp"
-#include "percept/hull_fit.hpp"
 #include "percept/low_speed.hpp"
 #include "plan/faces/layout_impl.hpp"
 #include "plan/faces/sides.hpp"
@@ -27,71 +28,152 @@ namespace {
 constexpr double on_edge_mm = 1e-6;
 // Least give: below it, sixteen digits do not distinguish a place from its neighbours'.
 constexpr double least_give = 1e-7;
+constexpr std::size_t most_taps = 1'000'000;
 
-point mean_point(const std::vector<point>& corners)
-{
-    point sum;
-    for (const point& p : corners)
-        sum = {sum.x_mm + p.x_mm, sum.y_mm + p.y_mm};
-    const double n = static_cast<double>(corners.size());
-    return {sum.x_mm / n, sum.y_mm / n};
-}
-
-// Returns the limits of the array for taps: its sides, its two ends if all tactors are in one line, nothing
-// for a single one.
-std::vector<detail::beyond> ends_or_sides(const layout::impl& l)
-{
-    if (!l.hull.empty())
-        return detail::hull_sides(l);
-    const auto [first, last] = detail::find_ends(l.points);
-    const double length = distance_mm(first, last);
-    if (!(length > 0.0))
-        return {};
-    const point along{(last.x_mm - first.x_mm) / length, (last.y_mm - first.y_mm) / length};
-    const point back{-along.x_mm, -along.y_mm};
-    // The search needs a closed figure. Nothing reaches the sides across.
-    const point left{-along.y_mm, along.x_mm};
-    const point right{along.y_mm, -along.x_mm};
-    return {{along, detail::dot(along, last)},
-            {back, detail::dot(back, first)},
-            {left, detail::dot(left, first) + length},
-            {right, detail::dot(right, first) + length}};
-}
-
-// Moves targets onto the line of the tactors, because there is no choice across it.
-std::vector<point> onto_line(const layout::impl& l, std::vector<point> targets)
-{
-    const auto [first, last] = detail::find_ends(l.points);
-    const double length = distance_mm(first, last);
-    const point along{(last.x_mm - first.x_mm) / length, (last.y_mm - first.y_mm) / length};
-    for (point& p : targets) {
-        const double t = detail::dot(along, {p.x_mm - first.x_mm, p.y_mm - first.y_mm});
-        p = {first.x_mm + t * along.x_mm, first.y_mm + t * along.y_mm};
+/// A symmetric positive definite matrix whose elements beyond two from the diagonal are 0, as its Cholesky
+/// factor: in row r the elements in columns r, r - 1 and r - 2.
+class chain_factor {
+public:
+    /// Factors I + weight A A, where A = I + K is the chain's matrix (low_speed.hpp).
+    chain_factor(std::span<const double> give, double weight) : rows_(give.size() + 1)
+    {
+        const auto link = [&](std::size_t i) { return i < give.size() ? 1.0 / give[i] : 0.0; };
+        double before = 0.0; // of A: the elements beside and on the diagonal in the row before
+        double on_before = 0.0;
+        for (std::size_t r = 0; r < rows_.size(); ++r) {
+            const double after = link(r);
+            const double on = 1.0 + before + after;
+            row& l = rows_[r];
+            if (r > 1)
+                l[2] = weight * before * link(r - 2) / rows_[r - 2][0];
+            if (r > 0)
+                l[1] = (-weight * before * (on_before + on) - l[2] * rows_[r - 1][1]) / rows_[r - 1][0];
+            l[0] = std::sqrt(1.0 + weight * (before * before + on * on + after * after) - l[1] * l[1] -
+                             l[2] * l[2]);
+            before = after;
+            on_before = on;
+        }
     }
-    return targets;
+
+    /// Replaces b by the solution.
+    void solve(std::vector<point>& b) const
+    {
+        const std::size_t n = rows_.size();
+        for (std::size_t r = 0; r < n; ++r)
+            b[r] = less(b[r], r > 0 ? rows_[r][1] : 0.0, b[r - std::min<std::size_t>(r, 1)],
+                        r > 1 ? rows_[r][2] : 0.0, b[r - std::min<std::size_t>(r, 2)], rows_[r][0]);
+        for (std::size_t r = n; r-- > 0;)
+            b[r] = less(b[r], r + 1 < n ? rows_[r + 1][1] : 0.0, b[std::min(r + 1, n - 1)],
+                        r + 2 < n ? rows_[r + 2][2] : 0.0, b[std::min(r + 2, n - 1)], rows_[r][0]);
+    }
+
+private:
+    using row = std::array<double, 3>;
+
+    static point less(point p, double f, point q, double g, point r, double by)
+    {
+        return {(p.x_mm - f * q.x_mm - g * r.x_mm) / by, (p.y_mm - f * q.y_mm - g * r.y_mm) / by};
+    }
+
+    std::vector<row> rows_;
+};
+
+// Returns p + f q.
+point plus(point p, double f, point q)
+{
+    return {p.x_mm + f * q.x_mm, p.y_mm + f * q.y_mm};
 }
 
-void fit(const layout& l, std::span<const double> give, std::span<const point> targets, compensated_places& r)
+double squares(std::span<const point> a, std::span<const point> b)
 {
-    const layout::impl& in = detail::access::of(l);
-    const std::vector<detail::beyond> sides = ends_or_sides(in);
-    if (sides.empty()) {
-        r.played.assign(targets.size(), in.points.front());
-        r.at_edge = targets.size();
-        return;
+    double sum = 0.0;
+    for (std::size_t i = 0; i < a.size(); ++i)
+        sum += std::pow(distance_mm(a[i], b[i]), 2.0);
+    return sum;
+}
+
+// Returns the places on the array at which taps must be played to be felt as near to their targets as it
+// allows: with m the places played and y the places felt, m = A y, it minimises |y - targets|^2. By the
+// alternating direction method of multipliers (Boyd et al. 2011): y fits targets and what is allowed, z is
+// the nearest place on the array, u sums up by how much the two differ. The weight of u changes where one of
+// both lags behind. Each step is O(n); the best z counts.
+std::vector<point> fit_on_array(const layout& l, std::span<const double> give, std::span<const point> targets)
+{
+    constexpr int look = 10; // steps
+    constexpr int weigh = 50;
+    constexpr int last_weighing = 1000;
+    constexpr double most_work = 1e7; // steps of a tap
+    constexpr double relaxation = 1.6;
+    constexpr double small = 1e-12; // change of the cost between two looks, of the cost
+    constexpr double apart = 1e-9;  // RMS of m - z, of the array's size
+    const std::size_t n = targets.size();
+    const auto [first, last] = detail::find_ends(l.places());
+    const double apart_mm = apart * distance_mm(first, last);
+    if (apart_mm == 0.0)
+        return std::vector<point>(n, first);
+    double weight = 1.0;
+    for (const double g : give)
+        weight = std::min(weight, 1.0 / (1.0 + 4.0 / g));
+    chain_factor factor(give, weight);
+    std::vector<point> z = detail::pushed(give, targets);
+    std::transform(z.begin(), z.end(), z.begin(), [&](point p) { return l.nearest(p); });
+    std::vector<point> u(n);
+    std::vector<point> difference(n);
+    std::vector<point> best = z;
+    double best_cost = squares(detail::pulled(give, z), targets);
+    double cost = best_cost;
+    const int most_steps = static_cast<int>(std::clamp(most_work / static_cast<double>(n), 50.0, 5000.0));
+    int calm = 0;
+    for (int step = 1; step <= most_steps && calm < 2; ++step) {
+        std::transform(z.begin(), z.end(), u.begin(), difference.begin(),
+                       [](point p, point q) { return plus(p, -1.0, q); });
+        std::vector<point> y = detail::pushed(give, difference);
+        std::transform(targets.begin(), targets.end(), y.begin(), y.begin(),
+                       [&](point t, point p) { return plus(t, weight, p); });
+        factor.solve(y);
+        const std::vector<point> m = detail::pushed(give, y);
+        double moved = 0.0;
+        for (std::size_t i = 0; i < n; ++i) {
+            const point wanted = plus(plus(plus(z[i], relaxation, m[i]), -relaxation, z[i]), 1.0, u[i]);
+            const point there = l.nearest(wanted);
+            moved += std::pow(distance_mm(there, z[i]), 2.0);
+            u[i] = plus(wanted, -1.0, there);
+            z[i] = there;
+        }
+        const double off = squares(m, z);
+        if (step % look == 0) {
+            const double now = squares(detail::pulled(give, z), targets);
+            const bool still =
+                std::abs(now - cost) <= small * now && off <= apart_mm * apart_mm * static_cast<double>(n);
+            calm = still ? calm + 1 : 0;
+            cost = now;
+            if (now < best_cost) {
+                best_cost = now;
+                best = z;
+            }
+        }
+        const double factor_of_weight = off > 100.0 * moved ? 2.0 : moved > 100.0 * off ? 0.5 : 1.0;
+        if (step % weigh == 0 && step < last_weighing && factor_of_weight != 1.0) {
+            weight *= factor_of_weight;
+            std::transform(u.begin(), u.end(), u.begin(),
+                           [&](point p) { return plus({}, 1.0 / factor_of_weight, p); });
+            factor = chain_factor(give, weight);
+        }
     }
-    std::vector<point> x(targets.begin(), targets.end());
-    if (in.hull.empty())
-        x = onto_line(in, std::move(x));
-    r.played = detail::fit_inside(give, x, sides, mean_point(in.hull.empty() ? in.points : in.hull));
-    const auto on_edge = [&](point p) {
-        return std::any_of(sides.begin(), sides.end(), [p](const detail::beyond& e) {
+    return best;
+}
+
+std::size_t count_on_edge(const layout::impl& l, std::span<const point> taps)
+{
+    const std::vector<detail::beyond> sides =
+        l.hull.empty() ? std::vector<detail::beyond>() : detail::hull_sides(l);
+    const auto [first, last] = detail::find_ends(l.points);
+    return static_cast<std::size_t>(std::count_if(taps.begin(), taps.end(), [&](point p) {
+        const bool at_end = std::min(distance_mm(p, first), distance_mm(p, last)) < on_edge_mm;
+        return sides.empty() ? at_end : std::any_of(sides.begin(), sides.end(), [p](const detail::beyond& e) {
             return detail::dot(e.out, p) > e.reach - on_edge_mm;
         });
-    };
-    r.at_edge = static_cast<std::size_t>(std::count_if(r.played.begin(), r.played.end(), on_edge));
-    for (point& p : r.played)
-        p = l.nearest(p); // rounding
+    }));
 }
 
 // Returns the notice that every command prints about a compensated plan.
@@ -139,8 +221,15 @@ compensated_places compensate(const layout& l, const low_speed_observer& o, std:
                     "a smaller {sigma_mm}, a larger {sigma_v_mm_s} or a longer SOA")
             .with_field("compensate");
     r.played = detail::pushed(give, targets);
-    if (!std::all_of(r.played.begin(), r.played.end(), [&](point p) { return l.contains(p); }))
-        fit(l, give, targets, r);
+    if (!std::all_of(r.played.begin(), r.played.end(), [&](point p) { return l.contains(p); })) {
+        if (targets.size() > most_taps)
+            throw error(error_kind::bad_input, "compensation",
+                        fmt::format("{} bursts are too many", targets.size()),
+                        fmt::format("at most {}; make the stroke shorter", most_taps))
+                .with_field("compensate");
+        r.played = fit_on_array(l, give, targets);
+        r.at_edge = count_on_edge(detail::access::of(l), r.played);
+    }
     r.felt = detail::pulled(give, r.played);
     return r;
 }

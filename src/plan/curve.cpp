@@ -143,7 +143,7 @@ class scaled_curve final : public curve::impl {
 public:
     scaled_curve(const curve& from, double factor) : impl(from.duration_s()), from_(from), factor_(factor)
     {
-        if (const trajectory* b = curve_access::of(from_).bounds(max_tactors))
+        if (const trajectory* b = curve_access::of(from_).bounds(max_channels))
             bounds_ = scaled(*b, factor);
     }
 

@@ -23,7 +23,7 @@ using net::json;
 constexpr double rounding_db = 1e-9;
 constexpr double most_excess_db = 100.0; // above it lies no sum of strokes that is planned
 constexpr double least_excess_db = 0.01;
-constexpr double moving = 4.0;           // time of a burst that `compensate` moves, against another
+constexpr double moving = 100.0;         // time of a burst that `compensate` moves, against another
 constexpr double tactors_a_step = 128.0; // that a phantom model looks at in the time of a step
 constexpr double crossings = 4.0;        // of a grid's lines in one pitch of a path, at most
 constexpr double least_soa_s = 0.0001;

@@ -48,10 +48,6 @@ void tell_of_no_device(const settings& s, const environment& e)
 alsa_options device_options(const settings& s, const stream_options& asked, const environment& e,
                             unsigned channels, unsigned rate)
 {
-    if (channels > max_pcm_channels)
-        throw error(error_kind::bad_input, fmt::format("array \"{}\"", e.tactors.name),
-                    fmt::format("{} channels are more than a device has: {}", channels, max_pcm_channels),
-                    "render writes them to a file; smaller arrays play");
     alsa_options o;
     const output_settings& out = e.config.output;
     o.pcm = pcm_name(s, out);

@@ -32,7 +32,7 @@ stream_setup checked(stream_setup s)
         s.period_frames = 96;
     if (s.buffer_frames == 0)
         s.buffer_frames = 3 * s.period_frames;
-    check("channels", "channels", s.channels, 1, 16384);
+    check("channels", "channels", s.channels, 1, detail::max_channels);
     check("rate", "Hz", s.rate, 8000, 768000);
     check("period_frames", "frames in a period", s.period_frames, detail::least_period_frames(s.rate),
           most_frames / 2);

@@ -68,14 +68,12 @@ BENCHMARK_CAPTURE(locate, faces, faces_kind::delaunay)
     ->Arg(3)
     ->Arg(8)
     ->Arg(23)
-    ->Arg(32)
-    ->Arg(128);
+    ->Arg(32);
 BENCHMARK_CAPTURE(locate, nearest, faces_kind::nearest)
     ->Name("phantom/nearest/tactors_side")
     ->Arg(3)
     ->Arg(8)
     ->Arg(23)
-    ->Arg(32)
-    ->Arg(128);
+    ->Arg(32);
 
 } // namespace

@@ -88,7 +88,7 @@ TEST_CASE("an array that is not in millimetres, or has one tactor, is a warning"
 
 TEST_CASE("nearest neighbours are found in any order of the file")
 {
-    array a = make_grid("many", 40, 50, 10.0, 7.0);
+    array a = make_grid("many", 25, 40, 10.0, 7.0);
     std::reverse(a.tactors.begin() + 100, a.tactors.end());
     CHECK(has(array_finding(a, "array").found, "neighbours 7 mm apart"));
 }

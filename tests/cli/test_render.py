@@ -57,20 +57,13 @@ class Samples(ToolTest):
         self.assertEqual(high, list(range(240)) + list(range(36000, 36240)))
         self.assertTrue(all(f[3] > 0.9999 and f[2] == 0 for n, f in enumerate(wav.samples()) if n in set(high)))
 
-    def test_an_array_of_more_tactors_than_a_pcm_has_channels_is_planned_and_rendered(self):
-        for side, sample, status in ((64, "float", 0), (128, "s16", 0), (128, "float", 2)):
-            with self.subTest(side=side, sample=sample):
-                self.write("large.toml", f'[array]\nname = "large"\ngrid = {{ rows = {side}, columns = {side}, '
-                                         'pitch_mm = 2 }\n')
-                stroke = ("--array", "large.toml", "--path", "M 0 0 L 4 4", "--duration", "0.1")
-                self.ok("plan", *stroke)
-                args = ("render", *stroke, "--sample-format", sample, "-o", "large.wav")
-                if status == 0:
-                    self.ok(*args)
-                    self.assertEqual(Wav(self.dir / "large.wav").channels, side * side)
-                else:
-                    self.refused(status, *args)
-                self.refused(2, "play", *stroke, "-D", "null")
+    def test_the_largest_array_is_planned_rendered_and_played(self):
+        self.write("large.toml", '[array]\nname = "large"\ngrid = { rows = 32, columns = 32, pitch_mm = 2 }\n')
+        stroke = ("--array", "large.toml", "--path", "M 0 0 L 4 4", "--duration", "0.1")
+        self.ok("plan", *stroke)
+        self.ok("render", *stroke, "--sample-format", "float", "-o", "large.wav")
+        self.assertEqual(Wav(self.dir / "large.wav").channels, 1024)
+        self.ok("play", *stroke, "-D", "null")
 
     def test_level_gain_polarity_and_map_reach_their_channel(self):
         self.write("a.toml", '[array]\nname = "pair"\n'

@@ -205,12 +205,6 @@ class Files(ToolTest):
         self.refused(2, "plan", "prak2016-1")
         self.refused(2, "plan", "park2016-1", "--array", "plam-3x3")
 
-    def test_an_array_that_no_device_can_play_is_named_so(self):
-        self.write("a.toml", '[array]\nname = "wall"\ngrid = { rows = 40, columns = 40, pitch_mm = 5.0 }\n')
-        for args in (("play", "park2016-1"), ("check",), ("devices",), ("serve", "--socket", "x.sock")):
-            self.refused(2, *args, "-D", "null", "--array", "a.toml")
-        self.ok("render", "park2016-1", "--array", "a.toml", "-o", "x.wav")
-
     def test_a_write_only_file_cannot_be_read(self):
         r = subprocess.run([TOOL, "plan", "/dev/stdout"], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
                            env=self.env, timeout=PATIENCE_S, check=False, stdin=subprocess.DEVNULL)

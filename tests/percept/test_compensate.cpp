@@ -123,6 +123,9 @@ TEST_CASE("two taps by hand: at the edge as far as possible")
         compensate(layout(make_array({{2.0, 3.0}})), o, {{0.0, t}}, {{{1.0, 3.0}, {9.0, 4.0}}});
     CHECK(one.played[1] == point{2.0, 3.0});
     CHECK(one.at_edge == 2);
+    const compensated_places alone = compensate(l, o, {{0.0}}, {{{12.0, 1.0}}});
+    CHECK(alone.at_edge == 1);
+    CHECK(distance_mm(alone.played[0], {10.0, 0.0}) < 1e-9);
 }
 
 TEST_CASE("at the edge no other way finds places that are felt nearer")
@@ -173,7 +176,7 @@ TEST_CASE("circles at the edge have an answer at every sigma, equal to the other
     const std::vector<point> x = circles(1001);
     const std::vector<double> t = onsets(x.size(), 0.07);
     double before = 0.0;
-    for (double sigma = 5.0; sigma <= 200.0; sigma += 1.0) {
+    for (double sigma = 5.0; sigma <= 200.0; sigma += 5.0) {
         CAPTURE(sigma);
         const double rms = std::sqrt(cost(compensate(l, {sigma, 100.0}, t, x).felt, x) / 1001.0);
         CHECK(rms > before); // a stronger pull leaves less
@@ -196,7 +199,7 @@ TEST_CASE("long chains and quick ones have an answer")
 {
     const layout l(palm);
     const std::vector<point> x = circles(20'001);
-    for (const double sigma : {5.0, 20.0, 35.0, 80.0, 95.0, 200.0})
+    for (const double sigma : {5.0, 35.0, 200.0})
         for (const double soa_s : {0.07, 0.0035}) {
             CAPTURE(sigma);
             CAPTURE(soa_s);

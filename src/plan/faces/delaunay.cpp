@@ -15,7 +15,6 @@
 
 #include <tactor/error.hpp>
 
-#include "plan/faces/box_index.hpp"
 #include "plan/faces/plane.hpp"
 
 namespace tactor::detail {

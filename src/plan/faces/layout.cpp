@@ -14,7 +14,6 @@ inline namespace v0 {
 namespace {
 
 using detail::box;
-using detail::box_index;
 using rings = std::vector<std::vector<unsigned>>;
 
 /// Indices by row, then by column; rows nearer than same_place_mm are one row.
@@ -79,22 +78,6 @@ std::vector<box> make_boxes(const rings& faces, const std::vector<point>& points
     return boxes;
 }
 
-std::vector<box> make_boxes(const std::vector<std::pair<point, point>>& edges)
-{
-    std::vector<box> boxes;
-    for (const auto& [a, b] : edges)
-        boxes.push_back(detail::box_around({a, b}));
-    return boxes;
-}
-
-std::vector<box> make_boxes(const std::vector<point>& points)
-{
-    std::vector<box> boxes;
-    for (const point& p : points)
-        boxes.push_back({p, p});
-    return boxes;
-}
-
 /// A tactor's nearest neighbour is always next to it on the ring of one of its faces.
 double median_pitch(const rings& faces, const std::vector<point>& points)
 {
@@ -145,16 +128,16 @@ layout::impl layout::impl::build(const array& a)
             for (const unsigned v : f)
                 by_index.back().push_back(order[v]);
         }
-    box_index face_index(make_boxes(faces, points));
-    box_index rim_index(make_boxes(rim));
-    box_index tactor_index(make_boxes(points));
+    std::vector<box> face_boxes = make_boxes(faces, points);
     const double pitch = median_pitch(faces, points);
     const box all = detail::box_around(points);
     // Faces may lap over each other by the grain of the sites from which they were made.
     const double clear = 1e-4 + 1e-7 * distance_mm(all.low, all.high);
-    return {std::move(places),     std::move(by_index),  std::move(points),       std::move(order),
-            std::move(faces),      std::move(hull),      std::move(rim),          pitch,
-            std::move(face_index), std::move(rim_index), std::move(tactor_index), clear};
+    return {std::move(places),     std::move(by_index),
+            std::move(points),     std::move(order),
+            std::move(faces),      std::move(hull),
+            std::move(rim),        pitch,
+            std::move(face_boxes), clear};
 }
 
 layout::layout(const array& a) : impl_(std::make_shared<const impl>(impl::build(a)))

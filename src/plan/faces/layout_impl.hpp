@@ -11,7 +11,7 @@
 
 #include <tactor/phantom.hpp>
 
-#include "plan/faces/box_index.hpp"
+#include "plan/faces/plane.hpp"
 
 namespace tactor::detail {
 
@@ -49,9 +49,7 @@ struct layout::impl {
     std::vector<std::pair<point, point>> rim; ///< edges of the hull, or the line's segments
     double pitch_mm = 0.0;
 
-    detail::box_index face_index;
-    detail::box_index rim_index;
-    detail::box_index tactor_index;
+    std::vector<detail::box> face_boxes; ///< round each face
 
     double clear_mm = 0.0;             ///< farther from an edge than any rounding reaches
     mutable detail::guess latest = {}; ///< face of the point before: mostly the next one's too

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
+#include <limits>
 
 #include "plan/faces/layout_impl.hpp"
 #include "plan/faces/plane.hpp"
@@ -80,15 +81,28 @@ point layout::impl::nearest_in_hull(point p) const
         throw error(error_kind::bad_input, "point", "is not finite");
     if (inside(hull, p))
         return p;
-    const auto on_edge = [&](unsigned i) {
-        return detail::nearest_on_segment(rim[i].first, rim[i].second, p);
-    };
-    return on_edge(rim_index.nearest(p, [&](unsigned i) { return distance_mm(p, on_edge(i)); }));
+    point best;
+    double least = std::numeric_limits<double>::infinity();
+    for (const auto& [a, b] : rim) {
+        const point there = detail::nearest_on_segment(a, b, p);
+        if (const double d = distance_mm(p, there); d < least) {
+            least = d;
+            best = there;
+        }
+    }
+    return best;
 }
 
 unsigned layout::impl::nearest_tactor(point p) const
 {
-    return tactor_index.nearest(p, [&](unsigned i) { return detail::length_mm(p, points[i]); });
+    unsigned best = 0;
+    double least = std::numeric_limits<double>::infinity();
+    for (unsigned i = 0; i < points.size(); ++i)
+        if (const double d = detail::length_mm(p, points[i]); d < least) {
+            least = d;
+            best = i;
+        }
+    return best;
 }
 
 bool layout::impl::face_holds(unsigned face, point p, double margin_mm) const
@@ -114,8 +128,10 @@ void layout::impl::faces_at(point p, std::vector<unsigned>& out) const
     // Slivers left out at the hull are thinner than the margin; the wider rounds are for what
     // rounding may do to arrays that are all slivers.
     for (double margin = same_place_mm; margin < 1e7; margin *= 10.0) {
-        face_index.near(p, margin, out);
-        std::erase_if(out, [&](unsigned f) { return !face_holds(f, p, margin); });
+        out.clear();
+        for (unsigned f = 0; f < faces.size(); ++f)
+            if (face_boxes[f].holds(p, margin) && face_holds(f, p, margin))
+                out.push_back(f);
         if (!out.empty()) {
             latest.set(out.front());
             return;

@@ -31,11 +31,8 @@ public:
         }
         // Relative to the nearest tactor's weight, so that none underflows.
         const double nearest = square(length_mm(p, l.points[first]));
-        const double limit = nearest - 2.0 * variance_ * std::log(least_share);
-        std::vector<unsigned> near;
-        l.tactor_index.near(p, std::sqrt(limit), near);
         double sum = 0.0;
-        for (const unsigned v : near) {
+        for (unsigned v = 0; v < l.points.size(); ++v) {
             const double g = std::exp((nearest - square(length_mm(p, l.points[v]))) / (2.0 * variance_));
             if (g < least_share)
                 continue;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include <algorithm>
+#include <numeric>
 #include <vector>
 
 #include "core/access.hpp"
@@ -10,24 +10,14 @@
 namespace tactor::detail {
 namespace {
 
-/// Returns the ranks of all tactors that may be among the three closest to p, ascending; `first_mm` is the
-/// distance of the closest one.
-std::vector<unsigned> closest_ones(const layout::impl& l, point p, double first_mm)
-{
-    std::vector<unsigned> ranks;
-    for (double reach = 2.0 * first_mm;; reach *= 2.0) {
-        l.tactor_index.near(p, reach + 3.0 * same_place_mm, ranks);
-        const auto within = [&](unsigned v) { return length_mm(p, l.points[v]) <= reach; };
-        if (std::count_if(ranks.begin(), ranks.end(), within) >= 3)
-            return ranks;
-    }
-}
-
 /// The rule of Park et al. 2016 as it is written: the three closest of all tactors, wherever their triangle
 /// lies.
 class nearest_three final : public phantom_model {
 public:
-    explicit nearest_three(const layout& l) : layout_(l) {}
+    explicit nearest_three(const layout& l) : layout_(l), ranks_(l.places().size())
+    {
+        std::iota(ranks_.begin(), ranks_.end(), 0U);
+    }
 
     std::string_view name() const noexcept override { return to_string(phantom_kind::inverse_distance); }
 
@@ -42,7 +32,7 @@ public:
             add_drive(layout_, first, a_v, out);
             return;
         }
-        const near_triple three = closest_three(l, closest_ones(l, p, first_mm), p);
+        const near_triple three = closest_three(l, ranks_, p);
         if (const auto segment = segment_at(l, three.tactors, p))
             add_two(layout_, *segment, p, a_v, out);
         else
@@ -52,6 +42,7 @@ public:
 
 private:
     layout layout_;
+    std::vector<unsigned> ranks_; ///< of all tactors
 };
 
 } // namespace

@@ -145,7 +145,7 @@ class Array(_Value):
         except (TypeError, ValueError):
             x = y = pitch_mm
         _need(name, str, "name")
-        n, m = (_whole(what, count, 1, 16384, "1 to 16384 tactors") for what, count in (("rows", rows), ("columns", columns)))
+        n, m = (_whole(what, count, 1, 1024, "1 to 1024 tactors") for what, count in (("rows", rows), ("columns", columns)))
         return cls._wrap(_tactor.Array.grid(name, n, m, _number("pitch_mm", x), _number("pitch_mm", y)))
 
     @classmethod
@@ -391,7 +391,7 @@ def _row(t: Tactor) -> tuple[_t.Any, ...]:
         if isinstance(e, InputError):
             raise
         raise InputError("thresholds", f"{_shown(t.thresholds)} are none", "give [(Hz, dBFS), ...]", field="thresholds") from None
-    return (*_place("position", t.position), _whole("channel", t.channel, 0, 16383), _number("gain_db", t.gain_db), _number("max_dbfs", t.max_dbfs),
+    return (*_place("position", t.position), _whole("channel", t.channel, 0, 1023), _number("gain_db", t.gain_db), _number("max_dbfs", t.max_dbfs),
             level("threshold_dbfs"), _whole("polarity", t.polarity, -1, 1, "1 or -1"), t.actuator, thresholds, level("rise_s"),
             level("displacement_um_at_0dbfs"))
 

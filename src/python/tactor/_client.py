@@ -418,7 +418,7 @@ class Client(_Unique):
 
     def drive(self, tactor: int, intensity: float = 1.0, duration: float = 0.5) -> RemoteStroke:
         """Drives one tactor for a while, s, at an intensity of 0 to 1; gives a `Report`."""
-        params = {"tactor": _whole("tactor", tactor, 0, 16383), "intensity": _number("intensity", intensity, 0.0, 1.0),
+        params = {"tactor": _whole("tactor", tactor, 0, 1023), "intensity": _number("intensity", intensity, 0.0, 1.0),
                   "duration_s": _number("duration", duration, 0.0)}
         return self._ask(RemoteStroke(self._get()), "drive", params)
 

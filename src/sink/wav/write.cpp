@@ -18,8 +18,7 @@ namespace {
 constexpr std::size_t block_bytes = std::size_t{1} << 20;
 constexpr std::uint64_t most_block_frames = 65536;
 
-constexpr std::uint64_t elsewhere = 0xFFFFFFFFU;  ///< marks a size that ds64 contains
-constexpr std::size_t most_frame_bytes = 0xFFFFU; ///< the header has two bytes for this number
+constexpr std::uint64_t elsewhere = 0xFFFFFFFFU; ///< marks a size that ds64 contains
 constexpr unsigned integer_tag = 1;
 constexpr unsigned float_tag = 3;
 
@@ -28,29 +27,11 @@ bool is_float(format_kind f)
     return f == format_kind::float32;
 }
 
-// Returns a hint with the best WAV format whose frames fit.
-std::string fewer_bytes(format_kind f, unsigned channels)
+void check_format(format_kind f)
 {
-    for (const format_kind other : {format_kind::s24_3, format_kind::s16})
-        if (sample_bytes(other) < sample_bytes(f) && channels * sample_bytes(other) <= most_frame_bytes)
-            return fmt::format("{{sample_format={}}} holds them", to_string(other));
-    return "use fewer";
-}
-
-void check_format(format_kind f, unsigned channels)
-{
-    if (f == format_kind::s24_4) {
+    if (f == format_kind::s24_4)
         throw detail::bad_field("sample_format", fmt::format("a WAV file cannot hold {}", to_string(f)),
                                 "use float, s16, s24 or s32");
-    }
-    const std::size_t most = most_frame_bytes / sample_bytes(f);
-    if (channels > most) {
-        throw detail::bad_field(
-            "channels",
-            fmt::format("a WAV file, RF64 too, has at most 65535 bytes a frame, {} channels in {}, not {}",
-                        most, to_string(f), channels),
-            fewer_bytes(f, channels));
-    }
 }
 
 /// Returns the bytes of a number, lowest first, on any machine.
@@ -122,7 +103,7 @@ bool write(const score& s, format_kind f, const std::filesystem::path& file, con
     std::uint64_t done = 0;
     bool given_up = false;
     const auto wanted = [&] { return !progress || progress(done, s.frames()); };
-    check_format(f, s.channels());
+    check_format(f);
     detail::output_file to(file, wanted);
     render_parts(
         s, f, c, done, [&] { return to.good() && !(given_up = !wanted()); },
@@ -135,7 +116,7 @@ bool write(const score& s, format_kind f, const std::filesystem::path& file, con
 
 std::string header(format_kind f, container c, unsigned channels, unsigned rate, std::uint64_t frames)
 {
-    check_format(f, channels);
+    check_format(f);
     const bool large = c == container::rf64;
     const std::uint64_t data = frames * channels * sample_bytes(f);
     std::string chunks = format_chunk(f, channels, rate);

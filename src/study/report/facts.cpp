@@ -17,7 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int most_channel = 16383;
+constexpr int most_channel = 1023;
 
 [[noreturn]] void refuse_changed(const std::string& what, const std::string& written, const std::string& is)
 {

@@ -31,7 +31,6 @@ namespace {
 using synth::item;
 using synth::item_kind;
 
-constexpr unsigned most_channels = 16384; // of an array; no PCM has so many
 constexpr double latest_start_s = 1e6;
 
 unsigned settle_channels(const array& a, const render_options& o)
@@ -44,9 +43,9 @@ unsigned settle_channels(const array& a, const render_options& o)
             fmt::format("{} are too few: the array has a tactor on channel {}", channels, needed - 1),
             fmt::format("ask for {} or more", needed));
     }
-    if (channels > most_channels) {
+    if (channels > detail::max_channels) {
         throw detail::bad_field("channels", fmt::format("{} are too many", channels),
-                                fmt::format("at most {} can be rendered", most_channels));
+                                fmt::format("at most {} can be rendered", detail::max_channels));
     }
     return channels;
 }
