@@ -6,6 +6,7 @@
 #include <boost/asio/post.hpp>
 #include <fmt/format.h>
 
+#include "core/words.hpp"
 #include "server/service_impl.hpp"
 #include "server/stroke_options.hpp"
 #include "server/view/view.hpp"

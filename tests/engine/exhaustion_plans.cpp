@@ -96,7 +96,7 @@ call_table sound_calls(const call_things& t)
     const auto sine = make_plan(t.a, t.l, t.s, planned_by(algorithm_kind::continuous));
     const auto sound = std::make_shared<score>(t.a, std::vector<placed_plan>{{.plan = sine}});
     plan_options spread = planned_by(algorithm_kind::continuous);
-    spread.phantom = phantom_kind::gaussian; // each of its samples needs memory
+    spread.faces = faces_kind::nearest; // each of its samples needs memory
     const auto wide = std::make_shared<score>(t.a, make_plan(t.a, t.l, t.s, spread));
     const auto rendered_by = std::make_shared<renderer>(*sound, format_kind::s16);
     const auto builder = std::make_shared<score_builder>(t.a, render_options{});

@@ -232,7 +232,7 @@ COUNTING_TEST_CASE("a continuous stroke without memory goes on when there is som
 {
     plan_options o;
     o.algorithm = algorithm_kind::continuous;
-    o.phantom = phantom_kind::gaussian; // each of its samples needs memory
+    o.faces = faces_kind::nearest; // each of its samples needs memory
     const stroke drawn{"", trajectory::timed({{0.0, {3.0, 2.0}}, {1.5, {37.0, 31.0}}})};
     const score s(palm(), make_plan(palm(), drawn, o));
     // Half a second is prepared.
@@ -269,7 +269,7 @@ COUNTING_TEST_CASE("a renderer without memory goes on where it was")
 {
     plan_options o;
     o.algorithm = algorithm_kind::continuous;
-    o.phantom = phantom_kind::gaussian;
+    o.faces = faces_kind::nearest;
     const stroke drawn{"", trajectory::timed({{0.0, {3.0, 2.0}}, {0.2, {37.0, 31.0}}})};
     const score s(palm(), make_plan(palm(), drawn, o));
     renderer r(s, format_kind::s32);

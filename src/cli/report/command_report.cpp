@@ -2,6 +2,7 @@
 #include <memory>
 
 #include <CLI/CLI.hpp>
+#include <fmt/format.h>
 
 #include "cli/analyze/analyze_output.hpp"
 #include "cli/analyze/study_options.hpp"
