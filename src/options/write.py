@@ -31,7 +31,6 @@ if _t.TYPE_CHECKING:
     from tactor._array import Array
     from tactor._parts import PhantomModel
     from tactor._plan import Plan
-    from tactor._player import Player
     from tactor._score import _Plans
     from tactor._stroke import Stroke
     from tactor._ticket import LiveStroke, _LogKind

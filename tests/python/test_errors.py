@@ -123,11 +123,11 @@ def test_records_of_plans_keep_their_words(palm, stroke, tmp_path, key):
     record = {**tactor.plan(palm, stroke).to_dict(), key: "x"}
     with pytest.raises(tactor.InputError) as e:
         tactor.Plan.from_dict(record)
-    assert (e.value.what, e.value.field, e.value.file) == (f"plan: {key}", key, None)
+    assert (e.value.what, e.value.field, e.value.file) == ("plan", key, None)
     (tmp_path / "p.json").write_text(json.dumps(record))
     with pytest.raises(tactor.InputError) as e:
         tactor.load_plan(tmp_path / "p.json")
-    assert e.value.field == key and e.value.file == str(tmp_path / "p.json") and key in e.value.what
+    assert e.value.field == key and e.value.file == str(tmp_path / "p.json") and f"p.json: {key}: " in str(e.value)
 
 
 def test_no_words_of_the_tool_appear(palm, stroke):

@@ -45,7 +45,7 @@ FEEDING = """
 def test_ten_minutes_of_a_thousand_points_a_second_neither_fail_nor_grow(fake_pcm, tmp_path):
     seconds = 60 if os.environ.get("TACTOR_SOAK") == "short" else 600
     (tmp_path / "asound.conf").write_text(f'pcm_type.fake {{ lib "{fake_pcm}" }}\npcm.fake {{ type fake }}\n')
-    env = {**os.environ, "TACTOR_CONFIG": os.devnull, "ALSA_CONFIG_PATH": str(tmp_path / "asound.conf")}
+    env = {**os.environ, "TACTOR_CONFIG": os.devnull, "XDG_RUNTIME_DIR": str(tmp_path), "ALSA_CONFIG_PATH": str(tmp_path / "asound.conf")}
     for _ in range(5):
         r = subprocess.run([sys.executable, "-c", textwrap.dedent(FEEDING), fake_pcm, str(seconds)], env=env, capture_output=True,
                            text=True, timeout=1800, check=False)

@@ -18,7 +18,6 @@ conflict: Conflict
 curve: Plan.curve
 curve_samples: Curve
 drive: Drive
-drive_history: Player
 drive_limits: Score
 easing_kind: Stroke.along
 error: Error
