@@ -97,8 +97,8 @@ struct grid_lines {
 [[nodiscard]] TACTOR_API array preset_array(std::string_view name);
 
 /// Checks the rules for every array: at least one tactor, finite places, no two tactors on one place or one
-/// channel, limits and gains in range (max_dbfs <= 0, polarity 1 or -1, channel < 1024). Array files allow
-/// only channels below 1024, because no PCM has more. O(n log n).
+/// channel, limits and gains in range (max_dbfs <= 0, polarity 1 or -1, channel < 1024, because no PCM has
+/// more). O(n^2).
 /// \throws error (bad_input) that names the tactors and their line.
 TACTOR_API void validate(const array& a);
 

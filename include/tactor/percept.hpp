@@ -173,8 +173,8 @@ struct compensated_places {
 
 /// Computes the places at which taps must be played to be felt at x: m = (I + K) x. If some m_i lies outside
 /// the array, the result is the m in its hull that minimises sum |x(m) - x|^2. This convex problem is solved
-/// until the sum changes by less than 1e-12 of itself in ten steps. Where the minimum is flat, as if links
-/// are strong, the m of another solver may differ though they are felt at the same places. O(n) in taps if
+/// until the sum changes by less than 1e-12 of itself in ten steps. Where the minimum is flat, as with strong
+/// links, the m of another solver may differ though they are felt at the same places. O(n) in taps if
 /// all fit; else some 50 to 2000 such steps, at most 5000, and ten million divided by n for long chains. Any
 /// thread.
 /// \throws error (bad_input) as felt_places() does, for taps that begin together or nearly so for the

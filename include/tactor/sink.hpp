@@ -125,9 +125,9 @@ public:
 /// it and implement take().
 class TACTOR_API paced_sink : public sink {
 public:
-    /// Uses name, channels (1 to 1024), rate (8000 to 768000 Hz) and format of `s`. period_frames (50 us at
-    /// least) and buffer_frames (two periods at least) may be 0, which means 96 frames and three periods.
-    /// \throws error: bad_input for numbers out of range, runtime if no timer is available.
+    /// Uses name, device, channels (1 to 1024), rate (8000 to 768000 Hz) and format of `s`. period_frames (50
+    /// us at least) and buffer_frames (two periods at least) may be 0, which means 96 frames and three
+    /// periods. \throws error: bad_input for numbers out of range, runtime if no timer is available.
     explicit paced_sink(stream_setup s);
     ~paced_sink() override;
 

@@ -44,13 +44,17 @@ private:
     int fd_ = -1;
 };
 
-/// Locks a folder against other processes. If another process holds the lock, tries again every 5 ms. After
-/// `tries` attempts it continues without the lock: the other process is at fault.
-inline void lock_folder(const owned_fd& folder, int tries) noexcept
+/// Locks a file or a folder against other processes. If another process holds the lock, tries again every 5
+/// ms. Returns false after `tries` attempts.
+inline bool lock_file(const owned_fd& file, int tries) noexcept
 {
     constexpr useconds_t pause_us = 5000;
-    for (int i = 0; ::flock(folder.get(), LOCK_EX | LOCK_NB) != 0 && i < tries; ++i)
+    for (int i = 0; ::flock(file.get(), LOCK_EX | LOCK_NB) != 0; ++i) {
+        if (i == tries)
+            return false;
         ::usleep(pause_us);
+    }
+    return true;
 }
 
 } // namespace tactor::detail

@@ -188,7 +188,7 @@ owned_fd listen_unix(const std::string& path, mode_t mode, std::optional<gid_t> 
                              code);
     }
     constexpr int tries = 200;
-    detail::lock_folder(lock, tries);
+    static_cast<void>(detail::lock_file(lock, tries)); // a process that keeps it is at fault
     make_free(path);
     owned_fd fd(::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0));
     // The name gets the socket's own mode, less the umask: never more than this, not for a moment.

@@ -25,6 +25,10 @@ namespace tactor {
 inline namespace v0 {
 namespace {
 
+using detail::operator+;
+using detail::operator-;
+using detail::operator*;
+
 constexpr double on_edge_mm = 1e-6;
 // Least give: below it, sixteen digits do not distinguish a place from its neighbours'.
 constexpr double least_give = 1e-7;
@@ -59,30 +63,27 @@ public:
     void solve(std::vector<point>& b) const
     {
         const std::size_t n = rows_.size();
-        for (std::size_t r = 0; r < n; ++r)
-            b[r] = less(b[r], r > 0 ? rows_[r][1] : 0.0, b[r - std::min<std::size_t>(r, 1)],
-                        r > 1 ? rows_[r][2] : 0.0, b[r - std::min<std::size_t>(r, 2)], rows_[r][0]);
-        for (std::size_t r = n; r-- > 0;)
-            b[r] = less(b[r], r + 1 < n ? rows_[r + 1][1] : 0.0, b[std::min(r + 1, n - 1)],
-                        r + 2 < n ? rows_[r + 2][2] : 0.0, b[std::min(r + 2, n - 1)], rows_[r][0]);
+        for (std::size_t r = 0; r < n; ++r) {
+            if (r > 0)
+                b[r] = b[r] - rows_[r][1] * b[r - 1];
+            if (r > 1)
+                b[r] = b[r] - rows_[r][2] * b[r - 2];
+            b[r] = {b[r].x_mm / rows_[r][0], b[r].y_mm / rows_[r][0]};
+        }
+        for (std::size_t r = n; r-- > 0;) {
+            if (r + 1 < n)
+                b[r] = b[r] - rows_[r + 1][1] * b[r + 1];
+            if (r + 2 < n)
+                b[r] = b[r] - rows_[r + 2][2] * b[r + 2];
+            b[r] = {b[r].x_mm / rows_[r][0], b[r].y_mm / rows_[r][0]};
+        }
     }
 
 private:
     using row = std::array<double, 3>;
 
-    static point less(point p, double f, point q, double g, point r, double by)
-    {
-        return {(p.x_mm - f * q.x_mm - g * r.x_mm) / by, (p.y_mm - f * q.y_mm - g * r.y_mm) / by};
-    }
-
     std::vector<row> rows_;
 };
-
-// Returns p + f q.
-point plus(point p, double f, point q)
-{
-    return {p.x_mm + f * q.x_mm, p.y_mm + f * q.y_mm};
-}
 
 double squares(std::span<const point> a, std::span<const point> b)
 {
@@ -126,18 +127,18 @@ std::vector<point> fit_on_array(const layout& l, std::span<const double> give, s
     int calm = 0;
     for (int step = 1; step <= most_steps && calm < 2; ++step) {
         std::transform(z.begin(), z.end(), u.begin(), difference.begin(),
-                       [](point p, point q) { return plus(p, -1.0, q); });
+                       [](point p, point q) { return p - q; });
         std::vector<point> y = detail::pushed(give, difference);
         std::transform(targets.begin(), targets.end(), y.begin(), y.begin(),
-                       [&](point t, point p) { return plus(t, weight, p); });
+                       [&](point t, point p) { return t + weight * p; });
         factor.solve(y);
         const std::vector<point> m = detail::pushed(give, y);
         double moved = 0.0;
         for (std::size_t i = 0; i < n; ++i) {
-            const point wanted = plus(plus(plus(z[i], relaxation, m[i]), -relaxation, z[i]), 1.0, u[i]);
+            const point wanted = z[i] + relaxation * m[i] - relaxation * z[i] + u[i];
             const point there = l.nearest(wanted);
             moved += std::pow(distance_mm(there, z[i]), 2.0);
-            u[i] = plus(wanted, -1.0, there);
+            u[i] = wanted - there;
             z[i] = there;
         }
         const double off = squares(m, z);
@@ -156,7 +157,7 @@ std::vector<point> fit_on_array(const layout& l, std::span<const double> give, s
         if (step % weigh == 0 && step < last_weighing && factor_of_weight != 1.0) {
             weight *= factor_of_weight;
             std::transform(u.begin(), u.end(), u.begin(),
-                           [&](point p) { return plus({}, 1.0 / factor_of_weight, p); });
+                           [&](point p) { return 1.0 / factor_of_weight * p; });
             factor = chain_factor(give, weight);
         }
     }

@@ -10,7 +10,6 @@
 #include "python/options.hpp"
 #include "python/player_handle.hpp"
 #include "session/live_remarks.hpp"
-#include "session/sound_server.hpp"
 
 namespace tactor::python {
 namespace {
@@ -211,9 +210,7 @@ void bind_live(py::module_& m)
 
 void bind_player(py::module_& m)
 {
-    m.def("drive_time_fault", [](const std::string& pcm) {
-        return session::is_felt(pcm) ? drive_time_fault(pcm) : std::string();
-    });
+    m.def("find_drive_doubt", &session::find_drive_doubt);
     py::class_<player_handle, std::shared_ptr<player_handle>>(m, "Player")
         .def(py::init(&open))
         .def("next", &next_event)

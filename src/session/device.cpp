@@ -9,6 +9,7 @@
 #include <tactor/tactor.hpp>
 
 #include "session/say.hpp"
+#include "session/sound_server.hpp"
 
 namespace tactor::session {
 namespace {
@@ -120,6 +121,14 @@ std::string find_fit(alsa_options o, const array& a)
         if (one->first < needed && opens(one->first))
             return fmt::format("the array {} fits", one->second);
     return {};
+}
+
+std::string find_drive_doubt(const std::string& device)
+{
+    const std::string why = device.empty() ? std::string() : drive_time_fault(device);
+    return why.empty() || !is_felt(device)
+               ? std::string()
+               : fmt::format("{}: the next run will not know for how long the array was driven", why);
 }
 
 std::unique_ptr<sink> open_device(const alsa_options& o, const array& a)

@@ -10,7 +10,6 @@
 
 #include "session/device.hpp"
 #include "session/say.hpp"
-#include "session/sound_server.hpp"
 
 namespace tactor::session {
 
@@ -147,6 +146,9 @@ void device_stream::open(outcome& o, double proof_s)
                 parts_.ended(number, r);
             news_.signal();
         });
+        if (!std::exchange(drive_time_looked_at_, true))
+            if (const std::string doubt = find_drive_doubt(p->setup().device); !doubt.empty())
+                say(stderr, "tactor: warning: {}\n", doubt);
         o.player = std::move(p);
     } catch (const std::exception& e) {
         o.failure = std::current_exception();
@@ -176,18 +178,7 @@ void device_stream::settle()
     player_ = std::move(o->player);
     ++number_;
     setup_ = player_->setup();
-    warn_of_drive_time();
     opened();
-}
-
-// Says once that the next run will not know for how long a device was driven.
-void device_stream::warn_of_drive_time()
-{
-    if (setup_.device.empty() || !is_felt(setup_.device) || std::exchange(drive_time_looked_at_, true))
-        return;
-    if (const std::string why = drive_time_fault(setup_.device); !why.empty())
-        say(stderr, "tactor: warning: {}: the next run will not know for how long the array was driven\n",
-            why);
 }
 
 player_stats device_stream::stats() const

@@ -48,8 +48,8 @@ public:
     using stream_policy::end, stream_policy::is_out, stream_policy::is_over, stream_policy::reason,
         stream_policy::set_busy, stream_policy::state, stream_policy::time, stream_policy::wake;
 
-    /// Looks at what has happened. Call it when descriptor() is
-    /// readable, after work, and at the time that it returns. Does not block.
+    /// Looks at what has happened. Call it when descriptor() is readable, after work, and at the time that it
+    /// returns. Does not block.
     std::optional<time> step(time now = time::clock::now());
     /// Returns what step() found to do, or nothing: opens or closes the device and blocks, in any thread.
     std::function<void()> work();
@@ -83,7 +83,6 @@ private:
     void open(outcome& o, double proof_s);
     void close(outcome& o);
     void settle();
-    void warn_of_drive_time();
 
     rt::event_fd news_;
     stream_parts parts_;
@@ -93,8 +92,8 @@ private:
     std::uint64_t number_ = 0;
     std::exception_ptr failure_;
     stream_setup setup_;
-    player_stats before_; ///< of the players before this one
-    bool drive_time_looked_at_ = false;
+    player_stats before_;               ///< of the players before this one
+    bool drive_time_looked_at_ = false; ///< of the work
 };
 
 } // namespace tactor::session

@@ -13,8 +13,8 @@
 #include "files/input_files.hpp"
 #include "files/text_file.hpp"
 #include "options/settle.hpp"
+#include "rt/variable.hpp"
 #include "session/pipes.hpp"
-#include "session/variable.hpp"
 
 namespace tactor::session {
 namespace {
@@ -25,12 +25,12 @@ std::string find_config(const settings& s)
 {
     if (s.config_file)
         return *s.config_file;
-    if (std::string named = variable("TACTOR_CONFIG"); !named.empty())
+    if (std::string named = rt::variable("TACTOR_CONFIG"); !named.empty())
         return named;
     std::vector<fs::path> places;
-    if (const std::string xdg = variable("XDG_CONFIG_HOME"); !xdg.empty())
+    if (const std::string xdg = rt::variable("XDG_CONFIG_HOME"); !xdg.empty())
         places.emplace_back(xdg);
-    else if (const std::string home = variable("HOME"); !home.empty())
+    else if (const std::string home = rt::variable("HOME"); !home.empty())
         places.push_back(fs::path(home) / ".config");
     places.emplace_back("/etc");
     for (const fs::path& p : places) {

@@ -14,7 +14,7 @@
 
 #include "cli/say.hpp"
 #include "core/words.hpp"
-#include "session/variable.hpp"
+#include "rt/variable.hpp"
 
 namespace tactor::cli {
 namespace {
@@ -45,20 +45,20 @@ bool is_in_background() noexcept
 
 bool can_draw()
 {
-    const std::string kind = session::variable("TERM");
+    const std::string kind = rt::variable("TERM");
     return isatty(STDOUT_FILENO) != 0 && !kind.empty() && kind != "dumb";
 }
 
 bool may_colour()
 {
-    return session::variable("NO_COLOR").empty();
+    return rt::variable("NO_COLOR").empty();
 }
 
 // Reads the environment: the program itself stays in the C locale.
 bool speaks_utf8()
 {
     for (const char* name : {"LC_ALL", "LC_CTYPE", "LANG"}) {
-        const std::string value = in_small_letters(session::variable(name));
+        const std::string value = in_small_letters(rt::variable(name));
         if (value.empty())
             continue;
         return value.find("utf-8") != std::string::npos || value.find("utf8") != std::string::npos;

@@ -26,13 +26,13 @@
 #include "files/plan/plan_json.hpp"
 #include "options/parse_number.hpp"
 #include "rt/clock.hpp"
+#include "rt/variable.hpp"
 #include "server/server.hpp"
 #include "session/device.hpp"
 #include "session/interrupt.hpp"
 #include "session/log.hpp"
 #include "session/own_memory.hpp"
 #include "session/sound_server.hpp"
-#include "session/variable.hpp"
 
 namespace tactor::cli {
 namespace {
@@ -49,15 +49,15 @@ constexpr const char* socket_name = "/tactor.sock";
 // Returns true for a service of the system: the service manager gives a folder outside the user's.
 bool serves_system()
 {
-    const std::string given = session::service_folder();
-    const std::string users = session::variable("XDG_RUNTIME_DIR");
+    const std::string given = rt::service_folder();
+    const std::string users = rt::variable("XDG_RUNTIME_DIR");
     return !given.empty() && (users.empty() || !given.starts_with(users + "/"));
 }
 
 // Returns the default path of the Unix socket; empty if there is none and there are other endpoints.
 std::string default_socket(bool others)
 {
-    if (const std::string folder = session::runtime_folder(); !folder.empty())
+    if (const std::string folder = rt::runtime_folder(); !folder.empty())
         return folder + socket_name;
     if (others)
         return {};

@@ -15,7 +15,7 @@
 #include <sys/un.h>
 #include <unistd.h>
 
-#include "session/variable.hpp"
+#include "rt/variable.hpp"
 
 namespace tactor::cli {
 namespace {
@@ -25,7 +25,7 @@ std::vector<std::string> candidates(const std::optional<std::string>& named)
     if (named)
         return {*named};
     std::vector<std::string> all;
-    if (const std::string folder = session::variable("XDG_RUNTIME_DIR"); !folder.empty())
+    if (const std::string folder = rt::variable("XDG_RUNTIME_DIR"); !folder.empty())
         all.push_back(folder + "/tactor.sock");
     all.emplace_back("/run/tactor.sock");
     all.emplace_back("/run/tactor/tactor.sock");

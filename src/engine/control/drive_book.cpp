@@ -5,7 +5,6 @@
 #include <array>
 #include <cerrno>
 #include <cmath>
-#include <cstdlib>
 #include <iterator>
 #include <limits>
 #include <map>
@@ -25,7 +24,7 @@
 #include "core/owned.hpp"
 #include "core/split.hpp"
 #include "rt/clock.hpp"
-#include "synth/guard/guard.hpp"
+#include "rt/variable.hpp"
 
 namespace tactor::engine {
 namespace {
@@ -67,10 +66,7 @@ struct place {
 /// Finds a folder that nobody else can put anything into: that of a service, else the user's.
 place find_folder()
 {
-    std::string runtime;
-    for (const char* variable : {"RUNTIME_DIRECTORY", "XDG_RUNTIME_DIR"})
-        if (const char* v = std::getenv(variable); runtime.empty() && v != nullptr)
-            runtime = std::string(v).substr(0, std::string_view(v).find(':'));
+    const std::string runtime = rt::runtime_folder();
     if (runtime.empty())
         return {.why = "there is no runtime folder (XDG_RUNTIME_DIR)"};
     if (!is_own(runtime, 0))
@@ -96,7 +92,7 @@ public:
         : fd_(::open(path.c_str(), flags | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK, 0600))
     {
         struct stat is = {};
-        if (!fd_ || ::fstat(fd_.get(), &is) != 0 || !S_ISREG(is.st_mode) || !lock())
+        if (!fd_ || ::fstat(fd_.get(), &is) != 0 || !S_ISREG(is.st_mode) || !detail::lock_file(fd_, tries))
             fd_ = {};
     }
     /// Unlocks it, also where a process that was forked meanwhile has it open.
@@ -128,19 +124,8 @@ public:
 
 private:
     static constexpr std::size_t most_bytes = std::size_t{1} << 20;
-
     // Others hold it for microseconds. One that was stopped meanwhile must not stop this player.
-    bool lock() const noexcept
-    {
-        constexpr int tries = 20;
-        constexpr useconds_t pause_us = 2000;
-        for (int i = 0; i < tries; ++i) {
-            if (::flock(fd_.get(), LOCK_EX | LOCK_NB) == 0)
-                return true;
-            ::usleep(pause_us);
-        }
-        return false;
-    }
+    static constexpr int tries = 8;
 
     detail::owned_fd fd_;
 };
@@ -148,7 +133,7 @@ private:
 /// Levels of devices whose files cannot be written.
 struct memory {
     std::mutex mutex;
-    std::map<std::string, drive_levels, std::less<>> by_device;
+    std::map<std::string, drive_levels> by_device;
 };
 
 memory& here()
@@ -240,12 +225,12 @@ void drive_share::enter(drive_levels& l, std::span<const std::uint64_t> all, dou
     l.at_ns = left_ns = alone ? until_ns : std::max(until_ns, l.at_ns);
 }
 
-drive_book::drive_book(std::string device, const drive_limits& l, unsigned rate)
+drive_book::drive_book(std::string device, const synth::guard_settings& g)
     : device_(std::move(device)),
       path_(device_.empty() ? std::string() : find_path(find_folder(), device_)),
-      limit_s_(l.max_drive_s < l.window_s ? l.max_drive_s : std::numeric_limits<double>::infinity()),
-      leak_(synth::find_leak(l)),
-      rate_(rate)
+      limit_s_(g.drive_frames > 0.0 ? g.drive_frames / g.rate : std::numeric_limits<double>::infinity()),
+      leak_(g.leak),
+      rate_(g.rate)
 {
 }
 

@@ -10,7 +10,7 @@
 #include <string_view>
 #include <vector>
 
-#include <tactor/render.hpp>
+#include "synth/guard/guard.hpp"
 
 namespace tactor::engine {
 
@@ -53,7 +53,7 @@ struct drive_share {
 class drive_book {
 public:
     /// \param device empty: no book is kept
-    drive_book(std::string device, const drive_limits& l, unsigned rate);
+    drive_book(std::string device, const synth::guard_settings& g);
 
     bool kept() const noexcept { return !device_.empty(); }
     /// Returns the levels of drive time now, s, by channel. Blocks shortly.

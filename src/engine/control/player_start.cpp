@@ -114,7 +114,8 @@ player::impl::impl(std::unique_ptr<sink> s, const array& a, const player_options
       tactors(engine::fitting(a, out->setup())),
       limits(synth::channel_limits(a, out->setup().channels)),
       log(o.log, link, o.limits),
-      book(o.keep_drive_time ? out->setup().device : std::string(), o.limits, out->setup().rate),
+      book(o.keep_drive_time ? out->setup().device : std::string(),
+           synth::make_guards(o.limits, out->setup().rate)),
       loop(*out, link, limits, loop_options(o, book, out->setup(), lines.amplifier != nullptr)),
       audio(loop, *out, link, thread_options(o))
 {

@@ -62,9 +62,9 @@ class Player(PlayerCalls, _Unique):
                      array_file=None if array._file is None else encoded(array._file), log=log is not None)
         core = _tactor.Player(array._core, device, given, keep)
         self._setup: dict[str, _t.Any] = core.setup()
-        unkept = _tactor.drive_time_fault(device) if keep else ""
-        if unkept:
-            warnings.warn(f"{unkept}: the next run will not know for how long the array was driven", stacklevel=3)
+        doubt = _tactor.find_drive_doubt(device) if keep else ""
+        if doubt:
+            warnings.warn(doubt, stacklevel=3)
         self._held = _Held(log)
         self._shared = _Shared(core, self._held)
         _open.add(self)

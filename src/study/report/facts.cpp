@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include <tactor/alsa.hpp>
 #include <tactor/error.hpp>
 
 #include "core/sha256.hpp"
@@ -17,7 +18,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int most_channel = 1023;
+constexpr int most_channel = int{max_pcm_channels} - 1;
 
 [[noreturn]] void refuse_changed(const std::string& what, const std::string& written, const std::string& is)
 {

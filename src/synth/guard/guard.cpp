@@ -17,15 +17,11 @@ guard_settings make_guards(const drive_limits& l, unsigned rate)
     guard_settings g;
     g.rate = rate;
     g.power = std::pow(10.0, l.power_dbfs / 10.0);
-    if (l.max_drive_s < l.window_s)
+    if (l.max_drive_s < l.window_s) {
         g.drive_frames = std::round(l.max_drive_s * rate);
-    g.leak = find_leak(l);
+        g.leak = l.max_drive_s / (l.window_s - l.max_drive_s);
+    }
     return g;
-}
-
-double find_leak(const drive_limits& l) noexcept
-{
-    return l.max_drive_s < l.window_s ? l.max_drive_s / (l.window_s - l.max_drive_s) : 1.0;
 }
 
 void check_limits(const drive_limits& l)

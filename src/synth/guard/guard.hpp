@@ -19,9 +19,6 @@ struct guard_settings {
     unsigned rate = 48000;
 };
 
-/// Drive time that a rest takes away, in seconds a second: 1 where there is no limit on it.
-double find_leak(const drive_limits& l) noexcept;
-
 /// Checks the limits.
 /// \throws error (bad_input) for impossible ones.
 void check_limits(const drive_limits& l);

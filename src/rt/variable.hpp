@@ -6,7 +6,7 @@
 #include <cstdlib>
 #include <string>
 
-namespace tactor::session {
+namespace tactor::rt {
 
 /// A variable of the environment; empty where it is not set.
 inline std::string variable(const char* name)
@@ -31,4 +31,4 @@ inline std::string runtime_folder()
     return given.empty() ? variable("XDG_RUNTIME_DIR") : given;
 }
 
-} // namespace tactor::session
+} // namespace tactor::rt
