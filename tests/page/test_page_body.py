@@ -157,6 +157,7 @@ class Body(StudioTest):
         p, _ = self.ready(self.serve())
         self.draw(p, *self.way([5, 30], [35, 5]))
         p.until("document.querySelector('#hint').hidden")
+        self.planned(p)  # with the first take and its plan the canvas gets its size
         p.value("""(f => { globalThis.outlines = 0; CanvasRenderingContext2D.prototype.fill = function (...a) {
             outlines += a[0] instanceof Path2D; return f.apply(this, a); }; })(CanvasRenderingContext2D.prototype.fill)""")
         self.draw(p, *self.way([5, 5], [35, 30]))
