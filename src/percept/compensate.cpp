@@ -168,9 +168,9 @@ std::size_t count_on_edge(const layout::impl& l, std::span<const point> taps)
 {
     const std::vector<detail::beyond> sides =
         l.hull.empty() ? std::vector<detail::beyond>() : detail::hull_sides(l);
-    const auto [first, last] = detail::find_ends(l.points);
+    const auto ends = detail::find_ends(l.points);
     return static_cast<std::size_t>(std::count_if(taps.begin(), taps.end(), [&](point p) {
-        const bool at_end = std::min(distance_mm(p, first), distance_mm(p, last)) < on_edge_mm;
+        const bool at_end = std::min(distance_mm(p, ends.first), distance_mm(p, ends.second)) < on_edge_mm;
         return sides.empty() ? at_end : std::any_of(sides.begin(), sides.end(), [p](const detail::beyond& e) {
             return detail::dot(e.out, p) > e.reach - on_edge_mm;
         });

@@ -57,7 +57,7 @@ TEST_CASE("strokes that are written as TOML are the same when they are read agai
 {
     std::size_t tried = 0;
     for (const fs::path& f : files_in(source / "examples/strokes")) {
-        if (f.extension() == ".wav")
+        if (f.extension() == ".wav" || (TACTOR_HAS_RECORDINGS == 0 && f.stem() == "comb"))
             continue;
         CAPTURE(f.string());
         std::vector<stroke> all = load_strokes(f);
