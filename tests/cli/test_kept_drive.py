@@ -58,7 +58,7 @@ class KeptDrive(ToolTest):
         file = self.kept()[0]
         whole = file.read_bytes()
         for torn in (b"", whole[:-1], whole[:len(whole) // 2], b"\xff\x00" * 4096, b"tactor-drive-time 1\n5\nend\n",
-                     whole.replace(b"\n0.", b"\n-0.", 1), whole.replace(b"\n0.", b"\nnan", 1)):
+                     whole.replace(b"\n000000000", b"\n-00000000", 1), whole.replace(b"\n000000000", b"\nnan", 1)):
             with self.subTest(torn[:80]):
                 file.write_bytes(torn)
                 self.assertEqual(self.cuts("-D", "null"), 0)
@@ -89,7 +89,7 @@ class KeptDrive(ToolTest):
                 p = self.running(*stroke)
                 p.stdin.write(b"0 0\n")
                 p.stdin.flush()
-                self.until(self.kept, p)
+                self.until(lambda: any(f.stat().st_size for f in self.kept()), p)
                 p.kill()
                 p.wait()
                 # The half second that was counted beforehand alone is the limit.

@@ -114,6 +114,7 @@ TEST_CASE("levels go through a text; one that is not whole counts as none")
     CHECK(again.levels_s == l.levels_s);
     CHECK(again.at_ns == 77);
     CHECK(drive_levels::read(drive_levels().text()).levels_s.empty());
+    CHECK(text.size() == drive_levels{{1e5, 0.5, 12.0}, std::int64_t{1} << 62}.text().size());
     for (std::size_t n = 0; n < text.size(); ++n) {
         CAPTURE(n);
         CHECK(drive_levels::read(text.substr(0, n)).levels_s.empty());
@@ -121,7 +122,7 @@ TEST_CASE("levels go through a text; one that is not whole counts as none")
     for (const auto& [what, by] : {std::pair("1.25", "-1.25"),
                                    {"1.25", "nan"},
                                    {"1.25", "inf"},
-                                   {"1.250000", ""},
+                                   {"000000001.250000", ""},
                                    {"77", "7.7"},
                                    {"tactor-drive-time 1", "tactor-drive-time 2"}}) {
         std::string other = text;

@@ -177,9 +177,11 @@ std::vector<double> drive_levels::after_rest(std::int64_t now_ns, double limit_s
 
 std::string drive_levels::text() const
 {
-    std::string t = fmt::format("{}\n{}\n", first_line, at_ns);
+    // Has the same length for any levels: a kill between the two calls that write it leaves no end of the one
+    // before.
+    std::string t = fmt::format("{}\n{:019}\n", first_line, at_ns);
     for (const double l : levels_s)
-        fmt::format_to(std::back_inserter(t), "{:.6f}\n", l);
+        fmt::format_to(std::back_inserter(t), "{:016.6f}\n", l);
     return t.append(last_line).append("\n");
 }
 

@@ -78,7 +78,7 @@ class Keypad(RigTest):
             self.pad.press("up")
             second.press("enter")
         out, err = p.communicate(timeout=60)
-        self.assertEqual((p.returncode, err), (0, ""), out)
+        self.assertEqual((p.returncode, [line for line in err.splitlines() if not line.startswith("tactor: ")]), (0, []), err)
         self.assertRaises(BlockingIOError, os.read, other, 24)
         self.assertFalse(self.held())
 
