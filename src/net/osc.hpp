@@ -26,6 +26,7 @@ struct osc_message {
     std::vector<osc_value> values = {};
     /// Time tag of the innermost bundle around it, ns since 1970; none: at once.
     std::optional<std::int64_t> unix_ns = {};
+    std::string fault = {}; ///< why its values cannot be read; empty: they can
 };
 
 struct osc_limits {
@@ -36,7 +37,7 @@ struct osc_limits {
 /// Returns true if this build has OSC. If not, the functions below throw.
 bool osc_is_built() noexcept;
 
-/// Returns all messages of a packet, in order.
+/// Returns all messages of a packet, in order, also those whose values cannot be read.
 /// \throws error (bad_input) for a broken packet.
 std::vector<osc_message> parse_osc(std::string_view packet, const osc_limits& l = {});
 
@@ -44,7 +45,7 @@ std::vector<osc_message> parse_osc(std::string_view packet, const osc_limits& l 
 std::string osc_packet(const std::string& address, const std::vector<osc_value>& values);
 
 /// Parses a message (not a bundle) of a packet by liblo.
-/// \throws error (bad_input).
+/// \throws error (bad_input) for one that does not begin with an address.
 osc_message parse_osc_message(std::string_view bytes);
 
 } // namespace tactor::net

@@ -19,11 +19,6 @@ struct freed {
 };
 using owned_message = std::unique_ptr<std::remove_pointer_t<lo_message>, freed>;
 
-[[noreturn]] void refused(std::string why)
-{
-    throw error(error_kind::bad_input, "message", std::move(why), "OSC 1.0: an address, types, values");
-}
-
 // Reads a value at any address: values of 8 bytes are at multiples of 4.
 template <typename T>
 T read(const lo_arg* at)
@@ -56,7 +51,7 @@ const char* words(int code)
 {
     switch (code) {
     case -LO_EINVALIDPATH:
-        return "its address does not end, or is not filled up with zeros";
+        return "its address is not filled up with zeros";
     case -LO_EINVALIDTYPE:
     case -LO_EBADTYPE:
         return "its types do not begin with a comma, do not end, or are not filled up with zeros";
@@ -77,17 +72,19 @@ bool osc_is_built() noexcept
 osc_message parse_osc_message(std::string_view bytes)
 {
     if (!bytes.starts_with('/'))
-        refused("its address does not begin with /");
-    // Old senders send no types in a message without values.
+        throw error(error_kind::bad_input, "message", "its address does not begin with /",
+                    "OSC 1.0: an address, types, values");
     const std::size_t end = bytes.find('\0');
-    if (end != std::string_view::npos && bytes.size() == (end / 4 + 1) * 4 &&
-        bytes.find_first_not_of('\0', end) == std::string_view::npos)
+    if (end == std::string_view::npos)
+        return {.address = std::string(bytes), .fault = "its address does not end"};
+    // Old senders send no types in a message without values.
+    if (bytes.size() == (end / 4 + 1) * 4 && bytes.find_first_not_of('\0', end) == std::string_view::npos)
         return {.address = std::string(bytes.substr(0, end))};
     std::string copy(bytes); // liblo may write to it
     int failed = 0;
     const owned_message m(lo_message_deserialise(copy.data(), copy.size(), &failed));
     if (!m)
-        refused(words(-failed));
+        return {.address = std::string(bytes.substr(0, end)), .fault = words(-failed)};
     osc_message read{.address = copy.c_str()};
     const std::string_view tags = lo_message_get_types(m.get());
     lo_arg** const values = lo_message_get_argv(m.get());

@@ -172,8 +172,8 @@ class SuperCollider(ToolTest):
         watcher.ok("subscribe", events=["strokes"])
         port = s.where["osc"].rpartition(":")[2]
         parts = blocks((ROOT / "examples/serve_client.scd").read_text(encoding="utf-8").replace("4002", port))
-        self.assertEqual(len(parts), 5)
-        handlers, preset, circle, levels, stop = range(5)
+        self.assertEqual(len(parts), 6)
+        handlers, preset, circle, later, levels, stop = range(6)
         p, sclang = self.start(parts)
 
         sclang.say("/evaluate", handlers)
@@ -190,6 +190,10 @@ class SuperCollider(ToolTest):
         # A second of points, however late they were sent.
         self.assertEqual(told["state"], "finished")
         self.assertGreater(told["frames"], 40000)
+
+        sclang.say("/evaluate", later)
+        p.until("^stroke 3: started$")
+        p.until("^stroke 3: finished$")
 
         other = Sender(self, s)
         other.say("/tactor/play", 1, "M 0 0 L 40 40", "duration=300")

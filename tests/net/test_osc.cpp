@@ -46,9 +46,15 @@ std::string bundle(std::uint64_t tag, const std::vector<std::string>& elements)
 
 const std::string stop = padded("/tactor/stop") + padded(",");
 
+// Returns why a packet, or the values of a message in it, cannot be read.
 std::string refusal(const std::string& packet, const osc_limits& l = {})
 {
-    return caught_message([&] { static_cast<void>(parse_osc(packet, l)); });
+    std::string fault;
+    const std::string refused = caught_message([&] {
+        for (const osc_message& m : parse_osc(packet, l))
+            fault += m.fault;
+    });
+    return refused + fault;
 }
 
 } // namespace
@@ -109,7 +115,7 @@ TEST_CASE("bundles give each message the time of the innermost")
     CHECK(parse_osc(bundle(1, {})).empty());
 }
 
-TEST_CASE("a broken packet gives the reason, and none of it is used")
+TEST_CASE("a broken packet gives the reason, and so do values that cannot be read")
 {
     struct broken {
         std::string packet;
@@ -144,8 +150,12 @@ TEST_CASE("a broken packet gives the reason, and none of it is used")
         CAPTURE(packet);
         const std::string said = refusal(packet);
         CHECK_MESSAGE(has(said, says), said);
-        CHECK(has(said, "OSC 1.0"));
     }
+    const auto all = parse_osc(bundle(1, {padded("/a") + padded(",?") + "abcd", stop}));
+    REQUIRE(all.size() == 2);
+    CHECK(all[0].address == "/a");
+    CHECK_FALSE(all[0].fault.empty());
+    CHECK(all[1].fault.empty());
 }
 
 TEST_CASE("bundles in bundles and messages have a limit")
@@ -195,6 +205,8 @@ TEST_CASE("any wrong or missing bytes of a packet only refuse it")
         try {
             const auto all = parse_osc(bad);
             CHECK(all.size() <= bad.size() / 4);
+            for (const osc_message& m : all)
+                CHECK((m.fault.empty() || m.values.empty()));
         } catch (const error& e) {
             CHECK(e.kind() == error_kind::bad_input);
             ++refused;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Messages of senders: handled at once, or when they are due.
+// Messages of senders: handled at once, but for a live stroke that begins later.
 #include "server/osc/clients.hpp"
 
 #include <cmath>
@@ -22,34 +22,6 @@ namespace {
 
 // A smaller difference comes from the time between two readings.
 constexpr std::int64_t clocks_differ_ns = 50'000;
-
-// Tests for a stop in a packet that cannot be read as a whole: alone, or behind its size in a bundle.
-bool has_stop(std::string_view packet)
-{
-    constexpr std::size_t size_bytes = 4;
-    const std::string address = std::string(osc_stop) + '\0';
-    if (packet.substr(0, packet.find('\0')) == osc_stop)
-        return true;
-    for (std::size_t at = packet.find(address); at != std::string_view::npos;
-         at = packet.find(address, at + 1)) {
-        if (at < size_bytes || at % size_bytes != 0)
-            continue;
-        std::size_t size = 0;
-        for (const char c : packet.substr(at - size_bytes, size_bytes))
-            size = size << 8U | static_cast<unsigned char>(c);
-        try {
-            if (!read_osc(net::parse_osc_message(packet.substr(at, size))).method.empty())
-                return true;
-        } catch (const error&) {
-            return true;
-        }
-    }
-    return false;
-}
-
-} // namespace
-
-namespace {
 
 // Returns the option of a stroke that begins; its other values are the service's to refuse.
 double find_intensity_max(const net::json& params)
@@ -85,12 +57,7 @@ void osc_clients::receive(std::string_view packet, const endpoint& from)
         for (const osc_message& m : net::parse_osc(packet))
             take(m, from);
     } catch (const error& e) {
-        // A stop whose values cannot be read stops all the same, and so does one in a bundle that is refused.
-        const bool stops = has_stop(packet);
-        if (stops)
-            stop(from);
-        if (!stops || packet.starts_with('#'))
-            refuse(from, "", e.what());
+        refuse(from, "", e.what());
     }
     act();
     check_later(from);
@@ -101,11 +68,17 @@ void osc_clients::take(const osc_message& m, const endpoint& from)
     if (is_servers_own(m.address))
         return;
     try {
+        if (!m.fault.empty() && m.address != osc_stop) // a stop stops, whatever its values are
+            bad_param("values", m.fault, "OSC 1.0: an address, types, values");
         osc_request r = read_osc(m);
-        if (r.method == "stop") // at once, whatever its time is
+        if (r.method == "stop")
             stop(from);
+        else if (r.method == "subscribe")
+            subscribe(r, from);
+        else if (r.method == "to" || r.method == "end" || r.method == "cancel")
+            move(std::move(r), from);
         else if (!r.method.empty())
-            handle(std::move(r), due_ns(m), from);
+            draw(std::move(r), due_ns(m), from);
     } catch (...) {
         refuse(from, m.address, current_fault("values"));
     }
@@ -143,15 +116,6 @@ std::int64_t osc_clients::lead_ns()
     return s.rate == 0 ? 0 : std::llround(1e9 * frames / s.rate);
 }
 
-void osc_clients::handle(osc_request r, std::optional<std::int64_t> at_ns, const endpoint& from)
-{
-    if (r.method == "subscribe")
-        return subscribe(r, from);
-    if (r.method == "to" || r.method == "end" || r.method == "cancel")
-        return move(std::move(r), at_ns, from);
-    draw(std::move(r), at_ns, from);
-}
-
 // Stops everything, also for a sender that is not known, and when there is no place for more.
 void osc_clients::stop(const endpoint& from)
 {
@@ -181,8 +145,8 @@ void osc_clients::subscribe(const osc_request& r, const endpoint& from)
     s.unsubscribes = held_.emplace(outside_.now_ns() + std::llround(subscription_s * 1e9), held{from, end});
 }
 
-// Handles to, end and cancel, which act at their time.
-void osc_clients::move(osc_request r, std::optional<std::int64_t> at_ns, const endpoint& from)
+// Handles to, end and cancel, which act at once.
+void osc_clients::move(osc_request r, const endpoint& from)
 {
     sender* s = find(from);
     const auto found = s == nullptr ? decltype(s->drawn_as.begin()){} : s->drawn_as.find(r.number);
@@ -194,13 +158,12 @@ void osc_clients::move(osc_request r, std::optional<std::int64_t> at_ns, const e
         asked > d.intensity_max && !std::exchange(d.is_loud, true))
         refuse(from, r.address,
                fmt::format("stroke {}: {}", r.number, session::held_text(asked, d.intensity_max)));
-    if (d.held && !at_ns && r.method == "cancel")
+    if (d.held && r.method == "cancel")
         return drop_held([&](const held& h) { return h.from == from && h.request.number == r.number; });
-    if (!at_ns)
-        return ask_about(*s, d, std::move(r));
-    // The first point of a live stroke is at the DAC at its time, like the stroke.
-    const bool first = d.begins_unix_ns == r.unix_ns && r.method == "to";
-    hold(*s, first ? *at_ns - lead_ns() : *at_ns, {from, std::move(r)});
+    // Keeps only the last of the places before it begins.
+    if (d.held && r.method == "to" && !d.waiting.empty() && d.waiting.back().method == "to")
+        d.waiting.pop_back();
+    ask_about(*s, d, std::move(r));
 }
 
 // Handles play, begin and drive: their first sample is at the DAC at the time.
@@ -213,9 +176,7 @@ void osc_clients::draw(osc_request r, std::optional<std::int64_t> at_ns, const e
     if (waits)
         hold(s, *at_ns - lead_ns(), {from, r});
     if (r.number != 0)
-        s.drawn_as[r.number] = {.begins_unix_ns = waits ? r.unix_ns : std::nullopt,
-                                .held = waits,
-                                .intensity_max = find_intensity_max(r.params)};
+        s.drawn_as[r.number] = {.held = waits, .intensity_max = find_intensity_max(r.params)};
     if (waits)
         return;
     if (at_ns)
@@ -226,7 +187,7 @@ void osc_clients::draw(osc_request r, std::optional<std::int64_t> at_ns, const e
 void osc_clients::hold(sender& s, std::int64_t due_ns, held h)
 {
     if (s.held >= most_held || held_.size() >= most_held_of_all)
-        limit_reached("messages", "too many wait for their time", "send them later");
+        limit_reached("strokes", "too many wait for their time", "send them later");
     ++s.held;
     held_.emplace(due_ns, std::move(h));
 }
@@ -254,19 +215,13 @@ void osc_clients::act()
 void osc_clients::do_held(const held& h)
 {
     sender& s = *senders_.at(h.from);
-    const osc_request& r = h.request;
-    if (r.method == "subscribe") {
+    if (h.request.method == "subscribe") {
         s.unsubscribes.reset();
-        return ask(s, r);
+    } else {
+        --s.held;
+        s.drawn_as.at(h.request.number).held = false;
     }
-    --s.held;
-    const auto d = s.drawn_as.find(r.number);
-    if (d == s.drawn_as.end())
-        no_such_stroke(r.number, "it has ended before this was due");
-    if (r.method != "begin")
-        return ask_about(s, d->second, r);
-    d->second.held = false;
-    ask(s, r);
+    ask(s, h.request);
 }
 
 void osc_clients::drop_held()
@@ -274,7 +229,7 @@ void osc_clients::drop_held()
     drop_held([](const held&) { return true; });
 }
 
-// Drops messages after a client stopped everything, or a sender its own stroke.
+// Drops live strokes that have not begun after a client stopped everything, or a sender its own stroke.
 void osc_clients::drop_held(const std::function<bool(const held&)>& which)
 {
     for (auto h = held_.begin(); h != held_.end();) {
@@ -284,10 +239,8 @@ void osc_clients::drop_held(const std::function<bool(const held&)>& which)
         const held gone = std::move(held_.extract(at).mapped());
         sender& s = *senders_.at(gone.from);
         --s.held;
-        if (gone.request.method == "begin") {
-            s.drawn_as.erase(gone.request.number);
-            send_stroke(gone.from, gone.request.number, "cancelled");
-        }
+        s.drawn_as.erase(gone.request.number);
+        send_stroke(gone.from, gone.request.number, "cancelled");
         check_later(gone.from);
     }
 }

@@ -65,9 +65,9 @@ public:
         std::size_t most_bytes = 65536;        ///< of a packet
     };
 
-    /// Most messages that wait for their time: of one sender, and of all.
-    static constexpr std::size_t most_held = 2048;
-    static constexpr std::size_t most_held_of_all = 16384;
+    /// Most live strokes that wait for their time: of one sender, and of all.
+    static constexpr std::size_t most_held = 64;
+    static constexpr std::size_t most_held_of_all = 1024;
     /// Most messages that wait for the number of a stroke that is being planned or begun.
     static constexpr std::size_t most_waiting = 256;
     static constexpr double farthest_s = 60.0;     ///< most that a time tag may be ahead
@@ -81,7 +81,7 @@ public:
     void receive(std::string_view packet, const endpoint& from);
     /// Returns the time at which act() has something to do, CLOCK_MONOTONIC.
     std::optional<std::int64_t> next_ns() const;
-    /// Handles the messages that are due.
+    /// Begins the strokes, and ends the subscriptions, that are due.
     void act();
     /// Drops the strokes that have not begun, and says so to their senders.
     void drop_held();
@@ -95,16 +95,15 @@ private:
     struct sender;
     struct held {
         endpoint from;
-        osc_request request; ///< "subscribe": the end of a subscription
+        osc_request request; ///< a begin, or the end of a subscription
     };
     using held_messages = std::multimap<std::int64_t, held>; ///< by when they are due
 
     // clients.cpp
     void take(const net::osc_message& m, const endpoint& from);
-    void handle(osc_request r, std::optional<std::int64_t> at_ns, const endpoint& from);
     void stop(const endpoint& from);
     void subscribe(const osc_request& r, const endpoint& from);
-    void move(osc_request r, std::optional<std::int64_t> at_ns, const endpoint& from);
+    void move(osc_request r, const endpoint& from);
     void draw(osc_request r, std::optional<std::int64_t> at_ns, const endpoint& from);
     void hold(sender& s, std::int64_t due_ns, held h);
     void drop_held(const std::function<bool(const held&)>& which);
@@ -151,12 +150,11 @@ struct osc_clients::asked_for {
 
 /// A stroke with a number of the sender's choice.
 struct osc_clients::drawn {
-    std::optional<std::uint32_t> stroke = {};        ///< number of the service, once it is known
-    std::optional<std::int64_t> begins_unix_ns = {}; ///< time tag of a live stroke
-    bool held = false;                               ///< it waits for that time
-    double intensity_max = 1.0;                      ///< value of its points that means 1
-    bool is_loud = false;                            ///< a point above intensity 1 was reported
-    std::deque<osc_request> waiting = {};            ///< messages until its number is known
+    std::optional<std::uint32_t> stroke = {}; ///< number of the service, once it is known
+    bool held = false;                        ///< it waits for its time
+    double intensity_max = 1.0;               ///< value of its points that means 1
+    bool is_loud = false;                     ///< a point above intensity 1 was reported
+    std::deque<osc_request> waiting = {};     ///< messages until its number is known
 };
 
 struct osc_clients::sender {

@@ -4,7 +4,6 @@
 #pragma once
 
 #include <cstdint>
-#include <optional>
 #include <string>
 #include <string_view>
 
@@ -17,9 +16,8 @@ struct osc_request {
     std::string address;
     std::string method; ///< method of the protocol; empty: a button's release, which asks for nothing
     net::json params = net::json::object();
-    std::int32_t number = 0;                  ///< the sender's number for its stroke; 0: none
-    std::optional<std::int64_t> unix_ns = {}; ///< its time tag
-    std::uint16_t port = 0; ///< port at which a subscriber listens; 0: the port that it sends from
+    std::int32_t number = 0; ///< the sender's number for its stroke; 0: none
+    std::uint16_t port = 0;  ///< port at which a subscriber listens; 0: the port that it sends from
 };
 
 /// Returns true for messages that a server sends: they are never answered, so that two servers do not talk
