@@ -21,7 +21,7 @@ namespace asio = boost::asio;
 // WebSockets: a page, its reloads and a few visitors by mistake.
 constexpr std::size_t most_visitors = 16;
 constexpr std::size_t most_connections = 32;
-constexpr line_limits page_limits{.message_bytes = 4096, .message_s = 10.0, .waiting_bytes = 1U << 20};
+constexpr message_limits page_limits{.message_bytes = 4096, .message_s = 10.0, .waiting_bytes = 1U << 20};
 
 } // namespace
 
@@ -44,9 +44,8 @@ struct page_server::state {
     handlers calls;
     asio::executor_work_guard<asio::io_context::executor_type> work;
     listener door;
-    shared_by_peers shared{io};
-    std::set<std::shared_ptr<web_connection>> all;
-    std::map<visitor, std::shared_ptr<web_connection>> visitors;
+    std::set<std::shared_ptr<connection>> all;
+    std::map<visitor, std::shared_ptr<connection>> visitors;
     visitor last = 0;
     std::thread thread;
 };
@@ -55,7 +54,7 @@ void page_server::state::take(listener::socket_type s)
 {
     if (all.size() >= most_connections)
         return turn_away(s.native_handle()); // then the socket closes
-    const auto c = connect_browser(io, std::move(s), page_limits, shared, {});
+    const auto c = connect_browser(io, std::move(s), page_limits, {});
     if (!c)
         return;
     all.insert(c);

@@ -15,31 +15,6 @@ namespace {
 
 constexpr std::size_t most_id_bytes = 80;
 
-// Returns true if a text nests deeper than `most`. Counts in the text, so that nothing is built of a text
-// that is too deep.
-bool nests_deeper(std::string_view text, std::size_t most)
-{
-    std::size_t depth = 0;
-    bool quoted = false;
-    for (std::size_t i = 0; i < text.size(); ++i) {
-        const char c = text[i];
-        if (quoted) {
-            if (c == '\\')
-                ++i;
-            else if (c == '"')
-                quoted = false;
-        } else if (c == '"') {
-            quoted = true;
-        } else if (c == '[' || c == '{') {
-            if (++depth > most)
-                return true;
-        } else if ((c == ']' || c == '}') && depth != 0) {
-            --depth;
-        }
-    }
-    return false;
-}
-
 // Replaces numbers that no double holds with null. Null is no number either, but the message can be answered
 // by its id.
 std::string without_overflows(std::string_view text)
@@ -64,15 +39,27 @@ std::string without_overflows(std::string_view text)
     return out;
 }
 
-json parsed(std::string_view text)
+struct parsed_text {
+    json value;
+    bool too_deep = false; ///< the value is without what nests deeper than allowed
+};
+
+// Throws json::exception, after it has filled in too_deep.
+void parse(parsed_text& p, std::string_view text, std::size_t most_nesting)
 {
     constexpr int number_overflow = 406;
+    const json::parser_callback_t is_shallow = [&](int depth, json::parse_event_t e, json&) {
+        const bool begins = e == json::parse_event_t::array_start || e == json::parse_event_t::object_start;
+        const bool fits = !begins || static_cast<std::size_t>(depth) < most_nesting;
+        p.too_deep = p.too_deep || !fits;
+        return fits;
+    };
     try {
-        return json::parse(text);
+        p.value = json::parse(text, is_shallow);
     } catch (const json::out_of_range& e) {
         if (e.id != number_overflow)
             throw;
-        return json::parse(without_overflows(text));
+        p.value = json::parse(without_overflows(text), is_shallow);
     }
 }
 
@@ -81,6 +68,14 @@ rpc_refusal invalid(json id, std::string why)
     return {{code_invalid_request, "bad-input", "request", std::move(why),
              R"(an object such as {"jsonrpc":"2.0","id":1,"method":"status"})"},
             std::move(id)};
+}
+
+bool has_method(const json& j, std::string_view method)
+{
+    if (method.empty() || !j.is_object())
+        return false;
+    const auto m = j.find("method");
+    return m != j.end() && *m == method;
 }
 
 std::variant<rpc_request, rpc_refusal> read_request(json& j, std::string_view any_form)
@@ -96,7 +91,7 @@ std::variant<rpc_request, rpc_refusal> read_request(json& j, std::string_view an
     const bool usable = text || (r.wants_reply && (id->is_number() || id->is_null()));
     if (usable)
         r.id = *id;
-    if (const auto m = j.find("method"); !any_form.empty() && m != j.end() && *m == any_form) {
+    if (has_method(j, any_form)) {
         r.method = any_form;
         return r;
     }
@@ -125,80 +120,17 @@ rpc_message alone(rpc_refusal r)
     return m;
 }
 
-// Search for a request with this method in a message that is refused. Builds nothing, and stops at the first
-// error.
-class method_finder final : public nlohmann::json_sax<json> {
-public:
-    explicit method_finder(std::string_view method) : method_(method) {}
-
-    bool found() const noexcept { return found_; }
-
-    bool null() override { return value(); }
-    bool boolean(bool) override { return value(); }
-    bool number_integer(number_integer_t) override { return value(); }
-    bool number_unsigned(number_unsigned_t) override { return value(); }
-    bool number_float(number_float_t, const string_t&) override { return value(); }
-    bool binary(binary_t&) override { return value(); }
-    bool string(string_t& text) override
-    {
-        found_ = found_ || (names_method_ && text == method_);
-        return value();
-    }
-    bool key(string_t& name) override
-    {
-        names_method_ = depth_ == (batch_ ? 2 : 1) && name == "method";
-        return true;
-    }
-    bool start_object(std::size_t) override { return begin(); }
-    bool end_object() override { return end(); }
-    bool start_array(std::size_t) override
-    {
-        batch_ = batch_ || depth_ == 0;
-        return begin();
-    }
-    bool end_array() override { return end(); }
-    bool parse_error(std::size_t, const std::string&, const json::exception&) override { return false; }
-
-private:
-    bool value() noexcept
-    {
-        names_method_ = false;
-        return true;
-    }
-    bool begin() noexcept
-    {
-        ++depth_;
-        return value();
-    }
-    bool end() noexcept
-    {
-        --depth_;
-        return true;
-    }
-
-    std::string_view method_;
-    std::size_t depth_ = 0;
-    bool batch_ = false;
-    bool names_method_ = false; ///< the next value is the method
-    bool found_ = false;
-};
-
-bool has_method(std::string_view text, std::string_view method)
-{
-    method_finder f(method);
-    static_cast<void>(json::sax_parse(without_overflows(text), &f));
-    return f.found();
-}
-
 rpc_refusal over(std::string what, std::string why, std::string hint)
 {
     return {{code_limit, "limit", std::move(what), std::move(why), std::move(hint)}, nullptr};
 }
 
-rpc_message refused(rpc_refusal why, std::string_view text, std::string_view any_form)
+// Refuses a batch as a whole.
+rpc_message refused(rpc_refusal why, const json& batch, std::string_view any_form)
 {
     rpc_message m = alone(std::move(why));
-    m.refused_any_form = !any_form.empty() && has_method(text, any_form);
+    m.refused_any_form = std::any_of(batch.begin(), batch.end(),
+                                     [any_form](const json& one) { return has_method(one, any_form); });
     return m;
 }
 
@@ -206,14 +138,15 @@ rpc_message refused(rpc_refusal why, std::string_view text, std::string_view any
 
 rpc_message parse_rpc(std::string_view text, const rpc_limits& l)
 {
-    if (nests_deeper(text, l.nesting))
-        return refused(
-            over("max_nesting", fmt::format("a message nests deeper than {} levels", l.nesting), ""), text,
-            l.any_form);
-    json j;
+    const auto too_deep = [&] {
+        return over("max_nesting", fmt::format("a message nests deeper than {} levels", l.nesting), "");
+    };
+    parsed_text p;
     try {
-        j = parsed(text);
+        parse(p, text, l.nesting);
     } catch (const json::exception& e) {
+        if (p.too_deep)
+            return alone(too_deep());
         // Removes the library's own name and number.
         std::string_view why = e.what();
         why.remove_prefix(std::min(why.find("] ") + 2, why.size()));
@@ -223,18 +156,24 @@ rpc_message parse_rpc(std::string_view text, const rpc_limits& l)
         return alone(
             {{code_parse_error, "bad-input", "message", plain, "one JSON value a line, in UTF-8"}, nullptr});
     }
+    json& j = p.value;
+    rpc_message m;
     if (!j.is_array()) {
-        rpc_message m;
-        m.parts.push_back(read_request(j, l.any_form));
+        auto part = read_request(j, l.any_form);
+        if (const auto* r = std::get_if<rpc_request>(&part);
+            p.too_deep && (r == nullptr || r->method != l.any_form))
+            part = rpc_refusal{too_deep().why, r != nullptr ? r->id : nullptr};
+        m.parts.push_back(std::move(part));
         return m;
     }
     if (j.empty())
-        return alone(invalid(nullptr, "the batch is empty"));
+        return alone(p.too_deep ? too_deep() : invalid(nullptr, "the batch is empty"));
     if (j.size() > l.batch)
         return refused(over("batch", fmt::format("{} requests in a batch of at most {}", j.size(), l.batch),
                             "send several"),
-                       text, l.any_form);
-    rpc_message m;
+                       j, l.any_form);
+    if (p.too_deep)
+        return refused(too_deep(), j, l.any_form);
     m.batch = true;
     for (json& one : j)
         m.parts.push_back(read_request(one, l.any_form));

@@ -2,264 +2,317 @@
 #include "net/web_connection.hpp"
 
 #include <chrono>
-#include <memory>
-#include <new>
-#include <string>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <optional>
 #include <utility>
 
-#include <boost/asio/post.hpp>
+#include <boost/asio/ip/tcp.hpp>
+#include <boost/asio/steady_timer.hpp>
+#include <boost/beast/core/buffers_to_string.hpp>
+#include <boost/beast/core/flat_buffer.hpp>
+#include <boost/beast/http.hpp>
+#include <boost/beast/websocket.hpp>
+#include <fmt/format.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
-#include "net/web_session.hpp"
+#include "net/access.hpp"
+#include "net/listen.hpp"
 
 namespace tactor::net {
 namespace {
 
 namespace asio = boost::asio;
 namespace beast = boost::beast;
+namespace http = beast::http;
 namespace websocket = beast::websocket;
 
-constexpr std::chrono::seconds to_hang_up{1};
+constexpr std::size_t most_header_bytes = 8U << 10;
+constexpr std::size_t read_at_once = 16U << 10;
 
-} // namespace
-
-// Works like line_connection::within_memory().
-template <typename F>
-void web_session::within_memory(F f)
+std::string_view view(boost::string_view s)
 {
-    try {
-        f();
-    } catch (const std::bad_alloc&) {
-        finish({websocket::close_code::policy_error, "there is not enough memory for it"});
-    }
+    return {s.data(), s.size()};
 }
 
-void web_session::read()
+// Returns a whole reply.
+std::string unavailable(std::string_view why)
 {
-    if (!reading || closed)
-        return;
-    ws->async_read_some(buffer, 16U << 10,
-                        [self = shared_from_this()](const beast::error_code& e, std::size_t) {
-                            if (self->closed)
-                                return;
-                            if (e)
-                                return self->close(); // Beast has sent the reason, if the peer is there
-                            self->within_memory([&] { self->received(); });
-                        });
+    const std::string text = fmt::format("{}, try again later\n", why);
+    return fmt::format("HTTP/1.1 503 Service Unavailable\r\nContent-Type: text/plain\r\n"
+                       "Content-Length: {}\r\nConnection: close\r\n\r\n{}",
+                       text.size(), text);
 }
 
-void web_session::received()
+class web_connection final : public connection {
+public:
+    using socket_type = asio::ip::tcp::socket;
+
+    web_connection(socket_type s, const message_limits& l, std::vector<std::string> hosts);
+
+    void finish() override;
+    /// Closes with status 1008.
+    void turn_out(const char* reason) override;
+
+private:
+    void shut() override;
+    void time_out() override;
+    // Request.
+    void read_first() override;
+    void answer_request();
+    void respond(web_reply r);
+    void send_response();
+    void upgrade();
+    // WebSocket.
+    void read() override;
+    void received();
+    void write() override;
+    void say_farewell() override;
+
+    std::vector<std::string> allowed_;
+    std::string local_;
+    socket_type socket_;
+    asio::steady_timer later_; ///< for a reply that is sent late
+    beast::flat_buffer buffer_;
+    http::request_parser<http::empty_body> parser_;
+    http::response<http::string_body> response_;
+    std::optional<websocket::stream<socket_type&>> ws_;
+    websocket::close_reason why_{websocket::close_code::going_away};
+    bool answered_ = false; ///< with a page or a refusal
+};
+
+web_connection::web_connection(socket_type s, const message_limits& l, std::vector<std::string> hosts)
+    : connection(s.get_executor(), l),
+      allowed_(std::move(hosts)),
+      local_(local_address(s.native_handle())),
+      socket_(std::move(s)),
+      later_(socket_.get_executor())
 {
-    if (!unfinished.hold(buffer.capacity()))
-        return;
-    if (!ws->is_message_done())
-        return read();
-    constexpr std::size_t much = 64U << 10;
-    std::string text(static_cast<const char*>(buffer.data().data()), buffer.size());
-    buffer.consume(buffer.size());
-    if (buffer.capacity() > much)
-        buffer.shrink_to_fit();
-    if (!ws->got_text())
-        return finish({websocket::close_code::unknown_data, "text is taken"});
-    if (text.size() > small_message && calls.large) {
-        if (unfinished.hold(buffer.capacity() + text.size()))
-            turns.join([self = shared_from_this(), text = std::move(text)]() mutable {
-                self->handle_large(std::move(text));
-            });
-        return;
-    }
-    if (text.empty() || (calls.urgent && calls.urgent(text)))
-        return handled(text.empty(), text.empty() || calls.message(text));
-    small.join([self = shared_from_this(), text = std::move(text)] {
-        if (!self->closed && !self->finishing)
-            self->within_memory([&] { self->handled(false, self->calls.message(text)); });
-    });
+    may_write(false);
+    parser_.header_limit(most_header_bytes);
+    parser_.body_limit(std::numeric_limits<std::uint64_t>::max()); // no body is read
 }
 
-void web_session::handle_large(std::string text)
+void web_connection::read_first()
 {
-    if (closed || finishing)
-        return turns.pass();
-    const auto done = [self = shared_from_this()](bool go_on) {
-        self->turns.pass();
-        if (!self->closed && !self->finishing && self->unfinished.hold(self->buffer.capacity()))
-            self->within_memory([&] { self->handled(false, go_on); });
-    };
-    try {
-        calls.large(std::move(text), done);
-    } catch (const std::bad_alloc&) {
-        turns.pass();
-        finish({websocket::close_code::policy_error, "there is not enough memory for it"});
-    }
-}
-
-void web_session::handled(bool empty, bool go_on)
-{
-    if (!go_on)
-        return finish({websocket::close_code::policy_error, "this is not taken"});
-    if (!met && !empty && (!calls.met || calls.met())) {
-        met = true;
-        disarm();
-        watch();
-    }
-    read();
-}
-
-// Notices frames that begin. Beast reports payload only: no head alone, and no fragment without payload.
-void web_session::watch()
-{
-    if (!met || closed || finishing)
-        return;
-    if (!frames.open())
-        return disarm();
-    if (armed && waited_for == frames.whole())
-        return;
-    waited_for = frames.whole();
-    arm(limits.message_s);
-}
-
-void web_session::disarm()
-{
-    if (std::exchange(armed, false))
-        deadline.cancel();
-}
-
-void web_session::enqueue(std::string text, bool large)
-{
-    if (closed || finishing || !accepted)
-        return;
-    const std::size_t n = text.size();
-    if (!large && unread.held() - large_bytes + n > limits.waiting_bytes)
-        unread.give_up();
-    if (!unread.add(n))
-        return;
-    large_bytes += large ? n : 0;
-    queue.push_back({std::move(text), large});
-    if (!writing && ws && ws->is_open())
-        write();
-}
-
-// Does not close here, because the caller may be iterating over all peers.
-void web_session::give_up()
-{
-    finishing = true;
-    asio::post(socket.get_executor(), [self = shared_from_this()] { self->close(); });
-}
-
-void web_session::give_up_crowded()
-{
-    reading = false;
-    asio::post(socket.get_executor(), [self = shared_from_this()] {
-        self->finish(
-            {websocket::close_code::try_again_later, "unfinished messages of all clients are too many"});
-    });
-}
-
-void web_session::write()
-{
-    writing = true;
-    ws->text(true);
-    ws->async_write(asio::buffer(queue.front().text),
-                    [self = shared_from_this()](const beast::error_code& e, std::size_t) {
-                        self->writing = false;
-                        if (self->closed)
-                            return;
-                        if (e)
-                            return self->close();
-                        const queued_text& written = self->queue.front();
-                        self->unread.take(written.text.size());
-                        self->large_bytes -= written.large ? written.text.size() : 0;
-                        self->queue.pop_front();
-                        if (!self->queue.empty())
-                            self->write();
-                        else if (self->finishing)
-                            self->finish(self->why);
-                    });
-}
-
-void web_session::finish(const websocket::close_reason& r)
-{
-    if (closed || closing)
-        return;
-    if (!finishing)
-        why = r;
-    finishing = true;
-    reading = false;
-    deadline.cancel();
-    hang_up_soon();
-    if (!accepted)
-        return close();
-    if (!queue.empty() || !ws->is_open())
-        return;
-    closing = true;
-    ws->async_close(why, [self = shared_from_this()](const beast::error_code&) { self->close(); });
-}
-
-void web_session::hang_up_soon()
-{
-    lingering.expires_after(to_hang_up);
-    lingering.async_wait([self = shared_from_this()](const boost::system::error_code& e) {
-        if (!e)
-            self->close();
-    });
-}
-
-void web_session::arm(double seconds)
-{
-    armed = true;
-    deadline.expires_after(steady_seconds(seconds));
-    deadline.async_wait([self = shared_from_this()](const boost::system::error_code& e) {
-        // The timer may have been set again while this was queued.
-        if (e || !self->armed || self->closed ||
-            self->deadline.expiry() > asio::steady_timer::clock_type::now())
-            return;
-        if (self->accepted && self->ws->is_open())
-            self->finish({websocket::close_code::policy_error,
-                          self->met ? "a message took too long" : "the first message did not come"});
-        else if (!self->accepted && !self->answered && self->parser.got_some())
-            self->respond({408, "text/plain", "the request took too long\n", ""});
-        else
-            self->close();
-    });
-}
-
-void web_session::close()
-{
-    if (closed)
-        return;
-    closed = true;
-    deadline.cancel();
-    lingering.cancel();
-    boost::system::error_code ignored;
-    socket.shutdown(asio::socket_base::shutdown_send, ignored);
-    socket.close(ignored);
-    if (calls.closed)
-        asio::post(deadline.get_executor(), [self = shared_from_this()] {
-            const auto h = std::exchange(self->calls, {});
-            h.closed();
+    http::async_read_header(
+        socket_, buffer_, parser_,
+        [this, self = shared_from_this()](const beast::error_code& e, std::size_t) {
+            if (closed() || answered_)
+                return;
+            disarm();
+            if (e == http::error::header_limit)
+                respond({413, "text/plain", "too much\n", ""});
+            else if (e && e.category() == make_error_code(http::error::bad_target).category() &&
+                     e != http::error::end_of_stream && e != http::error::partial_message)
+                respond({400, "text/plain", "no request of HTTP\n", ""});
+            else if (e)
+                close();
+            else
+                answer_request();
         });
 }
 
-void web_session::start(peer_handlers h)
+void web_connection::answer_request()
 {
-    calls = std::move(h);
-    read_request();
+    const auto& request = parser_.get();
+    const std::string host_header(view(request[http::field::host]));
+    const web_target to = parse_target(view(request.target()), host_header);
+    const auto origins = request.equal_range(http::field::origin);
+    const bool one_host = request.count(http::field::host) == 1;
+    bool ours =
+        one_host && host_is_ours(host_header, local_, allowed_) && host_is_ours(to.host, local_, allowed_);
+    for (auto o = origins.first; o != origins.second; ++o)
+        ours = ours && origin_is_ours(view(o->value()), to.host, allowed_);
+    if (!ours)
+        return respond(
+            {403, "text/plain",
+             "another name or another page than this server's: its owner lists more in allow_hosts\n", ""});
+    if (request.method() != http::verb::get && request.method() != http::verb::head)
+        return respond({405, "text/plain", "GET and HEAD only\n", ""});
+    if (parser_.chunked() || parser_.content_length().value_or(0) > 0)
+        return respond({413, "text/plain", "too much\n", ""});
+    if (to.path == "/rpc" && websocket::is_upgrade(request))
+        return upgrade();
+    if (to.path == "/rpc")
+        return respond({426, "text/plain", "a WebSocket\n", ""});
+    respond(calls().get(to.path, to.host, bearer_token(view(request[http::field::authorization]))));
 }
 
-void web_session::finish()
+// Sends the reply and closes. One request for each connection, because a page asks for little.
+void web_connection::respond(web_reply r)
 {
-    finish(websocket::close_code::going_away);
+    answered_ = true;
+    response_.result(r.status);
+    response_.version(11);
+    response_.set(http::field::server, "tactor");
+    response_.set(http::field::content_type, r.type);
+    response_.set(http::field::cache_control, "no-store");
+    response_.set("X-Content-Type-Options", "nosniff");
+    response_.set("Referrer-Policy", "no-referrer");
+    response_.set("Content-Security-Policy",
+                  r.policy.empty() ? "default-src 'none'; frame-ancestors 'none'" : r.policy);
+    if (r.status == 405)
+        response_.set(http::field::allow, "GET, HEAD");
+    if (r.status == 426) {
+        response_.set(http::field::upgrade, "websocket");
+        response_.set(http::field::connection, "upgrade, close");
+    }
+    if (!r.gzip.empty()) {
+        response_.set(http::field::vary, "Accept-Encoding");
+        if (http::ext_list(parser_.get()[http::field::accept_encoding]).exists("gzip")) {
+            response_.set(http::field::content_encoding, "gzip");
+            r.body = std::move(r.gzip);
+        }
+    }
+    response_.body() = std::move(r.body);
+    if (r.status != 426)
+        response_.keep_alive(false);
+    response_.prepare_payload();
+    if (parser_.get().method() == http::verb::head)
+        response_.body().clear(); // the header still gives its length
+    if (r.after_s == 0.0)
+        return send_response();
+    later_.expires_after(steady_seconds(r.after_s));
+    later_.async_wait([this, self = shared_from_this()](const beast::error_code& e) {
+        if (!e && !closed())
+            send_response();
+    });
 }
 
-void web_session::turn_out(const char* reason)
+void web_connection::send_response()
 {
-    finish({websocket::close_code::policy_error, reason});
+    arm(limits().message_s);
+    http::async_write(socket_, response_,
+                      [this, self = shared_from_this()](const beast::error_code&, std::size_t) { close(); });
 }
 
-std::shared_ptr<web_connection> connect_browser(asio::io_context& io, line_connection::socket_type accepted,
-                                                const line_limits& l, shared_by_peers& all,
-                                                std::vector<std::string> allowed_hosts)
+void web_connection::upgrade()
+{
+    if (!calls().upgrade())
+        return respond({503, "text/plain", "there is no place, try again later\n", ""});
+    ws_.emplace(socket_);
+    websocket::stream_base::timeout t{};
+    t.handshake_timeout = steady_seconds(limits().message_s);
+    // Pings detect a browser that disappeared, or that stays within a frame's head.
+    t.idle_timeout = std::chrono::seconds(20);
+    t.keep_alive_pings = true;
+    ws_->set_option(t);
+    ws_->read_message_max(limits().message_bytes);
+    ws_->auto_fragment(false);
+    ws_->text(true);
+    ws_->set_option(websocket::stream_base::decorator(
+        [](websocket::response_type& r) { r.set(http::field::server, "tactor"); }));
+    // A peer that sends a close frame has a second to hang up.
+    ws_->control_callback([this](websocket::frame_type kind, boost::string_view) {
+        if (kind == websocket::frame_type::close)
+            hang_up_soon();
+    });
+    ws_->async_accept(parser_.get(), [this, self = shared_from_this()](const beast::error_code& e) {
+        if (closed())
+            return;
+        if (e)
+            return close();
+        buffer_.consume(buffer_.size());
+        arm(limits().message_s);
+        may_write(true);
+        read();
+        write_on();
+    });
+}
+
+void web_connection::read()
+{
+    if (!reads())
+        return;
+    ws_->async_read_some(buffer_, read_at_once,
+                         [this, self = shared_from_this()](const beast::error_code& e, std::size_t) {
+                             if (closed())
+                                 return;
+                             if (e)
+                                 return close(); // Beast has sent the reason, if the peer is there
+                             within_memory([this] { received(); });
+                         });
+}
+
+void web_connection::received()
+{
+    if (!ws_->is_message_done()) {
+        message_begins();
+        return read();
+    }
+    message_ends();
+    if (!ws_->got_text()) {
+        why_ = {websocket::close_code::unknown_data, "text is taken"};
+        return finish();
+    }
+    std::string text = beast::buffers_to_string(buffer_.data());
+    buffer_.consume(buffer_.size());
+    if (buffer_.capacity() > large_message)
+        buffer_.shrink_to_fit();
+    if (!is_large(text.size()))
+        return handle(text);
+    std::vector<std::string> parts;
+    parts.push_back(std::move(text));
+    handle_large(std::move(parts));
+}
+
+void web_connection::write()
+{
+    ws_->async_write(asio::buffer(queued().front().text),
+                     [this, self = shared_from_this()](const beast::error_code& e, std::size_t) {
+                         if (e)
+                             close();
+                         else
+                             wrote(1);
+                     });
+}
+
+void web_connection::say_farewell()
+{
+    ws_->async_close(why_, [this, self = shared_from_this()](const beast::error_code&) { close(); });
+}
+
+void web_connection::turn_out(const char* reason)
+{
+    if (!finishing())
+        why_ = {websocket::close_code::policy_error, reason};
+    finish();
+}
+
+void web_connection::finish()
+{
+    if (ws_)
+        connection::finish();
+    else
+        close();
+}
+
+void web_connection::time_out()
+{
+    if (ws_)
+        fail(connection_fault::too_slow);
+    else if (!answered_ && parser_.got_some())
+        respond({408, "text/plain", "the request took too long\n", ""});
+    else
+        close();
+}
+
+void web_connection::shut()
+{
+    later_.cancel();
+    boost::system::error_code ignored;
+    socket_.shutdown(asio::socket_base::shutdown_send, ignored);
+    socket_.close(ignored);
+}
+
+} // namespace
+
+std::shared_ptr<connection> connect_browser(asio::io_context& io,
+                                            asio::generic::stream_protocol::socket accepted,
+                                            const message_limits& l, std::vector<std::string> allowed_hosts)
 {
     boost::system::error_code failed;
     const bool old = accepted.local_endpoint(failed).protocol().family() == AF_INET;
@@ -273,7 +326,28 @@ std::shared_ptr<web_connection> connect_browser(asio::io_context& io, line_conne
         return nullptr;
     }
     stream.set_option(asio::ip::tcp::no_delay(true), failed);
-    return std::make_shared<web_session>(std::move(stream), l, all, std::move(allowed_hosts));
+    return std::make_shared<web_connection>(std::move(stream), l, std::move(allowed_hosts));
+}
+
+web_reply make_page(const page_document& document, std::string_view host)
+{
+    return {200, "text/html; charset=utf-8", std::string(document.text),
+            fmt::format("default-src 'none'; {}; img-src data:; manifest-src blob:; "
+                        "connect-src 'self' ws://{}; frame-ancestors 'none'; base-uri 'none'; "
+                        "form-action 'none'",
+                        document.policy, host),
+            std::string(document.gzip)};
+}
+
+void turn_away(int socket)
+{
+    const std::string why = unavailable("there is no place");
+    static_cast<void>(::send(socket, why.data(), why.size(), MSG_DONTWAIT | MSG_NOSIGNAL));
+}
+
+std::string no_descriptors_for_browsers()
+{
+    return unavailable("the server has as many files open as it may");
 }
 
 } // namespace tactor::net

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// A browser's connection: a request, or a WebSocket with text messages in both directions, within limits.
-/// It runs in the context's thread.
+/// A browser's connection: a request, or a WebSocket with text messages in both directions. It runs in the
+/// context's thread.
 #pragma once
 
 #include <memory>
@@ -9,22 +9,18 @@
 #include <string_view>
 #include <vector>
 
+#include <boost/asio/generic/stream_protocol.hpp>
 #include <boost/asio/io_context.hpp>
 
-#include "net/line_connection.hpp"
+#include "net/connection.hpp"
 
 namespace tactor::net {
 
-class web_connection : public peer {
-public:
-    virtual void start(peer_handlers h) = 0;
-};
-
 /// Takes an accepted socket, and lets it send small messages without delay. Returns null if the peer is gone.
 /// `allowed_hosts`: as host_is_ours() has them.
-std::shared_ptr<web_connection> connect_browser(boost::asio::io_context& io,
-                                                line_connection::socket_type accepted, const line_limits& l,
-                                                shared_by_peers& all, std::vector<std::string> allowed_hosts);
+std::shared_ptr<connection> connect_browser(boost::asio::io_context& io,
+                                            boost::asio::generic::stream_protocol::socket accepted,
+                                            const message_limits& l, std::vector<std::string> allowed_hosts);
 
 /// A document for browsers, as bundle.py makes it. Its texts live on.
 struct page_document {

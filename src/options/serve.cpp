@@ -123,11 +123,12 @@ std::string read_prefix(const written_value& d)
 using text_place = std::optional<std::string> serve_settings::*;
 using list_place = std::vector<std::string> serve_settings::*;
 using number_place = std::optional<double> serve_settings::*;
-using count_place = std::optional<unsigned> serve_settings::*;
+using limit_place = double serve_limits::*;
+using count_place = std::size_t serve_limits::*;
 
 struct key {
     std::string_view name;
-    std::variant<text_place, list_place, number_place, count_place> to;
+    std::variant<text_place, list_place, number_place, limit_place, count_place> to;
     detail::bounds allowed = {};
     std::string (*read_text)(const written_value&) = read_text_value;
 };
@@ -144,18 +145,16 @@ const std::array keys{
     key{"osc_peers", &serve_settings::osc_peers, {}, read_prefix},
     key{"max_level_dbfs", &serve_settings::max_level_dbfs, detail::bounds_of::level_dbfs},
     key{"idle_stop_s", &serve_settings::idle_stop_s, detail::bounds_of::timeout_s},
-    key{"max_clients", &serve_settings::max_clients, {1, 100'000}},
-    key{"kept_clients", &serve_settings::kept_clients, {0, 100'000}},
-    key{"max_strokes", &serve_settings::max_strokes, {1, 100'000}},
-    key{"max_live_strokes", &serve_settings::max_live_strokes, {0, 100'000}},
-    key{"max_points_per_s", &serve_settings::max_points_per_s, {1, 10'000'000}},
-    key{"max_stroke_s", &serve_settings::max_stroke_s, detail::bounds_of::timeout_s},
-    key{"max_message_bytes", &serve_settings::max_message_bytes, {1024, most}},
-    key{"max_nesting", &serve_settings::max_nesting, {4, 10'000}},
-    key{"max_message_s", &serve_settings::max_message_s, detail::bounds_of::timeout_s},
-    key{"max_unread_bytes", &serve_settings::max_unread_bytes, {1024, most}},
-    key{"max_all_unread_bytes", &serve_settings::max_all_unread_bytes, {1024, most}},
-    key{"max_all_unfinished_bytes", &serve_settings::max_all_unfinished_bytes, {65536, most}},
+    key{"max_clients", &serve_limits::max_clients, {1, 100'000}},
+    key{"kept_clients", &serve_limits::kept_clients, {0, 100'000}},
+    key{"max_strokes", &serve_limits::max_strokes, {1, 100'000}},
+    key{"max_live_strokes", &serve_limits::max_live_strokes, {0, 100'000}},
+    key{"max_points_per_s", &serve_limits::max_points_per_s, {1, 10'000'000}},
+    key{"max_stroke_s", &serve_limits::max_stroke_s, detail::bounds_of::timeout_s},
+    key{"max_message_bytes", &serve_limits::max_message_bytes, {1024, most}},
+    key{"max_nesting", &serve_limits::max_nesting, {4, 10'000}},
+    key{"max_message_s", &serve_limits::max_message_s, detail::bounds_of::timeout_s},
+    key{"max_unread_bytes", &serve_limits::max_unread_bytes, {1024, most}},
 };
 
 const key& find_key(const written_value& d)
@@ -182,8 +181,10 @@ void take(serve_settings& s, const key& k, const written_value& d)
         s.*(*text) = k.read_text(d);
     else if (const auto* number = std::get_if<number_place>(&k.to))
         s.*(*number) = read_number(d, k.allowed, false);
+    else if (const auto* limit = std::get_if<limit_place>(&k.to))
+        s.limits.*(*limit) = read_number(d, k.allowed, false);
     else
-        s.*std::get<count_place>(k.to) = static_cast<unsigned>(read_number(d, k.allowed, true));
+        s.limits.*std::get<count_place>(k.to) = static_cast<std::size_t>(read_number(d, k.allowed, true));
 }
 
 } // namespace
@@ -198,11 +199,24 @@ serve_settings read_serve(const std::vector<written_value>& said)
         if (k.name == "kept_clients")
             kept = &d;
     }
-    const unsigned clients = s.max_clients.value_or(128);
-    if (kept != nullptr && *s.kept_clients >= clients)
-        fail(*kept, fmt::format("{} places are kept of {}", *s.kept_clients, clients),
+    serve_limits& l = s.limits;
+    if (kept == nullptr)
+        l.kept_clients = std::min(l.kept_clients, l.max_clients / 2);
+    else if (l.kept_clients >= l.max_clients)
+        fail(*kept, fmt::format("{} places are kept of {}", l.kept_clients, l.max_clients),
              "keep fewer than max_clients");
     return s;
+}
+
+std::vector<std::pair<std::string_view, double>> list_limits(const serve_limits& l)
+{
+    std::vector<std::pair<std::string_view, double>> all;
+    for (const key& k : keys)
+        if (const auto* limit = std::get_if<limit_place>(&k.to))
+            all.emplace_back(k.name, l.*(*limit));
+        else if (const auto* count = std::get_if<count_place>(&k.to))
+            all.emplace_back(k.name, static_cast<double>(l.*(*count)));
+    return all;
 }
 
 } // namespace tactor::options

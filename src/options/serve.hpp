@@ -3,13 +3,30 @@
 /// [serve] of a configuration.
 #pragma once
 
+#include <cstddef>
 #include <optional>
 #include <string>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 #include <tactor/setup.hpp>
 
 namespace tactor::options {
+
+/// Bounds for the requests of a client, and of all together.
+struct serve_limits {
+    std::size_t max_clients = 64;
+    std::size_t kept_clients = 8;     ///< of these, places for the Unix socket alone
+    std::size_t max_strokes = 64;     ///< of one client at once, including those that are being planned
+    std::size_t max_live_strokes = 4; ///< of these, live ones
+    double max_points_per_s = 2000.0; ///< of one client; as many at once
+    double max_stroke_s = 600.0;
+    std::size_t max_message_bytes = 1U << 20;
+    std::size_t max_nesting = 64;
+    double max_message_s = 10.0;             ///< for a message to be complete, and for the first one to come
+    std::size_t max_unread_bytes = 4U << 20; ///< waiting for one client
+};
 
 /// Addresses and limits of a service. An absent value is the service's default.
 struct serve_settings {
@@ -22,21 +39,13 @@ struct serve_settings {
     std::vector<std::string> osc_peers = {};
     std::optional<double> max_level_dbfs = {};
     std::optional<double> idle_stop_s = {};
-    std::optional<unsigned> max_clients = {};
-    std::optional<unsigned> kept_clients = {};     ///< of these, places for the Unix socket alone
-    std::optional<unsigned> max_strokes = {};      ///< of one client at once
-    std::optional<unsigned> max_live_strokes = {}; ///< of these, live ones
-    std::optional<unsigned> max_points_per_s = {}; ///< of one client
-    std::optional<double> max_stroke_s = {};
-    std::optional<unsigned> max_message_bytes = {};
-    std::optional<unsigned> max_nesting = {};
-    std::optional<double> max_message_s = {};
-    std::optional<unsigned> max_unread_bytes = {};         ///< that wait for one client
-    std::optional<unsigned> max_all_unread_bytes = {};     ///< that wait for all together
-    std::optional<unsigned> max_all_unfinished_bytes = {}; ///< of messages of all that have not come whole
+    serve_limits limits = {};
 };
 
 /// Reads and checks setup::serve. \throws error (bad_input) with file, line and column.
 [[nodiscard]] serve_settings read_serve(const std::vector<written_value>& said);
+
+/// Returns the limits by their names in [serve].
+[[nodiscard]] std::vector<std::pair<std::string_view, double>> list_limits(const serve_limits& l);
 
 } // namespace tactor::options

@@ -71,25 +71,6 @@ network_options settle_network(const options::serve_settings& s)
     return n;
 }
 
-service_limits settle_limits(const options::serve_settings& s)
-{
-    service_limits l;
-    l.max_clients = s.max_clients.value_or(l.max_clients);
-    l.kept_clients = s.kept_clients.value_or(std::min(l.kept_clients, l.max_clients / 2));
-    l.max_strokes = s.max_strokes.value_or(l.max_strokes);
-    l.max_live_strokes = s.max_live_strokes.value_or(l.max_live_strokes);
-    if (s.max_points_per_s)
-        l.max_points_per_s = *s.max_points_per_s;
-    l.max_stroke_s = s.max_stroke_s.value_or(l.max_stroke_s);
-    l.max_message_bytes = s.max_message_bytes.value_or(l.max_message_bytes);
-    l.max_nesting = s.max_nesting.value_or(l.max_nesting);
-    l.max_message_s = s.max_message_s.value_or(l.max_message_s);
-    l.max_unread_bytes = s.max_unread_bytes.value_or(l.max_unread_bytes);
-    l.max_all_unread_bytes = s.max_all_unread_bytes.value_or(l.max_all_unread_bytes);
-    l.max_all_unfinished_bytes = s.max_all_unfinished_bytes.value_or(l.max_all_unfinished_bytes);
-    return l;
-}
-
 std::string read_token(const options::serve_settings& s)
 {
     if (!s.token_file)

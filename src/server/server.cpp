@@ -34,18 +34,13 @@ namespace tactor::server {
 namespace {
 
 namespace asio = boost::asio;
+using net::connection_fault;
 using net::line_connection;
-using net::line_fault;
 using net::listener;
 using socket_type = line_connection::socket_type;
 
 constexpr auto farewell = std::chrono::seconds(2); // until the last messages are sent
 constexpr std::size_t short_visits = 32;           // browsers at once in addition to clients
-
-bool may_stop(std::string_view message)
-{
-    return message.find("\"stop\"") != std::string_view::npos;
-}
 
 // Returns an error of -32001 that answers no request.
 std::string refusal(std::string what, std::string why, std::string hint)
@@ -62,23 +57,18 @@ std::string no_descriptors()
 
 // Returns the message to a client that is given up; empty for one that can be told nothing. `admitted`: it
 // owes no token.
-std::string why_given_up(net::line_fault f, const service_limits& l, bool admitted)
+std::string why_given_up(connection_fault f, const service_limits& l, bool admitted)
 {
-    if (f == net::line_fault::too_long)
+    if (f == connection_fault::too_long)
         return refusal("max_message_bytes",
                        fmt::format("a message of more than {} bytes", l.max_message_bytes),
                        "send smaller ones");
-    if (f == net::line_fault::crowded)
-        return refusal("max_all_unfinished_bytes",
-                       fmt::format("unfinished messages of all clients take more than {} bytes",
-                                   l.max_all_unfinished_bytes),
-                       "try again later");
-    if (f == net::line_fault::memory)
+    if (f == connection_fault::memory)
         return refusal("message", "there is not enough memory for it", "send smaller ones");
-    if (f == net::line_fault::too_slow && !admitted)
+    if (f == connection_fault::too_slow && !admitted)
         return refusal("max_message_s", fmt::format("no hello with the token in {} s", l.max_message_s),
                        "begin with it");
-    if (f == net::line_fault::too_slow)
+    if (f == connection_fault::too_slow)
         return refusal("max_message_s", fmt::format("no whole message in {} s", l.max_message_s),
                        "send what is complete");
     return {};
@@ -89,9 +79,8 @@ public:
     server(asio::io_context& io, const endpoints& at, service_options o, stream_options s, network_options w)
         : io_(io),
           limits_(o.limits),
-          line_limits_{limits_.max_message_bytes, limits_.max_message_s, limits_.max_unread_bytes},
+          message_limits_{limits_.max_message_bytes, limits_.max_message_s, limits_.max_unread_bytes},
           allow_hosts_(std::move(w.allow_hosts)),
-          shared_(io, limits_.max_all_unread_bytes, limits_.max_all_unfinished_bytes),
           service_(io, std::move(o), std::move(s)),
           farewell_(io),
           watchdog_(io)
@@ -159,7 +148,7 @@ private:
         if (kind == client_kind::network)
             ::setsockopt(s.native_handle(), IPPROTO_TCP, 1 /* TCP_NODELAY */, &yes, sizeof yes);
         const std::string from = net::peer_address(s.native_handle());
-        const auto c = std::make_shared<line_connection>(std::move(s), line_limits_, shared_);
+        const auto c = std::make_shared<line_connection>(std::move(s), message_limits_);
         ++open_;
         if (!service_.has_place(kind)) {
             c->start({.message = [](std::string_view) { return false; }, .closed = [this] { closed(0); }});
@@ -173,7 +162,7 @@ private:
             if (service_.input_ended(n))
                 finish(n);
         };
-        h.fault = [this, n](line_fault f) {
+        h.fault = [this, n](connection_fault f) {
             const std::string why = why_given_up(f, limits_, service_.is_admitted(n));
             if (const auto found = links_.find(n); found != links_.end() && !why.empty())
                 found->second->send(why);
@@ -188,10 +177,9 @@ private:
                 .closed = [this, n] { closed(*n); },
                 .met = [this, n] { return service_.is_admitted(*n); },
                 .large =
-                    [this, n](std::string text, std::function<void(bool)> done) {
-                        service_.receive_large(*n, std::move(text), std::move(done));
-                    },
-                .urgent = may_stop};
+                    [this, n](std::vector<std::string> parts, std::function<void(bool)> done) {
+                        service_.receive_large(*n, std::move(parts), std::move(done));
+                    }};
     }
 
     std::string no_place(client_kind kind) const
@@ -213,7 +201,7 @@ private:
         if (visitors_.size() >= limits_.max_clients + short_visits)
             return net::turn_away(s.native_handle()); // and the socket closes
         const std::string from = net::peer_address(s.native_handle());
-        const auto c = net::connect_browser(io_, std::move(s), line_limits_, shared_, allow_hosts_);
+        const auto c = net::connect_browser(io_, std::move(s), message_limits_, allow_hosts_);
         if (!c)
             return;
         ++open_;
@@ -279,14 +267,13 @@ private:
 
     asio::io_context& io_;
     service_limits limits_;
-    net::line_limits line_limits_;
+    net::message_limits message_limits_;
     std::vector<std::string> allow_hosts_;
-    net::shared_by_peers shared_;
     service service_;
     std::optional<osc_endpoint> osc_;
     std::vector<std::unique_ptr<listener>> listeners_;
     std::map<client_number, std::shared_ptr<client_link>> links_;
-    std::set<std::shared_ptr<net::web_connection>> visitors_;
+    std::set<std::shared_ptr<net::connection>> visitors_;
     asio::steady_timer farewell_;
     asio::steady_timer watchdog_;
     std::size_t open_ = 0;

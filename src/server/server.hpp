@@ -51,8 +51,6 @@ struct network_options {
 /// Returns the accepted peers. \throws error (bad_input) for a text that is no prefix.
 network_options settle_network(const options::serve_settings& s);
 
-service_limits settle_limits(const options::serve_settings& s);
-
 /// Returns the text of token_file without its line end; empty for none. \throws error (bad_input) for a file
 /// that others may read, and for an empty one.
 std::string read_token(const options::serve_settings& s);

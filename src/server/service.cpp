@@ -8,7 +8,6 @@
 
 #include <malloc.h>
 
-#include <boost/asio/post.hpp>
 #include <fmt/format.h>
 
 #include "server/service_impl.hpp"
@@ -33,6 +32,11 @@ net::rpc_message parsed(std::string_view text, const service_limits& l)
     }
 }
 
+net::rpc_fault no_hello()
+{
+    return {net::code_no_token, "token", "token", "hello with the token comes first", ""};
+}
+
 } // namespace
 
 void service::pending::give(std::size_t at, std::string reply, const std::vector<std::uint32_t>& strokes)
@@ -49,11 +53,11 @@ void service::pending::give(std::size_t at, std::string reply, const std::vector
     if (c != nullptr) {
         --c->unanswered;
         std::string all;
-        bool large = false;
+        bool file = false;
         for (place& one : places) {
             if (!one.wanted)
                 continue;
-            large = large || one.large;
+            file = file || one.file;
             if (batch)
                 all += (all.empty() ? "[" : ",") + one.reply;
             else
@@ -61,8 +65,8 @@ void service::pending::give(std::size_t at, std::string reply, const std::vector
         }
         if (batch && !all.empty())
             all += ']';
-        if (large)
-            c->link->send_large(std::move(all));
+        if (file)
+            c->link->send_file(std::move(all));
         else if (!all.empty())
             c->link->send(std::move(all));
     }
@@ -83,9 +87,9 @@ std::string service::answer::write_reply(std::string_view result) const
     return reply.append(result).append("}");
 }
 
-void service::answer::whole_reply(std::string reply, bool large) const
+void service::answer::whole_reply(std::string reply, bool file) const
 {
-    all->places[at].large = large;
+    all->places[at].file = file;
     all->give(at, std::move(reply), {});
 }
 
@@ -119,9 +123,6 @@ stream_options service::with_handlers(stream_options s)
 service::~service()
 {
     ending_ = true;
-    for (planner_lane& lane : lanes_)
-        lane.thread.join();
-    reader_.join();
 }
 
 std::size_t service::places(client_kind k) const noexcept
@@ -188,23 +189,54 @@ bool service::admitted(client& c, const net::rpc_message& m)
 
 bool service::receive(client_number number, std::string_view text)
 {
+    const client* c = find(number);
+    if (c == nullptr)
+        return false;
     net::rpc_message m = parsed(text, options_.limits);
-    return receive(number, m, text.size());
+    return receive(number, m, text.size(), mark(*c));
 }
 
-void service::receive_large(client_number number, std::string text, std::function<void(bool)> done)
+// Parses on a planner's thread. What stops come in the meantime holds for the message.
+void service::receive_large(client_number number, std::vector<std::string> parts,
+                            std::function<void(bool)> done)
 {
-    boost::asio::post(reader_, [this, number, text = std::move(text), done = std::move(done)]() mutable {
-        const std::size_t bytes = text.size();
-        auto m = std::make_shared<net::rpc_message>(parsed(text, options_.limits));
-        std::string().swap(text);
-        boost::asio::post(io_, [this, number, bytes, m = std::move(m), done = std::move(done)]() mutable {
-            const bool go_on = receive(number, *m, bytes);
-            boost::asio::post(reader_, [m = std::move(m)] {}); // which frees it
-            give_memory_back_when_quiet();
-            done(go_on);
-        });
-    });
+    client* c = find(number);
+    if (c == nullptr || !c->greeted)
+        return done(false);
+    if (!c->admitted) {
+        send(*c, net::error_reply(nullptr, no_hello()));
+        return done(true);
+    }
+    struct large {
+        std::vector<std::string> parts;
+        std::size_t bytes = 0;
+        net::rpc_message message = {};
+    };
+    const auto l = std::make_shared<large>(large{std::move(parts)});
+    ++c->unanswered;
+    planners_.add(number, {.work =
+                               [this, l] {
+                                   std::string text;
+                                   for (const std::string& part : std::exchange(l->parts, {}))
+                                       text += part;
+                                   l->bytes = text.size();
+                                   l->message = parsed(text, options_.limits);
+                                   for (auto& part : l->message.parts)
+                                       if (auto* r = std::get_if<net::rpc_request>(&part);
+                                           r != nullptr && r->params.is_object())
+                                           pack_points(r->params);
+                               },
+                           .done =
+                               [this, number, l, done = std::move(done), asked = mark(*c)] {
+                                   if (client* then = find(number))
+                                       --then->unanswered;
+                                   const bool go_on = receive(number, l->message, l->bytes, asked);
+                                   planners_.aside([l] {}); // which frees it
+                                   give_memory_back_when_quiet();
+                                   done(go_on);
+                               },
+                           .drop = [](bool) {},
+                           .quick = true});
 }
 
 // Returns the small blocks of large messages to the system. Trimming blocks the heap for all threads, so this
@@ -216,12 +248,12 @@ void service::give_memory_back_when_quiet()
     quiet_.async_wait([this](const boost::system::error_code& e) {
 #ifdef __GLIBC__
         if (!e)
-            boost::asio::post(reader_, [] { ::malloc_trim(0); });
+            planners_.aside([] { ::malloc_trim(0); });
 #endif
     });
 }
 
-bool service::receive(client_number number, net::rpc_message& m, std::size_t bytes)
+bool service::receive(client_number number, net::rpc_message& m, std::size_t bytes, const stop_mark& asked)
 {
     client* c = find(number);
     if (c == nullptr || !admitted(*c, m))
@@ -238,11 +270,15 @@ bool service::receive(client_number number, net::rpc_message& m, std::size_t byt
     if (m.refused_any_form && c->admitted)
         stop_all(number);
     bytes /= m.parts.size();
+    const std::uint64_t stops = stops_;
+    const std::uint64_t cancels = *c->cancels;
     for (std::size_t i = 0; i < m.parts.size(); ++i) {
-        const answer to{all, i};
         c = find(number);
         if (c == nullptr)
             return false;
+        // A stop in the message itself is before what follows it there.
+        const answer to{
+            all, i, {asked.stops + stops_ - stops, asked.cancels, asked.own + *c->cancels - cancels}};
         if (auto* r = std::get_if<net::rpc_request>(&m.parts[i]); r == nullptr)
             to.fault(std::get<net::rpc_refusal>(m.parts[i]).why);
         else
@@ -268,7 +304,7 @@ void service::handle(client& c, net::rpc_request& r, const answer& to, std::size
         {"qr", &service::make_qr},
     };
     if (!c.admitted && r.method != "hello")
-        throw fault_error({net::code_no_token, "token", "token", "hello with the token comes first", ""});
+        throw fault_error(no_hello());
     if (r.method == "play" || r.method == "plan")
         return plan_or_play(c, std::move(r.params), to, r.method == "play", bytes);
     if (r.method == "import")
@@ -325,7 +361,7 @@ void service::disconnect(client_number number)
     c.levels_timer.cancel();
     const auto kept = std::move(found->second); // its answers look for it, and find nobody
     clients_.erase(found);
-    keep_jobs(number);
+    planners_.forget(number);
     gather_levels();
     count_touch_listeners();
 }
@@ -341,7 +377,8 @@ void service::tell_stream(stream_state s, const std::string& reason)
 void service::close(std::function<void()> done)
 {
     closing_ = true;
-    refuse_jobs();
+    ending_ = true;
+    planners_.drop_all();
     stream_.close(std::move(done));
     tell_stop(0);
 }

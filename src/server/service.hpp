@@ -4,10 +4,8 @@
 #pragma once
 
 #include <algorithm>
-#include <array>
 #include <atomic>
 #include <cstdint>
-#include <deque>
 #include <functional>
 #include <limits>
 #include <list>
@@ -22,37 +20,23 @@
 
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/steady_timer.hpp>
-#include <boost/asio/thread_pool.hpp>
 
 #include <tactor/error.hpp>
 #include <tactor/live.hpp>
 #include <tactor/phantom.hpp>
 #include <tactor/player.hpp>
 
+#include "net/peer.hpp"
 #include "net/rpc.hpp"
-#include "net/shared_by_peers.hpp"
+#include "options/serve.hpp"
 #include "server/files/tool_line.hpp"
+#include "server/planners.hpp"
 #include "server/stream.hpp"
 #include "server/stroke_source.hpp"
 
 namespace tactor::server {
 
-/// Bounds for the requests of a client, and of all together.
-struct service_limits {
-    std::size_t max_clients = 128;
-    std::size_t kept_clients = 8;     ///< places of these for the Unix socket alone
-    std::size_t max_strokes = 64;     ///< of one client at once, including those that are being planned
-    std::size_t max_live_strokes = 4; ///< of these, live ones
-    double max_points_per_s = 2000.0; ///< of one client; as many at once
-    double max_stroke_s = 600.0;
-    std::size_t max_message_bytes = 1U << 20;
-    std::size_t max_nesting = 64;
-    double max_message_s = 10.0;             ///< for a message to be complete, and for the first one to come
-    std::size_t max_unread_bytes = 4U << 20; ///< waiting for one client
-    std::size_t max_all_unread_bytes =
-        64U << 20; ///< waiting for all; as many of requests that wait to be planned
-    std::size_t max_all_unfinished_bytes = 32U << 20; ///< of incomplete messages of all
-};
+using service_limits = options::serve_limits;
 
 /// Most bytes of an exported file, and of the result of an import.
 inline constexpr std::size_t most_file_bytes = 64U << 20;
@@ -116,8 +100,9 @@ public:
     client_number connect(std::shared_ptr<client_link> link, client_kind k, std::string from = {});
     /// Handles a message. Returns false if the connection must be closed unanswered.
     bool receive(client_number number, std::string_view text);
-    /// Handles a large message, which another thread parses. Calls `done` with the result in this thread.
-    void receive_large(client_number number, std::string text, std::function<void(bool)> done);
+    /// Handles a large message in parts, which another thread parses. Calls `done` with the result in this
+    /// thread.
+    void receive_large(client_number number, std::vector<std::string> parts, std::function<void(bool)> done);
     /// Ends the live strokes of a client that sends no more. Returns true if no message to it is outstanding.
     bool input_ended(client_number number);
     /// Sets the handler for the moment when no message to such a client is outstanding any more.
@@ -144,25 +129,26 @@ private:
     struct stroke_record;
     struct pending;
 
-    /// Destination of a result: a reply, a place in a batch, or none.
-    struct answer {
-        std::shared_ptr<pending> all;
-        std::size_t at = 0;
-
-        /// Gives the result. `strokes`: new ones, whose notifications are sent from now on.
-        void result(reply_json r, const std::vector<std::uint32_t>& strokes = {}) const;
-        /// Returns the reply with a result that is JSON text already, on one line. Any thread.
-        std::string write_reply(std::string_view result) const;
-        /// Gives what write_reply() returned. `large`: it may be longer than what waits for a client.
-        void whole_reply(std::string reply, bool large) const;
-        void fault(const net::rpc_fault& f) const;
-    };
-
     /// Counts of stops, and of cancels of all by one client, at the time of a request.
     struct stop_mark {
         std::uint64_t stops = 0;
         std::shared_ptr<const std::uint64_t> cancels = {};
         std::uint64_t own = 0;
+    };
+
+    /// Destination of a result: a reply, a place in a batch, or none.
+    struct answer {
+        std::shared_ptr<pending> all;
+        std::size_t at = 0;
+        stop_mark asked = {};
+
+        /// Gives the result. `strokes`: new ones, whose notifications are sent from now on.
+        void result(reply_json r, const std::vector<std::uint32_t>& strokes = {}) const;
+        /// Returns the reply with a result that is JSON text already, on one line. Any thread.
+        std::string write_reply(std::string_view result) const;
+        /// Gives what write_reply() returned. `file`: it may be longer than what waits for a client.
+        void whole_reply(std::string reply, bool file) const;
+        void fault(const net::rpc_fault& f) const;
     };
 
     struct plan_job {
@@ -171,29 +157,21 @@ private:
         net::json start = "now";
         std::size_t bytes = 0;
         bool play = false;
-        stop_mark asked = {};
         double gain_db = 0.0;     ///< of all its strokes
         std::uint64_t rounds = 1; ///< 0: until they are cancelled
         view_choice view = {};
-        std::optional<double> draft = {}; ///< its number
-        double steps = 0.0;               ///< see planning_work; 0 until its text is read
-        /// Makes the result of import or export, in place of a plan. Empty: too much work for its lane.
-        std::function<std::string(const net::json& params, const planning_checks&)> make_text = {};
-    };
+        /// Makes the result of import or export, in place of a plan.
+        std::function<std::string(const net::json& params, const go_on_check& go_on)> make_text = {};
 
-    /// Requests that wait to be planned, and the thread that plans them.
-    struct planner_lane {
-        std::size_t most_bytes; ///< largest request
-        double most_steps;
-        std::map<client_number, std::deque<plan_job>> queued = {};
-        std::deque<client_number> turns = {}; ///< order of the clients that have requests
-        bool passed = false;                  ///< the last request was a draft that passed others
-        std::optional<answer> planning = {};  ///< destination of the result that is being planned
-        boost::asio::thread_pool thread{1};
+        // Results.
+        std::shared_ptr<planned> made = {};
+        std::vector<score> scores = {};
+        std::string text = {};
+        std::optional<net::rpc_fault> fault = {};
     };
 
     // service.cpp
-    bool receive(client_number number, net::rpc_message& m, std::size_t bytes);
+    bool receive(client_number number, net::rpc_message& m, std::size_t bytes, const stop_mark& asked);
     void handle(client& c, net::rpc_request& r, const answer& to, std::size_t bytes);
     bool admitted(client& c, const net::rpc_message& m);
     client* find(client_number c);
@@ -220,23 +198,13 @@ private:
 
     // service_jobs.cpp
     void plan_or_play(client& c, net::json&& params, const answer& to, bool play, std::size_t bytes);
-    void admit_job(client& c, plan_job j);
-    planner_lane& lane_for(const plan_job& j) noexcept;
-    bool weigh(plan_job& j, const planner_lane& in, const planning_work& w);
-    void move_up(planner_lane& from, plan_job&& j);
-    void queue_job(client_number number, plan_job j);
-    void next_job(planner_lane& lane);
-    void keep_jobs(client_number number);
-    void forget_job(const plan_job& j);
-    bool outdate_drafts(client_number number, plan_job& j);
-    void uncount(const plan_job& j);
+    void admit_job(client& c, plan_job j, std::optional<double> draft = {});
+    void work_on(plan_job& j);
+    void plan(plan_job& j, const go_on_check& go_on);
+    void job_done(const std::shared_ptr<plan_job>& j);
     void refuse(const plan_job& j, const net::rpc_fault& f);
-    void refuse_jobs();
-    std::string answer_text(const planned& p, const view_choice& view) const;
-    void post_job(planner_lane& lane, plan_job j);
-    void job_done(planner_lane& lane, const plan_job& job, std::shared_ptr<planned> p,
-                  std::vector<score> scores, std::string text, std::optional<net::rpc_fault> fault);
-    void submit_all(const plan_job& job, const planned& p, const std::vector<score>& scores);
+    void uncount(const plan_job& j);
+    void submit_all(const plan_job& job);
     std::uint64_t count_rounds(const plan_job& job, const planned& p) const;
 
     // service_files.cpp
@@ -251,8 +219,7 @@ private:
     void submit_next(stroke_record& r);
     void check_free_place(const client& c) const;
     std::vector<std::uint32_t> end_unbegun(client_number owner, std::size_t n, const char* why);
-    void once_ready(client_number number, const answer& to, const char* source, const stop_mark& asked,
-                    std::function<void()> then);
+    void once_ready(const answer& to, const char* source, std::function<void()> then);
     void level(client& c, const net::json& params, const answer& to);
     void set_level(stroke_record& r, double db);
     static double level_db(const stroke_record& r) noexcept;
@@ -295,7 +262,7 @@ private:
     std::string reason(const stroke_record& r, const stroke_report& how) const;
     const char* stop_reason(client_number owner) const;
     stop_mark mark(const client& c) const;
-    const char* stop_reason_since(const stop_mark& m, client_number owner) const;
+    const char* stop_reason_since(const answer& to) const;
     void note_busy();
 
     boost::asio::io_context& io_;
@@ -316,17 +283,12 @@ private:
     std::size_t touch_listeners_ = 0;
     std::map<std::string, double> wrong_token_wait_s_ = {}; ///< by address; the last answer's
     std::list<boost::asio::steady_timer> late_answers_ = {};
-    std::size_t planning_bytes_ = 0;
-    std::size_t jobs_ = 0;
+    std::size_t jobs_ = 0; ///< that wait to be planned or are
     bool closing_ = false;
-    std::atomic<bool> ending_{false}; ///< checked by the planners between strokes
+    std::atomic<bool> ending_{false}; ///< a planner looks at it between strokes
     std::function<void(client_number)> all_sent_;
     std::function<void()> stopped_;
-    /// Small requests have separate threads, so that they pass large ones: continuous strokes of up to 4 s
-    /// and 65 s.
-    std::array<planner_lane, 3> lanes_{
-        {{16U << 10, 4096.0}, {128U << 10, 65536.0}, {SIZE_MAX, std::numeric_limits<double>::infinity()}}};
-    boost::asio::thread_pool reader_{1}; ///< parses and frees large messages
+    planners planners_{io_};
 };
 
 } // namespace tactor::server

@@ -43,6 +43,7 @@ struct service::client {
     boost::asio::steady_timer levels_timer;
     std::vector<float> levels; ///< by channel, since the last notification
     std::size_t coming = 0;    ///< requests whose strokes have no number yet
+    std::size_t bytes = 0;     ///< of requests that wait to be planned
     std::size_t unanswered = 0;
     std::set<std::uint32_t> strokes; ///< strokes that have not ended
     std::size_t live = 0;
@@ -90,7 +91,7 @@ struct service::pending {
         net::json id = nullptr;
         bool wanted = false;
         bool given = false;
-        bool large = false; ///< the reply may be longer than what waits for a client
+        bool file = false; ///< the reply may be longer than what waits for a client
         std::string reply = {};
     };
 

@@ -46,13 +46,12 @@ void service::begin(client& c, const json& params, const answer& to)
     ++c.coming;
     ++c.live;
     const double intensity_max = s.intensity_max.value_or(1.0);
-    const stop_mark asked = mark(c);
-    once_ready(c.number, to, "options", asked, [this, number = c.number, o, to, asked, intensity_max] {
+    once_ready(to, "options", [this, number = c.number, o, to, intensity_max] {
         client* then = find(number);
         if (then == nullptr)
             return;
         --then->live;
-        begin_now(*then, o, intensity_max, to, stop_reason_since(asked, number));
+        begin_now(*then, o, intensity_max, to, stop_reason_since(to));
     });
 }
 

@@ -137,19 +137,13 @@ void service::refuse_token(client& c, const answer& to, const net::rpc_fault& wr
 
 reply_json service::limits_json() const
 {
-    const service_limits& l = options_.limits;
-    return {{"max_clients", l.max_clients},
-            {"kept_clients", l.kept_clients},
-            {"max_strokes", l.max_strokes},
-            {"max_live_strokes", l.max_live_strokes},
-            {"max_points_per_s", l.max_points_per_s},
-            {"max_stroke_s", l.max_stroke_s},
-            {"max_message_bytes", l.max_message_bytes},
-            {"max_nesting", l.max_nesting},
-            {"max_message_s", l.max_message_s},
-            {"max_unread_bytes", l.max_unread_bytes},
-            {"max_all_unread_bytes", l.max_all_unread_bytes},
-            {"max_all_unfinished_bytes", l.max_all_unfinished_bytes}};
+    reply_json limits = reply_json::object();
+    for (const auto& [name, value] : options::list_limits(options_.limits))
+        if (value == std::floor(value))
+            limits[std::string(name)] = static_cast<std::int64_t>(value);
+        else
+            limits[std::string(name)] = value;
+    return limits;
 }
 
 void service::status(client& /*c*/, const json& params, const answer& to)

@@ -133,12 +133,11 @@ std::vector<std::uint32_t> service::end_unbegun(client_number owner, std::size_t
 }
 
 // Calls `then` for a request of a client that is `coming`, once the stream runs or it is known that it does
-// not; at once if it was stopped since it was `asked`. Answers with the fault that it throws, about `source`.
-void service::once_ready(client_number number, const answer& to, const char* source, const stop_mark& asked,
-                         std::function<void()> then)
+// not; at once if it was stopped since it came. Answers with the fault that it throws, about `source`.
+void service::once_ready(const answer& to, const char* source, std::function<void()> then)
 {
-    std::function<void()> ready = [this, number, to, source, then = std::move(then)] {
-        if (client* c = find(number))
+    std::function<void()> ready = [this, to, source, then = std::move(then)] {
+        if (client* c = find(to.all->to))
             --c->coming;
         try {
             then();
@@ -147,7 +146,7 @@ void service::once_ready(client_number number, const answer& to, const char* sou
         }
         note_busy();
     };
-    if (stop_reason_since(asked, number) != nullptr)
+    if (stop_reason_since(to) != nullptr)
         return ready(); // it must not start a device that is closed
     stream_.when_ready(std::move(ready));
 }
@@ -162,9 +161,8 @@ void service::drive(client& c, const json& params, const answer& to)
         no_stream(stream_.reason());
     const std::vector<score> scores{p->make_score(options_.plans.tactors, 0)};
     ++c.coming;
-    const stop_mark asked = mark(c);
-    once_ready(c.number, to, "stream", asked, [this, number = c.number, to, p, scores, start, asked] {
-        const auto numbers = submit(number, start, *p, scores, stop_reason_since(asked, number));
+    once_ready(to, "stream", [this, number = c.number, to, p, scores, start] {
+        const auto numbers = submit(number, start, *p, scores, stop_reason_since(to));
         to.result({{"stroke", numbers.front()}}, numbers);
     });
 }
@@ -180,9 +178,12 @@ service::stop_mark service::mark(const client& c) const
     return {stops_, c.cancels, *c.cancels};
 }
 
-// Returns the reason of a stroke that must not begin; null: it may.
-const char* service::stop_reason_since(const stop_mark& m, client_number owner) const
+// Returns the reason of a stroke that must not begin because it was stopped since its request came; null: it
+// may.
+const char* service::stop_reason_since(const answer& to) const
 {
+    const stop_mark& m = to.asked;
+    const client_number owner = to.all->to;
     if (*m.cancels != m.own)
         return cancelled_by_client;
     return m.stops != stops_ ? stop_reason(owner) : nullptr;

@@ -23,11 +23,7 @@ using net::json;
 constexpr double rounding_db = 1e-9;
 constexpr double most_excess_db = 100.0; // above it lies no sum of strokes that is planned
 constexpr double least_excess_db = 0.01;
-constexpr double moving = 100.0;         // time of a burst that `compensate` moves, against another
-constexpr double tactors_a_step = 128.0; // that a phantom model looks at in the time of a step
-constexpr double crossings = 4.0;        // of a grid's lines in one pitch of a path, at most
-constexpr double least_soa_s = 0.0001;
-constexpr double least_pitch_mm = 1.0;
+constexpr double most_bursts = 250'000.0;
 
 timed_point read_point(const json& p, std::size_t i, double intensity_max)
 {
@@ -46,6 +42,8 @@ timed_point read_point(const json& p, std::size_t i, double intensity_max)
 
 std::vector<stroke> read_points(const json& list, double intensity_max)
 {
+    if (list.is_binary())
+        return read_points(json::from_msgpack(list.get_binary()), intensity_max);
     if (!list.is_array())
         bad_param("points", "they are no list", "[[t,x,y], ...]");
     detail::recorded_points recorded(intensity_max);
@@ -105,34 +103,20 @@ double loudest(const stroke& k, const plan& p, intensity_scale scale)
     return scale.amplitude(most);
 }
 
-// Returns the samples that take as long as what a view looks at.
-double count_view_samples(const view_choice& view, const planning_work& w, double felt)
-{
-    constexpr double looked_at = 0.05; // time of a sample whose intensity alone is read, against one as text
-    constexpr double predicted = 0.1;  // time of a millisecond of a prediction
-    constexpr double read = 0.3;       // time of a sample without its text
-    switch (view.kind) {
-    case view_kind::full:
-        break;
-    case view_kind::bursts:
-        return std::min(w.samples, most_view_rows) + looked_at * w.samples;
-    case view_kind::percept:
-        return std::min(w.samples, most_view_rows) + read * w.samples + predicted * felt;
-    case view_kind::peaks:
-        return read * w.samples;
-    }
-    return w.samples;
-}
-
+// Returns the bursts by park2016, before they are planned: a short SOA makes very many.
 double park_bursts(const stroke& k, const plan_options& o)
 {
-    const double soa_s = k.choices.soa_s.value_or(o.soa_s);
-    const bool is_free = k.choices.burst_s || o.burst_s;
-    const bool is_possible = is_free ? soa_s >= least_soa_s : soa_s > o.profile.intercept_s;
-    return is_possible ? 1.0 + k.motion.duration_s() / soa_s : 0.0;
+    const bool is_park = k.choices.algorithm.value_or(o.algorithm) == algorithm_kind::park2016;
+    return is_park ? k.motion.duration_s() / k.choices.soa_s.value_or(o.soa_s) : 0.0;
 }
 
 } // namespace
+
+void pack_points(json& params)
+{
+    if (const auto points = params.find("points"); points != params.end() && points->is_array())
+        *points = json::binary(json::to_msgpack(*points));
+}
 
 std::vector<stroke> read_strokes(const std::string& source, const json& v, const options::wishes& s)
 {
@@ -246,29 +230,13 @@ void check_level(const planning& with, const options::wishes& s, double intensit
               "ask for less");
 }
 
-planning_work estimate_work(const std::vector<stroke>& strokes, const options::wishes& s, const layout& faces,
-                            const view_choice& view)
+void check_bursts(double bursts, const char* hint)
 {
-    planning_work w;
-    double felt = 0.0;
-    for (const stroke& k : strokes) {
-        felt += k.motion.duration_s() / percept_step_s;
-        switch (k.choices.algorithm.value_or(s.plan.algorithm)) {
-        case algorithm_kind::park2016:
-            w.bursts += park_bursts(k, s.plan);
-            break;
-        case algorithm_kind::tactile_brush:
-            w.bursts += 1.0 + crossings * k.motion.length_mm() / std::max(faces.pitch_mm(), least_pitch_mm);
-            break;
-        case algorithm_kind::continuous:
-            w.samples += 1.0 + k.motion.duration_s() / continuous_step_s;
-            break;
-        }
-    }
-    const double wide = 1.0 + static_cast<double>(faces.places().size()) / tactors_a_step;
-    const double samples = count_view_samples(view, w, felt);
-    w.steps = (samples + w.bursts * (s.compensate ? moving : 1.0)) * wide;
-    return w;
+    if (bursts > most_bursts)
+        limit_reached("bursts",
+                      fmt::format("its {:.0f} bursts are more than the {:.0f} that are planned at once",
+                                  bursts, most_bursts),
+                      hint);
 }
 
 std::vector<std::string> planned::warnings() const
@@ -277,6 +245,14 @@ std::vector<std::string> planned::warnings() const
     for (const placed_plan& p : plans)
         all.insert(all.end(), p.plan.warnings.begin(), p.plan.warnings.end());
     return all;
+}
+
+double planned::count_bursts() const
+{
+    std::size_t n = 0;
+    for (const placed_plan& p : plans)
+        n += std::max<std::size_t>(1, p.plan.bursts.size());
+    return static_cast<double>(n);
 }
 
 score planned::make_score(const array& a, std::size_t i) const
@@ -289,14 +265,14 @@ score planned::make_score(const array& a, std::size_t i) const
 }
 
 void plan_strokes(const planning& with, const layout& faces, planned& p, const options::wishes& s,
-                  const std::string& source, const planning_checks& checks, bool picture)
+                  const std::string& source, const go_on_check& go_on, bool picture)
 {
-    const auto between = [&] {
-        if (checks.go_on)
-            checks.go_on();
-    };
+    double bursts = 0.0;
+    for (const stroke& k : p.strokes)
+        bursts += park_bursts(k, s.plan);
+    check_bursts(bursts, "make it shorter, or the SOA longer");
     for (std::size_t i = 0; i < p.strokes.size(); ++i) {
-        between();
+        go_on();
         session::plan_stroke(p, i, with.tactors, faces, s);
         const plan& made = p.plans.back().plan;
         const double intensity = loudest(p.strokes[i], made, s.plan.scale);
@@ -307,15 +283,14 @@ void plan_strokes(const planning& with, const layout& faces, planned& p, const o
                                                 20.0 * std::log10(intensity) - with.max_level_dbfs);
     }
     check_duration(with, p.total_s());
-    between();
+    go_on();
     if (picture)
         p.over_db = std::max(p.over_db, find_excess_db(with, p));
     else
         static_cast<void>(score(with.tactors, p.plans, p.render)); // levels and carriers
 }
 
-planned make_planned(const planning& with, const layout& faces, const json& params,
-                     const planning_checks& checks)
+planned make_planned(const planning& with, const layout& faces, const json& params, const go_on_check& go_on)
 {
     const std::string source = find_source(params);
     const options::wishes s = settle_options(with.owner, params);
@@ -325,10 +300,7 @@ planned make_planned(const planning& with, const layout& faces, const json& para
         if (source == "stroke")
             p.name = p.strokes.front().name;
         p.strokes = settle_strokes(with, faces, std::move(p.strokes), s, false);
-        const view_choice view = read_view(params);
-        if (checks.weigh && !checks.weigh(estimate_work(p.strokes, s, faces, view)))
-            return p;
-        plan_strokes(with, faces, p, s, source, checks, view.kind != view_kind::full);
+        plan_strokes(with, faces, p, s, source, go_on, read_view(params).kind != view_kind::full);
         return p;
     } catch (const fault_error&) {
         throw;

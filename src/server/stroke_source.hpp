@@ -38,9 +38,14 @@ struct planned : session::piece {
     double over_db = 0.0;                  ///< of a view: how much weaker it must be to be played
 
     std::vector<std::string> warnings() const;
+    /// Returns the bursts of one round; a continuous stroke counts as one.
+    double count_bursts() const;
     /// Returns the score of all rounds of a plan alone, to be submitted by itself.
     score make_score(const array& a, std::size_t i) const;
 };
+
+/// Packs points that wait to be planned: as JSON they take ten times as much memory, in small blocks.
+void pack_points(net::json& params);
 
 /// Reads the strokes that a parameter says. \throws error, fault_error.
 std::vector<stroke> read_strokes(const std::string& source, const net::json& v, const options::wishes& s);
@@ -63,33 +68,21 @@ void count_from_piece(std::vector<stroke>& strokes, const std::vector<double>& s
 /// "svg". \throws fault_error for none or several.
 const char* find_source(const net::json& params);
 
-/// Work of planning strokes. Exact for park2016 and continuous, an upper bound for tactile-brush.
-struct planning_work {
-    double bursts = 0.0;
-    double samples = 0.0; ///< of continuous strokes
-    double steps = 0.0;   ///< in time, with the view: some 2 to 5 us each
-};
+/// Refuses more bursts than are planned at once. \throws fault_error.
+void check_bursts(double bursts, const char* hint);
 
-/// Estimates the work from durations and options; none for an SOA that the planner refuses.
-planning_work estimate_work(const std::vector<stroke>& strokes, const options::wishes& s, const layout& faces,
-                            const view_choice& view = {});
-
-/// Calls from within make_planned(); each may throw.
-struct planning_checks {
-    std::function<void()> go_on = {}; ///< called between strokes
-    /// Called before the work, when the text is read. Returns false if nothing is to be planned.
-    std::function<bool(const planning_work&)> weigh = {};
-};
+/// A planner calls it between strokes. It may throw.
+using go_on_check = std::function<void()>;
 
 /// Plans p.strokes into p.plans and p.moved. `source`: parameter that said them. With `picture` a level that
 /// may not be played is no fault: p.over_db has the excess. \throws fault_error for a level above the
 /// owner's; error.
 void plan_strokes(const planning& with, const layout& faces, planned& p, const options::wishes& s,
-                  const std::string& source, const planning_checks& checks, bool picture = false);
+                  const std::string& source, const go_on_check& go_on, bool picture = false);
 
-/// Reads and plans. Returns no plans if `weigh` returns false. \throws fault_error, and what checks throw.
-planned make_planned(const planning& with, const layout& faces, const net::json& params,
-                     const planning_checks& checks = {});
+/// Reads and plans. \throws fault_error, and what `go_on` throws.
+planned make_planned(
+    const planning& with, const layout& faces, const net::json& params, const go_on_check& go_on = [] {});
 
 /// Returns a plan that drives one tactor for a time. \throws fault_error.
 planned make_drive(const planning& with, const net::json& params);

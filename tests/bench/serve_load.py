@@ -208,7 +208,7 @@ def main():
     with tempfile.TemporaryDirectory() as folder:
         path = os.path.join(folder, "s.sock")
         config = pathlib.Path(folder, "serve.toml")
-        config.touch()
+        config.write_text(f"[serve]\nmax_clients = {2 * CLIENTS}\n", encoding="ascii")
         with subprocess.Popen([tool, "serve", "--socket", path, "-D", "null", "--config", config, "--format", "json"],
                               stdout=subprocess.PIPE) as process:
             try:

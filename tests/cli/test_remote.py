@@ -137,7 +137,7 @@ class Remote(ToolTest):
         s = self.serve()
         watcher = s.client()
         watcher.ok("subscribe", events=["strokes"])
-        much = ("--path", "M 0 0 L 40 40", "--duration", "250", "--soa", "0.001", "--burst", "0.001", "--level-dbfs", "-60")
+        much = ("--path", "M 0 0 L 40 40", "--duration", "240", "--soa", "0.001", "--burst", "0.001", "--level-dbfs", "-60")
         for signals in ((signal.SIGINT,), (signal.SIGINT, signal.SIGTERM)):
             p = self.begun("play", *much, "--socket", s.where["socket"])
             self.assertIn("through", p.stdout.readline())  # it asks next

@@ -188,7 +188,7 @@ class Serve(ServeTest):
     def test_too_few_descriptors_are_reported(self):
         before = resource.getrlimit(resource.RLIMIT_NOFILE)
         few = self.serve_with_descriptors(60, 60)
-        self.assertIn("too few descriptors: 60 may be open, and 128 clients need 224", few)
+        self.assertIn("too few descriptors: 60 may be open, and 64 clients need 160", few)
         self.assertNotIn("descriptors", self.serve_with_descriptors(60, before[1]))
 
     def serve_with_descriptors(self, soft, hard):

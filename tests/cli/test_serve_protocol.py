@@ -67,14 +67,14 @@ class Protocol(ServeTest):
         a, b = s.client(), s.client()
         for raw, answered in ((b'"id":1,"params":[]', True), (b'"id":1,"params":null', True), (b'"id":1,"params":["now",1]', True),
                               (b'"id":1,"params":{"why":"hurts"}', True), (b'"id":1,"params":true', True),
-                              (b'"id":[],"params":0', True), (b'"params":"x"', False)):
+                              (b'"id":[],"params":0', True), (b'"id":1,"params":' + b"[" * 99 + b"]" * 99, True), (b'"params":"x"', False)):
             mine = a.ok("play", **LONG)["stroke"]
             b.raw(b'{"jsonrpc":"2.0","method":"stop",' + raw + b'}\n')
             if answered:
                 self.assertEqual(b.reply()["result"], {}, raw)
             self.assertEqual(a.await_end(mine)["state"], "cancelled", raw)
         quiet = b'{"jsonrpc":"2.0","method":"status"},'
-        for raw in (b"[" + quiet * 70 + b'{"jsonrpc":"2.0","method":"stop"}]', b'{"jsonrpc":"2.0","method":"stop","params":' + b"[" * 99 + b"]" * 99 + b"}",
+        for raw in (b"[" + quiet * 70 + b'{"jsonrpc":"2.0","method":"stop"}]',
                     b"[" + quiet * 9000 + b'{"jsonrpc":"2.0","method":"stop"}]'):
             mine = a.ok("play", **LONG)["stroke"]
             b.raw(raw + b"\n")

@@ -44,10 +44,10 @@ void check_connection(std::string_view bytes, bool open)
     std::string said;
     {
         boost::asio::io_context io(1);
-        net::line_connection::socket_type s(io, boost::asio::generic::stream_protocol(AF_UNIX, 0), ends[0]);
-        net::shared_by_peers shared(io);
-        const net::line_limits limits{.message_bytes = 1024};
-        const auto c = net::connect_browser(io, std::move(s), limits, shared, {"h"});
+        boost::asio::generic::stream_protocol::socket s(io, boost::asio::generic::stream_protocol(AF_UNIX, 0),
+                                                        ends[0]);
+        const net::message_limits limits{.message_bytes = 1024};
+        const auto c = net::connect_browser(io, std::move(s), limits, {"h"});
         c->start({.message =
                       [&](std::string_view text) {
                           HOLDS(upgraded && !text.empty() && text.size() <= limits.message_bytes);

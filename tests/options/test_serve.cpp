@@ -36,8 +36,6 @@ max_message_bytes = 2000
 max_nesting = 10
 max_message_s = 1
 max_unread_bytes = 3000
-max_all_unread_bytes = 4000
-max_all_unfinished_bytes = 70000
 )",
                                   "t");
     const options::serve_settings s = options::read_serve(all.serve);
@@ -50,18 +48,16 @@ max_all_unfinished_bytes = 70000
     CHECK(s.osc_peers.size() == 2);
     CHECK(s.max_level_dbfs == -20.0);
     CHECK(s.idle_stop_s == 60.0);
-    CHECK(s.max_clients == 10U);
-    CHECK(s.kept_clients == 2U);
-    CHECK(s.max_strokes == 3U);
-    CHECK(s.max_live_strokes == 0U);
-    CHECK(s.max_points_per_s == 100U);
-    CHECK(s.max_stroke_s == 5.0);
-    CHECK(s.max_message_bytes == 2000U);
-    CHECK(s.max_nesting == 10U);
-    CHECK(s.max_message_s == 1.0);
-    CHECK(s.max_unread_bytes == 3000U);
-    CHECK(s.max_all_unread_bytes == 4000U);
-    CHECK(s.max_all_unfinished_bytes == 70000U);
+    CHECK(s.limits.max_clients == 10U);
+    CHECK(s.limits.kept_clients == 2U);
+    CHECK(s.limits.max_strokes == 3U);
+    CHECK(s.limits.max_live_strokes == 0U);
+    CHECK(s.limits.max_points_per_s == 100U);
+    CHECK(s.limits.max_stroke_s == 5.0);
+    CHECK(s.limits.max_message_bytes == 2000U);
+    CHECK(s.limits.max_nesting == 10U);
+    CHECK(s.limits.max_message_s == 1.0);
+    CHECK(s.limits.max_unread_bytes == 3000U);
     CHECK(parse_setup("", "t").serve.empty());
     CHECK_FALSE(options::read_serve(parse_setup("[serve]\n", "t").serve).tcp);
 }
@@ -78,7 +74,7 @@ TEST_CASE("[serve]: impossible values are refused with their place")
     for (const char* line : {"tcp = 70000", "tcp = 1.5", "tcp = 'x'", "http = '::1'", "http = 'a:'",
                              "osc = ':1'", "osc = '[::1]:65536'", "socket = ''", "allow_hosts = 'x'",
                              "osc_peers = [1]", "max_level_dbfs = 1", "idle_stop_s = 0", "max_clients = 0",
-                             "max_strokes = -1", "max_message_bytes = 1.5", "kept_clients = 128"})
+                             "max_strokes = -1", "max_message_bytes = 1.5", "kept_clients = 64"})
         CHECK_MESSAGE(says(line).find("t:2:") == 0, line);
     for (const char* bad : {"/", "10.0.0.0/33", "::/129", "10.0.0.0/", "10.0.0.0/-1", "10.0.0.0/8x", "10.0.0",
                             "example.org", "10.0.0.0/8/8", "10.0.0.0/ 8", "[::1]"})

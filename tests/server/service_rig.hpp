@@ -5,7 +5,6 @@
 
 #include <cstdint>
 #include <functional>
-#include <limits>
 #include <list>
 #include <memory>
 #include <mutex>
@@ -36,7 +35,7 @@ class inbox final : public server::client_link {
 public:
     void send(std::string message) override { all.push_back(json::parse(message)); }
     std::size_t waiting() const override { return unread; }
-    std::size_t room() const override { return left; }
+    bool has_file() const override { return file; }
     void finish() override { finished = true; }
 
     /// Returns those of a stroke, in order.
@@ -73,7 +72,7 @@ public:
 
     std::vector<json> all;
     std::size_t unread = 0;
-    std::size_t left = std::numeric_limits<std::size_t>::max(); ///< of what all may let wait
+    bool file = false; ///< one waits to be read
     bool finished = false;
 };
 

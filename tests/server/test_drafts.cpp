@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: MIT
 // Drafts of plans: only the newest that waits is planned.
+#include <array>
 #include <atomic>
 #include <future>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include <doctest/doctest.h>
@@ -17,7 +19,6 @@ using namespace tactor::test;
 namespace {
 
 const json small{{"path", "M 0 0 L 40 40"}, {"options", {{"duration", 0.5}}}};
-const json large{{"path", "M 0 0 L 40 40"}, {"options", {{"duration", 10}, {"algorithm", "continuous"}}}};
 
 json with_draft(json params, double number, double duration_s)
 {
@@ -51,6 +52,21 @@ struct held_service {
             may_go_on.set_value();
         open = true;
     }
+    /// Holds the planner of drafts.
+    void hold_drafts()
+    {
+        json draft = small;
+        draft["draft"] = 0;
+        plan(holding.back(), 900, draft);
+    }
+    /// Holds both planners.
+    void hold()
+    {
+        hold_drafts();
+        plan(holding.front(), 900, small);
+        while (full_plans != 2)
+            std::this_thread::yield();
+    }
     void plan(const service_rig::connected& c, int id, const json& params)
     {
         rig.send(c, {{"jsonrpc", "2.0"}, {"id", id}, {"method", "plan"}, {"params", params}});
@@ -80,6 +96,7 @@ struct held_service {
     std::atomic<int> full_plans{0};
     bool open = false;
     service_rig rig;
+    std::array<service_rig::connected, 2> holding{rig.client(), rig.client()};
 };
 
 } // namespace
@@ -87,10 +104,9 @@ struct held_service {
 TEST_CASE("of a client's drafts that wait only the newest is planned")
 {
     held_service s;
-    const auto other = s.rig.client();
     const auto me = s.rig.client();
     const auto you = s.rig.client();
-    s.plan(other, 900, small); // which holds the planner
+    s.hold();
     s.plan(you, 901, with_draft(small, 1, 0.3));
     s.plan(me, 902, small); // no draft
     for (int i = 1; i <= 5; ++i) {
@@ -106,103 +122,38 @@ TEST_CASE("of a client's drafts that wait only the newest is planned")
     CHECK(s.result(me, 7)["strokes"][0]["duration_s"] == 0.8);
     CHECK(s.result(you, 901)["strokes"][0]["duration_s"] == 0.3);
     CHECK(s.result(me, 902) == json::object());
-    s.result(other, 900);
     // A draft that nothing outdates.
     s.plan(me, 8, with_draft(small, 0, 0.9));
     CHECK(s.result(me, 8)["strokes"][0]["duration_s"] == 0.9);
 }
 
-TEST_CASE("a newer draft takes the turn of the one before")
+TEST_CASE("clients have turns, and a draft passes what is its own client's")
 {
     held_service s;
-    const auto other = s.rig.client();
-    const auto me = s.rig.client();
-    s.plan(other, 900, small);
-    s.plan(me, 1, with_draft(small, 1, 0.3));
-    const auto last = s.rig.client();
-    s.plan(last, 901, with_draft(small, 1, 0.3));
-    s.plan(me, 2, with_draft(small, 2, 0.4));
-    s.go_on();
-    s.result(last, 901);
-    CHECK(me.box->reply(2).has_value());
-}
-
-TEST_CASE("a draft passes the plans of others, and after each one of these comes")
-{
-    held_service s;
-    const auto other = s.rig.client();
-    s.plan(other, 900, small);
-    std::vector<service_rig::connected> planning;
-    std::vector<service_rig::connected> drafting;
-    for (int i = 0; i < 4; ++i) {
-        planning.push_back(s.rig.client());
-        s.plan(planning.back(), 901, small);
+    s.hold_drafts(); // one planner is left
+    const auto many = s.rig.client();
+    const auto one = s.rig.client();
+    json view = small;
+    view["view"] = "bursts";
+    for (int i = 1; i <= 3; ++i)
+        s.plan(many, i, view);
+    s.plan(many, 4, with_draft(small, 1, 0.3));
+    s.plan(one, 5, with_draft(small, 1, 0.3));
+    std::vector<int> order;
+    while (order.size() != 5) {
+        const std::size_t before = many.box->all.size() + one.box->all.size();
+        s.rig.until([&] { return many.box->all.size() + one.box->all.size() != before; });
+        const bool is_one = order.size() == 2;
+        order.push_back((is_one ? one : many).box->all.back()["id"]);
     }
-    for (int i = 0; i < 3; ++i) {
-        drafting.push_back(s.rig.client());
-        s.plan(drafting.back(), 901, with_draft(small, 1, 0.3));
-    }
-    s.go_on();
-    std::string order;
-    const auto look = [&](std::vector<service_rig::connected>& all, char name) {
-        if (!all.empty() && all.front().box->reply(901)) {
-            all.erase(all.begin());
-            order += name;
-        }
-    };
-    while (order.size() < 7) {
-        s.rig.io.run_one();
-        look(planning, 'p');
-        look(drafting, 'd');
-    }
-    CHECK(order == "dpdpdpp");
-}
-
-TEST_CASE("drafts in all lanes: one that waits with larger ones is outdated, too")
-{
-    held_service s;
-    const auto other = s.rig.client();
-    const auto me = s.rig.client();
-    s.plan(other, 900, large);
-    s.rig.ok(other, "plan", with_draft(small, 0, 0.1)); // the large one is with the large ones now
-    s.plan(me, 901, with_draft(large, 1, 10.0));
-    s.rig.ok(me, "plan", [&] {
-        json peaks = small;
-        peaks["view"] = "peaks";
-        return peaks;
-    }());
-    CHECK_FALSE(me.box->reply(901)); // it waits behind the other
-    s.plan(me, 902, with_draft(large, 2, 9.0));
-    CHECK(held_service::is_outdated(me, 901));
-    s.plan(me, 903, with_draft(small, 3, 0.3));
-    CHECK(held_service::is_outdated(me, 902));
-    s.go_on();
-    CHECK(s.result(me, 903)["strokes"][0]["duration_s"] == 0.3);
-}
-
-TEST_CASE("a draft with a long text does not take the turn of a short one")
-{
-    held_service s;
-    const auto other = s.rig.client();
-    const auto me = s.rig.client();
-    s.plan(other, 900, small);
-    s.plan(me, 1, with_draft(small, 1, 0.3));
-    json points = json::array();
-    for (int i = 0; i < 2000; ++i)
-        points.push_back({i * 1e-3, 20, 20});
-    const json drawn{{"points", points}, {"view", "bursts"}, {"draft", 2}};
-    s.plan(me, 2, drawn);
-    CHECK(held_service::is_outdated(me, 1));
-    CHECK(s.result(me, 2)["strokes"][0]["duration_s"] == 1.999); // though the planner of short ones is held
-    CHECK_FALSE(other.box->reply(900));
+    CHECK(order == std::vector<int>{1, 4, 5, 2, 3});
 }
 
 TEST_CASE("drafts in one batch: the first is outdated, and the batch is answered")
 {
     held_service s;
-    const auto other = s.rig.client();
     const auto me = s.rig.client();
-    s.plan(other, 900, small);
+    s.hold();
     json batch = json::array();
     for (int i = 1; i <= 2; ++i)
         batch.push_back(
@@ -218,12 +169,10 @@ TEST_CASE("drafts in one batch: the first is outdated, and the batch is answered
 TEST_CASE("a dropped draft, and one whose client goes, count for no limit any more")
 {
     held_service s([](server::service_limits& l) {
-        l.max_clients = 2;
+        l.max_clients = 4;
         l.max_strokes = 2;
-        l.max_all_unread_bytes = 8000;
     });
-    const auto other = s.rig.client();
-    s.plan(other, 900, small);
+    s.hold();
     for (int round = 0; round < 10; ++round) {
         const auto me = s.rig.client();
         for (int i = 1; i <= 10; ++i) {
@@ -239,9 +188,10 @@ TEST_CASE("a dropped draft, and one whose client goes, count for no limit any mo
         CHECK_FALSE(me.box->reply(11));
     }
     s.go_on();
+    const auto& other = s.holding.front();
     s.result(other, 900);
     s.rig.ok(other, "plan", small);
-    CHECK(s.full_plans == 2); // nobody reads the plans of those that went
+    CHECK(s.full_plans == 3); // nobody reads the plans of those that went
     CHECK(s.rig.ok(other, "status")["strokes"].empty());
     // The stream may rest again: nothing is coming.
     const json n = s.rig.ok(other, "play", {{"stroke", "park2016-1"}})["stroke"];
@@ -251,9 +201,8 @@ TEST_CASE("a dropped draft, and one whose client goes, count for no limit any mo
 TEST_CASE("waiting drafts are refused when the server ends")
 {
     held_service s;
-    const auto other = s.rig.client();
     const auto me = s.rig.client();
-    s.plan(other, 900, small);
+    s.hold();
     s.plan(me, 1, with_draft(small, 1, 0.3));
     s.rig.close();
     CHECK((*me.box->reply(1))["error"]["code"] == -32000);

@@ -50,15 +50,17 @@ TEST_CASE("files are made without a device, and in batches")
     }
 }
 
-TEST_CASE("a file that other answers leave no room for is refused")
+TEST_CASE("a second file is refused while the first one is not read")
 {
     running_rig rig;
     const auto c = rig.client();
-    c.box->left = 100'000;
+    c.box->file = true;
     const json r = rig.call(c, "export", ask_sound(1.0));
     CHECK(r["error"]["code"] == net::code_limit);
-    CHECK(r["error"]["data"]["what"] == "max_all_unread_bytes");
-    CHECK(rig.code(c, "export", {{"path", "M 0 0 L 40 40"}, {"as", "toml"}}) == 0);
+    CHECK(r["error"]["data"]["what"] == "max_unread_bytes");
+    CHECK(rig.code(c, "plan", {{"path", "M 0 0 L 40 40"}}) == 0);
+    c.box->file = false;
+    CHECK(rig.code(c, "export", ask_sound(1.0)) == 0);
 }
 
 TEST_CASE("files for a client that left are not made, and its strokes are played")

@@ -309,7 +309,7 @@ TEST_CASE("how many strokes, and how long together, is refused before any is pla
     const auto refused = [&](const json& params) {
         planned_ones = 0;
         const auto f =
-            fault_from([&] { make_planned(p, layout(p.tactors), params, {[&] { ++planned_ones; }}); });
+            fault_from([&] { make_planned(p, layout(p.tactors), params, [&] { ++planned_ones; }); });
         CHECK(f.code == net::code_limit);
         CHECK(planned_ones == 0);
         return f.what;
@@ -319,63 +319,16 @@ TEST_CASE("how many strokes, and how long together, is refused before any is pla
     CHECK(make_planned(p, layout(p.tactors), strokes(1, 600.0)).plans.size() == 1);
 }
 
-TEST_CASE("the work is known before it is done, whatever the text is as long as")
-{
-    const planning p = palm();
-    const layout faces(p.tactors);
-    const auto weighed = [&](const json& params, bool go_on) {
-        planning_work w;
-        const planned made = make_planned(p, faces, params, {{}, [&](const planning_work& x) {
-                                                                 w = x;
-                                                                 return go_on;
-                                                             }});
-        CHECK(made.plans.size() == (go_on ? made.strokes.size() : 0));
-        if (go_on) {
-            double bursts = 0.0;
-            double samples = 0.0;
-            for (const placed_plan& one : made.plans) {
-                bursts += static_cast<double>(one.plan.bursts.size());
-                samples += one.plan.curve ? static_cast<double>(one.plan.curve->size()) : 0.0;
-            }
-            CHECK(bursts <= w.bursts);
-            CHECK(bursts >= w.bursts / 8.0 - 1.0);
-            CHECK(std::abs(samples - w.samples) <= 1.0);
-        }
-        return w;
-    };
-    const std::string path = "M 0 0 L 40 40";
-    const json brush{{"path", "M 0 0 L 40 0 L 0 20 L 40 40"},
-                     {"options", {{"algorithm", "tactile-brush"}, {"duration", 4}}}};
-    weighed(brush, true);
-    for (const json& options : {json{{"duration", 30}}, json{{"duration", 30}, {"soa", 0.06}},
-                                json{{"duration", 3}, {"soa", 0.001}, {"burst", 0.001}},
-                                json{{"duration", 3}, {"algorithm", "continuous"}}})
-        CHECK(weighed({{"path", path}, {"options", options}}, true).steps ==
-              weighed({{"path", path}, {"options", options}}, false).steps);
-    json o{{"duration", 60}, {"soa", 0.01}, {"burst", 0.01}, {"phantom", "barycentric"}};
-    const double plain = weighed({{"path", path}, {"options", o}}, false).steps;
-    CHECK(plain > 6000.0);
-    o["compensate"] = "low-speed";
-    CHECK(weighed({{"path", path}, {"options", o}}, false).steps > 3.0 * plain);
-    const std::string file =
-        "[[stroke]]\npath = 'M 0 0 L 40 40'\nduration_s = 500\nalgorithm = 'continuous'\n";
-    CHECK(weighed({{"toml", file}}, false).samples > 499'999.0);
-    // The planner reports its refusals itself.
-    CHECK(weighed({{"path", path}, {"options", {{"duration", 600}, {"soa", 1e-7}, {"burst", 0.001}}}}, false)
-              .steps == 0.0);
-    CHECK(weighed({{"path", path}, {"options", {{"duration", 600}, {"soa", 0.001}}}}, false).steps == 0.0);
-}
-
 TEST_CASE("planning ends between strokes when asked to")
 {
     const planning p = palm();
     const json two{{"toml", "[[stroke]]\npath = 'M 0 0 L 40 40'\n[[stroke]]\npath = 'M 0 0 L 40 0'\n"}};
     int asked = 0;
     const auto f = fault_from([&] {
-        make_planned(p, layout(p.tactors), two, {[&] {
-                         if (++asked == 2)
-                             no_stream("the server ends");
-                     }});
+        make_planned(p, layout(p.tactors), two, [&] {
+            if (++asked == 2)
+                no_stream("the server ends");
+        });
     });
     CHECK(f.code == net::code_no_stream);
     CHECK(asked == 2);

@@ -380,27 +380,6 @@ TEST_CASE("a view that is too long is not made")
         CHECK_THROWS_AS(static_cast<void>(view_text(p, palm().tactors, {k, 4000}, 10'000)), std::bad_alloc);
 }
 
-TEST_CASE("a view of a long stroke is less work than its plan")
-{
-    const planning with = palm();
-    const auto steps = [&](json params, const char* view) {
-        double found = 0.0;
-        params["view"] = view;
-        static_cast<void>(make_planned(with, layout(with.tactors), params, {{}, [&](const planning_work& w) {
-                                                                                found = w.steps;
-                                                                                return false;
-                                                                            }}));
-        return found;
-    };
-    const json smooth = line(60.0, "continuous");
-    CHECK(steps(smooth, "bursts") < steps(smooth, "percept"));
-    CHECK(steps(smooth, "percept") < steps(smooth, "full"));
-    CHECK(steps(smooth, "peaks") < steps(smooth, "full"));
-    const json taps = line(60.0, "park2016");
-    CHECK(steps(taps, "bursts") == steps(taps, "full"));
-    CHECK(steps(taps, "percept") > steps(taps, "bursts")); // each millisecond is predicted
-}
-
 TEST_CASE("parameters of a view that are refused name themselves")
 {
     CHECK(fault_from({{"view", "all"}}).what == "view");

@@ -252,7 +252,7 @@ int serve(settings& s, const serve_options& o)
     session::interrupt stop;
 
     server::service_options service;
-    service.limits = server::settle_limits(serve);
+    service.limits = serve.limits;
     provide_descriptors(service.limits);
     service.token = server::read_token(serve);
     service.version = version();

@@ -99,31 +99,15 @@ double end_s(const std::vector<stroke>& strokes)
     return end;
 }
 
-// Adds the time of rendering or drawing to the work of planning.
-planning_work estimate(const exporting& e, const file_kind& kind, const options::wishes& s,
-                       const std::vector<stroke>& strokes)
-{
-    constexpr double steps_a_second = 60.0; // of samples of one channel
-    constexpr double steps_a_picture = 20'000.0;
-    if (!kind.has_plan() && std::none_of(strokes.begin(), strokes.end(), counts_from_group))
-        return {};
-    planning_work w = estimate_work(strokes, s, e.faces);
-    if (kind.extension == "wav")
-        w.steps += end_s(strokes) * s.render.channels * steps_a_second;
-    if (kind.picture)
-        w.steps += steps_a_picture;
-    return w;
-}
-
 // Gives strokes that count from a group a start in seconds, which takes their plans: a plan may last longer
 // than its path.
 void place_by_plans(const exporting& e, const options::wishes& s, std::vector<stroke>& strokes,
-                    const planning_checks& checks)
+                    const go_on_check& go_on)
 {
     if (std::none_of(strokes.begin(), strokes.end(), counts_from_group))
         return;
     planned p{{"", strokes}, s.render};
-    plan_strokes(e.with, e.faces, p, s, "stroke", checks);
+    plan_strokes(e.with, e.faces, p, s, "stroke", go_on);
     count_from_piece(strokes, p.starts_s());
 }
 
@@ -190,12 +174,12 @@ std::string result_text(const exporting& e, const file_kind& kind, const std::st
 // Writes and reads the strokes: an exported file has the digits that the tool finds in it.
 std::string make_bytes(const exporting& e, const file_kind& kind, const std::string& source,
                        const std::string& name, std::vector<stroke> strokes, const options::wishes& s,
-                       const planning_checks& checks)
+                       const go_on_check& go_on)
 {
     if (kind.extension == "csv")
         return csv_text(strokes);
     if (kind.extension != "json") {
-        place_by_plans(e, s, strokes, checks);
+        place_by_plans(e, s, strokes, go_on);
         for (stroke& k : strokes)
             put_options(k, s);
         std::string toml = detail::strokes_text(strokes);
@@ -204,7 +188,7 @@ std::string make_bytes(const exporting& e, const file_kind& kind, const std::str
         strokes = read_again(toml, source, strokes);
     }
     planned p{{name, std::move(strokes)}, s.render};
-    plan_strokes(e.with, e.faces, p, s, source, checks);
+    plan_strokes(e.with, e.faces, p, s, source, go_on);
     return file_bytes(e, kind, p, s);
 }
 
@@ -221,7 +205,7 @@ void check_export(const planning& with, const json& params)
         bad_param("name", "it is no name for a file", "1 to 100 letters, digits, blanks, - and _");
 }
 
-std::string export_strokes(const exporting& e, const json& params, const planning_checks& checks)
+std::string export_strokes(const exporting& e, const json& params, const go_on_check& go_on)
 {
     const std::string source = find_source(params);
     const file_kind& kind = find_kind(params);
@@ -233,11 +217,8 @@ std::string export_strokes(const exporting& e, const json& params, const plannin
             check_level(e.with, s, 1.0, s.plan.carrier_hz, source);
         if (kind.extension == "wav")
             check_samples(e, s, end_s(strokes));
-        if (checks.weigh && !checks.weigh(estimate(e, kind, s, strokes)))
-            return {};
         const std::string name = choose_name(params, strokes);
-        return result_text(e, kind, name, s,
-                           make_bytes(e, kind, source, name, std::move(strokes), s, checks));
+        return result_text(e, kind, name, s, make_bytes(e, kind, source, name, std::move(strokes), s, go_on));
     } catch (const fault_error&) {
         throw;
     } catch (...) {

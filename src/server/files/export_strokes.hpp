@@ -25,8 +25,7 @@ struct exporting {
 /// Checks the parameters as far as no text must be read. \throws fault_error.
 void check_export(const planning& with, const net::json& params);
 
-/// Returns the result as JSON on one line; empty if `checks.weigh` returns false. \throws fault_error, and
-/// what checks throw.
-std::string export_strokes(const exporting& e, const net::json& params, const planning_checks& checks);
+/// Returns the result as JSON on one line. \throws fault_error, and what `go_on` throws.
+std::string export_strokes(const exporting& e, const net::json& params, const go_on_check& go_on);
 
 } // namespace tactor::server

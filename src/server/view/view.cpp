@@ -15,8 +15,7 @@ namespace {
 
 using net::reply_json;
 
-constexpr double number_bytes = 2.0;  // least size of a number with the comma after it
-constexpr double burst_numbers = 5.0; // of each burst, beside its amplitudes
+constexpr double number_bytes = 2.0; // least size of a number with the comma after it
 constexpr double level_parts = 100.0;
 constexpr double time_edge = 1e-6; // of a step: a duration so little above is none
 
@@ -117,14 +116,6 @@ std::vector<std::size_t> share_rows(const std::vector<std::size_t>& needed)
         shared.push_back(
             n == 0 ? 0 : std::min(n, 1 + static_cast<std::size_t>(free * static_cast<double>(n) / all)));
     return shared;
-}
-
-double least_view_bytes(const view_choice& v, const planning_work& w, std::size_t tactors)
-{
-    const auto width = static_cast<double>(tactors);
-    return number_bytes * (v.kind == view_kind::peaks
-                               ? static_cast<double>(v.bins) * width
-                               : (w.bursts + std::min(w.samples, most_view_rows)) * (burst_numbers + width));
 }
 
 std::string view_text(const planned& p, const array& a, const view_choice& v, std::size_t most_bytes)

@@ -13,9 +13,6 @@
 
 namespace tactor::server {
 
-/// Returns a lower bound for the size of a view's text, bytes. `v` is not `full`.
-double least_view_bytes(const view_choice& v, const planning_work& w, std::size_t tactors);
-
 /// Returns a view as a JSON object on one line. `v` is not `full`. \throws std::bad_alloc beyond so many
 /// bytes.
 std::string view_text(const planned& p, const array& a, const view_choice& v, std::size_t most_bytes);

@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: MIT
+/// \file
+/// The threads that parse large messages and plan, for each client in turn.
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <functional>
+#include <list>
+#include <optional>
+
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/thread_pool.hpp>
+
+namespace tactor::server {
+
+/// Work for a planner. Its functions may share what they work on.
+struct planner_job {
+    std::function<void()> work; ///< runs on a planner's thread; must not throw
+    std::function<void()> done; ///< follows it in the context's thread
+    /// Replaces `done`, and `work` if it has not begun, when the server ends, its client
+    /// has gone or a newer draft has come.
+    std::function<void(bool outdated)> drop;
+    std::optional<double> draft = {}; ///< its number
+    bool quick = false;               ///< it passes what is not; a draft does
+    bool outlives = false;            ///< its client may go
+};
+
+/// Two threads. Clients have turns, and each has one draft that waits at most. Only one thread works on what
+/// is not quick, so that drafts and messages do not wait for it. Members are called in the context's thread.
+class planners {
+public:
+    using client_number = std::uint64_t;
+
+    explicit planners(boost::asio::io_context& io) : io_(io) {}
+    ~planners() { pool_.join(); }
+    planners(const planners&) = delete;
+    planners& operator=(const planners&) = delete;
+
+    void add(client_number of, planner_job j);
+    /// Drops what waits for a client that has gone, but for what outlives it.
+    void forget(client_number of);
+    /// Drops all jobs: the server ends.
+    void drop_all();
+    /// Does something aside, such as to destroy what is large.
+    void aside(std::function<void()> f);
+
+private:
+    struct client_jobs {
+        client_number number;
+        std::deque<planner_job> quick = {};
+        std::deque<planner_job> others = {};
+    };
+    struct running {
+        planner_job job;
+        bool quick;
+        bool dropped = false;
+    };
+
+    client_jobs& find_jobs(client_number of);
+    bool outdate(client_jobs& own, planner_job& j);
+    void next();
+    bool run_next(bool quick);
+    void run(planner_job j, bool quick);
+    void finished(std::list<running>::iterator r);
+
+    static constexpr unsigned threads = 2;
+
+    boost::asio::io_context& io_;
+    std::list<client_jobs> turns_; ///< clients that have jobs; the first is next
+    std::list<running> running_;
+    bool busy_ = false; ///< one of them is not quick
+    boost::asio::thread_pool pool_{threads};
+};
+
+} // namespace tactor::server
