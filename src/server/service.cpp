@@ -19,11 +19,12 @@ using net::reply_json;
 
 namespace {
 
-// Parses a message. Refuses one that needs more memory than there is.
-net::rpc_message parsed(std::string_view text, const service_limits& l)
+// Returns what `parse` does; refuses a message that needs more memory than there is.
+template <typename Parse>
+net::rpc_message within_memory(Parse parse)
 {
     try {
-        return net::parse_rpc(text, {.nesting = l.max_nesting, .any_form = "stop"});
+        return parse();
     } catch (const std::bad_alloc&) {
         net::rpc_message m;
         m.parts.emplace_back(net::rpc_refusal{
@@ -31,6 +32,31 @@ net::rpc_message parsed(std::string_view text, const service_limits& l)
         return m;
     }
 }
+
+net::rpc_message parsed(std::string_view text, const service_limits& l)
+{
+    return net::parse_rpc(text, {.nesting = l.max_nesting, .any_form = "stop"});
+}
+
+// A message that came in parts, while it is parsed on another thread.
+struct large_message {
+    std::vector<std::string> parts;
+    std::size_t bytes = 0;
+    net::rpc_message message = {};
+
+    net::rpc_message parse(const service_limits& l)
+    {
+        std::string text;
+        for (const std::string& part : std::exchange(parts, {}))
+            text += part;
+        bytes = text.size();
+        net::rpc_message m = parsed(text, l);
+        for (auto& part : m.parts)
+            if (auto* r = std::get_if<net::rpc_request>(&part); r != nullptr && r->params.is_object())
+                pack_points(r->params);
+        return m;
+    }
+};
 
 net::rpc_fault no_hello()
 {
@@ -192,7 +218,7 @@ bool service::receive(client_number number, std::string_view text)
     const client* c = find(number);
     if (c == nullptr)
         return false;
-    net::rpc_message m = parsed(text, options_.limits);
+    net::rpc_message m = within_memory([&] { return parsed(text, options_.limits); });
     return receive(number, m, text.size(), mark(*c));
 }
 
@@ -207,36 +233,21 @@ void service::receive_large(client_number number, std::vector<std::string> parts
         send(*c, net::error_reply(nullptr, no_hello()));
         return done(true);
     }
-    struct large {
-        std::vector<std::string> parts;
-        std::size_t bytes = 0;
-        net::rpc_message message = {};
-    };
-    const auto l = std::make_shared<large>(large{std::move(parts)});
+    const auto l = std::make_shared<large_message>(large_message{std::move(parts)});
     ++c->unanswered;
-    planners_.add(number, {.work =
-                               [this, l] {
-                                   std::string text;
-                                   for (const std::string& part : std::exchange(l->parts, {}))
-                                       text += part;
-                                   l->bytes = text.size();
-                                   l->message = parsed(text, options_.limits);
-                                   for (auto& part : l->message.parts)
-                                       if (auto* r = std::get_if<net::rpc_request>(&part);
-                                           r != nullptr && r->params.is_object())
-                                           pack_points(r->params);
-                               },
-                           .done =
-                               [this, number, l, done = std::move(done), asked = mark(*c)] {
-                                   if (client* then = find(number))
-                                       --then->unanswered;
-                                   const bool go_on = receive(number, l->message, l->bytes, asked);
-                                   planners_.aside([l] {}); // which frees it
-                                   give_memory_back_when_quiet();
-                                   done(go_on);
-                               },
-                           .drop = [](bool) {},
-                           .quick = true});
+    planners_.add(
+        number, {.work = [this, l] { l->message = within_memory([&] { return l->parse(options_.limits); }); },
+                 .done =
+                     [this, number, l, done = std::move(done), asked = mark(*c)] {
+                         if (client* then = find(number))
+                             --then->unanswered;
+                         const bool go_on = receive(number, l->message, l->bytes, asked);
+                         planners_.aside([l] {}); // which frees it
+                         give_memory_back_when_quiet();
+                         done(go_on);
+                     },
+                 .drop = [](bool) {},
+                 .quick = true});
 }
 
 // Returns the small blocks of large messages to the system. Trimming blocks the heap for all threads, so this
