@@ -3,6 +3,7 @@
 #include <atomic>
 #include <cerrno>
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -23,6 +24,7 @@
 #include "exhaustion_calls.hpp"
 #include "player_support.hpp"
 #include "rig.hpp"
+#include "rounds.hpp"
 #include "scores.hpp"
 
 namespace no_memory_test {
@@ -94,14 +96,16 @@ outcome try_call(const exhausted_call& c, std::uint64_t granted, std::uint64_t r
     return o;
 }
 
-// Tries a call with all allocations after the n-th refused, and with only that one. Returns their number.
-std::uint64_t try_without(const exhausted_call& c)
+// Tries a call with all allocations after the n-th refused, and with only that one, for one n in `step`, from
+// one on that its name says.
+void try_without(const exhausted_call& c, std::uint64_t step)
 {
     const outcome usual = try_call(c, 0, 0);
     CHECK_FALSE(usual.no_memory);
-    for (std::uint64_t granted = 0;; ++granted) {
+    for (std::uint64_t granted = std::hash<std::string>()(c.name) % step;; granted += step) {
         CAPTURE(granted);
         REQUIRE(granted < 100'000);
+        static_cast<void>(try_call(c, granted, UINT64_MAX)); // what is made once, on its way out
         const outcome all = try_call(c, granted, UINT64_MAX);
         const outcome one = try_call(c, granted, 1);
         for (const outcome& o : {all, one}) {
@@ -109,21 +113,21 @@ std::uint64_t try_without(const exhausted_call& c)
             CHECK_MESSAGE(well, o.said);
             CHECK(o.bytes_kept <= 0);
             if (!well)
-                return granted;
+                return;
         }
-        if (all.no_memory)
-            CHECK(try_call(c, 0, 0) == usual);
-        else
-            return granted;
+        if (!all.no_memory)
+            return;
+        CHECK(try_call(c, 0, 0) == usual);
     }
 }
 
 void try_all(const call_table& calls)
 {
+    const std::uint64_t step = whole() ? 1 : shortened() ? 101 : 17;
     for (const exhausted_call& c : calls) {
         CAPTURE(c.name);
         if (!c.ends())
-            try_without(c);
+            try_without(c, step);
     }
 }
 
@@ -168,7 +172,7 @@ COUNTING_TEST_CASE("without memory a call throws std::bad_alloc and has no effec
     }
 }
 
-COUNTING_TEST_CASE("every call without memory reports it at each of its allocations, and works again")
+COUNTING_TEST_CASE("every call without memory reports it at any of its allocations, and works again")
 {
     const call_things t;
     try_all(value_calls(t));

@@ -18,6 +18,13 @@ inline bool shortened()
     return asked != nullptr && std::string_view(asked) == "short";
 }
 
+/// Returns true where tests do all that they can, which takes minutes: TACTOR_SOAK=whole.
+inline bool whole()
+{
+    const char* asked = std::getenv("TACTOR_SOAK");
+    return asked != nullptr && std::string_view(asked) == "whole";
+}
+
 /// Returns `all`, or an eighth where tests do less: any of the rounds can find a fault, and the suite runs
 /// all.
 inline int rounds(int all)
@@ -25,11 +32,10 @@ inline int rounds(int all)
     return shortened() ? all / 8 : all;
 }
 
-/// The same, but all of them with TACTOR_SOAK=whole, which takes minutes.
+/// The same, but all of them with TACTOR_SOAK=whole.
 inline int rounds(int some, int all)
 {
-    const char* asked = std::getenv("TACTOR_SOAK");
-    return asked != nullptr && std::string_view(asked) == "whole" ? all : rounds(some);
+    return whole() ? all : rounds(some);
 }
 
 /// Returns `whole`, or `short_one` where tests do less, and prints that.
