@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
 """Readers of the tool's pictures: SVG by its groups and their scales, PNG pixel by pixel."""
+import math
 import struct
 import xml.etree.ElementTree as ET
 import zlib
@@ -7,6 +8,11 @@ import zlib
 from harness import ToolTest
 
 NS = "{http://www.w3.org/2000/svg}"
+# Advances of DejaVu Sans, the widest of the usual fonts.
+CAP = 0.73
+ADVANCE = {" ": 0.318, "(": 0.39, ")": 0.39, ",": 0.318, "c": 0.55, "h": 0.634, "s": 0.521, "t": 0.392, "a": 0.613,
+           "r": 0.411, "e": 0.615, "n": 0.634, "d": 0.635, "k": 0.579, "o": 0.612, "u": 0.634, "v": 0.592, "w": 0.818,
+           "p": 0.635, "l": 0.278, "f": 0.352, "i": 0.278, "g": 0.635}
 BRUSH = ["--algorithm", "tactile-brush", "--snap", "--drop-points"]
 
 
@@ -42,6 +48,22 @@ class Svg:
 
 def number(e, name):
     return float(e.get(name))
+
+
+def box(e):
+    """Returns left, top, right and bottom of a text."""
+    size = number(e, "font-size")
+    width = size * sum(ADVANCE.get(c, 0.636) for c in e.text)
+    left = number(e, "x") - {"middle": width / 2, "end": width}.get(e.get("text-anchor"), 0)
+    return left, number(e, "y") - CAP * size, left + width, number(e, "y")
+
+
+def overlap(a, b):
+    return min(a[2], b[2]) - max(a[0], b[0]) > 0.01 and min(a[3], b[3]) - max(a[1], b[1]) > 0.01
+
+
+def distance(b, x, y):
+    return math.hypot(max(b[0] - x, x - b[2], 0), max(b[1] - y, y - b[3], 0))
 
 
 class Png:

@@ -11,8 +11,7 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "study"))
 import studies
 
 from harness import ROOT, main
-from pictures import NS, PlotTest, Svg, number
-from sheets import box, overlap
+from pictures import NS, PlotTest, Svg, box, number, overlap
 
 KNOCKS = ROOT / "examples/strokes/knocks.toml"
 GRID = '[array]\nname = "eight"\ngrid = { rows = 8, columns = 8, pitch_mm = 10.0 }\n'
