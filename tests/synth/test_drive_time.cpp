@@ -200,7 +200,7 @@ TEST_CASE(
         if (p.cuts > 0)
             CHECK(most >= limit - fade); // and no earlier than needed
     }
-    CHECK(cut > 10);
+    CHECK(cut > tactor::test::rounds(60) / 6);
 }
 
 TEST_CASE("a pattern that is within the limit to the frame is unchanged")
