@@ -24,6 +24,7 @@ constexpr double rounding_db = 1e-9;
 constexpr double most_excess_db = 100.0; // above it lies no sum of strokes that is planned
 constexpr double least_excess_db = 0.01;
 constexpr double most_bursts = 250'000.0;
+constexpr double least_soa_s = 0.0001;
 
 timed_point read_point(const json& p, std::size_t i, double intensity_max)
 {
@@ -103,11 +104,16 @@ double loudest(const stroke& k, const plan& p, intensity_scale scale)
     return scale.amplitude(most);
 }
 
-// Returns the bursts by park2016, before they are planned: a short SOA makes very many.
+// Returns the bursts by park2016, before they are planned: a short SOA makes very many. None for an SOA that
+// the planner refuses.
 double park_bursts(const stroke& k, const plan_options& o)
 {
-    const bool is_park = k.choices.algorithm.value_or(o.algorithm) == algorithm_kind::park2016;
-    return is_park ? k.motion.duration_s() / k.choices.soa_s.value_or(o.soa_s) : 0.0;
+    if (k.choices.algorithm.value_or(o.algorithm) != algorithm_kind::park2016)
+        return 0.0;
+    const double soa_s = k.choices.soa_s.value_or(o.soa_s);
+    const bool is_free = k.choices.burst_s || o.burst_s;
+    const bool is_possible = is_free ? soa_s >= least_soa_s : soa_s > o.profile.intercept_s;
+    return is_possible ? 1.0 + k.motion.duration_s() / soa_s : 0.0;
 }
 
 } // namespace

@@ -463,6 +463,12 @@ TEST_CASE("too many bursts are refused before they are planned, and a view for i
     const json bursts{{"duration", 600}, {"soa", 0.001}, {"burst", 0.001}};
     CHECK(refused("play", bursts) == "bursts");
     CHECK(refused("plan", bursts) == "bursts");
+    // The planner reports its refusals itself.
+    for (const json& options :
+         {json{{"duration", 600}, {"soa", 1e-7}, {"burst", 0.001}}, json{{"duration", 600}, {"soa", 0.001}}})
+        CHECK(
+            rig.call(c, "plan", {{"path", "M 0 0 L 40 40"}, {"options", options}})["error"]["data"]["what"] ==
+            "options.soa");
     const json often{{"path", "M 0 0 L 1 1"},
                      {"options", {{"duration", 0.001}, {"soa", 0.0005}, {"burst", 0.0005}}},
                      {"repeat", 1'000'000}};
