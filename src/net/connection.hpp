@@ -69,7 +69,6 @@ protected:
     void handle(std::string_view text);
     /// Gives a large one away, and reads on.
     void handle_large(std::vector<std::string> parts);
-    bool is_large(std::size_t bytes) const { return bytes > large_message && handlers_.large; }
     /// Notes that a part of a message has come.
     void message_begins();
     /// Notes that a message is complete.

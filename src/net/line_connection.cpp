@@ -14,7 +14,7 @@ namespace tactor::net {
 namespace {
 
 constexpr std::size_t chunk_bytes = 16U << 10;
-constexpr std::size_t most_block_bytes = 128U << 10;
+constexpr std::size_t most_block_bytes = 128U << 10; // of a line that is large
 constexpr std::size_t most_drained = 128U << 10;
 constexpr std::size_t lines_at_once = 16;
 constexpr char line_end = '\n';
@@ -51,19 +51,14 @@ void line_connection::next_line()
     if (size > limits().message_bytes)
         return fail(connection_fault::too_long);
     message_ends();
-    if (!is_large(size) && blocks_.empty())
+    if (size <= large_message)
         return handle({text_.data() + begin, size});
     std::vector<std::string> parts = std::exchange(blocks_, {});
     parts.push_back(text_.substr(begin, scanned_ - 1 - begin));
     block_bytes_ = 0;
     if (has_return) // which may be all of the last part
         (parts.back().empty() ? parts[parts.size() - 2] : parts.back()).pop_back();
-    if (is_large(size))
-        return handle_large(std::move(parts));
-    std::string whole;
-    for (const std::string& p : parts)
-        whole += p;
-    handle(whole);
+    handle_large(std::move(parts));
 }
 
 void line_connection::read_more()

@@ -41,7 +41,6 @@ enum class connection_fault {
     too_long, ///< a message beyond message_bytes
     too_slow, ///< no whole message within message_s
     memory,   ///< there is not enough memory for its input
-    unread,   ///< it does not read its messages
     gone,     ///< the socket failed
 };
 
@@ -64,11 +63,12 @@ struct peer_handlers {
     /// empty counts.
     std::function<bool()> met = {};
     /// Handles a message above `large_message`, which comes in parts, and calls `done` later with the result
-    /// that `message` would return. Smaller ones are handled in the meantime. None: `message` handles all.
+    /// that `message` would return. Smaller ones are handled in the meantime. Owed where a message may be
+    /// that large.
     std::function<void(std::vector<std::string> parts, std::function<void(bool)> done)> large = {};
     /// Lines: the peer sends no more; it may still read.
     std::function<void()> input_ended = {};
-    /// Lines: called before the connection closes; send() still works for all faults but `unread` and `gone`.
+    /// Lines: called before the connection closes for any fault but `gone`; send() still works.
     std::function<void(connection_fault)> fault = {};
 
     /// Browsers: answers GET of a path. `host`: the server's name in the browser; `token`: of "Authorization:

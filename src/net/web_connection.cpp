@@ -252,7 +252,7 @@ void web_connection::received()
     buffer_.consume(buffer_.size());
     if (buffer_.capacity() > large_message)
         buffer_.shrink_to_fit();
-    if (!is_large(text.size()))
+    if (text.size() <= large_message)
         return handle(text);
     std::vector<std::string> parts;
     parts.push_back(std::move(text));

@@ -14,7 +14,8 @@ void planners::add(client_number of, planner_job j)
     client_jobs& own = find_jobs(of);
     if (j.draft && !outdate(own, j))
         return;
-    (j.quick || j.draft ? own.quick : own.others).push_back(std::move(j));
+    j.quick = j.quick || j.draft;
+    (j.quick ? own.quick : own.others).push_back(std::move(j));
     next();
 }
 
@@ -41,14 +42,17 @@ bool planners::outdate(client_jobs& own, planner_job& j)
 
 void planners::next()
 {
-    while (running_.size() < threads && (run_next(true) || (!busy_ && run_next(false)))) {
+    const auto is_busy = [this] {
+        return std::any_of(running_.begin(), running_.end(), [](const running& r) { return !r.job.quick; });
+    };
+    while (running_.size() < threads &&
+           (run_next(&client_jobs::quick) || (!is_busy() && run_next(&client_jobs::others)))) {
     }
 }
 
 // Runs a job of the next client that has one.
-bool planners::run_next(bool quick)
+bool planners::run_next(std::deque<planner_job> client_jobs::*jobs)
 {
-    std::deque<planner_job> client_jobs::*const jobs = quick ? &client_jobs::quick : &client_jobs::others;
     const auto turn = std::find_if(turns_.begin(), turns_.end(),
                                    [jobs](const client_jobs& c) { return !(c.*jobs).empty(); });
     if (turn == turns_.end())
@@ -59,14 +63,13 @@ bool planners::run_next(bool quick)
         turns_.erase(turn);
     else
         turns_.splice(turns_.end(), turns_, turn);
-    run(std::move(j), quick);
+    run(std::move(j));
     return true;
 }
 
-void planners::run(planner_job j, bool quick)
+void planners::run(planner_job j)
 {
-    busy_ = busy_ || !quick;
-    running_.push_back(running{std::move(j), quick});
+    running_.push_back(running{std::move(j)});
     const auto r = std::prev(running_.end());
     boost::asio::post(pool_, [this, r] {
         r->job.work();
@@ -78,7 +81,6 @@ void planners::finished(std::list<running>::iterator r)
 {
     const running over = std::move(*r);
     running_.erase(r);
-    busy_ = busy_ && over.quick;
     if (!over.dropped)
         over.job.done();
     next();

@@ -14,15 +14,17 @@
 
 namespace tactor::server {
 
+using client_number = std::uint64_t;
+
 /// Work for a planner. Its functions may share what they work on.
 struct planner_job {
     std::function<void()> work; ///< runs on a planner's thread; must not throw
     std::function<void()> done; ///< follows it in the context's thread
-    /// Replaces `done`, and `work` if it has not begun, when the server ends, its client
-    /// has gone or a newer draft has come.
+    /// Replaces `done`, and `work` if it has not begun, when the server ends, its client has gone or a newer
+    /// draft has come.
     std::function<void(bool outdated)> drop;
     std::optional<double> draft = {}; ///< its number
-    bool quick = false;               ///< it passes what is not; a draft does
+    bool quick = false;               ///< it passes what is not; each draft does
     bool outlives = false;            ///< its client may go
 };
 
@@ -30,8 +32,6 @@ struct planner_job {
 /// is not quick, so that drafts and messages do not wait for it. Members are called in the context's thread.
 class planners {
 public:
-    using client_number = std::uint64_t;
-
     explicit planners(boost::asio::io_context& io) : io_(io) {}
     ~planners() { pool_.join(); }
     planners(const planners&) = delete;
@@ -53,15 +53,14 @@ private:
     };
     struct running {
         planner_job job;
-        bool quick;
         bool dropped = false;
     };
 
     client_jobs& find_jobs(client_number of);
     bool outdate(client_jobs& own, planner_job& j);
     void next();
-    bool run_next(bool quick);
-    void run(planner_job j, bool quick);
+    bool run_next(std::deque<planner_job> client_jobs::*jobs);
+    void run(planner_job j);
     void finished(std::list<running>::iterator r);
 
     static constexpr unsigned threads = 2;
@@ -69,7 +68,6 @@ private:
     boost::asio::io_context& io_;
     std::list<client_jobs> turns_; ///< clients that have jobs; the first is next
     std::list<running> running_;
-    bool busy_ = false; ///< one of them is not quick
     boost::asio::thread_pool pool_{threads};
 };
 

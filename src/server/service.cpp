@@ -39,7 +39,7 @@ net::rpc_message parsed(std::string_view text, const service_limits& l)
 }
 
 // A message that came in parts, while it is parsed on another thread.
-struct large_message {
+struct message_in_parts {
     std::vector<std::string> parts;
     std::size_t bytes = 0;
     net::rpc_message message = {};
@@ -233,7 +233,7 @@ void service::receive_large(client_number number, std::vector<std::string> parts
         send(*c, net::error_reply(nullptr, no_hello()));
         return done(true);
     }
-    const auto l = std::make_shared<large_message>(large_message{std::move(parts)});
+    const auto l = std::make_shared<message_in_parts>(message_in_parts{std::move(parts)});
     ++c->unanswered;
     planners_.add(
         number, {.work = [this, l] { l->message = within_memory([&] { return l->parse(options_.limits); }); },
@@ -387,7 +387,6 @@ void service::tell_stream(stream_state s, const std::string& reason)
 
 void service::close(std::function<void()> done)
 {
-    closing_ = true;
     ending_ = true;
     planners_.drop_all();
     stream_.close(std::move(done));

@@ -41,8 +41,6 @@ using service_limits = options::serve_limits;
 /// Most bytes of an exported file, and of the result of an import.
 inline constexpr std::size_t most_file_bytes = 64U << 20;
 
-using client_number = std::uint64_t;
-
 /// Number of things that may be done at once. It comes back within a second.
 struct allowance {
     double left = std::numeric_limits<double>::infinity();
@@ -203,6 +201,7 @@ private:
     void plan(plan_job& j, const go_on_check& go_on);
     void job_done(const std::shared_ptr<plan_job>& j);
     void refuse(const plan_job& j, const net::rpc_fault& f);
+    void forget(const plan_job& j);
     void uncount(const plan_job& j);
     void submit_all(const plan_job& job);
     std::uint64_t count_rounds(const plan_job& job, const planned& p) const;
@@ -283,9 +282,8 @@ private:
     std::size_t touch_listeners_ = 0;
     std::map<std::string, double> wrong_token_wait_s_ = {}; ///< by address; the last answer's
     std::list<boost::asio::steady_timer> late_answers_ = {};
-    std::size_t jobs_ = 0; ///< that wait to be planned or are
-    bool closing_ = false;
-    std::atomic<bool> ending_{false}; ///< a planner looks at it between strokes
+    std::size_t jobs_ = 0;            ///< that wait to be planned or are
+    std::atomic<bool> ending_{false}; ///< a planner looks at it between strokes, too
     std::function<void(client_number)> all_sent_;
     std::function<void()> stopped_;
     planners planners_{io_};

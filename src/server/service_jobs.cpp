@@ -69,7 +69,7 @@ void service::plan_or_play(client& c, json&& params, const answer& to, bool play
 
 void service::admit_job(client& c, plan_job j, std::optional<double> draft)
 {
-    if (closing_)
+    if (ending_)
         no_stream("the server ends");
     check_free_place(c);
     if (j.play && stream_.is_out())
@@ -131,9 +131,8 @@ void service::plan(plan_job& j, const go_on_check& go_on)
 
 void service::job_done(const std::shared_ptr<plan_job>& j)
 {
-    const client_number number = j->to.all->to;
-    const client* c = find(number);
-    if (closing_ && !j->fault)
+    const client* c = find(j->to.all->to);
+    if (ending_ && !j->fault)
         j->fault = server_ends();
     if (!j->fault && j->make_text && c != nullptr && c->link->has_file())
         j->fault = net::rpc_fault{net::code_limit, "limit", "max_unread_bytes",
@@ -144,10 +143,8 @@ void service::job_done(const std::shared_ptr<plan_job>& j)
         uncount(*j);
         return j->to.whole_reply(std::move(j->text), j->make_text != nullptr);
     }
-    // The stream may have to be started first. Until then it is among those that come.
-    uncount(*j);
-    if (client* owner = find(number))
-        ++owner->coming;
+    forget(*j);
+    // The stream may have to be started first.
     once_ready(j->to, "stream", [this, j] {
         const std::shared_ptr<void> after(nullptr, [&](void*) {
             planners_.aside(
@@ -157,16 +154,22 @@ void service::job_done(const std::shared_ptr<plan_job>& j)
     });
 }
 
-// Ends the count of a request without a stroke.
-void service::uncount(const plan_job& j)
+// Ends the count of a request that waits no more.
+void service::forget(const plan_job& j)
 {
     --jobs_;
     if (j.bytes > net::large_message)
         give_memory_back_when_quiet();
-    if (client* c = find(j.to.all->to)) {
+    if (client* c = find(j.to.all->to))
         c->bytes -= j.bytes;
+}
+
+// Ends the count of a request without a stroke.
+void service::uncount(const plan_job& j)
+{
+    forget(j);
+    if (client* c = find(j.to.all->to))
         --c->coming;
-    }
 }
 
 void service::refuse(const plan_job& j, const net::rpc_fault& f)

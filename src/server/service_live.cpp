@@ -41,7 +41,7 @@ void service::begin(client& c, const json& params, const answer& to)
         limit_reached("max_live_strokes",
                       fmt::format("{} live strokes of yours go on", options_.limits.max_live_strokes),
                       "end one of them first");
-    if (closing_ || stream_.is_out())
+    if (ending_ || stream_.is_out())
         no_stream(stream_.reason());
     ++c.coming;
     ++c.live;
@@ -59,8 +59,8 @@ void service::begin_now(client& c, const live_options& o, double intensity_max, 
                         const char* ended_by)
 {
     player* out = stream_.current();
-    if (closing_ || out == nullptr || out->ended())
-        no_stream(closing_ ? "the server ends" : stream_.reason());
+    if (ending_ || out == nullptr || out->ended())
+        no_stream(ending_ ? "the server ends" : stream_.reason());
     if (ended_by != nullptr) {
         // It was cancelled while the stream was being started.
         const auto numbers = end_unbegun(c.number, 1, ended_by);

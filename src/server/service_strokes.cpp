@@ -34,7 +34,7 @@ std::vector<std::uint32_t> service::submit(client_number owner, const json& star
                                            const std::vector<score>& scores, const char* ended_by,
                                            double gain_db, bool again)
 {
-    if (closing_)
+    if (ending_)
         no_stream("the server ends");
     if (ended_by != nullptr)
         return end_unbegun(owner, scores.size(), ended_by);
@@ -157,7 +157,7 @@ void service::drive(client& c, const json& params, const answer& to)
     const json start = params.value("start", json("now"));
     static_cast<void>(read_start(&start, options_.now_ns()));
     check_free_place(c);
-    if (closing_ || stream_.is_out())
+    if (ending_ || stream_.is_out())
         no_stream(stream_.reason());
     const std::vector<score> scores{p->make_score(options_.plans.tactors, 0)};
     ++c.coming;

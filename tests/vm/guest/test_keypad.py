@@ -78,7 +78,9 @@ class Keypad(RigTest):
             self.pad.press("up")
             second.press("enter")
         out, err = p.communicate(timeout=60)
-        self.assertEqual((p.returncode, [line for line in err.splitlines() if not line.startswith("tactor: ")]), (0, []), err)
+        # Says how loud it may get, and that this guest keeps no drive time.
+        said = [line for line in err.splitlines() if not line.startswith(("tactor: highest level: ", "tactor: warning: "))]
+        self.assertEqual((p.returncode, said), (0, []), err)
         self.assertRaises(BlockingIOError, os.read, other, 24)
         self.assertFalse(self.held())
 
