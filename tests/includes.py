@@ -12,7 +12,8 @@ MAY_INCLUDE = {
     "core": set(),
     "options": {"core", "percept"},
     "files": {"core"},
-    "files/plan": {"core", "files", "plan", "percept", "synth"},
+    "files/json": {"core"},
+    "files/plan": {"core", "files", "files/json", "plan", "percept", "synth"},
     "plan": {"core"},
     "percept": {"core", "plan"},
     "synth": {"core", "plan"},
@@ -22,12 +23,12 @@ MAY_INCLUDE = {
     "sink/wav": {"core", "files", "plan", "synth", "sink"},
     "amplifier": {"core", "rt"},
     "engine": {"core", "plan", "synth", "rt", "sink", "amplifier"},
-    "session": {"core", "files", "files/plan", "options", "rt"},
+    "session": {"core", "files", "files/json", "files/plan", "options", "rt"},
     "plot": set(),
     "net": {"core"},
-    "study": {"files/plan", "options", "session", "net"},
-    "server": {"files/plan", "net", "options", "plot", "session"},
-    "cli": {"files/plan", "options", "session", "plot", "study", "net", "server"},
+    "study": {"files/json", "files/plan", "options", "session", "net"},
+    "server": {"files/json", "files/plan", "net", "options", "plot", "session"},
+    "cli": {"files/json", "files/plan", "options", "session", "plot", "study", "net", "server"},
     "python": {"files/plan", "options", "session", "plot"},
 }
 # The folder that a public header belongs to; a folder may use the public headers of the folders it may include.
@@ -40,7 +41,7 @@ PUBLIC = {
 USES_ALL_PUBLIC = {"cli", "files/plan", "options", "plot", "python", "server", "session", "study"}
 # Inner headers of the library that the tool may include: no program that embeds it needs these.
 INSIDE = {
-    "cli": {"core/kind_names.hpp", "core/sha256.hpp", "core/split.hpp", "core/start_times.hpp", "core/suggest.hpp", "core/words.hpp", "files/setup_text.hpp", "files/text_file.hpp", "percept/compare.hpp", "rt/advice.hpp", "rt/clock.hpp", "rt/variable.hpp", "synth/score/sounding_now.hpp"},
+    "cli": {"core/kind_names.hpp", "core/members.hpp", "core/sha256.hpp", "core/split.hpp", "core/start_times.hpp", "core/suggest.hpp", "core/words.hpp", "files/setup_text.hpp", "files/text_file.hpp", "percept/compare.hpp", "rt/advice.hpp", "rt/clock.hpp", "rt/variable.hpp", "synth/score/sounding_now.hpp"},
     "study": {"core/marks.hpp", "core/moved.hpp", "core/owned.hpp", "core/path/shape.hpp", "core/sha256.hpp", "core/split.hpp", "core/suggest.hpp", "core/words.hpp", "files/output_file.hpp", "files/setup_text.hpp", "files/text_file.hpp", "files/toml_reader.hpp", "rt/clock.hpp", "rt/event_fd.hpp", "rt/thread.hpp", "synth/mix/converter.hpp", "synth/mix/limits_met.hpp", "synth/score/drive_room.hpp"},
     "plot": {"core/split.hpp", "core/words.hpp", "files/output_file.hpp", "percept/compare.hpp", "synth/mix/sample_ranges.hpp"},
     "server": {"core/bounds.hpp", "core/label.hpp", "core/start_times.hpp", "core/trajectory/recorded_points.hpp", "core/trajectory/sample_points.hpp", "core/words.hpp", "files/setup_text.hpp", "files/text_file.hpp", "percept/compare.hpp", "sink/wav/wav.hpp"},
@@ -59,7 +60,7 @@ ONLY_IN = {
     "pybind11/": ["src/python/"],
     "cairo": ["src/plot/"],
     "lo/": ["src/net/osc_lo.cpp"],
-    "nlohmann/": ["src/cli/", "src/files/plan/", "src/net/", "src/server/", "src/session/", "src/study/"],
+    "nlohmann/": ["src/cli/", "src/files/json/", "src/files/plan/", "src/net/", "src/server/", "src/session/", "src/study/"],
 }
 # Standard headers of threads and clocks that the pure folders must not see.
 PURE = {"core", "files", "plan", "percept", "synth"}

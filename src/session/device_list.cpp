@@ -1,67 +1,108 @@
 // SPDX-License-Identifier: MIT
 #include "session/device_list.hpp"
 
-#include <fmt/format.h>
+#include <optional>
+
 #include <nlohmann/json.hpp>
 
-#include "files/plan/json_value.hpp"
+#include "core/members.hpp"
+#include "files/json/schema.hpp"
+#include "files/json/writer.hpp"
 #include "session/device.hpp"
 
 namespace tactor::session {
 namespace {
 
-using files::or_null;
-using json = nlohmann::ordered_json;
+using detail::about;
 
-json to_json(const count_range& r)
+std::optional<std::string> any(const std::string& text)
 {
-    return {{"min", r.least}, {"max", r.most == no_limit ? json(nullptr) : json(r.most)}};
+    return text.empty() ? std::optional<std::string>() : std::optional(text);
 }
 
-json to_json(const pcm_abilities& a)
+constexpr about both_ends{"both ends"};
+
+template <class Io>
+void range_members(Io& io, const count_range& r, const about& ends)
 {
-    json channels = json::array();
-    for (const count_range& r : a.channels)
-        channels.push_back(to_json(r));
-    json formats = json::array();
-    for (const format_kind f : a.formats)
-        formats.push_back(std::string(to_string(f)));
-    return {{"channels", channels},
-            {"rate_hz", to_json(a.rates_hz)},
-            {"usual_rates_hz", a.usual_rates_hz},
-            {"formats", formats},
-            {"period_frames", to_json(a.period_frames)},
-            {"periods", to_json(a.periods)},
-            {"buffer_frames", to_json(a.buffer_frames)}};
+    io("min", r.least, ends);
+    io.or_null("max", r.most == no_limit ? std::optional<unsigned>() : std::optional(r.most), ends);
 }
 
-json to_json(const pcm_info& p, bool configured)
+template <class Io>
+void ability_members(Io& io, const pcm_abilities& a)
 {
-    json holders = json::array();
-    for (const process_info& h : p.holders)
-        holders.push_back({{"pid", h.pid}, {"program", or_null(h.program)}});
-    return {{"name", p.name},
-            {"description", or_null(p.description)},
-            {"hardware", p.hardware},
-            {"configured", p.wanted && configured},
-            {"tried", p.tried},
-            {"opened", p.opened},
-            {"error", or_null(p.error)},
-            {"holders", holders},
-            {"can", p.can ? to_json(*p.can) : json(nullptr)},
-            {"fits", p.can ? json(p.misfit.empty()) : json(nullptr)},
-            {"misfit", or_null(p.misfit)}};
+    const auto range = [&io](const char* name, const count_range& r, const about& what, const about& ends) {
+        io.object(name, what, [&](auto& inner) { range_members(inner, r, ends); });
+    };
+    io.list("channels", a.channels, {"numbers of channels, as ranges"},
+            [](auto& inner, const count_range& r, std::size_t) {
+                range_members(inner, r, {"both ends; 1024 is the most that is looked for"});
+            });
+    range("rate_hz", a.rates_hz, {"sample rates"}, {"both ends; a max of null is no limit, here and below"});
+    io("usual_rates_hz", a.usual_rates_hz, {"those of the usual ones that it takes"});
+    io("formats", a.formats, {"as in tactor-play/1"});
+    range("period_frames", a.period_frames, {"frames in a period"}, both_ends);
+    range("periods", a.periods, {"periods in the buffer"}, both_ends);
+    range("buffer_frames", a.buffer_frames, {"frames in the buffer"}, both_ends);
 }
 
-json to_json(const gpio_chip_info& c)
+template <class Io>
+void pcm_members(Io& io, const pcm_info& p, bool is_configured)
 {
-    json lines = json::array();
-    for (const gpio_line_info& l : c.lines)
-        lines.push_back({{"offset", l.offset},
-                         {"name", or_null(l.name)},
-                         {"direction", l.output ? "output" : "input"},
-                         {"consumer", or_null(l.consumer)}});
-    return {{"path", c.path}, {"label", or_null(c.label)}, {"error", or_null(c.error)}, {"lines", lines}};
+    io("name", p.name, {"for -D"});
+    io.or_null("description", any(p.description),
+               {"what the driver or the ALSA configuration calls it; else null"});
+    io("hardware", p.hardware, {"whether it is a card's own"});
+    io("configured", p.wanted && is_configured, {"whether -D or the configuration names it"});
+    io("tried", p.tried, {"whether it was opened, or an attempt was made"});
+    io("opened", p.opened, {"whether that succeeded"});
+    io.or_null("error", any(p.error), {"why not; else null"});
+    io.list("holders", p.holders, {"processes that have it open"},
+            [](auto& inner, const process_info& h, std::size_t) {
+                constexpr about process{"process, and name of its program or null"};
+                inner("pid", h.pid, process);
+                inner.or_null("program", any(h.program), process);
+            });
+    io.object_or_null("can", p.can, {"what it takes, each alone; null where it was not opened"},
+                      [](auto& inner, const pcm_abilities& a) { ability_members(inner, a); });
+    io.or_null("fits", p.can ? std::optional(p.misfit.empty()) : std::nullopt,
+               {"whether it takes what is wanted, and each tactor has a channel of the device to itself; "
+                "null where it "
+                "was not opened"});
+    io.or_null("misfit", any(p.misfit), {"what it does not take, or which tactor would be lost; else null"});
+}
+
+template <class Io>
+void chip_members(Io& io, const gpio_chip_info& c)
+{
+    io("path", c.path, {"device file"});
+    io.or_null("label", any(c.label),
+               {"name of the chip, as lines in tactor.toml(5) have it; null where it could not be opened"});
+    io.or_null("error", any(c.error), {"why not; else null"});
+    io.list("lines", c.lines, {"its lines"}, [](auto& inner, const gpio_line_info& l, std::size_t) {
+        inner("offset", l.offset, {"number of the line"});
+        inner.or_null("name", any(l.name), {"its name or null"});
+        inner.one_of("direction", l.output ? "output" : "input", {"input", "output"}, {"input or output"});
+        inner.or_null("consumer", any(l.consumer), {"who holds it, or null"});
+    });
+}
+
+template <class Io>
+void list_members(Io& io, const device_list& d)
+{
+    io.constant("schema", "tactor-devices/1");
+    io.object("wanted", {"what the array needs"}, [&d](auto& inner) {
+        inner("array", d.array_name, {"its name"});
+        inner("channels", d.wanted.channels, {"channels and sample rate"});
+        inner("rate_hz", d.wanted.rate, {"channels and sample rate"});
+        inner.or_null("format", d.wanted.format, {"what --sample-format says; null: any"});
+    });
+    io.list(
+        "pcms", d.pcms, {"playback devices, cards first"},
+        [&d](auto& inner, const pcm_info& p, std::size_t) { pcm_members(inner, p, d.pcm_is_configured); });
+    io.list("gpio_chips", d.chips, {"GPIO chips"},
+            [](auto& inner, const gpio_chip_info& c, std::size_t) { chip_members(inner, c); });
 }
 
 // Adds what only the array can tell: a tactor that does not reach the device, or a smaller array that fits.
@@ -96,22 +137,12 @@ device_list look_for_devices(const settings& s, const environment& e)
 
 std::string devices_json(const device_list& d)
 {
-    json pcms = json::array();
-    for (const pcm_info& p : d.pcms)
-        pcms.push_back(to_json(p, d.pcm_is_configured));
-    json chips = json::array();
-    for (const gpio_chip_info& c : d.chips)
-        chips.push_back(to_json(c));
-    const json format = d.wanted.format ? json(std::string(to_string(*d.wanted.format))) : json(nullptr);
-    const json all{{"schema", "tactor-devices/1"},
-                   {"wanted",
-                    {{"array", d.array_name},
-                     {"channels", d.wanted.channels},
-                     {"rate_hz", d.wanted.rate},
-                     {"format", format}}},
-                   {"pcms", pcms},
-                   {"gpio_chips", chips}};
-    return all.dump(2, ' ', false, json::error_handler_t::replace) + "\n";
+    return files::make_object([&d](auto& io) { list_members(io, d); }).dump(2) + "\n";
+}
+
+nlohmann::ordered_json devices_schema()
+{
+    return files::json_schema::describe_object([](auto& io) { list_members(io, device_list{}); });
 }
 
 } // namespace tactor::session

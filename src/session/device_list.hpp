@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include <nlohmann/json_fwd.hpp>
 #include <tactor/tactor.hpp>
 
 #include "session/environment.hpp"
@@ -26,5 +27,7 @@ device_list look_for_devices(const settings& s, const environment& e);
 
 /// Returns one object of schema tactor-devices/1.
 std::string devices_json(const device_list& d);
+/// Returns the schema of such an object.
+nlohmann::ordered_json devices_schema();
 
 } // namespace tactor::session

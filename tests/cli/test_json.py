@@ -18,6 +18,9 @@ from harness import ROOT, TOOL, ToolTest, Wav, main, wav_bytes
 sys.path.insert(0, str(ROOT / "tests/study"))
 import studies  # noqa: E402
 
+sys.path.insert(0, str(ROOT / "man"))
+import write_fields  # noqa: E402
+
 FOLDER = pathlib.Path(sys.argv[3]).resolve()
 SCHEMAS = {schema["properties"]["schema"]["const"]: schema
            for schema in (json.loads(p.read_text()) for p in FOLDER.glob("tactor-*.schema.json")
@@ -158,7 +161,7 @@ class Schemas(ToolTest):
             studies.STUDIES[study](self.dir / study)
         texts = [self.ok(*args, "--format", "json").stdout for args in (
             ("plan", "park2016-3"), ("plan", "strokes.toml", "--fit", "--fit-margin", "1"), ("plan", "wave-2x4", "--fit"),
-            ("plan", "park2016-1", "--algorithm", "continuous", "--ramp", "0.01"),
+            ("plan", "--path", "M 1 1 L 9 9", "--duration", "0.01", "--algorithm", "continuous", "--ramp", "0.001"),
             ("plan", *BRUSH, "--duration", "1"), ("plan", "park2016-1", "--faces", "nearest"), ("plan", *BRUSH, "--duration", "0.15", "--drop-points"),
             ("plan", "strokes.toml", "--array", "pair.toml", "--sl", "7"), ("plan", "--path", "M 1 1 L 9 9", "--phase", "burst"),
             ("plan", "--path", "M 0 0 L 10 0", "--array", "pair.toml", "--sl", "7"),
@@ -218,6 +221,38 @@ class Schemas(ToolTest):
                         inner[key] = kept
                     self.assertTrue(valid(changed))
 
+    def test_a_plan_that_its_schema_refuses_is_not_played(self):
+        valid = jsonschema.Draft202012Validator(SCHEMAS["tactor-plan/1"]).is_valid
+        seen = set()
+        for told in self.outputs()["tactor-plan/1"]:
+            for keys in objects_in(told):
+                place = join_keys(keys)
+                changed = copy.deepcopy(told)
+                inner = changed
+                for key in keys:
+                    inner = inner[key]
+                for key in ["unheard_of", *inner]:
+                    if (place, key) in seen:
+                        continue
+                    seen.add((place, key))
+                    known, kept = key in inner, inner.pop(key, None)
+                    for value in [-1e9, {"another": "type"}] if known else ["a text"]:
+                        inner[key] = value
+                        if not valid(changed):
+                            self.assert_refused(changed, key)
+                    del inner[key]
+                    if not valid(changed):
+                        self.assert_refused(changed, key)
+                    if known:
+                        inner[key] = kept
+        self.assertGreater(len(seen), 120)
+
+    def assert_refused(self, plan, key):
+        self.write("changed.json", json.dumps(plan))
+        said = self.run_tool("render", "changed.json", "-o", "o.wav")
+        self.assertEqual((said.returncode, said.stdout), (2, ""), f"{key}: {said.stderr}")
+        self.assertIn(key, said.stderr)
+
     def test_a_schema_has_no_field_that_is_never_printed(self):
         for name, all_told in self.outputs().items():
             printed = {path for told in all_told for path in list_paths(told)}
@@ -233,6 +268,10 @@ class Schemas(ToolTest):
             listed = paths_on_page(name)
             self.assertEqual(len(listed), len(set(listed)), name)
             self.assertEqual(set(listed), own(paths_in(schema)), name)
+
+    def test_the_page_is_written_from_the_schemas(self):
+        self.assertEqual(write_fields.written(PAGE, write_fields.read(FOLDER)), PAGE,
+                         "python3 man/write_fields.py FOLDER/src/cli/schemas writes it")
 
     def test_the_examples_of_the_page_run_as_written(self):
         section = PAGE.partition(".Sh EXAMPLES\n")[2].partition("\n.Sh ")[0]

@@ -102,7 +102,7 @@ class Import(ServeTest):
                                   ({"name": "a.svg", "text": "<svg>\n<path d='M 0 x'/></svg>"}, "text", "2:"),
                                   ({"name": "a.json", "text": "{\n"}, "text", "line 2"),
                                   ({"name": "a.json", "text": "{}"}, "text", "no plan"),
-                                  ({"name": "a.json", "text": '{"schema": "tactor-plan/1", "array": {"tactors": 7}}'}, "text", "text: array."),
+                                  ({"name": "a.json", "text": '{"schema": "tactor-plan/1", "array": {"tactors": 7}}'}, "text", "text: algorithm: is missing"),
                                   ({"text": "hello"}, "text", "1:"), ({"text": ""}, "text", ""),
                                   ({"base64": "aGVsbG8"}, "base64", "no base64"), ({"base64": "a b="}, "base64", "no base64"),
                                   ({"base64": base64.b64encode(b"\x89PNG\r\n\x1a\n").decode()}, "base64", "a PNG picture"),

@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "caught.hpp"
-#include "files/plan/json_value.hpp"
+#include "files/json/json_value.hpp"
 #include "has.hpp"
 #include "study/report/sections.hpp"
 

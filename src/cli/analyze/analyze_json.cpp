@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/analyze/analyze_output.hpp"
-#include "files/plan/json_value.hpp"
+#include "files/json/json_value.hpp"
 
 namespace tactor::cli {
 namespace {

@@ -9,13 +9,16 @@
 
 #include "cli/commands.hpp"
 #include "cli/say.hpp"
+#include "core/members.hpp"
 #include "core/words.hpp"
+#include "files/json/schema.hpp"
+#include "files/json/writer.hpp"
 
 namespace tactor::cli {
 
 namespace {
 
-using json = nlohmann::ordered_json;
+using detail::about;
 
 std::size_t count(const std::vector<finding>& all, level l)
 {
@@ -29,30 +32,50 @@ std::string summary(const std::vector<finding>& all)
                        counted(count(all, level::warning), "warning"), count(all, level::ok));
 }
 
-json to_json(const std::vector<finding>& all)
+template <class Io>
+void walk_members(Io& io, const walk_outcome& w)
 {
-    json list = json::array();
-    for (const finding& f : all)
-        list.push_back({{"check", f.check},
-                        {"level", std::string(to_string(f.how))},
-                        {"found", f.found},
-                        {"cure", f.cure.empty() ? json(nullptr) : json(f.cure)}});
-    return list;
+    const session::walk_verdict& v = w.verdict;
+    io.list("answers", w.felt, {"of each tactor, in order"},
+            [&w](auto& inner, const std::optional<unsigned>& felt, std::size_t number) {
+                constexpr about driven{"its number, and the channel that was driven"};
+                inner("tactor", number, driven);
+                inner.fact(
+                    "channel", [&] { return w.tactors.tactors[number].channel; }, driven);
+                inner.or_null("felt", felt, {"the tactor that was felt; null: none"});
+            });
+    io("problems", v.problems, {"why there is no map; none where there is"});
+    io.or_null("channels", v.channels.empty() ? std::nullopt : std::optional(v.channels),
+               {"of each tactor, as it should be; null where there is no map"});
+    io("changed", v.changed, {"whether that differs from the array's"});
 }
 
-json to_json(const walk_outcome& w)
+template <class Io>
+void check_members(Io& io, const std::vector<finding>& all, const walk_outcome& walk, bool walked)
 {
-    const session::walk_answers& felt = w.felt;
-    const session::walk_verdict& v = w.verdict;
-    json answers = json::array();
-    for (std::size_t i = 0; i < felt.size(); ++i)
-        answers.push_back({{"tactor", i},
-                           {"channel", w.tactors.tactors[i].channel},
-                           {"felt", felt[i] ? json(*felt[i]) : json(nullptr)}});
-    return {{"answers", answers},
-            {"problems", v.problems},
-            {"channels", v.channels.empty() ? json(nullptr) : json(v.channels)},
-            {"changed", v.changed}};
+    constexpr about many{"how many"};
+    io.constant("schema", "tactor-check/1");
+    io("errors", count(all, level::error), many);
+    io("warnings", count(all, level::warning), many);
+    io.list("findings", all, {"what was looked at"}, [](auto& inner, const finding& f, std::size_t) {
+        inner("check", f.check, {"what, as in tactor-check(1)"});
+        inner.one_of("level", to_string(f.how), {"ok", "warning", "error"}, {"ok, warning or error"});
+        inner("found", f.found, {"what was found"});
+        inner.or_null("cure", f.cure.empty() ? std::optional<std::string>() : std::optional(f.cure),
+                      {"what to do about it; else null"});
+    });
+    io.part("walk", walked, {"only after --walk with answers"},
+            [&walk](auto& inner) { walk_members(inner, walk); });
+}
+
+// Refers to nothing that was asked.
+template <class F>
+auto without_walk(const F& f)
+{
+    const array none;
+    const session::walk_answers felt;
+    const session::walk_verdict verdict;
+    return f(walk_outcome{none, felt, verdict});
 }
 
 } // namespace
@@ -101,13 +124,17 @@ std::string check_text(const std::vector<finding>& all, bool brief)
 
 std::string check_json(const std::vector<finding>& all, const std::optional<walk_outcome>& walked)
 {
-    json told{{"schema", "tactor-check/1"},
-              {"errors", count(all, level::error)},
-              {"warnings", count(all, level::warning)},
-              {"findings", to_json(all)}};
-    if (walked)
-        told["walk"] = to_json(*walked);
-    return told.dump(2, ' ', false, json::error_handler_t::replace) + "\n";
+    const auto write = [&](const walk_outcome& walk) {
+        return files::make_object([&](auto& io) { check_members(io, all, walk, walked.has_value()); });
+    };
+    return (walked ? write(*walked) : without_walk(write)).dump(2) + "\n";
+}
+
+nlohmann::ordered_json check_schema()
+{
+    return without_walk([](const walk_outcome& walk) {
+        return files::json_schema::describe_object([&walk](auto& io) { check_members(io, {}, walk, false); });
+    });
 }
 
 } // namespace tactor::cli

@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include <nlohmann/json_fwd.hpp>
 #include <tactor/error.hpp>
 #include <tactor/tactor.hpp>
 
@@ -70,6 +71,8 @@ std::string check_text(const std::vector<finding>& all, bool brief);
 
 /// Returns an object of schema tactor-check/1.
 std::string check_json(const std::vector<finding>& all, const std::optional<walk_outcome>& walked);
+/// Returns the schema of such an object.
+nlohmann::ordered_json check_schema();
 
 /// Finds a line, or throws what find_gpio_line() throws.
 using line_finder = std::function<gpio_line_place(const gpio_line_name&)>;

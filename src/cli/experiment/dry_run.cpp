@@ -11,7 +11,7 @@
 #include "cli/say.hpp"
 #include "core/sha256.hpp"
 #include "core/words.hpp"
-#include "files/plan/json_value.hpp"
+#include "files/json/json_value.hpp"
 #include "study/session/prepared.hpp"
 #include "study/session/trials.hpp"
 

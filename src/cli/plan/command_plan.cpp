@@ -16,7 +16,6 @@
 #include "cli/warnings.hpp"
 #include "core/words.hpp"
 #include "files/plan/plan_json.hpp"
-#include "files/plan/row_json.hpp"
 #include "plot/sound_text.hpp"
 #include "session/threshold_carrier.hpp"
 

@@ -5,85 +5,126 @@
 #include <utility>
 
 #include <fmt/format.h>
-
 #include <nlohmann/json.hpp>
 
 #include "cli/commands.hpp"
 #include "cli/say.hpp"
+#include "core/members.hpp"
 #include "core/words.hpp"
+#include "files/json/schema.hpp"
+#include "files/json/writer.hpp"
 #include "session/sound_server.hpp"
 
 namespace tactor::cli {
 namespace {
 
-using json = nlohmann::ordered_json;
+using detail::about;
 
 double seconds(std::uint64_t frames, unsigned rate)
 {
     return static_cast<double>(frames) / rate;
 }
 
-json to_json(const live_delay& d)
-{
-    return {{"points", d.points}, {"least_s", d.least_s}, {"mean_s", d.mean_s}, {"most_s", d.most_s}};
-}
-
-json to_json(const stroke_outcome& s, unsigned rate)
+template <class Io>
+void stroke_members(Io& io, const stroke_outcome& s, unsigned rate)
 {
     const bool ended = s.report.has_value();
-    const std::uint64_t frames = ended ? s.report->frames : 0;
-    const bool has_reason = ended && !s.report->why.empty();
-    return {{"stroke", s.name},
-            {"state", ended ? std::string(to_string(s.report->state)) : "not played"},
-            {"frames", frames},
-            {"length_frames", s.length_frames},
-            {"played_s", seconds(frames, rate)},
-            {"late_s", ended ? s.report->late_s : 0.0},
-            {"started_ns", ended && s.report->started_ns ? json(*s.report->started_ns) : json(nullptr)},
-            {"delay", ended && s.report->delay ? to_json(*s.report->delay) : json(nullptr)},
-            {"held_points", ended ? s.report->held_points : 0},
-            {"outside_points", ended ? s.report->outside_points : 0},
-            {"reason", has_reason ? json(s.report->why) : json(nullptr)}};
+    const stroke_report r = s.report.value_or(stroke_report{});
+    const std::uint64_t frames = ended ? r.frames : 0;
+    io("stroke", s.name, {"as the command line names it"});
+    io.one_of("state", ended ? to_string(r.state) : "not played",
+              {"finished", "cancelled", "interrupted", "not played"},
+              {"finished, cancelled, interrupted or not played"});
+    io("frames", frames, {"how many were played"});
+    io("length_frames", s.length_frames, {"how many it has"});
+    io("played_s", seconds(frames, rate), {"how long it was played", detail::from_0});
+    io("late_s", r.late_s, {"how much later than asked for it began", detail::from_0});
+    io.or_null("started_ns", r.started_ns,
+               {"CLOCK_MONOTONIC of its first sample at the DAC; null where it did not sound or the clock of "
+                "the DAC "
+                "was not known"});
+    io.object_or_null(
+        "delay", r.delay,
+        {"of a live stroke's points: from when each was read until the DAC had the first frame that it "
+         "changed; null where none sounded, and for other strokes"},
+        [](auto& inner, const live_delay& d) {
+            constexpr about of_them{"the least, the mean and the most of them"};
+            inner("points", d.points,
+                  {"how many were counted: not those that a newer one overtook before the next period"});
+            inner("least_s", d.least_s, of_them);
+            inner("mean_s", d.mean_s, of_them);
+            inner("most_s", d.most_s, of_them);
+        });
+    io("held_points", r.held_points,
+       {"points of a live stroke with an intensity above 1, which sounded as 1"});
+    io("outside_points", r.outside_points,
+       {"points of a live stroke outside the array, which moved to its edge"});
+    io.or_null("reason", r.why.empty() ? std::optional<std::string>() : std::optional(r.why),
+               {"why it was interrupted; else null"});
 }
 
-json to_json(const stream_setup& d)
+template <class Io>
+void device_members(Io& io, const stream_setup& d)
 {
-    return {{"pcm", d.name},
-            {"channels", d.channels},
-            {"device_channels", std::max(d.device_channels, d.channels)},
-            {"rate_hz", d.rate},
-            {"format", std::string(to_string(d.format))},
-            {"period_frames", d.period_frames},
-            {"buffer_frames", d.buffer_frames},
-            {"latency_ms", session::latency_ms(d)},
-            {"batch", d.batch},
-            {"has_clock", d.has_clock}};
+    io("pcm", d.name, {"its name"});
+    io("channels", d.channels, {"channels that are played"});
+    io("device_channels", std::max(d.device_channels, d.channels),
+       {"channels that the device has; those beyond the played ones are silent"});
+    io("rate_hz", d.rate, {"sample rate"});
+    io("format", d.format, {"of its samples: float, s16, s24 (three bytes), s24-4 (four) or s32"});
+    io("period_frames", d.period_frames, {"lengths of period and buffer"});
+    io("buffer_frames", d.buffer_frames, {"lengths of period and buffer"});
+    io("latency_ms", session::latency_ms(d), {"length of the buffer", detail::from_0});
+    io("batch", d.batch, {"whether its position moves by whole periods"});
+    io("has_clock", d.has_clock, {"whether it keeps the time itself, as null and files do not"});
 }
 
-json counters(const run_report& r)
+template <class Io>
+void counter_members(Io& io, const run_report& r)
 {
+    constexpr about written{"written to the device"};
+    constexpr about faults{"page faults of the audio thread; the latter waited for a disk"};
+    constexpr about pulses{"pulses that were sent on the line of [sync], and those that were not"};
+    constexpr about late{"how late they were against the clock of the DAC"};
     const player_stats& s = r.stats;
-    return {{"periods", s.periods},
-            {"frames", s.frames},
-            {"xruns", s.xruns},
-            {"xrun_s", s.xrun_s},
-            {"latest_wakeup_s", s.latest_wakeup_s},
-            {"ring_low_water", s.ring_low_water},
-            {"minor_faults", s.minor_faults},
-            {"major_faults", s.major_faults},
-            {"limited_frames", s.limited_frames},
-            {"power_limited_frames", s.power_limited_frames},
-            {"drives_cut", s.drives_cut},
-            {"stalls", s.stalls},
-            {"off_failures", s.off_failures},
-            {"left_on", s.left_on},
-            {"sync_pulses", s.sync_pulses},
-            {"sync_missed", s.sync_missed},
-            {"sync_mean_late_s", s.sync_mean_late_s},
-            {"sync_worst_late_s", s.sync_worst_late_s},
-            {"reopened", r.reopened},
-            {"realtime", s.realtime},
-            {"locked_memory", r.locked_memory}};
+    io("periods", s.periods, written);
+    io("frames", s.frames, written);
+    io("xruns", s.xruns, {"how often the device ran dry"});
+    io("xrun_s", s.xrun_s,
+       {"for how long in the newest 64, oldest first; 0 where the device cannot tell", detail::from_0});
+    io("latest_wakeup_s", s.latest_wakeup_s,
+       {"how much later than a period the audio thread woke up, at most", detail::from_0});
+    io("ring_low_water", s.ring_low_water,
+       {"fewest drives that waited for the audio thread while a stroke played"});
+    io("minor_faults", s.minor_faults, faults);
+    io("major_faults", s.major_faults, faults);
+    io("limited_frames", s.limited_frames, {"samples that a tactor's max_dbfs changed"});
+    io("power_limited_frames", s.power_limited_frames,
+       {"frames in which the power of all tactors together was held down"});
+    io("drives_cut", s.drives_cut,
+       {"drives that were cut short, or silent, because their tactor had been driven for too long"});
+    io("stalls", s.stalls, {"how often the amplifier was switched off because the player stood still"});
+    io("off_failures", s.off_failures, {"how often its line refused to be switched off"});
+    io("left_on", s.left_on, {"whether the last try failed: it may be on"});
+    io("sync_pulses", s.sync_pulses, pulses);
+    io("sync_missed", s.sync_missed, pulses);
+    io("sync_mean_late_s", s.sync_mean_late_s, late);
+    io("sync_worst_late_s", s.sync_worst_late_s, late);
+    io("reopened", r.reopened, {"how often a lost device was opened again"});
+    io("realtime", s.realtime, {"whether real-time priority was granted, and not given up"});
+    io("locked_memory", r.locked_memory, {"whether the memory was locked"});
+}
+
+template <class Io>
+void report_members(Io& io, const run_report& r)
+{
+    io.constant("schema", "tactor-play/1");
+    io.object("device", {"the device as it was opened"},
+              [&r](auto& inner) { device_members(inner, r.device); });
+    io.list(
+        "strokes", r.strokes, {"one for each STROKE, in order"},
+        [&r](auto& inner, const stroke_outcome& s, std::size_t) { stroke_members(inner, s, r.device.rate); });
+    io.object("counters", {"of the whole run"}, [&r](auto& inner) { counter_members(inner, r); });
 }
 
 std::string xruns_text(const player_stats& s)
@@ -188,14 +229,13 @@ std::optional<error> unfinished(const run_report& r)
 
 void print_json(std::FILE* to, const run_report& r)
 {
-    json strokes = json::array();
-    for (const stroke_outcome& s : r.strokes)
-        strokes.push_back(to_json(s, r.device.rate));
-    const json all{{"schema", "tactor-play/1"},
-                   {"device", to_json(r.device)},
-                   {"strokes", strokes},
-                   {"counters", counters(r)}};
-    fmt::print(to, "{}\n", all.dump(2, ' ', false, json::error_handler_t::replace));
+    const auto all = files::make_object([&r](auto& io) { report_members(io, r); });
+    fmt::print(to, "{}\n", all.dump(2));
+}
+
+nlohmann::ordered_json play_schema()
+{
+    return files::json_schema::describe_object([](auto& io) { report_members(io, run_report{}); });
 }
 
 void tell(const stroke_outcome& s, unsigned rate, bool as_json)

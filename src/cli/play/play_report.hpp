@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include <nlohmann/json_fwd.hpp>
 #include <tactor/tactor.hpp>
 
 #include "cli/input.hpp"
@@ -65,6 +66,8 @@ int judge_run(const run_report& r, int signal, const std::optional<error>& broke
 
 /// Prints an object of schema tactor-play/1.
 void print_json(std::FILE* to, const run_report& r);
+/// Returns the schema of such an object.
+nlohmann::ordered_json play_schema();
 
 /// Plays all STROKEs through a server, one after the other; the exit status. \throws error, also for options
 /// that are the server's owner's alone.

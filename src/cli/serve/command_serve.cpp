@@ -22,8 +22,8 @@
 #include "cli/say.hpp"
 #include "cli/settings.hpp"
 #include "core/words.hpp"
-#include "files/plan/json_value.hpp"
-#include "files/plan/plan_json.hpp"
+#include "files/json/json_value.hpp"
+#include "files/plan/plan_members.hpp"
 #include "options/parse_number.hpp"
 #include "rt/clock.hpp"
 #include "rt/variable.hpp"
@@ -256,7 +256,7 @@ int serve(settings& s, const serve_options& o)
     provide_descriptors(service.limits);
     service.token = server::read_token(serve);
     service.version = version();
-    service.array = files::array_json(e.tactors);
+    service.array = files::make_document(e.tactors);
     for (const auto& [key, text] : {std::pair("site", &e.tactors.site), std::pair("up", &e.tactors.up)})
         if (!text->empty())
             service.array[key] = *text;

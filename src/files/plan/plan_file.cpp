@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <cmath>
+#include <cstdint>
 #include <filesystem>
 #include <fstream>
 #include <system_error>
@@ -11,9 +13,11 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "core/kind_names.hpp"
 #include "core/words.hpp"
 #include "files/input_files.hpp"
-#include "files/plan/plan_values.hpp"
+#include "files/json/reader.hpp"
+#include "files/plan/plan_members.hpp"
 #include "files/text_file.hpp"
 
 namespace tactor::files {
@@ -23,6 +27,128 @@ using nlohmann::ordered_json;
 
 constexpr const char* hint = "see tactor-json(5)";
 constexpr const char* how_to_make = "{command:plan} makes one";
+
+constexpr std::uint64_t most_way_points = 10000;
+
+// Refuses amplitudes above the intensity: a built-in model shares it out and adds nothing.
+void check_amplitudes(const json_value& f, const std::string& name, const plan& p, const burst& b)
+{
+    constexpr double rounding = 1e-9;
+    if (!detail::find_kind<phantom_kind>(p.phantom))
+        return;
+    for (const drive& d : b.drives)
+        if (d.amplitude > b.intensity * (1.0 + rounding))
+            f[name].refuse(fmt::format("drives tactor {} at {}, above its intensity of {}", d.tactor,
+                                       d.amplitude, b.intensity));
+}
+
+// Drives and their order as planners make them.
+void check_bursts(const json_value& f, const array& a, const plan& p, const std::vector<burst>& bursts)
+{
+    double latest = 0.0;
+    for (std::size_t i = 0; i < bursts.size(); ++i) {
+        const burst& b = bursts[i];
+        const auto refuse = [&](const std::string& why) { f[fmt::format("bursts[{}]", i)].refuse(why); };
+        if (b.onset_s < latest)
+            refuse("begins before the one before it");
+        latest = b.onset_s;
+        for (std::size_t k = 0; k < b.drives.size(); ++k) {
+            if (b.drives[k].tactor >= a.tactors.size())
+                refuse(fmt::format("drives tactor {} of {}", b.drives[k].tactor, a.tactors.size()));
+            if (k > 0 && b.drives[k].tactor <= b.drives[k - 1].tactor)
+                refuse("its drives are not in order of tactor");
+        }
+        check_amplitudes(f, fmt::format("bursts[{}]", i), p, b);
+    }
+}
+
+void check_samples(const json_value& f, const array& a, const plan& p, const curve_samples& samples)
+{
+    burst b;
+    for (std::size_t i = 0; i < samples.ends.size(); ++i) {
+        const drive* const first = samples.drives.data() + (i == 0 ? 0 : samples.ends[i - 1]);
+        b.intensity = samples.intensities[i];
+        b.drives.assign(first, samples.drives.data() + samples.ends[i]);
+        check_amplitudes(f, fmt::format("points[{}]", i), p, b);
+    }
+    for (const drive& d : samples.drives)
+        if (d.tactor >= a.tactors.size())
+            f["points"].refuse(fmt::format("drive tactor {} of {}", d.tactor, a.tactors.size()));
+}
+
+// Checks what a plan says of its bursts or points, and puts them into it.
+void set_drives(const json_value& f, plan_parts& parts, std::vector<burst> bursts, curve_samples samples)
+{
+    plan& p = parts.plan;
+    check_bursts(f, parts.tactors, p, bursts);
+    p.bursts = std::move(bursts);
+    for (const conflict& c : p.conflicts)
+        if (c.tactor >= parts.tactors.tactors.size())
+            f["conflicts"].refuse(
+                fmt::format("have tactor {} of {}", c.tactor, parts.tactors.tactors.size()));
+    if (!parts.is_sampled)
+        return;
+    if (parts.step_s != continuous_step_s)
+        f["continuous"]["step_s"].refuse(fmt::format("only {} s can be played", continuous_step_s));
+    check_samples(f, parts.tactors, p, samples);
+    try {
+        p.curve = curve(p.stroke_duration_s, std::move(samples));
+    } catch (const error& e) {
+        f["continuous"]["points"].refuse(fmt::format("{}: {}", e.why(), e.hint()));
+    }
+}
+
+// Returns the path of a plan's bursts or samples, or the target of compensated ones, for pictures.
+stroke read_stroke(const json_value& f, const plan_parts& parts)
+{
+    const plan& p = parts.plan;
+    const auto& moved = parts.moved;
+    std::vector<timed_point> way;
+    const auto add = [&](double t_s, const burst& b) {
+        if (way.empty())
+            way.push_back({0.0, b.position, b.intensity});
+        else if (t_s > way.back().t_s && t_s < p.stroke_duration_s)
+            way.push_back({t_s, b.position, b.intensity});
+    };
+    burst last;
+    const bool elsewhere = moved && !moved->taps.empty(); // silent bursts are where they were asked for
+    for (const tap& t : elsewhere ? moved->taps : std::vector<tap>{}) {
+        last.position = t.target;
+        add(t.onset_s, last);
+    }
+    for (const burst& b : elsewhere ? std::vector<burst>{} : p.bursts) {
+        add(b.tau_s.value_or(b.onset_s), b);
+        last = b;
+    }
+    // For a picture: no more points than people can tell apart.
+    const std::uint64_t step = p.curve ? 1 + p.curve->size() / most_way_points : 1;
+    for (std::uint64_t k = 0; p.curve && k < p.curve->size(); k += step) {
+        p.curve->sample(k, last);
+        add(last.onset_s, last);
+    }
+    if (p.curve)
+        p.curve->sample(p.curve->size() - 1, last);
+    if (way.empty())
+        f["bursts"].refuse("there are none");
+    way.push_back({p.stroke_duration_s, last.position, last.intensity});
+    stroke s{.name = parts.name};
+    // A level of its own takes a stroke above the others.
+    const double most =
+        std::max_element(way.begin(), way.end(), [](const timed_point& a, const timed_point& b) {
+            return a.intensity < b.intensity;
+        })->intensity;
+    if (most > 1.0) {
+        for (timed_point& q : way)
+            q.intensity /= most;
+        s.choices.level_db = 20.0 * std::log10(most);
+    }
+    s.motion = trajectory::timed(std::move(way));
+    s.sound.carrier_hz = p.carrier_hz;
+    s.sound.wave = p.wave;
+    s.sound.am = p.am;
+    s.note = parts.note;
+    return s;
+}
 
 /// Follows the parser: bursts and samples are taken as they end, and dropped from the document.
 class reader {
@@ -60,9 +186,14 @@ private:
         const bool is_burst = deep == 2 && key(top + 1) == "bursts";
         const bool is_sample = deep == 3 && key(top + 1) == "continuous" && key(top + 2) == "points";
         if (is_burst)
-            bursts_.push_back(read_burst({j, file_, hint, fmt::format("bursts[{}]", bursts_.size())}));
-        if (is_sample)
-            samples_.add(read_sample({j, file_, hint, fmt::format("points[{}]", samples_.ends.size())}));
+            json_reader::read({j, file_, hint, fmt::format("bursts[{}]", bursts_.size())},
+                              [this](auto& io) { burst_members(io, bursts_.emplace_back(), none_); });
+        if (is_sample) {
+            burst b;
+            json_reader::read({j, file_, hint, fmt::format("points[{}]", samples_.ends.size())},
+                              [&](auto& io) { point_members(io, b, none_); });
+            samples_.add(b);
+        }
         return is_burst || is_sample;
     }
 
@@ -76,20 +207,23 @@ private:
         if (schema != "tactor-plan/1")
             throw error(error_kind::bad_input, file_,
                         fmt::format("its schema is {}, not tactor-plan/1", schema), how_to_make);
-        array tactors = read_array(all);
+        plan_parts parts;
+        json_reader::read(all, [&parts](auto& io) { plan_members(io, parts); });
+        validate(parts.tactors);
+        set_sound(parts.plan, parts.sound, all["stroke"], recordings_);
+        set_drives(all, parts, std::exchange(bursts_, {}), std::exchange(samples_, {}));
+        read_.made.strokes.push_back(read_stroke(all, parts));
         if (read_.made.plans.empty()) {
-            read_.tactors = std::move(tactors);
-            read_.render = read_render(all);
-            read_.made.fit = read_fitting(all);
+            read_.tactors = std::move(parts.tactors);
+            read_.render = parts.options;
+            read_.made.fit = parts.fit;
         } else {
-            check_same_array(file_, tactors, read_.tactors);
+            check_same_array(file_, parts.tactors, read_.tactors);
         }
-        read_.made.plans.push_back(read_plan(all, read_.tactors, std::exchange(bursts_, {}),
-                                             std::exchange(samples_, {}), recordings_));
-        std::optional<compensated_plan> moved = read_compensation(all);
-        read_.made.strokes.push_back(read_stroke(all, read_.made.plans.back().plan, moved));
-        if (moved)
-            read_.made.moved.push_back(*std::move(moved));
+        read_.made.plans.push_back(
+            {std::move(parts.plan), parts.follows ? std::nullopt : std::optional(parts.start_s)});
+        if (parts.moved)
+            read_.made.moved.push_back(*std::move(parts.moved));
         if (!read_.made.moved.empty() && read_.made.moved.size() != read_.made.plans.size())
             all["compensation"].refuse("is said of some plans and not of all");
         return false;
@@ -101,6 +235,7 @@ private:
     std::vector<burst> bursts_;
     curve_samples samples_;
     plan_file read_;
+    plan_parts none_; ///< of which no burst that is read needs anything
 };
 
 // Returns "[json.exception.parse_error.101] parse error at line 1, column 2: syntax error ..." without the

@@ -3,7 +3,8 @@
 /// Plans as JSON (schemas tactor-plan/1 and tactor-plans/1): a record of every sample.
 #pragma once
 
-#include <functional>
+#include <algorithm>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -14,12 +15,10 @@
 #include <tactor/array.hpp>
 #include <tactor/tactor.hpp>
 
+#include "files/json/writer.hpp"
 #include "percept/compare.hpp"
 
 namespace tactor::files {
-
-/// Takes the next part of a text. Whatever it throws ends the writing.
-using text_sink = std::function<void(std::string_view)>;
 
 /// Strokes, and the plans that were made of them.
 struct piece {
@@ -49,16 +48,33 @@ void write_plans(const plan_record& r, const text_sink& out);
 /// Returns what write_plans() writes.
 std::string plans_text(const plan_record& r);
 
-/// Returns the member "array" of a plan.
-nlohmann::ordered_json array_json(const array& a);
+/// Returns the schema of such an object.
+nlohmann::ordered_json plan_schema();
 
 /// Returns what a stroke's note means, for people; empty for none.
 std::string note_text(note_kind n);
+
+/// Calls row(burst) for each burst; for `continuous`, for each point at which the phantom is evaluated, which
+/// lasts until the next.
+template <class Row>
+void for_each_row(const plan& p, Row&& row)
+{
+    for (const burst& b : p.bursts)
+        row(b);
+    burst b;
+    for (std::uint64_t k = 0; p.curve && k < p.curve->size(); ++k) {
+        p.curve->sample(k, b);
+        b.duration_s = std::min(continuous_step_s, p.stroke_duration_s - b.onset_s);
+        row(b);
+    }
+}
 
 /// Returns what a prediction says in numbers, and why it says nothing.
 nlohmann::ordered_json errors_json(const detail::prediction& r, observer_kind by);
 
 /// Returns one object of one comparison, a list in an object of several, and a line end.
 std::string comparisons_text(const std::vector<detail::comparison>& all, const array& a);
+/// Returns the schema of such an object.
+nlohmann::ordered_json compare_schema();
 
 } // namespace tactor::files

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import collections.abc as _abc
-import functools
 import os
 import typing as _t
 
@@ -70,7 +69,6 @@ class Plan(_Value):
     def _read(cls, text: str, name: str) -> Plan:
         """Reads a plan from JSON; `name` stands for it in messages."""
         core = _tactor.Plan.from_json(text, name)
-        _check_keys(text, name)
         return cls._wrap(core, recorded=True)
 
     def write(self, file: str | os.PathLike[str]) -> None:
@@ -283,43 +281,6 @@ def _plain(value: _t.Any) -> _t.Any:
     if hasattr(value, "tolist"):
         return value.tolist()
     raise TypeError(f"there is a {type(value).__name__} in it")
-
-
-def _check_keys(text: str, name: str) -> None:
-    """Refuses keys that no plan has; `text` is JSON that was read as a plan, `name` stands for it in messages."""
-    import json
-    record = json.loads(text)
-    plans = record.get("plans")
-    for plan in plans if isinstance(plans, list) else [record]:
-        _check_members(plan, _schema(), "", name)
-
-
-@functools.lru_cache(None)
-def _schema() -> dict[str, _t.Any]:
-    import json
-    with open(os.path.join(os.path.dirname(__file__), "tactor-plan-1.schema.json"), encoding="utf-8") as file:
-        return json.load(file)  # type: ignore[no-any-return]
-
-
-def _check_members(value: _t.Any, schema: dict[str, _t.Any], place: str, name: str) -> None:
-    if isinstance(value, list):
-        for i, entry in enumerate(value):
-            _check_members(entry, schema.get("items", {}), f"{place}[{i}]", name)
-        return
-    known = schema.get("properties")
-    if not isinstance(value, dict) or known is None:
-        return
-    for key, entry in value.items():
-        at = f"{place}.{key}" if place else key
-        if key not in known:
-            raise InputError(f"{name}: {at}", "no plan has this key", _nearest(key, known), file=name, field=at)
-        _check_members(entry, known[key], at, name)
-
-
-def _nearest(key: str, known: _t.Iterable[str]) -> str:
-    import difflib
-    near = difflib.get_close_matches(key, known, 1)
-    return f"did you mean '{near[0]}'?" if near else "see tactor-json(5)"
 
 
 def _plan_again(text: str, stroke: bytes, array: Array, recorded: bool, asked: list[str]) -> Plan:

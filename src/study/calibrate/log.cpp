@@ -21,8 +21,8 @@
 
 #include "core/split.hpp"
 #include "core/words.hpp"
+#include "files/json/json_value.hpp"
 #include "files/output_file.hpp"
-#include "files/plan/json_value.hpp"
 #include "files/text_file.hpp"
 #include "study/bids/disk.hpp"
 #include "study/data/text_table.hpp"

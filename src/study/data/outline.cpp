@@ -6,7 +6,7 @@
 
 #include <tactor/error.hpp>
 
-#include "files/plan/json_value.hpp"
+#include "files/json/json_value.hpp"
 #include "study/data/text_table.hpp"
 #include "study/experiment/definition.hpp"
 

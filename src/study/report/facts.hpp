@@ -14,7 +14,7 @@
 #include <nlohmann/json.hpp>
 #include <tactor/array.hpp>
 
-#include "files/plan/json_value.hpp"
+#include "files/json/json_value.hpp"
 #include "study/data/dataset.hpp"
 #include "study/experiment/definition.hpp"
 

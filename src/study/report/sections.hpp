@@ -15,7 +15,7 @@
 
 #include <tactor/plan.hpp>
 
-#include "files/plan/json_value.hpp"
+#include "files/json/json_value.hpp"
 #include "study/analysis/analysis.hpp"
 #include "study/report/facts.hpp"
 

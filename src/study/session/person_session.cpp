@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-#include "files/plan/json_value.hpp"
+#include "files/json/json_value.hpp"
 #include "session/say.hpp"
 #include "study/bids/study_folder.hpp"
 #include "study/session/prepared.hpp"

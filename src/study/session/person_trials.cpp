@@ -8,7 +8,7 @@
 
 #include <fmt/format.h>
 
-#include "files/plan/json_value.hpp"
+#include "files/json/json_value.hpp"
 #include "rt/clock.hpp"
 #include "session/say.hpp"
 #include "session/walk.hpp"

@@ -8,8 +8,8 @@
 #include <tactor/version.hpp>
 
 #include "core/sha256.hpp"
-#include "files/plan/json_value.hpp"
-#include "files/plan/plan_values.hpp"
+#include "files/json/json_value.hpp"
+#include "files/plan/plan_members.hpp"
 #include "session/threshold_carrier.hpp"
 
 namespace tactor::study {
@@ -29,7 +29,7 @@ json array_facts(const array& a)
                            {"polarity", t.polarity},
                            {"gain_db", t.gain_db},
                            {"max_dbfs", t.max_dbfs},
-                           {"threshold_dbfs", files::threshold_json(t)},
+                           {"threshold_dbfs", files::make_document(files::find_thresholds(t))},
                            {"actuator", std::string(to_string(t.actuator))}});
         if (t.displacement_um_at_0dbfs) // else absent: sessions of older versions go on
             tactors.back()["displacement_um_at_0dbfs"] = *t.displacement_um_at_0dbfs;
@@ -86,7 +86,7 @@ json describe_session(const prepared_experiment& p, const std::optional<simulati
 {
     json thresholds = json::array();
     for (const tactor_spec& t : p.where.tactors.tactors)
-        thresholds.push_back(files::threshold_json(t));
+        thresholds.push_back(files::make_document(files::find_thresholds(t)));
     json order = json::array();
     for (const run_sequence& r : p.runs)
         order.push_back(p.definition.runs[r.run].outline.name);

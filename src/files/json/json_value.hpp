@@ -11,8 +11,6 @@
 
 #include <nlohmann/json.hpp>
 
-#include <tactor/percept.hpp>
-
 #include "core/kind_names.hpp"
 
 namespace tactor::files {
@@ -37,6 +35,8 @@ public:
     /// Returns the name of the file.
     const std::string& file() const noexcept { return *file_; }
     bool is_list() const noexcept { return there() && value_->is_array(); }
+    /// Returns the names of an object's members.
+    std::vector<std::string> keys() const;
 
     /// A member of an object; not there where this is not.
     json_value operator[](const std::string& key) const;
@@ -71,6 +71,8 @@ public:
     }
     std::vector<json_value> need_list() const;
     std::vector<double> need_numbers() const;
+    /// \throws error (bad_input) for what is no object.
+    void need_members() const;
 
     /// Returns any value in words: members of objects and lists with commas between; empty where it is not
     /// there.
@@ -112,13 +114,6 @@ nlohmann::ordered_json or_null(const std::optional<T>& v)
 inline nlohmann::ordered_json or_null(const std::string& s)
 {
     return s.empty() ? nlohmann::ordered_json(nullptr) : nlohmann::ordered_json(s);
-}
-
-inline nlohmann::ordered_json tap_json(const tap& t)
-{
-    return {{"onset_s", t.onset_s},       {"target_x_mm", t.target.x_mm}, {"target_y_mm", t.target.y_mm},
-            {"alone_x_mm", t.alone.x_mm}, {"alone_y_mm", t.alone.y_mm},   {"felt_x_mm", t.felt.x_mm},
-            {"felt_y_mm", t.felt.y_mm}};
 }
 
 } // namespace tactor::files

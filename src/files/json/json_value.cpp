@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "files/plan/json_value.hpp"
+#include "files/json/json_value.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -109,6 +109,23 @@ std::vector<json_value> json_value::need_list() const
     if (!need_member().there())
         refuse("is null");
     return list();
+}
+
+std::vector<std::string> json_value::keys() const
+{
+    std::vector<std::string> all;
+    if (there() && value_->is_object())
+        for (const auto& [key, value] : value_->items())
+            all.push_back(key);
+    return all;
+}
+
+void json_value::need_members() const
+{
+    if (!need_member().there())
+        refuse("is null");
+    if (!value_->is_object())
+        refuse("is no object");
 }
 
 std::vector<double> json_value::need_numbers() const

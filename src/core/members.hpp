@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: MIT
+/// \file
+/// Descriptions of values by their members. A template members(io, value) names each member once, with what
+/// it is; the io decides what becomes of them: text, a value that is read, a schema.
+#pragma once
+
+#include <concepts>
+#include <limits>
+#include <optional>
+#include <type_traits>
+
+#include "core/bounds.hpp"
+
+namespace tactor::detail {
+
+/// A value, or a constant of its type.
+template <class T, class Value>
+concept either = std::same_as<std::remove_const_t<T>, Value>;
+
+inline constexpr bounds any_number{-std::numeric_limits<double>::infinity(),
+                                   std::numeric_limits<double>::infinity()};
+inline constexpr bounds from_0{0.0, std::numeric_limits<double>::infinity()};
+inline constexpr bounds above_0{0.0, std::numeric_limits<double>::infinity(), true};
+inline constexpr bounds up_to_0{-std::numeric_limits<double>::infinity(), 0.0};
+
+/// Meaning of a member, in the words of the manual, and the bounds of its numbers.
+struct about {
+    const char* text;
+    bounds range = any_number;
+};
+
+/// A member that is always there, as null where it has no value. Without it, an optional is left out.
+template <class T>
+struct nullable {
+    std::optional<T> value = {};
+};
+
+} // namespace tactor::detail

@@ -1,0 +1,195 @@
+// SPDX-License-Identifier: MIT
+/// \file
+/// JSON Schemas (draft 2020-12) of values, by their members.
+#pragma once
+
+#include <array>
+#include <concepts>
+#include <cstddef>
+#include <initializer_list>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <type_traits>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include "core/kind_names.hpp"
+#include "core/members.hpp"
+
+namespace tactor::files {
+
+/// Collects the schema of one object, which allows no other member.
+class json_schema {
+public:
+    template <class T>
+    void operator()(const char* name, const T&, const detail::about& what)
+    {
+        add<T>(name, what, true);
+    }
+    template <class T>
+    void operator()(const char* name, const std::optional<T>&, const detail::about& what)
+    {
+        add<T>(name, what, false);
+    }
+    template <class T>
+    void operator()(const char* name, const T*, const detail::about& what)
+    {
+        add<T>(name, what, false);
+    }
+    template <class T>
+    void or_null(const char* name, const std::optional<T>&, const detail::about& what)
+    {
+        add<std::optional<T>>(name, what, true);
+    }
+    template <class Kind>
+    void named(const char* name, const std::string&, const detail::about& what)
+    {
+        add<Kind>(name, what, true);
+    }
+    void one_of(const char* name, std::string_view, std::initializer_list<const char*> all,
+                const detail::about& what)
+    {
+        put(name, described({{"enum", all}}, what), true);
+    }
+    void constant(const char* name, std::string_view text) { put(name, {{"const", text}}, true); }
+    template <class Make>
+    void fact(const char* name, const Make&, const detail::about& what)
+    {
+        (*this)(name, std::remove_cvref_t<std::invoke_result_t<Make>>{}, what);
+    }
+    template <class T, class Take>
+    void with(const char* name, const T& v, const Take&, const detail::about& what)
+    {
+        (*this)(name, v, what);
+    }
+    template <class Body>
+    void object(const char* name, const detail::about& what, const Body& body)
+    {
+        put(name, described(describe_object(body), what), true);
+    }
+    template <class T, class Each>
+    void object_or_null(const char* name, const std::optional<T>&, const detail::about& what,
+                        const Each& each)
+    {
+        const T v{};
+        put(name, described(null_or(describe_object([&](auto& io) { each(io, v); })), what), true);
+    }
+    template <class Body>
+    void part(const char* name, const bool&, const detail::about& what, const Body& body)
+    {
+        put(name, described(describe_object(body), what), false);
+    }
+    template <class T, class Each>
+    void list(const char* name, const std::vector<T>&, const detail::about& what, const Each& each)
+    {
+        T one{};
+        put(name, described(make_list(describe_object([&](auto& io) { each(io, one, 0); })), what), true);
+    }
+    template <class T, class ForEach, class Each>
+    void rows(const char* name, const ForEach&, const detail::about& what, const Each& each)
+    {
+        T one{};
+        put(name, described(make_list(describe_object([&](auto& io) { each(io, one); })), what), true);
+    }
+    /// Describes members that are there only where another one is null; after those that always are.
+    template <class Body>
+    void where_null(const char* name, bool, const Body& body)
+    {
+        condition_ = name;
+        body(*this);
+    }
+    void exactly_one(const char* a, const char* b);
+    void new_line() const noexcept {}
+
+    /// Returns the schema of an object whose members are described by `body(io)`.
+    template <class Body>
+    static nlohmann::ordered_json describe_object(const Body& body)
+    {
+        json_schema io;
+        body(io);
+        return std::move(io).result();
+    }
+
+private:
+    template <class T>
+    void add(const char* name, const detail::about& what, bool required)
+    {
+        put(name, described(kind<T>::schema(what.range), what), required);
+    }
+    void put(const char* name, nlohmann::ordered_json schema, bool required);
+    nlohmann::ordered_json result() &&;
+    static nlohmann::ordered_json described(nlohmann::ordered_json schema, const detail::about& what);
+    static nlohmann::ordered_json make_list(nlohmann::ordered_json items);
+    static nlohmann::ordered_json number(const char* type, const detail::bounds& range);
+    static nlohmann::ordered_json null_or(nlohmann::ordered_json schema);
+
+    template <class T>
+    struct kind {
+        static nlohmann::ordered_json schema(const detail::bounds& range)
+        {
+            if constexpr (std::same_as<T, bool>) {
+                return {{"type", "boolean"}};
+            } else if constexpr (std::same_as<T, std::string>) {
+                return {{"type", "string"}};
+            } else if constexpr (std::integral<T>) {
+                detail::bounds whole = range;
+                if (std::is_unsigned_v<T> && !(whole.low > 0.0))
+                    whole.low = 0.0;
+                return number("integer", whole);
+            } else if constexpr (std::floating_point<T>) {
+                return number("number", range);
+            } else if constexpr (std::is_enum_v<T>) {
+                return {{"enum", detail::kind_names<T>()}};
+            } else {
+                T v{};
+                return describe_object([&v](auto& io) { members(io, v); });
+            }
+        }
+    };
+    template <class T>
+    struct kind<std::optional<T>> {
+        static nlohmann::ordered_json schema(const detail::bounds& range)
+        {
+            return null_or(kind<T>::schema(range));
+        }
+    };
+    template <class T>
+    struct kind<detail::nullable<T>> : kind<std::optional<T>> {
+    };
+    template <class... T>
+    struct kind<std::variant<T...>> {
+        static nlohmann::ordered_json schema(const detail::bounds& range)
+        {
+            return {{"anyOf", {kind<T>::schema(range)...}}};
+        }
+    };
+    template <class T>
+    struct kind<std::vector<T>> {
+        static nlohmann::ordered_json schema(const detail::bounds& range)
+        {
+            return make_list(kind<T>::schema(range));
+        }
+    };
+    template <class T, std::size_t Size>
+    struct kind<std::array<T, Size>> {
+        static nlohmann::ordered_json schema(const detail::bounds& range)
+        {
+            nlohmann::ordered_json j = make_list(kind<T>::schema(range));
+            j["minItems"] = Size;
+            j["maxItems"] = Size;
+            return j;
+        }
+    };
+
+    nlohmann::ordered_json properties_ = nlohmann::ordered_json::object();
+    nlohmann::ordered_json required_ = nlohmann::ordered_json::array();
+    nlohmann::ordered_json one_of_ = {};
+    nlohmann::ordered_json conditional_ = nlohmann::ordered_json::array();
+    std::string condition_ = {}; ///< member that must be null for those that are conditional
+};
+
+} // namespace tactor::files

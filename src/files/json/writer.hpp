@@ -1,0 +1,247 @@
+// SPDX-License-Identifier: MIT
+/// \file
+/// Values as JSON text, by their members.
+#pragma once
+
+#include <array>
+#include <concepts>
+#include <cstddef>
+#include <functional>
+#include <initializer_list>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <type_traits>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include "core/members.hpp"
+
+namespace tactor::files {
+
+/// Takes the next part of a text. Whatever it throws ends the writing.
+using text_sink = std::function<void(std::string_view)>;
+
+/// Appends a number as nlohmann-json writes it: 1.0, not 1; null where it is not finite.
+void append_number(std::string& out, double v);
+/// Appends a text in quotes. Bytes that are no UTF-8 become U+FFFD.
+void append_text(std::string& out, std::string_view text);
+
+/// Writes members as one object into a text, without building a document.
+class json_writer {
+public:
+    /// Both must outlive it. The sink gets the text row by row and leaves it empty; null: nobody does.
+    explicit json_writer(std::string& out, const text_sink* sink = nullptr) : out_(out), sink_(sink) {}
+
+    template <class T>
+    void operator()(const char* name, const T& v, const detail::about&)
+    {
+        begin(name);
+        put(v);
+    }
+    template <class T>
+    void operator()(const char* name, const std::optional<T>& v, const detail::about& what)
+    {
+        if (v)
+            (*this)(name, *v, what);
+    }
+    template <class T>
+    void operator()(const char* name, const T* v, const detail::about& what)
+    {
+        if (v != nullptr)
+            (*this)(name, *v, what);
+    }
+    template <class T>
+    void or_null(const char* name, const std::optional<T>& v, const detail::about&)
+    {
+        begin(name);
+        put(v);
+    }
+    /// Writes a text that is a closed set's name, as a rule.
+    template <class Kind>
+    void named(const char* name, const std::string& v, const detail::about& what)
+    {
+        (*this)(name, v, what);
+    }
+    /// Writes a text that is one of these.
+    void one_of(const char* name, std::string_view text, std::initializer_list<const char*>,
+                const detail::about&)
+    {
+        constant(name, text);
+    }
+    void constant(const char* name, std::string_view text)
+    {
+        begin(name);
+        append_text(out_, text);
+    }
+    /// Writes what follows from other members, and what nobody reads back.
+    template <class Make>
+    void fact(const char* name, const Make& make, const detail::about& what)
+    {
+        (*this)(name, make(), what);
+    }
+    /// Writes a member in another form than the value has it.
+    template <class T, class Take>
+    void with(const char* name, const T& v, const Take&, const detail::about& what)
+    {
+        (*this)(name, v, what);
+    }
+    /// Writes an object whose members are described by `body(io)`.
+    template <class Body>
+    void object(const char* name, const detail::about&, const Body& body)
+    {
+        begin(name);
+        braces(body);
+    }
+    /// The same of a value: each(io, value).
+    template <class T, class Each>
+    void object_or_null(const char* name, const std::optional<T>& v, const detail::about&, const Each& each)
+    {
+        begin(name);
+        if (v)
+            braces([&](auto& io) { each(io, *v); });
+        else
+            out_ += "null";
+    }
+    template <class Body>
+    void part(const char* name, const bool& there, const detail::about& what, const Body& body)
+    {
+        if (there)
+            object(name, what, body);
+    }
+    /// Writes a list of objects, which each(io, value, index) describes.
+    template <class T, class Each>
+    void list(const char* name, const std::vector<T>& all, const detail::about&, const Each& each)
+    {
+        begin(name);
+        out_ += '[';
+        for (std::size_t i = 0; i < all.size(); ++i) {
+            if (i > 0)
+                out_ += ',';
+            braces([&](auto& io) { each(io, all[i], i); });
+        }
+        out_ += ']';
+    }
+    /// Writes a list of which there may be half a million, each on a line: for_each(row) calls row(value).
+    template <class T, class ForEach, class Each>
+    void rows(const char* name, const ForEach& for_each, const detail::about&, const Each& each)
+    {
+        begin(name);
+        out_ += '[';
+        bool first = true;
+        for_each([&](const T& v) {
+            out_ += std::exchange(first, false) ? "\n  " : ",\n  ";
+            braces([&](auto& io) { each(io, v); });
+            pass_on();
+        });
+        out_ += ']';
+    }
+    /// Writes members that are there only where another one is null.
+    template <class Body>
+    void where_null(const char*, bool is_null, const Body& body)
+    {
+        if (is_null)
+            body(*this);
+    }
+    /// Says that of two members there is exactly one.
+    void exactly_one(const char*, const char*) const noexcept {}
+    /// Puts the next member on a line of its own.
+    void new_line() { next_line_ = true; }
+
+    template <class T>
+    void put(const T& v)
+    {
+        if constexpr (std::same_as<T, bool>)
+            out_ += v ? "true" : "false";
+        else if constexpr (std::integral<T>)
+            out_ += std::to_string(v);
+        else if constexpr (std::floating_point<T>)
+            append_number(out_, v);
+        else if constexpr (std::is_enum_v<T>)
+            append_text(out_, to_string(v));
+        else
+            braces([&v](auto& io) { members(io, v); });
+    }
+    void put(const std::string& text) { append_text(out_, text); }
+    template <class T>
+    void put(const std::optional<T>& v)
+    {
+        if (v)
+            put(*v);
+        else
+            out_ += "null";
+    }
+    template <class T>
+    void put(const detail::nullable<T>& v)
+    {
+        put(v.value);
+    }
+    template <class... T>
+    void put(const std::variant<T...>& v)
+    {
+        std::visit([this](const auto& one) { put(one); }, v);
+    }
+    template <class T>
+    void put(const std::vector<T>& all)
+    {
+        brackets(all);
+    }
+    template <class T, std::size_t Size>
+    void put(const std::array<T, Size>& all)
+    {
+        brackets(all);
+    }
+
+private:
+    void begin(const char* name);
+    void pass_on();
+    template <class Body>
+    void braces(const Body& body)
+    {
+        out_ += '{';
+        json_writer inner(out_, sink_);
+        body(inner);
+        out_ += '}';
+    }
+    template <class All>
+    void brackets(const All& all)
+    {
+        out_ += '[';
+        bool first = true;
+        for (const auto& v : all) {
+            if (!std::exchange(first, false))
+                out_ += ',';
+            put(v);
+        }
+        out_ += ']';
+    }
+
+    std::string& out_;
+    const text_sink* sink_;
+    bool first_ = true;
+    bool next_line_ = false;
+};
+
+/// Returns an object whose members are described by `body(io)`.
+template <class Body>
+nlohmann::ordered_json make_object(const Body& body)
+{
+    std::string text = "{";
+    json_writer io(text);
+    body(io);
+    return nlohmann::ordered_json::parse(text + '}');
+}
+
+/// Returns a value as a document.
+template <class T>
+nlohmann::ordered_json make_document(const T& v)
+{
+    std::string text;
+    json_writer(text).put(v);
+    return nlohmann::ordered_json::parse(text);
+}
+
+} // namespace tactor::files

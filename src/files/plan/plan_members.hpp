@@ -1,0 +1,346 @@
+// SPDX-License-Identifier: MIT
+/// \file
+/// The members of tactor-plan/1, in order: what `plan {format} json` writes, what is read back, its schema
+/// and its page of the manual.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include <tactor/percept.hpp>
+#include <tactor/phantom.hpp>
+#include <tactor/tactor.hpp>
+
+#include "core/members.hpp"
+#include "files/plan/plan_sound.hpp"
+
+namespace tactor::files {
+
+using detail::either;
+
+/// A thing that is one number, or one for each of several frequencies in Hz.
+using thresholds = detail::nullable<std::variant<double, std::vector<std::array<double, 2>>>>;
+
+thresholds find_thresholds(const tactor_spec& t);
+void set_thresholds(tactor_spec& t, const thresholds& v);
+
+/// A fitting as x' = a x + c y + e, y' = b x + d y + f, as in SVG.
+struct fit_matrix {
+    double margin_mm = 0.0;
+    std::array<double, 6> matrix = {};
+};
+
+std::optional<fit_matrix> make_matrix(const std::optional<fitting>& f);
+fitting make_fitting(const fit_matrix& m);
+
+/// The mark of each stroke's beginning.
+struct marker {
+    unsigned channel = 0;
+    double duration_s = 0.0;
+};
+
+/// Returns what a stroke's note means, for people; empty for none.
+std::string note_text(note_kind n);
+
+/// Parts of an object that is read. A written one has the same members, as references.
+struct plan_parts {
+    std::string name = {};
+    note_kind note = note_kind::none;
+    double start_s = 0.0;
+    bool follows = true;
+    tactor::plan plan = {};
+    plan_sound sound = {};
+    std::optional<fitting> fit = {};
+    array tactors = {};
+    render_options options = {};
+    std::optional<compensated_plan> moved = {};
+    bool is_sampled = false;
+    double step_s = continuous_step_s;
+    std::uint64_t start_frame = 0;
+    std::uint64_t frames = 0;
+
+    /// Returns the peak of each tactor's channel for amplitude 1; nothing drives one without a value.
+    std::vector<std::optional<double>> peaks_dbfs() const { return {}; }
+    double ramp_s(const burst&) const { return 0.0; }
+    template <class Row>
+    void for_each_burst(const Row&) const
+    {
+    }
+    template <class Row>
+    void for_each_point(const Row&) const
+    {
+    }
+};
+
+template <class Io, either<tactor_spec> Tactor>
+void tactor_members(Io& io, Tactor& t, std::size_t number)
+{
+    io.fact("tactor", [number] { return number; }, {"its number"});
+    io("x_mm", t.position.x_mm, {"its place"});
+    io("y_mm", t.position.y_mm, {"its place"});
+    io("channel", t.channel, {"the channel that drives it"});
+    io("polarity", t.polarity, {"1, or -1 where its samples are inverted", {-1.0, 1.0}});
+    io("gain_db", t.gain_db, {"its gain"});
+    io("max_dbfs", t.max_dbfs, {"the greatest peak that it may be given", detail::up_to_0});
+    io.with("threshold_dbfs", find_thresholds(t), [&t](const auto& v) { set_thresholds(t, v); },
+            {"its measured threshold; a list of [frequency, threshold] where there are several; or null"});
+    io("rise_s", t.rise_s,
+       {"rise time of the actuator; absent where the array says none. Where one is given a burst that sounds "
+        "alone on "
+        "the tactor has a boost, see Slow actuators",
+        {0.0, 1.0, true}});
+    io("displacement_um_at_0dbfs", t.displacement_um_at_0dbfs,
+       {"measured peak displacement at 0 dBFS, um; absent where the array says none", {0.0, 10000.0, true}});
+}
+
+template <class Io, either<array> Array>
+void members(Io& io, Array& a)
+{
+    io("name", a.name, {"name of the array"});
+    io.list("tactors", a.tactors, {"all of them, in order"},
+            [](auto& inner, auto& t, std::size_t number) { tactor_members(inner, t, number); });
+}
+
+template <class Io, either<fit_matrix> Fit>
+void members(Io& io, Fit& f)
+{
+    io("margin_mm", f.margin_mm, {"distance from the array's edge that was asked for", detail::from_0});
+    io("matrix", f.matrix,
+       {"a, b, c, d, e, f of x' = a x + c y + e and y' = b x + d y + f, in mm; all other places in this "
+        "object are x' "
+        "and y'"});
+}
+
+template <class Io, either<burst_envelope> Envelope>
+void members(Io& io, Envelope& e)
+{
+    io("kind", e.kind, {"raised-cosine, linear, exponential or tukey"});
+    io("tukey_part", e.tukey_part,
+       {"of tukey: both ramps together, as a part of the burst", detail::bounds_of::part});
+    io.or_null("attack_s", e.attack_s, {"time in which they rise, or null: as {ramp} says", detail::from_0});
+    io.or_null("release_s", e.release_s, {"time in which they fall, or null: as they rise", detail::from_0});
+}
+
+template <class Io, either<marker> Marker>
+void members(Io& io, Marker& m)
+{
+    io("channel", m.channel, {"its channel"});
+    io("duration_s", m.duration_s, {"its length", detail::above_0});
+}
+
+template <class Io, either<tap> Tap>
+void members(Io& io, Tap& t)
+{
+    constexpr detail::about target{"where the target is then"};
+    constexpr detail::about alone{"where the burst would be felt by itself"};
+    constexpr detail::about felt{"where it is predicted to be felt"};
+    io("onset_s", t.onset_s, {"begin of the burst", detail::from_0});
+    io("target_x_mm", t.target.x_mm, target);
+    io("target_y_mm", t.target.y_mm, target);
+    io("alone_x_mm", t.alone.x_mm, alone);
+    io("alone_y_mm", t.alone.y_mm, alone);
+    io("felt_x_mm", t.felt.x_mm, felt);
+    io("felt_y_mm", t.felt.y_mm, felt);
+}
+
+template <class Io, either<compensated_plan> Compensated>
+void members(Io& io, Compensated& c)
+{
+    constexpr detail::about parameters{"its parameters", detail::above_0};
+    constexpr detail::about residual{
+        "what that leaves of the error, were each burst felt by itself at its own point", detail::from_0};
+    constexpr detail::about predicted{
+        "distance from the places felt to the target, with the phantom's own error; null "
+        "without a burst that is felt",
+        detail::from_0};
+    const auto felt = [&c](auto what) {
+        return [&c, what] { return detail::nullable<double>{summarise(c.taps).*what}; };
+    };
+    io.constant("observer", "low-speed");
+    io("sigma_mm", c.observer.sigma_mm, parameters);
+    io("sigma_v_mm_s", c.observer.sigma_v_mm_s, parameters);
+    io.constant("built_for", "taps");
+    io("bursts_at_edge", c.at_edge,
+       {"how many could not be moved as far as they should, since the array ends"});
+    io("residual_rms_mm", c.residual_rms_mm, residual);
+    io("residual_largest_mm", c.residual_largest_mm, residual);
+    io.fact("predicted_rms_mm", felt(&tap_summary::rms_error_mm), predicted);
+    io.fact("predicted_largest_mm", felt(&tap_summary::largest_error_mm), predicted);
+    io("taps", c.taps, {"as results[].taps of tactor-compare/1"});
+}
+
+template <class Io, either<conflict> Conflict>
+void members(Io& io, Conflict& c)
+{
+    io("tactor", c.tactor, {"number of the tactor"});
+    io("from_s", c.from_s, {"begin and end", detail::from_0});
+    io("to_s", c.to_s, {"begin and end", detail::from_0});
+}
+
+template <class Io, either<meeting> Meeting>
+void members(Io& io, Meeting& m)
+{
+    io("tau_s", m.t_s, {"when the target is there", detail::from_0});
+    io("x_mm", m.position.x_mm, {"where"});
+    io("y_mm", m.position.y_mm, {"where"});
+}
+
+/// Describes what bursts and points have in common.
+template <class Io, either<burst> Burst>
+void place_members(Io& io, Burst& b, const array& a, const char* place, const char* intensity,
+                   const char* drives)
+{
+    io("x_mm", b.position.x_mm, {place});
+    io("y_mm", b.position.y_mm, {place});
+    io("intensity", b.intensity, {intensity, detail::from_0});
+    io.list("drives", b.drives, {drives}, [&a](auto& inner, auto& d, std::size_t) {
+        inner("tactor", d.tactor, {"number of the tactor"});
+        inner.fact("channel", [&] { return a.tactors[d.tactor].channel; }, {"its channel"});
+        inner("amplitude", d.amplitude, {"how strongly; 1 is the intensity asked for", {0.0, 1000.0}});
+    });
+}
+
+template <class Io, either<burst> Burst, class Parts>
+void burst_members(Io& io, Burst& b, const Parts& r)
+{
+    io("onset_s", b.onset_s, {"its begin", detail::from_0});
+    io("duration_s", b.duration_s, {"how long it lasts", detail::from_0});
+    io.fact("ramp_s", [&] { return r.ramp_s(b); }, {"raised cosine at each end of it", detail::from_0});
+    io("tau_s", b.tau_s, {"only of tactile-brush: when the target is at its place", detail::from_0});
+    place_members(
+        io, b, r.tactors, "where it is to be felt; where bursts were moved, where it is played",
+        "the intensity asked for, as the intensity scale and the level of the stroke make it an amplitude",
+        "the tactors that make it, in order");
+}
+
+template <class Io, either<burst> Burst, class Parts>
+void point_members(Io& io, Burst& b, const Parts& r)
+{
+    io("t_s", b.onset_s, {"time of the point", detail::from_0});
+    place_members(io, b, r.tactors, "where the target is",
+                  "the intensity asked for, as the same make it an amplitude",
+                  "the tactors that sound, in order");
+}
+
+template <class Io, class Parts>
+void stroke_members(Io& io, Parts& r)
+{
+    auto& p = r.plan;
+    const auto text = note_text(r.note);
+    io("name", r.name, {"its name, or that of the file"});
+    io("duration_s", p.stroke_duration_s, {"time in which the target moves", detail::above_0});
+    io("length_mm", p.stroke_length_mm, {"length of its path", detail::from_0});
+    io("carrier_hz", p.carrier_hz,
+       {"frequency of the vibration; where it changes, at the beginning", detail::above_0});
+    members(io, r.sound);
+    io.with("note", text.empty() ? std::optional<std::string>() : std::optional(text),
+            [&r](const auto& given) {
+                for (const note_kind n : all_values<note_kind>())
+                    if (given == note_text(n))
+                        r.note = n;
+            },
+            {"only of park2016-1 to -4: that they are reconstructed"});
+    io.with("fit", make_matrix(r.fit),
+            [&r](const auto& given) {
+                if (given)
+                    r.fit = make_fitting(*given);
+            },
+            {"only with {fit}: what became of places as they were drawn"});
+}
+
+template <class Io, class Parts>
+void render_members(Io& io, Parts& r)
+{
+    auto& o = r.options;
+    io("rate", o.rate, {"sample rate in hertz", detail::bounds_of::rate_hz});
+    io("channels", o.channels, {"number of channels"});
+    io("frames", r.frames, {"length of the whole piece"});
+    io("phase", o.phase, {"stroke or burst: where the carrier's phase starts"});
+    io.or_null("ramp_s", o.ramp_s, {"what {ramp} says; null: the default, burst by burst", detail::from_0});
+    io("sl_db", o.sl_db, {"what {sl} says, in dB over each tactor's threshold; only without level_dbfs"});
+    io.with("level_dbfs", o.sl_db ? std::optional<double>() : std::optional(o.level_dbfs),
+            [&o](const auto& given) {
+                if (given)
+                    o.level_dbfs = *given;
+            },
+            {"what {level_dbfs} says; only without sl_db", detail::up_to_0});
+    io.exactly_one("level_dbfs", "sl_db");
+    io("overlap", r.plan.overlap, {"energy, max or sum: what becomes of bursts that overlap on one tactor"});
+    io.fact("peak_dbfs", [&r] { return r.peaks_dbfs(); },
+            {"of each tactor in order: the peak of its channel for amplitude 1, with its gain or threshold "
+             "in it; null "
+             "where the level is above a threshold that it does not have, and nothing drives it"});
+    io.with("envelope",
+            o.envelope == burst_envelope{} ? std::optional<burst_envelope>() : std::optional(o.envelope),
+            [&o](const auto& given) { o.envelope = given.value_or(o.envelope); },
+            {"how bursts rise and fall; absent: by raised cosines of ramp_s"});
+    io.with("marker",
+            detail::nullable<marker>{o.marker_channel ? std::optional(marker{*o.marker_channel, o.marker_s})
+                                                      : std::nullopt},
+            [&o](const auto& given) {
+                if (!given.value)
+                    return;
+                o.marker_channel = given.value->channel;
+                o.marker_s = given.value->duration_s;
+            },
+            {"null, or the mark of each stroke's beginning"});
+}
+
+template <class Io, class Parts>
+void plan_members(Io& io, Parts& r)
+{
+    auto& p = r.plan;
+    io.constant("schema", "tactor-plan/1");
+    io.template named<algorithm_kind>("algorithm", p.algorithm, {"park2016, tactile-brush or continuous"});
+    io.template named<phantom_kind>(
+        "phantom", p.phantom, {"the phantom model: inverse-distance, barycentric, linear, log or gaussian"});
+    io.with("faces", p.faces == faces_kind::delaunay ? std::optional<faces_kind>() : std::optional(p.faces),
+            [&p](const auto& given) { p.faces = given.value_or(p.faces); },
+            {"nearest where the three closest tactors of the array make a phantom; without it it is those of "
+             "the Delaunay "
+             "face, as with {faces=delaunay}"});
+    io("start_s", r.start_s,
+       {"start of the stroke in the piece, which is all strokes of the file; all other times count from "
+        "there",
+        detail::from_0});
+    io("start_frame", r.start_frame, {"the stroke's first frame in the piece"});
+    io("follows", r.follows,
+       {"true where it begins when the stroke before it ends, or the piece begins; false where its start was "
+        "given"});
+    io.object("stroke", {"what is drawn"}, [&r](auto& inner) { stroke_members(inner, r); });
+    io("array", r.tactors, {"where it is drawn"});
+    io.or_null(
+        "soa_s", p.soa_s,
+        {"onset to onset of two bursts; null where that differs from burst to burst", detail::above_0});
+    io("total_s", p.total_s, {"end of the last sound", detail::from_0});
+    io.object("render", {"how the plan becomes samples; the same in all strokes of a file"},
+              [&r](auto& inner) { render_members(inner, r); });
+    io.new_line();
+    io.template rows<burst>(
+        "bursts", [&r](const auto& row) { r.for_each_burst(row); },
+        {"by onset; none of the algorithm continuous"},
+        [&r](auto& inner, auto& b) { burst_members(inner, b, r); });
+    io.new_line();
+    io.part("continuous", r.is_sampled, {"only of the algorithm continuous"}, [&r](auto& inner) {
+        inner("step_s", r.step_s,
+              {"time from point to point; the last is at the end of the stroke", detail::above_0});
+        inner.fact("ramp_s", [&r] { return r.ramp_s({.duration_s = r.plan.stroke_duration_s}); },
+                   {"raised cosine at each end of the stroke", detail::from_0});
+        inner.template rows<burst>(
+            "points", [&r](const auto& row) { r.for_each_point(row); },
+            {"from the stroke's begin to its end"},
+            [&r](auto& innermost, auto& b) { point_members(innermost, b, r); });
+    });
+    io.new_line();
+    io("compensation", r.moved,
+       {"only with {compensate}: for whom bursts were moved; their places are those that are played"});
+    io("conflicts", p.conflicts, {"times in which one tactor serves two bursts"});
+    io("dropped", p.dropped, {"crossings of the grid that {drop_points} left out"});
+    io("warnings", p.warnings, {"texts"});
+}
+
+} // namespace tactor::files
