@@ -77,14 +77,14 @@ TEST_CASE("findings have this form")
 {
     const std::vector<finding> all{
         fine("array", "palm-3x3: 9 tactors"),
-        warning("CPU clock", "governor ondemand: slow just when the audio thread wakes up",
-                "echo performance | sudo tee somewhere"),
+        warning("sound servers", "pipewire (process 812): may take card Tactor at any time",
+                "call the card Tactor"),
         failure("device", error(error_kind::not_available, "PCM \"x\"", "no such PCM", "try y"))};
     CHECK(check_text(all, false) ==
           "ok       array          palm-3x3: 9 tactors\n"
-          "warning  CPU clock      governor ondemand: slow just when the audio thread\n"
-          "                        wakes up\n"
-          "                        -> echo performance | sudo tee somewhere\n"
+          "warning  sound servers  pipewire (process 812): may take card Tactor at any\n"
+          "                        time\n"
+          "                        -> call the card Tactor\n"
           "error    device         PCM \"x\": no such PCM\n"
           "                        -> try y\n"
           "\n1 error, 1 warning, 1 ok\n");

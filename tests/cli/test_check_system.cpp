@@ -24,10 +24,7 @@ public:
         files_.write(file, text);
         return *this;
     }
-    system_facts read(const std::string& kernel = "#1 SMP") const
-    {
-        return read_system({.user = "ann", .kernel = kernel}, files_.path());
-    }
+    system_facts read() const { return read_system({.user = "ann"}, files_.path()); }
     const fs::path& path() const { return files_.path(); }
 
 private:
@@ -44,8 +41,6 @@ system_facts good()
              .memory_bytes = 100U << 20};
     f.sound = {{"/dev/snd/pcmC1D0p", "audio", true}};
     f.gpio = {{"/dev/gpiochip0", "gpio", true}};
-    f.preempts = preemption::realtime;
-    f.governors = {"performance"};
     f.releases_outputs = true;
     return f;
 }
@@ -81,11 +76,9 @@ TEST_CASE("an empty machine is read without complaint")
     const system_facts f = r.read();
     CHECK(f.sound.empty());
     CHECK(f.gpio.empty());
-    CHECK(f.governors.empty());
     CHECK(f.servers.empty());
     CHECK_FALSE(f.keeps_outputs.has_value());
     CHECK_FALSE(f.raspberry_pi);
-    CHECK(f.preempts == preemption::none);
     CHECK(worst_status(check_system(f, {})) == 0);
 }
 
@@ -141,49 +134,6 @@ TEST_CASE("limits below what play asks for are warnings, and errors where real t
     f.own.rights = {.priority = 99, .lockable_bytes = {}};
     CHECK(judged(f, n, "real time").how == level::ok);
     CHECK(judged(f, n, "memory").how == level::ok);
-}
-
-TEST_CASE("the kernel's preemption is read from each possible place")
-{
-    const std::string dynamic = "#1 SMP PREEMPT_DYNAMIC Debian";
-    CHECK(fake_root().read("#1 SMP PREEMPT_RT Debian").preempts == preemption::realtime);
-    CHECK(fake_root().write("sys/kernel/realtime", "1\n").read().preempts == preemption::realtime);
-    CHECK(fake_root().read(dynamic).preempts == preemption::unknown);
-    CHECK(fake_root().read("#1 SMP PREEMPT Debian").preempts == preemption::full);
-    CHECK(fake_root().read("#1 SMP Debian").preempts == preemption::none);
-    const auto debug = [&](const std::string& text) {
-        return fake_root().write("sys/kernel/debug/sched/preempt", text).read(dynamic).preempts;
-    };
-    CHECK(debug("none (voluntary) full\n") == preemption::voluntary);
-    CHECK(debug("none voluntary (full)\n") == preemption::full);
-    CHECK(debug("(none) voluntary full\n") == preemption::none);
-    CHECK(debug("none voluntary full (lazy)\n") == preemption::full);
-    CHECK(fake_root().write("proc/cmdline", "quiet preempt=full\n").read(dynamic).preempts ==
-          preemption::full);
-
-    system_facts f = good();
-    for (const auto p : {preemption::none, preemption::voluntary}) {
-        f.preempts = p;
-        CHECK(judged(f, {}, "kernel").how == level::warning);
-        CHECK(has(judged(f, {}, "kernel").cure, "preempt=full"));
-    }
-    f.preempts = preemption::unknown;
-    CHECK(judged(f, {}, "kernel").how == level::ok);
-}
-
-TEST_CASE("governors of all CPUs are read; any but performance is a warning")
-{
-    const fake_root r;
-    r.write("sys/devices/system/cpu/cpu0/cpufreq/scaling_governor", "schedutil\n")
-        .write("sys/devices/system/cpu/cpu1/cpufreq/scaling_governor", "schedutil\n")
-        .write("sys/devices/system/cpu/cpu2/cpufreq/scaling_governor", "performance\n");
-    CHECK(r.read().governors == std::vector<std::string>{"performance", "schedutil"});
-    system_facts f = good();
-    f.governors = {"ondemand"};
-    CHECK(judged(f, {}, "CPU clock").how == level::warning);
-    CHECK(has(judged(f, {}, "CPU clock").cure, "scaling_governor"));
-    f.governors.clear();
-    CHECK(judged(f, {}, "CPU clock").how == level::ok);
 }
 
 TEST_CASE("running sound servers are found, and udev's word for a card")
@@ -247,96 +197,6 @@ TEST_CASE("lines that keep their level are a warning where an amplifier hangs on
     const finding unknown = judged(other.read(), card_and_amplifier(), "GPIO release");
     CHECK(unknown.how == level::ok);
     CHECK(has(unknown.cure, "tactor off"));
-}
-
-TEST_CASE("a service that switches off after its end is found, and its gaps are named")
-{
-    const fake_root r;
-    r.write("sys/module/pinctrl_rp1/parameters/persist_gpio_outputs", "Y\n");
-    r.write("etc/systemd/system/other.service",
-            "[Service]\nExecStart=/usr/bin/tactor off\n#ExecStopPost=tactor off\n");
-    CHECK(r.read().off_units.empty());
-    CHECK(judged(r.read(), card_and_amplifier(), "GPIO release").how == level::warning);
-    r.write("etc/systemd/system/tactor-play@.service", "[Service]\nExecStopPost=/usr/local/bin/tactor off\n");
-    r.write("run/systemd/system/touch.service.d/off.conf",
-            "[Service]\nExecStopPost=-/usr/bin/tactor off --config a.toml\n");
-    CHECK(r.read().off_units == std::vector<std::string>{"tactor-play@.service", "touch.service"});
-    const finding x = judged(r.read(), card_and_amplifier(), "GPIO release");
-    CHECK(x.how == level::ok);
-    CHECK(has(x.found, "tactor-play@.service, touch.service switches the amplifier off"));
-    CHECK(has(x.found, "killed together outside of it"));
-}
-
-TEST_CASE("addresses of the kernel's tables are read")
-{
-    struct {
-        const char* said;
-        const char* means;
-        bool beyond;
-    } const cases[] = {
-        {"0100007F:0FA1", "127.0.0.1:4001", false},
-        {"00000000:0FA1", "0.0.0.0:4001", true},
-        {"2A01A8C0:0050", "192.168.1.42:80", true},
-        {"00000000000000000000000001000000:0FA1", "[::1]:4001", false},
-        {"00000000000000000000000000000000:0FA1", "[::]:4001", true},
-        {"0000000000000000FFFF00000100007F:0001", "[::ffff:127.0.0.1]:1", false},
-        {"local_address", "", false},
-        {"0100007F", "", false},
-        {"0100007F:", "", false},
-        {"0100007F:10000", "", false},
-        {"0100007G:0FA1", "", false},
-        {"", "", false},
-    };
-    for (const auto& c : cases) {
-        INFO(c.said);
-        const endpoint e = parse_endpoint(c.said);
-        CHECK(e.at == c.means);
-        CHECK(e.beyond_loopback == c.beyond);
-    }
-}
-
-TEST_CASE("listening sockets of services are found and judged")
-{
-    const fake_root r;
-    const auto process = [&](int pid, const std::string& arguments, const std::vector<int>& inodes) {
-        const std::string folder = "proc/" + std::to_string(pid);
-        r.write(folder + "/comm", "tactor\n").write(folder + "/cmdline", arguments).write(folder + "/fd/0");
-        for (std::size_t i = 0; i < inodes.size(); ++i)
-            fs::create_symlink("socket:[" + std::to_string(inodes[i]) + "]",
-                               r.path() / folder / "fd" / std::to_string(3 + i));
-    };
-    process(12, std::string("tactor\0serve\0--tcp\0004001\0", 24), {501, 502, 505, 777});
-    process(7, std::string("tactor\0play\0x.toml\0", 19), {503});
-    r.write("proc/9/comm", "tactorish\n").write("proc/self/comm", "tactor\n");
-    const std::string head =
-        "  sl  local_address rem_address   st tx_queue rx_queue tr tm->when retrnsmt   uid  timeout inode\n";
-    r.write(
-        "proc/net/tcp",
-        head +
-            "   0: 0100007F:0FA1 00000000:0000 0A 00000000:00000000 00:00000000 00000000  1000  0 501 1\n"
-            "   1: 00000000:1F90 00000000:0000 0A 00000000:00000000 00:00000000 00000000  1000  0 503 1\n"
-            "   2: 00000000:1F91 0200000A:9999 01 00000000:00000000 00:00000000 00000000  1000  0 777 1\n");
-    r.write("proc/net/udp", head + " 9: 0100007F:0FA3 00000000:0000 07 0:0 0:0 0 1000 0 505 2\n");
-    r.write("proc/net/unix", "Num       RefCount Protocol Flags    Type St Inode Path\n"
-                             "0000000000000000: 00000002 00000000 00010000 0001 01 502 /run/tactor.sock\n"
-                             "0000000000000000: 00000003 00000000 00000000 0001 03 504 /run/tactor.sock\n");
-    system_facts f = r.read();
-    REQUIRE(f.services.size() == 1);
-    CHECK(f.services[0].who.pid == 12);
-    CHECK(judged(f, {}, "service").how == level::ok);
-    CHECK(judged(f, {}, "service").found ==
-          "tactor (process 12) listens at 127.0.0.1:4001, /run/tactor.sock, osc 127.0.0.1:4003");
-
-    r.write("proc/net/tcp6",
-            head + "   0: 00000000000000000000000000000000:0FA2 0:0 0A 0:0 0:0 0 1000 0 777 1\n");
-    f = r.read();
-    CHECK(judged(f, {}, "service").how == level::warning);
-    CHECK(has(judged(f, {}, "service").found, "[::]:4002: other machines can connect"));
-
-    f.services[0].may_look = false;
-    CHECK(has(judged(f, {}, "service").cure, "sudo tactor check"));
-    f.services.clear();
-    CHECK(judged(f, {}, "service").found == "none runs");
 }
 
 } // namespace check_system_test

@@ -4,7 +4,6 @@
 #include <algorithm>
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include "cli/devices/devices_text.hpp"
 #include "rt/advice.hpp"
@@ -86,37 +85,6 @@ finding check_memory(const system_facts& f, const system_needs& n)
         n.require_realtime);
 }
 
-finding check_kernel(const system_facts& f)
-{
-    constexpr const char* cure = "boot with preempt=full on the kernel's command line, or a PREEMPT_RT "
-                                 "kernel (Debian: linux-image-rt)";
-    switch (f.preempts) {
-    case preemption::realtime:
-        return fine("kernel", "PREEMPT_RT");
-    case preemption::full:
-        return fine("kernel", "fully preemptible");
-    case preemption::voluntary:
-        return warning("kernel", "preempted at some points only (voluntary): wake-ups can be late", cure);
-    case preemption::none:
-        return warning("kernel", "not preemptible: wake-ups can be late", cure);
-    case preemption::unknown:
-        break;
-    }
-    return fine("kernel", "PREEMPT_DYNAMIC; how preemptible, only debugfs tells, and only root",
-                "where there are xruns: preempt=full on the kernel's command line");
-}
-
-finding check_clock(const system_facts& f)
-{
-    const std::string all = fmt::format("{}", fmt::join(f.governors, ", "));
-    if (f.governors.empty())
-        return fine("CPU clock", "not scaled here");
-    if (f.governors == std::vector<std::string>{"performance"})
-        return fine("CPU clock", all);
-    return warning("CPU clock", fmt::format("governor {}: slow just when the audio thread wakes up", all),
-                   "echo performance | sudo tee /sys/devices/system/cpu/cpu*/cpufreq/scaling_governor");
-}
-
 finding check_servers(const system_facts& f, const system_needs& n)
 {
     constexpr const char* rules =
@@ -150,38 +118,6 @@ finding check_servers(const system_facts& f, const system_needs& n)
         rules);
 }
 
-// Returns a finding for each running service, or one if none runs.
-std::vector<finding> check_services(const system_facts& f)
-{
-    std::vector<finding> all;
-    for (const listening_service& s : f.services) {
-        std::vector<std::string> at;
-        bool open = false;
-        for (const endpoint& e : s.endpoints) {
-            at.push_back(e.at);
-            open = open || e.beyond_loopback;
-        }
-        const std::string who = process_names({s.who});
-        if (!s.may_look)
-            all.push_back(fine("service", who + " serves; where it listens its user and root may see",
-                               "sudo tactor check"));
-        else if (at.empty())
-            all.push_back(fine("service", who + " serves, and listens nowhere yet"));
-        else if (open)
-            all.push_back(warning(
-                "service",
-                fmt::format(
-                    "{} listens at {}: other machines can connect, and nothing that is said is encrypted",
-                    who, fmt::join(at, ", ")),
-                "let it listen on 127.0.0.1 and come by ssh -L, or keep others off by a firewall"));
-        else
-            all.push_back(fine("service", fmt::format("{} listens at {}", who, fmt::join(at, ", "))));
-    }
-    if (all.empty())
-        all.push_back(fine("service", "none runs"));
-    return all;
-}
-
 // Checks the level of outputs after their program ended: Raspberry Pi kernels may keep it. That matters if
 // the holder is killed together with the player, so that no process switches the amplifier off.
 std::vector<finding> check_release(const system_facts& f, const system_needs& n)
@@ -191,19 +127,13 @@ std::vector<finding> check_release(const system_facts& f, const system_needs& n)
     constexpr const char* cure =
         "dtparam=strict_gpiod in /boot/firmware/config.txt, then reboot, and a pull-down resistor at the "
         "amplifier's enable input; where tactor is a service, ExecStopPost=tactor off";
-    if (f.keeps_outputs) {
-        const std::string found =
-            fmt::format("{} is Y: a line keeps its level when its program ends", *f.keeps_outputs);
-        if (!f.off_units.empty())
-            return {fine("GPIO release",
-                         fmt::format("{}; {} switches the amplifier off after its service, nothing does "
-                                     "where player and holder are killed together outside of it",
-                                     found, fmt::join(f.off_units, ", ")),
-                         "after such an end: tactor off")};
+    if (f.keeps_outputs)
         return {warning(
             "GPIO release",
-            found + ": nothing switches the amplifier off when player and holder are killed together", cure)};
-    }
+            fmt::format("{} is Y: a line keeps its level when its program ends, so that nothing switches "
+                        "the amplifier off when player and holder are killed together",
+                        *f.keeps_outputs),
+            cure)};
     if (f.releases_outputs)
         return {fine("GPIO release", "lines become inputs when their program ends")};
     if (f.raspberry_pi)
@@ -213,9 +143,7 @@ std::vector<finding> check_release(const system_facts& f, const system_needs& n)
     return {fine("GPIO release",
                  "what becomes of a line whose program was killed is up to its chip: it may stay on when "
                  "player and holder are killed together",
-                 f.off_units.empty()
-                     ? "a pull-down resistor at the amplifier's enable input; after such an end: tactor off"
-                     : "")};
+                 "a pull-down resistor at the amplifier's enable input; after such an end: tactor off")};
 }
 
 } // namespace
@@ -223,16 +151,11 @@ std::vector<finding> check_release(const system_facts& f, const system_needs& n)
 std::vector<finding> check_system(const system_facts& f, const system_needs& n)
 {
     std::vector<finding> all{check_nodes(f, "sound rights", f.sound, "audio", n.card.has_value()),
-                             check_servers(f, n)};
-    for (finding& x : check_services(f))
-        all.push_back(std::move(x));
-    all.push_back(check_nodes(f, "GPIO rights", f.gpio, "gpio", n.gpio));
+                             check_servers(f, n), check_nodes(f, "GPIO rights", f.gpio, "gpio", n.gpio)};
     for (finding& x : check_release(f, n))
         all.push_back(std::move(x));
     all.push_back(check_priority(f, n));
     all.push_back(check_memory(f, n));
-    all.push_back(check_kernel(f));
-    all.push_back(check_clock(f));
     return all;
 }
 

@@ -4,22 +4,47 @@
 #include <algorithm>
 #include <array>
 #include <fstream>
-#include <set>
+#include <sstream>
+#include <system_error>
 
 #include <grp.h>
 #include <pwd.h>
 #include <sys/stat.h>
-#include <sys/utsname.h>
 #include <unistd.h>
 
 #include <fmt/format.h>
 
+#include "core/split.hpp"
 #include "session/own_memory.hpp"
 
 namespace tactor::cli {
 namespace {
 
 namespace fs = std::filesystem;
+
+// Returns the entries of a folder by name; none if it cannot be read.
+std::vector<fs::path> entries(const fs::path& folder)
+{
+    std::vector<fs::path> all;
+    std::error_code gone;
+    for (fs::directory_iterator i(folder, gone), end; !gone && i != end; i.increment(gone))
+        all.push_back(i->path());
+    std::sort(all.begin(), all.end());
+    return all;
+}
+
+// Returns the text of a file without the end of the last line, and without the zeros with which /proc ends
+// texts; empty if it cannot be read. Reads by operator<<, which does not throw if the process ends meanwhile.
+std::string read_trimmed(const fs::path& file)
+{
+    std::ifstream in(file, std::ios::binary);
+    std::ostringstream text;
+    text << in.rdbuf();
+    std::string s = text.str();
+    while (!s.empty() && (s.back() == '\n' || s.back() == '\0'))
+        s.pop_back();
+    return s;
+}
 
 std::string group_name(gid_t id)
 {
@@ -56,69 +81,19 @@ bool has(const std::string& text, const char* part)
     return text.find(part) != std::string::npos;
 }
 
-// Finds the preemption in force, which is in brackets: "none voluntary (full)". Older kernels have it only in
-// their version.
-preemption find_preemption(const std::string& kernel, const fs::path& root)
-{
-    if (read_trimmed(root / "sys/kernel/realtime") == "1" || has(kernel, "PREEMPT_RT"))
-        return preemption::realtime;
-    const std::string debug = read_trimmed(root / "sys/kernel/debug/sched/preempt");
-    const std::string line = fmt::format(" {} ", read_trimmed(root / "proc/cmdline"));
-    const auto chosen = [&](const char* name) {
-        return debug.empty() ? has(line, fmt::format(" preempt={} ", name).c_str())
-                             : has(debug, fmt::format("({})", name).c_str());
-    };
-    if (chosen("full") || chosen("lazy"))
-        return preemption::full;
-    if (chosen("voluntary"))
-        return preemption::voluntary;
-    if (chosen("none"))
-        return preemption::none;
-    if (has(kernel, "PREEMPT_DYNAMIC"))
-        return preemption::unknown;
-    return has(kernel, "PREEMPT") ? preemption::full : preemption::none;
-}
-
 std::vector<process_info> find_sound_servers(const fs::path& root)
 {
     constexpr std::array known{"pulseaudio",  "pipewire", "pipewire-pulse",
                                "wireplumber", "jackd",    "jackdbus"};
     std::vector<process_info> all;
-    for (const process_folder& process : processes(root)) {
-        const std::string program = read_trimmed(process.path / "comm");
+    for (const fs::path& process : entries(root / "proc")) {
+        const auto pid = detail::number_in<int>(process.filename().string());
+        const std::string program = pid ? read_trimmed(process / "comm") : "";
         if (std::find(known.begin(), known.end(), program) != known.end())
-            all.push_back({process.pid, program});
+            all.push_back({*pid, program});
     }
+    std::sort(all.begin(), all.end(), [](const auto& a, const auto& b) { return a.pid < b.pid; });
     return all;
-}
-
-bool switches_off(const fs::path& unit)
-{
-    std::ifstream in(unit);
-    for (std::string line; std::getline(in, line);)
-        if (line.starts_with("ExecStopPost=") && has(line, "tactor off"))
-            return true;
-    return false;
-}
-
-// Returns the units of the system that switch the amplifier off, also by drop-ins
-// ("tactor-play@.service.d/off.conf"), each once.
-std::vector<std::string> find_off_units(const fs::path& root)
-{
-    std::set<std::string> all;
-    for (const char* folder : {"etc/systemd/system", "run/systemd/system", "usr/local/lib/systemd/system",
-                               "usr/lib/systemd/system"})
-        for (const fs::path& f : entries(root / folder)) {
-            const std::string name = f.filename().string();
-            if (name.ends_with(".service") && switches_off(f))
-                all.insert(name);
-            if (!name.ends_with(".service.d"))
-                continue;
-            const std::vector<fs::path> parts = entries(f);
-            if (std::any_of(parts.begin(), parts.end(), switches_off))
-                all.insert(name.substr(0, name.size() - 2));
-        }
-    return {all.begin(), all.end()};
 }
 
 bool is_playback(const std::string& name)
@@ -146,9 +121,6 @@ own_facts read_own()
         f.groups.push_back(group_name(id));
     f.rights = probe_realtime_rights();
     f.memory_bytes = session::memory_to_lock();
-    utsname u{};
-    if (::uname(&u) == 0)
-        f.kernel = u.version;
     return f;
 }
 
@@ -158,14 +130,7 @@ system_facts read_system(own_facts own, const fs::path& root)
     f.joined = find_groups(own.user, root / "etc/group");
     f.sound = nodes(root / "dev/snd", is_playback);
     f.gpio = nodes(root / "dev", is_chip);
-    f.preempts = find_preemption(own.kernel, root);
-    std::set<std::string> governors;
-    for (const fs::path& cpu : entries(root / "sys/devices/system/cpu"))
-        if (const std::string g = read_trimmed(cpu / "cpufreq/scaling_governor"); !g.empty())
-            governors.insert(g);
-    f.governors.assign(governors.begin(), governors.end());
     f.servers = find_sound_servers(root);
-    f.services = find_services(root);
     for (const fs::path& module : entries(root / "sys/module")) {
         const fs::path file = module / "parameters/persist_gpio_outputs";
         const std::string value = read_trimmed(file);
@@ -174,7 +139,6 @@ system_facts read_system(own_facts own, const fs::path& root)
         else if (!value.empty())
             f.releases_outputs = true;
     }
-    f.off_units = find_off_units(root);
     f.raspberry_pi = has(read_trimmed(root / "proc/device-tree/model"), "Raspberry Pi");
     f.own = std::move(own);
     return f;
