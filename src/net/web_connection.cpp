@@ -66,6 +66,7 @@ private:
     void send_response();
     void upgrade();
     // WebSocket.
+    void look_after(bool is_read);
     void read() override;
     void received();
     void write() override;
@@ -80,7 +81,9 @@ private:
     http::response<http::string_body> response_;
     std::optional<websocket::stream<socket_type&>> ws_;
     websocket::close_reason why_{websocket::close_code::going_away};
-    bool answered_ = false; ///< with a page or a refusal
+    bool answered_ = false;   ///< with a page or a refusal
+    bool looks_ = false;      ///< whether a browser disappeared
+    bool is_reading_ = false; ///< a part of a message
 };
 
 web_connection::web_connection(socket_type s, const message_limits& l, std::vector<std::string> hosts)
@@ -194,14 +197,12 @@ void web_connection::upgrade()
     if (!calls().upgrade())
         return respond({503, "text/plain", "there is no place, try again later\n", ""});
     ws_.emplace(socket_);
-    websocket::stream_base::timeout t{};
-    t.handshake_timeout = steady_seconds(limits().message_s);
-    // Pings detect a browser that disappeared, or that stays within a frame's head.
-    t.idle_timeout = std::chrono::seconds(20);
-    t.keep_alive_pings = true;
-    ws_->set_option(t);
+    look_after(true);
     ws_->read_message_max(limits().message_bytes);
-    ws_->auto_fragment(false);
+    // Pings and their answers go between the pieces of a long message: a slow link may take longer than 20 s
+    // for it.
+    ws_->auto_fragment(true);
+    ws_->write_buffer_bytes(large_message);
     ws_->text(true);
     ws_->set_option(websocket::stream_base::decorator(
         [](websocket::response_type& r) { r.set(http::field::server, "tactor"); }));
@@ -223,12 +224,28 @@ void web_connection::upgrade()
     });
 }
 
+// Looks every 10 s whether a browser disappeared, or stays within a frame's head; but not while nothing is
+// read, which its answer to a ping would not be either.
+void web_connection::look_after(bool is_read)
+{
+    websocket::stream_base::timeout t{};
+    t.handshake_timeout = steady_seconds(limits().message_s);
+    t.idle_timeout = is_read ? std::chrono::seconds(20) : websocket::stream_base::none();
+    t.keep_alive_pings = is_read;
+    ws_->set_option(t);
+    looks_ = is_read;
+}
+
 void web_connection::read()
 {
     if (!reads())
         return;
+    if (!looks_)
+        look_after(true);
+    is_reading_ = true;
     ws_->async_read_some(buffer_, read_at_once,
                          [this, self = shared_from_this()](const beast::error_code& e, std::size_t) {
+                             is_reading_ = false;
                              if (closed())
                                  return;
                              if (e)
@@ -257,6 +274,8 @@ void web_connection::received()
     std::vector<std::string> parts;
     parts.push_back(std::move(text));
     handle_large(std::move(parts));
+    if (!is_reading_)
+        look_after(false);
 }
 
 void web_connection::write()

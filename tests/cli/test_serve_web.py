@@ -238,6 +238,19 @@ class Web(ToolTest):
         self.assertGreater(len(r["base64"]), 10_000_000)
         self.assertEqual(p.call("status")["result"]["clients"], 1)
 
+    def test_a_long_message_lets_control_frames_pass(self):
+        p = self.websocket(self.serve())
+        p.frame(TEXT, json.dumps({"jsonrpc": "2.0", "id": 1, "method": "export", "params": {
+            "path": "M 0 0 L 40 40", "options": {"duration": 12}, "as": "wav"}}).encode())
+        kind, _ = p.next_frame()
+        self.assertEqual((kind, p.is_last), (TEXT, False))
+        p.frame(PING, b"are you there")
+        while kind != PONG:
+            kind, payload = p.next_frame()
+            self.assertIn(kind, (CONTINUATION, PONG))
+            self.assertFalse(kind == CONTINUATION and p.is_last, "the whole message came first")
+        self.assertEqual(payload, b"are you there")
+
     def test_a_leaving_client_ends_live_strokes(self):
         s = self.serve()
         p = self.websocket(s)

@@ -90,17 +90,22 @@ class Peer:
             size, = struct.unpack("!H", self.take(2))
         elif size == 127:
             size, = struct.unpack("!Q", self.take(8))
-        assert first & 0x80, "not in pieces"
+        self.is_last = bool(first & 0x80)
         return first & 0x0F, self.take(size)
 
     def text(self):
-        """Returns the next message of text."""
+        """Returns the next message of text; answers pings as a browser does."""
+        pieces = []
         while True:
             kind, payload = self.next_frame()
-            if kind == TEXT:
-                return payload
+            if kind == PING:
+                self.frame(PONG, payload)
             if kind == CLOSE:
                 raise EOFError(payload)
+            if kind in (TEXT, CONTINUATION):
+                pieces.append(payload)
+                if self.is_last:
+                    return b"".join(pieces)
 
     def end(self):
         """Returns the close frame's code; None for none. Its text is then in `reason`."""
