@@ -3,7 +3,6 @@
 /// Arrays, what their files say, and strokes, as TOML that load_setup() and load_strokes() read again.
 #pragma once
 
-#include <filesystem>
 #include <span>
 #include <string>
 #include <string_view>
@@ -38,12 +37,5 @@ std::string stroke_text(const stroke& s);
 /// Writes that, or a table [[stroke]] for each of several; each may start after the one before it.
 /// \throws error (bad_input) as above, and for a start that counts from a group (start_anchor::back).
 std::string strokes_text(std::span<const stroke> all);
-
-/// Returns the text of an array or configuration file with other channels, one for each tactor in order. The
-/// rest stays as it is, comments too. May block on the file system.
-/// \throws error (bad_input): what load_setup() throws; no array in the file; a wrong number of channels;
-///         channels that the file cannot have (two alike, more than [output] says). The text itself is
-///         checked: what it says is what was asked for.
-std::string with_channels(const std::filesystem::path& file, std::span<const unsigned> channels);
 
 } // namespace tactor::detail

@@ -9,6 +9,7 @@ import signal
 import struct
 import subprocess
 import termios
+import tomllib
 
 from harness import GRID, PATIENCE_S, TOOL, ToolTest, main
 
@@ -44,27 +45,30 @@ class Walk(ToolTest):
         self.assertIn("The map is right.", r.stdout)
         self.assertEqual(set(raw[-2:]), {0})
 
-    def test_answers_become_a_map_in_the_text_of_the_file(self):
+    def test_answers_become_a_new_file(self):
         self.write("a.toml", GRID)
         r = self.walk([1, 0], "--array", "a.toml", "-o", "felt.toml")
         self.assertEqual(r.returncode, 0, r.stderr)
         self.assertIn("tactors 0 to 1 are on channels 1, 0", r.stdout)
-        self.assertEqual((self.dir / "felt.toml").read_text(),
-                         GRID.replace("channel = 1", "channel = 0") + "\n[[tactor]]\ntactor = 0\nchannel = 1\n")
         self.assertEqual((self.dir / "a.toml").read_text(), GRID)
         self.assertEqual(self.channels("felt.toml"), [1, 0])
 
-    def test_a_preset_and_a_file_elsewhere_become_files_that_name_them(self):
+    def test_the_new_file_says_all_that_the_old_one_does(self):
         r = self.walk([1, 0, 2, 3, 4, 5, 6, 7], "--array", "palm-2x4", "-D", "null", "-o", "palm.toml")
         self.assertEqual(r.returncode, 0, r.stderr)
         self.assertEqual(self.channels("palm.toml"), [1, 0, 2, 3, 4, 5, 6, 7])
         self.write("base/a.toml", GRID)
-        self.write("base/b.toml", '[array]\nfile = "a.toml"\n[limits]\nmax_drive_s = 3\n')
+        self.write("base/b.toml", '[array]\nfile = "a.toml"\n[limits]\nmax_drive_s = 3\n[sync]\nchannel = 4\n'
+                                  '[defaults]\nlevel_dbfs = -40\n')
         self.write("out/keep", "")
         r = self.walk([1, 0], "--array", "base/b.toml", "-o", "out/felt.toml")
         self.assertEqual(r.returncode, 0, r.stderr)
         self.assertEqual(self.channels("out/felt.toml"), [1, 0])
+        (self.dir / "base/a.toml").unlink()
         self.assertIn("each at most 3 s", self.ok("check", "--array", "out/felt.toml").stdout)
+        felt = tomllib.loads((self.dir / "out/felt.toml").read_text())
+        self.assertEqual((felt["sync"], felt["defaults"]), ({"channel": 4}, {"level_dbfs": -40}))
+        self.write("base/a.toml", GRID)
         # The configuration's own array as well.
         r = self.walk([1, 0], "--config", "base/a.toml", "-o", "felt.toml")
         self.assertEqual((r.returncode, self.channels("felt.toml")), (0, [1, 0]), r.stderr)

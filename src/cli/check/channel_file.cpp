@@ -2,13 +2,12 @@
 #include "cli/check/walk_session.hpp"
 
 #include <cerrno>
+#include <cstdio>
 #include <cstring>
 #include <filesystem>
 #include <system_error>
 
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include "files/setup_text.hpp"
 
@@ -21,85 +20,6 @@ error already_there(const std::string& name)
 {
     return {error_kind::bad_input, name, "there is such a file already",
             "choose another name: it is not overwritten"};
-}
-
-// Returns the name of a file as another file must write it; the name used here if that cannot be found.
-std::string name_in(const std::string& name, const std::string& file)
-{
-    std::error_code failed;
-    const fs::path whole = fs::absolute(file, failed);
-    if (failed)
-        return file;
-    const fs::path folder = fs::absolute(name, failed).parent_path();
-    const fs::path near = failed ? whole : fs::proximate(whole, folder, failed);
-    return failed ? whole.string() : near.string();
-}
-
-// Returns the text of an array file that takes the array from its file or preset and changes channels only.
-std::string overlay(const std::string& name, const environment& e, const std::vector<unsigned>& channels)
-{
-    std::string base = fmt::format("preset = {}", detail::toml_string(e.tactors.name));
-    if (!e.array_file.empty())
-        base = fmt::format("file = {}", detail::toml_string(name_in(name, e.array_file)));
-    std::string s =
-        fmt::format("# Channels as felt on a walk (tactor check --walk).\n[array]\nname = {}\n{}\n",
-                    detail::toml_string(e.tactors.name), base);
-    for (std::size_t i = 0; i < channels.size(); ++i)
-        if (channels[i] != e.tactors.tactors[i].channel)
-            s += fmt::format("\n[[tactor]]\ntactor = {}\nchannel = {}\n", i, channels[i]);
-    return s;
-}
-
-// Writes a new file. output_file would replace an existing one.
-void write_new(const std::string& name, const std::string& text)
-{
-    const int fd = ::open(name.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-    if (fd < 0 && errno == EEXIST)
-        throw already_there(name);
-    if (fd < 0)
-        throw error(error_kind::runtime, name, std::strerror(errno));
-    std::size_t done = 0;
-    int code = 0;
-    while (done < text.size() && code == 0) {
-        const ssize_t n = ::write(fd, text.data() + done, text.size() - done);
-        if (n > 0)
-            done += static_cast<std::size_t>(n);
-        else if (errno != EINTR)
-            code = errno;
-    }
-    if (::close(fd) != 0 && code == 0)
-        code = errno;
-    if (code == 0)
-        return;
-    ::unlink(name.c_str());
-    throw error(error_kind::runtime, name, std::strerror(code));
-}
-
-bool has_channels(const std::string& name, const std::vector<unsigned>& channels)
-{
-    const setup s = load_setup(name);
-    if (!s.array || s.array->tactors.size() != channels.size())
-        return false;
-    for (std::size_t i = 0; i < channels.size(); ++i)
-        if (s.array->tactors[i].channel != channels[i])
-            return false;
-    return true;
-}
-
-// Writes a file and reads it back. Returns false, and removes it, if its channels are not these, e.g. because
-// it names other files.
-bool try_text(const std::string& name, const std::string& text, const std::vector<unsigned>& channels)
-{
-    write_new(name, text);
-    bool good = false;
-    try {
-        good = has_channels(name, channels);
-    } catch (const error&) {
-        good = false;
-    }
-    if (!good)
-        ::unlink(name.c_str());
-    return good;
 }
 
 } // namespace
@@ -117,18 +37,26 @@ void check_new_file(const std::string& name)
 
 void write_channel_file(const std::string& name, const environment& e, const std::vector<unsigned>& channels)
 {
-    if (!e.array_file.empty()) {
-        std::string text;
-        try {
-            text = detail::with_channels(e.array_file, channels);
-        } catch (const error&) {
-            text.clear(); // the overlay has them
-        }
-        if (!text.empty() && try_text(name, text, channels))
-            return;
-    }
-    if (!try_text(name, overlay(name, e, channels), channels))
-        throw error(error_kind::runtime, name, "the channel map cannot be written", "change it by hand");
+    const setup besides = e.array_file.empty() ? setup{} : load_setup(e.array_file);
+    array felt = e.tactors;
+    for (std::size_t i = 0; i < channels.size(); ++i)
+        felt.tactors[i].channel = channels[i];
+    const std::string text = "# Channels as felt on a walk (tactor check --walk).\n" +
+                             detail::array_text(felt, besides) +
+                             (besides.calibration ? detail::origin_text(*besides.calibration) : "");
+    // output_file would replace an existing one.
+    std::FILE* const file = std::fopen(name.c_str(), "wxe");
+    if (file == nullptr && errno == EEXIST)
+        throw already_there(name);
+    if (file == nullptr)
+        throw error(error_kind::runtime, name, std::strerror(errno));
+    const bool whole = std::fputs(text.c_str(), file) >= 0;
+    const int code = errno;
+    if (std::fclose(file) == 0 && whole)
+        return;
+    const int reason = whole ? errno : code;
+    std::remove(name.c_str());
+    throw error(error_kind::runtime, name, std::strerror(reason));
 }
 
 } // namespace tactor::cli
