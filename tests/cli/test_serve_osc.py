@@ -79,9 +79,6 @@ class ServeOsc(ToolTest):
         a = Sender(self, s)  # loopback is heard
         a.say("/tactor/nonsense")
         self.assertEqual(a.next()[:2], ["/tactor/error", "/tactor/nonsense"])
-        r = self.run_tool("check", "-D", "null", "--format", "json")
-        self.assertIn(f"osc {s.where['osc']}", r.stdout)
-        self.assertIn("other machines can connect", r.stdout)
 
     def test_another_address_of_this_machine_is_heard_only_as_a_peer(self):
         own = [a for a in subprocess.run(["hostname", "-I"], capture_output=True, text=True, check=False).stdout.split() if "." in a]
