@@ -55,7 +55,6 @@ ONLY_IN = {
     "toml++/": ["src/files/", "src/study/"],
     "boost/polygon": ["src/plan/"],
     "boost/asio": ["src/engine/", "src/net/", "src/server/", "include/tactor/asio.hpp"],
-    "sndfile": ["src/files/sound_file_sndfile.cpp"],
     "CLI/": ["src/cli/"],
     "pybind11/": ["src/python/"],
     "cairo": ["src/plot/"],

@@ -92,9 +92,8 @@ struct modulation {
 /// \throws error (bad_input).
 [[nodiscard]] TACTOR_API modulation parse_modulation(std::string_view text);
 
-/// Reads a WAV file (RIFF, RF64 or BW64) of one channel: integers of 8 to 32 bits, A-law, u-law, or floats of
-/// 32 or 64 bits. Needs libsndfile; the first call loads it.
-/// \throws error that names the file: bad_input; not_available if libsndfile is missing.
+/// Reads a WAV file (RIFF, RF64 or BW64) of one channel: integers of 8 to 32 bits, or floats of 32 or 64
+/// bits. \throws error (bad_input) that names the file.
 [[nodiscard]] TACTOR_API recording load_recording(const std::filesystem::path& file);
 
 /// Checks ranges. The constructor of a score checks values that depend on the sample rate.

@@ -59,7 +59,7 @@ recording parse_recording(std::string_view bytes, const std::string& name)
     const auto shared = std::make_shared<recording>();
     shared->file = name;
     shared->rate_hz = parts.format.rate;
-    shared->samples = decode_wav(parts, most_recording_samples + 1, name);
+    shared->samples = decode_wav(parts, most_recording_samples + 1);
     shared->sha256 = sha256_text(bytes);
     shared->missing = (parts.announced - parts.samples.size()) / parts.format.bytes;
     as_texture.recorded = shared;

@@ -14,7 +14,7 @@ namespace tactor::detail {
 
 /// A format chunk, checked.
 struct wav_format {
-    std::uint16_t tag = 0; ///< 1 integers, 3 floats, 6 A-law, 7 u-law
+    std::uint16_t tag = 0; ///< 1 integers, 3 floats
     std::uint16_t channels = 0;
     std::uint32_t rate = 0;
     std::uint16_t bits = 0;  ///< of a sample
@@ -33,9 +33,8 @@ struct wav_parts {
 /// Finds format and samples. \throws error (bad_input) with `name`.
 wav_parts find_wav_parts(std::string_view file, const std::string& name);
 
-/// Returns the first `most` samples of one channel, integers as fractions of full scale, by libsndfile.
-/// \throws error: bad_input with `name`; not_available where libsndfile is missing.
-std::vector<float> decode_wav(const wav_parts& parts, std::size_t most, const std::string& name);
+/// Returns the first `most` samples of one channel, integers as fractions of full scale.
+std::vector<float> decode_wav(const wav_parts& parts, std::size_t most);
 
 /// Reads the bytes of a WAV file; `name` stands for it in messages. \throws error (bad_input).
 recording parse_recording(std::string_view bytes, const std::string& name);

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: MIT
-// The chunks of a WAV file. libsndfile 1.2 reads most files as recorders write them, but finds no samples in
-// one whose size was never filled in, refuses BW64 and a chunk of odd size without its padding, and guesses
-// what 24 bits in 32 are (Debian 12 and 13): it gets samples without a header.
+// The chunks of a WAV file, and its samples. libsndfile 1.2 finds no samples in a file whose size was never
+// filled in, refuses BW64 and a chunk of odd size without its padding, and guesses what 24 bits in 32 are
+// (Debian 12 and 13).
 #include <algorithm>
+#include <array>
 #include <bit>
+#include <cstddef>
 #include <cstring>
 #include <optional>
 
@@ -21,8 +23,6 @@ static_assert(std::endian::native == std::endian::little, "WAV files are little-
 
 constexpr std::uint16_t integers = 1;
 constexpr std::uint16_t floats = 3;
-constexpr std::uint16_t a_law = 6;
-constexpr std::uint16_t u_law = 7;
 constexpr std::uint16_t extensible = 0xFFFE;
 constexpr std::uint32_t elsewhere = 0xFFFFFFFF; ///< the size is in the chunk ds64
 /// Recorders that write to a pipe announce about 2 GB or 4 GB, more than a recording may have.
@@ -57,8 +57,7 @@ wav_format read_format(std::string_view chunk, const std::string& name)
                    "give one, such as by: sox IN OUT remix 1");
     f.bytes = frame_bytes == 0 ? static_cast<std::uint16_t>((f.bits + 7) / 8) : frame_bytes;
     const bool known = (f.tag == integers && f.bits >= 1 && f.bits <= 32) ||
-                       (f.tag == floats && (f.bits == 32 || f.bits == 64)) ||
-                       ((f.tag == a_law || f.tag == u_law) && f.bits == 8);
+                       (f.tag == floats && (f.bits == 32 || f.bits == 64));
     const bool fits = f.bytes == (f.bits + 7) / 8 || (f.tag == integers && f.bytes == 4);
     if (!known || !fits)
         refuse_wav(name,
@@ -105,7 +104,47 @@ std::optional<std::uint64_t> announced_bytes(std::string_view file, std::size_t 
     return size >= open_from ? std::nullopt : std::optional<std::uint64_t>(size);
 }
 
+/// Returns true if 24 bits are the upper three bytes of four (Microsoft); those of ALSA (S24_LE) and of what
+/// records with it have the lower three and, above, their sign, zeros or anything.
+bool is_in_upper_bytes(std::string_view samples)
+{
+    bool signs_only = true;
+    for (std::size_t i = 0; i + 4 <= samples.size(); i += 4) {
+        const bool negative = (static_cast<unsigned char>(samples[i + 2]) & 0x80U) != 0;
+        if (samples[i] != '\0')
+            return false;
+        signs_only = signs_only && (samples[i + 3] == '\0' || (negative && samples[i + 3] == '\xFF'));
+    }
+    return !signs_only;
+}
+
+/// Returns an integer of that many bytes as a fraction of full scale.
+float decode_integer(std::string_view sample, std::size_t bytes)
+{
+    if (bytes == 1)
+        return (static_cast<float>(get<std::uint8_t>(sample, 0)) - 128.0F) / 128.0F;
+    std::array<char, 4> upper{};
+    std::copy_n(sample.begin(), bytes, upper.end() - static_cast<std::ptrdiff_t>(bytes));
+    return static_cast<float>(std::bit_cast<std::int32_t>(upper)) * 0x1p-31F;
+}
+
 } // namespace
+
+std::vector<float> decode_wav(const wav_parts& parts, std::size_t most)
+{
+    const wav_format& f = parts.format;
+    const std::string_view samples = parts.samples.substr(0, most * f.bytes);
+    const bool is_lower = f.tag == integers && f.bytes == 4 && f.bits <= 24 && !is_in_upper_bytes(samples);
+    std::vector<float> x;
+    x.reserve(samples.size() / f.bytes);
+    for (std::size_t at = 0; at + f.bytes <= samples.size(); at += f.bytes) {
+        const std::string_view one = samples.substr(at, f.bytes);
+        x.push_back(f.tag == integers ? decode_integer(one, is_lower ? 3 : f.bytes)
+                    : f.bits == 32    ? get<float>(one, 0)
+                                      : static_cast<float>(get<double>(one, 0)));
+    }
+    return x;
+}
 
 wav_parts find_wav_parts(std::string_view file, const std::string& name)
 {

@@ -38,32 +38,28 @@ call_table file_calls(const call_things& t)
     write_wav(score(make_grid("one", 1, 1, 20.0, 20.0), short_burst), format_kind::s16, wave_file);
     const auto from = std::make_shared<detail::owned_fd>();
     const score sound(t.a, t.p);
-    return
-    {
+    return {
         {"stroke_presets", [] { return stroke_presets().size(); }},
-            {"preset_stroke", [] { return preset_stroke("park2016-4"); }},
-            {"preset_stroke, unknown", [] { return preset_stroke("park2016-5"); }},
-            {"stroke_shapes", [] { return stroke_shapes().size(); }},
-            {"shape_stroke", [] { return shape_stroke("spiral"); }},
-            {"shape_stroke, unknown", [] { return shape_stroke("square"); }},
-            {"load_strokes", [csv_file] { return load_strokes(csv_file); }, opens},
-            {"load_strokes, of TOML", [toml_file] { return load_strokes(toml_file); }, opens_ends},
-            {"load_strokes", [from] { return load_strokes(from->get(), "input"); }, plain,
-             [from, csv_file] { *from = detail::owned_fd(::open(csv_file.c_str(), O_RDONLY | O_CLOEXEC)); }},
-            {"parse_strokes_toml", [] { return parse_strokes_toml(toml_text, "s.toml"); }, ends},
-            {"parse_strokes_csv", [] { return parse_strokes_csv(csv_text, "s.csv"); }},
-            {"parse_strokes_svg", [] { return parse_strokes_svg(svg_text, "s.svg"); }},
-            {"parse_strokes", [] { return parse_strokes(svg_text, "input"); }},
-            {"parse_strokes, of TOML", [] { return parse_strokes(toml_text, "input"); }, ends},
-            {"load_setup", [array_file] { return load_setup(array_file); }, opens_ends},
-            {"parse_setup", [] { return parse_setup(array_text, "a.toml"); }, ends},
-            {"parse_waveform, of noise", [] { return parse_waveform("noise:50-500"); }},
-#if TACTOR_HAS_RECORDINGS
-            {"parse_waveform", [wave_file] { return parse_waveform(wave_file.string()); }, opens},
-            {"load_recording", [wave_file] { return load_recording(wave_file); }, opens},
-#endif
-            {"write_wav", [sound, &t] { write_wav(sound, format_kind::s16, t.here.path() / "x.wav"); },
-             opens},
+        {"preset_stroke", [] { return preset_stroke("park2016-4"); }},
+        {"preset_stroke, unknown", [] { return preset_stroke("park2016-5"); }},
+        {"stroke_shapes", [] { return stroke_shapes().size(); }},
+        {"shape_stroke", [] { return shape_stroke("spiral"); }},
+        {"shape_stroke, unknown", [] { return shape_stroke("square"); }},
+        {"load_strokes", [csv_file] { return load_strokes(csv_file); }, opens},
+        {"load_strokes, of TOML", [toml_file] { return load_strokes(toml_file); }, opens_ends},
+        {"load_strokes", [from] { return load_strokes(from->get(), "input"); }, plain,
+         [from, csv_file] { *from = detail::owned_fd(::open(csv_file.c_str(), O_RDONLY | O_CLOEXEC)); }},
+        {"parse_strokes_toml", [] { return parse_strokes_toml(toml_text, "s.toml"); }, ends},
+        {"parse_strokes_csv", [] { return parse_strokes_csv(csv_text, "s.csv"); }},
+        {"parse_strokes_svg", [] { return parse_strokes_svg(svg_text, "s.svg"); }},
+        {"parse_strokes", [] { return parse_strokes(svg_text, "input"); }},
+        {"parse_strokes, of TOML", [] { return parse_strokes(toml_text, "input"); }, ends},
+        {"load_setup", [array_file] { return load_setup(array_file); }, opens_ends},
+        {"parse_setup", [] { return parse_setup(array_text, "a.toml"); }, ends},
+        {"parse_waveform, of noise", [] { return parse_waveform("noise:50-500"); }},
+        {"parse_waveform", [wave_file] { return parse_waveform(wave_file.string()); }, opens},
+        {"load_recording", [wave_file] { return load_recording(wave_file); }, opens},
+        {"write_wav", [sound, &t] { write_wav(sound, format_kind::s16, t.here.path() / "x.wav"); }, opens},
     };
 }
 

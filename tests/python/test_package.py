@@ -86,7 +86,7 @@ def test_a_wheel_holds_the_package_alone():
         pytest.skip("the package is not installed by pip: what a wheel holds is not seen")
     tops = {f.parts[0] for f in files}
     assert tops == {"tactor", f"tactor-{tactor.__version__}.dist-info"}, tops
-    assert {f.suffix for f in files if f.parts[0] == "tactor"} <= {".py", ".pyi", ".so", ".typed", ".pyc", ".json"}
+    assert {f.suffix for f in files if f.parts[0] == "tactor"} <= {".py", ".pyi", ".so", ".typed", ".pyc"}
 
 
 def test_the_extension_exports_only_its_entry_point():
