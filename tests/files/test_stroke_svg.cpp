@@ -349,4 +349,25 @@ TEST_CASE("equal shapes in one place are said")
               .warnings.empty());
 }
 
+TEST_CASE("shapes ease")
+{
+    const auto s = tactor::parse_strokes_svg(
+        "<svg data-easing=\"minimum-jerk\"><path d=\"M 0 0 H 40\" "
+        "data-duration-s=\"2\"/><path d=\"M 0 0 H 40\" data-easing=\"linear\"/></svg>",
+        "d.svg");
+    CHECK(s[0].motion.duration_s() == 2.0);
+    CHECK(s[0].motion.position(0.5).x_mm == doctest::Approx(40.0 * 0.103515625));
+    CHECK(s[1].motion.position(0.25 * s[1].motion.duration_s()).x_mm == doctest::Approx(10.0));
+}
+
+TEST_CASE("a line's width and opacity are no intensity, and a drawing that asks for it is told")
+{
+    const auto all = tactor::parse_strokes_svg("<svg><path d='M 0 0 H 9' stroke-width='4' opacity='0.5' "
+                                               "data-intensity-from='stroke-width'/></svg>",
+                                               "d.svg");
+    CHECK(all.at(0).motion.intensity(0.0) == 1.0);
+    REQUIRE(all.at(0).warnings.size() == 1);
+    CHECK(all.at(0).warnings[0].find("data-intensity-from") != std::string::npos);
+}
+
 } // namespace stroke_svg_test

@@ -80,22 +80,6 @@ TEST_CASE("a sheet wins over an attribute and loses to the element's own style")
         list{"a", "c"});
 }
 
-TEST_CASE("widths and opacities of a sheet are intensities")
-{
-    const auto all =
-        strokes("<style>.w4{stroke-width:4} #b{stroke-width:1px;} line{stroke-width:2}</style><path "
-                "class='w4' d='M 0 0 H 9'/><path id='b' class='w4' d='M 0 0 H 9'/><line x2='9'/>",
-                "data-intensity-from='stroke-width'");
-    REQUIRE(all.size() == 3);
-    CHECK(all[0].motion.intensity(0.0) == 1.0);
-    CHECK(all[1].motion.intensity(0.0) == doctest::Approx(25.4 / 96.0 / 4.0));
-    CHECK(all[2].motion.intensity(0.0) == 0.5);
-    const auto faint = strokes(
-        "<style>.o{opacity:.5} .s{stroke-opacity:50%}</style><g class='o'><line class='s' x2='9'/></g>",
-        "data-intensity-from='opacity'");
-    CHECK(faint.at(0).motion.intensity(0.0) == 0.25);
-}
-
 TEST_CASE("transforms of styles and sheets have units and origins")
 {
     CHECK(near(end("style='transform:rotate(90deg)'"), {0.0, 10.0}));

@@ -15,7 +15,7 @@ SOURCES = {
     "config_toml": (["examples/tactor.toml"], ["files/test_setup.cpp", "files/test_setup_file.cpp"]),
     "stroke_toml": (["examples/strokes/*.toml"], ["files/test_stroke_toml.cpp", "files/test_stroke_movement.cpp", "files/test_stroke_order.cpp"]),
     "stroke_csv": (["examples/strokes/*.csv"], ["files/test_stroke_csv.cpp"]),
-    "stroke_svg": (["examples/strokes/*.svg"], ["files/test_stroke_svg.cpp", "files/test_stroke_svg_errors.cpp", "files/test_stroke_svg_strength.cpp",
+    "stroke_svg": (["examples/strokes/*.svg"], ["files/test_stroke_svg.cpp", "files/test_stroke_svg_errors.cpp",
                                                  "files/test_stroke_svg_style.cpp"]),
     "path_data": ([], ["core/test_path_svg.cpp", "core/test_path.cpp", "core/test_path_length.cpp", "core/test_path_meets.cpp"]),
     "study_table": ([], ["study/test_text_table.cpp"]),

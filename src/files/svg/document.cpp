@@ -127,6 +127,13 @@ void svg_document::note_unfollowed(pugi::xml_node n, const std::string& what, st
     });
 }
 
+void svg_document::note_strength(pugi::xml_node n) const
+{
+    note("data-intensity-from", ", nor of", ": data-intensity says how strong a line is", [&] {
+        return fmt::format("{}: data-intensity-from of {} is not followed", where(n).text(), called(n));
+    });
+}
+
 void svg_document::note_unknown(pugi::xml_node n, const char* property, std::string_view value) const
 {
     note(fmt::format("unknown {}", property), ", nor of", ": that is taken as hidden", [&] {

@@ -83,6 +83,7 @@ public:
 
     // Note something for warnings(), which name the first element and count the others.
     void note_unfollowed(pugi::xml_node n, const std::string& what, std::string_view why = {}) const;
+    void note_strength(pugi::xml_node n) const;
     void note_unknown(pugi::xml_node n, const char* property, std::string_view value) const;
     void note_no_shape(pugi::xml_node n) const;
     void note_twice(pugi::xml_node n) const;

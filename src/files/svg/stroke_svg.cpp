@@ -31,7 +31,6 @@ using detail::left_out;
 using detail::outline;
 using detail::svg_extent;
 using detail::svg_hidden;
-using detail::svg_strength;
 using detail::svg_tag;
 using scope = detail::svg_scope;
 using pugi::xml_node;
@@ -55,7 +54,6 @@ public:
             hidden_ = root;
         else
             children(root, s);
-        weigh_widths();
         if (!strokes_.empty()) {
             strokes_.front().warnings = doc_.warnings();
             return std::move(strokes_);
@@ -238,7 +236,7 @@ private:
         keep_drawn(n, paths);
         if (!looks_.insert(look).second && !n.attribute("data-start-s"))
             doc_.note_twice(n);
-        if (!s.look.is_painted())
+        if (!s.is_painted())
             doc_.note_unpainted(n);
         add(n, s, paths);
     }
@@ -258,22 +256,9 @@ private:
 
     static trajectory eased(const path& p, double duration_s, const scope& s)
     {
-        const double intensity =
-            s.look.asked == svg_strength::opacity ? s.intensity * s.look.shown() : s.intensity;
         if (s.easing == easing_kind::linear)
-            return trajectory::along(p, duration_s, intensity);
-        return trajectory::along(p, movement{.duration_s = duration_s, .easing = s.easing}, intensity);
-    }
-
-    // Gives the widest of the lines that ask for it intensity 1.
-    void weigh_widths()
-    {
-        double widest = 0.0;
-        for (const auto& [stroke, width] : widths_)
-            widest = std::max(widest, width);
-        for (const auto& [stroke, width] : widths_)
-            if (width != widest)
-                strokes_[stroke].motion = strokes_[stroke].motion.with_intensity(width / widest);
+            return trajectory::along(p, duration_s, s.intensity);
+        return trajectory::along(p, movement{.duration_s = duration_s, .easing = s.easing}, s.intensity);
     }
 
     // Adds a shape. Its subpaths share its duration by their lengths.
@@ -284,8 +269,6 @@ private:
         if (duration && n.attribute("data-speed-mm-s"))
             doc_.fail(n, fmt::format("{} has data-duration-s and data-speed-mm-s", doc_.called(n)),
                       "give one of the two");
-        detail::check_svg_look(doc_, n, s.look);
-        const double width = s.look.width * std::sqrt(std::abs(s.to_mm.determinant()));
         double all = 0.0;
         for (const path& p : paths)
             all += p.length_mm();
@@ -299,8 +282,6 @@ private:
             if (time > detail::longest_stroke_s)
                 doc_.fail(n, fmt::format("{} takes {:g} s", doc_.called(n), time),
                           "a stroke takes at most a day");
-            if (s.look.asked == svg_strength::stroke_width)
-                widths_.emplace_back(strokes_.size(), width);
             strokes_.push_back({.name = paths.size() == 1 ? name : fmt::format("{}-{}", name, i + 1),
                                 .motion = eased(paths[i], time, s),
                                 .start_s = start,
@@ -313,8 +294,7 @@ private:
 
     detail::svg_document doc_;
     std::vector<stroke> strokes_;
-    std::vector<std::pair<std::size_t, double>> widths_; ///< in mm, of those strokes that ask for it
-    std::optional<left_out> left_out_;                   ///< the first
+    std::optional<left_out> left_out_; ///< the first
     std::unordered_set<std::size_t> looks_;
     xml_node hidden_;
     std::size_t elements_ = 0;

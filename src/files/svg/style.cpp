@@ -127,7 +127,7 @@ bool may_be_valid(std::string_view property, const std::string& value)
     if (property == "transform")
         return value == "none";
     const bool side = property == "width" || property == "height";
-    if (!side && property != "opacity" && property != "stroke-opacity" && property != "stroke-width")
+    if (!side && property != "opacity")
         return true;
     try {
         return parse_svg_length(value).in != svg_length::unit::none || !side;

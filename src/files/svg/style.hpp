@@ -16,19 +16,18 @@
 namespace tactor::detail {
 
 /// Properties that decide what plays, where and how strongly, or that would if this reader followed them.
-inline constexpr std::array<std::string_view, 32> svg_properties{
+inline constexpr std::array<std::string_view, 30> svg_properties{
     // Followed:
-    "fill", "stroke", "display", "visibility", "opacity", "stroke-width", "stroke-opacity", "transform",
-    "transform-origin", "transform-box",
+    "fill", "stroke", "display", "visibility", "opacity", "transform", "transform-origin", "transform-box",
     // Not followed:
     "clip-path", "mask", "filter",
     // Not followed in styles and rules; attributes of these names are geometry, or mean nothing:
     "translate", "rotate", "scale", "zoom", "offset", "offset-path", "animation", "animation-name",
     "content-visibility", "width", "height", "x", "y", "cx", "cy", "r", "rx", "ry", "d"};
 inline constexpr std::size_t svg_paints = 2;      ///< of these, properties that decide only what is seen
-inline constexpr std::size_t svg_attributes = 13; ///< of these, presentation attributes
+inline constexpr std::size_t svg_attributes = 11; ///< of these, presentation attributes
 /// Properties that this reader follows for no element, but width and height for the outermost svg.
-inline constexpr std::span unfollowed_svg_properties(svg_properties.data() + 10, svg_properties.size() - 10);
+inline constexpr std::span unfollowed_svg_properties(svg_properties.data() + 8, svg_properties.size() - 8);
 
 /// Returns true for the keywords that display or visibility may be, in small letters.
 bool is_svg_keyword(std::string_view property, std::string_view value);
