@@ -214,7 +214,8 @@ TEST_CASE("no sample of random mixes is above the record, nor above the tactor's
         } catch (const error& e) {
             const std::string why = e.what();
             CAPTURE(why);
-            REQUIRE(why.find("would be driven at") != std::string::npos);
+            // Too loud, or, in one mix of 10,000, a modulation near its carrier.
+            REQUIRE((why.find("would be driven at") != why.npos || why.find("hardly moves") != why.npos));
             ++refused;
             continue;
         }
