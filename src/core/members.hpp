@@ -7,6 +7,7 @@
 #include <concepts>
 #include <limits>
 #include <optional>
+#include <string>
 #include <type_traits>
 
 #include "core/bounds.hpp"
@@ -28,6 +29,19 @@ struct about {
     const char* text;
     bounds range = any_number;
 };
+
+/// Returns a text, or nothing for an empty one.
+inline std::optional<std::string> omit_empty(const std::string& text)
+{
+    return text.empty() ? std::nullopt : std::optional(text);
+}
+
+/// Returns a value, or nothing for the usual one.
+template <class T>
+std::optional<T> omit_usual(const T& v, const T& usual)
+{
+    return v == usual ? std::nullopt : std::optional(v);
+}
 
 /// A member that is always there, as null where it has no value. Without it, an optional is left out.
 template <class T>

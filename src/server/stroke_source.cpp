@@ -24,7 +24,6 @@ constexpr double rounding_db = 1e-9;
 constexpr double most_excess_db = 100.0; // above it lies no sum of strokes that is planned
 constexpr double least_excess_db = 0.01;
 constexpr double most_bursts = 250'000.0;
-constexpr double least_soa_s = 0.0001;
 
 timed_point read_point(const json& p, std::size_t i, double intensity_max)
 {
@@ -112,7 +111,8 @@ double park_bursts(const stroke& k, const plan_options& o)
         return 0.0;
     const double soa_s = k.choices.soa_s.value_or(o.soa_s);
     const bool is_free = k.choices.burst_s || o.burst_s;
-    const bool is_possible = is_free ? soa_s >= least_soa_s : soa_s > o.profile.intercept_s;
+    const bool is_possible =
+        is_free ? soa_s >= detail::bounds_of::burst_s.low : soa_s > o.profile.intercept_s;
     return is_possible ? 1.0 + k.motion.duration_s() / soa_s : 0.0;
 }
 

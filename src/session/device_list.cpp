@@ -6,19 +6,16 @@
 #include <nlohmann/json.hpp>
 
 #include "core/members.hpp"
+#include "files/json/json_value.hpp"
 #include "files/json/schema.hpp"
-#include "files/json/writer.hpp"
 #include "session/device.hpp"
 
 namespace tactor::session {
 namespace {
 
 using detail::about;
-
-std::optional<std::string> any(const std::string& text)
-{
-    return text.empty() ? std::optional<std::string>() : std::optional(text);
-}
+using detail::omit_empty;
+using detail::omit_usual;
 
 constexpr about both_ends{"both ends"};
 
@@ -26,7 +23,7 @@ template <class Io>
 void range_members(Io& io, const count_range& r, const about& ends)
 {
     io("min", r.least, ends);
-    io.or_null("max", r.most == no_limit ? std::optional<unsigned>() : std::optional(r.most), ends);
+    io.or_null("max", omit_usual(r.most, no_limit), ends);
 }
 
 template <class Io>
@@ -51,40 +48,40 @@ template <class Io>
 void pcm_members(Io& io, const pcm_info& p, bool is_configured)
 {
     io("name", p.name, {"for -D"});
-    io.or_null("description", any(p.description),
+    io.or_null("description", omit_empty(p.description),
                {"what the driver or the ALSA configuration calls it; else null"});
     io("hardware", p.hardware, {"whether it is a card's own"});
     io("configured", p.wanted && is_configured, {"whether -D or the configuration names it"});
     io("tried", p.tried, {"whether it was opened, or an attempt was made"});
     io("opened", p.opened, {"whether that succeeded"});
-    io.or_null("error", any(p.error), {"why not; else null"});
+    io.or_null("error", omit_empty(p.error), {"why not; else null"});
     io.list("holders", p.holders, {"processes that have it open"},
             [](auto& inner, const process_info& h, std::size_t) {
                 constexpr about process{"process, and name of its program or null"};
                 inner("pid", h.pid, process);
-                inner.or_null("program", any(h.program), process);
+                inner.or_null("program", omit_empty(h.program), process);
             });
     io.object_or_null("can", p.can, {"what it takes, each alone; null where it was not opened"},
                       [](auto& inner, const pcm_abilities& a) { ability_members(inner, a); });
     io.or_null("fits", p.can ? std::optional(p.misfit.empty()) : std::nullopt,
                {"whether it takes what is wanted, and each tactor has a channel of the device to itself; "
-                "null where it "
-                "was not opened"});
-    io.or_null("misfit", any(p.misfit), {"what it does not take, or which tactor would be lost; else null"});
+                "null where it was not opened"});
+    io.or_null("misfit", omit_empty(p.misfit),
+               {"what it does not take, or which tactor would be lost; else null"});
 }
 
 template <class Io>
 void chip_members(Io& io, const gpio_chip_info& c)
 {
     io("path", c.path, {"device file"});
-    io.or_null("label", any(c.label),
+    io.or_null("label", omit_empty(c.label),
                {"name of the chip, as lines in tactor.toml(5) have it; null where it could not be opened"});
-    io.or_null("error", any(c.error), {"why not; else null"});
+    io.or_null("error", omit_empty(c.error), {"why not; else null"});
     io.list("lines", c.lines, {"its lines"}, [](auto& inner, const gpio_line_info& l, std::size_t) {
         inner("offset", l.offset, {"number of the line"});
-        inner.or_null("name", any(l.name), {"its name or null"});
+        inner.or_null("name", omit_empty(l.name), {"its name or null"});
         inner.one_of("direction", l.output ? "output" : "input", {"input", "output"}, {"input or output"});
-        inner.or_null("consumer", any(l.consumer), {"who holds it, or null"});
+        inner.or_null("consumer", omit_empty(l.consumer), {"who holds it, or null"});
     });
 }
 

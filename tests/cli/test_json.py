@@ -110,6 +110,16 @@ def objects_in(value, at=()):
         yield from objects_in(v, at + (key,))
 
 
+def copies_by_object(told):
+    """Yields the place of each object in a value, and a copy of the value with the same object in it."""
+    for keys in objects_in(told):
+        changed = copy.deepcopy(told)
+        inner = changed
+        for key in keys:
+            inner = inner[key]
+        yield join_keys(keys), changed, inner
+
+
 def shortened(value):
     """Returns the same with at most three members in each list of objects or lists."""
     if isinstance(value, dict):
@@ -199,12 +209,7 @@ class Schemas(ToolTest):
             valid = jsonschema.Draft202012Validator(SCHEMAS[name]).is_valid
             seen = set()
             for told in map(shortened, all_told):
-                for keys in objects_in(told):
-                    place = join_keys(keys)
-                    changed = copy.deepcopy(told)
-                    inner = changed
-                    for key in keys:
-                        inner = inner[key]
+                for place, changed, inner in copies_by_object(told):
                     if (place, *sorted(inner)) in seen:
                         continue
                     seen.add((place, *sorted(inner)))
@@ -225,12 +230,7 @@ class Schemas(ToolTest):
         valid = jsonschema.Draft202012Validator(SCHEMAS["tactor-plan/1"]).is_valid
         seen = set()
         for told in self.outputs()["tactor-plan/1"]:
-            for keys in objects_in(told):
-                place = join_keys(keys)
-                changed = copy.deepcopy(told)
-                inner = changed
-                for key in keys:
-                    inner = inner[key]
+            for place, changed, inner in copies_by_object(told):
                 for key in ["unheard_of", *inner]:
                     if (place, key) in seen:
                         continue

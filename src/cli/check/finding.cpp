@@ -11,8 +11,8 @@
 #include "cli/say.hpp"
 #include "core/members.hpp"
 #include "core/words.hpp"
+#include "files/json/json_value.hpp"
 #include "files/json/schema.hpp"
-#include "files/json/writer.hpp"
 
 namespace tactor::cli {
 
@@ -51,7 +51,7 @@ void walk_members(Io& io, const walk_outcome& w)
 }
 
 template <class Io>
-void check_members(Io& io, const std::vector<finding>& all, const walk_outcome& walk, bool walked)
+void check_members(Io& io, const std::vector<finding>& all, const std::optional<walk_outcome>& walk)
 {
     constexpr about many{"how many"};
     io.constant("schema", "tactor-check/1");
@@ -61,21 +61,10 @@ void check_members(Io& io, const std::vector<finding>& all, const walk_outcome& 
         inner("check", f.check, {"what, as in tactor-check(1)"});
         inner.one_of("level", to_string(f.how), {"ok", "warning", "error"}, {"ok, warning or error"});
         inner("found", f.found, {"what was found"});
-        inner.or_null("cure", f.cure.empty() ? std::optional<std::string>() : std::optional(f.cure),
-                      {"what to do about it; else null"});
+        inner.or_null("cure", detail::omit_empty(f.cure), {"what to do about it; else null"});
     });
-    io.part("walk", walked, {"only after --walk with answers"},
-            [&walk](auto& inner) { walk_members(inner, walk); });
-}
-
-// Refers to nothing that was asked.
-template <class F>
-auto without_walk(const F& f)
-{
-    const array none;
-    const session::walk_answers felt;
-    const session::walk_verdict verdict;
-    return f(walk_outcome{none, felt, verdict});
+    io.part("walk", walk.has_value(), {"only after --walk with answers"},
+            [&walk](auto& inner) { walk_members(inner, *walk); });
 }
 
 } // namespace
@@ -124,16 +113,16 @@ std::string check_text(const std::vector<finding>& all, bool brief)
 
 std::string check_json(const std::vector<finding>& all, const std::optional<walk_outcome>& walked)
 {
-    const auto write = [&](const walk_outcome& walk) {
-        return files::make_object([&](auto& io) { check_members(io, all, walk, walked.has_value()); });
-    };
-    return (walked ? write(*walked) : without_walk(write)).dump(2) + "\n";
+    return files::make_object([&](auto& io) { check_members(io, all, walked); }).dump(2) + "\n";
 }
 
 nlohmann::ordered_json check_schema()
 {
-    return without_walk([](const walk_outcome& walk) {
-        return files::json_schema::describe_object([&walk](auto& io) { check_members(io, {}, walk, false); });
+    const array none;
+    const session::walk_answers felt;
+    const session::walk_verdict verdict;
+    return files::json_schema::describe_object([&](auto& io) {
+        check_members(io, {}, walk_outcome{none, felt, verdict});
     });
 }
 

@@ -11,8 +11,8 @@
 #include "cli/say.hpp"
 #include "core/members.hpp"
 #include "core/words.hpp"
+#include "files/json/json_value.hpp"
 #include "files/json/schema.hpp"
-#include "files/json/writer.hpp"
 #include "session/sound_server.hpp"
 
 namespace tactor::cli {
@@ -41,8 +41,7 @@ void stroke_members(Io& io, const stroke_outcome& s, unsigned rate)
     io("late_s", r.late_s, {"how much later than asked for it began", detail::from_0});
     io.or_null("started_ns", r.started_ns,
                {"CLOCK_MONOTONIC of its first sample at the DAC; null where it did not sound or the clock of "
-                "the DAC "
-                "was not known"});
+                "the DAC was not known"});
     io.object_or_null(
         "delay", r.delay,
         {"of a live stroke's points: from when each was read until the DAC had the first frame that it "
@@ -59,8 +58,7 @@ void stroke_members(Io& io, const stroke_outcome& s, unsigned rate)
        {"points of a live stroke with an intensity above 1, which sounded as 1"});
     io("outside_points", r.outside_points,
        {"points of a live stroke outside the array, which moved to its edge"});
-    io.or_null("reason", r.why.empty() ? std::optional<std::string>() : std::optional(r.why),
-               {"why it was interrupted; else null"});
+    io.or_null("reason", detail::omit_empty(r.why), {"why it was interrupted; else null"});
 }
 
 template <class Io>

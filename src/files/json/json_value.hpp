@@ -12,6 +12,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/kind_names.hpp"
+#include "files/json/writer.hpp"
 
 namespace tactor::files {
 
@@ -114,6 +115,25 @@ nlohmann::ordered_json or_null(const std::optional<T>& v)
 inline nlohmann::ordered_json or_null(const std::string& s)
 {
     return s.empty() ? nlohmann::ordered_json(nullptr) : nlohmann::ordered_json(s);
+}
+
+/// Returns an object whose members are described by `body(io)`.
+template <class Body>
+nlohmann::ordered_json make_object(const Body& body)
+{
+    std::string text = "{";
+    json_writer io(text);
+    body(io);
+    return nlohmann::ordered_json::parse(text + '}');
+}
+
+/// Returns a value as a document.
+template <class T>
+nlohmann::ordered_json make_document(const T& v)
+{
+    std::string text;
+    json_writer(text).put(v);
+    return nlohmann::ordered_json::parse(text);
 }
 
 } // namespace tactor::files

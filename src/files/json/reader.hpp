@@ -7,8 +7,6 @@
 #include <array>
 #include <concepts>
 #include <cstddef>
-#include <cstdint>
-#include <limits>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -33,16 +31,9 @@ public:
         take(member(name), v, what);
     }
     template <class T>
-    void operator()(const char* name, std::optional<T>& v, const detail::about& what)
-    {
-        if (const json_value at = member(name); at.there())
-            take(at, v.emplace(), what);
-    }
-    template <class T>
     void or_null(const char* name, std::optional<T>& v, const detail::about& what)
     {
-        if (const json_value at = member(name); at.need_member().there())
-            take(at, v.emplace(), what);
+        take(member(name).need_member(), v, what);
     }
     template <class Kind>
     void named(const char* name, std::string& v, const detail::about& what)
@@ -70,7 +61,7 @@ public:
     template <class Body>
     void object(const char* name, const detail::about&, const Body& body)
     {
-        read(member(name).need_member(), body);
+        read(member(name), body);
     }
     template <class Body>
     void part(const char* name, bool& there, const detail::about& what, const Body& body)
@@ -105,6 +96,7 @@ public:
     template <class Body>
     static void read(const json_value& from, const Body& body)
     {
+        from.need_members();
         json_reader io(from);
         body(io);
         io.finish();
@@ -119,18 +111,16 @@ private:
     template <class T>
     static void take(const json_value& from, T& v, const detail::about& what)
     {
-        if constexpr (std::same_as<T, bool>) {
+        if constexpr (std::same_as<T, bool>)
             v = from.need_truth();
-        } else if constexpr (std::integral<T>) {
+        else if constexpr (std::integral<T>)
             v = static_cast<T>(whole(from, what.range, std::is_unsigned_v<T>, sizeof(T) > sizeof(unsigned)));
-        } else if constexpr (std::floating_point<T>) {
+        else if constexpr (std::floating_point<T>)
             v = number(from, what.range);
-        } else if constexpr (std::is_enum_v<T>) {
+        else if constexpr (std::is_enum_v<T>)
             v = from.need_kind<T>();
-        } else {
-            from.need_members();
+        else
             read(from, [&v](auto& io) { members(io, v); });
-        }
     }
     static void take(const json_value& from, std::string& v, const detail::about&) { v = from.need_text(); }
     template <class T>

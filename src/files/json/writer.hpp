@@ -16,8 +16,6 @@
 #include <variant>
 #include <vector>
 
-#include <nlohmann/json.hpp>
-
 #include "core/members.hpp"
 
 namespace tactor::files {
@@ -224,24 +222,5 @@ private:
     bool first_ = true;
     bool next_line_ = false;
 };
-
-/// Returns an object whose members are described by `body(io)`.
-template <class Body>
-nlohmann::ordered_json make_object(const Body& body)
-{
-    std::string text = "{";
-    json_writer io(text);
-    body(io);
-    return nlohmann::ordered_json::parse(text + '}');
-}
-
-/// Returns a value as a document.
-template <class T>
-nlohmann::ordered_json make_document(const T& v)
-{
-    std::string text;
-    json_writer(text).put(v);
-    return nlohmann::ordered_json::parse(text);
-}
 
 } // namespace tactor::files

@@ -22,21 +22,10 @@ using detail::nullable;
 using detail::prediction;
 using detail::row_spread;
 
-// A comparison, and what it was made on.
-struct compared {
-    const comparison& made;
-    const array& tactors;
-};
-
 template <class T>
 nullable<T> where(bool there, const T& v)
 {
     return there ? nullable<T>{v} : nullable<T>{};
-}
-
-nullable<std::string> where_any(const std::string& text)
-{
-    return where(!text.empty(), text);
 }
 
 // People who were drawn, for an observer.
@@ -98,8 +87,7 @@ template <class Io>
 void error_members(Io& io, const prediction& r, observer_kind by)
 {
     constexpr about error{
-        "distance from the position felt to the target; null where nothing is felt, or nothing is "
-        "predicted",
+        "distance from the position felt to the target; null where nothing is felt, or nothing is predicted",
         detail::from_0};
     const bool by_energy = by == observer_kind::centroid;
     const bool by_taps = has_taps(r, by);
@@ -107,8 +95,7 @@ void error_members(Io& io, const prediction& r, observer_kind by)
     io.or_null("largest_error_mm", r.felt.largest_error_mm, error);
     io.or_null("speed_cv", r.felt.speed_cv,
                {"standard deviation of speed by its mean; null where the stroke is too short for a speed. "
-                "This and the "
-                "next three are null with the observer low-speed",
+                "This and the next three are null with the observer low-speed",
                 detail::from_0});
     io.or_null("intensity_cv", r.felt.intensity_cv,
                {"the same of intensity; null where nothing is felt", detail::from_0});
@@ -116,10 +103,9 @@ void error_members(Io& io, const prediction& r, observer_kind by)
        {"part of the time in which no tactor sounds", detail::bounds_of::part});
     io("shared_share", where(by_energy, r.felt.shared_share),
        {"part of the time in which one tactor serves two bursts", detail::bounds_of::part});
-    io("unpredicted", where_any(r.unpredicted),
-       {"why the observer low-speed has no prediction, as for continuous; null where it has. All down to "
-        "taps is null "
-        "where this is not, and with the observer centroid"});
+    io.or_null("unpredicted", detail::omit_empty(r.unpredicted),
+               {"why the observer low-speed has no prediction, as for continuous; null where it has. All "
+                "down to taps is null where this is not, and with the observer centroid"});
     io("felt_length_mm", where(by_taps, r.tapped.felt_length_mm),
        {"length of the chain of the places at which the bursts are felt", detail::from_0});
     io("target_length_mm", where(by_taps, r.tapped.target_length_mm),
@@ -165,37 +151,25 @@ void comparison_members(Io& io, const comparison& c, const array& a)
        {"null, or the observer for whom bursts were moved, with {compensate}"});
     io("spread", where(c.spread.people != 0, drawn_people{c.spread, by_taps}),
        {"null, or who was drawn with {spread}"});
-    io("faces", c.faces == faces_kind::delaunay ? std::optional<faces_kind>() : std::optional(c.faces),
+    io("faces", detail::omit_usual(c.faces, faces_kind::delaunay),
        {"nearest with {faces=nearest}; else it is not there"});
     io.object("stroke", {"what is drawn"}, [&](auto& inner) {
-        const auto note = note_text(c.target.note);
         inner("name", c.target.name, {"its name, or that of the file"});
         inner("duration_s", c.target.motion.duration_s(),
               {"time in which the target moves", detail::above_0});
         inner("length_mm", c.target.motion.length_mm(), {"length of its path", detail::from_0});
-        inner("note", note.empty() ? std::optional<std::string>() : std::optional(note),
+        inner("note", detail::omit_empty(note_text(c.target.note)),
               {"only of park2016-1 to -4: that they are reconstructed"});
     });
     io.object("array", {"where it is drawn"}, [&](auto& inner) {
         inner("name", a.name, {"name of the array"});
         inner.list("tactors", a.tactors, {"all of them, in order"},
-                   [](auto& one, const tactor_spec& t, std::size_t number) {
-                       one("tactor", number, {"its number"});
-                       one("x_mm", t.position.x_mm, {"its place"});
-                       one("y_mm", t.position.y_mm, {"its place"});
-                       one("channel", t.channel, {"the channel that drives it"});
-                   });
+                   [](auto& one, auto& t, std::size_t number) { identity_members(one, t, number); });
     });
     io.list("results", c.rows, {"one for each algorithm with each phantom model"},
             [&](auto& inner, const comparison_row& r, std::size_t) {
                 result_members(inner, r, c.observer.kind);
             });
-}
-
-template <class Io, either<compared> Compared>
-void members(Io& io, Compared& c)
-{
-    comparison_members(io, c.made, c.tactors);
 }
 
 nlohmann::ordered_json errors_json(const prediction& r, observer_kind by)
@@ -205,14 +179,12 @@ nlohmann::ordered_json errors_json(const prediction& r, observer_kind by)
 
 std::string comparisons_text(const std::vector<comparison>& all, const array& a)
 {
-    std::vector<compared> list;
-    for (const comparison& c : all)
-        list.push_back({c, a});
     const auto whole = make_object([&](auto& io) {
         if (all.size() == 1)
-            return members(io, list[0]);
+            return comparison_members(io, all[0], a);
         io.constant("schema", "tactor-compares/1");
-        io("comparisons", list, {""});
+        io.list("comparisons", all, {""},
+                [&a](auto& inner, const comparison& c, std::size_t) { comparison_members(inner, c, a); });
     });
     return whole.dump(2) + '\n';
 }

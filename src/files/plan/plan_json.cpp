@@ -27,33 +27,6 @@ struct written_plan {
     double step_s;
     std::uint64_t start_frame;
     std::uint64_t frames;
-
-    std::vector<std::optional<double>> peaks_dbfs() const
-    {
-        std::vector<std::optional<double>> all;
-        for (const tactor_spec& t : tactors.tactors) {
-            const auto threshold = options.sl_db ? threshold_at(t, plan.carrier_hz) : options.level_dbfs;
-            all.push_back(threshold ? std::optional(*threshold + options.sl_db.value_or(t.gain_db))
-                                    : std::nullopt);
-        }
-        return all;
-    }
-    double ramp_s(const burst& b) const { return burst_ramp_s(b.onset_s, b.duration_s, plan, options); }
-    template <class Row>
-    void for_each_burst(const Row& row) const
-    {
-        for (const burst& b : plan.bursts)
-            row(b);
-    }
-    template <class Row>
-    void for_each_point(const Row& row) const
-    {
-        burst b;
-        for (std::uint64_t k = 0; k < plan.curve->size(); ++k) {
-            plan.curve->sample(k, b);
-            row(b);
-        }
-    }
 };
 
 } // namespace

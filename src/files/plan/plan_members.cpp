@@ -26,6 +26,19 @@ void set_thresholds(tactor_spec& t, const thresholds& v)
             t.thresholds.push_back({hz, dbfs});
 }
 
+std::vector<std::optional<double>> list_peaks_dbfs(const array& a, double carrier_hz, const render_options& o)
+{
+    std::vector<std::optional<double>> all;
+    for (const tactor_spec& t : a.tactors) {
+        all.emplace_back(o.level_dbfs + t.gain_db);
+        if (!o.sl_db)
+            continue;
+        const auto threshold = threshold_at(t, carrier_hz);
+        all.back() = threshold ? std::optional(*threshold + *o.sl_db) : std::nullopt;
+    }
+    return all;
+}
+
 std::optional<fit_matrix> make_matrix(const std::optional<fitting>& f)
 {
     if (!f)

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// The members of tactor-plan/1, in order: what `plan {format} json` writes, what is read back, its schema
-/// and its page of the manual.
+/// The members of tactor-plan/1, in order: what is written and read back, its schema and its page of the
+/// manual.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <optional>
@@ -43,9 +44,6 @@ struct marker {
     double duration_s = 0.0;
 };
 
-/// Returns what a stroke's note means, for people; empty for none.
-std::string note_text(note_kind n);
-
 /// Parts of an object that is read. A written one has the same members, as references.
 struct plan_parts {
     std::string name = {};
@@ -62,27 +60,26 @@ struct plan_parts {
     double step_s = continuous_step_s;
     std::uint64_t start_frame = 0;
     std::uint64_t frames = 0;
-
-    /// Returns the peak of each tactor's channel for amplitude 1; nothing drives one without a value.
-    std::vector<std::optional<double>> peaks_dbfs() const { return {}; }
-    double ramp_s(const burst&) const { return 0.0; }
-    template <class Row>
-    void for_each_burst(const Row&) const
-    {
-    }
-    template <class Row>
-    void for_each_point(const Row&) const
-    {
-    }
 };
 
+/// Returns the peak of each tactor's channel for amplitude 1; nothing drives one without a value.
+std::vector<std::optional<double>> list_peaks_dbfs(const array& a, double carrier_hz,
+                                                   const render_options& o);
+
+/// Describes which tactor it is.
 template <class Io, either<tactor_spec> Tactor>
-void tactor_members(Io& io, Tactor& t, std::size_t number)
+void identity_members(Io& io, Tactor& t, std::size_t number)
 {
     io.fact("tactor", [number] { return number; }, {"its number"});
     io("x_mm", t.position.x_mm, {"its place"});
     io("y_mm", t.position.y_mm, {"its place"});
     io("channel", t.channel, {"the channel that drives it"});
+}
+
+template <class Io, either<tactor_spec> Tactor>
+void tactor_members(Io& io, Tactor& t, std::size_t number)
+{
+    identity_members(io, t, number);
     io("polarity", t.polarity, {"1, or -1 where its samples are inverted", {-1.0, 1.0}});
     io("gain_db", t.gain_db, {"its gain"});
     io("max_dbfs", t.max_dbfs, {"the greatest peak that it may be given", detail::up_to_0});
@@ -90,8 +87,7 @@ void tactor_members(Io& io, Tactor& t, std::size_t number)
             {"its measured threshold; a list of [frequency, threshold] where there are several; or null"});
     io("rise_s", t.rise_s,
        {"rise time of the actuator; absent where the array says none. Where one is given a burst that sounds "
-        "alone on "
-        "the tactor has a boost, see Slow actuators",
+        "alone on the tactor has a boost, see Slow actuators",
         {0.0, 1.0, true}});
     io("displacement_um_at_0dbfs", t.displacement_um_at_0dbfs,
        {"measured peak displacement at 0 dBFS, um; absent where the array says none", {0.0, 10000.0, true}});
@@ -111,8 +107,7 @@ void members(Io& io, Fit& f)
     io("margin_mm", f.margin_mm, {"distance from the array's edge that was asked for", detail::from_0});
     io("matrix", f.matrix,
        {"a, b, c, d, e, f of x' = a x + c y + e and y' = b x + d y + f, in mm; all other places in this "
-        "object are x' "
-        "and y'"});
+        "object are x' and y'"});
 }
 
 template <class Io, either<burst_envelope> Envelope>
@@ -153,10 +148,9 @@ void members(Io& io, Compensated& c)
     constexpr detail::about parameters{"its parameters", detail::above_0};
     constexpr detail::about residual{
         "what that leaves of the error, were each burst felt by itself at its own point", detail::from_0};
-    constexpr detail::about predicted{
-        "distance from the places felt to the target, with the phantom's own error; null "
-        "without a burst that is felt",
-        detail::from_0};
+    constexpr detail::about predicted{"distance from the places felt to the target, with the phantom's own "
+                                      "error; null without a burst that is felt",
+                                      detail::from_0};
     const auto felt = [&c](auto what) {
         return [&c, what] { return detail::nullable<double>{summarise(c.taps).*what}; };
     };
@@ -209,7 +203,8 @@ void burst_members(Io& io, Burst& b, const Parts& r)
 {
     io("onset_s", b.onset_s, {"its begin", detail::from_0});
     io("duration_s", b.duration_s, {"how long it lasts", detail::from_0});
-    io.fact("ramp_s", [&] { return r.ramp_s(b); }, {"raised cosine at each end of it", detail::from_0});
+    io.fact("ramp_s", [&] { return burst_ramp_s(b.onset_s, b.duration_s, r.plan, r.options); },
+            {"raised cosine at each end of it", detail::from_0});
     io("tau_s", b.tau_s, {"only of tactile-brush: when the target is at its place", detail::from_0});
     place_members(
         io, b, r.tactors, "where it is to be felt; where bursts were moved, where it is played",
@@ -230,14 +225,13 @@ template <class Io, class Parts>
 void stroke_members(Io& io, Parts& r)
 {
     auto& p = r.plan;
-    const auto text = note_text(r.note);
     io("name", r.name, {"its name, or that of the file"});
     io("duration_s", p.stroke_duration_s, {"time in which the target moves", detail::above_0});
     io("length_mm", p.stroke_length_mm, {"length of its path", detail::from_0});
     io("carrier_hz", p.carrier_hz,
        {"frequency of the vibration; where it changes, at the beginning", detail::above_0});
     members(io, r.sound);
-    io.with("note", text.empty() ? std::optional<std::string>() : std::optional(text),
+    io.with("note", detail::omit_empty(note_text(r.note)),
             [&r](const auto& given) {
                 for (const note_kind n : all_values<note_kind>())
                     if (given == note_text(n))
@@ -270,12 +264,11 @@ void render_members(Io& io, Parts& r)
             {"what {level_dbfs} says; only without sl_db", detail::up_to_0});
     io.exactly_one("level_dbfs", "sl_db");
     io("overlap", r.plan.overlap, {"energy, max or sum: what becomes of bursts that overlap on one tactor"});
-    io.fact("peak_dbfs", [&r] { return r.peaks_dbfs(); },
-            {"of each tactor in order: the peak of its channel for amplitude 1, with its gain or threshold "
-             "in it; null "
-             "where the level is above a threshold that it does not have, and nothing drives it"});
-    io.with("envelope",
-            o.envelope == burst_envelope{} ? std::optional<burst_envelope>() : std::optional(o.envelope),
+    io.fact(
+        "peak_dbfs", [&r] { return list_peaks_dbfs(r.tactors, r.plan.carrier_hz, r.options); },
+        {"of each tactor in order: the peak of its channel for amplitude 1, with its gain or threshold in "
+         "it; null where the level is above a threshold that it does not have, and nothing drives it"});
+    io.with("envelope", detail::omit_usual(o.envelope, burst_envelope{}),
             [&o](const auto& given) { o.envelope = given.value_or(o.envelope); },
             {"how bursts rise and fall; absent: by raised cosines of ramp_s"});
     io.with("marker",
@@ -298,11 +291,10 @@ void plan_members(Io& io, Parts& r)
     io.template named<algorithm_kind>("algorithm", p.algorithm, {"park2016, tactile-brush or continuous"});
     io.template named<phantom_kind>(
         "phantom", p.phantom, {"the phantom model: inverse-distance, barycentric, linear, log or gaussian"});
-    io.with("faces", p.faces == faces_kind::delaunay ? std::optional<faces_kind>() : std::optional(p.faces),
+    io.with("faces", detail::omit_usual(p.faces, faces_kind::delaunay),
             [&p](const auto& given) { p.faces = given.value_or(p.faces); },
             {"nearest where the three closest tactors of the array make a phantom; without it it is those of "
-             "the Delaunay "
-             "face, as with {faces=delaunay}"});
+             "the Delaunay face, as with {faces=delaunay}"});
     io("start_s", r.start_s,
        {"start of the stroke in the piece, which is all strokes of the file; all other times count from "
         "there",
@@ -321,17 +313,17 @@ void plan_members(Io& io, Parts& r)
               [&r](auto& inner) { render_members(inner, r); });
     io.new_line();
     io.template rows<burst>(
-        "bursts", [&r](const auto& row) { r.for_each_burst(row); },
+        "bursts", [&p](const auto& row) { std::for_each(p.bursts.begin(), p.bursts.end(), row); },
         {"by onset; none of the algorithm continuous"},
         [&r](auto& inner, auto& b) { burst_members(inner, b, r); });
     io.new_line();
     io.part("continuous", r.is_sampled, {"only of the algorithm continuous"}, [&r](auto& inner) {
         inner("step_s", r.step_s,
               {"time from point to point; the last is at the end of the stroke", detail::above_0});
-        inner.fact("ramp_s", [&r] { return r.ramp_s({.duration_s = r.plan.stroke_duration_s}); },
+        inner.fact("ramp_s", [&r] { return burst_ramp_s(0.0, r.plan.stroke_duration_s, r.plan, r.options); },
                    {"raised cosine at each end of the stroke", detail::from_0});
         inner.template rows<burst>(
-            "points", [&r](const auto& row) { r.for_each_point(row); },
+            "points", [&r](const auto& row) { for_each_row(r.plan, row); },
             {"from the stroke's begin to its end"},
             [&r](auto& innermost, auto& b) { point_members(innermost, b, r); });
     });

@@ -54,16 +54,13 @@ void members(Io& io, Facts& f)
 template <class Io, detail::either<carrier_point> Point>
 void members(Io& io, Point& c)
 {
-    using bend = std::optional<std::array<double, 4>>;
     io("t_s", c.t_s, {"time from the stroke's beginning", detail::from_0});
     io("hz", c.hz, {"frequency", {0.0, detail::bounds_of::carrier_hz.high}});
-    io.with("bend", c.bend == carrier_point{}.bend ? bend() : bend(c.bend),
+    io.with("bend", detail::omit_usual(c.bend, carrier_point{}.bend),
             [&c](const auto& given) { c.bend = given.value_or(c.bend); },
             {"only where easing or a change of speed bends it: [a, b, c, d], Hz. With u from 0 to 1 between "
-             "the times of "
-             "this point and the next, the carrier is hz + u (next - hz) + u (1 - u) (a + b u + c u^2 + d "
-             "u^3); the "
-             "carrier's cycles are its integral, to 1e-9 over an hour",
+             "the times of this point and the next, the carrier is hz + u (next - hz) + u (1 - u) (a + b u + "
+             "c u^2 + d u^3); the carrier's cycles are its integral, to 1e-9 over an hour",
              {-1e7, 1e7}});
 }
 
@@ -77,8 +74,7 @@ void members(Io& io, Sound& s)
     io("noise_seed", s.noise_seed, {"only of noise: which"});
     io("recording", s.recording,
        {"only of a WAV file: which. A plan is refused where the file has changed. A file of that name and "
-        "contents "
-        "beside the plan counts, too"});
+        "contents beside the plan counts, too"});
     io("texture", s.texture, texture);
     io("texture_mm", s.texture_mm, texture);
     io("am_hz", s.am_hz, {"only with amplitude modulation: its frequency and depth", detail::above_0});
@@ -86,8 +82,7 @@ void members(Io& io, Sound& s)
        {"only with amplitude modulation: its frequency and depth", detail::bounds_of::part});
     io("course", s.course,
        {"only of a carrier that changes: its frequency over time, linear between these points where bend "
-        "does not "
-        "say otherwise; of a WAV file along the path, how often that comes round"});
+        "does not say otherwise; of a WAV file along the path, how often that comes round"});
 }
 
 } // namespace tactor::files
