@@ -59,6 +59,7 @@ ONLY_IN = {
     "pybind11/": ["src/python/"],
     "cairo": ["src/plot/"],
     "lo/": ["src/net/osc_lo.cpp"],
+    "kainjow/": ["src/study/"],
     "nlohmann/": ["src/cli/", "src/files/json/", "src/files/plan/", "src/net/", "src/server/", "src/session/", "src/study/"],
 }
 # Standard headers of threads and clocks that the pure folders must not see.

@@ -184,8 +184,8 @@ class Forms(AnalyzeTest):
             self.assertEqual(bool(shown), "Columns: mean and se" in text, name)
             rated = re.findall(r" all \S+ \(\S+\), 95 % (-?[\d.]+) \.\.\. (-?[\d.]+)$", text, re.M)
             self.assertTrue(all(float(low) >= 1 for low, _ in rated), rated)
-            for low, high in re.findall(r"95 % interval (-?[\d.]+) \.\.\. (-?[\d.]+)\) of trials", self.ok("report", folder).stdout):
-                self.assertTrue(0 <= float(low) <= float(high) <= 100)
+            shown = re.findall(r"^\| \S.*? \| [\d.]+ \| [\d.]* \| (-?[\d.]+) to (-?[\d.]+) \|", self.ok("report", folder).stdout, re.M)
+            self.assertTrue(shown and all(0 <= float(low) <= float(high) <= 100 for low, high in shown), shown)
         self.assertGreater(beyond, 0)  # else nothing was tried
 
     def test_each_trial_that_counts_has_a_line(self):

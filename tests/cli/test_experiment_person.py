@@ -373,9 +373,7 @@ class ByLines(PersonTest):
         for at in (s["date"], s["consent"], s["streams"][0]["opened"], s["walk"][0]["asked"]):
             self.assertRegex(at, r"^20\d\d-\d\d-\d\dT\d\d:\d\d:\d\d\.\d{6}Z$")
         text = self.ok("report", "study").stdout
-        self.assertIn("no, the terminal could not show it (the definition asks for it)", text)
-        self.assertIn("Masking noise: none.", text)
-        self.assertIn(f"Consent: given on {s['consent']}.", text)
+        self.assertIn(f"| {s['consent']} | 2 | terminal without animation | none | none |", text)
         told = json.loads(self.ok("analyze", "study", "--format", "json").stdout)
         self.assertFalse(told["simulated"])
         before = contents(self.dir / "study")
@@ -538,8 +536,8 @@ class Masking(PersonTest):
         self.assertEqual((s["masker"], [one["masker"] for one in s["streams"]]), ("raw:one.raw", ["raw:one.raw", "raw:two.raw"]))
         self.assertEqual(s["streams"][1]["masking"], {"noise": "white", "level_dbfs": -20, "fade_s": 0.05, "while": "stimulus"})
         self.assertEqual([w["tactor"] for w in s["walk"]], [0, 1, 0, 1])
-        self.assertIn("Masking noise: white noise of -20 dBFS (root mean square), faded over 0.05 s, while stimuli played, from "
-                      "raw:two.raw.", self.ok("report", "study").stdout)
+        self.assertIn(r"noise: white, level\_dbfs: -20, fade\_s: 0.05, while: stimulus | raw:one.raw; raw:two.raw |",
+                      self.ok("report", "study").stdout)
 
     def test_an_early_answer_is_marked_counted_and_reported(self):
         self.write("short.toml", SHORT.replace("trials = 2\npractice = 1", "trials = 2\npractice = 1\nmin_response_s = 10")
@@ -552,7 +550,9 @@ class Masking(PersonTest):
         trials = [line.split("\t") for line in self.ok("analyze", "study", "--format", "tsv").stdout.splitlines() if not line.startswith("#")]
         self.assertEqual([(t[1], t[-1]) for t in trials], [("run", "early"), *[("pairs", "true")] * 2, *[("marks", "false")] * 2])
         self.assertIn("2 answers early (sooner after the stimulus than min_response_s), counted", self.ok("analyze", "study").stdout)
-        self.assertIn("Answers marked early, which count: 2 in pairs (sooner than 10 s after the stimulus).", self.ok("report", "study").stdout)
+        text = self.ok("report", "study").stdout
+        self.assertIn("Answers marked early, which count: 2.", text)
+        self.assertIn("sooner after the stimulus than: 10 s", text)
         described = json.loads((self.dir / "study/task-pairs_beh.json").read_text())["early"]
         self.assertEqual(described["Levels"]["true"], "sooner than 10 s")
 
@@ -568,11 +568,13 @@ class Masking(PersonTest):
         self.assertNotEqual(plans[0], plans[2])
         self.ok(*self.args("--hand", "left", definition="left.toml"), stdin=ByLines.ANSWERS)
         self.assertEqual(self.session("01")["hand"], "left")
-        self.assertIn("Hand: left, mirrored: east.", self.ok("report", "study").stdout)
+        self.assertIn("| left | east |", self.ok("report", "study").stdout)
 
     def test_noise_that_did_not_play_is_not_reported_as_played(self):
         self.ok(*self.args(definition=self.noisy()), stdin=ByLines.ANSWERS)
-        self.assertIn("Masking noise: none (the definition asks for white noise of -20 dBFS", self.ok("report", "study").stdout)
+        text = self.ok("report", "study").stdout
+        self.assertIn("| terminal without animation | none | none |", text)
+        self.assertIn(r"this masking noise: noise: white, level\_dbfs: -20", text)
 
     def test_the_noise_level_is_checked_by_ear(self):
         check = ("experiment", self.noisy(), "--check-noise", "-D", "null")

@@ -3,12 +3,13 @@
 #include <vector>
 
 #include <doctest/doctest.h>
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "caught.hpp"
 #include "files/json/json_value.hpp"
 #include "has.hpp"
-#include "study/report/sections.hpp"
+#include "study/report/methods.hpp"
 
 namespace tactor::study::test_report {
 namespace {
@@ -44,11 +45,10 @@ TEST_CASE("values shared by all are printed once, others with their participants
 
 TEST_CASE("texts from files are no Markdown, and do not control a terminal")
 {
-    CHECK(plain("a_b*c|d") == "a\\_b\\*c\\|d");
-    CHECK(plain("two\nlines\tand") == "two lines and");
-    CHECK(plain("\x1b[2J") == "\\\\x1b\\[2J");
-    CHECK(plain("Größe") == "Größe");
-    CHECK(table_head({"a", "b"}) == "| a | b |\n| --- | --- |\n");
+    CHECK(escape_markdown("a_b*c|d") == "a\\_b\\*c\\|d");
+    CHECK(escape_markdown("two\n  lines\tand") == "two lines and");
+    CHECK(escape_markdown("\x1b[2J") == "\\\\x1b\\[2J");
+    CHECK(escape_markdown("Größe") == "Größe");
 }
 
 TEST_CASE("ranges are one number where all are equal to six digits")
@@ -86,41 +86,24 @@ TEST_CASE("any value has words")
     CHECK(f["c"].words().empty());
 }
 
-TEST_CASE("carriers are reported as they were")
-{
-    const auto carrier = [](const ordered& stroke) {
-        const ordered plan = {{"stroke", stroke}};
-        return describe_carrier({plan, file, "it was changed"});
-    };
-    CHECK(carrier({{"carrier_hz", 250.0}}) == "sine of 250 Hz");
-    CHECK(carrier({{"carrier_hz", 250.0}, {"waveform", "noise:100-300"}, {"noise_seed", 7}}) ==
-          "noise:100-300 Hz (seed 7)");
-    CHECK(carrier({{"carrier_hz", 80.0}, {"waveform", "square"}, {"am_hz", 30.0}, {"am_depth", 0.5}}) ==
-          "square of 80 Hz, amplitude-modulated at 30 Hz to a depth of 0.5");
-    CHECK(carrier({{"carrier_hz", 80.0},
-                   {"course", {{{"t_s", 0.0}, {"hz", 80.0}}, {{"t_s", 1.0}, {"hz", 300.0}}}}}) ==
-          "sine of 80 Hz, its frequency changing on the way: 80 to 300 Hz");
-}
-
-TEST_CASE("options are reported where they matter")
+TEST_CASE("options of a method are reported by their names, where they are used")
 {
     plan_options o;
-    CHECK(method_options(o) == "SOA 0.07 s, timing fixed");
+    CHECK(method_options(o) ==
+          "outside error, algorithm park2016, phantom inverse-distance, faces delaunay, soa 0.07, "
+          "slope 0.32, intercept 0.0473, timing fixed, overlap energy, carrier 250");
     o.burst_s = 0.05;
-    o.timing = timing_kind::fit;
-    o.outside = outside_kind::clamp;
-    CHECK(method_options(o) == "SOA 0.07 s at most, timing fit: equal SOAs that end with the path, bursts of "
-                               "0.05 s instead of the law's, places outside the array moved to its edge");
-    o = {};
-    o.algorithm = algorithm_kind::continuous;
-    CHECK(method_options(o) == "the defaults");
-    o.profile.slope = 0.4;
-    CHECK(method_options(o) == "$\\mathrm{SOA} = 0.4\\,d + 0.0473\\,\\mathrm{s}$ with burst duration $d$");
-    CHECK(has(algorithm_text("mine"), "not one of tactor's own"));
+    o.snap = true;
+    CHECK(has(method_options(o), "soa 0.07, burst 0.05, slope"));
+    CHECK(has(method_options(o), ", snap"));
+}
+
+TEST_CASE("the template has a section for each algorithm and phantom model")
+{
     for (const algorithm_kind a : all_values<algorithm_kind>())
-        CHECK(algorithm_text(to_string(a)) != algorithm_text("mine"));
+        CHECK(has(std::string(methods_template()), fmt::format("[[#{}]]\n**Algorithm", to_string(a))));
     for (const phantom_kind p : all_values<phantom_kind>())
-        CHECK(phantom_text(to_string(p)) != phantom_text("mine"));
+        CHECK(has(std::string(methods_template()), fmt::format("[[#{}]]\n**Phantom model", to_string(p))));
 }
 
 } // namespace

@@ -164,7 +164,7 @@ json run_json(const study::run_analysis& r)
 
 } // namespace
 
-void print_analysis_json(std::FILE* out, const study::analysis& a)
+nlohmann::ordered_json make_analysis_json(const study::analysis& a)
 {
     json j{{"schema", "tactor-analysis/1"}, {"experiment", a.experiment}, {"participants", a.participants},
            {"simulated", a.simulated},      {"runs", json::object()},     {"void", json::object()}};
@@ -175,7 +175,7 @@ void print_analysis_json(std::FILE* out, const study::analysis& a)
     j["warnings"] = a.warnings;
     for (const std::string& w : a.no_figures)
         j["warnings"].push_back(w);
-    fmt::print(out, "{}\n", j.dump(2, ' ', false, json::error_handler_t::replace));
+    return j;
 }
 
 } // namespace tactor::cli

@@ -5,15 +5,18 @@
 
 #include <cstdio>
 
+#include <nlohmann/json.hpp>
+
 #include "cli/picture_options.hpp"
 #include "plot/paint/canvas.hpp"
 #include "study/analysis/analysis.hpp"
 
 namespace tactor::cli {
 
-/// These write to `out`. JSON has the schema tactor-analysis/1.
 void print_analysis_text(std::FILE* out, const study::analysis& a);
-void print_analysis_json(std::FILE* out, const study::analysis& a);
+
+/// Returns an object with the schema tactor-analysis/1.
+nlohmann::ordered_json make_analysis_json(const study::analysis& a);
 
 /// Every trial that counts on a line, with tabs between, after lines that begin with # and tell R how to read
 /// and fit it.

@@ -4,6 +4,7 @@
 #include <string>
 
 #include <CLI/CLI.hpp>
+#include <fmt/format.h>
 
 #include <tactor/error.hpp>
 
@@ -44,7 +45,8 @@ int run(const analyze_options& o)
         draw(o, a);
     print_warnings(a);
     if (o.format == "json")
-        print_analysis_json(stdout, a);
+        fmt::print("{}\n",
+                   make_analysis_json(a).dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
     else if (o.format == "tsv")
         print_trials(stdout, d);
     else

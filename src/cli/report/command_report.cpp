@@ -9,7 +9,7 @@
 #include "cli/commands.hpp"
 #include "cli/settings.hpp"
 #include "session/pipes.hpp"
-#include "study/report/sections.hpp"
+#include "study/report/methods.hpp"
 
 namespace tactor::cli {
 namespace {
@@ -26,7 +26,7 @@ int run(const report_options& o)
     const study::dataset d = study::read_dataset(o.folder, o.who);
     const study::study_facts f = study::read_facts(o.folder, d);
     const study::analysis a = study::analyse(d);
-    const std::string text = study::methods_text(f, d, a);
+    const std::string text = study::methods_text(f, d, make_analysis_json(a));
     if (o.file.empty())
         fmt::print("{}", text);
     else {

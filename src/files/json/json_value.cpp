@@ -9,6 +9,8 @@
 
 #include <tactor/error.hpp>
 
+#include "core/words.hpp"
+
 namespace tactor::files {
 
 using nlohmann::ordered_json;
@@ -142,6 +144,8 @@ std::string json_value::words() const
         return {};
     if (value_->is_string())
         return value_->get<std::string>();
+    if (value_->is_number_float())
+        return plain_number(value_->get<double>());
     if (!value_->is_structured())
         return value_->dump();
     std::string all;

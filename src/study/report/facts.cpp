@@ -2,12 +2,10 @@
 #include "study/report/facts.hpp"
 
 #include <algorithm>
-#include <map>
 #include <utility>
 
 #include <fmt/format.h>
 
-#include <tactor/alsa.hpp>
 #include <tactor/error.hpp>
 
 #include "core/sha256.hpp"
@@ -18,42 +16,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int most_channel = int{max_pcm_channels} - 1;
-
 [[noreturn]] void refuse_changed(const std::string& what, const std::string& written, const std::string& is)
 {
     throw error(error_kind::bad_input, what, fmt::format("its SHA-256 is {}, not {}", is, written),
                 "it was changed after the session: put back what it was");
-}
-
-tactor_spec tactor_in(const json_value& t)
-{
-    tactor_spec one;
-    one.position = {t["x_mm"].need_number(), t["y_mm"].need_number()};
-    one.channel = static_cast<unsigned>(t["channel"].need_whole(0, most_channel));
-    if (t["polarity"].there())
-        one.polarity = t["polarity"].need_whole(-1, 1);
-    one.gain_db = t["gain_db"].number().value_or(0.0);
-    one.max_dbfs = t["max_dbfs"].number().value_or(0.0);
-    one.actuator = t["actuator"].kind<actuator_kind>().value_or(one.actuator);
-    one.displacement_um_at_0dbfs = t["displacement_um_at_0dbfs"].number();
-    return one;
-}
-
-std::optional<array> array_in(const json_value& a)
-{
-    if (!a.there())
-        return {};
-    array all;
-    all.name = a["name"].text().value_or("");
-    for (const json_value& t : a["tactors"].list())
-        all.tactors.push_back(tactor_in(t));
-    try {
-        validate(all);
-    } catch (const error& e) {
-        a.refuse(fmt::format("is none: {}: {}", e.subject(), e.why()), e.hint());
-    }
-    return all;
 }
 
 std::vector<planned_stimulus> read_stimuli(const session_facts& s, const fs::path& plans)
@@ -88,36 +54,28 @@ void check_plan(const text_table& t, std::size_t row, const session_facts& s, co
                  "it was changed");
 }
 
-// Adds the void trials and openings of the device in a run's table.
-void add_table(const fs::path& folder, const fs::path& table, session_facts& s)
+// Counts the void trials in a run's table.
+void_count count_voids(const fs::path& folder, const fs::path& table, const session_facts& s)
 {
-    void_count& c = s.voids.emplace_back();
-    std::set<unsigned>& streams = s.streams.emplace_back();
+    void_count c;
     if (!is_there(folder, table))
-        return;
+        return c;
     const text_table t(folder / table);
-    std::map<std::string_view, std::size_t> waiting; // void attempts at a trial that did not come again yet
     for (std::size_t i = 0; i < t.rows(); ++i) {
         if (!s.stimuli.empty()) {
             check_plan(t, i, s, "method_1", "plan_1");
             check_plan(t, i, s, "method_2", "plan_2");
         }
-        if (const auto came = waiting.extract(t.need(i, "trial")); !came.empty())
-            c.again += came.mapped();
-        if (!t.truth(i, "void")) {
-            if (t.has("stream"))
-                if (const auto stream = t.whole(i, "stream", 0, 1000000000))
-                    streams.insert(*stream);
+        if (!t.truth(i, "void"))
             continue;
-        }
         ++c.voids;
-        ++waiting[t.need(i, "trial")];
         const auto xruns = t.has("xruns") ? t.whole(i, "xruns", 0, 1000000000) : std::nullopt;
         if (!xruns)
-            ++c.unknown;
-        else if (*xruns > 0)
-            ++c.with_xruns;
+            c.with_xruns.reset();
+        else if (*xruns > 0 && c.with_xruns)
+            ++*c.with_xruns;
     }
+    return c;
 }
 
 session_facts read_session_facts(const fs::path& folder, const std::string& code,
@@ -136,10 +94,9 @@ session_facts read_session_facts(const fs::path& folder, const std::string& code
         refuse_changed(s.file + ": experiment.text", *written, s.definition_hash);
     if (s.facts()["schema"].text() == own_schema)
         s.design = read_design(text, s.file + ": experiment.text");
-    s.tactors = array_in(s.facts()["array"]);
     s.stimuli = read_stimuli(s, source / "plans");
     for (const run_outline& r : outline.runs)
-        add_table(folder, table_path(code, r), s);
+        s.voids.push_back(count_voids(folder, table_path(code, r), s));
     return s;
 }
 

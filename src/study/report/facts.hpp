@@ -6,13 +6,11 @@
 #include <cstddef>
 #include <filesystem>
 #include <optional>
-#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include <nlohmann/json.hpp>
-#include <tactor/array.hpp>
 
 #include "files/json/json_value.hpp"
 #include "study/data/dataset.hpp"
@@ -36,15 +34,10 @@ struct planned_stimulus {
     json_value facts() const { return {plan, file, changed_file}; }
 };
 
-/// Counts of a run's void trials: all, those that came again, those with gaps in the sound, and those of
-/// which no file says it.
+/// Counts of a run's void trials.
 struct void_count {
     std::size_t voids = 0;
-    std::size_t again = 0;
-    std::size_t with_xruns = 0;
-    std::size_t unknown = 0;
-
-    friend bool operator==(const void_count&, const void_count&) = default;
+    std::optional<std::size_t> with_xruns = 0; ///< those with gaps in the sound; none: not recorded
 };
 
 /// Schema of the sessions that tactor experiment held.
@@ -58,10 +51,8 @@ struct session_facts {
     /// defaults.
     std::optional<experiment_definition> design = {};
     std::string definition_hash; ///< SHA-256 of its text
-    std::optional<array> tactors = {};
     std::vector<planned_stimulus> stimuli = {};
-    std::vector<void_count> voids = {};           ///< by run of the outline
-    std::vector<std::set<unsigned>> streams = {}; ///< openings of the device in which its trials count
+    std::vector<void_count> voids = {}; ///< by run of the outline
 
     json_value facts() const { return {document, file, changed_file}; }
 };

@@ -1,250 +1,616 @@
 // SPDX-License-Identifier: MIT
+#include "study/report/methods.hpp"
+
 #include <algorithm>
-#include <cstdint>
-#include <string_view>
+#include <cmath>
+#include <map>
+#include <numbers>
+#include <optional>
+#include <set>
 #include <utility>
+#include <variant>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <tactor/error.hpp>
 #include <tactor/version.hpp>
 
-#include "files/output_file.hpp"
-#include "study/report/sections.hpp"
+#include "core/split.hpp"
+#include "core/words.hpp"
+#include "options/option.hpp"
+#include "study/experiment/sequence.hpp"
+#include "study/statistics/tests.hpp"
 
 namespace tactor::study {
 namespace {
 
-constexpr std::string_view mark = "Written by tactor ";
+using json = nlohmann::ordered_json;
 
-// Facts for a paper that no file of the folder has.
-constexpr const char* by_hand =
-    "\n## To be added by hand\n\n"
-    "The files do not say: who approved the study and how consent was given; how participants were "
-    "recruited and\n"
-    "paid; where on the body the array lay, how it was held and how hard the skin pressed on it; the "
-    "actuators' maker\n"
-    "and type, the amplifier, the headphones; what was sampled a priori and why so many participants took "
-    "part.\n";
+constexpr const char* not_recorded = "not recorded";
 
-std::string gaps_text(const void_count& c)
+std::string list_subjects(const std::vector<std::string>& codes)
 {
-    return c.unknown == 0         ? fmt::format("{}", c.with_xruns)
-           : c.unknown == c.voids ? std::string(not_recorded)
-                                  : fmt::format("{} (of {}: {})", c.with_xruns, c.unknown, not_recorded);
+    return fmt::format("sub-{}", fmt::join(codes, ", sub-"));
 }
 
-std::string again_text(const void_count& c)
+// Returns "all" for a fact of everybody.
+std::string name_subjects(const study_facts& f, const std::vector<std::string>& codes)
 {
-    if (c.again == c.voids)
-        return c.voids == 1 ? "It came again" : "All of them came again";
-    return fmt::format("{} of them came again, {} did not", c.again, c.voids - c.again);
+    return codes.size() == f.sessions.size() ? "all" : list_subjects(codes);
 }
 
-// Makes a line for each participant: trials that count, void ones, those with gaps in the sound.
-std::string trials_table(const study_facts& f, const dataset& d)
+// Texts in the order in which they came, each with the sessions that have it.
+class shared_texts {
+public:
+    std::vector<std::string>& operator[](const std::string& text)
+    {
+        const auto at =
+            std::find_if(all_.begin(), all_.end(), [&](const auto& t) { return t.first == text; });
+        return at == all_.end() ? all_.emplace_back(text, std::vector<std::string>()).second : at->second;
+    }
+    const auto& all() const noexcept { return all_; }
+
+private:
+    std::vector<std::pair<std::string, std::vector<std::string>>> all_;
+};
+
+bool is_simulated(const session_facts& s)
 {
-    std::vector<std::string> head{"participant"};
-    for (const run_outline& r : d.experiment.runs)
-        head.push_back(plain(r.name));
-    std::string text = table_head(head);
+    return s.facts()["simulated"].truth().value_or(false);
+}
+
+// Returns a fact of a session in words: "none" where it is null.
+std::string fact_text(const session_facts& s, const std::string& key)
+{
+    if (!s.document.contains(key))
+        return not_recorded;
+    const std::string words = s.facts()[key].words();
+    return words.empty() ? "none" : words;
+}
+
+// Returns what the openings of the device have under a key, each once.
+std::string stream_text(const session_facts& s, const std::string& key)
+{
+    std::set<std::string> seen;
+    for (const json_value& one : s.facts()["streams"].list())
+        seen.insert(one[key].there() ? one[key].words() : "none");
+    if (seen.empty())
+        return is_simulated(s) ? "simulated" : not_recorded;
+    return fmt::format("{}", fmt::join(seen, "; "));
+}
+
+std::string ages_text(const study_facts& f)
+{
+    constexpr double oldest = 150.0;
+    std::vector<double> ages;
+    std::map<std::string, unsigned> others;
+    for (const participant& p : f.people) {
+        const auto years = detail::number_in<double>(p.age.value_or(""));
+        if (years && *years >= 0.0 && *years < oldest)
+            ages.push_back(*years);
+        else
+            ++others[p.age.value_or(not_recorded)];
+    }
+    if (ages.empty() && others.size() == 1 && others.contains(not_recorded))
+        return not_recorded;
+    std::vector<std::string> parts;
+    if (!ages.empty()) {
+        const t_test t = test_mean(ages, 0.0);
+        parts.push_back(fmt::format("{} years, mean {:.1f}", range_text(ages), *t.mean));
+        if (t.se)
+            parts.back() += fmt::format(", sd {:.1f}", *t.se * std::sqrt(static_cast<double>(ages.size())));
+        if (!others.empty())
+            parts.back() += fmt::format(", of {}", counted(ages.size(), "participant"));
+    }
+    for (const auto& [age, n] : others)
+        parts.push_back(fmt::format("{} {}", n, age));
+    return fmt::format("{}", fmt::join(parts, "; "));
+}
+
+// Counts the values of a column.
+std::string counts_text(const study_facts& f, std::optional<std::string> participant::*column)
+{
+    std::map<std::string, unsigned> counts;
+    for (const participant& p : f.people)
+        ++counts[(p.*column).value_or(not_recorded)];
+    std::vector<std::string> parts;
+    for (const auto& [value, n] : counts)
+        parts.push_back(fmt::format("{} {}", n, value));
+    return counts.size() == 1 && counts.contains(not_recorded) ? not_recorded
+                                                               : fmt::format("{}", fmt::join(parts, ", "));
+}
+
+std::string describe_array(const session_facts& s)
+{
+    const json_value a = s.facts()["array"];
+    return a.there() ? fmt::format("{}, {}", a["name"].words(), counted(a["tactors"].list().size(), "tactor"))
+                     : "";
+}
+
+// Lists the tactors of each array, and who wore it.
+json list_arrays(const study_facts& f)
+{
+    shared_texts tables;
     for (const session_facts& s : f.sessions) {
-        std::vector<std::string> row{"sub-" + s.code};
-        for (std::size_t i = 0; i < d.experiment.runs.size(); ++i)
-            for (std::size_t k = 0; k < d.participants.size(); ++k)
-                if (d.participants[k] == s.code)
-                    row.push_back(fmt::format("{} / {} / {}", d.data[k][i].trials.size(), s.voids[i].voids,
-                                              gaps_text(s.voids[i])));
-        text += table_row(row);
+        json tactors = json::array();
+        for (const json_value& t : s.facts()["array"]["tactors"].list()) {
+            json row{{"number", tactors.size()}};
+            for (const char* key : {"x_mm", "y_mm", "channel", "polarity", "gain_db", "max_dbfs", "actuator",
+                                    "displacement_um_at_0dbfs"})
+                row[key] = t[key].words();
+            tactors.push_back(row);
+        }
+        tables[tactors.dump()].push_back(s.code);
     }
-    return text;
+    json all = json::array();
+    for (const auto& [tactors, codes] : tables.all())
+        all.push_back({{"who", name_subjects(f, codes)}, {"tactors", json::parse(tactors)}});
+    return all;
 }
 
-std::string version_text(const session_facts& s)
+// Returns the acceleration that the measured displacement is at each carrier; empty if none was measured.
+std::string acceleration_text(const session_facts& s)
 {
-    const std::string tactor = s.facts()["versions"]["tactor"].words();
-    const std::string build = s.facts()["versions"]["build"].words();
-    return build.empty() ? plain(tactor) : fmt::format("{} ({})", plain(tactor), plain(build));
+    constexpr double m_per_um = 1e-6;
+    std::map<double, std::vector<double>> by_carrier;
+    for (const json_value& t : s.facts()["array"]["tactors"].list())
+        if (const auto um = t["displacement_um_at_0dbfs"].number())
+            for (const planned_stimulus& p : s.stimuli)
+                if (const auto hz = p.facts()["stroke"]["carrier_hz"].number())
+                    by_carrier[*hz].push_back(*um * m_per_um * std::pow(2.0 * std::numbers::pi * *hz, 2.0));
+    std::vector<std::string> parts;
+    for (const auto& [hz, m_s2] : by_carrier)
+        parts.push_back(fmt::format("{} m/s2 at {} Hz", range_text(m_s2), plain_number(hz)));
+    return fmt::format("{}", fmt::join(parts, ", "));
 }
 
-// Removes blanks that lined a table up.
-std::string without_runs_of_blanks(const std::string& text)
+std::string describe_level(const session_facts& s)
 {
-    std::string out;
-    for (const char c : text)
-        if (c != ' ' || out.empty() || out.back() != ' ')
-            out += c;
-    return out;
+    const json_value level = s.facts()["level"];
+    if (const auto sl = level["sl_db"].number())
+        return fmt::format("{0} dB above each tactor's detection threshold ({0} dB SL)", plain_number(*sl));
+    const auto dbfs = level["dbfs"].number();
+    return dbfs ? fmt::format("{} dBFS, the same for all tactors but for their gains", plain_number(*dbfs))
+                : "";
 }
 
-// Counts the answers that are marked early, by run.
-std::string early_text(const study_facts& f, const dataset& d)
+std::string assumed_text(const session_facts& s)
 {
-    std::vector<std::string> runs;
-    for (std::size_t i = 0; i < d.experiment.runs.size(); ++i) {
-        std::size_t n = 0;
-        for (const std::vector<run_data>& own : d.data)
-            n += count_early(own[i]);
-        if (n == 0)
+    const auto assumed = s.facts()["thresholds_assumed"].truth();
+    return !assumed                             ? ""
+           : s.facts()["level"]["dbfs"].there() ? "not used: the level is in dBFS"
+           : *assumed                           ? "assumed, not measured, for tactors without one"
+                                                : "from the array file, none assumed";
+}
+
+// Returns a threshold, or those at several frequencies.
+std::string describe_threshold(const json_value& t)
+{
+    if (!t.is_list())
+        return t.there() ? plain_number(t.need_number()) : "none";
+    std::vector<std::string> parts;
+    for (const json_value& pair : t.list()) {
+        const std::vector<double> hz_and_dbfs = pair.need_numbers();
+        if (hz_and_dbfs.size() != 2)
+            pair.refuse("is no frequency with a threshold");
+        parts.push_back(
+            fmt::format("{} at {} Hz", plain_number(hz_and_dbfs[1]), plain_number(hz_and_dbfs[0])));
+    }
+    return fmt::format("{}", fmt::join(parts, ", "));
+}
+
+// Makes a row of thresholds for each participant, and one with mean and standard deviation of each tactor.
+json tabulate_thresholds(const study_facts& f)
+{
+    json rows = json::array();
+    std::vector<std::vector<double>> columns;
+    for (const session_facts& s : f.sessions) {
+        json values = json::array();
+        const std::vector<json_value> all = s.facts()["thresholds_dbfs"].list();
+        if (std::none_of(all.begin(), all.end(), [](const json_value& t) { return t.there(); }))
             continue;
-        const std::string least = join_texts(f, [&](const session_facts& s) {
-            return s.design ? digits(s.design->runs.at(i).min_response_s) + " s" : std::string();
-        });
-        runs.push_back(fmt::format("{} in {} (sooner than {} after the stimulus)", n,
-                                   plain(d.experiment.runs[i].name), least));
+        columns.resize(std::max(columns.size(), all.size()));
+        for (const json_value& t : all) {
+            if (t.there() && !t.is_list())
+                columns[values.size()].push_back(t.need_number());
+            values.push_back(describe_threshold(t));
+        }
+        rows.push_back({{"who", "sub-" + s.code}, {"values", values}});
     }
-    return runs.empty() ? "No answer is marked early. "
-                        : fmt::format("Answers marked early, which count: {}. ", fmt::join(runs, ", "));
+    json summary = json::array();
+    json numbers = json::array();
+    for (const std::vector<double>& column : columns) {
+        const t_test t = quick_test_mean(column, 0.0);
+        const double sd = t.se.value_or(0.0) * std::sqrt(static_cast<double>(column.size()));
+        summary.push_back(!t.mean ? "none"
+                          : !t.se ? fmt::format("{:.2f}", *t.mean)
+                                  : fmt::format("{:.2f} ({:.2f})", *t.mean, sd));
+        numbers.push_back(fmt::format("{}", numbers.size()));
+    }
+    rows.push_back({{"who", "mean (sd)"}, {"values", summary}});
+    return columns.empty() ? json(false) : json{{"numbers", numbers}, {"rows", rows}};
 }
 
-std::string data_section(const study_facts& f, const dataset& d)
+json list_calibrations(const study_facts& f)
 {
-    std::string text = "\n## Data\n\n";
-    void_count all;
-    for (const session_facts& s : f.sessions)
-        for (const void_count& c : s.voids)
-            all = {all.voids + c.voids, all.again + c.again, all.with_xruns + c.with_xruns,
-                   all.unknown + c.unknown};
-    if (all.voids == 0)
-        text += "No trial was void. ";
-    else
-        text += fmt::format("Void trials: {}, of which had gaps in the sound: {}; they do not count. {}. ",
-                            all.voids, gaps_text(all), again_text(all));
-    text += early_text(f, d);
-    text += "Trials that count / void / void\nwith gaps in the sound:\n\n";
-    text += trials_table(f, d);
-    text += "\n### Versions and hashes\n\n";
-    text += fmt::format("- tactor: {}\n", without_runs_of_blanks(join_texts(f, version_text)));
-    text += fmt::format("- SHA-256 of the definition: {}\n",
-                        join_texts(f, [](const session_facts& s) { return "`" + s.definition_hash + "`"; }));
-    if (std::any_of(f.sessions.begin(), f.sessions.end(),
-                    [](const session_facts& s) { return !s.stimuli.empty(); }))
-        text += "- Each stimulus is identified by the SHA-256 of its plan, in the table above; the plans "
-                "were found "
-                "to have these\n  hashes still, and each trial to name those of its motion and methods.\n";
+    json all = json::array();
+    for (const session_facts& s : f.sessions) {
+        const json_value c = s.facts()["calibration"];
+        if (!c.there())
+            continue;
+        json row{{"code", s.code}};
+        for (const char* key : {"participant", "method", "rule", "carrier_hz", "interval_s", "feedback",
+                                "masker", "date", "simulated", "warnings"})
+            row[key] = c[key].words();
+        all.push_back(row);
+    }
+    return all;
+}
+
+// Lists the different texts about the plans of a session.
+template <class F>
+std::string join_plans(const session_facts& s, const F& text, const char* between = ", ")
+{
+    std::set<std::string> seen;
+    for (const planned_stimulus& p : s.stimuli)
+        seen.insert(text(p.facts()));
+    seen.erase("");
+    return fmt::format("{}", fmt::join(seen, between));
+}
+
+std::vector<double> list_burst_numbers(const json_value& plan, const char* key)
+{
+    std::vector<double> all;
+    for (const json_value& b : plan["bursts"].list())
+        if (const auto v = b[key].number())
+            all.push_back(*v);
+    return all;
+}
+
+// Describes the wave, its phase and envelope, and the rise times of actuators.
+std::string describe_sound(const json_value& plan)
+{
+    const json_value stroke = plan["stroke"];
+    std::string text = stroke["waveform"].text().value_or("sine");
+    for (const char* key :
+         {"carrier_hz", "noise_seed", "am_hz", "am_depth", "texture", "texture_mm", "course"})
+        if (stroke[key].there())
+            text += fmt::format(", {} {}", key, stroke[key].words());
+    text += fmt::format(", phase {}", plan["render"]["phase"].words());
+    const json_value envelope = plan["render"]["envelope"];
+    text += envelope.there() ? ", envelope " + envelope.words() : ", raised-cosine ramps";
+    for (const json_value& t : plan["array"]["tactors"].list())
+        if (t["rise_s"].there())
+            text += fmt::format(", tactor {} rises in {} s", t["tactor"].words(), t["rise_s"].words());
     return text;
+}
+
+std::string describe_carrier(const session_facts& s)
+{
+    std::vector<double> ramps;
+    for (const planned_stimulus& p : s.stimuli)
+        for (const double ramp_s : list_burst_numbers(p.facts(), "ramp_s"))
+            ramps.push_back(ramp_s);
+    return s.stimuli.empty() ? ""
+                             : fmt::format("{}; ramps of {} s at both ends of a burst",
+                                           join_plans(s, describe_sound, "; "), range_text(ramps));
+}
+
+std::string law_text(const session_facts& s)
+{
+    std::set<std::string> laws;
+    if (s.design)
+        for (const method_definition& m : s.design->methods)
+            laws.insert(fmt::format("$\\mathrm{{SOA}} = {}\\,d + {}\\,\\mathrm{{s}}$ with burst duration $d$",
+                                    plain_number(m.options.profile.slope),
+                                    plain_number(m.options.profile.intercept_s)));
+    return fmt::format("{}", fmt::join(laws, " and "));
+}
+
+// Lists the methods in the order in which they came.
+json list_methods(const study_facts& f)
+{
+    std::vector<std::string> names;
+    for (const session_facts& s : f.sessions)
+        for (const planned_stimulus& p : s.stimuli)
+            if (std::find(names.begin(), names.end(), p.method) == names.end())
+                names.push_back(p.method);
+    json all = json::array();
+    for (const std::string& name : names) {
+        const auto kinds = [&](const char* key) {
+            return join_texts(f, [&](const session_facts& s) {
+                std::set<std::string> seen;
+                for (const planned_stimulus& p : s.stimuli)
+                    if (p.method == name)
+                        seen.insert(p.facts()[key].words());
+                return fmt::format("{}", fmt::join(seen, ", "));
+            });
+        };
+        const std::string options = join_texts(f, [&](const session_facts& s) -> std::string {
+            if (s.design)
+                for (const method_definition& m : s.design->methods)
+                    if (m.name == name)
+                        return method_options(m.options);
+            return "";
+        });
+        all.push_back({{"name", name},
+                       {"algorithm", kinds("algorithm")},
+                       {"phantom", kinds("phantom")},
+                       {"options", options}});
+    }
+    return all;
+}
+
+json describe_stimulus(const planned_stimulus& p)
+{
+    const json_value plan = p.facts();
+    const auto number = [](const json_value& v) { return v.there() ? plain_number(v.need_number()) : "-"; };
+    const std::vector<double> bursts_s = list_burst_numbers(plan, "duration_s");
+    return {{"motion", p.motion},
+            {"method", p.method},
+            {"path", plan["stroke"]["name"].words()},
+            {"target_s", number(plan["stroke"]["duration_s"])},
+            {"length_mm", number(plan["stroke"]["length_mm"])},
+            {"soa_s", number(plan["soa_s"])},
+            {"bursts", bursts_s.empty() ? "continuous"
+                                        : fmt::format("{} of {} s", bursts_s.size(), range_text(bursts_s))},
+            {"total_s", number(plan["total_s"])},
+            {"overlaps", plan["conflicts"].list().size()},
+            {"hash", p.hash}};
+}
+
+json list_stimuli(const study_facts& f)
+{
+    shared_texts rows;
+    for (const session_facts& s : f.sessions)
+        for (const planned_stimulus& p : s.stimuli)
+            rows[describe_stimulus(p).dump()].push_back(s.code);
+    json all = json::array();
+    for (const auto& [row, codes] : rows.all()) {
+        all.push_back(json::parse(row));
+        all.back()["who"] = name_subjects(f, codes);
+    }
+    return all;
+}
+
+// Lists what is noted of motions, and what the planner warned of.
+std::set<std::string> list_notes(const study_facts& f)
+{
+    std::set<std::string> notes;
+    for (const session_facts& s : f.sessions)
+        for (const planned_stimulus& p : s.stimuli) {
+            if (const std::string note = p.facts()["stroke"]["note"].words(); !note.empty())
+                notes.insert(fmt::format("{}: {}", p.motion, note));
+            for (const json_value& w : p.facts()["warnings"].list())
+                notes.insert(fmt::format("{} by {}: {}", p.motion, p.method, w.need_text()));
+        }
+    return notes;
+}
+
+std::string describe_task(const run_outline& r)
+{
+    const std::string methods = fmt::format("{}", fmt::join(r.methods, ", "));
+    if (r.task == task_kind::choose)
+        return fmt::format("two stimuli of one motion, by {} and by {}, one after the other; one was chosen",
+                           r.methods[0], r.methods[1]);
+    if (r.task == task_kind::rate)
+        return fmt::format("one stimulus ({}), rated from 1 to {}", methods, r.scale);
+    return fmt::format("one stimulus ({}); one of {} was named", methods,
+                       counted(r.motions.size(), "motion"));
+}
+
+std::string describe_pause(double s)
+{
+    return s > 0.0 ? plain_number(s) + " s" : "none";
+}
+
+json describe_run(const study_facts& f, const run_outline& o, std::size_t run)
+{
+    const auto fact = [&](const std::function<std::string(const run_definition&)>& text) {
+        return join_texts(f, [&](const session_facts& s) {
+            return s.design ? text(s.design->runs.at(run)) : std::string();
+        });
+    };
+    return {{"name", o.name},
+            {"task", to_string(o.task)},
+            {"asked", describe_task(o)},
+            {"motions", fmt::format("{}", fmt::join(o.motions, ", "))},
+            {"attribute", fact([](const run_definition& r) { return r.attribute; })},
+            {"question", fact([](const run_definition& r) { return r.question; })},
+            {"animation", fact([](const run_definition& r) { return r.animation ? "yes" : "no"; })},
+            {"trials", o.trials == 0 ? not_recorded : fmt::format("{}", o.trials)},
+            {"practice", fact([](const run_definition& r) { return fmt::format("{}", r.practice); })},
+            {"labels", fact([](const run_definition& r) {
+                 return r.labels.empty() ? "none" : fmt::format("{}", fmt::join(r.labels, ", "));
+             })},
+            {"break", fact([](const run_definition& r) { return describe_pause(r.break_s); })},
+            {"early", fact([](const run_definition& r) { return plain_number(r.min_response_s) + " s"; })}};
+}
+
+// Lists the motions that were mirrored for the hand that wore the array.
+std::string mirrored_text(const session_facts& s)
+{
+    std::vector<std::string> mirrored;
+    if (s.design && s.facts()["hand"].words() == "left")
+        for (const motion_definition& m : s.design->motions)
+            if (m.mirror)
+                mirrored.push_back(m.name);
+    return mirrored.empty() ? "none" : fmt::format("{}", fmt::join(mirrored, ", "));
+}
+
+// Lists the days on which a session was held, UTC.
+std::string days_text(const session_facts& s)
+{
+    std::set<std::string> days;
+    const auto add = [&days](const std::string& time) { days.insert(time.substr(0, time.find('T'))); };
+    add(s.facts()["date"].words());
+    for (const json_value& one : s.facts()["streams"].list())
+        add(one["opened"].words());
+    days.erase("");
+    return days.empty() ? not_recorded : fmt::format("{}", fmt::join(days, ", "));
+}
+
+std::string walk_text(const session_facts& s)
+{
+    std::set<std::string> felt;
+    for (const json_value& one : s.facts()["walk"].list())
+        felt.insert(one["tactor"].words());
+    return felt.empty() && is_simulated(s) ? "simulated" : fmt::format("{}", felt.size());
+}
+
+// Returns what was so in a session, with the trials of each run that count, void ones, and those of them with
+// gaps in the sound.
+json describe_session(const session_facts& s, const dataset& d)
+{
+    json row{
+        {"code", s.code}, {"days", days_text(s)}, {"mirrored", mirrored_text(s)}, {"walk", walk_text(s)}};
+    for (const char* key : {"order", "seed", "hand"})
+        row[key] = fact_text(s, key);
+    for (const char* key : {"display", "masking", "masker"})
+        row[key] = stream_text(s, key);
+    const auto at = s.facts()["consent"].text();
+    row["consent"] = at                                      ? *at
+                     : s.design && s.design->consent.empty() ? "not asked for"
+                     : is_simulated(s)                       ? "simulated"
+                                                             : not_recorded;
+    row["counts"] = json::array();
+    const auto person =
+        std::find(d.participants.begin(), d.participants.end(), s.code) - d.participants.begin();
+    for (std::size_t run = 0; run < s.voids.size(); ++run) {
+        const void_count& c = s.voids[run];
+        row["counts"].push_back(fmt::format("{} / {} / {}", d.data.at(person)[run].trials.size(), c.voids,
+                                            c.with_xruns ? fmt::format("{}", *c.with_xruns) : not_recorded));
+    }
+    return row;
+}
+
+// Cuts the intervals of means to the values that a mean may have: one from t knows no bounds.
+void cut_intervals(json& results, double low, double high)
+{
+    if (const auto ci = results.find("ci"); ci != results.end() && ci->is_array())
+        for (json& end : *ci)
+            end = std::clamp(end.get<double>(), low, high);
+    for (json& inner : results)
+        if (inner.is_object())
+            cut_intervals(inner, low, high);
+}
+
+// Adds to each run what its tables need: names of motions, and lists of pairs.
+json describe_results(json runs, const dataset& d)
+{
+    for (const run_outline& o : d.experiment.runs) {
+        json& run = runs.at(o.name);
+        const interval possible = possible_values(o);
+        for (const char* key : {"preference", "means", "correct"})
+            if (run.contains(key))
+                cut_intervals(run[key], possible.first, possible.second);
+        run["motions"] = o.motions;
+        run["pairs"] = json::array();
+        const auto add = [&run](const json& within, const json& rows) {
+            if (!rows.empty() && !rows[0].at("q").is_null())
+                run["pairs"].push_back({{"within", within}, {"rows", rows}});
+        };
+        const json tukey = run.value("tukey", json::array());
+        if (tukey.is_array())
+            add(nullptr, tukey);
+        else
+            for (const auto& [method, rows] : tukey.items())
+                add(method, rows);
+    }
+    return runs;
+}
+
+json list_excluded(const dataset& d)
+{
+    json all = json::array();
+    for (const left_out& one : d.excluded)
+        all.push_back({{"participant", one.participant}, {"why", one.why}});
+    return all;
 }
 
 } // namespace
 
-std::string methods_text(const study_facts& f, const dataset& d, const analysis& a)
+nlohmann::ordered_json collect_facts(const study_facts& f, const dataset& d, const json& analysis)
 {
-    std::string text = fmt::format("# Methods: {}\n\n", join_texts(f, [&](const session_facts& s) {
-                                       return plain(s.design ? s.design->title : d.experiment.name);
-                                   }));
-    if (a.simulated)
-        text += fmt::format("> **SIMULATED: nobody was asked.** The answers come from a model ({}). They "
-                            "test the software and say nothing\n> about people.\n\n",
-                            join_texts(f, [](const session_facts& s) {
-                                return plain(s.facts()["simulation"].text().value_or(""));
-                            }));
-    text += fmt::format(
-        "{}{} from the files of the study; what they do not say is \"{}\". Lengths are in mm with x to "
-        "the\nright and y down, levels in dB below full scale (dBFS) unless said otherwise.\n",
-        mark, version(), not_recorded);
-    text += participants_section(f, a);
-    text += apparatus_section(f);
-    text += stimuli_section(f);
-    text += procedure_section(f, d);
-    text += data_section(f, d);
-    text += results_section(a);
-    text += by_hand;
-    text += references_section(text);
-    return text;
-}
-
-void check_report_name(const std::filesystem::path& file)
-{
-    if (file.extension() != ".md")
-        throw error(error_kind::bad_input, file.string(), "the report is Markdown", "end the name in .md");
-}
-
-void write_report(const std::filesystem::path& file, const std::string& text, bool force)
-{
-    check_report_name(file);
-    detail::check_replaced(file, force, [](std::string_view begin, std::string_view) {
-        return begin.starts_with("# Methods: ") && begin.find(mark) != begin.npos;
+    const auto definition = [&f](const std::function<std::string(const experiment_definition&)>& text) {
+        return join_texts(f,
+                          [&](const session_facts& s) { return s.design ? text(*s.design) : std::string(); });
+    };
+    const auto fact = [&f](const char* key) {
+        return join_texts(f, [key](const session_facts& s) { return fact_text(s, key); });
+    };
+    std::vector<std::string> codes;
+    for (const participant& p : f.people)
+        codes.push_back(p.code);
+    json all{{"version", std::string(version())}, {"experiment", d.experiment.name}};
+    all["title"] =
+        join_texts(f, [&](const session_facts& s) { return s.design ? s.design->title : d.experiment.name; });
+    all["simulation"] = d.simulated ? json{{"how", fact("simulation")}} : json(false);
+    all["participants"] = fmt::format("{}: {}", counted(codes.size(), "participant"), list_subjects(codes));
+    all["age"] = ages_text(f);
+    all["sex"] = counts_text(f, &participant::sex);
+    all["handedness"] = counts_text(f, &participant::handedness);
+    all["array"] = join_texts(f, describe_array);
+    for (const char* key : {"rate", "channels", "device", "sound_server"})
+        all[key] = fact(key);
+    all["arrays"] = list_arrays(f);
+    const std::string acceleration = join_texts(f, acceleration_text);
+    all["acceleration"] = acceleration == not_recorded ? json(false) : json(acceleration);
+    all["level"] = join_texts(f, describe_level);
+    all["assumed"] = join_texts(f, assumed_text);
+    all["thresholds"] = tabulate_thresholds(f);
+    all["calibrations"] = list_calibrations(f);
+    all["calibrated"] = !all["calibrations"].empty();
+    all["carrier"] = join_texts(f, describe_carrier);
+    all["law"] = join_texts(f, law_text);
+    all["methods"] = list_methods(f);
+    for (const session_facts& s : f.sessions)
+        for (const planned_stimulus& p : s.stimuli)
+            for (const char* key : {"algorithm", "phantom"})
+                all[p.facts()[key].need_text()] = true; // the equations
+    all["stimuli"] = list_stimuli(f);
+    all["recorded"] = !all["stimuli"].empty();
+    all["notes"] = list_notes(f);
+    all["gap"] = definition([](const experiment_definition& e) { return plain_number(e.gap_s) + " s"; });
+    all["rest"] = definition([](const experiment_definition& e) {
+        return e.rest.is_random() ? fmt::format("{} to {} s, drawn for each trial",
+                                                plain_number(e.rest.least_s), plain_number(e.rest.most_s))
+                                  : describe_pause(e.rest.least_s);
     });
-    detail::output_file out(file);
-    out.write(text.data(), static_cast<std::int64_t>(text.size()));
-    out.commit();
-}
-
-std::string plain(std::string_view text)
-{
-    constexpr std::string_view own = "\\`*_{}[]<>#|$~";
-    std::string out;
-    for (const char c : text) {
-        const auto byte = static_cast<unsigned char>(c);
-        if (c == '\n' || c == '\t' || c == '\r')
-            out += ' ';
-        else if (byte < 0x20 || byte == 0x7f)
-            out += fmt::format("\\\\x{:02x}", byte);
-        else {
-            if (own.find(c) != std::string_view::npos)
-                out += '\\';
-            out += c;
-        }
-    }
-    return out;
-}
-
-std::string plain_list(const std::vector<std::string>& names)
-{
-    std::string all;
-    for (const std::string& n : names)
-        all += (all.empty() ? "" : ", ") + plain(n);
+    all["runs"] = json::array();
+    for (std::size_t i = 0; i < d.experiment.runs.size(); ++i)
+        all["runs"].push_back(describe_run(f, d.experiment.runs[i], i));
+    const bool own = std::any_of(f.sessions.begin(), f.sessions.end(),
+                                 [](const session_facts& s) { return s.design.has_value(); });
+    all["most_in_a_row"] = own ? json(fmt::format("{}", most_in_a_row)) : json(false);
+    all["masking"] = fact("masking");
+    all["sessions"] = json::array();
+    for (const session_facts& s : f.sessions)
+        all["sessions"].push_back(describe_session(s, d));
+    all["held"] = !f.sessions.empty();
+    all["versions"] = join_texts(f, [](const session_facts& s) {
+        const json_value v = s.facts()["versions"];
+        return v["build"].there() ? fmt::format("{} ({})", v["tactor"].words(), v["build"].words())
+                                  : v["tactor"].words();
+    });
+    all["definitions"] = join_texts(f, [](const session_facts& s) { return s.definition_hash; });
+    all["excluded"] = list_excluded(d);
+    all["results"] = describe_results(analysis.at("runs"), d);
+    all["warnings"] = analysis.at("warnings");
     return all;
 }
 
-std::string digits(double v)
-{
-    return fmt::format("{:.6g}", v);
-}
-
-std::string subjects(std::span<const std::string> codes)
-{
-    std::string all;
-    for (const std::string& c : codes)
-        all += (all.empty() ? "sub-" : ", sub-") + c;
-    return all;
-}
-
-std::string table_row(const std::vector<std::string>& cells)
-{
-    std::string line = "|";
-    for (const std::string& c : cells)
-        line += fmt::format(" {} |", c);
-    return line + "\n";
-}
-
-std::string table_head(const std::vector<std::string>& cells)
-{
-    return table_row(cells) + table_row(std::vector<std::string>(cells.size(), "---"));
-}
-
-void add_text(shared_texts& all, std::string text, const std::string& who)
-{
-    auto at = std::find_if(all.begin(), all.end(), [&](const auto& s) { return s.first == text; });
-    if (at == all.end())
-        at = all.emplace(at, std::move(text), std::vector<std::string>());
-    at->second.push_back(who);
-}
-
-std::string join_texts(const study_facts& f, const std::function<std::string(const session_facts&)>& say)
+std::string join_texts(const study_facts& f, const std::function<std::string(const session_facts&)>& text)
 {
     shared_texts texts;
     for (const session_facts& s : f.sessions) {
-        std::string text = say(s);
-        add_text(texts, text.empty() ? not_recorded : std::move(text), s.code);
+        const std::string own = text(s);
+        texts[own.empty() ? not_recorded : own].push_back(s.code);
     }
-    if (texts.size() == 1)
-        return texts.front().first;
-    std::string all;
-    for (const auto& [text, codes] : texts)
-        all += fmt::format("{}{} ({})", all.empty() ? "" : "; ", text, subjects(codes));
-    return all;
+    std::vector<std::string> parts;
+    for (const auto& [own, codes] : texts.all())
+        parts.push_back(texts.all().size() == 1 ? own : fmt::format("{} ({})", own, list_subjects(codes)));
+    return parts.empty() ? not_recorded : fmt::format("{}", fmt::join(parts, "; "));
 }
 
 std::string range_text(const std::vector<double>& values)
@@ -252,9 +618,28 @@ std::string range_text(const std::vector<double>& values)
     if (values.empty())
         return not_recorded;
     const auto [low, high] = std::minmax_element(values.begin(), values.end());
-    const std::string from = digits(*low);
-    const std::string to = digits(*high);
+    const std::string from = plain_number(*low);
+    const std::string to = plain_number(*high);
     return from == to ? from : fmt::format("{} to {}", from, to);
+}
+
+std::string method_options(const plan_options& o)
+{
+    options::wishes all;
+    all.plan = o;
+    std::vector<std::string> parts;
+    for (const options::option& row : options::all()) {
+        if ((row.where & options::in_method) == 0 || (row.used != nullptr && !row.used(all)))
+            continue;
+        const options::value v = row.to.get(all);
+        if (const auto* number = std::get_if<double>(&v))
+            parts.push_back(fmt::format("{} {}", row.name, plain_number(*number)));
+        else if (const auto* text = std::get_if<std::string>(&v))
+            parts.push_back(fmt::format("{} {}", row.name, *text));
+        else if (v == options::value(true))
+            parts.emplace_back(row.name);
+    }
+    return fmt::format("{}", fmt::join(parts, ", "));
 }
 
 } // namespace tactor::study
