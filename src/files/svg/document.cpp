@@ -1,29 +1,69 @@
 // SPDX-License-Identifier: MIT
 #include "files/svg/document.hpp"
 
-#include <functional>
+#include <algorithm>
 #include <new>
 #include <utility>
-
-#include <fmt/format.h>
 
 #include "core/suggest.hpp"
 #include "core/words.hpp"
 #include "files/text_file.hpp"
 
 namespace tactor::detail {
+namespace {
+
+std::string tidy(std::string_view text)
+{
+    return in_small_letters(std::string(without_blanks(text)));
+}
+
+// Calls f(index, value) for each of svg_properties that a style or rules declare.
+template <class F>
+void for_each_declaration(std::string_view css, F f)
+{
+    for (std::size_t at = 0; at < css.size();) {
+        const std::size_t end = std::min(css.find_first_of(";{}", at), css.size());
+        const std::string_view item = without_blanks(css.substr(at, end - at));
+        const std::size_t colon = item.find(':');
+        const auto* known =
+            std::find(svg_properties.begin(), svg_properties.end(), tidy(item.substr(0, colon)));
+        if (item.starts_with('&'))
+            f(svg_display, item); // an entity, which may hide
+        else if (known != svg_properties.end() && colon != std::string_view::npos)
+            f(static_cast<std::size_t>(known - svg_properties.begin()), item.substr(colon + 1));
+        at = end + 1;
+    }
+}
+
+} // namespace
+
+svg_style::svg_style(pugi::xml_node n)
+{
+    const auto take = [this](std::size_t property, std::string_view text) {
+        if (std::string value = tidy(text.substr(0, text.find('!'))); !value.empty())
+            values_[svg_properties[property]] = std::move(value);
+    };
+    for (std::size_t i = 0; i < svg_attributes; ++i)
+        take(i, n.attribute(svg_properties[i].data()).value());
+    for_each_declaration(n.attribute("style").value(), take);
+}
+
+std::string_view svg_style::value(std::string_view property) const
+{
+    const auto found = values_.find(property);
+    return found == values_.end() ? std::string_view() : found->second;
+}
 
 svg_document::svg_document(std::string_view text, const std::string& name)
     : text_(without_mark(text)), name_(name), buffer_(text_)
 {
-    const pugi::xml_parse_result r = tree_.load_buffer_inplace(
-        buffer_.data(), buffer_.size(), pugi::parse_default | pugi::parse_doctype | pugi::parse_pi);
+    const pugi::xml_parse_result r = tree_.load_buffer_inplace(buffer_.data(), buffer_.size());
     if (r.status == pugi::status_out_of_memory)
         throw std::bad_alloc();
     if (!r) {
         refuse_other_form(text_, name_, "svg");
-        const auto offset = static_cast<std::size_t>(r.offset > 0 ? r.offset : 0);
-        throw error(error_kind::bad_input, find_place(text_, offset, name_), r.description(),
+        throw error(error_kind::bad_input,
+                    place(static_cast<std::size_t>(std::max<std::ptrdiff_t>(r.offset, 0))), r.description(),
                     "the file is not well-formed XML");
     }
     if (svg_tag(root()) != "svg")
@@ -33,11 +73,7 @@ svg_document::svg_document(std::string_view text, const std::string& name)
         if (const std::string_view id = n.attribute("id").value(); !id.empty())
             ids_.try_emplace(id, n);
         if (svg_tag(n) == "style")
-            sheet_.add(n);
-        if (n.type() == pugi::node_doctype)
-            sheet_.add_entities(n.value());
-        if (n.type() == pugi::node_pi && std::string_view(n.name()) == "xml-stylesheet")
-            sheet_.add_other_file(n);
+            note_rules(n);
         return false;
     });
 }
@@ -56,10 +92,9 @@ pugi::xml_node svg_document::by_id(std::string_view id) const
     return found == ids_.end() ? pugi::xml_node() : found->second;
 }
 
-source_place svg_document::where(pugi::xml_node n) const
+source_place svg_document::place(std::optional<std::size_t> offset) const
 {
-    const auto at = offset(n);
-    return at ? find_place(text_, *at, name_) : source_place{name_};
+    return offset ? find_place(text_, *offset, name_) : source_place{name_};
 }
 
 std::optional<std::size_t> svg_document::offset(pugi::xml_node n) const
@@ -78,8 +113,7 @@ std::string svg_document::called(pugi::xml_node n)
 
 error svg_document::to_error(const left_out& f) const
 {
-    return {error_kind::bad_input, f.offset ? find_place(text_, *f.offset, name_) : source_place{name_},
-            f.why, f.hint};
+    return {error_kind::bad_input, place(f.offset), f.why, f.hint};
 }
 
 void svg_document::fail(pugi::xml_node n, std::string_view why, std::string_view hint) const
@@ -103,82 +137,6 @@ left_out svg_document::fault(pugi::xml_node n, pugi::xml_attribute a, const valu
             fmt::format("{} of {}: {}", a.name(), called(n), f.why), f.hint};
 }
 
-std::string_view svg_document::property(pugi::xml_node n, std::string_view name) const
-{
-    try {
-        return sheet_.value(n, name);
-    } catch (const value_fault& f) {
-        fail(n, f.why, f.hint);
-    }
-}
-
-template <class F>
-void svg_document::note(const std::string& key, const char* more, const char* end, F begin) const
-{
-    noted& n = notes_[key];
-    if (n.elements++ == 0)
-        n = {begin(), more, end, 1};
-}
-
-void svg_document::note_unfollowed(pugi::xml_node n, const std::string& what, std::string_view why) const
-{
-    note(what, ", nor of", ": what it hides or moves plays as if it were not there", [&] {
-        return fmt::format("{}: {} of {} is not followed{}", where(n).text(), what, called(n), why);
-    });
-}
-
-void svg_document::note_strength(pugi::xml_node n) const
-{
-    note("data-intensity-from", ", nor of", ": data-intensity says how strong a line is", [&] {
-        return fmt::format("{}: data-intensity-from of {} is not followed", where(n).text(), called(n));
-    });
-}
-
-void svg_document::note_unknown(pugi::xml_node n, const char* property, std::string_view value) const
-{
-    note(fmt::format("unknown {}", property), ", nor of", ": that is taken as hidden", [&] {
-        return fmt::format("{}: {} of {} is not understood ({})", where(n).text(), property, called(n),
-                           detail::quoted(value));
-    });
-}
-
-void svg_document::note_no_shape(pugi::xml_node n) const
-{
-    note(n.name(), ", nor", ": only shapes do, and text made into paths",
-         [&] { return fmt::format("{}: {} does not play", where(n).text(), called(n)); });
-}
-
-void svg_document::note_twice(pugi::xml_node n) const
-{
-    note("twice", ", as does", ": it plays again",
-         [&] { return fmt::format("{}: {} has the shape of one before it", where(n).text(), called(n)); });
-}
-
-void svg_document::note_unpainted(pugi::xml_node n) const
-{
-    note("unpainted", ", nor has", ": it plays all the same", [&] {
-        return fmt::format("{}: {} has neither fill nor stroke, or no opacity", where(n).text(), called(n));
-    });
-}
-
-void svg_document::note_left_out(const left_out& f) const
-{
-    note(f.hint, ", and", "", [&] { return fmt::format("{}: left out", to_error(f).what()); });
-}
-
-std::vector<std::string> svg_document::warnings() const
-{
-    std::vector<std::string> all;
-    for (const auto& [key, n] : notes_)
-        all.push_back(n.elements == 1 ? n.begin + n.end
-                                      : fmt::format("{}{} {} more{}", n.begin, n.more,
-                                                    counted(n.elements - 1, "element"), n.end));
-    for (const svg_style_sheet::skipped& s : sheet_.not_followed())
-        all.push_back(fmt::format("{}: the style rule {} is not followed (those of a tag, class or id are)",
-                                  where(s.style).text(), s.what));
-    return all;
-}
-
 double svg_document::length(pugi::xml_node n, const char* attribute, const svg_viewport& v, svg_extent e,
                             double otherwise) const
 {
@@ -200,6 +158,47 @@ std::optional<double> svg_document::number(pugi::xml_node n, const char* attribu
                               fmt::format("it is between {:g} and {:g}", low, high)};
         return v;
     });
+}
+
+void svg_document::note(std::optional<std::size_t> offset, std::string_view key, std::string text,
+                        const char* more, const char* end) const
+{
+    const auto [at, first] = notes_.try_emplace(std::string(key));
+    if (first)
+        at->second = {offset, std::move(text), more, end};
+    ++at->second.elements;
+}
+
+void svg_document::note_unfollowed(pugi::xml_node n, std::string_view what, std::string_view why) const
+{
+    note(offset(n), what, fmt::format("{} of {} is not followed{}", what, called(n), why), ", nor of",
+         ": what it hides or moves plays as if it were not there");
+}
+
+// Rules are nearly always paint, which does not decide what plays.
+void svg_document::note_rules(pugi::xml_node style)
+{
+    has_rules_ = true;
+    for (const pugi::xml_node c : style.children())
+        for_each_declaration(c.value(), [&](std::size_t property, std::string_view) {
+            if (property >= svg_paints && notes_.find("style") == notes_.end())
+                note(offset(style), "style",
+                     fmt::format("{} in {} is not followed", svg_properties[property], called(style)), "",
+                     ": what it hides or moves plays as if it were not there (export presentation "
+                     "attributes)");
+        });
+}
+
+std::vector<std::string> svg_document::warnings() const
+{
+    std::vector<std::string> all;
+    for (const auto& [key, n] : notes_)
+        all.push_back(fmt::format("{}: {}{}{}", place(n.offset).text(), n.text,
+                                  n.elements == 1
+                                      ? std::string()
+                                      : fmt::format("{} {} more", n.more, counted(n.elements - 1, "element")),
+                                  n.end));
+    return all;
 }
 
 } // namespace tactor::detail

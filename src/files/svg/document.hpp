@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: MIT
-// An SVG document whose complaints have a line and a column, and its shapes.
+// An SVG document whose messages have a line and a column, and its shapes.
 #pragma once
 
+#include <array>
 #include <cstddef>
+#include <functional>
 #include <map>
 #include <optional>
 #include <string>
@@ -17,7 +19,6 @@
 
 #include "core/path/number.hpp"
 #include "core/path/outline.hpp"
-#include "files/svg/style.hpp"
 #include "files/svg/values.hpp"
 
 namespace tactor::detail {
@@ -29,18 +30,45 @@ struct left_out {
     std::string hint; ///< one for each kind of fault
 };
 
+/// Properties that decide what plays and where, or what a browser shows.
+inline constexpr std::array<std::string_view, 27> svg_properties{
+    // Followed:
+    "fill", "stroke", "opacity", "display", "visibility", "transform",
+    // Not followed:
+    "transform-origin", "transform-box", "clip-path", "mask", "filter",
+    // Not followed in styles; attributes of these names are geometry, or mean nothing:
+    "-webkit-transform", "translate", "rotate", "scale", "animation", "animation-name", "width", "height",
+    "x", "y", "cx", "cy", "r", "rx", "ry", "d"};
+inline constexpr std::size_t svg_paints = 3;      ///< those before only paint
+inline constexpr std::size_t svg_display = 3;     ///< "display"
+inline constexpr std::size_t svg_followed = 6;    ///< those before are followed
+inline constexpr std::size_t svg_attributes = 11; ///< those before are presentation attributes
+
+/// The svg_properties of one element: of its attributes, and of its own style, which wins.
+class svg_style {
+public:
+    explicit svg_style(pugi::xml_node n);
+
+    /// Returns a value in small letters and without !important; empty for none.
+    std::string_view value(std::string_view property) const;
+
+private:
+    std::map<std::string_view, std::string> values_;
+};
+
 class svg_document {
 public:
-    /// Expands the document's own entities in styles only, and reads nothing outside it.
-    /// \throws error (bad_input) for what is not well-formed.
+    /// Reads nothing outside the text. \throws error (bad_input) for what is not well-formed.
     svg_document(std::string_view text, const std::string& name);
 
     pugi::xml_node root() const { return tree_.document_element(); }
     pugi::xml_node by_id(std::string_view id) const;
-    const std::string& name() const noexcept { return name_; }
+
+    /// Returns true if rules of <style> may paint.
+    bool has_rules() const noexcept { return has_rules_; }
 
     std::optional<std::size_t> offset(pugi::xml_node n) const;
-    source_place where(pugi::xml_node n) const;
+    source_place where(pugi::xml_node n) const { return place(offset(n)); }
 
     /// Returns "<path> 'left'" for messages.
     static std::string called(pugi::xml_node n);
@@ -67,7 +95,7 @@ public:
     /// Returns `parse` of the text of an attribute or property; nothing where it is empty, and where it
     /// cannot be read, which is noted: browsers ignore it, too.
     template <class F>
-    auto follow(pugi::xml_node n, const char* name, std::string_view text, F parse) const
+    auto follow(pugi::xml_node n, std::string_view name, std::string_view text, F parse) const
         -> std::optional<decltype(parse(text))>
     {
         try {
@@ -78,21 +106,6 @@ public:
         }
     }
 
-    /// Returns the text of a property of svg_properties, as svg_style_sheet::value() does.
-    std::string_view property(pugi::xml_node n, std::string_view name) const;
-
-    // Note something for warnings(), which name the first element and count the others.
-    void note_unfollowed(pugi::xml_node n, const std::string& what, std::string_view why = {}) const;
-    void note_strength(pugi::xml_node n) const;
-    void note_unknown(pugi::xml_node n, const char* property, std::string_view value) const;
-    void note_no_shape(pugi::xml_node n) const;
-    void note_twice(pugi::xml_node n) const;
-    void note_unpainted(pugi::xml_node n) const;
-    void note_left_out(const left_out& f) const;
-
-    /// Returns warnings: what was noted, with places.
-    std::vector<std::string> warnings() const;
-
     /// Reads a length in user units. \throws left_out
     double length(pugi::xml_node n, const char* attribute, const svg_viewport& v, svg_extent e,
                   double otherwise = 0.0) const;
@@ -100,26 +113,33 @@ public:
     /// Reads a number from low to high.
     std::optional<double> number(pugi::xml_node n, const char* attribute, double low, double high) const;
 
+    /// Adds a warning: the place, `text` and `end`. Of several with one key the first counts the others,
+    /// behind `more`.
+    void note(std::optional<std::size_t> offset, std::string_view key, std::string text, const char* more,
+              const char* end) const;
+    void note_unfollowed(pugi::xml_node n, std::string_view what, std::string_view why = {}) const;
+    std::vector<std::string> warnings() const;
+
 private:
-    /// A warning about one element, or several.
     struct noted {
-        std::string begin;
-        const char* more = ""; ///< between, if there are more: ", nor of"
+        std::optional<std::size_t> offset;
+        std::string text;
+        const char* more = ""; ///< ", nor of"
         const char* end = "";
         std::size_t elements = 0;
     };
 
+    source_place place(std::optional<std::size_t> offset) const;
     left_out fault(pugi::xml_node n, pugi::xml_attribute a, const value_fault& f) const;
-    template <class F>
-    void note(const std::string& key, const char* more, const char* end, F begin) const;
+    void note_rules(pugi::xml_node style);
 
     std::string_view text_;
     const std::string& name_;
     std::string buffer_; ///< the tree lives in it
     pugi::xml_document tree_;
     std::unordered_map<std::string_view, pugi::xml_node> ids_;
-    svg_style_sheet sheet_;
-    mutable std::map<std::string, noted> notes_;
+    bool has_rules_ = false;
+    mutable std::map<std::string, noted, std::less<>> notes_;
 };
 
 /// Returns the element's name without the prefix "svg:".

@@ -14,10 +14,11 @@
 
 #include <tactor/error.hpp>
 
+#include "core/kind_names.hpp"
 #include "core/limits.hpp"
 #include "core/path/impl.hpp"
+#include "core/suggest.hpp"
 #include "files/svg/document.hpp"
-#include "files/svg/scope.hpp"
 #include "files/text_file.hpp"
 
 namespace tactor {
@@ -25,21 +26,59 @@ inline namespace v0 {
 namespace {
 
 using detail::affine;
-using detail::enter_svg_box;
-using detail::inherit_svg;
 using detail::left_out;
 using detail::outline;
 using detail::svg_extent;
-using detail::svg_hidden;
+using detail::svg_length;
+using detail::svg_properties;
+using detail::svg_style;
 using detail::svg_tag;
-using scope = detail::svg_scope;
+using detail::svg_view_box;
 using pugi::xml_node;
 
 // <use> can multiply a small file without end.
 constexpr unsigned deepest = 100;
-constexpr unsigned most_uses_inside = 16;
 constexpr std::size_t most_elements = 1'000'000;
 constexpr std::size_t most_vertices = 20'000'000;
+constexpr double highest_carrier_hz = 20000.0;
+
+// Properties that an element inherits from those round it.
+struct scope {
+    affine to_mm;
+    detail::svg_viewport viewport;
+    std::optional<double> speed_mm_s;
+    double intensity = 1.0;
+    bool visible = true; ///< visibility, which those inside may set anew; unlike display
+    std::optional<double> carrier_hz;
+    easing_kind easing = easing_kind::linear;
+    bool filled = true;
+    bool outlined = false;
+    bool clear = false; ///< an opacity of 0, of its own or round it
+    unsigned depth = 0; ///< elements round this one
+
+    bool is_painted() const noexcept { return (filled || outlined) && !clear; }
+};
+
+affine translation(point to)
+{
+    return {1.0, 0.0, 0.0, 1.0, to.x_mm, to.y_mm};
+}
+
+bool has(const std::optional<svg_length>& l, svg_length::unit u)
+{
+    return l && l->in == u;
+}
+
+bool is_one(std::string_view word, std::initializer_list<std::string_view> words)
+{
+    return std::find(words.begin(), words.end(), word) != words.end();
+}
+
+bool draws(xml_node n)
+{
+    const std::string_view tag = svg_tag(n);
+    return is_one(tag, {"g", "a", "switch", "svg", "use"}) || detail::is_svg_shape(tag);
+}
 
 class svg_reader {
 public:
@@ -48,9 +87,9 @@ public:
     std::vector<stroke> read()
     {
         const xml_node root = doc_.root();
-        const scope s = detail::svg_root_scope(doc_);
-        note_unfollowed(root);
-        if (svg_hidden(doc_, root))
+        const svg_style style(root);
+        const scope s = root_scope(root, style);
+        if (is_hidden(root, style))
             hidden_ = root;
         else
             children(root, s);
@@ -62,18 +101,87 @@ public:
             throw doc_.to_error(*left_out_);
         if (hidden_)
             doc_.fail(hidden_, fmt::format("{} is hidden, and nothing else draws", doc_.called(hidden_)),
-                      "take out display or visibility");
-        throw error(
-            error_kind::bad_input, source_place{doc_.name()}, "no shape in it",
-            "strokes are path, line, polyline, polygon, rect, circle and ellipse; make paths of text");
+                      "take out display, visibility and styles such as &st0;");
+        throw doc_.to_error(
+            {std::nullopt, "no shape in it",
+             "strokes are path, line, polyline, polygon, rect, circle and ellipse; make paths of text"});
     }
 
 private:
+    // Returns the scope inside the root. A document with a size in physical units is as large as it says. In
+    // any other, one user unit is one millimetre and coordinates are as they stand.
+    scope root_scope(xml_node n, const svg_style& style) const
+    {
+        using unit = svg_length::unit;
+        const auto width = read_side(n, style, "width");
+        const auto height = read_side(n, style, "height");
+        const auto box = doc_.read(n, "viewBox", detail::parse_svg_view_box);
+        scope s;
+        if (!has(width, unit::mm) && !has(height, unit::mm)) {
+            s.viewport.width = box ? box->width : has(width, unit::none) ? width->value : 100.0;
+            s.viewport.height = box ? box->height : has(height, unit::none) ? height->value : 100.0;
+            if (box && has(width, unit::none) && has(height, unit::none))
+                note_aspect(n, *box, width->value, height->value);
+        } else {
+            const auto px = [&](const auto& l) -> std::optional<double> {
+                if (!l || l->in == unit::percent)
+                    return std::nullopt;
+                if (!(l->value > 0.0))
+                    doc_.fail(n, fmt::format("{} has no size", doc_.called(n)),
+                              "width and height are more than 0");
+                return l->in == unit::mm ? l->value / detail::mm_per_px : l->value;
+            };
+            const auto w = px(width);
+            const auto h = px(height);
+            const double ratio = box ? box->width / box->height : 1.0;
+            s.to_mm = {detail::mm_per_px, 0.0, 0.0, detail::mm_per_px, 0.0, 0.0};
+            s.viewport = {w ? *w : *h * ratio, h ? *h : *w / ratio, 1.0 / detail::mm_per_px};
+            if (box)
+                enter_box(n, s, *box, {}, s.viewport.width, s.viewport.height);
+        }
+        inherit(n, style, s);
+        return s;
+    }
+
+    // Returns a side of the drawing: of its style where that says a physical one, else of its attribute.
+    std::optional<svg_length> read_side(xml_node n, const svg_style& style, const char* name) const
+    {
+        const auto attribute = doc_.follow(n, name, n.attribute(name).value(), detail::parse_svg_length);
+        const std::string_view text = style.value(name);
+        const auto own = doc_.follow(n, name, text == "auto" ? "" : text, detail::parse_svg_length);
+        return has(own, svg_length::unit::mm) ? own : attribute;
+    }
+
+    // Enters an element with a view box, which fills width x height (user units) from `corner`.
+    void enter_box(xml_node n, scope& s, const svg_view_box& box, point corner, double width,
+                   double height) const
+    {
+        const double k = std::min(width / box.width, height / box.height);
+        const double x = corner.x_mm - box.corner.x_mm * k + 0.5 * (width - box.width * k);
+        const double y = corner.y_mm - box.corner.y_mm * k + 0.5 * (height - box.height * k);
+        s.to_mm = s.to_mm * affine{k, 0.0, 0.0, k, x, y};
+        s.viewport.width = box.width;
+        s.viewport.height = box.height;
+        note_aspect(n, box, width, height);
+    }
+
+    void note_aspect(xml_node n, const svg_view_box& box, double width, double height) const
+    {
+        const std::string_view aspect = n.attribute("preserveAspectRatio").value();
+        const double spare = width * box.height - height * box.width;
+        if (!is_one(aspect, {"", "xMidYMid", "xMidYMid meet"}) && std::abs(spare) > 1e-9 * width * box.height)
+            doc_.note_unfollowed(n, "preserveAspectRatio");
+    }
+
     void children(xml_node n, const scope& s)
     {
-        for (const xml_node c : n.children())
-            if (c.type() == pugi::node_element)
-                visit(c, s);
+        for (const xml_node c : n.children()) {
+            if (c.type() != pugi::node_element)
+                continue;
+            visit(c, s);
+            if (svg_tag(n) == "switch" && draws(c))
+                return;
+        }
     }
 
     void visit(xml_node n, const scope& s)
@@ -81,7 +189,7 @@ private:
         try {
             draw(n, s);
         } catch (const left_out& f) {
-            doc_.note_left_out(f);
+            note_left_out(f);
             if (!left_out_)
                 left_out_ = f;
         }
@@ -91,25 +199,22 @@ private:
     {
         if (++elements_ > most_elements || ++s.depth > deepest)
             doc_.fail(n, elements_ > most_elements ? "too many elements" : "nested too deep",
-                      "simplify the drawing");
-        const std::string_view tag = svg_tag(n);
-        const bool group = tag == "g" || tag == "a" || tag == "switch";
+                      "simplify the drawing, and take out loops of <use>");
         if (!draws(n))
             return note_no_shape(n);
-        if (svg_hidden(doc_, n))
+        const std::string_view tag = svg_tag(n);
+        const svg_style style(n);
+        if (is_hidden(n, style))
             return note_hidden(n);
-        note_unfollowed(n);
-        inherit_svg(doc_, n, s);
-        if (!group && tag != "svg")
-            for (const xml_node c : n.children())
-                note_no_shape(c); // an animation
-        if (group)
-            children(n, s);
-        else if (tag == "svg")
-            frame(n, n, s,
-                  {doc_.length(n, "x", s.viewport, svg_extent::width),
-                   doc_.length(n, "y", s.viewport, svg_extent::height)});
-        else if (tag == "use")
+        note_unfollowed(n, style);
+        inherit(n, style, s);
+        if (is_one(tag, {"g", "a", "switch"}))
+            return children(n, s);
+        if (tag == "svg")
+            return frame(n, n, s, read_corner(n, s));
+        for (const xml_node c : n.children())
+            note_no_shape(c); // an animation
+        if (tag == "use")
             use(n, s);
         else if (s.visible)
             shape(n, s);
@@ -117,38 +222,33 @@ private:
             note_hidden(n);
     }
 
-    // Notes features that are not followed. SVG viewers draw one child of a switch.
-    void note_unfollowed(xml_node n) const
+    void note_unfollowed(xml_node n, const svg_style& style) const
     {
-        const bool root = n == doc_.root(); // whose width and height are followed
-        for (const std::string_view what : detail::unfollowed_svg_properties)
-            if (const std::string_view v = doc_.property(n, what);
-                !v.empty() && v != "none" && !(root && (what == "width" || what == "height")))
-                doc_.note_unfollowed(n, std::string(what));
-        if (svg_tag(n) == "switch" && std::count_if(n.begin(), n.end(), draws) > 1)
-            doc_.note_unfollowed(n, "the choice");
+        for (std::size_t i = detail::svg_followed; i < svg_properties.size(); ++i) {
+            const std::string_view p = svg_properties[i];
+            const std::string_view v = style.value(p);
+            const bool idle = p.starts_with("transform-") && style.value("transform").empty();
+            if (!v.empty() && v != "none" && !idle)
+                doc_.note_unfollowed(n, p);
+        }
+    }
+
+    void note_left_out(const left_out& f) const
+    {
+        doc_.note(f.offset, f.hint, fmt::format("{} ({}): left out", f.why, f.hint), ", and", "");
     }
 
     // Notes an element that draws in browsers although it is no shape. Those of other programs have a prefix.
     void note_no_shape(xml_node n) const
     {
-        constexpr std::array<std::string_view, 20> silent{
-            "defs",    "symbol", "clipPath",       "mask",           "marker",
-            "pattern", "filter", "linearGradient", "radialGradient", "style",
-            "script",  "title",  "desc",           "metadata",       "view",
-            "cursor",  "font",   "font-face",      "color-profile",  "solidColor"};
         const std::string_view tag = svg_tag(n);
-        if (n.type() == pugi::node_element && tag.find(':') == std::string_view::npos &&
-            std::find(silent.begin(), silent.end(), tag) == silent.end() && svg_tag(n.parent()) != "switch" &&
-            !svg_hidden(doc_, n))
-            doc_.note_no_shape(n);
-    }
-
-    static bool draws(xml_node n)
-    {
-        const std::string_view tag = svg_tag(n);
-        return tag == "g" || tag == "a" || tag == "switch" || tag == "svg" || tag == "use" ||
-               detail::is_svg_shape(tag);
+        const bool silent =
+            is_one(tag, {"defs", "symbol", "clipPath", "mask", "marker", "pattern", "filter",
+                         "linearGradient", "radialGradient", "style", "script", "title", "desc", "metadata"});
+        if (n.type() == pugi::node_element && tag.find(':') == std::string_view::npos && !silent &&
+            svg_tag(n.parent()) != "switch" && !is_hidden(n, svg_style(n)))
+            doc_.note(doc_.offset(n), tag, fmt::format("{} does not play", doc_.called(n)), ", nor",
+                      ": only shapes do, and text made into paths");
     }
 
     // Keeps the first hidden element, to name it if nothing draws.
@@ -156,6 +256,71 @@ private:
     {
         if (!hidden_)
             hidden_ = n;
+    }
+
+    void note_unknown(xml_node n, const char* property, std::string_view value) const
+    {
+        doc_.note(
+            doc_.offset(n), property,
+            fmt::format("{} of {} is not understood ({})", property, doc_.called(n), detail::quoted(value)),
+            ", nor of", ": that is taken as hidden");
+    }
+
+    // Returns true if display is "none", or not understood, which is noted.
+    bool is_hidden(xml_node n, const svg_style& style) const
+    {
+        const std::string_view display = style.value("display");
+        if (is_one(display, {"", "inline", "block", "inline-block", "flex", "grid", "inherit", "initial"}))
+            return false;
+        if (display != "none")
+            note_unknown(n, "display", display);
+        return true;
+    }
+
+    // Applies the element's own transform, visibility, paint and data-...
+    void inherit(xml_node n, const svg_style& style, scope& s) const
+    {
+        const std::string_view transform = style.value("transform");
+        if (n == doc_.root() && !transform.empty()) // about the middle of the page in browsers
+            doc_.note_unfollowed(n, "transform");
+        else if (const auto own = doc_.follow(n, "transform", transform, detail::parse_svg_transform))
+            s.to_mm = s.to_mm * *own;
+        const std::string_view visibility = style.value("visibility");
+        if (!is_one(visibility, {"", "inherit"})) {
+            s.visible = is_one(visibility, {"visible", "initial"});
+            if (!s.visible && !is_one(visibility, {"hidden", "collapse"}))
+                note_unknown(n, "visibility", visibility);
+        }
+        std::size_t at = 0;
+        const auto opacity = detail::scan_number(style.value("opacity"), at);
+        s.clear = s.clear || opacity.value_or(1.0) <= 0.0;
+        for (const auto& [paint, painted] : {std::pair("fill", &s.filled), {"stroke", &s.outlined}})
+            if (const auto text = style.value(paint); !is_one(text, {"", "inherit"}))
+                *painted = text != "none" && text != "transparent";
+        if (const auto v = doc_.number(n, "data-speed-mm-s", 1e-6, detail::max_mm))
+            s.speed_mm_s = v;
+        if (const auto v = doc_.number(n, "data-intensity", 0.0, detail::max_intensity))
+            s.intensity = *v;
+        if (const auto v = doc_.number(n, "data-carrier-hz", 1.0, highest_carrier_hz))
+            s.carrier_hz = v;
+        if (const auto name = n.attribute("data-easing")) {
+            const auto k = detail::find_kind<easing_kind>(name.value());
+            if (!k)
+                doc_.fail(n,
+                          fmt::format("data-easing of {}: {}", doc_.called(n), detail::quoted(name.value())),
+                          "linear, in-out or minimum-jerk");
+            s.easing = *k;
+        }
+        if (n.attribute("data-intensity-from"))
+            doc_.note(doc_.offset(n), "data-intensity-from",
+                      fmt::format("data-intensity-from of {} is not followed", doc_.called(n)), ", nor of",
+                      ": data-intensity says how strong a line is");
+    }
+
+    point read_corner(xml_node n, const scope& s) const
+    {
+        return {doc_.length(n, "x", s.viewport, svg_extent::width),
+                doc_.length(n, "y", s.viewport, svg_extent::height)};
     }
 
     // Draws a nested svg, or a symbol that `sized` uses.
@@ -172,9 +337,9 @@ private:
         const double width = side("width", svg_extent::width, s.viewport.width);
         const double height = side("height", svg_extent::height, s.viewport.height);
         if (const auto box = doc_.read(n, "viewBox", detail::parse_svg_view_box)) {
-            enter_svg_box(doc_, n, s, *box, corner, width, height);
+            enter_box(n, s, *box, corner, width, height);
         } else {
-            s.to_mm = s.to_mm * affine{1.0, 0.0, 0.0, 1.0, corner.x_mm, corner.y_mm};
+            s.to_mm = s.to_mm * translation(corner);
             s.viewport.width = width;
             s.viewport.height = height;
         }
@@ -193,17 +358,12 @@ private:
         if (!target)
             doc_.leave_out(n, fmt::format("{} refers to {}, which is not in this file", doc_.called(n), href),
                            "correct the id");
-        if (++s.uses > most_uses_inside)
-            doc_.fail(n, fmt::format("{} refers to itself, or too deep", doc_.called(n)),
-                      "take the loop out");
-        const point corner{doc_.length(n, "x", s.viewport, svg_extent::width),
-                           doc_.length(n, "y", s.viewport, svg_extent::height)};
-        s.to_mm = s.to_mm * affine{1.0, 0.0, 0.0, 1.0, corner.x_mm, corner.y_mm};
+        s.to_mm = s.to_mm * translation(read_corner(n, s));
         const std::string_view tag = svg_tag(target);
         if (tag != "symbol" && tag != "svg")
             return visit(target, s);
         ++s.depth;
-        inherit_svg(doc_, target, s);
+        inherit(target, svg_style(target), s);
         frame(target, n, s, {});
     }
 
@@ -235,9 +395,13 @@ private:
         }
         keep_drawn(n, paths);
         if (!looks_.insert(look).second && !n.attribute("data-start-s"))
-            doc_.note_twice(n);
-        if (!s.is_painted())
-            doc_.note_unpainted(n);
+            doc_.note(doc_.offset(n), "twice",
+                      fmt::format("{} has the shape of one before it", doc_.called(n)), ", as does",
+                      ": it plays again");
+        if (!s.is_painted() && !doc_.has_rules())
+            doc_.note(doc_.offset(n), "unpainted",
+                      fmt::format("{} has neither fill nor stroke, or no opacity", doc_.called(n)),
+                      ", nor has", ": it plays all the same");
         add(n, s, paths);
     }
 
@@ -250,8 +414,8 @@ private:
             doc_.leave_out(n, fmt::format("{}: has no length", doc_.called(n)),
                            "data-duration-s makes it a tap");
         if (!all && std::erase_if(paths, is_point) != 0)
-            doc_.note_left_out({doc_.offset(n), fmt::format("{}: a subpath has no length", doc_.called(n)),
-                                "it draws a point"});
+            note_left_out({doc_.offset(n), fmt::format("{}: a subpath has no length", doc_.called(n)),
+                           "it draws a point"});
     }
 
     static trajectory eased(const path& p, double duration_s, const scope& s)

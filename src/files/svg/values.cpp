@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include "files/svg/values.hpp"
 
-#include <algorithm>
 #include <array>
 #include <cmath>
+#include <string>
 
+#include <boost/math/special_functions/cos_pi.hpp>
+#include <boost/math/special_functions/sin_pi.hpp>
 #include <fmt/format.h>
 
 #include "core/path/number.hpp"
@@ -27,34 +29,43 @@ double number_at(std::string_view text, std::size_t& at)
     return *v;
 }
 
-// Returns the rest of the text without the blanks round it.
-std::string_view word_at(std::string_view text, std::size_t at)
+affine translation(double x, double y)
 {
-    skip_blanks(text, at);
-    std::size_t end = text.size();
-    while (end > at && blank(text[end - 1]))
-        --end;
-    return text.substr(at, end - at);
+    return {1.0, 0.0, 0.0, 1.0, x, y};
 }
 
-std::size_t unit_end(std::string_view text, std::size_t at)
+affine rotation(double degrees)
 {
-    while (at < text.size() &&
-           (text[at] == '%' || (text[at] >= 'a' && text[at] <= 'z') || (text[at] >= 'A' && text[at] <= 'Z')))
-        ++at;
-    return at;
+    // Exact for quarter turns.
+    const double c = boost::math::cos_pi(degrees / 180.0);
+    const double s = boost::math::sin_pi(degrees / 180.0);
+    return {c, s, -s, c, 0.0, 0.0};
 }
 
-double alignment(std::string_view name, std::string_view whole)
+double tangent(double degrees)
 {
-    if (name == "Min")
-        return 0.0;
-    if (name == "Mid")
-        return 0.5;
-    if (name == "Max")
-        return 1.0;
-    throw value_fault{0, fmt::format("{} is not an alignment", detail::quoted(whole)),
-                      "e.g. xMidYMid meet, or none"};
+    return std::tan(degrees * 3.14159265358979323846 / 180.0);
+}
+
+affine one_transform(std::string_view name, const std::vector<double>& v)
+{
+    const std::size_t n = v.size();
+    if (name == "matrix" && n == 6)
+        return {v[0], v[1], v[2], v[3], v[4], v[5]};
+    if (name == "translate" && (n == 1 || n == 2))
+        return translation(v[0], n == 2 ? v[1] : 0.0);
+    if (name == "scale" && (n == 1 || n == 2))
+        return {v[0], 0.0, 0.0, v[n - 1], 0.0, 0.0};
+    if (name == "rotate" && n == 1)
+        return rotation(v[0]);
+    if (name == "rotate" && n == 3)
+        return translation(v[1], v[2]) * rotation(v[0]) * translation(-v[1], -v[2]);
+    if (name == "skewx" && n == 1)
+        return {1.0, 0.0, tangent(v[0]), 1.0, 0.0, 0.0};
+    if (name == "skewy" && n == 1)
+        return {1.0, tangent(v[0]), 0.0, 1.0, 0.0, 0.0};
+    throw value_fault{
+        0, fmt::format("{} with {} is not a transform", detail::quoted(name), counted(n, "number")), ""};
 }
 
 } // namespace
@@ -64,29 +75,20 @@ double svg_number(std::string_view text)
     std::size_t at = 0;
     skip_blanks(text, at);
     const double v = number_at(text, at);
-    if (const auto rest = word_at(text, at); !rest.empty())
+    if (const auto rest = without_blanks(text.substr(at)); !rest.empty())
         throw value_fault{at, fmt::format("{} behind the number", detail::quoted(rest)),
                           "a number without a unit"};
     return v;
 }
 
-std::vector<double> svg_numbers(std::string_view text, const svg_unit& unit)
+std::vector<double> svg_numbers(std::string_view text, std::string_view unit)
 {
     std::vector<double> all;
     std::size_t at = 0;
     skip_blanks(text, at);
     while (at < text.size()) {
-        double v = number_at(text, at);
-        if (const std::size_t end = unit_end(text, at); unit && end > at) {
-            try {
-                v = unit(v, text.substr(at, end - at), all.size());
-            } catch (value_fault& f) {
-                f.offset += at;
-                throw;
-            }
-            at = end;
-        }
-        all.push_back(v);
+        all.push_back(number_at(text, at));
+        at += text.substr(at).starts_with(unit) ? unit.size() : 0;
         skip_blanks(text, at);
         if (at < text.size() && text[at] == ',') {
             ++at;
@@ -111,7 +113,7 @@ svg_length parse_svg_length(std::string_view text)
     std::size_t at = 0;
     skip_blanks(text, at);
     const double v = number_at(text, at);
-    const std::string unit = in_small_letters(std::string(word_at(text, at)));
+    const std::string unit = in_small_letters(std::string(without_blanks(text.substr(at))));
     if (unit.empty())
         return {v, svg_length::unit::none};
     if (unit == "%")
@@ -125,14 +127,10 @@ svg_length parse_svg_length(std::string_view text)
 
 double svg_length::user_units(const svg_viewport& v, svg_extent e) const noexcept
 {
-    switch (in) {
-    case unit::none:
+    if (in == unit::none)
         return value;
-    case unit::mm:
+    if (in == unit::mm)
         return value * v.per_mm;
-    case unit::percent:
-        break;
-    }
     const double whole = e == svg_extent::width ? v.width
                          : e == svg_extent::height
                              ? v.height
@@ -150,36 +148,25 @@ svg_view_box parse_svg_view_box(std::string_view text)
     return {{v[0], v[1]}, v[2], v[3]};
 }
 
-svg_aspect parse_svg_aspect(std::string_view text)
+affine parse_svg_transform(std::string_view text)
 {
-    std::string_view rest = word_at(text, 0);
-    if (constexpr std::string_view for_images = "defer "; rest.starts_with(for_images))
-        rest = word_at(rest, for_images.size());
-    const std::size_t gap = std::min(rest.find_first_of(" \t\r\n"), rest.size());
-    const std::string_view align = rest.substr(0, gap);
-    const std::string_view how = word_at(rest, gap);
-    if (!how.empty() && how != "meet" && how != "slice")
-        throw value_fault{0, fmt::format("{} is neither meet nor slice", detail::quoted(how)),
-                          "e.g. xMidYMid meet"};
-    if (align == "none")
-        return {false, false, 0.0, 0.0};
-    if (align.size() != 8 || align[0] != 'x' || align[4] != 'Y')
-        alignment({}, align);
-    return {true, how == "slice", alignment(align.substr(1, 3), align), alignment(align.substr(5, 3), align)};
-}
-
-affine fit(const svg_view_box& box, point corner, double width, double height, const svg_aspect& a) noexcept
-{
-    double sx = width / box.width;
-    double sy = height / box.height;
-    if (a.keep)
-        sx = sy = a.slice ? std::max(sx, sy) : std::min(sx, sy);
-    return {sx,
-            0.0,
-            0.0,
-            sy,
-            corner.x_mm - box.corner.x_mm * sx + a.x * (width - box.width * sx),
-            corner.y_mm - box.corner.y_mm * sy + a.y * (height - box.height * sy)};
+    affine all;
+    if (text == "none")
+        return all;
+    for (std::size_t at = 0; at < text.size();) {
+        const std::size_t open = text.find('(', at);
+        const std::size_t close = text.find(')', at);
+        if (close == std::string_view::npos || !(open < close))
+            throw value_fault{0, fmt::format("{} is not a transform", detail::quoted(text.substr(at))), ""};
+        const std::string_view name = without_blanks(text.substr(at, open - at));
+        const bool turns = name == "rotate" || name.starts_with("skew");
+        const std::string_view unit = turns ? "deg" : name == "translate" ? "px" : "";
+        all = all * one_transform(name, svg_numbers(text.substr(open + 1, close - open - 1), unit));
+        at = close + 1;
+        while (at < text.size() && (blank(text[at]) || text[at] == ','))
+            ++at;
+    }
+    return all;
 }
 
 } // namespace tactor::detail
