@@ -6,6 +6,8 @@
 #include <span>
 #include <utility>
 
+#include "rt/clock.hpp"
+
 namespace tactor::engine {
 namespace {
 
@@ -35,6 +37,23 @@ void lower_to(std::atomic<T>& a, T value) noexcept
 
 // A level changes within 20 ms.
 constexpr unsigned ramps_per_s = 50;
+
+// Limit, because snd_pcm_resume() may return "not yet" for ever; a device needs a few seconds at most.
+constexpr std::int64_t longest_resume = 10 * rt::ns_per_s;
+
+reason_kind to_reason(io_kind s) noexcept
+{
+    switch (s) {
+    case io_kind::xrun:
+        return reason_kind::xrun;
+    case io_kind::suspended:
+        return reason_kind::suspended;
+    case io_kind::lost:
+        return reason_kind::lost;
+    default:
+        return reason_kind::failed;
+    }
+}
 
 } // namespace
 
@@ -304,6 +323,213 @@ void audio_loop::publish() noexcept
         woken_frame_ = s.written;
     if (hungry || news || link_.reports.available() != link_.reports.capacity())
         link_.to_control.signal();
+}
+
+io_result audio_loop::start(std::int64_t now) noexcept
+{
+    now_ns_ = now;
+    const io_result r = begin_epoch();
+    if (r.status == io_kind::ok) {
+        run_from(now);
+        publish();
+    }
+    return r;
+}
+
+void audio_loop::run_from(std::int64_t now) noexcept
+{
+    phase_ = phase::running;
+    moved(now);
+    fresh_ = true;
+}
+
+io_result audio_loop::begin_epoch() noexcept
+{
+    mixer_.reset();
+    pending_ = 0;
+    played_ = 0;
+    // A device that still sleeps fails here in each period. That is not a start.
+    if (const io_kind s = sink_.prepare(); s != io_kind::ok)
+        return {s, 0, 0};
+    clock_.begin_epoch(offset_);
+    publish_clock(clock_.line());
+    std::size_t filled = 0;
+    while (filled < setup_.buffer_frames && pending_ == 0) {
+        mix_period();
+        const io_result r = write_pending();
+        if (r.status != io_kind::ok && r.status != io_kind::again)
+            return r;
+        filled += r.frames;
+    }
+    if (filled == 0)
+        return {io_kind::failed, 0, -EIO};
+    epoch_ns_ = now_ns_;
+    return {sink_.start(), filled, 0};
+}
+
+void audio_loop::broken(io_kind s, int code, std::int64_t now) noexcept
+{
+    if (phase_ == phase::closing) {
+        end_runs_ = end_runs_ && (s == io_kind::ok || s == io_kind::again);
+        return; // nothing sounds any more; the loop only waits for the amplifier
+    }
+    switch (s) {
+    case io_kind::ok:
+    case io_kind::again:
+        return;
+    case io_kind::xrun:
+        link_.count.count_xrun(sink_.xrun_ns());
+        // The DAC stopped because it had played everything.
+        silence_all(reason_kind::xrun, code, mixer_.position() - pending_);
+        return too_often(now) ? finish(reason_kind::lost, -EPIPE) : restart(now);
+    case io_kind::suspended:
+        return fall_asleep(code, now);
+    case io_kind::lost:
+    case io_kind::failed:
+        return finish(to_reason(s), code);
+    }
+}
+
+// Ends the strokes that had begun, because nothing resumes in mid-burst. Returns the others to be handed over
+// again.
+void audio_loop::silence_all(reason_kind why, int code, std::uint64_t played) noexcept
+{
+    note_starts(played);
+    scores_.interrupt(why, code, played, !stop_requested_);
+    offset_ += mixer_.position();
+    publish_clock({});
+    mixer_.reset();
+    pending_ = 0;
+    played_ = 0;
+}
+
+void audio_loop::fall_asleep(int code, std::int64_t now) noexcept
+{
+    link_.count.suspends.fetch_add(1, std::memory_order_release);
+    silence_all(reason_kind::suspended, code, played_);
+    phase_ = phase::suspended;
+    suspended_ns_ = now;
+}
+
+void audio_loop::try_resume(std::int64_t now) noexcept
+{
+    if (stop_requested_)
+        return finish(stop_why_, 0);
+    scores_.handle_live_requests(); // this runs in the mix, and there is no mix now
+    if (sink_.resume() == io_kind::again && now - suspended_ns_ < longest_resume)
+        return;
+    // Begins a new epoch, resumed or not: the buffer holds frames of strokes that were interrupted.
+    restart(now);
+}
+
+void audio_loop::restart(std::int64_t now) noexcept
+{
+    if (stop_requested_)
+        return finish(stop_why_, 0);
+    io_result r = begin_epoch();
+    while (r.status == io_kind::xrun) {
+        silence_all(reason_kind::xrun, r.code, 0);
+        if (too_often(now))
+            return finish(reason_kind::lost, -EPIPE);
+        r = begin_epoch();
+    }
+    if (r.status == io_kind::ok)
+        run_from(now);
+    else if (r.status == io_kind::suspended)
+        fall_asleep(r.code, now); // not awake yet: try again in the next period
+    else
+        finish(to_reason(r.status), r.code);
+}
+
+bool audio_loop::too_often(std::int64_t now) noexcept
+{
+    std::int64_t& oldest = recoveries_[recovered_ % recoveries_.size()];
+    if (recovered_ >= recoveries_.size() && now - oldest < rt::ns_per_s)
+        return true;
+    oldest = now;
+    ++recovered_;
+    return false;
+}
+
+void audio_loop::request_stop() noexcept
+{
+    if (!stop_requested_)
+        stop_requested_ns_ = now_ns_;
+    stop_requested_ = true;
+}
+
+void audio_loop::finish_when_silent() noexcept
+{
+    if (!scores_.empty())
+        return;
+    if (stop_frame_ == 0)
+        stop_frame_ = played_ + setup_.period_frames; // also waits for the delay of the DAC itself
+    if (played_ >= stop_frame_)
+        finish(stop_why_, 0, true);
+}
+
+// Ends the stream. A DAC that stops while the amplifier is on pops, so the line goes off first, if possible.
+// `runs`: the stream is in order, so zeros are written meanwhile.
+void audio_loop::finish(reason_kind why, int code, bool runs) noexcept
+{
+    if (phase_ == phase::over)
+        return;
+    if (phase_ == phase::closing) {
+        end_runs_ = false;
+        return;
+    }
+    scores_.interrupt(why, code, played_, false);
+    mixer_.cut(); // strokes that could not fade yet are reported, and silent
+    end_why_ = why;
+    end_code_ = code;
+    end_runs_ = runs;
+    closing_ns_ = now_ns_;
+    phase_ = phase::closing;
+    // Pairs with amplifier_driver::switch_on().
+    link_.amplifier.ending.store(true, std::memory_order_seq_cst);
+    if (link_.amplifier.off.load(std::memory_order_seq_cst))
+        end();
+}
+
+void audio_loop::close_step(io_kind ready, std::int64_t now) noexcept
+{
+    if (link_.amplifier.off.load(std::memory_order_seq_cst) ||
+        link_.amplifier.stuck.load(std::memory_order_seq_cst) || now - closing_ns_ >= options_.off_ns)
+        return end();
+    if (!end_runs_)
+        return;
+    if (ready == io_kind::ok || (ready == io_kind::again && idle_steps_ > 2))
+        write_periods(now);
+    else if (ready != io_kind::again)
+        end_runs_ = false;
+}
+
+void audio_loop::end() noexcept
+{
+    sink_.drop();
+    publish_clock({});
+    phase_ = phase::over;
+    // Replaces any other reason, because a person must act on this one.
+    if (!link_.amplifier.off.load(std::memory_order_seq_cst)) {
+        link_.amplifier.stuck.store(true, std::memory_order_seq_cst);
+        end_why_ = reason_kind::left_on;
+    }
+    link_.reports.push({.what = report::kind::stream_over, .why = end_why_, .code = end_code_});
+}
+
+void audio_loop::obey_amplifier() noexcept
+{
+    if (phase_ != phase::running && phase_ != phase::suspended)
+        return;
+    const std::uint32_t mutes = link_.amplifier.mutes.load(std::memory_order_acquire);
+    if (mutes != mutes_)
+        scores_.mute();
+    mutes_ = mutes;
+    if (link_.amplifier.failed.load(std::memory_order_acquire) && stop_why_ == reason_kind::none) {
+        request_stop();
+        stop_why_ = reason_kind::amplifier;
+        scores_.stop(state_kind::interrupted, reason_kind::amplifier);
+    }
 }
 
 } // namespace tactor::engine

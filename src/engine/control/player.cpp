@@ -2,6 +2,8 @@
 #include <tactor/player.hpp>
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <mutex>
 #include <system_error>
 #include <utility>
@@ -11,12 +13,101 @@
 #include <fmt/format.h>
 
 #include <tactor/error.hpp>
+#include <tactor/version.hpp>
 
+#include "core/log.hpp"
 #include "core/refused.hpp"
+#include "core/words.hpp"
 #include "engine/control/player_impl.hpp"
+#include "rt/advice.hpp"
 
 namespace tactor {
 inline namespace v0 {
+namespace {
+
+// Returns the frames of a time, 0 to ten minutes. Refuses NaN, too.
+std::uint32_t to_frames(double seconds, unsigned rate, const char* name)
+{
+    if (!(seconds >= 0.0 && seconds <= 600.0))
+        throw detail::bad_field(name, fmt::format("{} s", seconds), "give 0 to 600 s");
+    return static_cast<std::uint32_t>(std::lround(seconds * rate));
+}
+
+// Returns the horizon. Drives handed over later than the least one would be late.
+std::uint64_t horizon_frames(const player_options& o, const stream_setup& s)
+{
+    const std::uint64_t least = 2 * std::uint64_t{s.buffer_frames} + 4 * std::uint64_t{s.period_frames};
+    return std::max<std::uint64_t>(to_frames(o.horizon_s, s.rate, "horizon_s"), least);
+}
+
+engine::loop_options loop_options(const player_options& o, const engine::drive_book& before,
+                                  const stream_setup& s, bool amplifier)
+{
+    engine::loop_options l;
+    l.fade_frames = to_frames(o.fade_s, s.rate, "fade_s");
+    l.horizon_frames = horizon_frames(o, s);
+    // Long periods make long pauses.
+    const std::int64_t periods = 16LL * s.period_frames * 1'000'000'000 / s.rate;
+    const auto asked = std::int64_t{to_frames(o.stall_s, 1'000'000, "stall_s")} * 1000;
+    l.stall_ns = std::max(periods, asked);
+    l.amplifier = amplifier;
+    l.guards = synth::make_guards(o.limits, s.rate);
+    if (before.kept() && l.guards.drive_frames == 0.0)
+        l.guards.drive_frames = std::numeric_limits<double>::infinity(); // counted for others
+    l.driven_s = before.read();
+    return l;
+}
+
+// Returns a SCHED_FIFO priority within its range.
+int priority(const player_options& o, int higher)
+{
+    return std::clamp(std::clamp(o.priority, 1, 99) + higher, 1, 99);
+}
+
+rt::thread_options thread_options(const player_options& o)
+{
+    return {.name = "tactor-audio",
+            .fifo = o.realtime || o.require_realtime,
+            .priority = priority(o, 0),
+            .audio = true};
+}
+
+engine::driver_options driver_options(const player_lines& l, const stream_setup& s)
+{
+    const std::int64_t four_periods = 4LL * s.period_frames * 1'000'000'000 / s.rate;
+    engine::driver_options d;
+    d.amplifier.settle_ns = std::int64_t{to_frames(l.settle_s, 1'000'000, "settle_s")} * 1000;
+    d.amplifier.proof_frames =
+        std::max<std::uint64_t>(2ULL * s.period_frames, to_frames(l.proof_s, s.rate, "proof_s"));
+    d.watchdog_ns = std::max(d.watchdog_ns, four_periods);
+    return d;
+}
+
+// Returns the options of the amplifier's thread. Its priority is below the audio thread, which it watches,
+// but high, because the line's holder waits for 150 ms only.
+rt::thread_options amplifier_thread_options(const player_options& o)
+{
+    return {.name = "tactor-amp", .fifo = o.realtime || o.require_realtime, .priority = priority(o, -5)};
+}
+
+// Checks the lines before there are threads that an error would have to stop.
+player_lines checked(player_lines l, unsigned rate)
+{
+    to_frames(l.trigger_delay_s, rate, "trigger_delay_s");
+    to_frames(l.settle_s, rate, "settle_s");
+    to_frames(l.proof_s, rate, "proof_s");
+    to_frames(l.pulse_s, rate, "pulse_s");
+    return l;
+}
+
+std::unique_ptr<sink> not_null(std::unique_ptr<sink> s)
+{
+    if (s == nullptr)
+        throw error(error_kind::bad_input, "player", "no sink", "open one with open_alsa()");
+    return s;
+}
+
+} // namespace
 
 void start_at::refuse_frame(long long stream_frame)
 {
@@ -166,6 +257,114 @@ player_stats player::stats() const
             .realtime =
                 impl_->audio.fifo_error() == 0 && !c.realtime_given_up.load(std::memory_order_relaxed),
             .xrun_s = std::move(lengths)};
+}
+
+player::impl::impl(std::unique_ptr<sink> s, const array& a, const player_options& o, player_lines l)
+    : out(not_null(std::move(s))),
+      stream(fmt::format("stream on \"{}\"", out->setup().name)),
+      lines(checked(std::move(l), out->setup().rate)),
+      feed(link, horizon_frames(o, out->setup())),
+      tactors(engine::fitting(a, out->setup())),
+      limits(synth::channel_limits(a, out->setup().channels)),
+      log(o.log, link, o.limits),
+      book(o.keep_drive_time ? out->setup().device : std::string(),
+           synth::make_guards(o.limits, out->setup().rate)),
+      loop(*out, link, limits, loop_options(o, book, out->setup(), lines.amplifier != nullptr)),
+      audio(loop, *out, link, thread_options(o))
+{
+}
+
+void player::impl::start(const player_options& o)
+{
+    try {
+        check_start(o);
+        made = out->setup();
+        log_start(o);
+        start_lines(o);
+        control = std::make_unique<engine::control_thread>(link.to_control, [weak = weak_from_this()] {
+            if (const auto alive = weak.lock())
+                alive->woken();
+        });
+        if (lines.trigger != nullptr)
+            listen();
+    } catch (...) {
+        link.requests.push({.what = engine::request::kind::stop, .closing = true});
+        link.to_audio.signal();
+        audio.join();
+        control.reset();
+        amplifier.reset();
+        throw;
+    }
+}
+
+void player::impl::listen()
+{
+    const int fd = lines.trigger->descriptor();
+    try {
+        control->watch(fd, [this] { return edges(); });
+    } catch (const std::system_error& e) {
+        if (e.code() != std::errc::bad_file_descriptor && e.code() != std::errc::operation_not_permitted)
+            throw;
+        detail::throw_caused(error(
+            error_kind::bad_input, "trigger", fmt::format("its descriptor {}: {}", fd, e.code().message()),
+            "edge_input::descriptor() is one that can be polled, and open as long as the input"));
+    }
+}
+
+void player::impl::start_lines(const player_options& o)
+{
+    if (lines.amplifier != nullptr)
+        amplifier = std::make_unique<engine::amplifier_thread>(
+            link, *lines.amplifier, driver_options(lines, out->setup()), amplifier_thread_options(o));
+    if (lines.sync_out == nullptr)
+        return;
+    // Above the audio thread: it sleeps nearly always, and its work takes microseconds.
+    const rt::thread_options t{.name = "tactor-sync",
+                               .fifo = o.realtime || o.require_realtime,
+                               .priority = priority(o, 1),
+                               .audio = true};
+    pulses = std::make_unique<engine::trigger_thread>(
+        link, *lines.sync_out, std::int64_t{to_frames(lines.pulse_s, 1'000'000, "pulse_s")} * 1000, t);
+    feed.on_first_frames(
+        [this](stroke_id id, std::uint64_t frame) { pulses->add(id, frame, link.clock.load()); },
+        [this](stroke_id id, bool was_played) { pulses->forget(id, was_played); });
+}
+
+void player::impl::check_start(const player_options& o)
+{
+    const io_result& r = audio.started();
+    if (r.status == io_kind::lost)
+        detail::throw_caused(
+            error(error_kind::not_available, stream, "the device is gone", "plug it in again"), -r.code);
+    if (r.status != io_kind::ok)
+        detail::throw_caused(
+            error(error_kind::runtime, stream,
+                  fmt::format("it does not start ({})", engine::text(reason_kind::failed, r.code)),
+                  "try another PCM, or a longer period"),
+            -r.code);
+    if (o.require_realtime && audio.fifo_error() != 0)
+        detail::throw_caused(error(error_kind::not_available, "real-time priority",
+                                   std::error_code(audio.fifo_error(), std::generic_category()).message(),
+                                   rt::realtime_advice(probe_realtime_rights(), o.priority)),
+                             audio.fifo_error());
+}
+
+void player::impl::log_start(const player_options& o) const
+{
+    const stream_setup& s = made;
+    detail::log(log.function(), log_kind::info, "{} runs: {} at {} Hz, {} of {} frames{}", stream,
+                counted(s.channels, "channel"), s.rate, s.buffer_frames / s.period_frames, s.period_frames,
+                s.has_clock ? "" : ", timed by us");
+    for (const std::string& odd : wiring_warnings(tactors, s.wiring))
+        detail::log(log.function(), log_kind::warning, "{}: {}", stream, odd);
+    if (!o.realtime && !o.require_realtime)
+        return;
+    const int refused = audio.fifo_error();
+    if (refused == 0)
+        detail::log(log.function(), log_kind::info, "the audio thread has real-time priority");
+    else
+        detail::log(log.function(), log_kind::warning, "the audio thread has no real-time priority: {}",
+                    std::error_code(refused, std::generic_category()).message());
 }
 
 } // namespace v0
