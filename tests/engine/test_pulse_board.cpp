@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: MIT
 // Pulses on the board from which the sync thread takes them, and their order.
-#include "engine/control/pulse_board.hpp"
-
 #include <algorithm>
 #include <atomic>
 #include <numeric>
