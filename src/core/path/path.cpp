@@ -3,10 +3,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <iterator>
+#include <numbers>
 #include <utility>
 
 #include <boost/math/special_functions/cos_pi.hpp>
 #include <boost/math/special_functions/sin_pi.hpp>
+#include <boost/math/tools/toms748_solve.hpp>
 #include <fmt/format.h>
 
 #include <tactor/error.hpp>
@@ -18,6 +22,8 @@
 namespace tactor {
 inline namespace v0 {
 namespace {
+
+using detail::axis;
 
 // Neumaier's sum, which keeps all digits of a million short segments.
 class exact_sum {
@@ -48,6 +54,134 @@ point on_circle(point centre, double radius_mm, double degrees)
 {
     return {centre.x_mm + radius_mm * boost::math::cos_pi(degrees / 180.0),
             centre.y_mm + radius_mm * boost::math::sin_pi(degrees / 180.0)};
+}
+
+// Nodes of a path: its vertices, and the turns of the coordinate inside its curves.
+class path_nodes {
+public:
+    path_nodes(const path::impl& p, axis a, double line) : path_(p), axis_(a), line_(line)
+    {
+        nodes_.reserve(p.vertices.size());
+        auto curve = p.curves.begin();
+        for (std::size_t i = 0; i < p.vertices.size(); ++i) {
+            nodes_.push_back({i, 0.0, distance(p.vertices[i]), p.s[i]});
+            if (curve == p.curves.end() || curve->segment != i)
+                continue;
+            for (const double t : detail::turns(curve->form, a))
+                nodes_.push_back({i, t, distance(detail::position(curve->form, t)), along(*curve, t)});
+            ++curve;
+        }
+    }
+
+    std::size_t size() const { return nodes_.size(); }
+    double off(std::size_t i) const { return nodes_[i].off; }
+    double when(std::size_t i) const { return nodes_[i].s; }
+    double length(std::size_t i, std::size_t j) const { return nodes_[j].s - nodes_[i].s; }
+
+    double root(std::size_t i) const
+    {
+        const node& a = nodes_[i];
+        const node& b = nodes_[i + 1];
+        const auto* c = path_.find_curve(a.segment);
+        if (c == nullptr)
+            return a.s + (b.s - a.s) * (a.off / (a.off - b.off));
+        const double t = parameter_on_line(c->form, a.t, b.segment == a.segment ? b.t : 1.0);
+        return along(*c, t);
+    }
+
+private:
+    struct node {
+        std::size_t segment;
+        double t;
+        double off;
+        double s;
+    };
+
+    // Clamps the sum, which may exceed the curve's end by a rounding error.
+    double along(const path::impl::measured_curve& c, double t) const
+    {
+        return std::min(path_.s[c.segment] + c.measure.at(c.form, t), path_.s[c.segment + 1]);
+    }
+
+    double distance(point p) const { return detail::coordinate(p, axis_) - line_; }
+
+    double parameter_on_line(const detail::shape& form, double from, double to) const
+    {
+        const auto off = [&](double t) { return distance(detail::position(form, t)); };
+        const double first = off(from);
+        const double last = off(to);
+        // Ends of a curve may differ from its vertices in the last digits.
+        if (!((first < 0.0 && last > 0.0) || (first > 0.0 && last < 0.0)))
+            return std::abs(first) < std::abs(last) ? from : to;
+        std::uintmax_t steps = 100;
+        const auto [low, high] = boost::math::tools::toms748_solve(
+            off, from, to, first, last, boost::math::tools::eps_tolerance<double>(52), steps);
+        return 0.5 * (low + high);
+    }
+
+    const path::impl& path_;
+    axis axis_;
+    double line_;
+    std::vector<node> nodes_;
+};
+
+std::vector<double> meets(const path::impl& p, axis a, double line)
+{
+    if (!std::isfinite(line))
+        return {};
+    const path_nodes nodes(p, a, line);
+    return detail::line_meetings(nodes).find();
+}
+
+using out = std::back_insert_iterator<std::string>;
+
+void write(out o, const detail::cubic& c, point to)
+{
+    fmt::format_to(o, " C {} {} {} {} {} {}", c.p[1].x_mm, c.p[1].y_mm, c.p[2].x_mm, c.p[2].y_mm, to.x_mm,
+                   to.y_mm);
+}
+
+constexpr double flat_mm = 1e-6; // less would be lost in the digits of coordinates of up to a kilometre
+
+// Writes an ellipse that is so flat that it moves to and fro on a line: writes the ends that it reaches.
+void write_flat(out o, const detail::elliptic& e, double turn, point to)
+{
+    const double end = e.from + e.sweep;
+    const double low = std::min(e.from, end);
+    const double high = std::max(e.from, end);
+    const auto first = static_cast<int>(std::ceil((low - turn) / std::numbers::pi));
+    const auto last = static_cast<int>(std::floor((high - turn) / std::numbers::pi));
+    for (int n = 0; n <= last - first; ++n) {
+        const double t = turn + std::numbers::pi * (e.sweep > 0.0 ? first + n : last - n);
+        const point p = detail::position(e, (t - e.from) / e.sweep);
+        fmt::format_to(o, " L {} {}", p.x_mm, p.y_mm);
+    }
+    fmt::format_to(o, " L {} {}", to.x_mm, to.y_mm);
+}
+
+// Computes the principal axes from the conjugate radii: eigenvalues of u u' + v v'. Writes parts under a half
+// turn, so that no reader has to guess the centre.
+void write(out o, const detail::elliptic& e, point to)
+{
+    const double xx = e.u.x_mm * e.u.x_mm + e.v.x_mm * e.v.x_mm;
+    const double xy = e.u.x_mm * e.u.y_mm + e.v.x_mm * e.v.y_mm;
+    const double yy = e.u.y_mm * e.u.y_mm + e.v.y_mm * e.v.y_mm;
+    const double determinant = e.u.x_mm * e.v.y_mm - e.u.y_mm * e.v.x_mm;
+    const double longer = std::sqrt(0.5 * (xx + yy + std::hypot(xx - yy, 2.0 * xy)));
+    const double shorter = std::abs(determinant) / longer;
+    if (shorter < flat_mm) {
+        const double uu = e.u.x_mm * e.u.x_mm + e.u.y_mm * e.u.y_mm;
+        const double uv = e.u.x_mm * e.v.x_mm + e.u.y_mm * e.v.y_mm;
+        const double vv = e.v.x_mm * e.v.x_mm + e.v.y_mm * e.v.y_mm;
+        return write_flat(o, e, 0.5 * std::atan2(2.0 * uv, uu - vv), to);
+    }
+    const double turn = 0.5 * std::atan2(2.0 * xy, xx - yy) * 180.0 / std::numbers::pi;
+    const bool clockwise = (determinant > 0.0) == (e.sweep > 0.0);
+    const int parts = static_cast<int>(std::ceil(std::abs(e.sweep) / 2.1));
+    for (int k = 1; k <= parts; ++k) {
+        const point p = k == parts ? to : detail::position(e, static_cast<double>(k) / parts);
+        fmt::format_to(o, " A {} {} {} 0 {} {} {}", longer, shorter, turn, clockwise ? 1 : 0, p.x_mm, p.y_mm);
+    }
 }
 
 } // namespace
@@ -159,6 +293,32 @@ point path::at(double s_mm) const noexcept
         return c->places != nullptr ? c->places->at(along)
                                     : detail::position(c->form, c->measure.parameter(c->form, along));
     return detail::between(p.vertices[i], p.vertices[i + 1], along / (p.s[i + 1] - p.s[i]));
+}
+
+std::vector<double> path::meets_x(double x_mm) const
+{
+    return meets(*impl_, axis::x, x_mm);
+}
+
+std::vector<double> path::meets_y(double y_mm) const
+{
+    return meets(*impl_, axis::y, y_mm);
+}
+
+std::string path::svg() const
+{
+    const impl& p = *impl_;
+    std::string data = fmt::format("M {} {}", p.vertices[0].x_mm, p.vertices[0].y_mm);
+    const out o(data);
+    auto curve = p.curves.begin();
+    for (std::size_t i = 0; i + 1 < p.vertices.size(); ++i) {
+        const point to = p.vertices[i + 1];
+        if (curve != p.curves.end() && curve->segment == i)
+            std::visit([&](const auto& form) { write(o, form, to); }, (curve++)->form);
+        else
+            fmt::format_to(o, " L {} {}", to.x_mm, to.y_mm);
+    }
+    return data;
 }
 
 } // namespace v0
