@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: MIT
 // WAV files as waveforms, and the words for all of these.
-
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cstddef>
+#include <cstring>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -16,8 +20,169 @@
 #include "core/path/number.hpp"
 #include "core/sha256.hpp"
 #include "core/suggest.hpp"
+#include "core/words.hpp"
 #include "files/sound_file.hpp"
 #include "files/text_file.hpp"
+
+namespace tactor::detail {
+namespace {
+
+static_assert(std::endian::native == std::endian::little, "WAV files are little-endian");
+
+constexpr std::uint16_t integers = 1;
+constexpr std::uint16_t floats = 3;
+constexpr std::uint16_t extensible = 0xFFFE;
+constexpr std::uint32_t elsewhere = 0xFFFFFFFF; ///< the size is in the chunk ds64
+/// Recorders that write to a pipe announce about 2 GB or 4 GB, more than a recording may have.
+constexpr std::uint32_t open_from = 0x7FF00000;
+constexpr std::size_t head_bytes = 8; ///< of a chunk
+
+template <class T>
+T get(std::string_view bytes, std::size_t at)
+{
+    T v{};
+    std::memcpy(&v, bytes.data() + at, sizeof v);
+    return v;
+}
+
+[[noreturn]] void refuse_wav(const std::string& name, std::string_view why,
+                             std::string_view hint = "give a WAV file of one channel")
+{
+    throw error(error_kind::bad_input, source_place{name}, why, hint);
+}
+
+wav_format read_format(std::string_view chunk, const std::string& name)
+{
+    if (chunk.size() < 16)
+        refuse_wav(name, "its format chunk is cut off");
+    wav_format f{get<std::uint16_t>(chunk, 0), get<std::uint16_t>(chunk, 2), get<std::uint32_t>(chunk, 4),
+                 get<std::uint16_t>(chunk, 14), 0};
+    const auto frame_bytes = get<std::uint16_t>(chunk, 12);
+    if (f.tag == extensible && chunk.size() >= 26)
+        f.tag = get<std::uint16_t>(chunk, 24); // the first bytes of the sub-format are the plain tag
+    if (f.channels != 1)
+        refuse_wav(name, fmt::format("it has {} channels", f.channels),
+                   "give one, such as by: sox IN OUT remix 1");
+    f.bytes = frame_bytes == 0 ? static_cast<std::uint16_t>((f.bits + 7) / 8) : frame_bytes;
+    const bool known = (f.tag == integers && f.bits >= 1 && f.bits <= 32) ||
+                       (f.tag == floats && (f.bits == 32 || f.bits == 64));
+    const bool fits = f.bytes == (f.bits + 7) / 8 || (f.tag == integers && f.bytes == 4);
+    if (!known || !fits)
+        refuse_wav(name,
+                   fmt::format("its samples are of format {} with {} in {}", f.tag, counted(f.bits, "bit"),
+                               counted(f.bytes, "byte")),
+                   "give integers of 8, 16, 24 or 32 bits, or floats");
+    return f;
+}
+
+bool is_id(std::string_view bytes, std::size_t at)
+{
+    const std::string_view id = bytes.substr(std::min(at, bytes.size()), 4);
+    return id.size() == 4 && std::all_of(id.begin(), id.end(), [](char c) { return c >= ' ' && c <= '~'; });
+}
+
+/// Returns the place of the next chunk: some programs forget the byte that makes the size even.
+std::size_t after(std::string_view file, std::size_t at, std::size_t size)
+{
+    const std::size_t end = at + head_bytes + size;
+    return size % 2 == 0 || (is_id(file, end) && !is_id(file, end + 1)) ? end : end + 1;
+}
+
+/// Returns true if only whole chunks follow until the file's end.
+bool goes_on_in_chunks(std::string_view file, std::size_t at)
+{
+    while (is_id(file, at) && file.size() - at >= head_bytes) {
+        const std::size_t size = get<std::uint32_t>(file, at + 4);
+        if (size > file.size() - at - head_bytes)
+            return false;
+        at = after(file, at, size);
+    }
+    return at >= file.size();
+}
+
+/// Bytes of samples by the header, or none where that leaves them open.
+std::optional<std::uint64_t> announced_bytes(std::string_view file, std::size_t at,
+                                             std::optional<std::uint64_t> long_size)
+{
+    const auto size = get<std::uint32_t>(file, at + 4);
+    if (size == elsewhere && long_size)
+        return *long_size == 0 ? std::nullopt : long_size;
+    if (size == 0 && !goes_on_in_chunks(file, at + head_bytes))
+        return std::nullopt;
+    return size >= open_from ? std::nullopt : std::optional<std::uint64_t>(size);
+}
+
+/// Returns true if 24 bits are the upper three bytes of four (Microsoft); those of ALSA (S24_LE) and of what
+/// records with it have the lower three and, above, their sign, zeros or anything.
+bool is_in_upper_bytes(std::string_view samples)
+{
+    bool signs_only = true;
+    for (std::size_t i = 0; i + 4 <= samples.size(); i += 4) {
+        const bool negative = (static_cast<unsigned char>(samples[i + 2]) & 0x80U) != 0;
+        if (samples[i] != '\0')
+            return false;
+        signs_only = signs_only && (samples[i + 3] == '\0' || (negative && samples[i + 3] == '\xFF'));
+    }
+    return !signs_only;
+}
+
+/// Returns an integer of that many bytes as a fraction of full scale.
+float decode_integer(std::string_view sample, std::size_t bytes)
+{
+    if (bytes == 1)
+        return (static_cast<float>(get<std::uint8_t>(sample, 0)) - 128.0F) / 128.0F;
+    std::array<char, 4> upper{};
+    std::copy_n(sample.begin(), bytes, upper.end() - static_cast<std::ptrdiff_t>(bytes));
+    return static_cast<float>(std::bit_cast<std::int32_t>(upper)) * 0x1p-31F;
+}
+
+} // namespace
+
+std::vector<float> decode_wav(const wav_parts& parts, std::size_t most)
+{
+    const wav_format& f = parts.format;
+    const std::string_view samples = parts.samples.substr(0, most * f.bytes);
+    const bool is_lower = f.tag == integers && f.bytes == 4 && f.bits <= 24 && !is_in_upper_bytes(samples);
+    std::vector<float> x;
+    x.reserve(samples.size() / f.bytes);
+    for (std::size_t at = 0; at + f.bytes <= samples.size(); at += f.bytes) {
+        const std::string_view one = samples.substr(at, f.bytes);
+        x.push_back(f.tag == integers ? decode_integer(one, is_lower ? 3 : f.bytes)
+                    : f.bits == 32    ? get<float>(one, 0)
+                                      : static_cast<float>(get<double>(one, 0)));
+    }
+    return x;
+}
+
+wav_parts find_wav_parts(std::string_view file, const std::string& name)
+{
+    const std::string_view kind = file.substr(0, 4);
+    if (file.size() < 12 || (kind != "RIFF" && kind != "RF64" && kind != "BW64") ||
+        file.substr(8, 4) != "WAVE")
+        refuse_wav(name, "it is no WAV file");
+    std::optional<wav_format> format;
+    std::optional<std::uint64_t> long_size;
+    for (std::size_t at = 12; at + head_bytes <= file.size();) {
+        const std::string_view id = file.substr(at, 4);
+        const std::string_view chunk = file.substr(at + head_bytes, get<std::uint32_t>(file, at + 4));
+        if (id == "ds64" && chunk.size() >= 16)
+            long_size = get<std::uint64_t>(chunk, 8);
+        if (id == "fmt ")
+            format = read_format(chunk, name);
+        if (id == "data") {
+            if (!format)
+                refuse_wav(name, "its samples come before their format");
+            const auto announced = announced_bytes(file, at, long_size);
+            const std::string_view rest = file.substr(at + head_bytes);
+            const std::string_view samples = rest.substr(0, announced.value_or(rest.size()));
+            return {*format, samples, announced.value_or(samples.size())};
+        }
+        at = after(file, at, chunk.size());
+    }
+    refuse_wav(name, "there are no samples in it");
+}
+
+} // namespace tactor::detail
 
 namespace tactor {
 inline namespace v0 {

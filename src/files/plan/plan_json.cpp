@@ -2,14 +2,29 @@
 #include "files/plan/plan_json.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
 
+#include <nlohmann/json.hpp>
+
+#include "files/json/json_value.hpp"
 #include "files/json/schema.hpp"
 #include "files/json/writer.hpp"
 #include "files/plan/plan_members.hpp"
 
 namespace tactor::files {
 namespace {
+
+using detail::about;
+using detail::comparison;
+using detail::comparison_row;
+using detail::interval;
+using detail::nullable;
+using detail::prediction;
+using detail::row_spread;
 
 /// Members of plan_parts, of a plan that is written.
 struct written_plan {
@@ -28,6 +43,24 @@ struct written_plan {
     std::uint64_t start_frame;
     std::uint64_t frames;
 };
+
+template <class T>
+nullable<T> where(bool there, const T& v)
+{
+    return there ? nullable<T>{v} : nullable<T>{};
+}
+
+// People who were drawn, for an observer.
+struct drawn_people {
+    detail::spread_choice choice = {};
+    bool by_taps = false;
+};
+
+// Returns true if the low-speed observer has a prediction.
+bool has_taps(const prediction& r, observer_kind by)
+{
+    return by == observer_kind::low_speed && r.unpredicted.empty();
+}
 
 } // namespace
 
@@ -94,6 +127,160 @@ nlohmann::ordered_json plan_schema()
 {
     plan_parts parts;
     return json_schema::describe_object([&parts](auto& io) { plan_members(io, parts); });
+}
+
+template <class Io, either<detail::observer_choice> Observer>
+void members(Io& io, Observer& o)
+{
+    constexpr about parameters{"its parameters, of low-speed", detail::above_0};
+    const bool taps = o.kind == observer_kind::low_speed;
+    io("name", o.kind, {"centroid or low-speed"});
+    io("sigma_mm", where(taps, o.low_speed.sigma_mm), parameters);
+    io("sigma_v_mm_s", where(taps, o.low_speed.sigma_v_mm_s), parameters);
+    io("built_for", where(taps, std::string("taps")), {"taps of low-speed; null of centroid"});
+}
+
+template <class Io, either<drawn_people> People>
+void members(Io& io, People& p)
+{
+    constexpr about differ{"how far they differ; the first is null with the observer centroid",
+                           detail::from_0};
+    io("people", p.choice.people, {"how many"});
+    io("seed", p.choice.seed, {"seed of the draw"});
+    io("sigma_factor", where(p.by_taps, p.choice.sigma_factor), differ);
+    io("threshold_db", p.choice.threshold_db, differ);
+    io("place_mm", p.choice.place_mm, differ);
+    io("parts", std::array{0.05, 0.95},
+       {"0.05 and 0.95: parts of the people that stay below the two ends of each interval"});
+}
+
+template <class Io, either<row_spread> Spread>
+void members(Io& io, Spread& s)
+{
+    const auto ends = [](const std::optional<interval>& v) {
+        return v ? nullable<std::array<double, 2>>{{{v->low, v->high}}} : nullable<std::array<double, 2>>{};
+    };
+    constexpr about figure{
+        "of the figures of the same names. Each interval is null where that is null for somebody"};
+    io("rms_error_mm", ends(s.rms_error_mm), figure);
+    io("largest_error_mm", ends(s.largest_error_mm), figure);
+    io("speed_cv", ends(s.speed_cv), figure);
+    io("intensity_cv", ends(s.intensity_cv), figure);
+    io("felt_length_mm", ends(s.felt_length_mm), figure);
+    io("length_ratio", ends(s.length_ratio), figure);
+}
+
+template <class Io>
+void error_members(Io& io, const prediction& r, observer_kind by)
+{
+    constexpr about error{
+        "distance from the position felt to the target; null where nothing is felt, or nothing is predicted",
+        detail::from_0};
+    const bool by_energy = by == observer_kind::centroid;
+    const bool by_taps = has_taps(r, by);
+    io.or_null("rms_error_mm", r.felt.rms_error_mm, error);
+    io.or_null("largest_error_mm", r.felt.largest_error_mm, error);
+    io.or_null("speed_cv", r.felt.speed_cv,
+               {"standard deviation of speed by its mean; null where the stroke is too short for a speed. "
+                "This and the next three are null with the observer low-speed",
+                detail::from_0});
+    io.or_null("intensity_cv", r.felt.intensity_cv,
+               {"the same of intensity; null where nothing is felt", detail::from_0});
+    io("silent_share", where(by_energy, r.felt.silent_share),
+       {"part of the time in which no tactor sounds", detail::bounds_of::part});
+    io("shared_share", where(by_energy, r.felt.shared_share),
+       {"part of the time in which one tactor serves two bursts", detail::bounds_of::part});
+    io.or_null("unpredicted", detail::omit_empty(r.unpredicted),
+               {"why the observer low-speed has no prediction, as for continuous; null where it has. All "
+                "down to taps is null where this is not, and with the observer centroid"});
+    io("felt_length_mm", where(by_taps, r.tapped.felt_length_mm),
+       {"length of the chain of the places at which the bursts are felt", detail::from_0});
+    io("target_length_mm", where(by_taps, r.tapped.target_length_mm),
+       {"the same of the target's places at their onsets", detail::from_0});
+    io.or_null("length_ratio", r.tapped.length_ratio,
+               {"the first by the second; null where the target rests", detail::from_0});
+}
+
+template <class Io>
+void result_members(Io& io, const comparison_row& r, observer_kind by)
+{
+    constexpr about names{"their names, as in tactor-plan/1"};
+    const plan none;
+    const plan& p = r.plan ? *r.plan : none;
+    io("algorithm", r.algorithm, names);
+    io("phantom", r.phantom, names);
+    io("refused", where(r.refused.has_value(), std::string(r.refused ? r.refused->what() : "")),
+       {"why it cannot play the stroke; null where it can. All that follows is there only where this is "
+        "null"});
+    io.where_null("refused", !r.refused, [&](auto& rest) {
+        rest("bursts", where(!p.curve, p.bursts.size()), {"how many; null of the algorithm continuous"});
+        rest.or_null(
+            "soa_s", p.soa_s,
+            {"onset to onset of two bursts; null where that differs from burst to burst", detail::above_0});
+        rest("total_s", p.total_s, {"end of the last sound", detail::from_0});
+        error_members(rest, r, by);
+        rest("taps", where(has_taps(r, by), r.taps), {"the bursts that are felt, by onset"});
+        rest.or_null("spread", r.spread,
+                     {"null without {spread}, or without a prediction; else intervals, low and high"});
+        rest("warnings", p.warnings, {"texts"});
+    });
+}
+
+template <class Io>
+void comparison_members(Io& io, const comparison& c, const array& a)
+{
+    const bool by_taps = c.observer.kind == observer_kind::low_speed;
+    const detail::observer_choice built_for{observer_kind::low_speed, c.observer.low_speed};
+    io.constant("schema", "tactor-compare/1");
+    io("note", detail::prediction_note(c.observer), {"what kind of figures these are"});
+    io("observer", c.observer, {"who is predicted to feel it"});
+    io("compensated_for", where(c.compensated, built_for),
+       {"null, or the observer for whom bursts were moved, with {compensate}"});
+    io("spread", where(c.spread.people != 0, drawn_people{c.spread, by_taps}),
+       {"null, or who was drawn with {spread}"});
+    io("faces", detail::omit_usual(c.faces, faces_kind::delaunay),
+       {"nearest with {faces=nearest}; else it is not there"});
+    io.object("stroke", {"what is drawn"}, [&](auto& inner) {
+        inner("name", c.target.name, {"its name, or that of the file"});
+        inner("duration_s", c.target.motion.duration_s(),
+              {"time in which the target moves", detail::above_0});
+        inner("length_mm", c.target.motion.length_mm(), {"length of its path", detail::from_0});
+        inner("note", detail::omit_empty(note_text(c.target.note)),
+              {"only of park2016-1 to -4: that they are reconstructed"});
+    });
+    io.object("array", {"where it is drawn"}, [&](auto& inner) {
+        inner("name", a.name, {"name of the array"});
+        inner.list("tactors", a.tactors, {"all of them, in order"},
+                   [](auto& one, auto& t, std::size_t number) { identity_members(one, t, number); });
+    });
+    io.list("results", c.rows, {"one for each algorithm with each phantom model"},
+            [&](auto& inner, const comparison_row& r, std::size_t) {
+                result_members(inner, r, c.observer.kind);
+            });
+}
+
+nlohmann::ordered_json errors_json(const prediction& r, observer_kind by)
+{
+    return make_object([&](auto& io) { error_members(io, r, by); });
+}
+
+std::string comparisons_text(const std::vector<comparison>& all, const array& a)
+{
+    const auto whole = make_object([&](auto& io) {
+        if (all.size() == 1)
+            return comparison_members(io, all[0], a);
+        io.constant("schema", "tactor-compares/1");
+        io.list("comparisons", all, {""},
+                [&a](auto& inner, const comparison& c, std::size_t) { comparison_members(inner, c, a); });
+    });
+    return whole.dump(2) + '\n';
+}
+
+nlohmann::ordered_json compare_schema()
+{
+    const comparison one;
+    const array tactors;
+    return json_schema::describe_object([&](auto& io) { comparison_members(io, one, tactors); });
 }
 
 } // namespace tactor::files

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <filesystem>
+#include <iterator>
 #include <numbers>
 #include <optional>
 #include <string>
@@ -14,7 +15,9 @@
 
 #include <tactor/error.hpp>
 
+#include "core/limits.hpp"
 #include "core/moved.hpp"
+#include "core/pace.hpp"
 
 namespace tactor::detail {
 namespace {
@@ -124,6 +127,107 @@ turned make_turn(double degrees)
     return {std::cos(angle), std::sin(angle)};
 }
 
+constexpr bounds a_part{0.0, 1.0};
+constexpr std::size_t most_profile_points = 1'000'000;
+
+/// The numbers of an entry of a list whose first is a part of the path, which ascends.
+class part_list {
+public:
+    part_list(const toml_table& t, std::string_view key, std::string_view shape)
+        : table_(t), key_(key), list_(*t.list(key, shape)), shape_(shape)
+    {
+        if (list_.empty())
+            t.fail(key, fmt::format("{} is an empty list", key), fmt::format("give {}", shape));
+        if (list_.size() > most_profile_points)
+            t.fail(key, fmt::format("{} has {} entries", key, list_.size()),
+                   fmt::format("at most {}", most_profile_points));
+    }
+
+    /// Calls take(part, entry) for each.
+    template <class Take>
+    void each(std::size_t least, std::size_t most, Take take)
+    {
+        double before = -1.0;
+        for (const toml::node& node : list_) {
+            const toml::array* entry = node.as_array();
+            if (!entry || entry->size() < least || entry->size() > most)
+                fail_at(table_.where(node), fmt::format("an entry of {} is {}", key_, shown(node)),
+                        fmt::format("give {}", shape_));
+            const double part = table_.to_number((*entry)[0], "the part of the path", a_part);
+            if (!(part > before))
+                fail_at(table_.where(node),
+                        fmt::format("the part {} of {} does not come after {}", part, key_, before),
+                        "parts ascend from 0, the path's start, to 1, its end");
+            before = part;
+            take(part, *entry);
+        }
+    }
+
+private:
+    const toml_table& table_;
+    std::string_view key_;
+    const toml::array& list_;
+    std::string_view shape_;
+};
+
+std::vector<profile_point> read_profile(const toml_table& t, std::string_view key, bounds values)
+{
+    std::vector<profile_point> points;
+    part_list(t, key, "[[part, value], ...]").each(2, 2, [&](double part, const toml::array& entry) {
+        points.push_back({part, t.to_number(entry[1], key, values)});
+    });
+    return points;
+}
+
+std::vector<rest> read_pauses(const toml_table& t)
+{
+    std::vector<rest> rests;
+    part_list(t, "pauses", "[[part, seconds], ...] or [[part, seconds, intensity], ...]")
+        .each(2, 3, [&](double part, const toml::array& entry) {
+            const double time = t.to_number(entry[1], "a pause", {0.0, longest_stroke_s, true});
+            const double intensity =
+                entry.size() == 3 ? t.to_number(entry[2], "the intensity of a pause", {0.0, 1.0}) : 1.0;
+            rests.push_back({part, time, intensity});
+        });
+    return rests;
+}
+
+bool is_list(const toml_table& t, std::string_view key)
+{
+    return t.has(key) && t.node(key)->is_array();
+}
+
+constexpr unsigned most_repeats = 10'000;
+
+void start(stroke& s, double start_s, start_from_kind from, std::size_t back)
+{
+    s.start_s = start_s;
+    s.anchor = {from, static_cast<unsigned>(back)}; // at most most_strokes
+}
+
+/// Places a stroke after the last `back` strokes. Right after the last one it gets no number: that is exact
+/// to the frame.
+void follow(stroke& s, double wait_s, std::size_t back)
+{
+    if (wait_s == 0.0 && back == 1) {
+        s.start_s.reset();
+        s.anchor = {};
+    } else {
+        start(s, wait_s, start_from_kind::end, back);
+    }
+}
+
+void check_count(const toml_table& t, std::string_view key, std::size_t strokes)
+{
+    if (strokes > most_strokes)
+        t.fail(key, fmt::format("{} strokes in all", strokes), fmt::format("at most {}", most_strokes));
+}
+
+start_from_kind read_from(const toml_table& t)
+{
+    return t.kind<start_from_kind>("start_from").value_or(start_from_kind::piece);
+}
+
 } // namespace
 
 void read_sound(const toml_table& t, const std::filesystem::path* folder, stroke& s)
@@ -203,6 +307,129 @@ stroke placed(const toml_table& t, stroke s)
         return s.speed_mm_s && there.length_mm() > 0.0 ? there.with_speed(*s.speed_mm_s) : there;
     });
     return s;
+}
+
+told_pace read_pace(const toml_table& t)
+{
+    told_pace p;
+    const auto uneven = [&](std::string_view key) { p.key = p.key.empty() ? key : p.key; };
+    p.duration_s = t.number("duration_s", {0.0, longest_stroke_s, true});
+    if (const auto easing = t.kind<easing_kind>("easing")) {
+        p.moves.easing = *easing;
+        uneven("easing");
+    }
+    if (is_list(t, "speed_mm_s")) {
+        p.moves.speed_mm_s = read_profile(t, "speed_mm_s", {least_speed_mm_s, max_mm});
+        uneven("speed_mm_s");
+    } else {
+        p.speed_mm_s = t.number("speed_mm_s", {0.0, max_mm, true});
+    }
+    if (is_list(t, "intensity")) {
+        p.moves.intensity = read_profile(t, "intensity", {0.0, 1.0});
+        uneven("intensity");
+    } else {
+        p.intensity = t.number("intensity", {0.0, 1.0}).value_or(1.0);
+    }
+    if (t.has("pauses")) {
+        p.moves.rests = read_pauses(t);
+        uneven("pauses");
+    }
+    if (p.duration_s && t.has("speed_mm_s"))
+        t.fail("speed_mm_s", fmt::format("{} has both duration_s and speed_mm_s", t.title()),
+               "keep one of them");
+    return p;
+}
+
+trajectory along_as_told(const toml_table& t, std::string_view kind, const path& way, const told_pace& told,
+                         std::optional<double> own_s)
+{
+    const bool speeds = !told.moves.speed_mm_s.empty();
+    std::optional<double> seconds = told.time_for(way.length_mm());
+    std::string_view key = told.speed_mm_s || speeds ? "speed_mm_s" : told.duration_s ? "duration_s" : kind;
+    if (!seconds && !speeds)
+        seconds = own_s.value_or(way.length_mm() / default_speed_mm_s);
+    movement m = told.moves;
+    m.duration_s = seconds;
+    // A speed, and a preset's own time, are of the movement: pauses come on top.
+    if (seconds && !told.duration_s)
+        for (const rest& r : m.rests)
+            *m.duration_s += r.time_s;
+    if (!m.rests.empty())
+        key = "pauses";
+    return t.at_key(key, [&] {
+        return told.key.empty() ? trajectory::along(way, *seconds, told.intensity)
+                                : trajectory::along(way, m, told.intensity);
+    });
+}
+
+std::optional<double> kept_speed(const told_pace& told, double length_mm)
+{
+    if (!told.moves.speed_mm_s.empty())
+        return length_mm / time_at_speeds_s(told.moves, length_mm);
+    return told.speed_mm_s;
+}
+
+void sequence::place_first(const toml_table& t, stroke& first, double lead_s)
+{
+    static_cast<void>(read_from(t)); // whatever it is, there is nothing before
+    const auto told = t.number("start_s", {0.0, longest_stroke_s});
+    const double after_s = told.value_or(0.0) + lead_s;
+    if (!whole_piece_)
+        all_.lead_s = after_s;
+    else if (told || lead_s > 0.0)
+        start(first, after_s, start_from_kind::piece, 1);
+}
+
+void sequence::place(const toml_table& t, stroke& first, double lead_s) const
+{
+    const start_from_kind from = read_from(t);
+    const auto told =
+        t.number("start_s", {from == start_from_kind::piece ? 0.0 : -longest_stroke_s, longest_stroke_s});
+    const double after_s = told.value_or(0.0) + lead_s;
+    if (told && *told < 0.0)
+        first.places.start = t.where("start_s");
+    if (from == start_from_kind::end || (!told && !t.has("start_from")))
+        follow(first, after_s, before_.size);
+    else if (from == start_from_kind::start)
+        start(first, after_s - before_.lead_s, from, before_.size);
+    else if (whole_piece_)
+        start(first, after_s, from, 1);
+    else
+        start(first, after_s - all_.lead_s, start_from_kind::start, all_.strokes.size());
+}
+
+void sequence::add(const toml_table& t, entry e)
+{
+    check_count(t, "stroke", all_.strokes.size() + e.strokes.size());
+    if (all_.strokes.empty())
+        place_first(t, e.strokes.front(), e.lead_s);
+    else
+        place(t, e.strokes.front(), e.lead_s);
+    before_ = {e.strokes.size(), e.lead_s};
+    all_.strokes.insert(all_.strokes.end(), std::make_move_iterator(e.strokes.begin()),
+                        std::make_move_iterator(e.strokes.end()));
+}
+
+entry repeated(const toml_table& t, entry e)
+{
+    const auto times = t.whole("repeat", 1, most_repeats);
+    const auto pause = t.number("pause_s", {0.0, longest_stroke_s});
+    if (pause && times.value_or(1) == 1)
+        t.fail("pause_s", "nothing is repeated",
+               "add repeat = 2 or more; pauses = [[part, seconds], ...] is along a path");
+    if (times.value_or(1) == 1)
+        return e;
+    const std::size_t once = e.strokes.size();
+    check_count(t, "repeat", once * *times);
+    const std::vector<stroke> first = e.strokes;
+    for (unsigned pass = 1; pass < *times; ++pass) {
+        for (const stroke& s : first)
+            e.strokes.push_back(s);
+        follow(e.strokes[pass * once], pause.value_or(0.0) + e.lead_s, once);
+    }
+    for (std::size_t i = 0; i < e.strokes.size(); ++i)
+        e.strokes[i].name += fmt::format(" ({} of {})", i / once + 1, *times);
+    return e;
 }
 
 } // namespace tactor::detail
