@@ -14,9 +14,9 @@
 #include "cli/say.hpp"
 #include "cli/warnings.hpp"
 #include "core/words.hpp"
+#include "session/environment.hpp"
 #include "session/interrupt.hpp"
 #include "session/pipes.hpp"
-#include "session/threshold_carrier.hpp"
 
 namespace tactor::cli {
 namespace {

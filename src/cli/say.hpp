@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// The tool prints by the names of session/say.hpp and session/wrapped.hpp.
+/// The tool prints by the names of session/say.hpp.
 #pragma once
 
 #include "session/say.hpp"
-#include "session/wrapped.hpp"
 
 namespace tactor::cli {
 

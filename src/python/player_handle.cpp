@@ -7,7 +7,6 @@
 #include <unistd.h>
 
 #include "session/device.hpp"
-#include "session/sound_server.hpp"
 
 namespace tactor::python {
 namespace {

@@ -5,9 +5,12 @@
 
 #include <map>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
+#include <tactor/plan.hpp>
+#include <tactor/render.hpp>
 #include <tactor/tactor.hpp>
 
 #include "files/plan/plan_file.hpp"
@@ -47,5 +50,12 @@ bool is_preset(const std::vector<std::string>& presets, const std::string& name)
 
 /// Settles rate and channel count: the options, else the configuration, else the defaults.
 render_options settle_render(const settings& s, const environment& e);
+
+/// Returns a sentence if a plan has another carrier than [calibration], to which a single threshold of the
+/// array belongs; else nothing.
+std::string other_carrier(const environment& e, std::span<const plan* const> plans);
+
+/// Says this once about all plans, if levels are above thresholds.
+void tell_of_other_carrier(const environment& e, const render_options& r, std::span<const score> scores);
 
 } // namespace tactor::session

@@ -2,9 +2,8 @@
 #include "session/piece.hpp"
 
 #include <algorithm>
+#include <optional>
 #include <utility>
-
-#include "core/asked_pace.hpp"
 
 namespace tactor::session {
 namespace {
@@ -23,6 +22,16 @@ stroke named_stroke(const std::string& name)
     const auto& shapes = stroke_shapes();
     const bool is_shape = std::find(shapes.begin(), shapes.end(), name) != shapes.end();
     return is_shape ? shape_stroke(name) : preset_stroke(name);
+}
+
+// Sets the duration of a stroke: the option comes first, then the stroke's own pace, then the default.
+void set_pace(stroke& s, const options::wishes& o)
+{
+    const std::optional<double> speed = o.speed_mm_s || !s.usual_pace ? o.speed_mm_s : o.usual_speed_mm_s;
+    if (o.duration_s)
+        s.motion = s.motion.with_duration(*o.duration_s);
+    else if (speed)
+        s.motion = s.motion.with_speed(*speed);
 }
 
 } // namespace
@@ -52,7 +61,7 @@ void place_strokes(piece& p, const layout& faces, const options::wishes& o)
     }
     // Times count where a stroke ends up.
     for (stroke& k : p.strokes)
-        detail::set_pace(k, {o.duration_s, o.speed_mm_s, o.usual_speed_mm_s});
+        set_pace(k, o);
 }
 
 void plan_stroke(piece& p, std::size_t i, const array& a, const layout& faces, const options::wishes& o)

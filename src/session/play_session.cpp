@@ -12,9 +12,9 @@
 
 #include "core/log.hpp"
 #include "core/words.hpp"
+#include "session/device.hpp"
 #include "session/own_memory.hpp"
 #include "session/say.hpp"
-#include "session/sound_server.hpp"
 
 namespace tactor::session {
 namespace {

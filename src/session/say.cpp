@@ -6,13 +6,93 @@
 #include <cerrno>
 #include <cstdlib>
 
+#include <sys/ioctl.h>
 #include <sys/stat.h>
+#include <unistd.h>
+
+#include <fmt/format.h>
 
 #include "core/split.hpp"
-#include "session/wrapped.hpp"
 
 namespace tactor::session {
 namespace {
+
+constexpr std::size_t usual_columns = 80;
+constexpr std::size_t least_columns = 40;
+constexpr std::size_t most_columns = 200;
+
+// Characters of East Asia take two columns, and fmt's padding counts them so.
+std::size_t count_columns(std::string_view s)
+{
+    const std::size_t padded = 2 * s.size();
+    return s.size() + padded - fmt::formatted_size("{:{}}", s, padded);
+}
+
+std::size_t count_blanks(std::string_view line, std::size_t at)
+{
+    return std::min(line.find_first_not_of(' ', at), line.size()) - at;
+}
+
+// Parts of a line, which two blanks or more separate.
+struct line_parts {
+    std::size_t hang = 0;   ///< column of the last part in the left half, else of the first word
+    std::size_t beyond = 0; ///< place in the line of the only part in the right half; 0: none, or several
+};
+
+line_parts find_parts(std::string_view line, std::size_t width)
+{
+    line_parts p;
+    unsigned count = 0; // in the right half
+    for (std::size_t at = 0; at < line.size();) {
+        const std::size_t word = at + count_blanks(line, at);
+        if (word == line.size())
+            break;
+        if (at == 0 || word - at > 1) {
+            const std::size_t column = count_columns(line.substr(0, word));
+            if (column <= width / 2)
+                p.hang = column;
+            else
+                p.beyond = ++count == 1 ? word : 0;
+        }
+        at = std::min(line.find(' ', word), line.size());
+    }
+    return p;
+}
+
+void append_line(std::string& all, std::string_view line, std::size_t hang, std::size_t width)
+{
+    std::size_t column = 0;
+    for (std::size_t at = 0; at < line.size();) {
+        const std::size_t blanks = count_blanks(line, at);
+        const std::size_t end = std::min(line.find(' ', at + blanks), line.size());
+        const std::string_view word = line.substr(at + blanks, end - at - blanks);
+        const std::size_t columns = count_columns(word);
+        if (column + blanks > hang && column + blanks + columns > width && !word.empty()) {
+            all.append("\n").append(hang, ' ').append(word);
+            column = hang + columns;
+        } else {
+            all.append(line.substr(at, end - at));
+            column += blanks + columns;
+        }
+        at = end;
+    }
+}
+
+// Breaks a line. The only part in its right half goes below.
+void append_parts(std::string& all, std::string_view line, std::size_t width)
+{
+    constexpr std::size_t deeper = 2;
+    const line_parts p = find_parts(line, width);
+    std::string_view left = line.substr(0, p.beyond);
+    left.remove_suffix(left.size() - std::min(left.find_last_not_of(' ') + 1, left.size()));
+    const std::size_t hang = p.beyond == 0 ? p.hang : (left.empty() ? deeper : p.hang) + deeper;
+    if (!left.empty()) {
+        append_line(all, left, p.hang, width);
+        all += '\n';
+    }
+    append_line(all, p.beyond == 0 ? std::string(line) : std::string(hang, ' ').append(line.substr(p.beyond)),
+                hang, width);
+}
 
 // Finds C1 controls, which are C2 80 to C2 9F in UTF-8.
 bool starts_c1(std::string_view s, std::size_t at)
@@ -75,6 +155,42 @@ void keep_error(std::FILE* to, bool arrived)
 }
 
 } // namespace
+
+std::size_t line_width(std::FILE* to)
+{
+    winsize w{};
+    const bool known = ::ioctl(::fileno(to), TIOCGWINSZ, &w) == 0 && w.ws_col != 0;
+    return (known ? std::clamp<std::size_t>(w.ws_col, least_columns, most_columns) : usual_columns) - 1;
+}
+
+std::string wrapped(std::string_view first, std::string_view text, std::size_t width)
+{
+    std::string all;
+    append_line(all, fmt::format("{}{}", first, text), count_columns(first), width);
+    return all + '\n';
+}
+
+std::string wrap_lines(std::string_view text, std::size_t width)
+{
+    std::string all;
+    for (std::size_t at = 0; at < text.size();) {
+        const std::size_t end = std::min(text.find('\n', at), text.size());
+        const std::string_view line = text.substr(at, end - at);
+        if (count_columns(line) > width)
+            append_parts(all, line, width);
+        else
+            all += line;
+        if (end < text.size())
+            all += '\n';
+        at = end + 1;
+    }
+    return all;
+}
+
+std::string fit_lines(std::FILE* to, std::string text)
+{
+    return ::isatty(::fileno(to)) != 0 ? wrap_lines(text, line_width(to)) : text;
+}
 
 std::string shown(std::string_view name)
 {

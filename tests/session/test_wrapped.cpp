@@ -4,7 +4,7 @@
 
 #include <doctest/doctest.h>
 
-#include "session/wrapped.hpp"
+#include "session/say.hpp"
 
 namespace {
 

@@ -9,7 +9,7 @@
 #include <fmt/ranges.h>
 
 #include "core/words.hpp"
-#include "session/threshold_carrier.hpp"
+#include "session/environment.hpp"
 #include "session/walk.hpp"
 
 namespace tactor::cli {

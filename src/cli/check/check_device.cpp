@@ -8,7 +8,6 @@
 
 #include "cli/play/play_report.hpp"
 #include "session/device.hpp"
-#include "session/sound_server.hpp"
 
 namespace tactor::cli {
 

@@ -13,8 +13,8 @@
 #include "cli/say.hpp"
 #include "cli/settings.hpp"
 #include "server/server.hpp"
+#include "session/device.hpp"
 #include "session/interrupt.hpp"
-#include "session/sound_server.hpp"
 
 namespace tactor::cli {
 namespace {

@@ -12,8 +12,8 @@
 
 #include "cli/play/live_picture.hpp"
 #include "cli/say.hpp"
+#include "session/device.hpp"
 #include "session/interrupt.hpp"
-#include "session/sound_server.hpp"
 #include "study/experiment/definition.hpp"
 #include "study/session/key_input.hpp"
 #include "study/session/person_session.hpp"

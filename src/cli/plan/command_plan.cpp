@@ -17,7 +17,7 @@
 #include "core/words.hpp"
 #include "files/plan/plan_json.hpp"
 #include "plot/sound_text.hpp"
-#include "session/threshold_carrier.hpp"
+#include "session/environment.hpp"
 
 namespace tactor::cli {
 

@@ -16,9 +16,9 @@
 #include "cli/say.hpp"
 #include "cli/settings.hpp"
 #include "cli/warnings.hpp"
+#include "session/environment.hpp"
 #include "session/live_remarks.hpp"
 #include "session/play_session.hpp"
-#include "session/threshold_carrier.hpp"
 
 namespace tactor::cli {
 namespace {

@@ -13,7 +13,7 @@
 #include "core/words.hpp"
 #include "files/json/json_value.hpp"
 #include "files/json/schema.hpp"
-#include "session/sound_server.hpp"
+#include "session/device.hpp"
 
 namespace tactor::cli {
 namespace {

@@ -32,7 +32,6 @@
 #include "session/interrupt.hpp"
 #include "session/log.hpp"
 #include "session/own_memory.hpp"
-#include "session/sound_server.hpp"
 
 namespace tactor::cli {
 namespace {

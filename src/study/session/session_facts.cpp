@@ -10,7 +10,7 @@
 #include "core/sha256.hpp"
 #include "files/json/json_value.hpp"
 #include "files/plan/plan_members.hpp"
-#include "session/threshold_carrier.hpp"
+#include "session/environment.hpp"
 
 namespace tactor::study {
 
