@@ -6,7 +6,6 @@
 #include <array>
 #include <cstdint>
 
-#include "synth/mix/fades.hpp"
 #include "synth/mix/oscillator.hpp"
 #include "synth/mix/score_gains.hpp"
 #include "synth/mix/voice.hpp"

@@ -2,11 +2,225 @@
 #include "synth/mix/mixer.hpp"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
+#include <compare>
+#include <cstddef>
+#include <cstdint>
 #include <cstring>
+#include <numeric>
+#include <span>
+#include <utility>
+#include <vector>
 
-#include "synth/mix/mixer_impl.hpp"
+#include "core/clones.hpp"
+#include "synth/guard/drive_guard.hpp"
+#include "synth/guard/guard.hpp"
+#include "synth/guard/power_guard.hpp"
+#include "synth/mix/carrier.hpp"
+#include "synth/mix/converter.hpp"
+#include "synth/mix/score_gains.hpp"
+#include "synth/mix/voice.hpp"
+#include "synth/tone/timbre.hpp"
 
 namespace tactor::synth {
+namespace {
+
+// A channel in the current block.
+struct strip {
+    alignas(64) block sum;
+    const double* lone = nullptr; // only one voice so far: its carrier, with `gain`, in place of the sum
+    double gain = 1.0;
+    double limit = 0.0;
+    double peak = 0.0;     // greatest sum of the voices
+    double together = 0.0; // greatest sum of the voices that last until `until`, a frame of the block
+    unsigned until = 0;
+    unsigned since = 0;           // frame of the block at which the first voice begins
+    unsigned look = block_frames; // frame of the block from which the envelope is needed
+    const voice* first = nullptr; // valid only in the block
+    double power = 1.0;           // greatest power of the voices' timbres
+    bool steady = false;          // a single voice with a constant envelope
+    bool beats = false;           // voices of several carriers
+    bool only_crests = false;     // the envelope between the crests is not needed
+    bool spare = false;           // no tactor: for markers
+    bool sounding = false;
+
+    // Adds a voice's amplitude from one frame of the block to another. Voices come in order of their start.
+    void reach(unsigned from, unsigned to, double amplitude) noexcept
+    {
+        together = from < until ? together + amplitude : amplitude;
+        until = std::max(until, to);
+        peak = std::max(peak, together);
+    }
+    // Returns the greatest possible squared envelope.
+    double most() const noexcept { return limit * limit * power; }
+    // Takes a further voice. Waves other than sines add up by their amplitudes, unless they are the same
+    // wave.
+    void join(const voice& v) noexcept
+    {
+        steady = false;
+        beats = beats || !adds_up(*first, v);
+        power = v.sound != nullptr ? std::max(power, v.sound->power) : power;
+    }
+    // Returns true if the channel counts as not driven in this block, whatever the voices do.
+    bool is_quiet() const noexcept { return std::min(peak, limit) * std::sqrt(power) <= least_counted_drive; }
+    // Returns the sum, computed now if a single voice replaced it.
+    double* summed(unsigned n) noexcept
+    {
+        if (lone != nullptr) {
+            set_constant(lone, gain, 0, n, sum.data());
+            lone = nullptr;
+        }
+        return sum.data();
+    }
+};
+
+// A block that keeps a cache line's alignment in a vector.
+struct alignas(64) aligned_block : block {};
+
+// A few frames of a channel on which carriers beat.
+struct crest {
+    static constexpr std::size_t frames = 128;
+    alignas(64) std::array<double, frames> x{}; // of the current carrier; zero between two
+    alignas(64) std::array<double, frames> y{};
+    alignas(64) std::array<double, frames> reach{}; // of the earlier carriers
+    bool touched = false;
+};
+
+// A score that will fade or, without a number of a fade, be cut.
+struct leaver {
+    std::uint32_t score = 0;
+    std::int32_t fade = fades::none;
+    auto operator<=>(const leaver&) const = default;
+};
+
+constexpr block ones = [] {
+    block b{};
+    b.fill(1.0);
+    return b;
+}();
+
+// Computes y[j] = x[j]^2 + y[j]^2, at most `most`; NaN becomes `most`.
+TACTOR_CLONES void square_envelope(const double* x, double most, unsigned lo, unsigned hi, double* y) noexcept
+{
+    const double* __restrict in = x;
+    double* __restrict out = y;
+    for (unsigned j = lo; j < hi; ++j) {
+        const double e = in[j] * in[j] + out[j] * out[j];
+        out[j] = e < most ? e : most;
+    }
+}
+
+// Adds the length of (x, y) to `reach`, whose square is `square`, and clears x and y.
+TACTOR_CLONES void add_length(unsigned n, double* x, double* y, double* reach, double* square) noexcept
+{
+    double* __restrict sine = x;
+    double* __restrict cosine = y;
+    double* __restrict sum = reach;
+    double* __restrict out = square;
+    for (unsigned j = 0; j < n; ++j) {
+        const double e = sine[j] * sine[j] + cosine[j] * cosine[j];
+        const double length = std::sqrt(e);
+        out[j] += e + 2.0 * sum[j] * length;
+        sum[j] += length;
+        sine[j] = 0.0;
+        cosine[j] = 0.0;
+    }
+}
+
+} // namespace
+
+struct mixer::impl {
+    impl(std::span<const double> limits, format_kind f, std::size_t capacity, const guard_settings& g)
+        : format(f),
+          strips(limits.size()),
+          voices(capacity),
+          power(limits.size(), g.power, most_power * reach(limits), g.rate),
+          duty(limits.size(), g),
+          envelopes(power.on() || duty.on() ? limits.size() : 0),
+          crests(power.on() ? limits.size() : 0)
+    {
+        for (std::size_t i = 0; i < strips.size(); ++i) {
+            strips[i].limit = clean_limit(limits[i]);
+            strips[i].spare = strips[i].limit == 0.0;
+        }
+        sounding.reserve(strips.size());
+        powered.reserve(strips.size());
+        samples.reserve(strips.size());
+        leaving.reserve(most_leaving);
+        carriers.reserve(power.on() ? capacity : 0);
+        frame_bytes = strips.size() * sample_bytes(format);
+    }
+
+    static double reach(std::span<const double> limits) noexcept
+    {
+        return std::accumulate(limits.begin(), limits.end(), 0.0,
+                               [](double sum, double l) { return sum + clean_limit(l) * clean_limit(l); });
+    }
+
+    // Returns false for a constant on a tactor's channel, which would displace the tactor as long as it
+    // lasts.
+    bool plays(const voice& v) const noexcept
+    {
+        bool only_spare = true;
+        if (v.cycles_per_frame == 0.0)
+            each_channel(v, [&](std::uint32_t c) { only_spare = only_spare && strips[c].spare; });
+        return only_spare;
+    }
+    // Returns the carrier of a voice as it sounds.
+    const double* shaped(const voice& v, std::uint64_t at, unsigned n, wave w) noexcept
+    {
+        return carrier.get(v, v.fade == fades::none ? nullptr : &fading[v.fade], gains.find(v.score, at), at,
+                           n, w);
+    }
+    void add_wave(const voice& v, const stretch& p, wave w, unsigned look, unsigned n, double* sum) noexcept
+    {
+        const std::uint64_t at = position + look;
+        if (p.end > at && p.start < position + n)
+            add_stretch(shaped(v, at, n - look, w), p, at, n - look, sum);
+    }
+    void segment(unsigned n, std::byte* out) noexcept;
+    void mix(const voice& v, bool last, unsigned n) noexcept;
+    void limit(unsigned n) noexcept;
+    void guard(unsigned n) noexcept;
+    void look_from(bool together, unsigned n) noexcept;
+    void begin_strip(std::uint32_t channel, const voice& v, unsigned from) noexcept;
+    void mix_line(const voice& v, const double* s, unsigned n) noexcept;
+    void find_envelopes(unsigned n) noexcept;
+    void count_drive(unsigned n) noexcept;
+    void find_beats(unsigned from, unsigned n) noexcept;
+    void list_carriers() noexcept;
+    void find_crests(unsigned from, unsigned to) noexcept;
+    void add_carrier(unsigned from, unsigned to) noexcept;
+    void cut(unsigned n) noexcept;
+    void guard_power(bool together, unsigned n) noexcept;
+    void write(unsigned n, std::byte* out) noexcept;
+    void let_go() noexcept;
+    void end_fades() noexcept;
+
+    static constexpr std::size_t most_leaving = 1024; // capacity of `leaving`
+
+    format_kind format;
+    std::size_t frame_bytes = 0;
+    std::vector<strip> strips;
+    std::vector<std::uint32_t> sounding;
+    voice_list voices;
+    fades fading;
+    score_gains gains;
+    std::vector<leaver> leaving; // since the last pass over the voices
+    carrier_block carrier;
+    power_guard power;
+    drive_guard duty;
+    std::vector<aligned_block> envelopes; // squared, by channel; empty if not needed
+    std::vector<powered_channel> powered;
+    std::vector<crest> crests;                              // by channel
+    std::vector<std::pair<double, std::uint32_t>> carriers; // cycles per frame, index among the active
+    std::vector<channel_samples> samples;
+    std::uint64_t clock = 0; // frames since the construction
+    std::uint64_t position = 0;
+    std::uint64_t limited = 0;
+    std::uint64_t power_limited = 0;
+};
 
 mixer::mixer(std::span<const double> limits, format_kind format, std::size_t capacity,
              const guard_settings& guards)
@@ -51,15 +265,6 @@ std::uint64_t mixer::power_limited() const noexcept
 std::uint64_t mixer::drives_cut() const noexcept
 {
     return impl_->duty.cuts();
-}
-
-// Returns false for a constant on a tactor's channel, which would displace the tactor as long as it lasts.
-bool mixer::impl::plays(const voice& v) const noexcept
-{
-    bool only_spare = true;
-    if (v.cycles_per_frame == 0.0)
-        each_channel(v, [&](std::uint32_t c) { only_spare = only_spare && strips[c].spare; });
-    return only_spare;
 }
 
 bool mixer::add(const drive_event& e) noexcept
@@ -190,6 +395,306 @@ void mixer::impl::end_fades() noexcept
     voices.forget_if(
         [this](const voice& v) { return v.fade != fades::none && fading[v.fade].end() <= position; });
     fading.end_all(position);
+}
+
+void mixer::impl::segment(unsigned n, std::byte* out) noexcept
+{
+    voices.activate(position + n);
+    const std::span<const std::uint32_t> active = voices.active();
+    for (std::size_t i = 0; i < active.size(); ++i)
+        mix(voices[active[i]], i + 1 == active.size(), n);
+    limit(n);
+    if (!envelopes.empty())
+        guard(n);
+    write(n, out);
+}
+
+// Mixes a voice. Its carrier is valid until another voice requests one: after the last voice, until the block
+// is written.
+void mixer::impl::mix(const voice& v, bool last, unsigned n) noexcept
+{
+    const auto from = static_cast<unsigned>(std::max(v.start, position) - position);
+    const auto to = static_cast<unsigned>(std::min(v.end, position + n) - position);
+    const double* s = v.cycles_per_frame == 0.0 ? ones.data() : shaped(v, position, n, wave::sine);
+    if (v.points != 0) {
+        mix_line(v, s, n);
+        return;
+    }
+    for (std::uint32_t i = 0; i < v.drives; ++i) {
+        const voice_drive& d = v.drive[i];
+        const double peak = d.peak(v.end - v.start);
+        strip& t = strips[d.channel];
+        if (t.spare && v.cycles_per_frame != 0.0) {
+            limited += to - from; // the channel has no tactor
+            continue;
+        }
+        if (!t.sounding) {
+            begin_strip(d.channel, v, from);
+            t.steady = d.slope == 0.0 && carrier.is_plain(s);
+            t.reach(from, to, peak);
+            if (d.slope == 0.0 && to - from == n) {
+                t.lone = s;
+                t.gain = d.from;
+                if (!last)
+                    t.summed(n);
+                continue;
+            }
+            std::fill_n(t.sum.begin(), n, 0.0);
+        } else {
+            t.reach(from, to, peak);
+            t.join(v);
+        }
+        add_stretch(s, {v.start, v.end, d}, position, n, t.summed(n));
+    }
+}
+
+void mixer::impl::begin_strip(std::uint32_t channel, const voice& v, unsigned from) noexcept
+{
+    strip& t = strips[channel];
+    t.sounding = true;
+    t.since = from;
+    t.first = &v;
+    t.power = v.sound == nullptr ? 1.0 : v.sound->power;
+    t.steady = false;
+    t.beats = false;
+    t.peak = 0.0;
+    t.until = 0;
+    sounding.push_back(channel);
+}
+
+// Mixes a line. Its part in the block counts with its greatest amplitude, from the voice's own start on, even
+// if it is silent at first, because voices come in order of their start.
+void mixer::impl::mix_line(const voice& v, const double* s, unsigned n) noexcept
+{
+    strip& t = strips[v.line.channel];
+    const bool meant = !t.spare || v.cycles_per_frame == 0.0;
+    const bool alone = !t.sounding;
+    double* sum = alone ? t.sum.data() : t.summed(n);
+    unsigned first = n;
+    unsigned end = 0;
+    double peak = 0.0;
+    each_stretch(v, position, n, [&](const stretch& p) {
+        const auto [from, to] = p.within(position, n);
+        if (meant && !alone) {
+            add_stretch(s, p, position, n, sum);
+        } else if (meant) {
+            std::fill(sum + end, sum + from, 0.0);
+            set_stretch(s, p, position, n, sum);
+        }
+        first = std::min(first, from);
+        end = to;
+        peak = std::max(peak, p.drive.peak(p.end - p.start));
+    });
+    if (end == 0)
+        return;
+    if (!meant) {
+        limited += end - first; // the channel has no tactor
+        return;
+    }
+    if (alone) {
+        std::fill(sum + end, sum + n, 0.0);
+        begin_strip(v.line.channel, v, first);
+    } else {
+        t.join(v);
+    }
+    t.reach(static_cast<unsigned>(std::max(v.start, position) - position), end, peak);
+}
+
+void mixer::impl::limit(unsigned n) noexcept
+{
+    for (const std::uint32_t c : sounding) {
+        strip& t = strips[c];
+        if (t.spare)
+            limit_block(t.summed(n), n, 1.0); // two markers at once are one marker
+        else if (!within_limit(t.peak, t.limit))
+            limited += limit_block(t.summed(n), n, t.limit);
+    }
+}
+
+void mixer::impl::write(unsigned n, std::byte* out) noexcept
+{
+    std::sort(sounding.begin(), sounding.end());
+    samples.clear();
+    for (const std::uint32_t c : sounding) {
+        strip& t = strips[c];
+        samples.push_back(t.lone != nullptr ? channel_samples{c, t.lone, t.gain}
+                                            : channel_samples{c, t.sum.data(), 1.0});
+        t.lone = nullptr;
+        t.sounding = false;
+    }
+    sounding.clear();
+    interleave(format, samples, strips.size(), n, out);
+}
+
+// Limits the power of all channels and the drive time of each. Both use envelopes: the length of the vector
+// of the samples and the same samples a quarter of a cycle later.
+void mixer::impl::guard(unsigned n) noexcept
+{
+    double most = 0.0; // sum of squares
+    for (const std::uint32_t c : sounding) {
+        const strip& t = strips[c];
+        const double peak = t.peak < t.limit ? t.peak : t.limit;
+        most += t.spare ? 0.0 : peak * peak * t.power;
+    }
+    const bool together = !power.passes(most);
+    look_from(together, n);
+    find_envelopes(n);
+    if (duty.on())
+        count_drive(n);
+    if (power.on())
+        find_beats(together ? 0 : n - 1, n);
+    if (duty.on())
+        cut(n);
+    if (power.on())
+        guard_power(together, n);
+}
+
+// Finds the first frame whose envelope is needed, because an envelope takes as long as the samples.
+void mixer::impl::look_from(bool together, unsigned n) noexcept
+{
+    for (const std::uint32_t c : sounding) {
+        strip& t = strips[c];
+        if (t.spare)
+            continue;
+        const bool known = !duty.on() || t.steady || t.is_quiet();
+        t.look = together || !known ? 0 : power.on() ? n - 1 : n;
+        t.only_crests = t.beats && known && power.on();
+        std::fill(envelopes[c].begin() + t.look, envelopes[c].begin() + n, 0.0);
+    }
+}
+
+void mixer::impl::find_envelopes(unsigned n) noexcept
+{
+    for (const std::uint32_t slot : voices.active()) {
+        const voice& v = voices[slot];
+        each_stretch(v, position, n, [&](const stretch& s) {
+            const std::uint32_t c = s.drive.channel;
+            const strip& t = strips[c];
+            if (t.look < n && !t.only_crests)
+                add_wave(v, s, wave::cosine, t.look, n, envelopes[c].data() + t.look);
+        });
+    }
+    for (const std::uint32_t c : sounding) {
+        strip& t = strips[c];
+        double* y = envelopes[c].data();
+        const double most = t.most();
+        if (t.look + 1 == n && t.lone != nullptr) {
+            const double x = t.gain * t.lone[t.look];
+            square_envelope(&x, most, 0, 1, y + t.look);
+        } else if (t.look < n) {
+            square_envelope(t.summed(n), most, t.look, n, y);
+        }
+    }
+}
+
+void mixer::impl::count_drive(unsigned n) noexcept
+{
+    for (const std::uint32_t c : sounding) {
+        const strip& t = strips[c];
+        if (t.spare || t.is_quiet())
+            continue;
+        if (t.steady)
+            duty.drive(c, clock + t.since, clock + t.until);
+        else
+            duty.follow(c, clock, envelopes[c].data(), n);
+    }
+}
+
+void mixer::impl::cut(unsigned n) noexcept
+{
+    for (const std::uint32_t c : sounding) {
+        strip& t = strips[c];
+        if (!t.spare && duty.acts(c, clock, n))
+            duty.apply(c, clock, n, t.summed(n), envelopes[c].data(), t.look);
+    }
+}
+
+void mixer::impl::guard_power(bool together, unsigned n) noexcept
+{
+    powered.clear();
+    for (const std::uint32_t c : sounding)
+        if (!strips[c].spare)
+            powered.push_back({c, strips[c].sum.data(), envelopes[c].data()});
+    if (!together) {
+        power.passed(powered, n);
+        return;
+    }
+    for (const powered_channel& c : powered)
+        strips[c.channel].summed(n);
+    power_limited += power.apply(powered, n);
+}
+
+// Replaces the envelope of channels on which carriers beat by that at the crests: a gain that followed the
+// beat would be audible. Carriers of one frequency add up with their phases.
+void mixer::impl::find_beats(unsigned from, unsigned n) noexcept
+{
+    list_carriers();
+    if (carriers.empty())
+        return;
+    for (const std::uint32_t c : sounding) {
+        strips[c].summed(n); // a single voice's sine would be lost
+        if (strips[c].beats)
+            std::fill(envelopes[c].begin() + from, envelopes[c].begin() + n, 0.0);
+    }
+    while (from < n) {
+        const unsigned to = std::min(n, from + static_cast<unsigned>(crest::frames));
+        find_crests(from, to);
+        from = to;
+    }
+}
+
+// Lists the voices on channels that beat, by frequency.
+void mixer::impl::list_carriers() noexcept
+{
+    carriers.clear();
+    const std::span<const std::uint32_t> active = voices.active();
+    for (std::uint32_t i = 0; i < active.size(); ++i) {
+        const voice& v = voices[active[i]];
+        bool beats = false;
+        each_channel(v, [&](std::uint32_t c) { beats = beats || strips[c].beats; });
+        if (beats)
+            carriers.emplace_back(v.cycles_per_frame, i);
+    }
+    std::sort(carriers.begin(), carriers.end());
+}
+
+void mixer::impl::find_crests(unsigned from, unsigned to) noexcept
+{
+    for (const std::uint32_t c : sounding)
+        if (strips[c].beats)
+            crests[c].reach.fill(0.0);
+    for (std::size_t i = 0; i < carriers.size(); ++i) {
+        const voice& v = voices[voices.active()[carriers[i].second]];
+        each_stretch(v, position + from, to - from, [&](const stretch& s) {
+            const std::uint32_t c = s.drive.channel;
+            if (strips[c].beats) {
+                crests[c].touched = true;
+                add_wave(v, s, wave::sine, from, to, crests[c].x.data());
+                add_wave(v, s, wave::cosine, from, to, crests[c].y.data());
+            }
+        });
+        if (i + 1 == carriers.size() || !adds_up(v, voices[voices.active()[carriers[i + 1].second]]))
+            add_carrier(from, to);
+    }
+    for (const std::uint32_t c : sounding) {
+        if (strips[c].beats) {
+            const double most = strips[c].most();
+            double* square = envelopes[c].data();
+            for (unsigned j = from; j < to; ++j)
+                square[j] = square[j] < most ? square[j] : most;
+        }
+    }
+}
+
+void mixer::impl::add_carrier(unsigned from, unsigned to) noexcept
+{
+    for (const std::uint32_t c : sounding) {
+        crest& r = crests[c];
+        if (r.touched) {
+            add_length(to - from, r.x.data(), r.y.data(), r.reach.data(), envelopes[c].data() + from);
+            r.touched = false;
+        }
+    }
 }
 
 } // namespace tactor::synth

@@ -2,10 +2,65 @@
 #include "synth/score/expander.hpp"
 
 #include <algorithm>
+#include <cmath>
 
+#include "synth/mix/window.hpp"
 #include "synth/score/frames.hpp"
 
 namespace tactor::synth {
+namespace {
+
+/// Fine enough for 0.2 %, and exact (one frame a step) for the default ramp at up to 48 kHz.
+constexpr std::uint32_t ramp_steps = 64;
+
+/// Returns the next frame after `at` where this member's window is not linear any more, or its start if it is
+/// to come.
+std::uint64_t next_break(const item_member& m, std::uint64_t at) noexcept
+{
+    if (at < m.start)
+        return m.start;
+    const std::uint64_t step = std::max<std::uint64_t>(1, m.ramp / ramp_steps);
+    const std::uint64_t k = at - m.start;
+    const std::uint64_t fall = m.length - m.release;
+    const std::uint64_t fall_step = std::max<std::uint64_t>(1, m.release / ramp_steps);
+    if (k < m.ramp)
+        return m.start + std::min<std::uint64_t>(m.ramp, (k / step + 1) * step);
+    if (k < fall)
+        return m.start + fall;
+    return m.start + std::min(m.length, fall + ((k - fall) / fall_step + 1) * fall_step);
+}
+
+/// Returns the amplitude at frame `at` of the members that sound up to it or from it on: those that hold
+/// `inside`.
+double amplitude(const item_member* first, const item_member* last, std::uint64_t inside, std::uint64_t at,
+                 overlap_kind rule, envelope_kind shape) noexcept
+{
+    double energy = 0.0;
+    double sum = 0.0;
+    double largest = 0.0;
+    double intensity = 0.0;
+    for (const item_member* m = first; m != last; ++m) {
+        if (inside < m->start || inside >= m->end())
+            continue;
+        const double a = m->amplitude * window_at(static_cast<std::int64_t>(at - m->start),
+                                                  {m->length, m->ramp, m->release, shape});
+        energy += a * a;
+        sum += a;
+        largest = std::max(largest, a);
+        intensity = std::max(intensity, m->intensity);
+    }
+    switch (rule) {
+    case overlap_kind::max:
+        return largest;
+    case overlap_kind::sum:
+        return sum;
+    case overlap_kind::energy:
+        break;
+    }
+    return std::min(intensity, std::sqrt(energy));
+}
+
+} // namespace
 
 void expander::begin(const score::impl& s, std::size_t item_number, control_points* points)
 {
@@ -157,6 +212,91 @@ void expander::draw(const control_points::row& r) noexcept
         if (!score_->measured.empty())
             l.amplitude[i] *= score_->equalised(r.tactor, item_->plan, position_ + c.frame[i]);
     }
+}
+
+void control_points::reserve(std::size_t tactors)
+{
+    rows.reserve(tactors);
+    now.drives.reserve(tactors);
+}
+
+void control_points::add(std::size_t i) noexcept
+{
+    auto r = rows.begin();
+    for (const drive& d : now.drives) {
+        while (r != rows.end() && r->tactor < d.tactor)
+            ++r;
+        if (r == rows.end() || r->tactor != d.tactor) {
+            if (d.amplitude == 0.0)
+                continue;
+            r = rows.insert(r, {d.tactor, {}});
+        }
+        r->amplitude[i] = d.amplitude;
+        ++r;
+    }
+}
+
+std::uint64_t control_frame(std::uint64_t k, unsigned rate, std::uint64_t length) noexcept
+{
+    return std::min(length, frame_at(static_cast<double>(k) * continuous_step_s, rate));
+}
+
+/// Replaces points()->now by control point number `step`. Throws std::bad_alloc.
+void expander::take_sample(std::uint64_t step)
+{
+    control_points& c = *points_;
+    curve_access::of(*score_->plans[item_->plan].plan.curve).sample(step, c.seen, c.now);
+}
+
+/// Moves on to the next control points; false at the end. Where this throws, it is called again, and goes on
+/// with the point that is missing.
+bool expander::next_points()
+{
+    control_points& c = *points_;
+    if (!c.open) {
+        position_ = step_end_;
+        next_ = 0;
+        c.rows.clear();
+        if (position_ >= item_->end())
+            return false;
+        c.frame[0] = 0;
+        c.add(0);
+        c.count = 1;
+        c.open = true;
+    }
+    while (c.count < points_per_line && step_end_ < item_->end()) {
+        std::uint64_t step = step_;
+        std::uint64_t end = step_end_;
+        while (end == step_end_)
+            end = item_->start + control_frame(++step, score_->rate, item_->length);
+        take_sample(step);
+        step_ = step;
+        step_end_ = end;
+        c.frame[c.count] = static_cast<std::uint16_t>(step_end_ - position_);
+        c.add(c.count++);
+    }
+    c.open = false;
+    return true;
+}
+
+joined_stretch join_members(const item_member* members, std::size_t count, std::size_t& first,
+                            std::uint64_t at, overlap_kind rule, envelope_kind shape) noexcept
+{
+    while (first + 1 < count && members[first].end() <= at)
+        ++first;
+    joined_stretch s;
+    s.end = at + longest_event;
+    std::size_t last = first;
+    for (; last < count; ++last) {
+        const item_member& m = members[last];
+        if (m.end() > at)
+            s.end = std::min(s.end, next_break(m, at));
+        if (m.start > at)
+            break;
+    }
+    s.from = amplitude(members + first, members + last, at, at, rule, shape);
+    s.to = amplitude(members + first, members + last, at, s.end, rule, shape);
+    return s;
 }
 
 } // namespace tactor::synth
