@@ -1,13 +1,18 @@
 // SPDX-License-Identifier: MIT
 #include "study/session/person_session.hpp"
 
+#include <algorithm>
+#include <array>
 #include <csignal>
+#include <functional>
 #include <utility>
 
 #include <fmt/format.h>
 
 #include "files/json/json_value.hpp"
+#include "rt/clock.hpp"
 #include "session/say.hpp"
+#include "session/walk.hpp"
 #include "study/bids/study_folder.hpp"
 #include "study/session/prepared.hpp"
 #include "study/session/trials.hpp"
@@ -32,6 +37,8 @@ session_flow make_flow(const prepared_experiment& p, const session_store& store)
     const bool consent = !p.definition.consent.empty() && !store.facts().contains("consent");
     return {std::move(runs), consent, static_cast<unsigned>(p.where.tactors.tactors.size())};
 }
+
+using json = nlohmann::ordered_json;
 
 } // namespace
 
@@ -248,6 +255,266 @@ bool person_session::end()
     session::show(page_ != nullptr ? "g ends.\n" : w["any_key_ends"] + "\n");
     wait_for_any_key();
     return flow_.next().what == step_kind::over;
+}
+
+const planned_trial& person_session::find_trial(const session_step& s) const
+{
+    const run_sequence& run = p_.runs[s.run];
+    return s.practice ? run.practice[s.which.trial - 1] : run.trials[s.which.trial - 1];
+}
+
+std::string person_session::animate(const session_step& s, const planned_trial& t)
+{
+    constexpr const char* gone = "the device is gone";
+    const stroke& target = p_.definition.motions[t.motion].drawn;
+    const double duration_s = target.motion.duration_s();
+    if (page_ != nullptr) {
+        page_->show(target_screen(p_, s, target));
+        const bool began = page_->is_watched();
+        const bool passed = stage_.pass(duration_s, [&](double) { return heed(); });
+        if (!passed)
+            return gone;
+        return (began && page_->is_watched()) || repeat_ || quit_ ? "" : "the target moved on no page";
+    }
+    const auto draw = display_.show(p_.where.tactors, target, p_.definition.page);
+    draw(0.0);
+    const bool passed = stage_.pass(duration_s, [&](double at_s) {
+        const bool goes_on = heed();
+        draw(std::min(at_s, duration_s));
+        return goes_on;
+    });
+    return passed ? "" : gone;
+}
+
+bool person_session::rest_before(const session_step& s, const planned_trial& t)
+{
+    if (t.rest_s == 0.0)
+        return true;
+    on_page(stimulus_screen(p_, s));
+    return stage_.pass(t.rest_s, [&](double) { return heed(); });
+}
+
+// Waits before the target, because the stimulus follows it at once.
+bool person_session::make_room(const session_step& s, const planned_trial& t, const score& stimuli)
+{
+    double ahead_s = stimulus_lead_s;
+    if (p_.run_at(s.run).animation)
+        ahead_s += p_.definition.motions[t.motion].drawn.motion.duration_s();
+    return stage_.make_room(stimuli, ahead_s, waiting());
+}
+
+std::function<bool(double)> person_session::waiting()
+{
+    return [this, announced = false](double) mutable {
+        if (!std::exchange(announced, true)) {
+            on_page(idle_screen(p_, "wait"));
+            session::show(p_.definition.page["wait"] + " ");
+        }
+        return heed();
+    };
+}
+
+std::function<void(std::uint64_t)> person_session::marks(const session_step& s, const planned_trial& t)
+{
+    if (!t.method_2)
+        return [](std::uint64_t) {};
+    const stimulus_set& all = p_.stimuli;
+    // The gap's mark is there, too: both stimuli are seen to begin and end.
+    const std::array<std::pair<std::uint64_t, unsigned>, 3> changes{
+        {{0, 1}, {all.at(t.motion, t.method_1).frames, 0}, {all.second(t), 2}}};
+    return [this, s, changes, shown = std::size_t{0}](std::uint64_t frame) mutable {
+        for (; shown < changes.size() && frame >= changes[shown].first; ++shown)
+            on_page(stimulus_screen(p_, s, changes[shown].second));
+    };
+}
+
+given_stimulus person_session::give(const session_step& s, const planned_trial& t)
+{
+    const score stimuli = p_.stimuli.make_score(t);
+    if (!rest_before(s, t) || !make_room(s, t, stimuli))
+        return {.flaw = "the device is gone"};
+    if (p_.run_at(s.run).animation)
+        if (std::string flaw = animate(s, t); !flaw.empty())
+            return {.flaw = std::move(flaw)};
+    on_page(stimulus_screen(p_, s));
+    given_stimulus g;
+    if (!repeat_ && !quit_) {
+        std::optional<noise_around> noise;
+        if (!p_.definition.masking.through_run)
+            noise.emplace(stage_);
+        const auto mark = marks(s, t);
+        g = stage_.give(stimuli, stimulus_lead_s, [&](std::uint64_t frame) {
+            mark(frame);
+            if (!heed())
+                stage_.cancel();
+        });
+        if (g.flaw.empty())
+            mark(stimuli.frames()); // where the process was too slow to look
+    }
+    heed(); // drops keys that were pressed too early
+    if (quit_)
+        throw stage::left{SIGINT, experimenter};
+    if (std::exchange(repeat_, false))
+        g.flaw = "the experimenter repeats it";
+    else
+        g.flaw = g.fault();
+    return g;
+}
+
+void person_session::trial(const session_step& s)
+{
+    const run_definition& r = p_.run_at(s.run);
+    const planned_trial& t = find_trial(s);
+    const page_words& w = p_.definition.page;
+    session::show(fmt::format("\n{} {}/{}{}: ", w[s.practice ? "practice" : "trial"], s.which.trial,
+                              s.practice ? p_.runs[s.run].practice.size() : p_.runs[s.run].trials.size(),
+                              s.which.attempt > 1 ? fmt::format(" ({})", w["repeated"]) : ""));
+    const given_stimulus g = give(s, t);
+    trial_row row = planned_row(p_, t, s.which);
+    row.stream = stream_;
+    row.xruns = g.xruns;
+    row.frame_1 = g.first_frame;
+    if (t.method_2 && g.first_frame && g.frames > p_.stimuli.second(t))
+        row.frame_2 = *g.first_frame + p_.stimuli.second(t);
+    std::string flaw = g.flaw;
+    if (flaw.empty()) {
+        const asked_answer a = ask(s, g);
+        if (a.choice == 0) {
+            flaw = "the experimenter repeats it";
+        } else {
+            const bool named = r.outline.task == task_kind::identify;
+            set_response(row, p_, r, named ? static_cast<unsigned>(r.motions[a.choice - 1]) : a.choice,
+                         a.time_s);
+        }
+    }
+    row.is_void = !flaw.empty();
+    if (row.is_void) {
+        session::show((s.practice ? "" : w["later"]) + "\n");
+        session::say(stderr, "tactor: {}: trial {} is void: {}\n", r.outline.name, s.which.trial, flaw);
+    }
+    const std::int64_t started_ns = utc_now_ns() - (g.first_frame ? rt::monotonic_ns() - g.started_ns : 0);
+    write(s, row, started_ns);
+    find_device();
+}
+
+void person_session::write(const session_step& s, const trial_row& row, std::int64_t started_ns)
+{
+    trial_row line = row;
+    (s.practice ? practice_ : table_)->add(line, started_ns, p_.render.rate);
+    flow_.took(row.is_void);
+}
+
+person_session::asked_answer person_session::ask(const session_step& s, const given_stimulus& g)
+{
+    const run_definition& r = p_.run_at(s.run);
+    on_page(question_screen(p_, s));
+    const std::string choices = choices_text(p_.definition, r);
+    session::show(fmt::format("{} {}: ", r.question, choices));
+    for (;;) {
+        const session_key k = keys_.wait();
+        const double time_s = std::max(0.0, static_cast<double>(k.at_ns - g.ended_ns) * 1e-9);
+        if (k.asked == operator_key::repeat)
+            return {};
+        if (k.asked)
+            obey(*k.asked);
+        else if (k.answer >= 1 && k.answer <= choices_in(r)) {
+            session::show(fmt::format("{}\n", k.answer));
+            return {k.answer, time_s};
+        } else if (!keys_.come_early())
+            session::show(fmt::format("{}: {} ", p_.definition.page["no_answer"], choices));
+    }
+}
+
+void person_session::void_last()
+{
+    if (!flow_.void_last()) {
+        session::say(stderr, "tactor: there is no trial before this one that can be made void\n");
+        return;
+    }
+    const run_definition& r = p_.run_at(flow_.void_run());
+    store_.make_last_void(r);
+    const trial_row row = store_.rows(r).back();
+    table_.emplace(store_, r, false);
+    practice_.emplace(store_, r, true);
+    session::say(stderr, "tactor: {}: trial {} is void: the experimenter says so\n", r.outline.name,
+                 row.trial);
+}
+
+void person_session::ask_consent()
+{
+    const page_words& w = p_.definition.page;
+    on_page(consent_screen(p_));
+    session::show_lines(p_.definition.consent + "\n");
+    session::show(fmt::format("{} y {}, n {}: ", w["agree"], w["yes"], w["no"]));
+    for (;;) {
+        const session_key k = keys_.wait();
+        if (k.asked == operator_key::quit)
+            obey(*k.asked);
+        if (k.character != 'y' && k.character != 'n')
+            continue;
+        session::show(k.character == 'y' ? w["yes"] + "\n\n" : w["no"] + "\n");
+        if (k.character == 'y')
+            agreed_at_ = acq_time_text(utc_now_ns());
+        return flow_.agree(k.character == 'y');
+    }
+}
+
+void person_session::walk(unsigned tactor)
+{
+    const array& a = p_.where.tactors;
+    const page_words& w = p_.definition.page;
+    if (tactor == 0) {
+        session::show_lines(w["walk"] + "\n");
+        session::show(session::numbered_map(a) + "\n");
+    }
+    on_page(walk_screen(p_, tactor, false));
+    const score s = walk_score(p_.definition, a, p_.render, tactor);
+    const given_stimulus g = stage_.give_after_limits(s, waiting());
+    if (!g.flaw.empty()) {
+        session::say(stderr, "tactor: tactor {}: {}\n", tactor, g.flaw);
+        find_device();
+    }
+    on_page(walk_screen(p_, tactor, true));
+    session::show(fmt::format("{}: {} y {}, n {}, r {}{}: ", tactor, w["felt"], w["yes"], w["no"], w["again"],
+                              tactor > 0 ? ", b " + w["back"] : ""));
+    for (;;) {
+        const session_key k = keys_.wait();
+        if (k.asked == operator_key::quit)
+            obey(*k.asked);
+        if (k.character == '\0' || std::string("ynrb").find(k.character) == std::string::npos ||
+            (k.character == 'b' && tactor == 0))
+            continue;
+        session::show(fmt::format("{}\n", k.character));
+        if (k.character == 'y')
+            walked_.push_back({{"tactor", tactor}, {"asked", acq_time_text(utc_now_ns())}});
+        // On a page a finger slips: the first No offers the tactor once more.
+        if (k.character == 'n' && page_ != nullptr && std::exchange(doubted_, tactor) != tactor)
+            return flow_.felt(walk_answer::again);
+        return flow_.felt(k.character == 'y'   ? walk_answer::felt
+                          : k.character == 'n' ? walk_answer::not_felt
+                          : k.character == 'r' ? walk_answer::again
+                                               : walk_answer::back);
+    }
+}
+
+// Begins after consent and walk: a participant who did not agree, or did not feel a tactor, leaves no data.
+void person_session::begin_store()
+{
+    if (std::exchange(begun_, true))
+        return;
+    const std::string now = acq_time_text(utc_now_ns());
+    store_.begin(p_.stimuli.all());
+    if (store_.facts()["date"].is_null()) // new, or it ended before the date was written
+        store_.note("date", now);
+    if (!agreed_at_.empty())
+        store_.note("consent", agreed_at_);
+    json walks = store_.facts().value("walk", json::array()); // a session that goes on is walked again
+    for (const json& one : walked_)
+        walks.push_back(one);
+    store_.note("walk", walks);
+    store_.note("sound_server", files::or_null(devices_.between.array));
+    store_.note("masker_sound_server", files::or_null(devices_.between.masker));
+    note_stream();
 }
 
 } // namespace tactor::study

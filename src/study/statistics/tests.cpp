@@ -1,0 +1,527 @@
+// SPDX-License-Identifier: MIT
+#include "study/statistics/tests.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <iterator>
+#include <numbers>
+#include <numeric>
+#include <vector>
+
+#include <boost/math/distributions/binomial.hpp>
+#include <boost/math/distributions/chi_squared.hpp>
+#include <boost/math/distributions/fisher_f.hpp>
+#include <boost/math/distributions/non_central_t.hpp>
+#include <boost/math/distributions/students_t.hpp>
+#include <boost/math/policies/policy.hpp>
+#include <boost/math/tools/roots.hpp>
+
+namespace tactor::study {
+namespace {
+
+// Policy that computes in double. By default Boost.Math computes in long double, and does so once before
+// main(), where valgrind, which has no long double, ends the program.
+using in_double = boost::math::policies::policy<boost::math::policies::promote_double<false>>;
+
+// Returns the noncentrality with which P(T <= t) is `below`: P falls as the noncentrality grows.
+double noncentrality(double t, double df, double below)
+{
+    const auto off = [&](double delta) {
+        return boost::math::cdf(boost::math::non_central_t_distribution<double, in_double>(df, delta), t) -
+               below;
+    };
+    // Near t, as wide as the estimate of a standard deviation is uncertain.
+    double width = 1.0 + std::abs(t) / std::sqrt(df);
+    double low = t - width;
+    double high = t + width;
+    while (off(low) < 0.0)
+        low -= width *= 2.0;
+    width = 1.0 + std::abs(t) / std::sqrt(df);
+    while (off(high) > 0.0)
+        high += width *= 2.0;
+    std::uintmax_t steps = 200;
+    const auto [a, b] = boost::math::tools::toms748_solve(
+        off, low, high, boost::math::tools::eps_tolerance<double>(48), steps);
+    return (a + b) / 2.0;
+}
+
+struct share {
+    double sum;
+    double weight; ///< part of all choices of signs: a multiple of a power of two, so exact
+};
+
+constexpr std::size_t most_sums = std::size_t{1} << 20;
+
+// Lists the sums of the values with either sign, in order and each once; empty if there are too many.
+std::vector<share> all_sums(std::span<const double> values, double equal)
+{
+    std::vector<share> sums{{0.0, 1.0}};
+    for (const double v : values) {
+        std::vector<share> both;
+        both.reserve(2 * sums.size());
+        const auto moved = [&](double by) {
+            std::vector<share> m = sums;
+            for (share& s : m)
+                s = {s.sum + by, s.weight / 2.0};
+            return m;
+        };
+        const std::vector<share> down = moved(-std::abs(v));
+        const std::vector<share> up = moved(std::abs(v));
+        std::merge(down.begin(), down.end(), up.begin(), up.end(), std::back_inserter(both),
+                   [](const share& a, const share& b) { return a.sum < b.sum; });
+        sums.clear();
+        for (const share& s : both)
+            if (!sums.empty() && s.sum - sums.back().sum <= equal)
+                sums.back().weight += s.weight;
+            else
+                sums.push_back(s);
+        if (sums.size() > most_sums)
+            return {};
+    }
+    return sums;
+}
+
+using matrix = std::vector<std::vector<double>>;
+
+// Returns Helmert's contrasts as rows: orthonormal, and orthogonal to the mean.
+matrix contrasts(std::size_t levels)
+{
+    matrix c;
+    for (std::size_t i = 1; i < levels; ++i) {
+        const auto k = static_cast<double>(i);
+        std::vector<double> row(levels, 0.0);
+        for (std::size_t j = 0; j < i; ++j)
+            row[j] = 1.0 / std::sqrt(k * (k + 1.0));
+        row[i] = -k / std::sqrt(k * (k + 1.0));
+        c.push_back(row);
+    }
+    return c;
+}
+
+matrix average(std::size_t levels)
+{
+    return {std::vector<double>(levels, 1.0 / std::sqrt(static_cast<double>(levels)))};
+}
+
+matrix kronecker(const matrix& a, const matrix& b)
+{
+    matrix c;
+    for (const auto& x : a)
+        for (const auto& y : b) {
+            std::vector<double> row;
+            for (const double u : x)
+                for (const double v : y)
+                    row.push_back(u * v);
+            c.push_back(row);
+        }
+    return c;
+}
+
+// The sums of squares of an effect, and the cross products of the participants' differences.
+struct parts {
+    double effect = 0.0;
+    double error = 0.0;
+    matrix cross;
+};
+
+parts project(const cell_table& t, const matrix& c)
+{
+    const auto n = static_cast<double>(t.values.size());
+    matrix z;
+    std::vector<double> mean(c.size(), 0.0);
+    for (const auto& row : t.values) {
+        std::vector<double> on;
+        for (std::size_t k = 0; k < c.size(); ++k) {
+            double sum = 0.0;
+            for (std::size_t i = 0; i < row.size(); ++i)
+                sum += c[k][i] * row[i];
+            on.push_back(sum);
+            mean[k] += sum / n;
+        }
+        z.push_back(on);
+    }
+    parts s;
+    s.cross.assign(c.size(), std::vector<double>(c.size(), 0.0));
+    for (const auto& on : z)
+        for (std::size_t k = 0; k < c.size(); ++k)
+            for (std::size_t l = 0; l < c.size(); ++l)
+                s.cross[k][l] += (on[k] - mean[k]) * (on[l] - mean[l]);
+    for (std::size_t k = 0; k < c.size(); ++k) {
+        s.effect += n * mean[k] * mean[k];
+        s.error += s.cross[k][k];
+    }
+    return s;
+}
+
+// Returns the largest sum of squares that rounding leaves of 0.
+double nothing(const cell_table& t)
+{
+    double largest = 0.0;
+    std::size_t count = 0;
+    for (const auto& row : t.values)
+        for (const double v : row) {
+            largest = std::max(largest, std::abs(v));
+            ++count;
+        }
+    return static_cast<double>(count) * std::pow(few_digits * largest, 2.0);
+}
+
+effect judge(const parts& s, const cell_table& t, double all_error)
+{
+    effect e;
+    const std::size_t n = t.values.size();
+    const auto df1 = static_cast<double>(s.cross.size());
+    if (s.cross.empty() || n < 2)
+        return e;
+    e.df1 = df1;
+    e.df2 = df1 * static_cast<double>(n - 1);
+    if (s.error <= nothing(t)) {
+        e.ms_error = 0.0;
+        return e;
+    }
+    e.ms_error = s.error / e.df2;
+    e.f = s.effect / df1 / *e.ms_error;
+    e.p = p_of_f(*e.f, e.df1, e.df2);
+    e.eta2_partial = s.effect / (s.effect + s.error);
+    e.eta2_generalised = s.effect / (s.effect + all_error);
+    if (s.cross.size() < 2)
+        return e;
+    e.epsilon_gg = greenhouse_geisser(s.cross);
+    e.p_gg = p_of_f(*e.f, *e.epsilon_gg * e.df1, *e.epsilon_gg * e.df2);
+    if (const auto m = mauchly(s.cross, n - 1, t.first_levels * t.second_levels)) {
+        e.mauchly_w = m->w;
+        e.mauchly_p = m->p;
+    }
+    return e;
+}
+
+double trace(const matrix& m)
+{
+    double sum = 0.0;
+    for (std::size_t i = 0; i < m.size(); ++i)
+        sum += m[i][i];
+    return sum;
+}
+
+// Returns the determinant of a symmetric matrix without negative eigenvalues, by Cholesky; 0 if one is 0.
+double determinant(matrix m)
+{
+    double product = 1.0;
+    for (std::size_t k = 0; k < m.size(); ++k) {
+        // The largest that is left comes first, so that only rounding remains of a singular matrix.
+        std::size_t best = k;
+        for (std::size_t i = k; i < m.size(); ++i)
+            best = m[i][i] > m[best][best] ? i : best;
+        std::swap(m[k], m[best]);
+        for (auto& row : m)
+            std::swap(row[k], row[best]);
+        if (!(m[k][k] > 0.0))
+            return 0.0;
+        product *= m[k][k];
+        for (std::size_t i = k + 1; i < m.size(); ++i)
+            for (std::size_t j = k + 1; j < m.size(); ++j)
+                m[i][j] -= m[i][k] * m[k][j] / m[k][k];
+    }
+    return product;
+}
+
+double upper_chi_squared(double x, double df)
+{
+    return boost::math::cdf(boost::math::complement(
+        boost::math::chi_squared_distribution<double, in_double>(df), std::max(0.0, x)));
+}
+
+// The normal distribution's upper tail.
+double above(double z)
+{
+    return 0.5 * std::erfc(z / std::numbers::sqrt2);
+}
+
+// The chance that the range of k standard normal variables is above w: over the place z of the least of them,
+// all others are above z, less that all are in z ... z + w. Trapezoids of this width are right to rounding:
+// the integrand is a Gaussian's kin, and its error falls as exp(-2 pi^2 / (k step^2)).
+class range_tail {
+public:
+    explicit range_tail(std::size_t k) : others_(k - 1), step_(0.7 / std::sqrt(static_cast<double>(k)))
+    {
+        const auto kk = static_cast<double>(k);
+        for (double z = -reach; z < reach; z += step_)
+            nodes_.push_back(
+                {z, above(z), kk * step_ * std::exp(-z * z / 2.0) / std::sqrt(2.0 * std::numbers::pi)});
+    }
+
+    double operator()(double w) const
+    {
+        double sum = 0.0;
+        for (const node& n : nodes_) {
+            const double beyond = above(n.z + w);
+            sum += n.weight * difference(n.above, std::max(0.0, n.above - beyond), beyond);
+        }
+        return std::clamp(sum, 0.0, 1.0);
+    }
+
+private:
+    static constexpr double reach = 9.0;
+    struct node {
+        double z;
+        double above;
+        double weight;
+    };
+
+    // a^m - b^m, where a - b is known: nothing of a small one is lost.
+    double difference(double a, double b, double a_less_b) const
+    {
+        if (others_ == 1)
+            return a_less_b;
+        if (a_less_b > 0.1 * a)
+            return std::pow(a, static_cast<double>(others_)) - std::pow(b, static_cast<double>(others_));
+        return -std::pow(a, static_cast<double>(others_)) *
+               std::expm1(static_cast<double>(others_) * std::log1p(-a_less_b / a));
+    }
+
+    std::size_t others_;
+    double step_;
+    std::vector<node> nodes_;
+};
+
+} // namespace
+
+double mean(std::span<const double> values)
+{
+    return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
+}
+
+double deviation(std::span<const double> values, double mean)
+{
+    double squares = 0.0;
+    for (const double x : values)
+        squares += (x - mean) * (x - mean);
+    return std::sqrt(squares / static_cast<double>(values.size() - 1));
+}
+
+bool varies(std::span<const double> values, double rounding)
+{
+    double largest = 0.0;
+    double low = values.empty() ? 0.0 : values[0];
+    double high = low;
+    for (const double x : values) {
+        largest = std::max(largest, std::abs(x));
+        low = std::min(low, x);
+        high = std::max(high, x);
+    }
+    return high - low > std::max(few_digits * largest, rounding);
+}
+
+double p_of_t(double t, double df)
+{
+    const boost::math::students_t_distribution<double, in_double> dist(df);
+    return std::min(1.0, 2.0 * boost::math::cdf(boost::math::complement(dist, std::abs(t))));
+}
+
+std::optional<interval> noncentrality_interval(double t, double df)
+{
+    if (!(std::abs(t) <= 1e4))
+        return {};
+    return interval{noncentrality(t, df, 0.975), noncentrality(t, df, 0.025)};
+}
+
+t_test quick_test_mean(std::span<const double> values, double against, double rounding)
+{
+    t_test r;
+    r.n = values.size();
+    if (values.empty())
+        return r;
+    r.mean = mean(values);
+    if (values.size() < 2)
+        return r;
+    r.df = static_cast<double>(r.n - 1);
+    if (!varies(values, rounding)) {
+        r.se = 0.0;
+        return r;
+    }
+    r.se = deviation(values, *r.mean) / std::sqrt(static_cast<double>(r.n));
+    r.t = (*r.mean - against) / *r.se;
+    r.p = p_of_t(*r.t, *r.df);
+    return r;
+}
+
+t_test test_mean(std::span<const double> values, double against, double rounding)
+{
+    t_test r = quick_test_mean(values, against, rounding);
+    if (values.size() < 2)
+        return r;
+    // Signs mean nothing where the difference is rounding's alone.
+    std::vector<double> off(values.begin(), values.end());
+    for (double& x : off) {
+        const double least = std::max(few_digits * std::max(std::abs(x), std::abs(against)), rounding);
+        x -= against;
+        if (std::abs(x) <= least)
+            x = 0.0;
+    }
+    r.p_signflip = sign_flip_p(off);
+    if (!r.t)
+        return r;
+    const double root_n = std::sqrt(static_cast<double>(r.n));
+    const double sd = deviation(values, *r.mean);
+    const double wide =
+        boost::math::quantile(boost::math::students_t_distribution<double, in_double>(*r.df), 0.975) * *r.se;
+    r.ci = interval{*r.mean - wide, *r.mean + wide};
+    r.d = (*r.mean - against) / sd;
+    if (const auto delta = noncentrality_interval(*r.t, *r.df))
+        r.d_ci = interval{delta->first / root_n, delta->second / root_n};
+    return r;
+}
+
+std::vector<std::optional<double>> holm(const std::vector<std::optional<double>>& p)
+{
+    std::vector<std::size_t> order;
+    for (std::size_t i = 0; i < p.size(); ++i)
+        if (p[i])
+            order.push_back(i);
+    std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return *p[a] < *p[b]; });
+    std::vector<std::optional<double>> adjusted(p.size());
+    double least = 0.0;
+    for (std::size_t rank = 0; rank < order.size(); ++rank) {
+        least = std::max(least, std::min(1.0, static_cast<double>(order.size() - rank) * *p[order[rank]]));
+        adjusted[order[rank]] = least;
+    }
+    return adjusted;
+}
+
+std::optional<double> sign_flip_p(std::span<const double> values)
+{
+    double all = 0.0;
+    double observed = 0.0;
+    for (const double v : values) {
+        all += std::abs(v);
+        observed += v;
+    }
+    if (values.empty())
+        return {};
+    // A sum of one half and one of the other make each sum of all.
+    const std::vector<share> first = all_sums(values.first(values.size() / 2), 1e-12 * all);
+    const std::vector<share> second = all_sums(values.subspan(values.size() / 2), 1e-12 * all);
+    if (first.empty() || second.empty())
+        return {};
+    // The count at or above |observed| is the count at or below -|observed|: signs come in opposites.
+    const double limit = std::abs(observed) - 1e-9 * all;
+    if (limit <= 0.0)
+        return 1.0;
+    double above = 0.0;
+    double taken = 0.0;
+    std::size_t at = second.size();
+    for (const share& s : first) {
+        while (at > 0 && s.sum + second[at - 1].sum >= limit)
+            taken += second[--at].weight;
+        above += s.weight * taken;
+    }
+    return std::min(1.0, 2.0 * above);
+}
+
+interval binomial_interval(std::size_t hits, std::size_t n)
+{
+    using boost::math::binomial_distribution;
+    constexpr double tail = 0.025;
+    const auto trials = static_cast<double>(n);
+    const auto successes = static_cast<double>(hits);
+    return {binomial_distribution<double, in_double>::find_lower_bound_on_p(trials, successes, tail),
+            binomial_distribution<double, in_double>::find_upper_bound_on_p(trials, successes, tail)};
+}
+
+double p_of_f(double f, double df1, double df2)
+{
+    return boost::math::cdf(boost::math::complement(
+        boost::math::fisher_f_distribution<double, in_double>(df1, df2), std::max(0.0, f)));
+}
+
+anova repeated_measures(const cell_table& t)
+{
+    if (t.values.size() < 2)
+        return {};
+    const matrix first = contrasts(t.first_levels);
+    const matrix second = contrasts(t.second_levels);
+    const parts a = project(t, kronecker(first, average(t.second_levels)));
+    const parts b = project(t, kronecker(average(t.first_levels), second));
+    const parts ab = project(t, kronecker(first, second));
+    const parts participants = project(t, kronecker(average(t.first_levels), average(t.second_levels)));
+    const double all_error = participants.error + a.error + b.error + ab.error;
+    return {judge(a, t, all_error), judge(b, t, all_error), judge(ab, t, all_error)};
+}
+
+double greenhouse_geisser(const matrix& cross)
+{
+    double squares = 0.0;
+    for (const auto& row : cross)
+        for (const double v : row)
+            squares += v * v;
+    const double sum = trace(cross);
+    return std::min(1.0, sum * sum / (static_cast<double>(cross.size()) * squares)); // but for rounding
+}
+
+std::optional<mauchly_test> mauchly(const matrix& cross, std::size_t df, std::size_t cells)
+{
+    if (df < cross.size())
+        return {};
+    const auto p = static_cast<double>(cross.size());
+    const auto n = static_cast<double>(df);
+    matrix scaled = cross;
+    for (auto& row : scaled)
+        for (double& v : row)
+            v *= p / trace(cross);
+    const double w = std::min(1.0, determinant(std::move(scaled)));
+    // A singular matrix has a w of rounding errors, some 1e-16.
+    if (w < 1e-13)
+        return {};
+    const double rho = 1.0 - (2.0 * p * p + p + 2.0) / (6.0 * p * n);
+    const double second = (p + 2.0) * (p - 1.0) * (p - 2.0) *
+                          (2.0 * p * p * p + 6.0 * p * p + 3.0 * static_cast<double>(cells) + 2.0) /
+                          (288.0 * std::pow(n * p * rho, 2.0));
+    const double z = -n * rho * std::log(w);
+    const double f = p * (p + 1.0) / 2.0 - 1.0;
+    const double p1 = upper_chi_squared(z, f);
+    const double p2 = upper_chi_squared(z, f + 4.0);
+    return mauchly_test{w, p1 + second * (p2 - p1)};
+}
+
+double studentized_range_p(double q, std::size_t levels, double df)
+{
+    if (!(q > 0.0))
+        return 1.0;
+    const range_tail tail(levels);
+    // Over x = log s, s^2 = chi squared / df: density c exp(df (x - s^2 / 2)). Its logarithm relative to the
+    // peak at 0, beside which nothing below e^-90 counts.
+    const auto log_density = [&](double x) { return df * (x - 0.5 * std::expm1(2.0 * x)); };
+    const double step = std::min(0.04, 0.35 / std::sqrt(df));
+    double sum = 0.0;
+    double all = 0.0;
+    const auto take = [&](double x) {
+        const double weight = std::exp(log_density(x));
+        all += weight;
+        sum += weight * tail(q * std::exp(x));
+    };
+    take(0.0);
+    for (double x = step; log_density(x) > -90.0; x += step)
+        take(x);
+    for (double x = -step; log_density(x) > -90.0; x -= step)
+        take(x);
+    return std::min(1.0, sum / all);
+}
+
+std::vector<comparison> tukey(const std::vector<double>& means, std::size_t n, std::optional<double> ms_error,
+                              double df)
+{
+    std::vector<comparison> all;
+    for (std::size_t a = 0; a < means.size(); ++a)
+        for (std::size_t b = a + 1; b < means.size(); ++b) {
+            comparison c{a, b, means[a] - means[b]};
+            if (ms_error && *ms_error > 0.0) {
+                c.q = std::abs(c.difference) / std::sqrt(*ms_error / static_cast<double>(n));
+                c.p = studentized_range_p(*c.q, means.size(), df);
+            }
+            all.push_back(c);
+        }
+    return all;
+}
+
+} // namespace tactor::study
