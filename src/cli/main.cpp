@@ -25,7 +25,6 @@
 #include "cli/commands.hpp"
 #include "cli/option_words.hpp"
 #include "cli/say.hpp"
-#include "cli/slips.hpp"
 #include "cli/usage.hpp"
 #include "session/pipes.hpp"
 

@@ -3,6 +3,7 @@
 /// Pages of help, errors of the command line, and a shell's completion, all from the options as declared.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -34,6 +35,12 @@ error no_command();
 
 /// Returns the error for a word in a command's place.
 error no_such_command(const CLI::App& app, const std::string& given);
+
+/// Returns an error that names what was probably meant by the words of a refused command line: a dash or
+/// quotation mark that no keyboard types, a word before the command, path data or a file's name with blanks
+/// and without quotes. Nothing if there is no such slip. `commands`: names of all commands.
+std::optional<error> find_slip(const std::vector<std::string>& words,
+                               const std::vector<std::string>& commands);
 
 /// Turns the parser's complaint into an error that names the option and, where it is not known, the
 /// nearest one that is.

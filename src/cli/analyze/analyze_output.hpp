@@ -7,8 +7,6 @@
 
 #include <nlohmann/json.hpp>
 
-#include "cli/picture_options.hpp"
-#include "plot/paint/canvas.hpp"
 #include "study/analysis/analysis.hpp"
 
 namespace tactor::cli {
@@ -24,9 +22,5 @@ void print_trials(std::FILE* out, const study::dataset& d);
 
 /// Prints all warnings on stderr, but only the first about a missing figure, which the text shows as a dash.
 void print_warnings(const study::analysis& a);
-
-/// Means with standard errors and each participant by motion, a panel for each run, as the paper's figures 8
-/// and 9.
-plot::canvas draw_analysis(const study::analysis& a, const picture_options& o);
 
 } // namespace tactor::cli

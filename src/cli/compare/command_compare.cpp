@@ -1,16 +1,21 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
+#include <cstdio>
+#include <initializer_list>
 #include <memory>
 #include <set>
+#include <string>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <tactor/array.hpp>
+
 #include "cli/commands.hpp"
-#include "cli/compare/compare_output.hpp"
 #include "cli/input.hpp"
 #include "cli/option_words.hpp"
 #include "cli/picture_options.hpp"
@@ -19,7 +24,9 @@
 #include "cli/warnings.hpp"
 #include "core/kind_names.hpp"
 #include "core/split.hpp"
+#include "core/words.hpp"
 #include "files/plan/plan_json.hpp"
+#include "percept/compare.hpp"
 #include "plot/compare_figure.hpp"
 #include "plot/paint/output.hpp"
 #include "session/pipes.hpp"
@@ -30,6 +37,242 @@ namespace {
 using detail::comparison;
 using detail::comparison_choice;
 using detail::comparison_row;
+using detail::interval;
+using detail::row_spread;
+using detail::spread_choice;
+
+// A figure of the table, or a dash where there is none.
+std::string figure(std::optional<double> v)
+{
+    return v ? fmt::format("{:.3f}", *v) : "-";
+}
+
+std::string names(const comparison_row& r)
+{
+    return fmt::format("{:<13} {:<16}", to_string(r.algorithm), to_string(r.phantom));
+}
+
+std::string one_end(const std::optional<interval>& v, double interval::*end)
+{
+    return figure(v ? std::optional(*v.*end) : std::nullopt);
+}
+
+// Under a row, in its columns.
+void print_spread(std::FILE* out, const comparison_row& r, bool by_taps)
+{
+    if (!r.spread)
+        return;
+    const row_spread& s = *r.spread;
+    for (const auto& [name, end] : {std::pair{"5 %", &interval::low}, std::pair{"95 %", &interval::high}}) {
+        fmt::print(out, "{:>30} {:>6} {:>6} {:>6} ", name, "", one_end(s.rms_error_mm, end),
+                   one_end(s.largest_error_mm, end));
+        if (by_taps)
+            fmt::print(out, "{:>8} {:>8} {:>6}\n", one_end(s.felt_length_mm, end), "",
+                       one_end(s.length_ratio, end));
+        else
+            fmt::print(out, "{:>6} {:>7}\n", one_end(s.speed_cv, end), one_end(s.intensity_cv, end));
+    }
+}
+
+void print_row(std::FILE* out, const comparison_row& r, bool by_taps)
+{
+    if (r.refused) {
+        say(out, "{} refused: {}\n", names(r), r.refused->what());
+        return;
+    }
+    if (!r.unpredicted.empty()) {
+        say(out, "{} no prediction: {}\n", names(r), r.unpredicted);
+        return;
+    }
+    if (by_taps) {
+        fmt::print(out, "{} {:>6} {:>6} {:>6} {:>8} {:>8} {:>6}\n", names(r), r.plan->bursts.size(),
+                   figure(r.felt.rms_error_mm), figure(r.felt.largest_error_mm),
+                   figure(r.tapped.felt_length_mm), figure(r.tapped.target_length_mm),
+                   figure(r.tapped.length_ratio));
+        return;
+    }
+    const std::string bursts = r.plan->curve ? "-" : fmt::format("{}", r.plan->bursts.size());
+    fmt::print(out, "{} {:>6} {:>6} {:>6} {:>6} {:>7} {:>6.1f} {:>6.1f}\n", names(r), bursts,
+               figure(r.felt.rms_error_mm), figure(r.felt.largest_error_mm), figure(r.felt.speed_cv),
+               figure(r.felt.intensity_cv), 100.0 * r.felt.silent_share, 100.0 * r.felt.shared_share);
+}
+
+// Prints each warning once: most are the same for all phantom models.
+void print_notes(std::FILE* out, std::string_view before, const comparison& c)
+{
+    std::set<std::string> said;
+    for (const comparison_row& r : c.rows)
+        if (r.plan)
+            for (const std::string& w : r.plan->warnings) {
+                const std::string text =
+                    fmt::format("{}warning: {}: {}\n", before, to_string(r.algorithm), w);
+                if (said.insert(text).second)
+                    say_text(out, text);
+            }
+}
+
+void print_heading(std::FILE* out, bool by_taps)
+{
+    if (by_taps) {
+        fmt::print(out, "\n{:<13} {:<16} {:>6} {:>13} {:>17}\n", "", "", "", "error mm   ", "length mm    ");
+        fmt::print(out, "{:<13} {:<16} {:>6} {:>6} {:>6} {:>8} {:>8} {:>6}\n", "algorithm", "phantom",
+                   "bursts", "RMS", "max", "felt", "target", "ratio");
+        return;
+    }
+    fmt::print(out, "\n{:<13} {:<16} {:>6} {:>13} {:>14} {:>13}\n", "", "", "", "error mm   ", "CV      ",
+               "% of time ");
+    fmt::print(out, "{:<13} {:<16} {:>6} {:>6} {:>6} {:>6} {:>7} {:>6} {:>6}\n", "algorithm", "phantom",
+               "bursts", "RMS", "max", "speed", "intens.", "silent", "shared");
+}
+
+void print_one(std::FILE* out, const comparison& c, const std::string& title, const array& a)
+{
+    const trajectory& m = c.target.motion;
+    const std::string faces =
+        c.faces == faces_kind::delaunay ? "" : fmt::format(", faces {}", to_string(c.faces));
+    say(out, "{} on {}: {} mm in {}{}\n", title, a.name, plain_number(m.length_mm()),
+        seconds_text(m.duration_s()), faces);
+    if (c.target.note != note_kind::none)
+        say(out, "note: {}\n", files::note_text(c.target.note));
+    const bool by_taps = c.observer.kind == observer_kind::low_speed;
+    print_heading(out, by_taps);
+    for (const comparison_row& r : c.rows) {
+        print_row(out, r, by_taps);
+        print_spread(out, r, by_taps);
+    }
+    print_notes(out, "", c);
+}
+
+// A field of CSV: quoted where it must be (RFC 4180).
+std::string field(const std::string& text)
+{
+    if (text.find_first_of(",\"\r\n") == std::string::npos)
+        return text;
+    std::string quoted = "\"";
+    for (const char c : text)
+        quoted += c == '"' ? "\"\"" : std::string(1, c);
+    return quoted + "\"";
+}
+
+std::string field(std::optional<double> v)
+{
+    return v ? fmt::format("{}", *v) : "";
+}
+
+// Prints a table of each comparison; `titles`: names of the strokes.
+void print_text(std::FILE* out, const std::vector<comparison>& all, const std::vector<std::string>& titles,
+                const array& a)
+{
+    for (std::size_t i = 0; i < all.size(); ++i) {
+        print_one(out, all[i], titles[i], a);
+        fmt::print(out, "\n");
+    }
+    const detail::observer_choice& o = all.front().observer;
+    if (all.front().spread.people != 0)
+        say(out, "{}.\n", detail::spread_note(all.front().spread, o.kind == observer_kind::low_speed));
+    say(out, "{}\nThis is {}.\n",
+        o.kind == observer_kind::low_speed
+            ? "Errors count at the onsets of the bursts; length: of the chain of bursts."
+            : "CV: standard deviation / mean; shared: a tactor serves two bursts.",
+        detail::prediction_note(o));
+}
+
+// Columns after all others, of a table with people drawn, of one of bursts that are moved, and
+// of one with other faces.
+std::string choices_heading(const comparison& of, std::initializer_list<const char*> figures)
+{
+    const spread_choice& c = of.spread;
+    std::string text = c.people == 0 ? "" : ",people,seed,sigma_factor,threshold_db,place_mm";
+    for (const char* f : figures)
+        text += c.people == 0 ? "" : fmt::format(",{0}_05,{0}_95", f);
+    text += of.compensated ? ",compensated_for,compensated_sigma_mm,compensated_sigma_v_mm_s" : "";
+    return text + (of.faces == faces_kind::delaunay ? "" : ",faces");
+}
+
+std::string spread_fields(const spread_choice& c, const comparison_row& r,
+                          std::initializer_list<std::optional<interval> row_spread::*> figures)
+{
+    if (c.people == 0)
+        return {};
+    std::string text =
+        fmt::format(",{},{},{},{},{}", c.people, c.seed, c.sigma_factor, c.threshold_db, c.place_mm);
+    for (const auto f : figures) {
+        const std::optional<interval> v = r.spread ? (*r.spread).*f : std::nullopt;
+        text += v ? fmt::format(",{},{}", v->low, v->high) : ",,";
+    }
+    return text;
+}
+
+std::string choices_fields(const comparison& of, const comparison_row& r,
+                           std::initializer_list<std::optional<interval> row_spread::*> figures)
+{
+    const low_speed_observer& o = of.observer.low_speed;
+    return spread_fields(of.spread, r, figures) +
+           (of.compensated ? fmt::format(",low-speed,{},{}", o.sigma_mm, o.sigma_v_mm_s) : "") +
+           (of.faces == faces_kind::delaunay ? "" : fmt::format(",{}", to_string(of.faces)));
+}
+
+// The low-speed observer's table: each line says whose it is.
+void print_taps_csv(std::FILE* out, const std::vector<comparison>& all)
+{
+    fmt::print(
+        out,
+        "stroke,name,algorithm,phantom,observer,sigma_mm,sigma_v_mm_s,built_for,bursts,rms_error_mm,"
+        "largest_error_mm,felt_length_mm,target_length_mm,length_ratio,unpredicted,refused{}\n",
+        choices_heading(all.front(), {"rms_error_mm", "largest_error_mm", "felt_length_mm", "length_ratio"}));
+    for (std::size_t i = 0; i < all.size(); ++i)
+        for (const comparison_row& r : all[i].rows) {
+            const low_speed_observer& o = all[i].observer.low_speed;
+            const bool predicted = !r.refused && r.unpredicted.empty();
+            const auto if_predicted = [&](double v) { return predicted ? std::optional(v) : std::nullopt; };
+            fmt::print(out, "{},{},{},{},low-speed,{},{},taps,{},{},{},{},{},{},{},{}{}\n", i,
+                       field(all[i].target.name), to_string(r.algorithm), to_string(r.phantom), o.sigma_mm,
+                       o.sigma_v_mm_s, predicted ? fmt::format("{}", r.plan->bursts.size()) : "",
+                       field(r.felt.rms_error_mm), field(r.felt.largest_error_mm),
+                       field(if_predicted(r.tapped.felt_length_mm)),
+                       field(if_predicted(r.tapped.target_length_mm)), field(r.tapped.length_ratio),
+                       field(r.unpredicted), r.refused ? field(std::string(r.refused->what())) : "",
+                       choices_fields(all[i], r,
+                                      {&row_spread::rms_error_mm, &row_spread::largest_error_mm,
+                                       &row_spread::felt_length_mm, &row_spread::length_ratio}));
+        }
+}
+
+void print_samples_csv(std::FILE* out, const std::vector<comparison>& all)
+{
+    fmt::print(
+        out,
+        "stroke,name,algorithm,phantom,bursts,rms_error_mm,largest_error_mm,speed_cv,intensity_cv,"
+        "silent_share,shared_share,refused{}\n",
+        choices_heading(all.front(), {"rms_error_mm", "largest_error_mm", "speed_cv", "intensity_cv"}));
+    for (std::size_t i = 0; i < all.size(); ++i)
+        for (const comparison_row& r : all[i].rows) {
+            fmt::print(out, "{},{},{},{},", i, field(all[i].target.name), to_string(r.algorithm),
+                       to_string(r.phantom));
+            if (r.refused)
+                fmt::print(out, ",,,,,,,{}", field(std::string(r.refused->what())));
+            else
+                fmt::print(out, "{},{},{},{},{},{},{},",
+                           r.plan->curve ? "" : fmt::format("{}", r.plan->bursts.size()),
+                           field(r.felt.rms_error_mm), field(r.felt.largest_error_mm), field(r.felt.speed_cv),
+                           field(r.felt.intensity_cv), r.felt.silent_share, r.felt.shared_share);
+            fmt::print(out, "{}\n",
+                       choices_fields(all[i], r,
+                                      {&row_spread::rms_error_mm, &row_spread::largest_error_mm,
+                                       &row_spread::speed_cv, &row_spread::intensity_cv}));
+        }
+}
+
+// Prints one table of all, and their warnings on standard error.
+void print_csv(std::FILE* out, const std::vector<comparison>& all)
+{
+    if (all.front().observer.kind == observer_kind::low_speed)
+        print_taps_csv(out, all);
+    else
+        print_samples_csv(out, all);
+    for (const comparison& c : all)
+        print_notes(stderr, "tactor: ", c); // there is no place for them in a table
+}
 
 template <class Enum>
 std::string join_names()

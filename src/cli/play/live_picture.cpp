@@ -1,16 +1,23 @@
 // SPDX-License-Identifier: MIT
 #include "cli/play/live_picture.hpp"
 
+#include <algorithm>
+#include <array>
 #include <cerrno>
+#include <cmath>
+#include <cstdint>
 #include <new>
+#include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 
 #include <fcntl.h>
-#include <fmt/format.h>
 #include <poll.h>
 #include <sys/ioctl.h>
 #include <unistd.h>
+
+#include <fmt/format.h>
 
 #include "cli/say.hpp"
 #include "core/words.hpp"
@@ -18,6 +25,129 @@
 
 namespace tactor::cli {
 namespace {
+
+constexpr unsigned margin = 3;              // left of the array
+constexpr double natural_mm = 1.25;         // of a column, if there is space: 4 columns are 5 mm
+constexpr unsigned least_array_columns = 5; // fewer show nothing
+// Read on black and on white: magenta has 4.5 : 1 and 4.7 : 1, reversed letters have the terminal's own
+// contrast.
+constexpr const char* level_colour = "\033[35m";
+constexpr const char* target_colour = "\033[7m";
+constexpr const char* no_colour = "\033[0m";
+
+struct bounds {
+    point low;
+    point high;
+};
+
+bounds find_bounds(const array& a)
+{
+    bounds b{a.tactors.front().position, a.tactors.front().position};
+    for (const tactor_spec& t : a.tactors) {
+        b.low = {std::min(b.low.x_mm, t.position.x_mm), std::min(b.low.y_mm, t.position.y_mm)};
+        b.high = {std::max(b.high.x_mm, t.position.x_mm), std::max(b.high.y_mm, t.position.y_mm)};
+    }
+    return b;
+}
+
+// Returns the level of a tactor as a shade: changes of digits would be hard to see.
+const char* shade(double level, bool unicode)
+{
+    static constexpr std::array shades{"·", "░", "▒", "▓", "█"};
+    static constexpr std::array letters{".", ":", "+", "x", "#"};
+    const auto i = static_cast<std::size_t>(std::clamp(std::ceil(level * 4.0), 0.0, 4.0));
+    return unicode ? shades[i] : letters[i];
+}
+
+// Grid of characters, which are about twice as high as wide.
+class grid {
+public:
+    grid(const bounds& b, unsigned columns, unsigned rows) : low_(b.low)
+    {
+        const double wide = b.high.x_mm - b.low.x_mm;
+        const double tall = b.high.y_mm - b.low.y_mm;
+        // A tactor takes three cells in a row, so that its level can be seen.
+        mm_ = std::max({natural_mm, wide / (columns - 3), rows > 1 ? tall / (2.0 * (rows - 1)) : 0.0});
+        columns_ = static_cast<unsigned>(std::lround(wide / mm_)) + 3;
+        rows_ = static_cast<unsigned>(std::lround(tall / (2.0 * mm_))) + 1;
+        levels_.assign(std::size_t{columns_} * rows_, -1.0);
+    }
+
+    void put_tactor(point p, double level)
+    {
+        const std::size_t at = find_cell(p);
+        // In a small picture tactors may share a cell: the strongest shows.
+        for (std::size_t i = at; i < at + 3; ++i)
+            levels_[i] = std::max(levels_[i], level);
+    }
+
+    void put_target(point p) { target_ = find_cell(p) + 1; }
+
+    std::vector<std::string> lines(picture_style style) const
+    {
+        std::vector<std::string> all;
+        for (unsigned r = 0; r < rows_; ++r) {
+            std::string line(margin, ' ');
+            for (std::size_t i = std::size_t{r} * columns_; i < std::size_t{r + 1} * columns_; ++i)
+                line += cell_text(i, style);
+            line.erase(line.find_last_not_of(' ') + 1);
+            all.push_back(line);
+        }
+        return all;
+    }
+
+private:
+    std::size_t find_cell(point p) const
+    {
+        const auto whole = [](double v, unsigned most) {
+            return static_cast<unsigned>(std::clamp(std::round(v), 0.0, static_cast<double>(most)));
+        };
+        return std::size_t{whole((p.y_mm - low_.y_mm) / (2.0 * mm_), rows_ - 1)} * columns_ +
+               whole((p.x_mm - low_.x_mm) / mm_, columns_ - 3);
+    }
+
+    std::string cell_text(std::size_t i, picture_style style) const
+    {
+        const auto coloured = [&](const char* colour, const char* text) {
+            return style.colours ? fmt::format("{}{}{}", colour, text, no_colour) : text;
+        };
+        if (target_ == i)
+            return coloured(target_colour, "o");
+        if (levels_[i] > 0.0)
+            return coloured(level_colour, shade(levels_[i], style.unicode));
+        return levels_[i] == 0.0 ? shade(0.0, style.unicode) : " ";
+    }
+
+    point low_;
+    double mm_;
+    unsigned columns_;
+    unsigned rows_;
+    std::vector<double> levels_; // by cell; below 0: no tactor
+    std::optional<std::size_t> target_ = {};
+};
+
+// Returns the longest status that fits.
+std::string status_line(const instant& now, double t_s, double total_s, unsigned columns)
+{
+    const double t = std::max(t_s, 0.0);
+    const std::string time = fmt::format("{:.2f} s", t);
+    const std::string times = fmt::format("{:.2f} / {:.2f} s", t, total_s);
+    const std::string place =
+        now.target ? fmt::format("   at {:.1f}, {:.1f} mm", now.target->x_mm, now.target->y_mm) : "";
+    // Assumes a place of this length, so that the length of the bar does not change.
+    const std::size_t beside = times.size() + std::string_view("   at -000.0, -000.0 mm").size() + margin + 3;
+    if (columns >= beside + 10) {
+        const std::size_t length = std::min<std::size_t>(30, columns - beside);
+        const double share = std::clamp(t / std::max(total_s, 1e-9), 0.0, 1.0);
+        const auto done = static_cast<std::size_t>(share * static_cast<double>(length));
+        const std::string bar = std::string(done, '=') + std::string(length - done, ' ');
+        return fmt::format("{}[{}] {}{}", std::string(margin, ' '), bar, times, place);
+    }
+    for (const std::string& line : {times + place, times, time})
+        if (line.size() <= columns)
+            return line;
+    return {};
+}
 
 // Time for a slow terminal. One that takes nothing blocks the next printed line anyway.
 constexpr int patience_ms = 2000;
@@ -42,6 +172,51 @@ bool is_in_background() noexcept
 }
 
 } // namespace
+
+std::vector<std::string> picture_lines(const array& a, const instant& now, double t_s, double total_s,
+                                       terminal_size size, picture_style style)
+{
+    if (size.columns < 2 || size.rows < 2)
+        return {};
+    const unsigned columns = size.columns - 1;
+    const unsigned rows = size.rows - 1;
+    const unsigned gap = rows >= 6 ? 1 : 0; // between array and status
+    const bounds b = find_bounds(a);
+    // A single line for several rows of an array would show touches at wrong places.
+    const unsigned least_rows = b.high.y_mm - b.low.y_mm > natural_mm ? 2 : 1;
+
+    std::vector<std::string> lines;
+    if (columns >= margin + least_array_columns && rows >= least_rows + gap + 1) {
+        grid g(b, columns - margin, rows - gap - 1);
+        for (std::size_t i = 0; i < a.tactors.size(); ++i)
+            g.put_tactor(a.tactors[i].position, now.levels[i]);
+        if (now.target)
+            g.put_target(*now.target);
+        lines = g.lines(style);
+        lines.resize(lines.size() + gap);
+    }
+    lines.push_back(status_line(now, t_s, total_s, columns));
+    return lines;
+}
+
+piece_follower::piece_follower(const piece& p, const score& s, const array& a)
+    : piece_(p), score_(s), faces_(a), sounding_(s)
+{
+}
+
+instant piece_follower::at(double t_s)
+{
+    instant now{sounding_.at(static_cast<std::uint64_t>(t_s * score_.rate())), {}};
+    for (std::size_t i = 0; i < std::min(piece_.strokes.size(), score_.plans().size()); ++i) {
+        const double t = t_s - static_cast<double>(score_.starts()[i]) / score_.rate();
+        if (t < 0.0 || t > score_.plans()[i].plan.total_s)
+            continue;
+        const point p = piece_.strokes[i].motion.position(t);
+        now.target = faces_.contains(p) ? p : faces_.nearest(p);
+        break;
+    }
+    return now;
+}
 
 bool can_draw()
 {
