@@ -67,11 +67,14 @@ TEST_CASE("a drawing as Illustrator exports it plays without a warning")
     const auto paint = parse_strokes_svg(before + ".cls-2{opacity:.5}" + behind, "d.svg");
     CHECK(names(paint) == list{"a", "b"});
     CHECK(paint.front().warnings.empty());
-    // A rule may hide a layer.
     const auto hidden = parse_strokes_svg(
-        before + "\n.cls-2,\n.cls-3{opacity:1; DISPLAY : none}.x{d:none}" + behind, "d.svg");
-    CHECK(names(hidden) == list{"a", "b"});
-    CHECK(hidden.front().warnings ==
+        before + "\n.cls-2,\n.cls-3{opacity:1; DISPLAY : none!important}" + behind, "d.svg");
+    CHECK(names(hidden) == list{"a"});
+    CHECK(hidden.front().warnings.empty());
+    // Other rules are not followed.
+    const auto ruled = parse_strokes_svg(before + "g .cls-2, .cls-1{display:none}" + behind, "d.svg");
+    CHECK(names(ruled) == list{"a", "b"});
+    CHECK(ruled.front().warnings ==
           list{"d.svg:3:8: display in <style> is not followed: what it hides or moves plays as if it were "
                "not there (export presentation attributes)"});
 }

@@ -5,6 +5,7 @@
 #include <new>
 #include <utility>
 
+#include "core/split.hpp"
 #include "core/suggest.hpp"
 #include "core/words.hpp"
 #include "files/text_file.hpp"
@@ -175,18 +176,52 @@ void svg_document::note_unfollowed(pugi::xml_node n, std::string_view what, std:
          ": what it hides or moves plays as if it were not there");
 }
 
-// Rules are nearly always paint, which does not decide what plays.
+// Rules are nearly always paint, which does not decide what plays; Illustrator hides layers by their class.
 void svg_document::note_rules(pugi::xml_node style)
 {
     has_rules_ = true;
-    for (const pugi::xml_node c : style.children())
-        for_each_declaration(c.value(), [&](std::size_t property, std::string_view) {
-            if (property >= svg_paints && notes_.find("style") == notes_.end())
-                note(offset(style), "style",
-                     fmt::format("{} in {} is not followed", svg_properties[property], called(style)), "",
-                     ": what it hides or moves plays as if it were not there (export presentation "
-                     "attributes)");
-        });
+    for (const pugi::xml_node c : style.children()) {
+        std::string_view css = c.value();
+        for (std::size_t open = css.find('{'); open != css.npos; open = css.find('{')) {
+            const std::string_view selectors = css.substr(0, open);
+            const std::size_t close = std::min(css.find('}', open), css.size() - 1);
+            for_each_declaration(
+                css.substr(open + 1, close - open), [&](std::size_t property, std::string_view v) {
+                    const bool hides = property == svg_display && tidy(v.substr(0, v.find('!'))) == "none";
+                    if (property >= svg_paints && !(hides && add_hidden(selectors)))
+                        note_rule(style, property);
+                });
+            css.remove_prefix(close + 1);
+        }
+    }
+}
+
+void svg_document::note_rule(pugi::xml_node style, std::size_t property)
+{
+    if (notes_.find("style") == notes_.end())
+        note(offset(style), "style",
+             fmt::format("{} in {} is not followed", svg_properties[property], called(style)), "",
+             ": what it hides or moves plays as if it were not there (export presentation attributes)");
+}
+
+bool svg_document::add_hidden(std::string_view selectors)
+{
+    std::vector<std::string_view> names = split(selectors, ',');
+    for (std::string_view& name : names) {
+        name = without_blanks(name);
+        if (name.size() < 2 || name.front() != '.' || name.find_first_of(" \t\n.#:>[*+~", 1) != name.npos)
+            return false;
+        name.remove_prefix(1);
+    }
+    hidden_.insert(names.begin(), names.end());
+    return true;
+}
+
+bool svg_document::hides(pugi::xml_node n) const
+{
+    const std::vector<std::string_view> classes = split(n.attribute("class").value(), ' ');
+    return std::any_of(classes.begin(), classes.end(),
+                       [this](std::string_view c) { return hidden_.contains(c); });
 }
 
 std::vector<std::string> svg_document::warnings() const

@@ -10,6 +10,7 @@
 #include <string>
 #include <string_view>
 #include <unordered_map>
+#include <unordered_set>
 #include <vector>
 
 #include <fmt/format.h>
@@ -66,6 +67,8 @@ public:
 
     /// Returns true if rules of <style> may paint.
     bool has_rules() const noexcept { return has_rules_; }
+    /// Returns true if a rule for a class of the element has display: none.
+    bool hides(pugi::xml_node n) const;
 
     std::optional<std::size_t> offset(pugi::xml_node n) const;
     source_place where(pugi::xml_node n) const { return place(offset(n)); }
@@ -132,6 +135,9 @@ private:
     source_place place(std::optional<std::size_t> offset) const;
     left_out fault(pugi::xml_node n, pugi::xml_attribute a, const value_fault& f) const;
     void note_rules(pugi::xml_node style);
+    void note_rule(pugi::xml_node style, std::size_t property);
+    /// Keeps the classes of ".st0, .st1" as hidden. Returns false for selectors that are not only classes.
+    bool add_hidden(std::string_view selectors);
 
     std::string_view text_;
     const std::string& name_;
@@ -139,6 +145,7 @@ private:
     pugi::xml_document tree_;
     std::unordered_map<std::string_view, pugi::xml_node> ids_;
     bool has_rules_ = false;
+    std::unordered_set<std::string_view> hidden_; ///< classes; the tree has their names
     mutable std::map<std::string, noted, std::less<>> notes_;
 };
 

@@ -270,6 +270,8 @@ private:
     bool is_hidden(xml_node n, const svg_style& style) const
     {
         const std::string_view display = style.value("display");
+        if (display.empty() && doc_.hides(n))
+            return true;
         if (is_one(display, {"", "inline", "block", "inline-block", "flex", "grid", "inherit", "initial"}))
             return false;
         if (display != "none")
