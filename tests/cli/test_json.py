@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""JSON of every command against its schema and its page of the manual, each way: neither may know what the others do not;
-and that of plan as the record of every sample.
+"""JSON of every command against its schema and its page of the manual, each way: neither may know what the others do not.
 
 Run as: python3 test_json.py TOOL SOURCE_ROOT FOLDER_OF_SCHEMAS JSON_SAMPLES
 """
@@ -12,8 +11,7 @@ import subprocess
 import sys
 
 import jsonschema
-import record
-from harness import ROOT, TOOL, ToolTest, Wav, main, wav_bytes
+from harness import ROOT, TOOL, ToolTest, main, wav_bytes
 
 sys.path.insert(0, str(ROOT / "tests/study"))
 import studies  # noqa: E402
@@ -290,75 +288,6 @@ class Schemas(ToolTest):
         for command in ("plan", "compare"):
             told = json.loads(self.ok(command, name, "--format", "json").stdout)
             self.assertEqual(told["stroke"]["name"], "K\ufffdnstler")
-
-
-class Record(ToolTest):
-    """Computes render's samples from the JSON alone, to half a step of a float at full scale."""
-
-    CASES = {
-        "the default": ("park2016-1",),
-        "phase of the burst": ("park2016-3", "--phase", "burst", "--rate", "8000"),
-        "ramps where the carrier is cut": ("park2016-1", "--carrier", "255.3", "--rate", "11025"),
-        "a ramp of one's own": ("park2016-1", "--ramp", "0.0051", "--level-dbfs", "-3.25", "--rate", "8000"),
-        "another SOA, overlap not asked for": ("park2016-2", "--soa", "0.0613", "--phase", "burst", "--rate", "22050"),
-        "overlap by energy": (*BRUSH, "--duration", "1", "--rate", "16000"),
-        "overlap by energy, phase of the burst": (*BRUSH, "--duration", "1", "--phase", "burst", "--rate", "8000"),
-        "the larger": (*BRUSH, "--duration", "1.1", "--overlap", "max", "--carrier", "243", "--rate", "8000"),
-        "the sum": (*BRUSH, "--duration", "1", "--overlap", "sum", "--rate", "8000"),
-        "overlap by energy, stronger than the intensity": (*BRUSH[:4], "soft.csv", "--intensity-scale", "stevens",
-                                                           "--stevens-exponent", "2", "--rate", "8000"),
-        "continuous": ("park2016-3", "--algorithm", "continuous", "--rate", "11025"),
-        "continuous with ramps": ("park2016-1", "--algorithm", "continuous", "--carrier", "251", "--phantom", "gaussian",
-                                  "--rate", "8000"),
-        "strokes of a file, gain, polarity, map, marker": ("strokes.toml", "--array", "pair.toml", "--level-dbfs", "-20",
-                                                           "--rate", "8000"),
-        "over thresholds, other carriers": ("strokes.toml", "--array", "pair.toml", "--sl", "7", "--phase", "burst",
-                                            "--rate", "11025"),
-        "moved for an observer": ("park2016-2", "--compensate", "low-speed", "--rate", "8000"),
-        "intensity over time": ("touch.csv", "--rate", "8000"),
-    }
-
-    def setUp(self):
-        super().setUp()
-        self.write("pair.toml", PAIR)
-        self.write("strokes.toml", STROKES)
-        self.write("grid.toml", GRID)
-        self.write("soft.csv", "t_s,x_mm,y_mm,intensity\n0,10,30,0.4\n1,45,10,0.4\n")
-        self.write("touch.csv", "t_s,x_mm,y_mm,intensity\n12.5,0,10,1\n13,20,10,0.25\n13.5,40,30,0.5\n")
-
-    def test_samples_follow_from_json(self):
-        for what, args in self.CASES.items():
-            with self.subTest(what):
-                self.ok("render", *args, "-o", "o.wav")
-                wav = Wav(self.dir / "o.wav")
-                told = json.loads(self.ok("plan", *args, "--format", "json").stdout)
-                render = told.get("plans", [told])[0]["render"]
-                self.assertEqual((render["rate"], render["channels"], render["frames"]), (wav.rate, wav.channels, wav.frames))
-                mine, theirs = record.samples(told), list(zip(*wav.samples()))
-                self.assertGreater(max(map(max, mine)), 0.01)
-                worst = max(abs(a - b) for x, y in zip(mine, theirs) for a, b in zip(x, y))
-                self.assertLess(worst, 4e-8)
-
-    def test_options_are_recorded(self):
-        render = self.plan("park2016-1", "--rate", "44100", "--ramp", "0.003", "--level-dbfs", "-9.5", "--phase", "burst",
-                           "--overlap", "max")["render"]
-        self.assertEqual(render, {"rate": 44100, "channels": 9, "frames": 64827, "phase": "burst", "ramp_s": 0.003,
-                                  "level_dbfs": -9.5, "overlap": "max", "peak_dbfs": [-9.5] * 9, "marker": None})
-        first, second, third = self.plan("strokes.toml", "--array", "pair.toml", "--sl", "7")["plans"]
-        self.assertEqual(first["render"]["peak_dbfs"], [-34.5, -23.0])
-        self.assertEqual((first["render"]["sl_db"], first["render"]["ramp_s"]), (7.0, None))
-        self.assertNotIn("level_dbfs", first["render"])
-        self.assertEqual(first["render"]["marker"], {"channel": 3, "duration_s": 0.005})
-        self.assertEqual([t["polarity"] for t in first["array"]["tactors"]], [-1, 1])
-        self.assertEqual([p["start_frame"] for p in (first, second, third)], [4800, 4800 + 26880, 14400])
-        self.assertEqual(first["render"], third["render"])
-
-    def test_each_burst_records_its_ramp(self):
-        ramps = {b["ramp_s"] for b in self.plan("park2016-1")["bursts"]}
-        self.assertEqual(ramps, {0.0})
-        ramps = [b["ramp_s"] for b in self.plan("park2016-1", "--carrier", "255")["bursts"]]
-        self.assertIn(0.002, ramps)
-        self.assertEqual({b["ramp_s"] for b in self.plan("park2016-1", "--ramp", "0.004")["bursts"]}, {0.004})
 
 
 if __name__ == "__main__":
