@@ -1,21 +1,45 @@
 # SPDX-License-Identifier: MIT
-"""tactor plot: contents and places of the pictures.
+"""tactor plot: contents and places of the pictures, their files, and what has no space.
 Places are computed here from the plan and from the scales that the picture's groups state."""
+import itertools
+import json
 import math
+import os
+import pathlib
+import re
+import shutil
+import subprocess
+import sys
 
-from harness import ROOT, main
-from pictures import BRUSH, NS, PlotTest, number
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "study"))
+import studies
+
+from harness import ROOT, SANITIZED, main
+from pictures import BRUSH, NS, PlotTest, Png, Svg, box, number, overlap
+
+SEVERAL = ROOT / "examples/strokes/several.toml"
+KNOCKS = ROOT / "examples/strokes/knocks.toml"
+PAGE_MM = 247.05  # height of A4 without margins, rounding included
 
 
-class ArrayView(PlotTest):
+def grid(rows, columns, pitch):
+    return f'[array]\nname = "grid"\ngrid = {{ rows = {rows}, columns = {columns}, pitch_mm = {pitch}.0 }}\n'
+
+
+def irregular():
+    places = [(0, 0), (17, -3), (38, 2), (55, 8), (-4, 22), (14, 25), (33, 19), (60, 27), (2, 47), (22, 44), (41, 50), (58, 45)]
+    return '[array]\nname = "sleeve"\n' + "".join(
+        f"[[tactor]]\nx_mm = {x}.0\ny_mm = {y}.0\nchannel = {i * 5 % 12}\n" for i, (x, y) in enumerate(places))
+
+
+class Array(PlotTest):
     def check_bursts(self, svg, plan, bursts):
         """Checks for dots where the plan has bursts, joined to the tactors that play them."""
         tactors = {t["tactor"]: t for t in plan["array"]["tactors"]}
-        dots = svg.all("burst")
-        self.assertEqual([d.get("id") for d in dots], [f"burst-{i}" for i, _ in bursts])
         groups = {int(g.get("data-burst")): g for g in svg.all("joins")}
         self.assertEqual(sorted(groups), [i for i, _ in bursts])
-        for dot, (i, b) in zip(dots, bursts):
+        for dot, (i, b) in zip(svg.all("burst"), bursts, strict=True):
+            self.assertEqual(dot.get("id"), f"burst-{i}")
             x, y = svg.place(b["x_mm"], b["y_mm"])
             self.near(number(dot, "cx"), x)
             self.near(number(dot, "cy"), y)
@@ -23,117 +47,95 @@ class ArrayView(PlotTest):
             self.assertEqual([int(l.get("data-tactor")) for l in lines], [d["tactor"] for d in b["drives"]])
             for line, drive in zip(lines, b["drives"]):
                 to = tactors[drive["tactor"]]
-                for got, want in zip([number(line, k) for k in ("x1", "y1", "x2", "y2")],
-                                     [x, y, *svg.place(to["x_mm"], to["y_mm"])]):
+                for got, want in zip([number(line, k) for k in ("x1", "y1", "x2", "y2")], [x, y, *svg.place(to["x_mm"], to["y_mm"])]):
                     self.near(got, want)
                 self.near(float(line.get("data-amplitude")), drive["amplitude"], 1e-5)
 
-    def test_each_burst_is_where_the_plan_puts_it_and_joined_to_its_tactors(self):
-        for stroke in ("park2016-1", "park2016-2", "park2016-3", "park2016-4"):
-            for options in ([], ["--phantom", "gaussian"], BRUSH):
-                plan = self.plan(stroke, *options)
-                svg = self.svg(stroke, *options, "--view", "array")
-                self.check_bursts(svg, plan, list(enumerate(plan["bursts"])))
+    def test_bursts_are_where_the_plan_puts_them_joined_by_lines_as_wide_as_amplitudes(self):
+        for options in ([], ["--phantom", "gaussian"], BRUSH):
+            plan, svg = self.plan("park2016-3", *options), self.svg("park2016-3", *options, "--view", "array")
+            self.check_bursts(svg, plan, list(enumerate(plan["bursts"])))
+            if not options:
+                ratios = [number(l, "stroke-width") / float(l.get("data-amplitude")) for l in svg.all("join")]
+                self.assertLess(max(ratios) / min(ratios), 1.01)
 
-    def test_joining_lines_are_as_wide_as_amplitudes(self):
-        svg = self.svg("park2016-3")
-        lines = svg.all("join")
-        self.assertEqual(len(lines), sum(len(b["drives"]) for b in self.plan("park2016-3")["bursts"]))
-        ratios = [number(l, "stroke-width") / float(l.get("data-amplitude")) for l in lines]
-        self.assertLess(max(ratios) / min(ratios), 1.01)
-
-    def test_tactors_are_to_scale_with_numbers_and_channels(self):
-        for name in ("palm-3x3", "palm-2x4", *(ROOT / "examples/arrays").glob("*.toml")):
+    def test_tactors_and_the_scale_bar_are_to_scale(self):
+        for name in ("palm-3x3", *(ROOT / "examples/arrays").glob("*.toml")):
             options = ["--path", "M 5 0 L 15 0", "--array", name, "--outside", "clamp"]
-            plan, svg = self.plan(*options), self.svg(*options)
-            self.assertEqual(len(svg.all("tactor")), len(plan["array"]["tactors"]))
+            tactors, svg = self.plan(*options)["array"]["tactors"], self.svg(*options)
+            self.assertEqual(len(svg.all("tactor")), len(tactors))
             labels = {l.get("data-tactor"): l.text for l in svg.all("tactor-label")}
-            same = all(t["channel"] == t["tactor"] for t in plan["array"]["tactors"])
-            for t in plan["array"]["tactors"]:
+            same = all(t["channel"] == t["tactor"] for t in tactors)
+            for t in tactors:
                 g = svg.id(f"tactor-{t['tactor']}")
-                circle = g.find(NS + "circle")
-                x, y = svg.place(t["x_mm"], t["y_mm"])
-                self.near(number(circle, "cx"), x)
-                self.near(number(circle, "cy"), y)
-                inside = g.find(NS + "text")
-                label = labels.get(str(t["tactor"]))
+                for got, want in zip((number(g.find(NS + "circle"), "cx"), number(g.find(NS + "circle"), "cy")), svg.place(t["x_mm"], t["y_mm"])):
+                    self.near(got, want)
+                inside, label = g.find(NS + "text"), labels.get(str(t["tactor"]))
                 if inside is not None:
                     self.assertEqual((inside.text, label), (str(t["tactor"]), None if same else f"ch {t['channel']}"))
                 else:
                     self.assertEqual(label, f"{t['tactor']}" if same else f"{t['tactor']} (ch {t['channel']})")
-
-    def test_the_scale_bar_is_as_long_as_its_label(self):
-        for name, stroke in (("palm-3x3", "park2016-1"), ("arm-line-4", None), ("ring-8", None)):
-            array = name if stroke else ROOT / f"examples/arrays/{name}.toml"
-            svg = self.svg(*([stroke] if stroke else ["--path", "M 10 0 L 20 0", "--outside", "clamp"]), "--array", array)
-            bar = svg.all("bar", "scale-bar")[0]
-            mm = float(svg.id("scale-bar").get("data-mm"))
-            scale = float(svg.id("array").get("data-mm-scale"))
-            self.near(number(bar, "x2") - number(bar, "x1"), mm * scale)
+            bar, mm = svg.all("bar", "scale-bar")[0], float(svg.id("scale-bar").get("data-mm"))
+            self.near(number(bar, "x2") - number(bar, "x1"), mm * float(svg.id("array").get("data-mm-scale")))
             self.assertIn(f"{mm:g} mm", svg.texts())
 
-    def test_start_end_and_direction_are_marked(self):
+    def test_the_path_its_ends_and_its_direction_are_marked(self):
         svg = self.svg("park2016-4")
-        x, y = svg.place(36, 20)
-        start = svg.all("start")[0]
-        self.near(number(start, "cx"), x)
-        self.near(number(start, "cy"), y)
-        end = svg.all("end")[0]
-        x, y = svg.place(20, 36)
-        self.near(number(end, "x") + number(end, "width") / 2, x)
-        self.near(number(end, "y") + number(end, "height") / 2, y)
+        start, end, (cx, cy) = svg.all("start")[0], svg.all("end")[0], svg.place(20, 20)
+        for got, want in zip((number(start, "cx"), number(start, "cy")), svg.place(36, 20)):
+            self.near(got, want)
+        for got, want in zip((number(end, "x") + number(end, "width") / 2, number(end, "y") + number(end, "height") / 2), svg.place(20, 36)):
+            self.near(got, want)
         self.assertTrue({"start", "end"} <= set(svg.texts()))
-        arrows = svg.all("direction")
-        self.assertGreaterEqual(len(arrows), 2)
-        cx, cy = svg.place(20, 20)
-        for a in arrows:  # the stroke runs against the clock: tips lie that way
+        self.assertGreaterEqual(len(svg.all("direction")), 2)
+        for a in svg.all("direction"):  # the stroke runs against the clock: tips lie that way
             tip, left, right = [tuple(map(float, p.split(","))) for p in a.get("points").split()]
             back = ((left[0] + right[0]) / 2, (left[1] + right[1]) / 2)
-            cross = (back[0] - cx) * (tip[1] - cy) - (back[1] - cy) * (tip[0] - cx)
-            self.assertLess(cross, 0)
-
-    def test_the_path_is_the_stroke_s(self):
-        svg = self.svg("park2016-3")
-        (line,) = svg.all("path")
-        cx, cy = svg.place(20, 20)
-        radius = 16 * float(svg.id("array").get("data-mm-scale"))
-        points = [tuple(map(float, p.split(","))) for p in line.get("points").split()]
+            self.assertLess((back[0] - cx) * (tip[1] - cy) - (back[1] - cy) * (tip[0] - cx), 0)
+        points = [tuple(map(float, p.split(","))) for p in svg.all("path")[0].get("points").split()]
         self.assertGreater(len(points), 20)
-        for x, y in points:
-            self.near(((x - cx) ** 2 + (y - cy) ** 2) ** 0.5, radius, 0.06)
+        for point in points:
+            self.near(math.dist(point, (cx, cy)), 16 * float(svg.id("array").get("data-mm-scale")), 0.06)
 
     def test_colours_run_from_dark_to_light_with_time(self):
-        def grey(e):
-            r, g, b = (int(e.get("fill")[i:i + 2], 16) for i in (1, 3, 5))
-            return 0.2126 * r + 0.7152 * g + 0.0722 * b
-        greys = [grey(d) for d in self.svg("park2016-3").all("burst")]
+        greys = [0.2126 * r + 0.7152 * g + 0.0722 * b for r, g, b in
+                 ((int(e.get("fill")[i:i + 2], 16) for i in (1, 3, 5)) for e in self.svg("park2016-3").all("burst"))]
         self.assertEqual(greys, sorted(greys))
         self.assertGreater(greys[-1] - greys[0], 120)
 
     def test_several_strokes_share_one_time_and_one_array(self):
-        plans = self.plan(ROOT / "examples/strokes/several.toml")["plans"]
-        svg = self.svg(ROOT / "examples/strokes/several.toml")
+        plans, svg = self.plan(SEVERAL)["plans"], self.svg(SEVERAL)
         self.assertEqual(len(svg.all("path")), len(plans))
         bursts = [b | {"onset_s": p["start_s"] + b["onset_s"]} for p in plans for b in p["bursts"]]
         self.check_bursts(svg, plans[0], list(enumerate(bursts)))
-        bars = svg.all("bar", "sound")
-        self.assertEqual(len(bars), sum(len(b["drives"]) for b in bursts))
-        for bar in bars:
+        self.assertEqual(len(svg.all("bar", "sound")), sum(len(b["drives"]) for b in bursts))
+        for bar in svg.all("bar", "sound"):
             self.near(number(bar, "x"), svg.time(bursts[int(bar.get("data-burst"))]["onset_s"]))
-        numbers = {n for e in svg.all("start-label") for n in e.text.split(", ")}
-        self.assertEqual(numbers, {f"{i + 1}" for i in range(len(plans))})
+        self.assertEqual({n for e in svg.all("start-label") for n in e.text.split(", ")}, {f"{i + 1}" for i in range(len(plans))})
+        ids = [e.get("id") for e in svg.id("timing").iter() if e.get("id")]
+        self.assertGreater(ids.index("stroke-starts"), ids.index("soa"))  # over all lines
 
     def test_of_many_bursts_every_nth_is_drawn_and_the_picture_says_so(self):
         options = ["park2016-1", "--duration", "60"]
         svg, plan = self.svg(*options), self.plan(*options)
         stride = int(svg.id("array").get("data-stride"))
         self.assertGreater(stride, 1)
-        shown = [(i, b) for i, b in enumerate(plan["bursts"]) if i % stride == 0]
-        self.check_bursts(svg, plan, shown)
+        self.check_bursts(svg, plan, [(i, b) for i, b in enumerate(plan["bursts"]) if i % stride == 0])
         self.assertIn(f"one burst in {stride} is drawn on the array", svg.texts())
 
+    def test_moved_bursts_are_drawn_where_they_play_and_where_they_are_felt(self):
+        plan = self.plan("park2016-3", "--compensate", "low-speed")
+        self.write("p.json", json.dumps(plan))
+        for source in (("park2016-3", "--compensate", "low-speed"), ("p.json",)):
+            svg = self.svg(*source, "--view", "array")
+            for ring, dot, tap, burst in zip(svg.all("felt-at"), svg.all("burst"), plan["compensation"]["taps"], plan["bursts"], strict=True):
+                for mark, place in ((ring, (tap["felt_x_mm"], tap["felt_y_mm"])), (dot, (burst["x_mm"], burst["y_mm"]))):
+                    self.assertLess(math.dist((number(mark, "cx"), number(mark, "cy")), svg.place(*place)), 0.02)
+            for word in ("target", "played", "predicted", "low-speed", "taps", "sigma 5 mm", "100 mm/s"):
+                self.assertIn(word, " ".join(svg.texts()))
 
-class TimingView(PlotTest):
+
+class Timing(PlotTest):
     def check_bars(self, *options):
         plan, svg = self.plan(*options), self.svg(*options, "--view", "timing")
         g = svg.id("timing")
@@ -154,110 +156,375 @@ class TimingView(PlotTest):
         return plan, svg
 
     def test_each_tactor_of_each_burst_has_a_bar(self):
-        for stroke in ("park2016-1", "park2016-2", "park2016-3", "park2016-4"):
-            self.check_bars(stroke)
+        self.check_bars("park2016-3")
         self.check_bars("park2016-3", "--duration", "0.3", "--array", ROOT / "examples/arrays/palm-measured.toml")
-        self.check_bars("--path", "M 0 0 L 100 0", "--array", ROOT / "examples/arrays/arm-line-4.toml")
 
     def test_conflicts_are_hatched(self):
         plan, svg = self.check_bars("park2016-1", *BRUSH)
-        self.assertGreater(len(plan["conflicts"]), 0)
-        hatches = svg.all("conflict")
-        self.assertEqual(len(hatches), len(plan["conflicts"]))
-        for h, c in zip(hatches, plan["conflicts"]):
+        self.assertTrue(plan["conflicts"])
+        for h, c in zip(svg.all("conflict"), plan["conflicts"], strict=True):
             rim = [e for e in h if e.get("class") == "rim"][0]
             self.near(number(rim, "x"), svg.time(c["from_s"]))
             self.near(number(rim, "x") + number(rim, "width"), svg.time(c["to_s"]))
             for line in h.findall(NS + "line"):
-                for x, y in (("x1", "y1"), ("x2", "y2")):
-                    self.assertTrue(number(rim, "x") - 0.01 <= number(line, x) <= number(rim, "x") + number(rim, "width") + 0.01)
-                    self.assertTrue(number(rim, "y") - 0.01 <= number(line, y) <= number(rim, "y") + number(rim, "height") + 0.01)
+                for at, size in (("x", "width"), ("y", "height")):
+                    for end in "12":
+                        self.assertTrue(-0.01 <= number(line, at + end) - number(rim, at) <= number(rim, size) + 0.01)
         self.assertIn("two bursts on one tactor", svg.texts())
-        opacities = {b.get("fill-opacity") for b in svg.all("bar", "sound")}
-        self.assertEqual(opacities, {"0.7"})
+        self.assertEqual({b.get("fill-opacity") for b in svg.all("bar", "sound")}, {"0.7"})
         self.assertNotIn("two bursts on one tactor", self.svg("park2016-1").texts())
 
-    def test_ticks_are_at_their_times_and_the_axis_has_its_unit(self):
-        svg = self.svg("park2016-3")
-        axis = svg.all("axis")[0]
-        labels = [e for e in axis if e.get("class") == "tick-label"]
-        self.assertGreaterEqual(len(labels), 4)
-        for l in labels:
-            self.near(number(l, "x"), svg.time(float(l.text)))
-        self.assertIn("time (s)", svg.texts())
-
-    def test_soa_and_duration_are_marked_on_the_first_bursts(self):
+    def test_times_soa_and_duration_are_marked(self):
         plan, svg = self.plan("park2016-3"), self.svg("park2016-3")
-        ends = [number(l, "x1") for l in svg.id("soa").findall(NS + "line") if l.get("stroke-dasharray")]
-        self.near(ends[0], svg.time(0))
-        self.near(ends[1], svg.time(plan["soa_s"]))
-        self.assertIn("SOA 0.07 s", svg.texts())
-        self.assertIn("duration 0.07 s", svg.texts())
+        ticks = [e for e in svg.all("axis")[0] if e.get("class") == "tick-label"]
+        self.assertGreaterEqual(len(ticks), 4)
+        for tick in ticks:
+            self.near(number(tick, "x"), svg.time(float(tick.text)))
+        for got, t_s in zip([number(l, "x1") for l in svg.id("soa").findall(NS + "line") if l.get("stroke-dasharray")], (0, plan["soa_s"])):
+            self.near(got, svg.time(t_s))
+        self.assertTrue({"time (s)", "SOA 0.07 s", "duration 0.07 s"} <= set(svg.texts()))
         brush = self.plan("park2016-1", *BRUSH)["bursts"]
-        svg = self.svg("park2016-1", *BRUSH)
-        self.assertIn(f"first SOA {brush[1]['onset_s'] - brush[0]['onset_s']:.4g} s", svg.texts())
-        self.assertIn(f"first duration {brush[0]['duration_s']:.4g} s", svg.texts())
+        self.assertTrue({f"first SOA {brush[1]['onset_s'] - brush[0]['onset_s']:.4g} s", f"first duration {brush[0]['duration_s']:.4g} s"}
+                        <= set(self.svg("park2016-1", *BRUSH).texts()))
+        for speed in ("60", "400"):  # no line strikes through a number
+            svg = self.svg("park2016-1", "--speed", speed)
+            for name in ("soa", "duration"):
+                (text,) = svg.id(name).findall(NS + "text")
+                for line in svg.id(name).findall(NS + "line"):
+                    (x0, x1), (y0, y1) = (sorted((number(line, c + "1"), number(line, c + "2"))) for c in "xy")
+                    self.assertFalse(overlap(box(text), (x0, y0 - 0.1, x1, y1 + 0.1)), (speed, name))
 
     def test_an_all_silent_plan_is_drawn_too(self):
         self.write("s.toml", '[stroke]\npath = "M 0 20 H 40"\nintensity = 0\n')
-        for view in ("both", "timing", "array", "wave"):
+        for view in ("both", "array", "wave"):
             svg = self.svg("s.toml", "--view", view)
-            self.assertEqual(svg.all("bar", "sound") if view in ("both", "timing") else [], [])
+            self.assertTrue(view != "both" or svg.all("bar", "sound") == [])
 
-    def test_continuous_is_drawn_as_curves(self):
+    def test_continuous_is_drawn_as_curves_and_so_are_bars_that_are_too_dense(self):
         options = ["park2016-3", "--algorithm", "continuous", "--phantom", "barycentric"]
-        svg, plan = self.svg(*options), self.plan(*options)
+        svg, points = self.svg(*options), self.plan(*options)["continuous"]["points"]
         g = svg.id("timing")
-        self.assertEqual(svg.all("bar", "sound"), [])
-        top, row, full = (float(g.get(k)) for k in ("data-top", "data-row-height", "data-bar-height"))
-        points = plan["continuous"]["points"]
+        top, row, full, scale = (float(g.get(k)) for k in ("data-top", "data-row-height", "data-bar-height", "data-x-scale"))
         playing = sorted({d["tactor"] for p in points for d in p["drives"]})
+        self.assertGreater(len(svg.all("envelope")), 4)
         for curve in svg.all("envelope"):
             r = int(curve.get("data-row"))
-            base = top + row * (r + 1)
-            shape = [tuple(map(float, p.split(","))) for p in curve.get("points").split()]
-            for x, y in shape[2:-2]:
-                t = (x - svg.time(0)) / float(g.get("data-x-scale"))
-                at = min(max(round(t / 0.001), 0), len(points) - 1)
-                near = [d["amplitude"] for p in points[max(at - 5, 0):at + 6] for d in p["drives"]
-                        if d["tactor"] == playing[r]]
-                if near:
-                    self.assertGreater((base - y) / full, min(near) - 0.02)
-                    self.assertLess((base - y) / full, max(near) + 0.02)
+            for x, y in [tuple(map(float, p.split(","))) for p in curve.get("points").split()][2:-2]:
+                at = min(max(round((x - svg.time(0)) / scale / 0.001), 0), len(points) - 1)
+                near = [d["amplitude"] for p in points[max(at - 5, 0):at + 6] for d in p["drives"] if d["tactor"] == playing[r]]
+                self.assertTrue(not near or min(near) - 0.02 < (top + row * (r + 1) - y) / full < max(near) + 0.02)
         self.assertGreater(len(svg.all("burst")), 10)
+        dense = self.svg("park2016-1", "--duration", "120")
+        self.assertEqual(dense.id("timing").get("data-drawn"), "columns")
+        for each in (svg, dense):
+            self.assertEqual(each.all("bar", "sound"), [])
+        self.assertGreater(len(dense.all("envelope")), 4)
 
-    def test_bars_that_are_too_dense_are_drawn_as_their_largest_amplitude(self):
-        svg = self.svg("park2016-1", "--duration", "120")
-        self.assertEqual(svg.id("timing").get("data-drawn"), "columns")
-        self.assertEqual(svg.all("bar", "sound"), [])
-        self.assertGreater(len(svg.all("envelope")), 4)
-
-
-class WaveView(PlotTest):
-    def test_envelopes_are_as_high_as_the_samples(self):
+    def test_the_wave_is_as_high_as_the_samples_and_a_short_stroke_shows_its_carrier(self):
         svg = self.svg("park2016-3", "--view", "wave", "--level-dbfs", "-6")
         self.assertEqual(svg.id("wave").get("data-drawn"), "envelope")
-        plan = self.plan("park2016-3")
         loudest = {}
-        for b in plan["bursts"]:
+        for b in self.plan("park2016-3")["bursts"]:
             for d in b["drives"]:
                 loudest[d["tactor"]] = max(loudest.get(d["tactor"], 0.0), d["amplitude"])
-        want = [f"{-6 + 20 * math.log10(loudest[t]):.1f}" for t in sorted(loudest)]
-        self.assertEqual([e.text for e in svg.all("peak")], want)
+        self.assertEqual([e.text for e in svg.all("peak")], [f"{-6 + 20 * math.log10(loudest[t]):.1f}" for t in sorted(loudest)])
         heights = []
         for g in svg.all("channel"):
             ys = [float(p.split(",")[1]) for e in g if e.get("class") == "envelope" for p in e.get("points").split()]
             heights.append(max(ys) - min(ys))
-        for h, t in zip(heights, sorted(loudest)):
+        for h, t in zip(heights, sorted(loudest), strict=True):
             self.near(h / max(heights), loudest[t] / max(loudest.values()), 0.01)
-
-    def test_a_short_stroke_shows_its_carrier(self):
         svg = self.svg("park2016-3", "--duration", "0.14", "--view", "wave")
         self.assertEqual(svg.id("wave").get("data-drawn"), "carrier")
-        curve = svg.all("curve")[0]
-        ys = [float(p.split(",")[1]) for p in curve.get("points").split()]
-        turns = sum(1 for a, b, c in zip(ys, ys[1:], ys[2:]) if (b - a) * (c - b) < 0)
-        self.assertGreater(turns, 20)
+        ys = [float(p.split(",")[1]) for p in svg.all("curve")[0].get("points").split()]
+        self.assertGreater(sum((b - a) * (c - b) < 0 for a, b, c in zip(ys, ys[1:], ys[2:])), 20)
+
+    def test_tactors_light_up_while_they_play_and_the_target_moves(self):
+        svg, plan = self.svg("park2016-1", "--animate"), self.plan("park2016-1")
+        want = [(d["tactor"], b["onset_s"], b["onset_s"] + b["duration_s"]) for b in plan["bursts"] for d in b["drives"]]
+        loop_s = max(to for _, _, to in want) + 0.8
+        for disc, (tactor, start, stop) in zip(svg.all("plays"), want, strict=True):
+            change = next(a for a in disc.iter(NS + "animate") if a.get("attributeName") == "opacity")
+            self.assertEqual((disc.get("opacity"), change.get("calcMode"), change.get("repeatCount")), ("0", "discrete", "indefinite"))
+            times, shown = ([float(v) for v in change.get(name).split(";")] for name in ("keyTimes", "values"))
+            self.assertEqual((times[0], shown), (0.0, [1.0, 0.0] if len(times) == 2 else [0.0, 1.0, 0.0]))
+            for got, wanted in zip((float(change.get("dur").removesuffix("s")), times[-2] * loop_s, times[-1] * loop_s), (loop_s, start, stop)):
+                self.near(got, wanted, 1e-4)
+            place = plan["array"]["tactors"][tactor]
+            self.assertLess(math.dist((number(disc, "cx"), number(disc, "cy")), svg.place(place["x_mm"], place["y_mm"])), 0.02)
+        svg = self.svg("wave-2x4", "--array", "palm-2x4", "--animate", "--algorithm", "continuous")
+        self.assertEqual((len(svg.all("target")), len(svg.all("now"))), (1, 1))
+        move = next(a for a in svg.all("target")[0].iter(NS + "animate") if a.get("attributeName") == "cx")
+        self.assertEqual(move.get("keyTimes").count(";"), move.get("values").count(";"))
+        self.assertGreater(move.get("values").count(";"), 60)
+        self.assertGreater(len(svg.all("plays")), 10)
+        self.assertNotIn("animate", self.svg("park2016-1").text)
+
+
+class Files(PlotTest):
+    def test_the_png_shows_the_same_as_the_svg_and_cuts_nothing_off(self):
+        svg = self.svg("park2016-3", "--view", "array")
+        self.ok("plot", "park2016-3", "--view", "array", "-o", "a.png", "--dpi", "300")
+        png = Png(self.dir / "a.png")
+        self.near(png.width, float(svg.root.get("width")[:-2]) / 25.4 * 300, 1)
+        for dot in svg.all("burst"):
+            got = png.pixel(int(number(dot, "cx") * 300 / 72), int(number(dot, "cy") * 300 / 72))
+            self.assertLess(max(abs(a - int(dot.get("fill")[i:i + 2], 16)) for a, i in zip(got, (1, 3, 5))), 4, dot.get("id"))
+        edge = [png.pixel(x, y) for x in range(png.width) for y in (0, png.height - 1)] + [png.pixel(x, y) for y in range(png.height) for x in (0, png.width - 1)]
+        self.assertEqual(set(edge), {(255, 255, 255)})
+
+    def test_the_same_picture_is_the_same_file_in_every_locale(self):
+        for ext in ("svg", "png", "pdf"):
+            self.ok("plot", "park2016-2", "-o", f"a.{ext}", "--width", "120")
+            self.ok("plot", "park2016-2", "-o", f"b.{ext}", "--width", "120", env={"LC_ALL": "de_DE.UTF-8", "TZ": "Asia/Tokyo"})
+            self.assertEqual((self.dir / f"a.{ext}").read_bytes(), (self.dir / f"b.{ext}").read_bytes())
+        svg = Svg(self.dir / "a.svg")
+        self.assertEqual((svg.root.get("width"), svg.root.find(NS + "title").text), ("120mm", "park2016-2 on palm-3x3"))
+        self.assertIn("21 bursts", svg.root.find(NS + "desc").text)
+
+    def test_no_text_leaves_the_page_or_lies_on_another(self):
+        for job in (["park2016-1"], ["park2016-3"], ["park2016-1", *BRUSH], ["park2016-3", "--algorithm", "continuous"],
+                    ["park2016-3", "--duration", "0.1"], [SEVERAL], ["--path", "M 0 0 L 100 0", "--array", ROOT / "examples/arrays/arm-line-4.toml"],
+                    ["park2016-3", "--view", "wave"], ["park2016-4", "--width", "60"], ["park2016-4", "--width", "180"]):
+            svg = self.svg(*job)
+            page = [float(v) for v in svg.root.get("viewBox").split()]
+            self.assertGreaterEqual(min(number(t, "font-size") for t in svg.root.iter(NS + "text")), 6.0)
+            boxes = [(box(t), t.text) for t in svg.root.iter(NS + "text")]
+            for (left, top, right, bottom), text in boxes:
+                self.assertTrue(0 <= left and 0 <= top and right <= page[2] and bottom <= page[3], (job, text))
+            for (a, text), (b, other) in itertools.combinations(boxes, 2):
+                self.assertFalse(overlap((a[0] + 0.8, a[1] + 0.3, a[2], a[3]), b), (job, text, other))
+
+    def test_large_and_small_ones_make_a_page(self):
+        for view in ("wave",) if SANITIZED else ("both", "wave"):
+            self.assertLess(len(self.svg("--path", "M 0 0 C 40 0 0 40 40 40", "--duration", "3600", "--view", view).text), 300_000)
+        self.write("many.toml", grid(32, 32, 4))
+        svg = self.svg("--path", "M 1 1 L 120 100 L 3 90", "--array", "many.toml", "--algorithm", "continuous", "--phantom", "gaussian")
+        self.assertEqual(len(svg.all("tactor")), 1024)
+        self.assertLess(float(svg.root.get("height")[:-2]), 250)
+        self.assertLess(len(svg.text), 1_500_000)
+        self.write("one.toml", '[array]\nname = "one"\n[[tactor]]\nx_mm = 3.0\ny_mm = 4.0\nchannel = 7\n')
+        svg = self.svg("--path", "M 3 4 L 4 4", "--duration", "0.05", "--array", "one.toml", "--outside", "clamp")
+        self.assertEqual(len(svg.all("burst")), 1)
+        svg = self.svg("--path", "M 20 20 L 900000 20", "--duration", "2", "--outside", "clamp")
+        page = float(svg.root.get("viewBox").split()[2])
+        self.assertTrue(all(0 <= float(p.split(",")[0]) <= page for line in svg.all("path") for p in line.get("points").split()))
+
+    def test_impossible_pictures_are_refused_and_leave_nothing(self):
+        for args in ("-o x.jpg", "-o x", "-o /dev/stdout", "", "-o x.svg --view aray", "-o x.svg --width 59", "-o x.svg --width 1001", "-o x.svg --width nan",
+                     "-o x.png --dpi 0", "-o x.png --dpi 1e7", "-o x.png --dpi inf", "-o x.png --dpi 2400 --width 1000", "park2016-2 -o x.svg",
+                     "--animate -o x.png", "--animate -o x.pdf", "--animate -o x.svg --view wave", "-o none/x.svg", "-o folder.svg"):
+            (self.dir / "folder.svg").mkdir(exist_ok=True)
+            with self.subTest(args):
+                self.refused(2, "plot", "park2016-1", *args.split())
+        self.refused(2, "plot", "--path", "M 0 0 L 40 40", "--duration", "200", "--animate", "-o", "x.svg")
+        self.write("old.png", b"old")
+        os.symlink("/dev/full", self.dir / "full.svg")
+        self.refused(1, "plot", "park2016-1", "-o", "full.svg")
+        self.refused(2, "plot", "nothing", "-o", "old.png")
+        self.assertEqual((self.dir / "old.png").read_bytes(), b"old")
+        self.assertEqual(sorted(p.name for p in self.dir.iterdir()), ["alsa.conf", "folder.svg", "full.svg", "old.png"])
+
+    def test_titles_can_be_changed_and_all_formats_have_one_typeface(self):
+        studies.simulated(self.dir / "study")
+        for args, own in ((("plot", "park2016-1"), "park2016-1"), (("compare", "park2016-1"), "park2016-1"), (("analyze", "study"), "(simulated)")):
+            plain, none, other = (self.draw(*args, *more) for more in ((), ("--title", "none"), ("--title", "Figure 2")))
+            self.assertTrue(any(own in t for t in plain.texts()) and not any(own in t for t in none.texts()), args)
+            self.assertLess(float(none.root.get("height")[:-2]), float(plain.root.get("height")[:-2]))
+            self.assertTrue(any(t.startswith("Figure 2") for t in other.texts()))
+            self.assertTrue(plain.root.get("font-family").startswith("'DejaVu Sans'"))
+            self.ok(*args, "-o", "a.pdf")
+            if shutil.which("pdffonts"):
+                fonts = subprocess.run(["pdffonts", self.dir / "a.pdf"], capture_output=True, text=True, check=True).stdout
+                names = {line.split()[0].partition("+")[2] for line in fonts.splitlines()[2:]}
+                self.assertTrue(names and all(n.startswith("DejaVuSans") for n in names), names)
+
+    def draw(self, command, *args):
+        self.ok(command, *args, "-o", "a.svg")
+        return Svg(self.dir / "a.svg")
+
+    def test_analyze_shows_each_participant_and_its_error_bars(self):
+        studies.simulated(self.dir / "study")
+        svg = self.draw("analyze", "study", "--width", "85")
+        self.near(float(svg.root.get("width")[:-2]), 85)
+        self.assertEqual(len(svg.all("value")), len(list((self.dir / "study").glob("sub-*"))) * len(svg.all("bar")))
+        for panel in svg.all("bars"):
+            order = [e.get("class") for e in panel.iter()]
+            self.assertLess(order.index("across"), min(order.index("error"), order.index("value")))
+        self.assertEqual(len({number(p[0], "x") for p in svg.all("bars")}), 1)  # one below the other
+        self.refused(2, "analyze", "study", "-o", "a.svg", "--width", "20")
+        self.ok("analyze", "study", "-o", "a.png", "--dpi", "72")
+
+
+class Crowded(PlotTest):
+    """Many strokes and tactors: strokes can be told apart, and the picture reports what has no space."""
+
+    def notes(self, svg):
+        return " ".join(e.text for e in svg.all("note"))
+
+    def drawn(self, *args, view="both", width="170"):
+        return self.svg("s.toml", "--array", "a.toml", "--view", view, "--width", width, "--level-dbfs", "-40", *args)
+
+    def curves(self, count, gap):
+        """Returns strokes over 64 tactors, one after the other or each `gap` seconds."""
+        return "".join(f'[[stroke]]\nname = "stroke {i + 1}"\npath = "M {12 * i % 200} {10 + 190 * i // count} C 63 0 126 210 {200 - 10 * i} '
+                       f'{10 + 190 * (3 * i % count) // count}"\nspeed_mm_s = 60.0\n' + (f"start_s = {gap * i}\n" if gap else "") for i in range(count))
+
+    def sheets(self, view):
+        self.write("a.toml", grid(8, 8, 30))
+        for count, gap in ((10, 0.3), (14, None)):
+            self.write("s.toml", self.curves(count, gap))
+            for width in (60, 170):
+                yield (count, gap, width), self.drawn(view=view, width=width)
+
+    def apart(self, labels, what):
+        for a, b in itertools.combinations(labels, 2):
+            self.assertFalse(overlap(box(a), box(b)), (what, a.text, b.text))
+
+    def test_names_and_colours_are_in_the_legend(self):
+        self.write("a.toml", grid(3, 3, 20))
+        for count in (3, 10):
+            self.write("s.toml", "".join(f'[[stroke]]\nname = "a long name of stroke {i + 1}"\npath = "M {i} 0 L 40 40"\n' for i in range(count)))
+            for width in (60, 170):
+                svg = self.drawn(width=width)
+                names, colours = svg.all("stroke-name"), [e.get("fill") for e in svg.all("stroke-colour")]
+                self.assertEqual([e.text.split()[0] for e in names], [str(i + 1) for i in range(count)])
+                self.assertEqual((len({e.text.partition(" ")[2] for e in names}), len(set(colours))), (count, count))
+                self.assertEqual([e.get("stroke") for e in svg.all("path")], colours)
+                for bar in svg.all("bar", "sound"):
+                    self.assertEqual(bar.get("fill"), colours[int(bar.get("data-stroke"))])
+                self.apart(names, (count, width))
+
+    def test_the_strip_of_colours_is_only_for_time_and_a_channel_is_named_once(self):
+        self.write("s.toml", '[[stroke]]\npath = "M 5 20 L 40 25"\n')
+        self.write("a.toml", irregular())
+        svg = self.drawn()
+        self.assertTrue("tactor (ch)" in [e.text for e in svg.all("row-heading")] and all("(" in e.text for e in svg.all("row-label")))
+        self.assertTrue(any("ch" in e.text for e in svg.all("tactor-label")))
+        self.write("a.toml", grid(3, 3, 20))
+        for strokes, times, legend in ((1, 2, "time-colours"), (3, 1, "strokes")):
+            self.write("s.toml", '[[stroke]]\npath = "M 5 20 L 40 25"\n' * strokes)
+            svg = self.drawn()
+            self.assertEqual(svg.texts().count("time (s)"), times)
+            self.assertEqual([e.get("id") for e in svg.root.iter() if e.get("id") in ("time-colours", "strokes")], [legend])
+            self.assertIn("tactor", [e.text for e in svg.all("row-heading")])
+            self.assertFalse(any("(" in e.text for e in svg.all("row-label")) or any("ch" in e.text for e in svg.all("tactor-label")))
+            self.assertTrue(any("tactor n on channel n" in t for t in svg.texts()))
+
+    def test_repeats_look_alike_and_their_numbers_do_not_read_as_tactors(self):
+        svg = self.svg(KNOCKS)
+        self.assertEqual([e.text for e in svg.all("stroke-name")], ["1, 3, 5 knock-1", "2, 4, 6 knock-2", "7 after"])
+        colours, paths = [e.get("fill") for e in svg.all("stroke-colour")], svg.all("path")
+        self.assertEqual((len(set(colours)), [p.get("stroke") for p in paths]), (3, colours))
+        # Lines over another path let it show through.
+        self.assertEqual([p.get("stroke-dasharray") is not None for p in paths], [False, True, False])
+        self.assertEqual({e.get("stroke") for e in svg.all("join")}, {"#969696"})
+        self.assertEqual({e.text for e in svg.all("start-label")}, {"1, 3, 5", "2, 4, 6", "7"})
+        for e, b in zip(svg.all("start-label"), svg.all("start-box"), strict=True):
+            self.assertTrue(e.get("font-weight") is None and number(b, "x") < box(e)[0] and box(e)[2] < number(b, "x") + number(b, "width"))
+
+    def test_bars_of_simultaneous_strokes_do_not_overlap(self):
+        self.write("a.toml", grid(3, 3, 20))
+        self.write("s.toml", "".join(f'[[stroke]]\npath = "M 0 {10 * i} L 40 {20 - i}"\nspeed_mm_s = 60.0\nstart_s = {0.1 * i}\n' for i in range(3)))
+        rows, seen = {}, 0
+        for bar in self.drawn(view="timing").all("bar", "sound"):
+            rows.setdefault(bar.get("data-tactor"), []).append(bar)
+        for a, b in (pair for bars in rows.values() for pair in itertools.combinations(bars, 2)):
+            (p, q) = ((number(e, "x"), number(e, "y"), number(e, "x") + number(e, "width"), number(e, "y") + number(e, "height")) for e in (a, b))
+            if a.get("data-stroke") != b.get("data-stroke"):
+                seen += min(p[2], q[2]) > max(p[0], q[0])
+                self.assertFalse(overlap(p, q))
+        self.assertGreater(seen, 20)
+
+    def test_it_fits_a_page_and_each_row_has_its_number_and_each_bar_its_row(self):
+        for what, svg in self.sheets("both"):
+            rows, labels = sorted(number(e, "y1") for e in svg.all("row-line")), svg.all("row-label")
+            self.assertLessEqual(float(svg.root.get("height")[:-2]), PAGE_MM, what)
+            self.assertNotIn("\u2026", self.notes(svg), what)
+            tops = [float(svg.id("timing").get("data-top")), *rows]
+            for e, top, bottom in zip(labels, tops, rows, strict=False):
+                self.assertTrue(top < (box(e)[1] + box(e)[3]) / 2 < bottom, (what, e.text))
+            self.assertEqual(len(labels), len(rows), what)
+            self.apart(labels, what)
+            for bar in svg.all("bar", "sound"):
+                i = [e.text for e in labels].index(bar.get("data-tactor"))
+                self.assertTrue(tops[i] - 0.01 <= number(bar, "y") and number(bar, "y") + number(bar, "height") <= rows[i] + 0.01, what)
+
+    def test_each_start_has_its_number_or_the_rest_is_counted(self):
+        for view in ("timing", "wave"):
+            for what, svg in self.sheets(view):
+                texts = svg.id("stroke-starts").findall(NS + "text")
+                shown = [n for e in texts for n in e.text.replace("stroke ", "").split(", ")]
+                missing = what[0] - len(set(shown))
+                self.assertEqual(f"no space for the start's number of {missing} stroke" in self.notes(svg), missing > 0, what)
+                self.assertLessEqual(missing, 2 if what[2] == 60 else 0, what)
+                self.apart(texts, what)
+
+    def test_a_tactor_that_plays_is_joined_to_a_burst_or_reported_as_left_out(self):
+        seen = 0
+        for what, svg in self.sheets("array"):
+            joined = {e.get("data-tactor") for e in svg.all("join")}
+            others = [g.get("data-tactor") for g in svg.all("tactor")
+                      if g.find(NS + "circle").get("stroke") == "#222222" and g.get("data-tactor") not in joined]
+            seen += len(others)
+            if others:
+                who = f"tactor{'s' if len(others) > 1 else ''} {', '.join(others)}" if len(others) <= 8 else f"{len(others)} tactors"
+                self.assertIn(f"{who} play", self.notes(svg), what)
+        self.assertGreater(seen, 0)
+
+    def test_what_has_no_space_is_stated_and_very_many_strokes_make_a_page(self):
+        self.write("a.toml", grid(30, 30, 5))
+        self.write("s.toml", '[stroke]\npath = "M 2 2 L 140 140"\n')
+        self.assertIn("no space for the numbers", self.notes(self.drawn(view="array", width="60")))
+        self.write("a.toml", grid(10, 10, 10))
+        self.write("s.toml", '[stroke]\npath = "' + " ".join(f"{'M' if y == 0 else 'L'} 0 {y} L 90 {y} L 90 {y + 5} L 0 {y + 5}" for y in range(0, 91, 10)) + '"\n')
+        for view in ("timing", "wave"):
+            svg = self.drawn("--outside", "clamp", view=view)
+            shown = [int(e.text) for e in svg.all("row-label")]
+            self.assertEqual(shown, list(range(0, 100, shown[1])))
+            self.assertIn(f"one row in {shown[1]} has its number", self.notes(svg))
+        self.assertTrue("no space for the peaks of rows" in self.notes(svg) and svg.all("peak") == [])
+        self.write("a.toml", grid(3, 3, 20))
+        for count, notes in ((30, ()), (61, ("starts of more than 60 strokes are not marked", "strokes on one tactor lie on each other"))):
+            self.write("s.toml", "".join(f'[[stroke]]\npath = "M {i / 2} 0 L 40 40"\nstart_s = 0\n' for i in range(count)))
+            svg = self.drawn(view="timing", width="60")
+            for note in notes:
+                self.assertIn(note, self.notes(svg))
+            self.assertEqual([e.text for e in svg.id("stroke-starts").findall(NS + "text")] if not notes else ["stroke 1-30"], ["stroke 1-30"])
+        self.assertIn("colours repeat after 10 strokes", self.notes(self.drawn()))
+        self.write("a.toml", grid(16, 16, 10))
+        self.write("s.toml", "".join(f'[[stroke]]\nname = "one of very many strokes, number {i + 1}"\npath = "M 0 {2.5 * i} L 150 {2.5 * i}"\n'
+                                     f"speed_mm_s = 60.0\nstart_s = {i / 100}\n" for i in range(60)))
+        for width in (60, 300):
+            self.assertLessEqual(float(self.drawn(width=width).root.get("height")[:-2]), PAGE_MM * max(1, width / 170), width)
+
+
+class Goldens(PlotTest):
+    """Pictures that change only on purpose: run with TACTOR_UPDATE_GOLDEN=1 to accept the present ones."""
+
+    NUMBER = re.compile(r"-?\d+(?:\.\d+)?")
+    PICTURES = (
+        ("examples/park2016-3.svg", "park2016-3", "--animate"),
+        ("examples/reach.svg", ROOT / "examples/strokes/reach.toml"),
+        ("examples/knocks.svg", KNOCKS),
+        ("examples/textures.svg", ROOT / "examples/strokes/textures.toml", "--view", "wave"),
+        ("examples/comb.svg", ROOT / "examples/strokes/comb.toml", "--view", "wave"),
+        ("tests/plot/golden/tactile-brush.svg", "park2016-1", *BRUSH),
+        ("tests/plot/golden/continuous.svg", "park2016-2", "--algorithm", "continuous", "--phantom", "barycentric"),
+        ("tests/plot/golden/wave.svg", "park2016-1", "--view", "wave"),
+    )
+
+    def test_pictures_are_those_of_the_documents(self):
+        for name, *args in self.PICTURES:
+            with self.subTest(name):
+                golden, now = ROOT / name, self.svg(*args).text
+                if os.environ.get("TACTOR_UPDATE_GOLDEN"):
+                    golden.write_text(now, encoding="utf-8")
+                then = golden.read_text(encoding="utf-8")
+                self.assertEqual(self.NUMBER.sub("#", now), self.NUMBER.sub("#", then))
+                # Other processors and libraries may round the last digit otherwise.
+                for a, b in zip(self.NUMBER.findall(now), self.NUMBER.findall(then)):
+                    self.near(float(a), float(b), 0.011)
 
 
 if __name__ == "__main__":
