@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""tactor play on ALSA's null and file devices, which need no hardware and pace themselves."""
+"""tactor play on ALSA's null and file devices, which need no hardware and pace themselves; and drive time from run to run."""
 import json
 import os
 import re
@@ -8,7 +8,8 @@ import signal
 import subprocess
 import time
 
-from harness import GRID, PATIENCE_S, TOOL, ToolTest, Wav, main
+from harness import ALSA_CONFIG, GRID, PATIENCE_S, TOOL, ToolTest, Wav, main
+from serving import Server
 
 PATIENCE = str(PATIENCE_S)
 # The fade of 10 ms is in one period: it is written whole, even where the machine stands still beyond the wait for it.
@@ -18,42 +19,24 @@ WHOLE_FADE = ("--period-frames", "1024", "--periods", "3")
 class Play(ToolTest):
     SHORT = ("--path", "M 0 10 L 40 30", "--duration", "0.3")
 
-    def test_without_a_device_it_plays_to_null_and_says_so(self):
-        r = self.ok("play", *self.SHORT)
-        self.assertIn("null", r.stderr)
-        self.assertIn("9 channels", r.stdout)
-
     def test_a_device_gets_what_render_writes(self):
-        for name, pcm_bytes in (("s16", 2), ("s32", 4)):
-            self.ok("render", *self.SHORT, "--sample-format", name, "-o", "o.wav")
-            self.ok("play", *self.SHORT, "--sample-format", name, "-D", f"raw:{self.dir}/out.raw")
-            wav, raw = Wav(self.dir / "o.wav"), (self.dir / "out.raw").read_bytes()
-            frame = 9 * pcm_bytes
-            self.assertEqual(len(raw) % frame, 0)
-            # The first frame of a stroke is a zero crossing: compare from the first sound on.
-            start = next(i for i, v in enumerate(raw) if v) // frame
-            lead = next(i for i, v in enumerate(wav.data) if v) // frame
-            heard = raw[(start - lead) * frame:]
-            self.assertEqual(heard[:len(wav.data)], wav.data, name)
-            self.assertEqual(set(heard[len(wav.data):]), {0})
+        self.ok("render", *self.SHORT, "--sample-format", "s16", "-o", "o.wav")
+        self.ok("play", *self.SHORT, "--sample-format", "s16", "-D", f"raw:{self.dir}/out.raw")
+        wav, raw = Wav(self.dir / "o.wav").data, (self.dir / "out.raw").read_bytes()
+        # The first frame of a stroke is a zero crossing: compare from the first sound on.
+        start, lead = (next(i for i, v in enumerate(data) if v) // 18 for data in (raw, wav))
+        heard = raw[(start - lead) * 18:]
+        self.assertEqual((heard[:len(wav)], set(heard[len(wav):])), (wav, {0}))
 
-    def test_several_strokes_play_one_after_the_other(self):
+    def test_device_and_strokes_are_named(self):
         r = self.ok("play", "park2016-1", "park2016-2", "--duration", "0.2")
+        self.assertTrue("null" in r.stderr and "9 channels" in r.stdout and "\033" not in r.stdout, r.stdout)
         self.assertLess(r.stdout.index("park2016-1: played"), r.stdout.index("park2016-2: played"))
-
-    def test_device_and_map_come_from_the_array_file(self):
         self.write("a.toml", '[array]\nname = "a"\ngrid = { rows = 2, columns = 2, pitch_mm = 40.0 }\n'
                              '[output]\npcm = "null"\nchannels = 6\nperiod_frames = 128\nperiods = 4\nrate = 44100\n')
-        out = self.ok("play", *self.SHORT, "--array", "a.toml").stdout
-        for text in ("6 channels", "44100 Hz", "128", "512"):
-            self.assertIn(text, out)
-
-    def test_a_missing_device_is_status_3(self):
-        self.refused(3, "play", "park2016-1", "-D", "nowhere")
-
-    def test_a_device_with_other_channels_names_its_own(self):
-        self.refused(3, "play", "park2016-1", "-D", "eight")
-        self.ok("play", "--path", "M 0 0 L 60 0", "--duration", "0.2", "--array", "palm-2x4", "-D", "eight")
+        self.assertRegex(self.ok("play", *self.SHORT, "--array", "a.toml").stdout, "6 channels, 44100 Hz.*128 of 512")
+        for device in ("nowhere", "eigth", "hw:CARD=NoSuchCard"):
+            self.refused(3, "play", *self.SHORT, "-D", device)
 
     def test_limits_of_the_drive_are_options_too(self):
         long = ("play", "--path", "M 0 10 L 1 10", "--duration", "1", "-D", "null", "--format", "json")
@@ -65,54 +48,40 @@ class Play(ToolTest):
         self.assertGreater(counters["power_limited_frames"], 1000)
         self.refused(2, *long, "--max-drive-s", "0")
         self.refused(2, *long, "--power-dbfs", "loud")
-
-    def test_weak_strokes_together_count_as_a_strong_one(self):
         stroke = '[[stroke]]\npath = "M 0 10 L 1 10"\nduration_s = 1.0\nstart_s = 0.0\n'
-        limits = ("--level-dbfs", "-40.1", "--max-drive-s", "0.3", "--drive-window-s", "1")
-        for strokes, cut in ((1, False), (20, True)):
+        for strokes, cut in ((1, False), (20, True)):  # weak ones count together
             self.write("s.toml", stroke * strokes)
-            r = self.ok("play", "s.toml", "-D", "null", "--format", "json", *limits)
-            self.assertEqual(json.loads(r.stdout)["counters"]["drives_cut"] > 0, cut)
-            self.assertEqual("wait 0.7 s before the next stroke" in r.stderr, cut, r.stderr)
+            r = self.ok("play", "s.toml", *long[5:], "--level-dbfs", "-40.1", "--max-drive-s", "0.3", "--drive-window-s", "1")
+            self.assertEqual((json.loads(r.stdout)["counters"]["drives_cut"] > 0, "wait 0.7 s before the next stroke" in r.stderr), (cut, cut), r.stderr)
 
-    def test_ctrl_c_fades_out_and_exits_130(self):
+    def test_ctrl_c_fades_out_reports_and_exits_130(self):
+        raw = self.dir / "out.raw"
         for number, status in ((signal.SIGINT, 130), (signal.SIGTERM, 143)):
-            p = subprocess.Popen([TOOL, "play", "--path", "M 0 10 L 40 30", "--duration", "3600", "-D",
-                                  f"raw:{self.dir}/out.raw", "--sample-format", "s16", "--level-dbfs", "0",
-                                  *WHOLE_FADE],
-                                 cwd=self.dir, env=self.env, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
-            self.assertIn(b"9 channels", p.stdout.readline())
-            self.heard_for(p, self.dir / "out.raw", 18 * 4800)
+            p = subprocess.Popen([TOOL, "play", "park2016-1", "park2016-2", "--duration", "3600", "-D", f"raw:{raw}", "--sample-format", "s16",
+                                  "--level-dbfs", "0", "--format", "json", *WHOLE_FADE], cwd=self.dir, env=self.env, stdout=subprocess.PIPE)
+            self.heard_for(p, raw, 18 * 4800)
             p.send_signal(number)
-            p.communicate(timeout=PATIENCE_S)
-            self.assertEqual(p.returncode, status)
-            raw = memoryview((self.dir / "out.raw").read_bytes()).cast("h")
-            self.assertEqual(set(raw[-9:]), {0})
-            steps = [max(abs(raw[i] - raw[i - 9]) for i in range(k, min(k + 9000, len(raw))))
-                     for k in range(9, len(raw), 9000)]
+            out, _ = p.communicate(timeout=PATIENCE_S)
+            self.assertEqual((p.returncode, [s["state"] for s in json.loads(out)["strokes"]]), (status, ["cancelled", "not played"]))
+            heard = memoryview(raw.read_bytes()).cast("h")
+            self.assertEqual(set(heard[-9:]), {0})
             # A full-scale carrier of 250 Hz moves by at most 2 pi 250 / 48000 of full scale in a frame.
-            self.assertLessEqual(max(steps), 32768 * 0.0328)
-            (self.dir / "out.raw").unlink()
+            self.assertLessEqual(max(abs(a - b) for a, b in zip(heard[9:], heard)), 32768 * 0.0328)
+            raw.unlink()
 
     def test_latency_is_periods_times_period(self):
-        def sizes(*more):
-            return re.search(r"period (\d+) of (\d+) frames, latency ([0-9.]+) ms", self.ok("play", *self.SHORT, *more).stdout)
-        self.assertEqual(sizes().groups(), ("96", "288", "6.0"))
-        self.assertEqual(sizes("--latency-ms", "3").groups(), ("48", "144", "3.0"))
-        self.assertEqual(sizes("--latency-ms", "10", "--periods", "2").groups(), ("240", "480", "10.0"))
-        self.assertEqual(sizes("--period-frames", "64", "--periods", "4").groups(), ("64", "256", "5.3"))
         self.write("c.toml", '[output]\npcm = "null"\nperiod_frames = 500\nperiods = 5\n')
-        self.assertEqual(sizes("--config", "c.toml", "--latency-ms", "5").groups(), ("48", "240", "5.0"))
-        self.refused(2, "play", *self.SHORT, "--latency-ms", "3", "--period-frames", "64")
         self.write("d.toml", "[defaults]\nlatency-ms = 5\n[output]\nperiod_frames = 128\n")
-        self.assertEqual(sizes("--config", "d.toml").groups(), ("80", "240", "5.0"))
-        self.assertEqual(sizes("--config", "d.toml", "--latency-ms", "3").groups(), ("48", "144", "3.0"))
-        self.assertEqual(sizes("--config", "d.toml", "--period-frames", "64").groups(), ("64", "192", "4.0"))
         self.write("a.toml", 'array.preset = "palm-3x3"\n[defaults]\nlatency-ms = 10\n')
-        self.assertEqual(sizes("--config", "d.toml", "--array", "a.toml").groups(), ("160", "480", "10.0"))
-        for option, value in (("--latency-ms", "nan"), ("--latency-ms", "0"), ("--period-frames", "1.5"),
-                              ("--periods", "1"), ("--reopen-s", "-1"), ("--sync-delay-ms", "x"), ("--format", "xml")):
-            self.refused(2, "play", *self.SHORT, option, value, says=[option])
+        for options, sizes in (("", ("96", "288", "6.0")), ("--latency-ms 3", ("48", "144", "3.0")), ("--latency-ms 10 --periods 2", ("240", "480", "10.0")),
+                               ("--period-frames 64 --periods 4", ("64", "256", "5.3")), ("--config c.toml --latency-ms 5", ("48", "240", "5.0")),
+                               ("--config d.toml", ("80", "240", "5.0")), ("--config d.toml --latency-ms 3", ("48", "144", "3.0")),
+                               ("--config d.toml --period-frames 64", ("64", "192", "4.0")), ("--config d.toml --array a.toml", ("160", "480", "10.0"))):
+            out = self.ok("play", *self.SHORT, *options.split()).stdout
+            self.assertEqual(re.search(r"period (\d+) of (\d+) frames, latency ([0-9.]+) ms", out).groups(), sizes, options)
+        for options in ("--latency-ms 3 --period-frames 64", "--latency-ms nan", "--latency-ms 0", "--period-frames 1.5", "--periods 1", "--reopen-s -1",
+                        "--sync-delay-ms x", "--format xml"):
+            self.refused(2, "play", *self.SHORT, *options.split())
 
     def test_the_run_is_reported_as_json(self):
         before_ns = time.monotonic_ns()
@@ -199,11 +168,13 @@ class Play(ToolTest):
         self.assertNotIn("park2016-1", r.stdout)
 
     def test_a_device_that_comes_back_gets_the_next_stroke(self):
-        r, told, states = self.on_failing_device("--format", "json", "--reopen-s", PATIENCE, comes_back=True)
+        r, told, states = self.on_failing_device("--format", "json", "--reopen-s", PATIENCE, "--log", "play.log", "--verbose", comes_back=True)
         # The first did not finish, whatever came after it.
         self.assertEqual((r.returncode, states), (1, ["interrupted", "finished"]), r.stderr)
         self.assertEqual(told["counters"]["reopened"], 1)
         self.assertRegex(r.stderr, "(?s)warning: long.toml: interrupted.*waiting for.*is back.*\ntactor: long.toml: interrupted after")
+        self.assertRegex((self.dir / "play.log").read_text(), r'(?s)error the stream has ended: .*info waiting for PCM "raw:.*'
+                         r'info PCM "raw:.*" is back.*info stream on .*info the stream has ended\n')
 
     LOG_LINE = r"\d{4}-\d\d-\d\dT\d\d:\d\d:\d\d\.\d{3}Z (debug|info|warning|error) \S.*"
 
@@ -233,23 +204,13 @@ class Play(ToolTest):
             self.assertTrue(before_s < float(at_s) < after_s, at_s)
             self.assertGreater(float(played_s), 0)
 
-    def test_a_log_has_a_lost_device_and_its_return(self):
-        r, _, _ = self.on_failing_device("--reopen-s", PATIENCE, "--log", "play.log", "--verbose", comes_back=True)
-        self.assertEqual(r.returncode, 1, r.stderr)
-        log = (self.dir / "play.log").read_text()
-        self.assertRegex(log, r'(?s)error the stream has ended: .*info waiting for PCM "raw:.*info PCM "raw:.*" is back'
-                              r".*info stream on .*info the stream has ended\n")
-
     def test_a_log_is_written_only_to_logs(self):
         array = self.write("a.toml", GRID)
         (self.dir / "link.log").symlink_to("elsewhere")
         os.mkfifo(self.dir / "pipe")
-        for name, why in (("a.toml", "no log"), ("link.log", "is a link"), ("pipe", "no regular file"), ("/dev/null", "no regular file"),
-                          (".", "folder"), ("none/play.log", "No such file"), ("", "empty")):
-            r = self.refused(2, "play", *self.SHORT, "-D", "null", "--log", name, says=[why])
-            self.assertEqual(r.stdout, "", name)
-        self.assertEqual(array.read_text(), GRID)
-        self.assertFalse((self.dir / "elsewhere").exists())
+        for name in ("a.toml", "link.log", "pipe", "/dev/null", ".", "none/play.log", ""):
+            self.assertEqual(self.refused(2, "play", *self.SHORT, "-D", "null", "--log", name).stdout, "", name)
+        self.assertEqual((array.read_text(), (self.dir / "elsewhere").exists()), (GRID, False))
         self.refused(2, "check", "--verbose")
         self.refused(3, "play", *self.SHORT, "-D", "nowhere", "--log", "play.log")
 
@@ -263,16 +224,6 @@ class Play(ToolTest):
         out, _ = p.communicate(timeout=120)
         self.assertEqual(p.returncode, 130)
         self.assertIn(b"park2016-1: cancelled", out)
-
-    def test_ctrl_c_still_reports(self):
-        p = subprocess.Popen([TOOL, "play", "park2016-1", "park2016-2", "--duration", "600", "-D",
-                              f"raw:{self.dir}/out.raw", "--format", "json"], cwd=self.dir, env=self.env,
-                             stdout=subprocess.PIPE, stderr=subprocess.PIPE)
-        self.heard_for(p, self.dir / "out.raw", 36 * 4800)
-        p.send_signal(signal.SIGINT)
-        out, _ = p.communicate(timeout=PATIENCE_S)
-        self.assertEqual(p.returncode, 130)
-        self.assertEqual([s["state"] for s in json.loads(out)["strokes"]], ["cancelled", "not played"])
 
     def test_without_rights_it_plays_and_says_how_to_get_them(self):
         def no_rights():
@@ -311,20 +262,49 @@ class Play(ToolTest):
         self.ok("play", *self.SHORT, "--config", "c.toml", "-D", "null", "--no-gpio")
         self.refused(2, "play", *self.SHORT, "--arm", "-D", "null")
 
-    def test_the_marker_channel_of_the_configuration_is_played(self):
-        self.write("c.toml", "[sync]\nchannel = 9\n")
-        self.ok("play", *self.SHORT, "--config", "c.toml", "--sample-format", "s16", "-D", f"raw:{self.dir}/out.raw")
-        raw = memoryview((self.dir / "out.raw").read_bytes()).cast("h")
-        marked = [v for v in raw[9::10] if v]
-        self.assertEqual(len(marked), 240)  # 5 ms
-        self.assertGreaterEqual(min(marked), 32767)
 
-    def test_a_mistyped_device_gets_a_suggestion(self):
-        self.refused(3, "play", *self.SHORT, "-D", "eigth")
-        self.refused(3, "play", *self.SHORT, "-D", "hw:CARD=NoSuchCard")
 
-    def test_output_is_plain_when_piped(self):
-        self.assertNotIn("\033", self.ok("play", *self.SHORT).stdout)  # on a terminal: test_picture.py
+class KeptDrive(ToolTest):
+    """Drive time of a tactor counts on from one run of a user to the next. Windows last an hour: no machine is so slow that time itself
+    gives it back."""
+    LIMITS = ("--max-drive-s", "0.5", "--drive-window-s", "3600")
+    STILL = ("--path", "M 0 0 L 0.001 0", "--algorithm", "continuous")  # one tactor, all the time
+
+    def setUp(self):
+        super().setUp()
+        self.runtime = self.dir / "run"
+        self.runtime.mkdir(mode=0o700)
+        self.env["XDG_RUNTIME_DIR"] = str(self.runtime)
+
+    def cuts(self, device="null", seconds=0.3, **more):
+        r = self.ok("play", *self.STILL, "--duration", seconds, *self.LIMITS, "--format", "json", "-D", device, **more)
+        return json.loads(r.stdout)["counters"]["drives_cut"]
+
+    def kept(self):
+        return sorted(self.runtime.rglob("drive-time-*"))
+
+    def test_runs_of_a_user_on_a_device_count_together(self):
+        self.write("alsa.conf", ALSA_CONFIG + "pcm.other { type null }\n")
+        self.ok("render", "park2016-1", "-o", "x.wav")
+        self.ok("play", "--live", "-", "-D", "null")
+        self.refused(3, "play", *self.STILL, "-D", "nowhere")
+        self.refused(2, "play", *self.STILL, "--max-drive-s", "0", "-D", "null")
+        self.assertEqual(self.kept(), [])  # nothing was driven
+        self.assertEqual(self.cuts(), 0)
+        self.assertEqual([(f.name, f.parent.stat().st_mode & 0o777) for f in self.kept()], [("drive-time-null", 0o700)])
+        self.assertEqual(self.cuts(env={"XDG_RUNTIME_DIR": str(self.dir)}), 0)  # another user
+        self.assertEqual((self.cuts(), self.cuts("other")), (1, 0))
+
+    def test_a_service_counts_earlier_runs_and_is_counted_also_when_it_reopens_the_device(self):
+        config = "[limits]\nmax_drive_s = 0.5\nwindow_s = 3600\n"
+        s = Server(self, "--idle-stop", "0.1", config=config, env={"XDG_RUNTIME_DIR": str(self.runtime)})
+        client = s.client()
+        self.ok("play", *self.STILL, "--duration", "0.1", "--socket", s.where["socket"])
+        self.until(lambda: client.ok("status")["stream"]["state"] == "idle", s.process)
+        self.assertEqual(self.cuts(), 0)
+        self.ok("play", *self.STILL, "--duration", "0.2", "--socket", s.where["socket"])
+        self.assertEqual(s.terminate()[0], 0)
+        self.assertEqual(self.cuts(seconds=0.1), 1)
 
 
 if __name__ == "__main__":
