@@ -1,226 +1,128 @@
 # SPDX-License-Identifier: MIT
-"""Destinations of `render`: pipes, standard output, files of others; and names chosen by strangers in the output."""
+"""Outputs of every command: pipes, standard output, files of others and inputs, which none replaces; names chosen by strangers; and
+inputs of the largest size."""
 import contextlib
+import itertools
 import os
 import pathlib
 import pty
 import resource
 import select
 import signal
-import stat
+import struct
 import subprocess
 import sys
-import termios
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "study"))
 import studies
 
-from harness import PATIENCE_S, TOOL, ToolTest, Wav, main
+from experiments import ExperimentTest, contents
+from harness import GRID, PATIENCE_S, TOOL, ToolTest, Wav, main, wav_bytes
 
 ESCAPE = "\x1b[31m"
+MB = 1 << 20
+LONG = ("--path", "M 0 10 L 40 30", "--duration", "7200")
 
 
 class Output(ToolTest):
     def start(self, *args, **more):
-        return subprocess.Popen([TOOL, *args], cwd=self.dir, env=self.env, stderr=subprocess.PIPE,
-                                **({"stdout": subprocess.PIPE} | more))
+        return subprocess.Popen([TOOL, *args], cwd=self.dir, env=self.env, **({"stdout": subprocess.PIPE, "stderr": subprocess.PIPE} | more))
 
-    def await_blocked_signals(self, process):
-        """Waits until the tool handles signals itself: SIGINT is among those that it blocks."""
-        def blocked():
-            with open(f"/proc/{process.pid}/status", encoding="ascii") as f:
-                return int(next(line for line in f if line.startswith("SigBlk:")).split()[1], 16)
-        self.until(lambda: blocked() & 1 << (signal.SIGINT - 1), process)
+    def ended(self, *args, **more):
+        """Runs the tool; returns exit status, output and messages."""
+        process = self.start(*args, **more)
+        out, said = process.communicate(timeout=PATIENCE_S)
+        return process.returncode, out, said
 
-    def leftovers(self):
-        return sorted(p.name for p in self.dir.iterdir() if p.name != "alsa.conf")
+    def open_terminal(self):
+        ours, theirs = pty.openpty()
+        self.addCleanup(os.close, ours)
+        return ours, theirs
 
 
-class Pipes(Output):
-    def setUp(self):
-        super().setUp()
+class Sound(Output):
+    def test_standard_output_and_pipes_get_the_files_bytes_and_nothing_else(self):
         self.ok("render", "park2016-1", "-o", "file.wav")
-        self.expected = (self.dir / "file.wav").read_bytes()
-        os.mkfifo(self.dir / "pipe")
-
-    def test_standard_output_gets_the_files_bytes_and_nothing_else(self):
+        expected = (self.dir / "file.wav").read_bytes()
         for name in ("-", "/dev/stdout", "/dev/fd/1", "/proc/self/fd/1"):
-            process = self.start("render", "park2016-1", "-o", name)
-            out, said = process.communicate(timeout=PATIENCE_S)
-            self.assertEqual(process.returncode, 0, said)
+            status, out, said = self.ended("render", "park2016-1", "-o", name)
+            self.assertEqual((status, out[:len(expected)]), (0, expected))
             if name in ("-", "/dev/stdout"):
-                self.assertEqual(out, self.expected)
-                self.assertIn(b"70560 frames", said)
-            else:
-                self.assertTrue(out.startswith(self.expected))
-
-    def test_a_redirected_file_is_written_from_its_position(self):
-        with open(self.dir / "all", "wb", buffering=0) as f:
-            f.write(b"before")
-            self.assertEqual(self.start("render", "park2016-1", "-o", "-", stdout=f).wait(timeout=PATIENCE_S), 0)
-        self.assertEqual((self.dir / "all").read_bytes(), b"before" + self.expected)
-
-    def test_a_pipe_gets_the_files_bytes(self):
+                self.assertEqual((len(out), b"70560 frames" in said), (len(expected), True))
+        os.mkfifo(self.dir / "pipe")
         process = self.start("render", "park2016-1", "-o", "pipe")
-        self.assertEqual((self.dir / "pipe").read_bytes(), self.expected)
+        self.assertEqual((self.dir / "pipe").read_bytes(), expected)
         process.communicate(timeout=PATIENCE_S)
-        self.assertEqual(process.returncode, 0)
-        self.assertTrue(stat.S_ISFIFO((self.dir / "pipe").stat().st_mode))
+        self.assertTrue(process.returncode == 0 and (self.dir / "pipe").is_fifo())
+        ours, theirs = self.open_terminal()
+        self.assertIn(b"terminal", self.ended("render", "park2016-1", "-o", "-", stdout=theirs)[2])
+        os.close(theirs)
 
     def test_an_unread_pipe_can_be_interrupted(self):
+        os.mkfifo(self.dir / "pipe")
         for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGQUIT):
             process = self.start("render", "park2016-1", "-o", "pipe")
-            self.await_blocked_signals(process)
+
+            def is_blocked(process=process):  # SIGINT, as soon as the tool handles signals itself
+                lines = pathlib.Path(f"/proc/{process.pid}/status").read_text(encoding="ascii").splitlines()
+                return int(next(line for line in lines if line.startswith("SigBlk:")).split()[1], 16) & 1 << (signal.SIGINT - 1)
+            self.until(is_blocked, process)
             process.send_signal(number)
             process.communicate(timeout=PATIENCE_S)
             self.assertEqual(process.returncode, 128 + number)
 
-    def test_a_reader_that_waits_gets_the_sound(self):
-        process = self.start("render", "park2016-1", "-o", "pipe")
-        with open(self.dir / "pipe", "rb", buffering=0) as reader:
-            reader.read(4096)
-            process.send_signal(signal.SIGINT)
-            process.communicate(timeout=PATIENCE_S)
-        self.assertEqual(process.returncode, 130)
-
-    def test_a_reader_that_leaves_is_an_error_with_a_hint(self):
-        process = self.start("render", "park2016-1", "-o", "pipe")
-        with open(self.dir / "pipe", "rb", buffering=0) as reader:
-            reader.read(4096)
-        _, said = process.communicate(timeout=PATIENCE_S)
-        self.assertEqual(process.returncode, 1)
-        self.assertIn(b"pipe: cannot be written", said)
-        self.assertIn(b"ended before", said)
-
-    def test_samples_do_not_go_to_a_terminal(self):
-        terminal, side = pty.openpty()
-        self.addCleanup(os.close, terminal)
-        process = self.start("render", "park2016-1", "-o", "-", stdout=side)
-        os.close(side)
-        _, said = process.communicate(timeout=PATIENCE_S)
-        self.assertEqual(process.returncode, 2)
-        self.assertIn(b"terminal", said)
-
-
-class Files(Output):
     def test_a_typing_slip_replaces_nothing(self):
-        self.write("thesis.tex", "years of work")
-        self.write("notes.wav", "not a sound")
-        self.refused(2, "render", "park2016-1", "-o", "thesis.tex")
-        self.refused(2, "render", "park2016-1", "-o", "notes.wav")
-        self.assertEqual((self.dir / "thesis.tex").read_text(), "years of work")
-        self.assertEqual((self.dir / "notes.wav").read_text(), "not a sound")
+        for name in ("thesis.tex", "notes.wav"):
+            self.write(name, "years of work")
+            self.refused(2, "render", "park2016-1", "-o", name)
+            self.assertEqual((self.dir / name).read_text(), "years of work")
         self.write("empty.wav", "")
         for name in ("empty.wav", "empty.wav", "NEW.WAV"):
             self.ok("render", "park2016-1", "-o", name)
         self.assertEqual(Wav(self.dir / "NEW.WAV").frames, 70560)
 
-    def test_an_output_keeps_the_rights_of_the_file_that_it_replaces(self):
-        for command, name in (("render", "o.wav"), ("plot", "o.svg")):
-            self.ok(command, "park2016-1", "-o", name)
-            (self.dir / name).chmod(0o640)
-            self.ok(command, "park2016-1", "-o", name)
-            self.assertEqual((self.dir / name).stat().st_mode & 0o7777, 0o640)
-
-    def test_links_of_others_are_not_followed(self):
-        (self.dir / "shared").mkdir()
-        (self.dir / "shared").chmod(0o1777)
-        self.write("victim.wav", "")
-        (self.dir / "shared/o.wav").symlink_to(self.dir / "victim.wav")
-        self.refused(2, "render", "park2016-1", "-o", "shared/o.wav")
-        self.assertEqual((self.dir / "victim.wav").read_bytes(), b"")
-
     def test_above_the_greatest_size_there_is_a_hint_and_no_part(self):
-        small = lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (1 << 20, 1 << 20))  # noqa: E731
-        process = self.start("render", "park2016-1", "-o", "o.wav", preexec_fn=small)
-        _, said = process.communicate(timeout=PATIENCE_S)
-        self.assertEqual(process.returncode, 1, said)
-        self.assertIn(b"ulimit -f", said)
-        self.assertEqual(self.leftovers(), [])
-
-    def test_quit_leaves_nothing(self):
-        # It stands still at its progress line: the terminal is stopped.
-        terminal, side = pty.openpty()
-        self.addCleanup(os.close, terminal)
-        termios.tcflow(side, termios.TCOOFF)
-        process = subprocess.Popen([TOOL, "render", "--path", "M 0 10 L 40 30", "--duration", "7200", "-o", "long.wav"], cwd=self.dir,
-                                   env=self.env, stdout=subprocess.DEVNULL, stderr=side)
-        self.until(self.leftovers, process)
-        process.send_signal(signal.SIGQUIT)
-        termios.tcflow(side, termios.TCOON)
-        os.close(side)
-        self.assertEqual(process.wait(timeout=PATIENCE_S), 128 + signal.SIGQUIT)
-        self.assertEqual(self.leftovers(), [])
+        status, _, said = self.ended("render", "park2016-1", "-o", "o.wav", preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (MB, MB)))
+        self.assertEqual((status, b"ulimit -f" in said, [p.name for p in self.dir.iterdir()]), (1, True, ["alsa.conf"]), said)
 
 
-class People(Output):
-    def test_a_reader_of_only_the_beginning_gets_no_error(self):
-        process = self.start("plan", "--path", "M 0 10 L 40 30", "--duration", "3600")
-        process.stdout.readline()
-        process.stdout.close()
-        said = process.stderr.read()
-        self.assertEqual((process.wait(timeout=PATIENCE_S), said), (128 + signal.SIGPIPE, b""))
-        process.stderr.close()
+class Readers(Output):
+    def closed(self, *args, **more):
+        """Runs the tool with standard output into a pipe without a reader."""
+        ours, theirs = os.pipe()
+        os.close(ours)
+        try:
+            return self.ended(*args, **({"stdout": theirs} | {k: v(theirs) for k, v in more.items()}))
+        finally:
+            os.close(theirs)
 
     def test_an_early_closed_pipe_is_no_error_for_any_output(self):
         # More than a buffer holds, and less: help, listings, tables.
         studies.simulated(self.dir / "study")
-        for args in (("help", "play"), ("help",), ("--version",), ("plan", "park2016-1"), ("plan", "park2016-1", "--format", "json"),
+        (self.dir / "link.svg").symlink_to("/dev/stdout")
+        for args in (("help", "play"), ("--version",), ("plan", *LONG), ("plan", "park2016-1", "--format", "json"),
                      ("compare", "park2016-1"), ("check", "-D", "null"), ("devices",), ("analyze", "study"),
                      ("analyze", "study", "--format", "tsv"), ("report", "study"), ("experiment", "park2016", "--dry-run"),
-                     ("experiment", "park2016", "--print"), ("plot", "park2016-1", "-o", "o.svg"), ("play", "park2016-1", "-D", "null")):
-            ours, theirs = os.pipe()
-            os.close(ours)
-            process = self.start(*args, stdout=theirs)
-            os.close(theirs)
-            _, said = process.communicate(timeout=PATIENCE_S)
-            self.assertEqual(process.returncode, 128 + signal.SIGPIPE, f"{args}: {said}")
-            self.assertNotIn(b"standard output", said, args)
+                     ("experiment", "park2016", "--print"), ("plot", "park2016-1", "-o", "o.svg"), ("play", "park2016-1", "-D", "null"),
+                     ("render", "park2016-1", "-o", "-"), ("render", "park2016-1", "-o", "/dev/fd/1"), ("plot", "park2016-1", "-o", "link.svg")):
+            status, _, said = self.closed(*args)
+            self.assertEqual((status, b"standard output" in said), (128 + signal.SIGPIPE, False), f"{args}: {said}")
+        status, _, said = self.closed("render", "park2016-1", "-o", "/dev/fd/9", stdout=lambda _: subprocess.PIPE,
+                                      preexec_fn=lambda theirs: lambda: os.dup2(theirs, 9), pass_fds=lambda _: [9])
+        self.assertEqual((status, b"ended before all was written" in said), (1, True), said)
 
-    def test_a_full_disk_is_named_for_any_output(self):
-        for args in (("help", "play"), ("plan", "park2016-1"), ("devices",), ("--version",)):
-            with open("/dev/full", "wb") as full:
-                process = self.start(*args, stdout=full)
-                _, said = process.communicate(timeout=PATIENCE_S)
-            self.assertEqual(process.returncode, 1, args)
-            self.assertIn(b"No space left on device", said, args)
-
-    def test_a_reader_of_only_the_beginning_of_sound_gets_no_error_either(self):
-        # For any name of standard output; a named pipe has its error elsewhere.
-        (self.dir / "link.svg").symlink_to("/dev/stdout")
-        for command, name in (("render", "-"), ("render", "/dev/stdout"), ("render", "/dev/fd/1"), ("render", "/proc/self/fd/1"),
-                              ("plot", "link.svg")):
-            ours, theirs = os.pipe()
-            os.close(ours)
-            process = self.start(command, "park2016-1", "-o", name, stdout=theirs)
-            os.close(theirs)
-            _, said = process.communicate(timeout=PATIENCE_S)
-            self.assertEqual((process.returncode, said), (128 + signal.SIGPIPE, b""), name)
-        ours, theirs = os.pipe()
-        os.close(ours)
-        process = self.start("render", "park2016-1", "-o", f"/dev/fd/{theirs}", pass_fds=[theirs])
-        os.close(theirs)
-        _, said = process.communicate(timeout=PATIENCE_S)
-        self.assertEqual(process.returncode, 1)
-        self.assertIn(b"ended before all was written", said)
-
-    def test_missing_standard_error_changes_no_status(self):
-        closed = lambda: os.close(2)  # noqa: E731
+    def test_full_and_closed_outputs_are_reported_and_a_lost_standard_error_changes_no_status(self):
         with open("/dev/full", "wb", buffering=0) as full:
-            for status, args in ((2, ("plan", "no-such-preset")), (0, ("play", "park2016-1")),
-                                 (2, ("plan", "--nonsense")), (0, ("render", "park2016-1", "-o", "-"))):
-                for more in ({"stderr": full}, {"preexec_fn": closed}):
-                    r = subprocess.run([TOOL, *args], cwd=self.dir, env=self.env, stdout=subprocess.DEVNULL, check=False,
-                                       timeout=PATIENCE_S, **more)
-                    self.assertEqual(r.returncode, status, f"{args} {more}")
-
-    def test_closed_standard_output_is_reported(self):
+            for args in (("help", "play"), ("plan", "park2016-1"), ("devices",), ("--version",)):
+                status, _, said = self.ended(*args, stdout=full)
+                self.assertEqual((status, said.startswith(b"tactor: standard output: No space left on device")), (1, True), said)
+            for wanted, args in ((2, ("plan", "no-such-preset")), (0, ("play", "park2016-1")), (0, ("render", "park2016-1", "-o", "-"))):
+                for more in ({"stderr": full}, {"preexec_fn": lambda: os.close(2)}):
+                    self.assertEqual(self.ended(*args, **more)[0], wanted, f"{args} {more}")
         for args in (("render", "park2016-1", "-o", "-"), ("plan", "park2016-1"), ("render", "park2016-1", "-o", "x.wav")):
-            r = subprocess.run([TOOL, *args], cwd=self.dir, env=self.env, stderr=subprocess.PIPE, text=True, check=False,
-                               timeout=PATIENCE_S, preexec_fn=lambda: os.close(1))
-            self.assertEqual(r.returncode, 1, args)
-            self.assertIn("Bad file descriptor (it is closed: ", r.stderr)
-        self.assertEqual(self.ok("render", "park2016-1", "-o", "y.wav").returncode, 0)
+            status, _, said = self.ended(*args, preexec_fn=lambda: os.close(1))
+            self.assertEqual((status, b"Bad file descriptor (it is closed: " in said), (1, True), said)
+        self.ok("render", "park2016-1", "-o", "y.wav")
         self.assertEqual((self.dir / "x.wav").read_bytes(), (self.dir / "y.wav").read_bytes())
 
     def test_names_cannot_steer_the_terminal(self):
@@ -238,46 +140,200 @@ class People(Output):
         self.assertIn("\\x1b[31m", self.ok("plan", "s.toml").stdout)
         self.assertEqual(self.plan("s.toml")["stroke"]["name"], "a\x1b[31mred\x9b2J\x7f")
 
-    def test_the_progress_line_shows_names_too(self):
-        terminal, side = pty.openpty()
-        self.addCleanup(os.close, terminal)
-        os.mkfifo(self.dir / f"l{ESCAPE}.wav")
-        process = subprocess.Popen([TOOL, "render", "--path", "M 0 10 L 40 30", "--duration", "7200", "-o", f"l{ESCAPE}.wav"],
-                                   cwd=self.dir, env=self.env, stdout=subprocess.DEVNULL, stderr=side)
-        os.close(side)
-        said = b""
-        # Read until its progress line; it waits for more to be read.
-        with open(self.dir / f"l{ESCAPE}.wav", "rb", buffering=0) as reader:
-            while b"%" not in said:
-                ready = select.select([terminal, reader], [], [], PATIENCE_S)[0]
-                self.assertTrue(ready, said)
-                if reader in ready:
-                    self.assertTrue(reader.read(1 << 16))
-                if terminal in ready:
-                    said += os.read(terminal, 4096)
-            process.send_signal(signal.SIGINT)
-            self.assertEqual(process.wait(timeout=PATIENCE_S), 130)
-        self.assertIn(b"l\\x1b[31m.wav: ", said)
-
     def test_long_work_shows_its_progress(self):
         # Half a minute of planning: work that ends within half a second shows nothing.
         self.write("s.toml", "".join(f'[[stroke]]\npath = "M 0 {i % 40} L 40 20"\nduration_s = 20\n' for i in range(100_000)))
+        os.mkfifo(self.dir / f"l{ESCAPE}.wav")
+        reader = os.open(self.dir / f"l{ESCAPE}.wav", os.O_RDONLY | os.O_NONBLOCK)
+        self.addCleanup(os.close, reader)
         for args, name in ((("compare", "park2016-1", "--spread", "100000"), b"compare: "),
                            (("experiment", "park2016", "--power", "1000", "--studies", "100000", "--simulate", "seed=1,sigma=1"), b"--power: "),
-                           (("plan", "s.toml"), b"s.toml: ")):
+                           (("plan", "s.toml"), b"s.toml: "), (("render", *LONG, "-o", f"l{ESCAPE}.wav"), rb"l\\x1b\[31m.wav: ")):
             with self.subTest(args):
-                terminal, side = pty.openpty()
-                self.addCleanup(os.close, terminal)
-                process = subprocess.Popen([TOOL, *args], cwd=self.dir, env=self.env, stdout=subprocess.DEVNULL, stderr=side)
+                terminal, side = self.open_terminal()
+                process = self.start(*args, stdout=subprocess.DEVNULL, stderr=side)
                 os.close(side)
                 said = b""
-                with contextlib.suppress(OSError):  # it has ended
-                    while not said.endswith(b" %"):
-                        self.assertTrue(select.select([terminal], [], [], PATIENCE_S)[0], said)
+                while not said.endswith(b" %"):
+                    ready = select.select([terminal, reader], [], [], PATIENCE_S)[0]
+                    self.assertTrue(ready, said)
+                    with contextlib.suppress(BlockingIOError):
+                        os.read(reader, MB)
+                    if terminal in ready:
                         said += os.read(terminal, 4096)
                 process.kill()
                 process.wait()
                 self.assertRegex(said, rb"\r\x1b\[K" + name + rb"\d+\.\d %$")
+
+
+class Inputs(ExperimentTest):
+    SVG = '<svg xmlns="http://www.w3.org/2000/svg" width="40mm" height="40mm" viewBox="0 0 40 40"><path d="M 0 20 L 40 20"/></svg>'
+    STROKE = '[stroke]\npath = "M 0 20 L 40 20"\n'
+    # Inputs, and a command that reads each.
+    READ = (("s.svg", "s.svg"), ("s.csv", "s.csv"), ("s.toml", "s.toml"), ("p.json", "p.json"), ("a.toml", "s.toml --array a.toml"),
+            ("c.toml", "s.toml --config c.toml"), ("a.toml", "s.toml --array more.toml"), ("a.toml", "s.toml --config more.toml"),
+            ("tex.wav", "s.toml --waveform tex.wav"), ("tex.wav", "tex.toml"), ("tex.wav", "s.toml --config wave.toml"),
+            ("tex.wav", "s.toml --waveform tex.wav --texture length --texture-mm 20"))
+
+    def setUp(self):
+        super().setUp()
+        for name, text in (("s.svg", self.SVG), ("s.csv", "t_s,x_mm,y_mm\n0,0,20\n1,40,20\n"), ("s.toml", self.STROKE),
+                           ("a.toml", GRID.replace("rows = 1", "rows = 3").replace("columns = 2", "columns = 3")), ("c.toml", "[output]\nrate = 48000\n"),
+                           ("more.toml", '[array]\nfile = "a.toml"\n'), ("wave.toml", '[defaults]\nwaveform = "tex.wav"\n'),
+                           ("tex.toml", self.STROKE + 'waveform = "tex.wav"\n'), ("tex.wav", wav_bytes([(k % 64 - 31.5) / 32 for k in range(64)]))):
+            self.write(name, text)
+        self.write("p.json", self.ok("plan", "s.toml", "--format", "json").stdout)
+
+    def kept(self, file, *args, **more):
+        """Checks that a command does not write over the file."""
+        before = (self.dir / file).read_bytes()
+        r = self.run_tool(*args, **more)
+        self.assertEqual((r.returncode, r.stderr[:8], (self.dir / file).read_bytes()), (2, "tactor: ", before), f"{file} {args}: {r.stderr}")
+        return r.stderr
+
+    def link(self, file, extension):
+        link = self.dir / f"link{extension}"
+        link.unlink(missing_ok=True)
+        os.link(self.dir / file, link)
+        return link.name
+
+    def test_pictures_sound_and_logs_do_not_replace_what_the_command_reads(self):
+        for file, args in self.READ:
+            for command, extension in (("plot", ".svg"), ("plot", ".png"), ("render", ".wav")):
+                self.kept(file, command, *args.split(), "-o", self.link(file, extension))
+            self.assertIn("input", self.kept(file, "plot", *args.split(), "-o", self.link(file, ".svg"), "--force"))
+            self.assertIn(file, self.kept(file, "play", *args.split(), "-D", "null", "--log", file))
+        self.kept("s.svg", "compare", "s.svg", "-o", "s.svg", "--force")
+        self.refused(2, "plot", "s.svg", "-o", "s.svg", "--force")
+        self.refused(2, "render", "tex.toml", "-o", "./tex.wav")
+        for _ in range(2):
+            self.ok("render", "s.toml", "--waveform", "tex.wav", "-o", "new.wav")  # not an input
+
+    def test_standard_input_and_standard_output_count(self):
+        for args, extension in ((("render", "-"), ".wav"), (("plot", "-", "--force"), ".svg")):
+            with open(self.dir / "s.toml", encoding="utf-8") as f:
+                self.assertEqual(self.redirected(*args, "-o", self.link("s.toml", extension), stdin=f), self.STROKE)
+        for args in (("render", "s.toml", "-o", "-"), ("plan", "s.toml"), ("plan", "s.toml", "--format", "json"), ("compare", "s.toml")):
+            with open(self.dir / "s.toml", "r+b") as f:
+                f.seek(0, os.SEEK_END)
+                self.assertEqual(self.redirected(*args, stdout=f), self.STROKE)
+
+    def redirected(self, *args, **more):
+        r = subprocess.run([TOOL, *args], cwd=self.dir, env=self.env, stderr=subprocess.PIPE, timeout=PATIENCE_S, check=False,
+                           **({"stdin": subprocess.DEVNULL, "stdout": subprocess.DEVNULL} | more))
+        self.assertEqual(r.returncode, 2, r.stderr)
+        return (self.dir / "s.toml").read_text()
+
+    def test_a_calibration_replaces_none_of_its_inputs(self):
+        calibrate = ("calibrate", "--participant", "P07", "--simulate", "threshold=-40,spread=2", "--tactors", "0", "--array", "a.toml", "--config", "c.toml")
+        for file in ("a.toml", "c.toml"):
+            self.assertIn(file, self.kept(file, *calibrate, "-o", file))
+            self.assertIn(file, self.kept(file, *calibrate, "-o", "new.toml", "--log", file))
+        self.assertFalse((self.dir / "new.toml").exists())
+
+    def test_analysis_report_and_experiment_replace_nothing_of_the_study(self):
+        self.simulate()
+        before = contents(self.dir / "study")
+        for command, extension, files in (("analyze", ".svg", ("sourcedata/sub-01/session.json",)), ("report", ".md", ("participants.tsv",))):
+            for file in (*files, next((self.dir / "study").glob("sub-01/beh/*.tsv")).relative_to(self.dir / "study")):
+                for more in ((), ("--force",)):
+                    self.kept(f"study/{file}", command, "study", "-o", self.link(f"study/{file}", extension), *more)
+                self.assertEqual(contents(self.dir / "study"), before)
+        definition = self.dir / "study/participants.json"
+        definition.unlink()
+        definition.write_text((self.dir / "small.toml").read_text())
+        before = definition.read_bytes()
+        self.simulate("02", definition="study/participants.json")
+        self.assertEqual(definition.read_bytes(), before)
+
+    def test_a_file_of_another_program_is_replaced_only_with_force(self):
+        self.simulate()
+        png = b"\x89PNG\r\n\x1a\n" + struct.pack(">I4sIIBBBBBI", 13, b"IHDR", 1, 1, 8, 2, 0, 0, 0, 0)
+        foreign = {".svg": self.SVG.encode(), ".png": png, ".pdf": b"%PDF-1.4\n" + b"x" * 40000 + b"\nstartxref\n9\n%%EOF\n",
+                   ".md": b"# Methods\n\nA year of writing.\n"}
+        for command, stroke, extension in (*(("plot", "park2016-1", e) for e in (".svg", ".png", ".pdf")), ("compare", "park2016-1", ".svg"),
+                                           ("analyze", "study", ".svg"), ("report", "study", ".md")):
+            with self.subTest(command=command, extension=extension):
+                name = f"mine{extension}"
+                self.write(name, foreign[extension])
+                said = self.kept(name, command, stroke, "-o", name)
+                self.assertTrue(name in said and "tactor did not write it" in said and "--force" in said, said)
+                self.ok(command, stroke, "-o", name, "--force")
+                ours = (self.dir / name).read_bytes()
+                self.assertNotEqual(ours, foreign[extension])
+                self.ok(command, stroke, "-o", name)  # its own
+                self.assertEqual((self.dir / name).read_bytes(), ours)
+        self.ok("plot", "park2016-1", "-o", "p.svg")
+        edited = (self.dir / "p.svg").read_text(encoding="utf-8").replace(
+            'encoding="UTF-8"?>', 'encoding="UTF-8" standalone="no"?>\n<!-- Created with Inkscape -->', 1)
+        self.write("p.svg", edited)
+        self.kept("p.svg", "plot", "park2016-1", "-o", "p.svg")  # an editor has saved it
+
+
+class Large(ToolTest):
+    """Endless input, or input of the largest size: bounded memory, and time that grows only with the size."""
+
+    def write_pieces(self, name, pieces):
+        """Writes in pieces: this process's peak memory counts as the peak of its children."""
+        with open(self.dir / name, "wb") as f:
+            for piece in pieces:
+                f.write(piece)
+        return self.dir / name
+
+    def cost(self, *args, stdin=subprocess.DEVNULL):
+        """Returns exit status, messages, peak memory in MB and processor time in seconds."""
+        with open(self.dir / "said", "w+b") as said:
+            p = subprocess.Popen([TOOL, *args], stdin=stdin, stdout=subprocess.DEVNULL, stderr=said, cwd=self.dir, env=self.env)
+            try:
+                _, status, usage = os.wait4(p.pid, 0)
+            except BaseException:
+                p.kill()
+                raise
+            said.seek(0)
+            return os.waitstatus_to_exitcode(status), said.read().decode(), usage.ru_maxrss / 1024, usage.ru_utime + usage.ru_stime
+
+    def test_memory_is_bounded_for_any_input(self):
+        with open("/dev/zero", "rb") as endless:
+            status, said, mb, _ = self.cost("plan", "-", stdin=endless)
+        self.assertEqual((status, said), (2, "tactor: standard input: longer than 512 MB (is it the right file?)\n"))
+        self.assertLess(mb, 600)
+        self.write_pieces("values.csv", (b"0," * (MB // 2) for _ in range(64)))
+        status, said, mb, _ = self.cost("plan", "values.csv")
+        self.assertTrue(status == 2 and "values.csv:1:2001: more than 1000 values in a line" in said, said)
+        self.assertLess(mb, 128)
+        points = (b"%d.%03d,%d,%d.%020d\n" % (i // 1000, i % 1000, i % 40, i % 31, 7) for i in range(1_000_000))
+        path = self.write_pieces("long.csv", itertools.chain([b"t_s,x_mm,y_mm\n"], points))
+        status, said, mb, _ = self.cost("plan", "long.csv", "--format", "csv")
+        self.assertEqual((status, said), (0, ""))
+        self.assertLess(mb, path.stat().st_size / MB + 32 + 32)  # points of 32 bytes; the tool itself
+        peaks = [self.cost("render", "park2016-1", "--duration", s, "-o", "-")[2] for s in ("1", "3600")]
+        self.assertLess((peaks[1] - peaks[0]) * MB, 100 * 3600 / 0.07)  # a tenth of a kilobyte a burst
+
+    def test_a_text_for_a_tree_has_a_lower_limit(self):
+        for name, first in (("big.svg", b"<svg>"), ("big.toml", b"#")):
+            self.write_pieces(name, [first, *[b"#" * MB] * 48])
+            self.refused(2, "plan", name, says=[f"{name}: longer than"])
+
+    def test_time_grows_with_the_size(self):
+        def seconds_for(points):
+            parts = [i / (points - 1) for i in range(points)]
+            speeds = ", ".join(f"[{p:.9f}, {20 + 80 * (i * 7919 % points) / points:.3f}]" for i, p in enumerate(parts))
+            carriers = ", ".join(f"[{p:.9f}, {100 + 200 * (i * 104729 % points) / points:.3f}]" for i, p in enumerate(parts))
+            self.write("two.toml", f'[[stroke]]\npath = "M 0 20 L 40 20"\neasing = "minimum-jerk"\nspeed_mm_s = [{speeds}]\ncarrier_profile = [{carriers}]\n')
+            status, said, _, used = self.cost("render", "two.toml", "-o", "two.wav")
+            self.assertEqual((status, said), (0, ""))
+            return used
+
+        def seconds_for_shapes(shapes):
+            self.write("drawing.svg", "<svg>\n" + "".join(f"<path d='M {i % 40} 0 L 40 {i % 40}'/>\n" for i in range(shapes)) + "</svg>\n")
+            status, said, _, used = self.cost("plan", "drawing.svg", "--format", "csv")
+            self.assertEqual(status, 0, said)
+            return used
+
+        # Eight times as many: quadratic time would be 64 times.
+        self.assertLess(seconds_for(80_000), 24 * seconds_for(10_000))
+        # The largest of three: the others had luck. Ten times as many took seventy times as long when each was looked up in the file.
+        self.assertLess(seconds_for_shapes(15000), 25 * max(seconds_for_shapes(1500) for _ in range(3)))
 
 
 if __name__ == "__main__":

@@ -224,12 +224,13 @@ class File(ToolTest):
         self.assertEqual((self.dir / "o.wav").read_text(), "old")
         self.assertEqual((self.leftovers(), list((self.dir / "folder").iterdir())), (["folder", "o.wav"], []))
 
-    def test_ctrl_c_ends_a_long_render_and_leaves_nothing(self):
-        process = subprocess.Popen([TOOL, *self.LONG], cwd=self.dir, env=self.env, stderr=subprocess.PIPE, text=True)
-        self.until(self.leftovers, process)
-        process.send_signal(signal.SIGINT)
-        process.communicate(timeout=PATIENCE_S)
-        self.assertEqual((process.returncode, self.leftovers()), (130, []))
+    def test_ctrl_c_and_quit_end_a_long_render_and_leave_nothing(self):
+        for number in (signal.SIGINT, signal.SIGQUIT):
+            process = subprocess.Popen([TOOL, *self.LONG], cwd=self.dir, env=self.env, stderr=subprocess.PIPE, text=True)
+            self.until(self.leftovers, process)
+            process.send_signal(number)
+            process.communicate(timeout=PATIENCE_S)
+            self.assertEqual((process.returncode, self.leftovers()), (128 + number, []))
 
     def test_the_largest_array_is_rendered_and_played(self):
         self.write("large.toml", '[array]\nname = "large"\ngrid = { rows = 32, columns = 32, pitch_mm = 2 }\n')
