@@ -1,8 +1,10 @@
 # SPDX-License-Identifier: MIT
-"""tactor devices: PCMs with their properties, and GPIO chips, on any machine."""
+"""PCMs for all commands: those that tactor devices lists, their channels and wiring, and those that files by others name."""
 import json
+import os
 
-from harness import ALSA_CONFIG, ToolTest, main
+from harness import ALSA_CONFIG, GRID, ROOT, ToolTest, main
+from serving import Server
 
 MORE_PCMS = """
 pcm.mixed { type dmix ipc_key 4711 slave.pcm "null" }
@@ -18,33 +20,42 @@ second line" } }
 """
 
 
-class Devices(ToolTest):
+class DevicesTest(ToolTest):
+    STROKE = ("--path", "M 20 40 L 40 40", "--duration", "0.2")  # from tactor 7 to 8
+
     def devices(self, *args):
         told = json.loads(self.ok("devices", "--format", "json", *args).stdout)
-        self.assertEqual(told["schema"], "tactor-devices/1")
         return told, {p["name"]: p for p in told["pcms"]}
+
+    def check_device(self, pcm, *args, status=0):
+        """Returns the finding of tactor check about a device."""
+        r = self.run_tool("check", "--format", "json", "-D", pcm, *args)
+        self.assertEqual(r.returncode, status, r.stdout + r.stderr)
+        return next(f for f in json.loads(r.stdout)["findings"] if f["check"] == "device")
+
+
+class Devices(DevicesTest):
+    def setUp(self):
+        super().setUp()
+        self.write("alsa.conf", ALSA_CONFIG + MORE_PCMS)
+        self.write("kept.raw", "precious")
 
     def test_pcms_of_the_configuration_are_listed_with_their_properties(self):
         told, pcms = self.devices()
-        self.assertEqual(told["wanted"], {"array": "palm-3x3", "channels": 9, "rate_hz": 48000, "format": None})
-        self.assertIn("default", pcms)
-        self.assertNotIn("raw", pcms)  # needs an argument
-        self.assertEqual(pcms["null"]["can"]["channels"], [{"min": 1, "max": 1024}])
-        self.assertEqual(pcms["null"]["can"]["rate_hz"]["max"], None)
+        self.assertEqual((told["schema"], told["wanted"]), ("tactor-devices/1", {"array": "palm-3x3", "channels": 9, "rate_hz": 48000, "format": None}))
+        self.assertTrue("default" in pcms and "raw" not in pcms)  # which needs an argument
+        self.assertEqual((pcms["null"]["can"]["channels"], pcms["null"]["can"]["rate_hz"]["max"]), ([{"min": 1, "max": 1024}], None))
         self.assertEqual((pcms["null"]["fits"], pcms["null"]["misfit"]), (True, None))
-        self.assertEqual(pcms["eight"]["can"]["channels"], [{"min": 8, "max": 8}])
-        self.assertEqual(pcms["eight"]["fits"], False)
+        self.assertEqual((pcms["eight"]["can"]["channels"], pcms["eight"]["fits"]), ([{"min": 8, "max": 8}], False))
         self.assertIn("cannot play 9 channels at 48000 Hz", pcms["eight"]["misfit"])
+        self.assertEqual(pcms["said"]["description"], "first line, second line")
         self.assertEqual(len(told["pcms"]), len(pcms), "a name is listed twice")
 
     def test_fitting_pcms_follow_array_rate_and_format(self):
-        self.write("alsa.conf", ALSA_CONFIG + MORE_PCMS)
         self.assertTrue(self.devices("--array", "palm-2x4")[1]["eight"]["fits"])
-        self.assertEqual(self.devices("--rate", "44100")[0]["wanted"]["rate_hz"], 44100)
-        self.assertIn("s32", self.devices()[1]["sixteen_bits"]["can"]["formats"])
         self.assertTrue(self.devices("--sample-format", "s32")[1]["sixteen_bits"]["fits"])
-        told, pcms = self.devices("--sample-format", "float")
-        self.assertEqual((told["wanted"]["format"], pcms["sixteen_bits"]["fits"]), ("float", False))
+        told, pcms = self.devices("--sample-format", "float", "--rate", "44100")
+        self.assertEqual((told["wanted"]["rate_hz"], told["wanted"]["format"], pcms["sixteen_bits"]["fits"]), (44100, "float", False))
         self.assertIn("refused: format", pcms["sixteen_bits"]["misfit"])
         self.write("a.toml", '[array]\nname = "mine"\ngrid = { rows = 1, columns = 2, pitch_mm = 40.0 }\n'
                              '[output]\npcm = "eight"\nchannels = 8\nrate = 96000\n')
@@ -53,91 +64,283 @@ class Devices(ToolTest):
         self.assertEqual([n for n, p in pcms.items() if p["configured"]], ["eight"])
         self.assertEqual([n for n, p in self.devices("--array", "a.toml", "-D", "null")[1].items() if p["configured"]], ["null"])
 
-    def test_a_definition_on_which_libasound_ends_the_process_is_refused_and_the_rest_listed(self):
+    def test_pcms_that_are_not_tried_or_not_opened_have_their_reason_and_empty_no_file(self):
+        text = self.ok("devices").stdout
+        self.assertTrue("Not tried" in text and "mixed over_a_mixer" in text, text)
+        for args in ((), ("-D", "hw:CARD=Nowhere"), ("-D", "kept"), ("-D", "raw:kept.raw"), ("-D", f"raw:{self.dir}/out.raw")):
+            _, pcms = self.devices(*args)
+            for name, error in (("mixed", "dmix"), ("over_a_mixer", "dmix"), ("through_a_slave", "dmix"), ("round_and_round", "leads to itself")):
+                self.assertEqual((pcms[name]["tried"], pcms[name]["opened"], pcms[name]["can"]), (False, False, None))
+                self.assertIn(error, pcms[name]["error"])
+            for name in ("broken", *(n for n in args if n.startswith("hw:"))):
+                self.assertEqual((pcms[name]["tried"], pcms[name]["opened"], pcms[name]["fits"]), (True, False, None))
+                self.assertTrue(pcms[name]["error"] and 'PCM "' not in pcms[name]["error"])
+            for name in args[1:]:
+                self.assertTrue(pcms[name]["configured"] and not pcms[name]["opened"])
+            self.assertFalse(pcms["kept"]["opened"])
+        self.assertTrue(self.devices("-D", "mixed")[1]["mixed"]["tried"])
+        self.assertIn("hw:CARD=Nowhere   <- the one that is configured", self.ok("devices", "-D", "hw:CARD=Nowhere").stdout)
+        self.assertEqual(((self.dir / "kept.raw").read_text(), (self.dir / "out.raw").exists()), ("precious", False))
+
+    def test_definitions_that_alsa_cannot_take_are_refused_and_the_rest_listed(self):
         self.write("alsa.conf", ALSA_CONFIG + """pcm.hole { type multi slaves.a { pcm "null" channels 4 }
             bindings { 0 { slave a channel 0 } 1 { slave a channel 1 } 3 { slave a channel 3 } } }\n""")
         _, pcms = self.devices()
         self.assertIn("type multi leaves a hole in its bindings: it binds no channel 2", pcms["hole"]["error"])
         self.assertTrue(pcms["null"]["fits"])
-        self.refused(3, "play", "park2016-1", "-D", "hole", says=["it binds no channel 2"])
-        self.assertEqual(self.run_tool("check", "-D", "hole").returncode, 3)
-
-    def test_a_configuration_that_alsa_cannot_read_is_reported_with_file_and_line(self):
+        self.refused(3, "play", "park2016-1", "-D", "hole")
+        self.check_device("hole", status=3)
         self.write("alsa.conf", ALSA_CONFIG + "pcm.output {\n  type hw\n  card \n}\n")
-        said = f"alsa.conf:{(ALSA_CONFIG + 'pcm.output {').count(chr(10)) + 5}: ALSA cannot read its configuration"
-        self.assertIn(said, self.devices()[1]["null"]["error"])
-        self.refused(3, "play", "park2016-1", "-D", "null", says=[said])
-
-    def test_mixers_are_named_and_not_started(self):
-        self.write("alsa.conf", ALSA_CONFIG + MORE_PCMS)
-        _, pcms = self.devices()
-        for name in ("mixed", "over_a_mixer", "through_a_slave"):
-            self.assertEqual((pcms[name]["tried"], pcms[name]["opened"], pcms[name]["can"]), (False, False, None))
-            self.assertIn("dmix", pcms[name]["error"])
-        self.assertTrue(self.devices("-D", "mixed")[1]["mixed"]["tried"])
-        text = self.ok("devices").stdout
-        self.assertIn("Not tried", text)
-        self.assertIn("mixed over_a_mixer", text)
-
-    def test_a_pcm_that_cannot_be_opened_gives_its_reason(self):
-        self.write("alsa.conf", ALSA_CONFIG + MORE_PCMS)
-        _, pcms = self.devices("-D", "hw:CARD=Nowhere")
-        self.assertEqual((pcms["round_and_round"]["tried"], pcms["round_and_round"]["opened"]), (False, False))
-        self.assertIn("leads to itself", pcms["round_and_round"]["error"])
-        for name in ("broken", "hw:CARD=Nowhere"):
-            self.assertEqual((pcms[name]["tried"], pcms[name]["opened"], pcms[name]["fits"]), (True, False, None))
-            self.assertTrue(pcms[name]["error"])
-            self.assertNotIn("PCM \"", pcms[name]["error"])
-        self.assertTrue(pcms["hw:CARD=Nowhere"]["configured"])
-        self.assertEqual(pcms["said"]["description"], "first line, second line")
-        self.assertIn("hw:CARD=Nowhere   <- the one that is configured", self.ok("devices", "-D", "hw:CARD=Nowhere").stdout)
-
-    def test_a_missing_plugin_is_named_with_its_package(self):
+        self.assertIn(": ALSA cannot read its configuration", self.devices()[1]["null"]["error"])
+        self.refused(3, "play", "park2016-1", "-D", "null")
         (self.dir / "plugins").mkdir()
-        env = {"ALSA_PLUGIN_DIR": str(self.dir / "plugins")}
         for kind, package in (("pulse", "libasound2-plugins"), ("pipewire", "pipewire-alsa")):
             self.write("alsa.conf", f"pcm.!default {{ type {kind} }}\n")
             for command in (("play", "park2016-1"), ("check",)):
-                r = self.refused(3, *command, "-D", "default", env=env, says=[f"libasound_module_pcm_{kind}.so"])
-                self.assertIn(f"sudo apt install {package}", r.stdout + r.stderr)
-                self.assertNotIn("no sound card", r.stdout + r.stderr)
+                r = self.refused(3, *command, "-D", "default", env={"ALSA_PLUGIN_DIR": str(self.dir / "plugins")})
+                said = r.stdout + r.stderr
+                self.assertTrue(f"libasound_module_pcm_{kind}.so" in said and f"sudo apt install {package}" in said, said)
+                self.assertNotIn("no sound card", said)
 
-    def test_a_named_file_pcm_is_listed_and_not_made(self):
-        _, pcms = self.devices("-D", f"raw:{self.dir}/out.raw")
-        self.assertEqual((pcms[f"raw:{self.dir}/out.raw"]["configured"], pcms[f"raw:{self.dir}/out.raw"]["tried"]), (True, False))
-        self.assertIn("type file", pcms[f"raw:{self.dir}/out.raw"]["error"])
-        self.assertFalse((self.dir / "out.raw").exists())
-
-    def test_no_file_is_opened_that_would_be_emptied(self):
-        self.write("alsa.conf", ALSA_CONFIG + MORE_PCMS)
-        self.write("kept.raw", "precious")
-        for args in ((), ("-D", "kept"), ("-D", "raw:kept.raw")):
-            self.assertFalse(self.devices(*args)[1]["kept"]["opened"])
-        self.assertEqual((self.dir / "kept.raw").read_text(), "precious")
-
-    def test_text_is_plain_and_fits_80_columns(self):
-        self.write("alsa.conf", ALSA_CONFIG + MORE_PCMS)
+    def test_text_is_plain_fits_80_columns_and_has_a_hint_where_there_is_nothing(self):
         r = self.ok("devices", env={"LC_ALL": "de_DE.UTF-8"})
-        self.assertEqual(r.stderr, "")
-        self.assertNotIn("\033", r.stdout)
+        self.assertEqual((r.stderr, "\033" in r.stdout), ("", False))
         self.assertLessEqual(max(map(len, r.stdout.splitlines())), 79)
         for text in ("palm-3x3 needs 9 channels at 48000 Hz", "Sound cards\n", "Other PCMs\n", "GPIO chips\n", "    channels  8\n",
                      "    fits      palm-3x3\n"):
             self.assertIn(text, r.stdout)
-
-    def test_a_machine_without_cards_and_chips_gets_a_hint(self):
         told, _ = self.devices()
-        text = self.ok("devices").stdout
-        if any(p["hardware"] for p in told["pcms"]):
-            self.assertNotIn("none; load the card", text)
-        else:
-            self.assertIn("  none; load the card's driver or overlay", text)
-        self.assertEqual("none; they are /dev/gpiochip*" in text, not told["gpio_chips"])
+        self.assertEqual("  none; load the card's driver or overlay" in r.stdout, not any(p["hardware"] for p in told["pcms"]))
+        self.assertEqual("none; they are /dev/gpiochip*" in r.stdout, not told["gpio_chips"])
 
-    def test_wrong_usage_is_refused(self):
-        self.refused(2, "devices", "--format", "csv")
-        self.refused(2, "devices", "--array", "palm-9x9")
-        self.refused(2, "devices", "park2016-1")
+
+class Channels(DevicesTest):
+    """Cards with more or fewer channels than the array, without a choice of channels."""
+    FITS = "the array palm-2x4 fits"
+
+    def setUp(self):
+        super().setUp()
+        fixed = "".join("pcm.%s { type multi slaves.a { pcm { type null } channels %d }\n%s }\n" % (
+            name, n, "\n".join(f"bindings.{c} {{ slave a channel {c} }}" for c in range(n))) for name, n in (("sixteen", 16), ("ten", 10)))
+        self.write("alsa.conf", f'{ALSA_CONFIG}{fixed}pcm.kept {{ type file slave.pcm "sixteen" file "{self.dir}/out.raw" format raw }}\n')
+
+    def frames(self, channels):
+        """Returns the frames at the device from the first sound on, each as a list of the bytes of its samples."""
+        raw = (self.dir / "out.raw").read_bytes()
+        self.assertEqual(len(raw) % (4 * channels), 0)
+        frames = [[raw[i + 4 * c:i + 4 * c + 4] for c in range(channels)] for i in range(0, len(raw), 4 * channels)]
+        return frames[next(i for i, f in enumerate(frames) if any(map(any, f))):]
+
+    def test_the_fewest_channels_that_hold_array_and_marker_are_taken_and_the_others_are_silent(self):
+        r = self.ok("play", *self.STROKE, "-D", "kept", "--sample-format", "s32")
+        self.assertIn("kept: 9 of 16 channels, 48000 Hz", r.stdout)
+        wide = self.frames(16)
+        self.ok("play", *self.STROKE, "-D", f"raw:{self.dir}/out.raw", "--sample-format", "s32")
+        self.assertEqual([f[:9] for f in wide][:9600], self.frames(9)[:9600])
+        self.assertEqual({s for f in wide for s in f[9:]}, {bytes(4)})
+        self.write("a.toml", 'array.preset = "palm-3x3"\nsync.channel = 12\n')
+        r = self.ok("play", *self.STROKE, "--array", "a.toml", "-D", "kept", "--sample-format", "s32")
+        self.assertIn("13 of 16 channels", r.stdout)
+        sounding = [{c for c, s in enumerate(f) if any(s)} for f in self.frames(16)]
+        self.assertEqual(sum(12 in s for s in sounding), 240)  # 5 ms
+        self.assertFalse(set().union(*sounding) & {9, 10, 11, 13, 14, 15})
+
+    def test_every_command_takes_them(self):
+        for device, channels in (("sixteen", 16), ("null", 9)):
+            told = json.loads(self.ok("play", *self.STROKE, "-D", device, "--format", "json").stdout)
+            self.assertEqual((told["device"]["channels"], told["device"]["device_channels"]), (9, channels))
+        self.write("p.json", self.ok("plan", *self.STROKE, "--format", "json").stdout)
+        self.assertIn("9 of 16 channels", self.ok("play", "p.json", "-D", "sixteen").stdout)
+        self.assertIn("9 of 16 channels", self.ok("play", "--live", "-", "-D", "sixteen", stdin="20 20\n").stdout)
+        self.ok("check", "--walk", "--auto", "-D", "sixteen")
+        found = self.check_device("sixteen")
+        self.assertTrue(found["level"] == "ok" and "9 of 16 channels" in found["found"], found)
+        c = Server(self, device=("-D", "sixteen")).client()
+        self.assertEqual(c.ok("hello")["stream"]["channels"], 9)
+        self.assertEqual(c.await_end(c.ok("play", stroke="park2016-1", options={"duration": 0.2})["stroke"])["state"], "finished")
+
+    def test_a_given_number_is_exact(self):
+        self.assertIn(": 16 channels,", self.ok("play", *self.STROKE, "-D", "sixteen", "--channels", "16").stdout)
+        self.assertNotIn("fits", self.refused(3, "play", *self.STROKE, "-D", "sixteen", "--channels", "9").stderr)
+        for number in ("8", "0"):
+            self.refused(2, "play", *self.STROKE, "-D", "sixteen", "--channels", number)
+        self.write("a.toml", 'array.preset = "palm-3x3"\noutput.channels = 10\n')
+        self.refused(3, "play", *self.STROKE, "--array", "a.toml", "-D", "sixteen")
+        self.assertIn(": 10 channels,", self.ok("play", *self.STROKE, "--array", "a.toml", "-D", "ten").stdout)
+        self.ok("render", *self.STROKE, "--channels", "16", "-o", "o.wav")
+        self.assertEqual((self.dir / "o.wav").read_bytes()[22:24], (16).to_bytes(2, "little"))
+
+    def test_a_card_with_fewer_channels_names_an_array_that_fits_or_the_marker(self):
+        self.refused(3, "play", *self.STROKE, "-D", "eight", says=["cannot play 9 channels", "it can do channels 8", self.FITS])
+        self.refused(3, "serve", "--socket", f"{self.dir}/s", "-D", "eight")  # it does not wait for that
+        self.assertIn(self.FITS, self.check_device("eight", status=3)["cure"])
+        pcms = self.devices()[1]
+        self.assertEqual([pcms[n]["fits"] for n in ("sixteen", "ten", "eight")], [True, True, False])
+        self.assertIn(self.FITS, pcms["eight"]["misfit"])
+        self.write("a.toml", 'array.preset = "palm-2x4"\nsync.channel = 12\n')
+        says = "the array palm-2x4 fits, but not channel 12, which a marker or a plan asks for"
+        self.refused(3, "play", "--path", "M 0 0 L 60 0", "--array", "a.toml", "-D", "eight", says=[says])
+        self.assertIn(says, self.devices("--array", "a.toml")[1]["eight"]["misfit"])
+        self.assertIn(says, self.check_device("eight", "--array", "a.toml", status=3)["cure"])
+
+
+class Wiring(DevicesTest):
+    """Tactors whose channels reach no channel of the device alone: with the ALSA configuration of examples/asound."""
+    PCMS = """
+pcm.summed { type route slave.pcm "null" ttable { 0.0 1 1.1 1 2.2 1 3.3 1 4.4 1 5.5 1 6.6 1 7.7 1 8.3 1 } }
+pcm.straight { type plug slave.pcm { type copy slave.pcm "null" } }
+pcm.named { type route slave.pcm "null" ttable { 0.FL 1 1.FR 1 2.RL 1 3.RR 1 4.FC 1 5.LFE 1 6.SL 1 7.SR 1 8.RC 1 } }
+pcm.kept { type route slave.pcm { type file slave.pcm "null" file "kept.raw" format raw } ttable { 0.0 1 } }
+pcm.quiet { type route slave { pcm "null" channels 10 } ttable { 0.0 0.1 1.1 1 2.2 -1 3.3 1 4.4 1 5.5 1 6.6 1 7.7 1 8.8 0.5 8.9 1 } }
+pcm.loud { type route slave.pcm "null" ttable { 0.0 1 1.1 2 2.2 1 3.3 1 4.4 1 5.5 1 6.6 1 7.7 1 8.8 1 } }
+"""
+    LOST = "tactor 8 of palm-3x3 is on channel 8, which reaches no channel of the device"
+
+    def setUp(self):
+        super().setUp()
+        example = (ROOT / "examples/asound/8ch.conf").read_text(encoding="utf-8")
+        self.write("alsa.conf", ALSA_CONFIG + example.replace('"hw:CARD=Tactor,DEV=0"', '"null"') + self.PCMS)
+
+    def test_nothing_plays_where_a_tactor_is_lost(self):
+        r = self.refused(3, "play", *self.STROKE, "-D", "tactor8", says=['stream on "tactor8"', self.LOST, "ttable", "hw:CARD=NAME"])
+        self.assertNotIn("played", r.stdout)
+        self.refused(3, "play", *self.STROKE, "-D", "summed")
+        self.refused(3, "play", "--live", "-", "-D", "tactor8", stdin="0 0\n", says=[self.LOST])
+        self.refused(3, "check", "--walk", "--auto", "-D", "tactor8", says=[self.LOST])
+        self.ok("play", "--path", "M 0 0 L 60 0", "--duration", "0.2", "--array", "palm-2x4", "-D", "tactor8")
+        self.assertNotIn("not known", self.ok("play", *self.STROKE, "-D", "straight").stderr)
+
+    def test_check_and_devices_report_it(self):
+        found = self.check_device("tactor8", status=3)
+        self.assertEqual((found["level"], found["found"]), ("error", f'PCM "tactor8": {self.LOST}'))
+        self.assertIn("-D hw:CARD=NAME", found["cure"])
+        self.assertIn("together with", self.check_device("summed", status=3)["found"])
+        self.assertEqual((self.check_device("straight")["level"], self.check_device("tactor8", "--array", "palm-2x4")["level"]), ("ok", "ok"))
+        self.write("kept.raw", "precious")
+        self.assertIn("tactor 1 of palm-3x3", self.check_device("kept", status=3)["found"])  # though it is not opened
+        self.assertEqual((self.dir / "kept.raw").read_text(), "precious")
+        pcms = self.devices()[1]
+        self.assertEqual((pcms["tactor8"]["fits"], pcms["tactor8"]["misfit"]), (False, self.LOST))
+        self.assertEqual((pcms["straight"]["fits"], pcms["straight"]["misfit"]), (True, None))
+        self.assertIn("    unfit     tactor 8 of palm-3x3 is on channel 8", self.ok("devices").stdout)
+
+    def test_changed_levels_and_unknown_wiring_are_warnings_and_a_louder_one_is_refused(self):
+        for pcm, notes in (("quiet", ("tactor 0 of palm-3x3 is on channel 0, which ALSA's configuration plays at -20 dB",
+                                      "tactor 2 of palm-3x3 is on channel 2, which ALSA's configuration plays at 0 dB with its polarity reversed",
+                                      "tactor 8 of palm-3x3 is on channel 8, which reaches 2 channels of the device, at -6.02 dB, 0 dB")),
+                           ("named", ("not known: type route to a channel FL is between",))):
+            found, r = self.check_device(pcm), self.ok("play", *self.STROKE, "-D", pcm)
+            self.assertTrue(found["level"] == "warning" and found["cure"], found)
+            self.assertIn("played", r.stdout)
+            for note in notes:
+                self.assertIn(note, found["found"])
+                self.assertRegex(r.stderr, f"tactor: warning: .*{note}")
+            self.assertEqual(found["found"].count("tactor "), len(notes) if pcm == "quiet" else found["found"].count("tactor "))
+        louder = "tactor 1 of palm-3x3 is on channel 1, which ALSA's configuration plays at 6.02 dB: louder than its limit allows"
+        self.assertIn(louder, self.check_device("loud", status=3)["found"])
+        self.refused(3, "play", *self.STROKE, "-D", "loud", says=[louder])
+        self.assertEqual(self.devices()[1]["loud"]["misfit"], louder)
+
+    def test_samples_that_alsa_clips_on_the_way_are_a_warning(self):
+        tables = [" ".join(f"{c}.{c} {gain}" for c in range(9)) for gain in (0.5, 2)]
+        self.write("alsa.conf", ALSA_CONFIG + 'pcm.half { type route slave { pcm "null" channels 9 } ttable { %s } }\n'
+                   'pcm.twice { type route slave { pcm "half" channels 9 } ttable { %s } }\n' % tuple(tables)
+                   + 'pcm.kept { type file slave.pcm "twice" file "kept.raw" format raw }\n')
+        says = "raises samples by up to 6.02 dB on the way to the device, and clips them there"
+        found = self.check_device("twice")
+        self.assertEqual((found["level"], found["found"].count(says)), ("warning", 1))
+        self.assertEqual(self.ok("play", *self.STROKE, "-D", "twice").stderr.count(says), 1)
+        self.assertIn(says, self.check_device("kept")["found"])  # which is not opened
+
+
+class SharedFiles(DevicesTest):
+    """Array files by others: they name the device, and none of their texts writes a file or runs a command."""
+    STROKE = ("--shape", "tap")
+    PCMS = """
+pcm.file {
+    @args [ FILE FORMAT ]
+    @args.FILE { type string }
+    @args.FORMAT { type string default raw }
+    type file
+    slave.pcm { type null }
+    file $FILE
+    format $FORMAT
+}
+pcm.plug { @args [ SLAVE ] @args.SLAVE { type string } type plug slave.pcm $SLAVE }
+pcm.recorder { type file slave.pcm { type null } file "kept" format raw }
+pcm.hidden { type plug slave.pcm "recorder" }
+pcm.desk { type plug slave.pcm "null" }
+"""
+    COMMAND = "file:'|touch ran; cat >/dev/null',raw"
+    # Each would write, run or define something, in another way.
+    HOSTILE = (COMMAND, "file:kept,raw", "file:FILE=kept", "raw:kept", "recorder", "hidden", "plug:recorder", "plug:'recorder'",
+               "{ type file slave.pcm null file kept format raw }", "plug:{ type file slave.pcm null file kept format raw }",
+               "plug:\"file:'kept',raw\"", "plug:'file:\\'kept\\',raw'", "null\nfile:kept", "@x", "kept/../kept", " null")
+
+    def setUp(self):
+        super().setUp()
+        self.write("alsa.conf", ALSA_CONFIG + self.PCMS)
+        self.write("kept", "precious")
+
+    def array(self, pcm, name="a.toml"):
+        text = pcm.replace("\\", "\\\\").replace('"', '\\"').replace("\n", "\\n")
+        return self.write(name, GRID.replace('"null"', f'"{text}"'))
+
+    def untouched(self):
+        self.assertEqual(((self.dir / "kept").read_text(), (self.dir / "ran").exists()), ("precious", False))
+
+    def test_an_array_file_cannot_write_or_run_anything(self):
+        for pcm in self.HOSTILE:
+            self.array(pcm)
+            for command in (("play", *self.STROKE), ("check",), ("check", "--walk", "--auto"), ("devices",)):
+                r = self.run_tool(*command, "--array", "a.toml")
+                self.assertEqual((r.returncode, "a.toml:11:7: PCM" in r.stderr), (2, True), f"{pcm} {command}: {r.stderr}")
+                self.untouched()
+        self.array(self.COMMAND)
+        out = self.refused(2, "check", "--array", "a.toml").stdout
+        self.assertRegex(out, r"(?m)^error    device +a\.toml:11:7: PCM")
+        self.assertRegex(out, r"(?m)^(ok|warning)  +real time ")
+        for args in (("plan",), ("render", "-o", "a.wav"), ("play", "-D", "null")):
+            self.ok(*args, *self.STROKE, "--array", "a.toml")
+        self.array(self.COMMAND, "others/a.toml")
+        self.write("mine.toml", '[array]\nfile = "others/a.toml"\n')
+        self.write("between.toml", '[array]\nfile = "mine.toml"\n')
+        for how in (("--array", "mine.toml"), ("--array", "between.toml"), ("--config", "mine.toml"), ("--config", "between.toml")):
+            for command in ("play", *self.STROKE), ("check",):
+                self.assertEqual(self.run_tool(*command, *how).returncode, 2, how)
+        self.untouched()
+
+    def test_devices_by_their_names_are_accepted(self):
+        for pcm in ("null", "default", "desk", "plug:null", "plug:'null'", "plug:SLAVE=null"):
+            self.array(pcm)
+            self.ok("play", *self.STROKE, "--array", "a.toml")
+            self.ok("check", "--array", "a.toml")
+        self.array("hw:CARD=Nowhere,DEV=0")
+        self.refused(3, "play", *self.STROKE, "--array", "a.toml")
+
+    def test_the_command_line_and_the_user_s_configuration_may_name_more(self):
+        self.array(f"file:'{self.dir}/out.raw',raw", "mine.toml")
+        self.ok("play", *self.STROKE, "--config", "mine.toml")
+        self.assertTrue((self.dir / "out.raw").stat().st_size)
+        self.ok("play", *self.STROKE, "-D", f"file:'|cat >{self.dir}/piped',raw")
+        self.assertTrue((self.dir / "piped").stat().st_size)
+        for pcm in ("file:FILE=kept", "recorder", "hidden", self.COMMAND):  # check and devices open no file that they would empty
+            self.assertRegex(self.ok("check", "-D", pcm).stdout, r"(?m)^warning  device .*not opened")
+            self.assertIn("not tried", " ".join(self.ok("devices", "-D", pcm).stdout.split()).lower())
+            self.untouched()
+        # The file's own name wins over that of an included file.
+        self.array(self.COMMAND, "others/a.toml")
+        self.write("mine.toml", '[array]\nfile = "others/a.toml"\n[output]\npcm = "recorder"\n')
+        self.ok("play", *self.STROKE, "--config", "mine.toml")
+        self.assertNotEqual((self.dir / "kept").read_bytes(), b"precious")
+
+    def test_a_file_that_is_no_gpio_chip_is_not_opened(self):
+        os.mkfifo(self.dir / "pipe")
+        for table, chip in (("[amplifier]\nline =", "pipe"), ("[sync]\nout =", "kept")):
+            self.write("a.toml", GRID + f'{table} {{ chip = "{self.dir}/{chip}", offset = 1 }}\n')
+            self.refused(3, "check", "--array", "a.toml")
+            self.refused(3, "play", *self.STROKE, "--array", "a.toml")
+        self.untouched()
 
 
 if __name__ == "__main__":
