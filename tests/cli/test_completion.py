@@ -82,28 +82,16 @@ class Completion(ToolTest):
                 self.assertEqual(self.offered("plan", f"{option}={value[:-1]}").count(f"{option}={value}"), 1)
 
     def test_strokes_files_devices_and_lists_are_offered(self):
-        self.assertEqual(self.offered("play", "park2016-3"), ["park2016-3", ":files .toml .csv .svg"])
-        self.assertEqual(self.offered("plan", "--array", "x"), [":files .toml"])
-        self.assertEqual(self.offered("plan", "--config="), [":files .toml"])
-        self.assertEqual(self.offered("render", "-o", ""), [":files .wav"])
-        self.assertEqual(self.offered("plot", "--output", ""), [":files .svg .png .pdf"])
+        for line, offered in (("play park2016-3", ["park2016-3", ":files .toml .csv .svg"]), ("plan --array x", [":files .toml"]), ("plan --config=", [":files .toml"]),
+                              ("render -o ", [":files .wav"]), ("plot --output ", [":files .svg .png .pdf"]), ("compare --phantoms linear,log,l", []),
+                              ("compare --phantoms linear,l", ["linear,log"]), ("plan --soa ", []), ("status --socket ", [":files"]), ("serve --tcp ", []),
+                              ("analyze ", [":folders"]), ("report ", [":folders"]), ("report -o ", [":files .md"]), ("experiment ", ["park2016", ":files .toml"]),
+                              ("experiment park2016 -o ", [":folders"]), ("experiment --display ", ["page", "terminal"]), ("analyze --format t", ["text", "tsv"]),
+                              ("analyze --participants ", []), ("nonsense ", [])):
+            self.assertEqual(self.offered(*line.split(" ")), offered, line)
         self.assertIn("null", self.offered("play", "-D", ""))
-        self.assertEqual(self.offered("compare", "--phantoms", "linear,log,l"), [])
-        self.assertEqual(self.offered("compare", "--phantoms", "linear,l"), ["linear,log"])
-        self.assertEqual(self.offered("plan", "--soa", ""), [])
-        self.assertEqual(self.offered("status", "--socket", ""), [":files"])
-        self.assertEqual(self.offered("serve", "--tcp", ""), [])
-        self.assertEqual(self.offered("analyze", ""), [":folders"])
-        self.assertEqual(self.offered("report", ""), [":folders"])
-        self.assertEqual(self.offered("report", "-o", ""), [":files .md"])
-        self.assertEqual(self.offered("experiment", ""), ["park2016", ":files .toml"])
-        self.assertEqual(self.offered("experiment", "park2016", "-o", ""), [":folders"])
-        self.assertEqual(self.offered("experiment", "--display", ""), ["page", "terminal"])
         for command in ("experiment", "calibrate"):
             self.assertIn("--verbose", self.offered(command, "--verb"))
-        self.assertEqual(self.offered("analyze", "--format", "t"), ["text", "tsv"])
-        self.assertEqual(self.offered("analyze", "--participants", ""), [])
-        self.assertEqual(self.offered("nonsense", ""), [])
         self.assertEqual(self.ok("__complete").stdout, "")
 
     # The shells' part: the typed text, and the words that the line has after Tab.
@@ -165,13 +153,8 @@ class Completion(ToolTest):
                                env=self.env, cwd=self.dir, capture_output=True, text=True, check=False)
             self.assertEqual(r.stderr, "")
             self.assertEqual(r.stdout.split("\n")[0].split("\t")[0], words[-1], typed)
-
-    def test_fish_explains_commands(self):
-        self.needs("fish")
-        r = subprocess.run(["fish", "--no-config", "-c", f"source {SCRIPTS}/tactor.fish; complete -C 'tactor pl'"],
-                           env=self.env, cwd=self.dir, capture_output=True, text=True, check=False)
-        self.assertEqual([line.split("\t")[0] for line in r.stdout.splitlines()], ["plan", "play", "plot"])
-        self.assertIn("plan\tPrint which tactor plays when", r.stdout)
+            if words[-1] == "compare":
+                self.assertEqual(r.stdout.count("\t"), 1)  # its explanation
 
 
 if __name__ == "__main__":
