@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: MIT
 """A server of the tool, and clients that speak its protocol, for the tests."""
 import json
-import os
-import select
 import signal
 import socket
 import subprocess
@@ -27,7 +25,7 @@ class Client:
         self.socket = socket.socket(family, socket.SOCK_STREAM)
         self.socket.settimeout(PATIENCE_S)
         self.socket.connect(address)
-        self.buffer = b""
+        self.buffer = bytearray()
         self.told = []
         self.last = 0
 
@@ -39,7 +37,9 @@ class Client:
 
     def next(self):
         """Returns the next message; None at the end."""
-        while b"\n" not in self.buffer:
+        looked = 0
+        while (end := self.buffer.find(b"\n", looked)) < 0:
+            looked = len(self.buffer)
             try:
                 more = self.socket.recv(65536)
             except ConnectionResetError:
@@ -47,8 +47,8 @@ class Client:
             if not more:
                 return None
             self.buffer += more
-        line, _, self.buffer = self.buffer.partition(b"\n")
-        message = json.loads(line)
+        message = json.loads(self.buffer[:end])
+        del self.buffer[:end + 1]
         MESSAGE.validate(message)
         return message
 
@@ -103,14 +103,19 @@ class Client:
 class Server:
     """`tactor serve`, listening once this is made; `where` is where it says that it listens."""
 
-    def __init__(self, test, *args, env=None, pass_fds=(), device=("-D", "null"), config=""):
+    def __init__(self, test, *args, env=None, device=("-D", "null"), config="", inherits=(), **more):
+        """inherits: (name, socket) of the sockets that it gets as from systemd; more: of Popen."""
         self.test = test
         file = test.write("serve.toml", config)
-        socket_option = () if "--socket" in args or env else ("--socket", str(test.dir / "s.sock"))
-        self.process = subprocess.Popen(
-            [TOOL, "serve", *socket_option, *device, "--config", file, "--format", "json", *map(str, args)],
-            stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, cwd=test.dir, env=test.env | (env or {}),
-            pass_fds=pass_fds)
+        socket_option = () if "--socket" in args or env or inherits else ("--socket", str(test.dir / "s.sock"))
+        command = [TOOL, "serve", *socket_option, *device, "--config", file, "--format", "json", *map(str, args)]
+        env = test.env | (env or {})
+        if inherits:  # LISTEN_PID must be that process, so a shell sets it
+            passed = "".join(f"exec {3 + i}<&{s.fileno()}; " for i, (_, s) in enumerate(inherits))
+            command = ["sh", "-c", f'{passed}export LISTEN_PID=$$; exec "$@"', "sh", *command]
+            env |= {"LISTEN_FDS": str(len(inherits)), "LISTEN_FDNAMES": ":".join(name for name, _ in inherits)}
+        self.process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, cwd=test.dir, env=env,
+                                        pass_fds=[s.fileno() for s in {s for _, s in inherits}], **more)
         test.addCleanup(self.kill)
         line = self.process.stdout.readline()
         self.where = json.loads(line) if line else None
@@ -139,15 +144,6 @@ class Server:
             self.process.wait()
         for stream in (self.process.stdout, self.process.stderr):
             stream.close()
-
-
-def readable(fd):
-    return bool(select.select([fd], [], [], PATIENCE_S)[0])
-
-
-def listening_fds(names):
-    """Sets the environment of a process that inherits sockets; LISTEN_PID must be that process, so a shell sets it."""
-    return {"LISTEN_FDS": str(len(names)), "LISTEN_FDNAMES": ":".join(names), "PATH": os.environ["PATH"]}
 
 
 class ServeTest(ToolTest):

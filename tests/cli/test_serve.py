@@ -1,6 +1,10 @@
 # SPDX-License-Identifier: MIT
-"""tactor serve for other programs: its sockets, their permissions, and its end."""
+"""tactor serve for other programs: its sockets, their permissions, the protocol, its limits, and its end."""
+import array
+import contextlib
+import itertools
 import json
+import math
 import os
 import pathlib
 import resource
@@ -8,21 +12,21 @@ import signal
 import socket
 import stat
 import subprocess
+import time
 
 from harness import PATIENCE_S, TOOL, main
-from serving import Client, ServeTest, Server
+from serving import LONG, SHORT, Client, ServeTest
+from websocket import Peer
+
+STATUS = b'{"jsonrpc":"2.0","id":1,"method":"status"}\n'
 
 
-class Serve(ServeTest):
-    # Sockets.
-
+class Sockets(ServeTest):
     def test_the_first_line_and_the_end(self):
         s = self.serve("--tcp", "0")
         self.assertEqual(set(s.where), {"event", "socket", "tcp", "osc", "http"})
-        self.assertEqual(s.where["event"], "listening")
+        self.assertEqual((s.where["event"], s.where["osc"], s.where["http"]), ("listening", None, None))
         self.assertRegex(s.where["tcp"], r"^127\.0\.0\.1:[1-9]\d*$")
-        self.assertIsNone(s.where["osc"])
-        self.assertIsNone(s.where["http"])
         status, out, err = s.terminate()
         self.assertEqual((status, out), (0, ""), err)
         self.assertIn("every user of this machine", err)
@@ -43,17 +47,12 @@ class Serve(ServeTest):
                      if int(f.name) > 2 and not int(f.read_text(encoding="ascii").split()[3], 8) & os.O_CLOEXEC]
         self.assertLessEqual(set(inherited), {"/dev/null"})  # ALSA's own, of the device "null"
 
-    def test_sigint_ends_it_too(self):
-        self.assertEqual(self.serve().terminate(signal.SIGINT)[0], 0)
-
     def test_it_ends_well_with_any_signals(self):
-        for other in (signal.SIGINT, signal.SIGHUP, signal.SIGTERM):
+        for signals in ((signal.SIGINT,), *((signal.SIGTERM, other) for other in (signal.SIGINT, signal.SIGHUP, signal.SIGTERM))):
             s = self.serve()
-            s.process.send_signal(signal.SIGTERM)
-            try:
-                s.process.send_signal(other)
-            finally:
-                self.assertEqual(s.process.wait(PATIENCE_S), 0)
+            for sent in signals:
+                s.process.send_signal(sent)
+            self.assertEqual(s.process.wait(PATIENCE_S), 0)
             self.assertFalse(os.path.exists(s.where["socket"]))
 
     def test_the_socket_of_another_server_stays(self):
@@ -61,38 +60,23 @@ class Serve(ServeTest):
         first = self.serve("--socket", path)
         path.unlink()
         second = self.serve("--socket", path)
-        first.process.send_signal(signal.SIGTERM)
-        self.assertEqual(first.process.wait(PATIENCE_S), 0)
+        self.assertEqual(first.terminate()[0], 0)
         self.assertEqual(second.client().ok("hello")["protocol"], "tactor/1")
 
     def test_the_socket_has_its_mode_under_any_umask(self):
-        before = os.umask(0)
-        self.addCleanup(os.umask, before)
         for mask in (0, 0o777, 0o22):
-            os.umask(mask)
-            try:
-                file = self.dir / f"mask{mask}"
-                env = {"XDG_RUNTIME_DIR": str(self.dir)}
-                os.umask(0o22)
-                self.write("serve.toml", "")
-                os.umask(mask)
-                s = Server(self, "--socket", file, env=env)
-            finally:
-                os.umask(0o22)
-            self.assertIsNotNone(s.where, getattr(s, "errors", ""))
+            file = self.dir / f"mask{mask}"
+            s = self.serve("--socket", file, env={"XDG_RUNTIME_DIR": str(self.dir)}, umask=mask)
             self.assertEqual(stat.S_IMODE(file.stat().st_mode), 0o600)
             self.assertEqual(s.terminate()[0], 0)
 
-    def test_the_system_s_socket_belongs_to_the_group(self):
+    def test_the_default_socket_is_the_system_s_with_its_group_or_the_user_s(self):
         (self.dir / "run").mkdir()
-        s = self.serve(env={"RUNTIME_DIRECTORY": str(self.dir / "run"), "XDG_RUNTIME_DIR": str(self.dir / "user")})
-        self.assertEqual(s.where["socket"], str(self.dir / "run/tactor.sock"))
-        self.assertEqual(stat.S_IMODE(os.stat(s.where["socket"]).st_mode), 0o660)
-
-    def test_a_user_s_default_socket(self):
-        s = self.serve(env={"XDG_RUNTIME_DIR": str(self.dir)})
-        self.assertEqual(s.where["socket"], str(self.dir / "tactor.sock"))
-        self.assertEqual(stat.S_IMODE(os.stat(s.where["socket"]).st_mode), 0o600)
+        for env, path, mode in (({"RUNTIME_DIRECTORY": str(self.dir / "run"), "XDG_RUNTIME_DIR": str(self.dir / "user")}, "run/tactor.sock", 0o660),
+                                ({"XDG_RUNTIME_DIR": str(self.dir)}, "tactor.sock", 0o600)):
+            s = self.serve(env=env)
+            self.assertEqual(s.where["socket"], str(self.dir / path))
+            self.assertEqual(stat.S_IMODE(os.stat(s.where["socket"]).st_mode), mode)
 
     def test_a_second_server_names_the_holder_of_the_socket(self):
         first = self.serve()
@@ -108,44 +92,23 @@ class Serve(ServeTest):
         self.refuses_to_start(2, says="no socket")
         self.assertEqual((self.dir / "s.sock").read_text(), "mine")
 
-    def test_inherited_sockets_win_and_stay(self):
+    def test_inherited_sockets_win_stay_and_are_checked_like_bound_ones(self):
         path = str(self.dir / "given.sock")
-        with socket.socket(socket.AF_UNIX) as given:
-            given.bind(path)
-            given.listen()
-            os.set_inheritable(given.fileno(), True)
-            command = f'exec 3<&{given.fileno()}; export LISTEN_PID=$$; exec "$@"'
-            p = subprocess.Popen(["sh", "-c", command, "sh", TOOL, "serve", "-D", "null", "--format", "json"],
-                                 stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True, cwd=self.dir,
-                                 pass_fds=[given.fileno()],
-                                 env=self.env | {"LISTEN_FDS": "1", "LISTEN_FDNAMES": "socket"})
-            self.addCleanup(p.stdout.close)
-            self.assertEqual(json.loads(p.stdout.readline())["socket"], path)
-            self.assertEqual(Client(path).ok("hello")["protocol"], "tactor/1")
-            p.terminate()
-            self.assertEqual(p.wait(PATIENCE_S), 0)
-            self.assertTrue(os.path.exists(path))
-
-    def test_inherited_sockets_are_checked_like_bound_ones(self):
-        open_to_all = str(self.dir / "open.sock")
         with socket.socket(socket.AF_UNIX) as given, socket.socket(socket.AF_UNIX) as nameless:
-            given.bind(open_to_all)
-            nameless.bind("\0" + open_to_all)
+            given.bind(path)
+            nameless.bind("\0" + path)
             for s in (given, nameless):
                 s.listen()
             for mode, sockets, why in ((0o666, [given], "every user of this machine may write to it"),
                                        (0o660, [given, given], "there are two of that name"),
                                        (0o660, [nameless], "it is no file")):
-                os.chmod(open_to_all, mode)
-                passed = "".join(f"exec {3 + i}<&{s.fileno()}; " for i, s in enumerate(sockets))
-                r = subprocess.run(["sh", "-c", f'{passed}export LISTEN_PID=$$; exec "$@"', "sh", TOOL, "serve", "-D", "null"],
-                                   capture_output=True, text=True, cwd=self.dir, pass_fds=[s.fileno() for s in set(sockets)],
-                                   env=self.env | {"LISTEN_FDS": str(len(sockets)),
-                                                   "LISTEN_FDNAMES": ":".join(["socket"] * len(sockets))},
-                                   timeout=PATIENCE_S, check=False)
-                self.assertEqual((r.returncode, r.stdout), (2, ""), r.stderr)
-                self.assertIn('inherited socket "socket"', r.stderr)
-                self.assertIn(why, r.stderr)
+                os.chmod(path, mode)
+                self.refuses_to_start(2, inherits=[("socket", s) for s in sockets], says=why)
+            s = self.serve(inherits=[("socket", given)])
+            self.assertEqual(s.where["socket"], path)
+            self.assertEqual(Client(path).ok("hello")["protocol"], "tactor/1")
+            self.assertEqual(s.terminate()[0], 0)
+            self.assertTrue(os.path.exists(path))
 
     def test_it_notifies_its_manager(self):
         path = str(self.dir / "notify")
@@ -165,47 +128,29 @@ class Serve(ServeTest):
                 pass
 
     def test_bad_addresses_are_refused_with_the_reason(self):
-        self.refuses_to_start(2, "--tcp", "nonsense:1:2", says="no address")
-        self.refuses_to_start(2, "--tcp", "0.0.0.0:0", says="token_file")
         token = self.write("token", "fifteen letters\n")
         token.chmod(0o600)
-        for option in ("--tcp", "--http"):
-            self.refuses_to_start(2, option, "0.0.0.0:0", config=f'[serve]\ntoken_file = "{token}"\n', says="15 characters (put at least 16")
-        self.refuses_to_start(2, "--socket", "x" * 200, says="name")
-        self.refuses_to_start(2, config="[serve]\nhttpp = 4\n", says="httpp")
-        self.refuses_to_start(2, config='[serve]\ntcp = "x"\n', says="serve.toml:2:")
-        self.refuses_to_start(2, "--period-frames", "1", says="period")
+        short = {"config": f'[serve]\ntoken_file = "{token}"\n', "says": "15 characters (put at least 16"}
+        for args, more in ((("--tcp", "nonsense:1:2"), {"says": "no address"}), (("--tcp", "0.0.0.0:0"), {"says": "token_file"}),
+                           (("--http", "0.0.0.0:0"), {"says": "token_file"}),
+                           (("--tcp", "0.0.0.0:0"), short), (("--http", "0.0.0.0:0"), short), (("--socket", "x" * 200), {"says": "name"}),
+                           ((), {"config": "[serve]\nhttpp = 4\n", "says": "httpp"}), ((), {"config": '[serve]\ntcp = "x"\n', "says": "serve.toml:2:"}),
+                           (("--period-frames", "1"), {"says": "period"})):
+            self.refuses_to_start(2, *args, **more)
         self.assertFalse((self.dir / "s.sock").exists())
-        r = self.run_tool("serve", "-D", "null", env={"XDG_RUNTIME_DIR": "", "RUNTIME_DIRECTORY": ""})
-        self.assertEqual(r.returncode, 2)
+        self.assertEqual(self.run_tool("serve", "-D", "null", env={"XDG_RUNTIME_DIR": "", "RUNTIME_DIRECTORY": ""}).returncode, 2)
 
     def test_a_port_in_use_is_reported_with_its_holder(self):
         s = self.serve("--tcp", "0", "--http", "0")
         me = f"by tactor, process {s.process.pid} (choose another port, or end it)"
-        self.refuses_to_start(3, "--socket", self.dir / "b.sock", "--tcp", s.where["tcp"], says=me)
-        self.refuses_to_start(3, "--socket", self.dir / "b.sock", "--http", s.where["http"][7:-1], says=me)
+        for option, port in (("--tcp", s.where["tcp"]), ("--http", s.where["http"][7:-1])):
+            self.refuses_to_start(3, "--socket", self.dir / "b.sock", option, port, says=me)
 
     def test_too_few_descriptors_are_reported(self):
-        before = resource.getrlimit(resource.RLIMIT_NOFILE)
-        few = self.serve_with_descriptors(60, 60)
-        self.assertIn("too few descriptors: 60 may be open, and 64 clients need 160", few)
-        self.assertNotIn("descriptors", self.serve_with_descriptors(60, before[1]))
-
-    def serve_with_descriptors(self, soft, hard):
-        """Returns its messages when it begins with these arguments."""
-        p = subprocess.Popen(["prlimit", f"--nofile={soft}:{hard}", TOOL, "serve", "--socket", self.dir / f"{hard}.sock", "-D", "null"],
-                             cwd=self.dir, env=self.env, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
-        self.assertIn("listening", p.stdout.readline())
-        p.terminate()
-        return p.communicate(timeout=PATIENCE_S)[1]
-
-    def test_check_reads_the_token(self):
-        token = self.write("token", "sixteen letters!\n")
-        self.write("tactor.toml", f'[serve]\ntcp = 0\ntoken_file = "{token}"\n')
-        token.chmod(0o644)
-        r = self.run_tool("check", "-D", "null", "--config", "tactor.toml")
-        self.assertEqual(r.returncode, 2)
-        self.assertIn("others may read it", r.stderr)
+        hard = resource.getrlimit(resource.RLIMIT_NOFILE)[1]
+        for most, is_few in ((60, True), (hard, False)):
+            s = self.serve(preexec_fn=lambda most=most: resource.setrlimit(resource.RLIMIT_NOFILE, (60, most)))
+            self.assertEqual("too few descriptors: 60 may be open, and 64 clients need 160" in s.terminate()[2], is_few)
 
     # Permissions.
 
@@ -222,8 +167,9 @@ class Serve(ServeTest):
     def test_a_token_is_required(self):
         token = self.write("token", "secret\n")
         token.chmod(0o604)
-        config = f'[serve]\ntcp = 0\ntoken_file = "{token}"\n'
+        config = f'[serve]\ntcp = 0\nmax_message_s = 600\ntoken_file = "{token}"\n'
         self.refuses_to_start(2, config=config, says="others may read it")
+        self.refused(2, "check", "-D", "null", "--config", "serve.toml", says=("others may read it",))
         token.chmod(0o600)
         s = self.serve(config=config)
         c = s.client(tcp=True)
@@ -237,6 +183,392 @@ class Serve(ServeTest):
             self.check_error(c.error("hello", token="guess"), -32003)
         self.assertIsNone(c.next())
         s.client().ok("status")
+
+    def test_a_token_that_does_not_come_ends_the_connection(self):
+        token = self.write("token", "secret\n")
+        token.chmod(0o600)
+        s = self.serve("--tcp", "0", config=f'[serve]\ntoken_file = "{token}"\nmax_message_s = 0.2\n')
+        for said in (b"\n", b'{"jsonrpc":"2.0","id":1,"method":"hello"}\n'):
+            c = s.client(tcp=True)
+            with contextlib.suppress(BrokenPipeError, ConnectionResetError):
+                c.raw(said)
+            *_, last = iter(c.next, None)
+            self.check_error(last["error"], -32001, "max_message_s")
+            self.assertIn("token", last["error"]["data"]["why"])
+
+
+class Protocol(ServeTest):
+    """tests/net and tests/server have the cases; here each method once, by its schema."""
+
+    def test_hello_has_the_versions_and_the_array_s_place(self):
+        palm = self.write("palm.toml", '[array]\nsite = "left palm"\nup = "fingers"\nplace = [1, -56]\nturn = 15\n'
+                          'body = 180\npreset = "palm-3x3"\n')
+        r = self.serve("--array", palm).client().ok("hello")
+        self.assertEqual(list(r), ["protocol", "version", "array", "stream", "presets", "shapes", "clock", "max_level_dbfs", "client"])
+        self.assertEqual(set(r["stream"]), {"rate", "channels", "format", "period_frames", "latency_s", "pcm"})
+        self.assertEqual([r["array"].pop(k) for k in ("site", "up", "place", "turn", "body")], ["left palm", "fingers", [1, -56], 15, 180])
+        self.assertEqual(r["array"], self.plan("park2016-1", "--array", palm)["array"])
+        self.assertEqual((r["stream"]["pcm"], r["stream"]["channels"], r["max_level_dbfs"]), ("null", 9, -12.0))
+        self.assertIn("park2016-1", r["presets"])
+        self.assertLess(abs(r["clock"]["monotonic_s"] - time.monotonic()), PATIENCE_S)
+
+    def test_json_rpc_is_followed(self):
+        c = self.serve().client()
+
+        def answer(raw):
+            c.raw(raw + b"\n")
+            return c.reply()
+
+        for raw, code, number in (
+                (b"{", -32700, None), (b"[]", -32600, None), (b'{"jsonrpc":"2.0","id":"x","method":"dance"}', -32601, "x"),
+                (b'{"jsonrpc":"2.0","id":3.5,"method":"status","params":[1]}', -32602, 3.5),
+                (b'{"jsonrpc":"2.0","id":5,"method":"status","params":{"x":1}}', -32602, 5),
+                (b'{"jsonrpc":"2.0","id":6,"method":"play","params":{"path":"M 0 0 L 9 9","":1}}', -32602, 6),
+                (b"[" * 65, -32001, None)):
+            r = answer(raw)
+            self.assertEqual((r["jsonrpc"], r["id"]), ("2.0", number), raw)
+            self.check_error(r["error"], code)
+        # Notifications have no reply, in a batch and alone.
+        c.raw(b'{"jsonrpc":"2.0","method":"status"}\n{"jsonrpc":"2.0","method":"dance"}\n'
+              b'[{"jsonrpc":"2.0","method":"stop"}]\n')
+        batch = answer(b'[{"jsonrpc":"2.0","id":1,"method":"stop"}, 1, {"jsonrpc":"2.0","method":"stop"},'
+                       b'{"jsonrpc":"2.0","id":2,"method":"play","params":' + json.dumps(SHORT).encode() + b'}]\r')
+        self.assertEqual([r.get("id") for r in batch], [1, None, 2])
+        self.assertEqual(batch[1]["error"]["code"], -32600)
+        self.assertEqual(c.await_end(batch[2]["result"]["stroke"])["state"], "finished")
+
+    def test_play_takes_all_forms_and_plan_gives_the_output_of_the_tool(self):
+        c = self.serve().client()
+        toml = "[[stroke]]\npath = 'M 0 0 L 40 0'\nduration_s = 0.1\n[[stroke]]\npath = 'M 0 0 L 0 40'\nduration_s = 0.1\n"
+        for params, count in (({"stroke": "park2016-1"}, 1), (SHORT, 1), ({"points": [[0, 0, 0], [0.1, 20, 20, 0.5]]}, 1),
+                              ({"toml": toml}, 2), ({"csv": "t_s,x_mm,y_mm\n0,0,0\n0.1,20,20\n"}, 1),
+                              ({"svg": '<svg xmlns="http://www.w3.org/2000/svg"><path d="M0 0 L20 0 M0 20 L20 20"/></svg>'}, 2)):
+            r = c.ok("play", **params)
+            self.assertEqual(set(r), {"stroke", "strokes", "total_s", "warnings"})
+            self.assertEqual((r["strokes"][0], len(r["strokes"])), (r["stroke"], count))
+            for n in r["strokes"]:
+                self.assertIsInstance(c.stroke(n, "started")["started_s"], float)
+                end = c.await_end(n)
+                self.assertEqual((end["state"], end["reason"]), ("finished", ""))
+                self.assertGreater(end["frames"], 0)
+                self.assertLess(abs(end["started_unix_s"] - time.time()), 2 * PATIENCE_S)
+        self.assertEqual(c.ok("plan", stroke="park2016-3", options={"phantom": "barycentric"}),
+                         self.plan("park2016-3", "--phantom", "barycentric"))
+        for view in ("bursts", "percept", "peaks"):
+            c.ok("plan", **SHORT, view=view, draft=7)
+        long = {"path": "M 0 0 L 40 40", "options": {"algorithm": "continuous", "duration": 600}}
+        self.check_error(c.error("plan", **long), -32001, "plan")
+        self.assertEqual(len(c.ok("plan", **long, view="bursts")["onsets"]), 2000)
+
+    def test_bad_parameters_are_named(self):
+        c = self.serve().client()
+        path = "M 0 0 L 40 40"
+        for what, params in (("options.nonsense", {"path": path, "options": {"nonsense": 1}}), ("options", {"path": path, "options": []}),
+                             ("options.snap", {"path": path, "options": {"snap": "true"}}),
+                             ("points", {"points": [[0, 0, 0], [1, 20, 20, 1.1]]}), ("points", {"points": [[0, 0, 0]]}),
+                             ("points", {"points": [[0, 0], [1, 2, 3]]}), ("path", {"path": "M 0 x"}), ("path", {"path": 1}),
+                             ("stroke", {"stroke": "/etc/passwd"}), ("svg", {"svg": "<svg"}),
+                             ("stroke", {}), ("path", {"stroke": "park2016-1", "path": path}), ("start", {"path": path, "start": "soon"}),
+                             ("start.delay_s", {"path": path, "start": {"delay_s": -1}}), ("dance", {"path": path, "dance": 1})):
+            for method in ("play", "plan"):
+                self.check_error(c.error(method, **params), -32602, what)
+        said = c.error("play", path=path, options={"carrier": 30000})
+        self.check_error(said, -32602, "options.carrier")
+        self.assertEqual(said["message"].count("options.carrier"), 1, said)
+        said = c.error("play", toml='[stroke]\npath = "M 0 0 L 40 40"\nsoas = 1\n')
+        self.assertEqual((said["data"]["line"], said["data"]["column"]), (3, 1), said)
+        self.assertTrue(said["message"].startswith("toml:3:1: "), said)
+        for method, what, params in (("begin", "options.sl", {"options": {"sl": 1}}), ("begin", "options.carrier", {"options": {"carrier": 24001}}),
+                                     ("begin", "options.algorithm", {"options": {"algorithm": "tactile-brush"}}),
+                                     ("begin", "options.duration", {"options": {"duration": 1}}), ("to", "x_mm", {"stroke": 1}),
+                                     ("drive", "tactor", {"tactor": 9}), ("drive", "tactor", {}), ("drive", "tactor", {"tactor": 0.5}),
+                                     ("drive", "intensity", {"tactor": 0, "intensity": 1.1}), ("drive", "duration_s", {"tactor": 0, "duration_s": -1}),
+                                     ("subscribe", "events", {"events": ["x"]}), ("subscribe", "levels_hz", {"events": [], "levels_hz": 101}),
+                                     ("hello", "name", {"name": "a\x1bb"})):
+            self.check_error(c.error(method, **params), -32602, what)
+        self.assertTrue(c.ok("options")["options"])
+
+    def test_the_owner_s_speed_level_and_latency_hold(self):
+        c = self.serve(config="[defaults]\nspeed = 20\nlatency-ms = 5\nlevel-dbfs = -20\n").client()
+        line = {"path": "M 0 20 L 40 20"}
+        for params, duration_s in ((line, 2.0), (line | {"options": {"speed": 80}}, 0.5),
+                                   ({"toml": '[stroke]\npath = "M 0 20 L 40 20"\nduration_s = 1\n'}, 1.0), ({"points": [[0, 0, 20], [1, 40, 20]]}, 1.0)):
+            self.assertAlmostEqual(c.ok("plan", **params)["stroke"]["duration_s"], duration_s)
+        self.assertAlmostEqual(c.ok("hello")["stream"]["latency_s"], 0.005)
+        self.assertEqual(c.ok("hello")["max_level_dbfs"], -20)
+        c = self.serve("--socket", self.dir / "b.sock", config='[serve]\nmax_level_dbfs = -30\n[defaults]\nlevel-dbfs = -20\n').client()
+        self.assertEqual(c.ok("hello")["max_level_dbfs"], -30)
+        for method, params in (("play", line), ("begin", {})):
+            self.check_error(c.error(method, **params, options={"level_dbfs": -29.9}), -32602, "options.level_dbfs")
+        self.assertEqual(c.ok("plan", stroke="park2016-1")["render"]["level_dbfs"], -30)
+
+    def test_sensation_levels_add_up_to_the_ceiling_and_not_to_a_gain_above_it(self):
+        samples = self.dir / "out.raw"
+        tactors = self.write("weak.toml", '[array]\nname = "weak"\n[[tactor]]\nx_mm = 0.0\ny_mm = 0.0\nchannel = 0\n'
+                             'gain_db = 6.0\nthreshold_dbfs = -40.0\n')
+        s = self.serve("--array", tactors, device=("-D", f"raw:{samples}"), config="[serve]\nmax_level_dbfs = -20\n")
+        c = s.client()
+        loud = {"path": "M 0 0 L 0.001 0", "options": {"algorithm": "continuous", "duration": 0.1, "sl": 20, "outside": "clamp"}}
+        self.assertEqual(c.ok("hello")["stream"]["format"], "s32")
+        strokes = [c.ok("play", **loud, start="armed")["stroke"] for _ in range(3)]
+        c.ok("fire")
+        for stroke in strokes:
+            self.assertEqual(c.await_end(stroke)["state"], "finished")
+        self.assertEqual(s.terminate()[0], 0)
+        peak = max(map(abs, array.array("i", samples.read_bytes()))) / 2**31
+        self.assertAlmostEqual(20 * math.log10(peak), -20, delta=0.01)
+
+    def test_armed_and_waiting_strokes_are_fired_and_stopped(self):
+        s = self.serve()
+        a, b = s.client(), s.client()
+        toml = "".join(f"[[stroke]]\npath = 'M 0 0 L 40 {y}'\nduration_s = 0.1\n" for y in (0, 10, 20))
+        armed = a.ok("play", toml=toml, start="armed", options={"algorithm": "continuous"})["strokes"]
+        later = a.ok("play", **SHORT, start={"delay_s": 3600})["stroke"]
+        self.assertEqual({x["stroke"]: x["state"] for x in b.ok("status")["strokes"]}, dict.fromkeys(armed, "armed") | {later: "waiting"})
+        self.check_error(b.error("cancel", stroke=later), -32002, "stroke")
+        self.assertEqual([b.ok("fire"), b.ok("fire")], [{"count": 3}, {"count": 0}])
+        starts = [a.stroke(n, "started")["started_s"] for n in armed]
+        # Exact as far as two readings of the clock agree; timed/test_times.py checks the rest.
+        self.assertGreaterEqual(starts[2] - starts[0], 0.199)
+        self.assertEqual([a.await_end(n)["state"] for n in armed], ["finished"] * 3)
+        self.assertEqual(b.ok("stop"), {})
+        end = a.await_end(later)
+        self.assertEqual((end["state"], end["frames"], end["started_s"]), ("cancelled", 0, None))
+        n = a.ok("play", **SHORT)["stroke"]
+        self.assertEqual(a.await_end(n)["state"], "finished")
+
+    def test_a_leaving_client_ends_only_its_live_strokes_and_a_half_closed_one_gets_the_end(self):
+        s = self.serve()
+        c, watcher, half = s.client(), s.client(), s.client()
+        watcher.ok("subscribe", events=["strokes", "touches", "stops"])
+        live = c.ok("begin", timeout_s=3600)["stroke"]
+        c.raw(b'{"jsonrpc":"2.0","id":77,"method":"to","params":{"stroke":%d,"x_mm":1e400,"y_mm":0}}\n' % live)
+        self.check_error(c.reply()["error"], -32602, "x_mm")
+        c.ok("to", stroke=live, x_mm=10, y_mm=20, intensity=100)
+        place = watcher.notification(lambda m: m["method"] == "touches")["params"]
+        self.assertEqual((place["stroke"], place["x_mm"], place["y_mm"], place["down"]), (live, 10, 20, True))
+        played = c.ok("play", **LONG)["stroke"]
+        c.stroke(played, "started")
+        c.close()
+        end = watcher.await_end(live)
+        self.assertEqual((end["state"], end["held_points"]), ("finished", 1))
+        self.assertEqual([(x["stroke"], x["state"]) for x in watcher.ok("status")["strokes"]], [(played, "started")])
+        half.send({"jsonrpc": "2.0", "id": 1, "method": "play", "params": SHORT})
+        half.socket.shutdown(socket.SHUT_WR)
+        self.assertEqual(half.await_end(half.reply()["result"]["stroke"])["state"], "finished")
+        self.assertIsNone(half.next())
+        s.process.terminate()
+        self.assertEqual(watcher.notification(lambda m: m["method"] == "stops")["params"], {"client": 0, "name": ""})
+
+    def test_levels_are_those_of_the_tactors(self):
+        c = self.serve().client()
+        c.ok("subscribe", events=["levels"], levels_hz=100)
+        n = c.ok("drive", tactor=3, duration_s=300)["stroke"]
+        m = c.notification(lambda m: m["method"] == "levels" and m["params"]["dbfs"][3] is not None
+                           and m["params"]["dbfs"][3] > -12.1)["params"]["dbfs"]
+        self.assertEqual([v is None for v in m], [i != 3 for i in range(9)])
+        self.assertLess(m[3], -11.9)
+        c.ok("cancel", stroke=n)
+
+    def test_status_has_its_fields_and_who_is_there(self):
+        s = self.serve("--tcp", "0", "--http", "0")
+        a, b = s.client(), s.client(tcp=True)
+        mine = a.ok("hello", name="Ann \u2766")["client"]
+        theirs = b.ok("hello", name="Bob")["client"]
+        page = Peer(s.where["http"].removeprefix("http://").rstrip("/"))
+        self.addCleanup(page.socket.close)
+        self.assertEqual(page.upgrade(), 101)
+        a.ok("play", **LONG)
+        r = a.ok("status")
+        self.assertEqual(list(r), ["version", "stream", "amplifier", "clients", "who", "strokes", "limits"])
+        self.assertLessEqual({"state", "xruns", "uptime_s", "realtime"}, set(r["stream"]))
+        self.assertEqual((r["stream"]["state"], r["amplifier"], r["clients"]), ("running", "none", 3))
+        who = r["who"]
+        self.assertEqual([(x["client"], x["name"], x["from"]) for x in who],
+                         [(mine, "Ann \u2766", "this computer"), (theirs, "Bob", "127.0.0.1"), (who[-1]["client"], "", "127.0.0.1")])
+        said = self.ok("status", "--socket", s.where["socket"]).stdout
+        for line in (f"  {mine} Ann \u2766 from this computer\n", f"  {theirs} Bob from 127.0.0.1\n", f"  {who[-1]['client']} from 127.0.0.1\n"):
+            self.assertIn(line, said)
+        self.assertEqual(json.loads(self.ok("status", "--socket", s.where["socket"], "--format", "json").stdout)["who"][:3], who)
+
+
+class Limits(ServeTest):
+    def test_the_configuration_s_limits_hold(self):
+        c = self.serve(config="[serve]\nmax_strokes = 3\nmax_live_strokes = 1\nmax_points_per_s = 5\nmax_stroke_s = 300\nmax_message_bytes = 20000\n").client()
+        self.check_error(c.error("play", path="M 0 0 L 40 40", options={"algorithm": "continuous", "duration": 300.1}),
+                         -32001, "max_stroke_s")
+        n = c.ok("begin", timeout_s=3600)["stroke"]
+        self.check_error(c.error("begin"), -32001, "max_live_strokes")
+        # At once: five more may come each second.
+        c.raw(b"".join(json.dumps({"jsonrpc": "2.0", "id": i, "method": "to", "params": {"stroke": n, "x_mm": 1, "y_mm": 1}}).encode()
+                       + b"\n" for i in range(100)))
+        codes = [c.reply().get("error", {}).get("code") for _ in range(100)]
+        self.assertEqual(codes[:5], [None] * 5)
+        self.assertIn(-32001, codes)
+        for _ in range(2):
+            c.ok("play", **SHORT, start="armed")
+        for method, params in (("play", SHORT), ("drive", {"tactor": 0})):
+            self.check_error(c.error(method, **params), -32001, "max_strokes")
+        c.raw(b" " * 20001)
+        self.check_error(c.reply()["error"], -32001, "max_message_bytes")
+        self.assertIsNone(c.reply())
+        c = self.serve("--socket", self.dir / "slow.sock", config="[serve]\nmax_message_s = 0.2\n").client()
+        self.check_error(c.next()["error"], -32001, "max_message_s")
+        self.assertIsNone(c.next())
+
+    def test_places_are_limited_and_freed(self):
+        s = self.serve("--tcp", "0", config="[serve]\nmax_clients = 4\nkept_clients = 2\n")
+        for _ in range(2):  # a place that leaks shows in the second round
+            network = [s.client(tcp=True) for _ in range(2)]
+            for c in network:
+                c.ok("hello")
+            third = s.client(tcp=True)
+            refused = third.next()["error"]
+            self.check_error(refused, -32001, "max_clients")
+            self.assertIn("4 clients are the most, 2 of them on this machine's socket", refused["message"])
+            self.assertIsNone(third.next())
+            local = [s.client() for _ in range(2)]
+            for c in local:
+                self.assertEqual(c.ok("hello")["protocol"], "tactor/1")
+            self.check_error(s.client().next()["error"], -32001, "max_clients")
+            for c in network + local[1:]:
+                c.socket.shutdown(socket.SHUT_WR)
+                self.assertIsNone(c.next())
+            self.assertEqual(local[0].ok("status")["clients"], 1)
+            local[0].socket.shutdown(socket.SHUT_WR)
+            self.assertIsNone(local[0].next())
+
+    def test_exhausted_descriptors_refuse_new_clients(self):
+        s = self.serve("--http", "0")
+        busy = s.client()
+        live = busy.ok("begin", timeout_s=3600)["stroke"]
+        busy.ok("to", stroke=live, x_mm=10, y_mm=10)
+        busy.stroke(live, "started")
+        pid = s.process.pid
+        used = len(os.listdir(f"/proc/{pid}/fd"))
+        before = resource.prlimit(pid, resource.RLIMIT_NOFILE)
+        highest = max(map(int, os.listdir(f"/proc/{pid}/fd")))
+        resource.prlimit(pid, resource.RLIMIT_NOFILE, (highest + 1, before[1]))
+        space = highest + 1 - used  # gaps among the open ones
+        for c in [s.client() for _ in range(space + 10)][space:]:
+            self.check_error(c.next()["error"], -32001, "descriptors")
+            self.assertIsNone(c.next())
+        host, _, port = s.where["http"].removeprefix("http://").rstrip("/").rpartition(":")
+        with socket.create_connection((host, int(port)), PATIENCE_S) as page:
+            self.assertTrue(page.recv(65536).startswith(b"HTTP/1.1 503 "))
+        # Present clients go on.
+        busy.ok("to", stroke=live, x_mm=20, y_mm=20)
+        self.assertEqual(busy.await_end(busy.ok("play", **SHORT)["stroke"])["state"], "finished")
+        resource.prlimit(pid, resource.RLIMIT_NOFILE, before)
+        self.assertEqual(s.client().ok("hello")["protocol"], "tactor/1")
+        busy.ok("end", stroke=live)
+        self.assertEqual(busy.await_end(live)["state"], "finished")
+        self.assertEqual(busy.ok("status")["stream"]["xruns"], 0)
+        self.assertEqual(s.terminate()[0], 0)
+
+    def test_a_full_disk_ends_only_the_log(self):
+        log = self.dir / "serve.log"
+        s = self.serve("--log", log)
+        c = s.client()
+        c.await_end(c.ok("play", **SHORT)["stroke"])
+        self.assertRegex(log.read_text(), r" info stroke 1 of client \d+: began \S+Z \(\d+\.\d{6} s by CLOCK_MONOTONIC\), finished after 0\.05")
+        # No further byte, like on a full disk: the log ends with the reason, and nothing else does.
+        resource.prlimit(s.process.pid, resource.RLIMIT_FSIZE, (log.stat().st_size, resource.RLIM_INFINITY))
+        self.assertEqual(c.await_end(c.ok("play", **SHORT)["stroke"])["state"], "finished")
+        status, _, err = s.terminate()
+        self.assertEqual(status, 0, err)
+        self.assertIn("serve.log: File too large: the log ends here", err)
+        self.assertFalse(os.path.exists(s.where["socket"]))
+
+    def test_unwritable_standard_output_does_not_stop_it(self):
+        if not os.path.exists("/dev/full"):
+            self.skipTest("there is no /dev/full")
+        file = str(self.dir / "full.sock")
+        with open("/dev/full", "w", encoding="ascii") as full:
+            p = subprocess.Popen([TOOL, "serve", "-D", "null", "--socket", file], stdout=full, stderr=subprocess.PIPE, text=True,
+                                 cwd=self.dir, env=self.env)
+        self.addCleanup(p.stderr.close)
+        said = next(line for line in p.stderr if "standard output" in line)
+        self.assertIn("No space left on device: where it listens could not be said", said)
+        c = Client(file)
+        self.assertEqual(c.await_end(c.ok("play", **SHORT)["stroke"])["state"], "finished")
+        c.close()
+        p.terminate()
+        self.assertEqual(p.wait(PATIENCE_S), 0)
+
+    def test_stop_stops_beside_large_messages_and_in_a_refused_one(self):
+        s = self.serve()
+        c = s.client()
+        path = "M 0 0" + "".join(f" L {i % 40} {i * 7 % 40}" for i in range(100_000))
+        plan = {"jsonrpc": "2.0", "id": 1, "method": "plan", "params": {"path": path, "options": {"duration": 1}, "view": "bursts"}}
+        many = [s.client() for _ in range(12)]
+        for client, noise in zip(many, itertools.cycle((b"x" * (1 << 20), b"[" * 500_000 + b"]" * 500_000, json.dumps(plan).encode()))):
+            client.raw(noise + b"\n")
+        mine = c.ok("play", **LONG)["stroke"]
+        self.assertEqual(c.ok("stop"), {})
+        self.assertEqual(c.await_end(mine)["reason"], "cancelled by its client")
+        for client in many:
+            self.assertIsNotNone(client.next())
+        mine = c.ok("play", **LONG)["stroke"]
+        many[0].raw(b"[" + b'{"jsonrpc":"2.0","method":"status"},' * 9000 + b'{"jsonrpc":"2.0","method":"stop"}]\n')
+        self.check_error(many[0].reply()["error"], -32001)
+        self.assertEqual(c.await_end(mine)["state"], "cancelled")
+        self.assertEqual(c.await_end(c.ok("play", **SHORT)["stroke"])["state"], "finished")
+        self.assertEqual(s.terminate()[0], 0)
+
+    def test_a_client_that_does_not_read_is_dropped_and_others_play_on(self):
+        s = self.serve(config="[serve]\nmax_unread_bytes = 100000\n")
+        deaf, other = s.client(), s.client()
+        with self.assertRaises((BrokenPipeError, ConnectionResetError)):
+            for _ in range(1_000_000):
+                deaf.raw(STATUS * 100)
+        n = other.ok("play", **SHORT)["stroke"]
+        self.assertEqual(other.await_end(n)["state"], "finished")
+
+    def test_each_number_has_one_end_at_a_stop(self):
+        s = self.serve()
+        c = s.client()
+        numbers = [c.ok("play", **LONG)["stroke"] for _ in range(3)] + [c.ok("play", **SHORT, start="armed")["stroke"]]
+        live = c.ok("begin", timeout_s=3600)["stroke"]
+        c.ok("to", stroke=live, x_mm=1, y_mm=1)
+        c.stroke(numbers[0], "started")
+        s.process.terminate()
+        told = c.told
+        while (m := c.next()) is not None:
+            told.append(m)
+        ends = [(m["params"]["stroke"], m["params"]["state"]) for m in told
+                if m["method"] == "stroke" and m["params"]["state"] != "started"]
+        self.assertEqual(sorted(ends), [(n, "cancelled") for n in sorted(numbers + [live])])
+        self.assertIn("closing", [m["params"]["state"] for m in told if m["method"] == "stream"])
+        self.assertEqual(s.process.wait(PATIENCE_S), 0)
+
+    def test_a_card_that_comes_later_is_used(self):
+        conf = self.dir / "late.conf"
+        conf.write_text("pcm.!default { type null }\n")
+        c = self.serve(device=("-D", "late"), env={"ALSA_CONFIG_PATH": str(conf), "XDG_RUNTIME_DIR": str(self.dir)}).client()
+        c.ok("subscribe", events=["stream"])
+        for method, params in (("play", SHORT), ("begin", {})):
+            self.check_error(c.error(method, **params), -32000, "stream")
+        conf.write_text("pcm.!default { type null }\npcm.late { type null }\n")
+        os.utime(conf, (time.time() + 10, time.time() + 10))  # ALSA looks at whole seconds
+        c.notification(lambda m: m["method"] == "stream" and m["params"]["state"] == "running")
+        n = c.ok("play", **SHORT)["stroke"]
+        self.assertEqual(c.await_end(n)["state"], "finished")
+
+    def test_an_idle_stream_stops_and_starts_with_the_next_stroke(self):
+        c = self.serve("--idle-stop", "0.05").client()
+        c.ok("subscribe", events=["stream"])
+        # The notification may have come before anybody listened.
+        while c.ok("status")["stream"]["state"] != "idle":
+            pass
+        for method, params in (("play", SHORT), ("drive", {"tactor": 0, "duration_s": 0.05})):
+            n = c.ok(method, **params)["stroke"]
+            self.assertEqual(c.await_end(n)["state"], "finished")
+            c.notification(lambda m: m["method"] == "stream" and m["params"]["state"] == "idle")
+        n = c.ok("begin", timeout_s=3600)["stroke"]
+        self.assertEqual(c.ok("status")["stream"]["state"], "running")
+        c.ok("end", stroke=n)
+        c.await_end(n)
 
 
 if __name__ == "__main__":

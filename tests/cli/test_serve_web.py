@@ -5,12 +5,14 @@ import gzip
 import hashlib
 import json
 import re
-import socket
+import shutil
 import struct
+import subprocess
 import time
+import unittest
 
-from harness import PATIENCE_S, ToolTest, main
-from serving import MESSAGE, Server
+from harness import PATIENCE_S, main
+from serving import MESSAGE, ServeTest
 from websocket import BINARY, CLOSE, CONTINUATION, PING, PONG, TEXT, Peer, framed
 
 
@@ -30,11 +32,9 @@ class Caller(Peer):
                 return m
 
 
-class Web(ToolTest):
+class Web(ServeTest):
     def serve(self, *args, **more):
-        s = Server(self, "--http", "0", *args, **more)
-        if s.where is None:
-            self.fail(s.errors)
+        s = super().serve("--http", "0", *args, **more)
         self.assertRegex(s.where["http"], r"^http://127\.0\.0\.1:[1-9]\d*/$")
         s.address = s.where["http"].removeprefix("http://").rstrip("/")
         s.port = s.address.rpartition(":")[2]
@@ -70,50 +70,38 @@ class Web(ToolTest):
         s = self.serve()
         p = s.peer()
         status, headers = p.request()
-        page = p.body(headers).decode()
-        self.assertEqual(status, 200)
-        self.assertEqual(headers["content-type"], "text/html; charset=utf-8")
+        page = p.body(headers)
+        self.assertEqual((status, headers["content-type"]), (200, "text/html; charset=utf-8"))
         policy = headers["content-security-policy"]
         self.assertTrue(policy.startswith("default-src 'none'; "), policy)
         self.assertIn("frame-ancestors 'none'", policy)
         self.assertNotIn("unsafe", policy)
         for kind in ("script", "style"):
-            (text,) = re.findall(rf"(?s)<{kind}>(.*?)</{kind}>", page)
+            (text,) = re.findall(rf"(?s)<{kind}>(.*?)</{kind}>", page.decode())
             allowed = base64.b64encode(hashlib.sha256(text.encode()).digest()).decode()
             self.assertIn(f"; {kind}-src 'sha256-{allowed}'; ", policy)
-        self.assertFalse(re.findall(r"(?:src|href)=\"(?!data:,)", page))
-        self.assertFalse(re.findall(r"https?://(?!www\.w3\.org/2000/svg)", page))
-
-    def test_the_page_is_compressed_for_browsers_that_take_it(self):
-        s = self.serve()
-        p = s.peer()
-        page = p.body(p.request()[1])
+        self.assertFalse(re.findall(r"(?:src|href)=\"(?!data:,)", page.decode()))
+        self.assertFalse(re.findall(r"https?://(?!www\.w3\.org/2000/svg)", page.decode()))
         for accepted, is_taken in (("gzip, deflate, br", True), ("br", False)):
             p = s.peer()
             _, headers = p.request(Accept_Encoding=accepted)
-            self.assertEqual(headers.get("content-encoding"), "gzip" if is_taken else None)
-            self.assertEqual(headers["vary"], "Accept-Encoding")
+            self.assertEqual((headers.get("content-encoding"), headers["vary"]), ("gzip" if is_taken else None, "Accept-Encoding"))
             body = p.body(headers)
             self.assertEqual(gzip.decompress(body) if is_taken else body, page)
             self.assertEqual(len(body) < len(page) / 2, is_taken)
 
-    def test_status_is_served(self):
+    def test_status_is_served_and_nothing_else(self):
         s = self.serve()
         p = s.peer()
         status, headers = p.request("/status")
         self.assertEqual((status, headers["content-type"]), (200, "application/json"))
         told = json.loads(p.body(headers))
-        self.assertEqual(told["clients"], 0)
-        self.assertEqual(told["stream"]["state"], s.client().ok("status")["stream"]["state"])
-
-    def test_nothing_else_is_served(self):
-        s = self.serve()
+        self.assertEqual((told["clients"], told["stream"]["state"]), (0, "running"))
         for target, method, status in (("/x", "GET", 404), ("/status/", "GET", 404), ("/rpc", "GET", 426), ("/rpc", "HEAD", 426),
                                        ("/x?/", "GET", 404),
                                        ("/", "PUT", 405), ("/rpc", "POST", 405), ("/../etc/passwd", "GET", 404)):
             self.assertEqual(s.peer().request(target, method)[0], status, (target, method))
         status, page = s.peer().request("/")
-        self.assertEqual(status, 200)
         for target, method in (("/", "HEAD"), ("/?x", "HEAD"), ("/?", "GET"), ("/?token=1/status", "GET")):
             p = s.peer()
             status, headers = p.request(target, method)
@@ -124,19 +112,16 @@ class Web(ToolTest):
         status, headers = p.request("/", host="evil.example")
         self.assertEqual(status, 403)
         self.assertIn("allow_hosts", p.body(headers).decode())
-        p = s.peer()
-        self.assertEqual(p.request("/", Content_Length="5")[0], 413)
+        self.assertEqual(s.peer().request("/", Content_Length="5")[0], 413)
         # Permissions are checked before the request: a body makes no difference.
         for body in ({"Content_Length": "40"}, {"Transfer_Encoding": "chunked"}):
             self.assertEqual(s.peer().request("/rpc", "POST", **body)[0], 405)
             self.assertEqual(s.peer().request("/rpc", "POST", Origin="http://evil.example", **body)[0], 403)
             self.assertEqual(s.peer().request("/status", host="evil.example", **body)[0], 403)
-        p = s.peer()
-        p.send(b"\x16\x03\x01 nonsense\r\n\r\n")
-        self.assertEqual(p.head()[0], 400)
-        p = s.peer()
-        p.send(b"GET / HTTP/1.1\r\nHost: x\r\nX: " + b"a" * 20000)
-        self.assertEqual(p.head()[0], 413)
+        for sent, status in ((b"\x16\x03\x01 nonsense\r\n\r\n", 400), (b"GET / HTTP/1.1\r\nHost: x\r\nX: " + b"a" * 20000, 413)):
+            p = s.peer()
+            p.send(sent)
+            self.assertEqual(p.head()[0], status)
 
     def test_requests_in_pieces_work_and_unfinished_ones_end(self):
         s = self.serve(config="[serve]\nmax_message_s = 1\n")
@@ -150,14 +135,25 @@ class Web(ToolTest):
             p.send(bytes([b]))
         self.assertEqual(p.head()[0], 200)
 
-    # Permissions.
+    @unittest.skipUnless(shutil.which("curl"), "curl is not here")
+    def test_curl_works(self):
+        http = self.serve().where["http"]
+
+        def curl(*args):
+            return subprocess.run(["curl", "--silent", "--show-error", "--noproxy", "*", *args], cwd=self.dir, capture_output=True,
+                                  text=True, timeout=PATIENCE_S, check=True).stdout
+        self.assertEqual(json.loads(curl(http + "status"))["stream"]["state"], "running")
+        code = ("--output", "page.html", "--write-out", "%{http_code}")
+        for args, status in (((http,), "200"), (("--header", "Origin: http://evil.example", http + "status"), "403"),
+                             (("--data", '{"jsonrpc":"2.0","id":1,"method":"stop"}', http + "rpc"), "405")):
+            self.assertEqual(curl(*code, *args), status)
+
+    # Permissions; tests/net has more names.
 
     def test_host_and_origin_are_checked(self):
         s = self.serve(config='[serve]\nallow_hosts = ["pi.lan"]\n')
-        for host, status in ((f"localhost:{s.port}", 200), (f"LOCALHOST:{s.port}", 200), (s.address, 200), ("localhost", 403),
-                             ("127.0.0.1", 403), (f"127.0.0.2:{s.port}", 403), (f"evil.example:{s.port}", 403), ("localhost:1", 403),
-                             (f"[::1]:{s.port}", 403), ("pi.lan", 200), (f"pi.lan:{s.port}", 200), ("pi.lan.evil.example", 403),
-                             ("", 403), ("]", 403)):
+        for host, status in ((f"LOCALHOST:{s.port}", 200), (s.address, 200), ("127.0.0.1", 403), (f"evil.example:{s.port}", 403),
+                             ("pi.lan", 200), (f"pi.lan:{s.port}", 200), ("pi.lan.evil.example", 403), ("", 403)):
             p = s.peer()
             p.send(f"GET /status HTTP/1.1\r\nHost: {host}\r\n\r\n".encode())
             self.assertEqual(p.head()[0], status, host)
@@ -166,16 +162,13 @@ class Web(ToolTest):
             p.send(f"GET / HTTP/1.1\r\n{text}\r\n".encode())
             self.assertEqual(p.head()[0], 403, text)
         for origin, status in ((f"http://{s.address}", 200), ("null", 403), ("http://evil.example", 403), (f"https://{s.address}", 403),
-                               ("http://pi.lan", 200), ("https://pi.lan:8443", 200), (f"http://localhost:{s.port}", 403), ("", 403)):
+                               ("http://pi.lan", 200), (f"http://localhost:{s.port}", 403), ("", 403)):
             self.assertEqual(s.peer().request("/status", Origin=origin)[0], status, origin)
             self.assertEqual(s.peer().upgrade(Origin=origin), 101 if status == 200 else 403, origin)
-
-    def test_a_whole_address_is_a_target(self):
-        s = self.serve(config='[serve]\nallow_hosts = ["pi.lan"]\n')
-        for name, status in ((s.address, 200), ("pi.lan", 200), (f"localhost:{s.port}", 200), ("evil.example", 403), ("", 403)):
+        # A whole address is a target, too.
+        for name, status in ((s.address, 200), ("pi.lan", 200), ("evil.example", 403), ("", 403)):
             self.assertEqual(s.peer().request(f"http://{name}/status")[0], status, name)
             self.assertEqual(s.peer().upgrade(f"http://{name}/rpc"), 101 if status == 200 else 403, name)
-        self.assertEqual(s.peer().request(f"http://{s.address}")[0], 200)
         self.assertEqual(s.peer().request(f"http://{s.address}/x")[0], 404)
         self.assertEqual(s.peer().request(f"http://{s.address}/status", host="evil.example")[0], 403)
         # A page of the called host, and no other.
@@ -204,70 +197,43 @@ class Web(ToolTest):
         self.assertGreater(time.monotonic() - began, 0.2 + 0.4 + 0.8)  # each comes later
         self.assertEqual((p.end(), p.reason), (1008, "three wrong tokens"))
 
-    def test_beyond_loopback_takes_a_token(self):
-        s = Server(self, "--http", "0.0.0.0:0")
-        self.assertIsNone(s.where)
-        self.assertEqual(s.process.returncode, 2, s.errors)
-        self.assertIn("token_file", s.errors)
-
     # The WebSocket.
 
-    def test_it_speaks_the_protocol(self):
+    def test_it_speaks_the_protocol_and_a_leaving_client_ends_its_live_stroke(self):
         s = self.serve()
         p = self.websocket(s)
         self.assertEqual(p.call("hello")["result"]["protocol"], "tactor/1")
+        p.frame(TEXT, b"x" * 100_000)
+        self.assertEqual(p.message()["error"]["code"], -32700)
+        points = [[i / 10000, 20, 20] for i in range(1000)]
+        self.assertEqual(len(p.call("play", points=points, start="armed")["result"]["strokes"]), 1)
         number = p.call("begin", timeout_s=86400)["result"]["stroke"]
         p.frame(TEXT, json.dumps({"jsonrpc": "2.0", "method": "to", "params": {"stroke": number, "x_mm": 5, "y_mm": 5}}).encode())
         self.assertEqual(p.message()["params"]["state"], "started")
-        p.frame(TEXT, json.dumps({"jsonrpc": "2.0", "method": "end", "params": {"stroke": number}}).encode())
-        self.assertEqual(p.message()["params"]["state"], "finished")
-        self.assertEqual(p.call("status")["result"]["clients"], 1)
+        watcher = s.client()
+        watcher.ok("subscribe", events=["strokes"])
+        p.socket.close()
+        self.assertEqual(watcher.await_end(number)["state"], "finished")
 
-    def test_large_messages_work(self):
-        p = self.websocket(self.serve())
-        points = [[i / 10000, 20, 20] for i in range(1000)]
-        self.assertEqual(len(p.call("play", points=points, start="armed")["result"]["strokes"]), 1)
-        p.frame(TEXT, b"x" * 100_000)
-        self.assertEqual(p.message()["error"]["code"], -32700)
-        self.assertEqual(p.call("stop")["result"], {})
-        self.assertEqual(p.message()["params"]["reason"], "cancelled by its client")
-
-    def test_large_files_come_whole(self):
+    def test_a_large_file_comes_whole_and_lets_control_frames_pass(self):
         p = self.websocket(self.serve(config="[serve]\nmax_unread_bytes = 100000\n"))
-        r = p.call("export", path="M 0 0 L 40 40", options={"duration": 6}, **{"as": "wav"})["result"]
-        self.assertGreater(len(r["base64"]), 10_000_000)
-        self.assertEqual(p.call("status")["result"]["clients"], 1)
-
-    def test_a_long_message_lets_control_frames_pass(self):
-        p = self.websocket(self.serve())
         p.frame(TEXT, json.dumps({"jsonrpc": "2.0", "id": 1, "method": "export", "params": {
             "path": "M 0 0 L 40 40", "options": {"duration": 12}, "as": "wav"}}).encode())
         kind, _ = p.next_frame()
         self.assertEqual((kind, p.is_last), (TEXT, False))
         p.frame(PING, b"are you there")
+        size = 0
         while kind != PONG:
             kind, payload = p.next_frame()
+            size += len(payload)
             self.assertIn(kind, (CONTINUATION, PONG))
             self.assertFalse(kind == CONTINUATION and p.is_last, "the whole message came first")
         self.assertEqual(payload, b"are you there")
-
-    def test_a_leaving_client_ends_live_strokes(self):
-        s = self.serve()
-        p = self.websocket(s)
-        number = p.call("begin", timeout_s=300)["result"]["stroke"]
-        p.call("to", stroke=number, x_mm=5, y_mm=5)
-        watcher = s.client()
-        watcher.ok("subscribe", events=["strokes"])
-        p.socket.close()
-        told = watcher.next()
-        while told["params"].get("state") == "started":
-            told = watcher.next()
-        self.assertEqual((told["params"]["stroke"], told["params"]["state"]), (number, "finished"))
+        self.assertGreater(size + len(p.text()), 20_000_000)
+        self.assertEqual(p.call("status")["result"]["clients"], 1)
 
     def test_control_frames_and_pieces_work(self):
         p = self.websocket(self.serve())
-        p.frame(PING, b"are you there")
-        self.assertEqual(p.next_frame(), (PONG, b"are you there"))
         text = b'{"jsonrpc":"2.0","id":1,"method":"hello"}'
         p.frame(TEXT, text[:5], last=False)
         p.frame(PING)
@@ -281,9 +247,7 @@ class Web(ToolTest):
     def test_close_codes_are_right(self):
         s = self.serve(config="[serve]\nmax_message_bytes = 1024\n")
         for code, send in ((1003, lambda p: p.frame(BINARY, b"{}")), (1007, lambda p: p.frame(TEXT, b'{"x":"\xff"}')),
-                           (1009, lambda p: p.frame(TEXT, b"a" * 1025)), (1002, lambda p: p.frame(TEXT, b"{}", masked=False)),
-                           (1002, lambda p: p.frame(CONTINUATION, b"{}")), (1002, lambda p: p.frame(3, b"")),
-                           (1002, lambda p: p.frame(PING, b"a" * 126)), (1002, lambda p: p.frame(PING, b"", last=False))):
+                           (1009, lambda p: p.frame(TEXT, b"a" * 1025)), (1002, lambda p: p.frame(TEXT, b"{}", masked=False))):
             p = self.websocket(s)
             send(p)
             self.assertEqual(p.end(), code)
@@ -291,11 +255,11 @@ class Web(ToolTest):
 
     def test_endless_messages_and_silent_clients_end(self):
         s = self.serve(config="[serve]\nmax_message_s = 1\n")
-        silent = self.in_time(s)
-        self.assertEqual((silent.end(), silent.reason), (1008, "the first message did not come"))
-        nothing = self.in_time(s)
-        nothing.frame(TEXT, b"")
-        self.assertEqual((nothing.end(), nothing.reason), (1008, "the first message did not come"))
+        for sent in (None, b""):
+            silent = self.in_time(s)
+            if sent is not None:
+                silent.frame(TEXT, sent)
+            self.assertEqual((silent.end(), silent.reason), (1008, "the first message did not come"))
         slow = self.in_time(s, "hello")
         slow.frame(TEXT, b'{"jsonrpc"', last=False)
         self.assertEqual((slow.end(), slow.reason), (1008, "a message took too long"))
