@@ -1,9 +1,15 @@
 # SPDX-License-Identifier: MIT
-"""Support for the tests of tactor experiment: a small definition, and the files of a session."""
+"""Support for the tests of tactor experiment: small definitions, the files of a session, and a terminal."""
+import contextlib
 import json
+import os
 import pathlib
+import pty
+import re
+import select
+import tempfile
 
-from harness import ToolTest
+from harness import PATIENCE_S, TOOL, ToolTest
 
 COLUMNS = ("onset duration trial attempt motion method_1 method_2 response response_time early rating void xruns stream "
            "frame_1 frame_2 plan_1 plan_2").split()
@@ -47,6 +53,48 @@ task = "identify"
 trials = 3
 methods = ["park"]
 """
+DESK = """[array]
+name = "desk"
+grid = { rows = 1, columns = 2, pitch_mm = 20.0 }
+"""
+SHORT = """[experiment]
+name = "short"
+array = "desk.toml"
+level = { dbfs = -20 }
+gap_s = 0.1
+consent = "Be at ease."
+[[motion]]
+name = "east"
+path = "M0 0H20"
+duration = 0.2
+[[motion]]
+name = "west"
+path = "M20 0H0"
+duration = 0.2
+[[method]]
+name = "Alder"
+algorithm = "tactile-brush"
+[[method]]
+name = "Birch"
+algorithm = "park2016"
+[[run]]
+name = "pairs"
+task = "choose"
+attribute = "similarity"
+question = "Which one?"
+animation = true
+trials = 2
+practice = 1
+break_s = 0.3
+[[run]]
+name = "marks"
+task = "rate"
+attribute = "uniformity"
+question = "How even?"
+trials = 2
+scale = 3
+labels = ["not", "half", "all"]
+"""
 
 
 class ExperimentTest(ToolTest):
@@ -69,6 +117,19 @@ class ExperimentTest(ToolTest):
         return json.loads((self.dir / folder / f"sourcedata/sub-{code}/session.json").read_text())
 
 
+class PersonTest(ExperimentTest):
+    def setUp(self):
+        super().setUp()
+        self.write("desk.toml", DESK)
+        self.write("short.toml", SHORT)
+
+    def args(self, *more, code="01", definition="short.toml", device="null"):
+        return ("experiment", definition, "--participant", code, "-o", "study", *(("-D", device) if device else ()), *more)
+
+    def answers(self, task="pairs", column="response"):
+        return [(r["trial"], r["attempt"], r["void"], r[column]) for r in self.rows("01", task)]
+
+
 def read_table(path):
     text = pathlib.Path(path).read_text(encoding="utf-8")
     assert text.endswith("\n"), text[-80:]
@@ -80,3 +141,57 @@ def read_table(path):
 def contents(folder):
     """Returns every file below a folder, hidden ones too: its name and bytes."""
     return {str(p.relative_to(folder)): p.read_bytes() for p in sorted(pathlib.Path(folder).rglob("*")) if p.is_file()}
+
+
+class Terminal:
+    """The tool on a pseudo-terminal; standard error goes to a file, as an experimenter's console would."""
+
+    def __init__(self, test, args):
+        self.console = tempfile.TemporaryFile("w+")
+        test.addCleanup(self.console.close)
+        self.pid, self.fd = pty.fork()
+        if self.pid == 0:
+            os.dup2(self.console.fileno(), 2)
+            os.chdir(test.dir)
+            os.execve(TOOL, [str(TOOL), *map(str, args)], test.env | {"TERM": "xterm"})
+        self.all = self.seen = ""
+
+    def read(self):
+        if not select.select([self.fd], [], [], PATIENCE_S)[0]:
+            raise AssertionError(f"nothing more after {self.seen!r}")
+        text = os.read(self.fd, 4096).decode()
+        self.all += text
+        self.seen += text
+
+    def until(self, pattern):
+        while not (found := re.search(pattern, self.seen)):
+            self.read()
+        self.seen = self.seen[found.end():]
+        return found
+
+    def key(self, keys):
+        os.write(self.fd, keys.encode())
+
+    def answer(self, pattern, key):
+        self.until(pattern)
+        self.key(key)
+
+    def begin(self, agrees=True, key=" "):
+        """Answers up to the first run's first trial."""
+        if agrees:
+            self.answer("Do you agree", "y")
+        for i in (0, 1):
+            self.answer(f"{i}: Did you feel it", "y")
+        self.answer("Any key begins", key)
+
+    def end(self):
+        """Returns its exit status."""
+        with contextlib.suppress(OSError):  # the terminal closes with the program
+            while True:
+                self.read()
+        os.close(self.fd)
+        return os.waitstatus_to_exitcode(os.waitpid(self.pid, 0)[1])
+
+    def said(self):
+        self.console.seek(0)
+        return self.console.read()
