@@ -1,71 +1,51 @@
 # SPDX-License-Identifier: MIT
-"""tactor experiment: the definition, the dry run, simulated sessions and the folder that they write."""
+"""tactor experiment: the definition, the dry run, simulated sessions, the folder that they write, and --power."""
 import fcntl
 import hashlib
 import json
 import os
 import pathlib
 import re
+import signal
 import unittest
 
 from experiments import COLUMNS, SMALL, ExperimentTest, contents, read_table
-from harness import ROOT, SANITIZED, main
-
-SHIPPED = ROOT / "examples/experiments/park2016.toml"
+from harness import ROOT, main
 
 
 class Definition(ExperimentTest):
-    def test_the_shipped_definition_is_the_one_in_the_examples(self):
-        self.assertEqual(self.ok("experiment", "park2016", "--print").stdout, SHIPPED.read_text(encoding="utf-8"))
-
-    def test_a_printed_definition_can_be_used(self):
-        self.write("mine.toml", self.ok("experiment", "park2016", "--print").stdout)
+    def test_the_shipped_definition_is_printed_and_can_be_used(self):
+        text = self.ok("experiment", "park2016", "--print").stdout
+        self.assertEqual(text, (ROOT / "examples/experiments/park2016.toml").read_text(encoding="utf-8"))
+        self.write("mine.toml", text)
         self.assertEqual(self.ok("experiment", "mine.toml", "--dry-run", "--format", "json").stdout,
                          self.ok("experiment", "park2016", "--dry-run", "--format", "json").stdout)
 
-    def test_faults_have_file_and_line_and_nothing_is_written(self):
+    def test_faults_have_file_and_line_hints_name_keys_and_nothing_is_written(self):
         for old, new, says in (
-                ("gap_s = 0.25", "gaps_s = 0.25", ("small.toml:5:", "did you mean 'gap_s'")),
-                ('path = "M0 20H40"', 'path = "M0 20H90"', ("small.toml:6:", "to the right", "line 14")),
-                ("duration = 0.7", "duration = 0.01", ("small.toml:6:", "method \"brush\"")),
-                ("gap_s = 0.25", "level = { sl_db = 50 }", ("full scale",)),
-                ("trials = 4", "trials = 0", ("small.toml:25:", "trials is 0")),
-                ('name = "how good"', 'name = "which one"', ("small.toml:", "one name")),
-                ('name = "how good"', 'name = "Which One"', ("small.toml:28:", "differ in capitals only"))):
-            self.small(SMALL.replace(old, new, 1))
-            for more in (("--dry-run",), ("--participant", "01", "-o", "study", "--simulate", "seed=1")):
-                result = self.refused(2, "experiment", "small.toml", *more, says=says)
-                self.assertEqual(result.stdout, "")
-            self.assertFalse((self.dir / "study").exists())
-
-    def test_advice_names_the_definition_s_keys(self):
-        for old, new, says in (
+                ("gap_s = 0.25", "gaps_s = 0.25", "did you mean 'gap_s'"), ("gap_s = 0.25", "rest_s = 61", "rest_s"),
                 ("gap_s = 0.25", "level = { sl_db = 50 }", "(lower level.sl_db by 10.00 dB or more)"),
                 ('path = "M0 20H40"', 'path = "M0 20H90"', "(the method's outside, \"clamp\", plays the nearest point"),
                 ("duration = 0.7", "duration = 0.01", "; or the method's drop-points, true, leaves places out)"),
-                ('path = "M0 20H40"', 'path = "M3 17H40"', "(the method's snap, true, moves it there)")):
+                ('path = "M0 20H40"', 'path = "M3 17H40"', "(the method's snap, true, moves it there)"),
+                ('name = "how good"', 'name = "Which One"', "differ in capitals only")):
             self.small(SMALL.replace(old, new, 1))
-            said = self.refused(2, "experiment", "small.toml", "--dry-run", says=(says,)).stderr
-            self.assertNotIn("--", said)
+            for more in (("--dry-run",), ("--participant", "01", "-o", "study", "--simulate", "seed=1")):
+                result = self.refused(2, "experiment", "small.toml", *more, says=("small.toml:", says))
+                self.assertEqual(result.stdout, "")
+                self.assertNotIn("--", result.stderr)
+            self.assertFalse((self.dir / "study").exists())
 
     def test_wrong_options_are_refused(self):
         self.small()
-        for args, says in (((), ("--participant",)),
-                           (("--participant", "01"), ("-o",)),
-                           (("--participant", "P-1"), ("letters and digits",)),
-                           (("--participant", ""), ("letters and digits",)),
-                           (("--display", "tv"), ("page or terminal",)),
-                           (("--seed", "1.5"), ("--seed",)),
-                           (("--simulate", "sigma=x"), ("--simulate", "sigma")),
-                           (("--format", "xml"), ("text, json",))):
-            self.refused(2, "experiment", "small.toml", *args, says=says)
-        for args, says in ((("--power", "4", "--check-noise", "--masker", "null"), ("--power", "nobody sits there")),
-                           (("--power", "4", "--display", "page"), ("--power", "nobody sits there")),
-                           (("--participant", "01", "-o", "study", "--format", "json"), ("--format", "only --dry-run")),
-                           (("--dry-run", "-o", "study", "--resume"), ("--resume", "no session is held"))):
-            self.refused(2, "experiment", "small.toml", "--simulate", "seed=1", *args, says=says)
-        self.refused(2, "experiment", "park2061", "--dry-run")
-        self.refused(2, "experiment", "none.toml", "--dry-run")
+        for args in ("", "--participant 01", "--participant P-1", "--participant=", "--display tv", "--seed 1.5", "--simulate sigma=x",
+                     "--format xml", "--simulate seed=1 --power 4 --check-noise --masker null", "--simulate seed=1 --power 4 --display page",
+                     "--simulate seed=1 --participant 01 -o study --format json", "--simulate seed=1 --dry-run -o study --resume"):
+            self.refused(2, "experiment", "small.toml", *args.split())
+        for name in ("park2061", "none.toml"):
+            self.refused(2, "experiment", name, "--dry-run")
+        self.refused(2, "experiment", "park2016", "--participant", "01", "-o", "study", "-D", "null")  # needs measured thresholds
+        self.assertFalse((self.dir / "study").exists())
 
     def test_strokes_that_a_limit_would_change_are_refused_before_the_session(self):
         long = SMALL.replace("gap_s = 0.25", "level = { dbfs = -18 }", 1).replace('path = "M0 20H40"\nduration = 0.7',
@@ -83,10 +63,6 @@ class Definition(ExperimentTest):
         self.ok("experiment", "small.toml", "--dry-run")
         self.refused(2, "experiment", "small.toml", "--dry-run", "--array", "weak.toml")
 
-    def test_real_sessions_need_measured_thresholds(self):
-        self.refused(2, "experiment", "park2016", "--participant", "01", "-o", "study", "-D", "null")
-        self.assertFalse((self.dir / "study").exists())
-
     def test_simulated_thresholds_are_reported(self):
         self.ok("calibrate", "--participant", "01", "-o", "felt.toml", "--simulate", "threshold=-45")
         self.assertIn("thresholds were simulated",
@@ -100,22 +76,17 @@ class DryRun(ExperimentTest):
         result = self.ok("experiment", *more, "--dry-run", "--format", "json")
         return json.loads(result.stdout), result.stderr
 
-    def test_the_shipped_definition_has_all_its_trials(self):
+    def test_the_shipped_definition_has_all_its_trials_and_waits_only_where_needed(self):
         told, warned = self.dry("park2016", "--participant", "02")
         self.assertEqual([r["name"] for r in told["runs"]],
                          ["uniformity", "similarity-rating", "similarity", "uniformity-rating"])
         for run in told["runs"]:
             self.assertEqual([t["trial"] for t in run["trials"]], list(range(1, 41)))
-            count = {}
-            for t in run["trials"]:
-                key = t["motion"], t["method_1"]
-                count[key] = count.get(key, 0) + 1
-                self.assertEqual(t["method_2"] is None, run["task"] == "rate")
-            self.assertEqual(set(count.values()), {5})
-            motions = "".join(t["motion"][-1] for t in run["trials"])
-            self.assertIsNone(re.search(r"(.)\1{3}", motions))
+            self.assertEqual({t["method_2"] is None for t in run["trials"]}, {run["task"] == "rate"})
         self.assertIn("-40 dBFS", warned)
         self.assertTrue(told["thresholds_assumed"])
+        trials = sum(len(r["practice"]) + len(r["trials"]) for r in told["runs"])
+        self.assertLess(sum(r["waits"] for r in told["runs"]), trials / 20)
 
     def test_a_session_gets_the_listed_trials(self):
         told, _ = self.dry(self.small(), "--participant", "P3", "--seed", "8")
@@ -146,7 +117,9 @@ class DryRun(ExperimentTest):
             shown = 0.7 if run["animation"] else 0
             self.assertAlmostEqual(run["duration_s"], sum(6 + shown + 0.5 + t["duration_s"] for t in trials), 4)
             self.assertEqual((run["waits"], run["waits_s"]), (0, 0))
-        self.refused(2, "experiment", self.small(SMALL.replace("gap_s = 0.25", "rest_s = 61")), "--dry-run")
+        text = self.ok("experiment", small, "--dry-run").stdout
+        self.assertEqual(len(re.findall(r"^ +\d+  ", text, re.M)), sum(len(r["trials"]) for r in told["runs"]))
+        self.assertEqual(len(re.findall(r"^practice  ", text, re.M)), 1)
 
     def test_times_count_the_waits_for_max_drive_s(self):
         text = SMALL.replace("trials = 4", "trials = 40").replace("duration = 0.7", "duration = 1.6")
@@ -164,18 +137,6 @@ class DryRun(ExperimentTest):
         said = self.ok("experiment", "small.toml", "--dry-run", "--config", "tired.toml").stdout
         self.assertIn("s without the answers", said)
 
-    def test_the_shipped_definition_waits_only_where_needed(self):
-        told, _ = self.dry("park2016")
-        waits = sum(r["waits"] for r in told["runs"])
-        trials = sum(len(r["practice"]) + len(r["trials"]) for r in told["runs"])
-        self.assertLess(waits, trials / 20)
-
-    def test_the_table_has_the_same(self):
-        told, _ = self.dry(self.small())
-        text = self.ok("experiment", "small.toml", "--dry-run").stdout
-        self.assertEqual(len(re.findall(r"^ +\d+  ", text, re.M)), sum(len(r["trials"]) for r in told["runs"]))
-        self.assertEqual(len(re.findall(r"^practice  ", text, re.M)), 1)
-
     def test_seeds_and_codes_make_other_orders(self):
         small = self.small(SMALL.replace("trials = 4", "trials = 40"))
         def trials(*more):
@@ -187,39 +148,34 @@ class DryRun(ExperimentTest):
         self.assertEqual(self.dry("small.toml", "--participant", "abc")[0]["seed"], 77)
         self.assertEqual(self.dry("small.toml", "--seed", "5")[0]["seed"], 5)
 
+    def felt(self, name, thresholds, extra=""):
+        self.write(name, '[array]\nname = "felt"\ngrid = { rows = 3, columns = 3, pitch_mm = 20.0 }\n' + "".join(
+            f"[[tactor]]\ntactor = {i}\nthreshold_dbfs = {t}\n{extra if i == 8 else ''}" for i, t in enumerate(thresholds)))
+        return name
+
     def test_a_plan_is_what_tactor_plan_prints(self):
-        self.write("felt.toml", '[array]\nname = "felt"\ngrid = { rows = 3, columns = 3, pitch_mm = 20.0 }\n' + "".join(
-            f"[[tactor]]\ntactor = {i}\nthreshold_dbfs = {-40 - i}\n" for i in range(9)))
-        told, warned = self.dry("park2016", "--array", "felt.toml")
+        felt = self.felt("felt.toml", [-40 - i for i in range(9)])
+        told, warned = self.dry("park2016", "--array", felt)
         self.assertFalse(told["thresholds_assumed"])
         self.assertNotIn("-40 dBFS", warned)
         for motion in (1, 3):
-            plan = self.ok("plan", f"park2016-{motion}", "--algorithm", "park2016", "--sl", 7, "--array", "felt.toml",
+            plan = self.ok("plan", f"park2016-{motion}", "--algorithm", "park2016", "--sl", 7, "--array", felt,
                            "--format", "json").stdout
             self.assertIn({"sha256": hashlib.sha256(plan.encode()).hexdigest(), "motion": f"motion-{motion}",
                            "method": "park2016"}, told["stimuli"])
 
     def test_of_thresholds_at_several_carriers_that_of_the_trial_counts(self):
-        self.write("felt.toml", '[array]\nname = "felt"\ngrid = { rows = 3, columns = 3, pitch_mm = 20.0 }\n' + "".join(
-            f"[[tactor]]\ntactor = {i}\nthreshold_dbfs = [[100, -20], [250, -40]]\n" for i in range(9)))
+        felt = self.felt("felt.toml", ["[[100, -20], [250, -40]]"] * 9)
         self.small(SMALL.replace('algorithm = "park2016"', 'algorithm = "park2016"\ncarrier = 100', 1))
-        told, warned = self.dry("small.toml", "--array", "felt.toml")
-        self.assertFalse(told["thresholds_assumed"])
-        self.assertNotIn("-40 dBFS", warned)
-        self.simulate("01", "--array", "felt.toml", definition="small.toml")
+        self.assertFalse(self.dry("small.toml", "--array", felt)[0]["thresholds_assumed"])
+        self.simulate("01", "--array", felt, definition="small.toml")
         session = self.session()
         self.assertEqual(session["thresholds_dbfs"], [[[100, -20], [250, -40]]] * 9)
         self.assertEqual(session["array"]["tactors"][0]["threshold_dbfs"], [[100, -20], [250, -40]])
-        self.assertEqual({s["method"] for s in session["stimuli"]}, {"park", "brush"})
         for stimulus in session["stimuli"]:
             plan = json.loads((self.dir / f"study/sourcedata/sub-01/plans/{stimulus['sha256']}.json").read_text())
             for peak in plan["render"]["peak_dbfs"]:
                 self.assertAlmostEqual(peak, 7 + {"park": -20, "brush": -40}[stimulus["method"]])
-
-    def felt(self, name, thresholds, extra=""):
-        self.write(name, '[array]\nname = "felt"\ngrid = { rows = 3, columns = 3, pitch_mm = 20.0 }\n' + "".join(
-            f"[[tactor]]\ntactor = {i}\nthreshold_dbfs = {t}\n{extra if i == 8 else ''}" for i, t in enumerate(thresholds)))
-        return name
 
     def test_the_walk_is_checked_and_has_the_methods_carrier(self):
         # Along the middle row: tactor 8 is driven in the walk alone.
@@ -234,8 +190,6 @@ class DryRun(ExperimentTest):
         felt = self.felt("low.toml", ["[[100, -20], [250, -2]]"] * 9)
         self.dry(at_100, "--array", felt)
         self.refused(2, "experiment", self.small(), "--dry-run", "--array", felt)
-
-    def test_tactors_without_a_threshold_beside_some_with_several(self):
         self.write("some.toml", '[array]\nname = "some"\ngrid = { rows = 3, columns = 3, pitch_mm = 20.0 }\n'
                                 "[[tactor]]\ntactor = 0\nthreshold_dbfs = [[100, -20], [250, -40]]\n")
         self.assertTrue(self.dry(self.small(), "--array", "some.toml")[0]["thresholds_assumed"])
@@ -244,8 +198,10 @@ class DryRun(ExperimentTest):
 
 class Simulated(ExperimentTest):
     def test_the_folder_follows_bids(self):
-        self.simulate("P07")
+        self.assertIn("SIMULATED", self.simulate("P07").stdout)
         study = self.dir / "study"
+        for name in ("README", "dataset_description.json", "participants.json", "task-what_beh.json"):
+            self.assertIn("simulated", (study / name).read_text().lower(), name)
         files = set(contents(study))
         plans = {f for f in files if f.startswith("sourcedata/sub-P07/plans/")}
         self.assertEqual(files - plans, {
@@ -323,13 +279,6 @@ class Simulated(ExperimentTest):
         self.assertEqual(s["device"], None)
         self.assertIn("tactor", s["versions"])
 
-    def test_every_description_says_that_the_data_are_simulated(self):
-        result = self.simulate()
-        self.assertIn("SIMULATED", result.stdout)
-        study = self.dir / "study"
-        for name in ("README", "dataset_description.json", "participants.json", "task-what_beh.json"):
-            self.assertIn("simulated", (study / name).read_text().lower(), name)
-
     def test_void_trials_come_again_at_the_end_of_their_run(self):
         self.simulate(spec="seed=4,sigma=1,void=0.5", definition=self.small(SMALL.replace("trials = 4", "trials = 12")))
         rows = self.rows("01", "howgood")
@@ -349,30 +298,20 @@ class Simulated(ExperimentTest):
 
     def test_the_same_session_is_the_same_bytes(self):
         self.simulate(folder="one")
-        self.simulate(folder="two")
+        self.simulate("01", "--resume", folder="two")  # begins a session that is not there
         self.assertEqual(contents(self.dir / "one"), contents(self.dir / "two"))
         self.simulate(folder="three", spec="seed=2,sigma=1")
         self.assertNotEqual(contents(self.dir / "one"), contents(self.dir / "three"))
 
     def test_a_study_of_several_is_analysed(self):
-        for n in range(1, 9):
-            self.simulate(f"{n:02}", definition="park2016")
-        told = json.loads(self.ok("analyze", "study", "--format", "json").stdout)
-        self.assertEqual((told["participants"], told["simulated"]), (8, True))
-        self.assertEqual(list(told["runs"]), ["similarity", "uniformity", "similarity-rating", "uniformity-rating"])
-        for run in told["runs"].values():
-            self.assertEqual((run["n"], run["trials"]), (8, 320))
-        rows = [r for n in range(1, 9) for r in self.rows(f"{n:02}", "similarity")]
-        chosen = sum(r["method_" + r["response"]] == "park2016" for r in rows)
-        self.assertAlmostEqual(told["runs"]["similarity"]["preference"]["all"]["mean"], 100 * chosen / len(rows), 9)
-        # The stimulus nearer to the target in the model is chosen more often.
-        self.assertGreater(abs(told["runs"]["similarity"]["preference"]["all"]["mean"] - 50), 3)
-
-    def test_identify_is_analysed_too(self):
         for n in range(1, 4):
-            self.simulate(f"{n}")
+            self.simulate(f"{n:02}")
         told = json.loads(self.ok("analyze", "study", "--format", "json").stdout)
-        self.assertEqual(told["runs"]["what"]["n"], 3)
+        self.assertEqual((told["participants"], told["simulated"]), (3, True))
+        self.assertEqual({name: (run["n"], run["trials"]) for name, run in told["runs"].items()}, {"which-one": (3, 12), "how good": (3, 12), "what": (3, 9)})
+        rows = [r for n in range(1, 4) for r in self.rows(f"{n:02}", "whichone")]
+        chosen = sum(r["method_" + r["response"]] == "park" for r in rows)
+        self.assertAlmostEqual(told["runs"]["which-one"]["preference"]["all"]["mean"], 100 * chosen / len(rows), 9)
 
 
 class Folder(ExperimentTest):
@@ -415,11 +354,6 @@ class Folder(ExperimentTest):
         self.assertEqual(contents(self.dir / "study"), before)
         self.simulate("p2")
 
-    def test_resume_without_a_session_begins_one(self):
-        self.simulate("01", "--resume", folder="one")
-        self.simulate("01", folder="two")
-        self.assertEqual(contents(self.dir / "one"), contents(self.dir / "two"))
-
     def test_a_session_that_stopped_anywhere_resumes_as_if_it_had_not(self):
         spec = "seed=4,sigma=1,void=0.3"
         self.simulate(spec=spec, folder="whole")
@@ -429,7 +363,7 @@ class Folder(ExperimentTest):
         text = whole[table]
         # After any byte of any line except the header and the first, which come at once.
         least = text.index(b"\n", text.index(b"\n") + 1) + 1
-        for cut in sorted({least, *range(len(text) - 200, len(text), 9), *range(least, len(text), 199)}):
+        for cut in sorted({least, *range(len(text) - 101, len(text), 9), *range(least, len(text), 299)}):
             os.system(f"rm -rf {self.dir}/study && cp -r {self.dir}/whole {self.dir}/study")
             (self.dir / "study" / table).write_bytes(text[:cut])
             for name in later:
@@ -441,16 +375,10 @@ class Folder(ExperimentTest):
 
     def test_a_session_resumes_only_with_its_options(self):
         self.simulate("01", "--seed", "3")
-        for more, says in ((("--seed", "4"), "seed 3"), (("--simulate", "seed=9"), "simulation")):
-            args = ["experiment", "small.toml", "--participant", "01", "-o", "study", "--resume", *more]
-            if "--simulate" not in more:
-                args += ["--simulate", "seed=1,sigma=1"]
-            else:
-                args += ["--seed", "3"]
-            self.refused(2, *args, says=(says, "as it was begun"))
+        for seed, spec, says in (("4", "seed=1,sigma=1", "seed 3"), ("3", "seed=9", "simulation")):
+            self.simulate("01", "--seed", seed, "--resume", spec=spec, run=lambda *a, says=says: self.refused(2, *a, says=(says, "as it was begun")))
         self.small(SMALL + "# a word more\n")
-        self.refused(2, "experiment", "small.toml", "--participant", "01", "-o", "study", "--resume", "--seed", "3",
-                     "--simulate", "seed=1,sigma=1")
+        self.simulate("01", "--seed", "3", "--resume", definition="small.toml", run=lambda *a: self.refused(2, *a))
 
     def test_lines_of_another_session_are_refused(self):
         self.simulate()
@@ -459,17 +387,15 @@ class Folder(ExperimentTest):
         file.write_text("".join([lines[0], lines[2], lines[1], *lines[3:]]))
         self.simulate("01", "--resume", run=lambda *a: self.refused(2, *a))
 
-    def test_simulated_and_real_sessions_do_not_mix(self):
+    def test_other_sessions_and_experiments_need_another_folder(self):
         self.simulate()
         file = self.dir / "study/sourcedata/sub-01/session.json"
-        file.write_text(file.read_text().replace('"simulated": true', '"simulated": false'))
+        text = file.read_text()
+        file.write_text(text.replace('"simulated": true', '"simulated": false'))
         self.simulate("02", run=lambda *a: self.refused(2, *a))
-
-    def test_another_experiment_needs_another_folder(self):
-        self.simulate()
+        file.write_text(text)
         self.small(SMALL.replace('name = "down"', 'name = "up"'))
-        self.simulate("02", definition="small.toml",
-                      run=lambda *a: self.refused(2, *a))
+        self.simulate("02", definition="small.toml", run=lambda *a: self.refused(2, *a))
 
     def test_a_changed_definition_is_reported(self):
         self.assertNotIn("another text", self.simulate("02").stderr + self.simulate("01").stderr)
@@ -492,8 +418,6 @@ class Folder(ExperimentTest):
         self.write("file", "x")
         self.simulate(folder="file", run=lambda *a: self.refused(2, *a))
         self.simulate(folder="none/study", run=lambda *a: self.refused(2, *a))
-
-    def test_a_folder_that_cannot_be_written_is_refused(self):
         self.simulate(folder="/proc/study", run=lambda *a: self.refused(1, *a))
 
     @unittest.skipIf(os.geteuid() == 0, "root may write everywhere")
@@ -520,6 +444,78 @@ class Folder(ExperimentTest):
             self.write(f"study/{name}", "half")
         self.simulate("01", "--resume")
         self.assertEqual(contents(self.dir / "study"), whole)
+
+
+class Power(ExperimentTest):
+    SPEC = ("--simulate", "seed=4,sigma=6")
+
+    def power(self, *args, definition="park2016", spec=SPEC):
+        return self.ok("experiment", definition, "--power", *args, *spec).stdout
+
+    def told(self, *args, **more):
+        return json.loads(self.power(*args, "--format", "json", **more))
+
+    def test_the_first_study_is_the_one_of_the_simulated_sessions(self):
+        told = self.told("2,5", "--studies", "1")
+        for n in range(1, 6):
+            self.simulate(f"{n:02}", definition="park2016", spec=self.SPEC[1])
+            if n not in (2, 5):
+                continue
+            runs = json.loads(self.ok("analyze", "study", "--format", "json").stdout)["runs"]
+            for run in told["runs"]:
+                mine = next(p for p in run["power"] if p["participants"] == n)
+                own = runs[run["name"]]
+                test = own["preference"]["all"] if run["task"] == "choose" else own["paired"]
+                self.assertEqual(mine["significant"], int(test["p"] is not None and test["p"] < 0.05), (run["name"], n))
+                self.assertEqual(mine["untested"], int(test["p"] is None))
+
+    def test_json_has_counts_shares_and_intervals_and_text_the_same(self):
+        told, text = self.told("4,12", "--studies", "60"), self.power("4,12", "--studies", "60")
+        self.assertEqual((told["schema"], told["simulated"], told["studies"], told["simulation"], told["alpha"]),
+                         ("tactor-power/1", True, 60, "seed=4,sigma=6", 0.05))
+        self.assertEqual([r["name"] for r in told["runs"]],
+                         ["similarity", "uniformity", "similarity-rating", "uniformity-rating"])
+        self.assertIn("60 SIMULATED studies (seed=4,sigma=6)", text)
+        for run in told["runs"]:
+            self.assertEqual([p["participants"] for p in run["power"]], [4, 12])
+            block = text.partition(f"\n{run['name']}: {run['comparison']}\n")[2].splitlines()[1:3]
+            for line, p in zip(block, run["power"]):
+                self.assertEqual(p["power"], p["significant"] / 60)
+                self.assertTrue(p["ci"][0] <= p["power"] <= p["ci"][1] and p["for_last"] <= p["significant"])
+                self.assertEqual(line.split(), [str(p["participants"]), f"{100 * p['power']:.1f}", "%",
+                                                f"{100 * p['ci'][0]:.1f}", "...", f"{100 * p['ci'][1]:.1f}",
+                                                f"{100 * p['for_last'] / 60:.1f}", "%", str(p["untested"])])
+        self.assertTrue(any(0 < p["significant"] < 60 for r in told["runs"] for p in r["power"]))
+        self.assertEqual(self.power("4,12", "--studies", "60"), text)
+        self.assertNotEqual(self.power("4,12", "--studies", "60", spec=("--simulate", "seed=900,sigma=6")), text)
+        self.assertEqual(self.told("3")["studies"], 200)
+
+    def test_custom_definitions_with_identify_and_void_trials(self):
+        self.small()
+        before = sorted(self.dir.rglob("*"))
+        told = self.told("3", "--studies", "20", definition="small.toml", spec=("--simulate", "sigma=5,void=0.3"))
+        self.assertEqual([r["comparison"] for r in told["runs"]],
+                         ["park chosen, t against 50 %", "park less brush, paired t", "park correct, t against 50.00 %"])
+        self.assertEqual(sorted(self.dir.rglob("*")), before)
+
+    def test_impossible_numbers_and_exclusive_options_are_refused(self):
+        self.write("bad.toml", "[experiment]\n")
+        for args in (*(f"--power={n}" for n in ("1", "0", "-3", "1001", "12,", "", "twelve", "12;14", "1e3", "99999999999999999999999", "8,12,8")),
+                     *(f"--power 8 --studies={n}" for n in ("0", "-1", "1000001", "many")),
+                     *(f"--power 8 {more}" for more in ("--participant 01", "-o study", "--resume", "--dry-run", "--print"))):
+            self.assertEqual(self.refused(2, "experiment", "park2016", *args.split(), *self.SPEC).stdout, "")
+        for args in ("park2016 --power 8", "park2016 --studies 8 --dry-run", "bad.toml --power 8 --simulate seed=4"):
+            self.assertEqual(self.refused(2, "experiment", *args.split()).stdout, "")
+        self.assertFalse((self.dir / "study").exists())
+
+    def test_ctrl_c_ends_it_without_a_result(self):
+        # The thread waits for the tool from the start: the signal must come while studies are simulated.
+        def pending():
+            signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+            os.kill(os.getpid(), signal.SIGINT)
+        result = self.run_tool("experiment", "park2016", "--power", "1000", "--studies", "1000000", *self.SPEC, before=pending)
+        self.assertEqual((result.returncode, result.stdout), (130, ""))
+        self.assertIn("ended by a signal, before there was a result", result.stderr)
 
 
 if __name__ == "__main__":

@@ -1,32 +1,21 @@
 # SPDX-License-Identifier: MIT
-"""The participant's page of tactor experiment on the wire: the messages, the answers that count, and the clients that may."""
+"""The participant's page of tactor experiment on the wire: the messages, the answers that count, and the clients that may.
+tests/study has the dialogue, tests/cli/test_serve_web.py the server of a page."""
 import json
 import re
 import signal
 import socket
 import urllib.request
 
-from experiments import ExperimentTest, read_table
+from experiments import SHORT, PersonTest, read_table
 from harness import main
 from pages import Session
-from test_experiment_person import DESK, SHORT
 from websocket import BINARY, TEXT, Peer, framed
 
 
-class PageTest(ExperimentTest):
-    def setUp(self):
-        super().setUp()
-        self.write("desk.toml", DESK)
-        self.write("short.toml", SHORT)
-
-    def args(self, *more, definition="short.toml"):
-        return ("experiment", definition, "--participant", "01", "-o", "study", "-D", "null", *more)
-
+class PageTest(PersonTest):
     def start(self, *more, **which):
         return Session(self, self.args("--display", "page", *more, **which))
-
-    def answers(self, task="pairs", column="response"):
-        return [(r["trial"], r["attempt"], r["void"], r[column]) for r in self.rows("01", task)]
 
 
 class Sessions(PageTest):
@@ -73,30 +62,7 @@ class Sessions(PageTest):
         for text in (json.dumps(p.seen), s.shown, re.sub(r'tactor: warning: motion ".*', "", s.said)):
             self.assertNotRegex(text, "(?i)alder|birch|tactile-brush|park")
         self.assertNotIn("east", json.dumps(p.seen))
-
-    def answer_all(self):
-        """Goes through a session as a participant who always takes the first answer; returns the participant."""
-        s = self.start()
-        p = s.participant()
-        p.begin()
-        for _ in range(3):
-            p.answer("question", 1)
-        p.answer("introduce", 1)
-        for _ in range(2):
-            p.answer("question", 1)
-        self.assertEqual(s.end(), 0, s.said)
-        return p
-
-    def test_the_page_gets_the_same_for_both_methods(self):
-        p = self.answer_all()
-        self.assertEqual({r["method_1"] for r in self.rows("01", "marks")}, {"Alder", "Birch"})
-        marks = [m for m in p.seen if m.get("progress", {}).get("run") == 2 and m["progress"]["trial"]]
-        for m in marks:
-            del m["progress"], m["ask"]
-        self.assertEqual(marks[:len(marks) // 2], marks[len(marks) // 2:])
-
-    def test_the_page_gets_which_of_two_stimuli_plays(self):
-        p = self.answer_all()
+        # The page gets which of two stimuli plays, and the same for both methods.
         told = {}
         for m in p.seen:
             if m.get("screen") == "stimulus":
@@ -105,31 +71,30 @@ class Sessions(PageTest):
         pair = [(2, 0), (2, 1), (2, 0), (2, 2)]
         self.assertEqual(told, {(1, True, 1): pair, (1, False, 1): pair, (1, False, 2): pair,
                                 (2, False, 1): [(None, None)], (2, False, 2): [(None, None)]})
+        self.assertEqual({r["method_1"] for r in self.rows("01", "marks")}, {"Alder", "Birch"})
+        marks = [m for m in p.seen if m.get("progress", {}).get("run") == 2 and m["progress"]["trial"]]
+        for m in marks:
+            del m["progress"], m["ask"]
+        self.assertEqual(marks[:len(marks) // 2], marks[len(marks) // 2:])
 
-    def test_motions_to_name_have_pictures(self):
-        self.write("names.toml", SHORT[:SHORT.index("[[run]]")] + '[[run]]\nname = "what"\ntask = "identify"\ntrials = 2\nmethods = ["Birch"]\n')
-        s = self.start(definition="names.toml")
+    def test_motions_to_name_have_pictures_and_words_are_in_the_participant_s_language(self):
+        words = '[page]\nlanguage = "de"\nagree = "Machen Sie mit?"\nyes = "Ja"\npause = "Pause"\n'
+        text = SHORT[:SHORT.index("[[run]]")].replace("[[motion]]", words + "[[motion]]", 1)
+        self.write("de.toml", text + '[[run]]\nname = "what"\ntask = "identify"\ntrials = 2\nmethods = ["Birch"]\n')
+        s = self.start(definition="de.toml")
         p = s.participant()
-        p.begin()
+        self.assertEqual((p.facts["words"]["language"], p.facts["words"]["pause"]), ("de", "Pause"))
+        asked = p.answer("consent", 1)
+        self.assertEqual((asked["question"], asked["choices"]), ("Machen Sie mit?", ["Ja", "No"]))
+        for _ in (0, 1):
+            p.answer("walk", 1)
+        p.answer("introduce", 1)
         for i in (1, 2):
             asked = p.answer("question", i)
             self.assertEqual(asked["choices"], ["east", "west"])
             self.assertEqual([(way[0], way[-1]) for way in asked["pictures"]], [([0, 0], [20, 0]), ([20, 0], [0, 0])])
         self.assertEqual(s.end(), 0, s.said)
         self.assertEqual([m["progress"]["trial"] for m in p.seen if m.get("screen") == "walk" and m["ask"]], [1, 2])
-
-    def test_words_are_in_the_participant_s_language(self):
-        words = '[page]\nlanguage = "de"\nagree = "Machen Sie mit?"\nyes = "Ja"\npause = "Pause"\n'
-        self.write("de.toml", SHORT.replace("[[motion]]", words + "[[motion]]", 1))
-        s = self.start(definition="de.toml")
-        p = s.participant()
-        self.assertEqual((p.facts["words"]["language"], p.facts["words"]["pause"]), ("de", "Pause"))
-        asked = p.answer("consent", 2)
-        self.assertEqual((asked["question"], asked["choices"]), ("Machen Sie mit?", ["Ja", "No"]))
-        p.until("over", asked=False)
-        self.assertEqual(s.end(), 1)
-        self.assertIn("did not agree", s.said)
-        self.assertFalse((self.dir / "study/sourcedata").exists())
         self.write("de.toml", SHORT.replace("[[motion]]", '[page]\nagre = "x"\n[[motion]]', 1))
         self.refused(2, *self.args(definition="de.toml"))
 
@@ -186,41 +151,27 @@ class OnceAndNoMore(PageTest):
         p.send(b"".join(framed(TEXT, json.dumps({"ask": ask, "answer": answer}).encode())
                         for ask, answer in ((old, 1), (old, 2), (old + 1, 2))))
         p.until("stimulus", asked=False)
-        # A reload in mid-trial gets the present state.
+        # A reload in mid-trial gets the present state, a second page too: the first is notified, and its answer does not count.
         p.socket.close()
-        p = s.participant()
-        now = p.next()
-        self.assertEqual(now["progress"]["trial"], 1)
-        ask = now["ask"] or p.until("question")["ask"]
-        # A reload during a question gets the same question.
-        p.socket.close()
+        first = s.participant()
+        ask = first.next()["ask"] or first.until("question")["ask"]
         p = s.participant()
         self.assertEqual(p.next()["ask"], ask)
-        # A second page: the first is notified, and its answer does not count.
-        second = s.participant()
-        self.assertEqual(second.next()["ask"], ask)
-        self.assertEqual(p.next(), {"screen": "elsewhere"})
-        p.say(ask=ask, answer=1)
-        self.assertEqual(p.end(), 1001)
-        p = second
-        # Wrong numbers are no answers: the state comes again.
-        for choice, which in ((3, ask), (2, ask + 1), (1, ask - 1)):
-            p.say(ask=which, answer=choice)
-            self.assertEqual(p.next()["ask"], ask)
-        p.say(ask=ask, answer=2)
-        p.say(ask=ask, answer=1)
-        p.say(ask=ask, answer=2)
+        while first.seen[-1] != {"screen": "elsewhere"}:
+            first.next()
+        first.say(ask=ask, answer=1)
+        self.assertEqual(first.end(), 1001)
+        for answer in (2, 1, 2):
+            p.say(ask=ask, answer=answer)
         self.assertEqual(p.until("question")["progress"]["trial"], 2)
         # Without a page the question waits.
         p.socket.close()
         p = s.participant()
         p.answer("question", 1)
-        p.answer("introduce", 1)
-        for _ in (1, 2):
-            p.answer("question", 2)
-        self.assertEqual(s.end(), 0, s.said)
+        p.until("rest", asked=False)
+        s.process.send_signal(signal.SIGINT)
+        self.assertEqual(s.end(), 130)
         self.assertEqual(self.answers(), [("1", "1", "false", "2"), ("2", "1", "false", "1")])
-        self.assertEqual(self.answers("marks", "rating"), [("1", "1", "false", "2"), ("2", "1", "false", "2")])
 
     def test_a_target_shown_on_no_page_makes_its_trial_void(self):
         s = self.start()
@@ -267,67 +218,37 @@ class OnceAndNoMore(PageTest):
 
     def test_nonsense_is_refused(self):
         s = self.start()
-        s.participant().until("consent")
-        for text in (b"", b"{", b"[]", b"7", b'{"answer":0}', b'{"answer":-1,"ask":1}', b'{"answer":"1","ask":1}', b"[" * 4000,
-                     b'{"answer":4294967297,"ask":4294967297}'):
+        for kind, text, code in ((TEXT, b"{", 1008), (TEXT, b'{"answer":-1,"ask":1}', 1008), (BINARY, b"{}", 1003), (TEXT, b" " * 5000, 1009)):
             p = s.participant()
-            asked = p.next()
-            p.frame(TEXT, text)
-            if text and b"429" not in text:
-                self.assertEqual(p.end(), 1008, text)
-                continue
-            if text:
-                self.assertEqual(p.next(), asked)
-            p.say(ask=99, answer=1)
-            self.assertEqual(p.next(), asked)
-        p = s.participant()
-        p.frame(BINARY, b"{}")
-        p.next()
-        self.assertEqual(p.end(), 1003)
-        p = s.participant()
-        p.frame(TEXT, b" " * 5000)
-        p.next()
-        self.assertEqual(p.end(), 1009)
-        p = s.participant()
-        self.assertEqual(p.next()["screen"], "consent")
+            self.assertEqual(p.next()["screen"], "consent")
+            p.frame(kind, text)
+            self.assertEqual(p.end(), code)
 
 
 class WhoMay(PageTest):
-    def test_the_page_is_one_document_that_loads_nothing(self):
-        s = self.start()
-        p = Peer(s.address)
-        self.addCleanup(p.socket.close)
-        status, headers = p.request()
-        page = p.body(headers).decode()
-        self.assertEqual((status, headers["content-type"]), (200, "text/html; charset=utf-8"))
-        self.assertTrue(headers["content-security-policy"].startswith("default-src 'none'; "))
-        self.assertNotIn("unsafe", headers["content-security-policy"])
-        self.assertFalse(re.findall(r"(?:src|href)=\"(?!data:,)", page))
-        self.assertFalse(re.findall(r"https?://(?!www\.w3\.org/2000/svg)", page))
-
-    def test_host_and_origin_are_checked(self):
+    def test_the_page_is_one_document_for_this_machine_s_browsers(self):
         s = self.start()
         port = s.address.rpartition(":")[2]
-        for host, status in ((s.address, 200), (f"localhost:{port}", 200), ("localhost", 403), (f"evil.example:{port}", 403),
-                             (f"127.0.0.2:{port}", 403)):
+
+        def peer():
             p = Peer(s.address)
             self.addCleanup(p.socket.close)
-            self.assertEqual(p.request(host=host)[0], status, host)
-        for origin, status in ((f"http://{s.address}", 101), ("null", 403), ("http://evil.example", 403), (f"http://localhost:{port}", 403)):
-            p = Peer(s.address)
-            self.addCleanup(p.socket.close)
-            self.assertEqual(p.upgrade(Origin=origin), status, origin)
+            return p
+        p = peer()
+        status, headers = p.request()
+        self.assertEqual((status, headers["content-type"]), (200, "text/html; charset=utf-8"))
+        self.assertTrue(headers["content-security-policy"].startswith("default-src 'none'; "))
+        self.assertFalse(re.findall(r"(?:src|href)=\"(?!data:,)", p.body(headers).decode()))
+        for host, status in ((f"localhost:{port}", 200), ("localhost", 403), (f"evil.example:{port}", 403), (f"127.0.0.2:{port}", 403)):
+            self.assertEqual(peer().request(host=host)[0], status, host)
+        for origin, status in ((f"http://{s.address}", 101), ("null", 403), (f"http://localhost:{port}", 403)):
+            self.assertEqual(peer().upgrade(Origin=origin), status, origin)
         for target, status in (("/rpc", 426), ("/status", 404), ("/x", 404)):
-            p = Peer(s.address)
-            self.addCleanup(p.socket.close)
-            self.assertEqual(p.request(target)[0], status, target)
+            self.assertEqual(peer().request(target)[0], status, target)
 
     def test_exclusive_options_are_refused(self):
-        self.refused(2, *self.args("--page", "0.0.0.0:0"))
-        self.refused(2, *self.args("--page", "4:4:4"))
-        self.refused(2, *self.args("--page", "0", "--display", "terminal"))
-        self.refused(2, *self.args("--display", "wall"))
-        self.refused(2, *self.args("--page", "0", "--simulate", "seed=1"))
+        for more in ("--page 0.0.0.0:0", "--page 4:4:4", "--page 0 --display terminal", "--display wall", "--page 0 --simulate seed=1"):
+            self.refused(2, *self.args(*more.split()))
         s = self.start()
         self.refused(3, *self.args("--page", s.address.rpartition(":")[2]), says=("--page", s.address))
         self.assertFalse((self.dir / "study/sourcedata").exists())
@@ -338,8 +259,7 @@ class WhoMay(PageTest):
                 probe.bind(("::1", 0))
         except OSError:
             self.skipTest("this machine has no IPv6")
-        again = Session(self, self.args("--page", "[::1]:0"))
-        self.assertRegex(again.address, r"^\[::1\]:")
+        self.assertRegex(Session(self, self.args("--page", "[::1]:0")).address, r"^\[::1\]:")
 
 
 if __name__ == "__main__":

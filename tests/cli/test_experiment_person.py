@@ -1,142 +1,34 @@
 # SPDX-License-Identifier: MIT
-"""tactor experiment with a person at a terminal, and with lines in place of keys: display, questions, files and refusals."""
-import contextlib
+"""tactor experiment with a person at a terminal, and with lines in place of keys: display, questions, files and refusals.
+tests/study has the order of questions, and what a key answers."""
 import datetime
 import fcntl
 import json
 import os
-import pty
 import re
-import select
 import shutil
 import signal
 import struct
 import subprocess
-import tempfile
 import time
 import unittest
 
-from experiments import SMALL, ExperimentTest, contents, read_table
+from experiments import DESK  # noqa: F401: test_full_disk.py and tests/page take it from here
+from experiments import SHORT, SMALL, PersonTest, Terminal, contents, read_table
 from harness import PATIENCE_S, TOOL, main
 
-DESK = """[array]
-name = "desk"
-grid = { rows = 1, columns = 2, pitch_mm = 20.0 }
-"""
-SHORT = """[experiment]
-name = "short"
-array = "desk.toml"
-level = { dbfs = -20 }
-gap_s = 0.1
-consent = "Be at ease."
-[[motion]]
-name = "east"
-path = "M0 0H20"
-duration = 0.2
-[[motion]]
-name = "west"
-path = "M20 0H0"
-duration = 0.2
-[[method]]
-name = "Alder"
-algorithm = "tactile-brush"
-[[method]]
-name = "Birch"
-algorithm = "park2016"
-[[run]]
-name = "pairs"
-task = "choose"
-attribute = "similarity"
-question = "Which one?"
-animation = true
-trials = 2
-practice = 1
-break_s = 0.3
-[[run]]
-name = "marks"
-task = "rate"
-attribute = "uniformity"
-question = "How even?"
-trials = 2
-scale = 3
-labels = ["not", "half", "all"]
-"""
 AGREED = "y\n" + "y\n" * 2  # consent, and both tactors felt
 RATE = 48000
 
 
-class PersonTest(ExperimentTest):
-    def setUp(self):
-        super().setUp()
-        self.write("desk.toml", DESK)
-        self.write("short.toml", SHORT)
-
-    def args(self, *more, code="01", definition="short.toml", device="null"):
-        return ("experiment", definition, "--participant", code, "-o", "study", *(("-D", device) if device else ()), *more)
-
-    def count_frames(self, plan, code="01"):
-        return json.loads((self.dir / f"study/sourcedata/sub-{code}/plans/{plan}.json").read_text())["render"]["frames"]
-
-
-class Terminal:
-    """The tool on a pseudo-terminal; standard error goes to a file, as an experimenter's console would."""
-
-    def __init__(self, test, args):
-        self.console = tempfile.TemporaryFile("w+")
-        self.pid, self.fd = pty.fork()
-        if self.pid == 0:
-            os.dup2(self.console.fileno(), 2)
-            os.chdir(test.dir)
-            os.execve(TOOL, [str(TOOL), *map(str, args)], test.env | {"TERM": "xterm"})
-        self.all = self.seen = ""
-
-    def read(self):
-        if not select.select([self.fd], [], [], PATIENCE_S)[0]:
-            raise AssertionError(f"nothing more after {self.seen!r}")
-        text = os.read(self.fd, 4096).decode()
-        self.all += text
-        self.seen += text
-
-    def until(self, pattern):
-        while not (found := re.search(pattern, self.seen)):
-            self.read()
-        self.seen = self.seen[found.end():]
-        return found
-
-    def key(self, keys):
-        os.write(self.fd, keys.encode())
-
-    def answer(self, pattern, key):
-        self.until(pattern)
-        self.key(key)
-
-    def begin(self):
-        """Answers up to the first run's first trial."""
-        self.answer("Do you agree", "y")
-        for i in (0, 1):
-            self.answer(f"{i}: Did you feel it", "y")
-        self.answer("Any key begins", " ")
-
-    def end(self):
-        """Returns its exit status."""
-        with contextlib.suppress(OSError):  # the terminal closes with the program
-            while True:
-                self.read()
-        os.close(self.fd)
-        return os.waitstatus_to_exitcode(os.waitpid(self.pid, 0)[1])
-
-    def said(self):
-        self.console.seek(0)
-        return self.console.read()
-
-
 class AtTheTerminal(PersonTest):
-    def start(self, *more, **which):
-        t = Terminal(self, self.args(*more, **which))
-        self.addCleanup(t.console.close)
-        return t
+    def start(self, *more):
+        return Terminal(self, self.args(*more))
 
-    def test_a_whole_session_by_keys(self):
+    def frames(self, plan):
+        return json.loads((self.dir / f"study/sourcedata/sub-01/plans/{plan}.json").read_text())["render"]["frames"]
+
+    def test_a_whole_session_by_keys_tells_no_method(self):
         t = self.start()
         t.begin()
         t.answer("Practice 1/1", "12")  # too early: no answers
@@ -152,28 +44,33 @@ class AtTheTerminal(PersonTest):
         t.answer("Any key ends", " ")
         self.assertEqual(t.end(), 0, t.said())
         rows = self.rows("01", "pairs")
-        self.assertEqual([r["response"] for r in rows], ["1", "2"])
+        self.assertEqual(self.answers(), [("1", "1", "false", "1"), ("2", "1", "false", "2")])
         self.assertEqual([r["rating"] for r in self.rows("01", "marks")], ["3", "3"])
         for r in rows:
-            self.assertEqual(int(r["frame_2"]) - int(r["frame_1"]), self.count_frames(r["plan_1"]) + RATE // 10)
-            self.assertAlmostEqual(float(r["duration"]),
-                                   (self.count_frames(r["plan_1"]) + RATE // 10 + self.count_frames(r["plan_2"])) / RATE, 6)
-            self.assertEqual((r["void"], r["xruns"], r["stream"], r["attempt"]), ("false", "0", "1", "1"))
+            gap_frames = self.frames(r["plan_1"]) + RATE // 10
+            self.assertEqual(int(r["frame_2"]) - int(r["frame_1"]), gap_frames)
+            self.assertAlmostEqual(float(r["duration"]), (gap_frames + self.frames(r["plan_2"])) / RATE, 6)
+            self.assertEqual((r["xruns"], r["stream"]), ("0", "1"))
             self.assertLess(float(r["response_time"]), PATIENCE_S)
         self.assertEqual(rows[0]["onset"], "0.000000")
         self.assertAlmostEqual(float(rows[1]["onset"]), (int(rows[1]["frame_1"]) - int(rows[0]["frame_1"])) / RATE, 5)
         # At least half a second, the animation's 0.2 s, and the stimuli are between two trials.
         self.assertGreater(float(rows[1]["onset"]), float(rows[0]["duration"]) + 0.7)
         self.assertEqual(len(read_table(self.dir / "study/sourcedata/sub-01/practice.tsv")), 1)
+        for text in (t.all, re.sub(r'tactor: warning: motion ".*', "", t.said())):
+            self.assertNotRegex(text, "(?i)alder|birch|tactile-brush|park")
+        # The target moved: the picture was drawn over itself.
+        self.assertIn("\033[", t.all)
+        self.assertNotIn("cannot be drawn", t.said())
 
     def test_the_terminal_has_the_words_of_the_definition(self):
         keys = ("agree yes no walk felt again back begin practice part target rest pause over or to any_key_begins any_key_ends trial "
                 "repeated later no_answer").split()
         words = "[page]\n" + "".join(f'{k} = "<{k}>"\n' for k in keys)
         text = SHORT.replace("labels = [\"not\", \"half\", \"all\"]", "labels = [\"nada\", \"todo\"]").replace("How even?", "?2").replace("Which one?", "?1")
-        self.write("short.toml", text.replace("[[motion]]", words + "[[motion]]", 1))
+        self.write("short.toml", text.replace("[[motion]]", words + "[[motion]]", 1).replace("Be at ease.", "Be at ease. " * 20))
         t = self.start()
-        t.answer("Be at ease.\\s+<agree> y <yes>, n <no>: ", "y")
+        t.answer("ease.\\s+<agree> y <yes>, n <no>: ", "y")
         t.answer("<walk>[^<]*0: <felt> y <yes>, n <no>, r <again>: ", "y")
         t.answer("1: <felt> y <yes>, n <no>, r <again>, b <back>: ", "y")
         t.answer("<part> 1/2\\s+\\?1\\s+1 <or> 2\\s+<any_key_begins>", " ")
@@ -185,51 +82,19 @@ class AtTheTerminal(PersonTest):
         t.answer("<trial> 1/2 \\(<repeated>\\): [^?]*\\?1 1 <or> 2: ", "1")
         t.until("<rest>: 0 s")
         t.answer("<part> 2/2\\s+\\?2\\s+1 \\(nada\\) <to> 3 \\(todo\\)\\s+<any_key_begins>", " ")
-        t.answer("\\?2 1 \\(nada\\) <to> 3 \\(todo\\): ", "1")
-        t.answer("\\?2 1 \\(nada\\) <to> 3 \\(todo\\): ", "1")
+        for _ in (1, 2):
+            t.answer("\\?2 1 \\(nada\\) <to> 3 \\(todo\\): ", "1")
         t.answer("<over>\\s+<any_key_ends>", " ")
         self.assertEqual(t.end(), 0, t.said())
+        self.assertIn(max(len(line) for line in t.all.replace("\r", "").split("\n")), range(70, 80))  # breaks at words
         # And the text read without a terminal.
         lines = self.ok(*self.args(code="02"), stdin="y\ny\ny\n" + "x\n1\n" + "1\n1\n" + "1\n1\n").stdout
         for shown in (t.all, lines):
             # The rest is not in letters, except the picture's words for time and place, and the tool's at its end.
-            rest = re.sub(r"\033\[[0-9;?]*[A-Za-z]|<\w+>|Be at ease\.|nada|todo|\b[ynrb] (?=<)|\bs\b|at [\d.-]+, [\d.-]+ mm|sub-0\d: 4 trials.*", "", shown)
+            rest = re.sub(r"\033\[[0-9;?]*[A-Za-z]|<\w+>|Be at\s+ease\.|nada|todo|\b[ynrb] (?=<)|\bs\b|at [\d.-]+, [\d.-]+ mm|sub-0\d: 4 trials.*", "", shown)
             self.assertNotRegex(rest, "[A-Za-z]{2}")
         self.assertIn("<target>\n", lines)
         self.assertIn("<no_answer>: 1 ", lines)
-
-    def test_a_held_key_answers_nothing(self):
-        t = self.start()
-        t.answer("Do you agree", "y")
-        t.answer("0: Did you feel it", "y")
-        t.answer("1: Did you feel it", "y")
-        t.answer("Any key begins", " ")
-        t.answer("Which one\\? 1 or 2: ", "1" * 200)  # faster than a terminal repeats it
-        self.until(lambda: "a key is held down" in t.said())
-        t.key("2")  # another key is pressed, not held
-        for _ in (1, 2):
-            t.answer("Which one\\? 1 or 2: ", "1" * 50 + "2")
-        t.answer("Any key begins", "q")
-        self.assertEqual(t.end(), 130)
-        self.assertEqual([r["response"] for r in self.rows("01", "pairs")], ["2", "2"])
-        self.assertEqual([r["response"] for r in read_table(self.dir / "study/sourcedata/sub-01/practice.tsv")], ["2"])
-        self.assertEqual(t.said().count("a key is held down"), 1)
-
-    def test_nothing_tells_the_method(self):
-        t = self.start()
-        t.begin()
-        for _ in range(3):
-            t.answer("Which one\\? ", "1")
-        t.answer("Any key begins", " ")
-        for _ in range(2):
-            t.answer("How even\\? ", "2")
-        t.answer("Any key ends", " ")
-        self.assertEqual(t.end(), 0, t.said())
-        for text in (t.all, re.sub(r'tactor: warning: motion ".*', "", t.said())):
-            self.assertNotRegex(text, "(?i)alder|birch|tactile-brush|park")
-        # The target moved: the picture was drawn over itself.
-        self.assertIn("\033[", t.all)
-        self.assertNotIn("cannot be drawn", t.said())
 
     def test_the_experimenter_s_keys_work(self):
         t = self.start()
@@ -242,7 +107,7 @@ class AtTheTerminal(PersonTest):
         t.answer("Trial 1/2 \\(again\\): [^?]*Which one\\? ", "p2")
         t.answer("A pause", "1g")
         t.answer("Trial 2/2 \\(again\\): [^?]*Which one\\? ", "v")
-        t.key("2")
+        t.key("1" * 50 + "2")  # a key that is held down answers nothing
         t.answer("Trial 1/2 \\(again\\): [^?]*Which one\\? ", "1")
         t.answer("Any key begins", "v")  # in the next run's introduction: back to this one
         t.answer("Trial 1/2 \\(again\\): [^?]*Which one\\? ", "2")
@@ -253,40 +118,16 @@ class AtTheTerminal(PersonTest):
         t.answer("Trial 2/2 \\(again\\): How even\\? ", "3")
         t.answer("Any key ends", " ")
         self.assertEqual(t.end(), 0, t.said())
-        told = [(r["trial"], r["attempt"], r["void"], r["response"]) for r in self.rows("01", "pairs")]
-        self.assertEqual(told, [("1", "1", "true", "n/a"), ("2", "1", "true", "n/a"), ("1", "2", "true", "2"),
-                                ("2", "2", "false", "2"), ("1", "3", "true", "1"), ("1", "4", "false", "2")])
-        told = [(r["trial"], r["attempt"], r["void"], r["rating"]) for r in self.rows("01", "marks")]
-        self.assertEqual(told, [("1", "1", "false", "1"), ("2", "1", "true", "2"), ("2", "2", "false", "3")])
-        told = json.loads(self.ok("analyze", "study", "--format", "json").stdout)["runs"]
-        self.assertEqual((told["pairs"]["n"], told["pairs"]["trials"]), (1, 2))
+        self.assertEqual(self.answers(), [("1", "1", "true", "n/a"), ("2", "1", "true", "n/a"), ("1", "2", "true", "2"),
+                                          ("2", "2", "false", "2"), ("1", "3", "true", "1"), ("1", "4", "false", "2")])
+        self.assertEqual(self.answers("marks", "rating"), [("1", "1", "false", "1"), ("2", "1", "true", "2"), ("2", "2", "false", "3")])
         self.assertEqual(t.said().count("is void: the experimenter repeats it"), 2)
         self.assertEqual(t.said().count("is void: the experimenter says so"), 3)
-        self.ok("experiment", "short.toml", "--participant", "01", "-o", "study", "-D", "null", "--resume")
-
-    def test_the_participant_s_text_breaks_at_words(self):
-        words = [f"word{i}x{'y' * (i % 9)}" for i in range(60)]
-        self.write("short.toml", SHORT.replace("Be at ease.", " ".join(words) + "\\n\\nA second part.")
-                   .replace("Which one?", " ".join(reversed(words)) + "?"))
-        t = self.start()
-        for pattern, key in (("Do you agree", "y"), ("0: Did you feel it", "y"), ("1: Did you feel it", "y"), ("Any key begins", "q")):
-            t.until(pattern)
-            t.key(key)
-        self.assertEqual(t.end(), 130)
-        lines = t.all.replace("\r", "").split("\n")
-        self.assertLessEqual(max(map(len, lines)), 79)
-        text = " ".join(lines)
-        self.assertIn(" ".join(words) + "  A second part.", text)
-        self.assertIn(" ".join(reversed(words)) + "? 1 or 2", text)
-
-    def test_q_is_no_signal(self):
-        t = self.start()
-        t.begin()
-        t.answer("Which one\\? ", "q")
-        self.assertEqual(t.end(), 130)
-        self.assertIn("tactor: ended by the experimenter (q): what was answered is in study, and --resume goes on", t.said())
+        self.assertEqual(t.said().count("a key is held down"), 1)
+        self.ok(*self.args("--resume"))
 
     def test_consent_has_the_time_of_the_yes(self):
+        self.env["NO_COLOR"] = "1"  # leaves the target on the terminal
         t = self.start()
         t.answer("Do you agree", "y")
         t.until("0: Did you feel it")
@@ -294,53 +135,35 @@ class AtTheTerminal(PersonTest):
         time.sleep(0.05)
         t.key("y")
         t.answer("1: Did you feel it", "y")
-        t.answer("Any key begins", "q")
+        t.answer("Any key begins", " ")
+        t.answer("Which one\\? ", "q")
         self.assertEqual(t.end(), 130)
+        self.assertIn("tactor: ended by the experimenter (q): what was answered is in study, and --resume goes on", t.said())
         s = self.session("01")
         agreed, asked = (datetime.datetime.fromisoformat(v.replace("Z", "+00:00")) for v in (s["consent"], s["walk"][0]["asked"]))
         self.assertLess(agreed, seen)
         self.assertGreater(asked, seen)
         self.assertEqual(s["streams"][0]["display"], "terminal with animation")
-
-    def test_no_color_leaves_the_target_on_the_terminal(self):
-        self.env["NO_COLOR"] = "1"
-        t = self.start()
-        t.begin()
-        t.answer("Which one\\? ", "1")
-        t.answer("Which one\\? ", "q")
-        self.assertEqual(t.end(), 130)
-        self.assertNotIn("cannot be drawn", t.said())
         self.assertRegex(t.all, r"\033\[\d+A")
         self.assertNotRegex(t.all, r"\033\[[0-9;]*m")
-        self.assertEqual(self.session("01")["streams"][0]["display"], "terminal with animation")
 
     def test_ctrl_c_ends_at_any_place_and_the_session_resumes(self):
-        t = self.start()
-        t.answer("Do you agree", "\x03")
-        self.assertEqual(t.end(), 130)
-        self.assertFalse((self.dir / "study/sourcedata").exists())
-        t = self.start()
-        t.answer("Do you agree", "y")
-        t.answer("0: Did you feel it", "q")  # the same effect
-        self.assertEqual(t.end(), 130)
-        self.assertIn("tactor: ended by the experimenter (q), before anything was answered: nothing is written", t.said())
-        self.assertFalse((self.dir / "study/sourcedata").exists())
-        for n, place in enumerate(("Any key begins", "Practice 1/1", "Trial 1/2: ", "A break")):
-            more = ("--resume",) if n else ()
-            t = self.start(*more)
-            if not n:
+        for place, key in (("Do you agree", "\x03"), ("0: Did you feel it", "q")):
+            t = self.start()
+            if key == "q":
                 t.answer("Do you agree", "y")
-            for i in (0, 1):
-                t.answer(f"{i}: Did you feel it", "y")
+            t.answer(place, key)
+            self.assertEqual(t.end(), 130)
+            self.assertFalse((self.dir / "study/sourcedata").exists())
+        self.assertIn("tactor: ended by the experimenter (q), before anything was answered: nothing is written", t.said())
+        for n, answers in enumerate(("", "", "1", "12")):
+            t = self.start(*(("--resume",) if n else ()))
+            t.begin(agrees=not n, key=" " if n else "\x03")
+            for answer in answers:
+                t.answer("Which one\\? ", answer)
             if n:
-                t.answer("Any key begins", " ")
-            if n == 2:
-                t.answer("Which one\\? ", "1")
-            if n == 3:
-                t.answer("Which one\\? ", "1")
-                t.answer("Which one\\? ", "2")
-            t.answer(place, "\x03")
-            self.assertEqual(t.end(), 130, place)
+                t.answer(("Practice 1/1", "Trial 1/2: ", "A break")[n - 1], "\x03")
+            self.assertEqual(t.end(), 130, n)
             self.assertIn("--resume goes on", t.said())
         self.assertEqual([r["response"] for r in self.rows("01", "pairs")], ["1", "2"])
         # The break was over with the interruption, and the stream is another.
@@ -362,20 +185,14 @@ class ByLines(PersonTest):
         self.assertEqual((s["simulated"], s["device"], s["sound_server"], s["masker"], s["thresholds_assumed"]),
                          (False, "null", None, None, False))
         self.assertEqual([w["tactor"] for w in s["walk"]], [0, 1])
-        self.assertEqual(len(s["streams"]), 1)
-        self.assertRegex(s["consent"], r"^20\d\d-")
-        self.assertEqual((s["streams"][0]["device"], s["streams"][0]["display"], s["streams"][0]["masking"]),
-                         ("null", "terminal without animation", None))
-        self.assertNotIn("simulated", (self.dir / "study/README").read_text().lower())
-        self.assertNotIn("SIMULATED", result.stdout)
-        for scan in read_table(self.dir / "study/sub-01/sub-01_scans.tsv"):
-            self.assertRegex(scan["acq_time"], r"^20\d\d-\d\d-\d\dT\d\d:\d\d:\d\d\.\d{6}Z$")
-        for at in (s["date"], s["consent"], s["streams"][0]["opened"], s["walk"][0]["asked"]):
+        self.assertEqual([(x["device"], x["display"], x["masking"]) for x in s["streams"]], [("null", "terminal without animation", None)])
+        self.assertNotIn("simulated", (self.dir / "study/README").read_text().lower() + result.stdout.lower())
+        for at in (s["date"], s["consent"], s["streams"][0]["opened"], s["walk"][0]["asked"],
+                   *(scan["acq_time"] for scan in read_table(self.dir / "study/sub-01/sub-01_scans.tsv"))):
             self.assertRegex(at, r"^20\d\d-\d\d-\d\dT\d\d:\d\d:\d\d\.\d{6}Z$")
         text = self.ok("report", "study").stdout
         self.assertIn(f"| {s['consent']} | 2 | terminal without animation | none | none |", text)
-        told = json.loads(self.ok("analyze", "study", "--format", "json").stdout)
-        self.assertFalse(told["simulated"])
+        self.assertFalse(json.loads(self.ok("analyze", "study", "--format", "json").stdout)["simulated"])
         before = contents(self.dir / "study")
         self.assertIn("finished", self.ok(*self.args("--resume")).stdout)
         self.assertEqual(contents(self.dir / "study"), before)
@@ -383,23 +200,19 @@ class ByLines(PersonTest):
         self.refused(2, "experiment", "short.toml", "--participant", "03", "-o", "study", "--simulate", "seed=1")
 
     def test_no_consent_no_data(self):
-        self.refused(1, *self.args(), stdin="n\n")
+        for said, warned in (("put your names here", True), ("A. Author", False)):
+            self.write("short.toml", SHORT.replace("gap_s", f'authors = ["{said}"]\ngap_s', 1))
+            told = self.refused(1, *self.args(), stdin="n\n").stderr
+            self.assertEqual('the data will say "put your names here"' in told, warned)
         self.assertFalse((self.dir / "study").exists())
         (self.dir / "study").mkdir()
-        self.refused(1, *self.args(), stdin="n\n")
+        self.assertNotIn("authors", self.refused(1, *self.args(), stdin="n\n").stderr)
         self.refused(3, *self.args(device="hw:CARD=Nowhere"))
         self.assertEqual(list((self.dir / "study").iterdir()), [])
-        self.ok(*self.args(), stdin=self.ANSWERS)
-        self.assertNotIn("simulated", (self.dir / "study/README").read_text().lower())
-
-    def test_an_unconsented_participant_leaves_no_word_to_the_next(self):
-        self.refused(1, *self.args(), stdin="n\n")
+        # Nor is the folder of one kind of session after that.
         self.ok("experiment", "short.toml", "--participant", "02", "-o", "study", "--simulate", "seed=1")
         for name in ("README", "dataset_description.json", "participants.json", "task-pairs_beh.json"):
             self.assertIn("simulated", (self.dir / "study" / name).read_text().lower(), name)
-
-    def test_descriptions_and_sessions_are_of_one_kind(self):
-        self.ok("experiment", "short.toml", "--participant", "02", "-o", "study", "--simulate", "seed=1")
         for name in ("sourcedata", "sub-02"):
             shutil.rmtree(self.dir / "study" / name)
         self.refused(2, *self.args())
@@ -441,49 +254,22 @@ class ByLines(PersonTest):
         self.assertEqual([r["response"] for r in self.rows("01", "what")], ["east", "west"])
 
     def test_the_end_of_answers_loses_none(self):
-        self.refused(1, *self.args(), stdin=AGREED + "1\n1\n")
+        self.refused(1, *self.args("--verbose", "--log", "stream.log"), stdin=AGREED + "1\n1\n")
+        self.assertRegex((self.dir / "stream.log").read_text(), r"20\d\d-\d\d-\d\dT\S+ info ")
         self.assertEqual(len(self.rows("01", "pairs")), 1)
+        # A session that ended before its date was written has one.
+        file = self.dir / "study/sourcedata/sub-01/session.json"
+        began = json.loads(file.read_text())
+        self.assertRegex(began["date"], r"^20\d\d-")
+        file.write_text(json.dumps(began | {"date": None}))
         result = self.ok(*self.args("--resume"), stdin="y\ny\n" + "2\n1\n2\n")
+        self.assertRegex(self.session()["date"], r"^20\d\d-")
         self.assertNotIn("Do you agree", result.stdout)
         self.assertNotIn("Practice 1", result.stdout)
         rows = self.rows("01", "pairs")
         self.assertEqual([(r["trial"], r["response"], r["stream"]) for r in rows], [("1", "1", "1"), ("2", "2", "2")])
         # Over the gap between two streams the clock of the day counts.
         self.assertGreater(float(rows[1]["onset"]), float(rows[0]["duration"]))
-
-    def test_events_of_the_stream_are_reported_and_appended_to_a_file(self):
-        told = self.refused(1, *self.args("--verbose", "--log", "stream.log"), stdin="n\n").stderr
-        log = (self.dir / "stream.log").read_text()
-        for text in (told, log):
-            self.assertRegex(text, r"20\d\d-\d\d-\d\dT\S+ info ")
-        for args in (("--simulate", "seed=1"), ("--dry-run",), ("--print",)):
-            for more, says in ((("--verbose",), "--verbose"), (("--log", "x.log"), "--log")):
-                self.refused(2, *self.args(*args, *more), says=(f"{says}: nothing is played",))
-        self.refused(2, "experiment", "short.toml", "--power", "4", "--simulate", "seed=1", "--verbose")
-        self.refused(2, *self.args("--log", ""))
-        self.assertFalse((self.dir / "x.log").exists())
-
-    def test_a_session_that_ended_before_its_date_was_written_has_one(self):
-        self.refused(1, *self.args(), stdin=AGREED)
-        file = self.dir / "study/sourcedata/sub-01/session.json"
-        began = json.loads(file.read_text())
-        self.assertRegex(began["date"], r"^20\d\d-")
-        file.write_text(json.dumps(began | {"date": None}))
-        self.ok(*self.args("--resume"), stdin="y\ny\n" + "1\n" * 5)
-        self.assertRegex(self.session()["date"], r"^20\d\d-")
-
-    def test_missing_authors_give_a_warning(self):
-        self.assertNotIn("authors", self.refused(1, *self.args(), stdin="n\n").stderr)
-        for said, warned in (("put your names here", True), ("A. Author", False)):
-            self.write("short.toml", SHORT.replace("gap_s", f'authors = ["{said}"]\ngap_s', 1))
-            told = self.refused(1, *self.args(), stdin="n\n").stderr
-            self.assertEqual('the data will say "put your names here"' in told, warned)
-
-    def test_a_missing_keypad_is_reported_before_anything_is_written(self):
-        self.refused(2, *self.args("--keypad", "/dev/null"), stdin=AGREED)
-        self.refused(3, *self.args("--keypad", "/dev/input/nobody"), stdin=AGREED)
-        self.refused(2, *self.args("--keypad", "/dev/null", "--simulate", "seed=1"))
-        self.assertFalse((self.dir / "study/sub-01").exists())
 
     def test_a_session_killed_at_any_moment_loses_no_answer(self):
         with subprocess.Popen([TOOL, *map(str, self.args())], cwd=self.dir, env=self.env, stdin=subprocess.PIPE,
@@ -498,51 +284,10 @@ class ByLines(PersonTest):
         self.ok(*self.args("--resume"), stdin="y\ny\n" + "1\n1\n2\n")
         self.assertEqual([r["response"] for r in self.rows("01", "pairs")], ["2", "1"])
 
-
-class Masking(PersonTest):
-    def noisy(self, extra=""):
-        self.write("noisy.toml", SHORT.replace("[[motion]]", f'[masking]\nnoise = "white"\nlevel_dbfs = -20\n{extra}[[motion]]', 1))
-        return "noisy.toml"
-
-    def covered(self, name):
-        """Returns the length of each piece of full noise, in 10 ms (S32, stereo)."""
-        values = [v / 2 ** 31 for v, in struct.iter_unpack("<i", (self.dir / name).read_bytes())]
-        self.assertEqual(values[::2], values[1::2])
-        left = values[::2]
-        power = [sum(v * v for v in left[i:i + 480]) / 480 for i in range(0, len(left) - 479, 480)]
-        self.assertEqual(power[0], 0)
-        full = "".join(str(int(0.7e-2 < p < 1.4e-2)) for p in power)
-        return [len(r) for r in re.findall("1+", full)]
-
-    def test_noise_surrounds_each_stimulus(self):
-        self.ok(*self.args("--masker", "raw:noise.raw", definition=self.noisy()), stdin=ByLines.ANSWERS)
-        self.assertEqual(self.session("01")["masker"], "raw:noise.raw")
-        pieces = self.covered("noise.raw")
-        # Both devices' clocks stand still where the machine does; timed/test_times.py checks durations.
-        # Two tactors of the walk, three pairs and two single stimuli; without answers to wait for, neighbours may merge.
-        self.assertIn(len(pieces), range(1, 8))
-
-    def test_noise_lasts_through_the_run(self):
-        self.ok(*self.args("--masker", "raw:noise.raw", definition=self.noisy('while = "run"\n')), stdin=ByLines.ANSWERS)
-        pieces = self.covered("noise.raw")
-        self.assertIn(len(pieces), range(1, 5))  # two tactors of the walk, two runs
-
-    def test_renamed_headphones_are_accepted(self):
-        args = self.args(definition=self.noisy())
-        self.refused(1, *args, "--masker", "raw:one.raw", stdin=AGREED + "1\n")
-        self.refused(2, *args, "--resume")
-        self.ok(*args, "--masker", "raw:two.raw", "--resume", stdin="y\ny\n" + "1\n2\n1\n2\n")
-        s = self.session()
-        self.assertEqual((s["masker"], [one["masker"] for one in s["streams"]]), ("raw:one.raw", ["raw:one.raw", "raw:two.raw"]))
-        self.assertEqual(s["streams"][1]["masking"], {"noise": "white", "level_dbfs": -20, "fade_s": 0.05, "while": "stimulus"})
-        self.assertEqual([w["tactor"] for w in s["walk"]], [0, 1, 0, 1])
-        self.assertIn(r"noise: white, level\_dbfs: -20, fade\_s: 0.05, while: stimulus | raw:one.raw; raw:two.raw |",
-                      self.ok("report", "study").stdout)
-
-    def test_an_early_answer_is_marked_counted_and_reported(self):
+    def test_an_early_answer_is_marked_and_counted(self):
         self.write("short.toml", SHORT.replace("trials = 2\npractice = 1", "trials = 2\npractice = 1\nmin_response_s = 10")
                    .replace("scale = 3", "scale = 3\nmin_response_s = 0"))
-        self.ok(*self.args(), stdin=ByLines.ANSWERS)
+        self.ok(*self.args(), stdin=self.ANSWERS)
         self.assertEqual([r["early"] for r in self.rows("01", "pairs")], ["true"] * 2)
         self.assertEqual([r["early"] for r in self.rows("01", "marks")], ["false"] * 2)
         runs = json.loads(self.ok("analyze", "study", "--format", "json").stdout)["runs"]
@@ -566,12 +311,49 @@ class Masking(PersonTest):
             for name, more in (("left.toml", ("--hand", "left")), ("right.toml", ()), ("left.toml", ("--hand", "right")))]
         self.assertEqual(plans[0], plans[1])
         self.assertNotEqual(plans[0], plans[2])
-        self.ok(*self.args("--hand", "left", definition="left.toml"), stdin=ByLines.ANSWERS)
+        self.ok(*self.args("--hand", "left", definition="left.toml"), stdin=self.ANSWERS)
         self.assertEqual(self.session("01")["hand"], "left")
         self.assertIn("| left | east |", self.ok("report", "study").stdout)
 
+
+class Masking(PersonTest):
+    def noisy(self, extra=""):
+        self.write("noisy.toml", SHORT.replace("[[motion]]", f'[masking]\nnoise = "white"\nlevel_dbfs = -20\n{extra}[[motion]]', 1))
+        return "noisy.toml"
+
+    def covered(self, name):
+        """Returns the length of each piece of full noise, in 10 ms (S32, stereo)."""
+        values = [v / 2 ** 31 for v, in struct.iter_unpack("<i", (self.dir / name).read_bytes())]
+        self.assertEqual(values[::2], values[1::2])
+        left = values[::2]
+        power = [sum(v * v for v in left[i:i + 480]) / 480 for i in range(0, len(left) - 479, 480)]
+        self.assertEqual(power[0], 0)
+        full = "".join(str(int(0.7e-2 < p < 1.4e-2)) for p in power)
+        return [len(r) for r in re.findall("1+", full)]
+
+    def test_noise_surrounds_each_stimulus_or_lasts_through_the_run(self):
+        # Two tactors of the walk, three pairs and two single stimuli; without answers to wait for, neighbours may merge. Both devices'
+        # clocks stand still where the machine does; timed/test_times.py checks durations.
+        for code, extra, most in (("01", "", 7), ("02", 'while = "run"\n', 4)):
+            self.ok(*self.args("--masker", f"raw:noise{code}.raw", definition=self.noisy(extra), code=code), stdin=ByLines.ANSWERS)
+            self.assertEqual(self.session(code)["masker"], f"raw:noise{code}.raw")
+            self.assertIn(len(self.covered(f"noise{code}.raw")), range(1, most + 1))
+
+    def test_renamed_headphones_are_accepted(self):
+        args = self.args(definition=self.noisy())
+        self.refused(1, *args, "--masker", "raw:one.raw", stdin=AGREED + "1\n")
+        self.refused(2, *args, "--resume")
+        self.ok(*args, "--masker", "raw:two.raw", "--resume", stdin="y\ny\n" + "1\n2\n1\n2\n")
+        s = self.session()
+        self.assertEqual((s["masker"], [one["masker"] for one in s["streams"]]), ("raw:one.raw", ["raw:one.raw", "raw:two.raw"]))
+        self.assertEqual(s["streams"][1]["masking"], {"noise": "white", "level_dbfs": -20, "fade_s": 0.05, "while": "stimulus"})
+        self.assertEqual([w["tactor"] for w in s["walk"]], [0, 1, 0, 1])
+        self.assertIn(r"noise: white, level\_dbfs: -20, fade\_s: 0.05, while: stimulus | raw:one.raw; raw:two.raw |",
+                      self.ok("report", "study").stdout)
+
     def test_noise_that_did_not_play_is_not_reported_as_played(self):
-        self.ok(*self.args(definition=self.noisy()), stdin=ByLines.ANSWERS)
+        said = self.ok(*self.args(definition=self.noisy()), stdin=ByLines.ANSWERS).stderr
+        self.assertIn("masking noise has no device", said)
         text = self.ok("report", "study").stdout
         self.assertIn("| terminal without animation | none | none |", text)
         self.assertIn(r"this masking noise: noise: white, level\_dbfs: -20", text)
@@ -589,30 +371,33 @@ class Masking(PersonTest):
         self.refused(2, "experiment", "short.toml", "--check-noise", "-D", "null", "--masker", "null")
         self.refused(2, *check[:-2], "--simulate", "seed=1", "--masker", "null")
 
-    def test_exclusive_options_are_refused(self):
-        self.refused(2, *self.args("--masker", "null"))
-        self.refused(2, *self.args("--masker", ""))
-        self.refused(3, *self.args("--masker", "hw:CARD=Nowhere", definition=self.noisy()))
-        self.assertIn("masking noise has no device",
-                      self.refused(1, *self.args(definition=self.noisy()), stdin="n\n").stderr)
-        self.write("loud.toml", (self.dir / "noisy.toml").read_text().replace("= -20\n", "= -3\n"))
-        for more in ((), ("--dry-run",)):
-            self.refused(2, *self.args(*more, definition="loud.toml"))
+    def test_simulated_sessions_need_no_device(self):
+        self.write("noisy.toml", SMALL.replace("[[motion]]", '[masking]\nnoise = "pink"\n[[motion]]', 1))
+        result = self.simulate("01", definition="noisy.toml")
+        self.assertNotIn("--masker", result.stderr)
+        self.assertEqual((self.session()["masker"], self.session()["device"]), (None, None))
 
 
 class Refused(PersonTest):
     def test_each_fault_is_reported_before_a_trial(self):
+        noisy = Masking.noisy(self)
         self.write("sl.toml", SHORT.replace("{ dbfs = -20 }", "{ sl_db = 7 }"))
-        self.refused(2, *self.args(definition="sl.toml"))
-        self.refused(2, *self.args(device=None))
-        many = SHORT[:SHORT.index("[[method]]")].replace('"east"', '"m0"').replace('"west"', '"m1"') + "".join(
-            f'[[motion]]\nname = "m{i}"\npath = "M0 0H{i}"\nduration = 0.2\n' for i in range(2, 10)) + \
-            '[[method]]\nname = "one"\n[[run]]\nname = "what"\ntask = "identify"\ntrials = 10\n'
-        self.write("many.toml", many)
-        self.refused(2, *self.args(definition="many.toml"))
-        self.assertFalse((self.dir / "study").exists())
-        self.refused(3, *self.args(device="hw:CARD=Nowhere"))
-        self.refused(2, *self.args("--display", "hologram"))
+        self.write("loud.toml", (self.dir / noisy).read_text().replace("= -20\n", "= -3\n"))
+        self.write("many.toml", SHORT[:SHORT.index("[[method]]")].replace('"east"', '"m0"').replace('"west"', '"m1"') + "".join(
+            f'[[motion]]\nname = "m{i}"\npath = "M0 0H{i}"\nduration = 0.2\n' for i in range(2, 10)) +
+            '[[method]]\nname = "one"\n[[run]]\nname = "what"\ntask = "identify"\ntrials = 10\n')
+        for more, which in ((("--display", "hologram"), {}), ((), {"definition": "sl.toml"}), ((), {"device": None}), ((), {"definition": "many.toml"}),
+                            ((), {"definition": "loud.toml"}), (("--dry-run",), {"definition": "loud.toml"}), (("--log", ""), {}),
+                            (("--masker", "null"), {}), (("--masker", ""), {}), (("--keypad", "/dev/null"), {}),
+                            (("--keypad", "/dev/null", "--simulate", "seed=1"), {}),
+                            *((mode + more, {}) for mode in (("--simulate", "seed=1"), ("--dry-run",), ("--print",))
+                              for more in (("--verbose",), ("--log", "x.log")))):
+            self.refused(2, *self.args(*more, **which), stdin=AGREED)
+        self.refused(2, "experiment", "short.toml", "--power", "4", "--simulate", "seed=1", "--verbose")
+        for more, which in (((), {"device": "hw:CARD=Nowhere"}), (("--keypad", "/dev/input/nobody"), {}),
+                            (("--masker", "hw:CARD=Nowhere"), {"definition": noisy})):
+            self.refused(3, *self.args(*more, **which), stdin=AGREED)
+        self.assertFalse((self.dir / "study/sub-01").exists() or (self.dir / "x.log").exists())
 
     def test_two_experimenters_in_one_folder_are_refused(self):
         (self.dir / "study").mkdir()
@@ -630,14 +415,7 @@ class Refused(PersonTest):
         self.assertNotIn("tactor: warning: PipeWire", told.stderr)
         allowed = self.run_tool(*self.args("--allow-sound-server", device="shared"), stdin="n\n")
         self.assertIn("tactor: warning: PipeWire is in between", allowed.stderr)
-        self.write("noisy.toml", SHORT.replace("[[motion]]", '[masking]\nnoise = "pink"\n[[motion]]', 1))
-        self.refused(2, *self.args("--masker", "shared", definition="noisy.toml"))
-
-    def test_simulated_sessions_need_no_device(self):
-        self.write("noisy.toml", SMALL.replace("[[motion]]", '[masking]\nnoise = "pink"\n[[motion]]', 1))
-        result = self.simulate("01", definition="noisy.toml")
-        self.assertNotIn("--masker", result.stderr)
-        self.assertEqual((self.session()["masker"], self.session()["device"]), (None, None))
+        self.refused(2, *self.args("--masker", "shared", definition=Masking.noisy(self)))
 
 
 if __name__ == "__main__":

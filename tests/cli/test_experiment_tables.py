@@ -26,60 +26,47 @@ class Tables(ExperimentTest):
         return whole, table, sorted((self.dir / "study").rglob("*.tsv"))
 
     def test_tables_saved_by_another_program_resume_and_keep_their_line_ends(self):
-        def quoted(text):
-            return re.sub(rb"[^\t\n]+", lambda m: b'"' + m[0] + b'"', text)
         def pandas(text):
             return text.replace(b"false", b"False").replace(b"n/a", b"").replace(b"\t1\t1\t", b"\t1.0\t1.0\t")
-        ways = {"CR LF": lambda t: t.replace(b"\n", b"\r\n"), "CR": lambda t: t.replace(b"\n", b"\r"),
-                "a byte order mark": lambda t: b"\xef\xbb\xbf" + t, "no last line end": lambda t: t[:-1],
-                "CR, no last line end": lambda t: t[:-1].replace(b"\n", b"\r"), "blank lines": lambda t: t + b"\n\t\t\n\n",
-                "tabs behind": lambda t: t.replace(b"\n", b"\t\t\n"), "capitals": lambda t: t.replace(b"false", b"FALSE"),
-                "quotes": quoted, "pandas": pandas, "R": lambda t: quoted(t.replace(b"false", b"FALSE")).replace(b'"n/a"', b"NA")}
-        for name, way in ways.items():
-            with self.subTest(name):
-                whole, _, tables = self.broken_off()
-                saved = {p: way(p.read_bytes()) for p in tables}
-                for path, data in saved.items():
-                    path.write_bytes(data)
-                told = json.loads(self.ok("analyze", "study", "--format", "json").stdout)
-                result = self.simulate("01", "--resume")
-                self.assertNotIn("cut", result.stderr)
-                after = contents(self.dir / "study")
-                self.assertEqual(set(after), set(whole))
-                for path, data in saved.items():
-                    new = path.read_bytes()
-                    self.assertTrue(new.startswith(data), path)
-                    if b"\r" in data:
-                        self.assertEqual(new.count(b"\n"), new.count(b"\r\n"))
-                self.assertEqual(self.ok("analyze", "study", "--format", "tsv").stdout, self.ok("analyze", "whole", "--format", "tsv").stdout)
-                self.ok("report", "study")
-                self.assertIn("finished", self.simulate("01", "--resume").stdout)
-                self.simulate("02")
-                self.assertTrue((self.dir / "study/participants.tsv").read_bytes().startswith(saved[self.dir / "study/participants.tsv"]))
-                self.assertEqual(json.loads(self.ok("analyze", "study", "--format", "json").stdout)["participants"], 2)
-                self.assertEqual(told["participants"], 1)
+
+        def r(text):
+            return re.sub(rb"[^\t\n]+", lambda m: b'"' + m[0] + b'"', text.replace(b"false", b"FALSE")).replace(b'"n/a"', b"NA")
+        for way in (lambda t: t.replace(b"\n", b"\r\n"), lambda t: t[:-1].replace(b"\n", b"\r"), lambda t: b"\xef\xbb\xbf" + t + b"\n\t\t\n\n", pandas, r):
+            whole, _, tables = self.broken_off()
+            saved = {p: way(p.read_bytes()) for p in tables}
+            for path, data in saved.items():
+                path.write_bytes(data)
+            self.assertEqual(json.loads(self.ok("analyze", "study", "--format", "json").stdout)["participants"], 1)
+            self.assertNotIn("cut", self.simulate("01", "--resume").stderr)
+            self.assertEqual(set(contents(self.dir / "study")), set(whole))
+            for path, data in saved.items():
+                new = path.read_bytes()
+                self.assertTrue(new.startswith(data), path)
+                if b"\r" in data:
+                    self.assertEqual(new.count(b"\n"), new.count(b"\r\n"))
+            self.assertEqual(self.ok("analyze", "study", "--format", "tsv").stdout, self.ok("analyze", "whole", "--format", "tsv").stdout)
+            self.ok("report", "study")
+            self.assertIn("finished", self.simulate("01", "--resume").stdout)
+            self.simulate("02")
+            self.assertTrue((self.dir / "study/participants.tsv").read_bytes().startswith(saved[self.dir / "study/participants.tsv"]))
 
     def test_unreadable_tables_are_refused_before_the_session_and_left_alone(self):
-        wide = {"UTF-16": lambda t: t.decode().encode("utf-16"), "without a mark": lambda t: t.decode().encode("utf-16-le")}
-        ways = {"commas": (lambda t: t.replace(b"\t", b","), ":1: commas are between the columns"),
-                "semicolons": (lambda t: t.replace(b"\t", b";"), ":1: semicolons are between the columns"),
-                "UTF-16": (wide["UTF-16"], ": is UTF-16, not UTF-8"), "without a mark": (wide["without a mark"], ": is UTF-16"),
-                "a short line": (lambda t: t.replace(b"\n", b"\nx\n", 1), ":2: it has 1 column, not "),
-                "numbers of rows": (lambda t: t.replace(b"\n", b"\n1\t", 1), ":2: it begins with the row's number"),
-                "pandas' index": (lambda t: b"\t" + t.replace(b"\n", b"\n0\t", 1), ":1: a column has no name"),
-                "a name twice": (lambda t: b"x\tx\t" + t.replace(b"\n", b"\n0\t0\t"), ":1: the column x is there twice")}
-        for name, (way, says) in ways.items():
-            _, _, tables = self.broken_off()
+        _, _, tables = self.broken_off()
+        for way, says in ((lambda t: t.replace(b"\t", b";"), ":1: semicolons are between the columns"),
+                          (lambda t: t.decode().encode("utf-16-le"), ": is UTF-16"),
+                          (lambda t: t.replace(b"\n", b"\nx\n", 1), ":2: it has 1 column, not ")):
             for path in tables:
                 good = path.read_bytes()
                 path.write_bytes(way(good))
                 before = contents(self.dir / "study")
-                with self.subTest(f"{name} {path.name}"):
-                    self.simulate("01", "--resume", run=lambda *a: self.refused(2, *a, says=(path.name + says,)))
+                with self.subTest(says + path.name):
+                    commands = [("experiment", self.small(), "--participant", "01", "-o", "study", "--simulate", "seed=1,sigma=1", "--resume")]
                     if path.name == "participants.tsv":
-                        self.simulate("02", run=lambda *a: self.refused(2, *a, says=(path.name + says,)))
+                        commands += [("experiment", self.small(), "--participant", "02", "-o", "study", "--simulate", "seed=1,sigma=1")]
                     if not path.name.endswith("scans.tsv") and path.name != "practice.tsv":
-                        self.refused(2, "analyze", "study", says=(path.name + says,))
+                        commands += [("analyze", "study")]
+                    for command in commands:
+                        self.refused(2, *command, says=(path.name + says,))
                     self.assertEqual(contents(self.dir / "study"), before)
                 path.write_bytes(good)
 
@@ -89,15 +76,16 @@ class Tables(ExperimentTest):
         table = table if table.exists() else self.dir / "study/sub-01/beh/sub-01_task-howgood_beh.tsv"
         good = table.read_text()
         lines = good.split("\n")
-        for column, value in (("response", "9"), ("void", "yes"), ("response_time", "0,5"), ("void", "n/a"), ("trial", "n/a"),
-                              ("onset", "1e"), ("plan_1", "x")):
+        for column, value in (("response", "9"), ("void", "n/a"), ("onset", "1e"), ("plan_1", "x"), ("", "")):
             cells = lines[1].split("\t")
-            cells[COLUMNS.index(column)] = value
-            table.write_text("\n".join([lines[0], "\t".join(cells), *lines[2:]]))
+            if column:
+                cells[COLUMNS.index(column)] = value
+                table.write_text("\n".join([lines[0], "\t".join(cells), *lines[2:]]))
+            else:  # a column is missing
+                table.write_text(good.replace("\tvoid", "\tother", 1))
             before = contents(self.dir / "study")
-            with self.subTest(f"{column} {value}"):
-                self.simulate("01", "--resume", run=lambda *a: self.refused(2, *a))
-                self.assertEqual(contents(self.dir / "study"), before)
+            self.simulate("01", "--resume", run=lambda *a: self.refused(2, *a))
+            self.assertEqual(contents(self.dir / "study"), before)
         table.write_text(good)
         description = self.dir / "study/task-howgood_beh.json"
         text = description.read_text()
@@ -105,6 +93,11 @@ class Tables(ExperimentTest):
         self.simulate("01", "--resume", run=lambda *a: self.refused(2, *a))
         self.refused(2, "analyze", "study")
         description.write_text(text)
+        people = self.dir / "study/participants.tsv"
+        text = people.read_text()
+        people.write_text(text.replace("participant_id", "id"))
+        self.simulate("02", run=lambda *a: self.refused(2, *a))
+        people.write_text(text)
         self.simulate("01", "--resume")
         self.assertEqual(contents(self.dir / "study"), whole)
 
@@ -191,19 +184,6 @@ class Tables(ExperimentTest):
         self.simulate("02")
         self.assertEqual((self.dir / "study/participants.tsv").read_text().splitlines()[-1], "n/a\tn/a\tn/a\tsub-02\tn/a")
         self.ok("analyze", "study")
-
-    def test_a_missing_column_is_refused(self):
-        _, table, _ = self.broken_off()
-        good = table.read_text()
-        for column in COLUMNS:
-            if column == "early":  # tables of older versions lack it
-                continue
-            table.write_text(good.replace(f"\t{column}", "\tother", 1) if column != "onset" else "other" + good[5:])
-            self.simulate("01", "--resume", run=lambda *a: self.refused(2, *a, says=(f"{table.name}:1: there is no column {column}",)))
-        table.write_text(good)
-        people = self.dir / "study/participants.tsv"
-        people.write_text(people.read_text().replace("participant_id", "id"))
-        self.simulate("02", run=lambda *a: self.refused(2, *a))
 
 
 if __name__ == "__main__":

@@ -199,6 +199,8 @@ TEST_CASE("faults have their line")
          "e.toml:12:", "no trials");
     const std::string rate =
         "[[run]]\nname = \"r\"\ntask = \"rate\"\nattribute = \"similarity\"\ntrials = 4\n";
+    says(head + motion + methods + "[[run]]\nname = \"r\"\ntask = \"rate\"\nattribute = \"a\"\ntrials = 0\n",
+         "e.toml:16:", "trials is 0");
     for (const char* none : {"[\"a\"]", "[\"a\", \"b\", \"c\"]"})
         says(head + motion + methods + rate + "labels = " + none + "\n",
              "e.toml:17:", "for a scale of 5 (one for each end, or one for each step)");
