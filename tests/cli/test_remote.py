@@ -6,25 +6,27 @@ import socket
 import subprocess
 import time
 
-from harness import PATIENCE_S, TOOL, ToolTest, main
-from serving import Server
+from harness import PATIENCE_S, TOOL, main
+from serving import ServeTest
 
 BRIEF = ("--path", "M 0 0 L 40 40", "--algorithm", "continuous", "--duration", "0.05")
 LONG = ("--path", "M 0 0 L 40 40", "--algorithm", "continuous", "--duration", "300")
 
 
-class Remote(ToolTest):
-    def serve(self, **more):
-        s = Server(self, **more)
-        self.assertIsNotNone(s.where, getattr(s, "errors", ""))
-        return s
-
+class Remote(ServeTest):
     def begun(self, *args):
         p = subprocess.Popen([TOOL, *args], stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
                              cwd=self.dir, env=self.env)
         self.addCleanup(lambda: [f.close() for f in (p.stdin, p.stdout, p.stderr) if f])
         self.addCleanup(p.wait)
         self.addCleanup(p.kill)
+        return p
+
+    def fed(self, where, *lines):
+        """Begins a live stroke from standard input."""
+        p = self.begun("play", "--live", "-", "--socket", where)
+        p.stdin.write("".join(lines))
+        p.stdin.flush()
         return p
 
     def started(self, client, states=("started",)):
@@ -54,7 +56,6 @@ class Remote(ToolTest):
         options = {"compensate": "low-speed", "sigma_mm": 8, "phantom": "barycentric", "duration": 0.4}
         record = s.client().ok("plan", stroke="park2016-1", options=options)
         self.assertEqual(record["compensation"], self.plan("park2016-1", *move, "--duration", "0.4")["compensation"])
-        self.refused(2, "play", "park2016-1", "--sigma-mm", "8", "--socket", s.where["socket"])
 
     def test_a_file_has_the_same_format_through_a_server(self):
         s = self.serve()
@@ -79,28 +80,25 @@ class Remote(ToolTest):
         for command in (("stop",), ("status",), ("play", "park2016-1")):
             self.refused(3, *command, "--socket", "none.sock")
 
-    def test_a_server_s_refusal_names_options(self):
+    def test_a_server_s_refusal_names_options_and_lines(self):
         s = self.serve()
-        for option, value in (("--soa", "3"), ("--level-dbfs", "-1")):
-            self.refused(2, "play", "park2016-1", option, value, "--socket", s.where["socket"], says=(f"tactor: {option}: ",))
-        self.refused(2, "play", "--path", "M 0 0 L 400 0", "--socket", s.where["socket"])
-        for option in (("--array", "palm-3x3"), ("-D", "null"), ("--fit",), ("--rate", "48000"),
-                       ("--power-dbfs", "3"), ("--max-drive-s", "3"), ("--drive-window-s", "9"),
-                       ("--require-realtime",), ("--no-gpio",), ("--latency-ms", "5"), ("--period-frames", "96"), ("--periods", "3"),
-                       ("--reopen-s", "1"), ("--sync-delay-ms", "3"), ("--log", "x.log"), ("--verbose",)):
-            self.refused(2, "play", "park2016-1", *option, "--socket", s.where["socket"], says=("--socket", {"-D": "--device"}.get(option[0], option[0])))
-        self.refused(2, "play", "nonsense", "--socket", s.where["socket"])
+        self.write("bad.toml", '[stroke]\npath = "M 0 0 L 40 40"\nsoas = 1\n')
+        for args in (("--soa", "3"), ("--level-dbfs", "-1"), ("--sl", "7"), ("--timing", "fit", "--min-duration", "5"), ("--sigma-mm", "8")):
+            said = self.refused(2, "play", "park2016-1", *args, "--socket", s.where["socket"]).stderr
+            self.assertNotIn("options.", said)
+        for args in (("--path", "M 0 0 L 400 0"), ("nonsense",)):
+            self.refused(2, "play", *args, "--socket", s.where["socket"])
+        for option in ("--array palm-3x3", "-D null", "--fit", "--rate 48000", "--power-dbfs 3", "--max-drive-s 3", "--drive-window-s 9",
+                       "--require-realtime", "--no-gpio", "--latency-ms 5", "--period-frames 96", "--periods 3", "--reopen-s 1",
+                       "--sync-delay-ms 3", "--log x.log", "--verbose"):
+            self.refused(2, "play", "park2016-1", *option.split(), "--socket", s.where["socket"],
+                         says=("--socket", option.split()[0].replace("-D", "--device")))
+        here, there = (self.refused(2, "play", "bad.toml", *where).stderr for where in (("-D", "null"), ("--socket", s.where["socket"])))
+        self.assertEqual(there, here)
         plan = self.ok("plan", "park2016-1", "--format", "json").stdout
         self.write("plan.json", plan)
         for argument, name in (("plan.json", "plan.json"), ("-", "standard input")):
             self.refused(2, "play", argument, "--socket", s.where["socket"], stdin=plan, says=(f"{name}: it is a plan", "a server"))
-
-    def test_a_fault_in_a_file_has_its_line(self):
-        s = self.serve()
-        self.write("bad.toml", '[stroke]\npath = "M 0 0 L 40 40"\nsoas = 1\n')
-        here = self.refused(2, "play", "bad.toml", "-D", "null")
-        there = self.refused(2, "play", "bad.toml", "--socket", s.where["socket"])
-        self.assertEqual(there.stderr, here.stderr)
 
     def test_stop_and_ctrl_c_end_it_with_their_status(self):
         s = self.serve()
@@ -194,26 +192,21 @@ class Remote(ToolTest):
         s = self.serve()
         watcher = s.client()
         watcher.ok("subscribe", events=["strokes"])
-        p = self.begun("play", "--live", "-", "--socket", s.where["socket"])
-        p.stdin.write("10 10\n\n# a remark\n20 20 0.5\n")
-        p.stdin.flush()
+        p = self.fed(s.where["socket"], "10 10\n\n# a remark\n20 20 0.5\n")
         n = self.started(watcher)["stroke"]
-        p.stdin.write("30 30")
-        p.stdin.close()
-        p.stdin = None
-        out, err = p.communicate(timeout=PATIENCE_S)
+        out, err = p.communicate("30 30", timeout=PATIENCE_S)
         self.assertEqual(p.returncode, 0, err)
         self.assertIn("live: played", out)
         self.assertEqual(watcher.await_end(n)["state"], "finished")
-        p = self.begun("play", "--live", "-", "--socket", s.where["socket"])
-        p.stdin.write("10 10\n")
-        p.stdin.flush()
+        p = self.fed(s.where["socket"], "10 10\n")
         n = self.started(watcher)["stroke"]
-        p.stdin.write("10 x\n")
-        p.stdin.flush()
-        self.assertEqual(p.wait(PATIENCE_S), 2)
-        self.assertIn("standard input:2:", p.stderr.read())
+        self.assertIn("standard input:2:", p.communicate("10 x\n", timeout=PATIENCE_S)[1])
+        self.assertEqual(p.returncode, 2)
         self.assertIn(watcher.await_end(n)["state"], ("cancelled", "finished"))
+        # The server's interruption is a failure.
+        p = self.fed(self.serve("--socket", self.dir / "b.sock", config="[serve]\nmax_stroke_s = 0.1\n").where["socket"], "10 10\n")
+        self.assertEqual(p.wait(PATIENCE_S), 1)
+        self.assertRegex(p.stderr.read(), "tactor: live: interrupted after .* s: limit: it has lasted as long as it may\n")
 
     def played_at_a_door(self, points, answer):
         """Plays live points to a server in this test; `answer(params)` gives its reply to each of them, None: accepted."""
@@ -221,8 +214,7 @@ class Remote(ToolTest):
         with socket.socket(socket.AF_UNIX) as door:
             door.bind(path)
             door.listen()
-            p = self.begun("play", "--live", "-", "--socket", path)
-            p.stdin.write(points)
+            p = self.fed(path, points)
             p.stdin.close()
             p.stdin = None
             with door.accept()[0] as peer, peer.makefile("rw", encoding="utf-8") as lines:
@@ -252,23 +244,6 @@ class Remote(ToolTest):
         self.played_at_a_door("".join(f"{i} {i}\n" for i in range(40)), answer)
         self.assertEqual(taken, list(range(40)))
 
-    def test_a_server_s_refusal_of_points_names_options(self):
-        s = self.serve()
-        refused = self.refused(2, "play", "park2016-1", "--sl", "7", "--socket", s.where["socket"]).stderr
-        self.assertIn("--level-dbfs", refused)
-        self.assertNotIn("options.", refused)
-        refused = self.refused(2, "play", "park2016-1", "--timing", "fit", "--min-duration", "5", "--socket", s.where["socket"]).stderr
-        self.assertIn("--timing fit: bursts of at least", refused)
-        self.assertNotIn("options.", refused)
-
-    def test_a_stroke_that_the_server_interrupts_is_a_failure(self):
-        s = self.serve(config="[serve]\nmax_stroke_s = 0.1\n")
-        p = self.begun("play", "--live", "-", "--socket", s.where["socket"])
-        p.stdin.write("10 10\n")
-        p.stdin.flush()
-        self.assertEqual(p.wait(PATIENCE_S), 1)
-        self.assertRegex(p.stderr.read(), "tactor: live: interrupted after .* s: limit: it has lasted as long as it may\n")
-
     def test_lines_move_a_live_stroke_here(self):
         r = self.ok("play", "--live", "-", "-D", "null", stdin="10 10\n20 20 0.5\n30, 30\n")
         self.assertRegex(r.stdout, r"live: played [0-9.]+ s; from [12] points? to the DAC [0-9.]+ ms \([0-9.]+ to [0-9.]+\)\n")
@@ -278,11 +253,12 @@ class Remote(ToolTest):
         self.assertEqual(delay["points"], 1)
         self.assertGreater(delay["least_s"], 0.0)
         self.assertEqual({delay["least_s"], delay["most_s"]}, {delay["mean_s"]})
-        for line, why in (("1\n", "1 word"), ("1 2 3 4\n", "words"), ("1 y\n", "not a number"), ("1 2 -1\n", "out of range"),
-                          ("1 inf\n", "not a number"), ("x" * 5000, "4096"), ("20,5 10\n", "\"20,5\" has a comma that could be a decimal one"),
-                          ("0.1,20,20\n", "\"0.1,20,20\" has a comma"), ("20 ,5\n", "\",5\" has a comma"), ("20, 5,\n", "\"5,\" has a comma"),
-                          ("20,, 5\n", "\"20,\" has a comma"), (", 20 5\n", "\",\" has a comma")):
-            self.refused(2, "play", "--live", "-", "-D", "null", stdin="10 10\n" + line, says=("standard input:2:", why))
+        for line in ("1\n", "1 2 3 4\n", "1 y\n", "1 2 -1\n", "1 inf\n", "x" * 5000, "20,5 10\n", "0.1,20,20\n", "20 ,5\n", "20, 5,\n", "20,, 5\n",
+                     ", 20 5\n", "ab\0cd 22\n"):
+            self.refused(2, "play", "--live", "-", "-D", "null", stdin="10 10\n" + line, says=("standard input:2:",))
+        for lines in ("\ufeff20 20\n21 20\n", "+20 20\n21 +2e1\n", "20 20 127\n21 20\n"):  # of other programs
+            r = self.ok("play", "--live", "-", "-D", "null", "--intensity-max", "127", "--format", "json", stdin=lines)
+            self.assertEqual(json.loads(r.stdout)["strokes"][0]["held_points"], 0, r.stderr)
         self.refused(2, "play", "--live", "park2016-1")
         self.ok("play", "--live", "-", "-D", "null", "--smooth", "0.1", stdin="10 10\n20 20\n")
         self.refused(2, "play", "--live", "-", "-D", "null", "--smooth", "2")
@@ -301,12 +277,6 @@ class Remote(ToolTest):
         r = self.ok("play", "--live", "-", "-D", "null", "--verbose", stdin=lines)
         self.assertEqual(r.stderr.count("warning: standard input:1: the place (640, 480) mm is outside the array: moved to its edge"), 1)
         self.assertRegex(r.stderr, "warning live stroke [0-9]+: 2 points outside the array moved to its edge\n")
-
-    def test_lines_of_other_programs_are_read(self):
-        for lines in ("\ufeff20 20\n21 20\n", "+20 20\n21 +2e1\n", "20 20 127\n21 20\n"):
-            r = self.ok("play", "--live", "-", "-D", "null", "--intensity-max", "127", "--format", "json", stdin=lines)
-            self.assertEqual(json.loads(r.stdout)["strokes"][0]["held_points"], 0, r.stderr)
-        self.refused(2, "play", "--live", "-", "-D", "null", stdin="20 20\nab\0cd 22\n", says=("standard input:2:", '"ab\\x00cd" is not a number'))
 
     def test_an_intensity_above_1_sounds_as_1_and_is_reported_once(self):
         lines = "20 20 80\n20, 20, 0.5\n0.1 20 20\n"
