@@ -282,18 +282,6 @@ TEST_CASE("a live stroke with a time begins then, at the last place before")
     CHECK(rig.osc.count() == 0);
 }
 
-TEST_CASE("stop is at once, however far ahead its time is")
-{
-    osc_rig rig;
-    ready(rig);
-    rig.say(me, "/tactor/begin", {1_i, "timeout_s=86400"});
-    rig.say(me, "/tactor/to", {1_i, 1.0, 1.0});
-    CHECK(rig.next(me) == "/tactor/stroke 1 started");
-    rig.osc.receive(osc_rig::bundle(rig.unix_ns() + 3'600'000'000'000, {rig.message("/tactor/stop", {})}),
-                    me);
-    CHECK(rig.next(me) == "/tactor/stroke 1 cancelled");
-}
-
 TEST_CASE("what waits for its time when the server ends has its end, too")
 {
     osc_rig rig;

@@ -1,14 +1,10 @@
 // SPDX-License-Identifier: MIT
 // Cards that come and go, and the end.
 #include <atomic>
-#include <chrono>
 #include <exception>
 #include <future>
 #include <memory>
 #include <string>
-#include <thread>
-
-#include <boost/asio/post.hpp>
 
 #include <doctest/doctest.h>
 
@@ -125,6 +121,7 @@ TEST_CASE("an idle stream is closed, and opened by the next stroke")
     running_rig rig([](server::service_options&, server::stream_options& s) { s.times.idle_stop_s = 0.001; });
     const auto c = rig.client();
     rig.sleep_and_plug();
+    CHECK(rig.ok(c, "fire") == json{{"count", 0}}); // nothing is armed, which is no error
     CHECK(rig.find_end(c, rig.ok(c, "drive", {{"tactor", 0}, {"duration_s", 0.1}})["stroke"])["state"] ==
           "finished");
 }
@@ -179,14 +176,6 @@ TEST_CASE("a suspended device is no reason for the watchdog to end the service")
     CHECK(rig.all->output().progresses());
 }
 
-TEST_CASE("of an idle stream there is nothing to fire, which is no error")
-{
-    running_rig rig([](server::service_options&, server::stream_options& s) { s.times.idle_stop_s = 0.001; });
-    const auto c = rig.client();
-    rig.sleep_and_plug();
-    CHECK(rig.ok(c, "fire") == json{{"count", 0}});
-}
-
 TEST_CASE("what does not fit at the start is refused, once")
 {
     misfit card;
@@ -213,36 +202,6 @@ TEST_CASE("a card that does not fit in the place of one that did is tried again"
     CHECK(card.refused == 0);
 }
 
-TEST_CASE("a card that opens and then fails is tried less and less often, and does not count as running")
-{
-    using clock = std::chrono::steady_clock;
-    std::atomic<int> opened{0};
-    service_rig* here = nullptr;
-    service_rig rig([&](server::service_options&, server::stream_options& s) {
-        s.times.proof_s = 3600.0;
-        s.open = [&, open = s.open] {
-            fake_dac& card = here->plug();
-            std::unique_ptr<sink> taken = open();
-            if (opened++ != 0)
-                boost::asio::post(here->io, [&card] { card.disconnect(); });
-            return taken;
-        };
-    });
-    here = &rig;
-    rig.start();
-    rig.until([&] { return rig.all->output().state() == server::stream_state::running; });
-    const auto c = rig.client();
-    rig.ok(c, "subscribe", {{"events", {"stream"}}});
-    const auto begin = clock::now();
-    rig.unplug();
-    rig.until([&] { return opened >= 9; });
-    // 1, 2, 4 ... 128 ms
-    CHECK(clock::now() - begin >= std::chrono::milliseconds(255));
-    CHECK(rig.all->output().state() == server::stream_state::lost);
-    for (const std::string& state : c.box->streams())
-        CHECK(state == "lost");
-}
-
 TEST_CASE("with an amplifier that may be on, a lost card is not opened again")
 {
     std::atomic<int> opened{0};
@@ -263,8 +222,6 @@ TEST_CASE("with an amplifier that may be on, a lost card is not opened again")
     CHECK(rig.all->output().amplifier() == session::amplifier_state::on);
     CHECK(rig.code(c, "play", brief) == -32000);
     CHECK(rig.code(c, "begin") == -32000);
-    // The pauses between two tries are 1, 2, 4 ms.
-    std::this_thread::sleep_for(std::chrono::milliseconds(50));
     rig.io.poll();
     CHECK(opened == 1);
 }
