@@ -3,7 +3,7 @@
 
 * Times are seconds as double, called ..._s; instants of a clock are ns as int64, called ..._ns. No ..._ms, no chrono.
 * Closed sets are enumerations called ..._kind, each with TACTOR_KIND, which declares to_string(), from_string() and
-  all_values(), from name to value and back in tests/engine/test_kinds.cpp.
+  all_values(), from name to value and back in tests/engine/test_values.cpp.
 * Nothing is made from an impl in public, and nobody gets at one: no public data().
 * Classes with virtual functions cannot be copied.
 * A function that has a result is [[nodiscard]]: to drop it is a mistake (to_string() and its kin apart; write_wav(), whose
@@ -56,7 +56,7 @@ def complaints(name, text, everything, tried):
         if f"\nTACTOR_KIND({enum});\n" not in code:
             yield f"{name}: {enum} has no TACTOR_KIND({enum})"
         if enum not in tried:
-            yield f"{name}: tests/engine/test_kinds.cpp does not try {enum}"
+            yield f"{name}: tests/engine/test_values.cpp does not try {enum}"
     for opened in re.findall(r"^namespace [^{]*\{\n[^\n]*", code, re.M):
         if not re.match(r"namespace tactor(::detail \{| \{\ninline namespace v0 \{)", opened):
             yield f"{name}: {opened}: what is exported is in the inline namespace v0"
@@ -89,7 +89,7 @@ def main():
     root = pathlib.Path(sys.argv[1]).resolve() / "include" / "tactor"
     texts = {f.name: f.read_text(encoding="utf-8") for f in sorted(root.glob("*.hpp"))}
     everything = "\n".join(COMMENT.sub("", t) for t in texts.values())
-    tried = set(re.findall(r"\w+_kind", (root.parents[1] / "tests" / "engine" / "test_kinds.cpp").read_text(encoding="utf-8")))
+    tried = set(re.findall(r"\w+_kind", (root.parents[1] / "tests" / "engine" / "test_values.cpp").read_text(encoding="utf-8")))
     bad = {name: list(complaints(name, text, everything, tried)) for name, text in texts.items()}
     for lines in bad.values():
         for line in lines:

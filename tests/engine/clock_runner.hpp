@@ -18,10 +18,7 @@ namespace tactor::test {
 /// runs.
 inline player_options patient(const drive_limits& limits = {})
 {
-    player_options o;
-    o.limits = limits;
-    o.stall_s = 600.0;
-    o.horizon_s = 600.0;
+    player_options o{.horizon_s = 600.0, .stall_s = 600.0, .limits = limits};
     return o;
 }
 

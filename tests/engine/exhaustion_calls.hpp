@@ -33,10 +33,7 @@ enum class call_kind {
 struct exhausted_call {
     template <typename Call>
     exhausted_call(std::string n, Call c, call_kind k = call_kind::plain, std::function<void()> b = {})
-        : name(std::move(n)),
-          call([c = std::move(c)] { static_cast<void>(c()); }),
-          kind(k),
-          before(std::move(b))
+        : name(std::move(n)), call([c = std::move(c)] { return c(); }), kind(k), before(std::move(b))
     {
     }
 

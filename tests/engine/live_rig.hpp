@@ -42,6 +42,18 @@ public:
         return all;
     }
 
+    /// Ends the rig's stroke, or another, and plays it out.
+    stroke_report finish(engine::live_voice::action w = engine::live_voice::action::end)
+    {
+        return finish(*live, w);
+    }
+    stroke_report finish(live_stroke::impl& s, engine::live_voice::action w = engine::live_voice::action::end)
+    {
+        s.voice.request(w);
+        play_out();
+        return end(s.id);
+    }
+
     std::vector<double> channel(unsigned c, std::uint64_t from = 0) const
     {
         const std::vector<std::byte> all = dac.captured(from);
@@ -57,7 +69,7 @@ public:
     std::shared_ptr<live_stroke::impl> live;
 };
 
-inline double peak(const std::vector<double>& s, std::size_t from, std::size_t to)
+inline double peak(const std::vector<double>& s, std::size_t from = 0, std::size_t to = SIZE_MAX)
 {
     double most = 0.0;
     for (std::size_t i = from; i < std::min(to, s.size()); ++i)

@@ -21,9 +21,7 @@ namespace tactor::test {
 
 inline alsa_options nine(format_kind f = format_kind::s32)
 {
-    alsa_options o;
-    o.channels = 9;
-    o.format = f;
+    alsa_options o{.channels = 9, .format = f};
     return o;
 }
 

@@ -3,13 +3,18 @@
 /// Scores for the tests, and their bytes as the renderer makes them.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <random>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include <tactor/array.hpp>
+#include <tactor/plan.hpp>
 #include <tactor/render.hpp>
+#include <tactor/report.hpp>
 
 namespace tactor::test {
 
@@ -25,37 +30,54 @@ inline array palm()
     return make_grid("palm", 3, 3, 20.0, 20.0);
 }
 
+/// Makes a plan that lasts as long as its bursts.
+inline plan make_bursts(std::vector<burst> bursts)
+{
+    plan p;
+    for (const burst& b : bursts)
+        p.total_s = std::max(p.total_s, b.onset_s + b.duration_s);
+    p.stroke_duration_s = p.total_s;
+    p.bursts = std::move(bursts);
+    return p;
+}
+
 /// Bursts of 20 to 90 ms on one to three tactors, each after the other with an SOA of 70 ms.
 inline score random_score(std::uint64_t seed, unsigned bursts, unsigned channels = 0, const array& a = palm())
 {
     std::mt19937_64 random(seed);
     std::uniform_real_distribution<double> uniform(0.0, 1.0);
-    plan p;
+    std::vector<burst> all(bursts);
     for (unsigned k = 0; k < bursts; ++k) {
-        burst b;
+        burst& b = all[k];
         b.onset_s = 0.07 * k;
         b.duration_s = 0.02 + 0.05 * uniform(random);
         const auto first = static_cast<unsigned>(random() % (a.tactors.size() - 2));
         for (unsigned i = 0; i <= random() % 3; ++i)
             b.drives.push_back({.tactor = first + i, .amplitude = 0.05 + 0.5 * uniform(random)});
-        p.bursts.push_back(b);
-        p.total_s = b.onset_s + b.duration_s;
-        p.stroke_duration_s = p.total_s;
     }
-    return {a, p, {.channels = channels}};
+    return {a, make_bursts(std::move(all)), {.channels = channels}};
 }
 
 /// Makes a burst on one tactor.
-inline score tone(double seconds, unsigned tactor = 0)
+inline score tone(double seconds, unsigned tactor = 0, const render_options& o = {}, double amplitude = 1.0)
 {
-    plan p;
-    burst b;
-    b.duration_s = seconds;
-    b.drives = {{.tactor = tactor, .amplitude = 1.0}};
-    p.bursts.push_back(b);
-    p.total_s = seconds;
-    p.stroke_duration_s = seconds;
-    return {palm(), p};
+    return {palm(), make_bursts({{.duration_s = seconds, .drives = {{tactor, amplitude}}}}), o};
+}
+
+/// Plans a stroke as one that moves without a pause.
+inline plan make_continuous(const stroke& s, faces_kind faces = {})
+{
+    plan_options o{.algorithm = algorithm_kind::continuous, .faces = faces};
+    return make_plan(palm(), s, o);
+}
+
+/// Describes how a stroke ended: state, reason and why, such as "interrupted, lost: the device is gone".
+inline std::string ending(const stroke_report& r)
+{
+    std::string text(to_string(r.state));
+    if (r.reason != reason_kind::none)
+        text += ", " + std::string(to_string(r.reason));
+    return r.why.empty() ? text : text + ": " + r.why;
 }
 
 /// Renders a score offline, in one call.

@@ -6,6 +6,8 @@
 #include <cstdint>
 #include <memory>
 #include <random>
+#include <utility>
+#include <vector>
 
 #include <doctest/doctest.h>
 
@@ -37,19 +39,10 @@ struct work {
 
 score make_stroke(unsigned bursts)
 {
-    plan p;
-    for (unsigned k = 0; k < bursts; ++k) {
-        burst b;
-        b.onset_s = 0.07 * k;
-        b.duration_s = 0.06;
-        b.drives = {{.tactor = k % 2, .amplitude = 0.5}};
-        p.bursts.push_back(b);
-        p.total_s = b.onset_s + b.duration_s;
-    }
-    p.stroke_duration_s = p.total_s;
-    render_options o;
-    o.rate = low_rate;
-    return {make_grid("pair", 1, 2, 20.0, 20.0), p, o};
+    std::vector<burst> all;
+    for (unsigned k = 0; k < bursts; ++k)
+        all.push_back({.onset_s = 0.07 * k, .duration_s = 0.06, .drives = {{k % 2, 0.5}}});
+    return {make_grid("pair", 1, 2, 20.0, 20.0), make_bursts(std::move(all)), {.rate = low_rate}};
 }
 
 class day {
@@ -86,10 +79,7 @@ public:
 private:
     static rig_options options()
     {
-        rig_options o;
-        o.channels = 2;
-        o.period = period;
-        o.sample_rate = low_rate;
+        rig_options o{.channels = 2, .period = period, .sample_rate = low_rate};
         o.loop.horizon_frames = 3 * period;
         o.dac.rate = low_rate;
         return o;
@@ -107,8 +97,7 @@ private:
     void begin_live()
     {
         const array a = make_grid("pair", 1, 2, 20.0, 20.0);
-        live_options o;
-        o.timeout_s = 3600.0;
+        live_options o{.timeout_s = 3600.0};
         live_ = std::make_shared<live_stroke::impl>(r_.next_id(), a, layout(a), r_.out->setup(), o);
         r_.feed.submit(r_.last(), std::shared_ptr<engine::live_voice>(live_, &live_->voice));
     }

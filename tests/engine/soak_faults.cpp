@@ -7,6 +7,7 @@
 #include <map>
 #include <memory>
 #include <random>
+#include <utility>
 #include <vector>
 
 #include <doctest/doctest.h>
@@ -46,20 +47,15 @@ double slope(const render_options& o)
 score random_stroke(std::mt19937_64& random, const render_options& o)
 {
     std::uniform_real_distribution<double> uniform(0.0, 1.0);
-    plan p;
-    const auto n = 1 + random() % 4;
-    for (unsigned k = 0; k < n; ++k) {
-        burst b;
-        b.onset_s = 0.05 * k;
-        b.duration_s = 0.008 + 0.06 * uniform(random); // overlapping ones are joined
+    std::vector<burst> all(1 + random() % 4);
+    for (std::size_t k = 0; k < all.size(); ++k) {
+        all[k].onset_s = 0.05 * static_cast<double>(k);
+        all[k].duration_s = 0.008 + 0.06 * uniform(random); // overlapping ones are joined
         for (unsigned t = 0; t < channels; ++t)
             if (random() % 2 == 0)
-                b.drives.push_back({.tactor = t, .amplitude = uniform(random)});
-        p.total_s = std::max(p.total_s, b.onset_s + b.duration_s);
-        p.bursts.push_back(b);
+                all[k].drives.push_back({.tactor = t, .amplitude = uniform(random)});
     }
-    p.stroke_duration_s = p.total_s;
-    return {row(), p, o};
+    return {row(), make_bursts(std::move(all)), o};
 }
 
 struct totals {
@@ -114,10 +110,7 @@ public:
 private:
     rig_options make()
     {
-        rig_options o;
-        o.channels = channels;
-        o.period = period;
-        o.ring = std::size_t{256} << random_() % 4;
+        rig_options o{.channels = channels, .period = period, .ring = std::size_t{256} << random_() % 4};
         o.limit = limit;
         o.loop.fade_frames = 48 + static_cast<std::uint32_t>(random_() % 480);
         o.wrap = [this](std::unique_ptr<sink> s) {

@@ -1,13 +1,22 @@
 // SPDX-License-Identifier: MIT
-// Bytes at the DAC: the renderer's, bit for bit.
+// Frames at the DAC: the renderer's, bit for bit, in time, of one stroke or of hundreds.
 #include <algorithm>
 #include <cerrno>
+#include <cstddef>
+#include <cstdint>
+#include <cstdio>
 #include <cstring>
+#include <map>
 #include <random>
 #include <span>
+#include <string>
+#include <utility>
 
 #include <doctest/doctest.h>
 
+#include <tactor/plan.hpp>
+
+#include "has.hpp"
 #include "rig.hpp"
 
 namespace bytes_test {
@@ -51,6 +60,75 @@ void add(std::vector<std::byte>& sum, const std::vector<std::byte>& part, std::s
         a += b;
         std::memcpy(&sum[at_bytes + i], &a, 4);
     }
+}
+
+constexpr unsigned period = 48;
+
+struct latencies {
+    std::map<std::uint64_t, unsigned> ring; ///< in frames
+    std::map<std::uint64_t, unsigned> dac;
+};
+
+void print(const char* what, const std::map<std::uint64_t, unsigned>& m)
+{
+    unsigned n = 0;
+    double sum = 0.0;
+    for (const auto& [frames, count] : m) {
+        n += count;
+        sum += static_cast<double>(frames) * count;
+    }
+    std::printf("%s: least %.2f, mean %.2f, most %.2f periods of %u frames (%u strokes at random phases)\n",
+                what, static_cast<double>(m.begin()->first) / period, sum / n / period,
+                static_cast<double>(m.rbegin()->first) / period, period, n);
+}
+
+// Plays frame by frame, so that a call may come at any phase of a period.
+void frames(rig& r, std::uint64_t n)
+{
+    for (std::uint64_t i = 0; i < n; ++i) {
+        r.dac.advance_queued(1);
+        r.step();
+        r.now -= static_cast<std::int64_t>(1e9 * period / rate); // step() counts a period
+        r.now += static_cast<std::int64_t>(1e9 / rate);
+        r.control();
+    }
+}
+
+constexpr int crowd = 400;
+
+score drawn(algorithm_kind how)
+{
+    plan_options o{.algorithm = how};
+    const array a = palm();
+    render_options r{.level_dbfs = -60.0};
+    return {a, {{.plan = make_plan(a, preset_stroke("park2016-1"), o), .start_s = {}}}, r};
+}
+
+// Every tactor of 64 at once, twice.
+score broad()
+{
+    burst b{.duration_s = 0.1};
+    for (unsigned i = 0; i < 64; ++i)
+        b.drives.push_back({.tactor = i, .amplitude = 1.0});
+    burst second = b;
+    second.onset_s = 0.05;
+    render_options r{.level_dbfs = -60.0};
+    return {make_grid("8x8", 8, 8, 20.0, 20.0), make_bursts({b, second}), r};
+}
+
+// Counts strokes by the state and reason of their end.
+std::map<std::string, int> play_at_once(const score& s, std::uint64_t at, int strokes = crowd)
+{
+    rig_options o{.channels = s.channels()};
+    rig r(o);
+    for (int i = 0; i < strokes; ++i)
+        r.submit(s, at);
+    r.play_out();
+    std::map<std::string, int> ends;
+    for (const auto& [id, reports] : r.ended)
+        for (const stroke_report& e : reports)
+            ++ends[std::string(to_string(e.state)) + (e.late_s > 0.0 ? " late" : "") + ": " + e.why];
+    return ends;
 }
 
 } // namespace
@@ -213,6 +291,100 @@ TEST_CASE("short writes and writes of nothing lose no frame")
     CHECK(r.link.count.xruns == 0);
     REQUIRE(r.first_sound());
     CHECK(r.captured(*r.first_sound() - 1, s.frames()) == rendered(s, format_kind::s32));
+}
+
+TEST_CASE("48 frames x 3 at 48 kHz: in the device's buffer within a period, at the DAC within 4")
+{
+    std::mt19937_64 random(9);
+    rig r({.channels = 9, .period = period, .periods = 3});
+    frames(r, 500);
+    latencies found;
+    for (int i = 0; i < 400; ++i) {
+        frames(r, 1 + random() % 300);
+        const std::uint64_t played = r.status().played;
+        const std::uint64_t from = r.dac.captured_frames();
+        const stroke_id id = r.submit(tone(0.004));
+        // The call wakes the audio thread between two periods.
+        r.loop.step(io_kind::again, r.now);
+        std::uint64_t waited = 0;
+        while (!r.first_sound(from)) {
+            frames(r, 1);
+            ++waited;
+            REQUIRE(waited < 10 * period);
+        }
+        const std::uint64_t first = *r.first_sound(from) - 1;
+        ++found.ring[waited];
+        ++found.dac[first - played];
+        while (!r.report(id))
+            frames(r, 16);
+    }
+    print("first sample in the device's buffer after", found.ring);
+    print("first sample at the DAC after", found.dac);
+    CHECK(found.ring.rbegin()->first <= period);
+    CHECK(found.dac.rbegin()->first <= 4 * period);
+}
+
+TEST_CASE("400 strokes at once all play")
+{
+    for (const algorithm_kind how : {algorithm_kind::park2016, algorithm_kind::continuous}) {
+        for (const std::uint64_t at : {0, 48'000}) {
+            CAPTURE(to_string(how));
+            CAPTURE(at);
+            CHECK(play_at_once(drawn(how), at) == std::map<std::string, int>{{"finished: ", crowd}});
+        }
+    }
+}
+
+TEST_CASE("64 continuous strokes wake the control side in few of the periods")
+{
+    rig r;
+    for (int i = 0; i < 64; ++i)
+        r.submit(drawn(algorithm_kind::continuous), 0);
+    r.link.to_control.consume();
+    int periods = 0;
+    int wakes = 0;
+    for (; r.ended.size() < 64 && periods < 10'000; ++periods) {
+        r.dac.advance_queued(r.options.period);
+        r.step();
+        if (r.link.to_control.consume() > 0) {
+            r.control();
+            ++wakes;
+        }
+    }
+    CHECK(periods > 400);
+    CHECK(wakes < periods / 3);
+    for (const auto& [id, reports] : r.ended)
+        CHECK(r.end(id).state == state_kind::finished);
+}
+
+TEST_CASE("strokes beyond the mixer's space are reported as too many, with a hint")
+{
+    int refused = 0;
+    for (const auto& [end, n] : play_at_once(broad(), 48'000)) {
+        if (end.starts_with("finished"))
+            continue;
+        has(end, "interrupted");
+        has(end, "too many strokes at once (let fewer overlap");
+        refused += n;
+    }
+    CHECK(refused > 0);
+    CHECK(refused < crowd);
+}
+
+TEST_CASE("strokes beyond the ring's space are reported as too many, not as a slow computer")
+{
+    const score s = drawn(algorithm_kind::tactile_brush);
+    for (const auto& [strokes, at] : {std::pair(1000, 0), std::pair(4000, 48'000)}) {
+        CAPTURE(strokes);
+        int refused = 0;
+        for (const auto& [end, n] : play_at_once(s, static_cast<std::uint64_t>(at), strokes)) {
+            if (end.starts_with("finished"))
+                continue;
+            has(end, "too many strokes at once (let fewer overlap");
+            refused += n;
+        }
+        CHECK(refused > strokes / 2);
+    }
 }
 
 } // namespace bytes_test

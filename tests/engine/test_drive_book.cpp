@@ -21,7 +21,6 @@
 
 #include "clock_runner.hpp"
 #include "folder.hpp"
-#include "player_support.hpp"
 #include "rt/clock.hpp"
 #include "scores.hpp"
 

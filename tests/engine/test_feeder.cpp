@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Commands that the control side puts into the ring, and when.
+// Commands that the control side puts into the ring, and its wake-ups.
 #include <map>
 #include <string>
 #include <thread>
@@ -8,6 +8,8 @@
 #include <doctest/doctest.h>
 
 #include "engine/control/feeder.hpp"
+#include "live_rig.hpp"
+#include "rig.hpp"
 #include "scores.hpp"
 
 namespace feeder_test {
@@ -45,17 +47,28 @@ std::string in_order(engine::link& l)
 // Makes a score with a burst of 100 frames at each of these frames, each on another tactor.
 score bursts_at(const std::vector<std::uint64_t>& frames)
 {
-    plan p;
-    for (unsigned i = 0; i < frames.size(); ++i) {
-        burst b;
-        b.onset_s = static_cast<double>(frames[i]) / rate;
-        b.duration_s = 100.0 / rate;
-        b.drives = {{.tactor = i, .amplitude = 0.5}};
-        p.bursts.push_back(b);
-        p.total_s = b.onset_s + b.duration_s;
-        p.stroke_duration_s = p.total_s;
-    }
-    return {palm(), p};
+    std::vector<burst> all;
+    for (unsigned i = 0; i < frames.size(); ++i)
+        all.push_back({.onset_s = static_cast<double>(frames[i]) / rate,
+                       .duration_s = 100.0 / rate,
+                       .drives = {{i, 0.5}}});
+    return {palm(), make_bursts(std::move(all))};
+}
+
+// Plays a period; returns whether the control side was woken for it.
+bool wakes(rig& r)
+{
+    r.dac.advance_queued(r.options.period);
+    r.step();
+    return r.link.to_control.consume() > 0;
+}
+
+// Plays until the stream has begun and its clock is known.
+void settle(rig& r)
+{
+    for (int i = 0; i < 100; ++i)
+        if (wakes(r))
+            r.control();
 }
 
 } // namespace
@@ -283,11 +296,107 @@ TEST_CASE("a cancelled stroke stays cancelled where the stream ends before its f
     feed.handle({.what = engine::report::kind::stream_over, .why = reason_kind::lost});
     const auto& ends = feed.reports();
     REQUIRE(ends.size() == 2);
-    CHECK(ends.front().state == state_kind::cancelled);
-    CHECK(ends.front().why.empty());
-    CHECK(ends.back().state == state_kind::interrupted);
-    CHECK(ends.back().why == "the device is gone");
-    CHECK(ends.back().reason == reason_kind::lost);
+    CHECK(ending(ends.front()) == "cancelled");
+    CHECK(ending(ends.back()) == "interrupted, lost: the device is gone");
+}
+
+TEST_CASE(
+    "a stroke longer than the horizon is fed to its end by a control side that sleeps until it is woken")
+{
+    rig r;
+    const score s = random_score(1, 100);
+    const stroke_id id = r.submit(s);
+    REQUIRE(s.frames() > 10 * r.options.loop.horizon_frames);
+    int periods = 0;
+    int woken = 0;
+    for (; !r.report(id) && periods < 10'000; ++periods) {
+        if (wakes(r)) {
+            r.control();
+            ++woken;
+        }
+    }
+    CHECK(r.end(id).state == state_kind::finished);
+    CHECK(woken < periods / 10);
+}
+
+TEST_CASE("a stroke for a time before the stream's clock is known begins at that time")
+{
+    rig r;
+    r.link.to_control.consume(); // that it has started
+    r.control();
+    // After the buffer's frames, and long before the feeder's next wake-up.
+    const std::int64_t at_ns = r.now + 2 * 288 * std::int64_t{1'000'000'000} / rate;
+    const stroke_id id = r.submit(tone(0.01), start_at::time(at_ns));
+    for (int i = 0; i < 200 && !r.report(id); ++i)
+        if (wakes(r))
+            r.control();
+    CHECK(r.end(id).late_s == 0.0);
+}
+
+TEST_CASE("the control side sleeps while there is no stroke, and feeds a new one at once")
+{
+    rig r;
+    const score s = random_score(1, 100);
+    REQUIRE(s.frames() > 10 * r.options.loop.horizon_frames);
+    for (int strokes = 0; strokes < 3; ++strokes) {
+        settle(r);
+        for (int i = 0; i < 10'000; ++i) // half a minute and more
+            REQUIRE_FALSE(wakes(r));
+        const stroke_id id = r.submit(s);
+        for (int i = 0; i < 10'000 && !r.report(id); ++i)
+            if (wakes(r))
+                r.control();
+        CHECK(r.end(id).state == state_kind::finished);
+        CHECK(r.end(id).frames == s.frames());
+    }
+}
+
+TEST_CASE("a live stroke after a long unattended silence has all its time for a first point")
+{
+    live_options o{.timeout_s = 0.2};
+    live_rig r(o);
+    r.play(2 * 9600);
+    REQUIRE(r.report(r.live->id)); // which had none
+    settle(r);
+    for (int i = 0; i < 1000; ++i)
+        REQUIRE_FALSE(wakes(r));
+    const auto next = r.add(o);
+    r.play(9600 - 192);
+    CHECK_FALSE(r.report(next->id));
+    r.play(480);
+    CHECK(r.end(next->id).reason == reason_kind::starved);
+}
+
+TEST_CASE("an xrun of a silent stream, its sleep and its waking up are reported at once")
+{
+    rig r;
+    settle(r);
+    CHECK_FALSE(wakes(r));
+    r.dac.advance(1000); // runs dry
+    CHECK(wakes(r));
+    CHECK(r.link.count.xruns == 1);
+    CHECK(wakes(r)); // the new epoch's clock is known
+    CHECK_FALSE(wakes(r));
+    r.dac.suspend();
+    CHECK(wakes(r));
+    CHECK_FALSE(wakes(r));
+    r.dac.wake(true);
+    CHECK(wakes(r));
+    CHECK(r.status().running);
+    CHECK(r.status().epoch == 3);
+}
+
+TEST_CASE("the fewest waiting drives are counted while a stroke is fed, not in silence and not at its end")
+{
+    rig r;
+    r.play(9600);
+    CHECK(r.link.count.low_water == UINT64_MAX);
+    const stroke_id id = r.submit(random_score(1, 20));
+    r.play_out();
+    r.play(9600);
+    REQUIRE(r.report(id));
+    CHECK(r.link.count.low_water > 0);
+    CHECK(r.link.count.low_water < 20);
 }
 
 } // namespace feeder_test

@@ -1,14 +1,18 @@
 // SPDX-License-Identifier: MIT
-// Strokes fed point by point, on the virtual clock.
+// Strokes fed point by point, on the virtual clock: where, how loud and how late they sound.
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <random>
+#include <vector>
 
 #include <doctest/doctest.h>
 
 #include <tactor/error.hpp>
 
+#include "caught.hpp"
+#include "engine/live/live_stroke.hpp"
 #include "live_rig.hpp"
 #include "synth/guard/guard.hpp"
 
@@ -16,6 +20,43 @@ namespace live_test {
 
 using namespace tactor;
 using namespace tactor::test;
+
+namespace {
+
+live_options with_wave(const char* name)
+{
+    live_options o;
+    o.plan.wave = parse_waveform(name);
+    return o;
+}
+
+// Returns a tenth of a second at the first tactor, after the first few milliseconds.
+std::vector<double> heard(const live_options& o, double intensity = 1.0)
+{
+    live_rig r(o);
+    r.live->to({0.0, 0.0}, intensity);
+    r.play(4800 + 480);
+    std::vector<double> s = r.channel(0, 480);
+    s.resize(4800);
+    return s;
+}
+
+double power(const std::vector<double>& s)
+{
+    double sum = 0.0;
+    for (const double v : s)
+        sum += v * v;
+    return 2.0 * sum / static_cast<double>(s.size()) / (live_level * live_level);
+}
+
+/// Returns the time until the first frame that a point given now changes.
+double ahead_s(live_rig& r)
+{
+    const engine::stream_status s = r.status();
+    return static_cast<double>(s.written - s.played) / rate;
+}
+
+} // namespace
 
 TEST_CASE("a live stroke is silent until its first point, then a sine at its tactor from the next period on")
 {
@@ -38,7 +79,7 @@ TEST_CASE("a live stroke is silent until its first point, then a sine at its tac
                             .epsilon(1e-6)
                             .scale(0.1));
     for (unsigned c = 1; c < 9; ++c)
-        CHECK(peak(r.channel(c), 0, SIZE_MAX) == 0.0);
+        CHECK(peak(r.channel(c)) == 0.0);
 }
 
 TEST_CASE("a point sounds within a period and a control step, in every phase and size of period")
@@ -75,13 +116,11 @@ TEST_CASE("samples do not jump when points do")
             r.live->to({place(random), place(random)}, static_cast<double>(random() % 2));
             r.play(period);
         }
-        r.live->voice.request(engine::live_voice::action::end);
-        r.play_out();
+        CHECK(r.finish().state == state_kind::finished);
         // The carrier's slope and a whole amplitude within a control step.
         const double allowed = live_level * (2 * 3.1416 * 250 / rate + 1.0 / 48);
         for (unsigned c = 0; c < 9; ++c)
             CHECK(largest_step(r.channel(c)) < allowed);
-        CHECK(r.end({1}).state == state_kind::finished);
     }
 }
 
@@ -108,10 +147,9 @@ TEST_CASE("a live stroke of bursts plays one each SOA, at the newest position, a
             CHECK(peak(s, at + duration, at + 2880) == 0.0);
         }
     }
-    r.live->voice.request(engine::live_voice::action::end);
-    r.play_out();
-    CHECK(r.end({1}).state == state_kind::finished);
-    CHECK(r.end({1}).frames % 2880 == duration);
+    const auto report = r.finish();
+    CHECK(report.state == state_kind::finished);
+    CHECK(report.frames % 2880 == duration);
 }
 
 TEST_CASE("points in time keep a stroke of bursts alive, however seldom a burst takes one")
@@ -178,29 +216,17 @@ TEST_CASE("outside the array the nearest point plays and is counted, or is an er
     auto s = r.add(strict);
     CHECK_THROWS_AS(s->to({-50.0, 0.0}, 1.0), error);
     CHECK(s->to({0.0, 0.0}, 1.0));
-    const double nan = std::numeric_limits<double>::quiet_NaN();
     const double inf = std::numeric_limits<double>::infinity();
-    for (const double bad : {nan, inf, -inf}) {
-        CHECK_THROWS_AS(r.live->to({bad, 0.0}, 1.0), error);
-        CHECK_THROWS_AS(r.live->to({0.0, bad}, 1.0), error);
-        CHECK_THROWS_AS(r.live->to({0.0, 0.0}, bad), error);
+    for (const double bad : {std::nan(""), inf, -inf}) {
+        CHECK(caught_field([&] { r.live->to({bad, 0.0}, 1.0); }) == "x_mm");
+        CHECK(caught_field([&] { r.live->to({0.0, bad}, 1.0); }) == "y_mm");
+        CHECK(caught_field([&] { r.live->to({0.0, 0.0}, bad); }) == "intensity");
     }
-    CHECK_THROWS_AS(r.live->to({0.0, 0.0}, -0.1), error);
-    const auto field = [&](point p, double intensity) {
-        try {
-            r.live->to(p, intensity);
-        } catch (const error& e) {
-            return std::string(e.field());
-        }
-        return std::string();
-    };
-    CHECK(field({nan, 0.0}, 1.0) == "x_mm");
-    CHECK(field({0.0, nan}, 1.0) == "y_mm");
-    CHECK(field({0.0, 0.0}, nan) == "intensity");
+    CHECK(caught_field([&] { r.live->to({0.0, 0.0}, -0.1); }) == "intensity");
     CHECK(r.live->to({0.0, 0.0}, 1e300)); // sounds like 1
     CHECK(r.live->limited_points == 0);
     r.play(9600);
-    CHECK(peak(r.channel(0), 0, SIZE_MAX) <= 2.0 * live_level * (1.0 + 1e-6)); // of two strokes
+    CHECK(peak(r.channel(0)) <= 2.0 * live_level * (1.0 + 1e-6)); // of two strokes
     for (const auto& stroke : {r.live, s})
         stroke->voice.request(engine::live_voice::action::end);
     r.play_out();
@@ -224,13 +250,7 @@ TEST_CASE("impossible options of a live stroke are errors that name their field"
     const auto refused = [&](const char* field, auto change) {
         live_options o = bursts();
         change(o);
-        try {
-            r.add(o);
-            FAIL_CHECK(field, " was taken");
-        } catch (const error& e) {
-            CHECK(e.kind() == error_kind::bad_input);
-            CHECK(e.field() == field);
-        }
+        CHECK(caught_field([&] { r.add(o); }) == field);
         --r.last_id;
     };
     refused("algorithm", [](live_options& o) { o.plan.algorithm = algorithm_kind::tactile_brush; });
@@ -256,9 +276,7 @@ TEST_CASE("impossible options of a live stroke are errors that name their field"
 
 TEST_CASE("live strokes that are weak one by one count by their sum, together with a plan's")
 {
-    drive_limits limits;
-    limits.max_drive_s = 0.3;
-    limits.window_s = 1.0;
+    drive_limits limits{.max_drive_s = 0.3, .window_s = 1.0};
     rig_options few;
     few.loop.guards = synth::make_guards(limits, rate);
     live_options weak;
@@ -267,10 +285,8 @@ TEST_CASE("live strokes that are weak one by one count by their sum, together wi
         live_rig r(weak, few);
         const auto all = r.fill(strokes, weak);
         if (continuous) {
-            plan_options o;
-            o.algorithm = algorithm_kind::continuous;
-            render_options level;
-            level.level_dbfs = -41.0;
+            plan_options o{.algorithm = algorithm_kind::continuous};
+            render_options level{.level_dbfs = -41.0};
             const point stay[] = {{0.0, 0.0}, {0.1, 0.0}};
             const stroke there{"", trajectory::along(path::polyline(stay), 1.0)};
             r.submit(score(palm(), {{make_plan(palm(), there, o), {}}}, level));
@@ -285,6 +301,187 @@ TEST_CASE("live strokes that are weak one by one count by their sum, together wi
     CHECK(cuts(1, false) == 0);
     CHECK(cuts(1, true) >= 1);
     CHECK(cuts(16, false) >= 1);
+}
+
+TEST_CASE("live strokes vibrate with any wave, its peak at their level")
+{
+    const struct {
+        const char* name;
+        double least;
+        double most;
+    } waves[] = {
+        {"sine", 0.99, 1.01},   {"square", 1.2, 1.7},        {"triangle", 0.6, 0.7},
+        {"sawtooth", 0.4, 0.7}, {"noise:50-500", 0.02, 0.6},
+    };
+    for (const auto& w : waves) {
+        CAPTURE(w.name);
+        const std::vector<double> s = heard(with_wave(w.name));
+        CHECK(peak(s) <= live_level * (1.0 + 1e-6));
+        CHECK(power(s) > w.least);
+        CHECK(power(s) < w.most);
+    }
+}
+
+TEST_CASE("a live stroke's noise depends on its seed alone")
+{
+    live_options o = with_wave("noise:50-500");
+    const std::vector<double> one = heard(o);
+    CHECK(heard(o) == one);
+    o.plan.wave.seed = 2;
+    CHECK(heard(o) != one);
+}
+
+TEST_CASE("amplitude modulation goes down to the rest that its depth leaves")
+{
+    live_options o;
+    o.plan.am = {50.0, 1.0};
+    const std::vector<double> s = heard(o);
+    double least = 1.0;
+    for (std::size_t from = 0; from + 96 <= s.size(); from += 96) // half a cycle of the carrier
+        least = std::min(least, peak(s, from, from + 96));
+    CHECK(least < 0.1 * live_level);
+    CHECK(peak(s) > 0.95 * live_level);
+}
+
+TEST_CASE("the intensity of a live point follows the scale")
+{
+    live_options o;
+    CHECK(peak(heard(o, 0.5)) == doctest::Approx(0.5 * live_level).epsilon(1e-3));
+    o.plan.scale = {scale_kind::stevens, 0.6, 0.0};
+    CHECK(peak(heard(o, 0.5)) == doctest::Approx(std::pow(0.5, 1.0 / 0.6) * live_level).epsilon(1e-3));
+    CHECK(peak(heard(o, 1.0)) == doctest::Approx(live_level).epsilon(1e-3));
+}
+
+TEST_CASE("a live stroke never exceeds its level, and points above it are counted")
+{
+    for (const algorithm_kind algorithm : {algorithm_kind::continuous, algorithm_kind::park2016})
+        for (const scale_kind scale : {scale_kind::linear, scale_kind::sl, scale_kind::stevens})
+            for (const double smooth_s : {0.0, 0.01}) {
+                CAPTURE(smooth_s);
+                live_options o;
+                o.plan.algorithm = algorithm;
+                o.plan.scale = {scale, 0.6, 7.0};
+                o.smooth_s = smooth_s;
+                live_rig r(o);
+                r.live->to({0.0, 0.0}, 0.5);
+                r.play(480);
+                for (const double intensity : {80.0, 1.0, 1.001, 1e308})
+                    r.live->to({0.0, 0.0}, intensity);
+                r.play(9600);
+                CHECK(peak(r.channel(0)) == doctest::Approx(live_level).epsilon(1e-3));
+                CHECK(r.finish().held_points == 3);
+            }
+}
+
+TEST_CASE("points above the ceiling count for a live stroke that never sounds, too")
+{
+    live_rig r;
+    r.live->to({0.0, 0.0}, 2.0);
+    CHECK(r.feed.cancel({1}));
+    r.play_out();
+    CHECK(r.end({1}).held_points == 1);
+}
+
+TEST_CASE("a live stroke whose object is gone leaves no sound behind")
+{
+    for (const char* wave : {"square", "noise:50-500"}) {
+        live_options o = with_wave(wave);
+        o.plan.algorithm = algorithm_kind::park2016;
+        live_rig r(o);
+        r.live->to({0.0, 0.0}, 1.0);
+        r.play(4800);
+        r.live->voice.request(engine::live_voice::action::end);
+        r.live.reset();
+        r.play_out();
+        const std::vector<double> s = r.channel(0);
+        REQUIRE(s.size() > 480);
+        CHECK(peak(s, s.size() - 240, s.size()) == 0.0);
+    }
+}
+
+TEST_CASE("a recording cannot lie along a path that is not known")
+{
+    live_options o;
+    o.plan.wave.kind = waveform_kind::recording;
+    o.plan.wave.texture = texture_kind::length;
+    o.plan.wave.recorded = std::make_shared<const recording>(recording{"x", 8000.0, {0.5F, -0.5F}});
+    live_rig r;
+    CHECK_THROWS_WITH_AS(r.add(o), doctest::Contains("length of its path"), error);
+}
+
+TEST_CASE("a live stroke's report has the delay of its points to the DAC")
+{
+    live_rig r;
+    r.play(9600); // the clock is well known now
+    const double buffered = ahead_s(r);
+    REQUIRE(buffered > 0.001);
+    const auto point = [&](double x_mm, std::int64_t before_ns) {
+        CHECK(r.live->to({x_mm, 20.0}, 1.0, r.now - before_ns));
+        r.play(96);
+    };
+    point(20.0, 0);
+    point(10.0, 3'000'000);
+    point(0.0, 0);
+    point(5.0, -1'000'000);                                    // by a clock that runs ahead
+    CHECK(r.live->to({30.0, 20.0}, 1.0, r.now - 900'000'000)); // overtaken
+    point(7.0, 0);
+    const auto report = r.finish();
+    REQUIRE(report.delay);
+    CHECK(report.delay->points == 5);
+    CHECK(std::abs(report.delay->least_s - (buffered - 0.001)) < 2e-5);
+    CHECK(std::abs(report.delay->most_s - (buffered + 0.003)) < 2e-5);
+    CHECK(std::abs(report.delay->mean_s - (buffered + 0.002 / 5)) < 2e-5);
+}
+
+TEST_CASE("a live stroke of one point has the delay of its first sample, even in a stream that just began")
+{
+    live_rig r;
+    const std::int64_t stamp = r.now - 5'000'000;
+    CHECK(r.live->to({20.0, 20.0}, 1.0, stamp));
+    r.play(960);
+    const auto report = r.finish();
+    REQUIRE(report.started_ns);
+    REQUIRE(report.delay);
+    CHECK(report.delay->points == 1);
+    const double s = 1e-9 * static_cast<double>(*report.started_ns - stamp);
+    CHECK(report.delay->least_s == s);
+    CHECK(report.delay->mean_s == s);
+    CHECK(report.delay->most_s == s);
+}
+
+TEST_CASE("in a stroke of bursts a point's delay is to the burst that has it")
+{
+    live_rig r(bursts());
+    r.play(9600);
+    CHECK(r.live->to({20.0, 20.0}, 1.0, r.now));
+    r.play(96);
+    const double buffered = ahead_s(r);
+    CHECK(r.live->to({0.0, 20.0}, 1.0, r.now)); // 70 ms after the first one's burst, 2 ms of which are over
+    r.play(4800);
+    const auto report = r.finish();
+    REQUIRE(report.delay);
+    CHECK(report.delay->points == 2);
+    CHECK(std::abs(report.delay->most_s - (buffered + 0.07 - 0.002)) < 2e-5);
+}
+
+TEST_CASE("without a sounding point there is no delay, and a time stamp is of CLOCK_MONOTONIC")
+{
+    live_rig r;
+    CHECK_THROWS_AS(r.live->to({20.0, 20.0}, 1.0, -1), error);
+    r.play(960);
+    const auto silent = r.finish(engine::live_voice::action::cancel);
+    CHECK_FALSE(silent.delay);
+
+    const auto far = r.add();
+    CHECK(far->to({20.0, 20.0}, 1.0, INT64_MAX)); // reported unchanged
+    r.play(960);
+    const auto report = r.finish(*far);
+    REQUIRE(report.delay);
+    CHECK(report.delay->most_s < -9e9);
+
+    const stroke_id played = r.submit(tone(0.01));
+    r.play_out();
+    CHECK_FALSE(r.end(played).delay);
 }
 
 } // namespace live_test

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Ends of live strokes: by themselves, by request, by silence, with the device.
+// Ends of live strokes, and those that wait for a point or a place.
 #include <cmath>
 #include <memory>
 #include <new>
@@ -20,6 +20,51 @@ namespace live_ends_test {
 using namespace tactor;
 using namespace tactor::test;
 
+namespace {
+
+// Drives the middle tactor at the given amplitude times a factor.
+class overdone final : public phantom_model {
+public:
+    std::string_view name() const noexcept override { return "overdone"; }
+    void weights(point, double a_v, std::vector<drive>& out) const override { out = {{4, a_v * factor}}; }
+
+    double factor = 1.0;
+};
+
+class failing final : public phantom_model {
+public:
+    std::string_view name() const noexcept override { return "failing"; }
+    void weights(point p, double a_v, std::vector<drive>& out) const override
+    {
+        out = {{4, a_v}};
+        if (p.x_mm > 30.0)
+            throw std::runtime_error("its file is gone\nin line 3");
+        if (p.x_mm > 20.0)
+            throw error(error_kind::runtime, "failing", "it is lost");
+        if (p.x_mm > 10.0)
+            throw error(error_kind::bad_input, "failing", "not there");
+        if (p.y_mm > 10.0)
+            throw std::bad_alloc();
+        if (p.y_mm > 5.0)
+            throw 5;
+    }
+};
+
+constexpr std::uint64_t timeout_frames = 9600;
+
+live_options short_timeout()
+{
+    live_options o{.timeout_s = 0.2};
+    return o;
+}
+
+bool starved(const rig& r, stroke_id id)
+{
+    return r.report(id) && ending(r.end(id)) == "interrupted, starved: no more points came";
+}
+
+} // namespace
+
 TEST_CASE("a live stroke that ends fades, plays its last point, and is reported once as finished")
 {
     live_rig r;
@@ -33,8 +78,8 @@ TEST_CASE("a live stroke that ends fades, plays its last point, and is reported 
     r.play(9600);
     CHECK(r.end({1}).state == state_kind::finished);
     CHECK(r.end({1}).frames == end - base);
-    CHECK(peak(r.channel(8), 0, SIZE_MAX) > 0.7 * live_level);
-    CHECK(peak(r.channel(6), 0, SIZE_MAX) == 0.0);
+    CHECK(peak(r.channel(8)) > 0.7 * live_level);
+    CHECK(peak(r.channel(6)) == 0.0);
     CHECK_FALSE(r.first_sound(end));
     CHECK(r.live->voice.closed());
     CHECK_FALSE(r.feed.knows({1}));
@@ -94,9 +139,7 @@ TEST_CASE("a live stroke without new points fades after the time-out and is inte
         }
         const std::uint64_t last = r.status().written;
         r.play(48'000);
-        CHECK(r.end({1}).state == state_kind::interrupted);
-        CHECK(r.end({1}).why == "no more points came");
-        CHECK(r.end({1}).reason == reason_kind::starved);
+        CHECK(ending(r.end({1})) == "interrupted, starved: no more points came");
         CHECK(r.first_sound(last + 9000));
         CHECK_FALSE(r.first_sound(last + 9600 + 480 + 3 * 96 + (as_bursts ? 3360 : 0)));
         CHECK_FALSE(r.live->to({0.0, 0.0}, 1.0));
@@ -117,9 +160,7 @@ TEST_CASE("a live stroke is interrupted after its longest time, to a period, wit
             r.live->to({0.0, 0.0}, 1.0);
             r.play(96);
         }
-        CHECK(r.end({1}).state == state_kind::interrupted);
-        CHECK(r.end({1}).why == "it has lasted as long as it may");
-        CHECK(r.end({1}).reason == reason_kind::too_long);
+        CHECK(ending(r.end({1})) == "interrupted, too-long: it has lasted as long as it may");
         CHECK(r.end({1}).frames >= 9600);
         CHECK(r.end({1}).frames <= 9600 + 96 + 480);
         CHECK_FALSE(r.first_sound(base + 9600 + 96 + 480));
@@ -133,20 +174,14 @@ TEST_CASE("an xrun ends a live stroke that sounds, and spares one that waits for
     auto waits = r.add();
     r.live->to({0.0, 0.0}, 1.0);
     r.play(960);
-    r.dac.advance(10'000);
-    r.step();
-    r.control();
-    CHECK(r.end({1}).state == state_kind::interrupted);
-    CHECK(r.end({1}).why == "xrun: the device ran dry");
-    CHECK(r.end({1}).reason == reason_kind::xrun);
+    r.xrun();
+    CHECK(ending(r.end({1})) == "interrupted, xrun: xrun: the device ran dry");
     CHECK_FALSE(r.live->to({0.0, 0.0}, 1.0));
     const std::uint64_t from = r.dac.captured_frames();
     CHECK(waits->to({40.0, 40.0}, 1.0));
     r.play(960);
     CHECK(r.first_sound(from));
-    waits->voice.request(engine::live_voice::action::end);
-    r.play_out();
-    CHECK(r.end({2}).state == state_kind::finished);
+    CHECK(r.finish(*waits).state == state_kind::finished);
 }
 
 TEST_CASE("more live strokes than can sound wait their turn; stop and the device's loss end all")
@@ -180,19 +215,6 @@ TEST_CASE("more live strokes than can sound wait their turn; stop and the device
     }
 }
 
-namespace {
-
-// Drives the middle tactor at the given amplitude times a factor.
-class overdone final : public phantom_model {
-public:
-    std::string_view name() const noexcept override { return "overdone"; }
-    void weights(point, double a_v, std::vector<drive>& out) const override { out = {{4, a_v * factor}}; }
-
-    double factor = 1.0;
-};
-
-} // namespace
-
 TEST_CASE("a model that exceeds the amplitude it was given interrupts the stroke, faded, with the reason")
 {
     for (const bool as_bursts : {false, true}) {
@@ -216,11 +238,10 @@ TEST_CASE("a model that exceeds the amplitude it was given interrupts the stroke
             CHECK_FALSE(r.live->to({20.0, 20.0}, 0.0));
             const std::uint64_t from = r.status().written;
             r.play(9600);
-            CHECK(r.end({1}).state == state_kind::interrupted);
-            CHECK(r.end({1}).why ==
-                  "phantom model \"overdone\" gave tactor 4 amplitude 5e+08, above the 0.5 asked for");
+            CHECK(ending(r.end({1})) == "interrupted, plan: phantom model \"overdone\" gave tactor 4 "
+                                        "amplitude 5e+08, above the 0.5 asked for");
             CHECK_FALSE(r.first_sound(from + 480));
-            CHECK(peak(r.channel(4), 0, SIZE_MAX) <= 0.5 * live_level * (1.0 + 1e-8));
+            CHECK(peak(r.channel(4)) <= 0.5 * live_level * (1.0 + 1e-8));
             CHECK(largest_step(r.channel(4)) < live_level * (2 * 3.1416 * 250 / rate + 1.0 / 48));
         }
     }
@@ -242,11 +263,10 @@ TEST_CASE("a model that exceeds its amplitude ends a stroke before it sounds or 
     r.play(960);
     CHECK(r.ended.size() == 2);
     for (const stroke_id id : {all[1]->id, all.back()->id}) {
-        CHECK(r.end(id).state == state_kind::interrupted);
         CHECK(r.end(id).frames == 0);
         // The scale maps 0.1 to 0.01.
-        CHECK(r.end(id).why ==
-              "phantom model \"overdone\" gave tactor 4 amplitude 0.01001, above the 0.01 asked for");
+        CHECK(ending(r.end(id)) == "interrupted, plan: phantom model \"overdone\" gave tactor 4 "
+                                   "amplitude 0.01001, above the 0.01 asked for");
     }
     CHECK_FALSE(r.first_sound());
 }
@@ -278,34 +298,10 @@ COUNTING_TEST_CASE("an hour of a live stroke: no heap in the audio thread, nothi
     }
     CHECK(calls == 0);
     CHECK(held == 0);
-    r.live->voice.request(engine::live_voice::action::end);
-    r.play_out();
-    CHECK(r.end({1}).state == state_kind::finished);
-    CHECK(r.end({1}).frames > static_cast<std::uint64_t>(rounds(3600)) * rate);
+    const auto report = r.finish();
+    CHECK(report.state == state_kind::finished);
+    CHECK(report.frames > static_cast<std::uint64_t>(rounds(3600)) * rate);
 }
-
-namespace {
-
-class failing final : public phantom_model {
-public:
-    std::string_view name() const noexcept override { return "failing"; }
-    void weights(point p, double a_v, std::vector<drive>& out) const override
-    {
-        out = {{4, a_v}};
-        if (p.x_mm > 30.0)
-            throw std::runtime_error("its file is gone\nin line 3");
-        if (p.x_mm > 20.0)
-            throw error(error_kind::runtime, "failing", "it is lost");
-        if (p.x_mm > 10.0)
-            throw error(error_kind::bad_input, "failing", "not there");
-        if (p.y_mm > 10.0)
-            throw std::bad_alloc();
-        if (p.y_mm > 5.0)
-            throw 5;
-    }
-};
-
-} // namespace
 
 TEST_CASE("a model that fails ends the stroke with its message; one that refuses a point does not")
 {
@@ -324,19 +320,124 @@ TEST_CASE("a model that fails ends the stroke with its message; one that refuses
             CHECK(r.live->to({0.0, 0.0}, 1.0));
             r.play(4800);
             CHECK_FALSE(r.report(r.live->id));
-            bool threw = false;
-            try {
-                r.live->to(at, 1.0);
-            } catch (...) {
-                threw = true;
-            }
-            CHECK(threw);
+            const auto fail = [&, at = at] { r.live->to(at, 1.0); };
+            CHECK_THROWS(fail());
             CHECK_FALSE(r.live->to({0.0, 0.0}, 1.0));
             r.play(4800);
-            CHECK(r.end(r.live->id).state == state_kind::interrupted);
-            CHECK(r.end(r.live->id).reason == reason_kind::plan);
-            CHECK(r.end(r.live->id).why == fmt::format("phantom model \"failing\" failed: {}", why));
+            CHECK(ending(r.end(r.live->id)) ==
+                  fmt::format("interrupted, plan: phantom model \"failing\" failed: {}", why));
         }
+}
+
+TEST_CASE("live strokes without points take no place from those with points")
+{
+    live_rig r;
+    std::vector<std::shared_ptr<live_stroke::impl>> unfed;
+    for (int i = 0; i < 60; ++i)
+        unfed.push_back(r.add());
+    const auto fed = r.add();
+    fed->to({0.0, 0.0}, 1.0);
+    const std::uint64_t next = r.status().written;
+    r.play(960);
+    const auto sound = r.first_sound();
+    REQUIRE(sound);
+    CHECK(*sound <= next + 2);
+}
+
+TEST_CASE("the time-out holds before the first point, with and without a handle")
+{
+    live_rig r(short_timeout());
+    const stroke_id dropped = r.add(short_timeout())->id;
+    const auto patient = r.add(); // 0.5 s
+    r.play(timeout_frames - 192);
+    CHECK(r.ended.empty());
+    r.play(480);
+    CHECK(starved(r, r.live->id));
+    CHECK(starved(r, dropped));
+    CHECK(r.end(dropped).frames == 0);
+    CHECK_FALSE(r.live->to({0.0, 0.0}, 1.0));
+    CHECK_FALSE(r.report(patient->id));
+    CHECK(patient->to({0.0, 0.0}, 1.0));
+    r.play(960);
+    CHECK(r.first_sound());
+}
+
+TEST_CASE("live strokes beyond the places wait in order, with their newest point, and time out without one")
+{
+    live_rig r;
+    const auto most = static_cast<std::size_t>(engine::live_voices);
+    const auto all = r.fill(most);
+    const auto feed = [&](std::uint64_t frames) {
+        for (std::uint64_t f = 0; f < frames; f += 480) {
+            for (std::size_t i = 0; i < most; ++i)
+                all[i]->to({40.0, 40.0}, 0.01);
+            r.play(480);
+        }
+    };
+    feed(480);
+    const auto silent = r.add(short_timeout());
+    silent->to({0.0, 0.0}, 1.0); // its only point
+    const auto ended = r.add(short_timeout());
+    ended->to({0.0, 0.0}, 1.0);
+    ended->to({20.0, 0.0}, 1.0);
+    ended->voice.request(engine::live_voice::action::end); // no more points are due
+    const auto last = r.add();
+    feed(timeout_frames + 960);
+    CHECK(starved(r, silent->id));
+    CHECK_FALSE(r.report(ended->id));
+    CHECK(peak(r.channel(0)) == 0.0);
+    CHECK(peak(r.channel(1)) == 0.0);
+
+    last->to({0.0, 40.0}, 1.0);
+    all[3]->voice.request(engine::live_voice::action::end); // one place, for the first that waits
+    feed(3360);
+    CHECK(r.end(ended->id).state == state_kind::finished);
+    CHECK(r.end(ended->id).frames > 0);
+    CHECK(peak(r.channel(1)) > 0.5 * live_level);
+    feed(960);
+    CHECK(peak(r.channel(6)) > 0.5 * live_level);
+}
+
+TEST_CASE("hundreds of live strokes at once: each can be cancelled, ended or timed out, wherever it waits")
+{
+    live_rig r(short_timeout());
+    const auto all = r.fill(3 * engine::live_places, short_timeout());
+    r.play(960);
+    for (std::size_t i = 0; i < all.size(); ++i)
+        if (i % 3 == 1)
+            all[i]->voice.request(engine::live_voice::action::end);
+        else if (i % 3 == 2)
+            all[i]->voice.request(engine::live_voice::action::cancel);
+    r.play(288);
+    CHECK(r.ended.size() == 2 * engine::live_places);
+    r.play(timeout_frames);
+    CHECK(r.ended.size() == all.size());
+    for (std::size_t i = 0; i < all.size(); ++i) {
+        const auto report = r.end(all[i]->id);
+        CHECK(report.frames == 0);
+        CHECK(report.state == (i % 3 == 0   ? state_kind::interrupted
+                               : i % 3 == 1 ? state_kind::finished
+                                            : state_kind::cancelled));
+        CHECK(all[i]->voice.closed());
+    }
+    const auto fresh = r.add();
+    fresh->to({0.0, 0.0}, 1.0);
+    r.play(960);
+    CHECK(r.first_sound());
+}
+
+TEST_CASE("a live stroke that waits for a place is cancelled by its number, once")
+{
+    live_rig r;
+    const auto all = r.fill(engine::live_places + 1);
+    const auto& last = all.back();
+    CHECK(r.feed.knows(last->id));
+    CHECK(r.feed.cancel(last->id));
+    CHECK_FALSE(r.feed.cancel(last->id));
+    CHECK(last->voice.closed());
+    r.control();
+    CHECK(r.end(last->id).state == state_kind::cancelled);
+    CHECK_FALSE(r.feed.knows(last->id));
 }
 
 } // namespace live_ends_test

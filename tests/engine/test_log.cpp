@@ -1,20 +1,38 @@
 // SPDX-License-Identifier: MIT
-// The program's log of the stream.
+// The program's log of the stream, counters, and threads that the system refuses or takes back.
 #include <algorithm>
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
 #include <mutex>
+#include <span>
 #include <string>
 #include <string_view>
+#include <system_error>
+#include <utility>
 #include <vector>
 
 #include <doctest/doctest.h>
+#include <fcntl.h>
+#include <poll.h>
+#include <sys/eventfd.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include <tactor/error.hpp>
 #include <tactor/player.hpp>
 
 #include "amplifier_rig.hpp"
 #include "clock_runner.hpp"
+#include "engine/control/control_thread.hpp"
 #include "engine/control/stream_log.hpp"
+#include "has.hpp"
 #include "player_support.hpp"
+#include "rig.hpp"
+#include "rt/event_fd.hpp"
+#include "scores.hpp"
 
 namespace log_test {
 
@@ -57,6 +75,54 @@ struct logged : Rig {
     }
     heard told;
     engine::stream_log log;
+};
+
+// Reports n ms for its n-th xrun.
+class dry_sink final : public forwarding_sink {
+public:
+    using forwarding_sink::forwarding_sink;
+    std::int64_t xrun_ns() noexcept override { return ++xruns_ * 1'000'000; }
+
+private:
+    std::int64_t xruns_ = 0;
+};
+
+// Plays all frames at once.
+class hasty_sink final : public sink {
+public:
+    hasty_sink() { REQUIRE(ready_ >= 0); }
+    ~hasty_sink() override { ::close(ready_); }
+    const stream_setup& setup() const noexcept override { return setup_; }
+    io_kind prepare() noexcept override { return io_kind::ok; }
+    io_kind start() noexcept override { return io_kind::ok; }
+    io_kind resume() noexcept override { return io_kind::ok; }
+    std::size_t max_descriptors() const noexcept override { return 1; }
+    std::size_t descriptors(std::span<pollfd> fds) noexcept override
+    {
+        fds[0] = {.fd = ready_, .events = POLLIN, .revents = 0};
+        return 1;
+    }
+    io_kind ready(std::span<pollfd>) noexcept override { return io_kind::ok; }
+    io_result available() noexcept override { return {io_kind::ok, setup_.buffer_frames, 0}; }
+    io_result write(std::span<const std::byte> frames) noexcept override
+    {
+        const std::size_t n = frames.size() / setup_.frame_bytes();
+        written_ += n;
+        return {io_kind::ok, n, 0};
+    }
+    stream_position position() noexcept override
+    {
+        time_ns_ += 1'000'000;
+        return {written_, written_, time_ns_, true};
+    }
+    void drop() noexcept override {}
+
+private:
+    stream_setup setup_{
+        .name = "hasty", .channels = 9, .rate = rate, .period_frames = 96, .buffer_frames = 288};
+    int ready_ = ::eventfd(1, EFD_CLOEXEC);
+    std::uint64_t written_ = 0;
+    std::int64_t time_ns_ = 0;
 };
 
 } // namespace
@@ -164,12 +230,100 @@ TEST_CASE("a live stroke above its level is logged once, at its end")
     CHECK(told.count("live stroke") == 1);
 }
 
-TEST_CASE("kinds have names, and names kinds")
+TEST_CASE("the length of each xrun is kept, of many the newest")
 {
-    for (const log_kind k : {log_kind::debug, log_kind::info, log_kind::warning, log_kind::error})
-        CHECK(from_string<log_kind>(to_string(k)) == k);
-    CHECK_THROWS_WITH_AS(from_string<log_kind>("warn"),
-                         doctest::Contains("one of debug, info, warning, error"), error);
+    rig_options o;
+    o.wrap = [](std::unique_ptr<sink> s) { return std::make_unique<dry_sink>(std::move(s)); };
+    rig r(o);
+    for (unsigned i = 1; i <= 70; ++i) {
+        r.play(rate); // more than three in a second end the stream
+        r.dac.advance(1 << 20);
+        r.step();
+        r.control();
+        REQUIRE(r.link.count.xruns == i);
+        CHECK(r.link.count.xrun_ns[(i - 1) % r.link.count.xrun_ns.size()] == i * 1'000'000);
+    }
+    CHECK_FALSE(r.loop.over());
+}
+
+TEST_CASE("a device that does not stamp its stop still gives the length of an xrun")
+{
+    rig r;
+    r.play(960);
+    r.dac.advance(1 << 20);
+    r.step();
+    REQUIRE(r.link.count.xruns == 1);
+    // Virtual frames in real nanoseconds: only a bound can be checked.
+    CHECK(r.link.count.xrun_ns[0] >= 0);
+    CHECK(r.link.count.xrun_ns[0] < 60'000'000'000);
+}
+
+TEST_CASE("stats of a stream that never ran dry")
+{
+    player p(open_alsa(nine()), preset_array("palm-3x3"), {.realtime = false});
+    CHECK_FALSE(p.ended());
+    p.stop();
+    REQUIRE(p.ended());
+    CHECK(p.ended()->why.empty());
+    const player_stats s = p.stats();
+    CHECK(s.xruns == 0);
+    CHECK(s.xrun_s.empty());
+    CHECK_FALSE(s.realtime);
+    CHECK(s.frames > 0);
+    CHECK(s.ring_low_water == 0); // no stroke was fed
+}
+
+TEST_CASE("an audio thread that never rests gives up real time, reports it once, and plays on")
+{
+    std::atomic<bool> fifo{false};
+    std::atomic<int> told{0};
+    std::string text;
+    player_options o = patient();
+    o.realtime = true;
+    o.log = [&](log_kind kind, std::string_view line) {
+        fifo = fifo || line == "the audio thread has real-time priority";
+        if (line.find("gave up") == std::string_view::npos)
+            return;
+        CHECK(kind == log_kind::warning);
+        text = line;
+        ++told;
+        told.notify_all();
+    };
+    player p(std::make_unique<hasty_sink>(), palm(), o);
+    if (fifo)
+        told.wait(0);
+    else
+        MESSAGE("no real-time priority here: checks only that nothing is given up");
+    CHECK_FALSE(p.stats().realtime);
+    CHECK(p.wait(p.submit(tone(0.01)))->state == state_kind::finished);
+    p.stop();
+    CHECK(told == (fifo ? 1 : 0));
+    if (fifo)
+        has(text,
+            "the audio thread gave up its real-time priority: it had worked for some 0.1 s without a pause");
+}
+
+TEST_CASE("a control thread that cannot be made leaves the descriptor of its event open")
+{
+    const pid_t child = ::fork();
+    REQUIRE(child >= 0);
+    if (child == 0) {
+        constexpr uid_t nobody = 65534; // root may have any number of threads
+        const rlimit none{0, 0};
+        if ((::geteuid() == 0 && ::setuid(nobody) != 0) || ::setrlimit(RLIMIT_NPROC, &none) != 0)
+            ::_exit(2);
+        rt::event_fd event;
+        try {
+            const engine::control_thread t(event, [] {});
+            ::_exit(3);
+        } catch (const std::system_error&) {
+            ::_exit(::fcntl(event.fd(), F_GETFD) < 0 ? 1 : 0);
+        }
+    }
+    int status = 0;
+    REQUIRE(::waitpid(child, &status, 0) == child);
+    REQUIRE(WIFEXITED(status));
+    CHECK(WEXITSTATUS(status) == 0);
 }
 
 } // namespace log_test

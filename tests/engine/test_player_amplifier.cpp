@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
 // The player's threads and an amplifier: on a paced null PCM in real time, or on a DAC that stands still.
-#include <atomic>
 #include <chrono>
 #include <condition_variable>
 #include <memory>
@@ -52,10 +51,23 @@ private:
 
 player_lines with(const std::shared_ptr<line_state>& s)
 {
-    player_lines l;
-    l.amplifier = std::make_unique<watched_line>(s);
+    player_lines l{.amplifier = std::make_unique<watched_line>(s)};
     return l;
 }
+
+class any_line final : public enable_line {
+public:
+    bool set(bool) noexcept override { return true; }
+};
+
+player_lines slow_amplifier()
+{
+    player_lines l{.amplifier = std::make_unique<any_line>(), .settle_s = 600.0};
+    return l;
+}
+
+// Only a failure takes so long.
+constexpr double long_enough_s = 60.0;
 
 } // namespace
 
@@ -145,26 +157,6 @@ TEST_CASE("the player checks its limits")
     CHECK_THROWS_AS(player(open_alsa(nine()), palm(), o), error);
 }
 
-namespace {
-
-class any_line final : public enable_line {
-public:
-    bool set(bool) noexcept override { return true; }
-};
-
-player_lines slow_amplifier()
-{
-    player_lines l;
-    l.amplifier = std::make_unique<any_line>();
-    l.settle_s = 600.0;
-    return l;
-}
-
-// Only a failure takes so long.
-constexpr double long_enough_s = 60.0;
-
-} // namespace
-
 TEST_CASE("cancel() is reported without a frame being played")
 {
     dac_player p(patient(), slow_amplifier());
@@ -193,11 +185,8 @@ TEST_CASE("stop() reports waiting strokes before the amplifier has settled")
     const auto before = std::chrono::steady_clock::now();
     p.stop();
     CHECK(std::chrono::steady_clock::now() - before < std::chrono::seconds(300)); // of 600
-    for (const stroke_id id : {score, live.id()}) {
-        const auto r = p.wait(id, long_enough_s);
-        REQUIRE(r);
-        CHECK(r->state == state_kind::cancelled);
-    }
+    for (const stroke_id id : {score, live.id()})
+        CHECK(p.wait(id, long_enough_s)->state == state_kind::cancelled);
 }
 
 } // namespace player_amplifier_test

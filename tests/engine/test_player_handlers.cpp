@@ -1,13 +1,19 @@
 // SPDX-License-Identifier: MIT
-// Handlers of the program, which may call any member of the player; and calls after the end.
+// Code of the program that the player calls, and that calls the player.
 #include <atomic>
 #include <cerrno>
+#include <cstddef>
 #include <exception>
+#include <functional>
+#include <map>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include <boost/asio/bind_executor.hpp>
@@ -23,9 +29,14 @@
 #include <tactor/alsa.hpp>
 #include <tactor/asio.hpp>
 #include <tactor/error.hpp>
+#include <tactor/live.hpp>
+#include <tactor/path.hpp>
+#include <tactor/phantom.hpp>
 #include <tactor/player.hpp>
+#include <tactor/stroke.hpp>
 
 #include "clock_runner.hpp"
+#include "engine/live/live_voice.hpp"
 #include "has.hpp"
 #include "player_support.hpp"
 #include "scores.hpp"
@@ -64,8 +75,7 @@ std::string refused_trigger(int fd, int code = 0)
 {
     fake_dac dac;
     const running_clock clock(dac);
-    player_lines lines;
-    lines.trigger = std::make_unique<odd_input>(fd);
+    player_lines lines{.trigger = std::make_unique<odd_input>(fd)};
     try {
         const player p(alsa::adopt(dac.pcm(), nine()), palm(), patient(), std::move(lines));
     } catch (const error& e) {
@@ -75,6 +85,73 @@ std::string refused_trigger(int fd, int code = 0)
         return e.what();
     }
     return "no error";
+}
+
+/// Asks the player for its position when it is destroyed.
+class asking {
+public:
+    asking(const player& p, std::atomic<int>& gone) : player_(&p), gone_(&gone) {}
+    ~asking()
+    {
+        static_cast<void>(player_->position());
+        ++*gone_;
+        gone_->notify_all();
+    }
+    asking(const asking&) = delete;
+    asking& operator=(const asking&) = delete;
+
+private:
+    const player* player_;
+    std::atomic<int>* gone_;
+};
+
+/// The same, also whenever it is asked for something.
+class asking_model final : public phantom_model {
+public:
+    asking_model(const player& p, std::atomic<int>& gone) : player_(&p), goes_(p, gone) {}
+    std::string_view name() const noexcept override
+    {
+        static_cast<void>(player_->position());
+        return "asking";
+    }
+    void weights(point, double a_v, std::vector<drive>& out) const override
+    {
+        static_cast<void>(player_->position());
+        out.clear();
+        out.push_back({.tactor = 4, .amplitude = a_v});
+    }
+
+private:
+    const player* player_;
+    asking goes_;
+};
+
+/// Acts on the stroke that asks it.
+class meddling_model final : public phantom_model {
+public:
+    explicit meddling_model(std::function<void()> f) : does_(std::move(f)) {}
+    std::string_view name() const noexcept override { return "meddling"; }
+    void weights(point, double a_v, std::vector<drive>& out) const override
+    {
+        does_();
+        out = {{.tactor = 4, .amplitude = a_v}};
+    }
+
+private:
+    std::function<void()> does_;
+};
+
+void await(const std::atomic<int>& n, int wanted)
+{
+    for (int seen = n; seen < wanted; seen = n)
+        n.wait(seen);
+}
+
+live_options asking_options(const player& p, std::atomic<int>& gone)
+{
+    live_options o{.timeout_s = 86400.0};
+    o.plan.custom_phantom = std::make_shared<asking_model>(p, gone);
+    return o;
 }
 
 } // namespace
@@ -202,13 +279,7 @@ TEST_CASE("a handler that throws ends the stream with the reason, and not the pr
         REQUIRE(p.ended());
         CHECK(p.ended()->reason == reason_kind::handler);
         CHECK(p.ended()->why == why);
-        try {
-            p.submit(tone(0.01));
-            FAIL("no error");
-        } catch (const error& e) {
-            CHECK(e.kind() == error_kind::runtime);
-            has(e.what(), why);
-        }
+        CHECK_THROWS_WITH_AS(p.submit(tone(0.01)), doctest::Contains(why.c_str()), error);
     }
 }
 
@@ -347,6 +418,166 @@ TEST_CASE("Asio: the compiler refuses callbacks without a context")
     CHECK_FALSE(detail::runs_nowhere<decltype(boost::asio::bind_executor(io, plain))>);
     CHECK_FALSE(detail::runs_nowhere<decltype(boost::asio::use_future)>);
     CHECK_FALSE(detail::runs_nowhere<decltype(boost::asio::detached)>);
+}
+
+TEST_CASE("each stroke's beginning is reported once and before its end, with the time that its report has")
+{
+    std::mutex mutex;
+    std::map<stroke_id, std::vector<std::optional<std::int64_t>>> begun;
+    std::map<stroke_id, bool> ended;
+    dac_player p;
+    bool before = true;
+    p.on_begin([&](stroke_id id, std::optional<std::int64_t> at_ns) {
+        const std::lock_guard lock(mutex);
+        before = before && !ended[id];
+        begun[id].push_back(at_ns);
+    });
+    p.on_report([&](const stroke_report& r) {
+        const std::lock_guard lock(mutex);
+        ended[r.id] = true;
+    });
+    const running_clock clock(p.dac);
+    const live_stroke live = p.begin({.timeout_s = 86400.0});
+    CHECK(live.id().number != 0);
+    std::vector<stroke_id> ids{live.id()};
+    auto moved = live;
+    REQUIRE(moved.to(20.0, 20.0));
+    for (unsigned i = 1; i < 20; ++i)
+        ids.push_back(p.submit(random_score(i, 3)));
+    const stroke_id waits = p.submit(random_score(99, 3), start_at::trigger());
+    for (std::size_t i = 1; i < ids.size(); ++i)
+        CHECK(p.wait(ids[i])->state == state_kind::finished);
+    moved.end();
+    p.wait(live.id());
+    p.cancel(waits);
+    p.wait(waits);
+    p.stop();
+    const std::lock_guard lock(mutex);
+    CHECK(before);
+    CHECK(begun.size() == ids.size());
+    for (const stroke_id id : ids)
+        CHECK(begun[id].size() == 1);
+    CHECK_FALSE(begun.contains(waits));
+}
+
+TEST_CASE("a handler of beginnings that throws ends the stream, as others do")
+{
+    dac_player p;
+    p.on_begin([](stroke_id, std::optional<std::int64_t>) { throw 1; });
+    const running_clock clock(p.dac);
+    // An endless one: another may have finished before the handler is called.
+    const live_stroke live = p.begin({.timeout_s = 86400.0});
+    auto moved = live;
+    REQUIRE(moved.to(20.0, 20.0));
+    CHECK(p.wait(live.id())->state == state_kind::interrupted);
+    p.stop();
+    CHECK(p.ended()->why.find("handler") != std::string::npos);
+}
+
+TEST_CASE("objects that a handler holds may call the player when they are destroyed")
+{
+    std::atomic<int> gone{0};
+    dac_player p;
+    const running_clock clock(p.dac);
+    SUBCASE("of one stroke's end")
+    {
+        const stroke_id id = p.submit(tone(0.01), start_at::trigger());
+        for (int i = 0; i < 2; ++i)
+            REQUIRE(p.on_end(id, [held = std::make_shared<asking>(p, gone)](const stroke_report&) {}));
+        p.fire(0);
+        await(gone, 2);
+    }
+    SUBCASE("of beginnings, replaced by itself")
+    {
+        p.on_begin([&p, held = std::make_shared<asking>(p, gone)](stroke_id, auto) { p.on_begin({}); });
+        p.submit(tone(0.01));
+        await(gone, 1);
+    }
+    SUBCASE("of all ends, replaced by itself")
+    {
+        p.on_report(
+            [&p, held = std::make_shared<asking>(p, gone)](const stroke_report&) { p.on_report({}); });
+        p.submit(tone(0.01));
+        await(gone, 1);
+    }
+    p.stop();
+}
+
+TEST_CASE("a phantom model may call the player when it is asked and when it is destroyed")
+{
+    std::atomic<int> gone{0};
+    dac_player p;
+    SUBCASE("of a continuous stroke")
+    {
+        const running_clock clock(p.dac);
+        const auto line = trajectory::along(path::from_svg("M 0 0 L 40 40"), 0.1);
+        plan_options o{.algorithm = algorithm_kind::continuous,
+                       .custom_phantom = std::make_shared<asking_model>(p, gone)};
+        const stroke_id id = p.submit(score(palm(), make_plan(palm(), stroke{"line", line}, o)));
+        CHECK(p.wait(id)->state == state_kind::finished);
+        o = {};
+        await(gone, 1);
+        p.stop();
+    }
+    SUBCASE("of a live stroke that sounded")
+    {
+        const running_clock clock(p.dac);
+        stroke_id id;
+        {
+            live_stroke s = p.begin(asking_options(p, gone));
+            id = s.id();
+            REQUIRE(s.to(20.0, 20.0));
+            s.end();
+        }
+        CHECK(p.wait(id)->state == state_kind::finished);
+        await(gone, 1);
+        p.stop();
+    }
+    SUBCASE("of live strokes that did not begin: cancelled, or ended with the stream")
+    {
+        std::vector<live_stroke> playing; // all places, so that the others wait
+        for (std::size_t i = 0; i < engine::live_places; ++i)
+            REQUIRE(playing.emplace_back(p.begin(asking_options(p, gone))).to(20.0, 20.0));
+        const stroke_id first = p.begin(asking_options(p, gone)).id();
+        const stroke_id second = p.begin(asking_options(p, gone)).id();
+        CHECK(p.cancel(first));
+        await(gone, 1);
+        const running_clock clock(p.dac);
+        p.stop();
+        CHECK(p.wait(second)->state == state_kind::cancelled);
+        playing.clear();
+        await(gone, engine::live_places + 2);
+    }
+}
+
+TEST_CASE("a phantom model that moves its own stroke is refused and ends it; it may end the stroke")
+{
+    dac_player p;
+    const running_clock clock(p.dac);
+    for (const double smooth_s : {0.0, 0.05}) {
+        std::optional<live_stroke> s;
+        std::function<void()> does = [&s] { s->to(20.0, 20.0); };
+        live_options o{.timeout_s = 86400.0, .smooth_s = smooth_s};
+        o.plan.custom_phantom = std::make_shared<meddling_model>([&does] { does(); });
+        s.emplace(p.begin(o));
+        const auto moved = [&s] { return s->to(10.0, 10.0); };
+        CHECK_THROWS_WITH_AS(moved(), doctest::Contains("its phantom model moves it"), error);
+        CHECK_FALSE(moved());
+        const auto report = p.wait(s->id());
+        CHECK(report->state == state_kind::interrupted);
+        CHECK(report->why.find("its phantom model moves it") != std::string::npos);
+
+        does = [&s] {
+            static_cast<void>(s->counts());
+            if (s->open())
+                s->end();
+        };
+        s.emplace(p.begin(o));
+        CHECK(moved());
+        CHECK_FALSE(moved());
+        CHECK(p.wait(s->id())->state == state_kind::finished);
+    }
+    p.stop();
 }
 
 } // namespace player_handlers_test

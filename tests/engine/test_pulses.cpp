@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: MIT
-// Sync pulses: which, when, and their counts; on virtual time, and once with the real thread.
-
+// Sync pulses: which, when, in which order, and their counts.
 #include <algorithm>
+#include <atomic>
 #include <condition_variable>
 #include <mutex>
+#include <numeric>
 #include <optional>
+#include <random>
+#include <thread>
 #include <vector>
 
 #include <doctest/doctest.h>
@@ -24,6 +27,7 @@ namespace pulses_test {
 using namespace tactor;
 using namespace tactor::test;
 using engine::clock_line;
+using engine::pulse;
 
 namespace {
 
@@ -57,6 +61,85 @@ void send(engine::pulse_emitter& e, std::int64_t due_ns)
         e.send(due_ns);
     else
         e.miss();
+}
+
+struct pulse_log {
+    std::mutex mutex;
+    std::condition_variable changed;
+    std::vector<std::pair<bool, std::int64_t>> log;
+};
+
+class logged_output final : public enable_line {
+public:
+    explicit logged_output(std::shared_ptr<pulse_log> l) : log_(std::move(l)) {}
+    bool set(bool on) noexcept override
+    {
+        timespec t{};
+        clock_gettime(CLOCK_MONOTONIC, &t);
+        const std::lock_guard lock(log_->mutex);
+        log_->log.emplace_back(on, std::int64_t{t.tv_sec} * 1'000'000'000 + t.tv_nsec);
+        log_->changed.notify_all();
+        return true;
+    }
+
+private:
+    std::shared_ptr<pulse_log> log_;
+};
+
+/// Counts the heap calls of the thread that switches it, from the first time on.
+class counting_output final : public enable_line {
+public:
+    bool set(bool) noexcept override
+    {
+        if (!count_)
+            count_.emplace();
+        calls = count_->calls();
+        return true;
+    }
+    std::uint64_t calls = 0;
+
+private:
+    std::optional<count_allocations> count_;
+};
+
+// Plans pulses 5 ms from now on, more than there are places, and waits until all were sent or missed.
+void send_many(enable_line& line)
+{
+    constexpr std::uint32_t pulses = engine::pulse_board::places + 100;
+    engine::link link;
+    const clock_line clock{
+        .epoch = 1, .first = 0, .frame = 0, .time_ns = rt::monotonic_ns(), .ns_per_frame = 1e9 / 48000};
+    link.sync_clock.store(clock);
+    engine::trigger_thread t(link, line, 10 * us, {.name = "test-sync"});
+    for (std::uint32_t n = 1; n <= pulses; ++n)
+        t.add({n}, 240 + 5 * std::uint64_t{n}, clock);
+    for (engine::pulse_stats s; s.sent + s.missed < pulses; s = t.stats()) {
+        pollfd fd{.fd = link.to_control.fd(), .events = POLLIN, .revents = 0};
+        REQUIRE(::poll(&fd, 1, -1) == 1);
+        link.to_control.consume();
+        t.hand_over();
+    }
+    CHECK(t.stats().sent + t.stats().missed == pulses);
+}
+
+clock_line clock_from(std::uint64_t epoch, std::uint64_t first)
+{
+    return {.epoch = epoch, .first = first, .frame = first, .time_ns = 0, .ns_per_frame = 1e9 / 48000};
+}
+
+std::optional<pulse> next(const engine::pulse_board& b, std::uint64_t epoch)
+{
+    const auto seen = b.next(clock_from(epoch, 0));
+    return seen ? std::optional(seen->what) : std::nullopt;
+}
+
+// Reports whether a stroke's pulse may be called off: some were sent before.
+bool may_be_forgotten(stroke_id id)
+{
+    for (std::uint32_t by = id.number; by < id.number + 5; ++by)
+        if (by % 3 == 0 && by - by % 5 == id.number)
+            return true;
+    return false;
 }
 
 } // namespace
@@ -112,41 +195,12 @@ TEST_CASE("a pulse called off while it waits is not sent; a line that fails is c
     CHECK_FALSE(line.log.back().first);
 }
 
-namespace {
-
-struct pulse_log {
-    std::mutex mutex;
-    std::condition_variable changed;
-    std::vector<std::pair<bool, std::int64_t>> log;
-};
-
-class logged_output final : public enable_line {
-public:
-    explicit logged_output(std::shared_ptr<pulse_log> l) : log_(std::move(l)) {}
-    bool set(bool on) noexcept override
-    {
-        timespec t{};
-        clock_gettime(CLOCK_MONOTONIC, &t);
-        const std::lock_guard lock(log_->mutex);
-        log_->log.emplace_back(on, std::int64_t{t.tv_sec} * 1'000'000'000 + t.tv_nsec);
-        log_->changed.notify_all();
-        return true;
-    }
-
-private:
-    std::shared_ptr<pulse_log> log_;
-};
-
-} // namespace
-
 TEST_CASE("the player sends or misses one pulse for each stroke")
 {
     const auto log = std::make_shared<pulse_log>();
     std::uint64_t sent = 0;
     {
-        player_lines lines;
-        lines.sync_out = std::make_unique<logged_output>(log);
-        lines.pulse_s = 0.001;
+        player_lines lines{.sync_out = std::make_unique<logged_output>(log), .pulse_s = 0.001};
         player p(open_alsa(nine()), palm(), patient(), std::move(lines));
         for (int i = 0; i < 3; ++i) {
             // A busy machine may miss one, and be so late that its stroke is over: that is counted.
@@ -162,9 +216,7 @@ TEST_CASE("the player sends or misses one pulse for each stroke")
             sent = p.stats().sync_pulses;
             if (i > 0)
                 CHECK(p.cancel(id));
-            const auto r = p.wait(id);
-            REQUIRE(r);
-            CHECK(r->state == (i == 0 ? state_kind::finished : state_kind::cancelled));
+            CHECK(p.wait(id)->state == (i == 0 ? state_kind::finished : state_kind::cancelled));
         }
     }
     REQUIRE(log->log.size() >= 2 * sent);
@@ -172,46 +224,6 @@ TEST_CASE("the player sends or misses one pulse for each stroke")
         CHECK(log->log[i].first == (i % 2 == 0));
     CHECK((log->log.empty() || !log->log.back().first));
 }
-
-namespace {
-
-/// Counts the heap calls of the thread that switches it, from the first time on.
-class counting_output final : public enable_line {
-public:
-    bool set(bool) noexcept override
-    {
-        if (!count_)
-            count_.emplace();
-        calls = count_->calls();
-        return true;
-    }
-    std::uint64_t calls = 0;
-
-private:
-    std::optional<count_allocations> count_;
-};
-
-// Plans pulses 5 ms from now on, more than there are places, and waits until all were sent or missed.
-void send_many(enable_line& line)
-{
-    constexpr std::uint32_t pulses = engine::pulse_board::places + 100;
-    engine::link link;
-    const clock_line clock{
-        .epoch = 1, .first = 0, .frame = 0, .time_ns = rt::monotonic_ns(), .ns_per_frame = 1e9 / 48000};
-    link.sync_clock.store(clock);
-    engine::trigger_thread t(link, line, 10 * us, {.name = "test-sync"});
-    for (std::uint32_t n = 1; n <= pulses; ++n)
-        t.add({n}, 240 + 5 * std::uint64_t{n}, clock);
-    for (engine::pulse_stats s; s.sent + s.missed < pulses; s = t.stats()) {
-        pollfd fd{.fd = link.to_control.fd(), .events = POLLIN, .revents = 0};
-        REQUIRE(::poll(&fd, 1, -1) == 1);
-        link.to_control.consume();
-        t.hand_over();
-    }
-    CHECK(t.stats().sent + t.stats().missed == pulses);
-}
-
-} // namespace
 
 TEST_CASE("the thread sends or misses each of more pulses than there are places")
 {
@@ -224,6 +236,121 @@ COUNTING_TEST_CASE("the thread that sends pulses calls no heap")
     counting_output line;
     send_many(line);
     CHECK(line.calls == 0);
+}
+
+TEST_CASE("pulses come in order of their frames, without those of other epochs and ended strokes")
+{
+    engine::pulse_board board;
+    engine::pulse_plan p(board);
+    CHECK(p.add({1}, 500, clock_from(1, 0)));
+    CHECK(p.add({2}, 300, clock_from(1, 0)));
+    CHECK(p.add({3}, 700, clock_from(1, 0)));
+    CHECK(next(board, 1) == pulse{1, 300, 2});
+    p.forget({2}, false);
+    CHECK(next(board, 1) == pulse{1, 500, 1});
+    CHECK(board.take(*board.next(clock_from(1, 0))));
+    CHECK(next(board, 1) == pulse{1, 700, 3});
+    CHECK_FALSE(next(board, 2));
+    CHECK(p.add({4}, 900, clock_from(2, 800)));
+    CHECK(next(board, 2) == pulse{2, 900, 4});
+    CHECK_FALSE(next(board, 1));
+    CHECK_FALSE(p.add({5}, 790, clock_from(2, 800))); // from before the xrun
+    CHECK_FALSE(p.add({6}, 990, clock_from(0, 0)));   // between two epochs
+    CHECK_FALSE(next(board, 2));
+}
+
+TEST_CASE("a pulse that was seen and then called off cannot be taken")
+{
+    engine::pulse_board board;
+    engine::pulse_plan p(board);
+    p.add({1}, 500, clock_from(1, 0));
+    const auto seen = board.next(clock_from(1, 0));
+    REQUIRE(seen);
+    p.forget({1}, false);
+    CHECK_FALSE(board.take(*seen));
+    p.add({2}, 600, clock_from(1, 0)); // in the same place
+    CHECK_FALSE(board.take(*seen));
+    CHECK(next(board, 1) == pulse{1, 600, 2});
+}
+
+TEST_CASE("a stroke that was played before its pulse was taken has missed it")
+{
+    engine::pulse_board board;
+    engine::pulse_plan p(board);
+    for (std::uint32_t n = 1; n <= engine::pulse_board::places + 2; ++n)
+        p.add({n}, n, clock_from(1, 0));
+    p.forget({3}, true);
+    CHECK(p.missed() == 1);
+    p.forget({engine::pulse_board::places + 2}, true); // not on the board yet
+    CHECK(p.missed() == 2);
+    p.forget({4}, false); // it was cancelled before its first frame
+    REQUIRE(board.take(*board.next(clock_from(1, 0))));
+    p.forget({1}, true); // it has been sent
+    p.forget({1}, true);
+    CHECK(p.missed() == 2);
+}
+
+TEST_CASE("more pulses than places, planned in any order, all come in order")
+{
+    engine::pulse_board board;
+    engine::pulse_plan p(board);
+    std::vector<std::uint64_t> frames(5 * engine::pulse_board::places);
+    std::iota(frames.begin(), frames.end(), 1);
+    std::shuffle(frames.begin(), frames.end(), std::mt19937(3)); // NOLINT(cert-msc51-cpp)
+    for (const std::uint64_t f : frames)
+        p.add({static_cast<std::uint32_t>(f)}, f, clock_from(1, 0));
+    p.forget({7}, false);
+    p.forget({900}, false); // not on the board yet
+    for (std::uint64_t f = 1; f <= frames.size(); ++f) {
+        if (f == 7 || f == 900)
+            continue;
+        const auto seen = board.next(clock_from(1, 0));
+        REQUIRE(seen);
+        REQUIRE(seen->what == pulse{1, f, static_cast<std::uint32_t>(f)});
+        REQUIRE(board.take(*seen));
+        if (f % 100 == 0)
+            p.hand_over();
+    }
+    CHECK_FALSE(next(board, 1));
+    CHECK_FALSE(p.hand_over());
+}
+
+TEST_CASE("planned by one thread and sent by another, each pulse comes at most once and whole")
+{
+    constexpr std::uint32_t last = 20'000;
+    engine::pulse_board board;
+    std::vector<int> sent(last + 1, 0);
+    std::atomic<bool> over{false};
+    std::uint64_t wrong = 0;
+    std::thread sender([&] {
+        for (bool ends = false; !ends;) {
+            ends = over;
+            while (const auto s = board.next(clock_from(1, 0))) {
+                wrong += static_cast<std::uint64_t>(s->what.frame != 3 * std::uint64_t{s->what.id.number});
+                if (board.take(*s))
+                    ++sent[s->what.id.number];
+            }
+        }
+    });
+    engine::pulse_plan p(board);
+    for (std::uint32_t n = 1; n <= last; ++n) {
+        p.add({n}, 3 * std::uint64_t{n}, clock_from(1, 0));
+        if (n % 3 == 0)
+            p.forget({n - n % 5}, false);
+    }
+    // An empty board takes waiting pulses, if there are any.
+    for (bool empty = false, any = true; !empty || any;) {
+        empty = !next(board, 1);
+        any = p.hand_over();
+        std::this_thread::yield();
+    }
+    over = true;
+    sender.join();
+    CHECK(wrong == 0);
+    std::size_t strangers = 0;
+    for (std::uint32_t n = 1; n <= last; ++n)
+        strangers += static_cast<std::size_t>(sent[n] > 1 || (sent[n] == 0 && !may_be_forgotten({n})));
+    CHECK(strangers == 0);
 }
 
 } // namespace pulses_test
