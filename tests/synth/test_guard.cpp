@@ -36,10 +36,7 @@ score loud(unsigned tactors, std::vector<std::pair<double, double>> times, doubl
     }
     plan p = make_plan(std::move(bursts));
     p.total_s = p.stroke_duration_s = total_s;
-    render_options o;
-    o.rate = rate;
-    o.level_dbfs = level_dbfs;
-    o.limits = limits;
+    render_options o{.rate = rate, .level_dbfs = level_dbfs, .limits = limits};
     return {row(tactors), {{p, {}}}, o};
 }
 
@@ -107,10 +104,7 @@ TEST_CASE("the gain recovers a while after the loud part")
     const score s = loud(9, {{0.0, 0.2}, {1.2, 0.1}}, 1.4, no_longest(4.771212547196624));
     plan quiet = make_plan(
         {make_burst(0.0, 0.2, {{0, 1.0}, {1, 1.0}, {2, 1.0}, {3, 1.0}}), make_burst(1.2, 0.1, {{0, 1.0}})});
-    render_options o;
-    o.rate = rate;
-    o.level_dbfs = 0.0;
-    o.limits = no_longest(4.771212547196624);
+    render_options o{.rate = rate, .level_dbfs = 0.0, .limits = no_longest(4.771212547196624)};
     const std::vector<double> x = channel(score(row(4), {{quiet, {}}}, o), 0);
     CHECK(largest(x, 0.05, 0.2) < 0.9);
     CHECK(largest(x, 1.2, 1.3) == doctest::Approx(1.0));
@@ -166,10 +160,7 @@ TEST_CASE("no window of ten seconds has more than seven and a half of drive, for
 TEST_CASE("limits act in the same frames for any block size")
 {
     std::mt19937_64 random(23);
-    drive_limits l;
-    l.max_drive_s = 0.3;
-    l.window_s = 1.0;
-    l.power_dbfs = 1.0;
+    drive_limits l{.power_dbfs = 1.0, .max_drive_s = 0.3, .window_s = 1.0};
     const score s = loud(5, {{0.05, 0.4}, {0.46, 0.7}, {1.3, 0.2}, {1.9, 0.9}}, 3.0, l);
     const auto whole = render(s, format_kind::s32);
     CHECK((whole !=
@@ -182,9 +173,7 @@ TEST_CASE("limits act in the same frames for any block size")
 
 TEST_CASE("an epoch's end does not give a tactor its time back")
 {
-    drive_limits l;
-    l.max_drive_s = 0.5;
-    l.window_s = 1.0;
+    drive_limits l{.max_drive_s = 0.5, .window_s = 1.0};
     synth::mixer m(std::vector<double>(1, 1.0), format_kind::float32, 8, synth::make_guards(l, rate));
     synth::drive_event e;
     e.length = e.window = rate;

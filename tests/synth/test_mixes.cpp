@@ -1,23 +1,29 @@
 // SPDX-License-Identifier: MIT
-// Mixes against the record of their plans (tactor-json(5), FROM A PLAN TO SAMPLES): no sample is above it,
-// however short the bursts are.
+// Bursts and mixes against formulas written out, and peaks of continuous strokes.
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <map>
 #include <optional>
+#include <random>
 #include <string>
 #include <vector>
 
 #include <doctest/doctest.h>
 
 #include <tactor/error.hpp>
+#include <tactor/phantom.hpp>
 #include <tactor/render.hpp>
 
+#include "caught.hpp"
+#include "has.hpp"
 #include "mixes.hpp"
+#include "own_curve.hpp"
+#include "pieces.hpp"
 #include "rounds.hpp"
 #include "synth/guard/guard.hpp"
 #include "synth/mix/mixer.hpp"
+#include "synth/score/continuous_peaks.hpp"
 #include "synth/score/event_source.hpp"
 #include "synth/score/levels.hpp"
 #include "synth/score/score.hpp"
@@ -26,6 +32,7 @@ namespace mixes_test {
 
 using namespace tactor;
 using mixes::mix;
+using namespace pieces;
 
 namespace {
 
@@ -197,6 +204,110 @@ double excess(const std::vector<float>& samples, const levels& told)
     return most;
 }
 
+struct example {
+    double onset_s;
+    double duration_s;
+    double amplitude;
+    double carrier_hz;
+    unsigned rate;
+    double level_dbfs;
+    std::optional<double> ramp_s;
+    phase_kind phase;
+};
+
+std::vector<double> formula(const example& e, std::size_t frames)
+{
+    const auto n0 = static_cast<std::int64_t>(std::floor(e.onset_s * e.rate + 0.5));
+    const auto n = static_cast<std::int64_t>(std::floor((e.onset_s + e.duration_s) * e.rate + 0.5)) - n0;
+    const double begin_s = e.phase == phase_kind::burst ? 0.0 : e.onset_s;
+    const auto crosses_zero = [&](double t) {
+        const double half_cycles = 2.0 * t * e.carrier_hz;
+        return std::abs(half_cycles - std::round(half_cycles)) <= 0.01;
+    };
+    const bool smooth = crosses_zero(begin_s) && crosses_zero(begin_s + e.duration_s) &&
+                        2.0 * e.duration_s * e.carrier_hz > 0.5;
+    const double ramp_s = e.ramp_s ? *e.ramp_s : (smooth ? 0.0 : 0.002);
+    const auto r =
+        std::min<std::int64_t>(static_cast<std::int64_t>(std::floor(ramp_s * e.rate + 0.5)), n / 2);
+    const double level = std::pow(10.0, e.level_dbfs / 20.0);
+    std::vector<double> x(frames, 0.0);
+    for (std::int64_t k = 0; k < n; ++k) {
+        const auto carrier = static_cast<double>(e.phase == phase_kind::burst ? k : n0 + k);
+        x[static_cast<std::size_t>(n0 + k)] =
+            level * e.amplitude * window(k, n, r) * std::sin(2.0 * pi * e.carrier_hz * carrier / e.rate);
+    }
+    return x;
+}
+
+score make_score(const example& e)
+{
+    render_options o{.rate = e.rate, .phase = e.phase, .ramp_s = e.ramp_s, .level_dbfs = e.level_dbfs};
+    return {row(2),
+            {{make_plan({make_burst(e.onset_s, e.duration_s, {{1, e.amplitude}})}, e.carrier_hz), {}}},
+            o};
+}
+
+std::vector<example> examples()
+{
+    std::vector<example> all{
+        {0.0, 0.07, 1.0, 250.0, 48000, -12.0, {}, phase_kind::burst},
+        {0.14, 0.07, 0.7, 250.0, 44100, 0.0, {}, phase_kind::stroke},
+        {0.01, 0.0413, 0.9, 250.0, 48000, -3.0, {}, phase_kind::burst},
+        {0.01, 0.0001, 0.9, 3000.0, 8000, -3.0, {}, phase_kind::burst},
+    };
+    std::mt19937_64 random(7);
+    std::uniform_real_distribution<double> unit(0.0, 1.0);
+    for (int i = 0; i < tactor::test::rounds(300); ++i) {
+        const unsigned rates[] = {8000, 22050, 44100, 48000, 96000, 192000};
+        example e{};
+        e.onset_s = 0.3 * unit(random);
+        e.duration_s = 0.15 * unit(random);
+        e.amplitude = unit(random);
+        e.carrier_hz = 20.0 + 900.0 * unit(random);
+        e.rate = rates[random() % 6];
+        e.level_dbfs = -30.0 * unit(random);
+        e.phase = random() % 2 == 0 ? phase_kind::burst : phase_kind::stroke;
+        if (random() % 2 == 0)
+            e.ramp_s = 0.02 * unit(random) * static_cast<double>(random() % 3);
+        all.push_back(e);
+    }
+    return all;
+}
+
+const array palm = preset_array("palm-3x3");
+
+/// \param level_db the stroke's own level, which takes it above intensity 1
+plan continuous(std::vector<timed_point> points, double level_db, plan_options o = {})
+{
+    o.algorithm = algorithm_kind::continuous;
+    return make_plan(palm,
+                     {.motion = trajectory::timed(std::move(points)), .choices = {.level_db = level_db}}, o);
+}
+
+/// Hides everything of a plan except its values.
+plan opaque(plan p)
+{
+    p.curve = test::make_curve(p.stroke_duration_s, [c = *p.curve](double t, burst& out) { c.at(t, out); });
+    return p;
+}
+
+std::string refusal(const std::vector<placed_plan>& plans, double level_dbfs)
+{
+    render_options o{.level_dbfs = level_dbfs};
+    return caught_message([&] { score(palm, plans, o); });
+}
+
+/// Makes intensity 0.0005 over the array, except for 8 ms round a time.
+std::vector<timed_point> with_spike(double duration_s, double at_s, double intensity)
+{
+    const auto place = [&](double t) { return point{40.0 * t / duration_s, 20.0}; };
+    std::vector<timed_point> points{{0.0, place(0.0), 0.0005}};
+    for (const auto& [off, i] : {std::pair{-0.004, 0.0005}, {0.0, intensity}, {0.004, 0.0005}})
+        points.push_back({at_s + off, place(at_s + off), i});
+    points.push_back({duration_s, place(duration_s), 0.0005});
+    return points;
+}
+
 } // namespace
 
 TEST_CASE("no sample of random mixes is above the record, nor above the tactor's limit")
@@ -236,6 +347,198 @@ TEST_CASE("no sample of random mixes is above the record, nor above the tactor's
     MESSAGE(rendered << " mixes rendered, " << refused << " refused, largest excess " << most);
     CHECK(rendered > all / 4);
     CHECK(refused > all / 10);
+}
+
+TEST_CASE("a burst is the formula to one float ulp")
+{
+    for (const example& e : examples()) {
+        const score s = make_score(e);
+        const auto x = formula(e, s.frames());
+        const auto bytes = render(s, format_kind::float32);
+        std::size_t wrong = 0;
+        for (std::size_t k = 0; k < x.size(); ++k) {
+            const float got = sample<float>(bytes, 2 * k + 1);
+            const auto exact = static_cast<float>(x[k]);
+            const double ulp = static_cast<double>(std::nextafter(std::abs(exact), 2.0F) - std::abs(exact));
+            wrong += std::abs(static_cast<double>(got) - x[k]) <= std::max(ulp, 1e-12) ? 0 : 1;
+            wrong += sample<float>(bytes, 2 * k) == 0.0F ? 0 : 1;
+        }
+        CAPTURE(e.onset_s);
+        CAPTURE(e.rate);
+        CHECK(wrong == 0);
+    }
+}
+
+TEST_CASE("integers are the formula times 2^(bits - 1), rounded")
+{
+    for (const format_kind f : all_formats) {
+        if (f == format_kind::float32)
+            continue;
+        std::size_t wrong = 0;
+        std::size_t loud = 0;
+        for (const example& e : examples()) {
+            const score s = make_score(e);
+            const auto x = formula(e, s.frames());
+            const auto bytes = render(s, f);
+            for (std::size_t k = 0; k < x.size(); ++k) {
+                const double scaled = x[k] * full_scale(f);
+                const double exact = std::min(std::nearbyint(scaled), full_scale(f) - 1.0);
+                const auto got = static_cast<double>(integer(bytes, f, 2 * k + 1));
+                // The two sides may fall to either side of a tie, no more.
+                const bool tie = std::abs(std::abs(scaled - std::floor(scaled)) - 0.5) <
+                                 1e-3 * full_scale(f) / 2147483648.0;
+                wrong += got == exact || (tie && std::abs(got - exact) <= 1.0) ? 0 : 1;
+                loud += std::abs(got) > 0.5 * full_scale(f) ? 1 : 0;
+            }
+        }
+        CAPTURE(to_string(f));
+        CHECK(wrong == 0);
+        CHECK(loud > 1000);
+    }
+}
+
+TEST_CASE("a ramp never takes more than half of the burst")
+{
+    const score s = make_score({0.0, 0.01, 1.0, 1000.0, 48000, 0.0, 1.0, phase_kind::burst});
+    const auto x = channel(s, 1);
+    CHECK(std::abs(x[252]) == doctest::Approx(window(252, 480, 240)).epsilon(1e-6));
+    CHECK(std::abs(x[240 + 12]) > 0.9);
+}
+
+TEST_CASE("bursts that touch after rounding share no frame")
+{
+    // 0.07 s at 22050 Hz is 1543.5 frames: every other boundary is a tie.
+    std::vector<burst> bursts;
+    for (int k = 0; k < 40; ++k)
+        bursts.push_back(make_burst(k * 0.07, 0.07, {{0, 1.0}}));
+    render_options o{.rate = 22050, .level_dbfs = 0.0};
+    const auto whole = channel(score(row(1), {{make_plan(bursts), {}}}, o), 0);
+    for (std::size_t k = 0; k < whole.size(); ++k)
+        REQUIRE(std::abs(whole[k] - std::sin(2.0 * pi * 250.0 * static_cast<double>(k) / 22050.0)) < 1e-6);
+    o.phase = phase_kind::burst;
+    const auto x = channel(score(row(1), {{make_plan(bursts), {}}}, o), 0);
+    for (int k = 0; k < 40; ++k) {
+        const auto n0 = static_cast<std::size_t>(std::floor(k * 1543.5 + 0.5));
+        CHECK(std::abs(x[n0]) < 1e-9);
+        CHECK(x[n0 + 1] == doctest::Approx(std::sin(2.0 * pi * 250.0 / 22050.0)));
+    }
+}
+
+TEST_CASE("a spike of 8 ms is found in strokes of ten seconds to an hour, and accepted where it does no harm")
+{
+    std::mt19937_64 random(11);
+    for (const double duration : {10.0, 1048.0, 1049.0, 3600.0}) {
+        for (int n = 0; n < (duration > 100.0 ? 2 : 20); ++n) {
+            std::uniform_int_distribution<int> ms(5, static_cast<int>(duration * 1000.0) - 5);
+            const double at = ms(random) * 0.001;
+            CAPTURE(duration);
+            CAPTURE(at);
+            const plan p = continuous(with_spike(duration, at, 1.0), 60.0);
+            has(refusal({{p, {}}}, -40.0), "dBFS, above full scale (0 dBFS)");
+            CHECK(refusal({{p, {}}}, -60.0).empty());
+        }
+    }
+    // On a tactor that one gets the whole amplitude, and the message has the value.
+    const plan p = continuous(with_spike(3600.0, 1800.0, 1.0), 60.0);
+    has(refusal({{p, {}}}, -40.0), "tactor 4: would be driven at 20 dBFS, above full scale");
+}
+
+TEST_CASE("a plan is left unseen only where its intensity is above no limit: as if every point was looked at")
+{
+    std::mt19937_64 random(12);
+    std::uniform_real_distribution<double> unit(0.0, 1.0);
+    const double stronger_db = 20.0 * std::log10(1.7);
+    int refused = 0;
+    for (int n = 0; n < 120; ++n) {
+        CAPTURE(n);
+        std::vector<timed_point> points;
+        for (double t = 0.0; t < 1.0 + unit(random); t += 1e-4 + 0.2 * std::pow(unit(random), 3.0))
+            points.push_back({t, {40.0 * unit(random), 40.0 * unit(random)}, unit(random)});
+        points.push_back({2.5, {20.0, 20.0}, 0.0});
+        plan_options o{.phantom = static_cast<phantom_kind>(n % 5)};
+        plan p = continuous(points, stronger_db, o);
+        if (n % 3 == 0) {
+            const stroke s{.motion = trajectory::timed(points).with_duration(0.7).with_intensity(0.9),
+                           .choices = {.level_db = stronger_db}};
+            o.algorithm = algorithm_kind::continuous;
+            p = make_plan(palm, s, o);
+        }
+        const double level = -6.0 * unit(random);
+        const std::string said = refusal({{p, {}}}, level);
+        CHECK(said == refusal({{opaque(p), {}}}, level));
+        refused += said.empty() ? 0 : 1;
+    }
+    CHECK(refused > 20);
+    CHECK(refused < 100);
+}
+
+TEST_CASE("a stroke with a spike that no tactor alone could have is played where two share it")
+{
+    // On a diagonal; harmless before and after.
+    const plan p = continuous({{0.0, {0.0, 10.0}, 0.25},
+                               {5.0, {10.0, 10.0}, 0.25},
+                               {5.1, {10.0, 10.0}, 0.65},
+                               {5.2, {10.0, 10.0}, 0.25},
+                               {10.0, {40.0, 10.0}, 0.25}},
+                              20.0 * std::log10(2.0));
+    CHECK(refusal({{p, {}}}, 0.0).empty());
+    const std::vector<double> peaks = synth::continuous_peaks(p, 9);
+    CHECK(peaks[0] == doctest::Approx(1.3 / std::sqrt(2.0)));
+    CHECK(peaks[8] == 0.0);
+    CHECK(synth::continuous_bounds(p, 9) == std::vector<double>(9, 1.3));
+}
+
+TEST_CASE("a plan for a larger array is looked at, and refused where it drives a tactor that is not there")
+{
+    const array wide = make_grid("wide", 3, 4, 20.0, 20.0);
+    plan_options o{.algorithm = algorithm_kind::continuous};
+    const auto down = [&](double to_mm) {
+        return make_plan(wide, {"", trajectory::timed({{0.0, {1.0, 1.0}}, {10.0, {1.0, to_mm}}})}, o);
+    };
+    CHECK(synth::continuous_bounds(down(9.0), 9).empty());
+    CHECK(refusal({{down(9.0), {}}}, -12.0).empty());
+    has(refusal({{down(39.0), {}}}, -12.0), "cannot be rendered");
+}
+
+TEST_CASE("every control point of a program's plan is evaluated")
+{
+    std::uint64_t looks = 0;
+    double spike_s = 0.0;
+    plan p;
+    p.total_s = p.stroke_duration_s = 1500.0;
+    p.curve = test::make_curve(1500.0, [&](double t, burst& out) {
+        ++looks;
+        out.drives = {{3, std::abs(t - spike_s) < 0.0005 ? 1000.0 : 0.5}};
+    });
+    spike_s = -1.0;
+    CHECK(refusal({{p, {}}}, -40.0).empty());
+    CHECK(looks >= 1'500'001);
+    for (const double at : {0.0, 0.001, 1048.577, 1499.999, 1500.0}) {
+        CAPTURE(at);
+        spike_s = at;
+        has(refusal({{p, {}}}, -40.0), "tactor 3: would be driven at 20 dBFS");
+    }
+}
+
+TEST_CASE("strokes that are harmless alone are added up where they overlap, even after hours")
+{
+    for (const double rest : {1.0, 5000.0}) {
+        CAPTURE(rest);
+        // Silent for long, then a second on the middle tactor.
+        const plan late = continuous({{0.0, {20.0, 20.0}, 0.0},
+                                      {rest, {20.0, 20.0}, 0.0},
+                                      {rest + 0.5, {20.0, 20.0}, 0.7},
+                                      {rest + 1.0, {20.0, 20.0}, 0.0}},
+                                     0.0);
+        const auto with = [&](double amplitude, double at) {
+            plan p = pieces::make_plan({pieces::make_burst(0.0, 0.07, {{4, amplitude}})});
+            return refusal({{late, 0.0}, {p, at}}, 0.0);
+        };
+        CHECK(with(0.29, rest).empty());
+        has(with(0.31, rest), "tactor 4: would be driven at 0.08");
+        CHECK(has(with(0.31, 0.1), "tactor 4")); // both last on at once: taken together
+        CHECK(with(0.99, rest + 1.0).empty());
+    }
 }
 
 } // namespace mixes_test

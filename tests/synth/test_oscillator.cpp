@@ -1,12 +1,23 @@
 // SPDX-License-Identifier: MIT
+// Oscillators, the start of the phase, blocks of any size, and sample formats.
 #include <algorithm>
 #include <cmath>
+#include <complex>
+#include <cstddef>
+#include <limits>
+#include <numeric>
+#include <random>
 #include <span>
+#include <vector>
 
 #include <doctest/doctest.h>
 
+#include <tactor/error.hpp>
+
 #include "pieces.hpp"
 #include "rounds.hpp"
+#include "synth/guard/guard.hpp"
+#include "synth/mix/converter.hpp"
 #include "synth/mix/mixer.hpp"
 #include "synth/mix/oscillator.hpp"
 #include "synth/mix/window.hpp"
@@ -15,6 +26,74 @@ namespace oscillator_test {
 
 using namespace tactor;
 using namespace pieces;
+
+namespace {
+
+/// Makes forty bursts of 70 ms in a row on tactor 0, equally strong: 2.8 s.
+plan row_of_bursts(double carrier_hz = 250.0, double soa_s = 0.07)
+{
+    std::vector<burst> bursts;
+    for (int k = 0; k < 40; ++k)
+        bursts.push_back(make_burst(k * soa_s, soa_s, {{0, 1.0}}));
+    return make_plan(std::move(bursts), carrier_hz);
+}
+
+render_options at_full_scale()
+{
+    render_options o{.level_dbfs = 0.0};
+    return o;
+}
+
+/// Returns the amplitude of the line at hz in dB; the length must be a whole number of its cycles.
+double line_db(const std::vector<double>& x, double hz, double rate = 48000.0)
+{
+    std::complex<double> sum = 0.0;
+    for (std::size_t k = 0; k < x.size(); ++k) {
+        const double angle = 2.0 * pi * hz * static_cast<double>(k) / rate;
+        sum += x[k] * std::complex<double>(std::cos(angle), -std::sin(angle));
+    }
+    return 20.0 * std::log10(2.0 * std::abs(sum) / static_cast<double>(x.size()) + 1e-12);
+}
+
+double mean(const std::vector<double>& x)
+{
+    return std::accumulate(x.begin(), x.end(), 0.0) / static_cast<double>(x.size());
+}
+
+constexpr double split_hz =
+    1.0 / (2.0 * 0.07); // 250 Hz flipped each 70 ms: half of 1 / 0.07 s to either side
+
+std::vector<score> various()
+{
+    std::mt19937_64 random(11);
+    std::vector<score> all;
+    for (const phase_kind phase : {phase_kind::burst, phase_kind::stroke}) {
+        for (const overlap_kind join : {overlap_kind::energy, overlap_kind::max, overlap_kind::sum}) {
+            for (const unsigned rate : {8000U, 44100U, 48000U}) {
+                render_options o{.rate = rate, .phase = phase, .level_dbfs = -30.0, .channels = 7};
+                plan a = make_random(random, 5, 30, 0.4);
+                plan b = make_random(random, 5, 10, 0.3);
+                a.overlap = b.overlap = join;
+                all.emplace_back(
+                    row(5), std::vector<placed_plan>{{a, {}}, {make_continuous(5, 0.31), 0.1}, {b, 0.25}}, o);
+            }
+        }
+    }
+    return all;
+}
+
+std::vector<std::byte> converted(format_kind f, const std::vector<double>& x)
+{
+    std::vector<std::byte> out(x.size() * sample_bytes(f));
+    for (std::size_t i = 0; i < x.size(); i += 64) {
+        const auto n = static_cast<unsigned>(std::min<std::size_t>(64, x.size() - i));
+        const synth::channel_samples one[] = {{0, x.data() + i, 1.0}};
+        synth::interleave(f, one, 1, n, out.data() + i * sample_bytes(f));
+    }
+    return out;
+}
+
+} // namespace
 
 TEST_CASE("sine and cosine are good to 4e-16")
 {
@@ -71,9 +150,7 @@ TEST_CASE("an hour of carrier stays within 1e-4 of the exact sine")
 
 TEST_CASE("a carrier that starts after an hour has the phase of the hour")
 {
-    render_options o;
-    o.phase = phase_kind::stroke;
-    o.level_dbfs = 0.0;
+    render_options o{.phase = phase_kind::stroke, .level_dbfs = 0.0};
     const double hz = 251.3;
     const score s(row(1), {{make_plan({make_burst(3600.0, 0.01, {{0, 1.0}})}, hz), {}}}, o);
     REQUIRE(s.frames() == 3600U * 48000U + 480U);
@@ -127,6 +204,301 @@ TEST_CASE("the window at any place is the formula")
             }
         }
     }
+}
+
+TEST_CASE("a tactor that plays burst after burst has its carrier's line, no other, and no mean")
+{
+    const score s(row(1), {{row_of_bursts(), {}}}, at_full_scale());
+    const auto x = channel(s, 0);
+    REQUIRE(x.size() == 134400);
+    CHECK(line_db(x, 250.0) == doctest::Approx(0.0).epsilon(0.001));
+    CHECK(line_db(x, 250.0 - split_hz) < -100.0);
+    CHECK(line_db(x, 250.0 + split_hz) < -100.0);
+    CHECK(std::abs(mean(x)) < 1e-9);
+}
+
+TEST_CASE("a restart at each burst splits the line in two and leaves a mean")
+{
+    render_options o = at_full_scale();
+    o.phase = phase_kind::burst;
+    const score s(row(1), {{row_of_bursts(), {}}}, o);
+    const auto x = channel(s, 0);
+    CHECK(line_db(x, 250.0) < -30.0);
+    CHECK(line_db(x, 250.0 - split_hz) > -6.0);
+    CHECK(line_db(x, 250.0 + split_hz) > -6.0);
+    CHECK(mean(x) > 0.01);
+}
+
+TEST_CASE("the carrier counts from its stroke's first frame, at any start")
+{
+    // 240 Hz: no burst except the first begins on a crossing, so each sample depends on the count.
+    const double hz = 240.0;
+    plan p = make_plan({make_burst(0.011, 0.1, {{0, 0.6}}), make_burst(0.17, 0.05, {{0, 0.5}})}, hz);
+    for (const double start_s : {0.0, 0.2501}) {
+        render_options o = at_full_scale();
+        o.ramp_s = 0.0;
+        const score s(row(1), {{p, start_s}}, o);
+        const auto x = channel(s, 0);
+        const std::size_t first = s.starts()[0];
+        for (std::size_t k = first; k < x.size(); ++k) {
+            const std::size_t at = k - first;
+            const double a = at >= 528 && at < 5328 ? 0.6 : (at >= 8160 ? 0.5 : 0.0);
+            const double exact = a * std::sin(2.0 * pi * hz * static_cast<double>(at) / 48000.0);
+            REQUIRE(std::abs(x[k] - exact) < 1e-6);
+        }
+    }
+}
+
+TEST_CASE("overlapping bursts continue the stroke's carrier")
+{
+    const double hz = 240.0;
+    const plan p = make_plan({make_burst(0.011, 0.1, {{0, 0.6}}), make_burst(0.06, 0.1, {{0, 0.5}})}, hz);
+    render_options o = at_full_scale();
+    o.ramp_s = 0.0;
+    const auto x = channel(score(row(1), {{p, 0.2501}}, o), 0);
+    const std::size_t first = 12005;
+    for (std::size_t at = 528; at < 2880; ++at) {
+        const double exact = 0.6 * std::sin(2.0 * pi * hz * static_cast<double>(at) / 48000.0);
+        REQUIRE(std::abs(x[first + at] - exact) < 1e-6);
+    }
+}
+
+TEST_CASE("a burst has no ramp where the carrier crosses zero at both its ends, else 2 ms")
+{
+    // From the stroke's start in half cycles of 2 ms; 0.02 ms is 1 % of one.
+    struct example {
+        double onset_s;
+        double duration_s;
+        bool ramped;
+        bool ramped_alone; ///< where the carrier restarts
+    };
+    const example all[] = {
+        {0.0, 0.07, false, false},      {0.070, 0.07, false, false},     {0.07001, 0.07, false, false},
+        {0.0705, 0.07, true, false},    {0.0705, 0.0695, true, true},    {0.0, 0.0705, true, true},
+        {0.07, 0.000019, true, true},   {0.0700195, 0.0, true, true},    {0.07003, 0.07, true, false},
+        {0.070, 0.06999, false, false}, {0.07001, 0.07002, true, false},
+    };
+    for (const example& e : all) {
+        for (const phase_kind phase : {phase_kind::stroke, phase_kind::burst}) {
+            render_options o = at_full_scale();
+            o.rate = 768000;
+            o.phase = phase;
+            const plan p = make_plan({make_burst(e.onset_s, e.duration_s, {{0, 1.0}})});
+            const auto x = channel(score(row(1), {{p, {}}}, o), 0);
+            const bool expected = phase == phase_kind::stroke ? e.ramped : e.ramped_alone;
+            const auto first = static_cast<std::size_t>(std::llround(e.onset_s * o.rate));
+            const std::size_t quarter = first + 768; // 1 ms, half way up a ramp of 2 ms
+            if (quarter + 768 >= x.size())
+                continue; // the shortest ones only have to be accepted
+            CAPTURE(e.onset_s);
+            CAPTURE(e.duration_s);
+            CAPTURE(static_cast<int>(phase));
+            const double from = phase == phase_kind::stroke ? static_cast<double>(quarter) : 768.0;
+            const double carrier = std::sin(2.0 * pi * 250.0 * from / o.rate);
+            CHECK(x[quarter] / carrier == doctest::Approx(expected ? 0.5 : 1.0).epsilon(0.01));
+        }
+    }
+}
+
+TEST_CASE("an explicit ramp wins in either phase")
+{
+    for (const phase_kind phase : {phase_kind::stroke, phase_kind::burst}) {
+        render_options o = at_full_scale();
+        o.phase = phase;
+        o.ramp_s = 0.002;
+        const auto ramped = channel(score(row(1), {{row_of_bursts(), {}}}, o), 0);
+        CHECK(ramped[48] == doctest::Approx(0.5));
+        o.ramp_s = 0.0;
+        const auto plain = channel(score(row(1), {{row_of_bursts(255.0), {}}}, o), 0);
+        CHECK(plain[47] == doctest::Approx(std::sin(2.0 * pi * 255.0 * 47.0 / 48000.0)));
+    }
+}
+
+TEST_CASE("any block size gives the same bytes")
+{
+    std::mt19937_64 random(3);
+    const std::vector<score> all = various();
+    for (int i = 0; i < tactor::test::rounds(18); ++i) {
+        const score& s = all[static_cast<std::size_t>(i) * 7 % all.size()]; // all 18, or a few different ones
+        for (const format_kind f : all_formats) {
+            const auto whole = render(s, f);
+            const std::size_t sizes[] = {1, 7, 63, 64, 65, 96, 1000, 4096};
+            const std::size_t largest = sizes[random() % 8];
+            const auto parts = render(
+                s, f, [&] { return 1 + random() % largest; }, s.frames());
+            CHECK((whole == parts));
+            const std::size_t fixed = sizes[random() % 8];
+            CHECK((whole == render(
+                                s, f, [&] { return fixed; }, s.frames())));
+        }
+    }
+}
+
+TEST_CASE("the renderer goes on in silence after the end")
+{
+    const score s = various().front();
+    const auto longer = render(
+        s, format_kind::s16, [] { return 100; }, s.frames() + 1000);
+    const auto exact = render(s, format_kind::s16);
+    CHECK(std::equal(exact.begin(), exact.end(), longer.begin()));
+    CHECK(std::all_of(longer.begin() + static_cast<std::ptrdiff_t>(exact.size()), longer.end(),
+                      [](std::byte b) { return b == std::byte{0}; }));
+}
+
+TEST_CASE("a part of a frame is refused and writes nothing; an empty block is accepted")
+{
+    const score s = various().front();
+    renderer r(s, format_kind::s16);
+    std::vector<std::byte> out(100 * s.channels() * 2 + 1, std::byte{0x55});
+    CHECK_THROWS_WITH_AS(r.process(out), doctest::Contains("whole number of frames"), error);
+    CHECK(r.position() == 0);
+    CHECK(std::all_of(out.begin(), out.end(), [](std::byte b) { return b == std::byte{0x55}; }));
+    r.process({});
+    CHECK(r.position() == 0);
+    r.process(std::span(out).first(100 * s.channels() * 2));
+    CHECK(r.position() == 100);
+}
+
+TEST_CASE("more voices than a block has frames keep their order")
+{
+    // Hundreds of overlapping plans on one tactor: sums in another order would differ in the last bits.
+    std::mt19937_64 random(5);
+    std::vector<placed_plan> plans;
+    for (int i = 0; i < tactor::test::rounds(400); ++i)
+        plans.push_back({make_random(random, 3, 3, 0.05), 0.0005 * i});
+    render_options o{.level_dbfs = -60.0};
+    const score s(row(3), plans, o);
+    const auto whole = render(s, format_kind::float32);
+    CHECK((whole == render(
+                        s, format_kind::float32, [] { return 1; }, s.frames())));
+    CHECK((whole == render(
+                        s, format_kind::float32, [&] { return 1 + random() % 300; }, s.frames())));
+}
+
+TEST_CASE("a stroke has the same bytes at any start")
+{
+    std::mt19937_64 random(23);
+    for (int i = 0; i < 20; ++i) {
+        const plan parts[] = {make_random(random, 3, 12, 0.2), make_continuous(3, 0.1)};
+        for (const plan& p : parts) {
+            const double later_s = 1.0 + static_cast<double>(random() % 100000) / 48000.0;
+            render_options o{.level_dbfs = -20.0};
+            const score first(row(3), {{p, {}}}, o);
+            const score later(row(3), {{p, later_s}}, o);
+            for (const format_kind f : {format_kind::float32, format_kind::s32}) {
+                const auto x = render(first, f);
+                const auto y = render(later, f);
+                REQUIRE(y.size() - x.size() == later.starts()[0] * 12);
+                CHECK(std::equal(x.begin(), x.end(),
+                                 y.begin() + static_cast<std::ptrdiff_t>(y.size() - x.size())));
+            }
+        }
+    }
+}
+
+TEST_CASE("full scale does not wrap in any format")
+{
+    const std::vector<double> x{1.0, -1.0, 1.0 - 1e-12, -1.0 + 1e-12, 1.0 + 1e-12, -1.0 - 1e-12};
+    for (const format_kind f : all_formats) {
+        const auto bytes = converted(f, x);
+        for (std::size_t i = 0; i < x.size(); ++i) {
+            CAPTURE(to_string(f));
+            CAPTURE(x[i]);
+            if (f == format_kind::float32) {
+                CHECK(std::abs(static_cast<double>(sample<float>(bytes, i)) - x[i]) < 1e-6);
+            } else {
+                const double want = x[i] > 0.0 ? full_scale(f) - 1.0 : -full_scale(f);
+                CHECK(std::abs(static_cast<double>(integer(bytes, f, i)) - want) <=
+                      (f == format_kind::s32 ? 1.0 : 0.0));
+            }
+        }
+    }
+    CHECK(integer(converted(format_kind::s32, {1.0}), format_kind::s32, 0) == 2147483647);
+    CHECK(integer(converted(format_kind::s32, {-1.0}), format_kind::s32, 0) == -2147483648LL);
+}
+
+TEST_CASE("integers are rounded to the nearest, ties to even")
+{
+    for (const format_kind f : all_formats) {
+        if (f == format_kind::float32)
+            continue;
+        std::vector<double> x;
+        for (int i = -1000; i <= 1000; ++i)
+            x.push_back(0.125 * i / full_scale(f));
+        const auto bytes = converted(f, x);
+        for (std::size_t i = 0; i < x.size(); ++i)
+            CHECK(static_cast<double>(integer(bytes, f, i)) == std::nearbyint(x[i] * full_scale(f)));
+    }
+}
+
+TEST_CASE("S24 in four bytes is right-aligned and sign-extended")
+{
+    const auto bytes = converted(format_kind::s24_4, {-0.5, 0.5});
+    CHECK(sample<std::int32_t>(bytes, 0) == -4194304);
+    CHECK(sample<std::int32_t>(bytes, 1) == 4194304);
+}
+
+TEST_CASE("silence has no negative zeros")
+{
+    const auto bytes = converted(format_kind::float32, {-0.0, 0.0, -1e-300});
+    CHECK(sample<std::uint32_t>(bytes, 0) == 0U);
+    CHECK(sample<std::uint32_t>(bytes, 1) == 0U);
+}
+
+TEST_CASE("for any sounding channels, each sample is in its place and the others are silent")
+{
+    std::mt19937_64 random(3);
+    std::vector<double> x(synth::block_frames);
+    for (double& v : x)
+        v = std::uniform_real_distribution<double>(-1.0, 1.0)(random);
+    for (int i = 0; i < 3000; ++i) {
+        const format_kind f = all_formats[random() % std::size(all_formats)];
+        const auto channels = 1 + random() % 20;
+        const auto n = static_cast<unsigned>(1 + random() % 70);
+        std::vector<synth::channel_samples> sounding;
+        for (std::uint32_t c = 0; c < channels; ++c)
+            if (random() % 2 == 0)
+                sounding.push_back({c, x.data() + c, 0.1 * (c + 1)});
+        std::vector<std::byte> out(n * channels * sample_bytes(f) + 16, std::byte{0x55});
+        synth::interleave(f, sounding, channels, n, out.data());
+        std::vector<std::byte> want(out.size(), std::byte{0x55});
+        std::fill(want.begin(), want.end() - 16, std::byte{});
+        for (const synth::channel_samples& c : sounding) {
+            for (std::size_t k = 0; k < n; ++k) {
+                const auto one = converted(f, {c.gain * c.x[k]});
+                std::copy(one.begin(), one.end(),
+                          want.begin() +
+                              static_cast<std::ptrdiff_t>((k * channels + c.channel) * sample_bytes(f)));
+            }
+        }
+        REQUIRE(out == want);
+    }
+}
+
+TEST_CASE("the limiter clamps, silences non-numbers, and counts")
+{
+    const double inf = std::numeric_limits<double>::infinity();
+    std::vector<double> x{0.0, 0.4, -0.5, 0.6, -7.0, inf, -inf, std::nan("")};
+    CHECK(synth::limit_block(x.data(), 8, 0.5) == 5);
+    CHECK((x == std::vector<double>{0.0, 0.4, -0.5, 0.5, -0.5, 0.5, -0.5, 0.0}));
+    CHECK(synth::limit_block(x.data(), 8, 0.5) == 0);
+    CHECK(synth::limit_block(x.data(), 8, 0.0) == 6);
+    std::vector<double> noise{0.5 * (1.0 + 4e-16)};
+    CHECK(synth::limit_block(noise.data(), 1, 0.5) == 0);
+    CHECK(noise[0] == 0.5);
+}
+
+TEST_CASE("sample formats have names and sizes")
+{
+    for (const format_kind f : all_formats)
+        CHECK(from_string<format_kind>(to_string(f)) == f);
+    CHECK(from_string<format_kind>("s24") == format_kind::s24_3);
+    CHECK(from_string<format_kind>("s24-4") == format_kind::s24_4);
+    CHECK(sample_bytes(format_kind::s24_3) == 3);
+    CHECK(sample_bytes(format_kind::s24_4) == 4);
+    CHECK(sample_bytes(format_kind::s16) == 2);
+    CHECK_THROWS_AS(from_string<format_kind>("s25"), error);
+    CHECK_THROWS_AS(from_string<format_kind>(""), error);
 }
 
 } // namespace oscillator_test

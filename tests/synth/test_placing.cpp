@@ -1,29 +1,64 @@
 // SPDX-License-Identifier: MIT
-// Places of plans in a score, and the score's events.
+// Pieces: where strokes begin and sound, markers, and what renderers allocate.
 #include <algorithm>
 #include <cmath>
+#include <random>
+#include <span>
+#include <vector>
 
 #include <doctest/doctest.h>
 
 #include <tactor/error.hpp>
 
 #include "caught.hpp"
+#include "count_allocations.hpp"
 #include "own_curve.hpp"
 #include "pieces.hpp"
 #include "rounds.hpp"
+#include "synth/mix/mixer.hpp"
+#include "synth/mix/sample_ranges.hpp"
 #include "synth/score/event_source.hpp"
 #include "synth/score/frames.hpp"
+#include "synth/score/sounding_now.hpp"
 
 namespace placing_test {
 
 using namespace tactor;
 using namespace pieces;
+using namespace tactor::synth;
+using namespace tactor::test;
+
+namespace {
+
+render_options marked(unsigned channel, unsigned channels)
+{
+    render_options o{.channels = channels, .marker_channel = channel};
+    return o;
+}
+
+score two_strokes(const render_options& o)
+{
+    const plan p = make_plan({make_burst(0.0, 0.05, {{0, 1.0}, {1, 0.5}})});
+    return {row(3), {{p, {}}, {p, 0.1234}}, o};
+}
+
+score busy_score()
+{
+    std::mt19937_64 random(31);
+    render_options o{.level_dbfs = -40.0};
+    return {row(9),
+            {{make_random(random, 9, 100, 1.0), {}},
+             {make_continuous(9, 0.8), 0.1},
+             {make_continuous(9, 0.8), 0.5}},
+            o};
+}
+
+} // namespace
 
 TEST_CASE("plans follow each other unless they are placed")
 {
     const plan p = make_plan({make_burst(0.01, 0.0413, {{0, 0.5}})});
-    render_options o;
-    o.rate = 44100;
+    render_options o{.rate = 44100};
     const score s(row(2), {{p, {}}, {p, {}}, {p, 0.02}, {p, {}}}, o);
     const auto length = static_cast<std::uint64_t>(std::llround(0.0513 * 44100));
     CHECK((s.starts() == std::vector<std::uint64_t>{0, length, 882, 882 + length}));
@@ -35,8 +70,7 @@ TEST_CASE("plans follow each other unless they are placed")
 
 TEST_CASE("strokes in a row begin at their times, however many there are, at full scale")
 {
-    render_options o;
-    o.level_dbfs = 0.0;
+    render_options o{.level_dbfs = 0.0};
     for (const double frames : {9600.0, 9600.49, 9600.51, 9600.99}) {
         CAPTURE(frames);
         const double seconds = frames / 48000.0;
@@ -54,9 +88,7 @@ TEST_CASE("strokes in a row begin at their times, however many there are, at ful
 TEST_CASE("a burst that cannot be placed is refused with a hint")
 {
     const auto refusal = [](const burst& b) {
-        return caught_message([&] {
-            static_cast<void>(score(row(2), {{make_plan({b}), {}}}, render_options()));
-        });
+        return caught_message([&] { return score(row(2), {{make_plan({b}), {}}}, render_options()); });
     };
     CHECK(refusal(make_burst(0.0, 0.05, {{7, 0.5}})) ==
           "burst 1 of the plan: tactor 7 is not in the array, which has 2 (plan the stroke for this array)");
@@ -108,12 +140,10 @@ TEST_CASE("strokes that are planned while they are placed have the samples of th
     second.start_s = 0.35;
     second.sound.carrier_hz = 180.0;
     for (const algorithm_kind algorithm : all_values<algorithm_kind>()) {
-        plan_options how;
-        how.algorithm = algorithm;
+        plan_options how{.algorithm = algorithm};
         how.profile.max_soa_s = 0.2;
         first.motion = first.motion.with_duration(algorithm == algorithm_kind::park2016 ? 150.0 : 1.4);
-        render_options o;
-        o.level_dbfs = -30.0;
+        render_options o{.level_dbfs = -30.0};
         score_builder made(a, o);
         std::vector<placed_plan> plans;
         for (const stroke& s : {first, second}) {
@@ -165,8 +195,7 @@ TEST_CASE("spare channels are silent and channels follow the map")
 {
     array a = row(2);
     a.tactors[0].channel = 3;
-    render_options o;
-    o.channels = 6;
+    render_options o{.channels = 6};
     const score s(a, {{make_plan({make_burst(0.0, 0.07, {{0, 0.5}, {1, 0.25}})}), {}}}, o);
     CHECK(s.channels() == 6);
     for (const unsigned c : {0U, 2U, 4U, 5U}) {
@@ -181,9 +210,7 @@ TEST_CASE("events come in order of start and cover exactly the sounding frames")
 {
     std::mt19937_64 random(21);
     for (int i = 0; i < tactor::test::rounds(50); ++i) {
-        render_options o;
-        o.level_dbfs = -30.0;
-        o.phase = i % 2 == 0 ? phase_kind::burst : phase_kind::stroke;
+        render_options o{.phase = i % 2 == 0 ? phase_kind::burst : phase_kind::stroke, .level_dbfs = -30.0};
         const score s(row(9),
                       {{make_random(random, 9, 40, 0.5), {}},
                        {make_continuous(9, 0.2), 0.3},
@@ -233,8 +260,7 @@ TEST_CASE("a burst of more tactors than an event holds is several events of one 
 
 TEST_CASE("a drive longer than an event continues in the next without a seam")
 {
-    render_options o;
-    o.rate = 768000;
+    render_options o{.rate = 768000};
     const score s(row(1), {{make_plan({make_burst(0.0, 3000.0, {{0, 1.0}})}), {}}}, o);
     REQUIRE(s.frames() == 2304000000U);
     synth::event_source source(s);
@@ -256,10 +282,7 @@ TEST_CASE("continuous strokes are linear between control points, one carrier thr
         const double duration = 0.2504;
         const double hz = 180.0;
         const plan p = make_continuous(3, duration, hz);
-        render_options o;
-        o.rate = rate;
-        o.level_dbfs = 0.0;
-        o.ramp_s = 0.01;
+        render_options o{.rate = rate, .ramp_s = 0.01, .level_dbfs = 0.0};
         const score s(row(3), {{p, {}}}, o);
         const auto n = static_cast<std::int64_t>(std::llround(duration * rate));
         REQUIRE(s.frames() == static_cast<std::uint64_t>(n));
@@ -311,6 +334,182 @@ TEST_CASE("a continuous stroke may be silent in part or throughout")
     CHECK(nothing.frames() == 9600);
     synth::event_source source(nothing);
     CHECK(source.peek() == nullptr);
+}
+
+TEST_CASE("a marker is at each stroke's first frame, for its length, at full scale")
+{
+    const score s = two_strokes(marked(4, 6));
+    const std::vector<double> x = channel(s, 4);
+    REQUIRE(x.size() == s.frames());
+    for (std::size_t i = 0; i < x.size(); ++i) {
+        bool on = false;
+        for (const std::uint64_t start : s.starts())
+            on = on || (i >= start && i < start + 240);
+        REQUIRE(x[i] == (on ? 1.0 : 0.0));
+    }
+    CHECK(s.starts()[1] == 5923);
+    render_options plain = marked(4, 6);
+    plain.marker_channel.reset();
+    for (const unsigned c : {0U, 1U, 2U, 3U, 5U})
+        CHECK((channel(s, c) == channel(two_strokes(plain), c)));
+}
+
+TEST_CASE("markers have the same bytes for any blocks, in every format, and two at once are one")
+{
+    std::mt19937_64 random(2);
+    const plan p = make_plan({make_burst(0.0, 0.05, {{0, 1.0}})});
+    const score s(row(1), {{p, {}}, {p, 0.001}, {p, 0.2}}, marked(1, 2));
+    for (const format_kind f : all_formats) {
+        const auto whole = render(s, f);
+        CHECK((whole == render(
+                            s, f, [&] { return 1 + random() % 100; }, s.frames())));
+    }
+    const std::vector<double> x = channel(s, 1);
+    CHECK(*std::max_element(x.begin(), x.end()) == 1.0);
+    CHECK(std::count(x.begin(), x.end(), 1.0) == 288 + 240);
+}
+
+TEST_CASE("a marker does not make a piece longer and may be longer than it")
+{
+    render_options o = marked(1, 2);
+    o.marker_s = 1.0;
+    const score s(row(1), {{make_plan({make_burst(0.0, 0.05, {{0, 1.0}})}), {}}}, o);
+    CHECK(s.frames() == 2400);
+    CHECK(channel(s, 1).back() == 1.0);
+}
+
+TEST_CASE("a marker needs a spare channel that exists")
+{
+    CHECK_THROWS_WITH_AS(two_strokes(marked(1, 6)),
+                         "marker channel 1: it drives tactor 1 (choose a spare channel)", error);
+    CHECK_THROWS_WITH_AS(two_strokes(marked(6, 6)),
+                         "marker channel 6: there are 6 channels (ask for 7 channels or more)", error);
+    for (const double length : {0.0, -1.0, 20.0, std::numeric_limits<double>::quiet_NaN()}) {
+        render_options o = marked(4, 6);
+        o.marker_s = length;
+        CHECK_THROWS_AS(two_strokes(o), error);
+    }
+}
+
+TEST_CASE("a constant never reaches a tactor")
+{
+    synth::mixer m(std::vector<double>{1.0, 0.0}, format_kind::float32, 8);
+    synth::drive_event e;
+    e.length = 100;
+    e.drives = 2;
+    e.drive[0] = {1.0, 1.0, 0};
+    e.drive[1] = {1.0, 1.0, 1};
+    CHECK(m.add(e));
+    CHECK(m.size() == 0);
+    std::vector<float> x(200);
+    m.process(100, reinterpret_cast<std::byte*>(x.data()));
+    CHECK(std::all_of(x.begin(), x.end(), [](float v) { return v == 0.0F; }));
+}
+
+TEST_CASE("a sounding stroke has its given strength at each frame, at any level, and none after its end")
+{
+    array a = row(3);
+    a.tactors[1].gain_db = -6.0;
+    a.tactors[2].polarity = -1;
+    plan p;
+    p.total_s = 0.3;
+    for (const double onset_s : {0.0, 0.1, 0.2}) {
+        burst b{.onset_s = onset_s, .duration_s = 0.1};
+        b.drives = {{0, 0.25 + onset_s}, {1, 0.5}, {2, 1.0}};
+        p.bursts.push_back(b);
+    }
+    render_options o{.rate = 10000};
+    synth::sounding_now now(score(a, {{p, 0.1}}, o));
+    CHECK(now.at(999) == std::vector<double>{0.0, 0.0, 0.0});
+    for (const std::uint64_t frame : {1000U, 1999U, 2000U, 3500U, 3999U}) {
+        CAPTURE(frame);
+        const auto& levels = now.at(frame);
+        REQUIRE(levels.size() == 3);
+        const double onset_s = 0.1 * std::floor(static_cast<double>(frame - 1000) / 1000.0);
+        CHECK(levels[0] == doctest::Approx(0.25 + onset_s));
+        CHECK(levels[1] == doctest::Approx(0.5));
+        CHECK(levels[2] == doctest::Approx(1.0));
+    }
+    CHECK(now.at(1500)[0] == doctest::Approx(0.45)); // a past one is not found again: as at 3999
+    CHECK(now.at(4000) == std::vector<double>{0.0, 0.0, 0.0});
+}
+
+TEST_CASE("the least and greatest sample of each channel do not depend on the block size")
+{
+    std::mt19937 random(11);
+    std::uniform_real_distribution<float> sample(-1.0F, 1.0F);
+    for (const std::size_t channels : {1U, 2U, 3U, 9U, 16U, 64U, 300U, 5000U}) {
+        CAPTURE(channels);
+        sample_ranges ranges(channels);
+        for (const std::size_t frames : {1U, 2U, 15U, 16U, 17U, 100U}) {
+            CAPTURE(frames);
+            std::vector<float> samples(frames * channels);
+            std::generate(samples.begin(), samples.end(), [&] { return sample(random); });
+            ranges.clear();
+            const std::size_t first = frames / 3;
+            ranges.add(samples.data(), first);
+            ranges.add(samples.data() + first * channels, frames - first);
+            bool same = true;
+            for (std::size_t c = 0; c < channels; ++c) {
+                float low = samples[c];
+                float high = samples[c];
+                for (std::size_t i = c; i < samples.size(); i += channels) {
+                    low = std::min(low, samples[i]);
+                    high = std::max(high, samples[i]);
+                }
+                const auto [least, most] = ranges.range_at(c);
+                same = same && least == low && most == high;
+            }
+            CHECK(same);
+        }
+    }
+}
+
+COUNTING_TEST_CASE("rendering allocates nothing")
+{
+    const score s = busy_score();
+    for (const format_kind f : all_formats) {
+        renderer r(s, f);
+        std::vector<std::byte> out(500 * s.channels() * 4);
+        const count_allocations count;
+        for (std::size_t n = 1; r.position() < s.frames() + 1000; n = n % 500 + 1)
+            r.process(std::span(out).first(n * s.channels() * sample_bytes(f)));
+        CHECK(count.calls() == 0);
+    }
+}
+
+COUNTING_TEST_CASE("walking through a score allocates nothing")
+{
+    const score s = busy_score();
+    synth::event_source source(s);
+    std::size_t events = 0;
+    const count_allocations count;
+    for (; source.peek() != nullptr; source.pop())
+        ++events;
+    CHECK(count.calls() == 0);
+    CHECK(events > 1000);
+}
+
+COUNTING_TEST_CASE("a mixer allocates nothing after its construction")
+{
+    const score s = busy_score();
+    synth::event_source source(s);
+    synth::mixer m(std::vector<double>(9, 1.0), format_kind::s32, 512);
+    std::vector<std::byte> out(96 * 9 * 4);
+    const count_allocations count;
+    for (std::uint32_t round = 0; round < 400; ++round) {
+        while (source.peek() != nullptr && m.available() > 0) {
+            synth::drive_event e = *source.peek();
+            e.score = round % 7;
+            m.add(e);
+            source.pop();
+        }
+        m.process(96, out.data());
+        if (round % 50 == 20)
+            m.fade_out(round % 7, 100 * (round % 3));
+    }
+    m.reset();
+    CHECK(count.calls() == 0);
 }
 
 } // namespace placing_test

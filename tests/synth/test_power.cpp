@@ -10,6 +10,7 @@
 #include "rounds.hpp"
 #include "synth/guard/guard.hpp"
 #include "synth/mix/mixer.hpp"
+#include "synth/tone/waves.hpp"
 
 namespace power_test {
 
@@ -59,37 +60,11 @@ std::vector<signal> mixed(const std::vector<synth::drive_event>& events, unsigne
     return x;
 }
 
-/// Transforms in place; the length is a power of two.
-void transform(std::vector<std::complex<double>>& a)
-{
-    const std::size_t n = a.size();
-    for (std::size_t i = 1, j = 0; i < n; ++i) {
-        std::size_t bit = n / 2;
-        for (; (j & bit) != 0; bit /= 2)
-            j ^= bit;
-        j ^= bit;
-        if (i < j)
-            std::swap(a[i], a[j]);
-    }
-    for (std::size_t length = 2; length <= n; length *= 2) {
-        std::vector<std::complex<double>> w(length / 2);
-        for (std::size_t k = 0; k < w.size(); ++k)
-            w[k] = std::polar(1.0, -2.0 * pi * static_cast<double>(k) / static_cast<double>(length));
-        for (std::size_t i = 0; i < n; i += length) {
-            for (std::size_t k = 0; k < length / 2; ++k) {
-                const std::complex<double> odd = a[i + k + length / 2] * w[k];
-                a[i + k + length / 2] = a[i + k] - odd;
-                a[i + k] += odd;
-            }
-        }
-    }
-}
-
 /// Returns the energy above 1 kHz relative to the whole, dB.
 double above_1_khz(const signal& x)
 {
-    std::vector<std::complex<double>> a(x.begin(), x.end());
-    transform(a);
+    synth::spectrum a(x.begin(), x.end());
+    synth::fourier_sum(a);
     double high = 0.0;
     double all = 0.0;
     for (std::size_t k = 0; k < a.size() / 2; ++k) {

@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: MIT
-// Waves: no frequencies beyond their own, and no more amplitude than a sine.
+// Waveforms, computed and recorded.
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <string>
 #include <vector>
 
 #include <doctest/doctest.h>
 #include <fmt/format.h>
-
-#include <tactor/error.hpp>
 
 #include "caught.hpp"
 #include "core/access.hpp"
@@ -25,6 +24,21 @@ using namespace pieces;
 namespace {
 
 constexpr waveform_kind shapes[] = {waveform_kind::square, waveform_kind::triangle, waveform_kind::sawtooth};
+
+std::vector<float> make_sine(std::size_t samples, double cycles, double amplitude, double offset = 0.0)
+{
+    std::vector<float> x(samples);
+    for (std::size_t i = 0; i < samples; ++i) {
+        const double turns = cycles * static_cast<double>(i) / static_cast<double>(samples);
+        x[i] = static_cast<float>(offset + amplitude * std::sin(2 * pi * turns));
+    }
+    return x;
+}
+
+std::string refusal(const waveform& w, double hz = 250.0)
+{
+    return caught_message([&] { return played(tone(w, hz, 0.1)); });
+}
 
 } // namespace
 
@@ -132,8 +146,7 @@ TEST_CASE("block sizes make no difference to any wave")
         p.wave = w;
         p.am = {37.0, 0.7};
         p.course = {{0.0, 80.0}, {0.1, 300.0}, {0.1, 120.0}, {0.25, 240.0}};
-        render_options o;
-        o.level_dbfs = -30.0;
+        render_options o{.level_dbfs = -30.0};
         o.limits.emplace();
         const score s(row(3), p, o);
         const auto whole = render(s, format_kind::float32);
@@ -154,9 +167,7 @@ TEST_CASE("a phase that restarts with each burst leaves the stroke's course, mod
                                                                      {frames(0.101), frames(0.171)},
                                                                      {frames(0.203), frames(0.273)},
                                                                      {frames(0.31), frames(0.42)}};
-    render_options o;
-    o.level_dbfs = 0.0;
-    o.ramp_s = 0.0;
+    render_options o{.ramp_s = 0.0, .level_dbfs = 0.0};
     const auto played_with = [&](phase_kind k) {
         o.phase = k;
         std::vector<double> x = channel(score(row(1), std::vector<placed_plan>{{p, 0.5}}, o), 0);
@@ -206,8 +217,7 @@ TEST_CASE("the limit on the power counts the real power of a wave")
     for (const waveform_kind k : {waveform_kind::square, waveform_kind::sawtooth, waveform_kind::sine}) {
         plan p = pieces::make_plan({make_burst(0.0, 1.0, {{0, 1.0}, {1, 1.0}, {2, 1.0}})}, 250.0);
         p.wave = shape(k);
-        render_options o;
-        o.level_dbfs = 0.0;
+        render_options o{.level_dbfs = 0.0};
         o.limits.emplace();
         const score s(row(3), p, o);
         const auto bytes = render(s, format_kind::float32);
@@ -235,8 +245,7 @@ COUNTING_TEST_CASE("waves are played without allocating")
         p.wave = w;
         plans.push_back({p, 0.0});
     }
-    render_options o;
-    o.level_dbfs = -20.0;
+    render_options o{.level_dbfs = -20.0};
     o.limits.emplace();
     const score s(row(9), plans, o);
     renderer r(s, format_kind::float32);
@@ -252,9 +261,7 @@ TEST_CASE("the phase of a carrier that changes is its integral, to 1e-9 cycles a
     // 100 to 300 Hz in the first 20 minutes, back to 150 Hz in the rest.
     plan p = tone(shape(waveform_kind::sine), 250.0, 3600.0);
     p.course = {{0.0, 100.0}, {1200.0, 300.0}, {3600.0, 150.0}};
-    render_options o;
-    o.level_dbfs = 0.0;
-    o.ramp_s = 0.0;
+    render_options o{.ramp_s = 0.0, .level_dbfs = 0.0};
     const score s(row(1), p, o);
     const synth::timbre& t = *detail::access::of(s).sounds.front();
     double worst = 0.0;
@@ -289,9 +296,9 @@ TEST_CASE("a carrier along the path follows its list, without a jump")
     CHECK(p.course[3].hz == 200.0);
     CHECK(p.course[4] == carrier_point{3.0, 50.0});
     s.sound.carrier_profile = {{0.5, 100.0}, {0.5, 200.0}};
-    CHECK(has(caught_message([&] { static_cast<void>(make_plan(row(3), s, {})); }), "carrier_profile"));
+    has(caught_message([&] { return make_plan(row(3), s, {}); }), "carrier_profile");
     s.sound.carrier_profile = {{0.5, 0.5}};
-    CHECK(has(caught_message([&] { static_cast<void>(make_plan(row(3), s, {})); }), "not a carrier"));
+    has(caught_message([&] { return make_plan(row(3), s, {}); }), "not a carrier");
 }
 
 TEST_CASE("a modulation at a harmonic that the wave has is refused: it would be a displacement")
@@ -300,24 +307,22 @@ TEST_CASE("a modulation at a harmonic that the wave has is refused: it would be 
         plan p = tone(w, 250.0, 0.1);
         p.am = {am_hz, 1.0};
         p.course = course;
-        return caught_message([&] { static_cast<void>(played(p)); });
+        return caught_message([&] { return played(p); });
     };
     const waveform sine = shape(waveform_kind::sine);
     for (const double hz : {245.0, 250.0, 255.0})
-        CHECK(has(refusal(sine, hz),
-                  "am: " + fmt::format("{}", hz) + " Hz is within 5 Hz of the carrier, 250 Hz"));
+        has(refusal(sine, hz), "am: " + fmt::format("{}", hz) + " Hz is within 5 Hz of the carrier, 250 Hz");
     for (const double hz : {30.0, 244.9, 255.1, 500.0, 750.0})
         CHECK(refusal(sine, hz).empty());
     for (const waveform_kind k : shapes) {
-        CHECK(has(refusal(shape(k), 752.0), "harmonic 3 of the carrier, 750 Hz"));
+        has(refusal(shape(k), 752.0), "harmonic 3 of the carrier, 750 Hz");
         CHECK(refusal(shape(k), 600.0).empty());
         CHECK(refusal(shape(k), 500.0).empty() == (k != waveform_kind::sawtooth));
     }
     const waveform twice = recorded({0.0F, 1.0F, 0.0F, -1.0F, 0.0F, 1.0F, 0.0F, -1.0F}, texture_kind::cycle);
     CHECK(refusal(twice, 250.0).empty());
-    CHECK(has(refusal(twice, 500.0), "harmonic 2"));
-    CHECK(has(refusal(sine, 150.0, {{0.0, 100.0}, {0.1, 200.0}}),
-              "the carrier passes 150 Hz on its way from 100"));
+    has(refusal(twice, 500.0), "harmonic 2");
+    has(refusal(sine, 150.0, {{0.0, 100.0}, {0.1, 200.0}}), "the carrier passes 150 Hz on its way from 100");
     CHECK(refusal(sine, 94.0, {{0.0, 100.0}, {0.1, 200.0}}).empty());
     CHECK(refusal(noise(100, 300), 200.0).empty());
 }
@@ -328,7 +333,7 @@ TEST_CASE("waves that cannot be rendered are refused with a hint")
                             unsigned at_rate = rate) {
         plan p = tone(w, 250.0, 0.1);
         p.am = m;
-        return has(caught_message([&] { static_cast<void>(played(p, 0.0, at_rate)); }), part);
+        return has(caught_message([&] { return played(p, 0.0, at_rate); }), part);
     };
     CHECK(refused(noise(500, 100), {}, "noise from 500 to 100"));
     CHECK(refused(noise(0.0, 100), {}, "noise from 0 to 100"));
@@ -346,6 +351,149 @@ TEST_CASE("waves that cannot be rendered are refused with a hint")
     CHECK(refused(recorded(samples, texture_kind::time, 100.0), {}, "too long"));
     samples.resize(70000);
     CHECK(refused(recorded(samples, texture_kind::length), {}, "too many"));
+}
+
+TEST_CASE("a recording is the carrier's cycle, without aliases")
+{
+    // 63 samples with every harmonic, some of them strong.
+    std::vector<float> cycle;
+    for (int i = 0; i < 63; ++i)
+        cycle.push_back(static_cast<float>(i * i % 17) - 8.0F);
+    for (const double hz : {250.7, 997.1}) {
+        const auto x = lines(played(tone(recorded(cycle, texture_kind::cycle), hz)));
+        CHECK(stray_db(x, hz) < -80.0);
+        CHECK(x[0] < 1e-4 * *std::max_element(x.begin(), x.end())); // no constant
+    }
+}
+
+TEST_CASE("a recording in time has its samples at its rate, and its frequencies at another")
+{
+    std::vector<float> samples(4801);
+    for (std::size_t i = 0; i < samples.size(); ++i)
+        samples[i] = 0.25F * static_cast<float>(std::sin(static_cast<double>(i * i) * 1e-4));
+    const auto same = played(tone(recorded(samples, texture_kind::time, rate), 250.0, 0.1));
+    double mean = 0.0;
+    for (const float v : samples)
+        mean += static_cast<double>(v) / static_cast<double>(samples.size());
+    const double gain = same[700] / (static_cast<double>(samples[700]) - mean);
+    for (std::size_t i = 0; i < same.size(); ++i)
+        REQUIRE(std::abs(same[i] - gain * (static_cast<double>(samples[i]) - mean)) < 1e-6);
+    // 300 Hz for a second at 8 kHz.
+    std::vector<float> tone_samples(8000);
+    for (std::size_t i = 0; i < tone_samples.size(); ++i)
+        tone_samples[i] = static_cast<float>(std::sin(2 * pi * 300.0 * static_cast<double>(i) / 8000.0));
+    const auto x = lines(played(tone(recorded(tone_samples, texture_kind::time), 250.0)));
+    CHECK(strongest(x, 300.0) == doctest::Approx(1.0).epsilon(0.01));
+    CHECK(stray_db(x, 1e9, 300.0) < -80.0);
+}
+
+TEST_CASE("a recording at another rate keeps its level up to 0.95 of its highest frequency")
+{
+    // Whole cycles in a second; the low one gives the scale.
+    for (const double rate_hz : {8000.0, 11025.0, 44100.0})
+        for (const double part : {0.5, 0.9, 0.95}) {
+            const double high_hz = std::floor(0.5 * rate_hz * part);
+            std::vector<float> both(static_cast<std::size_t>(rate_hz));
+            for (std::size_t i = 0; i < both.size(); ++i) {
+                const double t = 2 * pi * static_cast<double>(i) / rate_hz;
+                both[i] = static_cast<float>(0.5 * std::sin(300.0 * t) + 0.5 * std::sin(high_hz * t));
+            }
+            const auto x = lines(played(tone(recorded(both, texture_kind::time, rate_hz), 250.0)));
+            CAPTURE(rate_hz);
+            CAPTURE(part);
+            CHECK(std::abs(20.0 * std::log10(strongest(x, high_hz) / strongest(x, 300.0))) < 0.1);
+        }
+}
+
+TEST_CASE("a recording along the path follows the target's speed")
+{
+    // A cycle of a sine over 10 mm of a path of 40 mm: 4 cycles, in 1 s and then in 4 s.
+    std::vector<float> cycle;
+    for (int i = 0; i < 64; ++i)
+        cycle.push_back(static_cast<float>(std::sin(2 * pi * i / 64.0)));
+    const array a = row(3);
+    stroke s{
+        "", trajectory::timed({{0.0, {0, 0}}, {1.0, {20, 0}}, {2.0, {20, 0}}, {6.0, {40, 0}}}), {}, {}, {}};
+    s.sound.wave = recorded(cycle, texture_kind::length);
+    s.sound.wave->texture_mm = 10.0;
+    plan_options o{.algorithm = algorithm_kind::continuous};
+    render_options r{.ramp_s = 0.0, .level_dbfs = 0.0};
+    const score made(a, make_plan(a, s, o), r);
+    const auto bytes = render(made, format_kind::float32);
+    const auto at = [&](double t_s, unsigned c) {
+        return static_cast<double>(sample<float>(bytes, static_cast<std::size_t>(t_s * rate) * 3 + c));
+    };
+    CHECK(at(0.125, 0) > 0.8);          // a quarter of the first cycle, near tactor 0
+    CHECK(at(0.375, 0) < -0.7);         // three quarters of it
+    CHECK(std::abs(at(1.5, 1)) == 0.0); // it rests: a constant would push
+    CHECK(at(2.5, 1) > 0.7);            // 22.5 mm
+    CHECK(at(5.5, 2) < -0.7);           // 37.5 mm
+}
+
+TEST_CASE("a recording sounds alike in any unit of its samples")
+{
+    // The second factors reach the ends of the range of floats.
+    for (const texture_kind texture : {texture_kind::cycle, texture_kind::time}) {
+        const auto as_it_is = played(tone(recorded(make_sine(480, 7.0, 0.75), texture), 250.0, 0.1));
+        REQUIRE(greatest(as_it_is) > 0.99);
+        for (const double factor : {0x1p-20, 0x1p-120, 0x1p15, 0x1p128}) {
+            CAPTURE(factor);
+            std::vector<float> samples = make_sine(480, 7.0, 0.75);
+            for (float& v : samples)
+                v = static_cast<float>(factor * static_cast<double>(v));
+            const auto x = played(tone(recorded(samples, texture), 250.0, 0.1));
+            REQUIRE(x.size() == as_it_is.size());
+            for (std::size_t i = 0; i < x.size(); ++i)
+                REQUIRE(std::abs(x[i] - as_it_is[i]) < 1e-6);
+        }
+    }
+}
+
+TEST_CASE("the greatest and least floats give neither infinities nor non-numbers")
+{
+    constexpr float most = std::numeric_limits<float>::max();
+    constexpr float least = std::numeric_limits<float>::denorm_min();
+    const std::vector<std::vector<float>> all{{most, -most, -most, most, most},
+                                              {most, 0.0F, 0.0F},
+                                              {least, 0.0F, -least},
+                                              {most, least, -most, 1.0F},
+                                              {most, most, -most}};
+    for (const auto& samples : all) {
+        for (const texture_kind texture : {texture_kind::cycle, texture_kind::time}) {
+            for (const double rate_hz : {8000.0, 48000.0}) {
+                const auto x = played(tone(recorded(samples, texture, rate_hz), 250.0, 0.1));
+                REQUIRE(std::all_of(x.begin(), x.end(), [](double v) { return std::abs(v) <= 1.0 + 1e-6; }));
+                REQUIRE(greatest(x) > 0.5);
+            }
+        }
+    }
+}
+
+TEST_CASE("a small vibration on a large constant is played without the constant, at any rate")
+{
+    for (const double rate_hz : {8000.0, 48000.0, 44100.0}) {
+        CAPTURE(rate_hz);
+        const auto samples = static_cast<std::size_t>(rate_hz);
+        const auto w = recorded(make_sine(samples, 300.0, 1e-3, 1.0), texture_kind::time, rate_hz);
+        const auto x = lines(played(tone(w, 250.0)));
+        CHECK(strongest(x, 300.0) == doctest::Approx(1.0).epsilon(0.02));
+        CHECK(stray_db(x, 1e9, 300.0) < -60.0);
+    }
+}
+
+TEST_CASE("a recording of which nothing is left is refused, not played as rounding")
+{
+    for (const texture_kind texture : {texture_kind::cycle, texture_kind::time, texture_kind::length}) {
+        CAPTURE(std::string(to_string(texture)));
+        has(refusal(recorded({0.0F, 0.0F}, texture)), "silence");
+        has(refusal(recorded(std::vector<float>(700, 0.1F), texture)), "silence");
+    }
+    // The whole at half its own rate, without a phase, and above half the stream's.
+    has(refusal(recorded({0.3F, -0.3F, 0.3F, -0.3F}, texture_kind::cycle)), "x.wav: nothing of it is left");
+    has(refusal(recorded(make_sine(64, 20.0, 0.5), texture_kind::cycle), 2000.0),
+        "x.wav: nothing of it is left");
+    const auto high = recorded(make_sine(96000, 40000.0, 0.5), texture_kind::time, 96000.0);
+    has(refusal(high), "x.wav: nothing of it is left");
 }
 
 } // namespace waveforms_test

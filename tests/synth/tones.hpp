@@ -56,10 +56,7 @@ inline plan tone(const waveform& w, double hz, double duration_s = 1.5, double a
 
 inline std::vector<double> played(const plan& p, double level_dbfs = 0.0, unsigned at_rate = rate)
 {
-    render_options o;
-    o.rate = at_rate;
-    o.level_dbfs = level_dbfs;
-    o.ramp_s = 0.0;
+    render_options o{.rate = at_rate, .ramp_s = 0.0, .level_dbfs = level_dbfs};
     return channel(score(row(1), p, o), 0);
 }
 
