@@ -9,8 +9,9 @@
 #include <vector>
 
 #include <tactor/array.hpp>
-#include <tactor/error.hpp>
 #include <tactor/plan.hpp>
+
+#include "caught.hpp"
 
 namespace tactor::test {
 
@@ -32,12 +33,7 @@ inline stroke timed(std::vector<timed_point> p)
 /// Returns the planner's message; empty if none.
 inline std::string refusal(const array& a, const stroke& s, const plan_options& o)
 {
-    try {
-        static_cast<void>(make_plan(a, s, o));
-    } catch (const error& e) {
-        return e.kind() == error_kind::bad_input ? e.what() : std::string("of the wrong kind: ") + e.what();
-    }
-    return {};
+    return caught_message([&] { return make_plan(a, s, o); });
 }
 
 /// Returns the number after `word` in a text.
@@ -50,11 +46,14 @@ inline double number_after(const std::string& text, std::string_view word)
 inline const array arm = make_grid("arm", 3, 4, 15.0, 15.0);
 inline const array palm = preset_array("palm-3x3");
 
+inline plan_options continuous()
+{
+    return {.algorithm = algorithm_kind::continuous};
+}
+
 inline plan_options brush()
 {
-    plan_options o;
-    o.algorithm = algorithm_kind::tactile_brush;
-    return o;
+    return {.algorithm = algorithm_kind::tactile_brush};
 }
 
 } // namespace tactor::test

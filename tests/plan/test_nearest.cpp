@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: MIT
 // The three closest tactors of the whole array, as in Park et al. 2016.
-#include <doctest/doctest.h>
-
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
@@ -9,6 +7,9 @@
 #include <string>
 #include <vector>
 
+#include <doctest/doctest.h>
+
+#include <tactor/phantom.hpp>
 #include <tactor/plan.hpp>
 #include <tactor/setup.hpp>
 
@@ -16,6 +17,8 @@
 #include "caught.hpp"
 #include "has.hpp"
 #include "oracle.hpp"
+#include "plan/phantom/same_tactors.hpp"
+#include "rounds.hpp"
 
 namespace nearest_test {
 
@@ -75,6 +78,39 @@ bool warns(const plan& p, const std::string& of)
 {
     return std::any_of(p.warnings.begin(), p.warnings.end(),
                        [&](const std::string& w) { return has(w, of); });
+}
+
+constexpr phantom_kind followed[] = {phantom_kind::inverse_distance, phantom_kind::barycentric,
+                                     phantom_kind::linear, phantom_kind::log};
+
+struct counted {
+    unsigned places = 0;
+    unsigned held = 0;        ///< by what was known of an earlier one
+    unsigned on_segments = 0; ///< of these
+};
+
+/// From one place of the array to another in even steps.
+void walk(const phantom_model& model, const layout& l, point from, point to, unsigned steps, counted& count)
+{
+    const auto& three = dynamic_cast<const detail::model_of_three&>(model);
+    detail::same_tactors seen;
+    std::vector<drive> anew;
+    std::vector<drive> drives;
+    for (unsigned i = 0; i <= steps; ++i) {
+        const double u = static_cast<double>(i) / steps;
+        const point p =
+            l.nearest({from.x_mm + u * (to.x_mm - from.x_mm), from.y_mm + u * (to.y_mm - from.y_mm)});
+        model.weights(p, 0.7, anew);
+        ++count.places;
+        if (!seen.holds(p)) {
+            detail::look_around(three, l, p, seen);
+            continue;
+        }
+        ++count.held;
+        count.on_segments += seen.on_segment ? 1 : 0;
+        detail::drives_of_same(three, l, seen, p, 0.7, drives);
+        REQUIRE(drives == anew);
+    }
 }
 
 } // namespace
@@ -185,8 +221,8 @@ TEST_CASE("on a 20 x 40 mm grid the three closest are in one line in 44 % of pla
     REQUIRE(p.warnings.size() == 1);
     CHECK(
         has(p.warnings[0], "of 15 bursts lie outside the triangle of the three closest tactors, first at ("));
-    CHECK(has(p.warnings[0], "for " + std::to_string(lines) + " of them the three are in one line"));
-    CHECK(has(p.warnings[0], "(faces = delaunay)"));
+    has(p.warnings[0], "for " + std::to_string(lines) + " of them the three are in one line");
+    has(p.warnings[0], "(faces = delaunay)");
 
     o.algorithm = algorithm_kind::continuous;
     const plan c = make_plan(a, l, s, o);
@@ -228,9 +264,9 @@ TEST_CASE("only inverse-distance takes faces")
          {phantom_kind::barycentric, phantom_kind::linear, phantom_kind::log, phantom_kind::gaussian})
         for (const algorithm_kind by : all_values<algorithm_kind>()) {
             const plan_options o{.algorithm = by, .phantom = k, .faces = faces_kind::nearest};
-            const std::string said = caught_message([&] { static_cast<void>(make_plan(a, s, o)); });
-            CHECK(has(said, "faces: nearest goes with inverse-distance only, not with "));
-            CHECK(has(said, std::string(to_string(k))));
+            const std::string said = caught_message([&] { return make_plan(a, s, o); });
+            has(said, "faces: nearest goes with inverse-distance only, not with ");
+            has(said, std::string(to_string(k)));
             CHECK_THROWS_AS(make_phantom(k, layout(a), faces_kind::nearest), const error&);
         }
     class silent : public phantom_model {
@@ -238,10 +274,8 @@ TEST_CASE("only inverse-distance takes faces")
         std::string_view name() const noexcept override { return "silent"; }
         void weights(point, double, std::vector<drive>& out) const override { out.clear(); }
     };
-    plan_options o{.faces = faces_kind::nearest};
-    o.custom_phantom = std::make_shared<silent>();
-    CHECK(has(caught_message([&] { static_cast<void>(make_plan(a, s, o)); }),
-              "not with a phantom model of your own"));
+    plan_options o{.faces = faces_kind::nearest, .custom_phantom = std::make_shared<silent>()};
+    has(caught_message([&] { return make_plan(a, s, o); }), "not with a phantom model of your own");
 
     // A stroke's own choice wins.
     stroke own = s;
@@ -250,7 +284,7 @@ TEST_CASE("only inverse-distance takes faces")
     CHECK(make_plan(a, own, o).faces == faces_kind::delaunay);
     own.choices.faces = faces_kind::nearest;
     own.choices.phantom = phantom_kind::log;
-    CHECK(has(caught_message([&] { static_cast<void>(make_plan(a, own, {})); }), "not with log"));
+    has(caught_message([&] { return make_plan(a, own, {}); }), "not with log");
 }
 
 TEST_CASE("the Tactile Brush plays on the lines of the grid and reports that it ignores the faces")
@@ -265,6 +299,59 @@ TEST_CASE("the Tactile Brush plays on the lines of the grid and reports that it 
     CHECK(warns(p, "faces = nearest is not used"));
     p.warnings = usual.warnings;
     CHECK(p == usual);
+}
+
+TEST_CASE("in arrays of all kinds, a target that is followed has the same drives to the bit")
+{
+    generator g(2016);
+    counted all;
+    for (int round = 0; round < rounds(300); ++round) {
+        const array a = some_array(g, static_cast<unsigned>(round) % kinds_of_array);
+        const layout l(a);
+        for (const phantom_kind k : followed) {
+            CAPTURE(to_string(k));
+            const auto model = make_phantom(k, l);
+            walk(*model, l, some_point(g, l), some_point(g, l), pick(g, 1, 2000), all);
+        }
+    }
+    CHECK(all.held > all.places / 2);
+}
+
+TEST_CASE("in arrays of all kinds, a target that goes from tactor to tactor has the same drives to the bit")
+{
+    for (const phantom_kind k : followed) {
+        CAPTURE(to_string(k));
+        generator g(2017);
+        counted all;
+        for (int round = 0; round < rounds(300); ++round) {
+            const array a = some_array(g, static_cast<unsigned>(round) % kinds_of_array);
+            const layout l(a);
+            const auto model = make_phantom(k, l);
+            const auto last = static_cast<unsigned>(a.tactors.size()) - 1;
+            // Beside the segment by some of what counts as on it, to either side, too.
+            const double beside = 1e-6 * (static_cast<double>(pick(g, 0, 24)) - 12.0) / 10.0;
+            const point from = a.tactors[pick(g, 0, last)].position;
+            const point to = a.tactors[pick(g, 0, last)].position;
+            walk(*model, l, {from.x_mm + beside, from.y_mm - beside}, {to.x_mm + beside, to.y_mm - beside},
+                 pick(g, 1, 2000), all);
+        }
+        CHECK(all.on_segments > all.places / 20);
+    }
+}
+
+TEST_CASE("a slow target seldom asks, on the border between two faces as little")
+{
+    const layout l(make_grid("3x3", 3, 3, 20.0, 20.0));
+    for (const phantom_kind k : followed) {
+        CAPTURE(to_string(k));
+        const auto model = make_phantom(k, l);
+        counted inside;
+        walk(*model, l, {1.0, 3.0}, {39.0, 31.0}, 10'000, inside);
+        CHECK(inside.held > 9'500);
+        counted on_the_row;
+        walk(*model, l, {0.0, 20.0}, {40.0, 20.0}, 10'000, on_the_row);
+        CHECK(on_the_row.held > 9'500);
+    }
 }
 
 } // namespace nearest_test

@@ -9,6 +9,7 @@
 #include <tactor/plan.hpp>
 
 #include "arrays.hpp"
+#include "has.hpp"
 #include "rounds.hpp"
 #include "strokes.hpp"
 
@@ -64,10 +65,7 @@ TEST_CASE("a burst with a given duration keeps the SOA, up to the SOA, and warns
                            {0.06, 0.06, false}, {0.5, 0.1, false},    {0.03, 0.01, false},
                            {10.0, 0.1, false},  {0.05, 0.0084, true}, {0.07, 1e-4, false}};
     for (const example& e : all) {
-        plan_options o;
-        o.soa_s = e.soa_s;
-        o.burst_s = e.burst_s;
-        o.carrier_hz = 10000.0;
+        plan_options o{.soa_s = e.soa_s, .burst_s = e.burst_s, .carrier_hz = 10000.0};
         const plan p = make_plan(palm, across(1.0), o);
         CAPTURE(e.soa_s);
         CAPTURE(e.burst_s);
@@ -79,17 +77,14 @@ TEST_CASE("a burst with a given duration keeps the SOA, up to the SOA, and warns
         CHECK(p.total_s == p.bursts.back().onset_s + e.burst_s);
         CHECK(p.conflicts.empty());
         REQUIRE(p.warnings.size() == (e.law ? 0 : 1));
-        if (!e.law) {
-            CHECK(p.warnings[0].find("leave the timing law, SOA = 0.32 duration + 0.0473 s") !=
-                  std::string::npos);
-        }
+        if (!e.law)
+            has(p.warnings[0], "leave the timing law, SOA = 0.32 duration + 0.0473 s");
     }
 }
 
 TEST_CASE("a plan that leaves the timing law, or its fitted range, says so in figures")
 {
-    plan_options o;
-    o.burst_s = 0.05;
+    plan_options o{.burst_s = 0.05};
     CHECK(make_plan(palm, across(1.0), o).warnings ==
           std::vector<std::string>{
               "bursts of 0.05 s each 0.07 s leave the timing law, SOA = 0.32 duration + 0.0473 s, by which "
@@ -134,9 +129,7 @@ TEST_CASE("an impossible burst is refused with the possible ones")
 
 TEST_CASE("with fit and a given burst the SOA does not fall below it")
 {
-    plan_options o;
-    o.timing = timing_kind::fit;
-    o.burst_s = 0.05;
+    plan_options o{.burst_s = 0.05, .timing = timing_kind::fit};
     const plan p = make_plan(palm, across(0.2), o);
     CHECK(*p.soa_s == doctest::Approx(0.2 / 3.0));
     CHECK(p.bursts.size() == 4);
@@ -151,8 +144,7 @@ TEST_CASE("with fit and a given burst the SOA does not fall below it")
 
 TEST_CASE("the other algorithms report that they do not use a burst's duration")
 {
-    plan_options o;
-    o.burst_s = 0.05;
+    plan_options o{.burst_s = 0.05};
     for (const auto method : {algorithm_kind::tactile_brush, algorithm_kind::continuous}) {
         o.algorithm = method;
         const plan with = make_plan(palm, across(1.0), o);
@@ -171,9 +163,7 @@ TEST_CASE("bursts of less than one cycle of the carrier are warned about, for an
     o.carrier_hz = 319.0;
     const plan p = make_plan(palm, across(1.0), o);
     REQUIRE(p.warnings.size() == 1);
-    CHECK(
-        p.warnings[0].find("21 of 21 bursts are shorter than one cycle of the carrier, 3.135 ms at 319 Hz") !=
-        std::string::npos);
+    has(p.warnings[0], "21 of 21 bursts are shorter than one cycle of the carrier, 3.135 ms at 319 Hz");
     o = {};
     o.burst_s = 0.004; // one cycle at 250 Hz is enough
     CHECK(make_plan(palm, across(1.0), o).warnings.size() == 1);
@@ -197,8 +187,7 @@ TEST_CASE("fixed: onsets at multiples of the SOA up to the end, one burst below 
     CHECK(one.soa_s == 0.07);
     CHECK(one.total_s == 0.07);
 
-    plan_options o;
-    o.soa_s = 0.06;
+    plan_options o{.soa_s = 0.06};
     const plan p = make_plan(palm, across(1.0), o);
     CHECK(p.bursts.size() == 17);
     CHECK(p.bursts[3].duration_s == doctest::Approx((0.06 - 0.0473) / 0.32).epsilon(1e-12));
@@ -209,8 +198,7 @@ TEST_CASE("fixed: onsets at multiples of the SOA up to the end, one burst below 
 TEST_CASE("an SOA out of bounds is refused with both bounds")
 {
     for (const double soa : {0.0473, 0.04, 0.0700001, 1.0, -1.0, 0.0, not_a_number, infinite}) {
-        plan_options o;
-        o.soa_s = soa;
+        plan_options o{.soa_s = soa};
         const std::string why = refusal(palm, across(1.0), o);
         CHECK(why.starts_with("soa_s: "));
         CHECK(why.find("0.0473") != std::string::npos);
@@ -223,8 +211,7 @@ TEST_CASE("an SOA out of bounds is refused with both bounds")
 
 TEST_CASE("fit: both ends of the path are sampled, with the fewest intervals")
 {
-    plan_options o;
-    o.timing = timing_kind::fit;
+    plan_options o{.timing = timing_kind::fit};
     generator g(21);
     for (int i = 0; i < rounds(2000); ++i) {
         const double duration = between(g, 0.28, 20.0);
@@ -250,8 +237,7 @@ TEST_CASE("fit: both ends of the path are sampled, with the fewest intervals")
 
 TEST_CASE("where fitted bursts would be too short the error names working durations on both sides")
 {
-    plan_options o;
-    o.timing = timing_kind::fit;
+    plan_options o{.timing = timing_kind::fit};
     generator g(22);
     unsigned refused = 0;
     for (unsigned i = 0; i < 3000; ++i) {
@@ -283,9 +269,7 @@ TEST_CASE("where fitted bursts would be too short the error names working durati
 
 TEST_CASE("another timing profile is used throughout")
 {
-    plan_options o;
-    o.profile = {0.5, 0.03, 0.06};
-    o.soa_s = 0.05;
+    plan_options o{.profile = {0.5, 0.03, 0.06}, .soa_s = 0.05};
     const plan p = make_plan(palm, across(1.0), o);
     CHECK(p.bursts.size() == 21);
     CHECK(p.bursts[0].duration_s == doctest::Approx(0.04));
