@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
-// The parts of an error.
+// Errors, and words in their messages.
 #include <array>
 #include <cerrno>
 #include <exception>
+#include <limits>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -19,9 +20,17 @@
 #include <tactor/stroke.hpp>
 #include <tactor/waveform.hpp>
 
+#include "core/label.hpp"
 #include "core/refused.hpp"
+#include "core/words.hpp"
+
+namespace error_test {
 
 using namespace tactor;
+using tactor::counted;
+using tactor::label_fault;
+using tactor::plain_number;
+using tactor::seconds_text;
 
 namespace {
 
@@ -110,20 +119,16 @@ TEST_CASE("refusals of the library name their field")
     const path line = path::polyline(std::array{point{0.0, 0.0}, point{10.0, 0.0}});
     CHECK(thrown_by([] { throw detail::bad_field("soa_s", "0 s"); }).field() == "soa_s");
     CHECK(thrown_by([] { throw detail::bad_field("soa_s", "0 s"); }).subject() == "soa_s");
+    CHECK(thrown_by([&] { return trajectory::along(line, movement{.duration_s = -1.0}); }).field() ==
+          "duration_s");
     CHECK(thrown_by([&] {
-              static_cast<void>(trajectory::along(line, movement{.duration_s = -1.0}));
-          }).field() == "duration_s");
-    CHECK(thrown_by([&] {
-              static_cast<void>(
-                  trajectory::along(line, movement{.duration_s = 1.0, .intensity = {{2.0, 1.0}}}));
+              return trajectory::along(line, movement{.duration_s = 1.0, .intensity = {{2.0, 1.0}}});
           }).field() == "intensity");
-    CHECK(thrown_by([&] { static_cast<void>(trajectory::along(line, 1.0).with_speed(0.0)); }).field() ==
-          "speed_mm_s");
+    CHECK(thrown_by([&] { return trajectory::along(line, 1.0).with_speed(0.0); }).field() == "speed_mm_s");
     for (const char* text : {"noise:50-1", "noise:x", "sinus"})
-        CHECK(thrown_by([&] { static_cast<void>(parse_waveform(text)); }).field() == "wave");
+        CHECK(thrown_by([&] { return parse_waveform(text); }).field() == "wave");
     const auto grid = [](unsigned rows, unsigned columns, double x_mm, double y_mm) {
-        return std::string(
-            thrown_by([&] { static_cast<void>(make_grid("", rows, columns, x_mm, y_mm)); }).field());
+        return std::string(thrown_by([&] { return make_grid("", rows, columns, x_mm, y_mm); }).field());
     };
     CHECK(grid(0, 3, 9.0, 9.0) == "rows");
     CHECK(grid(3, 1025, 9.0, 9.0) == "columns");
@@ -131,14 +136,13 @@ TEST_CASE("refusals of the library name their field")
     CHECK(grid(3, 3, 0.0, 9.0) == "pitch_x_mm");
     CHECK(grid(3, 3, 9.0, -1.0) == "pitch_y_mm");
     const auto arc = [](double radius_mm, double from_deg, double sweep_deg) {
-        return std::string(
-            thrown_by([&] { static_cast<void>(path::arc({}, radius_mm, from_deg, sweep_deg)); }).field());
+        return std::string(thrown_by([&] { return path::arc({}, radius_mm, from_deg, sweep_deg); }).field());
     };
     CHECK(arc(0.0, 0.0, 90.0) == "radius_mm");
     CHECK(arc(1.0, 1e7, 90.0) == "from_deg");
     CHECK(arc(1.0, 0.0, 0.0) == "sweep_deg");
-    CHECK(thrown_by([] { static_cast<void>(path::polyline({})); }).field() == "points");
-    CHECK(thrown_by([] { static_cast<void>(trajectory::timed({})); }).field() == "points");
+    CHECK(thrown_by([] { return path::polyline({}); }).field() == "points");
+    CHECK(thrown_by([] { return trajectory::timed({}); }).field() == "points");
 }
 
 TEST_CASE("refusals of a tactor name its value")
@@ -185,3 +189,69 @@ TEST_CASE("an error has the errno of its nested error, unless it has its own")
     CHECK(around(std::runtime_error("e"), 0) == 0);
     CHECK(around(std::system_error(EBADF, std::generic_category()), EIO) == EIO);
 }
+
+TEST_CASE("only one is singular")
+{
+    CHECK(counted(0, "burst") == "0 bursts");
+    CHECK(counted(1, "burst") == "1 burst");
+    CHECK(counted(2, "burst") == "2 bursts");
+    CHECK(counted(1, "try", "tries") == "1 try");
+    CHECK(counted(3, "try", "tries") == "3 tries");
+}
+
+TEST_CASE("numbers have no exponent and no zeros at their end")
+{
+    CHECK(plain_number(0.0) == "0");
+    CHECK(plain_number(-0.0) == "0");
+    CHECK(plain_number(0.07) == "0.07");
+    CHECK(plain_number(2.6179938) == "2.61799");
+    CHECK(plain_number(2.6179938, 3) == "2.62");
+    CHECK(plain_number(1e6) == "1000000");
+    CHECK(plain_number(-1e9) == "-1000000000");
+    CHECK(plain_number(1e-5) == "0.00001");
+    CHECK(plain_number(1e-30) == "0");
+    CHECK(plain_number(-1e-30) == "0");
+    CHECK(plain_number(9.9999999) == "10");
+    CHECK(plain_number(std::numeric_limits<double>::infinity()) == "inf");
+}
+
+TEST_CASE("times have their unit, and a rounding is no time")
+{
+    CHECK(seconds_text(0.0) == "0 s");
+    CHECK(seconds_text(1e-17) == "0 s");
+    CHECK(seconds_text(-1e-17) == "0 s");
+    CHECK(seconds_text(2.78521e-08) == "27.9 ns");
+    CHECK(seconds_text(2.78521e-05) == "27.9 us");
+    CHECK(seconds_text(1e-4) == "0.0001 s");
+    CHECK(seconds_text(0.0473) == "0.0473 s");
+    CHECK(seconds_text(2.6179938) == "2.61799 s");
+    CHECK(seconds_text(2.6179938, 4) == "2.618 s");
+    CHECK(seconds_text(86400.0) == "86400 s");
+    CHECK(seconds_text(-0.5) == "-0.5 s");
+}
+
+TEST_CASE("a label has 1 to 40 characters of any script")
+{
+    CHECK(label_fault("").ends_with("is empty"));
+    CHECK(label_fault("left palm").empty());
+    CHECK(label_fault(std::string(40, 'x')).empty());
+    CHECK(label_fault(std::string(41, 'x')) == "has 41 characters");
+    std::string wide;
+    for (int i = 0; i < 40; ++i)
+        wide += i % 2 == 0 ? "\xc3\xa9" : "\xf0\x9f\x91\x8b"; // two and four bytes
+    CHECK(label_fault(wide).empty());
+    CHECK(label_fault(wide + "\xe6\x89\x8b") == "has 41 characters");
+}
+
+TEST_CASE("a label has no characters that end a line, move a cursor or turn the text around it")
+{
+    for (const char* c : {"\n", "\x1b[2J", "\x7f", "\xc2\x80", "\xc2\x9f", "\xe2\x80\xa8", "\xe2\x80\xae",
+                          "\xe2\x81\xa6", "\xe2\x81\xa9"})
+        CHECK(label_fault("a" + std::string(c) + "b") == "has control characters");
+    CHECK(label_fault(std::string("a\0b", 3)) == "has control characters");
+    for (const char* c :
+         {" ", "~", "\xc2\xa0", "\xe2\x80\xa7", "\xe2\x80\xaf", "\xe2\x81\xa5", "\xe2\x81\xaa"})
+        CHECK(label_fault(c).empty());
+}
+
+} // namespace error_test

@@ -1,16 +1,17 @@
 // SPDX-License-Identifier: MIT
-// Targets that ease, change their speed and rest along a path.
-#include <doctest/doctest.h>
-
+// Movements along a path, and portable distances.
 #include <cmath>
 #include <limits>
 #include <random>
 #include <vector>
 
+#include <doctest/doctest.h>
+
 #include <tactor/error.hpp>
 #include <tactor/stroke.hpp>
 
 #include "caught.hpp"
+#include "core/distance.hpp"
 #include "core/trajectory/spans.hpp"
 
 namespace movement_test {
@@ -34,7 +35,7 @@ double smooth(double u)
 
 std::string refusal(const movement& m)
 {
-    return caught_message([&] { static_cast<void>(trajectory::along(line, m)); });
+    return caught_message([&] { return trajectory::along(line, m); });
 }
 
 /// Draws rests, speeds and intensities at random places.
@@ -264,7 +265,37 @@ TEST_CASE("impossible movements are refused")
     CHECK(refusal({.rests = {{0.5, 86400.0}}}).find("duration: ") == 0);
     CHECK(refusal({.speed_mm_s = {{0.5, 1e-6}}}).find("duration: ") == 0);
     for (const double v : {0.0, -1.0, nan_value, std::numeric_limits<double>::infinity()})
-        CHECK_THROWS_AS(static_cast<void>(trajectory::along(line, 1.0).with_speed(v)), error);
+        CHECK_THROWS_AS(trajectory::along(line, 1.0).with_speed(v), error);
+}
+
+TEST_CASE("lengths are those of std::hypot, to the last digit but one on every machine")
+{
+    std::mt19937_64 random(3);
+    std::uniform_real_distribution<double> unit(-1.0, 1.0);
+    for (int i = 0; i < 200'000; ++i) {
+        const double x = std::ldexp(unit(random), static_cast<int>(random() % 60) - 30);
+        const double y = i % 2 == 0 ? unit(random) : x * (1.0 + 1e-9 * unit(random));
+        const double exact =
+            static_cast<double>(std::hypot(static_cast<long double>(x), static_cast<long double>(y)));
+        const double h = detail::portable_hypot(x, y);
+        REQUIRE(h >= std::nextafter(exact, 0.0));
+        REQUIRE(h <= std::nextafter(exact, HUGE_VAL));
+        REQUIRE(h == detail::portable_hypot(-y, x));
+    }
+}
+
+TEST_CASE("lengths of zero, of squares beyond the range, and of non-numbers")
+{
+    constexpr double huge = 1e300;
+    constexpr double tiny = 1e-300;
+    CHECK(detail::portable_hypot(0.0, 0.0) == 0.0);
+    CHECK(detail::portable_hypot(0.0, -7.0) == 7.0);
+    CHECK(detail::portable_hypot(3.0, 4.0) == 5.0);
+    CHECK(detail::portable_hypot(3.0 * huge, 4.0 * huge) == std::hypot(3.0 * huge, 4.0 * huge));
+    CHECK(detail::portable_hypot(3.0 * tiny, 4.0 * tiny) == std::hypot(3.0 * tiny, 4.0 * tiny));
+    CHECK(std::isinf(detail::portable_hypot(HUGE_VAL, 1.0)));
+    CHECK(std::isnan(detail::portable_hypot(std::numeric_limits<double>::quiet_NaN(), 1.0)));
+    CHECK(detail::length_mm({1.0, 2.0}, {4.0, 6.0}) == 5.0);
 }
 
 } // namespace movement_test

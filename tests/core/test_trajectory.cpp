@@ -1,15 +1,25 @@
 // SPDX-License-Identifier: MIT
-#include <doctest/doctest.h>
-
+// Trajectories, and the points by which they are sampled.
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <random>
+#include <string>
 #include <vector>
 
+#include <doctest/doctest.h>
+
 #include <tactor/error.hpp>
+#include <tactor/path.hpp>
 #include <tactor/stroke.hpp>
 
 #include "caught.hpp"
+#include "core/access.hpp"
+#include "core/path/impl.hpp"
+#include "core/trajectory/sample_points.hpp"
+#include "has.hpp"
+#include "path_samples.hpp"
+#include "rounds.hpp"
 
 namespace trajectory_test {
 
@@ -27,7 +37,58 @@ trajectory line_in(double duration_s)
 
 std::string timed_refusal(std::vector<timed_point> points)
 {
-    return caught_message([&] { static_cast<void>(trajectory::timed(points)); });
+    return caught_message([&] { return trajectory::timed(points); });
+}
+
+std::size_t curves_at_hand(const path& p)
+{
+    std::size_t count = 0;
+    for (const path::impl::measured_curve& c : detail::access::of(p).curves)
+        count += c.places != nullptr ? 1 : 0;
+    return count;
+}
+
+double farthest_mm(const path& a, const path& b)
+{
+    constexpr int places = 20'000;
+    double most = 0.0;
+    for (int i = 0; i <= places; ++i) {
+        const double s_mm = a.length_mm() * i / places;
+        most = std::max(most, distance_mm(a.at(s_mm), b.at(s_mm)));
+    }
+    return most;
+}
+
+// Returns the largest error over the duration, 0 or more, as `error_at` finds it at one time.
+template <class F>
+double find_largest(const trajectory& t, const std::vector<timed_point>& points, F error_at)
+{
+    constexpr int steps = 20'000;
+    const trajectory sampled = trajectory::timed(points);
+    double most = 0.0;
+    for (int k = 0; k <= steps; ++k)
+        most = std::max(most, error_at(t.duration_s() * k / steps, sampled));
+    return most;
+}
+
+// Returns the largest distance of the target from where the points say that it is, mm. Times within `near_s`
+// of each other are the same.
+double largest_error_mm(const trajectory& t, const std::vector<timed_point>& points)
+{
+    return find_largest(t, points, [&t](double at, const trajectory& sampled) {
+        return distance_mm(t.position(at), sampled.position(at));
+    });
+}
+
+// Returns how far the intensity leaves what the target has within 0.1 ms: it may jump.
+double largest_intensity_error(const trajectory& t, const std::vector<timed_point>& points)
+{
+    return find_largest(t, points, [&t](double at, const trajectory& sampled) {
+        const double before = t.intensity(at - 1e-4);
+        const double after = t.intensity(at + 1e-4);
+        const double now = sampled.intensity(at);
+        return std::max(std::min(before, after) - now, now - std::max(before, after));
+    });
 }
 
 } // namespace
@@ -154,10 +215,10 @@ TEST_CASE("a path of one place is a tap of the given duration")
     const movement reach{.duration_s = 2.0, .easing = easing_kind::minimum_jerk};
     CHECK(trajectory::along(place, reach).duration_s() == 2.0);
     const std::string refusal = "path: has no length (duration_s makes it a tap)";
-    CHECK(caught_message([&] { static_cast<void>(trajectory::along(place, 0.0)); }) == refusal);
+    CHECK(caught_message([&] { return trajectory::along(place, 0.0); }) == refusal);
     for (const movement& m : {movement{}, movement{.duration_s = 1.0, .intensity = {{0.0, 0.5}}},
                               movement{.rests = {{0.5, 1.0}}}})
-        CHECK(caught_message([&] { static_cast<void>(trajectory::along(place, m)); }) == refusal);
+        CHECK(caught_message([&] { return trajectory::along(place, m); }) == refusal);
 }
 
 TEST_CASE("durations and intensities out of range are refused")
@@ -165,15 +226,13 @@ TEST_CASE("durations and intensities out of range are refused")
     for (const double d : {0.0, -1.0, nan_value, infinite, 86400.1}) {
         CAPTURE(d);
         CHECK(caught_message([&] { line_in(d); }).find("duration: ") == 0);
-        CHECK(caught_message([&] { static_cast<void>(line_in(1.0).with_duration(d)); }).find("duration: ") ==
-              0);
+        CHECK(caught_message([&] { return line_in(1.0).with_duration(d); }).find("duration: ") == 0);
     }
     CHECK(line_in(86400.0).duration_s() == 86400.0);
     for (const double a : {-0.1, nan_value, infinite, 1001.0}) {
         CAPTURE(a);
-        CHECK(caught_message([&] {
-                  static_cast<void>(trajectory::along(path::from_svg("M 0 0 H 1"), 1.0, a));
-              }).find("intensity") != std::string::npos);
+        has(caught_message([&] { return trajectory::along(path::from_svg("M 0 0 H 1"), 1.0, a); }),
+            "intensity");
     }
 }
 
@@ -211,6 +270,98 @@ TEST_CASE("a timed walk meets each line where the walk is on it")
         }
         CHECK(good);
     }
+}
+
+TEST_CASE("places at hand are within 1e-9 mm of those that are computed, at cusps and in narrow turns, too")
+{
+    std::vector<std::string> all(test::awkward_curves.begin(), test::awkward_curves.end());
+    all.emplace_back("M 2 20 A 18 9 20 1 1 30 30");
+    all.emplace_back("M 0 0 A 30 0.01 0 1 1 40 0");
+    all.emplace_back("M 0 0 A 20 20 0 1 1 10 0");
+    std::mt19937_64 random(43);
+    for (int i = 0; i < test::rounds(100); ++i)
+        all.push_back(test::random_path(random, 5));
+    std::size_t at_hand = 0;
+    for (const std::string& data : all) {
+        CAPTURE(data);
+        const path p = path::from_svg(data);
+        const path quick = detail::with_places(p, 1e-6);
+        at_hand += curves_at_hand(quick);
+        CHECK(quick.length_mm() == p.length_mm());
+        CHECK(farthest_mm(p, quick) < (p.length_mm() > 1e3 ? 1e-7 : 1e-9));
+        CHECK(curves_at_hand(p) == 0);
+    }
+    CHECK(at_hand > all.size());
+}
+
+TEST_CASE("curves that are passed in a moment are computed")
+{
+    const path curve = path::from_svg("M 0 10 C 20 -5 20 45 40 30");
+    CHECK(curves_at_hand(detail::with_places(curve, curve.length_mm() / 300)) == 1);
+    CHECK(curves_at_hand(detail::with_places(curve, curve.length_mm() / 200)) == 0);
+}
+
+TEST_CASE("a path of kilometres or of very many curves takes no more than some megabytes")
+{
+    const path huge =
+        path::from_svg("M 0 0 C 900000 400000 -900000 500000 800000 1 A 300000 10 0 0 1 300000 1");
+    CHECK(farthest_mm(huge, detail::with_places(huge, 1e-3)) < 1e-6);
+    std::string many = "M 0 0";
+    for (int i = 0; i < 4000; ++i)
+        many += " q 10 30 20 0 q -10 -30 -20 0";
+    const path p = path::from_svg(many);
+    const std::size_t at_hand = curves_at_hand(detail::with_places(p, 1e-6));
+    CHECK(at_hand > 500);
+    CHECK(at_hand < 1000);
+}
+
+TEST_CASE("timed points are given back as they are, or stretched")
+{
+    const std::vector<timed_point> own{
+        {0.0, {0.0, 0.0}, 1.0}, {0.1, {3.0, 4.0}, 0.5}, {0.4, {3.0, 4.0}, 0.0}};
+    const auto same = detail::sample_points(trajectory::timed(own));
+    REQUIRE(same.size() == 3);
+    for (std::size_t i = 0; i < own.size(); ++i) {
+        CHECK(same[i].t_s == own[i].t_s);
+        CHECK(same[i].position == own[i].position);
+        CHECK(same[i].intensity == own[i].intensity);
+    }
+    const auto longer = detail::sample_points(trajectory::timed(own).with_duration(0.8).with_intensity(0.5));
+    CHECK(longer[1].t_s == doctest::Approx(0.2));
+    CHECK(longer[2].t_s == 0.8);
+    CHECK(longer[1].intensity == 0.25);
+}
+
+TEST_CASE("paths are sampled closely, and lines not at all")
+{
+    CHECK(detail::sample_points(trajectory::along(path::from_svg("M 0 0 L 40 0 L 40 40"), 2.0)).size() == 3);
+    CHECK(detail::sample_points(trajectory::along(path::from_svg("M 5 5"), 0.3)).size() == 2);
+    for (const char* data :
+         {"M 0 10 C 20 -5 20 45 40 30 L 60 30 A 15 10 0 0 1 60 50", "M 0 0 C 40 0 0 40 40 40",
+          "M 20 5 A 15 15 0 0 1 20 35 A 15 15 0 0 1 20 5 Z", "M 0 0 A 3000 3000 0 0 1 6000 0"})
+        for (const easing_kind easing : all_values<easing_kind>()) {
+            CAPTURE(data);
+            movement m{.duration_s = 2.0, .easing = easing};
+            m.speed_mm_s = {{0.0, 1.0}, {0.3, 4.0}};
+            m.intensity = {{0.2, 0.1}, {0.6, 1.0}};
+            m.rests = {{0.25, 0.3, 0.0}, {1.0, 0.1, 0.5}};
+            const trajectory t = trajectory::along(path::from_svg(data), m);
+            const auto points = detail::sample_points(t);
+            CHECK(points.front().t_s == 0.0);
+            CHECK(points.back().t_s == t.duration_s());
+            CHECK(largest_error_mm(t, points) < 0.01);
+            CHECK(largest_intensity_error(t, points) < 0.01);
+            CHECK(points.size() < 10'000);
+        }
+}
+
+TEST_CASE("what takes too many points is refused")
+{
+    std::string data = "M 0 0";
+    for (int i = 0; i < 2000; ++i)
+        data += " A 90000 90000 0 0 1 0 90000 A 90000 90000 0 0 1 0 0";
+    const trajectory t = trajectory::along(path::from_svg(data), 86400.0);
+    has(caught_message([&] { return detail::sample_points(t); }), "timed points");
 }
 
 } // namespace trajectory_test

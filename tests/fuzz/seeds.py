@@ -17,7 +17,7 @@ SOURCES = {
     "stroke_csv": (["examples/strokes/*.csv"], ["files/test_stroke_csv.cpp"]),
     "stroke_svg": (["examples/strokes/*.svg"], ["files/test_stroke_svg.cpp", "files/test_stroke_svg_errors.cpp",
                                                  "files/test_stroke_svg_style.cpp"]),
-    "path_data": ([], ["core/test_path_svg.cpp", "core/test_path.cpp", "core/test_path_length.cpp", "core/test_path_meets.cpp"]),
+    "path_data": ([], ["core/test_path_svg.cpp", "core/test_path.cpp"]),
     "study_table": ([], ["study/test_text_table.cpp"]),
     "pcm_name": ([], ["sink/alsa/test_pcm_names.cpp"]),
 }

@@ -1,12 +1,30 @@
 // SPDX-License-Identifier: MIT
-// Browsers' requests that are meant for this server.
-#include "net/access.hpp"
+// Web pages and peers that may ask, listening sockets, and Base64.
+#include <cerrno>
+#include <string>
+#include <string_view>
+#include <utility>
 
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/ip/tcp.hpp>
 #include <doctest/doctest.h>
+#include <fcntl.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+#include <tactor/error.hpp>
+
+#include "caught.hpp"
+#include "folder.hpp"
+#include "has.hpp"
+#include "net/access.hpp"
+#include "net/base64.hpp"
+#include "net/listen.hpp"
 
 namespace web_access_test {
 
 using namespace tactor::net;
+using namespace tactor;
 
 TEST_CASE("a browser may call this server by its names")
 {
@@ -98,6 +116,139 @@ TEST_CASE("tokens are read from the header")
     CHECK(bearer_token("Basic secret").empty());
     CHECK(bearer_token("Bearer ").empty());
     CHECK(bearer_token("").empty());
+}
+
+namespace {
+
+bool heard(const char* from, const std::vector<std::string>& prefixes)
+{
+    std::vector<address_prefix> peers;
+    for (const std::string& p : prefixes)
+        peers.push_back(parse_prefix(p, "osc_peers"));
+    return is_accepted(boost::asio::ip::make_address(from), peers);
+}
+
+} // namespace
+
+TEST_CASE("without a list only this machine is heard")
+{
+    for (const char* own : {"127.0.0.1", "127.9.8.7", "::1", "::ffff:127.0.0.1"}) {
+        CAPTURE(own);
+        CHECK(heard(own, {}));
+    }
+    for (const char* other :
+         {"10.0.0.1", "128.0.0.1", "126.255.255.255", "::2", "::ffff:10.0.0.1", "fe80::1"}) {
+        CAPTURE(other);
+        CHECK_FALSE(heard(other, {}));
+    }
+}
+
+TEST_CASE("a prefix is compared to its last bit")
+{
+    CHECK(heard("192.168.1.255", {"192.168.1.0/24"}));
+    CHECK_FALSE(heard("192.168.2.0", {"192.168.1.0/24"}));
+    CHECK(heard("10.15.0.1", {"10.8.0.0/13"}));
+    CHECK_FALSE(heard("10.16.0.1", {"10.8.0.0/13"}));
+    CHECK(heard("10.0.0.5", {"10.0.0.5"}));
+    CHECK_FALSE(heard("10.0.0.4", {"10.0.0.5"}));
+    CHECK(heard("1.2.3.4", {"0.0.0.0/0"}));
+    CHECK_FALSE(heard("fd00::1", {"0.0.0.0/0"}));
+    CHECK(heard("fdff::1", {"10.0.0.1", "fd00::/8"}));
+    CHECK_FALSE(heard("fc00::1", {"fd00::/8"}));
+    CHECK(heard("::ffff:192.168.1.9", {"192.168.1.0/24"}));
+    CHECK(heard("192.168.1.9", {"192.168.1.77/24"}));
+}
+
+TEST_CASE("a bad prefix is refused by its name")
+{
+    for (const char* bad : {"", "/", "10.0.0.0/33", "::/129", "10.0.0.0/", "10.0.0.0/-1", "10.0.0.0/8x",
+                            "10.0.0", "example.org", "10.0.0.0/8/8", "10.0.0.0/ 8", "[::1]"}) {
+        CAPTURE(bad);
+        const std::string said = caught_message([&] { return parse_prefix(bad, "osc_peers"); });
+        has(said, "osc_peers");
+        has(said, bad);
+    }
+}
+
+TEST_CASE("a locked folder is not awaited without end")
+{
+    const folder here;
+    const owned_fd other(::open((here / ".").c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+    REQUIRE(::flock(other.get(), LOCK_EX) == 0);
+    CHECK(listen_unix((here / "s").string(), 0600, {}));
+}
+
+TEST_CASE("a refused listener has its errno")
+{
+    const folder here;
+    CHECK(os_code([&] { listen_unix((here / "none/s").string(), 0600, {}); }) == ENOENT);
+    CHECK(os_code([&] { listen_unix((here.write("file") / "s").string(), 0600, {}); }) == ENOTDIR);
+    const owned_fd first = listen_tcp({}, "port");
+    CHECK(os_code([&] { listen_tcp(parse_host(local_address(first.get()), "port"), "port"); }) == EADDRINUSE);
+}
+
+TEST_CASE("a port in use is reported with its process")
+{
+    const auto says = [](const std::function<void()>& call) {
+        try {
+            call();
+        } catch (const error& e) {
+            CHECK(e.kind() == error_kind::not_available);
+            return std::string(e.why());
+        }
+        return std::string();
+    };
+    const std::string me = "process " + std::to_string(::getpid());
+    const owned_fd stream = listen_tcp({}, "tcp");
+    const host_and_port tcp = parse_host(local_address(stream.get()), "tcp");
+    CHECK(has(says([&] { listen_tcp(tcp, "tcp"); }), me));
+    const owned_fd packets = bind_udp({}, "osc");
+    const host_and_port udp = parse_host(local_address(packets.get()), "osc");
+    CHECK(has(says([&] { bind_udp(udp, "osc"); }), me));
+    CHECK(find_port_holder(tcp.port, true).ends_with(me));
+    CHECK(find_port_holder(0, true).empty());
+}
+
+TEST_CASE("a peer's address is told without its port")
+{
+    const owned_fd listener = listen_tcp({}, "tcp");
+    const host_and_port at = parse_host(local_address(listener.get()), "tcp");
+    boost::asio::io_context io;
+    boost::asio::ip::tcp::socket s(io);
+    s.open(boost::asio::ip::tcp::v4());
+    CHECK(peer_address(s.native_handle()).empty()); // not connected
+    s.connect({boost::asio::ip::make_address(at.host), at.port});
+    CHECK(peer_address(s.native_handle()) == "127.0.0.1");
+}
+
+TEST_CASE("bytes become base64 and come back, as RFC 4648 says")
+{
+    for (const auto& [bytes, text] : {std::pair<std::string_view, std::string_view>{"", ""},
+                                      {"f", "Zg=="},
+                                      {"fo", "Zm8="},
+                                      {"foo", "Zm9v"},
+                                      {"foob", "Zm9vYg=="},
+                                      {"fooba", "Zm9vYmE="},
+                                      {"foobar", "Zm9vYmFy"}}) {
+        std::string made = "x";
+        append_base64(made, bytes);
+        CHECK(made == "x" + std::string(text));
+        CHECK(made.size() == 1 + base64_size(bytes.size()));
+        CHECK(read_base64(text) == bytes);
+    }
+    std::string all;
+    for (int i = 0; i < 256; ++i)
+        all += static_cast<char>(i);
+    std::string made;
+    append_base64(made, all);
+    CHECK(read_base64(made) == all);
+}
+
+TEST_CASE("other texts are no base64")
+{
+    for (const char* text :
+         {"Z", "Zg", "Zg=", "Zg==\n", "Z===", "====", "Zm9v!A==", "Zm-v", "Zh==", "Zm9=", "Zg==Zg=="})
+        CHECK_FALSE(read_base64(text));
 }
 
 } // namespace web_access_test
