@@ -19,7 +19,7 @@ SOURCES = {
                                                  "files/test_stroke_svg_style.cpp"]),
     "path_data": ([], ["core/test_path_svg.cpp", "core/test_path.cpp"]),
     "study_table": ([], ["study/test_text_table.cpp"]),
-    "pcm_name": ([], ["sink/alsa/test_pcm_names.cpp"]),
+    "pcm_name": ([], ["sink/alsa/test_devices.cpp"]),
 }
 
 def wav_files():

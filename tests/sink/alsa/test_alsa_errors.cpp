@@ -1,23 +1,31 @@
 // SPDX-License-Identifier: MIT
-// Messages for PCMs that cannot be opened, on a system made of files.
+// Errors of ALSA, its library's messages, and calls without descriptors and memory.
 #include <cerrno>
+#include <cstdarg>
+#include <cstdlib>
 #include <filesystem>
 #include <string>
 #include <vector>
 
+#include <alsa/asoundlib.h>
 #include <doctest/doctest.h>
 
 #include <tactor/alsa.hpp>
 #include <tactor/error.hpp>
 
+#include "caught.hpp"
+#include "descriptors_left.hpp"
 #include "fake_system.hpp"
+#include "folder.hpp"
 #include "has.hpp"
 #include "sink/alsa/devices/cards.hpp"
 #include "sink/alsa/error_text.hpp"
+#include "sink/alsa/library_messages.hpp"
 
 namespace alsa_errors_test {
 
 using namespace tactor;
+
 namespace fs = std::filesystem;
 
 namespace {
@@ -42,6 +50,66 @@ private:
         return e.what();
     }
 };
+
+// A configuration like the system's, not read yet: a file that loads the user's, if it can, which includes
+// another.
+class own_configuration {
+public:
+    own_configuration()
+    {
+        const auto included = here_.write("included.conf", "pcm.mine { type plug slave.pcm null }\n");
+        const auto users = here_.write("asoundrc", "<" + included.string() + ">\n");
+        const auto top = here_.write("alsa.conf", "@hooks [ { func load files [ \"" + users.string() +
+                                                      "\" ] errors false } ]\npcm.null { type null }\n");
+        if (const char* p = std::getenv(variable))
+            before_ = p;
+        ::setenv(variable, top.c_str(), 1);
+        snd_config_update_free_global();
+    }
+    ~own_configuration()
+    {
+        if (before_.empty())
+            ::unsetenv(variable);
+        else
+            ::setenv(variable, before_.c_str(), 1);
+        snd_config_update_free_global();
+    }
+    own_configuration(const own_configuration&) = delete;
+    own_configuration& operator=(const own_configuration&) = delete;
+
+private:
+    static constexpr const char* variable = "ALSA_CONFIG_PATH";
+
+    folder here_;
+    std::string before_;
+};
+
+alsa_options of(const char* pcm)
+{
+    return {.pcm = pcm, .channels = 9};
+}
+
+// Returns false where a call failed for want of descriptors.
+template <typename Call>
+bool answers(Call call)
+{
+    try {
+        call();
+        return true;
+    } catch (const error& e) {
+        CHECK(e.kind() == error_kind::runtime);
+        has(e.what(), "Too many open files");
+        has(e.what(), "ulimit -n");
+        CHECK(e.os_code() == EMFILE);
+        return false;
+    }
+}
+
+bool opens_with(unsigned descriptors, const char* pcm)
+{
+    const test::descriptors_left few(descriptors);
+    return answers([pcm] { return open_alsa(of(pcm)); });
+}
 
 } // namespace
 
@@ -112,13 +180,10 @@ TEST_CASE("a missing plugin of ALSA's is named with its package")
     CHECK(unknown.find("apt") == std::string::npos);
     s.two_cards();
     has(missing("pulse"), "device = hw:CARD=Headphones");
-    try {
-        static_cast<void>(open_alsa({.pcm = "t", .channels = 1, .config_text = "pcm.t { type nobodys }"}));
-        FAIL("it opened");
-    } catch (const error& e) {
-        has(e.what(), "a plugin of ALSA's is missing: ");
-        has(e.what(), "is the type nobodys in its definition misspelt?");
-    }
+    const std::string said = caught_message(
+        [] { return open_alsa({.pcm = "t", .channels = 1, .config_text = "pcm.t { type nobodys }"}); });
+    has(said, "a plugin of ALSA's is missing: ");
+    has(said, "is the type nobodys in its definition misspelt?");
 }
 
 TEST_CASE("JACK without its server is named, whose plugin only says that there is nothing")
@@ -199,14 +264,12 @@ TEST_CASE("a PCM whose definition refers to a missing one is not reported as mis
     const std::string text = s.says("soft", -ENOENT, {"default", "null", "soft"});
     has(text, "PCM \"soft\": ALSA's configuration defines it, but not all that it refers to");
     CHECK(text.find("did you mean") == std::string::npos);
-    try {
-        static_cast<void>(open_alsa(
-            {.pcm = "soft", .channels = 1, .config_text = "pcm.soft { type plug slave.pcm nobodys }"}));
-        FAIL("it opened");
-    } catch (const error& e) {
-        CHECK(std::string(e.what()).find("did you mean") == std::string::npos);
-        has(e.what(), "nobodys");
-    }
+    const std::string said = caught_message([] {
+        return open_alsa(
+            {.pcm = "soft", .channels = 1, .config_text = "pcm.soft { type plug slave.pcm nobodys }"});
+    });
+    CHECK(said.find("did you mean") == std::string::npos);
+    has(said, "nobodys");
 }
 
 TEST_CASE("up to twelve names are all proposed, more are not")
@@ -230,13 +293,9 @@ TEST_CASE("a card's id or name alone proposes the card's PCM")
 
 TEST_CASE("names defined in a configuration text are proposed")
 {
-    try {
-        static_cast<void>(
-            open_alsa({.pcm = "palmm", .channels = 1, .config_text = "pcm.palm { type null }"}));
-        FAIL("it opened");
-    } catch (const error& e) {
-        has(e.what(), "did you mean palm?");
-    }
+    const std::string said = caught_message(
+        [] { return open_alsa({.pcm = "palmm", .channels = 1, .config_text = "pcm.palm { type null }"}); });
+    has(said, "did you mean palm?");
 }
 
 TEST_CASE("a missing permission names the group to join, and how")
@@ -291,6 +350,94 @@ TEST_CASE("the card and the device in an ALSA name")
     is("surround71:CARD=PCH,DEV=0", "PCH", 0);
     for (const char* name : {"null", "default", "raw:/tmp/x", "", ":", "file:hw"})
         CHECK_FALSE(alsa::named_device(name));
+}
+
+TEST_CASE("the host program keeps its handlers of libasound's messages")
+{
+    const auto fails = [] { CHECK_THROWS_AS(open_alsa({.pcm = "no-such-pcm", .channels = 1}), error); };
+    const auto host = snd_lib_error;
+    fails();
+    const bool kept = snd_lib_error == host;
+    CHECK(kept);
+
+    static unsigned heard = 0;
+    const auto own = [](const char*, int, const char*, int, const char*, va_list) { ++heard; };
+    const snd_local_error_handler_t before = alsa::set_local_handler(own);
+    fails();
+    { // These messages are the error's detail, not the host's, and in between its own calls are its own.
+        const auto sink = open_alsa({.pcm = "null", .channels = 1});
+        CHECK(heard == 0);
+        snd_pcm_t* p = nullptr;
+        CHECK(snd_pcm_open(&p, "no-such-pcm", SND_PCM_STREAM_PLAYBACK, 0) < 0);
+        CHECK(heard != 0);
+    }
+    const bool restored = alsa::set_local_handler(before) == static_cast<snd_local_error_handler_t>(own);
+    CHECK(restored);
+}
+
+TEST_CASE("nested listeners hear the inner messages, and the outer one continues")
+{
+    const alsa::library_messages outer;
+    {
+        const alsa::library_messages inner;
+        SNDERR("one");
+        SNDERR("two");
+        CHECK(inner.first() == "one");
+    }
+    CHECK(outer.first() == "");
+    SNDERR("three \n");
+    CHECK(outer.first() == "three");
+}
+
+TEST_CASE("a PCM that could not be opened for want of descriptors opens when there are some")
+{
+    for (const char* pcm : {"null", "mine"}) {
+        CAPTURE(pcm);
+        bool opened = false;
+        for (unsigned n = 0; !opened; ++n) {
+            CAPTURE(n);
+            REQUIRE(n < 20);
+            const own_configuration fresh;
+            opened = opens_with(n, pcm);
+            CHECK(open_alsa(of("mine"))->setup().channels == 9);
+        }
+    }
+}
+
+TEST_CASE("waiting for a lost PCM reports a want of descriptors")
+{
+    const test::descriptors_left none(0);
+    CHECK_THROWS_WITH_AS(reopen_alsa(of("null"), [n = 0](double) mutable { return ++n < 3; }),
+                         doctest::Contains("Too many open files"), error);
+}
+
+TEST_CASE("queries of names without descriptors say so, and leave nothing broken behind")
+{
+    for (unsigned n = 0; n < 10; ++n) {
+        CAPTURE(n);
+        const own_configuration fresh;
+        {
+            const test::descriptors_left few(n);
+            // Its files are open at the same time: one and the one that it names.
+            CHECK(answers([] { CHECK(read_route("mine").types.size() == 2); }) == (n >= 2));
+            CHECK(answers([] { return read_wiring("mine", 9); }) == (n >= 2));
+            CHECK(answers([] { require_device_name("mine"); }) == (n >= 2));
+            CHECK(answers([] { return list_pcms(); }) == (n >= 2));
+        }
+        CHECK(read_route("mine").types == std::vector<std::string>{"plug", "null"});
+        CHECK(open_alsa(of("mine"))->setup().channels == 9);
+    }
+}
+
+TEST_CASE("a configuration that another part of the program could not read is read anew")
+{
+    const own_configuration fresh;
+    {
+        const test::descriptors_left none(0);
+        const alsa::library_messages silent;
+        snd_config_update();
+    }
+    CHECK(open_alsa(of("mine"))->setup().channels == 9);
 }
 
 } // namespace alsa_errors_test

@@ -1,19 +1,34 @@
 // SPDX-License-Identifier: MIT
-// The list of PCMs on a system made of files, and properties of a PCM on the fake DAC.
-#include "sink/alsa/devices/cards.hpp"
-
+// Devices, their names, and ALSA's configuration.
 #include <algorithm>
+#include <cstdint>
+#include <cstdlib>
+#include <filesystem>
+#include <iterator>
+#include <random>
+#include <string>
 
+#include <alsa/asoundlib.h>
 #include <doctest/doctest.h>
+#include <fmt/format.h>
 
+#include <tactor/alsa.hpp>
 #include <tactor/error.hpp>
 
+#include "caught.hpp"
 #include "fake_dac.hpp"
 #include "fake_system.hpp"
+#include "folder.hpp"
+#include "has.hpp"
+#include "sink/alsa/configuration.hpp"
+#include "sink/alsa/devices/cards.hpp"
+#include "sink/alsa/devices/plain_name.hpp"
+#include "sink/alsa/devices/route.hpp"
 
 namespace devices_test {
 
 using namespace tactor;
+using types = std::vector<std::string>;
 
 namespace {
 
@@ -23,6 +38,136 @@ pcm_info named(const std::vector<pcm_info>& all, const std::string& name)
     REQUIRE_MESSAGE(std::count_if(all.begin(), all.end(), same) == 1, name);
     return *std::find_if(all.begin(), all.end(), same);
 }
+
+// Definitions of a system and a user.
+constexpr const char* definitions = R"(
+pcm.hw { @args [ CARD DEV ] @args.CARD { type string default "0" } @args.DEV { type integer default 0 } type hw card $CARD device $DEV }
+pcm.plug { @args [ SLAVE ] @args.SLAVE { type string } type plug slave.pcm $SLAVE }
+pcm.null { type null }
+pcm.file { @args [ FILE FORMAT ] @args.FILE { type string } @args.FORMAT { type string default raw } type file slave.pcm null file $FILE format $FORMAT }
+pcm.palm { type route slave { pcm "hw:CARD=Tactor" channels 8 } ttable.0.0 1 }
+pcm.pair { type multi slaves { a { pcm "hw:0" channels 2 } b "recorder" } bindings.0 { slave a channel 0 } }
+pcm_slave.recorder { pcm "record" }
+pcm.record { type file slave.pcm "hw:0" file "/tmp/x" format raw }
+pcm.alias "record"
+pcm.both { type asym playback.pcm "plug:'record'" capture.pcm "null" }
+pcm.heard { type asym playback.pcm "null" capture.pcm "record" }
+pcm.behind { type plug slave "recorder" }
+pcm.round { type plug slave.pcm "round" }
+pcm.wide { type multi slaves { a { pcm "wide" } b { pcm "wide" } c { pcm "wide" } d { pcm "wide" } } }
+pcm.odd { type ladspa slave.pcm "hw:0" }
+pcm.hinted { type null hint { type "file" } }
+pcm.desk { type plug slave.pcm { type pipewire } }
+)";
+
+struct configuration {
+    snd_config_t* top = nullptr;
+    configuration() { REQUIRE(snd_config_load_string(&top, definitions, 0) == 0); }
+    ~configuration() { snd_config_delete(top); }
+    configuration(const configuration&) = delete;
+    configuration& operator=(const configuration&) = delete;
+    types operator()(const std::string& name) const { return alsa::find_route(top, name); }
+};
+
+std::string complaint(const std::string& name)
+{
+    return caught_message([&] { require_device_name(name); });
+}
+
+template <class Call>
+std::string message(Call call)
+{
+    try {
+        call();
+    } catch (const error& e) {
+        return e.what();
+    }
+    return {};
+}
+
+std::string refused(const std::string& definitions)
+{
+    return message([&] {
+        return open_alsa({.pcm = "t", .channels = 2, .config_text = "pcm.n { type null }\n" + definitions});
+    });
+}
+
+// The user's file of a home that has nothing else, while an object lives.
+class users_file {
+public:
+    users_file() : file_(here_.path() / ".asoundrc")
+    {
+        if (const char* home = std::getenv("HOME"))
+            before_ = home;
+        ::setenv("HOME", here_.path().c_str(), 1);
+    }
+    ~users_file() { ::setenv("HOME", before_.c_str(), 1); }
+    users_file(const users_file&) = delete;
+    users_file& operator=(const users_file&) = delete;
+
+    void write(const std::string& text) const { here_.write(".asoundrc", text); }
+    std::string name() const { return file_.string(); }
+
+private:
+    folder here_;
+    std::filesystem::path file_;
+    std::string before_ = {};
+};
+
+// Random definitions of plugins with tables, most of which make sense.
+class chance {
+public:
+    explicit chance(unsigned seed) : random_(seed) {}
+
+    std::string text()
+    {
+        return fmt::format("pcm.n {{ type null }}\npcm.a {}\npcm.t {}\n", plugin(1), plugin(2));
+    }
+
+private:
+    std::uint64_t below(std::uint64_t n) { return random_() % n; }
+
+    std::string number(unsigned usual)
+    {
+        constexpr const char* odd[] = {"0", "1", "7", "1023", "65535", "4294967296"};
+        return below(12) == 0 ? odd[below(std::size(odd))] : fmt::format("{}", usual);
+    }
+
+    std::string pcm(int depth)
+    {
+        if (depth > 0)
+            return plugin(depth - 1);
+        constexpr const char* names[] = {"n", "n", "n", "n", "a", "t"};
+        return fmt::format("\"{}\"", names[below(std::size(names))]);
+    }
+
+    std::string plugin(int depth)
+    {
+        const auto n = static_cast<unsigned>(1 + below(4));
+        std::string table;
+        switch (below(4)) {
+        case 0:
+            for (unsigned i = 0; i < n; ++i)
+                table += fmt::format(" {} {{ slave a channel {} }}", number(i), number(i));
+            return fmt::format("{{ type multi slaves.a {{ pcm {} channels 4 }} bindings {{{} }} }}",
+                               pcm(depth), table);
+        case 1:
+            for (unsigned i = 0; i < n; ++i)
+                table += fmt::format(" {} {}", number(i), number(i));
+            return fmt::format("{{ type share slave {{ pcm n channels {} }} bindings {{{} }} }}", number(4),
+                               table);
+        case 2:
+            for (unsigned i = 0; i < n; ++i)
+                table += fmt::format(" {}.{} 1", number(i), number(i));
+            return fmt::format("{{ type {} slave.pcm {} ttable {{{} }} }}", below(2) == 0 ? "route" : "plug",
+                               pcm(depth), table);
+        default:
+            return fmt::format("{{ type copy slave.pcm {} }}", pcm(depth));
+        }
+    }
+
+    std::mt19937 random_;
+};
 
 } // namespace
 
@@ -141,6 +286,239 @@ TEST_CASE("channel counts with gaps stay apart")
     CHECK(p.can->channels[1].most == 8);
     CHECK(p.misfit.find("refused: channels") != std::string::npos);
     snd_pcm_close(dac.pcm());
+}
+
+TEST_CASE("names of devices are plain")
+{
+    for (const char* name :
+         {"null", "default", "palm-3x3", "hw:0", "hw:1,3", "hw:CARD=Tactor", "hw:CARD=Tactor,DEV=0,SUBDEV=1",
+          "plughw:CARD=DAC8x,DEV=0", "plug:null", "plug:palm", "plug:hw:0", "plug:hw:CARD=Tactor",
+          "plug:SLAVE=hw:0", "plug:'hw:1,3'", "plug:SLAVE='hw:CARD=Tactor,DEV=0'", "sysdefault:CARD=2",
+          "surround71:CARD=A_b-C", "pulse:alsa_output.usb-Acme_DAC-00.pro-output-0"}) {
+        CAPTURE(name);
+        CHECK(alsa::not_plain(name) == "");
+    }
+}
+
+TEST_CASE("names with more than a device are not plain, and have a reason")
+{
+    const auto why = [](std::string_view name) { return alsa::not_plain(name); };
+    for (const char* name : {"file:'|id > X; cat >/dev/null',raw",
+                             "file:FILE=/home/me/x",
+                             "tee:hw:0,'|sh'",
+                             "file:|id",
+                             "file:a b",
+                             "a b",
+                             "{ type file }",
+                             "plug:{ type file slave.pcm null file x }",
+                             "hw:{ CARD 0 }",
+                             "hw:$HOME",
+                             "hw:@x",
+                             "@x",
+                             "a.b",
+                             "hw:\\x41",
+                             "hw:0\nfile:x",
+                             "hw:0;",
+                             "hw:\"0\"",
+                             "plug:'file:\"x\"'",
+                             "plug:file:'x'",
+                             "plug:'plug:hw:0'",
+                             "plug:plug:null",
+                             "plug:SLAVE='hw:0",
+                             "plug:'hw:0',x",
+                             "plug:hw:0,1",
+                             "plug:\"hw:0\"",
+                             "plug:''hw:0''",
+                             "plug:SLAVE=SLAVE=hw:0",
+                             "plug:",
+                             "plug:''",
+                             "plug:'",
+                             "hw:",
+                             "hw:,",
+                             "hw:CARD=",
+                             "hw:=0",
+                             ":0",
+                             "",
+                             "hw:CARD=a=b",
+                             "hw:../../x",
+                             "hw:/dev/snd/x",
+                             "hw:0,",
+                             "\xc3\xa9",
+                             "hw:\x7f"}) {
+        CAPTURE(name);
+        CHECK(why(name) != "");
+    }
+    CHECK(why(std::string_view("hw:0\0x", 6)) == "the byte 0x00 may not stand in it");
+    CHECK(why("file:'|id'") == "' may not stand in it");
+    CHECK(why("hw:0\n") == "the byte 0x0a may not stand in it");
+    has(why("plug:hw:0,1"), "single quotes");
+    CHECK(why(std::string(200, 'a')) == "");
+    has(why(std::string(201, 'a')), "200 bytes");
+}
+
+TEST_CASE("the route of a name is ALSA's, in any spelling")
+{
+    const configuration route;
+    CHECK(route("hw:CARD=Tactor,DEV=1") == types{"hw"});
+    CHECK(route("plug:'hw:0,1'") == types{"plug", "hw"});
+    CHECK(route("palm") == types{"route", "hw"});
+    CHECK(route("nowhere").empty());
+    CHECK(route("plug:nowhere") == types{"plug"});
+    for (const char* name :
+         {"record", "alias", "both", "behind", "pair", "plug:record", "file:x", "file:FILE=x,FORMAT=wav"}) {
+        CAPTURE(name);
+        CHECK(alsa::writes(route(name)));
+        CHECK(alsa::unsafe_type(route(name)) == "file");
+        CHECK(alsa::lasting_type(route(name)) == "file");
+    }
+    // Definitions for recording only do nothing.
+    CHECK(route("heard") == types{"asym", "null"});
+    CHECK(route("hinted") == types{"null"});
+    CHECK(alsa::find_route(nullptr, "hw:0").empty());
+}
+
+TEST_CASE("a definition that leads to itself, or doubles at each step, ends and is not safe")
+{
+    const configuration route;
+    for (const char* name : {"round", "wide"}) {
+        CAPTURE(name);
+        CHECK(alsa::unsafe_type(route(name)) == "?");
+        CHECK(route(name).size() < 200);
+    }
+}
+
+TEST_CASE("an unknown type is not safe, and sound servers are named")
+{
+    const configuration route;
+    CHECK(alsa::unsafe_type(route("odd")) == "ladspa");
+    CHECK(alsa::unsafe_type(route("desk")) == "");
+    CHECK(alsa::find_server(route("desk")) == "PipeWire");
+    CHECK(alsa::lasting_type(route("desk")) == "pipewire");
+    CHECK(alsa::find_server(route("palm")) == "");
+    CHECK(alsa::find_server({"plug", "jack"}) == "JACK");
+    CHECK(alsa::find_server({"pulse"}) == "PulseAudio");
+}
+
+TEST_CASE("an unsafe name chosen by others is refused with the reason, before it is opened")
+{
+    CHECK(complaint("null") == "");
+    CHECK(complaint("plug:null") == "");
+    CHECK(complaint("hw:CARD=Nowhere") == "");
+    CHECK(complaint("nobody-defines-this") == "");
+    has(complaint("file:'|id > X',raw"),
+        "PCM 'file:'|id > X',raw': more than the name of a device: ' may not");
+    // It looks harmless, but ALSA defines it as a file.
+    has(complaint("file:victim,raw"), "it writes a file or starts a command");
+    has(complaint("tee:hw"), "it writes");
+    CHECK(read_route("file:x").writes);
+    CHECK_FALSE(read_route("plug:null").writes);
+    CHECK(read_route("plug:null").server == "");
+}
+
+TEST_CASE("a definition on which libasound would end the process is refused, with the reason")
+{
+    const auto says = [](const std::string& definitions, const std::string& why) {
+        has(refused(definitions), "PCM \"t\": " + why);
+    };
+    const std::string four = "slaves.a { pcm n channels 4 } ";
+    const std::string hole = "pcm.t { type multi " + four +
+                             "bindings { 0 { slave a channel 0 } 1 { slave a "
+                             "channel 1 } 3 { slave a channel 3 } } }";
+    says(hole, "type multi leaves a hole in its bindings: it binds no channel 2");
+    says("pcm.t { type plug slave.pcm { type multi " + four + "bindings.1 { slave a channel 0 } } }",
+         "type multi leaves a hole in its bindings: it binds no channel 0");
+    says("pcm.t { type multi " + four + "bindings { 4294967296 { slave a channel 0 } } }",
+         "type multi has a channel beyond the 1024 that there can be");
+    says("pcm.t { type share slave { pcm n channels 2 } bindings { 0 0 1 2 } }",
+         "type share has a channel beyond the 2 that there can be");
+    says("pcm_slave.two { pcm n channels 2 }\npcm.t { type share slave two bindings { 0 -1 } }",
+         "type share has a channel beyond the 2 that there can be");
+    for (const char* type : {"route", "plug"})
+        says(fmt::format("pcm.t {{ type {} slave.pcm n ttable.65535.65535 1 }}", type),
+             fmt::format("type {} has a channel beyond the 1024 that there can be", type));
+    says("pcm.t { type plug slave.pcm { type plug slave.pcm t } }", "its definition leads to itself");
+    CHECK(refused("pcm.t { type multi " + four +
+                  "bindings { 1 { slave a channel 0 } 0 { slave a channel 3 } } }") == "");
+}
+
+TEST_CASE("a chain of twenty plugins, and a PCM of a hundred cards, are not refused")
+{
+    std::string chain = "n";
+    std::string slaves;
+    std::string bindings;
+    for (unsigned i = 0; i < 100; ++i) {
+        slaves += fmt::format(" s{} {{ pcm n channels 1 }}", i);
+        bindings += fmt::format(" {} {{ slave s{} channel 0 }}", i, i);
+    }
+    for (unsigned i = 0; i < 20; ++i)
+        chain = fmt::format("{{ type copy slave.pcm {} }}", chain);
+    CHECK(refused("pcm.t " + chain) == "");
+    const std::string cards = fmt::format(
+        "pcm.n {{ type null }}\npcm.t {{ type multi slaves {{{} }} bindings {{{} }} }}", slaves, bindings);
+    CHECK(open_alsa({.pcm = "t", .channels = 100, .config_text = cards})->setup().channels == 100);
+}
+
+TEST_CASE("libasound opens or refuses all random definitions in which no fault is found")
+{
+    unsigned faults = 0;
+    unsigned opened = 0;
+    for (unsigned seed = 0; seed < 1000; ++seed) {
+        const std::string text = chance(seed).text();
+        INFO(text);
+        const alsa::configuration top = alsa::read_configuration(text);
+        faults += alsa::find_fault(top.get(), "t").empty() ? 0 : 1;
+        try {
+            opened += open_alsa({.pcm = "t", .channels = 1, .wider = true, .config_text = text}) != nullptr;
+        } catch (const error& e) {
+            CHECK(e.kind() == error_kind::not_available);
+        }
+    }
+    CHECK(faults > 100);
+    CHECK(opened > 100);
+}
+
+TEST_CASE("each try reads the configuration again, and leaves libasound's own copy alone")
+{
+    const users_file file;
+    const alsa_options o{.pcm = "later", .channels = 2};
+    snd_config_update();
+    snd_config_t* const hosts = snd_config;
+    has(message([&] { return open_alsa(o); }), "no such PCM");
+    CHECK(read_route("later").types.empty());
+    file.write("pcm.later { type copy slave.pcm \"null\" }\n");
+    CHECK(open_alsa(o)->setup().channels == 2);
+    CHECK(read_route("later").types.size() == 2);
+    CHECK(snd_config == hosts);
+}
+
+TEST_CASE("a configuration that ALSA cannot read is reported with its file and line, also by the list")
+{
+    const users_file file;
+    file.write("pcm.output {\n  type hw\n  card \n}\n");
+    const std::string said = message([] { return open_alsa({.channels = 1}); });
+    CHECK(said == file.name() +
+                      ":5: ALSA cannot read its configuration: Unexpected char (mend or remove this file, "
+                      "or one that it includes; ALSA plays nothing until then)");
+    const auto pcms = list_pcms(alsa_options{.channels = 1});
+    REQUIRE_FALSE(pcms.empty());
+    CHECK(pcms.back().error == said);
+    CHECK(read_route("null").types.empty());
+}
+
+TEST_CASE("a name with a colon after which ALSA cannot read is bad input")
+{
+    const auto says = [](const std::string& name, const std::string& why) {
+        CHECK(
+            caught_message([&] { return open_alsa({.pcm = name, .channels = 1}); })
+                .starts_with(fmt::format("PCM \"{}\": ALSA cannot read the part after the colon: {} (write a "
+                                         "device as hw:CARD=NAME",
+                                         name, why)));
+    };
+    says("hw:CARD=Tactor,", "a part of it is empty");
+    says("hw:CARD=", "a part of it is empty");
+    says("hw:0,x", "Parameter DEV must be an integer");
+    says("hw:X=1", "Unknown parameter X");
+    says("hw:0,0,0,0", "Unknown parameter 3");
 }
 
 } // namespace devices_test

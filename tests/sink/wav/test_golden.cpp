@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Golden bytes of WAV files. If one differs, something that users hear or see differs: say so in NEWS.md, and
-// put the number that the failure prints here.
+// WAV files byte by byte.
 #include <clocale>
 #include <cstdint>
 #include <locale>
@@ -8,16 +7,19 @@
 
 #include <doctest/doctest.h>
 
+#include <tactor/error.hpp>
 #include <tactor/plan.hpp>
 #include <tactor/render.hpp>
 #include <tactor/stroke.hpp>
 
 #include "../../synth/pieces.hpp"
 #include "folder.hpp"
+#include "sink/wav/wav.hpp"
 
 namespace golden_test {
 
 using namespace tactor;
+using wav::container;
 
 namespace {
 
@@ -61,8 +63,7 @@ std::string render_file(const folder& dir, algorithm_kind algorithm, format_kind
                         const render_options& sound = {})
 {
     const array a = preset_array("palm-3x3");
-    plan_options o;
-    o.algorithm = algorithm;
+    plan_options o{.algorithm = algorithm};
     // Motion 1 starts 4 mm below a row of the grid, and crosses one twice in less time than two bursts need.
     o.snap = true;
     o.drop_points = true;
@@ -103,6 +104,14 @@ private:
     std::locale before_;
 };
 
+std::uint64_t number(const std::string& s, std::size_t at, unsigned bytes)
+{
+    std::uint64_t n = 0;
+    for (unsigned i = bytes; i-- > 0;)
+        n = n << 8U | static_cast<unsigned char>(s.at(at + i));
+    return n;
+}
+
 } // namespace
 
 TEST_CASE("the bytes of park2016-1 are those of the last release, in any locale")
@@ -112,8 +121,7 @@ TEST_CASE("the bytes of park2016-1 are those of the last release, in any locale"
         CAPTURE(std::string(to_string(g.algorithm)));
         CAPTURE(std::string(to_string(g.format)));
         CAPTURE(std::string(to_string(g.phase)));
-        render_options sound;
-        sound.phase = g.phase;
+        render_options sound{.phase = g.phase};
         CHECK(hash_bytes(render_file(dir, g.algorithm, g.format, sound)) == g.digest);
         const comma_locale with_comma;
         CHECK(hash_bytes(render_file(dir, g.algorithm, g.format, sound)) == g.digest);
@@ -124,6 +132,68 @@ TEST_CASE("park2016-1 is 70560 frames of 9 channels")
 {
     const folder dir;
     CHECK(render_file(dir, algorithm_kind::park2016, format_kind::s16).size() == 44 + 70560 * 9 * 2);
+}
+
+TEST_CASE("integer samples have the plain header of 44 bytes")
+{
+    const std::string s = wav::header(format_kind::s24_3, container::wave, 9, 44100, 1001);
+    REQUIRE(s.size() == 44);
+    CHECK(s.substr(0, 4) == "RIFF");
+    CHECK(number(s, 4, 4) == 36 + 1001 * 27 + 1); // an odd number of bytes, and one of padding
+    CHECK(s.substr(8, 8) == "WAVEfmt ");
+    CHECK(number(s, 16, 4) == 16);
+    CHECK(number(s, 20, 2) == 1);
+    CHECK(number(s, 22, 2) == 9);
+    CHECK(number(s, 24, 4) == 44100);
+    CHECK(number(s, 28, 4) == 44100 * 27);
+    CHECK(number(s, 32, 2) == 27);
+    CHECK(number(s, 34, 2) == 24);
+    CHECK(s.substr(36, 4) == "data");
+    CHECK(number(s, 40, 4) == 1001 * 27);
+}
+
+TEST_CASE("formats other than integer PCM have the size of their extension and a fact chunk")
+{
+    const std::string s = wav::header(format_kind::float32, container::wave, 2, 48000, 500);
+    REQUIRE(s.size() == 58);
+    CHECK(number(s, 4, 4) == 50 + 4000);
+    CHECK(number(s, 16, 4) == 18);
+    CHECK(number(s, 20, 2) == 3);
+    CHECK(number(s, 36, 2) == 0);
+    CHECK(s.substr(38, 4) == "fact");
+    CHECK(number(s, 42, 4) == 4);
+    CHECK(number(s, 46, 4) == 500);
+    CHECK(s.substr(50, 4) == "data");
+    CHECK(number(s, 54, 4) == 4000);
+}
+
+TEST_CASE("RF64 has its sizes in 64 bits")
+{
+    const std::uint64_t frames = 10'000'000'000;
+    const std::string s = wav::header(format_kind::s16, container::rf64, 3, 48000, frames);
+    CHECK(s.substr(0, 4) == "RF64");
+    CHECK(number(s, 4, 4) == 0xFFFFFFFF);
+    CHECK(s.substr(12, 4) == "ds64");
+    CHECK(number(s, 16, 4) == 28);
+    CHECK(number(s, 20, 8) == s.size() - 8 + frames * 6);
+    CHECK(number(s, 28, 8) == frames * 6);
+    CHECK(number(s, 36, 8) == frames);
+    CHECK(s.substr(s.size() - 8, 4) == "data");
+    CHECK(number(s, s.size() - 4, 4) == 0xFFFFFFFF);
+}
+
+TEST_CASE("values that a header cannot hold are bad input")
+{
+    const auto kind = [](format_kind f, unsigned channels) {
+        try {
+            wav::header(f, container::wave, channels, 48000, 1);
+        } catch (const error& e) {
+            return e.kind() == error_kind::bad_input;
+        }
+        return false;
+    };
+    CHECK(kind(format_kind::s24_4, 2));
+    CHECK_FALSE(kind(format_kind::float32, 1024));
 }
 
 } // namespace golden_test

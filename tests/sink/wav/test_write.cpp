@@ -2,7 +2,6 @@
 #include "sink/wav/wav.hpp"
 
 #include <algorithm>
-#include <cstdlib>
 #include <fstream>
 #include <string>
 
@@ -12,7 +11,6 @@
 #include <unistd.h>
 
 #include <csignal>
-#include <span>
 
 #include <doctest/doctest.h>
 
@@ -32,10 +30,7 @@ namespace {
 score make_score(double seconds = 0.3, unsigned rate = 48000)
 {
     std::mt19937_64 random(17);
-    render_options o;
-    o.level_dbfs = -20.0;
-    o.rate = rate;
-    o.channels = 5;
+    render_options o{.rate = rate, .level_dbfs = -20.0, .channels = 5};
     return {row(4), {{make_random(random, 4, 20, seconds), {}}}, o};
 }
 
