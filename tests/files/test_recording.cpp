@@ -58,6 +58,27 @@ std::string samples(std::initializer_list<T> all)
     return s;
 }
 
+std::string long_sizes(const std::string& kind, std::uint64_t data_bytes, const std::string& chunks)
+{
+    const std::string ds64 = bytes(std::uint64_t{0}) + bytes(data_bytes) + bytes(data_bytes / 2) + bytes(0);
+    return kind + bytes(0xFFFFFFFFU) + "WAVE" + chunk("ds64", ds64) + chunks;
+}
+
+std::string open_data(std::uint32_t size, const std::string& samples)
+{
+    return "data" + bytes(size) + samples;
+}
+
+std::string in_four_bytes(std::initializer_list<std::int32_t> all, std::int32_t (*as)(std::int32_t))
+{
+    std::string s;
+    for (const std::int32_t v : all)
+        s += bytes(as(v));
+    const std::string f = bytes(std::uint16_t{1}) + bytes(std::uint16_t{1}) + bytes(std::uint32_t{8000}) +
+                          bytes(std::uint32_t{32000}) + bytes(std::uint16_t{4}) + bytes(std::uint16_t{24});
+    return wav(chunk("fmt ", f) + chunk("data", s));
+}
+
 } // namespace
 
 TEST_CASE("a WAV file's samples are read in every format, after any chunks")
@@ -88,8 +109,7 @@ TEST_CASE("a file that is no WAV file of one channel is refused by name")
     const folder dir;
     const std::string data = chunk("data", samples<std::int16_t>({1000, -1000}));
     const auto refused = [&](const std::string& text, const std::string& part) {
-        const std::string said =
-            caught_message([&] { static_cast<void>(load_recording(dir.write("b.wav", text))); });
+        const std::string said = caught_message([&] { return load_recording(dir.write("b.wav", text)); });
         return has(said, part) && has(said, "b.wav");
     };
     CHECK(refused("", "no WAV file"));
@@ -103,31 +123,6 @@ TEST_CASE("a file that is no WAV file of one channel is refused by name")
     CHECK(refused(wav(chunk("fmt ", format(1, 16, 2)) + data), "2 channels"));
     CHECK(refused(wav(chunk("fmt ", format(1, 16)) + chunk("data", "ab")), "1 sample"));
 }
-
-namespace {
-
-std::string long_sizes(const std::string& kind, std::uint64_t data_bytes, const std::string& chunks)
-{
-    const std::string ds64 = bytes(std::uint64_t{0}) + bytes(data_bytes) + bytes(data_bytes / 2) + bytes(0);
-    return kind + bytes(0xFFFFFFFFU) + "WAVE" + chunk("ds64", ds64) + chunks;
-}
-
-std::string open_data(std::uint32_t size, const std::string& samples)
-{
-    return "data" + bytes(size) + samples;
-}
-
-std::string in_four_bytes(std::initializer_list<std::int32_t> all, std::int32_t (*as)(std::int32_t))
-{
-    std::string s;
-    for (const std::int32_t v : all)
-        s += bytes(as(v));
-    const std::string f = bytes(std::uint16_t{1}) + bytes(std::uint16_t{1}) + bytes(std::uint32_t{8000}) +
-                          bytes(std::uint32_t{32000}) + bytes(std::uint16_t{4}) + bytes(std::uint16_t{24});
-    return wav(chunk("fmt ", f) + chunk("data", s));
-}
-
-} // namespace
 
 TEST_CASE("24 bits in four bytes are found at either end, however quiet")
 {
@@ -171,11 +166,10 @@ TEST_CASE("sizes that a recorder left open end with the file")
         CHECK(r.missing == 0);
     }
     // No samples are no open size.
-    CHECK(has(caught_message([&] {
-                  static_cast<void>(
-                      load_recording(dir.write("a.wav", wav(head + open_data(0, chunk("LIST", "INFO"))))));
-              }),
-              "0 samples"));
+    has(caught_message([&] {
+            return load_recording(dir.write("a.wav", wav(head + open_data(0, chunk("LIST", "INFO")))));
+        }),
+        "0 samples");
 }
 
 TEST_CASE("long files give their size elsewhere, and later chunks are no samples")
@@ -231,8 +225,8 @@ TEST_CASE("text that is not a file cannot name a recording")
     REQUIRE(all.size() == 1);
     REQUIRE(all.front().sound.wave);
     CHECK(all.front().sound.wave->recorded->samples.size() == 2);
-    CHECK(has(caught_message([&] { static_cast<void>(parse_strokes_toml(text, "text")); }), "text:3"));
-    CHECK(has(caught_message([&] { static_cast<void>(parse_strokes(text, "text")); }), "text:3"));
+    has(caught_message([&] { return parse_strokes_toml(text, "text"); }), "text:3");
+    has(caught_message([&] { return parse_strokes(text, "text"); }), "text:3");
 }
 
 } // namespace recording_test

@@ -1,17 +1,23 @@
 // SPDX-License-Identifier: MIT
-#include <doctest/doctest.h>
-
+// Stroke files by their names, and the placing and movement of their strokes.
+#include <cmath>
 #include <filesystem>
 #include <random>
 #include <string>
+#include <vector>
 
-#include <tactor/error.hpp>
+#include <doctest/doctest.h>
+#include <fmt/format.h>
+
 #include <tactor/stroke.hpp>
 
 #include "caught.hpp"
 #include "folder.hpp"
+#include "has.hpp"
 
 namespace stroke_load_test {
+
+using namespace tactor;
 
 namespace {
 
@@ -26,7 +32,50 @@ double length(const std::vector<tactor::stroke>& strokes)
 
 std::string refusal(const std::filesystem::path& file)
 {
-    return caught_message([&] { static_cast<void>(tactor::load_strokes(file)); });
+    return caught_message([&] { return tactor::load_strokes(file); });
+}
+
+stroke one(const std::string& body)
+{
+    return parse_strokes_toml("[stroke]\n" + body + "\n", "w.toml").front();
+}
+
+std::string complaint(const std::string& body)
+{
+    return caught_message([&] { one(body); });
+}
+
+const std::string bend = "path = \"M 10 0 C 20 0 30 10 30 30 L 30 40\"\nduration_s = 2.0\n";
+const std::string dots = "timed = [[0, 10, 0, 0.5], [0.5, 30, 10, 1.0], [2.0, 30, 40, 0.25]]\n";
+
+/// Checks that each place of the placed stroke is that of the drawn one, mapped by hand, at the same part of
+/// the time.
+template <class Map>
+void check_mapped(const std::string& keys, Map&& map)
+{
+    for (const std::string& drawn : {bend, dots}) {
+        const stroke as_drawn = one(drawn);
+        const stroke placed = one(drawn + keys);
+        CAPTURE(keys);
+        REQUIRE(placed.motion.duration_s() == as_drawn.motion.duration_s());
+        for (int i = 0; i <= 50; ++i) {
+            const double t = 2.0 * i / 50.0;
+            CHECK(distance_mm(placed.motion.position(t), map(as_drawn.motion.position(t))) < 2e-3);
+            CHECK(placed.motion.intensity(t) == as_drawn.motion.intensity(t));
+        }
+    }
+}
+
+const std::string line = "points = [[0, 10], [40, 10]]\n";
+
+void check_same(const trajectory& a, const trajectory& b)
+{
+    REQUIRE(a.duration_s() == doctest::Approx(b.duration_s()).epsilon(1e-14));
+    for (int i = 0; i <= 40; ++i) {
+        const double part = i / 40.0;
+        CHECK(distance_mm(a.position(part * a.duration_s()), b.position(part * b.duration_s())) < 1e-9);
+        CHECK(a.intensity(part * a.duration_s()) == doctest::Approx(b.intensity(part * b.duration_s())));
+    }
 }
 
 } // namespace
@@ -58,10 +107,10 @@ TEST_CASE("the kind of stroke text is guessed from its first line")
     CHECK(length(tactor::parse_strokes("\n  <?xml version='1.0'?>" + svg, "-")) == -1.0 + 7.0);
     CHECK(length(tactor::parse_strokes("# t_s\n" + toml, "-")) == 6.0);
     CHECK(caught_message([] {
-              static_cast<void>(tactor::parse_strokes("time,x,y\n", "-"));
+              return tactor::parse_strokes("time,x,y\n", "-");
           }).find("-:1:6: unknown column 'x' (did you mean 'x_mm'?)") == 0);
-    CHECK_FALSE(caught_message([] { static_cast<void>(tactor::parse_strokes("", "-")); }).empty());
-    CHECK_FALSE(caught_message([] { static_cast<void>(tactor::parse_strokes("\xff\xfe", "-")); }).empty());
+    CHECK_FALSE(caught_message([] { return tactor::parse_strokes("", "-"); }).empty());
+    CHECK_FALSE(caught_message([] { return tactor::parse_strokes("\xff\xfe", "-"); }).empty());
 }
 
 TEST_CASE("what is no stroke file is named for what it is")
@@ -86,8 +135,7 @@ TEST_CASE("what is no stroke file is named for what it is")
 TEST_CASE("numbers with units and decimal commas are named in TOML")
 {
     const auto said = [](const std::string& line) {
-        return caught_message(
-            [&] { static_cast<void>(tactor::parse_strokes_toml("[stroke]\n" + line + "\n", "a")); });
+        return caught_message([&] { return tactor::parse_strokes_toml("[stroke]\n" + line + "\n", "a"); });
     };
     CHECK(said("speed_mm_s = 2 cm") ==
           "a:2:14: '2 cm' is a number with a unit (give the number alone: its unit is in "
@@ -101,8 +149,7 @@ TEST_CASE("numbers with units and decimal commas are named in TOML")
 TEST_CASE("unreadable files are named")
 {
     const folder f;
-    CHECK(refusal(f.path() / "none.csv").find("none.csv: No such file or directory (check the name)") !=
-          std::string::npos);
+    has(refusal(f.path() / "none.csv"), "none.csv: No such file or directory (check the name)");
     CHECK(refusal(f.path()).find(f.path().string() + ": is a folder") == 0);
     if (::geteuid() != 0) {
         const auto secret = f.write("secret.csv", csv);
@@ -115,10 +162,10 @@ TEST_CASE("text of gigabytes is refused before it is read")
 {
     const std::string_view long_text(csv.data(), std::size_t{1} << 32);
     CHECK(caught_message([&] {
-              static_cast<void>(tactor::parse_strokes_csv(long_text, "x"));
+              return tactor::parse_strokes_csv(long_text, "x");
           }).find("x: longer than 512 MB") == 0);
     CHECK(caught_message([&] {
-              static_cast<void>(tactor::parse_strokes_svg(long_text, "x"));
+              return tactor::parse_strokes_svg(long_text, "x");
           }).find("x: longer than 48 MB") == 0);
 }
 
@@ -131,10 +178,167 @@ TEST_CASE("random bytes are refused by every reader")
         for (char& c : text)
             c = static_cast<char>(byte(random));
         CAPTURE(text);
-        CHECK_FALSE(caught_message([&] { static_cast<void>(tactor::parse_strokes(text, "x")); }).empty());
-        CHECK_FALSE(caught_message([&] { static_cast<void>(tactor::parse_strokes_csv(text, "x")); }).empty());
-        CHECK_FALSE(caught_message([&] { static_cast<void>(tactor::parse_strokes_svg(text, "x")); }).empty());
-        CHECK_FALSE(caught_message([&] { static_cast<void>(tactor::path::from_svg(text)); }).empty());
+        CHECK_FALSE(caught_message([&] { return tactor::parse_strokes(text, "x"); }).empty());
+        CHECK_FALSE(caught_message([&] { return tactor::parse_strokes_csv(text, "x"); }).empty());
+        CHECK_FALSE(caught_message([&] { return tactor::parse_strokes_svg(text, "x"); }).empty());
+        CHECK_FALSE(caught_message([&] { return tactor::path::from_svg(text); }).empty());
+    }
+}
+
+TEST_CASE("keys place a stroke in order: mirror, scale, turn, move")
+{
+    check_mapped("scale = 0.5", [](point p) { return point{0.5 * p.x_mm, 0.5 * p.y_mm}; });
+    check_mapped("translate_mm = [3, -4]", [](point p) { return point{p.x_mm + 3.0, p.y_mm - 4.0}; });
+    check_mapped("mirror = \"x\"", [](point p) { return point{-p.x_mm, p.y_mm}; });
+    check_mapped("mirror = \"y\"\nabout_mm = [20, 20]", [](point p) { return point{p.x_mm, 40.0 - p.y_mm}; });
+    check_mapped("rotate_deg = 90", [](point p) { return point{-p.y_mm, p.x_mm}; }); // clockwise on a screen
+    check_mapped("rotate_deg = -450\nabout_mm = [20, 20]", [](point p) {
+        return point{20.0 + (p.y_mm - 20.0), 20.0 - (p.x_mm - 20.0)};
+    });
+    check_mapped("rotate_deg = 30", [](point p) {
+        const double c = std::sqrt(0.75);
+        return point{c * p.x_mm - 0.5 * p.y_mm, 0.5 * p.x_mm + c * p.y_mm};
+    });
+    check_mapped("translate_mm = [1, 2]\nrotate_deg = 90\nscale = 2\nmirror = \"x\"\nabout_mm = [10, 20]",
+                 [](point p) {
+                     const point m{-2.0 * (p.x_mm - 10.0), 2.0 * (p.y_mm - 20.0)};
+                     return point{10.0 - m.y_mm + 1.0, 20.0 + m.x_mm + 2.0};
+                 });
+}
+
+TEST_CASE("quarter turns and doubling are exact, and no key changes nothing")
+{
+    const stroke s = one("points = [[1, 2], [5, 2]]\nrotate_deg = 180\nscale = 2");
+    CHECK(s.motion.position(0.0) == point{-2.0, -4.0});
+    CHECK(one(bend).motion.position(0.77) == one(bend + "scale = 1").motion.position(0.77));
+}
+
+TEST_CASE("a placed stroke keeps its given speed, or its given time")
+{
+    const std::string line = "points = [[0, 0], [10, 0]]\nscale = 3\n";
+    CHECK(one(line + "speed_mm_s = 15").motion.duration_s() == doctest::Approx(2.0));
+    CHECK(one(line + "duration_s = 0.25").motion.duration_s() == 0.25);
+    CHECK(one(line).motion.duration_s() == doctest::Approx(0.5)); // the usual 60 mm/s
+    CHECK(one("preset = \"park2016-1\"\nscale = 0.5").motion.duration_s() == 1.4);
+    CHECK(one("preset = \"park2016-1\"\nscale = 0.5").motion.length_mm() ==
+          doctest::Approx(0.5 * one("preset = \"park2016-1\"").motion.length_mm()).epsilon(1e-6));
+}
+
+TEST_CASE("faults of the keys that place a stroke have their place")
+{
+    const std::string line = "points = [[0, 0], [10, 0]]\n";
+    for (const auto& [key, wrong] :
+         {std::pair{"scale", "0"}, std::pair{"scale", "-1"}, std::pair{"scale", "\"2\""},
+          std::pair{"scale", "nan"}, std::pair{"rotate_deg", "4000"}, std::pair{"rotate_deg", "[90]"},
+          std::pair{"translate_mm", "3"}, std::pair{"translate_mm", "[1, 2, 3]"},
+          std::pair{"translate_mm", "[1e9, 0]"}, std::pair{"mirror", "\"z\""}, std::pair{"mirror", "true"},
+          std::pair{"about_mm", "[1]"}}) {
+        const std::string said = complaint(line + "rotate_deg_ = 1\n");
+        CHECK(said.find("did you mean 'rotate_deg'?") != std::string::npos);
+        const std::string why = complaint(line + fmt::format("{} = {}", key, wrong));
+        CAPTURE(why);
+        CHECK(why.find("w.toml:3:") == 0);
+        CHECK(why.find(key) != std::string::npos);
+    }
+    CHECK(complaint(line + "about_mm = [1, 2]").find("nothing is scaled") != std::string::npos);
+    CHECK(complaint("points = [[0, 0], [1e6, 0]]\nscale = 10").find("w.toml:3:") == 0);
+}
+
+TEST_CASE("easing, profiles and pauses of a file are those of the library")
+{
+    const path way = path::from_svg("M 0 10 L 40 10");
+    check_same(one(line + "duration_s = 1.4\neasing = \"minimum-jerk\"").motion,
+               trajectory::along(way, {.duration_s = 1.4, .easing = easing_kind::minimum_jerk}));
+    check_same(one(line + "easing = \"in-out\"").motion,
+               trajectory::along(way, {.easing = easing_kind::in_out}));
+    check_same(one(line + "speed_mm_s = [[0, 20], [0.5, 80], [1, 20]]").motion,
+               trajectory::along(way, {.speed_mm_s = {{0.0, 20.0}, {0.5, 80.0}, {1.0, 20.0}}}));
+    check_same(one(line + "duration_s = 1.0\nintensity = [[0, 0.2], [1, 1.0]]").motion,
+               trajectory::along(way, {.duration_s = 1.0, .intensity = {{0.0, 0.2}, {1.0, 1.0}}}));
+    check_same(one(line + "duration_s = 2.0\npauses = [[0.5, 0.5], [1, 0.25, 0]]").motion,
+               trajectory::along(way, {.duration_s = 2.0, .rests = {{0.5, 0.5}, {1.0, 0.25, 0.0}}}));
+}
+
+TEST_CASE("a duration is that of the whole, a speed and a preset's time are those of the movement")
+{
+    const std::string pause = "pauses = [[0.5, 0.5]]\n";
+    CHECK(one(line + pause + "duration_s = 2.0").motion.duration_s() == 2.0);
+    CHECK(one(line + pause + "speed_mm_s = 40").motion.duration_s() == doctest::Approx(1.5));
+    CHECK(one(line + pause).motion.duration_s() == doctest::Approx(40.0 / 60.0 + 0.5));
+    CHECK(one("preset = \"park2016-1\"\n" + pause).motion.duration_s() == doctest::Approx(1.9));
+    CHECK(one("preset = \"park2016-1\"\nduration_s = 1.5\n" + pause).motion.duration_s() == 1.5);
+    CHECK(one("preset = \"park2016-1\"\neasing = \"in-out\"").note == note_kind::reconstructed);
+    CHECK(one("preset = \"park2016-1\"\nintensity = [[0, 0.5]]").motion.intensity(0.7) == 0.5);
+}
+
+TEST_CASE("a scaled stroke keeps its mean speed and its pauses")
+{
+    const std::string speeds = "speed_mm_s = [[0, 20], [1, 80]]\n";
+    const stroke s = one(line + speeds + "pauses = [[0.5, 0.5]]");
+    const double moving = s.motion.duration_s() - 0.5;
+    CHECK(*s.speed_mm_s == doctest::Approx(40.0 / moving));
+    const stroke half = one(line + speeds + "pauses = [[0.5, 0.5]]\nscale = 0.5");
+    CHECK(half.motion.duration_s() == doctest::Approx(0.5 * moving + 0.5));
+    CHECK(half.motion.position(0.5 * moving + 0.5).x_mm == doctest::Approx(20.0));
+    CHECK(one(line + "duration_s = 2.0\neasing = \"in-out\"\nscale = 0.5").motion.duration_s() == 2.0);
+}
+
+TEST_CASE("without these keys nothing changes, to the bit")
+{
+    const stroke s = one("path = \"M 0 10 C 20 -5 20 45 40 30\"\nspeed_mm_s = 37.0\nintensity = 0.3");
+    const path way = path::from_svg("M 0 10 C 20 -5 20 45 40 30");
+    const trajectory t = trajectory::along(way, way.length_mm() / 37.0, 0.3);
+    REQUIRE(s.motion.duration_s() == t.duration_s());
+    for (int i = 0; i <= 100; ++i)
+        CHECK(s.motion.position(t.duration_s() * i / 100.0) == t.position(t.duration_s() * i / 100.0));
+}
+
+TEST_CASE("faults of easing, profiles and pauses have their place")
+{
+    for (const auto& [key, wrong] : {
+             std::pair{"easing", "\"fast\""},
+             std::pair{"easing", "3"},
+             std::pair{"speed_mm_s", "[]"},
+             std::pair{"speed_mm_s", "[60]"},
+             std::pair{"speed_mm_s", "[[0, 60], [0, 30]]"},
+             std::pair{"speed_mm_s", "[[0.5, 60], [0.2, 30]]"},
+             std::pair{"speed_mm_s", "[[0, 0]]"},
+             std::pair{"speed_mm_s", "[[1.5, 60]]"},
+             std::pair{"speed_mm_s", "[[0, 1e-6]]"},
+             std::pair{"speed_mm_s", "\"fast\""},
+             std::pair{"intensity", "[[0, 1.5]]"},
+             std::pair{"intensity", "[[0, -1]]"},
+             std::pair{"intensity", "[[0, \"1\"]]"},
+             std::pair{"intensity", "[[nan, 1]]"},
+             std::pair{"intensity", "[[0, 1, 2]]"},
+             std::pair{"intensity", "{}"},
+             std::pair{"pauses", "0.5"},
+             std::pair{"pauses", "[]"},
+             std::pair{"pauses", "[0.5, 0.3]"},
+             std::pair{"pauses", "[[0.5]]"},
+             std::pair{"pauses", "[[0.5, 0]]"},
+             std::pair{"pauses", "[[0.5, 90000]]"},
+             std::pair{"pauses", "[[0.5, 86400]]"},
+             std::pair{"pauses", "[[0.5, 0.3, 2]]"},
+             std::pair{"pauses", "[[0.5, 0.3, 1, 1]]"},
+             std::pair{"pauses", "[[-0.1, 0.3]]"},
+             std::pair{"pauses", "[[0.5, 0.3], [0.5, 0.3]]"},
+         }) {
+        const std::string why = complaint(line + fmt::format("{} = {}", key, wrong));
+        CAPTURE(key);
+        CAPTURE(wrong);
+        CAPTURE(why);
+        CHECK(why.find("w.toml:3:") == 0);
+    }
+    CHECK(complaint(line + "duration_s = 0.3\npauses = [[0.5, 0.3]]").find("w.toml:4:") == 0);
+    has(complaint(line + "duration_s = 1.0\nspeed_mm_s = [[0, 1]]"), "has both duration_s and speed_mm_s");
+    CHECK(complaint(line + "easing_ = 1").find("did you mean 'easing'?") != std::string::npos);
+    CHECK(complaint(line + "pause = 1").find("did you mean 'pauses'?") != std::string::npos);
+    for (const std::string key :
+         {"easing = \"in-out\"", "pauses = [[0.5, 0.3]]", "intensity = [[0, 1]]", "speed_mm_s = [[0, 30]]"}) {
+        const std::string why = complaint("timed = [[0, 0, 0], [1, 40, 0]]\n" + key);
+        CHECK(why.find("w.toml:3:") == 0);
+        CHECK(why.find("timed points have times") != std::string::npos);
     }
 }
 
