@@ -18,7 +18,7 @@ SOURCES = {
     "stroke_svg": (["examples/strokes/*.svg"], ["files/test_stroke_svg.cpp", "files/test_stroke_svg_errors.cpp",
                                                  "files/test_stroke_svg_style.cpp"]),
     "path_data": ([], ["core/test_path_svg.cpp", "core/test_path.cpp"]),
-    "study_table": ([], ["study/test_text_table.cpp"]),
+    "study_table": ([], ["study/test_study_files.cpp"]),
     "pcm_name": ([], ["sink/alsa/test_devices.cpp"]),
 }
 

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "study/experiment/definition.hpp"
-
+// Definitions of experiments, and the outlines that the analysis needs.
 #include <string>
 #include <utility>
 
@@ -9,6 +8,7 @@
 #include "caught.hpp"
 #include "folder.hpp"
 #include "has.hpp"
+#include "study/experiment/definition.hpp"
 
 namespace tactor::study::test_definition {
 namespace {
@@ -60,9 +60,9 @@ TEST_CASE("a recording of a motion may have intensities of another scale")
     };
     const experiment_definition d = with("file = \"r.csv\"\nintensity_max = 255\n");
     CHECK(d.motions[0].drawn.motion.intensity(0.5) == doctest::Approx(0.2));
-    CHECK(has(caught_message([&] { with("file = \"r.csv\"\n"); }), "intensity_max"));
-    CHECK(has(caught_message([&] { with("preset = \"park2016-1\"\nintensity_max = 255\n"); }),
-              "[[motion]] has no file"));
+    has(caught_message([&] { with("file = \"r.csv\"\n"); }), "intensity_max");
+    has(caught_message([&] { with("preset = \"park2016-1\"\nintensity_max = 255\n"); }),
+        "[[motion]] has no file");
 }
 
 TEST_CASE("missing keys have defaults")
@@ -125,7 +125,7 @@ TEST_CASE("an attribute is any words, and says what an observer judges where it 
     CHECK(d.runs[0].min_response_s == 0.3);
     const std::string as = "simulate_as = \"uniformity\"\n";
     CHECK(read(head + motion + methods + pleasant + asked + as).runs[0].simulate_as == "uniformity");
-    CHECK(has(refusal(head + motion + methods + pleasant), "no question"));
+    has(refusal(head + motion + methods + pleasant), "no question");
 }
 
 TEST_CASE("a rest is one time, or two between which it is drawn")
@@ -137,7 +137,7 @@ TEST_CASE("a rest is one time, or two between which it is drawn")
     CHECK(rest("2.5") == std::pair(2.5, 2.5));
     CHECK(rest("[2, 4]") == std::pair(2.0, 4.0));
     for (const char* wrong : {"[4, 2]", "[2]", "[1, 2, 3]", "[-1, 2]", "[1, 61]", "\"2\""})
-        CHECK(has(refusal(head + "rest_s = " + wrong + "\n" + motion + methods + run), "e.toml:3:"));
+        has(refusal(head + "rest_s = " + wrong + "\n" + motion + methods + run), "e.toml:3:");
 }
 
 TEST_CASE("the words that stay English are listed where others are given")
@@ -210,8 +210,92 @@ TEST_CASE("faults have their line")
 
 TEST_CASE("a missing experiment lists the existing ones")
 {
-    CHECK(has(caught_message([] { load_definition("park2017"); }), "park2016, or a file"));
-    CHECK(has(caught_message([] { load_definition("./none.toml"); }), "none.toml"));
+    has(caught_message([] { load_definition("park2017"); }), "park2016, or a file");
+    has(caught_message([] { load_definition("./none.toml"); }), "none.toml");
+}
+
+const std::string outline_head =
+    "[experiment]\nname = \"e\"\n"
+    "[[motion]]\nname = \"a\"\n[[motion]]\nname = \"b\"\n"
+    "[[method]]\nname = \"old\"\n[[method]]\nname = \"other\"\n[[method]]\nname = \"new\"\n";
+
+std::string outline_refusal(const std::string& text)
+{
+    return caught_message([&] { read_outline(text, "e.toml"); });
+}
+
+TEST_CASE("runs in order, motions and methods in the order of the definition")
+{
+    const experiment_outline e = read_outline(
+        outline_head + "[[run]]\nname = \"how good\"\ntask = \"rate\"\nscale = 7\ntrials = 12\n"
+                       "[[run]]\nname = \"which-one\"\ntask = \"choose\"\nmethods = [\"new\", \"old\"]\n"
+                       "[[run]]\nname = \"what\"\ntask = \"identify\"\nmotions = [\"b\", \"a\"]\n",
+        "e.toml");
+    CHECK(e.name == "e");
+    REQUIRE(e.runs.size() == 3);
+    CHECK(e.runs[0].file_name == "howgood");
+    CHECK(e.runs[0].methods == std::vector<std::string>{"old", "other", "new"});
+    CHECK(e.runs[0].scale == 7);
+    CHECK(e.runs[0].trials == 12);
+    CHECK(e.runs[1].task == task_kind::choose);
+    CHECK(e.runs[1].methods == std::vector<std::string>{"old", "new"});
+    CHECK(e.runs[2].motions == std::vector<std::string>{"a", "b"});
+}
+
+TEST_CASE("faults have their line")
+{
+    CHECK(outline_refusal("[experiment\n").find("e.toml:1:") == 0);
+    CHECK(outline_refusal("[[run]]\n").find("there is no [experiment]") != std::string::npos);
+    CHECK(outline_refusal("[experiment]\nname = 3\n").find("e.toml:2:8: name is 3") == 0);
+    CHECK(outline_refusal("[experiment]\nname = \"e\"\n").find("there is no [[motion]]") !=
+          std::string::npos);
+    CHECK(outline_refusal(outline_head).find("there is no [[run]]") != std::string::npos);
+    const auto with = [](const std::string& run) {
+        return outline_refusal(outline_head + "[[run]]\n" + run);
+    };
+    CHECK(with("task = \"rate\"\n").find("[[run]] has no name") != std::string::npos);
+    CHECK(with("name = \"-\"\ntask = \"rate\"\n").find("no letter or digit") != std::string::npos);
+    CHECK(with("name = \"r\"\ntask = \"guess\"\n").find("e.toml:15:8: task is 'guess'") == 0);
+    has(with("name = \"r\"\ntask = \"choose\"\n"), "r has 3 methods to choose from");
+    has(with("name = \"r\"\ntask = \"rate\"\nmotions = [\"c\"]\n"),
+        "motions has what is not defined (one of a, b)");
+    for (const char* beyond : {"scale = 1", "scale = 10", "trials = 0", "trials = 10001"})
+        CHECK(with(std::string("name = \"r\"\ntask = \"rate\"\n") + beyond + "\n").find("e.toml:16:") == 0);
+    has(with("name = \"r\"\ntask = \"identify\"\nmotions = [\"a\"]\n"), "one motion to identify");
+    has(with("name = \"r 1\"\ntask = \"rate\"\n[[run]]\nname = \"r-1\"\ntask = \"rate\"\n"),
+        "\"r 1\" and \"r-1\" would have one name");
+    has(outline_refusal(outline_head + "[[method]]\nname = \"old\"\n"), "the method \"old\" is there twice");
+    CHECK(outline_refusal(outline_head + "[[motion]]\nname = \"a\\tb\"\n").find("no such name") !=
+          std::string::npos);
+}
+
+TEST_CASE("keys that the analysis does not need are skipped")
+{
+    CHECK(
+        outline_refusal("[masking]\nnoise = 7\n" + outline_head +
+                        "algorithm = 7\nnew = true\n[[run]]\nname = \"r\"\ntask = \"choose\"\nscale = 7\n"
+                        "attribute = \"likeness\"\nmethods = [\"old\", \"new\"]\nbreak = \"long\"\n[other]\n")
+            .empty());
+}
+
+TEST_CASE("a key of very many parts is refused before it fills the stack, dots in a text are not")
+{
+    std::string key = "a";
+    for (int i = 0; i < 200000; ++i)
+        key += ".a";
+    CHECK(outline_refusal(outline_head + key + " = 1\n").find("e.toml:13:34: a key of too many parts") == 0);
+    CHECK(outline_refusal(outline_head + "[" + key + "]\n").find("too many parts") != std::string::npos);
+    const std::string run = "[[run]]\nname = \"r\"\ntask = \"rate\"\n";
+    CHECK(outline_refusal(outline_head + run + "x = \"....................\"\n").empty());
+    CHECK(outline_refusal(
+              outline_head + run +
+              "x = \"\"\"\n....................\n\\\" .................\n\"\"\" # .................\n")
+              .empty());
+    CHECK(outline_refusal(
+              outline_head + run +
+              "x = [1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, "
+              "1.0]\n")
+              .empty());
 }
 
 } // namespace

@@ -3,7 +3,6 @@
 #include "study/session/stage.hpp"
 
 #include <algorithm>
-#include <cstring>
 #include <functional>
 #include <thread>
 #include <vector>
@@ -12,7 +11,6 @@
 
 #include "clock_runner.hpp"
 #include "fake_dac.hpp"
-#include "has.hpp"
 #include "player_support.hpp"
 #include "scores.hpp"
 #include "sink/alsa/adopt.hpp"
@@ -125,9 +123,7 @@ TEST_CASE("both stimuli of a pair are at their reported frames, the gap between 
 {
     set_up s;
     const auto d = study::read_definition(pairs, "pairs.toml", {});
-    render_options o;
-    o.rate = rate;
-    o.level_dbfs = *d.level_dbfs;
+    render_options o{.rate = rate, .level_dbfs = *d.level_dbfs};
     const study::stimulus_set stimuli(d, palm(), o);
     const auto gap = static_cast<std::size_t>(std::llround(0.0321 * rate));
     for (const study::planned_trial t : {study::planned_trial{0, 0, 1}, study::planned_trial{0, 1, 0}}) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-#include "study/calibrate/staircase.hpp"
-
+// Staircases, the thresholds that they find, and those that are in doubt. Prints the errors of thresholds of
+// simulated observers who sometimes press the wrong key:
+//   build-tests/tests/study/test-study -tc="*lapses*"
 #include <algorithm>
 #include <cmath>
 #include <string_view>
@@ -12,6 +13,8 @@
 
 #include "study/calibrate/calibration.hpp"
 #include "study/calibrate/observer.hpp"
+#include "study/calibrate/result.hpp"
+#include "study/calibrate/staircase.hpp"
 
 namespace tactor::study::test_staircase {
 namespace {
@@ -277,55 +280,6 @@ tactor_threshold measured(unsigned right_for_down, std::uint32_t seed, const obs
     return c.thresholds().front();
 }
 
-// Returns the level at which an observer is right in that part of the trials, by halving.
-double level_for(const observer_settings& o, double part)
-{
-    double low = -200.0;
-    double high = 100.0;
-    for (int i = 0; i < 100; ++i) {
-        const double middle = (low + high) / 2.0;
-        (right_at(o, o.thresholds_dbfs.front(), middle) < part ? low : high) = middle;
-    }
-    return high;
-}
-
-TEST_CASE("a thousand observers' thresholds are those that the rule targets")
-{
-    struct sort {
-        unsigned right_for_down;
-        double spread_db;
-        double lapse;
-        double within_db;
-    };
-    for (const sort& k : {sort{3, 2.0, 0.0, 0.5}, sort{2, 2.0, 0.0, 0.5}, sort{3, 1.0, 0.0, 0.5},
-                          sort{2, 1.0, 0.0, 0.5}, sort{3, 2.0, 0.05, 1.0}, sort{2, 2.0, 0.05, 1.0}}) {
-        const observer_settings who{{-45.0}, k.spread_db, k.lapse};
-        const double target = level_for(who, std::pow(0.5, 1.0 / k.right_for_down));
-        double sum = 0.0;
-        double squares = 0.0;
-        double trials = 0.0;
-        int felt = 0;
-        for (std::uint32_t seed = 0; seed < 1000; ++seed) {
-            const tactor_threshold t = measured(k.right_for_down, seed, who);
-            trials += static_cast<double>(t.trials);
-            if (!t.threshold_dbfs)
-                continue;
-            ++felt;
-            sum += *t.threshold_dbfs;
-            squares += *t.threshold_dbfs * *t.threshold_dbfs;
-        }
-        const double mean = sum / felt;
-        const double sd = std::sqrt(squares / felt - mean * mean);
-        MESSAGE(fmt::format(
-            "1up{}down, spread {} dB, lapse {}: {} felt, mean {:.3f} dBFS, target {:.3f}, off "
-            "{:+.3f} dB, sd {:.3f} dB, {:.1f} trials",
-            k.right_for_down, k.spread_db, k.lapse, felt, mean, target, mean - target, sd, trials / 1000.0));
-        CHECK(std::abs(mean - target) < k.within_db);
-        CHECK(felt >= 900);
-        CHECK(sd < 3.0);
-    }
-}
-
 TEST_CASE("an observer who never feels anything is reported so")
 {
     for (const unsigned right_for_down : {3U, 2U}) {
@@ -334,6 +288,134 @@ TEST_CASE("an observer who never feels anything is reported so")
             not_felt += measured(right_for_down, seed, {{1000.0}, 2.0, 0.0}).end == staircase_end::not_felt;
         MESSAGE(fmt::format("1up{}down: {} of 1000 not felt", right_for_down, not_felt));
         CHECK(not_felt >= 970);
+    }
+}
+
+array row(const std::vector<double>& thresholds_dbfs)
+{
+    array a;
+    for (const double t : thresholds_dbfs) {
+        a.tactors.push_back({.position = {10.0 * static_cast<double>(a.tactors.size()), 0.0}});
+        a.tactors.back().threshold_dbfs = t;
+    }
+    return a;
+}
+
+TEST_CASE("a threshold more than 12 dB above the array's median is named, one below is not")
+{
+    const auto found = find_doubtful(row({-45, -44, -32.9, -46, -70}), {}, {});
+    REQUIRE(found.size() == 1);
+    CHECK(found[0].tactor == 2);
+    CHECK(found[0].why == "it is 12.1 dB above the median of the array's (-45.0 dBFS)");
+    CHECK(find_doubtful(row({-45, -44, -33, -46, -70}), {}, {}).empty());
+    CHECK(find_doubtful(row({-46, -44, -20}), {}, {}).size() == 1);
+    CHECK(find_doubtful(row({-46, -44, -32, -30}), {}, {})
+              .empty()); // an even number: the mean of the middle two
+    CHECK(find_doubtful(row({}), {}, {}).empty());
+}
+
+TEST_CASE("tactors without a threshold do not count, and lists are read at the session's carrier")
+{
+    array a = row({-45, -45, -45, -45, -45});
+    a.tactors[0].threshold_dbfs.reset();
+    a.tactors[3].threshold_dbfs.reset();
+    a.tactors[3].thresholds = {{100.0, -10.0}, {250.0, -45.0}};
+    calibration_settings s;
+    CHECK(find_doubtful(a, s, {}).empty());
+    s.carrier_hz = 100.0;
+    REQUIRE(find_doubtful(a, s, {}).size() == 1);
+    CHECK(find_doubtful(a, s, {})[0].tactor == 3);
+}
+
+TEST_CASE("answers below the threshold that stay right after the second staircase are named")
+{
+    const std::vector<tactor_threshold> measured{
+        {.tactor = 1, .threshold_dbfs = -44.0, .check_below_right = 9, .staircases = 2},
+        {.tactor = 0, .threshold_dbfs = -45.0, .check_below_right = 8}};
+    const auto found = find_doubtful(row({-45, -44, -46}), {}, measured);
+    REQUIRE(found.size() == 1);
+    CHECK(found[0].tactor == 1);
+    CHECK(found[0].why == "9 of 10 answers 6 dB below it were right, after a second staircase too");
+}
+
+constexpr double threshold_dbfs = -45.0;
+constexpr double far_db = 5.0;
+constexpr unsigned sessions = 2000;
+constexpr double tactors = 9.0; // of palm-3x3
+
+/// Errors against the level at which the observer is right without a lapse as often as the rule targets
+struct errors {
+    double bias_db = 0.0;
+    double sd_db = 0.0;
+    double far = 0.0; ///< share of tactors, of those felt
+    double not_felt = 0.0;
+    double trials = 0.0;
+};
+
+// Inverts right_at() by halving.
+double find_target_dbfs(unsigned right_for_down, double spread_db)
+{
+    const observer_settings attentive{{threshold_dbfs}, spread_db, 0.0};
+    double low = -200.0;
+    double high = 100.0;
+    for (int i = 0; i < 100; ++i) {
+        const double middle = (low + high) / 2.0;
+        const bool below = right_at(attentive, threshold_dbfs, middle) < std::pow(0.5, 1.0 / right_for_down);
+        (below ? low : high) = middle;
+    }
+    return high;
+}
+
+errors measure(unsigned right_for_down, double spread_db, double lapse)
+{
+    const double target = find_target_dbfs(right_for_down, spread_db);
+    std::vector<double> off;
+    errors e;
+    for (unsigned seed = 0; seed < sessions; ++seed) {
+        const tactor_threshold t = measured(right_for_down, seed, {{threshold_dbfs}, spread_db, lapse});
+        e.trials += static_cast<double>(t.trials) / sessions;
+        if (t.threshold_dbfs)
+            off.push_back(*t.threshold_dbfs - target);
+    }
+    const auto n = static_cast<double>(off.size());
+    const auto far = std::count_if(off.begin(), off.end(), [](double d) { return std::abs(d) > far_db; });
+    e.not_felt = 1.0 - n / sessions;
+    e.far = static_cast<double>(far) / n;
+    for (const double d : off)
+        e.bias_db += d / n;
+    for (const double d : off)
+        e.sd_db += (d - e.bias_db) * (d - e.bias_db) / (n - 1.0);
+    e.sd_db = std::sqrt(e.sd_db);
+    return e;
+}
+
+// A little above the errors when this was written: seeds are fixed, so only a change of the rules moves them.
+// With the rule from the first trial on and no check below, 2.3 % of tactors were more than 5 dB off at
+// lapses of 5 % and spreads of 1 and 2 dB, and 17 % at 6 dB.
+struct bounds {
+    unsigned right_for_down;
+    double spread_db, lapse, bias_db, sd_db, far;
+};
+constexpr bounds all_bounds[] = {
+    {3, 1.0, 0.00, 0.2, 0.6, 0.002}, {3, 1.0, 0.02, 0.2, 0.7, 0.002}, {3, 1.0, 0.05, 0.5, 1.0, 0.006},
+    {3, 2.0, 0.00, 0.2, 1.0, 0.002}, {3, 2.0, 0.02, 0.3, 1.1, 0.002}, {3, 2.0, 0.05, 0.7, 1.3, 0.006},
+    {3, 6.0, 0.00, 0.3, 2.1, 0.015}, {3, 6.0, 0.02, 0.8, 2.2, 0.025}, {3, 6.0, 0.05, 1.8, 2.6, 0.080},
+    {2, 1.0, 0.00, 0.3, 0.9, 0.004}, {2, 2.0, 0.00, 0.2, 1.2, 0.002}, {2, 2.0, 0.05, 0.5, 1.4, 0.004},
+};
+
+TEST_CASE("thresholds with lapses: bias, deviation, and the share that is more than 5 dB off")
+{
+    fmt::print("{:>8} {:>9} {:>7} {:>9} {:>7} {:>11} {:>14} {:>9} {:>7}\n", "rule", "spread_db", "lapse",
+               "bias_db", "sd_db", "beyond_5_db", "arrays_of_nine", "not_felt", "trials");
+    for (const bounds& b : all_bounds) {
+        const errors e = measure(b.right_for_down, b.spread_db, b.lapse);
+        fmt::print("1up{}down {:>9} {:>5} % {:>+9.2f} {:>7.2f} {:>9.2f} % {:>12.1f} % {:>7.2f} % {:>7.1f}\n",
+                   b.right_for_down, b.spread_db, 100.0 * b.lapse, e.bias_db, e.sd_db, 100.0 * e.far,
+                   100.0 * (1.0 - std::pow(1.0 - e.far, tactors)), 100.0 * e.not_felt, e.trials);
+        CHECK(std::abs(e.bias_db) < b.bias_db);
+        CHECK(e.sd_db < b.sd_db);
+        CHECK(e.far < b.far);
+        CHECK(e.not_felt < 0.08);
     }
 }
 

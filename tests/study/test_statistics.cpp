@@ -1,11 +1,17 @@
 // SPDX-License-Identifier: MIT
-// Tests of means: Student's t and signs, analysis of variance, Tukey's comparisons.
-#include "study/statistics/tests.hpp"
-
+// Statistics, their power, and the analysis of a study.
+#include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <string>
+#include <vector>
 
 #include <doctest/doctest.h>
+
+#include "felt_array.hpp"
+#include "study/analysis/analysis.hpp"
+#include "study/experiment/simulated.hpp"
+#include "study/statistics/tests.hpp"
 
 namespace tactor::study::test_statistics {
 namespace {
@@ -258,6 +264,198 @@ TEST_CASE("all pairs in order; without an error differences alone")
     CHECK(pairs[2].difference == 1.0);
     CHECK(!tukey({1.0, 3.0}, 4, 0.0, 3.0)[0].q);
     CHECK(!tukey({1.0, 3.0}, 1, std::nullopt, 0.0)[0].p);
+}
+
+struct rig {
+    explicit rig(const std::string& second, const std::string& runs)
+        : d(read_definition("[experiment]\nname = \"p\"\n"
+                            "[[motion]]\nname = \"right\"\npath = \"M0 20H40\"\nduration = 0.7\n"
+                            "[[motion]]\nname = \"down\"\npath = \"M20 0V40\"\nduration = 0.7\n"
+                            "[[method]]\nname = \"a\"\nalgorithm = \"tactile-brush\"\n"
+                            "[[method]]\nname = \"b\"\nalgorithm = \"" +
+                                second + "\"\n" + runs,
+                            "p.toml", {})),
+          stimuli(d, felt_array(), {})
+    {
+    }
+
+    std::vector<run_power> tell(const power_request& r) const
+    {
+        return simulate_power(d, stimuli, r, [] { return true; }).value();
+    }
+
+    experiment_definition d;
+    stimulus_set stimuli;
+};
+
+constexpr const char* choose = "[[run]]\nname = \"pick\"\ntask = \"choose\"\nattribute = \"similarity\"\n"
+                               "trials = 12\n";
+constexpr const char* rate = "[[run]]\nname = \"mark\"\ntask = \"rate\"\nattribute = \"uniformity\"\n"
+                             "trials = 12\n";
+
+TEST_CASE("the interval of a share is that of Clopper and Pearson")
+{
+    CHECK(binomial_interval(0, 10).first == 0.0);
+    CHECK(binomial_interval(0, 10).second == doctest::Approx(0.3084971).epsilon(1e-6));
+    CHECK(binomial_interval(8, 10).first == doctest::Approx(0.4439045).epsilon(1e-6));
+    CHECK(binomial_interval(8, 10).second == doctest::Approx(0.9747893).epsilon(1e-6));
+    CHECK(binomial_interval(10, 10).first == doctest::Approx(0.6915029).epsilon(1e-6));
+    CHECK(binomial_interval(10, 10).second == 1.0);
+}
+
+TEST_CASE("the quick test gives the t and p of the full one")
+{
+    const std::vector<double> v{62.5, 70.0, 41.0, 88.5, 50.0};
+    const t_test quick = quick_test_mean(v, 50.0);
+    const t_test whole = test_mean(v, 50.0);
+    CHECK(quick.t == whole.t);
+    CHECK(quick.p == whole.p);
+    CHECK(quick.se == whole.se);
+    CHECK(quick.df == whole.df);
+    CHECK_FALSE(quick.d_ci.has_value());
+}
+
+TEST_CASE("where both methods are equal, one study in twenty is significant")
+{
+    const rig r("tactile-brush", std::string(choose) + rate);
+    const std::vector<run_power> powers = r.tell({{.seed = 1, .sigma = 1.0}, {8}, 3000});
+    REQUIRE(powers.size() == 2);
+    for (const run_power& p : powers) {
+        CHECK(p.at[0].power > 0.03); // counts are coarse, and so is their t: not 0.05 exactly
+        CHECK(p.at[0].power < 0.07);
+        CHECK(static_cast<double>(p.at[0].for_last) ==
+              doctest::Approx(static_cast<double>(p.at[0].significant) / 2.0).epsilon(0.25));
+        CHECK(p.at[0].ci == binomial_interval(p.at[0].significant, 3000));
+    }
+}
+
+TEST_CASE("less noise and more people find more")
+{
+    const rig r("park2016", rate);
+    const auto power = [&](double sigma, std::size_t n) {
+        return r.tell({{.seed = 5, .sigma = sigma}, {n}, 300})[0].at[0].power;
+    };
+    CHECK(power(8.0, 6) < power(4.0, 6));
+    CHECK(power(8.0, 6) < power(8.0, 24));
+}
+
+TEST_CASE("smaller studies are the first people of larger ones, in any given order")
+{
+    const rig r("park2016", std::string(choose) + rate);
+    const simulation s{.seed = 3, .sigma = 4.0, .voids = 0.2};
+    const auto both = r.tell({s, {9, 4}, 50});
+    const auto less = r.tell({s, {4}, 50});
+    for (std::size_t run = 0; run < 2; ++run) {
+        CHECK(both[run].at[1].participants == 4);
+        CHECK(both[run].at[1].significant == less[run].at[0].significant);
+        CHECK(both[run].at[1].for_last == less[run].at[0].for_last);
+    }
+}
+
+TEST_CASE("without noise nobody differs, so nothing is tested")
+{
+    const rig r("park2016", choose);
+    const power_at at = r.tell({{.sigma = 0.0}, {5}, 20})[0].at[0];
+    CHECK(at.untested == 20);
+    CHECK(at.significant == 0);
+    CHECK(at.ci.first == 0.0);
+}
+
+TEST_CASE("ratings of one method have nothing to compare, identifications chance")
+{
+    const rig r("park2016", std::string(rate) + "methods = [\"b\"]\n[[run]]\nname = \"what\"\n"
+                                                "task = \"identify\"\ntrials = 8\n");
+    const auto powers = r.tell({{.sigma = 30.0}, {6}, 20});
+    CHECK(powers[0].at.empty());
+    REQUIRE(powers[1].at.size() == 1);
+    CHECK(powers[1].at[0].significant > 0);
+}
+
+TEST_CASE("the computation asks before each study whether to go on, and gives nothing when stopped")
+{
+    const rig r("park2016", choose);
+    int asked = 0;
+    const auto powers = simulate_power(r.d, r.stimuli, {{}, {3}, 100}, [&] { return ++asked < 4; });
+    CHECK_FALSE(powers.has_value());
+    CHECK(asked == 4);
+}
+
+bool warns(const analysis& a, const std::string& text)
+{
+    const auto has = [&text](const std::vector<std::string>& all) {
+        return std::find(all.begin(), all.end(), text) != all.end();
+    };
+    return has(a.warnings) || has(a.no_figures);
+}
+
+run_outline run(const std::string& name, task_kind task, unsigned trials)
+{
+    run_outline r;
+    r.name = name;
+    r.task = task;
+    r.motions = {"m"};
+    r.methods = {"a", "b"};
+    r.trials = trials;
+    return r;
+}
+
+// Makes trials of one motion, in which the second method was chosen.
+run_data chosen(unsigned trials)
+{
+    run_data d;
+    for (unsigned i = 1; i <= trials; ++i)
+        d.trials.push_back({.place = i, .method_1 = i % 2, .method_2 = 1 - i % 2, .response = 1 + i % 2});
+    return d;
+}
+
+TEST_CASE("missing trials are reported with their participants")
+{
+    dataset d;
+    d.experiment.runs = {run("pairs", task_kind::choose, 4)};
+    d.participants = {"1", "2", "3", "4"};
+    d.data = {{chosen(4)}, {chosen(3)}, {chosen(5)}, {chosen(0)}};
+    const analysis a = analyse(d);
+    CHECK(warns(a, "pairs: sub-2 has 3 trials that count, of 4"));
+    CHECK(warns(a, "pairs: sub-3 has 5 trials that count, of 4"));
+    CHECK(warns(a, "pairs: sub-4 is left out: no trial that counts"));
+    const auto named = std::count_if(a.warnings.begin(), a.warnings.end(), [](const std::string& w) {
+        return w.find("that count, of") != std::string::npos;
+    });
+    CHECK(named == 2);
+    d.experiment.runs[0].trials = 0; // the definition does not give their number
+    CHECK_FALSE(warns(analyse(d), "pairs: sub-2 has 3 trials that count, of 0"));
+}
+
+// The first method is always rated 1, the second 5, except for some fours.
+run_data rated(unsigned trials, unsigned fours)
+{
+    run_data d;
+    for (unsigned i = 0; i < 2 * trials; ++i)
+        d.trials.push_back({.place = i + 1,
+                            .method_1 = i % 2,
+                            .response = i % 2 == 0      ? 1U
+                                        : i / 2 < fours ? 4U
+                                                        : 5U});
+    return d;
+}
+
+TEST_CASE("an effect too large for an interval is reported")
+{
+    dataset d;
+    d.experiment.runs = {run("marks", task_kind::rate, 0)};
+    d.participants = {"1", "2"};
+    const std::string text = "marks: methods: the effect is too large for an interval";
+    d.data = {{rated(2000, 0)}, {rated(2000, 1)}}; // t = 16000
+    analysis a = analyse(d);
+    CHECK(warns(a, text));
+    CHECK(a.runs[0].paired.t);
+    CHECK_FALSE(a.runs[0].paired.d_ci);
+    d.data = {{rated(1000, 0)}, {rated(1000, 1)}}; // t = 8000
+    a = analyse(d);
+    CHECK_FALSE(warns(a, text));
+    CHECK(a.runs[0].paired.d_ci);
+    d.data = {{rated(1000, 0)}, {rated(1000, 0)}}; // no t at all
+    CHECK_FALSE(warns(analyse(d), text));
 }
 
 } // namespace
