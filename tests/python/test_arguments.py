@@ -11,6 +11,7 @@ import tactor
 
 HUGE = 10**400  # no double holds it
 LINE = tactor.Path.svg("M 0 10 L 40 30")
+PALM = tactor.Array.preset("palm-3x3")
 
 
 @pytest.mark.parametrize("call", [
@@ -106,9 +107,14 @@ def test_impossible_values_are_refused_by_the_name_they_were_given(palm):
 @pytest.mark.parametrize("call,what", [
     (lambda: tactor.Path.svg(3), "data"), (lambda: tactor.Array.preset(3), "name"), (lambda: tactor.Stroke.preset(None), "name"), (lambda: tactor.parse(b""), "text"),
     (lambda: tactor.Stroke.along(LINE, name=3), "name"), (lambda: tactor.Stroke.along(LINE, easing=3), "easing"), (lambda: tactor.Array(3, []), "name"),
-    (lambda: tactor.fit_strokes([3], tactor.Array.preset("palm-3x3")), "strokes"), (lambda: tactor.devices(3), "array"),
-    (lambda: tactor.devices(device=3), "device"), (lambda: tactor.Player("null", tactor.Array.preset("palm-3x3"), keep_drive_time=3), "keep_drive_time"),
-    (lambda: tactor.Player("null", tactor.Array.preset("palm-3x3"), sample_format=3), "sample_format"),
+    (lambda: tactor.fit_strokes([3], PALM), "strokes"), (lambda: tactor.devices(3), "array"),
+    (lambda: tactor.devices(device=3), "device"), (lambda: tactor.Player("null", PALM, keep_drive_time=3), "keep_drive_time"),
+    (lambda: tactor.Player("null", PALM, sample_format=3), "sample_format"),
+    (lambda: tactor.plan(LINE, 3), "array"), (lambda: tactor.plan(PALM, "park2016-1"), "stroke"),
+    (lambda: tactor.compare(PALM, 3), "stroke"), (lambda: tactor.Score(3, []), "array"),
+    (lambda: tactor.Score(PALM, 3), "plans"), (lambda: tactor.plot(3, "x.svg"), "plans"), (lambda: tactor.Player("null", "palm"), "array"),
+    (lambda: tactor.Player(3, PALM), "device"), (lambda: tactor.Array("x", [(0, 0)]), "tactors"),
+    (lambda: tactor.Stroke.along("M 0 0 L 1 1"), "path"), (lambda: tactor.fit_strokes([], 3), "array"),
 ])
 def test_another_type_is_said_with_the_arguments_name(call, what):
     with pytest.raises(TypeError, match=f"^{what}: "):

@@ -121,12 +121,3 @@ def test_players_may_be_ended_in_a_signals_handler(what):
     print(player.closed, bool(calls), player.ended)
     """), "    "))
     assert (code, out.split()[:2], err) == (0, ["True", "True"], "")
-
-
-def test_counters_and_the_end_can_be_read_after_close(palm, short):  # noqa: F811
-    with tactor.Player("null", palm, config=os.devnull) as p:
-        p.play(short)
-        before = p.stats()
-        assert p.ended is None
-    after = p.stats()
-    assert p.ended == "" and after.keys() == before.keys() and after["frames"] >= before["frames"] >= short.frames

@@ -48,14 +48,6 @@ def test_each_plan_keeps_its_level(palm, tap, how):
     assert all(np.array_equal(parts(loud)[0][:1000], part[:1000]) for part in parts(loud))
 
 
-def test_plans_keep_their_level_after_records_and_pickles(palm, tap):
-    plans = [tactor.plan(palm, tap, level_dbfs=level) for level in (-30, -3)]
-    score = tactor.Score(palm, plans)
-    for again in (pickle.loads(pickle.dumps(plans)), [tactor.Plan.from_dict(p.to_dict()) for p in plans]):
-        assert np.array_equal(tactor.Score(palm, again).render(), score.render())
-    assert np.array_equal(pickle.loads(pickle.dumps(score)).render(), score.render())
-
-
 def test_sensation_levels_are_kept(tap):
     palm = tactor.Array.preset("palm-3x3").replace(thresholds=[-40.0] * 9)
     quiet, loud = (tactor.plan(palm, tap, sl=sl) for sl in (7, 17))

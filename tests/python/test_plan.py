@@ -165,15 +165,6 @@ def test_a_model_may_be_a_python_object(palm, stroke):
         assert pickle.loads(pickle.dumps(plan)) == plan
 
 
-@pytest.mark.parametrize("answer", [None, 3, {9: 1.0}, {-1: 1.0}, {0: float("nan")}, {0: -1.0}, {"a": 1.0}, {0: "loud"}, [(0, 1.0)]])
-def test_a_model_that_returns_rubbish_is_an_error(palm, stroke, answer):
-    class Rubbish:
-        def weights(self, x_mm, y_mm, intensity):
-            return answer
-    with pytest.raises((tactor.InputError, TypeError, ValueError, AttributeError)):
-        tactor.plan(palm, stroke, phantom=Rubbish())
-
-
 def test_exceptions_of_a_model_come_out(palm, stroke):
     class Raises:
         def weights(self, x_mm, y_mm, intensity):

@@ -206,16 +206,10 @@ class All:
         return {4: intensity} if x_mm > 10 else {40: intensity}
 
 
-def test_a_model_of_python_shapes_a_live_stroke(player):
+@pytest.mark.parametrize("x_mm,raised,why", [(35, ZeroDivisionError, "ZeroDivisionError: mine"), (5, tactor.InputError, "it drives tactor 40 of 9")])
+def test_a_model_of_python_shapes_a_live_stroke_until_it_raises_or_returns_rubbish(player, x_mm, raised, why):
     with player.live(phantom=All()) as finger:
         assert finger.to(20, 20) and finger.to(21, 20)
-    assert finger.report.state == "finished"
-
-
-@pytest.mark.parametrize("x_mm,raised,why", [(35, ZeroDivisionError, "ZeroDivisionError: mine"), (5, tactor.InputError, "it drives tactor 40 of 9")])
-def test_a_model_that_raises_or_returns_rubbish_ends_a_live_stroke(player, x_mm, raised, why):
-    with player.live(phantom=All()) as finger:
-        assert finger.to(20, 20)
         with pytest.raises(raised):
             finger.to(x_mm, 20)
         assert not finger.to(20, 20)
@@ -346,8 +340,10 @@ def test_many_threads_may_play(player, short):
 def test_a_closed_player_is_reported(palm, short, endless):
     p = tactor.Player("null", palm, config=os.devnull)
     ticket = p.submit(endless)
+    before = p.stats()
+    assert p.ended is None
     p.close()
-    assert ticket.report.state == "cancelled" and p.closed
+    assert ticket.report.state == "cancelled" and p.closed and p.stats().keys() == before.keys()
     p.close()
     assert ticket.cancel() is False
     assert p.ended == "" and p.stats()["frames"] > 0 and p.stats() == p.stats()
