@@ -2,14 +2,15 @@
 #include "plot/draw/axes.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <optional>
 
 #include <fmt/format.h>
 
 #include "plot/paint/text.hpp"
 
 namespace tactor::plot {
-
 namespace {
 
 constexpr double tick_length = 2.5;
@@ -24,6 +25,97 @@ void draw_head(canvas& c, double x, double y, double direction)
     c.poly(
         {{x, y}, {x - direction * head_length, y - head_half}, {x - direction * head_length, y + head_half}},
         true, {.fill = ink});
+}
+
+constexpr double legend_row = 9.0;
+constexpr double sample_length = 14.0;
+constexpr double left_column = 30.0; // for the labels of y, pt
+constexpr double column = 0.25;      // pt: closer values along x are one
+
+// Keeps the first, the least, the largest and the last of the values in each column of the page.
+std::vector<spot> thin_out(const std::vector<spot>& line)
+{
+    std::vector<spot> out;
+    for (std::size_t i = 0; i < line.size();) {
+        std::size_t end = i;
+        std::size_t low = i;
+        std::size_t high = i;
+        while (end < line.size() && std::isfinite(line[end].y) &&
+               std::floor(line[end].x / column) == std::floor(line[i].x / column)) {
+            low = line[end].y < line[low].y ? end : low;
+            high = line[end].y > line[high].y ? end : high;
+            ++end;
+        }
+        if (end - i <= 4) {
+            end = std::max(end, i + 1);
+            out.insert(out.end(), line.begin() + static_cast<std::ptrdiff_t>(i),
+                       line.begin() + static_cast<std::ptrdiff_t>(end));
+        } else {
+            for (const std::size_t k : {i, std::min(low, high), std::max(low, high), end - 1})
+                out.push_back(line[k]);
+        }
+        i = end;
+    }
+    return out;
+}
+
+// Draws samples of lines and their names, in rows up to `width`, from (x, y) down. Returns the height, also
+// without a canvas.
+double draw_line_legend(canvas* c, const std::vector<series>& lines, double x, double y, double width)
+{
+    double at = x;
+    double row = y;
+    for (const series& s : lines) {
+        if (s.name.empty())
+            continue;
+        const double need = sample_length + 3.0 + text_width(s.name, small_text);
+        if (at > x && at + need > x + width) {
+            at = x;
+            row += legend_row;
+        }
+        if (c != nullptr) {
+            const double middle = row + legend_row / 2.0;
+            c->line({at, middle}, {at + sample_length, middle}, s.look, {.kind = "legend"});
+            c->text({at + sample_length + 3.0, middle + cap_height(small_text) / 2.0},
+                    shorten(s.name, small_text, width - sample_length - 3.0), {.size = small_text},
+                    {.kind = "legend"});
+        }
+        at += need + 8.0;
+    }
+    return at > x ? row + legend_row - y : 0.0;
+}
+
+struct segment {
+    spot from;
+    spot to;
+};
+
+// Returns the part of a segment inside a box (Liang and Barsky).
+std::optional<segment> clip_segment(spot a, spot b, box w)
+{
+    const double dx = b.x - a.x;
+    const double dy = b.y - a.y;
+    double enter = 0.0;
+    double leave = 1.0;
+    const auto cut = [&](double speed, double space) { // speed * t <= space
+        if (speed == 0.0)
+            return space >= 0.0;
+        const double t = space / speed;
+        if (speed < 0.0)
+            enter = std::max(enter, t);
+        else
+            leave = std::min(leave, t);
+        return enter <= leave;
+    };
+    if (!cut(-dx, a.x - w.x) || !cut(dx, w.right() - a.x) || !cut(-dy, a.y - w.y) ||
+        !cut(dy, w.bottom() - a.y))
+        return {};
+    return segment{{a.x + enter * dx, a.y + enter * dy}, {a.x + leave * dx, a.y + leave * dy}};
+}
+
+bool finite(spot s) noexcept
+{
+    return std::isfinite(s.x) && std::isfinite(s.y);
 }
 
 } // namespace
@@ -155,6 +247,109 @@ void draw_hatch(canvas& c, box b, const mark& m)
         c.line({x_bottom, k - x_bottom}, {x_top, k - x_top}, thin);
     }
     c.rect(b, {.stroke = black, .width = 0.5}, {.kind = "rim"});
+}
+
+double distance(spot p, spot a, spot b) noexcept
+{
+    const double dx = b.x - a.x;
+    const double dy = b.y - a.y;
+    const double square = dx * dx + dy * dy;
+    const double t =
+        square > 0.0 ? std::clamp(((p.x - a.x) * dx + (p.y - a.y) * dy) / square, 0.0, 1.0) : 0.0;
+    return std::hypot(p.x - a.x - t * dx, p.y - a.y - t * dy);
+}
+
+std::vector<std::vector<spot>> clip(const std::vector<spot>& line, box b)
+{
+    std::vector<std::vector<spot>> parts;
+    bool joined = false;
+    for (std::size_t i = 1; i < line.size(); ++i) {
+        const auto inside =
+            finite(line[i - 1]) && finite(line[i]) ? clip_segment(line[i - 1], line[i], b) : std::nullopt;
+        if (!inside) {
+            joined = false;
+            continue;
+        }
+        if (!joined)
+            parts.push_back({inside->from});
+        parts.back().push_back(inside->to);
+        joined = inside->to.x == line[i].x && inside->to.y == line[i].y;
+    }
+    return parts;
+}
+
+std::vector<spot> simplify(const std::vector<spot>& line, double tolerance)
+{
+    if (line.size() < 3)
+        return line;
+    std::vector<bool> keep(line.size(), false);
+    keep.front() = keep.back() = true;
+    std::vector<std::pair<std::size_t, std::size_t>> open{{0, line.size() - 1}};
+    while (!open.empty()) {
+        const auto [first, last] = open.back();
+        open.pop_back();
+        double worst = tolerance;
+        std::size_t at = 0;
+        for (std::size_t i = first + 1; i < last; ++i) {
+            const double d = distance(line[i], line[first], line[last]);
+            if (d > worst) {
+                worst = d;
+                at = i;
+            }
+        }
+        if (at != 0) {
+            keep[at] = true;
+            open.emplace_back(first, at);
+            open.emplace_back(at, last);
+        }
+    }
+    std::vector<spot> out;
+    for (std::size_t i = 0; i < line.size(); ++i)
+        if (keep[i])
+            out.push_back(line[i]);
+    return out;
+}
+
+box draw_chart(canvas& c, const chart& ch)
+{
+    const double legend = draw_line_legend(nullptr, ch.lines, 0.0, 0.0, ch.where.width - left_column);
+    const double top = legend + 3.0;
+    const box inside{ch.where.x + left_column, ch.where.y + top, ch.where.width - left_column - 5.0,
+                     ch.where.height - top - axis_height};
+    const scale x{0.0, ch.x_to, inside.x, inside.right()};
+    const scale y{ch.y_from, ch.y_to, inside.bottom(), inside.y};
+    const group g(c, {.id = ch.id,
+                      .kind = "chart",
+                      .data = {{"x0", fmt::format("{:.9g}", x(0.0))},
+                               {"x-scale", fmt::format("{:.9g}", x.per_unit())},
+                               {"y0", fmt::format("{:.9g}", y(0.0))},
+                               {"y-scale", fmt::format("{:.9g}", y.per_unit())}}});
+    const auto most = static_cast<std::size_t>(std::max(2.0, inside.height / 12.0));
+    draw_vertical_axis(c, y, nice_ticks(y.from, y.to, most), inside, ch.y_title,
+                       ch.where.x + cap_height(label_text));
+    draw_horizontal_axis(c, x, inside.bottom(), inside.y, ch.x_title);
+    for (const chart_band& b : ch.bands) {
+        std::array<std::vector<spot>, 2> edge;
+        for (const spot& v : b.low)
+            edge[0].push_back({x(v.x), y(v.y)});
+        for (const spot& v : b.high)
+            edge[1].push_back({x(v.x), y(v.y)});
+        std::vector<spot> round = simplify(thin_out(edge[0]), 0.05);
+        const std::vector<spot> back = simplify(thin_out(edge[1]), 0.05);
+        round.insert(round.end(), back.rbegin(), back.rend());
+        c.poly(std::move(round), true, b.look, {.kind = "band", .data = {{"name", b.name}}});
+    }
+    for (const series& s : ch.lines) {
+        const group one(c, {.kind = "series", .data = {{"name", s.name}}});
+        std::vector<spot> line;
+        line.reserve(s.values.size());
+        for (const spot& v : s.values)
+            line.push_back({x(v.x), y(v.y)});
+        for (std::vector<spot>& part : clip(thin_out(line), inside))
+            c.poly(simplify(part, 0.02), false, s.look, {.kind = "curve"});
+    }
+    draw_line_legend(&c, ch.lines, inside.x, ch.where.y, inside.width);
+    return inside;
 }
 
 } // namespace tactor::plot
