@@ -8,7 +8,7 @@
 #include <fmt/ranges.h>
 
 #include "cli/option_words.hpp"
-#include "options/check.hpp"
+#include "options/option.hpp"
 #include "options/settle.hpp"
 
 namespace tactor::cli {

@@ -10,7 +10,7 @@
 #include "core/marks.hpp"
 #include "core/split.hpp"
 #include "core/suggest.hpp"
-#include "options/check.hpp"
+#include "options/option.hpp"
 
 namespace tactor::options {
 namespace {

@@ -12,7 +12,7 @@
 #include <fmt/format.h>
 
 #include "core/words.hpp"
-#include "options/check.hpp"
+#include "options/option.hpp"
 #include "plan/curve_impl.hpp"
 #include "python/plan_handle.hpp"
 

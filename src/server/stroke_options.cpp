@@ -11,7 +11,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "options/check.hpp"
+#include "options/option.hpp"
 #include "options/settle.hpp"
 #include "server/faults.hpp"
 

@@ -14,7 +14,7 @@
 #include "core/words.hpp"
 #include "files/text_file.hpp"
 #include "files/toml_reader.hpp"
-#include "options/check.hpp"
+#include "options/option.hpp"
 #include "options/settle.hpp"
 #include "options/words.hpp"
 
