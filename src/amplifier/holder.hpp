@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// The player's side of the holder process.
+/// The holder: a process that owns the amplifier's line and outlives the player for as long as it takes to
+/// switch off; and the player's side of it.
 #pragma once
 
 #include <cstdint>
@@ -13,9 +14,37 @@
 
 #include <tactor/lines.hpp>
 
-#include "amplifier/holder_process.hpp"
-
 namespace tactor::amplifier {
+
+/// Times that the player and the holder wait for each other. Programs use the defaults. Tests that do not
+/// test time wait longer.
+struct holder_limits {
+    /// Silence of the player, without a command or beat, after which the line goes off. Beats come every 50
+    /// ms.
+    int silence_ms = 150;
+    /// Time without an answer after which the holder counts as lost. It runs for microseconds at a time.
+    int answer_ms = 500;
+    /// Time that the player waits for the holder's greeting.
+    int start_ms = 5000;
+    /// Number of unanswered beats after which the holder counts as lost, too.
+    unsigned unanswered = 10;
+};
+
+/// Message kinds, player to holder and back. The holder answers each command with its own kind and number.
+enum class message_kind : std::uint8_t {
+    hello,  ///< from the holder: it runs and owns the line
+    on,     ///< command
+    off,    ///< command
+    beat,   ///< command: the player lives
+    lapsed, ///< from the holder: it switched off because the player was silent
+};
+
+struct message {
+    message_kind kind = message_kind::hello;
+    std::uint8_t number = 0; ///< number of the command
+    bool done = true;        ///< answer: the line obeyed
+    std::int32_t pid = 0;    ///< hello: pid of the holder
+};
 
 /// The line that the holder takes over.
 struct held_line {

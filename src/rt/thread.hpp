@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// Threads with options that std::thread lacks: stack size, policy, name, signals.
+/// Threads with options that std::thread lacks: stack size, policy, name, signals; and what to do where the
+/// system refuses them.
 #pragma once
 
 #include <cstddef>
@@ -8,6 +9,8 @@
 #include <string>
 
 #include <pthread.h>
+
+#include <tactor/version.hpp>
 
 namespace tactor::rt {
 
@@ -44,5 +47,9 @@ private:
     bool joinable_ = false;
     int fifo_error_ = -1;
 };
+
+/// Returns a sentence for people: what to do if the system refuses SCHED_FIFO at this priority, or memory of
+/// this size.
+std::string realtime_advice(const realtime_rights& r, int priority);
 
 } // namespace tactor::rt

@@ -19,7 +19,7 @@
 
 #include <tactor/tactor.hpp>
 
-#include "rt/advice.hpp"
+#include "rt/thread.hpp"
 #include "session/say.hpp"
 
 namespace tactor::session {

@@ -10,7 +10,6 @@
 
 #include <doctest/doctest.h>
 
-#include "rt/advice.hpp"
 #include "rt/thread.hpp"
 
 namespace realtime_test {

@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 
 #include "cli/devices/devices_text.hpp"
-#include "rt/advice.hpp"
+#include "rt/thread.hpp"
 
 namespace tactor::cli {
 namespace {

@@ -19,7 +19,7 @@
 #include "core/refused.hpp"
 #include "core/words.hpp"
 #include "engine/control/player_impl.hpp"
-#include "rt/advice.hpp"
+#include "rt/thread.hpp"
 
 namespace tactor {
 inline namespace v0 {

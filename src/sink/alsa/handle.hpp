@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// Owners of ALSA's objects, and opening a PCM by name.
+/// Owners of ALSA's objects, its configuration, and opening a PCM by name.
 #pragma once
 
 #include <memory>
+#include <string>
 
 #include <alsa/asoundlib.h>
 
@@ -13,6 +14,15 @@
 #include "sink/alsa/library_messages.hpp"
 
 namespace tactor::alsa {
+
+using configuration = std::unique_ptr<snd_config_t, detail::deleter<snd_config_delete>>;
+
+/// Reads a configuration: the text, or without one the system's files, as they are now. libasound's own copy
+/// of these belongs to the host program, and keeps what ~/.asoundrc was when it was first read.
+/// \throws error: bad_input for text that ALSA cannot read; not_available for files that it cannot read, with
+///         file and line; runtime without a free descriptor: libasound would skip the files that it cannot
+///         open.
+configuration read_configuration(const std::string& text = {});
 
 inline constexpr unsigned most_channels = max_pcm_channels;
 

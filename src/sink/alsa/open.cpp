@@ -14,7 +14,6 @@
 #include "core/refused.hpp"
 #include "core/words.hpp"
 #include "sink/alsa/adopt.hpp"
-#include "sink/alsa/configuration.hpp"
 #include "sink/alsa/devices/route.hpp"
 #include "sink/alsa/handle.hpp"
 #include "sink/alsa/library_messages.hpp"

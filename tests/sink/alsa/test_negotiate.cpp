@@ -22,7 +22,6 @@
 #include "fake_dac.hpp"
 #include "folder.hpp"
 #include "sink/alsa/adopt.hpp"
-#include "sink/alsa/configuration.hpp"
 #include "sink/alsa/devices/route.hpp"
 #include "sink/alsa/error_text.hpp"
 #include "sink/alsa/handle.hpp"

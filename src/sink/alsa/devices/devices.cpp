@@ -6,7 +6,6 @@
 #include <fmt/format.h>
 
 #include "core/suggest.hpp"
-#include "sink/alsa/configuration.hpp"
 #include "sink/alsa/devices/plain_name.hpp"
 #include "sink/alsa/devices/route.hpp"
 #include "sink/alsa/error_text.hpp"

@@ -9,7 +9,6 @@
 
 #include <fmt/format.h>
 
-#include "sink/alsa/configuration.hpp"
 #include "sink/alsa/devices/route.hpp"
 #include "sink/alsa/handle.hpp"
 #include "sink/alsa/library_messages.hpp"
