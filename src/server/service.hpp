@@ -29,10 +29,10 @@
 #include "net/peer.hpp"
 #include "net/rpc.hpp"
 #include "options/serve.hpp"
-#include "server/files/tool_line.hpp"
 #include "server/planners.hpp"
 #include "server/stream.hpp"
 #include "server/stroke_source.hpp"
+#include "server/tool_line.hpp"
 
 namespace tactor::server {
 
@@ -193,6 +193,14 @@ private:
     void gather_levels();
     reply_json hello_result(const client& c);
     reply_json limits_json() const;
+    reply_json people() const;
+    void tell_subscribers(const std::string& event, reply_json params, client_number except = 0);
+    void count_touch_listeners();
+    void touch(stroke_record& r);
+    void touch_later(std::uint32_t stroke);
+    void end_touch(stroke_record& r);
+    void tell_touch(const stroke_record& r, bool down);
+    void tell_stop(client_number by);
 
     // service_jobs.cpp
     void plan_or_play(client& c, net::json&& params, const answer& to, bool play, std::size_t bytes);
@@ -229,8 +237,6 @@ private:
     void stop_all(client_number by);
     void fire(client& c, const net::json& params, const answer& to);
     void release(const std::vector<std::uint32_t>& numbers);
-
-    // service_live.cpp
     void begin(client& c, const net::json& params, const answer& to);
     void begin_now(client& c, const live_options& o, double intensity_max, const answer& to,
                    const char* ended_by);
@@ -238,17 +244,6 @@ private:
     void end(client& c, const net::json& params, const answer& to);
     stroke_record& own_live(client& c, std::uint32_t number);
 
-    // service_people.cpp
-    reply_json people() const;
-    void tell_subscribers(const std::string& event, reply_json params, client_number except = 0);
-    void count_touch_listeners();
-    void touch(stroke_record& r);
-    void touch_later(std::uint32_t stroke);
-    void end_touch(stroke_record& r);
-    void tell_touch(const stroke_record& r, bool down);
-    void tell_stop(client_number by);
-
-    // service_ends.cpp
     stroke_record& add_record(client_number owner);
     void begun(std::uint64_t player, stroke_id id, std::optional<std::int64_t> at_ns);
     void ended(std::uint64_t player, const stroke_report& r);

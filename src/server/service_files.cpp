@@ -1,14 +1,406 @@
 // SPDX-License-Identifier: MIT
 // import and export: planners make them.
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <filesystem>
+#include <functional>
+#include <iterator>
+#include <new>
+#include <optional>
+#include <string>
+#include <string_view>
 #include <utility>
+#include <vector>
 
-#include "server/files/export_strokes.hpp"
-#include "server/files/import_strokes.hpp"
+#include <fmt/format.h>
+
+#include "core/bounds.hpp"
+#include "core/trajectory/sample_points.hpp"
+#include "core/words.hpp"
+#include "files/plan/plan_file.hpp"
+#include "files/setup_text.hpp"
+#include "files/text_file.hpp"
+#include "net/base64.hpp"
+#include "plot/figure.hpp"
+#include "plot/paint/output.hpp"
+#include "server/faults.hpp"
 #include "server/service_impl.hpp"
+#include "server/stroke_source.hpp"
+#include "server/tool_line.hpp"
+#include "sink/wav/wav.hpp"
 
 namespace tactor::server {
+namespace {
 
 using net::json;
+
+constexpr std::size_t longest_name = 255;
+
+// Strokes as they were read, and the text if it is TOML that says the same.
+struct read_file {
+    std::vector<stroke> strokes = {};
+    std::string toml = {};
+};
+
+// Returns the parameter that has the strokes.
+const char* find_content(const json& params)
+{
+    const char* found = find_one(params, {"stroke", "text", "base64"});
+    if (found == nullptr)
+        bad_param("text", "nothing says what to read", "one of text, base64, stroke");
+    return found;
+}
+
+std::string file_name(const json& params)
+{
+    const json* name = member(params, "name");
+    return name == nullptr ? "stroke" : text(*name, "name");
+}
+
+std::string content(const std::string& source, const json& v)
+{
+    const std::string& given = text(v, source);
+    if (source == "text")
+        return given;
+    std::optional<std::string> bytes = net::read_base64(given);
+    if (!bytes)
+        bad_param(source, "it is no base64", "four characters for three bytes, = at the end");
+    return *std::move(bytes);
+}
+
+double intensity_max(const json& params)
+{
+    const json* said = member(params, "intensity_max");
+    return said == nullptr ? 1.0 : number(*said, "intensity_max", detail::bounds_of::intensity_max);
+}
+
+bool is_plan(std::string_view bytes, const std::string& name)
+{
+    const std::string extension = in_small_letters(std::filesystem::path(name).extension().string());
+    const bool is_stroke = extension == ".toml" || extension == ".csv" || extension == ".svg";
+    return extension == ".json" || (!is_stroke && files::holds_plans(bytes));
+}
+
+std::vector<stroke> read_plan_strokes(std::string_view bytes, const std::string& name)
+{
+    files::plan_file f = files::read_plans(bytes, name, files::recordings_kind::refuse);
+    for (std::size_t i = 0; i < f.made.strokes.size(); ++i) {
+        f.made.strokes[i].start_s = f.made.plans[i].start_s;
+        f.made.strokes[i].anchor = f.made.plans[i].anchor;
+    }
+    return std::move(f.made.strokes);
+}
+
+read_file read_bytes(std::string bytes, const std::string& name, double intensity_max)
+{
+    if (is_plan(bytes, name))
+        return {read_plan_strokes(bytes, name)};
+    const std::string_view format = detail::find_stroke_format(bytes, name);
+    if (format == "svg")
+        return {parse_strokes_svg(bytes, name)};
+    if (format == "csv")
+        return {parse_strokes_csv(bytes, name, intensity_max)};
+    std::vector<stroke> strokes = parse_strokes_toml(bytes, name, intensity_max);
+    if (intensity_max != 1.0)
+        bytes.clear(); // its intensities are not what others would read
+    return {std::move(strokes), std::move(bytes)};
+}
+
+std::string toml_text(std::vector<stroke> strokes, const std::vector<double>& starts)
+{
+    count_from_piece(strokes, starts);
+    return detail::strokes_text(strokes);
+}
+
+// Appends the points of each stroke, by hand: a document of a million numbers takes too much memory.
+void append_points(std::string& out, const std::vector<stroke>& strokes, std::size_t most_bytes)
+{
+    for (const stroke& k : strokes) {
+        out += out.back() == '[' ? "[" : ",[";
+        for (const timed_point& p : detail::sample_points(k.motion)) {
+            fmt::format_to(std::back_inserter(out), "{}[{},{},{},{}]", out.back() == '[' ? "" : ",", p.t_s,
+                           p.position.x_mm, p.position.y_mm, p.intensity);
+            if (out.size() > most_bytes)
+                limit_reached("import", "its result is too large to be sent", "make it shorter or simpler");
+        }
+        out += ']';
+    }
+}
+
+std::string result_text(const read_file& f, std::size_t most_bytes)
+{
+    const std::vector<double> starts = path_starts_s(f.strokes);
+    net::reply_json strokes = net::reply_json::array();
+    net::reply_json warnings = net::reply_json::array();
+    for (std::size_t i = 0; i < f.strokes.size(); ++i) {
+        const stroke& k = f.strokes[i];
+        strokes.push_back({{"name", k.name}, {"start_s", starts[i]}, {"duration_s", k.motion.duration_s()}});
+        for (const std::string& w : k.warnings)
+            warnings.push_back(net::cut_echo(w));
+    }
+    const net::reply_json toml = f.toml.empty() ? toml_text(f.strokes, starts) : f.toml;
+    std::string out =
+        fmt::format(R"({{"toml":{},"strokes":{},"points":[)", net::json_line(toml), net::json_line(strokes));
+    append_points(out, f.strokes, most_bytes);
+    return out + fmt::format(R"(],"warnings":{}}})", net::json_line(warnings));
+}
+
+// Returns the fault of the exception that is being handled, about a parameter with the text of a named file.
+net::rpc_fault content_fault(const std::string& source, const std::string& name)
+{
+    net::rpc_fault f = current_fault(name);
+    if (f.what == name)
+        f.what = source;
+    return f;
+}
+
+// Checks the parameters as far as no text must be read. \throws fault_error.
+void check_import(const json& params)
+{
+    allow_only(params, {"name", "text", "base64", "stroke", "fit", "intensity_max"});
+    static_cast<void>(text(params[find_content(params)], find_content(params)));
+    static_cast<void>(flag(params, "fit"));
+    static_cast<void>(intensity_max(params));
+    if (file_name(params).size() > longest_name)
+        bad_param("name", fmt::format("it has more than {} bytes", longest_name), "shorten it");
+}
+
+// Returns the result as JSON on one line. Opens no file. Runs off the thread of the sockets. \throws
+// fault_error, also for a result above `most_bytes`.
+std::string import_strokes(const planning& with, const layout& faces, const json& params,
+                           std::size_t most_bytes)
+{
+    const std::string source = find_content(params);
+    const std::string name = source == "stroke" ? source : file_name(params);
+    const bool fit = flag(params, "fit");
+    try {
+        read_file f = source == "stroke"
+                          ? read_file{read_strokes(source, params[source], with.owner)}
+                          : read_bytes(content(source, params[source]), name, intensity_max(params));
+        if (fit)
+            f.toml.clear();
+        f.strokes = settle_strokes(with, faces, std::move(f.strokes), with.owner, fit);
+        return result_text(f, most_bytes);
+    } catch (const fault_error&) {
+        throw;
+    } catch (...) {
+        throw fault_error(content_fault(source, name));
+    }
+}
+
+// Everything that an exported file depends on beside the request. What it refers to must outlive it.
+struct exporting {
+    const planning& with;
+    const layout& faces;
+    const tool_files& named; // in the tool's command line
+    // Returns the tactor-plan/1 text of a plan; throws std::bad_alloc beyond so many bytes.
+    const std::function<std::string(const planned&, std::size_t most_bytes)>& plan_text;
+    std::size_t most_bytes; // of the file
+};
+
+// A kind of file, and the command of the tool that makes it, or plays it.
+struct file_kind {
+    std::string_view extension;
+    std::string_view mime;
+    std::string_view command;
+    options::place place;
+    std::string_view reads; ///< extension
+    std::string_view into;  ///< before the file that it writes
+    std::string_view writes;
+    std::optional<plot::file_format> picture = {};
+
+    bool has_plan() const { return extension != "toml" && extension != "csv"; }
+};
+
+constexpr std::array kinds{
+    file_kind{"toml", "application/toml", "render", options::on_render, "toml", "-o", "wav"},
+    file_kind{"csv", "text/csv", "render", options::on_render, "csv", "-o", "wav"},
+    file_kind{"wav", "audio/wav", "render", options::on_render, "toml", "-o", "wav"},
+    file_kind{"json", "application/json", "plan", options::on_plan, "toml", "--format json >", "json"},
+    file_kind{"svg", "image/svg+xml", "plot", options::on_plot, "toml", "-o", "svg", plot::file_format::svg},
+    file_kind{"png", "image/png", "plot", options::on_plot, "toml", "-o", "png", plot::file_format::png},
+    file_kind{"pdf", "application/pdf", "plot", options::on_plot, "toml", "-o", "pdf",
+              plot::file_format::pdf}};
+
+const file_kind& find_kind(const json& params)
+{
+    const json* as = member(params, "as");
+    constexpr const char* hint = "one of toml, csv, svg, wav, png, pdf, json";
+    if (as == nullptr)
+        bad_param("as", "it is missing", hint);
+    const std::string name = text(*as, "as");
+    const auto* found =
+        std::find_if(kinds.begin(), kinds.end(), [&name](const file_kind& k) { return k.extension == name; });
+    if (found == kinds.end())
+        bad_param("as", fmt::format("there is no \"{}\"", name), hint);
+    return *found;
+}
+
+[[noreturn]] void too_large(std::size_t most_bytes)
+{
+    limit_reached("export", fmt::format("the file is larger than {} MiB", most_bytes >> 20U),
+                  "make it shorter, or make it with the tool");
+}
+
+std::string choose_name(const json& params, const std::vector<stroke>& strokes)
+{
+    if (const json* name = member(params, "name"))
+        return text(*name, "name");
+    return make_file_name(strokes.size() == 1 ? strokes.front().name : "strokes");
+}
+
+format_kind sample_format(const options::wishes& s)
+{
+    return s.format.value_or(format_kind::float32);
+}
+
+// Refuses a WAV file before it is rendered. A plan may last a little longer than its path.
+void check_samples(const exporting& e, const options::wishes& s, double seconds)
+{
+    const double frame_bytes = static_cast<double>(s.render.channels * sample_bytes(sample_format(s)));
+    if (seconds * s.render.rate * frame_bytes > static_cast<double>(e.most_bytes))
+        too_large(e.most_bytes);
+}
+
+double end_s(const std::vector<stroke>& strokes)
+{
+    const std::vector<double> starts = path_starts_s(strokes);
+    double end = 0.0;
+    for (std::size_t i = 0; i < strokes.size(); ++i)
+        end = std::max(end, starts[i] + strokes[i].motion.duration_s());
+    return end;
+}
+
+// Gives strokes that count from a group a start in seconds, which takes their plans: a plan may last longer
+// than its path.
+void place_by_plans(const exporting& e, const options::wishes& s, std::vector<stroke>& strokes,
+                    const go_on_check& go_on)
+{
+    if (std::none_of(strokes.begin(), strokes.end(), counts_from_group))
+        return;
+    planned p{{"", strokes}, s.render};
+    plan_strokes(e.with, e.faces, p, s, "stroke", go_on);
+    count_from_piece(strokes, p.starts_s());
+}
+
+// Returns the strokes as the tool reads them in the exported file: all its digits come from there.
+std::vector<stroke> read_again(const std::string& toml, const std::string& source,
+                               const std::vector<stroke>& written)
+{
+    std::vector<stroke> strokes = parse_strokes_toml(toml, source);
+    for (std::size_t i = 0; i < strokes.size(); ++i)
+        strokes[i].places = written[i].places; // in the client's text
+    return strokes;
+}
+
+std::string csv_text(const std::vector<stroke>& strokes)
+{
+    if (strokes.size() != 1)
+        bad_param("as", fmt::format("a CSV file has one stroke, and there are {}", strokes.size()),
+                  "as toml");
+    std::string out = "t_s,x_mm,y_mm,intensity\n";
+    for (const timed_point& p : detail::sample_points(strokes.front().motion))
+        fmt::format_to(std::back_inserter(out), "{},{},{},{}\n", p.t_s, p.position.x_mm, p.position.y_mm,
+                       p.intensity);
+    return out;
+}
+
+std::string file_bytes(const exporting& e, const file_kind& kind, const planned& p, const options::wishes& s)
+{
+    if (kind.picture) {
+        const std::string title = plot::name_scene(p.strokes, p.name + ".toml");
+        const plot::scene shown{e.with.tactors, title, p.strokes, p.plans, nullptr, p.moved};
+        return plot::to_bytes(plot::draw_figure(shown, {}), *kind.picture, plot::usual_dpi);
+    }
+    try {
+        if (kind.extension == "json")
+            return e.plan_text(p, e.most_bytes);
+    } catch (const std::bad_alloc&) {
+        too_large(e.most_bytes);
+    }
+    check_samples(e, s, p.total_s());
+    return wav::bytes(score(e.with.tactors, p.plans, p.render), sample_format(s));
+}
+
+std::string command_line(const exporting& e, const file_kind& kind, const std::string& name,
+                         const options::wishes& s)
+{
+    return fmt::format("tactor {} {}{} {} {}", kind.command,
+                       quote_word(fmt::format("{}.{}", name, kind.reads)),
+                       option_words(s, kind.place, e.with.tactors, e.named, kind.reads == "toml"), kind.into,
+                       quote_word(fmt::format("{}.{}", name, kind.writes)));
+}
+
+std::string result_text(const exporting& e, const file_kind& kind, const std::string& name,
+                        const options::wishes& s, const std::string& bytes)
+{
+    if (bytes.size() > e.most_bytes)
+        too_large(e.most_bytes);
+    std::string out = fmt::format(R"({{"name":{},"mime":"{}","command":{},"base64":")",
+                                  net::json_line(fmt::format("{}.{}", name, kind.extension)), kind.mime,
+                                  net::json_line(command_line(e, kind, name, s)));
+    net::append_base64(out, bytes);
+    return out + "\"}";
+}
+
+// Writes and reads the strokes: an exported file has the digits that the tool finds in it.
+std::string make_bytes(const exporting& e, const file_kind& kind, const std::string& source,
+                       const std::string& name, std::vector<stroke> strokes, const options::wishes& s,
+                       const go_on_check& go_on)
+{
+    if (kind.extension == "csv")
+        return csv_text(strokes);
+    if (kind.extension != "json") {
+        place_by_plans(e, s, strokes, go_on);
+        for (stroke& k : strokes)
+            put_options(k, s);
+        std::string toml = detail::strokes_text(strokes);
+        if (kind.extension == "toml")
+            return toml;
+        strokes = read_again(toml, source, strokes);
+    }
+    planned p{{name, std::move(strokes)}, s.render};
+    plan_strokes(e.with, e.faces, p, s, source, go_on);
+    return file_bytes(e, kind, p, s);
+}
+
+// Checks the parameters as far as no text must be read. \throws fault_error.
+void check_export(const planning& with, const json& params)
+{
+    allow_only(params, {"stroke", "path", "points", "toml", "csv", "svg", "options", "fit", "as", "name"});
+    static_cast<void>(find_source(params));
+    static_cast<void>(find_kind(params));
+    static_cast<void>(settle_options(with.owner, params));
+    static_cast<void>(flag(params, "fit"));
+    if (const json* name = member(params, "name"); name != nullptr && !is_file_name(text(*name, "name")))
+        bad_param("name", "it is no name for a file", "1 to 100 letters, digits, blanks, - and _");
+}
+
+// Returns the result as JSON on one line. Runs off the thread of the sockets. \throws fault_error, and what
+// `go_on` throws.
+std::string export_strokes(const exporting& e, const json& params, const go_on_check& go_on)
+{
+    const std::string source = find_source(params);
+    const file_kind& kind = find_kind(params);
+    const options::wishes s = settle_options(e.with.owner, params);
+    try {
+        std::vector<stroke> strokes =
+            settle_strokes(e.with, e.faces, read_strokes(source, params[source], s), s, flag(params, "fit"));
+        if (!kind.has_plan())
+            check_level(e.with, s, 1.0, s.plan.carrier_hz, source);
+        if (kind.extension == "wav")
+            check_samples(e, s, end_s(strokes));
+        const std::string name = choose_name(params, strokes);
+        return result_text(e, kind, name, s, make_bytes(e, kind, source, name, std::move(strokes), s, go_on));
+    } catch (const fault_error&) {
+        throw;
+    } catch (...) {
+        throw fault_error(current_fault(source));
+    }
+}
+
+} // namespace
 
 void service::import_file(client& c, json&& params, const answer& to, std::size_t bytes)
 {

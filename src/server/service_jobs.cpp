@@ -9,7 +9,7 @@
 #include "core/words.hpp"
 #include "server/service_impl.hpp"
 #include "server/stroke_options.hpp"
-#include "server/view/view.hpp"
+#include "server/view.hpp"
 
 namespace tactor::server {
 namespace {

@@ -1,13 +1,16 @@
 // SPDX-License-Identifier: MIT
-// Planned strokes are submitted; drive, cancel, stop, fire.
+// Strokes: submission, live ones, level, cancel, stop and fire; their starts and ends, and the notifications:
+// each number has exactly one end.
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include <fmt/format.h>
 
 #include "server/service_impl.hpp"
 #include "server/stroke_options.hpp"
+#include "session/log.hpp"
 
 namespace tactor::server {
 namespace {
@@ -16,6 +19,9 @@ using net::json;
 using net::reply_json;
 
 constexpr const char* cancelled_by_client = "cancelled by its client";
+
+// Farthest place, mm. The stroke clamps or refuses nearer places outside the array.
+constexpr double farthest_mm = 1e6;
 
 } // namespace
 
@@ -312,6 +318,310 @@ void service::release(const std::vector<std::uint32_t>& numbers)
         if (r.state == "ended")
             strokes_.erase(found);
     }
+}
+
+service::stroke_record& service::add_record(client_number owner)
+{
+    auto r = std::make_unique<stroke_record>();
+    r->number = ++last_stroke_;
+    r->owner = owner;
+    if (client* c = find(owner)) {
+        c->strokes.insert(r->number);
+        r->level_db = c->level_db;
+    }
+    return *strokes_.emplace(r->number, std::move(r)).first->second;
+}
+
+void service::begun(std::uint64_t player, stroke_id id, std::optional<std::int64_t> at_ns)
+{
+    const auto found = by_player_.find({player, id});
+    if (found == by_player_.end())
+        return;
+    stroke_record& r = *strokes_.at(found->second);
+    if (!r.open.empty() && r.open.back() == id)
+        r.next_waits = false;
+    if (r.state == "started") // it began again after an xrun, or with the next round
+        return submit_next(r);
+    r.state = "started";
+    const std::int64_t now = options_.now_ns();
+    r.started_ns = at_ns.value_or(now);
+    stroke_report how;
+    if (r.asked_ns)
+        how.late_s = std::max(0.0, static_cast<double>(*r.started_ns - *r.asked_ns) * 1e-9);
+    tell_stroke(r, "started", how);
+    start_followers(r, *r.started_ns);
+    submit_next(r);
+}
+
+// Submits the other strokes of an armed file, whose times are known only now.
+void service::start_followers(stroke_record& first, std::int64_t at_ns)
+{
+    tactor::player* out = stream_.number() == first.player ? stream_.current() : nullptr;
+    for (const auto& [number, after_s] : std::exchange(first.followers, {})) {
+        const auto found = strokes_.find(number);
+        if (found == strokes_.end() || !found->second->submits_later)
+            continue;
+        stroke_record& r = *found->second;
+        if (r.ended_by != nullptr) { // stopped since the first began
+            finish(r, {.state = state_kind::cancelled});
+            continue;
+        }
+        const score later = *std::exchange(r.submits_later, {});
+        try {
+            if (out == nullptr)
+                no_stream("");
+            add_submission(
+                r, out->submit(later, start_at::time(at_ns + std::llround(after_s * 1e9)), level_db(r)));
+            r.state = "waiting";
+        } catch (const error& e) {
+            finish(r, {.state = state_kind::interrupted,
+                       .reason = reason_kind::failed,
+                       .why = out->ended() ? "the stream has ended" : e.what()});
+        } catch (...) {
+            finish(r, {.state = state_kind::interrupted,
+                       .reason = reason_kind::failed,
+                       .why = "the stream has ended"});
+        }
+    }
+}
+
+void service::ended(std::uint64_t player, const stroke_report& report)
+{
+    const auto found = by_player_.find({player, report.id});
+    if (found == by_player_.end())
+        return;
+    stroke_record& r = *strokes_.at(found->second);
+    by_player_.erase(found);
+    if (report.started_ns && r.state != "started" && report.frames != 0) {
+        r.started_ns = report.started_ns;
+        tell_stroke(r, "started", {});
+    }
+    r.next_waits = r.next_waits && report.id != r.open.back();
+    std::erase(r.open, report.id);
+    r.frames += report.frames;
+    if (report.state != state_kind::finished && !r.broken) {
+        r.broken = report;
+        end_rounds(r);
+    }
+    if (!r.open.empty())
+        return;
+    stroke_report whole = r.broken.value_or(report);
+    if (whole.frames != r.frames) // it began with an earlier round
+        whole.started_ns = r.started_ns;
+    whole.frames = r.frames;
+    finish(r, whole);
+    note_busy();
+}
+
+// Notes a submission of a stroke: its only one, or its next round.
+void service::add_submission(stroke_record& r, stroke_id id)
+{
+    r.open.push_back(id);
+    by_player_[{r.player, id}] = r.number;
+}
+
+// Lets no round begin any more.
+void service::end_rounds(stroke_record& r)
+{
+    r.again.reset();
+    if (!std::exchange(r.next_waits, false))
+        return;
+    if (player* p = stream_.current(); p != nullptr && r.player == stream_.number())
+        p->cancel(r.open.back());
+    by_player_.erase({r.player, r.open.back()});
+    r.open.pop_back();
+}
+
+void service::finish(stroke_record& r, const stroke_report& how)
+{
+    // A stroke that did not begin takes its followers with it.
+    for (const auto& [number, after_s] : std::exchange(r.followers, {}))
+        if (const auto f = strokes_.find(number); f != strokes_.end() && f->second->submits_later) {
+            stroke_report same = how;
+            same.frames = 0;
+            same.started_ns.reset();
+            f->second->ended_by = r.ended_by;
+            finish(*f->second, same);
+        }
+    if (how.started_ns)
+        r.started_ns = how.started_ns;
+    r.submits_later.reset();
+    const client_number owner = r.owner;
+    if (client* c = find(owner)) {
+        c->strokes.erase(r.number);
+        if (r.live)
+            --c->live;
+    }
+    r.state = "ended";
+    end_touch(r);
+    stroke_report report = how;
+    report.why = reason(r, how);
+    if (options_.log)
+        options_.log(log_kind::info, session::stroke_text(fmt::format("{} of client {}", r.number, owner),
+                                                          report, options_.plans.owner.render.rate));
+    tell_stroke(r, to_string(report.state), report);
+    if (r.released)
+        strokes_.erase(r.number);
+    check_all_sent(owner);
+}
+
+std::string service::reason(const stroke_record& r, const stroke_report& how) const
+{
+    if (how.state == state_kind::cancelled)
+        return r.ended_by != nullptr ? r.ended_by : "stopped by the owner";
+    switch (how.reason) {
+    case reason_kind::xrun:
+    case reason_kind::suspended:
+    case reason_kind::lost:
+    case reason_kind::failed:
+        return "device: " + how.why;
+    case reason_kind::crowded:
+    case reason_kind::too_long:
+        return "limit: " + how.why;
+    default:
+        return how.why;
+    }
+}
+
+void service::tell_stroke(stroke_record& r, std::string_view state, const stroke_report& how)
+{
+    const bool sounded = r.started_ns && (state == "started" || how.frames != 0 || how.started_ns);
+    const std::int64_t at_ns = r.started_ns.value_or(0);
+    const auto from = [&](std::int64_t origin_ns) {
+        return sounded ? reply_json(seconds(at_ns + origin_ns)) : reply_json(nullptr);
+    };
+    reply_json n = net::notification("stroke", {{"stroke", r.number},
+                                                {"state", state},
+                                                {"reason", how.why},
+                                                {"frames", how.frames},
+                                                {"started_s", from(0)},
+                                                {"started_unix_s", from(unix_ns() - options_.now_ns())},
+                                                {"late_s", how.late_s},
+                                                {"held_points", how.held_points},
+                                                {"outside_points", how.outside_points}});
+    if (!r.released) {
+        r.held.push_back(std::move(n));
+        return;
+    }
+    send_to_listeners(r, n);
+}
+
+void service::send_to_listeners(const stroke_record& r, const reply_json& message)
+{
+    for (const auto& [number, c] : clients_)
+        if (number == r.owner || (c->admitted && c->events.contains("strokes")))
+            send(*c, message);
+}
+
+// Counts strokes alone: a request that waits for the stream wakes it.
+void service::note_busy()
+{
+    stream_.busy(std::any_of(strokes_.begin(), strokes_.end(),
+                             [](const auto& r) { return r.second->state != "ended"; }));
+}
+
+void service::begin(client& c, const json& params, const answer& to)
+{
+    allow_only(params, {"options", "timeout_s", "smooth_s"});
+    const live_options usual;
+    options::wishes s = options_.plans.owner;
+    s.plan.algorithm = usual.plan.algorithm;
+    s.plan.outside = usual.plan.outside;
+    if (const json* o = member(params, "options"))
+        s = with_options(s, *o, options_for::live);
+    check_level(options_.plans, s, 1.0, s.plan.carrier_hz, "options");
+    live_options o;
+    o.plan = s.plan;
+    o.render = s.render;
+    o.longest_s = options_.limits.max_stroke_s;
+    if (const json* t = member(params, "timeout_s"))
+        o.timeout_s = number(*t, "timeout_s", detail::bounds_of::timeout_s);
+    if (const json* t = member(params, "smooth_s"))
+        o.smooth_s = number(*t, "smooth_s", detail::bounds_of::smooth_s);
+    check_free_place(c);
+    if (c.live >= options_.limits.max_live_strokes)
+        limit_reached("max_live_strokes",
+                      fmt::format("{} live strokes of yours go on", options_.limits.max_live_strokes),
+                      "end one of them first");
+    if (ending_ || stream_.is_out())
+        no_stream(stream_.reason());
+    ++c.coming;
+    ++c.live;
+    const double intensity_max = s.intensity_max.value_or(1.0);
+    once_ready(to, "options", [this, number = c.number, o, to, intensity_max] {
+        client* then = find(number);
+        if (then == nullptr)
+            return;
+        --then->live;
+        begin_now(*then, o, intensity_max, to, stop_reason_since(to));
+    });
+}
+
+void service::begin_now(client& c, const live_options& o, double intensity_max, const answer& to,
+                        const char* ended_by)
+{
+    player* out = stream_.current();
+    if (ending_ || out == nullptr || out->ended())
+        no_stream(ending_ ? "the server ends" : stream_.reason());
+    if (ended_by != nullptr) {
+        // It was cancelled while the stream was being started.
+        const auto numbers = end_unbegun(c.number, 1, ended_by);
+        to.result({{"stroke", numbers.front()}}, numbers);
+        return;
+    }
+    live_stroke live = out->begin(o);
+    stroke_record& r = add_record(c.number);
+    r.player = stream_.number();
+    add_submission(r, live.id());
+    r.live = live;
+    r.intensity_max = intensity_max;
+    if (r.level_db != 0.0)
+        out->set_level(live.id(), r.level_db);
+    ++c.live;
+    if (c.input_over)
+        live.end();
+    to.result({{"stroke", r.number}}, {r.number});
+}
+
+service::stroke_record& service::own_live(client& c, std::uint32_t number)
+{
+    if (!c.strokes.contains(number))
+        no_such_stroke(number);
+    stroke_record& r = *strokes_.at(number);
+    if (!r.live)
+        no_such_stroke(number, "it is no live stroke");
+    return r;
+}
+
+void service::to(client& c, const json& params, const answer& to)
+{
+    allow_only(params, {"stroke", "x_mm", "y_mm", "intensity"});
+    if (const double most = options_.limits.max_points_per_s; !c.points.take(1.0, most, options_.now_ns()))
+        limit_reached("max_points_per_s", fmt::format("{} points in a second are the most", most));
+    const std::uint32_t n = need_stroke(params);
+    const double x = need_number(params, "x_mm", {-farthest_mm, farthest_mm});
+    const double y = need_number(params, "y_mm", {-farthest_mm, farthest_mm});
+    const json* given = member(params, "intensity");
+    const double asked =
+        given == nullptr ? 1.0 : number(*given, "intensity", {0.0, std::numeric_limits<double>::max()});
+    stroke_record& r = own_live(c, n);
+    const double intensity = given == nullptr ? 1.0 : asked / r.intensity_max;
+    try {
+        if (!r.live->to(x, y, intensity))
+            no_such_stroke(n, "it has ended");
+    } catch (const error& e) {
+        throw fault_error(library_fault(e, "x_mm"));
+    }
+    r.touched = point{x, y};
+    touch(r);
+    to.result(reply_json::object());
+}
+
+void service::end(client& c, const json& params, const answer& to)
+{
+    allow_only(params, {"stroke"});
+    own_live(c, need_stroke(params)).live->end();
+    to.result(reply_json::object());
 }
 
 } // namespace tactor::server

@@ -6,8 +6,7 @@
 #include <doctest/doctest.h>
 
 #include "net/base64.hpp"
-#include "server/files/file_name.hpp"
-#include "server/files/tool_line.hpp"
+#include "server/tool_line.hpp"
 #include "service_rig.hpp"
 
 namespace service_files_test {

@@ -14,7 +14,7 @@
 #include "percept/compare.hpp"
 #include "server/faults.hpp"
 #include "server/stroke_source.hpp"
-#include "server/view/view.hpp"
+#include "server/view.hpp"
 #include "service_rig.hpp"
 
 namespace view_test {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// Options that a file of strokes can say, and the command line that says the rest.
+/// Options that a file of strokes can say, the command line that says the rest, and names of such files.
 #pragma once
 
 #include <string>
@@ -31,5 +31,12 @@ std::string option_words(const options::wishes& s, options::place command, const
 
 /// Returns a word as a shell reads it.
 std::string quote_word(std::string_view word);
+
+/// Returns true for 1 to 100 bytes of letters, digits, blanks, - and _, of which the first is no - and
+/// neither the first nor the last is a blank.
+bool is_file_name(std::string_view name) noexcept;
+
+/// Returns the name with _ for each character that is_file_name() does not allow; "stroke" for an empty one.
+std::string make_file_name(std::string_view name);
 
 } // namespace tactor::server
