@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Writes from the table of options: python3 src/options/write.py, where tactor can be imported.
 
-* src/python/tactor/_calls.py: signatures and docstrings of the calls that take options; the modules around do the work.
+* In src/python/tactor: options in the signatures and docstrings of functions that take them, and the types of options.
 * $defs/options of the protocol's schema.
 * In man: heads and ranges of options, and the options that commands share (write_manual.py).
 
@@ -19,182 +19,6 @@ from tactor import _tactor
 
 WIDTH = 160
 ROWS = _tactor.option_rows()
-
-HEAD = '''# SPDX-License-Identifier: MIT
-"""Calls that take options. Written from the table of options by src/options/write.py: change it there."""
-from __future__ import annotations
-
-import typing as _t
-
-if _t.TYPE_CHECKING:
-    import os
-    from tactor._array import Array
-    from tactor._parts import PhantomModel
-    from tactor._plan import Plan
-    from tactor._score import _Plans
-    from tactor._stroke import Stroke
-    from tactor._ticket import LiveStroke, _LogKind
-    from tactor._tool import Comparison
-{types}
-'''
-
-PLAN = '''
-
-def plan({signature}) -> Plan:
-    """Plans a stroke on an array. Options are the tool's, see tactor-options(7); None is its default.
-
-    Parameters
-    ----------
-    array : Array
-    stroke : Stroke
-{parameters}
-
-    Returns
-    -------
-    Plan
-
-    Raises
-    ------
-    InputError
-        SOA out of bounds, a path outside the array, timing that cannot be done, no grid for the Tactile Brush.
-
-    Notes
-    -----
-    `phantom` may be a model of your own. "inverse-distance" is that of Park et al. 2016, Eq. 10. "nearest" takes the closest three tactors of all, as
-    their paper says it to the letter; a warning counts the bursts that their triangle misses. The timing law is of Israr and Poupyrev 2011, "low-speed"
-    of Goldreich 2007. What says how the plan sounds counts for a `Score` that says nothing else.
-    """
-    given = dict(locals())
-    from tactor._plan import make_plan
-    return make_plan(given)
-'''
-
-COMPARE = '''
-
-def compare({signature}) -> Comparison:
-    """What algorithms are predicted to feel like on the same stroke: a model, never a measurement.
-
-    Parameters
-    ----------
-    array : Array
-    stroke : Stroke
-    algorithms : iterable of str
-        What to compare; default: all three, or `algorithm` alone.
-    phantoms : iterable of str
-        With which phantom models; default: that of `phantom`.
-{parameters}
-
-    Returns
-    -------
-    Comparison
-        A list of dicts. An algorithm that cannot play the stroke says why under "refused".
-
-    Raises
-    ------
-    InputError
-        Where none can play it.
-    """
-    given = dict(locals())
-    from tactor._tool import make_comparison
-    return make_comparison(given)
-'''
-
-SCORE = '''
-
-class ScoreCall:
-    """The call that makes a score."""
-
-    __slots__ = ()
-
-    def __init__({signature}) -> None:
-        """Makes a score.
-
-        Parameters
-        ----------
-        array : Array
-        plans : Plan, or iterable of Plan or of (float, Plan)
-            A number is the start in seconds; a plan without one starts at its stroke's, or when the plan before it has ended.
-{parameters}
-
-        Without any limit on power and drive time the piece is as it was designed: a player has its own.
-        """
-        given = dict(locals())
-        del given["self"]
-        self._make(given)
-
-    def _make(self, given: dict[str, _t.Any]) -> None:
-        raise NotImplementedError
-'''
-
-PLAYER = '''
-
-class PlayerCalls:
-    """The calls that open a player and begin a live stroke."""
-
-    __slots__ = ()
-
-    def __init__({signature}) -> None:
-        """Opens a device.
-
-        Parameters
-        ----------
-        device : str
-            An ALSA name as `tactor play -D` takes it: "hw:CARD=Tactor", "null", "file:...".
-        array : Array
-            Gives each channel's limit; one from a file brings what that says of amplifier, lines and limits.
-        config : path-like, optional
-            Configuration; default: the tool's ($TACTOR_CONFIG, the user's, the system's), amplifier and limits included. os.devnull: none.
-        log : callable, optional
-            `log(kind, text)` is told of xruns, recovery, mutes and limits that act, in the player's thread of Python.
-        keep_drive_time : bool
-            What earlier players and runs of this user drove on this device counts, and what this one drives counts for later ones. False: it
-            begins with 0, and is not kept.
-{parameters}
-        """
-        given = dict(locals())
-        del given["self"]
-        self._open(given)
-
-    def _open(self, given: dict[str, _t.Any]) -> None:
-        raise NotImplementedError
-'''
-
-LIVE = '''
-    def live({signature}) -> LiveStroke:
-        """Begins a stroke that is fed point by point; silent until the first.
-
-        Parameters
-        ----------
-        timeout : float
-            A producer that gives no point for so long, s, has failed: it fades out, interrupted.
-        longest : float
-            A stroke that has sounded for so long, s, fades out, interrupted; None: it may go on for ever.
-        smooth : float
-            For points that come in bursts, s, 0 (off) to 1: it moves evenly, and is at each point so long after that came.
-        intensity_max : float
-            The intensity of a point that means 1, 0.001 to 1e6; 255 for a sensor of 8 bits. None: as the file says, else 1.
-{parameters}
-
-        What nobody says is as the array's file says; but `algorithm` is "continuous", and `outside` "clamp".
-
-        Returns
-        -------
-        LiveStroke
-
-        Raises
-        ------
-        InputError
-            For options that cannot be.
-        StreamError
-            When the stream has ended.
-        """
-        given = dict(locals())
-        del given["self"]
-        return self._begin(given)
-
-    def _begin(self, given: dict[str, _t.Any]) -> LiveStroke:
-        raise NotImplementedError
-'''
 
 
 def literal(row):
@@ -246,40 +70,51 @@ def entries(rows, indent):
     return "\n".join(as_in_plan + [entry(r, indent) for r in rows if r["name"] not in told])
 
 
-def call(template, rows, before=(), after=(), own_phantom=False, told=entries):
-    """A template with the signature and the parameters of these rows."""
+def call(text, function, rows, before=(), after=(), own_phantom=False, told=entries):
+    """The text of a module with these rows in the signature and the docstring of a function, and the entries there of the parameters around."""
+    owner, _, name = function.rpartition(".")
+    found = re.compile(rf'^(?P<start>(?P<indent> *)def {name}\().*?(?P<end>\) -> \w+:)\n(?P<doc>.*?-{{10}}\n)(?P<entries>.*?)(?=\n\n|\n *""")', re.M | re.S)
+    m = found.search(text, text.index(f"class {owner}(") if owner else 0)
     parts = [*before, *(f"{r['name']}: {name_type(r, own_phantom)} = None" for r in rows), *after]
-    start, end = next(line for line in template.splitlines() if "{signature}" in line).split("{signature}")
-    lines = [start]
+    lines = [m["start"]]
     for part in [f"{p}, " for p in parts[:-1]] + [parts[-1]]:
-        if len(lines[-1] + part + end) > WIDTH:
-            lines.append(" " * len(start))
+        if len(lines[-1] + part + m["end"]) > WIDTH:
+            lines.append(" " * len(m["start"]))
         lines[-1] += part
-    signature = "\n".join(line.rstrip() for line in lines)[len(start):]
-    indent = len(re.search(r"^( *)-{10}$", template, re.M)[1])
-    return template.replace("{signature}", signature).replace("{parameters}\n", f"{told(rows, indent)}\n".lstrip("\n"))
+    signature = "\n".join(line.rstrip() for line in lines) + m["end"]
+    indent = len(m["indent"]) + 4
+    by_hand = {part.partition(":")[0] for part in (*before, *after)}
+    around = [e for e in re.split(rf"\n(?= {{{indent}}}\w)", m["entries"]) if re.match(r" *(\w+)", e)[1] in by_hand]
+    return text[:m.start()] + f"{signature}\n{m['doc']}" + "\n".join((*around, told(rows, indent))) + text[m.end():]
 
 
-def calls():
-    """The text of src/python/tactor/_calls.py."""
-    def rows(place, but=()):
-        return [in_seconds(r) for r in ROWS if place in r["places"] and r["name"] not in but]
+def rows(place):
+    return [in_seconds(r) for r in ROWS if place in r["places"]]
 
+
+def plan(text):
     types = "".join(f"    {literal(r)} = _t.Literal[{', '.join(repr(c).replace(chr(39), chr(34)) for c in r['choices'])}]\n" for r in ROWS
                     if r["kind"] == "choice" and {"plan", "score", "compare", "player"} & set(r["places"]))
-    of_live = [r for r in rows("live", {"texture_mm"}) if "plan" in r["places"]]
-    return "".join((
-        HEAD.replace("{types}\n", types),
-        call(PLAN, rows("plan"), ["array: Array", "stroke: Stroke", "*"], own_phantom=True,
-             told=lambda rows, indent: "\n".join(entry(r, indent) for r in rows)),
-        call(COMPARE, rows("compare"), ["array: Array", "stroke: Stroke", "*", "algorithms: _t.Union[str, _t.Iterable[_Algorithm], None] = None",
-                                        "phantoms: _t.Union[str, _t.Iterable[_Phantom], None] = None"]),
-        call(SCORE, rows("score"), ["self", "array: Array", "plans: _Plans", "*"]),
-        call(PLAYER, rows("player"), ["self", "device: str", "array: Array", "*"],
-             ["config: _t.Union[str, os.PathLike[str], None] = None",
-              "log: _t.Callable[[_LogKind, str], object] | None = None", "keep_drive_time: bool = True"]),
-        call(LIVE, of_live, ["self", "*"], ["timeout: float = 0.5", "longest: float | None = None", "smooth: float = 0.0", "intensity_max: float | None = None"], own_phantom=True),
-    ))
+    text = re.sub(r"(    _\w+ = _t\.Literal\[.*\]\n)+", types, text, count=1)
+    return call(text, "plan", rows("plan"), ["array: Array", "stroke: Stroke", "*"], own_phantom=True,
+                told=lambda rows, indent: "\n".join(entry(r, indent) for r in rows))
+
+
+def compare(text):
+    return call(text, "compare", rows("compare"), ["array: Array", "stroke: Stroke", "*", "algorithms: _t.Union[str, _t.Iterable[_Algorithm], None] = None",
+                                                   "phantoms: _t.Union[str, _t.Iterable[_Phantom], None] = None"])
+
+
+def score(text):
+    return call(text, "Score.__init__", rows("score"), ["self", "array: Array", "plans: _Plans", "*"])
+
+
+def player(text):
+    text = call(text, "Player.__init__", rows("player"), ["self", "device: str", "array: Array", "*"],
+                ["config: _t.Union[str, os.PathLike[str], None] = None",
+                 "log: _t.Callable[[_LogKind, str], object] | None = None", "keep_drive_time: bool = True"])
+    return call(text, "Player.live", [r for r in rows("live") if "plan" in r["places"] and r["name"] != "texture_mm"], ["self", "*"],
+                ["timeout: float = 0.5", "longest: float | None = None", "smooth: float = 0.0", "intensity_max: float | None = None"], own_phantom=True)
 
 
 def make_schema(row):
@@ -300,7 +135,8 @@ def schema(text):
 
 
 SRC = pathlib.Path(__file__).parents[1]
-WRITTEN = {SRC / "python/tactor/_calls.py": lambda text: calls(), SRC / "cli/schemas/tactor-protocol-1.schema.json": schema}
+WRITTEN = {SRC / "python/tactor/_plan.py": plan, SRC / "python/tactor/_tool.py": compare, SRC / "python/tactor/_score.py": score,
+           SRC / "python/tactor/_player.py": player, SRC / "cli/schemas/tactor-protocol-1.schema.json": schema}
 WRITTEN |= {page: functools.partial(write_manual.written, page.name, rows=ROWS) for page in (SRC.parent / "man").glob("*.[1-8]")}
 
 if __name__ == "__main__":

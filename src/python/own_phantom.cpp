@@ -14,7 +14,7 @@ public:
           name_(py::hasattr(model_, "name")
                     ? py::str(model_.attr("name")).cast<std::string>()
                     : py::str(py::type::of(model_).attr("__name__")).cast<std::string>()),
-          answer_(py::module_::import("tactor._parts").attr("ask_model")),
+          answer_(py::module_::import("tactor._plan").attr("ask_model")),
           tactors_(tactors)
     {
     }

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
 """The installed package, its documentation, types and costs."""
+import graphlib
 import importlib.metadata
 import importlib.util
 import inspect
@@ -36,6 +37,11 @@ def test_the_version_is_that_of_the_library(tool):
 def test_the_markers_need_no_import():
     code = "import sys, tactor; assert 'tactor.lsl' not in sys.modules; print(tactor.lsl.Markers.__name__)"
     assert subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout == "Markers\n"
+
+
+def test_modules_import_each_other_in_one_direction():
+    imports = {p.stem: set(re.findall(r"^ *from tactor\.(\w+) import", p.read_text(), re.M)) for p in FOLDER.glob("*.py") if p.stem != "__init__"}
+    assert {"_errors", "_plan", "_player"} <= set(graphlib.TopologicalSorter(imports).static_order())
 
 
 def test_everything_public_is_documented():

@@ -11,21 +11,18 @@ Times are seconds, lengths mm, angles degrees, levels dB.
 import typing as _t
 
 from tactor import _tactor
-from tactor._array import Array, Point, Tactor, array_presets
-from tactor._calls import compare, plan
+from tactor._array import Array, PerceptMap, Point, Tactor, array_presets
 from tactor._errors import DeviceError, Error, InputError, StreamError
-from tactor._parts import Burst, Conflict, Curve, Drive, Meeting, Percept, PerceptMap, PerceptSample, PhantomModel
-from tactor._path import Path
-from tactor._plan import Plan, burst_duration, load_plan
+from tactor._plan import Burst, Conflict, Curve, Drive, Meeting, Percept, PerceptSample, PhantomModel, Plan, burst_duration, load_plan, plan
 from tactor._score import Score
-from tactor._stroke import Fitting, Stroke, apply_fits, fit_strokes, load, parse, stroke_presets, stroke_shapes
+from tactor._stroke import Fitting, Path, Stroke, apply_fits, fit_strokes, load, parse, stroke_presets, stroke_shapes
 
 if _t.TYPE_CHECKING:
     from tactor import lsl as lsl
     from tactor._client import Client, RemoteLive, RemoteStroke, Reply
     from tactor._player import Player
     from tactor._ticket import Delay, LiveStroke, Report, Ticket
-    from tactor._tool import Comparison, devices, plot
+    from tactor._tool import Comparison, compare, devices, plot
 
 __version__: str = _tactor.version()
 
@@ -46,7 +43,7 @@ def build_facts() -> str:
 # Names that few scripts need are loaded when they are first used: they take a fifth of the import's time.
 _LATER = {
     "Client": "_client", "RemoteLive": "_client", "RemoteStroke": "_client", "Reply": "_client", "Player": "_player", "Delay": "_ticket", "LiveStroke": "_ticket", "Report": "_ticket", "Ticket": "_ticket",
-    "Comparison": "_tool", "devices": "_tool", "plot": "_tool",
+    "Comparison": "_tool", "compare": "_tool", "devices": "_tool", "plot": "_tool",
 }
 
 

@@ -6,13 +6,12 @@ import os
 import typing as _t
 
 from tactor import _tactor
-from tactor._checks import _counted, _floats, _Member, _need, _number, _place, reading, _shown, _Value, _whole
+from tactor._checks import _Columns, _counted, _floats, _Member, _need, _number, _place, reading, _shown, _Value, _whole
 from tactor._errors import InputError
 
 if _t.TYPE_CHECKING:
     import numpy as _np
     from numpy.typing import ArrayLike as _ArrayLike, NDArray as _NDArray
-    from tactor._parts import PerceptMap as _PerceptMap
     _Actuator = _t.Literal["unknown", "piezo", "voice-coil", "lra", "erm"]
     _EachTactor = _t.Union[float, _t.Iterable[float], None]
     _Worn = tuple[str, str, _t.Optional[tuple[float, float]], _t.Optional[float], _t.Optional[float]]
@@ -63,6 +62,39 @@ class Tactor(_t.NamedTuple):
     thresholds: tuple[tuple[float, float], ...] = ()
     rise_s: float | None = None
     displacement_um_at_0dbfs: float | None = None
+
+
+class PerceptMap(_Columns):
+    """The predicted percept of a phantom at each place of a grid over an array: a model, never a measurement. Immutable.
+
+    Attributes
+    ----------
+    y : ndarray, shape (rows,)
+        mm.
+    x : ndarray, shape (columns,)
+        mm.
+    positions : ndarray, shape (rows, columns, 2)
+        Centre of energy of the tactors that make it, mm; NaN outside the array.
+    error_mm : ndarray, shape (rows, columns)
+        Distance from where it was asked for to there; NaN outside the array.
+    intensity : ndarray, shape (rows, columns)
+        Root of the energy of all its tactors, linear; NaN outside the array.
+    """
+
+    __slots__ = ("y", "x", "positions", "error_mm", "intensity")
+
+    y: _NDArray[_np.float64]
+    x: _NDArray[_np.float64]
+    positions: _NDArray[_np.float64]
+    error_mm: _NDArray[_np.float64]
+    intensity: _NDArray[_np.float64]
+
+    def __init__(self, y: _NDArray[_np.float64], x: _NDArray[_np.float64], positions: _NDArray[_np.float64],
+                 error_mm: _NDArray[_np.float64], intensity: _NDArray[_np.float64]) -> None:
+        self._take(y, x, positions, error_mm, intensity)
+
+    def __repr__(self) -> str:
+        return f"<tactor.PerceptMap: {len(self.y)} x {len(self.x)} places>"
 
 
 class Array(_Value):
@@ -239,7 +271,7 @@ class Array(_Value):
         (row,) = _tactor.phantom_weights(phantom, faces, self._core, np.array([_place("point", point)]), strength).tolist()
         return {i: amplitude for i, amplitude in enumerate(row) if amplitude > 0.0}
 
-    def percept_map(self, step_mm: float = 1.0, phantom: str = "inverse-distance", *, faces: str = "delaunay") -> _PerceptMap:
+    def percept_map(self, step_mm: float = 1.0, phantom: str = "inverse-distance", *, faces: str = "delaunay") -> PerceptMap:
         """Predicts how phantoms feel all over the array.
 
         Parameters
@@ -261,7 +293,6 @@ class Array(_Value):
             For a step that gives more places; for faces that do not go with the model.
         """
         import numpy as np
-        from tactor._parts import PerceptMap
         step = _number("step_mm", step_mm, 0.01, 1e6)
         low, high = self.positions.min(axis=0), self.positions.max(axis=0)
         counts = np.floor((high - low) / step + 1e-9) + 1

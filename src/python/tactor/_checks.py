@@ -10,6 +10,9 @@ import typing as _t
 
 from tactor._errors import Error, InputError
 
+if _t.TYPE_CHECKING:
+    from numpy.typing import NDArray as _NDArray
+
 
 def _floats(what: str, values: _t.Any, nan: bool = False) -> _t.Any:
     """Returns numbers as an array of float64; refuses those that would lose something, as complex numbers, times and masks do."""
@@ -165,6 +168,38 @@ class _Value:
 
     def __deepcopy__(self, memo: dict[int, _t.Any]) -> _t.Any:
         return self
+
+
+class _Columns(_Value):
+    """Arrays of the same length that belong together and cannot be changed."""
+
+    __slots__: tuple[str, ...] = ()
+
+    def _take(self, *columns: _NDArray[_t.Any]) -> None:
+        for name, values in zip(self.__slots__, columns):
+            values = values.view()
+            values.flags.writeable = False
+            object.__setattr__(self, name, values)
+
+    def __setattr__(self, name: str, value: object) -> None:
+        raise AttributeError(f"a {type(self).__name__.lower()} cannot be changed, nor its {name!r}")
+
+    def __delattr__(self, name: str) -> None:
+        raise AttributeError(f"a {type(self).__name__.lower()} cannot be changed, nor its {name!r}")
+
+    def __reduce__(self) -> tuple[_t.Callable[..., _t.Any], tuple[_t.Any, ...]]:
+        return type(self), tuple(getattr(self, name) for name in self.__slots__)
+
+    def __len__(self) -> int:
+        return len(getattr(self, self.__slots__[0]))
+
+    def __eq__(self, other: object) -> bool:
+        import numpy as np
+        if type(self) is not type(other):
+            return NotImplemented
+        return all(np.array_equal(getattr(self, n), getattr(other, n), equal_nan=True) for n in self.__slots__)
+
+    __hash__ = None  # type: ignore[assignment]
 
 
 _S = _t.TypeVar("_S", bound="_Stated")

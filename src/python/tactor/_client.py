@@ -11,13 +11,12 @@ import typing as _t
 
 from tactor._checks import _need, _number, _shown, _Unique, _whole
 from tactor._errors import _KINDS, DeviceError, Error, InputError, StreamError, _system_kind
-from tactor._path import Path
-from tactor._stroke import Stroke
+from tactor._plan import Plan
+from tactor._stroke import Path, Stroke
 from tactor._ticket import Report, _Awaited
 
 if _t.TYPE_CHECKING:
     from types import TracebackType as _TracebackType
-    from tactor._plan import Plan as _Plan
 
 _HELLO_S = 10.0
 
@@ -379,10 +378,7 @@ class Client(_Unique):
 
     def plan(self, stroke: _t.Union[Stroke, Path, str], **options: _t.Any) -> Reply:
         """Plans a stroke as `play` would, and plays nothing; gives a `Plan`."""
-        def made(result: dict[str, _t.Any]) -> _Plan:
-            from tactor._plan import Plan
-            return Plan.from_dict(result)
-        return self._ask(Reply(self._get(), made), "plan", {**_drawn(stroke), "options": _said(options)})
+        return self._ask(Reply(self._get(), Plan.from_dict), "plan", {**_drawn(stroke), "options": _said(options)})
 
     def live(self, *, timeout: float | None = None, smooth: float | None = None, **options: _t.Any) -> RemoteLive:
         """Begins a stroke that is fed point by point; silent until the first. Blocks until the service has answered.

@@ -1,22 +1,238 @@
 # SPDX-License-Identifier: MIT
-"""Plans: tactors, times and amplitudes."""
+"""Plans: tactors, times and amplitudes. `src/options/write.py` writes the options of `plan` and their types."""
 from __future__ import annotations
 
 import collections.abc as _abc
+import math
+import operator
 import os
 import typing as _t
 
 from tactor import _tactor
 from tactor._array import Array, Point
-from tactor._checks import _Member, _need, reading, _split_envelope, _Value
+from tactor._checks import _Columns, _Member, _need, reading, _shown, _split_envelope, _Value
 from tactor._errors import Error, InputError
-from tactor._parts import Burst, Conflict, Curve, Drive, Frozen, Meeting, Percept
 from tactor._stroke import Stroke
 
 if _t.TYPE_CHECKING:
     import numpy as _np
     from numpy.typing import NDArray as _NDArray
-    from tactor._calls import _Faces, _Overlap
+    _Outside = _t.Literal["error", "clamp"]
+    _Algorithm = _t.Literal["park2016", "tactile-brush", "continuous"]
+    _Phantom = _t.Literal["inverse-distance", "barycentric", "linear", "log", "gaussian"]
+    _Faces = _t.Literal["delaunay", "nearest"]
+    _Timing = _t.Literal["fixed", "fit"]
+    _Overlap = _t.Literal["energy", "max", "sum"]
+    _Compensate = _t.Literal["none", "low-speed"]
+    _Texture = _t.Literal["cycle", "time", "length"]
+    _Phase = _t.Literal["stroke", "burst"]
+    _IntensityScale = _t.Literal["linear", "sl", "stevens"]
+    _SampleFormat = _t.Literal["float", "s16", "s24", "s24-4", "s32"]
+    _Observer = _t.Literal["centroid", "low-speed"]
+
+
+class PhantomModel(_t.Protocol):
+    """A model of your own: `plan(array, stroke, phantom=model)`."""
+
+    def weights(self, x_mm: float, y_mm: float, intensity: float) -> _t.Mapping[int, float]:
+        """Amplitudes by tactor, finite and not below 0, that make a phantom of an intensity at a place in the hull.
+
+        Its name in plans is the attribute `name`, or that of its class.
+        """
+        ...
+
+
+def ask_model(model: _t.Any, name: str, x_mm: float, y_mm: float, intensity: float, tactors: int) -> list[tuple[int, float]]:
+    """Returns the tactors and amplitudes above 0 that a model gives, in order of tactor; called by the extension."""
+    said = model.weights(x_mm, y_mm, intensity)
+    if not hasattr(said, "items"):
+        raise _refused_answer(name, f"it returned {_shown(said)}")
+    drives = []
+    for one in said.items():
+        if not isinstance(one, tuple) or len(one) != 2:
+            raise _refused_answer(name, f"its items() have {_shown(one)}")
+        drives.append((_answered_tactor(name, one[0], tactors), _answered_amplitude(name, *one)))
+    drives.sort()
+    for (tactor, _), (following, _) in zip(drives, drives[1:]):
+        if tactor == following:
+            raise _refused_answer(name, f"it drives tactor {tactor} twice")
+    return [drive for drive in drives if drive[1] > 0.0]
+
+
+def _answered_tactor(name: str, key: _t.Any, tactors: int) -> int:
+    try:
+        tactor = operator.index(key)
+    except TypeError:
+        raise _refused_answer(name, f"it drives tactor {_shown(key)}, which is no whole number") from None
+    if not 0 <= tactor < tactors:
+        raise _refused_answer(name, f"it drives tactor {_shown(tactor)} of {tactors}")
+    return tactor
+
+
+def _answered_amplitude(name: str, key: _t.Any, value: _t.Any) -> float:
+    amplitude = -1.0
+    if not isinstance(value, (str, bytes, bytearray)):
+        try:
+            amplitude = float(value)
+        except (TypeError, ValueError, OverflowError):
+            pass
+    if not 0.0 <= amplitude < math.inf:
+        raise _refused_answer(name, f"tactor {_shown(key)} has the amplitude {_shown(value)}")
+    return amplitude
+
+
+def _refused_answer(name: str, why: str) -> InputError:
+    return InputError(f"phantom {name}", why, "weights() returns a dict of tactor and amplitude, which is finite and not below 0")
+
+
+_T = _t.TypeVar("_T")
+
+
+class Frozen(list[_T]):
+    """A list that was made once and cannot be changed."""
+
+    def _refuse(self, *_: object, **__: object) -> _t.NoReturn:
+        raise TypeError("it belongs to a plan and cannot be changed: list() of it can")
+
+    append = extend = insert = remove = pop = clear = sort = reverse = _refuse  # type: ignore[assignment]
+    __setitem__ = __delitem__ = __iadd__ = __imul__ = _refuse  # type: ignore[assignment]
+
+    def __reduce__(self) -> tuple[_t.Any, ...]:
+        return list, (list(self),)
+
+
+class Drive(_t.NamedTuple):
+    """The part of a tactor in a burst: linear amplitude, where 1 is the requested intensity."""
+
+    tactor: int
+    amplitude: float
+
+
+class Burst(_t.NamedTuple):
+    """Tactors that sound together from `onset` for `duration` (s), felt at `position` (mm) with an `intensity` (linear)."""
+
+    onset: float
+    duration: float
+    position: Point
+    intensity: float
+    drives: tuple[Drive, ...]
+
+
+class Conflict(_t.NamedTuple):
+    """Two or more bursts on one tactor at once, from a time to another in seconds."""
+
+    tactor: int
+    from_s: float
+    to_s: float
+
+
+class Meeting(_t.NamedTuple):
+    """A time in seconds at which the target is at a place, for which there is no burst."""
+
+    t: float
+    position: Point
+
+
+class PerceptSample(_t.NamedTuple):
+    """An instant of a predicted percept: a model, never a measurement.
+
+    `felt` is the centre of energy of the tactors that sound, None while none does; `speed` (mm/s) is smoothed over 0.1 s.
+    """
+
+    t: float
+    target: Point
+    felt: Point | None
+    intensity: float
+    target_intensity: float
+    shared: bool
+    speed: float | None
+
+
+class Curve(_Columns):
+    """A continuous stroke, sampled each millisecond, the last at its end. Immutable.
+
+    Attributes
+    ----------
+    t : ndarray, shape (n,)
+        Seconds.
+    positions : ndarray, shape (n, 2)
+        mm.
+    intensities : ndarray, shape (n,)
+        Linear.
+    amplitudes : ndarray, shape (n, tactors)
+        Linear, 0 where a tactor does not sound.
+    """
+
+    __slots__ = ("t", "positions", "intensities", "amplitudes")
+
+    t: _NDArray[_np.float64]
+    positions: _NDArray[_np.float64]
+    intensities: _NDArray[_np.float64]
+    amplitudes: _NDArray[_np.float64]
+
+    def __init__(self, t: _NDArray[_np.float64], positions: _NDArray[_np.float64], intensities: _NDArray[_np.float64],
+                 amplitudes: _NDArray[_np.float64]) -> None:
+        self._take(t, positions, intensities, amplitudes)
+
+    def __repr__(self) -> str:
+        return f"<tactor.Curve: {len(self)} samples in {self.t[-1]:.6g} s>"
+
+
+class Percept(_Columns):
+    """The predicted percept of a plan, sampled each millisecond: a model, never a measurement. Immutable.
+
+    Also a sequence of `PerceptSample`.
+
+    Attributes
+    ----------
+    t : ndarray, shape (n,)
+        Seconds.
+    positions : ndarray, shape (n, 2)
+        Centre of energy of the tactors that sound, mm; NaN while none does.
+    intensity : ndarray, shape (n,)
+        Linear; 0 while none sounds.
+    speed : ndarray, shape (n,)
+        mm/s, smoothed over 0.1 s; NaN where there is none.
+    targets : ndarray, shape (n, 2)
+        Where the stroke is, mm.
+    target_intensity : ndarray, shape (n,)
+        How strong it is meant to be, linear.
+    shared : ndarray of bool, shape (n,)
+        Whether bursts at different places sound at once.
+    """
+
+    __slots__ = ("t", "positions", "intensity", "speed", "targets", "target_intensity", "shared")
+
+    t: _NDArray[_np.float64]
+    positions: _NDArray[_np.float64]
+    intensity: _NDArray[_np.float64]
+    speed: _NDArray[_np.float64]
+    targets: _NDArray[_np.float64]
+    target_intensity: _NDArray[_np.float64]
+    shared: _NDArray[_np.bool_]
+
+    def __init__(self, t: _NDArray[_np.float64], positions: _NDArray[_np.float64], intensity: _NDArray[_np.float64],
+                 speed: _NDArray[_np.float64], targets: _NDArray[_np.float64], target_intensity: _NDArray[_np.float64],
+                 shared: _NDArray[_np.bool_]) -> None:
+        self._take(t, positions, intensity, speed, targets, target_intensity, shared)
+
+    @_t.overload
+    def __getitem__(self, i: int) -> PerceptSample: ...
+    @_t.overload
+    def __getitem__(self, i: slice) -> list[PerceptSample]: ...
+    def __getitem__(self, i: int | slice) -> PerceptSample | list[PerceptSample]:
+        if isinstance(i, slice):
+            return [self[k] for k in range(*i.indices(len(self)))]
+        x, y = self.positions[i].tolist()
+        speed = float(self.speed[i])
+        return PerceptSample(float(self.t[i]), Point(*self.targets[i].tolist()), None if x != x else Point(x, y), float(self.intensity[i]),
+                             float(self.target_intensity[i]), bool(self.shared[i]), None if speed != speed else speed)
+
+    def __iter__(self) -> _t.Iterator[PerceptSample]:
+        return (self[i] for i in range(len(self)))
+
+    def __repr__(self) -> str:
+        return f"<tactor.Percept: {len(self)} samples in {self.t[-1]:.6g} s>"
 
 
 class Plan(_Value):
@@ -225,20 +441,126 @@ class Plan(_Value):
         return f"<tactor.Plan of {self.stroke.name!r}: {self.algorithm}, {self.phantom}, {what}, {self.total:.6g} s on {self._array.name!r}>"
 
     def _repr_svg_(self) -> str:
-        from tactor._tool import svg_of_plans
-        return svg_of_plans(self)
+        return _tactor.svg(self._array._core, [(self.start, self._core)], self.stroke.name, None, "both", 85.0)  # type: ignore[no-any-return]
 
     def __reduce__(self) -> tuple[_t.Callable[..., _t.Any], tuple[_t.Any, ...]]:
         return _plan_again, (self._core.json(), self._core.stroke.state(), self._array, self._recorded, self._core.asked)
 
 
-def make_plan(given: dict[str, _t.Any]) -> Plan:
-    """Makes the plan of plan()'s arguments."""
-    options = _split_envelope(given)
-    array, stroke = options.pop("array"), options.pop("stroke")
+def plan(array: Array, stroke: Stroke, *, duration: float | None = None, speed: float | None = None, outside: _Outside | None = None,
+         fit: bool | None = None, fit_margin: float | None = None, algorithm: _Algorithm | None = None,
+         phantom: _t.Union[_Phantom, PhantomModel, None] = None, faces: _Faces | None = None, soa: float | None = None, burst: float | None = None,
+         slope: float | None = None, intercept: float | None = None, timing: _Timing | None = None, min_duration: float | None = None,
+         snap: bool | None = None, drop_points: bool | None = None, overlap: _Overlap | None = None, compensate: _Compensate | None = None,
+         sigma_mm: float | None = None, sigma_v_mm_s: float | None = None, carrier: float | None = None, waveform: str | None = None,
+         am: _t.Union[float, str, None] = None, noise_seed: int | None = None, texture: _Texture | None = None, texture_mm: float | None = None,
+         phase: _Phase | None = None, ramp: float | None = None, envelope: str | None = None, attack: float | None = None,
+         release: float | None = None, tukey_part: float | None = None, level_dbfs: float | None = None, sl: float | None = None,
+         intensity_scale: _IntensityScale | None = None, stevens_exponent: float | None = None, rate: int | None = None) -> Plan:
+    """Plans a stroke on an array. Options are the tool's, see tactor-options(7); None is its default.
+
+    Parameters
+    ----------
+    array : Array
+    stroke : Stroke
+    duration : float
+        Duration of each stroke (default: the file's or preset's). 0.001 to 86400 s.
+    speed : float
+        Speed of each stroke, in place of its duration (default 60 where nothing gives one). 0.001 to 100000 mm/s.
+    outside : str
+        Refuse paths that leave the array, or move them to its edge (default error). One of "error", "clamp".
+    fit : bool
+        Scale and centre the strokes on the array.
+    fit_margin : float
+        fit: distance from the array's edge (default 0). 0 to 1000000 mm.
+    algorithm : str
+        Method that chooses the tactors and the times (default park2016). One of "park2016", "tactile-brush", "continuous".
+    phantom : str
+        Model that shares the intensity among tactors (default inverse-distance). One of "inverse-distance", "barycentric", "linear", "log",
+        "gaussian".
+    faces : str
+        inverse-distance: the three tactors around the point, or the three closest (default delaunay). One of "delaunay", "nearest".
+    soa : float
+        Time from the onset of a burst to the onset of the next (default 0.07). Above 0.0473 to 0.07 s by the usual timing law; see burst for
+        others.
+    burst : float
+        Duration of each burst (default: from the SOA by the timing law). 0.0001 to 10 s.
+    slope : float
+        Slope of the timing law SOA = A duration + S (default 0.32). 0.01 to 0.99.
+    intercept : float
+        Intercept of the timing law (default 0.0473). 0.001 to 10 s.
+    timing : str
+        Keep the SOA, or fit it so that the bursts end with the path (default fixed). One of "fixed", "fit".
+    min_duration : float
+        timing fit: shortest burst (default 0.02). 0.0001 to 10 s.
+    snap : bool
+        tactile-brush: move a start or end onto the grid.
+    drop_points : bool
+        tactile-brush: drop crossings until the timing is possible.
+    overlap : str
+        Intensity of bursts that overlap on one tactor (default energy). One of "energy", "max", "sum".
+    compensate : str
+        Move bursts so that the low-speed observer feels the target (default none). One of "none", "low-speed".
+    sigma_mm : float
+        low-speed: uncertainty of a place on the skin (default 5). 0.001 to 1000 mm.
+    sigma_v_mm_s : float
+        low-speed: spread of the speeds that are expected (default 100). 0.001 to 1000000 mm/s.
+    carrier : float
+        Frequency of the vibration (default 250). 1 to 384000 Hz.
+    waveform : str
+        Shape at the carrier's frequency, noise between two frequencies, or recording (default sine). As
+        "sine|square|triangle|sawtooth|noise:LO-HI|FILE.wav".
+    am : float or str
+        Amplitude modulation, depth 0 to 1 (default: none; depth 1). As "HZ[:DEPTH]".
+    noise_seed : int
+        noise: seed of its samples (default 1). 0 to 9007199254740992.
+    texture : str
+        FILE.wav: play it as the carrier's cycle (default), in its own time, or along the path. One of "cycle", "time", "length".
+    texture_mm : float
+        texture="length": length of path for the whole file (default: the whole path). 0 to 1000000 mm.
+    phase : str
+        Start the carrier with the stroke (default), or again with each burst. One of "stroke", "burst".
+    ramp : float
+        Raised-cosine ramp inside each burst (default: 0 between zero crossings, else 0.002). 0 to 10 s.
+    envelope : str
+        Rise and fall of a burst (default raised-cosine; tukey: PART of the burst, default 0.5). As "raised-cosine|linear|exponential|tukey[:PART]".
+    attack : float
+        Time in which each burst rises (default: ramp). 0 to 10 s.
+    release : float
+        Time in which each burst falls (default: the time in which it rises). 0 to 10 s.
+    tukey_part : float
+        envelope tukey: part of the burst in which it rises and falls (default 0.5). 0 to 1.
+    level_dbfs : float
+        Peak of the carrier at intensity 1 (default -12). -200 to 0 dBFS.
+    sl : float
+        Level above each tactor's threshold, in place of dBFS. -60 to 100 dB SL.
+    intensity_scale : str
+        Scale of intensities: amplitude (default), dB of sl, or felt strength. One of "linear", "sl", "stevens".
+    stevens_exponent : float
+        Felt = amplitude^E (default 0.6, at 250 Hz; 0.95 at 60 Hz: Stevens 1968). 0.1 to 3.
+    rate : int
+        Sample rate (default 48000). 8000 to 768000 Hz.
+
+    Returns
+    -------
+    Plan
+
+    Raises
+    ------
+    InputError
+        SOA out of bounds, a path outside the array, timing that cannot be done, no grid for the Tactile Brush.
+
+    Notes
+    -----
+    `phantom` may be a model of your own. "inverse-distance" is that of Park et al. 2016, Eq. 10. "nearest" takes the closest three tactors of all, as
+    their paper says it to the letter; a warning counts the bursts that their triangle misses. The timing law is of Israr and Poupyrev 2011, "low-speed"
+    of Goldreich 2007. What says how the plan sounds counts for a `Score` that says nothing else.
+    """
+    given = dict(locals())
+    del given["array"], given["stroke"]
     _need(array, Array, "array")
     _need(stroke, Stroke, "stroke")
-    return Plan._wrap(_tactor.Plan(array._core, stroke._core, options, array._settings()), array)
+    return Plan._wrap(_tactor.Plan(array._core, stroke._core, _split_envelope(given), array._settings()), array)
 
 
 def burst_duration(*, soa: float | None = None, burst: float | None = None, slope: float | None = None,

@@ -12,7 +12,6 @@ import weakref
 
 from tactor import _tactor
 from tactor._array import Array
-from tactor._calls import PlayerCalls
 from tactor._checks import encoded, _need, _number, _split_envelope, _Unique, _whole
 from tactor._errors import InputError
 from tactor._score import Score
@@ -20,6 +19,8 @@ from tactor._ticket import LiveStroke, Report, Ticket, _call, _Held, _Shared
 
 if _t.TYPE_CHECKING:
     from types import TracebackType as _TracebackType
+    from tactor._plan import _Algorithm, _Faces, _IntensityScale, _Outside, _Phantom, _Phase, _SampleFormat, _Texture, PhantomModel
+    from tactor._ticket import _LogKind
     _At = _t.Literal["now", "armed"]
 
 
@@ -27,7 +28,7 @@ _LATEST_S = 8e9  # of a clock that counts nanoseconds in 64 bits
 _CLOCK = "seconds as time.monotonic() gives them"
 
 
-class Player(PlayerCalls, _Unique):
+class Player(_Unique):
     """Plays scores on a device in real time.
 
     Raises
@@ -43,28 +44,72 @@ class Player(PlayerCalls, _Unique):
     collected or the program ends. In a process that was forked every call raises `StreamError`, and its end leaves stream and amplifier alone.
     """
 
-    live = PlayerCalls.live
+    def __init__(self, device: str, array: Array, *, rate: int | None = None, sample_format: _SampleFormat | None = None,
+                 channels: int | None = None, no_gpio: bool | None = None, power_dbfs: float | None = None, max_drive_s: float | None = None,
+                 drive_window_s: float | None = None, latency: float | None = None, period_frames: int | None = None, periods: int | None = None,
+                 require_realtime: bool | None = None, sync_delay: float | None = None, config: _t.Union[str, os.PathLike[str], None] = None,
+                 log: _t.Callable[[_LogKind, str], object] | None = None, keep_drive_time: bool = True) -> None:
+        """Opens a device.
 
-    def _open(self, given: dict[str, _t.Any]) -> None:
+        Parameters
+        ----------
+        device : str
+            An ALSA name as `tactor play -D` takes it: "hw:CARD=Tactor", "null", "file:...".
+        array : Array
+            Gives each channel's limit; one from a file brings what that says of amplifier, lines and limits.
+        config : path-like, optional
+            Configuration; default: the tool's ($TACTOR_CONFIG, the user's, the system's), amplifier and limits included. os.devnull: none.
+        log : callable, optional
+            `log(kind, text)` is told of xruns, recovery, mutes and limits that act, in the player's thread of Python.
+        keep_drive_time : bool
+            What earlier players and runs of this user drove on this device counts, and what this one drives counts for later ones. False: it
+            begins with 0, and is not kept.
+        rate
+            As in `plan`.
+        sample_format : str
+            Format of the samples (render: float; play: the device's). One of "float", "s16", "s24", "s24-4", "s32".
+        channels : int
+            Channels of the stream (default: the configuration's, else what the array needs). 1 to 1024 channels.
+        no_gpio : bool
+            Leave the lines of [amplifier] and [sync] alone.
+        power_dbfs : float
+            Limit on the power of all tactors together, above one channel's full scale (default 4.77). -120 to 60 dB.
+        max_drive_s : float
+            Longest drive of one tactor without a rest (default 5). 0.1 to 3600 s.
+        drive_window_s : float
+            Time of which a tactor may be driven for max_drive_s in the long run (default 10). 0.1 to 3600 s.
+        latency : float
+            Length of the device's buffer (periods x period). 0.0001 to 10 s.
+        period_frames : int
+            Frames in a period, in place of latency_ms (default: the configuration's, else 96). 1 to 1048576 frames.
+        periods : int
+            Periods in the buffer (default: the configuration's, else 3). 2 to 1024 periods.
+        require_realtime : bool
+            Fail without real-time priority and locked memory.
+        sync_delay : float
+            Time from the edge to the stroke's first sample at the DAC (default 0.05). 0 to 10 s.
+        """
+        given = dict(locals())
+        for name in ("self", "device", "array", "config", "log", "keep_drive_time"):
+            del given[name]
         self._shared: _Shared | None = None
-        device, array, config, log, keep = (given.pop(name) for name in ("device", "array", "config", "log", "keep_drive_time"))
         self._array: Array = array
         _need(array, Array, "array")
         _need(device, str, "device")
         encoded(device, "device")
-        if given["sample_format"] is not None:
-            _need(given["sample_format"], str, "sample_format")
-        _need(keep, bool, "keep_drive_time")
+        if sample_format is not None:
+            _need(sample_format, str, "sample_format")
+        _need(keep_drive_time, bool, "keep_drive_time")
         for name, least, hint in (("latency", 0.0001, "0.0001 to 10 s"), ("sync_delay", 0.0, "0 to 10 s")):
             value = given.pop(name)
             given[f"{name}_ms"] = None if value is None else 1e3 * _number(name, value, least, 10.0, hint)
         given.update(config=None if config is None else encoded(config, "config"),
                      array_file=None if array._file is None else encoded(array._file), log=log is not None)
-        core = _tactor.Player(array._core, device, given, keep)
+        core = _tactor.Player(array._core, device, given, keep_drive_time)
         self._setup: dict[str, _t.Any] = core.setup()
-        doubt = _tactor.find_drive_doubt(device) if keep else ""
+        doubt = _tactor.find_drive_doubt(device) if keep_drive_time else ""
         if doubt:
-            warnings.warn(doubt, stacklevel=3)
+            warnings.warn(doubt, stacklevel=2)
         self._held = _Held(log)
         self._shared = _Shared(core, self._held)
         _open.add(self)
@@ -154,12 +199,50 @@ class Player(PlayerCalls, _Unique):
             return Score._wrap(score._array, score._plans, {**score._options, "channels": self.channels})._core
         return score._core
 
-    def _begin(self, given: dict[str, _t.Any]) -> LiveStroke:
+    def live(self, *, outside: _Outside | None = None, algorithm: _Algorithm | None = None,
+             phantom: _t.Union[_Phantom, PhantomModel, None] = None, faces: _Faces | None = None, soa: float | None = None,
+             burst: float | None = None, slope: float | None = None, intercept: float | None = None, carrier: float | None = None,
+             waveform: str | None = None, am: _t.Union[float, str, None] = None, noise_seed: int | None = None,
+             texture: _Texture | None = None, phase: _Phase | None = None, ramp: float | None = None, envelope: str | None = None,
+             attack: float | None = None, release: float | None = None, tukey_part: float | None = None, level_dbfs: float | None = None,
+             sl: float | None = None, intensity_scale: _IntensityScale | None = None, stevens_exponent: float | None = None,
+             timeout: float = 0.5, longest: float | None = None, smooth: float = 0.0, intensity_max: float | None = None) -> LiveStroke:
+        """Begins a stroke that is fed point by point; silent until the first.
+
+        Parameters
+        ----------
+        timeout : float
+            A producer that gives no point for so long, s, has failed: it fades out, interrupted.
+        longest : float
+            A stroke that has sounded for so long, s, fades out, interrupted; None: it may go on for ever.
+        smooth : float
+            For points that come in bursts, s, 0 (off) to 1: it moves evenly, and is at each point so long after that came.
+        intensity_max : float
+            The intensity of a point that means 1, 0.001 to 1e6; 255 for a sensor of 8 bits. None: as the file says, else 1.
+        outside, algorithm, phantom, faces, soa, burst, slope, intercept, carrier, waveform, am, noise_seed, texture, phase, ramp, envelope, attack
+            As in `plan`.
+        release, tukey_part, level_dbfs, sl, intensity_scale, stevens_exponent
+            As in `plan`.
+
+        What nobody says is as the array's file says; but `algorithm` is "continuous", and `outside` "clamp".
+
+        Returns
+        -------
+        LiveStroke
+
+        Raises
+        ------
+        InputError
+            For options that cannot be.
+        StreamError
+            When the stream has ended.
+        """
+        given = dict(locals())
+        for name in ("self", "timeout", "longest", "smooth", "intensity_max"):
+            del given[name]
         shared = self._get()
-        timeout, longest, smooth = (given.pop(name) for name in ("timeout", "longest", "smooth"))
-        most = given.pop("intensity_max")
         times = (_number("timeout", timeout, 0.001, 86400.0), None if longest is None else _number("longest", longest, 0.001, 86400.0),
-                 _number("smooth", smooth, 0.0, 1.0), None if most is None else _number("intensity_max", most, 0.001, 1e6))
+                 _number("smooth", smooth, 0.0, 1.0), None if intensity_max is None else _number("intensity_max", intensity_max, 0.001, 1e6))
         with shared.lock:
             core = shared.core.live(self._array._core, _split_envelope(given), *times, self._array._settings())
             stroke = LiveStroke(shared, core)

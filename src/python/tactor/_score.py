@@ -8,7 +8,6 @@ import typing as _t
 
 from tactor import _tactor
 from tactor._array import Array
-from tactor._calls import ScoreCall
 from tactor._checks import _counted, _Member, _need, _number, reading, _split_envelope, _Value, _whole
 from tactor._errors import InputError
 from tactor._plan import Plan
@@ -16,6 +15,7 @@ from tactor._plan import Plan
 if _t.TYPE_CHECKING:
     import numpy as _np
     from numpy.typing import DTypeLike as _DTypeLike, NDArray as _NDArray
+    from tactor._plan import _Phase
     _WavFormat = _t.Literal["float", "s16", "s24", "s32"]
     _Plans = _t.Union[Plan, _t.Iterable[_t.Union[Plan, "tuple[float | None, Plan]"]]]
 
@@ -55,7 +55,7 @@ def placed(plans: _Plans) -> list[tuple[float | None, Plan]]:
     return all_of_them
 
 
-class Score(ScoreCall, _Value):
+class Score(_Value):
     """Plans at a sample rate and at levels: what can be rendered, written and played. Immutable.
 
     Raises
@@ -75,8 +75,36 @@ class Score(ScoreCall, _Value):
 
     __slots__ = ("_core", "_array", "_plans", "_options", "_recipe")
 
-    def _make(self, given: dict[str, _t.Any]) -> None:
-        array, plans = given.pop("array"), given.pop("plans")
+    def __init__(self, array: Array, plans: _Plans, *, phase: _Phase | None = None, ramp: float | None = None, envelope: str | None = None,
+                 attack: float | None = None, release: float | None = None, tukey_part: float | None = None, level_dbfs: float | None = None,
+                 sl: float | None = None, rate: int | None = None, channels: int | None = None, marker_channel: int | None = None,
+                 marker_s: float | None = None, power_dbfs: float | None = None, max_drive_s: float | None = None, drive_window_s: float | None = None) -> None:
+        """Makes a score.
+
+        Parameters
+        ----------
+        array : Array
+        plans : Plan, or iterable of Plan or of (float, Plan)
+            A number is the start in seconds; a plan without one starts at its stroke's, or when the plan before it has ended.
+        phase, ramp, envelope, attack, release, tukey_part, level_dbfs, sl, rate
+            As in `plan`.
+        channels : int
+            Channels of the stream (default: the configuration's, else what the array needs). 1 to 1024 channels.
+        marker_channel : int
+            Spare channel that marks each stroke's first frames. 0 to 1023.
+        marker_s : float
+            Duration of the mark (default 0.005). 0.000001 to 10 s.
+        power_dbfs : float
+            Limit on the power of all tactors together, above one channel's full scale (default 4.77). -120 to 60 dB.
+        max_drive_s : float
+            Longest drive of one tactor without a rest (default 5). 0.1 to 3600 s.
+        drive_window_s : float
+            Time of which a tactor may be driven for max_drive_s in the long run (default 10). 0.1 to 3600 s.
+
+        Without any limit on power and drive time the piece is as it was designed: a player has its own.
+        """
+        given = dict(locals())
+        del given["self"], given["array"], given["plans"]
         _need(array, Array, "array")
         self._take(array, tuple(placed(plans)), _split_envelope(given))
 

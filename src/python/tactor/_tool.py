@@ -15,6 +15,7 @@ from tactor._score import Score, placed
 from tactor._stroke import Stroke
 
 if _t.TYPE_CHECKING:
+    from tactor._plan import _Algorithm, _Compensate, _Faces, _IntensityScale, _Observer, _Outside, _Overlap, _Phantom, _Timing
     from tactor._score import _Plans
     _View = _t.Literal["array", "timing", "wave", "both"]
 
@@ -72,21 +73,65 @@ def _names(what: str, value: str | _t.Iterable[str] | None, one: _t.Any) -> list
     return names
 
 
-def make_comparison(given: dict[str, _t.Any]) -> Comparison:
-    """Makes the comparison of compare()'s arguments."""
-    options = {name: value for name, value in given.items() if value is not None}
-    array, stroke = given["array"], given["stroke"]
+def compare(array: Array, stroke: Stroke, *, algorithms: _t.Union[str, _t.Iterable[_Algorithm], None] = None,
+            phantoms: _t.Union[str, _t.Iterable[_Phantom], None] = None, duration: float | None = None, speed: float | None = None,
+            outside: _Outside | None = None, fit: bool | None = None, fit_margin: float | None = None, algorithm: _Algorithm | None = None,
+            phantom: _Phantom | None = None, faces: _Faces | None = None, soa: float | None = None, burst: float | None = None,
+            slope: float | None = None, intercept: float | None = None, timing: _Timing | None = None, min_duration: float | None = None,
+            snap: bool | None = None, drop_points: bool | None = None, overlap: _Overlap | None = None, compensate: _Compensate | None = None,
+            sigma_mm: float | None = None, sigma_v_mm_s: float | None = None, carrier: float | None = None, sl: float | None = None,
+            intensity_scale: _IntensityScale | None = None, stevens_exponent: float | None = None, observer: _Observer | None = None,
+            spread: int | None = None, spread_seed: int | None = None, spread_sigma: float | None = None,
+            spread_threshold_db: float | None = None, spread_place_mm: float | None = None) -> Comparison:
+    """What algorithms are predicted to feel like on the same stroke: a model, never a measurement.
+
+    Parameters
+    ----------
+    array : Array
+    stroke : Stroke
+    algorithms : iterable of str
+        What to compare; default: all three, or `algorithm` alone.
+    phantoms : iterable of str
+        With which phantom models; default: that of `phantom`.
+    duration, speed, outside, fit, fit_margin, algorithm, phantom, faces, soa, burst, slope, intercept, timing, min_duration, snap, drop_points
+        As in `plan`.
+    overlap, compensate, sigma_mm, sigma_v_mm_s, carrier, sl, intensity_scale, stevens_exponent
+        As in `plan`.
+    observer : str
+        Model that predicts what is felt (default centroid). One of "centroid", "low-speed".
+    spread : int
+        Show what this many people would feel, drawn at random. 2 to 100000.
+    spread_seed : int
+        spread: seed of the draw (default 1). 0 to 4294967295.
+    spread_sigma : float
+        spread: factor by which people's low-speed sigma differs (default 2). 1 to 100.
+    spread_threshold_db : float
+        spread: range of thresholds, plus and minus (default 6). 0 to 60 dB.
+    spread_place_mm : float
+        spread: range of each tactor's place (default 2). 0 to 1000 mm.
+
+    Returns
+    -------
+    Comparison
+        A list of dicts. An algorithm that cannot play the stroke says why under "refused".
+
+    Raises
+    ------
+    InputError
+        Where none can play it.
+    """
+    given = dict(locals())
     for name in ("array", "stroke", "algorithms", "phantoms"):
-        options.pop(name, None)
+        del given[name]
     _need(array, Array, "array")
     _need(stroke, Stroke, "stroke")
-    if hasattr(given["phantom"], "weights"):
+    if hasattr(phantom, "weights"):
         raise InputError("phantom", "a model of your own cannot be compared", "name a built-in one, or ask plan(phantom=...) for its percept()",
                          field="phantom")
-    of = _names("algorithms", given["algorithms"], given["algorithm"]), _names("phantoms", given["phantoms"], given["phantom"])
-    if not of[0] and given["algorithm"] is None:
+    of = _names("algorithms", algorithms, algorithm), _names("phantoms", phantoms, phantom)
+    if not of[0] and algorithm is None:
         of[0].extend(("park2016", "tactile-brush", "continuous"))
-    return Comparison(_tactor.Compared(array._core, stroke._core, options, *of, array._settings()))
+    return Comparison(_tactor.Compared(array._core, stroke._core, given, *of, array._settings()))
 
 
 def _picture(plans: _Plans, view: str) -> tuple[_t.Any, list[tuple[float | None, _t.Any]], str, _t.Any]:
@@ -131,17 +176,6 @@ def plot(plans: _Plans, file: str | os.PathLike[str], *, view: _View = "both", w
     with reading(file) as to:
         _tactor.save_picture(array, all_of_them, own_name if name is None else name, score, view, _size(width, dpi)[0], to, _size(width, dpi)[1],
                              bool(force))
-
-
-def svg_of_plans(plans: _Plans, view: str = "both") -> str:
-    """Draws plans as an SVG document."""
-    return _tactor.svg(*_picture(plans, view), view, 85.0)  # type: ignore[no-any-return]
-
-
-def picture_of_stroke(stroke: Stroke) -> str:
-    """Draws a stroke on palm-3x3."""
-    from tactor._calls import plan
-    return svg_of_plans(plan(Array.preset("palm-3x3"), stroke, algorithm="continuous", outside="clamp"), "array")
 
 
 def devices(array: Array | None = None, *, device: str | None = None, rate: int | None = None,
