@@ -116,10 +116,54 @@ void refuse_rivals(const py::dict& given)
             refuse(o.name, fmt::format("there is also {}", o.rival), "give one of them");
 }
 
+/// A phantom model that is a Python object: name, and weights(x_mm, y_mm, intensity).
+class own_phantom final : public phantom_model {
+public:
+    own_phantom(py::object model, std::size_t tactors)
+        : model_(std::move(model)),
+          name_(py::hasattr(model_, "name")
+                    ? py::str(model_.attr("name")).cast<std::string>()
+                    : py::str(py::type::of(model_).attr("__name__")).cast<std::string>()),
+          answer_(py::module_::import("tactor._plan").attr("ask_model")),
+          tactors_(tactors)
+    {
+    }
+
+    // The last plan that shares it may be dropped by any thread.
+    ~own_phantom() override
+    {
+        const with_lock lock;
+        model_ = py::object();
+        answer_ = py::object();
+    }
+    own_phantom(const own_phantom&) = delete;
+    own_phantom& operator=(const own_phantom&) = delete;
+
+    std::string_view name() const noexcept override { return name_; }
+
+    void weights(point p, double a_v, std::vector<drive>& out) const override
+    {
+        const with_lock lock;
+        out.clear();
+        for (const py::handle one :
+             called(answer_, py::make_tuple(model_, name_, p.x_mm, p.y_mm, a_v, tactors_))) {
+            const auto [tactor, amplitude] = one.cast<std::pair<unsigned, double>>();
+            out.push_back({tactor, amplitude});
+        }
+    }
+
+private:
+    py::object model_;
+    std::string name_;
+    py::object answer_; ///< asks the model, and looks at what it says
+    std::size_t tactors_;
+};
+
 void take_phantom(wishes& w, const option& o, py::handle v, std::size_t tactors)
 {
     if (py::hasattr(v, "weights"))
-        w.plan.custom_phantom = wrap_model(py::reinterpret_borrow<py::object>(v), tactors);
+        w.plan.custom_phantom =
+            std::make_shared<const own_phantom>(py::reinterpret_borrow<py::object>(v), tactors);
     else
         options::put(w, o, read_handle(o, v));
 }

@@ -37,7 +37,4 @@ py::dict default_values(const setup& says);
 /// Returns an error of the library with options as keyword arguments: "soa", timing="fit".
 error in_keywords(const error& e);
 
-/// Wraps a Python object that says which tactors make a phantom: name, and weights(x_mm, y_mm, intensity).
-std::shared_ptr<const phantom_model> wrap_model(const py::object& own, std::size_t tactors);
-
 } // namespace tactor::python

@@ -1,14 +1,24 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
 #include <cmath>
+#include <condition_variable>
 #include <cstdint>
+#include <deque>
 #include <memory>
+#include <mutex>
 #include <optional>
-#include <tuple>
+#include <shared_mutex>
+#include <string>
+#include <type_traits>
 #include <utility>
+#include <variant>
+
+#include <unistd.h>
 
 #include "python/options.hpp"
-#include "python/player_handle.hpp"
+#include "session/device.hpp"
+#include "session/device_list.hpp"
+#include "session/lines.hpp"
 #include "session/live_remarks.hpp"
 
 namespace tactor::python {
@@ -16,6 +26,221 @@ namespace {
 
 using namespace py::literals;
 using free_call = py::call_guard<without_lock>;
+
+struct log_line {
+    std::string kind;
+    std::string text;
+};
+
+using event = std::variant<stroke_report, log_line>;
+
+/// Events of a player on their way to a thread of Python's. The player's threads leave them here and never
+/// wait for the interpreter.
+class event_queue {
+public:
+    void put(event e)
+    {
+        {
+            const std::lock_guard lock(mutex_);
+            if (std::holds_alternative<log_line>(e) && waiting_.size() >= most_waiting)
+                return; // an unread log; reports are as many as there are strokes
+            waiting_.push_back(std::move(e));
+        }
+        there_.notify_one();
+    }
+
+    /// Ends the queue: no more events come. next() still gives those that wait.
+    void close()
+    {
+        {
+            const std::lock_guard lock(mutex_);
+            closed_ = true;
+        }
+        there_.notify_all();
+    }
+
+    /// Waits for the next one; none once it is closed and empty.
+    std::optional<event> next()
+    {
+        std::unique_lock lock(mutex_);
+        there_.wait(lock, [this] { return closed_ || !waiting_.empty(); });
+        if (waiting_.empty())
+            return {};
+        event e = std::move(waiting_.front());
+        waiting_.pop_front();
+        return e;
+    }
+
+private:
+    static constexpr std::size_t most_waiting = 4096;
+
+    std::mutex mutex_;
+    std::condition_variable there_;
+    std::deque<event> waiting_;
+    bool closed_ = false;
+};
+
+bool same_map(const array& a, const array& b)
+{
+    if (a.tactors.size() != b.tactors.size())
+        return false;
+    for (std::size_t i = 0; i < a.tactors.size(); ++i)
+        if (a.tactors[i].channel != b.tactors[i].channel)
+            return false;
+    return true;
+}
+
+// Returns the configuration that applies, with this array; null: with the configuration's. Fills in rate and
+// format from [defaults] where `s` has none.
+session::environment read_environment(session::settings& s, const array* a)
+{
+    session::environment e = session::read_environment(s);
+    if (a == nullptr)
+        return e;
+    // A channel count belongs to its map.
+    if (!same_map(e.tactors, *a))
+        e.config.output.channels.reset();
+    e.tactors = *a;
+    return e;
+}
+
+/// Calls may come from any thread, but not from a process that was forked: there they are errors, and nothing
+/// of the parent's is touched when it ends.
+class player_handle {
+public:
+    /// Opens the device. What `s` does not set is the configuration's, then the tool's default. `keep`: as
+    /// player_options::keep_drive_time. Without the interpreter's lock. \throws error.
+    player_handle(const array& a, session::settings s, bool keep, bool wants_log)
+    {
+        const session::environment e = read_environment(s, &a);
+        const render_options sound = session::settle_render(s, e);
+        alsa_options device = session::device_options(s, s.stream, e, sound.channels, sound.rate);
+        const auto events = events_;
+        if (wants_log)
+            device.log = [events](log_kind k, std::string_view text) {
+                events->put(log_line{std::string(to_string(k)), std::string(text)});
+            };
+        session::settle_server(device.pcm);
+        const bool waits_for_edges = !s.stream.no_gpio && e.config.sync && e.config.sync->in;
+        // Before threads: it forks the holder of the amplifier's line.
+        open_->lines = session::lent_lines(session::open_lines(s.stream, e, waits_for_edges));
+        player_options o;
+        o.limits = session::settle_limits(s.stream, e);
+        o.require_realtime = s.stream.require_realtime;
+        o.keep_drive_time = keep;
+        o.log = device.log;
+        open_->stream = std::make_unique<player>(session::open_device(device, a), a, o, open_->lines.lend());
+        open_->stream->on_report([events](const stroke_report& r) { events->put(r); });
+        setup_ = open_->stream->setup();
+    }
+    ~player_handle()
+    {
+        if (forked()) { // the parent's: not even the memory is given back, for that would end things
+            static_cast<void>(open_.release());
+            return;
+        }
+        // Its threads may be waiting for the interpreter, to drop what is Python's.
+        std::optional<without_lock> free;
+        if (PyGILState_Check() != 0)
+            free.emplace();
+        close();
+    }
+    player_handle(const player_handle&) = delete;
+    player_handle& operator=(const player_handle&) = delete;
+
+    const stream_setup& setup() const noexcept { return setup_; }
+    event_queue& events() noexcept { return *events_; }
+    bool forked() const noexcept { return ::getpid() != owner_; }
+    void refuse_child() const
+    {
+        if (forked())
+            throw error(error_kind::runtime, "player", "this process was forked from the one that has it",
+                        "make one of its own, or play in the parent");
+    }
+
+    /// Calls `f` with the player; once it is closed, the other. \throws error (runtime) in a forked process.
+    template <class F, class G>
+    auto use(F&& f, G&& once_closed) const
+    {
+        refuse_child();
+        const std::shared_lock lock(open_->mutex);
+        return open_->stream != nullptr ? f(*open_->stream) : once_closed();
+    }
+
+    /// Calls `f` with the player. \throws error (runtime) once it is closed, and in a forked process.
+    template <class F>
+    auto use(F&& f) const
+    {
+        return use(std::forward<F>(f), []() -> std::invoke_result_t<F, player&> {
+            throw error(error_kind::runtime, "player", "it is closed", "make a new one");
+        });
+    }
+
+    /// Return the player's; once it is closed, those of its end. \throws error in a forked process.
+    player_stats stats() const
+    {
+        return use([](player& p) { return p.stats(); }, [this] { return open_->last.stats; });
+    }
+    std::optional<std::string> ended() const
+    {
+        return use(&end_reason, [this] { return open_->last.ended; });
+    }
+
+    /// Returns false if the stroke has ended, as all have once it is closed. \throws error in a forked
+    /// process.
+    bool cancel(stroke_id id) const
+    {
+        return use([id](player& p) { return p.cancel(id); }, [] { return false; });
+    }
+    bool closed() const
+    {
+        return !forked() && use([](player&) { return false; }, [] { return true; });
+    }
+
+    /// Fades out, stops and closes; all strokes have been reported then. Once more: nothing.
+    void close()
+    {
+        use([](player& p) { p.stop(); }, [] {});
+        std::unique_ptr<player> ended;
+        {
+            const std::unique_lock lock(open_->mutex);
+            ended = std::move(open_->stream);
+            if (ended != nullptr)
+                open_->last = {ended->stats(), end_reason(*ended)};
+        }
+        ended.reset();
+        {
+            const std::unique_lock lock(open_->mutex);
+            open_->lines = session::lent_lines();
+        }
+        events_->close();
+    }
+
+private:
+    /// Remains of a closed player.
+    struct last_words {
+        player_stats stats = {};
+        std::optional<std::string> ended = {};
+    };
+    static std::optional<std::string> end_reason(const player& p)
+    {
+        const auto end = p.ended();
+        return end ? std::optional(end->why) : std::nullopt;
+    }
+
+    // State that a forked process must not touch, not even to destroy it.
+    struct open_state {
+        mutable std::shared_mutex mutex;
+        session::lent_lines lines;
+        std::unique_ptr<player> stream;
+        last_words last; ///< without a stream
+    };
+
+    pid_t owner_ = ::getpid();
+    stream_setup setup_;
+    std::shared_ptr<event_queue> events_ = std::make_shared<event_queue>();
+    std::unique_ptr<open_state> open_ = std::make_unique<open_state>();
+};
 
 // Takes a keyword argument, if it is given.
 template <class T>
@@ -168,6 +393,20 @@ live_handle begin(const std::shared_ptr<player_handle>& h, const array_handle& o
             intensity_max};
 }
 
+std::string devices(const array_handle* on, const std::optional<std::string>& array_file,
+                    const std::optional<std::string>& pcm, std::optional<unsigned> rate,
+                    const std::optional<std::string>& config)
+{
+    const without_lock free;
+    session::settings s;
+    s.pcm = pcm;
+    s.rate = rate;
+    s.config_file = config;
+    s.array_name = array_file;
+    const session::environment e = read_environment(s, on != nullptr ? &on->value() : nullptr);
+    return session::devices_json(session::look_for_devices(s, e));
+}
+
 void bind_live(py::module_& m)
 {
     py::class_<live_handle>(m, "Live")
@@ -210,6 +449,7 @@ void bind_live(py::module_& m)
 
 void bind_player(py::module_& m)
 {
+    m.def("devices", &devices);
     m.def("find_drive_doubt", &session::find_drive_doubt);
     py::class_<player_handle, std::shared_ptr<player_handle>>(m, "Player")
         .def(py::init(&open))

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Functions of the tool, by its code: comparisons, pictures, devices.
+// Functions of the tool, by its code: comparisons and pictures.
 #include <optional>
 #include <string>
 #include <utility>
@@ -11,8 +11,6 @@
 #include "plot/figure.hpp"
 #include "plot/paint/output.hpp"
 #include "python/plan_handle.hpp"
-#include "python/player_handle.hpp"
-#include "session/device_list.hpp"
 
 namespace tactor::python {
 namespace {
@@ -110,20 +108,6 @@ plot::canvas draw(const array_handle& on, const plans& all, const std::string& n
                              {view_from(view), width_mm});
 }
 
-std::string devices(const array_handle* on, const std::optional<std::string>& array_file,
-                    const std::optional<std::string>& pcm, std::optional<unsigned> rate,
-                    const std::optional<std::string>& config)
-{
-    const without_lock free;
-    session::settings s;
-    s.pcm = pcm;
-    s.rate = rate;
-    s.config_file = config;
-    s.array_name = array_file;
-    const session::environment e = read_environment(s, on != nullptr ? &on->value() : nullptr);
-    return session::devices_json(session::look_for_devices(s, e));
-}
-
 } // namespace
 
 void bind_tool(py::module_& m)
@@ -159,7 +143,6 @@ void bind_tool(py::module_& m)
               plot::check_output(file, force);
               plot::save(draw(on, all, name, sound, view, width_mm), file, dpi, force);
           });
-    m.def("devices", &devices);
 }
 
 } // namespace tactor::python
