@@ -55,13 +55,14 @@ auto member_name(T tactor::plan::*m)
 }
 
 // Returns a column of the bursts as they lie in memory.
-template <class Member>
-py::array_t<double> column(const py::object& self, const Member& of)
+template <double burst::*Member>
+py::array_t<double> column(const py::object& self)
 {
     const auto& bursts = self.cast<const plan_handle&>().plan().bursts;
     if (bursts.empty())
         return given({});
-    return make_view({static_cast<py::ssize_t>(bursts.size())}, {sizeof(burst)}, of(bursts.front()), self);
+    return make_view({static_cast<py::ssize_t>(bursts.size())}, {sizeof(burst)}, &(bursts.front().*Member),
+                     self);
 }
 
 py::array_t<double> positions(const py::object& self)
@@ -308,15 +309,9 @@ void bind_plan(py::module_& m)
         .def_property_readonly("size", [](const plan_handle& p) { return p.plan().bursts.size(); })
         .def_readonly("asked", &plan_handle::asked)
         .def_property_readonly("continuous", [](const plan_handle& p) { return p.plan().curve.has_value(); })
-        .def_property_readonly(
-            "onsets",
-            [](const py::object& s) { return column(s, [](const burst& b) { return &b.onset_s; }); })
-        .def_property_readonly(
-            "durations",
-            [](const py::object& s) { return column(s, [](const burst& b) { return &b.duration_s; }); })
-        .def_property_readonly(
-            "intensities",
-            [](const py::object& s) { return column(s, [](const burst& b) { return &b.intensity; }); })
+        .def_property_readonly("onsets", &column<&burst::onset_s>)
+        .def_property_readonly("durations", &column<&burst::duration_s>)
+        .def_property_readonly("intensities", &column<&burst::intensity>)
         .def_property_readonly("positions", &positions)
         .def("taus", &taus)
         .def("amplitudes", &amplitudes)

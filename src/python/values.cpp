@@ -48,15 +48,6 @@ array_handle make_array(const std::string& name, const std::vector<tactor_row>& 
     return array_handle(std::move(a));
 }
 
-worn_row worn(const array_handle& h)
-{
-    const array& a = h.value();
-    std::optional<std::pair<double, double>> place;
-    if (a.place)
-        place = std::pair(a.place->x_mm, a.place->y_mm);
-    return {a.site, a.up, place, a.turn_deg, a.body_mm};
-}
-
 std::vector<tactor_row> list_rows(const array_handle& h)
 {
     std::vector<tactor_row> rows;
@@ -143,7 +134,15 @@ void bind_array(py::module_& m)
                         return array_handle(make_grid(std::move(name), rows, columns, x, y));
                     })
         .def_property_readonly("name", [](const array_handle& h) { return h.value().name; })
-        .def_property_readonly("worn", &worn)
+        .def_property_readonly("site", [](const array_handle& h) { return h.value().site; })
+        .def_property_readonly("up", [](const array_handle& h) { return h.value().up; })
+        .def_property_readonly("place",
+                               [](const array_handle& h) {
+                                   const std::optional<point>& p = h.value().place;
+                                   return p ? py::object(pair(*p)) : py::object(py::none());
+                               })
+        .def_property_readonly("turn_deg", [](const array_handle& h) { return h.value().turn_deg; })
+        .def_property_readonly("body_mm", [](const array_handle& h) { return h.value().body_mm; })
         .def_property_readonly("channels", [](const array_handle& h) { return h.value().channels(); })
         .def_property_readonly("rows", &list_rows)
         .def("text", [](const array_handle& h) { return detail::array_text(h.value()); })

@@ -126,7 +126,7 @@ class Array(_Value):
         self._besides = besides
         self._origin = origin
         self._setup = None
-        self._worn: _Worn = core.worn
+        self._worn: _Worn = core.site, core.up, core.place, core.turn_deg, core.body_mm
         self._tactors = tuple(Tactor._make((Point(x, y), *rest, tuple(thresholds), rise_s, um))
                               for x, y, *rest, thresholds, rise_s, um in core.rows)
 
@@ -189,30 +189,13 @@ class Array(_Value):
     positions: _Member[_NDArray[_np.float64]] = _Member("positions", "Places, shape (n, 2), mm; a view that cannot be written.")
     channels: _Member[int] = _Member("channels", "Channels that the map needs, the highest and one.")
 
-    @property
-    def site(self) -> str:
-        """Place on the body that its file says, such as "left palm"; else empty."""
-        return self._worn[0]
-
-    @property
-    def up(self) -> str:
-        """Direction of its upper edge on the body that its file says, such as "fingers"; else empty."""
-        return self._worn[1]
-
-    @property
-    def place(self) -> tuple[float, float] | None:
-        """Place of its middle that its file says, from the site's landmark, mm; for pictures."""
-        return self._worn[2]
-
-    @property
-    def turn_deg(self) -> float | None:
-        """Turn of the body part under it that its file says, clockwise on a screen; for pictures."""
-        return self._worn[3]
-
-    @property
-    def body_mm(self) -> float | None:
-        """Length of the body part that its file says, such as the hand's; for pictures."""
-        return self._worn[4]
+    site: _Member[str] = _Member("site", 'Place on the body that its file says, such as "left palm"; else empty.')
+    up: _Member[str] = _Member("up", 'Direction of its upper edge on the body that its file says, such as "fingers"; else empty.')
+    place: _Member[tuple[float, float] | None] = _Member(
+        "place", "Place of its middle that its file says, from the site's landmark, mm; for pictures.")
+    turn_deg: _Member[float | None] = _Member(
+        "turn_deg", "Turn of the body part under it that its file says, clockwise on a screen; for pictures.")
+    body_mm: _Member[float | None] = _Member("body_mm", "Length of the body part that its file says, such as the hand's; for pictures.")
 
     @property
     def tactors(self) -> tuple[Tactor, ...]:
