@@ -18,6 +18,7 @@ import zipfile
 LIBRARIES = (
     ("Boost", "libboost-dev", None, None, "boost/asio.hpp"),
     ("fmt", "libfmt-dev", None, "fmt", "fmt/format.h"),
+    ("libmd", "libmd-dev", None, "libmd", "sha2.h"),
     ("pugixml", "libpugixml-dev", None, "pugixml", "pugixml.hpp"),
     ("toml++", "libtomlplusplus-dev", None, "tomlplusplus", "toml++/toml.h"),
     ("nlohmann-json", "nlohmann-json3-dev", None, "nlohmann_json", "nlohmann/json.hpp"),
