@@ -233,7 +233,6 @@ TEST_CASE("bytes become base64 and come back, as RFC 4648 says")
         std::string made = "x";
         append_base64(made, bytes);
         CHECK(made == "x" + std::string(text));
-        CHECK(made.size() == 1 + base64_size(bytes.size()));
         CHECK(read_base64(text) == bytes);
     }
     std::string all;
