@@ -6,6 +6,7 @@
 #include <memory>
 #include <numbers>
 
+#include <boost/crc.hpp>
 #include <cairo-pdf.h>
 #include <cairo.h>
 #include <fmt/format.h>
@@ -157,24 +158,14 @@ void add_big_endian(std::string& s, std::uint32_t v)
         s += static_cast<char>((v >> shift) & 0xFFU);
 }
 
-// CRC-32 of PNG (ISO 3309).
-std::uint32_t crc(std::string_view bytes) noexcept
-{
-    std::uint32_t c = 0xFFFFFFFFU;
-    for (const char b : bytes) {
-        c ^= static_cast<unsigned char>(b);
-        for (int i = 0; i < 8; ++i)
-            c = (c >> 1U) ^ ((c & 1U) != 0 ? 0xEDB88320U : 0U);
-    }
-    return ~c;
-}
-
 void add_chunk(std::string& to, const std::string& name_and_content)
 {
     constexpr std::size_t name_bytes = 4;
     add_big_endian(to, static_cast<std::uint32_t>(name_and_content.size() - name_bytes));
     to += name_and_content;
-    add_big_endian(to, crc(name_and_content));
+    boost::crc_32_type crc;
+    crc.process_bytes(name_and_content.data(), name_and_content.size());
+    add_big_endian(to, crc.checksum());
 }
 
 // Adds the size of a pixel and the mark in chunks after the header (8 + 25 bytes): Cairo writes neither.
