@@ -104,11 +104,6 @@ inline py::array_t<double> make_view(std::vector<py::ssize_t> shape, std::vector
 /// Gives doubles to NumPy without a copy, in rows of `columns` (0: a plain row); they cannot be written.
 py::array_t<double> given(std::vector<double> values, std::size_t columns = 0);
 
-/// Checks for Ctrl-C without the lock: throws what Python's handler raised.
-void check_signals();
-/// Sets Python's error. With the interpreter's lock.
-void set_error(const error& marked);
-
 /// Writes paths and strokes as bytes, for pickles and for comparing: the same bytes, the same value.
 std::string write_state(const path& p);
 std::string write_state(const stroke& s);

@@ -20,13 +20,6 @@ py::array_t<double> given(std::vector<double> values, std::size_t columns)
     return make_view({size / width, width}, {width * bytes, bytes}, first, owner);
 }
 
-void check_signals()
-{
-    const with_lock lock;
-    if (in_python([] { return PyErr_CheckSignals(); }) != 0)
-        throw py::error_already_set();
-}
-
 namespace {
 
 // Names of files may be anything but UTF-8.
@@ -36,19 +29,7 @@ py::str text(std::string_view t)
         PyUnicode_DecodeUTF8(t.data(), static_cast<Py_ssize_t>(t.size()), "surrogateescape"));
 }
 
-void translate(std::exception_ptr p)
-{
-    try {
-        if (p)
-            std::rethrow_exception(p);
-    } catch (const error& e) {
-        set_error(e);
-    }
-}
-
-} // namespace
-
-// Makes an error in Python, where the classes are.
+// Sets Python's error; the classes are in Python.
 void set_error(const error& marked)
 {
     const error e = in_keywords(marked);
@@ -63,6 +44,18 @@ void set_error(const error& marked)
         raised.restore();
     }
 }
+
+void translate(std::exception_ptr p)
+{
+    try {
+        if (p)
+            std::rethrow_exception(p);
+    } catch (const error& e) {
+        set_error(e);
+    }
+}
+
+} // namespace
 
 } // namespace tactor::python
 

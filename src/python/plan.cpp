@@ -199,16 +199,7 @@ py::dict summary(const plan_handle& p)
                     "silent_share"_a = s.silent_share, "shared_share"_a = s.shared_share);
 }
 
-} // namespace
-
-render_options settled(const array& a, render_options o)
-{
-    const unsigned marker = o.marker_channel ? *o.marker_channel + 1 : 0;
-    if (o.channels == 0)
-        o.channels = std::max(a.channels(), marker);
-    return o;
-}
-
+// Writes the tool's tactor-plan/1 object.
 std::string write_json(const plan_handle& p)
 {
     const without_lock free;
@@ -217,6 +208,7 @@ std::string write_json(const plan_handle& p)
     return files::plans_text({p.one, tactors, score(tactors, p.one.plans, sound), sound});
 }
 
+// Reads a plan; `named` stands for it in messages.
 plan_handle plan_from_json(const std::string& text, const std::string& named)
 {
     const without_lock free;
@@ -226,6 +218,16 @@ plan_handle plan_from_json(const std::string& text, const std::string& named)
                     "there are " + counted(f.made.plans.size(), "plan") + " in it",
                     "take one of its \"plans\"");
     return {std::make_shared<array_handle>(std::move(f.tactors)), std::move(f.made), f.render};
+}
+
+} // namespace
+
+render_options settled(const array& a, render_options o)
+{
+    const unsigned marker = o.marker_channel ? *o.marker_channel + 1 : 0;
+    if (o.channels == 0)
+        o.channels = std::max(a.channels(), marker);
+    return o;
 }
 
 void check_same_array(const plan_handle& p, const array& in_use)

@@ -31,11 +31,6 @@ struct plan_handle {
     const tactor::plan& plan() const noexcept { return placed().plan; }
 };
 
-/// Writes the tool's tactor-plan/1 object, and reads it. \throws error.
-std::string write_json(const plan_handle& p);
-/// Reads a plan; `named` stands for it in messages.
-plan_handle plan_from_json(const std::string& text, const std::string& named);
-
 /// Returns a piece of one stroke, fitted and timed as its file and the options ask. \throws error (bad_input)
 /// where it is part of a group that is fitted as a single picture.
 session::piece place_stroke(const stroke& s, const layout& faces, const wishes& w);

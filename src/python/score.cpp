@@ -134,6 +134,14 @@ py::tuple make_score(const array_handle& on, const std::vector<score_part>& plan
     return py::make_tuple(made, recipe(common) + py::make_tuple(py::tuple(py::cast(levels))));
 }
 
+// Checks for Ctrl-C without the lock: throws what Python's handler raised.
+void check_signals()
+{
+    const with_lock lock;
+    if (in_python([] { return PyErr_CheckSignals(); }) != 0)
+        throw py::error_already_set();
+}
+
 // Makes the next frames of a score, block by block.
 class block_renderer {
 public:

@@ -130,14 +130,14 @@ void bind_tool(py::module_& m)
                  check_dpi(dpi);
                  plot::save(draw(c, width_mm), file, dpi, force);
              });
-    m.def("svg", [](const array_handle& on, const plans& all, const std::string& name, const score* sound,
-                    const std::string& view, double width_mm) {
-        const without_lock free;
-        return plot::to_svg(draw(on, all, name, sound, view, width_mm));
-    });
+    m.def("svg",
+          [](const array_handle& on, const plans& all, const std::string& name, const std::string& view) {
+              const without_lock free;
+              return plot::to_svg(draw(on, all, name, nullptr, view, plot::figure_options().width_mm));
+          });
     m.def("save_picture",
           [](const array_handle& on, const plans& all, const std::string& name, const score* sound,
-             const std::string& view, double width_mm, const std::string& file, unsigned dpi, bool force) {
+             const std::string& view, const std::string& file, double width_mm, unsigned dpi, bool force) {
               const without_lock free;
               check_dpi(dpi);
               plot::check_output(file, force);

@@ -441,7 +441,7 @@ class Plan(_Value):
         return f"<tactor.Plan of {self.stroke.name!r}: {self.algorithm}, {self.phantom}, {what}, {self.total:.6g} s on {self._array.name!r}>"
 
     def _repr_svg_(self) -> str:
-        return _tactor.svg(self._array._core, [(self.start, self._core)], self.stroke.name, None, "both", 85.0)  # type: ignore[no-any-return]
+        return _tactor.svg(self._array._core, [(self.start, self._core)], self.stroke.name, "both")  # type: ignore[no-any-return]
 
     def __reduce__(self) -> tuple[_t.Callable[..., _t.Any], tuple[_t.Any, ...]]:
         return _plan_again, (self._core.json(), self._core.stroke.state(), self._array, self._recorded, self._core.asked)

@@ -311,7 +311,7 @@ class Stroke(_Stated):
     def _repr_svg_(self) -> str:
         palm = _tactor.Array.preset("palm-3x3")
         plan = _tactor.Plan(palm, self._core, {"algorithm": "continuous", "outside": "clamp"}, None)
-        return _tactor.svg(palm, [(plan.start_s, plan)], plan.stroke.name, None, "array", 85.0)  # type: ignore[no-any-return]
+        return _tactor.svg(palm, [(plan.start_s, plan)], plan.stroke.name, "array")  # type: ignore[no-any-return]
 
 
 class Fitting(_t.NamedTuple):

@@ -134,16 +134,6 @@ def compare(array: Array, stroke: Stroke, *, algorithms: _t.Union[str, _t.Iterab
     return Comparison(_tactor.Compared(array._core, stroke._core, given, *of, array._settings()))
 
 
-def _picture(plans: _Plans, view: str) -> tuple[_t.Any, list[tuple[float | None, _t.Any]], str, _t.Any]:
-    all_of_them = placed(plans)
-    if not all_of_them:
-        raise InputError("plans", "there are none", "give at least one")
-    first = all_of_them[0][1]
-    score = Score(first.array, all_of_them)._core if view == "wave" else None
-    name = first.stroke.name if len(all_of_them) == 1 else f"{len(all_of_them)} strokes"
-    return first.array._core, [(start, p._core) for start, p in all_of_them], name, score
-
-
 def plot(plans: _Plans, file: str | os.PathLike[str], *, view: _View = "both", width: float = 85.0, dpi: int = 300,
          name: str | None = None, force: bool = False) -> None:
     """Draws the array, the path, the bursts and who plays when, as `tactor plot` does.
@@ -170,12 +160,16 @@ def plot(plans: _Plans, file: str | os.PathLike[str], *, view: _View = "both", w
         For another extension, a width out of range, a file that was read as input, or one that tactor did not write.
     """
     _need(view, str, "view")
-    array, all_of_them, own_name, score = _picture(plans, view)
-    if name is not None:
-        _need(name, str, "name")
+    all_of_them = placed(plans)
+    if not all_of_them:
+        raise InputError("plans", "there are none", "give at least one")
+    first = all_of_them[0][1]
+    score = Score(first.array, all_of_them)._core if view == "wave" else None
+    if name is None:
+        name = first.stroke.name if len(all_of_them) == 1 else f"{len(all_of_them)} strokes"
+    _need(name, str, "name")
     with reading(file) as to:
-        _tactor.save_picture(array, all_of_them, own_name if name is None else name, score, view, _size(width, dpi)[0], to, _size(width, dpi)[1],
-                             bool(force))
+        _tactor.save_picture(first.array._core, [(start, p._core) for start, p in all_of_them], name, score, view, to, *_size(width, dpi), bool(force))
 
 
 def devices(array: Array | None = None, *, device: str | None = None, rate: int | None = None,
