@@ -1,19 +1,13 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
-#include <cstdio>
-#include <initializer_list>
 #include <memory>
 #include <set>
-#include <string>
 #include <string_view>
 #include <utility>
-#include <vector>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-
-#include <tactor/array.hpp>
 
 #include "cli/commands.hpp"
 #include "cli/input.hpp"
@@ -39,7 +33,98 @@ using detail::comparison_choice;
 using detail::comparison_row;
 using detail::interval;
 using detail::row_spread;
-using detail::spread_choice;
+
+template <class Enum>
+std::string join_names()
+{
+    return fmt::format("{}", fmt::join(detail::kind_names<Enum>(), ","));
+}
+
+// "a,b,c", each once, in the order given.
+template <class Enum>
+std::vector<Enum> parse_list(const char* option, std::string_view text)
+{
+    const auto known = all_values<Enum>();
+    std::vector<Enum> list;
+    for (const std::string_view name : detail::split(text, ',')) {
+        const auto v = std::find_if(known.begin(), known.end(), [&](Enum e) { return to_string(e) == name; });
+        if (v == known.end())
+            throw error(error_kind::bad_input, option, fmt::format("\"{}\" is not known", name),
+                        "one or more of " + join_names<Enum>());
+        if (std::find(list.begin(), list.end(), *v) != list.end())
+            throw error(error_kind::bad_input, option, fmt::format("\"{}\" is there twice", name),
+                        "name each once");
+        list.push_back(*v);
+    }
+    return list;
+}
+
+// The options of this command alone.
+struct compare_options {
+    comparison_choice choice;
+    std::string format = "text";
+    picture_options picture;
+};
+
+void add_lists(CLI::App& c, const std::shared_ptr<compare_options>& o)
+{
+    auto* algorithms = add_text(
+        c, "--algorithms", join_names<algorithm_kind>(), "algorithms to compare (default all three)",
+        [o](const std::string& t) { o->choice.algorithms = parse_list<algorithm_kind>("--algorithms", t); });
+    auto* phantoms = add_text(
+        c, "--phantoms", join_names<phantom_kind>(), "phantom models to compare (default: that of --phantom)",
+        [o](const std::string& t) { o->choice.phantoms = parse_list<phantom_kind>("--phantoms", t); });
+    c.get_option("--algorithm")->description("only this one; see --algorithms")->excludes(algorithms);
+    c.get_option("--phantom")->excludes(phantoms);
+    add_format_option(c, o->format, {"text", "json"}, "format of the output (default text)");
+}
+
+void add_output_options(CLI::App& c, const std::shared_ptr<compare_options>& o)
+{
+    add_text(c, "-o,--output", "FILE.svg|.png|.pdf",
+             "also draw target and prediction on the array, and speed over time", [o](const std::string& t) {
+                 plot::find_format(t);
+                 o->picture.file = t;
+                 o->choice.keep_samples = true;
+             });
+    add_picture_options(c, o->picture, "85, one print column");
+}
+
+// Returns the last reason why no algorithm can play the strokes, and prints the others, each once.
+error why_refused(const std::vector<comparison>& all, const piece& p)
+{
+    std::vector<error> reasons;
+    std::set<std::string> seen;
+    for (std::size_t k = 0; k < all.size(); ++k) {
+        if (all[k].playable())
+            continue;
+        for (const comparison_row& r : all[k].rows) {
+            const error reason = of_stroke(*r.refused, p, k);
+            if (seen.insert(reason.what()).second)
+                reasons.push_back(reason);
+        }
+    }
+    for (std::size_t i = 0; i + 1 < reasons.size(); ++i)
+        say(stderr, "tactor: {}\n", reasons[i].what());
+    return reasons.back();
+}
+
+std::vector<comparison> compare_all(const piece& p, const environment& e, const layout& faces,
+                                    const plan_options& how, comparison_choice choice)
+{
+    progress_line line("compare");
+    const std::size_t rows = p.strokes.size() * choice.algorithms.size() * choice.phantoms.size();
+    std::size_t predicted = 0;
+    choice.after_person = [&] { line.update(++predicted, rows * choice.spread.people); };
+    std::vector<comparison> all;
+    for (const stroke& k : p.strokes)
+        all.push_back(detail::compare(k, e.tactors, faces, how, choice));
+    for (comparison& c : all)
+        for (comparison_row& r : c.rows)
+            if (r.refused)
+                r.refused = in_options(*r.refused);
+    return all;
+}
 
 // A figure of the table, or a dash where there is none.
 std::string figure(std::optional<double> v)
@@ -98,14 +183,13 @@ void print_row(std::FILE* out, const comparison_row& r, bool by_taps)
 }
 
 // Prints each warning once: most are the same for all phantom models.
-void print_notes(std::FILE* out, std::string_view before, const comparison& c)
+void print_notes(std::FILE* out, const comparison& c)
 {
     std::set<std::string> said;
     for (const comparison_row& r : c.rows)
         if (r.plan)
             for (const std::string& w : r.plan->warnings) {
-                const std::string text =
-                    fmt::format("{}warning: {}: {}\n", before, to_string(r.algorithm), w);
+                const std::string text = fmt::format("warning: {}: {}\n", to_string(r.algorithm), w);
                 if (said.insert(text).second)
                     say_text(out, text);
             }
@@ -140,26 +224,9 @@ void print_one(std::FILE* out, const comparison& c, const std::string& title, co
         print_row(out, r, by_taps);
         print_spread(out, r, by_taps);
     }
-    print_notes(out, "", c);
+    print_notes(out, c);
 }
 
-// A field of CSV: quoted where it must be (RFC 4180).
-std::string field(const std::string& text)
-{
-    if (text.find_first_of(",\"\r\n") == std::string::npos)
-        return text;
-    std::string quoted = "\"";
-    for (const char c : text)
-        quoted += c == '"' ? "\"\"" : std::string(1, c);
-    return quoted + "\"";
-}
-
-std::string field(std::optional<double> v)
-{
-    return v ? fmt::format("{}", *v) : "";
-}
-
-// Prints a table of each comparison; `titles`: names of the strokes.
 void print_text(std::FILE* out, const std::vector<comparison>& all, const std::vector<std::string>& titles,
                 const array& a)
 {
@@ -175,195 +242,6 @@ void print_text(std::FILE* out, const std::vector<comparison>& all, const std::v
             ? "Errors count at the onsets of the bursts; length: of the chain of bursts."
             : "CV: standard deviation / mean; shared: a tactor serves two bursts.",
         detail::prediction_note(o));
-}
-
-// Columns after all others, of a table with people drawn, of one of bursts that are moved, and
-// of one with other faces.
-std::string choices_heading(const comparison& of, std::initializer_list<const char*> figures)
-{
-    const spread_choice& c = of.spread;
-    std::string text = c.people == 0 ? "" : ",people,seed,sigma_factor,threshold_db,place_mm";
-    for (const char* f : figures)
-        text += c.people == 0 ? "" : fmt::format(",{0}_05,{0}_95", f);
-    text += of.compensated ? ",compensated_for,compensated_sigma_mm,compensated_sigma_v_mm_s" : "";
-    return text + (of.faces == faces_kind::delaunay ? "" : ",faces");
-}
-
-std::string spread_fields(const spread_choice& c, const comparison_row& r,
-                          std::initializer_list<std::optional<interval> row_spread::*> figures)
-{
-    if (c.people == 0)
-        return {};
-    std::string text =
-        fmt::format(",{},{},{},{},{}", c.people, c.seed, c.sigma_factor, c.threshold_db, c.place_mm);
-    for (const auto f : figures) {
-        const std::optional<interval> v = r.spread ? (*r.spread).*f : std::nullopt;
-        text += v ? fmt::format(",{},{}", v->low, v->high) : ",,";
-    }
-    return text;
-}
-
-std::string choices_fields(const comparison& of, const comparison_row& r,
-                           std::initializer_list<std::optional<interval> row_spread::*> figures)
-{
-    const low_speed_observer& o = of.observer.low_speed;
-    return spread_fields(of.spread, r, figures) +
-           (of.compensated ? fmt::format(",low-speed,{},{}", o.sigma_mm, o.sigma_v_mm_s) : "") +
-           (of.faces == faces_kind::delaunay ? "" : fmt::format(",{}", to_string(of.faces)));
-}
-
-// The low-speed observer's table: each line says whose it is.
-void print_taps_csv(std::FILE* out, const std::vector<comparison>& all)
-{
-    fmt::print(
-        out,
-        "stroke,name,algorithm,phantom,observer,sigma_mm,sigma_v_mm_s,built_for,bursts,rms_error_mm,"
-        "largest_error_mm,felt_length_mm,target_length_mm,length_ratio,unpredicted,refused{}\n",
-        choices_heading(all.front(), {"rms_error_mm", "largest_error_mm", "felt_length_mm", "length_ratio"}));
-    for (std::size_t i = 0; i < all.size(); ++i)
-        for (const comparison_row& r : all[i].rows) {
-            const low_speed_observer& o = all[i].observer.low_speed;
-            const bool predicted = !r.refused && r.unpredicted.empty();
-            const auto if_predicted = [&](double v) { return predicted ? std::optional(v) : std::nullopt; };
-            fmt::print(out, "{},{},{},{},low-speed,{},{},taps,{},{},{},{},{},{},{},{}{}\n", i,
-                       field(all[i].target.name), to_string(r.algorithm), to_string(r.phantom), o.sigma_mm,
-                       o.sigma_v_mm_s, predicted ? fmt::format("{}", r.plan->bursts.size()) : "",
-                       field(r.felt.rms_error_mm), field(r.felt.largest_error_mm),
-                       field(if_predicted(r.tapped.felt_length_mm)),
-                       field(if_predicted(r.tapped.target_length_mm)), field(r.tapped.length_ratio),
-                       field(r.unpredicted), r.refused ? field(std::string(r.refused->what())) : "",
-                       choices_fields(all[i], r,
-                                      {&row_spread::rms_error_mm, &row_spread::largest_error_mm,
-                                       &row_spread::felt_length_mm, &row_spread::length_ratio}));
-        }
-}
-
-void print_samples_csv(std::FILE* out, const std::vector<comparison>& all)
-{
-    fmt::print(
-        out,
-        "stroke,name,algorithm,phantom,bursts,rms_error_mm,largest_error_mm,speed_cv,intensity_cv,"
-        "silent_share,shared_share,refused{}\n",
-        choices_heading(all.front(), {"rms_error_mm", "largest_error_mm", "speed_cv", "intensity_cv"}));
-    for (std::size_t i = 0; i < all.size(); ++i)
-        for (const comparison_row& r : all[i].rows) {
-            fmt::print(out, "{},{},{},{},", i, field(all[i].target.name), to_string(r.algorithm),
-                       to_string(r.phantom));
-            if (r.refused)
-                fmt::print(out, ",,,,,,,{}", field(std::string(r.refused->what())));
-            else
-                fmt::print(out, "{},{},{},{},{},{},{},",
-                           r.plan->curve ? "" : fmt::format("{}", r.plan->bursts.size()),
-                           field(r.felt.rms_error_mm), field(r.felt.largest_error_mm), field(r.felt.speed_cv),
-                           field(r.felt.intensity_cv), r.felt.silent_share, r.felt.shared_share);
-            fmt::print(out, "{}\n",
-                       choices_fields(all[i], r,
-                                      {&row_spread::rms_error_mm, &row_spread::largest_error_mm,
-                                       &row_spread::speed_cv, &row_spread::intensity_cv}));
-        }
-}
-
-// Prints one table of all, and their warnings on standard error.
-void print_csv(std::FILE* out, const std::vector<comparison>& all)
-{
-    if (all.front().observer.kind == observer_kind::low_speed)
-        print_taps_csv(out, all);
-    else
-        print_samples_csv(out, all);
-    for (const comparison& c : all)
-        print_notes(stderr, "tactor: ", c); // there is no place for them in a table
-}
-
-template <class Enum>
-std::string join_names()
-{
-    return fmt::format("{}", fmt::join(detail::kind_names<Enum>(), ","));
-}
-
-// "a,b,c", each once, in the order given.
-template <class Enum>
-std::vector<Enum> parse_list(const char* option, std::string_view text)
-{
-    const auto known = all_values<Enum>();
-    std::vector<Enum> list;
-    for (const std::string_view name : detail::split(text, ',')) {
-        const auto v = std::find_if(known.begin(), known.end(), [&](Enum e) { return to_string(e) == name; });
-        if (v == known.end())
-            throw error(error_kind::bad_input, option, fmt::format("\"{}\" is not known", name),
-                        "one or more of " + join_names<Enum>());
-        if (std::find(list.begin(), list.end(), *v) != list.end())
-            throw error(error_kind::bad_input, option, fmt::format("\"{}\" is there twice", name),
-                        "name each once");
-        list.push_back(*v);
-    }
-    return list;
-}
-
-// The options of this command alone.
-struct compare_options {
-    comparison_choice choice;
-    std::string format = "text";
-    picture_options picture;
-};
-
-void add_lists(CLI::App& c, const std::shared_ptr<compare_options>& o)
-{
-    auto* algorithms = add_text(
-        c, "--algorithms", join_names<algorithm_kind>(), "algorithms to compare (default all three)",
-        [o](const std::string& t) { o->choice.algorithms = parse_list<algorithm_kind>("--algorithms", t); });
-    auto* phantoms = add_text(
-        c, "--phantoms", join_names<phantom_kind>(), "phantom models to compare (default: that of --phantom)",
-        [o](const std::string& t) { o->choice.phantoms = parse_list<phantom_kind>("--phantoms", t); });
-    c.get_option("--algorithm")->description("only this one; see --algorithms")->excludes(algorithms);
-    c.get_option("--phantom")->excludes(phantoms);
-    add_format_option(c, o->format, {"text", "json", "csv"}, "format of the output (default text)");
-}
-
-void add_output_options(CLI::App& c, const std::shared_ptr<compare_options>& o)
-{
-    add_text(c, "-o,--output", "FILE.svg|.png|.pdf",
-             "also draw target and prediction on the array, and speed over time", [o](const std::string& t) {
-                 plot::find_format(t);
-                 o->picture.file = t;
-                 o->choice.keep_samples = true;
-             });
-    add_picture_options(c, o->picture, "85, one print column");
-}
-
-// Returns the last reason why no algorithm can play the strokes, and prints the others, each once.
-error why_refused(const std::vector<comparison>& all, const piece& p)
-{
-    std::vector<error> reasons;
-    std::set<std::string> seen;
-    for (std::size_t k = 0; k < all.size(); ++k) {
-        if (all[k].playable())
-            continue;
-        for (const comparison_row& r : all[k].rows) {
-            const error reason = of_stroke(*r.refused, p, k);
-            if (seen.insert(reason.what()).second)
-                reasons.push_back(reason);
-        }
-    }
-    for (std::size_t i = 0; i + 1 < reasons.size(); ++i)
-        say(stderr, "tactor: {}\n", reasons[i].what());
-    return reasons.back();
-}
-
-std::vector<comparison> compare_all(const piece& p, const environment& e, const layout& faces,
-                                    const plan_options& how, comparison_choice choice)
-{
-    progress_line line("compare");
-    const std::size_t rows = p.strokes.size() * choice.algorithms.size() * choice.phantoms.size();
-    std::size_t predicted = 0;
-    choice.after_person = [&] { line.update(++predicted, rows * choice.spread.people); };
-    std::vector<comparison> all;
-    for (const stroke& k : p.strokes)
-        all.push_back(detail::compare(k, e.tactors, faces, how, choice));
-    for (comparison& c : all)
-        for (comparison_row& r : c.rows)
-            if (r.refused)
-                r.refused = in_options(*r.refused);
-    return all;
 }
 
 int run(settings& s, const compare_options& asked, bool one_algorithm)
@@ -406,8 +284,6 @@ int run(settings& s, const compare_options& asked, bool one_algorithm)
     }
     if (asked.format == "json")
         fmt::print("{}", files::comparisons_text(all, e.tactors));
-    else if (asked.format == "csv")
-        print_csv(stdout, all);
     else
         print_text(stdout, all, titles, e.tactors);
     if (static_cast<std::size_t>(playable) < all.size())
