@@ -50,8 +50,7 @@ error usage_error(const CLI::App& app, const CLI::ParseError& e);
 inline constexpr const char* complete_command = "__complete";
 
 /// Returns lines for a shell. `words`: those after "tactor", the last one as far as it has been typed. Each
-/// line is a word that begins so, a tab and a description, or ":files" with the extensions of files that fit
-/// besides.
+/// line is a word that begins so, a tab and a description, or ":files" where a file or a folder fits.
 std::vector<std::string> complete(const CLI::App& app, const std::vector<std::string>& words);
 
 } // namespace tactor::cli

@@ -23,26 +23,14 @@ _tactor() {
     [[ -n $breaks ]] && kept=${current%"${current##*[$breaks]}"}
     COMPREPLY=()
     while IFS= read -r line; do
-        if [[ $line == :folders ]]; then
-            compopt -o filenames 2>/dev/null
-            while IFS= read -r file; do COMPREPLY+=("$file"); done < <(compgen -d -- "$current")
-            continue
-        fi
-        if [[ $line != :files* ]]; then
+        if [[ $line != :files ]]; then
             line=${line%%$'\t'*}
             COMPREPLY+=("${line#"$kept"}")
             continue
         fi
         compopt -o filenames 2>/dev/null
         [[ $current == --*=* ]] && current=${current#*=}
-        while IFS= read -r file; do
-            for word in ${line#:files} ""; do
-                if [[ -d $file || ( -n $word && $file == *"$word" ) || $line == :files ]]; then
-                    COMPREPLY+=("$file")
-                    break
-                fi
-            done
-        done < <(compgen -f -- "$current")
+        while IFS= read -r file; do COMPREPLY+=("$file"); done < <(compgen -f -- "$current")
     done < <("$1" __complete "${words[@]:1}" 2>/dev/null)
 }
 complete -F _tactor tactor
