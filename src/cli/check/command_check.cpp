@@ -12,9 +12,12 @@
 #include "cli/commands.hpp"
 #include "cli/say.hpp"
 #include "cli/settings.hpp"
+#include "files/output_file.hpp"
+#include "files/setup_text.hpp"
 #include "server/server.hpp"
 #include "session/device.hpp"
 #include "session/interrupt.hpp"
+#include "study/calibrate/result.hpp"
 
 namespace tactor::cli {
 namespace {
@@ -95,12 +98,28 @@ error no_map(const session::walk_verdict& v)
             "look after wires and amplifier channels, then walk again; no map is written"};
 }
 
+// Writes an array file with these channels and all else that the file in use says. It needs no other file.
+void write_channels(const std::string& name, const environment& e, const std::vector<unsigned>& channels)
+{
+    const setup besides = e.array_file.empty() ? setup{} : load_setup(e.array_file);
+    array felt = e.tactors;
+    for (std::size_t i = 0; i < channels.size(); ++i)
+        felt.tactors[i].channel = channels[i];
+    const std::string text = "# Channels as felt on a walk (tactor check --walk).\n" +
+                             detail::array_text(felt, besides) +
+                             (besides.calibration ? detail::origin_text(*besides.calibration) : "");
+    study::check_new_output(name); // output_file would replace it
+    detail::output_file out(name);
+    out.write(text.data(), static_cast<std::int64_t>(text.size()));
+    out.commit();
+}
+
 void conclude(const check_options& o, const environment& e, const session::walk_verdict& v)
 {
     if (!v.problems.empty())
         throw no_map(v);
     if (!o.output.empty())
-        write_channel_file(o.output, e, v.channels);
+        write_channels(o.output, e, v.channels);
     if (o.json())
         return;
     say(stdout, "{}\n",
@@ -152,7 +171,7 @@ void check_usage(const settings& s, const check_options& o)
         throw error(error_kind::bad_input, "--output", "without answers there is no map",
                     "leave out --auto or --output");
     if (!o.output.empty())
-        check_new_file(o.output);
+        study::check_new_output(o.output);
 }
 
 int check(settings& s, const check_options& o)

@@ -36,12 +36,4 @@ piece walk_one(const array& a, unsigned tactor, double carrier_hz);
 walk_result walk(const alsa_options& device, const environment& e, const render_options& render,
                  const walk_options& o, const session::stream_source& source = {});
 
-/// Checks that a new file can be made. \throws error (bad_input): the file exists, or its folder does not.
-void check_new_file(const std::string& name);
-
-/// Writes a new array file with these channels and all else that the file in use says. It needs no other
-/// file. Leaves no file if it fails. \throws error: bad_input like check_new_file(), runtime if it cannot be
-/// written.
-void write_channel_file(const std::string& name, const environment& e, const std::vector<unsigned>& channels);
-
 } // namespace tactor::cli
