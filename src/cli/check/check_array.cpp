@@ -2,6 +2,7 @@
 #include "cli/check/finding.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -40,24 +41,16 @@ struct spread {
     }
 };
 
-// Returns the distances from tactors to their nearest neighbours, by a sweep from left to right.
+// Returns the distances from tactors to their nearest neighbours.
 spread neighbours(const array& a)
 {
-    std::vector<point> p;
-    for (const tactor_spec& t : a.tactors)
-        p.push_back(t.position);
-    std::sort(p.begin(), p.end(), [](point l, point r) { return l.x_mm < r.x_mm; });
     spread all;
-    for (std::size_t i = 0; i < p.size(); ++i) {
+    for (const tactor_spec& t : a.tactors) {
         double nearest = std::numeric_limits<double>::infinity();
-        const auto look = [&](const point& q) {
-            nearest = std::min(nearest, std::hypot(q.x_mm - p[i].x_mm, q.y_mm - p[i].y_mm));
-            return std::abs(q.x_mm - p[i].x_mm) <= nearest;
-        };
-        for (std::size_t k = i + 1; k < p.size() && look(p[k]); ++k)
-            ;
-        for (std::size_t k = i; k > 0 && look(p[k - 1]); --k)
-            ;
+        for (const tactor_spec& other : a.tactors)
+            if (&other != &t)
+                nearest = std::min(nearest, std::hypot(other.position.x_mm - t.position.x_mm,
+                                                       other.position.y_mm - t.position.y_mm));
         all.add(nearest);
     }
     return all;
@@ -127,17 +120,6 @@ spread peaks(const render_options& r, const array& a)
     return s;
 }
 
-// Returns a note on tactors with stronger beginnings of bursts, up to their limit.
-std::string raised(const array& a)
-{
-    spread s;
-    for (const tactor_spec& t : a.tactors)
-        if (t.rise_s)
-            s.add(t.max_dbfs);
-    return s.most < s.least ? ""
-                            : fmt::format(", at beginnings of bursts up to {} for rise_ms", s.text("dBFS"));
-}
-
 finding check_levels(const render_options& r, const array& a, const plan_options& p)
 {
     try {
@@ -146,8 +128,8 @@ finding check_levels(const render_options& r, const array& a, const plan_options
     } catch (const error& e) {
         return failure("levels", e);
     }
-    const std::string found = fmt::format("peaks of {}{}{}", peaks(r, a).text("dBFS"),
-                                          r.sl_db ? fmt::format(", {} dB SL", *r.sl_db) : "", raised(a));
+    const std::string found = fmt::format("peaks of {}{}", peaks(r, a).text("dBFS"),
+                                          r.sl_db ? fmt::format(", {} dB SL", *r.sl_db) : "");
     const auto unmeasured = tactors_where(a, [](const tactor_spec& t) { return !threshold_at(t, usual_hz); });
     if (unmeasured.size() != a.tactors.size() && !unmeasured.empty())
         return warning("levels",
@@ -162,20 +144,6 @@ finding check_levels(const render_options& r, const array& a, const plan_options
             fmt::format("{}; not above the threshold of tactors {}", found, fmt::join(unfelt, ", ")),
             "raise --level-dbfs or gain_db, or use --sl");
     return fine("levels", found);
-}
-
-// Warns of thresholds that were measured at another carrier, if the levels are right.
-finding check_threshold_carrier(finding levels, const environment& e, const render_options& r,
-                                const plan_options& p)
-{
-    plan usual;
-    usual.carrier_hz = p.carrier_hz;
-    const plan* const played[] = {&usual};
-    const std::string other =
-        r.sl_db && levels.how == level::ok ? session::other_carrier(e, played) : std::string();
-    return other.empty() ? levels
-                         : warning("levels", fmt::format("{}; {}", levels.found, other),
-                                   "--array FILE with thresholds at this carrier, or another --carrier");
 }
 
 // Returns the defaults of limits that a file or an option made weaker.
@@ -211,10 +179,19 @@ finding check_limits(const drive_limits& l, std::size_t tactors)
                                fmt::join(usual, ", ")));
 }
 
-// Rise times and bands: a piezo needs 4 ms or less, an LRA over 20 ms and its own resonance within about
-// 5 Hz, an ERM about 116 ms and direct current instead of a carrier.
-constexpr double lra_rise_s = 0.020;
-constexpr double erm_rise_s = 0.116;
+// Actuators that need too long for bursts; a piezo starts within 4 ms.
+struct slow_kind {
+    actuator_kind kind;
+    const char* why;
+    const char* cure;
+};
+constexpr std::array slow_kinds{
+    slow_kind{actuator_kind::erm,
+              "an ERM needs about 116 ms to start, and its frequency follows its voltage, not the carrier",
+              "use piezo or voice coil actuators"},
+    slow_kind{actuator_kind::lra,
+              "an LRA needs over 20 ms to start, and works only within about 5 Hz of its own resonance",
+              "set --carrier to the resonance in its data sheet, or use piezo or voice coil actuators"}};
 // Range in which vibration is felt well: Pacinian corpuscles.
 constexpr double lowest_hz = 40.0;
 constexpr double highest_hz = 800.0;
@@ -249,19 +226,12 @@ void check_actuators(const array& a, double carrier_hz, double burst_s, bool has
     const std::size_t before = into.size();
     const std::string burst =
         has_bursts ? fmt::format("bursts of {:.3g} ms", burst_s * 1e3) : std::string("a moving phantom");
-    if (const auto erm = select_kind(a, actuator_kind::erm); !erm.empty())
-        into.push_back(warning("actuators",
-                               fmt::format("{}: an ERM needs about {:.0f} ms to start, too long for {}, and "
-                                           "its frequency follows its voltage, not the carrier of {:.4g} Hz",
-                                           who(a, erm), erm_rise_s * 1e3, burst, carrier_hz),
-                               "use piezo or voice coil actuators"));
-    if (const auto lra = select_kind(a, actuator_kind::lra); !lra.empty())
-        into.push_back(warning(
-            "actuators",
-            fmt::format("{}: an LRA needs over {:.0f} ms to start, much of {}, and works only within about 5 "
-                        "Hz of its own resonance; the carrier is {:.4g} Hz",
-                        who(a, lra), lra_rise_s * 1e3, burst, carrier_hz),
-            "set --carrier to the resonance in its data sheet, or use piezo or voice coil actuators"));
+    for (const slow_kind& k : slow_kinds)
+        if (const auto some = select_kind(a, k.kind); !some.empty())
+            into.push_back(warning("actuators",
+                                   fmt::format("{}: {}; it plays {}, and the carrier is {:.4g} Hz",
+                                               who(a, some), k.why, burst, carrier_hz),
+                                   k.cure));
     double slowest_s = 0.0;
     const auto slow = tactors_where(a, [&](const tactor_spec& t) {
         slowest_s = std::max(slowest_s, t.rise_s.value_or(0.0));
@@ -280,14 +250,6 @@ void check_actuators(const array& a, double carrier_hz, double burst_s, bool has
                                               "under [array]: {} need one that starts within a few ms",
                                               burst)
                                 : ""));
-}
-
-// Names noise or a recording, which have no carrier, so that there are no cycles to count.
-finding name_sound(const plan_options& p, double burst_s, bool has_bursts)
-{
-    const std::string sound = plot::describe_sound({.carrier_hz = p.carrier_hz, .wave = p.wave, .am = p.am});
-    return fine("bursts", has_bursts ? fmt::format("{} ms of {}", plain_number(burst_s * 1e3, 4), sound)
-                                     : "none (continuous), " + sound);
 }
 
 finding check_carrier(double carrier_hz, double burst_s, bool has_bursts, unsigned rate)
@@ -317,7 +279,7 @@ std::vector<finding> check_array(const settings& s, const environment& e, const 
 {
     const render_options r = session::settle_render(s, e);
     std::vector<finding> all{check_places(e.tactors), check_channels(r, e.tactors),
-                             check_threshold_carrier(check_levels(r, e.tactors, s.plan), e, r, s.plan)};
+                             check_levels(r, e.tactors, s.plan)};
     for (finding& f : check_bursts(s.plan, e.tactors, r.rate))
         all.push_back(std::move(f));
     all.push_back(check_limits(l, e.tactors.tactors.size()));
@@ -339,9 +301,12 @@ std::vector<finding> check_bursts(const plan_options& p, const array& a, unsigne
         return {failure("bursts", e)};
     }
     check_actuators(a, p.carrier_hz, burst_s, has_bursts, all);
-    const bool has_carrier = p.wave.kind != waveform_kind::noise && p.wave.kind != waveform_kind::recording;
-    all.push_back(has_carrier ? check_carrier(p.carrier_hz, burst_s, has_bursts, rate)
-                              : name_sound(p, burst_s, has_bursts));
+    // Noise and recordings have no carrier whose cycles could be counted.
+    if (p.wave.kind == waveform_kind::noise || p.wave.kind == waveform_kind::recording)
+        all.push_back(
+            fine("bursts", plot::describe_sound({.carrier_hz = p.carrier_hz, .wave = p.wave, .am = p.am})));
+    else
+        all.push_back(check_carrier(p.carrier_hz, burst_s, has_bursts, rate));
     return all;
 }
 
