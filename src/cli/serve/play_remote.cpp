@@ -2,12 +2,9 @@
 #include "cli/play/play_report.hpp"
 
 #include <algorithm>
-#include <cerrno>
 #include <chrono>
 #include <cmath>
-#include <cstring>
 #include <filesystem>
-#include <string>
 #include <string_view>
 #include <system_error>
 #include <thread>
@@ -16,12 +13,9 @@
 #include <variant>
 #include <vector>
 
-#include <fcntl.h>
+#include <fmt/format.h>
 #include <unistd.h>
 
-#include <fmt/format.h>
-
-#include <tactor/error.hpp>
 #include <tactor/stroke.hpp>
 
 #include "cli/commands.hpp"
@@ -30,18 +24,27 @@
 #include "cli/play/live_lines.hpp"
 #include "cli/say.hpp"
 #include "cli/serve/rpc_client.hpp"
-#include "cli/settings.hpp"
 #include "cli/warnings.hpp"
 #include "files/plan/plan_file.hpp"
 #include "files/text_file.hpp"
-#include "net/listen.hpp"
-#include "net/rpc.hpp"
 #include "session/interrupt.hpp"
 #include "session/live_remarks.hpp"
 #include "session/pipes.hpp"
 
 namespace tactor::cli {
 namespace {
+
+constexpr std::chrono::seconds to_finish{10};       // time for a server to fade out, after a signal
+constexpr std::chrono::milliseconds limit_pause{5}; // some ten points of 2,000 a second
+
+// Refuses options that the server's owner decides, or that a server does not have.
+void refuse_owners(const settings& s)
+{
+    for (const options::option& o : options::all())
+        if ((o.where & (options::by_client | options::through_server)) == 0 && s.gives(o))
+            throw error(error_kind::bad_input, option_name(o), "it is not for strokes that a server plays",
+                        "leave it out with --socket");
+}
 
 // Replaces "options.level_dbfs" with "--level-dbfs".
 std::string in_options(std::string_view text)
@@ -59,58 +62,7 @@ std::string in_options(std::string_view text)
     return out.append(text);
 }
 
-constexpr std::size_t most_bytes = 48U << 20;
-
-std::string read_all(int fd, const std::string& name)
-{
-    std::string all;
-    for (;;) {
-        char bytes[65536];
-        const ssize_t n = ::read(fd, bytes, sizeof bytes);
-        if (n < 0 && errno == EINTR)
-            continue;
-        if (n < 0)
-            throw error(error_kind::bad_input, name, std::strerror(errno));
-        if (n == 0)
-            return all;
-        all.append(bytes, static_cast<std::size_t>(n));
-        if (all.size() > most_bytes)
-            throw error(error_kind::bad_input, name, "it is too large for a server",
-                        "play it without --socket");
-    }
-}
-
-[[noreturn]] void refuse_plan(const std::string& name)
-{
-    throw error(error_kind::bad_input, name, "it is a plan, which a server does not take", "give the stroke");
-}
-
-net::json make_params(const std::string& argument)
-{
-    const auto& presets = stroke_presets();
-    std::error_code ignored;
-    const bool is_preset = std::find(presets.begin(), presets.end(), argument) != presets.end();
-    if (argument == "-") {
-        const std::string text = read_all(STDIN_FILENO, "standard input");
-        if (files::holds_plans(text))
-            refuse_plan("standard input");
-        return {{std::string(detail::find_stroke_format(text, {})), text}};
-    }
-    if (is_preset ||
-        (!std::filesystem::exists(argument, ignored) && argument.find_first_of("./") == std::string::npos))
-        return {{"stroke", preset_stroke(argument).name}}; // its error lists the presets
-    if (files::is_plan_file(argument))
-        refuse_plan(argument);
-    session::check_readable(argument);
-    const net::owned_fd fd(::open(argument.c_str(), O_RDONLY | O_CLOEXEC));
-    if (!fd)
-        throw error(error_kind::bad_input, argument, std::strerror(errno));
-    const std::string text = read_all(fd.get(), argument);
-    return {{std::string(detail::find_stroke_format(text, argument)), text}};
-}
-
-// Rewords an error of a server. `argument`: the stroke that was sent, the name of a file or a preset, which
-// the error names before a place in a file.
+// Rewords an error of the server. `argument`: the stroke that was sent, which the error names before a place.
 error in_words_of_the_tool(const error& e, const std::string& argument)
 {
     std::string what(e.subject());
@@ -125,8 +77,27 @@ error in_words_of_the_tool(const error& e, const std::string& argument)
     return e.reworded(what, in_options(e.why()), in_options(e.hint()));
 }
 
-// Returns the name of each STROKE and its parameter: a preset, path data, or the text of a file.
-// \throws error (bad_input), also for plans, which a server does not take.
+// Returns a STROKE argument as parameter of `play`: a preset, or the text of a file.
+net::json make_params(const std::string& argument)
+{
+    constexpr std::size_t most_bytes = 48U << 20;
+    const bool piped = argument == "-";
+    std::error_code ignored;
+    if (session::is_preset(stroke_presets(), argument) ||
+        (!piped && !std::filesystem::exists(argument, ignored) &&
+         argument.find_first_of("./") == std::string::npos))
+        return {{"stroke", preset_stroke(argument).name}}; // its error lists the presets
+    if (!piped)
+        session::check_readable(argument);
+    const detail::whole_text text = piped ? detail::read_text(STDIN_FILENO, shown_name(argument), most_bytes)
+                                          : detail::read_text_file(argument, most_bytes);
+    if (files::holds_plans(text))
+        throw error(error_kind::bad_input, shown_name(argument), "it is a plan, which a server does not take",
+                    "give the stroke");
+    return {{std::string(detail::find_stroke_format(text, piped ? "" : argument)), std::string_view(text)}};
+}
+
+// Returns the name of each STROKE and its parameter.
 std::vector<std::pair<std::string, net::json>> stroke_params(const settings& s)
 {
     const std::vector<std::string> arguments = stroke_arguments(s);
@@ -155,18 +126,6 @@ net::json client_options(const settings& s)
             o.to.get(s));
     }
     return given;
-}
-
-constexpr std::chrono::seconds to_finish{10};       // time for a server to fade out, after a signal
-constexpr std::chrono::milliseconds limit_pause{5}; // some ten points of 2,000 a second
-
-// Refuses options that the server's owner decides, or that a server does not have.
-void refuse_owners(const settings& s)
-{
-    for (const options::option& o : options::all())
-        if ((o.where & (options::by_client | options::through_server)) == 0 && s.gives(o))
-            throw error(error_kind::bad_input, option_name(o), "it is not for strokes that a server plays",
-                        "leave it out with --socket");
 }
 
 class remote_player {
