@@ -22,6 +22,7 @@
 #include "core/split.hpp"
 #include "core/words.hpp"
 #include "files/json/json_value.hpp"
+#include "options/parse_number.hpp"
 #include "session/interrupt.hpp"
 #include "study/analysis/analysis.hpp"
 #include "study/bids/study_folder.hpp"
@@ -31,16 +32,6 @@
 
 namespace tactor::cli {
 namespace {
-
-std::uint64_t seed_in(const std::string& text)
-{
-    constexpr std::uint64_t most = (std::uint64_t{1} << 53) - 1;
-    const auto v = detail::number_in<std::uint64_t>(text);
-    if (!v || *v > most)
-        refuse_option("--seed", fmt::format("\"{}\" is no seed", text),
-                      fmt::format("a whole number from 0 to {}", most));
-    return *v;
-}
 
 using json = nlohmann::ordered_json;
 
@@ -95,23 +86,15 @@ std::string time_text(const study::run_time& t)
 using json = nlohmann::ordered_json;
 
 constexpr std::size_t default_studies = 200;
-constexpr std::size_t most_studies = 1000000;
-constexpr std::size_t most_participants = 1000;
-
-std::size_t count_in(const char* option, std::string_view text, std::size_t least, std::size_t most)
-{
-    const auto n = detail::number_in<std::size_t>(text);
-    if (!n || *n < least || *n > most)
-        refuse_option(option, fmt::format("\"{}\" is no such number", text),
-                      fmt::format("a whole number from {} to {}", least, most));
-    return *n;
-}
+constexpr detail::bounds allowed_studies{1, 1000000};
+constexpr detail::bounds allowed_participants{2, 1000};
 
 std::vector<std::size_t> participants_in(std::string_view text)
 {
     std::vector<std::size_t> all;
     for (const std::string_view part : detail::split(text, ',')) {
-        all.push_back(count_in("--power", part, 2, most_participants));
+        all.push_back(static_cast<std::size_t>(
+            options::parse_whole("--power", std::string(part), allowed_participants, "")));
         if (std::count(all.begin(), all.end(), all.back()) > 1)
             refuse_option("--power", fmt::format("{} is said twice", all.back()), "each number once");
     }
@@ -234,7 +217,10 @@ void add_experiment_options(CLI::App& command, experiment_options& o)
                      "allow a sound server, which may hide xruns; the data record it");
     add_text(command, "--seed", "N",
              "seed of the order of trials (default: the definition's, else from the code)",
-             [&o](const std::string& t) { o.seed = seed_in(t); });
+             [&o](const std::string& t) {
+                 constexpr double most = (std::uint64_t{1} << 53) - 1;
+                 o.seed = static_cast<std::uint64_t>(options::parse_whole("--seed", t, {0, most}, ""));
+             });
     add_text(command, "--simulate", "SPEC", "let a model answer: seed=1,sigma=1",
              [&o](const std::string& t) { o.simulate = study::parse_simulation(t); });
     command.add_flag("--print", o.print, "print the definition, to copy and change it");
@@ -325,7 +311,10 @@ void add_power_options(CLI::App& command, power_options& p)
              [&p](const std::string& t) { p.participants = participants_in(t); });
     add_text(command, "--studies", "K",
              fmt::format("--power: number of simulated studies (default {})", default_studies),
-             [&p](const std::string& t) { p.studies = count_in("--studies", t, 1, most_studies); });
+             [&p](const std::string& t) {
+                 p.studies =
+                     static_cast<std::size_t>(options::parse_whole("--studies", t, allowed_studies, ""));
+             });
     begin_group(command);
 }
 
