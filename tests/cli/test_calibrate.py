@@ -154,9 +154,7 @@ class Simulated(CalibrateTest):
 
     def test_no_level_is_above_the_array_s_limit(self):
         self.write("low.toml", PALM + '[[tactor]]\ntactor = 4\nmax_dbfs = -25\n[limits]\npower_dbfs = -18\n')
-        said = self.simulated("me.toml", "--array", "low.toml", "--practice", 1, *SHORT, spec="threshold=0,spread=0")
-        self.assertIn("no level is above -18 dBFS, which power_dbfs in [limits] allows, and max_dbfs does not, of tactors "
-                      "0, 1, 2, 3, 5, 6, 7, 8\n", said.stderr)
+        self.simulated("me.toml", "--array", "low.toml", "--practice", 1, *SHORT, spec="threshold=0,spread=0")
         rows = self.rows()
         self.assertEqual(max(float(r["level_dbfs"]) for r in rows), -18.001)
         of_4 = [float(r["level_dbfs"]) for r in rows if r["tactor"] == "4"]

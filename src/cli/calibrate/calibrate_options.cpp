@@ -344,7 +344,7 @@ study::calibration_settings settle_calibration(const calibrate_options& o, const
     return c;
 }
 
-void tell_of_ceilings(const study::calibration_settings& c, const environment& e)
+void tell_of_ceilings(const study::calibration_settings& c)
 {
     std::string all;
     for (const auto& [ceiling_dbfs, tactors] : group_by_ceiling(c))
@@ -352,24 +352,14 @@ void tell_of_ceilings(const study::calibration_settings& c, const environment& e
             fmt::format("{}{:.4g} dBFS at {}", all.empty() ? "" : "; ", ceiling_dbfs, name_tactors(tactors));
     say(stderr, "tactor: highest level: {}\n", all);
     std::vector<unsigned> unlimited;
-    std::vector<unsigned> lower;
-    for (std::size_t i = 0; i < c.tactors.size(); ++i) {
-        const double most_dbfs = std::min(0.0, e.tactors.tactors[c.tactors[i]].max_dbfs);
-        if (c.ceilings_dbfs[i] < most_dbfs)
-            lower.push_back(c.tactors[i]);
-        else if (most_dbfs == 0.0)
+    for (std::size_t i = 0; i < c.tactors.size(); ++i)
+        if (c.ceilings_dbfs[i] == 0.0)
             unlimited.push_back(c.tactors[i]);
-    }
     if (!unlimited.empty())
         say(stderr,
             "tactor: warning: no max_dbfs below 0 limits {}: the level may go to full scale (set max_dbfs in "
             "[[tactor]] of the array file)\n",
             name_tactors(unlimited));
-    if (!lower.empty())
-        say(stderr,
-            "tactor: warning: no level is above {:.4g} dBFS, which power_dbfs in [limits] allows, and "
-            "max_dbfs does not, of {}\n",
-            session::settle_limits({}, e).power_dbfs, name_tactors(lower));
 }
 
 } // namespace tactor::cli

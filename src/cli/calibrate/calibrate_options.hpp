@@ -46,7 +46,7 @@ void settle_names(calibrate_options& o);
 study::calibration_settings settle_calibration(const calibrate_options& o, const settings& s,
                                                const environment& e);
 
-/// Says the highest level of each tactor, and warns where nothing but full scale or [limits] holds it.
-void tell_of_ceilings(const study::calibration_settings& c, const environment& e);
+/// Says the highest level of each tactor, and warns where nothing but full scale holds it.
+void tell_of_ceilings(const study::calibration_settings& c);
 
 } // namespace tactor::cli

@@ -166,7 +166,7 @@ int calibrate(settings& s, calibrate_options& o)
         say(stdout, "{} is there: the session is finished\n", o.output);
         return status_ok;
     }
-    tell_of_ceilings(begun, e);
+    tell_of_ceilings(begun);
     tell_of_others(e, begun);
 
     study::calibration_log log(o.log, o.resume, begun);
