@@ -126,6 +126,15 @@ error miscounted(const CLI::App& app, const CLI::App& command, const std::string
             fmt::format("say {} {}; {}", name, o->get_type_name(), help_command(app, command))};
 }
 
+// An option without another one that it needs, or beside one that it excludes: both are in what the parser
+// says.
+error unpaired(const CLI::App& app, const CLI::App& command, const std::string& said)
+{
+    const std::size_t blank = said.find(' ');
+    return {error_kind::bad_input, said.substr(0, blank), "it" + said.substr(blank),
+            help_command(app, command)};
+}
+
 error unknown(const CLI::App& app, const CLI::App& command)
 {
     const auto left = app.remaining(true);
@@ -318,6 +327,9 @@ error usage_error(const CLI::App& app, const CLI::ParseError& e)
         return missing(app, command);
     if (dynamic_cast<const CLI::ArgumentMismatch*>(&e) != nullptr)
         return miscounted(app, command, e.what());
+    if (dynamic_cast<const CLI::RequiresError*>(&e) != nullptr ||
+        dynamic_cast<const CLI::ExcludesError*>(&e) != nullptr)
+        return unpaired(app, command, e.what());
     return {error_kind::bad_input, "command line", e.what(), help_command(app, command)};
 }
 

@@ -87,24 +87,26 @@ void add_staircase_options(CLI::App& c, calibrate_options& o)
 void add_masker_options(CLI::App& c, calibrate_options& o)
 {
     begin_group(c, "Masker");
-    add_text(c, "--masker", "PCM", "play masking noise on this second device, in stereo, in both intervals",
-             [&o](const std::string& t) {
-                 if (t.empty())
-                     refuse_option("--masker", "no device is named", "as hw:CARD=Phones");
-                 o.masker = t;
-             });
-    add_text(
-        c, "--masker-noise", "white|pink", "colour of the noise (default white)", [&o](const std::string& t) {
-            o.masking.color = choose("--masker-noise", t, {"white", "pink"}) == 0 ? study::noise_color::white
-                                                                                  : study::noise_color::pink;
-            o.of_masker.emplace_back("--masker-noise");
+    CLI::Option* masker = add_text(
+        c, "--masker", "PCM", "play masking noise on this second device, in stereo, in both intervals",
+        [&o](const std::string& t) {
+            if (t.empty())
+                refuse_option("--masker", "no device is named", "as hw:CARD=Phones");
+            o.masker = t;
         });
+    add_text(c, "--masker-noise", "white|pink", "colour of the noise (default white)",
+             [&o](const std::string& t) {
+                 o.masking.color = choose("--masker-noise", t, {"white", "pink"}) == 0
+                                       ? study::noise_color::white
+                                       : study::noise_color::pink;
+             })
+        ->needs(masker);
     add_text(c, "--masker-dbfs", "DB", "level of the noise, root of the mean square (default -30)",
              [&o](const std::string& t) {
                  o.masking.level_dbfs =
                      options::parse_number("--masker-dbfs", t, detail::bounds_of::masker_dbfs, "dBFS");
-                 o.of_masker.emplace_back("--masker-dbfs");
-             });
+             })
+        ->needs(masker);
     begin_group(c);
 }
 
@@ -170,9 +172,6 @@ std::string masker_text(const calibrate_options& o)
 
 void check_masker(const calibrate_options& o)
 {
-    if (o.masker.empty() && !o.of_masker.empty())
-        refuse_option(o.of_masker.front(), "there is no device for the noise",
-                      "--masker PCM, or leave it out");
     const double most = study::greatest_noise_dbfs(o.masking.color);
     if (o.masking.level_dbfs > most)
         refuse_option("--masker-dbfs",

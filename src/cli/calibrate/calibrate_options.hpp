@@ -31,7 +31,6 @@ struct calibrate_options {
     std::optional<study::page_words> words; ///< of the page; none: English
     std::string masker;                     ///< PCM of the masking noise; empty: none
     study::masking_options masking;
-    std::vector<std::string> of_masker;    ///< options given that only a masker has
     std::vector<std::string> of_staircase; ///< options given that an adjustment does not have
     bool start_asked = false;              ///< a start level above a ceiling is no slip of the defaults then
     bool resume = false;

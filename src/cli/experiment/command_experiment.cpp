@@ -325,9 +325,7 @@ int hold_session(const study::prepared_experiment& p, const experiment_options& 
 
 int run(const experiment_options& o, const power_options& power, settings& s)
 {
-    check_power_options(s, power, o);
-    if (power.participants.empty())
-        check_experiment_options(s, o);
+    check_experiment_options(s, o, !power.participants.empty());
     if (o.print) {
         fmt::print("{}", study::load_definition(o.definition).text);
         return status_ok;

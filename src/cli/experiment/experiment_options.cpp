@@ -195,7 +195,8 @@ void add_experiment_options(CLI::App& command, experiment_options& o)
              });
     command.add_option("-o,--output", o.folder, "folder of the study (BIDS), the same for all participants")
         ->type_name("DIR");
-    command.add_flag("--resume", o.resume, "continue the participant's session at its next trial");
+    CLI::Option* resume =
+        command.add_flag("--resume", o.resume, "continue the participant's session at its next trial");
     add_text(command, "--hand", "left|right",
              "hand that wears the array; a left one has the mirrored motions of the definition",
              [&o](const std::string& t) {
@@ -204,15 +205,18 @@ void add_experiment_options(CLI::App& command, experiment_options& o)
              });
     add_page_options(command, o.page);
     add_keypad_option(command, o.keypads);
-    add_text(command, "--masker", "PCM",
-             "play the definition's masking noise on this second device, in stereo",
-             [&o](const std::string& t) {
-                 if (t.empty())
-                     refuse_option("--masker", "no device is named", "as hw:CARD=Phones");
-                 o.masker = t;
-             });
-    command.add_flag("--check-noise", o.check_noise,
-                     "play the masking noise with stimuli until its level is right");
+    CLI::Option* masker = add_text(
+        command, "--masker", "PCM", "play the definition's masking noise on this second device, in stereo",
+        [&o](const std::string& t) {
+            if (t.empty())
+                refuse_option("--masker", "no device is named", "as hw:CARD=Phones");
+            o.masker = t;
+        });
+    CLI::Option* check = command
+                             .add_flag("--check-noise", o.check_noise,
+                                       "play the masking noise with stimuli until its level is right")
+                             ->needs(masker)
+                             ->excludes(resume);
     command.add_flag("--allow-sound-server", o.allow_sound_server,
                      "allow a sound server, which may hide xruns; the data record it");
     add_text(command, "--seed", "N",
@@ -221,27 +225,23 @@ void add_experiment_options(CLI::App& command, experiment_options& o)
                  constexpr double most = (std::uint64_t{1} << 53) - 1;
                  o.seed = static_cast<std::uint64_t>(options::parse_whole("--seed", t, {0, most}, ""));
              });
-    add_text(command, "--simulate", "SPEC", "let a model answer: seed=1,sigma=1",
-             [&o](const std::string& t) { o.simulate = study::parse_simulation(t); });
-    command.add_flag("--print", o.print, "print the definition, to copy and change it");
-    command.add_flag("--dry-run", o.dry_run, "check everything and list each trial in order, without sound");
+    add_text(command, "--simulate", "SPEC", "let a model answer: seed=1,sigma=1", [&o](const std::string& t) {
+        o.simulate = study::parse_simulation(t);
+    })->excludes(check);
+    command.add_flag("--print", o.print, "print the definition, to copy and change it")->excludes(resume);
+    command.add_flag("--dry-run", o.dry_run, "check everything and list each trial in order, without sound")
+        ->excludes(resume);
     add_format_option(command, o.format, {"text", "json"}, "format of --dry-run and --power (default text)");
 }
 
-void check_experiment_options(const settings& s, const experiment_options& o)
+void check_experiment_options(const settings& s, const experiment_options& o, bool power)
 {
-    if (o.check_noise && o.simulate)
-        refuse_option("--check-noise", "in a simulated session nobody hears it", "leave one of them out");
-    if (o.check_noise && o.masker.empty())
-        refuse_option("--check-noise", "there is no device for the noise", "--masker PCM");
-    if (o.format == "json" && !o.dry_run)
+    if (o.format == "json" && !o.dry_run && !power)
         refuse_option("--format", "only --dry-run and --power have one", "leave it out");
-    if (o.resume && (o.print || o.dry_run || o.check_noise))
-        refuse_option("--resume", "no session is held", "leave it out");
     if (const std::string asked = asked_of_stream(s); !asked.empty() && (o.simulate || o.print || o.dry_run))
         refuse_option(asked, "nothing is played", "leave it out");
     check_page_options(o.page, o.simulate.has_value() && !o.print && !o.dry_run);
-    if (o.print || o.dry_run || o.check_noise)
+    if (o.print || o.dry_run || o.check_noise || power)
         return;
     if (o.simulate && !o.keypads.empty())
         refuse_option("--keypad", "in a simulated session nobody is asked", "leave one of them out");
@@ -306,36 +306,22 @@ void print_dry_run_text(std::FILE* out, const study::prepared_experiment& p)
 void add_power_options(CLI::App& command, power_options& p)
 {
     begin_group(command, "Power");
-    add_text(command, "--power", "N[,N...]",
-             "print how often simulated studies of N participants find a significant difference",
-             [&p](const std::string& t) { p.participants = participants_in(t); });
+    CLI::Option* power =
+        add_text(command, "--power", "N[,N...]",
+                 "print how often simulated studies of N participants find a significant difference",
+                 [&p](const std::string& t) { p.participants = participants_in(t); });
+    power->needs(command.get_option("--simulate"));
+    for (const char* other : {"--participant", "--output", "--resume", "--display", "--page", "--keypad",
+                              "--masker", "--check-noise", "--print", "--dry-run"})
+        power->excludes(command.get_option(other));
     add_text(command, "--studies", "K",
              fmt::format("--power: number of simulated studies (default {})", default_studies),
              [&p](const std::string& t) {
                  p.studies =
                      static_cast<std::size_t>(options::parse_whole("--studies", t, allowed_studies, ""));
-             });
+             })
+        ->needs(power);
     begin_group(command);
-}
-
-void check_power_options(const settings& s, const power_options& p, const experiment_options& o)
-{
-    if (p.participants.empty()) {
-        if (p.studies)
-            refuse_option("--studies", "there is no --power", "it says how many studies --power simulates");
-        return;
-    }
-    if (!o.simulate)
-        refuse_option("--power", "it is not said who answers", "--simulate seed=1,sigma=1");
-    const bool session = !o.participant.empty() || !o.folder.empty() || o.resume;
-    if (session || o.dry_run || o.print)
-        refuse_option("--power", "it holds no session, and writes nothing",
-                      "leave out --participant, -o, --resume, --dry-run and --print");
-    const std::string asked = asked_of_stream(s);
-    if (!asked.empty() || o.check_noise || o.page.shown() || !o.masker.empty() || !o.keypads.empty())
-        refuse_option("--power", "nothing is played, and nobody sits there",
-                      fmt::format("leave out --check-noise, --masker, --display, --page, --keypad and {}",
-                                  asked.empty() ? "--verbose" : asked));
 }
 
 int tell_power(const study::prepared_experiment& e, const power_options& p, const experiment_options& o)

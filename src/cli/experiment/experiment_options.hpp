@@ -42,8 +42,8 @@ struct experiment_options {
 /// `o` must live as long as the command.
 void add_experiment_options(CLI::App& command, experiment_options& o);
 
-/// Checks that options go together and none is missing. \throws error (bad_input).
-void check_experiment_options(const settings& s, const experiment_options& o);
+/// Checks that options go together and none is missing. `power`: --power is given. \throws error (bad_input).
+void check_experiment_options(const settings& s, const experiment_options& o, bool power);
 
 void print_dry_run_text(std::FILE* out, const study::prepared_experiment& p);
 /// Schema tactor-experiment/1.
@@ -54,11 +54,8 @@ struct power_options {
     std::optional<std::size_t> studies = {};    ///< default 200
 };
 
-/// `p` must live as long as the command.
+/// Adds them after the others. `p` must live as long as the command.
 void add_power_options(CLI::App& command, power_options& p);
-
-/// Checks that options go together and none is missing. \throws error (bad_input).
-void check_power_options(const settings& s, const power_options& p, const experiment_options& o);
 
 /// Prints it; returns the exit status, which is that of a signal where one ended it, with nothing printed.
 /// \throws error (bad_input).
