@@ -87,13 +87,8 @@ void add_staircase_options(CLI::App& c, calibrate_options& o)
 void add_masker_options(CLI::App& c, calibrate_options& o)
 {
     begin_group(c, "Masker");
-    CLI::Option* masker = add_text(
-        c, "--masker", "PCM", "play masking noise on this second device, in stereo, in both intervals",
-        [&o](const std::string& t) {
-            if (t.empty())
-                refuse_option("--masker", "no device is named", "as hw:CARD=Phones");
-            o.masker = t;
-        });
+    CLI::Option* masker = add_masker_option(
+        c, o.masker, "play masking noise on this second device, in stereo, in both intervals");
     add_text(c, "--masker-noise", "white|pink", "colour of the noise (default white)",
              [&o](const std::string& t) {
                  o.masking.color = choose("--masker-noise", t, {"white", "pink"}) == 0

@@ -205,13 +205,8 @@ void add_experiment_options(CLI::App& command, experiment_options& o)
              });
     add_page_options(command, o.page);
     add_keypad_option(command, o.keypads);
-    CLI::Option* masker = add_text(
-        command, "--masker", "PCM", "play the definition's masking noise on this second device, in stereo",
-        [&o](const std::string& t) {
-            if (t.empty())
-                refuse_option("--masker", "no device is named", "as hw:CARD=Phones");
-            o.masker = t;
-        });
+    CLI::Option* masker = add_masker_option(
+        command, o.masker, "play the definition's masking noise on this second device, in stereo");
     CLI::Option* check = command
                              .add_flag("--check-noise", o.check_noise,
                                        "play the masking noise with stimuli until its level is right")

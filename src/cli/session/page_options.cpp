@@ -12,22 +12,14 @@
 #include "cli/settings.hpp"
 
 namespace tactor::cli {
-namespace {
-
-bool is_page(const std::string& text)
-{
-    if (text != "page" && text != "terminal")
-        refuse_option("--display", fmt::format("\"{}\" is not known", text), "page or terminal");
-    return text == "page";
-}
-
-} // namespace
 
 void add_page_options(CLI::App& command, page_options& o)
 {
     add_text(command, "--display", "page|terminal",
              "show the participant a page in a browser, or the terminal (default)",
-             [&o](const std::string& t) { o.on_page = is_page(t); });
+             [&o](const std::string& t) {
+                 o.on_page = choose("--display", t, {"page", "terminal"}) == 0;
+             });
     add_text(command, "--page", "[HOST:]PORT",
              "show the page at this address of this machine (default 127.0.0.1:0, a free port)",
              [&o](const std::string& t) { o.at = net::parse_host(t, "--page"); });
@@ -41,6 +33,15 @@ void add_keypad_option(CLI::App& command, std::vector<std::string>& into)
         ->type_name("DEVICE")
         ->expected(1)
         ->take_all();
+}
+
+CLI::Option* add_masker_option(CLI::App& command, std::string& into, const std::string& help)
+{
+    return add_text(command, "--masker", "PCM", help, [&into](const std::string& t) {
+        if (t.empty())
+            refuse_option("--masker", "no device is named", "as hw:CARD=Phones");
+        into = t;
+    });
 }
 
 void check_page_options(const page_options& o, bool simulated)

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// The options --display and --page, for what the participant sees.
+/// Options of every session with a participant: --display and --page, --keypad, --masker.
 #pragma once
 
 #include <optional>
@@ -11,7 +11,8 @@
 
 namespace CLI {
 class App;
-}
+class Option;
+} // namespace CLI
 
 namespace tactor::cli {
 
@@ -27,6 +28,9 @@ void add_page_options(CLI::App& command, page_options& o);
 
 /// --keypad of a command, as often as there are any.
 void add_keypad_option(CLI::App& command, std::vector<std::string>& into);
+
+/// --masker: the device of the masking noise. Returns it.
+CLI::Option* add_masker_option(CLI::App& command, std::string& into, const std::string& help);
 
 /// Checks that the options go together. \throws error (bad_input).
 void check_page_options(const page_options& o, bool simulated);
