@@ -14,7 +14,6 @@
 #include "cli/settings.hpp"
 #include "files/output_file.hpp"
 #include "files/setup_text.hpp"
-#include "server/server.hpp"
 #include "session/device.hpp"
 #include "session/interrupt.hpp"
 #include "study/calibrate/result.hpp"
@@ -79,15 +78,6 @@ std::vector<finding> check_all(const settings& s, const environment& e)
     if (!s.stream.no_gpio)
         for (finding& f : check_lines(e.config, session::is_felt(device.pcm), find_gpio_line))
             all.push_back(std::move(f));
-    if (!e.config.serve.empty()) {
-        try {
-            static_cast<void>(server::read_token(e.serve));
-            static_cast<void>(server::settle_network(e.serve));
-            all.push_back(fine("service settings", "[serve] can be served"));
-        } catch (const error& x) {
-            all.push_back(failure("service settings", x));
-        }
-    }
     check_machine(e.config, device, s.stream, all);
     return all;
 }
