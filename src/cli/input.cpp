@@ -64,16 +64,20 @@ piece read_piece(const settings& s, const environment& e, const layout& faces, c
     return p;
 }
 
+// Puts `from` before the subject of an error, or in its place where the subject is the stroke of that name.
+error put_before(const error& x, const std::string& from, const std::string& name)
+{
+    const bool said = x.subject() == "stroke" || x.subject() == fmt::format("stroke \"{}\"", name);
+    return x.reworded(said ? from : fmt::format("{}: {}", from, x.subject()), x.why(), x.hint());
+}
+
 // Adds the number of the stroke that an error is about: the planner knows only its name.
 error in_piece(const error& x, const std::string& argument, std::size_t number, const std::string& name)
 {
     if (x.place().line != 0)
         return x; // its line says which
-    const std::string which =
-        name.empty() ? fmt::format("stroke {}", number) : fmt::format("stroke {} \"{}\"", number, name);
-    const bool said = x.subject() == "stroke" || x.subject() == fmt::format("stroke \"{}\"", name);
-    const std::string from = fmt::format("{}: {}", shown_name(argument), which);
-    return x.reworded(said ? from : fmt::format("{}: {}", from, x.subject()), x.why(), x.hint());
+    const std::string quoted = name.empty() ? "" : fmt::format(" \"{}\"", name);
+    return put_before(x, fmt::format("{}: stroke {}{}", shown_name(argument), number, quoted), name);
 }
 
 // --path and --shape NAME stand for a STROKE.
@@ -97,12 +101,7 @@ error in_file(const error& x, const std::string& argument)
 {
     const bool about_it = x.subject() == "stroke" || x.subject().starts_with("stroke \"");
     const bool file = !is_option(argument) && !session::is_preset(stroke_presets(), argument);
-    if (!about_it || !file)
-        return x;
-    const std::string from = shown_name(argument);
-    const bool said =
-        x.subject() == "stroke" || x.subject() == fmt::format("stroke \"{}\"", default_name(argument));
-    return x.reworded(said ? from : fmt::format("{}: {}", from, x.subject()), x.why(), x.hint());
+    return about_it && file ? put_before(x, shown_name(argument), default_name(argument)) : x;
 }
 
 // A plan comes with its strokes; those that are read as strokes are not planned yet.

@@ -97,13 +97,6 @@ void add_strokes(CLI::App& command, settings& into, int most)
     strokes->expected(1, most)->allow_extra_args(most > 1);
 }
 
-void require_device(CLI::App& command)
-{
-    command.get_option("--device")
-        ->description(
-            "ALSA device, e.g. hw:CARD=Tactor (default: the configuration's; needed with a person)");
-}
-
 int run_with(const settings& s, const std::function<int()>& act)
 {
     try {

@@ -36,9 +36,6 @@ std::string asked_of_stream(const settings& s);
 /// Adds the argument STROKE, which may be given `most` times.
 void add_strokes(CLI::App& command, settings& into, int most = 1);
 
-/// Says in the help that the command needs a device where a person takes part.
-void require_device(CLI::App& command);
-
 /// Runs a command: an error about a value of [defaults] names its place there.
 int run_with(const settings& s, const std::function<int()>& act);
 

@@ -206,7 +206,6 @@ command add_calibrate(CLI::App& app)
     auto o = std::make_shared<calibrate_options>();
     add_calibrate_options(*c, *o);
     add_options(*c, *s, options::on_calibrate);
-    require_device(*c);
     c->footer("tactor calibrate --participant P07 -o P07.toml -D hw:CARD=Tactor\n"
               "tactor calibrate --participant P07 -o P07.toml -D hw:CARD=Tactor --resume\n"
               "tactor calibrate --participant S01 -o S01.toml --simulate threshold=-45,seed=1");

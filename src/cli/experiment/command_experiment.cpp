@@ -358,7 +358,6 @@ command add_experiment(CLI::App& app)
     add_experiment_options(*c, *o);
     add_power_options(*c, *power);
     add_options(*c, *s, options::on_experiment);
-    require_device(*c);
     c->footer("tactor experiment park2016 --dry-run\n"
               "tactor experiment park2016 --participant 01 -o trial --simulate seed=1,sigma=1\n"
               "tactor experiment park2016 --participant P07 -o pilot --array P07.toml -D hw:CARD=Tactor");
