@@ -87,8 +87,8 @@ class Forms(PlanTest):
                 self.assertIn(says, self.ok(command, "--path", path).stdout)
 
     def test_output_is_the_same_in_any_locale(self):
-        for command in ("plan", "compare"):
-            for form in ("text", "json", "csv"):
+        for command, forms in (("plan", ("text", "json", "csv")), ("compare", ("text", "json"))):
+            for form in forms:
                 seen = {self.ok(command, "park2016-1", "--format", form, env={"LC_ALL": locale}).stdout
                         for locale in ("C", "de_DE.UTF-8", "fr_FR.UTF-8")}
                 self.assertEqual(len(seen), 1)
