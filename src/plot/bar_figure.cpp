@@ -6,7 +6,6 @@
 
 #include <fmt/format.h>
 
-#include "plot/compare_figure.hpp"
 #include "plot/draw/axes.hpp"
 #include "plot/draw/notes.hpp"
 #include "plot/figure.hpp"
@@ -158,9 +157,9 @@ canvas draw_bar_figure(const bar_figure& f)
     double y = margin;
     const std::string across = clean(f.across);
     if (f.heading)
-        y = draw_heading(c, clean(f.title) + (across.empty() ? "" : " (" + across + ")"), {},
-                         {margin, y, c.width - 2.0 * margin, 0.0}) +
-            8.0;
+        y += draw_heading(c, clean(f.title) + (across.empty() ? "" : " (" + across + ")"), {},
+                          {margin, y, c.width - 2.0 * margin, 0.0}) +
+             8.0;
     const std::size_t columns = c.width >= two_columns ? 2 : 1;
     const double width =
         (c.width - 2.0 * margin - between * static_cast<double>(columns - 1)) / static_cast<double>(columns);
@@ -170,8 +169,7 @@ canvas draw_bar_figure(const bar_figure& f)
         if ((i + 1) % columns == 0 || i + 1 == f.panels.size())
             y += panel_height + 8.0;
     }
-    y += draw_words(c, f.note, {margin, y - line_pitch + cap_height(small_text), c.width - 2.0 * margin, 0.0},
-                    3, "note");
+    y += draw_words(c, f.note, {margin, y, c.width - 2.0 * margin, 0.0}, 3, "note");
     c.height = y + margin;
     return c;
 }

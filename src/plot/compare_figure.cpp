@@ -5,11 +5,12 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include <fmt/format.h>
 
-#include "core/split.hpp"
 #include "core/words.hpp"
+#include "plot/draw/array_frame.hpp"
 #include "plot/draw/axes.hpp"
 #include "plot/draw/notes.hpp"
 #include "plot/figure.hpp"
@@ -20,10 +21,25 @@ namespace {
 
 using detail::comparison_row;
 
-constexpr double number_size = 5.2; // of tactors, pt
-constexpr double most_radius = 5.5; // panels lie close together
+constexpr double chart_height = 105.0;
+constexpr double scale_height = 12.0;
 constexpr std::size_t most_dots = 400;
 constexpr std::size_t most_points = 20000;
+
+// Lines of algorithms, in order: they differ in hue, lightness and dash.
+constexpr std::array<style, 3> looks{style{.stroke = blue, .width = 0.9},
+                                     style{.stroke = vermilion, .width = 0.9, .dash = 3.0},
+                                     style{.stroke = ink, .width = 0.9, .dash = 1.1}};
+
+// The array, target and part of the page that all panels show.
+struct panel_ground {
+    const array& tactors;
+    const stroke& target;
+    extent shown;
+};
+
+// Look of the target's line, in panels and charts.
+constexpr style target_look{.stroke = light_grey, .width = 2.6};
 
 // Line of the felt position, and the places at which it rests, which only bursts have.
 struct track {
@@ -89,17 +105,16 @@ void draw_track(canvas& c, const track& t, const style& look)
 
 void draw_ground(canvas& c, const panel_ground& g, const array_frame& f)
 {
-    const std::string longest(fmt::format("{}", g.tactors.tactors.size() - 1).size(), '8');
-    const double need = std::hypot(text_width(longest, number_size), cap_height(number_size)) / 2.0 + 0.4;
-    const bool numbered = need < std::min(most_radius, 0.4 * f.pitch);
-    const double radius = numbered ? need : std::min(0.55 * f.radius, 3.0);
+    constexpr double share = 0.65; // of the circles of an array by itself: panels lie close together
+    const double radius = share * f.radius;
+    const double number = share * f.number;
     for (std::size_t i = 0; i < g.tactors.tactors.size(); ++i) {
         const spot at = f(g.tactors.tactors[i].position);
         c.circle(at, radius, {.fill = white, .stroke = grey, .width = std::min(0.5, 0.3 * radius)},
                  {.kind = "tactor"});
-        if (numbered)
-            c.text({at.x, at.y + cap_height(number_size) / 2.0}, fmt::format("{}", i),
-                   {.size = number_size, .anchor = align::middle, .ink = dark_grey}, {.kind = "number"});
+        if (number > 0.0)
+            c.text({at.x, at.y + cap_height(number) / 2.0}, fmt::format("{}", i),
+                   {.size = number, .anchor = align::middle, .ink = dark_grey}, {.kind = "number"});
     }
     for (std::vector<spot>& part : path_on_page(f, g.target.motion))
         c.poly(std::move(part), false, target_look, {.kind = "target"});
@@ -107,14 +122,13 @@ void draw_ground(canvas& c, const panel_ground& g, const array_frame& f)
              {.kind = "start", .title = "start"});
 }
 
-std::string figures(const percept_summary& s, bool error, double width)
+// Returns the facts of a prediction: for taps, the length in place of the speed.
+std::array<std::string, 2> facts(const comparison_row& p)
 {
-    const std::optional<double> v = error ? s.rms_error_mm : s.speed_cv;
-    const std::string text = v ? fmt::format("{:.2f}", *v) : "-";
-    if (!error)
-        return fmt::format("speed CV {}", text);
-    const std::string full = fmt::format("RMS error {} mm", text);
-    return text_width(full, small_text) < width ? full : fmt::format("RMS {} mm", text);
+    const auto text = [](const std::optional<double>& v) { return v ? fmt::format("{:.2f}", *v) : "-"; };
+    return {fmt::format("RMS error {} mm", text(p.felt.rms_error_mm)),
+            p.taps.empty() ? fmt::format("speed CV {}", text(p.felt.speed_cv))
+                           : fmt::format("length {} of target", text(p.tapped.length_ratio))};
 }
 
 void draw_people(canvas& c, const std::vector<std::vector<point>>& tracks, const array_frame& f,
@@ -129,22 +143,39 @@ void draw_people(canvas& c, const std::vector<std::vector<point>>& tracks, const
     }
 }
 
-// Returns a line under the panel's name, for the low-speed observer: error or length.
-std::string tap_figures(const detail::comparison_row& p, bool error, double width)
+// Returns the place of the array in a panel; the scale is the same in all panels of one size.
+array_frame panel_frame(const panel_ground& g, box where)
 {
-    if (error)
-        return figures(p.felt, true, width);
-    const std::optional<double>& ratio = p.tapped.length_ratio;
-    return fmt::format("length {} of target", ratio ? fmt::format("{:.2f}", *ratio) : "-");
+    return fit_array(g.tactors, g.shown, where, {8.0, 8.0}); // panels have no labels
 }
 
-constexpr double chart_height = 105.0;
-constexpr double scale_height = 12.0;
-
-// Lines of algorithms, in order: they differ in hue, lightness and dash.
-constexpr std::array<style, 3> looks{style{.stroke = blue, .width = 0.9},
-                                     style{.stroke = vermilion, .width = 0.9, .dash = 3.0},
-                                     style{.stroke = ink, .width = 0.9, .dash = 1.1}};
+// Draws a panel into the upper part of a box: the target, and the predicted percept in the look of its
+// algorithm. Returns the height taken.
+double draw_panel(canvas& c, const panel_ground& g, const comparison_row& p, const style& look, box where)
+{
+    const std::string algorithm(to_string(p.algorithm));
+    const std::string phantom(to_string(p.phantom));
+    const group one(c, {.id = fmt::format("panel-{}-{}", algorithm, phantom),
+                        .kind = "panel",
+                        .data = {{"algorithm", algorithm}, {"phantom", phantom}}});
+    double y = where.y + cap_height(label_text);
+    c.text({where.x, y}, algorithm, {.size = label_text, .bold = true});
+    const std::string missing = p.refused               ? fmt::format("refused: {}", p.refused->why())
+                                : p.unpredicted.empty() ? ""
+                                                        : "no prediction: " + p.unpredicted;
+    if (!missing.empty())
+        return y + 2.5 - where.y +
+               draw_words(c, missing, {where.x, y + 2.5, where.width - 6.0, 0.0}, 12, "refused");
+    y += 2.5;
+    for (const std::string& fact : facts(p))
+        y += draw_words(c, fact, {where.x, y, where.width - 4.0, 0.0}, 2, "facts");
+    const array_frame f = panel_frame(g, {where.x, y, where.width, where.height});
+    draw_ground(c, g, f);
+    if (p.spread)
+        draw_people(c, p.spread->tracks, f, look);
+    draw_track(c, !p.taps.empty() ? follow(f, p.taps) : follow(f, p.samples), look);
+    return f.area.bottom() - where.y;
+}
 
 // Returns the different values of a member, in order of appearance.
 template <class Kind>
@@ -296,60 +327,6 @@ std::string note(const detail::comparison& c)
 
 } // namespace
 
-array_frame panel_frame(const panel_ground& g, box where)
-{
-    return fit_array(g.tactors, g.shown, where, {6.0, 6.0}); // panels have no labels
-}
-
-double draw_words(canvas& c, const std::string& text, box where, std::size_t most_lines, const char* kind)
-{
-    std::vector<std::string> words;
-    for (const std::string_view word : detail::split(text, ' '))
-        words.push_back(clean(word));
-    double y = where.y;
-    for (const std::string& line : wrap(words, " ", small_text, where.width, most_lines)) {
-        y += line_pitch;
-        c.text({where.x, y}, line, {.size = small_text, .ink = dark_grey}, {.kind = kind});
-    }
-    return y - where.y;
-}
-
-double draw_panel(canvas& c, const panel_ground& g, const detail::comparison_row& p, const style& look,
-                  box where)
-{
-    const std::string algorithm(to_string(p.algorithm));
-    const std::string phantom(to_string(p.phantom));
-    const group one(c, {.id = fmt::format("panel-{}-{}", algorithm, phantom),
-                        .kind = "panel",
-                        .data = {{"algorithm", algorithm}, {"phantom", phantom}}});
-    double y = where.y + cap_height(label_text);
-    c.text({where.x, y}, algorithm, {.size = label_text, .bold = true});
-    if (p.refused) {
-        y += draw_words(c, fmt::format("refused: {}", p.refused->why()), {where.x, y, where.width - 6.0, 0.0},
-                        12, "refused");
-        return y - where.y;
-    }
-    if (!p.unpredicted.empty()) {
-        y += draw_words(c, "no prediction: " + p.unpredicted, {where.x, y, where.width - 6.0, 0.0}, 12,
-                        "refused");
-        return y - where.y;
-    }
-    const bool by_taps = !p.taps.empty();
-    for (const bool error : {true, false}) {
-        y += line_pitch;
-        const double width = where.width - 4.0;
-        c.text({where.x, y}, by_taps ? tap_figures(p, error, width) : figures(p.felt, error, width),
-               {.size = small_text, .ink = dark_grey});
-    }
-    y += 2.0;
-    const array_frame f = panel_frame(g, {where.x, y, where.width, where.height});
-    draw_ground(c, g, f);
-    if (p.spread)
-        draw_people(c, p.spread->tracks, f, look);
-    draw_track(c, by_taps ? follow(f, p.taps) : follow(f, p.samples), look);
-    return f.area.bottom() - where.y;
-}
-
 canvas draw_comparison(const array& a, const detail::comparison& all, const std::string& title,
                        double width_mm)
 {
@@ -364,8 +341,7 @@ canvas draw_comparison(const array& a, const detail::comparison& all, const std:
         const std::string facts =
             fmt::format("on {}, {} mm in {}", clean(a.name), plain_number(m.length_mm(), 4),
                         seconds_text(m.duration_s(), 4));
-        rest.y +=
-            draw_heading(c, clean(title), {shorten(facts, small_text, rest.width)}, rest) + 6.0 - rest.y;
+        rest.y += draw_heading(c, clean(title), facts, rest) + 4.0;
     }
     const std::vector<phantom_kind> phantoms = different(all.rows, &comparison_row::phantom);
     for (const phantom_kind phantom : phantoms)

@@ -58,15 +58,6 @@ std::vector<std::string> details(const scene& s, const timeline& t)
     return d;
 }
 
-std::string describe(const std::vector<std::string>& parts)
-{
-    std::string all;
-    for (const std::string& p : parts)
-        if (!p.empty())
-            all += (all.empty() ? "" : ", ") + p;
-    return all;
-}
-
 // Draws the meaning of the colours under an array without other views.
 double draw_time_key(canvas& c, const timeline& t, box where)
 {
@@ -93,14 +84,13 @@ drawn draw_within(const scene& s, const timeline& t, const figure_options& o, co
     canvas& c = d.picture;
     c.width = o.width_mm * pt_per_mm;
     c.loop_s = o.animated ? t.total_s + loop_pause_s : 0.0;
-    const std::vector<std::string> parts = details(s, t);
     const bool with_array = o.view == figure_view::array || o.view == figure_view::both;
     c.title = fmt::format("{} on {}", clean(s.name), clean(s.tactors.name));
-    c.description = describe(parts);
+    c.description = join(details(s, t), ", ");
     box rest{margin, margin, c.width - 2.0 * margin, 0.0};
     if (o.heading) {
         const group g(c, {.id = "heading"});
-        rest.y += draw_heading(c, s.name, wrap(parts, ", ", small_text, rest.width, 3), rest) + 4.0 - rest.y;
+        rest.y += draw_heading(c, s.name, c.description, rest) + 3.0;
     }
     if (with_array) {
         rest.height = 0.8 * c.width;

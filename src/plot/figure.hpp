@@ -52,9 +52,9 @@ double draw_array_view(canvas& c, const scene& s, const timeline& t, box at_most
 /// shows the colour of each time.
 double draw_timing_view(canvas& c, const scene& s, const timeline& t, box where, bool colours);
 
-/// Renders scene::sound and draws the envelope of each channel that is not silent, or the carrier itself
-/// if there is space for its cycles. From (where.x, where.y) down, where.width wide; returns the height
-/// taken. \throws error (bad_input) for too many samples.
+/// Renders scene::sound and draws the range of the samples of each channel that is not silent, in columns: an
+/// envelope, or the carrier if there is space for its cycles. From (where.x, where.y) down, where.width wide;
+/// returns the height taken. \throws error (bad_input) for too many samples.
 double draw_wave_view(canvas& c, const scene& s, const timeline& t, box where);
 
 } // namespace tactor::plot

@@ -2,7 +2,10 @@
 #include "plot/figure.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <numeric>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -18,26 +21,31 @@
 namespace tactor::plot {
 namespace {
 
+constexpr double strip_height = 5.0;
+constexpr const char* strip_heading = "time (s)";
+constexpr double dimension_pitch = 9.5;
+constexpr double first_dimension = 8.0; // under the strip
+constexpr double heading_height = 9.5;
+constexpr double inset = 3.0;  // space before time 0
+constexpr double outset = 7.0; // space after the last sound, for half a label
+constexpr double timing_legend_height = 10.0;
+constexpr std::size_t most_timing_notes = 3; // lines
+constexpr double most_around_rows = 107.0;   // pt: strip, dimensions, starts, axis, legend and notes
+
 // Places of the rows of the timing diagram.
 struct timing_frame {
     lanes rows = {};
     scale x = {};
-    double top = 0.0;  // of the first row, pt
-    double peak = 1.0; // largest amplitude
+    double top = 0.0;  ///< of the first row, pt
+    double peak = 1.0; ///< largest amplitude
 
-    // Level of each stroke in each row, by row and stroke; empty: all have the same.
-    std::vector<std::vector<std::size_t>> levels = {};
+    /// Level of each stroke in each row; empty: all have the same.
+    std::vector<std::size_t> levels = {};
 
     double base_y(std::size_t row, std::size_t stroke) const noexcept
     {
-        const lane& r = rows.rows[row];
-        const std::size_t level = levels.empty() ? 0 : levels[row][stroke];
-        const double over = r.height - rows.height * static_cast<double>(r.levels);
-        return top + r.top + over + static_cast<double>(level + 1) * rows.height;
-    }
-    double bottom_y(std::size_t row) const noexcept
-    {
-        return top + rows.rows[row].top + rows.rows[row].height;
+        const std::size_t level = levels.empty() ? 0 : levels[stroke];
+        return top + rows.top(row) + static_cast<double>(level + 1) * rows.height;
     }
     double bar_height(double amplitude) const noexcept { return 0.86 * rows.height * amplitude / peak; }
 };
@@ -45,45 +53,11 @@ struct timing_frame {
 constexpr std::size_t most_bars = 2500;
 constexpr double narrowest_bar = 0.9; // pt
 constexpr std::size_t most_hatches = 200;
-constexpr std::size_t most_parted = 60; // strokes
-constexpr std::size_t most_levels = 200;
 constexpr double seen_through = 0.7;
-constexpr const char* not_parted = "strokes on one tactor lie on each other";
 
 std::size_t find_row(const timing_frame& f, unsigned tactor)
 {
     return static_cast<std::size_t>(f.rows.row_by_tactor[tactor]);
-}
-
-// Time in which a stroke plays on a row.
-struct stay {
-    std::size_t stroke = 0;
-    double from_s = 0.0;
-    double to_s = 0.0;
-};
-
-// Returns the stays by row, in the order of their starts.
-std::vector<std::vector<stay>> stays(const timing_frame& f, const timeline& t)
-{
-    std::vector<std::vector<stay>> all(f.rows.rows.size());
-    for (const shown_burst& b : t.bursts)
-        for (const drive& d : b.what->drives) {
-            // An instant of a continuous stroke means the time up to its neighbours.
-            const double more = b.to_s > b.from_s ? 0.0 : t.sample_s;
-            const stay s{b.stroke, b.from_s - more, b.to_s + more};
-            std::vector<stay>& row = all[find_row(f, d.tactor)];
-            const auto known =
-                std::find_if(row.rbegin(), row.rend(), [&](const stay& x) { return x.stroke == b.stroke; });
-            if (known == row.rend())
-                row.push_back(s);
-            else
-                *known = {b.stroke, std::min(known->from_s, s.from_s), std::max(known->to_s, s.to_s)};
-        }
-    for (std::vector<stay>& row : all)
-        std::sort(row.begin(), row.end(), [](const stay& a, const stay& b) {
-            return a.from_s != b.from_s ? a.from_s < b.from_s : a.stroke < b.stroke;
-        });
-    return all;
 }
 
 // Returns true if bars of one row overlap: only then must one show through the other.
@@ -116,40 +90,35 @@ void sample_curve(const plan& p, const scale& x, Note&& note)
     }
 }
 
-// Gives simultaneous strokes on one tactor separate levels in its row, one below the other, if `space` pt
-// are enough for all rows. Returns a note if they are not; else empty.
+// Gives simultaneous strokes separate levels in the rows, one below the other, if `space` pt are enough.
+// Returns a note if they are not; else empty.
 std::string part_strokes(timing_frame& f, const timeline& t, double space)
 {
-    const std::size_t strokes = t.starts_s.size();
-    if (strokes < 2)
+    if (!t.several())
         return {};
-    if (strokes > most_parted || f.rows.rows.size() < t.playing.size())
-        return not_parted;
-    const auto all = stays(f, t);
-    f.levels.assign(all.size(), std::vector<std::size_t>(strokes, 0));
-    std::size_t wanted = 0;
-    for (std::size_t row = 0; row < all.size(); ++row) {
-        std::vector<double> ends; // by level
-        for (const stay& s : all[row]) {
-            const auto free =
-                std::find_if(ends.begin(), ends.end(), [&](double end) { return end <= s.from_s + 1e-9; });
-            f.levels[row][s.stroke] = static_cast<std::size_t>(free - ends.begin());
-            if (free == ends.end())
-                ends.push_back(s.to_s);
-            else
-                *free = s.to_s;
-        }
-        f.rows.rows[row].levels = std::max<std::size_t>(1, ends.size());
-        wanted += f.rows.rows[row].levels;
+    std::vector<std::size_t> order(t.starts_s.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::stable_sort(order.begin(), order.end(),
+                     [&](std::size_t a, std::size_t b) { return t.starts_s[a] < t.starts_s[b]; });
+    f.levels.resize(order.size());
+    std::vector<double> ends; // by level
+    for (const std::size_t i : order) {
+        const auto free =
+            std::find_if(ends.begin(), ends.end(), [&](double end) { return end <= t.starts_s[i] + 1e-9; });
+        f.levels[i] = static_cast<std::size_t>(free - ends.begin());
+        if (free == ends.end())
+            ends.push_back(t.ends_s[i]);
+        else
+            *free = t.ends_s[i];
     }
-    if (wanted <= most_levels && (f.rows.fit(space) || wanted == all.size()))
+    f.rows.levels = ends.size();
+    if (f.rows.fit(space))
         return {};
     // The page would be too long: strokes lie on each other, and show through.
     f.levels.clear();
-    for (lane& r : f.rows.rows)
-        r.levels = 1;
+    f.rows.levels = 1;
     f.rows.fit(space);
-    return not_parted;
+    return "strokes on one tactor lie on each other";
 }
 
 // Returns true if there are too many bars, or too narrow ones, to draw each.
@@ -189,12 +158,22 @@ void draw_columns(canvas& c, const scene& s, const timeline& t, const timing_fra
 {
     // Draws each stroke separately if it has a colour; else all together.
     const bool by_stroke = !f.levels.empty();
-    std::vector<std::vector<column_profile>> profiles(
-        by_stroke ? s.plans.size() : 1, std::vector<column_profile>(f.rows.rows.size(), column_profile(f.x)));
-    const auto note = [&](std::size_t stroke, const burst& b, double from, double to) {
-        for (const drive& d : b.drives)
-            if (f.rows.row_by_tactor[d.tactor] >= 0)
-                profiles[by_stroke ? stroke : 0][find_row(f, d.tactor)].add(from, to, d.amplitude);
+    const double count = std::ceil((f.x.page_to - f.x.page_from) / column_width);
+    const scale columns{0.0, count, f.x.page_from, f.x.page_from + count * column_width};
+    const std::vector<column_range> silent(static_cast<std::size_t>(count) + 1);
+    std::vector<std::vector<std::vector<column_range>>> profiles(
+        by_stroke ? s.plans.size() : 1, std::vector<std::vector<column_range>>(f.rows.rows.size(), silent));
+    const auto column_at = [&](double t_s) {
+        return static_cast<std::size_t>(std::clamp((f.x(t_s) - f.x.page_from) / column_width, 0.0, count));
+    };
+    const auto note = [&](std::size_t stroke, const burst& b, double from_s, double to_s) {
+        for (const drive& d : b.drives) {
+            if (f.rows.row_by_tactor[d.tactor] < 0)
+                continue;
+            std::vector<column_range>& row = profiles[by_stroke ? stroke : 0][find_row(f, d.tactor)];
+            for (std::size_t i = column_at(from_s); i <= column_at(to_s); ++i)
+                row[i].high = std::max(row[i].high, static_cast<float>(d.amplitude));
+        }
     };
     for (const shown_burst& b : t.bursts)
         if (b.to_s > b.from_s)
@@ -209,11 +188,13 @@ void draw_columns(canvas& c, const scene& s, const timeline& t, const timing_fra
     for (std::size_t stroke = 0; stroke < profiles.size(); ++stroke) {
         if (by_stroke)
             look.fill = stroke_colour(t.looks[stroke]);
-        for (std::size_t i = 0; i < f.rows.rows.size(); ++i)
+        for (std::size_t i = 0; i < f.rows.rows.size(); ++i) {
+            const double base = f.base_y(i, stroke);
             for (std::vector<spot>& shape :
-                 profiles[stroke][i].outlines(f.base_y(i, stroke), f.bar_height(1.0), t.sampled))
+                 outline(profiles[stroke][i], columns, {0.0, 1.0, base, base - f.bar_height(1.0)}))
                 c.poly(std::move(shape), true, look,
                        {.kind = "envelope", .data = {{"row", fmt::format("{}", i)}}});
+        }
     }
 }
 
@@ -236,17 +217,6 @@ bool draw_conflicts(canvas& c, const scene& s, const timeline& t, const timing_f
     return drawn != 0;
 }
 
-constexpr double strip_height = 5.0;
-constexpr const char* strip_heading = "time (s)";
-constexpr double dimension_pitch = 9.5;
-constexpr double first_dimension = 8.0; // under the strip
-constexpr double heading_height = 9.5;
-constexpr double inset = 9.0;  // space before time 0, for arrows that point from outside
-constexpr double outset = 7.0; // space after the last sound, for half a label
-constexpr double timing_legend_height = 10.0;
-constexpr std::size_t most_timing_notes = 3; // lines
-constexpr double most_around_rows = 107.0;   // pt: strip, arrows, starts, axis, legend and notes
-
 class timing_drawing {
 public:
     timing_drawing(canvas& c, const scene& s, const timeline& t, box where, bool colours)
@@ -264,12 +234,10 @@ public:
         const double per_s = (where.right() - left - inset - outset) / std::max(t.total_s, 1e-9);
         frame_.x = {-inset / per_s, t.total_s + outset / per_s, left, where.right()};
         find_first_pair();
-        starts_ = find_starts(t, frame_.x);
-        frame_.top = where.y + (colours ? strip_height : 0.0) + dimensions_height() + 3.0 + starts_.height;
+        frame_.top = where.y + (colours ? strip_height : 0.0) + dimensions_height() + 3.0 + starts_height(t);
         const double space = where.bottom() - frame_.top - axis_gap - axis_height - timing_legend_height -
                              note_height * static_cast<double>(most_timing_notes);
         frame_.rows.fit(space);
-        notes_.push_back(starts_.note);
         notes_.push_back(part_strokes(frame_, t, space));
         dense_ = too_dense(t, frame_);
     }
@@ -283,17 +251,16 @@ public:
                                            {"row-height", fmt::format("{:.9g}", frame_.rows.height)},
                                            {"bar-height", fmt::format("{:.9g}", frame_.bar_height(1.0))},
                                            {"drawn", dense_ ? "columns" : "bars"}}});
-        const double bottom = frame_.top + frame_.rows.all_height;
+        const double bottom = frame_.top + frame_.rows.all_height();
         draw_rows();
         draw_horizontal_axis(canvas_, frame_.x, bottom + axis_gap,
                              colours_ ? where_.y + strip_height : frame_.top, "time (s)");
         if (colours_)
             draw_strip();
-        draw_stroke_starts(canvas_, starts_, frame_.top, bottom);
         draw_sound();
         conflicts_ = draw_conflicts(canvas_, scene_, time_, frame_);
         draw_dimensions();
-        number_stroke_starts(canvas_, starts_, frame_.top);
+        notes_.push_back(draw_stroke_starts(canvas_, time_, frame_.x, frame_.top, bottom));
         const double legend_y = bottom + axis_gap + axis_height + timing_legend_height / 2.0;
         draw_legend(legend_y);
         const double end = legend_y + timing_legend_height / 2.0;
@@ -324,7 +291,8 @@ private:
     void draw_rows()
     {
         for (std::size_t i = 0; i < frame_.rows.rows.size(); ++i)
-            canvas_.line({frame_.x.page_from, frame_.bottom_y(i)}, {frame_.x.page_to, frame_.bottom_y(i)},
+            canvas_.line({frame_.x.page_from, frame_.top + frame_.rows.top(i + 1)},
+                         {frame_.x.page_to, frame_.top + frame_.rows.top(i + 1)},
                          {.stroke = light_grey, .width = 0.4}, {.kind = "row-line"});
         notes_.push_back(draw_lane_labels(canvas_, frame_.rows, frame_.x.page_from - 3.0, frame_.top));
         canvas_.text({frame_.x.page_from - 3.0, frame_.top - 3.5}, frame_.rows.heading,
@@ -351,12 +319,10 @@ private:
 
     double top_row_y(const burst& b) const
     {
-        if (frame_.rows.rows.empty()) // nothing sounds
-            return frame_.top;
-        std::size_t row = frame_.rows.rows.size() - 1;
+        std::size_t row = frame_.rows.rows.size();
         for (const drive& d : b.drives)
             row = std::min(row, static_cast<std::size_t>(frame_.rows.row_by_tactor[d.tactor]));
-        return frame_.top + frame_.rows.rows[row].top;
+        return frame_.top + frame_.rows.top(row);
     }
 
     void draw_dimensions()
@@ -414,7 +380,6 @@ private:
     box where_;
     bool colours_;
     timing_frame frame_;
-    stroke_starts starts_ = {};
     std::vector<std::string> notes_ = {};
     bool dense_ = false;
     bool conflicts_ = false;

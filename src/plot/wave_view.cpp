@@ -7,6 +7,7 @@
 #include <limits>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -27,16 +28,10 @@ namespace {
 constexpr double most_samples = 2e10;
 constexpr std::size_t most_block_samples = 1U << 16U;
 
-/// Least and largest sample in a stretch of time.
-struct sample_range {
-    float low = 0.0F;
-    float high = 0.0F;
-};
-
 /// Samples of some channels in stretches of equal length.
 struct waveform {
     double stretch_s = 0.0;
-    std::vector<std::vector<sample_range>> by_channel = {}; ///< in the order of the request
+    std::vector<std::vector<column_range>> by_channel = {}; ///< in the order of the request
     std::vector<float> peaks = {};                          ///< largest magnitude of each
 };
 
@@ -56,7 +51,7 @@ waveform measure(const score& s, const std::vector<unsigned>& channels, std::siz
         std::max<std::uint64_t>(1, (frames + stretches - 1) / std::max<std::size_t>(1, stretches));
     waveform w;
     w.stretch_s = static_cast<double>(length) / s.rate();
-    w.by_channel.assign(channels.size(), std::vector<sample_range>((frames + length - 1) / length));
+    w.by_channel.assign(channels.size(), std::vector<column_range>((frames + length - 1) / length));
     w.peaks.assign(channels.size(), 0.0F);
     renderer r(s, format_kind::float32);
     synth::sample_ranges ranges(per_frame);
@@ -80,11 +75,10 @@ waveform measure(const score& s, const std::vector<unsigned>& channels, std::siz
     return w;
 }
 
-constexpr std::size_t most_high_rows = 16;
-constexpr double row_factor = 1.6;   // rows are higher than in the timing diagram
-constexpr double peak_column = 26.0; // for the levels on the right, pt
-constexpr double least_cycle = 1.5;  // pt: for shorter cycles the envelope is shown
-constexpr double points_per_cycle = 14.0;
+constexpr double highest_wave = 17.6; // of a row, pt: higher than in the timing diagram
+constexpr double peak_column = 26.0;  // for the levels on the right, pt
+constexpr double least_cycle = 1.5;   // pt: for shorter cycles the envelope is shown
+constexpr double carrier_column = 0.2;
 constexpr double wave_heading_height = 12.0;
 constexpr double wave_legend_height = 10.0;
 constexpr double least_peak_row = 5.6;
@@ -108,25 +102,21 @@ public:
         const double total = std::max(static_cast<double>(s.sound->frames()) / s.sound->rate(), 1e-9);
         const double left = where.x + lanes_.label_width + 4.0;
         x_ = {0.0, total, left, where.right() - peak_column};
-        starts_ = find_starts(t, x_);
-        top_ = where.y + wave_heading_height + starts_.height;
+        top_ = where.y + wave_heading_height + starts_height(t);
         const double space = where.bottom() - top_ - axis_gap - axis_height - wave_legend_height -
                              note_height * static_cast<double>(most_wave_notes);
-        lanes_.fit(space);
-        if (lanes_.rows.size() <= most_high_rows && row_factor * lanes_.all_height <= space)
-            lanes_.lay_out(row_factor * lanes_.height);
+        lanes_.fit(space, highest_wave);
         double highest = 0.0;
         double lowest = std::numeric_limits<double>::infinity();
         for (const placed_plan& p : s.plans) {
             highest = std::max(highest, p.plan.carrier_hz);
             lowest = std::min(lowest, p.plan.carrier_hz);
         }
-        const double cycle = x_.per_unit() / highest;
-        carrier_ = cycle >= least_cycle;
-        // The envelope needs a whole cycle in each column.
-        const double columns = carrier_
-                                   ? total * highest * points_per_cycle
-                                   : std::min((x_.page_to - x_.page_from) / column_width, total * lowest);
+        // A column shows a part of a cycle, or else whole cycles.
+        const double width = x_.page_to - x_.page_from;
+        const bool carrier = x_.per_unit() / highest >= least_cycle;
+        const double columns =
+            carrier ? width / carrier_column : std::min(width / column_width, total * lowest);
         wave_ = measure(*s.sound, channels(t), static_cast<std::size_t>(std::max(1.0, columns)));
     }
 
@@ -134,17 +124,15 @@ public:
     {
         const group all(canvas_, {.id = "wave",
                                   .data = {{"x0", fmt::format("{:.9g}", x_(0.0))},
-                                           {"x-scale", fmt::format("{:.9g}", x_.per_unit())},
-                                           {"drawn", carrier_ ? "carrier" : "envelope"}}});
+                                           {"x-scale", fmt::format("{:.9g}", x_.per_unit())}}});
         for (const float p : wave_.peaks)
             peak_ = std::max(peak_, static_cast<double>(p));
-        const double bottom = top_ + lanes_.all_height;
+        const double bottom = top_ + lanes_.all_height();
         draw_horizontal_axis(canvas_, x_, bottom + axis_gap, top_, "time (s)");
         draw_headings();
-        draw_stroke_starts(canvas_, starts_, top_, bottom);
         for (std::size_t i = 0; i < lanes_.rows.size(); ++i)
             draw_row(i);
-        number_stroke_starts(canvas_, starts_, top_);
+        notes_.push_back(draw_stroke_starts(canvas_, time_, x_, top_, bottom));
         const double y = bottom + axis_gap + axis_height + wave_legend_height / 2.0;
         if (peak_ > 0.0)
             canvas_.text({where_.x, y + cap_height(small_text) / 2.0},
@@ -167,8 +155,8 @@ private:
 
     void draw_headings()
     {
-        notes_ = {starts_.note, draw_lane_labels(canvas_, lanes_, x_.page_from - 3.0, top_)};
-        const double y = top_ - 4.0 - starts_.height;
+        notes_ = {draw_lane_labels(canvas_, lanes_, x_.page_from - 3.0, top_)};
+        const double y = top_ - 4.0 - starts_height(time_);
         canvas_.text({x_.page_from - 3.0, y}, lanes_.heading,
                      {.size = small_text, .anchor = align::end, .ink = dark_grey});
         if (with_peaks())
@@ -182,7 +170,9 @@ private:
 
     void draw_row(std::size_t row)
     {
-        const double middle = top_ + lanes_.rows[row].top + lanes_.height / 2.0;
+        const double middle = top_ + lanes_.top(row) + lanes_.height / 2.0;
+        const double top = middle - 0.46 * lanes_.height;
+        const scale columns{0.0, x_.to / wave_.stretch_s, x_.page_from, x_.page_to};
         const group g(canvas_, {.kind = "channel", .data = {{"row", fmt::format("{}", row)}}});
         canvas_.line({x_.page_from, middle}, {x_.page_to, middle}, {.stroke = light_grey, .width = 0.4});
         std::size_t first = 0;
@@ -194,58 +184,13 @@ private:
         if (!(loudest > 0.0F))
             return;
         for (std::size_t k = first; k < first + lanes_.rows[row].tactors.size(); ++k)
-            carrier_ ? draw_carrier(k, middle) : draw_envelope(k, middle);
+            for (std::vector<spot>& shape : outline(wave_.by_channel[k], columns, {0.0, peak_, middle, top}))
+                canvas_.poly(std::move(shape), true, {.fill = grey, .stroke = ink, .width = 0.35},
+                             {.kind = "envelope"});
         if (with_peaks())
             canvas_.text({where_.right(), middle + cap_height(small_text) / 2.0},
                          fmt::format("{:.1f}", dbfs(static_cast<double>(loudest))),
                          {.size = small_text, .anchor = align::end}, {.kind = "peak"});
-    }
-
-    double page_y(double sample, double middle) const
-    {
-        return middle - 0.46 * lanes_.height * sample / peak_;
-    }
-
-    double start_s(std::size_t stretch) const { return static_cast<double>(stretch) * wave_.stretch_s; }
-
-    void draw_carrier(std::size_t k, double middle)
-    {
-        std::vector<spot> line;
-        const std::vector<sample_range>& w = wave_.by_channel[k];
-        for (std::size_t i = 0; i < w.size(); ++i) {
-            const double sample = std::abs(w[i].low) > std::abs(w[i].high) ? w[i].low : w[i].high;
-            line.push_back({x_(std::min(start_s(i) + wave_.stretch_s / 2.0, x_.to)), page_y(sample, middle)});
-        }
-        canvas_.poly(simplify(line, 0.02), false, {.stroke = ink, .width = 0.4}, {.kind = "curve"});
-    }
-
-    void draw_envelope(std::size_t k, double middle)
-    {
-        const std::vector<sample_range>& w = wave_.by_channel[k];
-        for (std::size_t i = 0; i < w.size();) {
-            const std::size_t first = i;
-            while (i < w.size() && (w[i].low < 0.0F || w[i].high > 0.0F))
-                ++i;
-            if (i > first)
-                draw_run(w, first, i, middle);
-            i = std::max(i, first + 1);
-        }
-    }
-
-    void draw_run(const std::vector<sample_range>& w, std::size_t first, std::size_t end, double middle)
-    {
-        std::vector<spot> above;
-        std::vector<spot> below;
-        for (std::size_t i = first; i < end; ++i)
-            for (const double x : {x_(start_s(i)), x_(std::min(start_s(i + 1), x_.to))}) {
-                above.push_back({x, page_y(static_cast<double>(w[i].high), middle)});
-                below.push_back({x, page_y(static_cast<double>(w[i].low), middle)});
-            }
-        std::vector<spot> shape = simplify(above, 0.02);
-        const std::vector<spot> lower = simplify(below, 0.02);
-        shape.insert(shape.end(), lower.rbegin(), lower.rend());
-        canvas_.poly(std::move(shape), true, {.fill = grey, .stroke = ink, .width = 0.35},
-                     {.kind = "envelope"});
     }
 
     canvas& canvas_;
@@ -253,11 +198,9 @@ private:
     const timeline& time_;
     box where_;
     lanes lanes_;
-    stroke_starts starts_ = {};
     std::vector<std::string> notes_ = {};
     scale x_;
     double top_ = 0.0;
-    bool carrier_ = false;
     waveform wave_;
     double peak_ = 0.0;
 };

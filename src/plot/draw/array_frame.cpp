@@ -2,10 +2,8 @@
 #include "plot/draw/array_frame.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
-#include <optional>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -14,7 +12,6 @@
 
 #include "core/words.hpp"
 #include "plot/draw/axes.hpp"
-#include "plot/draw/notes.hpp"
 #include "plot/paint/text.hpp"
 
 namespace tactor::plot {
@@ -23,11 +20,12 @@ namespace {
 constexpr double largest_pitch = 100.0; // pt: neighbours are not farther apart on the page
 constexpr double lone_tactor_mm = 20.0; // shown around a tactor without neighbours
 constexpr std::size_t most_path_points = 20000;
-constexpr std::array<double, 3> number_sizes{7.0, 6.0, 5.2}; // pt
+constexpr double largest_number = 7.0; // pt
+constexpr double least_number = 5.2;
+constexpr double rim = 0.4; // between a number and its circle
 constexpr double largest_radius = 7.0;
-constexpr double largest_share = 0.28;    // of the distance of neighbours, for a circle's radius
-constexpr double beside = 3.0;            // pt: farther away a label has lost its tactor
-constexpr std::size_t most_titled = 1024; // tactors that get a group and a title each
+constexpr double largest_share = 0.28; // of the distance of neighbours, for a circle's radius
+constexpr double beside = 3.0;         // pt: farther away a label has lost its tactor
 
 double pitch_mm(const array& a)
 {
@@ -56,15 +54,13 @@ std::vector<point> sample(const trajectory& motion)
     return points;
 }
 
-// Returns the shortest distance of two tactors, pt: circles must not touch. Infinite if there are too many
-// for titles.
+// Returns the shortest distance of two tactors, pt: circles must not touch.
 double closest_pt(const array& a, double scale)
 {
     double least = std::numeric_limits<double>::infinity();
-    if (a.tactors.size() <= most_titled)
-        for (std::size_t i = 0; i < a.tactors.size(); ++i)
-            for (std::size_t k = 0; k < i; ++k)
-                least = std::min(least, distance_mm(a.tactors[i].position, a.tactors[k].position));
+    for (std::size_t i = 0; i < a.tactors.size(); ++i)
+        for (std::size_t k = 0; k < i; ++k)
+            least = std::min(least, distance_mm(a.tactors[i].position, a.tactors[k].position));
     return least * scale;
 }
 
@@ -72,38 +68,20 @@ double closest_pt(const array& a, double scale)
 void size_tactors(array_frame& f, const array& a)
 {
     const double space = std::min(f.pitch, closest_pt(a, f.scale));
-    f.radius = std::clamp(0.2 * space, 0.3, largest_radius);
     const std::string longest(fmt::format("{}", a.tactors.size() - 1).size(), '8');
-    f.number = 0.0;
-    for (const double size : number_sizes) {
-        const double need = std::hypot(text_width(longest, size), cap_height(size)) / 2.0 + 0.4;
-        if (need > std::max(f.radius, std::min(largest_share * space, largest_radius)))
-            continue;
-        f.number = size;
-        f.radius = std::max(f.radius, need);
-        return;
-    }
+    const double half = std::hypot(text_width(longest, 1.0), cap_height(1.0)) / 2.0; // for a size of 1 pt
+    const double most = std::min(largest_share * space, largest_radius);
+    f.number = std::min(largest_number, (most - rim) / half);
+    if (f.number < least_number)
+        f.number = 0.0;
+    f.radius = std::max(std::clamp(0.2 * space, 0.3, largest_radius), f.number * half + rim);
 }
 
-// Tactors that have no space for something.
-struct missing {
-    std::vector<unsigned> tactors = {};
-
-    void add(unsigned i) { tactors.push_back(i); }
-    std::string text(const std::string& what, const array& a) const
-    {
-        if (tactors.empty())
-            return {};
-        const std::string plural = tactors.size() == 1 ? "" : "s";
-        if (tactors.size() == a.tactors.size())
-            return fmt::format("no space for the {}{} of the tactors", what, plural);
-        return fmt::format("no space for the {}{} of {}", what, plural, tactors_text(tactors));
-    }
-};
-
-std::string joined(const std::string& a, const std::string& b)
+std::string note_missing(std::size_t n, const array& a)
 {
-    return a.empty() || b.empty() ? a + b : a + "; " + b;
+    return n == 0                  ? ""
+           : n == a.tactors.size() ? "no space for the numbers of the tactors"
+                                   : "no space for the number of " + counted(n, "tactor");
 }
 
 constexpr double arrow_length = 4.6;
@@ -163,8 +141,8 @@ public:
     }
 
 private:
-    // Draws numbers in a box of the stroke's colour, because plain numbers are tactors. Returns false if
-    // there is no space.
+    // Draws numbers in a box of the first stroke's colour, because plain numbers are tactors. Returns false
+    // if there is no space.
     bool number_start(const std::vector<spot>& starts, std::size_t k, const std::vector<std::size_t>& strokes)
     {
         std::vector<std::size_t> numbers;
@@ -172,13 +150,10 @@ private:
             numbers.push_back(i + 1);
         const std::string text = fmt::format("{}", fmt::join(numbers, ", "));
         const auto place =
-            taken_.place_at(" " + text + " ", small_text, starts, k, radius() + 1.5, farthest_number);
+            taken_.place(" " + text + " ", small_text, starts, k, radius() + 1.5, farthest_number);
         if (!place)
             return false;
-        const bool one_look = std::all_of(strokes.begin(), strokes.end(), [&](std::size_t i) {
-            return time_.looks[i] == time_.looks[strokes.front()];
-        });
-        const colour fill = one_look ? stroke_colour(time_.looks[strokes.front()]) : dark_grey;
+        const colour fill = stroke_colour(time_.looks[strokes.front()]);
         const double height = cap_height(small_text);
         const double pad = text_width(" ", small_text);
         const double air = 1.3;
@@ -276,7 +251,7 @@ private:
         const spot at = frame_(where);
         if (!on_page(at))
             return true;
-        const auto place = taken_.place_clear(text, label_text, at, radius() + 1.5, farthest_label);
+        const auto place = taken_.place(text, label_text, {at}, 0, radius() + 1.5, farthest_label);
         if (place)
             canvas_.text(*place, text, {.size = label_text, .halo = true}, {.kind = kind});
         return place.has_value();
@@ -360,11 +335,7 @@ void draw_tactors(canvas& c, const array_frame& f, const array& a, const tactor_
         const colour rim = looks.plays[i] ? ink : grey;
         const style look =
             f.radius < 1.5 ? style{.fill = rim} : style{.fill = white, .stroke = rim, .width = 0.7};
-        if (a.tactors.size() > most_titled) {
-            c.circle(at, f.radius, look, {.kind = "tactor"});
-            continue;
-        }
-        taken.forbid_disc(at, f.radius);
+        taken.block_disc(at, f.radius, label_placer::forbidden);
         const group one(c, {.id = fmt::format("tactor-{}", i),
                             .kind = "tactor",
                             .title = fmt::format("tactor {}, channel {}, at {}, {} mm", i, t.channel,
@@ -381,40 +352,27 @@ void draw_tactors(canvas& c, const array_frame& f, const array& a, const tactor_
 std::string draw_tactor_labels(canvas& c, const array_frame& f, const array& a, const tactor_looks& looks,
                                label_placer& taken)
 {
-    if (a.tactors.size() > most_titled)
-        return "too many tactors to number each";
     const group all(c, {.id = "tactor-labels"});
     const bool channels = !channels_are_numbers(a);
     std::vector<spot> sites;
     for (const tactor_spec& t : a.tactors)
         sites.push_back(f(t.position));
-    missing without_number;
-    missing without_channel;
+    std::size_t missing = 0;
     for (unsigned i = 0; i < a.tactors.size(); ++i) {
-        const std::string channel = fmt::format("ch {}", a.tactors[i].channel);
-        std::vector<std::string> wanted; // the first with space is drawn
-        if (!looks.inside[i] && channels)
-            wanted = {fmt::format("{} ({})", i, channel), fmt::format("{}", i)};
-        else if (!looks.inside[i])
-            wanted = {fmt::format("{}", i)};
-        else if (channels)
-            wanted = {channel};
-        std::optional<spot> at;
-        for (std::size_t k = 0; k < wanted.size() && !at; ++k) {
-            const double size = small_text;
-            at = taken.place_at(wanted[k], size, sites, i, f.radius + 1.2, beside);
-            if (at)
-                c.text(*at, wanted[k], {.size = size, .ink = looks.plays[i] ? ink : dark_grey, .halo = true},
-                       {.kind = "tactor-label", .data = {{"tactor", fmt::format("{}", i)}}});
-            if (at && channels && k > 0)
-                without_channel.add(i);
-        }
-        if (!at && !looks.inside[i])
-            without_number.add(i);
-        else if (!at && !wanted.empty())
-            without_channel.add(i);
+        const std::string channel = channels ? fmt::format("ch {}", a.tactors[i].channel) : "";
+        const std::string text = looks.inside[i] ? channel
+                                 : channels      ? fmt::format("{} ({})", i, channel)
+                                                 : fmt::format("{}", i);
+        if (text.empty())
+            continue;
+        const auto at = taken.place(text, small_text, sites, i, f.radius + 1.2, beside);
+        if (at)
+            c.text(*at, text, {.size = small_text, .ink = looks.plays[i] ? ink : dark_grey, .halo = true},
+                   {.kind = "tactor-label", .data = {{"tactor", fmt::format("{}", i)}}});
+        else
+            ++missing;
     }
-    return joined(without_number.text("number", a), without_channel.text("channel", a));
+    return note_missing(missing, a);
 }
 
 void draw_scale_bar(canvas& c, const array_frame& f, spot at)

@@ -15,18 +15,6 @@ namespace {
 
 constexpr double tick_length = 2.5;
 
-constexpr double head_length = 3.6;
-constexpr double head_half = 1.3;
-constexpr double tail = 4.0; // tail of an arrow that points from outside
-
-// Draws a head with its tip at x; direction 1 points to the right.
-void draw_head(canvas& c, double x, double y, double direction)
-{
-    c.poly(
-        {{x, y}, {x - direction * head_length, y - head_half}, {x - direction * head_length, y + head_half}},
-        true, {.fill = ink});
-}
-
 constexpr double legend_row = 9.0;
 constexpr double sample_length = 14.0;
 constexpr double left_column = 30.0; // for the labels of y, pt
@@ -118,6 +106,17 @@ bool finite(spot s) noexcept
     return std::isfinite(s.x) && std::isfinite(s.y);
 }
 
+// Returns the distance of a point from the segment between two others.
+double distance(spot p, spot a, spot b) noexcept
+{
+    const double dx = b.x - a.x;
+    const double dy = b.y - a.y;
+    const double square = dx * dx + dy * dy;
+    const double t =
+        square > 0.0 ? std::clamp(((p.x - a.x) * dx + (p.y - a.y) * dy) / square, 0.0, 1.0) : 0.0;
+    return std::hypot(p.x - a.x - t * dx, p.y - a.y - t * dy);
+}
+
 } // namespace
 
 std::string ticks::label(double v) const
@@ -206,32 +205,17 @@ void draw_dimension(canvas& c, double x0, double x1, double y, double below, con
 {
     const group g(c, m);
     const style thin{.stroke = ink, .width = 0.45};
-    const style extension{.stroke = dark_grey, .width = 0.35, .dash = 1.0};
-    for (const double x : {x0, x1})
-        c.line({x, y - 3.0}, {x, below}, extension);
-    const double baseline = y + cap_height(small_text) / 2.0;
-    const double width = text_width(label, small_text);
-    const bool heads_inside = x1 - x0 >= 2.0 * head_length + 1.0;
-    const bool label_inside = x1 - x0 >= width + 2.0 * head_length + 8.0;
-    if (heads_inside) {
-        const double middle = (x0 + x1) / 2.0;
-        const double half = label_inside ? width / 2.0 + 2.0 : 0.0;
-        c.line({x0, y}, {middle - half, y}, thin);
-        c.line({middle + half, y}, {x1, y}, thin);
-        draw_head(c, x0, y, -1.0);
-        draw_head(c, x1, y, 1.0);
-    } else {
-        c.line({x0 - head_length - tail, y}, {x0, y}, thin);
-        c.line({x1, y}, {x1 + head_length + tail, y}, thin);
-        draw_head(c, x0, y, 1.0);
-        draw_head(c, x1, y, -1.0);
+    for (const double x : {x0, x1}) {
+        c.line({x, y - 3.0}, {x, below}, {.stroke = dark_grey, .width = 0.35, .dash = 1.0});
+        c.line({x, y - 1.5}, {x, y + 1.5}, thin);
     }
-    if (label_inside)
-        c.text({(x0 + x1) / 2.0, baseline}, label,
-               {.size = small_text, .anchor = align::middle, .halo = true});
-    else
-        c.text({x1 + (heads_inside ? 0.0 : head_length + tail) + 2.5, baseline}, label,
-               {.size = small_text, .halo = true});
+    const double width = text_width(label, small_text);
+    const bool inside = x1 - x0 >= width + 12.0;
+    const double left = inside ? (x0 + x1 - width) / 2.0 : x1 + 2.5;
+    c.line({x0, y}, {inside ? left - 2.0 : x1, y}, thin);
+    if (inside)
+        c.line({left + width + 2.0, y}, {x1, y}, thin);
+    c.text({left, y + cap_height(small_text) / 2.0}, label, {.size = small_text, .halo = true});
 }
 
 void draw_hatch(canvas& c, box b, const mark& m)
@@ -247,16 +231,6 @@ void draw_hatch(canvas& c, box b, const mark& m)
         c.line({x_bottom, k - x_bottom}, {x_top, k - x_top}, thin);
     }
     c.rect(b, {.stroke = black, .width = 0.5}, {.kind = "rim"});
-}
-
-double distance(spot p, spot a, spot b) noexcept
-{
-    const double dx = b.x - a.x;
-    const double dy = b.y - a.y;
-    const double square = dx * dx + dy * dy;
-    const double t =
-        square > 0.0 ? std::clamp(((p.x - a.x) * dx + (p.y - a.y) * dy) / square, 0.0, 1.0) : 0.0;
-    return std::hypot(p.x - a.x - t * dx, p.y - a.y - t * dy);
 }
 
 std::vector<std::vector<spot>> clip(const std::vector<spot>& line, box b)

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// Axes, line charts, and dimension arrows as on technical drawings.
+/// Axes, line charts, and dimensions as on technical drawings.
 #pragma once
 
 #include <string>
@@ -92,11 +92,8 @@ std::vector<std::vector<spot>> clip(const std::vector<spot>& line, box b);
 /// Returns a line with fewer points, nowhere more than `tolerance` pt away (Douglas and Peucker).
 std::vector<spot> simplify(const std::vector<spot>& line, double tolerance);
 
-/// Returns the distance of a point from the segment between two others, pt.
-double distance(spot p, spot a, spot b) noexcept;
-
-/// Draws an arrow from x0 to x1 at y with its label in it or to its right. If the arrow would be too short,
-/// its heads point at the interval from outside. Thin lines run down to `below` at both ends.
+/// Draws a line with ends from x0 to x1 at y, and its label in it or to its right. Thin lines run down to
+/// `below` at both ends.
 void draw_dimension(canvas& c, double x0, double x1, double y, double below, const std::string& label,
                     const mark& m);
 

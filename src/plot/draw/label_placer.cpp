@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 
 #include "plot/paint/text.hpp"
 
@@ -12,7 +11,7 @@ namespace tactor::plot {
 namespace {
 
 constexpr std::size_t most_obstacles = 4000; // more do not change the places in a crowded picture
-constexpr double off_page = 50.0;            // weight of the part outside the area
+constexpr double refused = 1e6; // cost of a place for a label on a tactor, on a label or off the page
 
 // Directions in order of preference: below, right, left, above, then the corners; y down.
 struct direction {
@@ -21,7 +20,7 @@ struct direction {
 };
 constexpr std::array<direction, 8> directions{
     {{0, 1}, {1, 0}, {-1, 0}, {0, -1}, {1, 1}, {-1, 1}, {1, -1}, {-1, -1}}};
-constexpr std::array<double, 6> farther{0.0, 1.5, 3.0, 7.0, 12.0, 20.0};
+constexpr double farther = 1.5;  // pt, from ring to ring of places
 constexpr double clearly = 1.25; // nearer than any other by this factor
 
 double overlap_area(box a, box b) noexcept
@@ -60,75 +59,45 @@ void label_placer::block_line(const std::vector<spot>& line, double width, doubl
 
 double label_placer::cost(box b) const
 {
-    double sum = off_page * (b.width * b.height - overlap_area(b, area_));
+    double sum = forbidden * (b.width * b.height - overlap_area(b, area_));
     for (const obstacle& o : taken_)
         sum += o.weight * overlap_area(b, o.b);
     return sum;
 }
 
-// Returns true if a box is inside the area and on no other label or tactor. Edges that meet do not overlap.
-bool label_placer::is_clear(box b) const
-{
-    if (overlap_area(b, area_) < b.width * b.height - 1e-6)
-        return false;
-    return std::none_of(taken_.begin(), taken_.end(), [&](const obstacle& o) {
-        return o.weight >= forbidden && overlap_area(b, o.b) > 0.0;
-    });
-}
-
-template <class Allowed>
-std::optional<spot> label_placer::best_place(std::string_view text, double size, spot at, double gap,
-                                             double reach, Allowed&& allowed)
+std::optional<spot> label_placer::place(std::string_view text, double size, const std::vector<spot>& sites,
+                                        std::size_t own, double gap, double reach)
 {
     const double w = text_width(text, size);
     const double h = cap_height(size);
     constexpr double air = 0.8;
+    const spot at = sites[own];
+    const auto nearest_own = [&](box b) {
+        const double near = clearly * distance(b, at);
+        for (std::size_t i = 0; i < sites.size(); ++i)
+            if (i != own && distance(b, sites[i]) <= near)
+                return false;
+        return true;
+    };
     std::optional<box> best;
-    double least = std::numeric_limits<double>::infinity();
+    double least = refused;
     double preference = 0.0;
-    for (const double more : farther) {
-        if (more > reach)
-            break;
+    for (double more = 0.0; more <= reach; more += farther)
         for (const direction& d : directions) {
-            const double corner = d.x != 0.0 && d.y != 0.0 ? 0.72 : 1.0;
-            const double away = (gap + more) * corner;
+            const double away = (gap + more) * (d.x != 0.0 && d.y != 0.0 ? 0.72 : 1.0);
             const box b{at.x + d.x * (away + w / 2.0) - w / 2.0 - air,
                         at.y + d.y * (away + h / 2.0) - h / 2.0 - air, w + 2.0 * air, h + 2.0 * air};
             const double c = cost(b) + preference;
             preference += 0.2;
-            if (c < least && allowed(b)) {
+            if (c < least && nearest_own(b)) {
                 least = c;
                 best = b;
             }
         }
-    }
     if (!best)
         return std::nullopt;
-    forbid(*best);
+    block(*best, forbidden);
     return spot{best->x + air, best->bottom() - air};
-}
-
-spot label_placer::place(std::string_view text, double size, spot at, double gap)
-{
-    return *best_place(text, size, at, gap, 12.0, [](box) { return true; });
-}
-
-std::optional<spot> label_placer::place_clear(std::string_view text, double size, spot at, double gap,
-                                              double reach)
-{
-    return best_place(text, size, at, gap, reach, [&](box b) { return is_clear(b); });
-}
-
-std::optional<spot> label_placer::place_at(std::string_view text, double size, const std::vector<spot>& sites,
-                                           std::size_t own, double gap, double reach)
-{
-    return best_place(text, size, sites[own], gap, reach, [&](box b) {
-        const double near = clearly * distance(b, sites[own]);
-        for (std::size_t i = 0; i < sites.size(); ++i)
-            if (i != own && distance(b, sites[i]) <= near)
-                return false;
-        return is_clear(b);
-    });
 }
 
 } // namespace tactor::plot

@@ -12,14 +12,10 @@
 namespace tactor::plot {
 namespace {
 
-constexpr double highest_row = 11.0;
-constexpr double lowest_row = 2.2;
-constexpr double lowest_level = 1.6;      // for strokes below each other
-constexpr double most_height = 260.0;     // of rows without a label for each, pt
-constexpr std::size_t most_labelled = 64; // rows that can all get a label
-constexpr double wide_pitch = 7.2;        // distance of labels, pt
-constexpr double tight_pitch = 5.6;
-constexpr double most_labelled_height = wide_pitch * static_cast<double>(most_labelled);
+constexpr double lowest_level = 2.2;
+constexpr double most_height = 460.0; // of rows that all get a label, pt
+constexpr double most_unlabelled = 260.0;
+constexpr double label_pitch = 5.6; // least distance of labels, pt
 constexpr double least_space = 60.0;
 
 std::string make_label(const array& a, const std::vector<unsigned>& tactors, bool channels)
@@ -30,29 +26,12 @@ std::string make_label(const array& a, const std::vector<unsigned>& tactors, boo
                     : fmt::format("{}", tactors.front());
 }
 
-double row_middle(const lane& r)
-{
-    return r.top + r.height / 2.0;
-}
-
-// Returns the rows whose labels have space, from the first on.
-std::vector<std::size_t> labelled(const lanes& l)
-{
-    std::vector<std::size_t> shown;
-    double last = -l.label_pitch;
-    for (std::size_t i = 0; i < l.rows.size(); ++i)
-        if (const double middle = row_middle(l.rows[i]); middle - last >= l.label_pitch - 1e-9) {
-            last = middle;
-            shown.push_back(i);
-        }
-    return shown;
-}
-
 } // namespace
 
 lanes make_lanes(const array& a, const std::vector<unsigned>& playing, double space)
 {
-    const auto most_rows = static_cast<std::size_t>(std::clamp(space, least_space, most_height) / lowest_row);
+    const auto most_rows =
+        static_cast<std::size_t>(std::clamp(space, least_space, most_unlabelled) / lowest_level);
     const std::size_t together = std::max<std::size_t>(1, (playing.size() + most_rows - 1) / most_rows);
     lanes l;
     l.row_by_tactor.assign(a.tactors.size(), -1);
@@ -73,101 +52,46 @@ lanes make_lanes(const array& a, const std::vector<unsigned>& playing, double sp
     return l;
 }
 
-bool lanes::fit(double space)
+bool lanes::fit(double space, double highest)
 {
-    std::size_t levels = 0;
-    for (const lane& r : rows)
-        levels += r.levels;
-    const auto even = [&](double all_pt) {
-        return std::clamp(all_pt / static_cast<double>(std::max<std::size_t>(1, levels)), lowest_row,
-                          highest_row);
-    };
-    label_pitch = wide_pitch;
-    lay_out(even(rows.size() <= most_labelled ? most_labelled_height : most_height));
-    if (all_height <= space && labelled(*this).size() == rows.size())
-        return true;
-    // Uses closer labels, and no row too low for its label.
-    label_pitch = tight_pitch;
-    const double most = std::min(space, most_labelled_height);
-    double low = lowest_level;
-    double high = highest_row;
-    lay_out(low, tight_pitch);
-    if (all_height > most) {
-        lay_out(even(std::clamp(space, least_space, most_height)));
-        return false;
-    }
-    for (int i = 0; i < 40; ++i) {
-        const double level = (low + high) / 2.0;
-        lay_out(level, tight_pitch);
-        (all_height <= most ? low : high) = level;
-    }
-    lay_out(low, tight_pitch);
-    return true;
-}
-
-void lanes::lay_out(double level, double least_row)
-{
-    height = level;
-    std::size_t levels = 0;
-    double added = 0.0;
-    for (lane& r : rows) {
-        const double own = level * static_cast<double>(r.levels);
-        r.top = level * static_cast<double>(levels) + added;
-        r.height = std::max(own, least_row);
-        added += r.height - own;
-        levels += r.levels;
-    }
-    all_height = level * static_cast<double>(levels) + added;
+    const auto all = static_cast<double>(std::max<std::size_t>(1, rows.size() * levels));
+    height = std::clamp(std::min(space, most_height) / all, lowest_level, highest);
+    return all_height() <= space + 1e-9;
 }
 
 std::string draw_lane_labels(canvas& c, const lanes& l, double x, double top)
 {
-    const std::vector<std::size_t> shown = labelled(l);
-    for (const std::size_t i : shown)
-        c.text({x, top + row_middle(l.rows[i]) + cap_height(small_text) / 2.0}, l.rows[i].label,
+    const auto stride =
+        std::max<std::size_t>(1, static_cast<std::size_t>(std::ceil(label_pitch / l.row_height() - 1e-9)));
+    for (std::size_t i = 0; i < l.rows.size(); i += stride)
+        c.text({x, top + l.top(i) + (l.row_height() + cap_height(small_text)) / 2.0}, l.rows[i].label,
                {.size = small_text, .anchor = align::end}, {.kind = "row-label"});
-    // Rows are of one height if there is no space for all.
-    return shown.size() == l.rows.size() ? "" : fmt::format("one row in {} has its number", shown[1]);
+    return stride == 1 || l.rows.size() < 2 ? "" : fmt::format("one row in {} has its number", stride);
 }
 
-column_profile::column_profile(const scale& x)
-    : x_(x), columns_(static_cast<std::size_t>(std::ceil((x.page_to - x.page_from) / column_width)) + 1, 0.0)
-{
-}
-
-void column_profile::add(double from_s, double to_s, double value)
-{
-    const auto column = [&](double t) {
-        const double at = (x_(t) - x_.page_from) / column_width;
-        return static_cast<std::size_t>(std::clamp(at, 0.0, static_cast<double>(columns_.size() - 1)));
-    };
-    const std::size_t last = column(to_s);
-    for (std::size_t i = column(from_s); i <= last; ++i)
-        columns_[i] = std::max(columns_[i], value);
-}
-
-std::vector<std::vector<spot>> column_profile::outlines(double base, double height, bool smooth) const
+std::vector<std::vector<spot>> outline(const std::vector<column_range>& columns, const scale& x,
+                                       const scale& y)
 {
     std::vector<std::vector<spot>> shapes;
-    const auto page_x = [&](double i) { return std::min(x_.page_from + i * column_width, x_.page_to); };
-    for (std::size_t i = 0; i < columns_.size();) {
-        if (columns_[i] <= 0.0) {
+    const auto page_x = [&](double at) { return std::min(x(at), x.page_to); };
+    const auto is_zero = [&](std::size_t i) { return columns[i].low == 0.0F && columns[i].high == 0.0F; };
+    for (std::size_t i = 0; i < columns.size();) {
+        if (is_zero(i)) {
             ++i;
             continue;
         }
-        std::vector<spot> shape{{page_x(static_cast<double>(i)), base}};
-        for (; i < columns_.size() && columns_[i] > 0.0; ++i) {
-            const double y = base - height * columns_[i];
-            const auto k = static_cast<double>(i);
-            if (smooth) {
-                shape.push_back({page_x(k + 0.5), y});
-            } else {
-                shape.push_back({page_x(k), y});
-                shape.push_back({page_x(k + 1.0), y});
-            }
+        std::vector<spot> above{{page_x(static_cast<double>(i)), y(0.0)}};
+        std::vector<spot> below = above;
+        for (; i < columns.size() && !is_zero(i); ++i) {
+            above.push_back({page_x(static_cast<double>(i) + 0.5), y(columns[i].high)});
+            below.push_back({above.back().x, y(columns[i].low)});
         }
-        shape.push_back({page_x(static_cast<double>(i)), base});
-        shapes.push_back(simplify(shape, 0.02));
+        above.push_back({page_x(static_cast<double>(i)), y(0.0)});
+        below.push_back(above.back());
+        std::vector<spot>& shape = shapes.emplace_back(simplify(above, 0.02));
+        const std::vector<spot> lower = simplify(below, 0.02);
+        if (lower.size() > 2) // else it is the line of 0
+            shape.insert(shape.end(), lower.rbegin(), lower.rend());
     }
     return shapes;
 }

@@ -16,24 +16,26 @@ namespace tactor::plot {
 struct lane {
     std::vector<unsigned> tactors = {};
     std::string label = {}; ///< "4", "4 (7)" if channels are other numbers, "100-103"
-    std::size_t levels = 1; ///< rows of simultaneous strokes, one below the other
-    double top = 0.0;       ///< under the top of the first, pt
-    double height = 0.0;    ///< pt; its levels are at its bottom
 };
+
+inline constexpr double highest_level = 11.0; ///< pt
 
 struct lanes {
     std::vector<lane> rows = {};
     std::vector<int> row_by_tactor = {}; ///< -1: does not play
+    std::size_t levels = 1;              ///< of each row: one for each of simultaneous strokes
     double height = 0.0;                 ///< of one level, pt
-    double all_height = 0.0;             ///< pt
-    double label_pitch = 0.0;            ///< least distance of labels, pt
     std::string heading = {};            ///< above the labels
     double label_width = 0.0;            ///< pt
 
-    /// Makes levels as high as possible in `space` pt. Returns true if each row then has space for its label.
-    bool fit(double space);
-    /// Makes each level this high, and no row lower than `least_row`, pt.
-    void lay_out(double level, double least_row = 0.0);
+    double row_height() const noexcept { return height * static_cast<double>(levels); }
+    /// Returns the top of a row under that of the first, pt; of the row after the last, the height of all.
+    double top(std::size_t row) const noexcept { return row_height() * static_cast<double>(row); }
+    double all_height() const noexcept { return top(rows.size()); }
+
+    /// Makes levels as high as possible in `space` pt, up to `highest` pt. Returns false if even the lowest
+    /// take more.
+    bool fit(double space, double highest = highest_level);
 };
 
 /// Makes the rows of the playing tactors. `space`: for all rows, pt.
@@ -43,20 +45,16 @@ lanes make_lanes(const array& a, const std::vector<unsigned>& playing, double sp
 /// on labels without space; empty: all have space.
 std::string draw_lane_labels(canvas& c, const lanes& l, double x, double top);
 
-/// Largest value in each column of the page, for one row, instead of bars that are too many or too narrow.
-class column_profile {
-public:
-    explicit column_profile(const scale& x);
-    /// Notes a value from one time to another.
-    void add(double from_s, double to_s, double value);
-    /// Returns the outline of the values above 0, as closed shapes over `base` (the y of 0), `height` pt
-    /// for 1. Keeps steps; with `smooth`, joins the centres of columns.
-    std::vector<std::vector<spot>> outlines(double base, double height, bool smooth) const;
-
-private:
-    scale x_;
-    std::vector<double> columns_;
+/// Range of the values in a column of the page.
+struct column_range {
+    float low = 0.0F;
+    float high = 0.0F;
 };
+
+/// Returns the outlines of adjoining columns that are not 0, as closed shapes. The edges of the columns are
+/// at x(0), x(1), ...
+std::vector<std::vector<spot>> outline(const std::vector<column_range>& columns, const scale& x,
+                                       const scale& y);
 
 inline constexpr double column_width = 0.4; ///< pt
 

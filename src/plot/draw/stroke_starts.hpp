@@ -4,7 +4,6 @@
 #pragma once
 
 #include <string>
-#include <vector>
 
 #include "plot/draw/axes.hpp"
 #include "plot/draw/timeline.hpp"
@@ -12,29 +11,12 @@
 
 namespace tactor::plot {
 
-/// Starts of a scene's strokes and the places of their numbers.
-struct stroke_starts {
-    struct start {
-        double at = 0.0;        ///< x, pt
-        std::string label = {}; ///< numbers of all strokes that start there; empty: no space
-        std::size_t line = 0;   ///< of the number, from the lowest: close numbers are above each other
-    };
+/// Height that draw_stroke_starts() needs over the diagram, pt; 0 for one stroke.
+double starts_height(const timeline& t);
 
-    std::vector<start> marks = {};
-    double height = 0.0;   ///< needed over the diagram, pt; 0 for one stroke
-    std::string note = {}; ///< on starts without space
-};
-
-stroke_starts find_starts(const timeline& t, const scale& x);
-
-/// Draws a line at each start, from over the diagram's top to its bottom.
-void draw_stroke_starts(canvas& c, const stroke_starts& s, double top, double bottom);
-
-/// Writes the numbers of the strokes at their starts, on top of the drawing.
-void number_stroke_starts(canvas& c, const stroke_starts& s, double top);
-
-/// Returns ascending numbers as text, "1-4, 6": consecutive ones together.
-std::string join_runs(const std::vector<std::size_t>& numbers);
+/// Draws a line at the start of each of several strokes, from over the diagram's top to its bottom, with the
+/// numbers of all that start there. Returns a note on starts without space; empty: none.
+std::string draw_stroke_starts(canvas& c, const timeline& t, const scale& x, double top, double bottom);
 
 /// Draws, for a scene of several strokes, the number, colour and name of each, repeats together, in columns
 /// from the upper edge of a box. Returns the height taken; 0 for one stroke. `colours`: the picture has

@@ -40,7 +40,8 @@ private:
         t_.starts_s = start_times_s(scene_.plans);
         for (std::size_t i = 0; i < scene_.plans.size(); ++i) {
             const plan& p = scene_.plans[i].plan;
-            t_.total_s = std::max(t_.total_s, t_.starts_s[i] + p.total_s);
+            t_.ends_s.push_back(t_.starts_s[i] + p.total_s);
+            t_.total_s = std::max(t_.total_s, t_.ends_s.back());
             t_.sampled = t_.sampled || p.curve.has_value();
         }
         t_.sample_s = nice_ticks(0.0, std::max(t_.total_s, 1e-6), most_instants + 1).step;

@@ -42,6 +42,7 @@ struct shown_burst {
 /// Bursts of a scene in one time. The scene's plans must live as long.
 struct timeline {
     std::vector<double> starts_s = {};   ///< of each stroke
+    std::vector<double> ends_s = {};     ///< of each stroke, its last burst included
     std::vector<std::size_t> looks = {}; ///< of each stroke, from 0; repeats share one
     double total_s = 0.0;
     std::vector<shown_burst> bursts = {};

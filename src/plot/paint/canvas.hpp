@@ -50,8 +50,8 @@ constexpr colour with_alpha(colour c, double alpha) noexcept
 /// Number of different colours of strokes.
 inline constexpr std::size_t stroke_colours = 10;
 
-/// Returns the colour of the n-th stroke, from 0; colours repeat after `stroke_colours`. Any two differ by
-/// more than 20 in CIELAB for normal, protan, deutan and tritan sight (model of Machado et al.).
+/// Returns the colour of the n-th stroke, from 0; colours repeat after `stroke_colours`. Colour-blind people
+/// can tell any two apart: they differ by more than 20 in CIELAB in the model of Machado et al. 2009.
 colour stroke_colour(std::size_t n) noexcept;
 
 /// A place on the page, pt.

@@ -7,6 +7,8 @@
 
 #include <fmt/format.h>
 
+#include "core/split.hpp"
+
 namespace tactor::plot {
 namespace {
 
@@ -101,43 +103,17 @@ std::string shorten(std::string_view text, double size, double width, bool bold)
     return out.append(ellipsis);
 }
 
-std::string shorten_middle(std::string_view text, double size, double width)
+std::vector<std::string> wrap(std::string_view text, double size, double width, std::size_t most_lines)
 {
-    const std::string all = clean(text.substr(0, 4096));
-    if (text.size() > 4096 || text_width(all, size) <= width)
-        return shorten(text, size, width);
-    const double space = (width - text_width(ellipsis, size)) / 2.0;
-    std::size_t end = all.size();
-    for (std::size_t i = all.size(); i > 0;) {
-        do
-            --i;
-        while (i > 0 && (static_cast<unsigned char>(all[i]) & 0xC0U) == 0x80U); // to the start of a character
-        if (text_width(std::string_view(all).substr(i), size) > space)
-            break;
-        end = i;
-    }
-    const std::string tail = all.substr(end);
-    return shorten(all.substr(0, end), size, width - text_width(tail, size)) + tail;
-}
-
-std::vector<std::string> wrap(const std::vector<std::string>& parts, std::string_view separator, double size,
-                              double width, std::size_t max_lines)
-{
-    const std::string_view tail = separator.substr(0, separator.find_last_not_of(' ') + 1);
-    const double space = width - text_width(tail, size);
     std::vector<std::string> lines;
-    for (const std::string& p : parts) {
-        if (p.empty())
+    for (const std::string_view word : detail::split(text, ' ')) {
+        if (word.empty())
             continue;
-        const std::string longer = lines.empty() ? p : fmt::format("{}{}{}", lines.back(), separator, p);
-        if (lines.empty()) {
-            lines.push_back(p);
-        } else if (text_width(longer, size) <= space || lines.size() == max_lines) {
+        const std::string longer = lines.empty() ? clean(word) : lines.back() + " " + clean(word);
+        if (lines.empty() || (lines.size() < most_lines && text_width(longer, size) > width))
+            lines.push_back(clean(word));
+        else
             lines.back() = longer;
-        } else {
-            lines.back() += tail;
-            lines.push_back(p);
-        }
     }
     for (std::string& l : lines)
         l = shorten(l, size, width);

@@ -32,12 +32,9 @@ std::string clean(std::string_view text);
 /// Returns the text, or its beginning and an ellipsis if it is wider than `width` pt.
 std::string shorten(std::string_view text, double size, double width, bool bold = false);
 
-/// Returns beginning, ellipsis and end of a wider text, for texts with the same beginning.
-std::string shorten_middle(std::string_view text, double size, double width);
-
-/// Returns lines of at most `width` pt, broken after separators. Shortens the last of `max_lines`.
-std::vector<std::string> wrap(const std::vector<std::string>& parts, std::string_view separator, double size,
-                              double width, std::size_t max_lines);
+/// Returns lines of at most `width` pt, broken between words. Shortens the last of `most_lines`, and words
+/// that are wider.
+std::vector<std::string> wrap(std::string_view text, double size, double width, std::size_t most_lines);
 
 /// Formats a number with at most `digits` significant digits and no trailing zeros, the same in every locale.
 std::string number(double v, int digits = 4);
