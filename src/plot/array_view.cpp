@@ -180,6 +180,33 @@ private:
     // Returns the colour of a join. Grey for several strokes: their colours would mix to those of none.
     colour join_colour(colour of_burst) const { return time_.several() ? grey : of_burst; }
 
+    // Returns true if most of a stroke's path lies on an earlier one that looks different.
+    bool lies_on_another(std::size_t stroke) const
+    {
+        constexpr double beside = 0.6; // pt
+        constexpr int places = 24;
+        const trajectory& motion = scene_.strokes[stroke].motion;
+        for (std::size_t i = 0; i < stroke; ++i) {
+            if (time_.looks[i] == time_.looks[stroke])
+                continue;
+            int on = 0;
+            for (int k = 0; k <= places; ++k)
+                on += is_near(frame_(motion.position(motion.duration_s() * k / places)), paths_[i], beside);
+            if (on > places / 2)
+                return true;
+        }
+        return false;
+    }
+
+    static bool is_near(spot at, const std::vector<std::vector<spot>>& parts, double reach)
+    {
+        for (const std::vector<spot>& part : parts)
+            for (std::size_t i = 1; i < part.size(); ++i)
+                if (distance(at, part[i - 1], part[i]) < reach)
+                    return true;
+        return false;
+    }
+
     void draw_joins()
     {
         const group all(canvas_, {.id = "joins"});
@@ -201,19 +228,15 @@ private:
     void draw_paths()
     {
         const group all(canvas_, {.id = "paths"});
-        const bool few = paths_.size() <= few_paths;
-        const double last =
-            1.0 + static_cast<double>(*std::max_element(time_.looks.begin(), time_.looks.end()));
+        const double width = paths_.size() == 1 ? 0.7 : paths_.size() <= few_paths ? 1.2 : 0.5;
         std::size_t next = 0; // repeats lie on what is drawn already
         for (std::size_t i = 0; i < paths_.size(); ++i) {
             if (time_.looks[i] != next)
                 continue;
             ++next;
-            // The earlier of two paths on each other is wider: its edges can be seen.
-            const double wider = 1.8 * (1.0 - static_cast<double>(time_.looks[i]) / last);
-            const style look = !time_.several() ? style{.stroke = ink, .width = 0.7}
-                                                : style{.stroke = stroke_colour(time_.looks[i]),
-                                                        .width = few ? 0.9 + wider : 0.5};
+            style look{.stroke = time_.several() ? stroke_colour(time_.looks[i]) : ink, .width = width};
+            if (paths_.size() <= few_paths && lies_on_another(i))
+                look.dash = 3.0; // the other shows through
             for (const std::vector<spot>& part : paths_[i])
                 canvas_.poly(part, false, look, {.kind = "path", .title = scene_.strokes[i].name});
         }

@@ -106,7 +106,8 @@ bool finite(spot s) noexcept
     return std::isfinite(s.x) && std::isfinite(s.y);
 }
 
-// Returns the distance of a point from the segment between two others.
+} // namespace
+
 double distance(spot p, spot a, spot b) noexcept
 {
     const double dx = b.x - a.x;
@@ -116,8 +117,6 @@ double distance(spot p, spot a, spot b) noexcept
         square > 0.0 ? std::clamp(((p.x - a.x) * dx + (p.y - a.y) * dy) / square, 0.0, 1.0) : 0.0;
     return std::hypot(p.x - a.x - t * dx, p.y - a.y - t * dy);
 }
-
-} // namespace
 
 std::string ticks::label(double v) const
 {

@@ -92,6 +92,9 @@ std::vector<std::vector<spot>> clip(const std::vector<spot>& line, box b);
 /// Returns a line with fewer points, nowhere more than `tolerance` pt away (Douglas and Peucker).
 std::vector<spot> simplify(const std::vector<spot>& line, double tolerance);
 
+/// Returns the distance of a point from the segment between two others, pt.
+double distance(spot p, spot a, spot b) noexcept;
+
 /// Draws a line with ends from x0 to x1 at y, and its label in it or to its right. Thin lines run down to
 /// `below` at both ends.
 void draw_dimension(canvas& c, double x0, double x1, double y, double below, const std::string& label,
