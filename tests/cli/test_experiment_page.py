@@ -220,7 +220,7 @@ class OnceAndNoMore(PageTest):
         s = self.start()
         for kind, text, code in ((TEXT, b"{", 1008), (TEXT, b'{"answer":-1,"ask":1}', 1008), (BINARY, b"{}", 1003), (TEXT, b" " * 5000, 1009)):
             p = s.participant()
-            self.assertEqual(p.next()["screen"], "consent")
+            p.until("consent")
             p.frame(kind, text)
             self.assertEqual(p.end(), code)
 
