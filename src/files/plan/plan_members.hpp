@@ -106,7 +106,7 @@ struct fit_matrix {
 };
 
 std::optional<fit_matrix> make_matrix(const std::optional<fitting>& f);
-fitting make_fitting(const fit_matrix& m);
+fitting make_fitting(const fit_matrix& given);
 
 /// The mark of each stroke's beginning.
 struct marker {
@@ -303,9 +303,11 @@ void stroke_members(Io& io, Parts& r)
     members(io, r.sound);
     io.with("note", detail::omit_empty(note_text(r.note)),
             [&r](const auto& given) {
-                for (const note_kind n : all_values<note_kind>())
-                    if (given == note_text(n))
-                        r.note = n;
+                const auto all = all_values<note_kind>();
+                const auto n = std::find_if(all.begin(), all.end(),
+                                            [&given](note_kind k) { return given == note_text(k); });
+                if (n != all.end())
+                    r.note = *n;
             },
             {"only of park2016-1 to -4: that they are reconstructed"});
     io.with("fit", make_matrix(r.fit),

@@ -18,6 +18,7 @@
 #include "core/split.hpp"
 #include "core/words.hpp"
 #include "options/option.hpp"
+#include "study/analysis/analysis.hpp"
 #include "study/experiment/sequence.hpp"
 #include "study/statistics/tests.hpp"
 
