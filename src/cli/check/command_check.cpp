@@ -12,7 +12,6 @@
 #include "cli/commands.hpp"
 #include "cli/say.hpp"
 #include "cli/settings.hpp"
-#include "files/output_file.hpp"
 #include "files/setup_text.hpp"
 #include "session/device.hpp"
 #include "session/interrupt.hpp"
@@ -98,10 +97,7 @@ void write_channels(const std::string& name, const environment& e, const std::ve
     const std::string text = "# Channels as felt on a walk (tactor check --walk).\n" +
                              detail::array_text(felt, besides) +
                              (besides.calibration ? detail::origin_text(*besides.calibration) : "");
-    study::check_new_output(name); // output_file would replace it
-    detail::output_file out(name);
-    out.write(text.data(), static_cast<std::int64_t>(text.size()));
-    out.commit();
+    study::write_new_output(name, text);
 }
 
 void conclude(const check_options& o, const environment& e, const session::walk_verdict& v)
