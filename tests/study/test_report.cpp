@@ -101,9 +101,28 @@ TEST_CASE("options of a method are reported by their names, where they are used"
 TEST_CASE("the template has a section for each algorithm and phantom model")
 {
     for (const algorithm_kind a : all_values<algorithm_kind>())
-        CHECK(has(std::string(methods_template()), fmt::format("[[#{}]]\n**Algorithm", to_string(a))));
+        CHECK(has(std::string(methods_template()),
+                  fmt::format("[[#equations.{}]]\n**Algorithm", to_string(a))));
     for (const phantom_kind p : all_values<phantom_kind>())
-        CHECK(has(std::string(methods_template()), fmt::format("[[#{}]]\n**Phantom model", to_string(p))));
+        CHECK(has(std::string(methods_template()),
+                  fmt::format("[[#equations.{}]]\n**Phantom model", to_string(p))));
+}
+
+TEST_CASE("the name of a model of one's own takes no fact's place")
+{
+    for (const char* name : {"title", "participants", "sessions", "level"}) {
+        CAPTURE(name);
+        study_facts f = sessions_that_say({"a"});
+        f.sessions[0].stimuli.push_back(
+            {"east", "mine", "hash", file, {{"algorithm", name}, {"phantom", name}}});
+        const ordered facts =
+            collect_facts(f, {{"strokes"}}, {{"runs", ordered::object()}, {"warnings", ordered::array()}});
+        CHECK(facts["title"] == "strokes");
+        CHECK(facts["participants"].is_string());
+        CHECK(facts["sessions"].size() == 1);
+        CHECK(facts["level"] == "not recorded");
+        CHECK(facts["equations"][name] == true);
+    }
 }
 
 } // namespace

@@ -62,7 +62,6 @@ public:
 
     double need_number() const { return need(number()); }
     int need_whole(int least, int most) const;
-    unsigned need_count() const { return static_cast<unsigned>(need_whole(0, 1'000'000)); }
     std::string need_text() const { return need(text()); }
     bool need_truth() const { return need(truth()); }
     template <class Kind>

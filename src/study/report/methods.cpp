@@ -29,9 +29,15 @@ using json = nlohmann::ordered_json;
 
 constexpr const char* not_recorded = "not recorded";
 
+template <class Texts>
+std::string join(const Texts& texts, std::string_view between = ", ")
+{
+    return fmt::format("{}", fmt::join(texts, between));
+}
+
 std::string list_subjects(const std::vector<std::string>& codes)
 {
-    return fmt::format("sub-{}", fmt::join(codes, ", sub-"));
+    return "sub-" + join(codes, ", sub-");
 }
 
 // Returns "all" for a fact of everybody.
@@ -40,19 +46,20 @@ std::string name_subjects(const study_facts& f, const std::vector<std::string>& 
     return codes.size() == f.sessions.size() ? "all" : list_subjects(codes);
 }
 
-// Texts in the order in which they came, each with the sessions that have it.
-class shared_texts {
+// Facts in the order in which they came, each with the sessions that have it.
+template <class Fact>
+class shared_facts {
 public:
-    std::vector<std::string>& operator[](const std::string& text)
+    std::vector<std::string>& operator[](const Fact& fact)
     {
         const auto at =
-            std::find_if(all_.begin(), all_.end(), [&](const auto& t) { return t.first == text; });
-        return at == all_.end() ? all_.emplace_back(text, std::vector<std::string>()).second : at->second;
+            std::find_if(all_.begin(), all_.end(), [&](const auto& f) { return f.first == fact; });
+        return at == all_.end() ? all_.emplace_back(fact, std::vector<std::string>()).second : at->second;
     }
     const auto& all() const noexcept { return all_; }
 
 private:
-    std::vector<std::pair<std::string, std::vector<std::string>>> all_;
+    std::vector<std::pair<Fact, std::vector<std::string>>> all_;
 };
 
 bool is_simulated(const session_facts& s)
@@ -77,7 +84,7 @@ std::string stream_text(const session_facts& s, const std::string& key)
         seen.insert(one[key].there() ? one[key].words() : "none");
     if (seen.empty())
         return is_simulated(s) ? "simulated" : not_recorded;
-    return fmt::format("{}", fmt::join(seen, "; "));
+    return join(seen, "; ");
 }
 
 std::string ages_text(const study_facts& f)
@@ -105,7 +112,7 @@ std::string ages_text(const study_facts& f)
     }
     for (const auto& [age, n] : others)
         parts.push_back(fmt::format("{} {}", n, age));
-    return fmt::format("{}", fmt::join(parts, "; "));
+    return join(parts, "; ");
 }
 
 // Counts the values of a column.
@@ -117,8 +124,7 @@ std::string counts_text(const study_facts& f, std::optional<std::string> partici
     std::vector<std::string> parts;
     for (const auto& [value, n] : counts)
         parts.push_back(fmt::format("{} {}", n, value));
-    return counts.size() == 1 && counts.contains(not_recorded) ? not_recorded
-                                                               : fmt::format("{}", fmt::join(parts, ", "));
+    return counts.size() == 1 && counts.contains(not_recorded) ? not_recorded : join(parts);
 }
 
 std::string describe_array(const session_facts& s)
@@ -131,7 +137,7 @@ std::string describe_array(const session_facts& s)
 // Lists the tactors of each array, and who wore it.
 json list_arrays(const study_facts& f)
 {
-    shared_texts tables;
+    shared_facts<json> tables;
     for (const session_facts& s : f.sessions) {
         json tactors = json::array();
         for (const json_value& t : s.facts()["array"]["tactors"].list()) {
@@ -141,11 +147,11 @@ json list_arrays(const study_facts& f)
                 row[key] = t[key].words();
             tactors.push_back(row);
         }
-        tables[tactors.dump()].push_back(s.code);
+        tables[tactors].push_back(s.code);
     }
     json all = json::array();
     for (const auto& [tactors, codes] : tables.all())
-        all.push_back({{"who", name_subjects(f, codes)}, {"tactors", json::parse(tactors)}});
+        all.push_back({{"who", name_subjects(f, codes)}, {"tactors", tactors}});
     return all;
 }
 
@@ -162,7 +168,7 @@ std::string acceleration_text(const session_facts& s)
     std::vector<std::string> parts;
     for (const auto& [hz, m_s2] : by_carrier)
         parts.push_back(fmt::format("{} m/s2 at {} Hz", range_text(m_s2), plain_number(hz)));
-    return fmt::format("{}", fmt::join(parts, ", "));
+    return join(parts);
 }
 
 std::string describe_level(const session_facts& s)
@@ -197,7 +203,7 @@ std::string describe_threshold(const json_value& t)
         parts.push_back(
             fmt::format("{} at {} Hz", plain_number(hz_and_dbfs[1]), plain_number(hz_and_dbfs[0])));
     }
-    return fmt::format("{}", fmt::join(parts, ", "));
+    return join(parts);
 }
 
 // Makes a row of thresholds for each participant, and one with mean and standard deviation of each tactor.
@@ -254,9 +260,9 @@ std::string join_plans(const session_facts& s, const F& text, const char* betwee
 {
     std::set<std::string> seen;
     for (const planned_stimulus& p : s.stimuli)
-        seen.insert(text(p.facts()));
+        seen.insert(text(p));
     seen.erase("");
-    return fmt::format("{}", fmt::join(seen, between));
+    return join(seen, between);
 }
 
 std::vector<double> list_burst_numbers(const json_value& plan, const char* key)
@@ -269,8 +275,9 @@ std::vector<double> list_burst_numbers(const json_value& plan, const char* key)
 }
 
 // Describes the wave, its phase and envelope, and the rise times of actuators.
-std::string describe_sound(const json_value& plan)
+std::string describe_sound(const planned_stimulus& p)
 {
+    const json_value plan = p.facts();
     const json_value stroke = plan["stroke"];
     std::string text = stroke["waveform"].text().value_or("sine");
     for (const char* key :
@@ -305,7 +312,7 @@ std::string law_text(const session_facts& s)
             laws.insert(fmt::format("$\\mathrm{{SOA}} = {}\\,d + {}\\,\\mathrm{{s}}$ with burst duration $d$",
                                     plain_number(m.options.profile.slope),
                                     plain_number(m.options.profile.intercept_s)));
-    return fmt::format("{}", fmt::join(laws, " and "));
+    return join(laws, " and ");
 }
 
 // Lists the methods in the order in which they came.
@@ -320,11 +327,9 @@ json list_methods(const study_facts& f)
     for (const std::string& name : names) {
         const auto kinds = [&](const char* key) {
             return join_texts(f, [&](const session_facts& s) {
-                std::set<std::string> seen;
-                for (const planned_stimulus& p : s.stimuli)
-                    if (p.method == name)
-                        seen.insert(p.facts()[key].words());
-                return fmt::format("{}", fmt::join(seen, ", "));
+                return join_plans(s, [&](const planned_stimulus& p) {
+                    return p.method == name ? p.facts()[key].words() : "";
+                });
             });
         };
         const std::string options = join_texts(f, [&](const session_facts& s) -> std::string {
@@ -362,13 +367,13 @@ json describe_stimulus(const planned_stimulus& p)
 
 json list_stimuli(const study_facts& f)
 {
-    shared_texts rows;
+    shared_facts<json> rows;
     for (const session_facts& s : f.sessions)
         for (const planned_stimulus& p : s.stimuli)
-            rows[describe_stimulus(p).dump()].push_back(s.code);
+            rows[describe_stimulus(p)].push_back(s.code);
     json all = json::array();
     for (const auto& [row, codes] : rows.all()) {
-        all.push_back(json::parse(row));
+        all.push_back(row);
         all.back()["who"] = name_subjects(f, codes);
     }
     return all;
@@ -390,7 +395,7 @@ std::set<std::string> list_notes(const study_facts& f)
 
 std::string describe_task(const run_outline& r)
 {
-    const std::string methods = fmt::format("{}", fmt::join(r.methods, ", "));
+    const std::string methods = join(r.methods);
     if (r.task == task_kind::choose)
         return fmt::format("two stimuli of one motion, by {} and by {}, one after the other; one was chosen",
                            r.methods[0], r.methods[1]);
@@ -412,20 +417,19 @@ json describe_run(const study_facts& f, const run_outline& o, std::size_t run)
             return s.design ? text(s.design->runs.at(run)) : std::string();
         });
     };
-    return {{"name", o.name},
-            {"task", to_string(o.task)},
-            {"asked", describe_task(o)},
-            {"motions", fmt::format("{}", fmt::join(o.motions, ", "))},
-            {"attribute", fact([](const run_definition& r) { return r.attribute; })},
-            {"question", fact([](const run_definition& r) { return r.question; })},
-            {"animation", fact([](const run_definition& r) { return r.animation ? "yes" : "no"; })},
-            {"trials", o.trials == 0 ? not_recorded : fmt::format("{}", o.trials)},
-            {"practice", fact([](const run_definition& r) { return fmt::format("{}", r.practice); })},
-            {"labels", fact([](const run_definition& r) {
-                 return r.labels.empty() ? "none" : fmt::format("{}", fmt::join(r.labels, ", "));
-             })},
-            {"break", fact([](const run_definition& r) { return describe_pause(r.break_s); })},
-            {"early", fact([](const run_definition& r) { return plain_number(r.min_response_s) + " s"; })}};
+    return {
+        {"name", o.name},
+        {"task", to_string(o.task)},
+        {"asked", describe_task(o)},
+        {"motions", join(o.motions)},
+        {"attribute", fact([](const run_definition& r) { return r.attribute; })},
+        {"question", fact([](const run_definition& r) { return r.question; })},
+        {"animation", fact([](const run_definition& r) { return r.animation ? "yes" : "no"; })},
+        {"trials", o.trials == 0 ? not_recorded : fmt::format("{}", o.trials)},
+        {"practice", fact([](const run_definition& r) { return fmt::format("{}", r.practice); })},
+        {"labels", fact([](const run_definition& r) { return r.labels.empty() ? "none" : join(r.labels); })},
+        {"break", fact([](const run_definition& r) { return describe_pause(r.break_s); })},
+        {"early", fact([](const run_definition& r) { return plain_number(r.min_response_s) + " s"; })}};
 }
 
 // Lists the motions that were mirrored for the hand that wore the array.
@@ -436,7 +440,7 @@ std::string mirrored_text(const session_facts& s)
         for (const motion_definition& m : s.design->motions)
             if (m.mirror)
                 mirrored.push_back(m.name);
-    return mirrored.empty() ? "none" : fmt::format("{}", fmt::join(mirrored, ", "));
+    return mirrored.empty() ? "none" : join(mirrored);
 }
 
 // Lists the days on which a session was held, UTC.
@@ -448,7 +452,7 @@ std::string days_text(const session_facts& s)
     for (const json_value& one : s.facts()["streams"].list())
         add(one["opened"].words());
     days.erase("");
-    return days.empty() ? not_recorded : fmt::format("{}", fmt::join(days, ", "));
+    return days.empty() ? not_recorded : join(days);
 }
 
 std::string walk_text(const session_facts& s)
@@ -565,10 +569,11 @@ nlohmann::ordered_json collect_facts(const study_facts& f, const dataset& d, con
     all["carrier"] = join_texts(f, describe_carrier);
     all["law"] = join_texts(f, law_text);
     all["methods"] = list_methods(f);
+    json& equations = all["equations"] = json::object(); // by names from files
     for (const session_facts& s : f.sessions)
         for (const planned_stimulus& p : s.stimuli)
             for (const char* key : {"algorithm", "phantom"})
-                all[p.facts()[key].need_text()] = true; // the equations
+                equations[p.facts()[key].need_text()] = true;
     all["stimuli"] = list_stimuli(f);
     all["recorded"] = !all["stimuli"].empty();
     all["notes"] = list_notes(f);
@@ -603,7 +608,7 @@ nlohmann::ordered_json collect_facts(const study_facts& f, const dataset& d, con
 
 std::string join_texts(const study_facts& f, const std::function<std::string(const session_facts&)>& text)
 {
-    shared_texts texts;
+    shared_facts<std::string> texts;
     for (const session_facts& s : f.sessions) {
         const std::string own = text(s);
         texts[own.empty() ? not_recorded : own].push_back(s.code);
@@ -611,7 +616,7 @@ std::string join_texts(const study_facts& f, const std::function<std::string(con
     std::vector<std::string> parts;
     for (const auto& [own, codes] : texts.all())
         parts.push_back(texts.all().size() == 1 ? own : fmt::format("{} ({})", own, list_subjects(codes)));
-    return parts.empty() ? not_recorded : fmt::format("{}", fmt::join(parts, "; "));
+    return parts.empty() ? not_recorded : join(parts, "; ");
 }
 
 std::string range_text(const std::vector<double>& values)
@@ -640,7 +645,7 @@ std::string method_options(const plan_options& o)
         else if (v == options::value(true))
             parts.emplace_back(row.name);
     }
-    return fmt::format("{}", fmt::join(parts, ", "));
+    return join(parts);
 }
 
 } // namespace tactor::study
