@@ -18,6 +18,7 @@ using study::effect_text;
 using study::interval_text;
 using study::p_clause;
 using study::p_text;
+using study::t_text;
 using study::task_kind;
 using study::value_text;
 
@@ -44,8 +45,7 @@ void print_tests(std::FILE* out, const study::by_motion& b, const std::vector<st
     for (std::size_t m = 0; m < motions.size(); ++m)
         row(motions[m], b.motion[m], b.p_holm[m]);
     if (b.all.t)
-        fmt::print(out, "  all: t({:.0f}) = {:.2f}, {}; d = {:.2f} ({})\n", *b.all.df, *b.all.t,
-                   p_clause(b.all.p), *b.all.d, interval_text(b.all.d_ci));
+        fmt::print(out, "  all: {}; d = {:.2f} ({})\n", t_text(b.all), *b.all.d, interval_text(b.all.d_ci));
 }
 
 constexpr const char* column_legend =
@@ -79,8 +79,7 @@ void print_choose(std::FILE* out, const study::run_analysis& r)
     const study::t_test& first = r.first_interval;
     if (first.mean)
         fmt::print(out, "  first interval chosen: {:.1f} %{}\n", *first.mean,
-                   first.t ? fmt::format(", t({:.0f}) = {:.2f}, {}", *first.df, *first.t, p_clause(first.p))
-                           : "");
+                   first.t ? ", " + t_text(first) : "");
     print_effect(out, "motion", r.effects.second);
     print_pairs(out, r.pairs[0], r.run.motions, "");
 }
@@ -89,7 +88,7 @@ std::string paired_text(const study::t_test& t)
 {
     std::string text = value_text(t.mean);
     if (t.t)
-        text += fmt::format(" ({}), t({:.0f}) = {:.2f}, {}", interval_text(t.ci), *t.df, *t.t, p_clause(t.p));
+        text += fmt::format(" ({}), {}", interval_text(t.ci), t_text(t));
     if (t.p_signflip)
         text += fmt::format(", signs {}", p_text(t.p_signflip));
     if (t.d)
