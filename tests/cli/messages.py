@@ -15,8 +15,7 @@ class Messages:
         self.file = file
         self.folders = folders
         self.update = bool(os.environ.get("TACTOR_UPDATE_GOLDEN"))
-        self.text = file.read_text(encoding="utf-8") if file.exists() else ""
-        lines = [line for line in self.text.splitlines() if line and not line.startswith(("## ", "$ "))]
+        lines = file.read_text(encoding="utf-8").splitlines() if file.exists() else []
         self.held = {line: re.compile(re.escape(line).replace("<any>", ".*")) for line in lines}
         self.seen = set()
 
@@ -36,5 +35,4 @@ class Messages:
         kept = self.seen if is_whole else self.seen | self.held.keys()
         if self.update and kept:
             self.file.write_text("".join(f"{line}\n" for line in sorted(kept)), encoding="utf-8")
-        # A file of the older form names each test and command, too.
-        return [] if self.update or self.text.startswith("## ") else sorted(self.held.keys() - kept)
+        return [] if self.update else sorted(self.held.keys() - kept)

@@ -3,6 +3,14 @@
 import cmath
 import math
 
+# An array whose channels, gains and thresholds differ, and strokes that overlap.
+PAIR = ('[array]\nname = "pair"\n'
+        '[[tactor]]\nx_mm = 0.0\ny_mm = 0.0\nchannel = 2\ngain_db = -6.0\npolarity = -1\nthreshold_dbfs = -41.5\n'
+        '[[tactor]]\nx_mm = 10.0\ny_mm = 0.0\nchannel = 0\nthreshold_dbfs = -30\n'
+        '[sync]\nchannel = 3\n')
+STROKES = ('[[stroke]]\npath = "M 0 0 L 10 0"\nduration_s = 0.5\nstart_s = 0.1\n'
+           '[[stroke]]\npath = "M 10 0 L 0 0"\nduration_s = 0.33337\ncarrier_hz = 181.3\n'
+           '[[stroke]]\npath = "M 10 0 L 0 0"\nduration_s = 0.5\nstart_s = 0.3\n')
 MARGIN = 1 + 2e-5  # of the peak of a wave that is no sine
 
 

@@ -13,7 +13,6 @@ import subprocess
 import time
 import unittest
 
-from experiments import DESK  # noqa: F401: test_full_disk.py and tests/page take it from here
 from experiments import SHORT, SMALL, PersonTest, Terminal, contents, read_table
 from harness import PATIENCE_S, TOOL, main
 

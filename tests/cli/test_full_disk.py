@@ -6,10 +6,9 @@ import subprocess
 import unittest
 
 from disks import PAGE, Disk, why_not
-from experiments import SMALL, ExperimentTest
+from experiments import DESK, SHORT, SMALL, ExperimentTest, Terminal
 from harness import PATIENCE_S, TOOL, main
 from serving import Server
-from test_experiment_person import DESK, SHORT, Terminal
 
 WHY_NOT = why_not()
 NO_SPACE = "No space left on device"

@@ -12,6 +12,7 @@ import sys
 
 import jsonschema
 from harness import ROOT, TOOL, ToolTest, main, wav_bytes
+from record import PAIR, STROKES
 
 sys.path.insert(0, str(ROOT / "tests/study"))
 import studies  # noqa: E402
@@ -32,13 +33,6 @@ OPTIONAL = {"tactor-plan/1": {"faces", "stroke.note", "stroke.fit", "continuous"
             "tactor-compare/1": {"faces", "stroke.note"},
             "tactor-check/1": {"walk"}}
 
-PAIR = ('[array]\nname = "pair"\n'
-        '[[tactor]]\nx_mm = 0.0\ny_mm = 0.0\nchannel = 2\ngain_db = -6.0\npolarity = -1\nthreshold_dbfs = -41.5\n'
-        '[[tactor]]\nx_mm = 10.0\ny_mm = 0.0\nchannel = 0\nthreshold_dbfs = -30\n'
-        '[sync]\nchannel = 3\n')
-STROKES = ('[[stroke]]\npath = "M 0 0 L 10 0"\nduration_s = 0.5\nstart_s = 0.1\n'
-           '[[stroke]]\npath = "M 10 0 L 0 0"\nduration_s = 0.33337\ncarrier_hz = 181.3\n'
-           '[[stroke]]\npath = "M 10 0 L 0 0"\nduration_s = 0.5\nstart_s = 0.3\n')
 GRID = '[array]\nname = "a"\ngrid = { rows = 3, columns = 4, pitch_mm = 15.0 }\n'
 SOUNDS = ('[[stroke]]\npath = "M 0 0 L 10 0"\nduration_s = 0.5\nwaveform = "grain.wav"\ntexture = "length"\ntexture_mm = 5.0\n'
           '[[stroke]]\npath = "M 10 0 L 0 0"\nduration_s = 0.5\nwaveform = "noise:50-500"\nnoise_seed = 3\nam_hz = 20.0\n')

@@ -9,17 +9,11 @@ import unittest
 
 import record
 from harness import PATIENCE_S, SANITIZED, TOOL, ToolTest, Wav, main, wav_bytes
+from record import PAIR, STROKES
 
 RATE = ("--rate", "8000")
 LINE = ("--path", "M 0 0 L 40 0", "--duration", "0.4", *RATE, "--carrier", "130")
 STROKE = '[stroke]\npath = "M 0 0 L 40 0"\nduration_s = 0.5\n'
-PAIR = ('[array]\nname = "pair"\n'
-        '[[tactor]]\nx_mm = 0.0\ny_mm = 0.0\nchannel = 2\ngain_db = -6.0\npolarity = -1\nthreshold_dbfs = -41.5\n'
-        '[[tactor]]\nx_mm = 10.0\ny_mm = 0.0\nchannel = 0\nthreshold_dbfs = -30\n'
-        '[sync]\nchannel = 3\n')
-STROKES = ('[[stroke]]\npath = "M 0 0 L 10 0"\nduration_s = 0.5\nstart_s = 0.1\n'
-           '[[stroke]]\npath = "M 10 0 L 0 0"\nduration_s = 0.33337\ncarrier_hz = 181.3\n'
-           '[[stroke]]\npath = "M 10 0 L 0 0"\nduration_s = 0.5\nstart_s = 0.3\n')
 ROW = '[array]\nname = "row"\ngrid = { rows = 1, columns = 3, pitch_mm = 20.0 }\n'
 SLOW = "[[tactor]]\ntactor = 0\nrise_ms = 20\n[[tactor]]\ntactor = 1\nrise_ms = 50\nmax_dbfs = -10\ngain_db = -2\n"
 CURVED = "".join(f"[[tactor]]\ntactor = {i}\nthreshold_dbfs = [[100, -20], [250, -41.0]]\n" for i in range(3))

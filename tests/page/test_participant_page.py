@@ -8,10 +8,9 @@ import sys
 PICTURES = pathlib.Path(sys.argv.pop(3)).resolve() if len(sys.argv) > 3 else None
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "cli"))
 from browser import BrowserTest  # noqa: E402
-from experiments import ExperimentTest  # noqa: E402
+from experiments import DESK, SHORT, ExperimentTest  # noqa: E402
 from harness import main  # noqa: E402
 from pages import Session  # noqa: E402
-from test_experiment_person import DESK, SHORT  # noqa: E402
 
 # Without the transitions between themes, which pictures would catch.
 THEMES = {theme: [{"name": "prefers-color-scheme", "value": theme}, {"name": "prefers-reduced-motion", "value": "reduce"}]
