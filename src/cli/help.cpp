@@ -43,7 +43,7 @@ std::string describe_line(const CLI::Option& o)
     const std::string name = with_type(o.get_name(false, true), o.get_type_name());
     return fmt::format("  {:<{}}{}{}\n", name, name_columns,
                        name.size() < name_columns ? "" : fmt::format("\n{:{}}", "", name_columns + 2),
-                       o.get_description());
+                       spelled(o.get_description()));
 }
 
 constexpr std::array python_names{
@@ -209,9 +209,9 @@ std::string describe_options(const CLI::App& app, std::string_view given)
     for (const CLI::App* command : app.get_subcommands({})) {
         const CLI::Option* o = command->get_option_no_throw(fmt::format("--{}", name));
         if (o != nullptr && (row == nullptr || o->get_group() != to_string(row->in)))
-            text +=
-                fmt::format("tactor {}: {}\n  {}\n", command->get_name(),
-                            with_type(fmt::format("--{}", name), o->get_type_name()), o->get_description());
+            text += fmt::format("tactor {}: {}\n  {}\n", command->get_name(),
+                                with_type(fmt::format("--{}", name), o->get_type_name()),
+                                spelled(o->get_description()));
     }
     if (!text.empty())
         return text;

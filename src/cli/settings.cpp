@@ -18,15 +18,19 @@ void add_one(CLI::App& command, settings& into, const options::option& o)
 {
     const std::string name =
         fmt::format("{}{}", o.letter.empty() ? "" : fmt::format("-{},", o.letter), option_name(o));
-    const std::string help = spelled(o.help);
+    const std::string help(o.help); // in marks: only the help spells them
     CLI::Option* added = nullptr;
     if (o.what == options::kind::flag)
         added = command.add_flag_function(
             name, [&into, &o](std::int64_t n) { options::give(into, o, n > 0); }, help);
     else
-        added = add_text(command, name, options::type_text(o), help, [&into, &o](const std::string& t) {
-            options::give(into, o, options::read_text(o, t));
-        });
+        added =
+            command
+                .add_option_function<std::string>(
+                    name,
+                    [&into, &o](const std::string& t) { options::give(into, o, options::read_text(o, t)); },
+                    help)
+                ->type_name_fn([&o] { return options::type_text(o); });
     added->group(std::string(to_string(o.in)));
 }
 

@@ -11,6 +11,7 @@
 #include <tactor/array.hpp>
 #include <tactor/stroke.hpp>
 
+#include "cli/option_words.hpp"
 #include "core/split.hpp"
 #include "study/experiment/definition.hpp"
 
@@ -70,9 +71,9 @@ void offer_options(lines& out, const CLI::App& command, const std::string& typed
 {
     for (const CLI::Option* o : command.get_options()) {
         for (const std::string& name : o->get_lnames())
-            offer(out, typed, "--" + name, o->get_description());
+            offer(out, typed, "--" + name, spelled(o->get_description()));
         for (const std::string& name : o->get_snames())
-            offer(out, typed, "-" + name, o->get_description());
+            offer(out, typed, "-" + name, spelled(o->get_description()));
     }
 }
 
