@@ -71,16 +71,10 @@ std::span<const place_name> command_names() noexcept
 
 const option* find(std::string_view name) noexcept
 {
-    const auto found =
-        std::find_if(all().begin(), all().end(), [&](const option& o) { return same_name(o.name, name); });
+    const auto found = std::find_if(all().begin(), all().end(), [&](const option& o) {
+        return same_name(o.name, name) || o.field_name() == name;
+    });
     return found == all().end() ? nullptr : &*found;
-}
-
-const option* find_field(std::string_view field) noexcept
-{
-    const auto found =
-        std::find_if(all().begin(), all().end(), [&](const option& o) { return o.field_name() == field; });
-    return found == all().end() ? find(field) : &*found;
 }
 
 std::size_t index(const option& o) noexcept

@@ -100,10 +100,8 @@ struct option {
 /// Returns all rows, in the order of help and manual.
 [[nodiscard]] std::span<const option> all() noexcept;
 
-/// Returns the row of that name, with _ or - between its words; null for none.
+/// Returns the row of that name, with _ or - between its words, or of that field; null for none.
 [[nodiscard]] const option* find(std::string_view name) noexcept;
-/// Returns the row of that name or field; null for none.
-[[nodiscard]] const option* find_field(std::string_view field) noexcept;
 /// Returns the place of a row in the table.
 [[nodiscard]] std::size_t index(const option& o) noexcept;
 

@@ -46,7 +46,7 @@ std::string needed(const wishes& w, const option& o)
 const option& find_default(const written_value& d)
 {
     const option* o = find(d.name);
-    if (o != nullptr && (o->where & in_defaults) != 0)
+    if (o != nullptr && o->field != d.name && (o->where & in_defaults) != 0)
         return *o;
     const std::vector<std::string> names = dashed_names(in_defaults);
     throw detail::unknown_key(d.name_at, d.name, "[defaults]",
@@ -174,7 +174,7 @@ void refuse_planning(const wishes& w, const std::string& what)
 
 error at_default(const wishes& w, const error& e)
 {
-    const option* o = e.field().empty() ? nullptr : find_field(e.field());
+    const option* o = e.field().empty() ? nullptr : find(e.field());
     const auto said = o == nullptr || e.place().line != 0 ? w.in_file.end() : w.in_file.find(index(*o));
     if (said == w.in_file.end())
         return e;

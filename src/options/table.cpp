@@ -188,7 +188,7 @@ std::vector<std::string_view> shape_names()
 
 // clang-format off
 constexpr std::array table{
-    option{.name = "path", .field = "path", .what = kind::text, .shown = "DATA", .in = group::stroke,
+    option{.name = "path", .what = kind::text, .shown = "DATA", .in = group::stroke,
            .help = "SVG path data in mm, in place of STROKE",
            .where = shown_first | drawing | through_server,
            .to = reach([](auto& w) -> auto& { return w.path_data; })},
@@ -489,15 +489,6 @@ constexpr std::array table{
 // clang-format on
 
 static_assert(table.size() <= most_options);
-static_assert(
-    [] {
-        for (std::size_t i = 0; i < table.size(); ++i)
-            for (std::size_t j = 0; j < i; ++j)
-                if (table[i].name == table[j].name)
-                    return false;
-        return true;
-    }(),
-    "each name stands for one option");
 
 } // namespace
 

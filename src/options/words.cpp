@@ -24,7 +24,7 @@ std::string write(const detail::mark& m, const spelling& by, bool in_file)
         own = find_own(m.name, by);
     if (own != nullptr)
         return own->here.empty() ? "" : fmt::format(fmt::runtime(own->here), m.value).append(m.clause);
-    const option* o = find_field(m.name);
+    const option* o = find(m.name);
     if (o == nullptr && detail::command_name(m).empty())
         return std::string(m.text);
     const bool has_it =
@@ -35,7 +35,7 @@ std::string write(const detail::mark& m, const spelling& by, bool in_file)
 // Returns true for the name of a row that the library uses for nothing else, as it does "path" and "array".
 bool names_option(std::string_view subject)
 {
-    const option* o = find_field(subject);
+    const option* o = find(subject);
     if (o == nullptr || subject != o->field_name() || o->what == kind::flag)
         return false;
     return o->what != kind::text || (o->where & by_client) != 0 || o->choices != nullptr;
@@ -52,7 +52,7 @@ std::string spell_field(std::string_view field, const spelling& by)
 {
     if (const own_word* own = find_own(field, by))
         return std::string(own->here);
-    const option* o = field.empty() ? nullptr : find_field(field);
+    const option* o = field.empty() ? nullptr : find(field);
     return o == nullptr || (o->where & by.where) == 0 ? std::string(field) : by.write(*o, {});
 }
 

@@ -48,7 +48,7 @@ std::string find_param(std::string_view subject, std::string_view field)
     if (word.starts_with("options."))
         return std::string(word);
     for (const std::string_view name : {word, field})
-        if (const options::option* o = options::find_field(name); o != nullptr && is_param(*o))
+        if (const options::option* o = options::find(name); o != nullptr && is_param(*o))
             return param_name(*o);
     return "";
 }
@@ -109,7 +109,7 @@ rpc_fault library_fault(const error& e, const std::string& source)
     const std::string param = find_param(subject, e.field());
     if (!param.empty())
         f.what = param;
-    const options::option* o = options::find_field(subject);
+    const options::option* o = options::find(subject);
     if (subject != param && (o == nullptr || !is_param(*o)))
         f.why = fmt::format("{}: {}", subject, f.why);
     return f;

@@ -54,7 +54,7 @@ TEST_CASE("each row has all its fields")
         CAPTURE(o.name);
         CHECK(names.insert(o.name).second);
         CHECK(find(o.name) == &o);
-        CHECK(find_field(o.field_name()) == &o);
+        CHECK(find(o.field_name()) == &o);
         CHECK_FALSE(o.help.empty());
         CHECK(o.where != 0);
         CHECK((o.to.set != nullptr && o.to.get != nullptr));

@@ -74,8 +74,6 @@ stroke along_path(const toml_table& t, std::optional<double> duration_s, std::op
 const options::option& find_method_option(const toml_table::said_key& k)
 {
     const options::option* o = options::find(k.key);
-    if (o == nullptr)
-        o = options::find_field(k.key);
     if (o != nullptr && (o->where & options::in_method) != 0)
         return *o;
     const std::vector<std::string> names = options::dashed_names(options::in_method);
