@@ -50,7 +50,8 @@ public:
                 return kinds_[i];
             all += (all.empty() ? "" : ", ") + std::string(names_[i]);
         }
-        throw error(error_kind::bad_input, what_, fmt::format("\"{}\" is not known", name), "one of " + all);
+        throw error(error_kind::bad_input, what_, fmt::format("\"{}\" is not known", name), "one of " + all)
+            .with_field(what_);
     }
 
     constexpr const std::array<Kind, N>& kinds() const noexcept { return kinds_; }

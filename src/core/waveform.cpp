@@ -30,7 +30,7 @@ void check_noise(const waveform& w)
         throw error(error_kind::bad_input, "waveform",
                     fmt::format("noise from {} to {} Hz cannot be made", w.low_hz, w.high_hz),
                     "give frequencies from 1 Hz up, the second 1 Hz above the first or more, as noise:50-500")
-            .with_field("wave");
+            .with_field("waveform");
 }
 
 void check_samples(const recording& r)
@@ -54,7 +54,7 @@ void check_recording(const waveform& w)
     if (!w.recorded)
         throw error(error_kind::bad_input, "waveform", "there are no samples of the recording",
                     "give them as recorded")
-            .with_field("wave");
+            .with_field("waveform");
     check_samples(*w.recorded);
     if (w.texture != texture_kind::time && w.recorded->samples.size() > most_cycle_samples)
         throw error(error_kind::bad_input, detail::recording_name(*w.recorded),

@@ -12,6 +12,7 @@
 
 #include <tactor/error.hpp>
 
+#include "core/refused.hpp"
 #include "core/suggest.hpp"
 
 namespace tactor {
@@ -139,8 +140,8 @@ stroke shape_stroke(std::string_view name)
             k.speed_mm_s = default_speed_mm_s;
         return k;
     }
-    throw error(error_kind::bad_input, "shape", fmt::format("{} is not known", detail::quoted(name)),
-                fmt::format("one of {}", fmt::join(stroke_shapes(), ", ")));
+    throw detail::bad_field("shape", fmt::format("{} is not known", detail::quoted(name)),
+                            fmt::format("one of {}", fmt::join(stroke_shapes(), ", ")));
 }
 
 const std::vector<std::string>& array_presets()

@@ -202,7 +202,7 @@ waveform parse_noise(std::string_view band)
     if (!high || at != band.size())
         throw error(error_kind::bad_input, "waveform", fmt::format("\"noise:{}\" is not noise:LO-HI", band),
                     "give two frequencies in Hz, such as noise:50-500")
-            .with_field("wave");
+            .with_field("waveform");
     w.low_hz = *low;
     w.high_hz = *high;
     return w;
@@ -271,7 +271,7 @@ waveform parse_waveform(std::string_view text, const std::filesystem::path& fold
     if (!waveform_names_file(text))
         throw error(error_kind::bad_input, "waveform", fmt::format("{} is not known", detail::quoted(text)),
                     "one of sine, square, triangle, sawtooth, noise:LO-HI, FILE.wav")
-            .with_field("wave");
+            .with_field("waveform");
     w.kind = waveform_kind::recording;
     w.recorded = std::make_shared<const recording>(load_recording(folder / std::filesystem::path(text)));
     return w;

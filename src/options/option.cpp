@@ -199,8 +199,8 @@ void put(wishes& w, const option& o, const value& v)
     try {
         o.to.set(w, v);
     } catch (const error& e) {
-        const bool about_it = e.subject() == o.name || e.subject() == mark(o) || e.field() == o.name;
-        throw e.reworded(about_it ? mark(o) : fmt::format("{}: {}", mark(o), e.subject()), e.why(), e.hint())
+        const bool is_own = e.field() == o.name;
+        throw e.reworded(is_own ? mark(o) : fmt::format("{}: {}", mark(o), e.subject()), e.why(), e.hint())
             .with_field(o.name);
     }
 }

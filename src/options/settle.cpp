@@ -77,18 +77,9 @@ bool takes_default(const wishes& w, const option& o)
 
 error at_place(const source_place& at, const option& o, const error& e)
 {
-    const std::string_view subject = e.subject();
-    const bool about_it = subject == mark(o) || subject == o.field_name();
-    const std::string name = dashed(o);
-    return e
-        .reworded(at.text(),
-                  about_it ? fmt::format("{}: {}", name, e.why())
-                           : fmt::format("{}: {}: {}", name,
-                                         detail::plain(subject.substr(
-                                             subject.starts_with(mark(o)) ? mark(o).size() + 2 : 0)),
-                                         e.why()),
-                  e.hint())
-        .with_place(at);
+    const bool is_own = e.subject() == mark(o) || e.subject() == e.field();
+    const std::string about = is_own ? "" : detail::plain(e.subject()) + ": ";
+    return e.reworded(at.text(), fmt::format("{}: {}{}", dashed(o), about, e.why()), e.hint()).with_place(at);
 }
 
 } // namespace
@@ -117,7 +108,7 @@ std::vector<said_default> read_defaults(const setup& says)
             all.push_back({&o, text != nullptr ? read_text(o, *text) : read_value(o, d.said), d.at});
             wishes tried;
             if (text == nullptr || o.name != "waveform" || !waveform_names_file(*text))
-                put(tried, o, all.back().said); // a file is looked for where it is used
+                o.to.set(tried, all.back().said); // a file is looked for where it is used
         } catch (const error& e) {
             throw at_place(d.at, o, e);
         }
@@ -134,7 +125,7 @@ void apply_defaults(wishes& w, const setup& says)
         if (const option* rival = find_rival(o))
             forget(w, *rival);
         try {
-            put(w, o, d.said);
+            o.to.set(w, d.said);
         } catch (const error& e) {
             throw at_place(d.at, o, e);
         }
@@ -174,7 +165,7 @@ void refuse_planning(const wishes& w, const std::string& what)
 
 error at_default(const wishes& w, const error& e)
 {
-    const option* o = e.field().empty() ? nullptr : find(e.field());
+    const option* o = find(e.field());
     const auto said = o == nullptr || e.place().line != 0 ? w.in_file.end() : w.in_file.find(index(*o));
     if (said == w.in_file.end())
         return e;

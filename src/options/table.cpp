@@ -12,6 +12,7 @@
 #include <tactor/api.hpp>
 
 #include "core/kind_names.hpp"
+#include "core/refused.hpp"
 #include "options/option.hpp"
 
 namespace tactor::options {
@@ -166,7 +167,7 @@ void set_log(wishes& w, const value& v)
 {
     const auto& name = std::get<std::string>(v);
     if (name.empty())
-        throw error(error_kind::bad_input, "{log}", "the name is empty", "name a file");
+        throw detail::bad_field("log", "the name is empty", "name a file");
     w.stream.log = name;
 }
 

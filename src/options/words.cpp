@@ -32,15 +32,6 @@ std::string write(const detail::mark& m, const spelling& by, bool in_file)
     return (has_it ? by.write(*o, m.value) : detail::plain(m)).append(m.clause);
 }
 
-// Returns true for the name of a row that the library uses for nothing else, as it does "path" and "array".
-bool names_option(std::string_view subject)
-{
-    const option* o = find(subject);
-    if (o == nullptr || subject != o->field_name() || o->what == kind::flag)
-        return false;
-    return o->what != kind::text || (o->where & by_client) != 0 || o->choices != nullptr;
-}
-
 } // namespace
 
 std::string spell(std::string_view text, const spelling& by, bool in_file)
@@ -52,15 +43,15 @@ std::string spell_field(std::string_view field, const spelling& by)
 {
     if (const own_word* own = find_own(field, by))
         return std::string(own->here);
-    const option* o = field.empty() ? nullptr : find(field);
+    const option* o = find(field);
     return o == nullptr || (o->where & by.where) == 0 ? std::string(field) : by.write(*o, {});
 }
 
 error spell(const error& e, const spelling& by)
 {
     const bool in_file = e.place().line != 0;
-    const bool is_name = e.subject() == e.field() || names_option(e.subject());
-    return e.reworded(is_name && !in_file ? spell_field(e.subject(), by) : spell(e.subject(), by, in_file),
+    const bool is_field = !in_file && e.subject() == e.field();
+    return e.reworded(is_field ? spell_field(e.field(), by) : spell(e.subject(), by, in_file),
                       spell(e.why(), by, in_file), spell(e.hint(), by, in_file));
 }
 

@@ -165,7 +165,7 @@ double intensity_scale::amplitude(double intensity) const
         throw error(error_kind::bad_input, "{intensity_scale}",
                     fmt::format("sl needs the sensation level of intensity 1, not {} dB", sl_db),
                     "give {sl_db} above 0 dB, such as 7")
-            .with_field("scale");
+            .with_field("intensity_scale");
     return std::pow(10.0, sl_db * (intensity - 1.0) / 20.0);
 }
 

@@ -126,7 +126,7 @@ TEST_CASE("refusals of the library name their field")
           }).field() == "intensity");
     CHECK(thrown_by([&] { return trajectory::along(line, 1.0).with_speed(0.0); }).field() == "speed_mm_s");
     for (const char* text : {"noise:50-1", "noise:x", "sinus"})
-        CHECK(thrown_by([&] { return parse_waveform(text); }).field() == "wave");
+        CHECK(thrown_by([&] { return parse_waveform(text); }).field() == "waveform");
     const auto grid = [](unsigned rows, unsigned columns, double x_mm, double y_mm) {
         return std::string(thrown_by([&] { return make_grid("", rows, columns, x_mm, y_mm); }).field());
     };

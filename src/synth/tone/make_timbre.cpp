@@ -137,10 +137,10 @@ void check_length(const recording& r, unsigned rate)
 void check_free_place(const char* what, double hz, double am_hz, unsigned rate)
 {
     if (!(hz + am_hz < 0.5 * rate)) {
-        throw error(error_kind::bad_input, what,
-                    fmt::format("{}{} Hz cannot be rendered at a rate of {} Hz",
-                                am_hz > 0.0 ? "with its modulation " : "", hz + am_hz, rate),
-                    fmt::format("stay below {} Hz, half the rate", 0.5 * rate));
+        throw detail::bad_field(what,
+                                fmt::format("{}{} Hz cannot be rendered at a rate of {} Hz",
+                                            am_hz > 0.0 ? "with its modulation " : "", hz + am_hz, rate),
+                                fmt::format("stay below {} Hz, half the rate", 0.5 * rate));
     }
 }
 
