@@ -117,8 +117,7 @@ trajectory trajectory::with_speed(double speed_mm_s) const
 {
     const double length = length_mm();
     if (!(speed_mm_s > 0.0 && std::isfinite(speed_mm_s)))
-        throw error(error_kind::bad_input, "speed", fmt::format("{:g} mm/s", speed_mm_s), "it is more than 0")
-            .with_field("speed_mm_s");
+        throw detail::bad_field("speed_mm_s", fmt::format("{:g} mm/s", speed_mm_s), "it is more than 0");
     if (!(length > 0.0))
         return *this;
     const double moving = length / speed_mm_s;

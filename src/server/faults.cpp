@@ -30,29 +30,6 @@ constexpr std::array own_words{options::own_word{"fit=true", ""}, options::own_w
 
 constexpr options::spelling by_protocol{write_param, options::by_client, own_words};
 
-bool is_param(const options::option& o)
-{
-    return (o.where & options::by_client) != 0;
-}
-
-std::string param_name(const options::option& o)
-{
-    return fmt::format("options.{}", o.name);
-}
-
-// Finds the option that an error is about, by its subject as it is written here, or by its field; empty:
-// none.
-std::string find_param(std::string_view subject, std::string_view field)
-{
-    const std::string_view word = subject.substr(0, subject.find_first_of(" :"));
-    if (word.starts_with("options."))
-        return std::string(word);
-    for (const std::string_view name : {word, field})
-        if (const options::option* o = options::find(name); o != nullptr && is_param(*o))
-            return param_name(*o);
-    return "";
-}
-
 } // namespace
 
 void bad_param(std::string what, std::string why, std::string hint)
@@ -80,49 +57,44 @@ std::string in_words_of_protocol(std::string_view marked)
     return options::spell(marked, by_protocol);
 }
 
-rpc_fault option_fault(const error& e)
+rpc_fault library_fault(const error& e, const std::string& source, const std::string& named)
 {
     const error worded = options::spell(e, by_protocol);
-    return {net::code_bad_params, "bad-input", std::string(worded.subject()), std::string(worded.why()),
-            std::string(worded.hint())};
-}
-
-rpc_fault library_fault(const error& e, const std::string& source)
-{
-    const bool of_call = e.subject() == "live stroke" && !e.field().empty();
-    const error worded = options::spell(of_call ? e.reworded(e.field(), e.why(), e.hint()) : e, by_protocol);
-    const std::string_view subject = worded.subject();
     rpc_fault f{net::code_bad_params, std::string(to_string(e.kind())), source, std::string(worded.why()),
                 std::string(worded.hint())};
     if (e.kind() == error_kind::runtime)
         f.code = net::code_internal;
     if (e.kind() == error_kind::not_available)
         f.code = net::code_no_stream;
-    if (e.place().line != 0 && e.place().file == source) {
+    const std::string& text = named.empty() ? source : named;
+    if (!text.empty() && e.place().file == text) {
         f.line = e.place().line;
         f.column = e.place().column;
         return f;
     }
-    if (subject == source || subject == "stroke" || subject == fmt::format("stroke \"{}\"", source) ||
-        subject == "path data")
-        return f;
-    const std::string param = find_param(subject, e.field());
-    if (!param.empty())
-        f.what = param;
-    const options::option* o = options::find(subject);
-    if (subject != param && (o == nullptr || !is_param(*o)))
-        f.why = fmt::format("{}: {}", subject, f.why);
+    const options::option* o = options::find(e.field());
+    if (o != nullptr && (o->where & options::by_client) != 0)
+        f.what = write_param(*o, {});
+    // The library's words for what a client draws.
+    const std::array own{f.what,
+                         text,
+                         fmt::format("stroke \"{}\"", text),
+                         std::string("stroke"),
+                         std::string("live stroke"),
+                         std::string("path data")};
+    if (std::find(own.begin(), own.end(), worded.subject()) == own.end())
+        f.why = fmt::format("{}: {}", worded.subject(), f.why);
     return f;
 }
 
-rpc_fault current_fault(const std::string& source)
+rpc_fault current_fault(const std::string& source, const std::string& named)
 {
     try {
         throw;
     } catch (const fault_error& e) {
         return e.fault();
     } catch (const error& e) {
-        return library_fault(e, source);
+        return library_fault(e, source, named);
     } catch (const std::bad_alloc&) {
         return {net::code_limit, "limit", source, "there is not enough memory for it", "make it smaller"};
     } catch (const std::exception& e) {

@@ -37,12 +37,11 @@ private:
 
 /// Writes the marks of a text as the protocol names options: "options.soa".
 std::string in_words_of_protocol(std::string_view marked);
-/// Converts an error of the table of options, which is about one of `options`.
-net::rpc_fault option_fault(const error& e);
-/// Converts an error of the library about the parameter `source`, or about the option that it names.
-net::rpc_fault library_fault(const error& e, const std::string& source);
+/// Converts an error of the library about the option in its field, else about the parameter `source`.
+/// `named`: name of the parameter's text in errors; empty: `source`.
+net::rpc_fault library_fault(const error& e, const std::string& source, const std::string& named = {});
 /// Returns the fault of the exception that is being handled: for catch (...).
-net::rpc_fault current_fault(const std::string& source);
+net::rpc_fault current_fault(const std::string& source, const std::string& named = {});
 
 /// Refuses parameters that are not among these, and params that are a list.
 void allow_only(const net::json& params, std::initializer_list<std::string_view> known);

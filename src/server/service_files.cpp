@@ -146,15 +146,6 @@ std::string result_text(const read_file& f, std::size_t most_bytes)
     return out + fmt::format(R"(],"warnings":{}}})", net::json_line(warnings));
 }
 
-// Returns the fault of the exception that is being handled, about a parameter with the text of a named file.
-net::rpc_fault content_fault(const std::string& source, const std::string& name)
-{
-    net::rpc_fault f = current_fault(name);
-    if (f.what == name)
-        f.what = source;
-    return f;
-}
-
 // Checks the parameters as far as no text must be read. \throws fault_error.
 void check_import(const json& params)
 {
@@ -182,10 +173,8 @@ std::string import_strokes(const planning& with, const layout& faces, const json
             f.toml.clear();
         f.strokes = settle_strokes(with, faces, std::move(f.strokes), with.owner, fit);
         return result_text(f, most_bytes);
-    } catch (const fault_error&) {
-        throw;
     } catch (...) {
-        throw fault_error(content_fault(source, name));
+        throw fault_error(current_fault(source, name));
     }
 }
 
@@ -393,8 +382,6 @@ std::string export_strokes(const exporting& e, const json& params, const go_on_c
             check_samples(e, s, end_s(strokes));
         const std::string name = choose_name(params, strokes);
         return result_text(e, kind, name, s, make_bytes(e, kind, source, name, std::move(strokes), s, go_on));
-    } catch (const fault_error&) {
-        throw;
     } catch (...) {
         throw fault_error(current_fault(source));
     }

@@ -75,17 +75,13 @@ options::wishes with_options(options::wishes w, const json& given, options_for w
     w.given.reset();
     w.in_file.clear();
     w.place = options::by_client;
-    try {
-        for (const auto& [name, value] : given.items()) {
-            const option& o = known_option(name, which);
-            const options::value v = options::read_value(o, plain_value(value));
-            refuse_file(o, v);
-            options::give(w, o, v);
-        }
-        options::settle(w);
-    } catch (const error& e) {
-        throw fault_error(option_fault(e));
+    for (const auto& [name, value] : given.items()) {
+        const option& o = known_option(name, which);
+        const options::value v = options::read_value(o, plain_value(value));
+        refuse_file(o, v);
+        options::give(w, o, v);
     }
+    options::settle(w);
     return w;
 }
 

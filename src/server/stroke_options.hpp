@@ -30,7 +30,8 @@ inline std::int64_t unix_ns() noexcept
 /// Strokes that are planned ahead know more options than live ones.
 enum class options_for { planned, live };
 
-/// Returns the owner's options with those of a client over them. \throws fault_error naming the option.
+/// Returns the owner's options with those of a client over them. \throws fault_error, or error with the
+/// option as its field.
 options::wishes with_options(options::wishes w, const net::json& given, options_for which);
 
 /// Part of a plan that is asked for: all, or one for a picture.
@@ -49,8 +50,8 @@ struct view_choice {
 /// Reads `view` and `bins`. \throws fault_error naming the parameter.
 view_choice read_view(const net::json& params);
 
-/// Returns the owner's options with the request's `options` and `observer` over them. \throws fault_error
-/// naming the parameter.
+/// Returns the owner's options with the request's `options` and `observer` over them. \throws what
+/// with_options() throws.
 options::wishes settle_options(options::wishes owner, const net::json& params);
 
 /// Start of a stroke: now, at a time, or armed, which waits for fire.

@@ -308,8 +308,6 @@ planned make_planned(const planning& with, const layout& faces, const json& para
         p.strokes = settle_strokes(with, faces, std::move(p.strokes), s, false);
         plan_strokes(with, faces, p, s, source, go_on, read_view(params).kind != view_kind::full);
         return p;
-    } catch (const fault_error&) {
-        throw;
     } catch (...) {
         throw fault_error(current_fault(source));
     }

@@ -225,8 +225,8 @@ TEST_CASE("durations and intensities out of range are refused")
 {
     for (const double d : {0.0, -1.0, nan_value, infinite, 86400.1}) {
         CAPTURE(d);
-        CHECK(caught_message([&] { line_in(d); }).find("duration: ") == 0);
-        CHECK(caught_message([&] { return line_in(1.0).with_duration(d); }).find("duration: ") == 0);
+        CHECK(caught_message([&] { line_in(d); }).find("duration_s: ") == 0);
+        CHECK(caught_message([&] { return line_in(1.0).with_duration(d); }).find("duration_s: ") == 0);
     }
     CHECK(line_in(86400.0).duration_s() == 86400.0);
     for (const double a : {-0.1, nan_value, infinite, 1001.0}) {

@@ -26,8 +26,8 @@ net::rpc_fault fault_from(F make)
 {
     try {
         make();
-    } catch (const fault_error& e) {
-        return e.fault();
+    } catch (...) {
+        return current_fault("params");
     }
     FAIL("nothing was refused");
     return {};

@@ -161,8 +161,8 @@ net::rpc_fault fault_from(const json& params)
 {
     try {
         static_cast<void>(settle_options({}, params));
-    } catch (const fault_error& e) {
-        return e.fault();
+    } catch (...) {
+        return current_fault("params");
     }
     FAIL("nothing was refused");
     return {};

@@ -14,6 +14,7 @@
 #include "core/limits.hpp"
 #include "core/path/impl.hpp"
 #include "core/path/outline.hpp"
+#include "core/refused.hpp"
 #include "core/trajectory/impl.hpp"
 
 namespace tactor {
@@ -95,9 +96,8 @@ namespace tactor::detail {
 void check_duration(double duration_s)
 {
     if (!(duration_s > 0.0 && duration_s <= longest_stroke_s))
-        throw error(error_kind::bad_input, "duration", fmt::format("{:g} s", duration_s),
-                    fmt::format("it is more than 0 and at most {:g} s", longest_stroke_s))
-            .with_field("duration_s");
+        throw bad_field("duration_s", fmt::format("{:g} s", duration_s),
+                        fmt::format("it is more than 0 and at most {:g} s", longest_stroke_s));
 }
 
 void refuse_one_place()
