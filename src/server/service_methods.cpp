@@ -16,8 +16,8 @@
 #include <tactor/stroke.hpp>
 
 #include "core/label.hpp"
-#include "server/option_rows.hpp"
 #include "server/service_impl.hpp"
+#include "server/stroke_options.hpp"
 
 namespace tactor::server {
 namespace {

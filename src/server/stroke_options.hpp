@@ -34,6 +34,10 @@ enum class options_for { planned, live };
 /// option as its field.
 options::wishes with_options(options::wishes w, const net::json& given, options_for which);
 
+/// Returns the answer to the method `options`: a row for each option that a client may give, with the owner's
+/// value.
+net::reply_json option_rows(const options::wishes& owner);
+
 /// Part of a plan that is asked for: all, or one for a picture.
 enum class view_kind { full, bursts, percept, peaks };
 

@@ -9,7 +9,6 @@
 
 #include "options/option.hpp"
 #include "server/faults.hpp"
-#include "server/option_rows.hpp"
 #include "server/stroke_options.hpp"
 #include "server/stroke_source.hpp"
 
