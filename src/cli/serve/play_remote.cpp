@@ -2,6 +2,7 @@
 #include "cli/play/play_report.hpp"
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
 #include <filesystem>
@@ -46,35 +47,14 @@ void refuse_owners(const settings& s)
                         "leave it out with --socket");
 }
 
-// Replaces "options.level_dbfs" with "--level-dbfs".
-std::string in_options(std::string_view text)
+// Names the stroke that was sent, and the place in it, where an error of the server is about its parameter.
+error name_argument(const error& e, const std::string& argument)
 {
-    constexpr std::string_view prefix = "options.";
-    std::string out;
-    for (std::size_t at = 0; (at = text.find(prefix)) != text.npos;) {
-        out.append(text.substr(0, at));
-        text.remove_prefix(at + prefix.size());
-        const std::string_view name = text.substr(0, text.find_first_not_of("abcdefghijklmnopqrstuvwxyz_"));
-        const options::option* o = options::find(name);
-        out += o == nullptr ? fmt::format("{}{}", prefix, name) : option_name(*o);
-        text.remove_prefix(name.size());
-    }
-    return out.append(text);
-}
-
-// Rewords an error of the server. `argument`: the stroke that was sent, which the error names before a place.
-error in_words_of_the_tool(const error& e, const std::string& argument)
-{
-    std::string what(e.subject());
-    if (what == "stroke" || what == "path" || what == "toml" || what == "csv" || what == "svg") {
-        const source_place at{argument, e.place().line, e.place().column};
-        if (at.line != 0)
-            return e.reworded(at.text(), e.why(), e.hint()).with_place(at);
-        what = argument;
-    } else {
-        what = in_options(what);
-    }
-    return e.reworded(what, in_options(e.why()), in_options(e.hint()));
+    constexpr std::array sources{"stroke", "path", "toml", "csv", "svg"};
+    if (std::find(sources.begin(), sources.end(), e.subject()) == sources.end())
+        return e;
+    const source_place at{argument, e.place().line, e.place().column};
+    return e.reworded(at.text(), e.why(), e.hint()).with_place(at);
 }
 
 // Returns a STROKE argument as parameter of `play`: a preset, or the text of a file.
@@ -236,7 +216,7 @@ private:
         try {
             r = server_.call("play", params);
         } catch (const error& e) {
-            throw in_words_of_the_tool(e, shown_name(out.name));
+            throw name_argument(e, shown_name(out.name));
         }
         signal_ = server_.signal(); // the end may have come with the reply
         say_warnings(r["warnings"].get<std::vector<std::string>>());

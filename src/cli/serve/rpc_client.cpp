@@ -5,6 +5,8 @@
 #include <cerrno>
 #include <cstdint>
 #include <cstring>
+#include <regex>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -48,6 +50,13 @@ int try_to_connect(const std::string& path, net::owned_fd& into)
     return 0;
 }
 
+// Makes marks of the protocol's names of options: "{soa}" of "options.soa".
+std::string mark_options(const std::string& text)
+{
+    static const std::regex option("options\\.([a-z_]+)");
+    return std::regex_replace(text, option, "{$1}");
+}
+
 error make_error(const net::json& e)
 {
     const int code = e.value("code", 0);
@@ -57,7 +66,8 @@ error make_error(const net::json& e)
     const net::json data = e.value("data", net::json::object());
     if (!data.is_object() || !data.contains("why"))
         return {kind, "server", e.value("message", "it refuses")};
-    return error(kind, data.value("what", "server"), data.value("why", ""), data.value("hint", ""))
+    return error(kind, mark_options(data.value("what", "server")), mark_options(data.value("why", "")),
+                 mark_options(data.value("hint", "")))
         .with_place({"", data.value("line", 0U), data.value("column", 0U)});
 }
 
