@@ -5,6 +5,7 @@
 #include <fstream>
 #include <memory>
 #include <string_view>
+#include <utility>
 
 #include <CLI/CLI.hpp>
 #include <unistd.h>
@@ -69,7 +70,7 @@ int render(settings& s, const std::string& name)
     const fs::path file = checked_output(name); // before the work
     const environment e = session::read_environment(s);
     const layout faces(e.tactors);
-    piece p = open_one_piece(s, e, faces);
+    piece p = std::move(open_pieces(s, e, faces).front());
     const render_options how = session::settle_render(s, e);
     const score sc = plan_and_score(p, s, e, faces, how);
     const format_kind format = s.format.value_or(format_kind::float32);

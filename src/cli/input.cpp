@@ -64,22 +64,6 @@ piece read_piece(const settings& s, const environment& e, const layout& faces, c
     return p;
 }
 
-// Puts `from` before the subject of an error, or in its place where the subject is the stroke of that name.
-error put_before(const error& x, const std::string& from, const std::string& name)
-{
-    const bool said = x.subject() == "stroke" || x.subject() == fmt::format("stroke \"{}\"", name);
-    return x.reworded(said ? from : fmt::format("{}: {}", from, x.subject()), x.why(), x.hint());
-}
-
-// Adds the number of the stroke that an error is about: the planner knows only its name.
-error in_piece(const error& x, const std::string& argument, std::size_t number, const std::string& name)
-{
-    if (x.place().line != 0)
-        return x; // its line says which
-    const std::string quoted = name.empty() ? "" : fmt::format(" \"{}\"", name);
-    return put_before(x, fmt::format("{}: stroke {}{}", shown_name(argument), number, quoted), name);
-}
-
 // --path and --shape NAME stand for a STROKE.
 bool is_option(const std::string& argument)
 {
@@ -95,15 +79,6 @@ std::string default_name(const std::string& argument)
     return file ? fs::path(argument).stem().string() : shown_name(argument);
 }
 
-// A file's only stroke: which file, for the planner knows the stroke's name at most. What the command line or
-// a preset says is known without.
-error in_file(const error& x, const std::string& argument)
-{
-    const bool about_it = x.subject() == "stroke" || x.subject().starts_with("stroke \"");
-    const bool file = !is_option(argument) && !session::is_preset(stroke_presets(), argument);
-    return about_it && file ? put_before(x, shown_name(argument), default_name(argument)) : x;
-}
-
 // A plan comes with its strokes; those that are read as strokes are not planned yet.
 piece open_argument(const settings& s, const environment& e, const layout& faces, const std::string& argument)
 {
@@ -117,9 +92,20 @@ piece open_argument(const settings& s, const environment& e, const layout& faces
     return p;
 }
 
-bool has_own_carrier(const stroke& s)
+// Returns an error about what the stroke itself sets with the place in its file, or as one about the stroke:
+// no option and no value of [defaults] is at fault.
+error about_own(const error& x, const stroke& s)
 {
-    return s.sound.carrier_hz || !s.sound.carrier_profile.empty();
+    const bool has_carrier = s.sound.carrier_hz || !s.sound.carrier_profile.empty();
+    const bool carrier = has_carrier && (x.field() == "carrier_hz" || x.field() == "carrier_profile");
+    const bool wave = s.sound.wave && x.field() == "waveform";
+    if (!carrier && !wave && x.field() != "start_s")
+        return x;
+    const source_place& at = carrier ? s.places.carrier : wave ? s.places.wave : s.places.start;
+    const std::string why = fmt::format("{}: {}", x.field(), x.why());
+    if (at.line != 0)
+        return x.reworded(at.text(), why, x.hint()).with_place(at);
+    return carrier || wave ? x.reworded("stroke", why, x.hint()).with_field("") : x;
 }
 
 // Calls f(i) for each stroke, and says of which it is that it throws.
@@ -146,7 +132,7 @@ void check_starts(const piece& p)
         try {
             times.start(q.start_s, q.anchor);
         } catch (const error& x) {
-            throw i < p.strokes.size() ? of_stroke(x, p, i) : x;
+            throw of_stroke(x, p, i);
         }
         times.lasts(q.plan.total_s);
     }
@@ -187,21 +173,23 @@ std::string name_stroke(const piece& p, std::size_t i)
 
 error of_stroke(const error& x, const piece& p, std::size_t i)
 {
-    const stroke& s = p.strokes[i];
-    const std::string_view what = x.subject();
-    const bool carrier = has_own_carrier(s) && (what == "carrier_hz" || what == "carrier_profile");
-    const bool wave = s.sound.wave && what == "waveform";
-    const bool start = x.field() == "start_s";
-    const source_place& at = carrier ? s.places.carrier : wave ? s.places.wave : s.places.start;
-    if ((carrier || wave || start) && at.line != 0)
-        return x.reworded(at.text(), fmt::format("{}: {}", start ? "start_s" : what, x.why()), x.hint())
-            .with_place(at);
-    // Its own: not what [defaults] says.
-    const error about =
-        carrier || wave ? x.reworded("stroke", fmt::format("{}: {}", what, x.why()), x.hint()).with_field("")
-                        : x;
-    return p.strokes.size() == 1 ? in_file(about, p.name)
-                                 : in_piece(in_options(about), p.name, i + 1, s.name);
+    if (i >= p.strokes.size())
+        return x;
+    const std::string& name = p.strokes[i].name;
+    const error own = about_own(x, p.strokes[i]);
+    const bool is_alone = p.strokes.size() == 1;
+    const bool is_about_stroke = own.subject() == "stroke" || own.subject().starts_with("stroke \"");
+    const bool is_file = !is_option(p.name) && !session::is_preset(stroke_presets(), p.name);
+    if (own.place().line != 0 || (is_alone && !(is_about_stroke && is_file)))
+        return own;
+    // The planner knows the stroke's name at most: before it go the file, and the number among several.
+    std::string from = shown_name(p.name);
+    if (!is_alone)
+        from += fmt::format(": stroke {}", i + 1) + (name.empty() ? "" : fmt::format(" \"{}\"", name));
+    const error e = in_options(own);
+    const std::string called = fmt::format("stroke \"{}\"", is_alone ? default_name(p.name) : name);
+    const bool is_whole = e.subject() == "stroke" || e.subject() == called;
+    return e.reworded(is_whole ? from : fmt::format("{}: {}", from, e.subject()), e.why(), e.hint());
 }
 
 std::vector<piece> open_pieces(const settings& s, const environment& e, const layout& faces)
@@ -212,11 +200,6 @@ std::vector<piece> open_pieces(const settings& s, const environment& e, const la
     return pieces;
 }
 
-piece open_one_piece(const settings& s, const environment& e, const layout& faces)
-{
-    return open_argument(s, e, faces, stroke_arguments(s).front());
-}
-
 piece read_one_piece(const settings& s, const environment& e, const layout& faces)
 {
     return read_piece(s, e, faces, stroke_arguments(s).front());
@@ -225,7 +208,7 @@ piece read_one_piece(const settings& s, const environment& e, const layout& face
 piece plan_one_piece(const settings& s, const environment& e)
 {
     const layout faces(e.tactors);
-    piece p = open_one_piece(s, e, faces);
+    piece p = std::move(open_pieces(s, e, faces).front());
     if (p.plans.empty())
         for_each_stroke(p, [&](std::size_t i) { session::plan_stroke(p, i, e.tactors, faces, s); });
     check_starts(p);
@@ -258,9 +241,7 @@ score make_score(const piece& p, const environment& e, const render_options& ren
         try {
             made.add(q.plan, q.start_s, q.anchor);
         } catch (const error& x) {
-            if (i < p.strokes.size())
-                throw of_stroke(x, p, i);
-            throw;
+            throw of_stroke(x, p, i);
         }
     }
     return made.take();

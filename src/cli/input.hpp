@@ -29,15 +29,12 @@ std::string shown_name(const std::string& argument);
 /// stroke's own name where it has one; of a plan, the name of the stroke that was planned.
 std::string name_stroke(const piece& p, std::size_t i);
 
-/// An error about the piece's stroke i, with the file that has it, and which of several it is.
+/// Returns an error about the piece's stroke i, if it has that, with its file and its number among several.
 error of_stroke(const error& x, const piece& p, std::size_t i);
 
 /// Reads all STROKE arguments. A plan comes with its plans; what is a stroke is not planned yet. `faces` is
 /// what --fit puts strokes on. \throws error.
 std::vector<piece> open_pieces(const settings& s, const environment& e, const layout& faces);
-
-/// The same where only one STROKE is taken.
-piece open_one_piece(const settings& s, const environment& e, const layout& faces);
 
 /// Reads the only STROKE argument, which may be no plan, without planning it. \throws error.
 piece read_one_piece(const settings& s, const environment& e, const layout& faces);
