@@ -107,66 +107,6 @@ void warn_of_animation(const study::prepared_experiment& p)
                     "move its cursor\n");
 }
 
-class noise_check {
-public:
-    noise_check(const study::prepared_experiment& p, study::stage& s)
-        : p_(p), stage_(s), stimuli_(p.stimuli.all())
-    {
-    }
-
-    // Until q, or the end of the lines.
-    void hold()
-    {
-        turn(true);
-        for (;;) {
-            const std::optional<std::string> said = keys_.next();
-            if (!said && keys_.ended())
-                return;
-            if (!said)
-                stage_.wait_for(STDIN_FILENO);
-            else if (*said == "n")
-                turn(!on_);
-            else if (*said == "s")
-                play();
-            else if (*said == "q")
-                return;
-        }
-    }
-
-private:
-    void turn(bool on)
-    {
-        on_ = on;
-        if (!on)
-            stage_.fade_out();
-        else if (!stage_.fade_in())
-            throw error(error_kind::runtime, "--masker", "the noise does not sound",
-                        "tactor devices lists them");
-        show(on ? "noise\n" : "silence\n");
-    }
-
-    // Each in turn.
-    void play()
-    {
-        const score s(p_.where.tactors, stimuli_[at_]->plan, p_.render);
-        at_ = (at_ + 1) % stimuli_.size();
-        const study::given_stimulus g = stage_.give(s, 0.0, [](std::uint64_t) {});
-        show(fmt::format("a stimulus of {:.2f} s{}\n", static_cast<double>(s.frames()) / s.rate(),
-                         g.flaw.empty() ? "" : ": " + g.flaw));
-        if (stage_.lost())
-            throw error(error_kind::runtime, p_.pcm, g.flaw);
-        if (!on_)
-            stage_.fade_out();
-    }
-
-    const study::prepared_experiment& p_;
-    study::stage& stage_;
-    std::vector<const study::stimulus*> stimuli_;
-    study::key_input keys_;
-    std::size_t at_ = 0;
-    bool on_ = false;
-};
-
 class target_picture {
 public:
     target_picture(const array& a, const stroke& target)
@@ -242,8 +182,50 @@ study::stage::left hold_real_session(const study::prepared_experiment& p, const 
     });
 }
 
-// --check-noise: the definition's noise, and its stimuli under it, by keys. Returns the exit status. \throws
-// error.
+// Plays the definition's noise, and its stimuli under it, by keys, until q or the end of the lines.
+void try_noise(const study::prepared_experiment& p, study::stage& there)
+{
+    const std::vector<const study::stimulus*> stimuli = p.stimuli.all();
+    study::session_keys keys(there, {});
+    std::size_t next = 0;
+    bool on = false;
+    const auto turn = [&] {
+        on = !on;
+        if (!on)
+            there.fade_out();
+        else if (!there.fade_in())
+            throw error(error_kind::runtime, "--masker", "the noise does not sound",
+                        "tactor devices lists them");
+        show(on ? "noise\n" : "silence\n");
+    };
+    const auto play = [&] {
+        const score s(p.where.tactors, stimuli[next]->plan, p.render);
+        next = (next + 1) % stimuli.size();
+        const study::given_stimulus g = there.give(s, 0.0, [](std::uint64_t) {});
+        show(fmt::format("a stimulus of {:.2f} s{}\n", static_cast<double>(s.frames()) / s.rate(),
+                         g.flaw.empty() ? "" : ": " + g.flaw));
+        if (there.lost())
+            throw error(error_kind::runtime, p.pcm, g.flaw);
+        if (!on)
+            there.fade_out();
+    };
+    turn();
+    for (;;) {
+        const auto key = keys.poll();
+        if (!key && keys.ended())
+            return;
+        if (!key)
+            there.wait_for(STDIN_FILENO);
+        else if (key->text == "n")
+            turn();
+        else if (key->text == "s")
+            play();
+        else if (key->text == "q")
+            return;
+    }
+}
+
+// Holds --check-noise. Returns the exit status. \throws error.
 int check_noise(const study::prepared_experiment& p, const experiment_options& o, const settings& s)
 {
     static_cast<void>(check_real_session(p, o, s));
@@ -251,7 +233,7 @@ int check_noise(const study::prepared_experiment& p, const experiment_options& o
     const std::unique_ptr<study::stage> there = open_stage(p, o, s);
     show(fmt::format("{} noise, {} dBFS, on {}. n noise on and off, s a stimulus under it, q ends.\n",
                      to_string(m.noise), m.level_dbfs, o.masker));
-    const int signal = study::until_left(*there, [&] { noise_check(p, *there).hold(); }).signal;
+    const int signal = study::until_left(*there, [&] { try_noise(p, *there); }).signal;
     return signal != 0 ? session::interrupt::status(signal) : 0;
 }
 

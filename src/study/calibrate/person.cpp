@@ -41,7 +41,7 @@ person::person(const alsa_options& device, const session::stream_options& o, con
       stage_(device, o, e),
       page_(listening ? std::make_unique<participant_page>(words_, e.tactors, std::move(listening))
                       : nullptr),
-      keys_(keypads, page_ ? page_->descriptor() : -1)
+      keys_(stage_, {page_.get(), keypads})
 {
     render_.ramp_s = interval_ramp_s;
     render_.sl_db = 0.0;
@@ -112,48 +112,18 @@ void person::begin()
                : "Set the level at which you just feel it: + and - by 2 dB, > and < by half a dB; a: that "
                  "is it;\n"
                  "n: not felt at any level.\n");
-    if (!keys_.has_keys() && !page_)
+    if (!keys_.has_keys())
         return;
     session::show(page_ ? "The participant begins, Ctrl-C ends; what was answered is kept.\n"
                         : "Any key begins, Ctrl-C ends; what was answered is kept.\n");
-    while (!read_keys())
-        stage_.wait_for(keys_.descriptor());
+    while (keys_.wait().text.empty())
+        ;
 }
 
 void person::on_page(page_screen s)
 {
     if (page_)
         page_->show(std::move(s));
-}
-
-// With a page the terminal is the experimenter's, who has Ctrl-C.
-std::optional<std::string> person::read_keys()
-{
-    if (!page_) {
-        std::optional<std::string> key = keys_.next();
-        for (; key && keys_.is_repeated(); key = keys_.next())
-            keys_.tell_of_repeats();
-        return key;
-    }
-    while (keys_.typed())
-        ;
-    while (const auto key = keys_.pressed())
-        page_->press(*key);
-    const auto a = page_->poll();
-    return a ? std::optional(std::string(1, a->key)) : std::nullopt;
-}
-
-std::string person::wait_for_answer(const calibration_trial& t)
-{
-    for (;;) {
-        if (auto answered = read_keys())
-            return *answered;
-        if (ended()) {
-            session::show("\n");
-            throw error(error_kind::runtime, fmt::format("trial {}", t.number), "no answer", go_on);
-        }
-        stage_.wait_for(keys_.descriptor());
-    }
 }
 
 calibration_answer person::answer(const calibration_trial& t)
@@ -185,22 +155,21 @@ calibration_answer person::choose(const calibration_trial& t)
     });
     show_until(2); // where the process was too slow to look
     noise.reset();
-    keys_.forget();
+    keys_.drop_keys();
     on_page({.name = "question", .question = words_["calibrate_which"], .choices = {"", ""}, .keys = "12"});
     session::show(" which? ");
     for (;;) {
-        const std::string answered = wait_for_answer(t);
-        if (answered == "1" || answered == "2") {
-            session::show(fmt::format("{}\n", answered));
-            const double time_s = std::max(0.0, static_cast<double>(rt::monotonic_ns() - p.ended_ns) * 1e-9);
-            calibration_answer a{.interval = answered == "1" ? 1U : 2U,
-                                 .response_time_s = std::round(time_s * 1e3) / 1e3};
+        const session_key k = keys_.wait(fmt::format("trial {}", t.number));
+        if (k.answer == 1 || k.answer == 2) {
+            session::show(fmt::format("{}\n", k.answer));
+            const double time_s = std::max(0.0, static_cast<double>(k.at_ns - p.ended_ns) * 1e-9);
+            calibration_answer a{.interval = k.answer, .response_time_s = std::round(time_s * 1e3) / 1e3};
             if (p.first_frame)
                 a.onset_frame = *p.first_frame + static_cast<std::uint64_t>(std::llround(lead_s * s.rate()));
             return a;
         }
         if (!keys_.has_keys())
-            session::show(fmt::format("\"{}\" is neither 1 nor 2: which? ", answered));
+            session::show(fmt::format("\"{}\" is neither 1 nor 2: which? ", k.text));
     }
 }
 
@@ -227,7 +196,7 @@ calibration_answer person::adjust(const calibration_trial& t)
     double level = t.level_dbfs;
     std::optional<calibration_answer> out;
     std::optional<std::uint64_t> onset;
-    keys_.forget();
+    keys_.drop_keys();
     session::show(fmt::format("series {}: + - > < a n\n", t.number));
     const noise_around noise(stage_);
     on_page(adjust_screen(words_));
@@ -235,17 +204,18 @@ calibration_answer person::adjust(const calibration_trial& t)
         const score s = trial_score(t.tactor, level, 0.0, settings_.interval_s + interval_gap_s);
         const auto take = [&] {
             while (!out) {
-                const auto keys = read_keys();
-                if (!keys || change_level(*keys, t, level, out))
+                const auto k = keys_.poll();
+                if (!k || change_level(k->text, t, level, out))
                     return;
-                on_page(adjust_screen(words_)); // each change is an answer
+                if (!k->text.empty())
+                    on_page(adjust_screen(words_)); // each change is an answer
             }
         };
         const given_stimulus p = play(t, s, [&](double) { take(); });
         onset = onset ? onset : p.first_frame;
         take();
-        if (!out && ended())
-            throw error(error_kind::runtime, fmt::format("trial {}", t.number), "no answer", go_on);
+        if (!out && keys_.ended())
+            static_cast<void>(keys_.wait(fmt::format("trial {}", t.number))); // throws
     }
     out->response_time_s = std::round(static_cast<double>(rt::monotonic_ns() - began_ns) * 1e-6) / 1e3;
     out->onset_frame = onset;

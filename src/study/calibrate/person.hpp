@@ -46,14 +46,10 @@ private:
     given_stimulus play(const calibration_trial& t, const score& s, const std::function<void(double)>& watch);
     /// Lets time pass until the limits allow the trial to drive its tactor. \throws stage::left.
     void make_room(const score& s);
-    std::string wait_for_answer(const calibration_trial& t);
     bool change_level(const std::string& keys, const calibration_trial& t, double& level_dbfs,
                       std::optional<calibration_answer>& out) const;
     void begin();
     void on_page(page_screen s);
-    /// Returns the keys of an answer, if there is one.
-    std::optional<std::string> read_keys();
-    bool ended() const noexcept { return !page_ && keys_.ended(); }
 
     const session::environment& environment_;
     render_options render_;
@@ -62,7 +58,7 @@ private:
     stage stage_;
     /// Null: none. Its thread has the signals blocked that the stage takes.
     std::unique_ptr<participant_page> page_;
-    key_input keys_;
+    session_keys keys_;
     bool begun_ = false;
 };
 

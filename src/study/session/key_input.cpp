@@ -69,112 +69,17 @@ unsigned digit(char c)
     return c >= '1' && c <= '9' ? static_cast<unsigned>(c - '0') : 0;
 }
 
-std::optional<session_key> read_key(const std::optional<std::string>& typed)
+session_key make_key(std::string text)
 {
-    if (!typed)
-        return {};
-    session_key k{.at_ns = rt::monotonic_ns()};
-    if (typed->size() != 1)
-        return k;
-    k.character = typed->front();
-    k.asked = find_operator_key(k.character);
-    k.answer = digit(k.character);
+    session_key k{.text = std::move(text), .at_ns = rt::monotonic_ns()};
+    if (k.text.size() == 1) {
+        k.command = find_operator_key(k.text.front());
+        k.answer = digit(k.text.front());
+    }
     return k;
 }
 
 } // namespace
-
-key_input::key_input(const std::vector<std::string>& keypads, int besides)
-    : terminal_(::isatty(STDIN_FILENO) != 0 && ::tcgetattr(STDIN_FILENO, &before_) == 0)
-{
-    for (const std::string& device : keypads)
-        keypads_.emplace_back(device);
-    if (!keypads_.empty() || besides >= 0)
-        any_ = open_any(keypads_, besides);
-    if (!terminal_)
-        return;
-    termios keys = before_;
-    keys.c_lflag &= ~static_cast<tcflag_t>(ICANON | ECHO);
-    keys.c_cc[VMIN] = 1;
-    keys.c_cc[VTIME] = 0;
-    ::tcsetattr(STDIN_FILENO, TCSANOW, &keys);
-}
-
-key_input::~key_input()
-{
-    if (terminal_)
-        ::tcsetattr(STDIN_FILENO, TCSANOW, &before_);
-}
-
-// Reads the keys of a terminal, so that a key which is still held down is known to be.
-void key_input::forget()
-{
-    while (terminal_ ? next().has_value() : pressed().has_value())
-        ;
-}
-
-void key_input::tell_of_repeats()
-{
-    if (!std::exchange(told_, true))
-        session::say(stderr, "tactor: a key is held down: it answers nothing until it is let go\n");
-}
-
-void key_input::fill()
-{
-    pollfd p{.fd = STDIN_FILENO, .events = POLLIN, .revents = 0};
-    while (!ended_ && ::poll(&p, 1, 0) > 0) {
-        char bytes[256];
-        const ssize_t n = ::read(STDIN_FILENO, bytes, sizeof bytes);
-        if (n < 0 && (errno == EINTR || errno == EAGAIN))
-            return;
-        if (n < 0)
-            session::refuse_standard_input(errno);
-        if (n == 0)
-            end();
-        read_ns_ = rt::monotonic_ns();
-        text_.append(bytes, static_cast<std::size_t>(n));
-        if (terminal_ || text_.find('\n') != text_.npos)
-            return;
-    }
-}
-
-void key_input::end()
-{
-    ended_ = true;
-    if (any_) // an ended input would be ready for ever
-        static_cast<void>(::epoll_ctl(any_.get(), EPOLL_CTL_DEL, STDIN_FILENO, nullptr));
-}
-
-std::optional<char> key_input::pressed()
-{
-    for (keypad& k : keypads_)
-        if (const auto key = k.next())
-            return key;
-    return {};
-}
-
-std::optional<std::string> key_input::next()
-{
-    repeated_ = false;
-    const auto key = pressed();
-    return key ? std::string(1, *key) : typed();
-}
-
-std::optional<std::string> key_input::typed()
-{
-    if (text_.find('\n') == text_.npos && (text_.empty() || !terminal_))
-        fill();
-    std::size_t end = terminal_ ? 1 : text_.find('\n');
-    if (text_.empty() || (end == text_.npos && !ended_))
-        return std::nullopt;
-    std::string line = text_.substr(0, end);
-    text_.erase(0, end == text_.npos ? end : end + (terminal_ ? 0 : 1));
-    if (terminal_)
-        repeated_ = guard_.is_repeated(line.front(), read_ns_, text_.starts_with(line));
-    else
-        std::erase_if(line, [](char c) { return c == ' ' || c == '\t' || c == '\r'; });
-    return line;
-}
 
 std::optional<char> find_answer(std::uint16_t code) noexcept
 {
@@ -236,47 +141,128 @@ std::optional<char> keypad::next()
 }
 
 session_keys::session_keys(stage& s, const answering& with)
-    : stage_(s), page_(with.page), input_(with.keypads, page_ == nullptr ? -1 : page_->descriptor())
+    : stage_(s),
+      page_(with.page),
+      terminal_(::isatty(STDIN_FILENO) != 0 && ::tcgetattr(STDIN_FILENO, &before_) == 0)
 {
+    for (const std::string& device : with.keypads)
+        keypads_.emplace_back(device);
+    if (!keypads_.empty() || page_ != nullptr)
+        any_ = open_any(keypads_, page_ != nullptr ? page_->descriptor() : -1);
+    if (!terminal_)
+        return;
+    termios keys = before_;
+    keys.c_lflag &= ~static_cast<tcflag_t>(ICANON | ECHO);
+    keys.c_cc[VMIN] = 1;
+    keys.c_cc[VTIME] = 0;
+    ::tcsetattr(STDIN_FILENO, TCSANOW, &keys);
+}
+
+session_keys::~session_keys()
+{
+    if (terminal_)
+        ::tcsetattr(STDIN_FILENO, TCSANOW, &before_);
+}
+
+void session_keys::fill()
+{
+    pollfd p{.fd = STDIN_FILENO, .events = POLLIN, .revents = 0};
+    while (!ended_ && ::poll(&p, 1, 0) > 0) {
+        char bytes[256];
+        const ssize_t n = ::read(STDIN_FILENO, bytes, sizeof bytes);
+        if (n < 0 && (errno == EINTR || errno == EAGAIN))
+            return;
+        if (n < 0)
+            session::refuse_standard_input(errno);
+        ended_ = n == 0;
+        if (ended_ && any_) // an ended input would be ready for ever
+            static_cast<void>(::epoll_ctl(any_.get(), EPOLL_CTL_DEL, STDIN_FILENO, nullptr));
+        read_ns_ = rt::monotonic_ns();
+        text_.append(bytes, static_cast<std::size_t>(n));
+        if (terminal_ || text_.find('\n') != text_.npos)
+            return;
+    }
+}
+
+std::optional<char> session_keys::pressed()
+{
+    for (keypad& k : keypads_)
+        if (const auto key = k.next())
+            return key;
+    return {};
+}
+
+// Returns the next key or line of standard input.
+std::optional<std::string> session_keys::typed()
+{
+    if (text_.find('\n') == text_.npos && (text_.empty() || !terminal_))
+        fill();
+    const std::size_t end = terminal_ ? 1 : text_.find('\n');
+    if (text_.empty() || (end == text_.npos && !ended_))
+        return std::nullopt;
+    std::string line = text_.substr(0, end);
+    text_.erase(0, end == text_.npos ? end : end + (terminal_ ? 0 : 1));
+    if (!terminal_)
+        std::erase_if(line, [](char c) { return c == ' ' || c == '\t' || c == '\r'; });
+    return line;
 }
 
 void session_keys::drop_pressed()
 {
-    while (input_.pressed())
+    while (pressed())
+        ;
+}
+
+// Reads the keys of a terminal, so that repeat_guard knows a key that is still held down.
+void session_keys::drop_keys()
+{
+    drop_pressed();
+    while (terminal_ && poll())
         ;
 }
 
 std::optional<session_key> session_keys::poll()
 {
-    if (page_ == nullptr) {
-        std::optional<session_key> k = read_key(input_.next());
-        if (k)
-            k->repeated = input_.is_repeated() && !k->asked;
-        return k;
+    if (page_ != nullptr)
+        return poll_page();
+    if (const auto key = pressed())
+        return make_key(std::string(1, *key));
+    while (auto line = typed()) {
+        const bool repeated =
+            terminal_ && guard_.is_repeated(line->front(), read_ns_, text_.starts_with(*line));
+        session_key k = make_key(*std::move(line));
+        if (!repeated || k.command)
+            return k;
+        if (!std::exchange(warned_, true))
+            session::say(stderr, "tactor: a key is held down: it answers nothing until it is let go\n");
     }
-    while (const auto key = input_.pressed())
-        page_->press(*key);
-    while (const auto k = read_key(input_.typed()))
-        if (k->asked)
-            return session_key{.asked = k->asked, .at_ns = k->at_ns};
-    if (const auto a = page_->poll())
-        return session_key{.character = a->key, .answer = digit(a->key), .at_ns = a->at_ns};
     return {};
 }
 
-session_key session_keys::wait()
+std::optional<session_key> session_keys::poll_page()
+{
+    while (const auto key = pressed())
+        page_->press(*key);
+    while (auto line = typed())
+        if (const session_key k = make_key(*std::move(line)); k.command)
+            return session_key{.command = k.command, .at_ns = k.at_ns};
+    const auto a = page_->poll();
+    if (!a)
+        return {};
+    return session_key{.text = std::string(1, a->key), .answer = digit(a->key), .at_ns = a->at_ns};
+}
+
+session_key session_keys::wait(const std::string& subject)
 {
     for (;;) {
-        if (const auto k = poll()) {
-            if (!k->repeated)
-                return *k;
-            input_.tell_of_repeats();
-            continue;
-        }
-        if (page_ == nullptr && input_.ended())
-            throw error(error_kind::runtime, "the session", "there is no answer any more",
+        if (auto k = poll())
+            return *std::move(k);
+        if (ended()) {
+            session::show("\n");
+            throw error(error_kind::runtime, subject, "there is no answer any more",
                         "what was answered is kept; --resume goes on");
-        stage_.wait_for(input_.descriptor());
+        }
+        stage_.wait_for(any_ ? any_.get() : STDIN_FILENO);
     }
 }
 

@@ -167,9 +167,9 @@ void person_session::wait_for_any_key()
     const session_step now = flow_.next();
     for (;;) {
         const session_key k = keys_.wait();
-        if (!k.asked || *k.asked == operator_key::go_on || *k.asked == operator_key::repeat)
+        if (!k.command || *k.command == operator_key::go_on || *k.command == operator_key::repeat)
             return;
-        obey(*k.asked);
+        obey(*k.command);
         if (flow_.next() != now && flow_.next().what != step_kind::pause)
             return;
     }
@@ -183,12 +183,12 @@ bool person_session::heed()
         const auto k = keys_.poll();
         if (!k)
             break;
-        if (k->asked == operator_key::repeat)
+        if (k->command == operator_key::repeat)
             repeat_ = true;
-        else if (k->asked == operator_key::quit)
+        else if (k->command == operator_key::quit)
             quit_ = true;
-        else if (k->asked)
-            obey(*k->asked);
+        else if (k->command)
+            obey(*k->command);
     }
     return !repeat_ && !quit_;
 }
@@ -218,10 +218,10 @@ void person_session::rest(const session_step& s)
     bool ended = false;
     const bool there = stage_.pass(break_s, [&](double) {
         for (auto k = keys_.come_early() ? keys_.poll() : std::nullopt; k; k = keys_.poll())
-            if (k->asked == operator_key::go_on)
+            if (k->command == operator_key::go_on)
                 ended = true;
-            else if (k->asked)
-                obey(*k->asked);
+            else if (k->command)
+                obey(*k->command);
         return !ended && flow_.next() == s;
     });
     if (!there)
@@ -238,10 +238,10 @@ void person_session::pause()
     const session_step now = flow_.next();
     while (flow_.next() == now) {
         const session_key k = keys_.wait();
-        if (k.asked == operator_key::go_on)
+        if (k.command == operator_key::go_on)
             flow_.go_on();
-        else if (k.asked && *k.asked != operator_key::pause)
-            obey(*k.asked);
+        else if (k.command && *k.command != operator_key::pause)
+            obey(*k.command);
     }
 }
 
@@ -413,10 +413,10 @@ person_session::asked_answer person_session::ask(const session_step& s, const gi
     for (;;) {
         const session_key k = keys_.wait();
         const double time_s = std::max(0.0, static_cast<double>(k.at_ns - g.ended_ns) * 1e-9);
-        if (k.asked == operator_key::repeat)
+        if (k.command == operator_key::repeat)
             return {};
-        if (k.asked)
-            obey(*k.asked);
+        if (k.command)
+            obey(*k.command);
         else if (k.answer >= 1 && k.answer <= choices_in(r)) {
             session::show(fmt::format("{}\n", k.answer));
             return {k.answer, time_s};
@@ -448,14 +448,14 @@ void person_session::ask_consent()
     session::show(fmt::format("{} y {}, n {}: ", w["agree"], w["yes"], w["no"]));
     for (;;) {
         const session_key k = keys_.wait();
-        if (k.asked == operator_key::quit)
-            obey(*k.asked);
-        if (k.character != 'y' && k.character != 'n')
+        if (k.command == operator_key::quit)
+            obey(*k.command);
+        if (k.text != "y" && k.text != "n")
             continue;
-        session::show(k.character == 'y' ? w["yes"] + "\n\n" : w["no"] + "\n");
-        if (k.character == 'y')
+        session::show(k.text == "y" ? w["yes"] + "\n\n" : w["no"] + "\n");
+        if (k.text == "y")
             agreed_at_ = acq_time_text(utc_now_ns());
-        return flow_.agree(k.character == 'y');
+        return flow_.agree(k.text == "y");
     }
 }
 
@@ -479,21 +479,20 @@ void person_session::walk(unsigned tactor)
                               tactor > 0 ? ", b " + w["back"] : ""));
     for (;;) {
         const session_key k = keys_.wait();
-        if (k.asked == operator_key::quit)
-            obey(*k.asked);
-        if (k.character == '\0' || std::string("ynrb").find(k.character) == std::string::npos ||
-            (k.character == 'b' && tactor == 0))
+        if (k.command == operator_key::quit)
+            obey(*k.command);
+        if (k.text != "y" && k.text != "n" && k.text != "r" && (k.text != "b" || tactor == 0))
             continue;
-        session::show(fmt::format("{}\n", k.character));
-        if (k.character == 'y')
+        session::show(k.text + "\n");
+        if (k.text == "y")
             walked_.push_back({{"tactor", tactor}, {"asked", acq_time_text(utc_now_ns())}});
         // On a page a finger slips: the first No offers the tactor once more.
-        if (k.character == 'n' && page_ != nullptr && std::exchange(doubted_, tactor) != tactor)
+        if (k.text == "n" && page_ != nullptr && std::exchange(doubted_, tactor) != tactor)
             return flow_.felt(walk_answer::again);
-        return flow_.felt(k.character == 'y'   ? walk_answer::felt
-                          : k.character == 'n' ? walk_answer::not_felt
-                          : k.character == 'r' ? walk_answer::again
-                                               : walk_answer::back);
+        return flow_.felt(k.text == "y"   ? walk_answer::felt
+                          : k.text == "n" ? walk_answer::not_felt
+                          : k.text == "r" ? walk_answer::again
+                                          : walk_answer::back);
     }
 }
 
