@@ -262,7 +262,7 @@ void print_dry_run_json(std::FILE* out, const study::prepared_experiment& p)
     j["rest_s"] = d.rest.is_random() ? json{d.rest.least_s, d.rest.most_s} : json(d.rest.least_s);
     j["masking"] = study::masking_facts(d.masking);
     j["runs"] = json::array();
-    const std::vector<study::run_time> times = study::session_times(p, 0.0);
+    const std::vector<study::run_time> times = study::session_times(p);
     for (std::size_t i = 0; i < p.runs.size(); ++i)
         j["runs"].push_back(run_json(p, p.runs[i], times[i]));
     j["stimuli"] = study::stimulus_facts(p);
@@ -282,7 +282,7 @@ void print_dry_run_text(std::FILE* out, const study::prepared_experiment& p)
         say_text(out, fmt::format("{:>8}  {:<16} {:<16} {:<16} {:>7.3f}\n", place, r.motion, r.method_1,
                                   r.method_2.empty() ? "-" : r.method_2, r.duration_s));
     };
-    const std::vector<study::run_time> times = study::session_times(p, 0.0);
+    const std::vector<study::run_time> times = study::session_times(p);
     for (std::size_t i = 0; i < p.runs.size(); ++i) {
         const study::run_sequence& s = p.runs[i];
         const study::run_definition& r = d.runs[s.run];

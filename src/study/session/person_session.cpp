@@ -24,22 +24,6 @@ using json = nlohmann::ordered_json;
 
 constexpr const char* resume_hint = "what was answered is kept; --resume goes on";
 
-// Makes the flow at the place where the session is.
-session_flow make_flow(const prepared_experiment& p, const session_store& store)
-{
-    std::vector<flow_run> runs;
-    for (const run_sequence& s : p.runs) {
-        const run_definition& r = p.definition.runs[s.run];
-        const auto practised = static_cast<unsigned>(store.practice_rows(r).size());
-        runs.push_back({static_cast<unsigned>(s.practice.size()), practised, replay(p, s, store.rows(r)),
-                        r.break_s > 0.0});
-    }
-    const bool consent = !p.definition.consent.empty() && !store.facts().contains("consent");
-    return {std::move(runs), consent, static_cast<unsigned>(p.where.tactors.tactors.size())};
-}
-
-using json = nlohmann::ordered_json;
-
 } // namespace
 
 person_session::person_session(const prepared_experiment& p, session_store& store, stage& s,
@@ -51,7 +35,7 @@ person_session::person_session(const prepared_experiment& p, session_store& stor
       display_(display),
       devices_(std::move(devices)),
       keys_(s, with),
-      flow_(make_flow(p, store))
+      flow_(make_flow(p, store, true))
 {
     if (store.facts().contains("streams"))
         stream_ = static_cast<unsigned>(store.facts()["streams"].size());
@@ -146,8 +130,7 @@ void person_session::introduce(const session_step& s)
 {
     begin_store();
     const run_definition& r = p_.run_at(s.run);
-    practice_.emplace(store_, r, true);
-    table_.emplace(store_, r, false);
+    tables_.emplace(store_, r);
     const page_words& w = p_.definition.page;
     session::show_lines(fmt::format("\n{} {}/{}\n{}\n{}", w["part"], s.run + 1, p_.runs.size(), r.question,
                                     choices_text(p_.definition, r)));
@@ -257,12 +240,6 @@ bool person_session::end()
     return flow_.next().what == step_kind::over;
 }
 
-const planned_trial& person_session::find_trial(const session_step& s) const
-{
-    const run_sequence& run = p_.runs[s.run];
-    return s.practice ? run.practice[s.which.trial - 1] : run.trials[s.which.trial - 1];
-}
-
 std::string person_session::animate(const session_step& s, const planned_trial& t)
 {
     constexpr const char* gone = "the device is gone";
@@ -294,15 +271,6 @@ bool person_session::rest_before(const session_step& s, const planned_trial& t)
     return stage_.pass(t.rest_s, [&](double) { return heed(); });
 }
 
-// Waits before the target, because the stimulus follows it at once.
-bool person_session::make_room(const session_step& s, const planned_trial& t, const score& stimuli)
-{
-    double ahead_s = stimulus_lead_s;
-    if (p_.run_at(s.run).animation)
-        ahead_s += p_.definition.motions[t.motion].drawn.motion.duration_s();
-    return stage_.make_room(stimuli, ahead_s, waiting());
-}
-
 std::function<bool(double)> person_session::waiting()
 {
     return [this, announced = false](double) mutable {
@@ -331,9 +299,11 @@ std::function<void(std::uint64_t)> person_session::marks(const session_step& s, 
 given_stimulus person_session::give(const session_step& s, const planned_trial& t)
 {
     const score stimuli = p_.stimuli.make_score(t);
-    if (!rest_before(s, t) || !make_room(s, t, stimuli))
+    const run_definition& r = p_.run_at(s.run);
+    // Waits before the target, because the stimulus follows it at once.
+    if (!rest_before(s, t) || !stage_.make_room(stimuli, find_lead_s(p_, r, t), waiting()))
         return {.flaw = "the device is gone"};
-    if (p_.run_at(s.run).animation)
+    if (r.animation)
         if (std::string flaw = animate(s, t); !flaw.empty())
             return {.flaw = std::move(flaw)};
     on_page(stimulus_screen(p_, s));
@@ -364,7 +334,7 @@ given_stimulus person_session::give(const session_step& s, const planned_trial& 
 void person_session::trial(const session_step& s)
 {
     const run_definition& r = p_.run_at(s.run);
-    const planned_trial& t = find_trial(s);
+    const planned_trial& t = find_trial(p_, s);
     const page_words& w = p_.definition.page;
     session::show(fmt::format("\n{} {}/{}{}: ", w[s.practice ? "practice" : "trial"], s.which.trial,
                               s.practice ? p_.runs[s.run].practice.size() : p_.runs[s.run].trials.size(),
@@ -393,15 +363,9 @@ void person_session::trial(const session_step& s)
         session::say(stderr, "tactor: {}: trial {} is void: {}\n", r.outline.name, s.which.trial, flaw);
     }
     const std::int64_t started_ns = utc_now_ns() - (g.first_frame ? rt::monotonic_ns() - g.started_ns : 0);
-    write(s, row, started_ns);
-    find_device();
-}
-
-void person_session::write(const session_step& s, const trial_row& row, std::int64_t started_ns)
-{
-    trial_row line = row;
-    (s.practice ? practice_ : table_)->add(line, started_ns, p_.render.rate);
+    tables_->at(s).add(row, started_ns, p_.render.rate);
     flow_.took(row.is_void);
+    find_device();
 }
 
 person_session::asked_answer person_session::ask(const session_step& s, const given_stimulus& g)
@@ -434,8 +398,7 @@ void person_session::void_last()
     const run_definition& r = p_.run_at(flow_.void_run());
     store_.make_last_void(r);
     const trial_row row = store_.rows(r).back();
-    table_.emplace(store_, r, false);
-    practice_.emplace(store_, r, true);
+    tables_.emplace(store_, r);
     session::say(stderr, "tactor: {}: trial {} is void: the experimenter says so\n", r.outline.name,
                  row.trial);
 }

@@ -80,8 +80,6 @@ private:
     };
     /// Lets the rest before a trial pass. Returns false if the device is gone.
     bool rest_before(const session_step& s, const planned_trial& t);
-    /// Waits until the limits allow the drive time. Returns false if the device is gone.
-    bool make_room(const session_step& s, const planned_trial& t, const score& stimuli);
     /// Returns a watcher that asks for a moment's patience when it is first called.
     std::function<bool(double)> waiting();
     /// Shows the target. Returns the reason if that made the trial void.
@@ -90,7 +88,6 @@ private:
     /// Returns a watcher that shows on the page which of two stimuli plays at a frame, and what came before.
     std::function<void(std::uint64_t)> marks(const session_step& s, const planned_trial& t);
     asked_answer ask(const session_step& s, const given_stimulus& g);
-    void write(const session_step& s, const trial_row& row, std::int64_t started_ns);
 
     /// Shows the participant a screen, if there is a page.
     void on_page(page_screen s);
@@ -102,8 +99,6 @@ private:
     void find_device();
     void note_stream();
 
-    const planned_trial& find_trial(const session_step& s) const;
-
     const prepared_experiment& p_;
     session_store& store_;
     stage& stage_;
@@ -112,8 +107,7 @@ private:
     session_devices devices_;
     session_keys keys_;
     session_flow flow_;
-    std::optional<run_table> practice_ = {}; ///< of the run that is on
-    std::optional<run_table> table_ = {};
+    std::optional<run_tables> tables_ = {}; ///< of the present run
     nlohmann::ordered_json walked_ = nlohmann::ordered_json::array();
     std::optional<unsigned> doubted_ = {}; ///< tactor whose first No offered it again
     unsigned stream_ = 0;

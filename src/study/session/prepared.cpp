@@ -68,8 +68,8 @@ void mirror_motions(experiment_definition& d, const array& a)
                                            [&] { return fmt::format("motion \"{}\"", m.name); });
 }
 
-// Mirrors the motions for a left hand. A person's hand must be said if that matters.
-void settle_hand(experiment_definition& d, const array& a, const session_request& r)
+// Mirrors the motions for a left hand. A session with a person needs the hand if a motion depends on it.
+void mirror_for_hand(experiment_definition& d, const array& a, const session_request& r)
 {
     const auto mirrored =
         std::find_if(d.motions.begin(), d.motions.end(), [](const motion_definition& m) { return m.mirror; });
@@ -104,55 +104,38 @@ void check(const experiment_definition& d, const planned_trial& t, const stimulu
                         : "a lower level, or other limits where the actuators bear them");
 }
 
-/// A session without a person or a device, counted in frames.
-class time_keeper {
-public:
-    time_keeper(const prepared_experiment& p, double answer_s)
-        : p_(p),
-          room_(p.render.channels, session::settle_limits({}, p.where), p.render.rate),
-          answer_s_(answer_s)
-    {
-    }
+// Checks that no limit changes a trial, practice too, on an array that has rested: it would always be void.
+void check_limits(const experiment_definition& d, const std::vector<run_sequence>& runs,
+                  const stimulus_set& stimuli, const drive_limits& l)
+{
+    std::set<std::tuple<std::size_t, std::size_t, std::size_t>> seen;
+    for (const run_sequence& r : runs)
+        for (const auto* list : {&r.practice, &r.trials})
+            for (const planned_trial& t : *list)
+                if (seen.insert({t.motion, t.method_1, t.method_2.value_or(t.method_1)}).second)
+                    check(d, t, stimuli, l);
+}
 
-    run_time run(const run_sequence& s)
-    {
-        const run_definition& r = p_.definition.runs[s.run];
-        const std::uint64_t began = now_;
-        run_time t;
-        for (const auto* trials : {&s.practice, &s.trials})
-            for (const planned_trial& one : *trials)
-                trial(r, one, t);
-        t.total_s = seconds(now_ - began);
-        now_ += frames(r.break_s);
-        return t;
-    }
-
-private:
-    void trial(const run_definition& r, const planned_trial& one, run_time& t)
-    {
-        const score stimuli = p_.stimuli.make_score(one);
-        const double shown_s =
-            r.animation ? p_.definition.motions[one.motion].drawn.motion.duration_s() : 0.0;
-        now_ += frames(one.rest_s);
-        const std::uint64_t wait = room_.wait(stimuli, now_ + frames(shown_s + stimulus_lead_s)).value_or(0);
-        t.waits += wait > 0 ? 1 : 0;
-        t.waits_s += seconds(wait);
-        now_ += wait + frames(shown_s + stimulus_lead_s);
-        room_.played(stimuli, now_);
-        now_ += stimuli.frames() + frames(answer_s_);
-    }
-
-    double seconds(std::uint64_t n) const { return static_cast<double>(n) / p_.render.rate; }
-    std::uint64_t frames(double s) const
-    {
-        return static_cast<std::uint64_t>(std::llround(s * p_.render.rate));
-    }
-
-    const prepared_experiment& p_;
-    synth::drive_room room_;
-    double answer_s_;
-    std::uint64_t now_ = 0;
-};
+// Lists doubts about the calibration of a session whose level is above the thresholds.
+std::vector<std::string> calibration_doubts(const std::string& participant, const session::environment& e,
+                                            const stimulus_set& stimuli)
+{
+    if (!e.config.calibration)
+        return {};
+    const calibration_origin& c = *e.config.calibration;
+    std::vector<std::string> doubts;
+    if (c.simulated)
+        doubts.emplace_back("the thresholds were simulated: nobody was asked");
+    if (!participant.empty() && c.participant != participant)
+        doubts.push_back(
+            fmt::format("the thresholds are of participant {}, not {}", c.participant, participant));
+    std::vector<const plan*> plans;
+    for (const stimulus* s : stimuli.all())
+        plans.push_back(&s->plan);
+    if (std::string other = session::other_carrier(e, plans); !other.empty())
+        doubts.push_back(std::move(other));
+    return doubts;
+}
 
 using json = nlohmann::ordered_json;
 
@@ -172,6 +155,23 @@ json array_facts(const array& a)
             tactors.back()["displacement_um_at_0dbfs"] = *t.displacement_um_at_0dbfs;
     }
     return {{"name", a.name}, {"tactors", tactors}};
+}
+
+json calibration_facts(const prepared_experiment& p)
+{
+    if (!p.where.config.calibration)
+        return nullptr;
+    const calibration_origin& c = *p.where.config.calibration;
+    json tactors = json::array();
+    for (const calibrated_tactor& t : c.tactors)
+        tactors.push_back({{"tactor", t.tactor},
+                           {"threshold_dbfs", or_null(t.threshold_dbfs)},
+                           {"sd_db", or_null(t.sd_db)},
+                           {"trials", t.trials}});
+    return {{"participant", c.participant}, {"method", c.method},         {"rule", or_null(c.rule)},
+            {"carrier_hz", c.carrier_hz},   {"interval_s", c.interval_s}, {"feedback", or_null(c.feedback)},
+            {"masker", or_null(c.masker)},  {"date", or_null(c.date)},    {"seed", or_null(c.seed)},
+            {"simulated", c.simulated},     {"tactors", tactors},         {"warnings", p.calibration_doubts}};
 }
 
 // Returns the pauses before the trials of each run, in the order of the trials.
@@ -194,7 +194,7 @@ prepared_experiment prepare(const session_request& r, session::settings& s)
     if (!s.array_name)
         s.array_name = d.array;
     session::environment e = session::read_environment(s);
-    settle_hand(d, e.tactors, r);
+    mirror_for_hand(d, e.tactors, r);
     const bool assumed = !d.level_dbfs && assume_thresholds(e.tactors, r.who != audience::person);
     render_options render = session::settle_render(s, e);
     if (d.level_dbfs)
@@ -253,23 +253,39 @@ score walk_score(const experiment_definition& d, const array& a, const render_op
     }
 }
 
-void check_limits(const experiment_definition& d, const std::vector<run_sequence>& runs,
-                  const stimulus_set& stimuli, const drive_limits& l)
+double find_lead_s(const prepared_experiment& p, const run_definition& r, const planned_trial& t)
 {
-    std::set<std::tuple<std::size_t, std::size_t, std::size_t>> seen;
-    for (const run_sequence& r : runs)
-        for (const auto* list : {&r.practice, &r.trials})
-            for (const planned_trial& t : *list)
-                if (seen.insert({t.motion, t.method_1, t.method_2.value_or(t.method_1)}).second)
-                    check(d, t, stimuli, l);
+    const double shown_s = r.animation ? p.definition.motions[t.motion].drawn.motion.duration_s() : 0.0;
+    return shown_s + stimulus_lead_s;
 }
 
-std::vector<run_time> session_times(const prepared_experiment& p, double answer_s)
+std::vector<run_time> session_times(const prepared_experiment& p)
 {
-    time_keeper keeper(p, answer_s);
+    const double rate = p.render.rate;
+    const auto frames = [&](double s) { return static_cast<std::uint64_t>(std::llround(s * rate)); };
+    synth::drive_room room(p.render.channels, session::settle_limits({}, p.where), p.render.rate);
+    std::uint64_t now = 0;
     std::vector<run_time> all;
-    for (const run_sequence& s : p.runs)
-        all.push_back(keeper.run(s));
+    for (const run_sequence& s : p.runs) {
+        const run_definition& r = p.definition.runs[s.run];
+        const std::uint64_t began = now;
+        run_time t;
+        for (const auto* trials : {&s.practice, &s.trials})
+            for (const planned_trial& one : *trials) {
+                const score stimuli = p.stimuli.make_score(one);
+                now += frames(one.rest_s);
+                const std::uint64_t lead = frames(find_lead_s(p, r, one));
+                const std::uint64_t wait = room.wait(stimuli, now + lead).value_or(0);
+                t.waits += wait > 0 ? 1 : 0;
+                t.waits_s += static_cast<double>(wait) / rate;
+                now += wait + lead;
+                room.played(stimuli, now);
+                now += stimuli.frames();
+            }
+        t.total_s = static_cast<double>(now - began) / rate;
+        now += frames(r.break_s);
+        all.push_back(t);
+    }
     return all;
 }
 
@@ -341,43 +357,6 @@ json describe_session(const prepared_experiment& p, const std::optional<simulati
     j["streams"] = json::array();
     j["date"] = nullptr;
     return j;
-}
-
-std::vector<std::string> calibration_doubts(const std::string& participant, const session::environment& e,
-                                            const stimulus_set& stimuli)
-{
-    if (!e.config.calibration)
-        return {};
-    const calibration_origin& c = *e.config.calibration;
-    std::vector<std::string> doubts;
-    if (c.simulated)
-        doubts.emplace_back("the thresholds were simulated: nobody was asked");
-    if (!participant.empty() && c.participant != participant)
-        doubts.push_back(
-            fmt::format("the thresholds are of participant {}, not {}", c.participant, participant));
-    std::vector<const plan*> plans;
-    for (const stimulus* s : stimuli.all())
-        plans.push_back(&s->plan);
-    if (std::string other = session::other_carrier(e, plans); !other.empty())
-        doubts.push_back(std::move(other));
-    return doubts;
-}
-
-json calibration_facts(const prepared_experiment& p)
-{
-    if (!p.where.config.calibration)
-        return nullptr;
-    const calibration_origin& c = *p.where.config.calibration;
-    json tactors = json::array();
-    for (const calibrated_tactor& t : c.tactors)
-        tactors.push_back({{"tactor", t.tactor},
-                           {"threshold_dbfs", or_null(t.threshold_dbfs)},
-                           {"sd_db", or_null(t.sd_db)},
-                           {"trials", t.trials}});
-    return {{"participant", c.participant}, {"method", c.method},         {"rule", or_null(c.rule)},
-            {"carrier_hz", c.carrier_hz},   {"interval_s", c.interval_s}, {"feedback", or_null(c.feedback)},
-            {"masker", or_null(c.masker)},  {"date", or_null(c.date)},    {"seed", or_null(c.seed)},
-            {"simulated", c.simulated},     {"tactors", tactors},         {"warnings", p.calibration_doubts}};
 }
 
 } // namespace tactor::study

@@ -78,14 +78,12 @@ prepared_experiment prepare(const session_request& r, session::settings& s);
 /// if its level is too high, in the definition's words.
 score walk_score(const experiment_definition& d, const array& a, const render_options& o, unsigned tactor);
 
-/// Checks that each trial, practice too, sounds as planned on an array that has rested.
-/// \throws error (bad_input) with the motion's line for a trial that a limit would change: it would always be
-///         void.
-void check_limits(const experiment_definition& d, const std::vector<run_sequence>& runs,
-                  const stimulus_set& stimuli, const drive_limits& l);
-
 /// Time from the screen before to the first frame of a stimulus, so that it surprises nobody, s.
 inline constexpr double stimulus_lead_s = 0.5;
+
+/// Returns the time from the end of the rest before a trial to its first frame: the target, if the run shows
+/// it, and the time after it.
+double find_lead_s(const prepared_experiment& p, const run_definition& r, const planned_trial& t);
 
 struct run_time {
     double total_s = 0.0;  ///< practice included, the break after the run not
@@ -93,23 +91,18 @@ struct run_time {
     std::size_t waits = 0; ///< trials that wait
 };
 
-/// Returns the time of each run in the session's order. Each answer takes `answer_s`, the device adds no
-/// latency, and the array has rested before.
-std::vector<run_time> session_times(const prepared_experiment& p, double answer_s);
+/// Returns the time of each run in the session's order. Answers take no time, the device adds no latency, and
+/// the array has rested before.
+std::vector<run_time> session_times(const prepared_experiment& p);
 
 /// Returns the facts that session.json has before a session begins.
 nlohmann::ordered_json describe_session(const prepared_experiment& p,
                                         const std::optional<simulation>& simulate, const std::string& masker);
 
 /// Return parts of these facts: the level; the definition's noise, null for none; each stimulus with its
-/// hash; the calibration, null for none.
+/// hash.
 nlohmann::ordered_json level_facts(const experiment_definition& d);
 nlohmann::ordered_json masking_facts(const masking_definition& m);
 nlohmann::ordered_json stimulus_facts(const prepared_experiment& p);
-nlohmann::ordered_json calibration_facts(const prepared_experiment& p);
-
-/// Lists doubts about the calibration of a session whose level is above the thresholds.
-std::vector<std::string> calibration_doubts(const std::string& participant, const session::environment& e,
-                                            const stimulus_set& stimuli);
 
 } // namespace tactor::study

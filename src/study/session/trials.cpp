@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <optional>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -22,15 +24,33 @@ constexpr std::int64_t epoch_ns = 946684800LL * 1000000000LL;
 class simulated_session {
 public:
     simulated_session(const prepared_experiment& p, const simulation& s, session_store& store)
-        : p_(p), simulation_(s), store_(store)
+        : p_(p), simulation_(s), store_(store), flow_(make_flow(p, store, false))
     {
     }
 
     int hold()
     {
-        for (const run_sequence& s : p_.runs)
-            if (const int signal = run(s))
+        go_to_end_of_lines();
+        std::optional<run_tables> tables;
+        std::optional<simulated_observer> who;
+        for (session_step s = flow_.next(); s.what != step_kind::over; s = flow_.next()) {
+            if (const int signal = stop_.poll())
                 return signal;
+            if (s.what == step_kind::introduce) {
+                tables.emplace(store_, p_.run_at(s.run));
+                who.emplace(simulation_, p_.definition, p_.run_at(s.run), p_.stimuli, p_.participant);
+            }
+            if (s.what == step_kind::rest)
+                now_ += frames(p_.run_at(s.run).break_s);
+            if (s.what != step_kind::trial) {
+                flow_.go_on();
+                continue;
+            }
+            const trial_row row = play(s, *who);
+            tables->at(s).add(row, utc_ns(now_), p_.render.rate);
+            pass(row);
+            flow_.took(row.is_void);
+        }
         return 0;
     }
 
@@ -54,13 +74,29 @@ private:
                frames(row.response_time_s.value_or(0.0)) + frames(pause_s);
     }
 
-    trial_row play(const run_definition& r, const planned_trial& t, const pending_trial& which,
-                   const simulated_observer& who, bool practice)
+    // Sets the clock of a session that goes on.
+    void go_to_end_of_lines()
     {
+        for (const run_sequence& s : p_.runs) {
+            const run_definition& r = p_.definition.runs[s.run];
+            for (const trial_row& row : store_.practice_rows(r))
+                pass(row);
+            const std::vector<trial_row> rows = store_.rows(r);
+            for (const trial_row& row : rows)
+                pass(row);
+            if (replay(p_, s, rows).done())
+                now_ += frames(r.break_s);
+        }
+    }
+
+    trial_row play(const session_step& s, const simulated_observer& who)
+    {
+        const run_definition& r = p_.run_at(s.run);
+        const planned_trial& t = find_trial(p_, s);
         if (r.animation)
             now_ += frames(p_.definition.motions[t.motion].drawn.motion.duration_s());
-        const simulated_answer a = who.answer(t, which.trial, which.attempt, practice);
-        trial_row row = planned_row(p_, t, which);
+        const simulated_answer a = who.answer(t, s.which.trial, s.which.attempt, s.practice);
+        trial_row row = planned_row(p_, t, s.which);
         row.stream = 1;
         row.frame_1 = now_;
         if (t.method_2)
@@ -72,50 +108,10 @@ private:
         return row;
     }
 
-    void add(run_table& table, trial_row& row)
-    {
-        table.add(row, utc_ns(now_), p_.render.rate);
-        pass(row);
-    }
-
-    void practise(const run_sequence& s, const simulated_observer& who)
-    {
-        const run_definition& r = p_.definition.runs[s.run];
-        for (const trial_row& row : store_.practice_rows(r))
-            pass(row);
-        run_table table(store_, r, true);
-        while (table.rows() < s.practice.size()) {
-            const std::size_t at = table.rows();
-            trial_row row = play(r, s.practice[at], {static_cast<unsigned>(at + 1), 1}, who, true);
-            add(table, row);
-        }
-    }
-
-    int run(const run_sequence& s)
-    {
-        const run_definition& r = p_.definition.runs[s.run];
-        const simulated_observer who(simulation_, p_.definition, r, p_.stimuli, p_.participant);
-        practise(s, who);
-        const std::vector<trial_row> rows = store_.rows(r);
-        for (const trial_row& row : rows)
-            pass(row);
-        run_queue queue = replay(p_, s, rows);
-        run_table table(store_, r, false);
-        while (!queue.done()) {
-            if (const int signal = stop_.poll())
-                return signal;
-            const pending_trial next = queue.next();
-            trial_row row = play(r, s.trials[next.trial - 1], next, who, false);
-            add(table, row);
-            queue.take(row.is_void);
-        }
-        now_ += frames(r.break_s);
-        return 0;
-    }
-
     const prepared_experiment& p_;
     const simulation& simulation_;
     session_store& store_;
+    session_flow flow_;
     session::interrupt stop_;
     std::uint64_t now_ = 0; ///< frame of the virtual stream
 };
@@ -179,13 +175,33 @@ bool finished(const prepared_experiment& p, const session_store& store)
     });
 }
 
+session_flow make_flow(const prepared_experiment& p, const session_store& store, bool with_person)
+{
+    std::vector<flow_run> runs;
+    for (const run_sequence& s : p.runs) {
+        const run_definition& r = p.definition.runs[s.run];
+        const auto practised = static_cast<unsigned>(store.practice_rows(r).size());
+        runs.push_back({static_cast<unsigned>(s.practice.size()), practised, replay(p, s, store.rows(r)),
+                        r.break_s > 0.0});
+    }
+    const bool consent = with_person && !p.definition.consent.empty() && !store.facts().contains("consent");
+    const std::size_t walk = with_person ? p.where.tactors.tactors.size() : 0;
+    return {std::move(runs), consent, static_cast<unsigned>(walk)};
+}
+
+const planned_trial& find_trial(const prepared_experiment& p, const session_step& s)
+{
+    const run_sequence& run = p.runs[s.run];
+    return s.practice ? run.practice[s.which.trial - 1] : run.trials[s.which.trial - 1];
+}
+
 run_table::run_table(session_store& store, const run_definition& r, bool practice)
     : store_(store), run_(r), practice_(practice)
 {
     const std::vector<trial_row> rows = practice ? store.practice_rows(r) : store.rows(r);
-    rows_ = rows.size();
     if (rows.empty())
         return;
+    empty_ = false;
     first_stream_ = rows.front().stream;
     first_frame_ = rows.front().frame_1;
     if (!practice)
@@ -193,9 +209,9 @@ run_table::run_table(session_store& store, const run_definition& r, bool practic
             began_ns_ = acq_time_ns(*text);
 }
 
-void run_table::add(trial_row& row, std::int64_t started_ns, unsigned rate)
+void run_table::add(trial_row row, std::int64_t started_ns, unsigned rate)
 {
-    if (rows_++ == 0) {
+    if (std::exchange(empty_, false)) {
         first_stream_ = row.stream;
         first_frame_ = row.frame_1;
         began_ns_ = started_ns;
