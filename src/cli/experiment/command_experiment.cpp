@@ -33,15 +33,6 @@
 namespace tactor::cli {
 namespace {
 
-// Draws the moving target on standard output where that is a terminal; elsewhere says one line, without
-// motion.
-class terminal_display final : public study::target_display {
-public:
-    bool moves() const override;
-    std::function<void(double t_s)> show(const array& a, const stroke& target,
-                                         const study::page_words& words) override;
-};
-
 constexpr double patience_s = 3600.0; // for a device that was lost; Ctrl-C ends it before
 constexpr unsigned most_keys = 9;
 
@@ -107,14 +98,13 @@ void warn_of_animation(const study::prepared_experiment& p)
                     "move its cursor\n");
 }
 
+// The moving target on standard output, where that is a terminal.
 class target_picture {
 public:
     target_picture(const array& a, const stroke& target)
         : motion_(target.motion), faces_(a), picture_(a), now_{std::vector<double>(a.tactors.size(), 0.0), {}}
     {
     }
-
-    bool active() const noexcept { return picture_.active(); }
 
     void draw(double t_s)
     {
@@ -129,6 +119,12 @@ private:
     live_picture picture_;
     instant now_;
 };
+
+std::function<void(double)> show_target(const array& a, const stroke& target)
+{
+    const auto picture = std::make_shared<target_picture>(a, target);
+    return [picture](double t_s) { picture->draw(t_s); };
+}
 
 // Refuses what would spoil the data: no device, a sound server in between without --allow-sound-server,
 // noise without a device for it or the other way round, more answers than keys. Warns of a device that plays
@@ -177,7 +173,7 @@ study::stage::left hold_real_session(const study::prepared_experiment& p, const 
         page.emplace(p.definition.page, p.where.tactors, std::move(listening));
     return study::until_left(*there, [&] {
         const study::answering with{page ? &*page : nullptr, o.keypads};
-        terminal_display display;
+        const study::target_display display{can_draw(), show_target};
         study::person_session(p, store, *there, with, display, {p.pcm, o.masker, between}).hold();
     });
 }
@@ -237,20 +233,6 @@ int check_noise(const study::prepared_experiment& p, const experiment_options& o
     return signal != 0 ? session::interrupt::status(signal) : 0;
 }
 
-bool terminal_display::moves() const
-{
-    return can_draw();
-}
-
-std::function<void(double)> terminal_display::show(const array& a, const stroke& target,
-                                                   const study::page_words& words)
-{
-    const auto picture = std::make_shared<target_picture>(a, target);
-    if (!picture->active())
-        cli::show(words["target"] + "\n");
-    return [picture](double t_s) { picture->draw(t_s); };
-}
-
 std::size_t describe_trials(const study::prepared_experiment& p)
 {
     std::size_t n = 0;
@@ -305,9 +287,9 @@ int hold_session(const study::prepared_experiment& p, const experiment_options& 
     return status_ok;
 }
 
-int run(const experiment_options& o, const power_options& power, settings& s)
+int run(const experiment_options& o, settings& s)
 {
-    check_experiment_options(s, o, !power.participants.empty());
+    check_experiment_options(s, o);
     if (o.print) {
         fmt::print("{}", study::load_definition(o.definition).text);
         return status_ok;
@@ -318,8 +300,8 @@ int run(const experiment_options& o, const power_options& power, settings& s)
     const study::prepared_experiment p =
         study::prepare({o.definition, o.participant, o.seed, who, o.hand}, s);
     say_warnings(p.warnings);
-    if (!power.participants.empty())
-        return tell_power(p, power, o);
+    if (!o.power.empty())
+        return print_power(p, o);
     if (!o.dry_run)
         return o.check_noise ? check_noise(p, o, s) : hold_session(p, o, s);
     if (o.format == "json")
@@ -336,14 +318,12 @@ command add_experiment(CLI::App& app)
     CLI::App* c = app.add_subcommand("experiment", "Run an experiment with a participant or a simulated one");
     auto s = std::make_shared<settings>();
     auto o = std::make_shared<experiment_options>();
-    auto power = std::make_shared<power_options>();
     add_experiment_options(*c, *o);
-    add_power_options(*c, *power);
     add_options(*c, *s, options::on_experiment);
     c->footer("tactor experiment park2016 --dry-run\n"
               "tactor experiment park2016 --participant 01 -o trial --simulate seed=1,sigma=1\n"
               "tactor experiment park2016 --participant P07 -o pilot --array P07.toml -D hw:CARD=Tactor");
-    return [s, o, power] { return run_with(*s, [&] { return run(*o, *power, *s); }); };
+    return [s, o] { return run_with(*s, [&] { return run(*o, *s); }); };
 }
 
 } // namespace tactor::cli

@@ -83,9 +83,6 @@ std::string time_text(const study::run_time& t)
     return text;
 }
 
-using json = nlohmann::ordered_json;
-
-constexpr std::size_t default_studies = 200;
 constexpr detail::bounds allowed_studies{1, 1000000};
 constexpr detail::bounds allowed_participants{2, 1000};
 
@@ -180,6 +177,27 @@ std::optional<std::vector<study::run_power>> simulate(const study::prepared_expe
     });
 }
 
+void add_power_options(CLI::App& command, experiment_options& o)
+{
+    begin_group(command, "Power");
+    CLI::Option* power =
+        add_text(command, "--power", "N[,N...]",
+                 "print how often simulated studies of N participants find a significant difference",
+                 [&o](const std::string& t) { o.power = participants_in(t); });
+    power->needs(command.get_option("--simulate"));
+    for (const char* other : {"--participant", "--output", "--resume", "--display", "--page", "--keypad",
+                              "--masker", "--check-noise", "--print", "--dry-run"})
+        power->excludes(command.get_option(other));
+    add_text(command, "--studies", "K",
+             fmt::format("--power: number of simulated studies (default {})", default_studies),
+             [&o](const std::string& t) {
+                 o.studies =
+                     static_cast<std::size_t>(options::parse_whole("--studies", t, allowed_studies, ""));
+             })
+        ->needs(power);
+    begin_group(command);
+}
+
 } // namespace
 
 void add_experiment_options(CLI::App& command, experiment_options& o)
@@ -227,10 +245,12 @@ void add_experiment_options(CLI::App& command, experiment_options& o)
     command.add_flag("--dry-run", o.dry_run, "check everything and list each trial in order, without sound")
         ->excludes(resume);
     add_format_option(command, o.format, {"text", "json"}, "format of --dry-run and --power (default text)");
+    add_power_options(command, o);
 }
 
-void check_experiment_options(const settings& s, const experiment_options& o, bool power)
+void check_experiment_options(const settings& s, const experiment_options& o)
 {
+    const bool power = !o.power.empty();
     if (o.format == "json" && !o.dry_run && !power)
         refuse_option("--format", "only --dry-run and --power have one", "leave it out");
     if (const std::string asked = asked_of_stream(s); !asked.empty() && (o.simulate || o.print || o.dry_run))
@@ -298,40 +318,18 @@ void print_dry_run_text(std::FILE* out, const study::prepared_experiment& p)
     }
 }
 
-void add_power_options(CLI::App& command, power_options& p)
+int print_power(const study::prepared_experiment& e, const experiment_options& o)
 {
-    begin_group(command, "Power");
-    CLI::Option* power =
-        add_text(command, "--power", "N[,N...]",
-                 "print how often simulated studies of N participants find a significant difference",
-                 [&p](const std::string& t) { p.participants = participants_in(t); });
-    power->needs(command.get_option("--simulate"));
-    for (const char* other : {"--participant", "--output", "--resume", "--display", "--page", "--keypad",
-                              "--masker", "--check-noise", "--print", "--dry-run"})
-        power->excludes(command.get_option(other));
-    add_text(command, "--studies", "K",
-             fmt::format("--power: number of simulated studies (default {})", default_studies),
-             [&p](const std::string& t) {
-                 p.studies =
-                     static_cast<std::size_t>(options::parse_whole("--studies", t, allowed_studies, ""));
-             })
-        ->needs(power);
-    begin_group(command);
-}
-
-int tell_power(const study::prepared_experiment& e, const power_options& p, const experiment_options& o)
-{
-    const std::size_t studies = p.studies.value_or(default_studies);
     int signal = 0;
-    const auto told = simulate(e, {*o.simulate, p.participants, studies, o.seed}, signal);
-    if (!told) {
+    const auto powers = simulate(e, {*o.simulate, o.power, o.studies, o.seed}, signal);
+    if (!powers) {
         say(stderr, "tactor: ended by a signal, before there was a result\n");
         return session::interrupt::status(signal);
     }
     if (o.format == "json")
-        print_power_json(e, *told, studies, *o.simulate);
+        print_power_json(e, *powers, o.studies, *o.simulate);
     else
-        print_power_text(e, *told, studies, *o.simulate);
+        print_power_text(e, *powers, o.studies, *o.simulate);
     return 0;
 }
 

@@ -21,6 +21,9 @@ class App;
 
 namespace tactor::cli {
 
+/// Number of simulated studies of --power.
+inline constexpr std::size_t default_studies = 200;
+
 struct experiment_options {
     std::string definition; ///< a name that is built in, or a file
     std::string participant = {};
@@ -37,28 +40,22 @@ struct experiment_options {
     std::optional<std::uint64_t> seed = {};
     std::optional<study::simulation> simulate = {};
     std::optional<study::hand_kind> hand = {};
+    std::vector<std::size_t> power = {}; ///< numbers of participants for --power; empty: without
+    std::size_t studies = default_studies;
 };
 
 /// `o` must live as long as the command.
 void add_experiment_options(CLI::App& command, experiment_options& o);
 
-/// Checks that options go together and none is missing. `power`: --power is given. \throws error (bad_input).
-void check_experiment_options(const settings& s, const experiment_options& o, bool power);
+/// Checks that options go together and none is missing. \throws error (bad_input).
+void check_experiment_options(const settings& s, const experiment_options& o);
 
 void print_dry_run_text(std::FILE* out, const study::prepared_experiment& p);
 /// Schema tactor-experiment/1.
 void print_dry_run_json(std::FILE* out, const study::prepared_experiment& p);
 
-struct power_options {
-    std::vector<std::size_t> participants = {}; ///< empty: not asked for
-    std::optional<std::size_t> studies = {};    ///< default 200
-};
-
-/// Adds them after the others. `p` must live as long as the command.
-void add_power_options(CLI::App& command, power_options& p);
-
-/// Prints it; returns the exit status, which is that of a signal where one ended it, with nothing printed.
-/// \throws error (bad_input).
-int tell_power(const study::prepared_experiment& e, const power_options& p, const experiment_options& o);
+/// Prints the power of the design; returns the exit status, which is that of a signal where one ended it,
+/// with nothing printed. \throws error (bad_input).
+int print_power(const study::prepared_experiment& e, const experiment_options& o);
 
 } // namespace tactor::cli

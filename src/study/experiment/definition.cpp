@@ -355,12 +355,6 @@ constexpr std::array english{
     page_word{"calibrate_not_felt", "Not felt at any level"},
 };
 
-std::size_t find_word(std::string_view key)
-{
-    const auto has_key = [&](const page_word& w) { return w.key == key; };
-    return static_cast<std::size_t>(std::find_if(english.begin(), english.end(), has_key) - english.begin());
-}
-
 } // namespace
 
 std::string name_in(const toml_table& t, std::string_view key)
@@ -580,30 +574,21 @@ std::span<const page_word> page_words_in_english()
     return english;
 }
 
-page_words::page_words() : set_(english.size(), false)
+std::string page_words::operator[](std::string_view key) const
 {
-    for (const page_word& w : english)
-        texts_.emplace_back(w.english);
-}
-
-const std::string& page_words::operator[](std::string_view key) const
-{
-    return texts_.at(find_word(key));
-}
-
-void page_words::set(std::string_view key, std::string text)
-{
-    texts_.at(find_word(key)) = std::move(text);
-    set_.at(find_word(key)) = true;
+    if (const auto own = own_.find(key); own != own_.end())
+        return own->second;
+    const auto has_key = [&](const page_word& w) { return w.key == key; };
+    return std::string(std::find_if(english.begin(), english.end(), has_key)->english);
 }
 
 std::vector<std::string_view> page_words::missing() const
 {
     std::vector<std::string_view> all;
-    for (std::size_t i = 0; i < english.size(); ++i)
-        if (!set_[i])
-            all.push_back(english[i].key);
-    return all.size() < english.size() ? all : std::vector<std::string_view>();
+    for (const page_word& w : english)
+        if (!own_.empty() && !own_.contains(w.key))
+            all.push_back(w.key);
+    return all;
 }
 
 page_words load_page_words(const std::string& file)

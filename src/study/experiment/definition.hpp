@@ -6,6 +6,8 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
+#include <map>
 #include <optional>
 #include <span>
 #include <string>
@@ -39,17 +41,14 @@ std::span<const page_word> page_words_in_english();
 /// [page] of a definition: the words in the participant's language.
 class page_words {
 public:
-    page_words();
-
     /// \pre `key` is one of page_words_in_english().
-    const std::string& operator[](std::string_view key) const;
-    void set(std::string_view key, std::string text);
+    std::string operator[](std::string_view key) const;
+    void set(std::string_view key, const std::string& text) { own_[std::string(key)] = text; }
     /// Lists the keys that stay English although others were set.
     std::vector<std::string_view> missing() const;
 
 private:
-    std::vector<std::string> texts_; // in the same order
-    std::vector<bool> set_;
+    std::map<std::string, std::string, std::less<>> own_;
 };
 
 /// Reads [page] of a definition; passes over all else in it. \throws error (bad_input) with line and column,

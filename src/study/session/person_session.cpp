@@ -27,12 +27,12 @@ constexpr const char* resume_hint = "what was answered is kept; --resume goes on
 } // namespace
 
 person_session::person_session(const prepared_experiment& p, session_store& store, stage& s,
-                               const answering& with, target_display& display, session_devices devices)
+                               const answering& with, target_display display, session_devices devices)
     : p_(p),
       store_(store),
       stage_(s),
       page_(with.page),
-      display_(display),
+      display_(std::move(display)),
       devices_(std::move(devices)),
       keys_(s, with),
       flow_(make_flow(p, store, true))
@@ -105,9 +105,9 @@ void person_session::note_stream()
          {"device", devices_.pcm},
          {"masker", files::or_null(devices_.masker)},
          {"masking", devices_.masker.empty() ? json(nullptr) : masking_facts(p_.definition.masking)},
-         {"display", page_ != nullptr   ? "page"
-                     : display_.moves() ? "terminal with animation"
-                                        : "terminal without animation"},
+         {"display", page_ != nullptr ? "page"
+                     : display_.moves ? "terminal with animation"
+                                      : "terminal without animation"},
          {"format", std::string(to_string(d.format))},
          {"period_frames", d.period_frames},
          {"buffer_frames", d.buffer_frames},
@@ -253,7 +253,9 @@ std::string person_session::animate(const session_step& s, const planned_trial& 
             return gone;
         return (began && page_->is_watched()) || repeat_ || quit_ ? "" : "the target moved on no page";
     }
-    const auto draw = display_.show(p_.where.tactors, target, p_.definition.page);
+    if (!display_.moves)
+        session::show(p_.definition.page["target"] + "\n");
+    const auto draw = display_.show(p_.where.tactors, target);
     draw(0.0);
     const bool passed = stage_.pass(duration_s, [&](double at_s) {
         const bool goes_on = heed();

@@ -25,20 +25,12 @@
 
 namespace tactor::study {
 
-/// Shows a moving target on a terminal. One thread.
-class target_display {
-public:
-    target_display() = default;
-    virtual ~target_display() = default;
-    target_display(const target_display&) = delete;
-    target_display& operator=(const target_display&) = delete;
-
-    /// Returns whether a target moves there; else a line stands for it.
-    virtual bool moves() const = 0;
+/// A terminal that shows targets.
+struct target_display {
+    bool moves = false; ///< false: a line stands for the target
     /// Shows a target. Returns the function that draws it at a time from its start, s; the picture lasts as
-    /// long as that function, and as the three arguments.
-    virtual std::function<void(double t_s)> show(const array& a, const stroke& target,
-                                                 const page_words& words) = 0;
+    /// long as that function, and as both arguments.
+    std::function<std::function<void(double t_s)>(const array& a, const stroke& target)> show;
 };
 
 /// Devices of a session, for its data.
@@ -55,7 +47,7 @@ class person_session {
 public:
     /// `page` (null: the terminal) is the participant's. All must live as long.
     person_session(const prepared_experiment& p, session_store& store, stage& s, const answering& with,
-                   target_display& display, session_devices devices);
+                   target_display display, session_devices devices);
 
     /// Holds the rest of the session. \throws stage::left; error (runtime): the participant did not agree or
     /// did not feel a tactor, no answer can come any more, the device did not come back, or the system
@@ -103,7 +95,7 @@ private:
     session_store& store_;
     stage& stage_;
     participant_page* page_;
-    target_display& display_;
+    target_display display_;
     session_devices devices_;
     session_keys keys_;
     session_flow flow_;
