@@ -306,7 +306,7 @@ TEST_CASE("a log of another session is refused with the line")
     has(refusal(f / "a.tsv", true), "it is no log");
     CHECK(file_text(f / "a.tsv") == "name\tvalue\n");
     f.write("a.tsv", "no line");
-    has(refusal(f / "a.tsv", true), "it is no log");
+    has(refusal(f / "a.tsv", true), "spaces are between the columns");
     CHECK(file_text(f / "a.tsv") == "no line");
     f.write("a.tsv", whole.log);
     calibration_settings other = settings();

@@ -23,7 +23,6 @@
 #include "core/words.hpp"
 #include "files/json/json_value.hpp"
 #include "files/output_file.hpp"
-#include "files/text_file.hpp"
 #include "study/bids/disk.hpp"
 #include "study/data/text_table.hpp"
 
@@ -135,17 +134,31 @@ void check_beginning(const fs::path& log, calibration_settings& s)
 calibration_log::calibration_log(fs::path file, bool resume, calibration_settings& s)
     : file_(std::move(file)), synced_(s.simulate.empty()), lines_(file_, new_log())
 {
-    if (const fs::path beginning = settings_file(file_); there(beginning)) { // before anything is written
-        calibration_settings tried = s;
-        if (resume)
-            take_beginning(beginning, tried);
-        else
-            parse_settings(beginning, tried);
-    }
-    made_ = !there(file_) && !there(settings_file(file_));
+    const fs::path beginning = settings_file(file_);
+    const bool begun = there(beginning);
+    if (begun && resume)
+        take_beginning(beginning, s);
+    else if (begun)
+        parse_settings(beginning, s);
+    made_ = !begun && !there(file_);
     open();
     try {
-        settle(resume, s);
+        lines_ = read_lines();
+        // A log without answers, left for example by a missing device, begins anew.
+        if (!resume && lines_.rows() > 0)
+            throw error(error_kind::bad_input, file_.string(), "there is such a file already",
+                        "--resume goes on with the session that it is of; another needs other names");
+        if (!begun && lines_.rows() > 0)
+            throw error(error_kind::bad_input, beginning.string(),
+                        "it is missing, which says how the log was begun", "begin another, with another log");
+        if (!begun || !resume) {
+            const std::string text = settings_text(s);
+            detail::output_file out(beginning, {}, detail::owner_kind::program);
+            out.write(text.data(), static_cast<std::int64_t>(text.size()));
+            out.commit();
+        }
+        if (synced_)
+            detail::sync_folder(file_.parent_path()); // the log has a name that must last, too
     } catch (...) {
         remove_empty();
         throw;
@@ -186,42 +199,17 @@ void calibration_log::open()
                     "end that one first, or name another log");
 }
 
-void calibration_log::settle(bool resume, calibration_settings& s)
-{
-    const fs::path beginning = settings_file(file_);
-    const bool begun = there(beginning);
-    lines_ = read_lines();
-    // A log without answers, left for example by a missing device, begins anew.
-    if (!resume && lines_.rows() > 0)
-        throw error(error_kind::bad_input, file_.string(), "there is such a file already",
-                    "--resume goes on with the session that it is of; another needs other names");
-    if (begun && resume) {
-        take_beginning(beginning, s);
-    } else if (lines_.rows() > 0) {
-        throw error(error_kind::bad_input, beginning.string(),
-                    "it is missing, which says how the log was begun", "begin another, with another log");
-    } else {
-        const std::string text = settings_text(s);
-        detail::output_file out(beginning, {}, detail::owner_kind::program);
-        out.write(text.data(), static_cast<std::int64_t>(text.size()));
-        out.commit();
-    }
-    if (synced_)
-        detail::sync_folder(file_.parent_path()); // the log has a name that must last, too
-}
-
 // Reads no line of an empty log or one whose header is cut off.
 text_table calibration_log::read_lines() const
 {
     const std::string text = read_file(file_);
     if (lacks_header(text))
         return {file_, new_log()};
-    detail::refuse_no_text(text, file_.string(), "name the log, with tabs between the columns");
+    text_table t(file_, text, last_line::may_be_cut);
     for (const auto& [column, cell] : log_cells({}))
-        if (text.find(column) == text.npos)
+        if (!t.has(column))
             throw error(error_kind::bad_input, file_.string(), "it is no log of a calibration",
                         "name another log");
-    text_table t(file_, text, last_line::may_be_cut);
     if (t.is_open() && t.columns().back() == "onset_frame")
         if (const auto frame = t.cell(t.rows() - 1, "onset_frame"); frame && frame->starts_with('n'))
             t.leave_out_last(); // n/a, cut off

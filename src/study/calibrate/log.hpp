@@ -32,8 +32,7 @@ class calibration_log {
 public:
     /// Opens and locks the log. A new session writes `s` beside it, one that resumes takes its date from
     /// there. \throws error: bad_input if a log is there already (not `resume`), it is in use, it is no log,
-    /// or it
-    ///         began with other settings; runtime for what the system refuses.
+    ///         or it began with other settings; runtime for what the system refuses.
     calibration_log(std::filesystem::path file, bool resume, calibration_settings& s);
     /// Removes a log that it made, if no answer is in it.
     ~calibration_log();
@@ -42,7 +41,6 @@ public:
 
     /// Lines that were there, except one that a crash cut off.
     const text_table& lines() const noexcept { return lines_; }
-    const std::filesystem::path& file() const noexcept { return file_; }
     /// Cuts off what a crash left of a last line, and writes the header if there is none. Call it once
     /// replay() has found that the lines are this session's. Returns the file that keeps the rest of a cut
     /// line, if any. \throws error (runtime).
@@ -55,7 +53,6 @@ private:
     void open();
     void remove_empty() const noexcept;
     text_table read_lines() const;
-    void settle(bool resume, calibration_settings& s);
 
     std::filesystem::path file_;
     detail::owned_fd fd_;

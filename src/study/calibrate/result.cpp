@@ -3,8 +3,6 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <cstdint>
-#include <cstring>
 #include <optional>
 #include <string_view>
 #include <utility>
@@ -87,11 +85,7 @@ void check_new_output(const std::filesystem::path& file)
 void write_new_output(const std::filesystem::path& file, const std::string& text)
 {
     check_new_output(file);
-    detail::output_file out(file);
-    out.write(text.data(), static_cast<std::int64_t>(text.size()));
-    if (const int code = out.failure())
-        throw error(error_kind::runtime, file.string(), std::strerror(code), what_is_kept(code));
-    out.commit();
+    write_whole(file, text);
 }
 
 void check_finished(const std::filesystem::path& file, const calibration_settings& s)
