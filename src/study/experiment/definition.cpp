@@ -200,6 +200,36 @@ std::optional<std::uint64_t> read_seed(const toml_table& t)
     return static_cast<std::uint64_t>(*v);
 }
 
+// Reads a text of one line that can stand in a table.
+std::string name_in(const toml_table& t, std::string_view key)
+{
+    std::string text = t.need(t.text(key), key);
+    const bool controls =
+        std::any_of(text.begin(), text.end(), [](unsigned char c) { return c < 0x20 || c == 0x7f; });
+    if (controls || text == "n/a" || text.front() == ' ' || text.back() == ' ')
+        t.fail(key, fmt::format("{} is no such name: {}", detail::shown(*t.node(key)), t.title()),
+               "any but n/a, on one line, without tabs, not in blanks");
+    return text;
+}
+
+// Reads a list of texts, empty where there is none.
+std::vector<std::string> texts_in(const toml_table& t, std::string_view key, std::size_t most)
+{
+    std::vector<std::string> all;
+    const toml::array* list = t.list(key, "texts in quotes");
+    if (list == nullptr)
+        return all;
+    for (const toml::node& n : *list) {
+        if (!n.is_string())
+            detail::fail_at(t.where(n), fmt::format("{} has {}", key, detail::shown(n)),
+                            "texts in quotes, with commas between");
+        all.push_back(n.as_string()->get());
+    }
+    if (all.size() > most)
+        t.fail(key, fmt::format("{} has {} texts", key, all.size()), fmt::format("at most {}", most));
+    return all;
+}
+
 void read_head(const toml_table& root, const extent& e, experiment_definition& d)
 {
     const auto t = root.table("experiment", "[experiment]", "[experiment]");
@@ -257,6 +287,125 @@ page_words read_page(const toml_table& root)
         if (const auto text = t->text(key))
             words.set(key, *text);
     return words;
+}
+
+// Returns true if left hands get the motion mirrored.
+bool is_mirrored(const toml_table& motion)
+{
+    return motion.boolean("mirror").value_or(false);
+}
+
+motion_definition read_motion(const toml_table& t, const std::filesystem::path& folder)
+{
+    t.only({"name", "preset", "path", "file", "duration", "duration_s", "speed", "speed_mm_s",
+            "intensity_max", "mirror"});
+    const std::string_view kind = t.one_of({"preset", "path", "file"});
+    if (kind != "file" && t.has("intensity_max"))
+        t.fail("intensity_max", fmt::format("{} has no file", t.title()),
+               "it is the scale of a recording's intensities");
+    const std::string_view duration_key = spelled(t, "duration", "duration_s");
+    const std::string_view speed_key = spelled(t, "speed", "speed_mm_s");
+    const auto duration = t.number(duration_key, detail::bounds_of::duration_s);
+    const auto speed = t.number(speed_key, detail::bounds_of::speed_mm_s);
+    if (duration && speed)
+        t.fail(speed_key, fmt::format("{} has both {} and {}", t.title(), duration_key, speed_key),
+               "keep one of them");
+    stroke drawn = kind == "file"   ? read_file_stroke(t, folder)
+                   : kind == "path" ? along_path(t, duration, speed)
+                                    : at_key(t, "preset", [&] { return preset_stroke(*t.text("preset")); });
+    if (duration)
+        drawn.motion = at_key(t, duration_key, [&] { return drawn.motion.with_duration(*duration); });
+    else if (speed && drawn.motion.length_mm() > 0.0)
+        drawn.motion = at_key(t, speed_key, [&] { return drawn.motion.with_speed(*speed); });
+    drawn.start_s.reset();                                // it is played alone
+    drawn.choices = {.level_db = drawn.choices.level_db}; // methods choose the rest
+    return {name_in(t, "name"), std::move(drawn), is_mirrored(t), t.where()};
+}
+
+method_definition read_method(const toml_table& t)
+{
+    options::wishes w;
+    w.place = options::in_method;
+    for (const toml_table::said_key& k : t.entries()) {
+        if (k.key == "name")
+            continue;
+        const options::option& o = find_method_option(k);
+        if (w.gives(o))
+            t.fail(k.key, fmt::format("{} says {} twice", t.title(), o.name), "keep one of them");
+        at_key(t, k.key, [&] { options::give(w, o, options::read_value(o, t.plain(*k.value, k.key))); });
+    }
+    at_key(t, "name", [&] { options::settle(w); });
+    return {name_in(t, "name"), w.plan, t.where()};
+}
+
+// Reads of [[run]] what the analysis needs, after the motions, methods and runs before it.
+run_definition read_run_outline(const toml_table& t, const experiment_definition& d)
+{
+    run_definition r;
+    r.where = t.where();
+    run_outline& o = r.outline;
+    o.name = name_in(t, "name");
+    o.file_name = make_file_name(o.name);
+    if (o.file_name.empty())
+        t.fail("name", "a run's name has no letter or digit", "its files are called by those");
+    for (const run_definition& other : d.runs)
+        if (other.outline.file_name == o.file_name)
+            t.fail("name",
+                   fmt::format("the files of the runs \"{}\" and \"{}\" would have one name",
+                               other.outline.name, o.name),
+                   "their letters and digits must differ");
+    const std::string task = t.need(t.choice("task", {"choose", "rate", "identify"}), "task");
+    o.task = task == "choose" ? task_kind::choose : task == "rate" ? task_kind::rate : task_kind::identify;
+    o.trials = t.whole("trials", 1, most_trials).value_or(0);
+    o.scale = t.whole("scale", 2, 9).value_or(o.scale);
+    r.motions = places_in(t, "motions", d.motions);
+    r.methods = places_in(t, "methods", d.methods);
+    for (const std::size_t i : r.motions)
+        o.motions.push_back(d.motions[i].name);
+    for (const std::size_t i : r.methods)
+        o.methods.push_back(d.methods[i].name);
+    if (o.task == task_kind::choose && r.methods.size() != 2)
+        t.fail(fmt::format("{} has {} methods to choose from", o.name, r.methods.size()),
+               "choose compares two: name them in methods");
+    if (o.task == task_kind::identify && r.motions.size() < 2)
+        t.fail(fmt::format("{} has one motion to identify", o.name), "name two or more in motions");
+    return r;
+}
+
+run_definition read_run_definition(const toml_table& t, const experiment_definition& d)
+{
+    t.only({"name", "task", "attribute", "question", "animation", "trials", "practice", "scale", "labels",
+            "break_s", "motions", "methods", "simulate_as", "min_response_s"});
+    run_definition r = read_run_outline(t, d);
+    // Some disks treat capitals and small letters as equal.
+    for (const run_definition& other : d.runs)
+        if (in_small_letters(other.outline.file_name) == in_small_letters(r.outline.file_name))
+            t.fail(fmt::format("the runs \"{}\" and \"{}\" differ in capitals only", other.outline.name,
+                               r.outline.name),
+                   "another name: on some disks their files would be one");
+    for (const std::string_view key : {"scale", "labels"})
+        if (r.outline.task != task_kind::rate && t.has(key))
+            t.fail(key, fmt::format("{} is of runs that rate", key), "leave it out, or task = \"rate\"");
+    if (t.has("attribute") || r.outline.task != task_kind::identify)
+        r.attribute = name_in(t, "attribute");
+    const bool known = r.attribute == "similarity" || r.attribute == "uniformity";
+    r.simulate_as = t.choice("simulate_as", {"similarity", "uniformity"}).value_or(known ? r.attribute : "");
+    r.question = t.text("question").value_or(usual_question(r));
+    if (r.question.empty())
+        t.need(std::optional<std::string>{}, "question");
+    r.min_response_s = t.number("min_response_s", {0.0, 10.0}).value_or(r.min_response_s);
+    r.animation = t.boolean("animation").value_or(false);
+    if (r.outline.trials == 0)
+        t.need(std::optional<unsigned>{}, "trials");
+    r.practice = t.whole("practice", 0, most_trials).value_or(0);
+    r.labels = texts_in(t, "labels", r.outline.scale);
+    if (!r.labels.empty() && r.labels.size() != 2 && r.labels.size() != r.outline.scale)
+        t.fail(
+            "labels",
+            fmt::format("labels has {} for a scale of {}", counted(r.labels.size(), "text"), r.outline.scale),
+            "one for each end, or one for each step");
+    r.break_s = t.number("break_s", {0.0, 86400.0}).value_or(0.0);
+    return r;
 }
 
 std::vector<toml_table> need_tables(const toml_table& root, std::string_view key)
@@ -357,154 +506,9 @@ constexpr std::array english{
 
 } // namespace
 
-std::string name_in(const toml_table& t, std::string_view key)
-{
-    std::string text = t.need(t.text(key), key);
-    const bool controls =
-        std::any_of(text.begin(), text.end(), [](unsigned char c) { return c < 0x20 || c == 0x7f; });
-    if (controls || text == "n/a" || text.front() == ' ' || text.back() == ' ')
-        t.fail(key, fmt::format("{} is no such name: {}", detail::shown(*t.node(key)), t.title()),
-               "any but n/a, on one line, without tabs, not in blanks");
-    return text;
-}
-
-bool is_mirrored(const toml_table& motion)
-{
-    return motion.boolean("mirror").value_or(false);
-}
-
-motion_definition read_motion(const toml_table& t, const std::filesystem::path& folder)
-{
-    t.only({"name", "preset", "path", "file", "duration", "duration_s", "speed", "speed_mm_s",
-            "intensity_max", "mirror"});
-    const std::string_view kind = t.one_of({"preset", "path", "file"});
-    if (kind != "file" && t.has("intensity_max"))
-        t.fail("intensity_max", fmt::format("{} has no file", t.title()),
-               "it is the scale of a recording's intensities");
-    const std::string_view duration_key = spelled(t, "duration", "duration_s");
-    const std::string_view speed_key = spelled(t, "speed", "speed_mm_s");
-    const auto duration = t.number(duration_key, detail::bounds_of::duration_s);
-    const auto speed = t.number(speed_key, detail::bounds_of::speed_mm_s);
-    if (duration && speed)
-        t.fail(speed_key, fmt::format("{} has both {} and {}", t.title(), duration_key, speed_key),
-               "keep one of them");
-    stroke drawn = kind == "file"   ? read_file_stroke(t, folder)
-                   : kind == "path" ? along_path(t, duration, speed)
-                                    : at_key(t, "preset", [&] { return preset_stroke(*t.text("preset")); });
-    if (duration)
-        drawn.motion = at_key(t, duration_key, [&] { return drawn.motion.with_duration(*duration); });
-    else if (speed && drawn.motion.length_mm() > 0.0)
-        drawn.motion = at_key(t, speed_key, [&] { return drawn.motion.with_speed(*speed); });
-    drawn.start_s.reset();                                // it is played alone
-    drawn.choices = {.level_db = drawn.choices.level_db}; // methods choose the rest
-    return {name_in(t, "name"), std::move(drawn), is_mirrored(t), t.where()};
-}
-
-method_definition read_method(const toml_table& t)
-{
-    options::wishes w;
-    w.place = options::in_method;
-    for (const toml_table::said_key& k : t.entries()) {
-        if (k.key == "name")
-            continue;
-        const options::option& o = find_method_option(k);
-        if (w.gives(o))
-            t.fail(k.key, fmt::format("{} says {} twice", t.title(), o.name), "keep one of them");
-        at_key(t, k.key, [&] { options::give(w, o, options::read_value(o, t.plain(*k.value, k.key))); });
-    }
-    at_key(t, "name", [&] { options::settle(w); });
-    return {name_in(t, "name"), w.plan, t.where()};
-}
-
 std::string in_definition_words(std::string_view hint)
 {
     return options::spell(hint, {write_choice, options::in_method, own_words});
-}
-
-std::vector<std::string> texts_in(const toml_table& t, std::string_view key, std::size_t most)
-{
-    std::vector<std::string> all;
-    const toml::array* list = t.list(key, "texts in quotes");
-    if (list == nullptr)
-        return all;
-    for (const toml::node& n : *list) {
-        if (!n.is_string())
-            detail::fail_at(t.where(n), fmt::format("{} has {}", key, detail::shown(n)),
-                            "texts in quotes, with commas between");
-        all.push_back(n.as_string()->get());
-    }
-    if (all.size() > most)
-        t.fail(key, fmt::format("{} has {} texts", key, all.size()), fmt::format("at most {}", most));
-    return all;
-}
-
-run_definition read_run_outline(const toml_table& t, const experiment_definition& d)
-{
-    run_definition r;
-    r.where = t.where();
-    run_outline& o = r.outline;
-    o.name = name_in(t, "name");
-    o.file_name = make_file_name(o.name);
-    if (o.file_name.empty())
-        t.fail("name", "a run's name has no letter or digit", "its files are called by those");
-    for (const run_definition& other : d.runs)
-        if (other.outline.file_name == o.file_name)
-            t.fail("name",
-                   fmt::format("the files of the runs \"{}\" and \"{}\" would have one name",
-                               other.outline.name, o.name),
-                   "their letters and digits must differ");
-    const std::string task = t.need(t.choice("task", {"choose", "rate", "identify"}), "task");
-    o.task = task == "choose" ? task_kind::choose : task == "rate" ? task_kind::rate : task_kind::identify;
-    o.trials = t.whole("trials", 1, most_trials).value_or(0);
-    o.scale = t.whole("scale", 2, 9).value_or(o.scale);
-    r.motions = places_in(t, "motions", d.motions);
-    r.methods = places_in(t, "methods", d.methods);
-    for (const std::size_t i : r.motions)
-        o.motions.push_back(d.motions[i].name);
-    for (const std::size_t i : r.methods)
-        o.methods.push_back(d.methods[i].name);
-    if (o.task == task_kind::choose && r.methods.size() != 2)
-        t.fail(fmt::format("{} has {} methods to choose from", o.name, r.methods.size()),
-               "choose compares two: name them in methods");
-    if (o.task == task_kind::identify && r.motions.size() < 2)
-        t.fail(fmt::format("{} has one motion to identify", o.name), "name two or more in motions");
-    return r;
-}
-
-run_definition read_run_definition(const toml_table& t, const experiment_definition& d)
-{
-    t.only({"name", "task", "attribute", "question", "animation", "trials", "practice", "scale", "labels",
-            "break_s", "motions", "methods", "simulate_as", "min_response_s"});
-    run_definition r = read_run_outline(t, d);
-    // Some disks treat capitals and small letters as equal.
-    for (const run_definition& other : d.runs)
-        if (in_small_letters(other.outline.file_name) == in_small_letters(r.outline.file_name))
-            t.fail(fmt::format("the runs \"{}\" and \"{}\" differ in capitals only", other.outline.name,
-                               r.outline.name),
-                   "another name: on some disks their files would be one");
-    for (const std::string_view key : {"scale", "labels"})
-        if (r.outline.task != task_kind::rate && t.has(key))
-            t.fail(key, fmt::format("{} is of runs that rate", key), "leave it out, or task = \"rate\"");
-    if (t.has("attribute") || r.outline.task != task_kind::identify)
-        r.attribute = name_in(t, "attribute");
-    const bool known = r.attribute == "similarity" || r.attribute == "uniformity";
-    r.simulate_as = t.choice("simulate_as", {"similarity", "uniformity"}).value_or(known ? r.attribute : "");
-    r.question = t.text("question").value_or(usual_question(r));
-    if (r.question.empty())
-        t.need(std::optional<std::string>{}, "question");
-    r.min_response_s = t.number("min_response_s", {0.0, 10.0}).value_or(r.min_response_s);
-    r.animation = t.boolean("animation").value_or(false);
-    if (r.outline.trials == 0)
-        t.need(std::optional<unsigned>{}, "trials");
-    r.practice = t.whole("practice", 0, most_trials).value_or(0);
-    r.labels = texts_in(t, "labels", r.outline.scale);
-    if (!r.labels.empty() && r.labels.size() != 2 && r.labels.size() != r.outline.scale)
-        t.fail(
-            "labels",
-            fmt::format("labels has {} for a scale of {}", counted(r.labels.size(), "text"), r.outline.scale),
-            "one for each end, or one for each step");
-    r.break_s = t.number("break_s", {0.0, 86400.0}).value_or(0.0);
-    return r;
 }
 
 std::string_view to_string(noise_kind k) noexcept

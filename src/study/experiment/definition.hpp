@@ -20,10 +20,6 @@
 #include "study/data/outline.hpp"
 #include "study/masking/masking_stream.hpp"
 
-namespace tactor::detail {
-class toml_table;
-}
-
 namespace tactor::study {
 
 enum class noise_kind { none, white, pink };
@@ -147,27 +143,6 @@ std::string_view shipped_experiment(std::string_view name);
 
 /// Loads a definition that is built in, or a file. \throws error (bad_input).
 experiment_definition load_definition(const std::string& name_or_file);
-
-/// Reads a text of one line that can stand in a table. \throws error (bad_input).
-std::string name_in(const detail::toml_table& t, std::string_view key);
-
-/// Reads a list of texts, empty where there is none. \throws error (bad_input) for more than `most`.
-std::vector<std::string> texts_in(const detail::toml_table& t, std::string_view key, std::size_t most);
-
-/// Reads [[motion]]: a stroke from a preset, path data or a file, with its duration or speed.
-motion_definition read_motion(const detail::toml_table& t, const std::filesystem::path& folder);
-
-/// Returns true if a [[motion]] is to be mirrored for left hands.
-bool is_mirrored(const detail::toml_table& motion);
-
-/// Reads [[method]]: options of a plan.
-method_definition read_method(const detail::toml_table& t);
-
-/// Reads [[run]], after the motions, methods and runs before it. \throws error (bad_input).
-run_definition read_run_definition(const detail::toml_table& t, const experiment_definition& d);
-
-/// Reads of it what the analysis needs, and passes over other keys. \throws error (bad_input).
-run_definition read_run_outline(const detail::toml_table& t, const experiment_definition& d);
 
 /// Returns a warning for sentences of the participant's that stay English although [page] has others; empty
 /// if there are none.
