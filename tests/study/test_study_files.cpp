@@ -294,9 +294,8 @@ TEST_CASE("anything other than a file is refused at once")
     has(caught_message([&] { read_file(f / "pipe"); }), "it is no file");
     has(caught_message([&] { read_file(f.path()); }), "it is no file");
     has(caught_message([&] { read_file(f / "none"); }), "No such file");
-    f.write("large", std::string(20, 'x'));
-    has(caught_message([&] { read_file(f / "large", 19); }), "longer than 0 MB");
-    CHECK(read_file(f / "large", 20).size() == 20);
+    f.write("some", "text");
+    CHECK(read_file(f / "some") == "text");
 }
 
 } // namespace

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <set>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -40,48 +41,43 @@ void refuse_strangers(const fs::path& folder, const std::vector<std::string>& kn
     }
 }
 
-std::vector<std::string> select(const std::vector<std::string>& known, const selection& who)
+// Returns the codes that an option names, without sub-.
+std::set<std::string> find_codes(const std::vector<std::string>& known,
+                                 const std::vector<std::string>& wanted, std::string_view option)
 {
-    const auto find = [&](const std::vector<std::string>& wanted, std::string_view option) {
-        std::set<std::string> codes;
-        for (const std::string& w : wanted) {
-            const std::string code = w.starts_with(prefix) ? w.substr(prefix.size()) : w;
-            if (std::find(known.begin(), known.end(), code) == known.end())
-                throw error(error_kind::bad_input, option,
-                            fmt::format("\"{}\" is not in participants.tsv", w),
-                            fmt::format("there are {}", fmt::join(known, ", ")));
-            codes.insert(code);
-        }
-        return codes;
-    };
-    const std::set<std::string> only = find(who.only, "--participants");
-    const std::set<std::string> without = find(who.without, "--exclude");
-    std::vector<std::string> left;
-    for (const std::string& code : known)
-        if ((only.empty() || only.contains(code)) && !without.contains(code))
-            left.push_back(code);
-    if (left.empty())
-        throw error(error_kind::bad_input, "--participants", "nobody is left",
-                    "somebody must have taken part");
-    return left;
+    std::set<std::string> codes;
+    for (const std::string& w : wanted) {
+        const std::string code = w.starts_with(prefix) ? w.substr(prefix.size()) : w;
+        if (std::find(known.begin(), known.end(), code) == known.end())
+            throw error(error_kind::bad_input, option, fmt::format("\"{}\" is not in participants.tsv", w),
+                        fmt::format("there are {}", fmt::join(known, ", ")));
+        codes.insert(code);
+    }
+    return codes;
 }
 
-std::vector<left_out> excluded(const std::vector<std::string>& known,
-                               const std::vector<std::string>& selected, const selection& who)
+// Returns the selected codes; adds the others to `excluded`.
+std::vector<std::string> select(const std::vector<std::string>& known, const selection& who,
+                                std::vector<left_out>& excluded)
 {
-    std::vector<left_out> all;
+    const std::set<std::string> only = find_codes(known, who.only, "--participants");
+    const std::set<std::string> without = find_codes(known, who.without, "--exclude");
+    std::vector<std::string> selected;
     for (const std::string& code : known) {
-        if (std::find(selected.begin(), selected.end(), code) != selected.end())
-            continue;
-        const bool named = std::any_of(who.without.begin(), who.without.end(), [&](const std::string& w) {
-            return w == code || w == std::string(prefix) + code;
-        });
         const auto reason = who.reasons.find(code);
-        all.push_back({code, reason != who.reasons.end() ? reason->second
-                             : named                     ? "no reason was given"
-                                                         : "not among those selected"});
+        if (reason != who.reasons.end())
+            excluded.push_back({code, reason->second});
+        else if (without.contains(code))
+            excluded.push_back({code, "no reason was given"});
+        else if (!only.empty() && !only.contains(code))
+            excluded.push_back({code, "not among those selected"});
+        else
+            selected.push_back(code);
     }
-    return all;
+    if (selected.empty())
+        throw error(error_kind::bad_input, "--participants", "nobody is left",
+                    "somebody must have taken part");
+    return selected;
 }
 
 std::size_t find_place(const text_table& t, std::size_t row, std::string_view column,
@@ -286,11 +282,11 @@ dataset read_dataset(const fs::path& folder, const selection& who)
                     "tactor experiment adds a line for each participant");
     refuse_strangers(folder, known);
     reader r(folder);
-    const std::vector<std::string> selected = select(known, who);
-    for (const std::string& code : selected)
+    std::vector<left_out> excluded;
+    for (const std::string& code : select(known, who, excluded))
         r.add(code);
     dataset d = r.finish();
-    d.excluded = excluded(known, selected, who);
+    d.excluded = std::move(excluded);
     return d;
 }
 

@@ -90,8 +90,9 @@ std::size_t count_line_ends(std::string_view text)
 
 } // namespace
 
-std::string read_file(const std::filesystem::path& file, std::size_t most)
+std::string read_file(const std::filesystem::path& file)
 {
+    constexpr std::size_t most_bytes = std::size_t{64} << 20; // one trial takes about 200
     std::error_code failed;
     const std::filesystem::file_status s = std::filesystem::status(file, failed);
     if (!std::filesystem::exists(s))
@@ -101,7 +102,8 @@ std::string read_file(const std::filesystem::path& file, std::size_t most)
     if (!std::filesystem::is_regular_file(s))
         throw error(error_kind::bad_input, file.string(), "it is no file",
                     "the folder of a study has files only");
-    return std::string(std::string_view(detail::read_text_file(file, most, detail::owner_kind::program)));
+    return std::string(
+        std::string_view(detail::read_text_file(file, most_bytes, detail::owner_kind::program)));
 }
 
 bool is_there(const std::filesystem::path& study, const std::filesystem::path& below)
@@ -112,22 +114,17 @@ bool is_there(const std::filesystem::path& study, const std::filesystem::path& b
         throw error(error_kind::bad_input, at.string(), why,
                     "mend it, or leave its participant out with --exclude");
     };
-    const auto look = [&refuse](const fs::path& p, auto ask) {
-        std::error_code failed;
-        const fs::file_status s = ask(p, failed);
-        if (failed && s.type() != fs::file_type::not_found)
-            refuse(failed.message());
-        return s.type();
-    };
-    using ask = fs::file_status (*)(const fs::path&, std::error_code&);
     for (const fs::path& part : below) {
-        if (at != study && look(at, static_cast<ask>(fs::status)) != fs::file_type::directory)
-            refuse("it is no folder");
+        std::error_code failed;
+        if (at != study && !fs::is_directory(at, failed))
+            refuse(failed ? failed.message() : "it is no folder");
         at /= part;
-        if (look(at, static_cast<ask>(fs::symlink_status)) == fs::file_type::not_found)
+        if (fs::symlink_status(at, failed).type() == fs::file_type::not_found)
             return false;
-        if (look(at, static_cast<ask>(fs::status)) == fs::file_type::not_found)
+        if (fs::status(at, failed).type() == fs::file_type::not_found)
             refuse("it is a link to nothing");
+        if (failed)
+            refuse(failed.message());
     }
     return true;
 }

@@ -45,12 +45,9 @@ std::string written_cell(std::string_view text);
 /// Tests for UTF-8 without bytes of 0.
 bool is_plain_text(std::string_view text) noexcept;
 
-/// A trial is a line of some 200 bytes: more than this is no table of ours.
-inline constexpr std::size_t most_bytes = std::size_t{64} << 20;
-
 /// Returns the bytes of a regular file; refuses a pipe or a device in a study's folder without waiting for
 /// it. \throws error (bad_input) naming it.
-std::string read_file(const std::filesystem::path& file, std::size_t most = most_bytes);
+std::string read_file(const std::filesystem::path& file);
 
 /// Returns true if something of a study is there. \throws error (bad_input) for what is there and cannot be
 /// reached, because it would count as data that never were: a link to nothing, a folder that may not be
