@@ -2,10 +2,13 @@
 #include "study/bids/study_folder.hpp"
 
 #include <algorithm>
+#include <chrono>
+#include <cstring>
 #include <ctime>
 #include <string_view>
 #include <utility>
 
+#include <fmt/chrono.h>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
@@ -100,8 +103,7 @@ std::string response_meaning(const run_definition& r)
 
 constexpr std::int64_t second_ns = 1000000000;
 constexpr std::int64_t microsecond_ns = 1000;
-constexpr std::size_t seconds_length = 19; // 2026-11-21T14:03:00
-constexpr std::size_t fraction_length = 7;
+constexpr std::size_t fraction_digits = 6;
 
 } // namespace
 
@@ -354,32 +356,27 @@ std::string task_text(const run_definition& r, bool simulated)
 
 std::string acq_time_text(std::int64_t utc_ns)
 {
-    const std::time_t t = utc_ns / second_ns;
-    std::tm utc{};
-    ::gmtime_r(&t, &utc);
-    return fmt::format("{:04}-{:02}-{:02}T{:02}:{:02}:{:02}.{:06}Z", utc.tm_year + 1900, utc.tm_mon + 1,
-                       utc.tm_mday, utc.tm_hour, utc.tm_min, utc.tm_sec, utc_ns % second_ns / microsecond_ns);
+    return fmt::format("{:%FT%T}.{:06}Z", fmt::gmtime(utc_ns / second_ns),
+                       utc_ns % second_ns / microsecond_ns);
 }
 
 std::optional<std::int64_t> acq_time_ns(const std::string& text)
 {
     std::tm utc{};
-    const std::size_t length = text.size() - (text.ends_with('Z') ? 1 : 0);
-    if (length != seconds_length + fraction_length ||
-        ::strptime(text.c_str(), "%Y-%m-%dT%H:%M:%S.", &utc) != text.c_str() + seconds_length + 1)
+    const char* point = ::strptime(text.c_str(), "%Y-%m-%dT%H:%M:%S.", &utc);
+    if (point == nullptr)
         return {};
-    const auto microseconds = detail::number_in<std::int64_t>(
-        std::string_view(text).substr(seconds_length + 1, fraction_length - 1));
-    if (!microseconds || *microseconds < 0)
+    const std::string_view digits(point, text.ends_with('Z') ? std::strlen(point) - 1 : std::strlen(point));
+    const auto microseconds = detail::number_in<std::uint32_t>(digits);
+    if (!microseconds || digits.size() != fraction_digits)
         return {};
     return ::timegm(&utc) * second_ns + *microseconds * microsecond_ns;
 }
 
 std::int64_t utc_now_ns() noexcept
 {
-    timespec now{};
-    ::clock_gettime(CLOCK_REALTIME, &now);
-    return now.tv_sec * second_ns + now.tv_nsec;
+    const auto now = std::chrono::system_clock::now().time_since_epoch();
+    return std::chrono::duration_cast<std::chrono::nanoseconds>(now).count();
 }
 
 } // namespace tactor::study
