@@ -15,23 +15,12 @@ namespace {
 constexpr int look_ms = 20;          // interval of looks at a stream that stands still
 constexpr int masking_priority = 60; // below the array's audio thread
 
-masking_options checked(const masking_options& o)
-{
-    const double most = greatest_noise_dbfs(o.color);
-    if (!(o.level_dbfs <= most))
-        throw error(
-            error_kind::bad_input, "masking noise",
-            fmt::format("{} dBFS is above {} dBFS, where its peaks are at full scale", o.level_dbfs, most),
-            "less, and a louder amplifier");
-    return o;
-}
-
 } // namespace
 
 masker::masker(std::unique_ptr<sink> s, const masking_options& o)
     : sink_(std::move(s)),
       patience_(o.patience_s + o.fade_s),
-      stream_(*sink_, checked(o)),
+      stream_(*sink_, o),
       fds_(sink_->max_descriptors() + 1)
 {
     if (const io_kind k = stream_.begin(); k != io_kind::ok)

@@ -22,8 +22,9 @@ namespace tactor::study {
 /// Plays silence, and noise between fade_in() and fade_out(). One caller at a time.
 class masker {
 public:
-    /// Starts the stream. \throws error: bad_input for a level above greatest_noise_dbfs(), runtime when the
-    /// stream does not start; std::system_error if the system has no thread or descriptor left.
+    /// Starts the stream. Peaks above full scale are clipped: see greatest_noise_dbfs(). \throws error
+    /// (runtime) when the stream does not start; std::system_error if the system has no thread or descriptor
+    /// left.
     masker(std::unique_ptr<sink> s, const masking_options& o);
     /// Cuts the sound: call fade_out() and wait_for(masking_state::silent) before.
     ~masker();
