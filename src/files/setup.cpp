@@ -16,7 +16,7 @@
 #include "core/kind_names.hpp"
 #include "core/label.hpp"
 #include "core/words.hpp"
-#include "files/stroke/parts.hpp"
+#include "files/stroke/toml.hpp"
 #include "files/text_file.hpp"
 #include "files/toml_reader.hpp"
 
@@ -176,11 +176,10 @@ void read_threshold(const toml_table& entry, tactor_spec& t)
         t.threshold_dbfs = entry.number("threshold_dbfs", limit_db);
         return;
     }
-    std::vector<double> pair;
     for (const toml::node& e : *entry.list("threshold_dbfs", "[Hz, dBFS]")) {
-        entry.numbers(e, "a threshold", 2, 2, pair);
-        const threshold_point p{entry.within(e, "the frequency", pair[0], bounds_of::carrier_hz),
-                                entry.within(e, "the threshold", pair[1], limit_db)};
+        const auto [hz, dbfs] = entry.pair(e, "a threshold");
+        const threshold_point p{entry.within(e, "the frequency", hz, bounds_of::carrier_hz),
+                                entry.within(e, "the threshold", dbfs, limit_db)};
         if (!t.thresholds.empty() && p.hz <= t.thresholds.back().hz)
             fail_at(entry.where(e),
                     fmt::format("the frequency {} does not come after {}", p.hz, t.thresholds.back().hz),

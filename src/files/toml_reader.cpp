@@ -218,7 +218,7 @@ toml_table::toml_table(const toml::table& t, std::string title, const std::strin
 {
 }
 
-void toml_table::only(std::span<const std::string_view> known) const
+void toml_table::only(const std::vector<std::string_view>& known) const
 {
     for (const said_key& e : entries())
         if (std::find(known.begin(), known.end(), e.key) == known.end())
@@ -362,7 +362,7 @@ std::optional<std::string> toml_table::text(std::string_view key) const
 }
 
 std::optional<std::string> toml_table::choice(std::string_view key,
-                                              std::span<const std::string_view> of) const
+                                              const std::vector<std::string_view>& of) const
 {
     std::optional<std::string> s = text(key);
     if (!s)
@@ -414,25 +414,20 @@ std::optional<point> toml_table::place(std::string_view key) const
     const toml::node* n = node(key);
     if (!n)
         return std::nullopt;
-    std::vector<double> xy;
-    numbers(*n, key, 2, 2, xy);
-    return point{xy[0], xy[1]};
+    const auto [x, y] = pair(*n, key);
+    return point{x, y};
 }
 
-void toml_table::numbers(const toml::node& entry, std::string_view called, std::size_t least,
-                         std::size_t most, std::vector<double>& out) const
+std::array<double, 2> toml_table::pair(const toml::node& entry, std::string_view called) const
 {
     const toml::array* a = entry.as_array();
-    if (!a || a->size() < least || a->size() > most)
-        wrong_type(called, entry,
-                   least == most ? fmt::format("a list of {} numbers", least)
-                                 : fmt::format("a list of {} to {} numbers", least, most));
-    out.clear();
-    for (const toml::node& n : *a)
-        out.push_back(to_number(n, called, {-max_mm, max_mm}));
+    if (!a || a->size() != 2)
+        wrong_type(called, entry, "a list of 2 numbers");
+    constexpr bounds any_mm{-max_mm, max_mm};
+    return {to_number((*a)[0], called, any_mm), to_number((*a)[1], called, any_mm)};
 }
 
-std::string_view toml_table::one_of(std::span<const std::string_view> keys) const
+std::string_view toml_table::one_of(const std::vector<std::string_view>& keys) const
 {
     std::string_view found;
     for (const std::string_view k : keys) {

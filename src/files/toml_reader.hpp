@@ -2,10 +2,8 @@
 // TOML with types, ranges and known keys checked; every complaint has its line and column.
 #pragma once
 
-#include <cstddef>
-#include <initializer_list>
+#include <array>
 #include <optional>
-#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -40,8 +38,7 @@ public:
     toml_table(const toml::table& t, std::string title, const std::string& file);
 
     /// Refuses other keys than these. \throws error that names the nearest.
-    void only(std::span<const std::string_view> known) const;
-    void only(std::initializer_list<std::string_view> known) const { only({known.begin(), known.size()}); }
+    void only(const std::vector<std::string_view>& known) const;
 
     /// A key with its value.
     struct said_key {
@@ -69,11 +66,7 @@ public:
     }
     std::optional<bool> boolean(std::string_view key) const;
     std::optional<std::string> text(std::string_view key) const; ///< not empty
-    std::optional<std::string> choice(std::string_view key, std::span<const std::string_view> of) const;
-    std::optional<std::string> choice(std::string_view key, std::initializer_list<std::string_view> of) const
-    {
-        return choice(key, std::span(of.begin(), of.size()));
-    }
+    std::optional<std::string> choice(std::string_view key, const std::vector<std::string_view>& of) const;
     /// Reads a value of a closed set, by its name.
     template <class Kind>
     std::optional<Kind> kind(std::string_view key) const
@@ -88,11 +81,10 @@ public:
     const toml::array* list(std::string_view key, std::string_view of_what) const;
     const toml::node* node(std::string_view key) const;
 
-    /// Reads [x, y] in mm, within max_mm.
+    /// Reads [x, y] in mm.
     std::optional<point> place(std::string_view key) const;
-    /// Reads the numbers of a list entry into `out`; their count must be in least ... most.
-    void numbers(const toml::node& entry, std::string_view called, std::size_t least, std::size_t most,
-                 std::vector<double>& out) const;
+    /// Reads a list of two numbers within max_mm.
+    std::array<double, 2> pair(const toml::node& entry, std::string_view called) const;
     /// Reads a flag, a number or a text. Refuses whole numbers that a double does not hold.
     std::variant<std::monostate, bool, double, std::string> plain(const toml::node& n,
                                                                   std::string_view called) const;
@@ -110,11 +102,7 @@ public:
     }
 
     /// Returns the one of `keys` that is there. \throws error for none or more than one.
-    std::string_view one_of(std::span<const std::string_view> keys) const;
-    std::string_view one_of(std::initializer_list<std::string_view> keys) const
-    {
-        return one_of(std::span(keys.begin(), keys.size()));
-    }
+    std::string_view one_of(const std::vector<std::string_view>& keys) const;
 
     /// Returns make(). Adds the key and its place to an error of it.
     template <class F>

@@ -9,6 +9,8 @@
 #include <numbers>
 
 #include <boost/math/quadrature/gauss.hpp>
+#include <boost/math/special_functions/cos_pi.hpp>
+#include <boost/math/special_functions/sin_pi.hpp>
 #include <boost/math/tools/roots.hpp>
 #include <boost/math/tools/toms748_solve.hpp>
 
@@ -276,6 +278,13 @@ double rough_length(const shape& c) noexcept
         return distance_mm(b->p[0], b->p[1]) + distance_mm(b->p[1], b->p[2]) + distance_mm(b->p[2], b->p[3]);
     const auto& e = *std::get_if<elliptic>(&c);
     return std::abs(e.sweep) * (distance_mm({}, e.u) + distance_mm({}, e.v));
+}
+
+affine rotation(double degrees)
+{
+    const double c = boost::math::cos_pi(degrees / 180.0);
+    const double s = boost::math::sin_pi(degrees / 180.0);
+    return {c, s, -s, c, 0.0, 0.0};
 }
 
 affine operator*(const affine& outer, const affine& inner) noexcept

@@ -101,6 +101,9 @@ struct affine {
     double determinant() const noexcept { return a * d - b * c; }
 };
 
+/// Returns the turn about the origin, clockwise where y points down; exact for quarter turns.
+affine rotation(double degrees);
+
 /// Returns the map that applies `inner` first, then `outer`.
 affine operator*(const affine& outer, const affine& inner) noexcept;
 

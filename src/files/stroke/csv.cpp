@@ -23,11 +23,15 @@
 #include "core/suggest.hpp"
 #include "core/trajectory/recorded_points.hpp"
 #include "core/words.hpp"
-#include "files/stroke/parts.hpp"
 #include "files/text_file.hpp"
 
-namespace tactor::detail {
+namespace tactor {
+inline namespace v0 {
 namespace {
+
+using detail::scan_number;
+using detail::split;
+using detail::without_blanks;
 
 constexpr std::string_view first_column = "t_s";
 constexpr std::size_t longest_look = 4096;
@@ -35,6 +39,12 @@ constexpr std::size_t longest_look = 4096;
 [[noreturn]] void refuse_form(const source_place& at, std::string_view why, std::string_view hint)
 {
     throw error(error_kind::bad_input, at, why, hint);
+}
+
+// Returns true for nan in any case and for NA.
+bool is_missing(std::string_view value)
+{
+    return value == "NA" || (value.size() == 3 && in_small_letters(std::string(value)) == "nan");
 }
 
 bool is_number(std::string_view s)
@@ -53,7 +63,7 @@ void refuse_lone_cr(std::string_view text, const std::string& name)
     while (!first.empty() && first.back() == '\r')
         first.remove_suffix(1);
     if (const std::size_t at = first.find('\r'); at != std::string_view::npos)
-        refuse_form(find_place(text, at, name), "its lines end in CR alone",
+        refuse_form(detail::find_place(text, at, name), "its lines end in CR alone",
                     "save it with line ends of Unix, or convert it: tr '\\r' '\\n' < OLD > NEW");
 }
 
@@ -77,14 +87,8 @@ std::string_view separators(std::string_view line)
     return {};
 }
 
-} // namespace
-
-bool is_missing(std::string_view value) noexcept
-{
-    return value == "NA" || (value.size() == 3 && (value[0] == 'n' || value[0] == 'N') &&
-                             (value[1] == 'a' || value[1] == 'A') && (value[2] == 'n' || value[2] == 'N'));
-}
-
+// Refuses line ends of CR alone, other separators than commas, and a header that is missing or in a comment,
+// with a message that says so.
 void refuse_other_columns(std::string_view text, const std::string& name)
 {
     refuse_lone_cr(text, name);
@@ -94,12 +98,12 @@ void refuse_other_columns(std::string_view text, const std::string& name)
         // The form shows in the line's first bytes: a line may be as long as the file.
         const std::string_view line = without_blanks(text.substr(at, std::min(end - at, longest_look)));
         if (line.starts_with('#') && line.find(first_column) != std::string_view::npos)
-            comment = find_place(text, at, name);
+            comment = detail::find_place(text, at, name);
         if (line.empty() || line.starts_with('#')) {
             at = end + 1;
             continue;
         }
-        const source_place here = find_place(text, at, name);
+        const source_place here = detail::find_place(text, at, name);
         if (const std::string_view words = separators(line); !words.empty())
             refuse_form(here, fmt::format("{} separate its columns", words),
                         words == "semicolons"
@@ -115,12 +119,6 @@ void refuse_other_columns(std::string_view text, const std::string& name)
         refuse_form(here, "there is no line that names the columns", "begin with: t_s,x_mm,y_mm");
     }
 }
-
-} // namespace tactor::detail
-
-namespace tactor {
-inline namespace v0 {
-namespace {
 
 enum column : std::size_t { t_s, x_mm, y_mm, intensity, columns };
 
@@ -272,7 +270,7 @@ private:
                  "numbers have a decimal point, and a comma stands only between them");
         timed_point p;
         for (std::size_t i = 0; i < order_.size(); ++i)
-            if (order_[i] != columns && order_[i] != t_s && detail::is_missing(fields_[i].text))
+            if (order_[i] != columns && order_[i] != t_s && is_missing(fields_[i].text))
                 p.intensity = std::numeric_limits<double>::quiet_NaN(); // a tracker had lost its target
         for (std::size_t i = 0; i < order_.size() && !std::isnan(p.intensity); ++i)
             if (order_[i] != columns)
@@ -297,7 +295,7 @@ private:
             fail(f.column, fmt::format("{} is missing", names[c]),
                  "give a number, or nan where there is none");
         std::size_t end = 0;
-        const auto v = detail::scan_number(f.text, end);
+        const auto v = scan_number(f.text, end);
         if (!v || end != f.text.size())
             fail(f.column, fmt::format("{} is not a number: {}", names[c], detail::quoted(f.text)),
                  "e.g. 12.5");
@@ -327,9 +325,9 @@ private:
 std::vector<stroke> parse_strokes_csv(std::string_view text, const std::string& name, double intensity_max)
 {
     detail::check_size(text, name, detail::max_stroke_bytes, "is it the right file?");
-    if (!detail::without_blanks(text).empty())
+    if (!without_blanks(text).empty())
         detail::refuse_other_form(text, name, "csv");
-    detail::refuse_other_columns(detail::without_mark(text), name);
+    refuse_other_columns(detail::without_mark(text), name);
     return csv_reader(text, name, intensity_max).read();
 }
 

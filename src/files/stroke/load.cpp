@@ -5,7 +5,7 @@
 
 #include "core/words.hpp"
 #include "files/input_files.hpp"
-#include "files/stroke/parts.hpp"
+#include "files/stroke/toml.hpp"
 #include "files/text_file.hpp"
 
 namespace tactor {
@@ -50,7 +50,7 @@ std::vector<stroke> load_strokes(const std::filesystem::path& file, double inten
     const std::string name = file.string();
     const std::string_view format = format_in_name(file);
     if (format == "toml")
-        return detail::strokes_of_toml_file(text, name, intensity_max);
+        return detail::read_strokes_file(text, name, intensity_max);
     return format.empty() ? parse_strokes(text, name, intensity_max)
                           : parse_as(format, text, name, intensity_max);
 }

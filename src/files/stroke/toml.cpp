@@ -1,31 +1,39 @@
 // SPDX-License-Identifier: MIT
 // Stroke files in TOML: [stroke] or [[stroke]].
+#include "files/stroke/toml.hpp"
+
 #include <algorithm>
 #include <array>
-#include <filesystem>
+#include <cmath>
 #include <iterator>
+#include <optional>
+#include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
 
 #include <fmt/format.h>
 
-#include <tactor/stroke.hpp>
+#include <tactor/error.hpp>
 
 #include "core/access.hpp"
 #include "core/bounds.hpp"
 #include "core/limits.hpp"
+#include "core/moved.hpp"
+#include "core/pace.hpp"
 #include "core/profile.hpp"
 #include "core/suggest.hpp"
 #include "core/trajectory/impl.hpp"
 #include "core/trajectory/recorded_points.hpp"
-#include "files/stroke/parts.hpp"
 #include "files/text_file.hpp"
-#include "files/toml_reader.hpp"
 
-namespace tactor {
-inline namespace v0 {
+namespace tactor::detail {
 namespace {
+
+constexpr std::size_t most_strokes = 100'000; // more are the wrong file, or a slip in `repeat`
+constexpr unsigned most_repeats = 10'000;
+constexpr unsigned deepest_group = 8;
+constexpr double longest_soa_s = 10.0;
 
 /// Circumstances of a text.
 struct reading {
@@ -33,21 +41,280 @@ struct reading {
     double intensity_max;                ///< value of a timed point that means 1
 };
 
-using detail::max_mm;
-using detail::told_pace;
-using detail::toml_table;
+constexpr std::string_view kinds[] = {"path", "points", "timed", "arc", "preset"};
+constexpr std::string_view order_keys[] = {"name", "start_s", "start_from", "repeat", "pause_s"};
+constexpr std::string_view placing_keys[] = {"scale", "rotate_deg", "translate_mm", "mirror", "about_mm"};
+constexpr std::string_view fit_keys[] = {"stroke", "level_db", "fit", "fit_margin_mm"};
+constexpr std::string_view movement_keys[] = {"duration_s", "speed_mm_s", "intensity",
+                                              "easing",     "pauses",     "reverse"};
+constexpr std::string_view sound_keys[] = {"carrier_hz", "waveform", "am_hz",      "am_depth",
+                                           "noise_seed", "texture",  "texture_mm", "carrier_profile"};
+constexpr std::string_view choice_keys[] = {"algorithm", "phantom", "faces", "soa_s", "burst_s"};
 
-constexpr unsigned deepest_group = 8;
+template <class... Lists>
+std::vector<std::string_view> join_keys(const Lists&... lists)
+{
+    std::vector<std::string_view> all;
+    (all.insert(all.end(), std::begin(lists), std::end(lists)), ...);
+    return all;
+}
+
+// Returns make(). Adds the place in the file to an error of it.
+template <class F>
+auto with_place(const toml_table& t, std::string_view key, F make)
+{
+    try {
+        return make();
+    } catch (const error& e) {
+        t.fail(key, e.subject() == key ? std::string(e.why()) : fmt::format("{}: {}", e.subject(), e.why()),
+               e.hint());
+    }
+}
+
+void refuse_unused(const toml_table& t, const char* key, bool used, const char* hint)
+{
+    if (t.has(key) && !used)
+        t.fail(key, fmt::format("{} has {}, which nothing uses", t.title(), key), hint);
+}
+
+std::optional<waveform> read_waveform(const toml_table& t, const std::filesystem::path* folder)
+{
+    const auto text = t.text("waveform");
+    const auto seed = t.number("noise_seed", bounds_of::seed);
+    const auto texture = t.kind<texture_kind>("texture");
+    const auto texture_mm = t.number("texture_mm", bounds_of::texture_mm);
+    waveform w;
+    if (text && folder == nullptr && waveform_names_file(*text))
+        t.fail("waveform", fmt::format("waveform is a file, {}, and this text is none", *text),
+               "give the stroke as a file of its own");
+    if (text)
+        w = with_place(t, "waveform", [&] { return parse_waveform(*text, folder ? *folder : ""); });
+    const bool recorded = w.kind == waveform_kind::recording;
+    refuse_unused(t, "noise_seed", w.kind == waveform_kind::noise, "add waveform = \"noise:LO-HI\"");
+    refuse_unused(t, "texture", recorded, "add waveform = \"FILE.wav\"");
+    refuse_unused(t, "texture_mm", recorded, "add waveform = \"FILE.wav\" and texture = \"length\"");
+    if (!text)
+        return {};
+    if (seed && *seed != std::floor(*seed))
+        t.fail("noise_seed", fmt::format("noise_seed is {}", *seed), "give a whole number");
+    w.seed = static_cast<std::uint64_t>(seed.value_or(static_cast<double>(w.seed)));
+    w.texture = texture.value_or(w.texture);
+    refuse_unused(t, "texture_mm", w.texture == texture_kind::length, "add texture = \"length\"");
+    w.texture_mm = texture_mm.value_or(0.0);
+    with_place(t, "waveform", [&] { validate(w); });
+    return w;
+}
+
+std::optional<modulation> read_modulation(const toml_table& t)
+{
+    const auto hz = t.number("am_hz", bounds_of::am_hz);
+    const auto depth = t.number("am_depth", bounds_of::part);
+    refuse_unused(t, "am_depth", hz.has_value(), "add am_hz, such as am_hz = 30.0");
+    return hz ? std::optional(modulation{*hz, depth.value_or(1.0)}) : std::nullopt;
+}
+
+/// Calls take(part, entry) for each entry of a list, which begins with a part of the path. Parts ascend.
+template <class Take>
+void for_each_part(const toml_table& t, std::string_view key, std::string_view shape, std::size_t most,
+                   Take take)
+{
+    const toml::array& list = *t.list(key, shape);
+    if (list.empty())
+        t.fail(key, fmt::format("{} is an empty list", key), fmt::format("give {}", shape));
+    double before = -1.0;
+    for (const toml::node& node : list) {
+        const toml::array* entry = node.as_array();
+        if (!entry || entry->size() < 2 || entry->size() > most)
+            fail_at(t.where(node), fmt::format("an entry of {} is {}", key, shown(node)),
+                    fmt::format("give {}", shape));
+        const double part = t.to_number((*entry)[0], "the part of the path", bounds_of::part);
+        if (!(part > before))
+            fail_at(t.where(node), fmt::format("the part {} of {} does not come after {}", part, key, before),
+                    "parts ascend from 0, the path's start, to 1, its end");
+        before = part;
+        take(part, *entry);
+    }
+}
+
+/// Reads points of a profile: profile_point or carrier_part.
+template <class Point>
+std::vector<Point> read_profile(const toml_table& t, std::string_view key, bounds values)
+{
+    std::vector<Point> points;
+    for_each_part(t, key, "[[part, value], ...]", 2, [&](double part, const toml::array& entry) {
+        points.push_back({part, t.to_number(entry[1], key, values)});
+    });
+    return points;
+}
+
+std::vector<rest> read_pauses(const toml_table& t)
+{
+    std::vector<rest> rests;
+    for_each_part(t, "pauses", "[[part, seconds], ...] or [[part, seconds, intensity], ...]", 3,
+                  [&](double part, const toml::array& entry) {
+                      const double time = t.to_number(entry[1], "a pause", {0.0, longest_stroke_s, true});
+                      const double intensity =
+                          entry.size() == 3
+                              ? t.to_number(entry[2], "the intensity of a pause", bounds_of::part)
+                              : 1.0;
+                      rests.push_back({part, time, intensity});
+                  });
+    return rests;
+}
+
+/// Reads the sound. `folder` has the WAV files; null: the text is no file's, may come from anywhere, and may
+/// name none.
+void read_sound(const toml_table& t, const std::filesystem::path* folder, stroke& s)
+{
+    s.sound.wave = read_waveform(t, folder);
+    s.sound.am = read_modulation(t);
+    if (s.sound.wave)
+        s.places.wave = t.where("waveform");
+    if (!t.has("carrier_profile"))
+        return;
+    if (t.has("carrier_hz"))
+        t.fail("carrier_profile", fmt::format("{} has both carrier_hz and carrier_profile", t.title()),
+               "keep one of them");
+    s.sound.carrier_profile = read_profile<carrier_part>(t, "carrier_profile", bounds_of::carrier_hz);
+    s.places.carrier = t.where("carrier_profile");
+}
+
+/// Reads fit and fit_margin_mm; nothing where nothing is to be fitted.
+std::optional<stroke_fit> read_fit(const toml_table& t)
+{
+    const bool fit = t.boolean("fit").value_or(false);
+    const auto margin = t.number("fit_margin_mm", bounds_of::margin_mm);
+    if (margin && !fit)
+        t.fail("fit_margin_mm", "nothing is fitted", "add fit = true, or leave it out");
+    return fit ? std::optional(stroke_fit{margin.value_or(0.0)}) : std::nullopt;
+}
+
+/// Reads the choices of a stroke that may differ from the other strokes' in a plan.
+void read_choices(const toml_table& t, stroke& s)
+{
+    s.choices.algorithm = t.kind<algorithm_kind>("algorithm");
+    s.choices.phantom = t.kind<phantom_kind>("phantom");
+    s.choices.faces = t.kind<faces_kind>("faces");
+    s.choices.soa_s = t.number("soa_s", {0.0, longest_soa_s, true});
+    s.choices.burst_s = t.number("burst_s", bounds_of::burst_s);
+    if (s.choices.soa_s && s.choices.burst_s && *s.choices.burst_s > *s.choices.soa_s)
+        t.fail("burst_s",
+               fmt::format("burst_s is {}, longer than soa_s of {}", *s.choices.burst_s, *s.choices.soa_s),
+               "bursts must not overlap: at most soa_s");
+    for (const char* key : {"burst_s", "soa_s"})
+        if (t.has(key))
+            s.places.choices = t.where(key);
+    s.fit = read_fit(t);
+}
+
+/// Changes the level of a stroke as level_db says; mirrors, scales, turns and moves it as the keys for that
+/// say. A stroke with a speed keeps it.
+void place_stroke(const toml_table& t, stroke& s)
+{
+    constexpr bounds levels_db{-120.0, 60.0};
+    constexpr bounds scales{0.0, 1e6, true};
+    s.choices.level_db += t.number("level_db", levels_db).value_or(0.0);
+    const auto about = t.place("about_mm");
+    const auto first =
+        std::find_if(std::begin(placing_keys), std::end(placing_keys), [&t](auto key) { return t.has(key); });
+    if (first == std::end(placing_keys))
+        return;
+    if (*first == "about_mm")
+        t.fail("about_mm", "nothing is scaled, turned or mirrored about it",
+               "add scale, rotate_deg or mirror, or leave it out");
+    affine m = read_turn(t, t.number("scale", scales).value_or(1.0));
+    const point by = t.place("translate_mm").value_or(point{});
+    const point from = about.value_or(point{});
+    m.e = from.x_mm + by.x_mm;
+    m.f = from.y_mm + by.y_mm;
+    s.motion = t.at_key(*first, [&] {
+        const trajectory there = moved(s.motion, from, m, {}, [&] { return std::string(*first); });
+        return s.speed_mm_s && there.length_mm() > 0.0 ? there.with_speed(*s.speed_mm_s) : there;
+    });
+}
+
+/// The pace of a stroke in a file.
+struct pace_keys {
+    std::optional<double> duration_s = {};
+    std::optional<double> speed_mm_s = {}; ///< the one speed
+    double intensity = 1.0;                ///< the one intensity
+    movement moves = {};                   ///< easing, lists and pauses
+    std::string_view uneven = {};          ///< the first key that makes it uneven; empty: none
+
+    /// Returns the seconds for a length, if the file gives them.
+    std::optional<double> time_s(double length_mm) const
+    {
+        return speed_mm_s ? length_mm / *speed_mm_s : duration_s;
+    }
+    /// Returns the mean speed that a stroke keeps when it is fitted; none where the file gives its time.
+    std::optional<double> mean_speed_mm_s(double length_mm) const
+    {
+        return moves.speed_mm_s.empty() ? speed_mm_s : length_mm / time_at_speeds_s(moves, length_mm);
+    }
+};
+
+pace_keys read_pace(const toml_table& t)
+{
+    pace_keys p;
+    const auto note_uneven = [&p](std::string_view key) { p.uneven = p.uneven.empty() ? key : p.uneven; };
+    // Reads a key that is one number, or a profile.
+    const auto read = [&](std::string_view key, bounds one, double least) -> std::optional<double> {
+        if (!t.has(key) || !t.node(key)->is_array())
+            return t.number(key, one);
+        note_uneven(key);
+        (key == "intensity" ? p.moves.intensity : p.moves.speed_mm_s) =
+            read_profile<profile_point>(t, key, {least, one.high});
+        return {};
+    };
+    p.duration_s = t.number("duration_s", {0.0, longest_stroke_s, true});
+    if (const auto easing = t.kind<easing_kind>("easing")) {
+        p.moves.easing = *easing;
+        note_uneven("easing");
+    }
+    p.speed_mm_s = read("speed_mm_s", {0.0, max_mm, true}, least_speed_mm_s);
+    p.intensity = read("intensity", bounds_of::part, 0.0).value_or(1.0);
+    if (t.has("pauses")) {
+        p.moves.rests = read_pauses(t);
+        note_uneven("pauses");
+    }
+    if (p.duration_s && t.has("speed_mm_s"))
+        t.fail("speed_mm_s", fmt::format("{} has both duration_s and speed_mm_s", t.title()),
+               "keep one of them");
+    return p;
+}
+
+/// Returns a movement along a path at the pace in the file; `own_s` is the time of a preset, for a file that
+/// gives none.
+trajectory make_motion(const toml_table& t, std::string_view kind, const path& way, const pace_keys& keys,
+                       std::optional<double> own_s)
+{
+    const bool speeds = !keys.moves.speed_mm_s.empty();
+    std::optional<double> seconds = keys.time_s(way.length_mm());
+    std::string_view key = keys.speed_mm_s || speeds ? "speed_mm_s" : keys.duration_s ? "duration_s" : kind;
+    if (!seconds && !speeds)
+        seconds = own_s.value_or(way.length_mm() / default_speed_mm_s);
+    movement m = keys.moves;
+    m.duration_s = seconds;
+    // A speed, and a preset's own time, are of the movement: pauses come on top.
+    if (seconds && !keys.duration_s)
+        for (const rest& r : m.rests)
+            *m.duration_s += r.time_s;
+    if (!m.rests.empty())
+        key = "pauses";
+    return t.at_key(key, [&] {
+        return keys.uneven.empty() ? trajectory::along(way, *seconds, keys.intensity)
+                                   : trajectory::along(way, m, keys.intensity);
+    });
+}
 
 path read_points(const toml_table& t)
 {
     std::vector<point> points;
-    std::vector<double> xy;
     const toml::array& list = *t.list("points", "[x, y]");
     points.reserve(list.size());
     for (const toml::node& entry : list) {
-        t.numbers(entry, "a point", 2, 2, xy);
-        points.push_back({xy[0], xy[1]});
+        const auto [x, y] = t.pair(entry, "a point");
+        points.push_back({x, y});
     }
     return t.at_key("points", [&] { return path::polyline(points); });
 }
@@ -58,15 +325,9 @@ path read_arc(const toml_table& t)
     a.only({"centre", "radius_mm", "from_deg", "sweep_deg"});
     const point centre = a.need(a.place("centre"), "centre");
     const double radius = a.need(a.number("radius_mm", {0.0, max_mm, true}), "radius_mm");
-    const double from = a.need(a.number("from_deg", detail::turn_deg), "from_deg");
+    const double from = a.need(a.number("from_deg", turn_deg), "from_deg");
     const double sweep = a.need(a.number("sweep_deg", {-360.0, 360.0}), "sweep_deg");
     return t.at_key("arc", [&] { return path::arc(centre, radius, from, sweep); });
-}
-
-double number_in(const toml::node& n)
-{
-    const auto* whole = n.as_integer();
-    return whole != nullptr ? static_cast<double>(whole->get()) : n.as_floating_point()->get();
 }
 
 // Reads a recording, whose intensities are multiplied by `intensity`. Adds remarks to `warnings`.
@@ -74,144 +335,221 @@ trajectory read_timed(const toml_table& t, double intensity, double intensity_ma
                       std::vector<std::string>& warnings)
 {
     const toml::node* row = t.node("timed");
-    detail::recorded_points recorded(intensity_max, [&](detail::recorded value) {
+    recorded_points points_read(intensity_max, [&](recorded value) {
         const toml::array* a = row->as_array();
         const auto i = static_cast<std::size_t>(value);
         return t.where(a != nullptr && i < a->size() ? (*a)[i] : *row);
     });
     const toml::array& list = *t.list("timed", "[t_s, x_mm, y_mm]");
-    recorded.reserve(list.size());
+    points_read.reserve(list.size());
     for (const toml::node& entry : list) {
         const toml::array* a = entry.as_array();
         if (!a || a->size() < 3 || a->size() > 4 ||
             !std::all_of(a->begin(), a->end(), [](const toml::node& n) { return n.is_number(); }))
-            detail::fail_at(t.where(entry), fmt::format("a timed point is {}", detail::shown(entry)),
-                            "give [t_s, x_mm, y_mm] or [t_s, x_mm, y_mm, intensity]");
+            fail_at(t.where(entry), fmt::format("a timed point is {}", shown(entry)),
+                    "give [t_s, x_mm, y_mm] or [t_s, x_mm, y_mm, intensity]");
         row = &entry;
-        const auto value = [a](std::size_t i) { return number_in((*a)[i]); };
-        recorded.add({value(0), {value(1), value(2)}, a->size() == 4 ? value(3) : intensity_max});
+        const auto value = [a](std::size_t i) { return *(*a)[i].value<double>(); };
+        points_read.add({value(0), {value(1), value(2)}, a->size() == 4 ? value(3) : intensity_max});
     }
     row = t.node("timed");
-    std::vector<timed_point> points = recorded.take();
-    warnings = recorded.warnings();
+    std::vector<timed_point> points = points_read.take();
+    warnings = points_read.warnings();
     for (timed_point& p : points)
         p.intensity *= intensity;
     return t.at_key("timed", [&] { return trajectory::timed(std::move(points)); });
 }
 
 // Returns a movement that has its own time in the time that the file gives.
-trajectory paced(const toml_table& t, const told_pace& p, trajectory own)
+trajectory with_pace(const toml_table& t, const pace_keys& p, trajectory own)
 {
-    const auto seconds = p.time_for(own.length_mm());
+    const auto seconds = p.time_s(own.length_mm());
     if (!seconds)
         return own;
     const char* key = p.speed_mm_s ? "speed_mm_s" : "duration_s";
     return t.at_key(key, [&] { return own.with_duration(*seconds); });
 }
 
-// Refuses other movements for timed points.
-void refuse_uneven(const toml_table& t, const told_pace& p)
+// Reads name, movement and carrier of a stroke.
+stroke read_drawing(const toml_table& t, std::string name, double intensity_max)
 {
-    if (!p.key.empty())
-        t.fail(
-            p.key,
-            fmt::format("timed points have times and intensities of their own, and {} is for a path", p.key),
-            "leave it out, or give the path as points");
-}
-
-// Returns a preset's movement, or the one along its path that the file gives.
-trajectory preset_as_told(const toml_table& t, const told_pace& p, const trajectory& own)
-{
-    if (p.key.empty())
-        return paced(t, p, own.with_intensity(p.intensity));
-    const path& way = std::get<detail::drawn_path>(detail::access::of(own).law).way;
-    return detail::along_as_told(t, "preset", way, p, own.duration_s());
-}
-
-template <class... Lists>
-std::vector<std::string_view> join_keys(const Lists&... lists)
-{
-    std::vector<std::string_view> all;
-    (all.insert(all.end(), std::begin(lists), std::end(lists)), ...);
-    return all;
-}
-
-constexpr std::array<std::string_view, 5> kinds{"path", "points", "timed", "arc", "preset"};
-constexpr std::array<std::string_view, 4> drawing_keys{"duration_s", "speed_mm_s", "intensity", "carrier_hz"};
-constexpr std::array<std::string_view, 7> placed_keys{"name",         "start_s", "scale",   "rotate_deg",
-                                                      "translate_mm", "mirror",  "about_mm"};
-
-// Reads a stroke before it is placed.
-stroke read_drawn(const toml_table& t, std::string name, double intensity_max)
-{
+    const std::string_view kind = t.one_of(join_keys(kinds));
     if (t.has("stroke"))
-        t.one_of(join_keys(kinds, std::array<std::string_view, 1>{"stroke"})); // refuses two
-    const std::string_view kind = t.one_of(kinds);
-    const told_pace asked = detail::read_pace(t);
-    const auto carrier = t.number("carrier_hz", detail::bounds_of::carrier_hz);
-
-    const auto described = [&](trajectory motion, note_kind note = note_kind::none) {
-        stroke s{.name = t.text("name").value_or(name),
-                 .motion = motion,
-                 .speed_mm_s = asked.speed_mm_s,
-                 .sound = {.carrier_hz = carrier},
-                 .note = note};
-        if (carrier)
-            s.places.carrier = t.where("carrier_hz");
-        return s;
-    };
+        t.one_of({kind, "stroke"}); // refuses two
+    const pace_keys keys = read_pace(t);
+    stroke s{.name = t.text("name").value_or(std::move(name)), .speed_mm_s = keys.speed_mm_s};
+    s.sound.carrier_hz = t.number("carrier_hz", bounds_of::carrier_hz);
+    if (s.sound.carrier_hz)
+        s.places.carrier = t.where("carrier_hz");
     if (kind == "timed") {
-        refuse_uneven(t, asked);
-        std::vector<std::string> warnings;
-        stroke s = described(paced(t, asked, read_timed(t, asked.intensity, intensity_max, warnings)));
-        s.warnings = std::move(warnings);
+        if (!keys.uneven.empty())
+            t.fail(keys.uneven,
+                   fmt::format("timed points have times and intensities of their own, and {} is for a path",
+                               keys.uneven),
+                   "leave it out, or give the path as points");
+        s.motion = with_pace(t, keys, read_timed(t, keys.intensity, intensity_max, s.warnings));
         return s;
     }
     if (kind == "preset") {
-        const std::string preset = *t.text("preset");
-        stroke s = t.at_key(kind, [&] { return preset_stroke(preset); });
-        name = s.name;
-        std::string made_for = s.made_for;
-        s = described(preset_as_told(t, asked, s.motion), s.note);
-        s.made_for = std::move(made_for);
-        if (!asked.moves.speed_mm_s.empty())
-            s.speed_mm_s = detail::kept_speed(asked, s.motion.length_mm());
+        const stroke preset = t.at_key(kind, [&, id = *t.text("preset")] { return preset_stroke(id); });
+        if (!t.has("name"))
+            s.name = preset.name;
+        s.note = preset.note;
+        s.made_for = preset.made_for;
+        const path& way = std::get<drawn_path>(access::of(preset.motion).law).way;
+        s.motion = keys.uneven.empty() ? with_pace(t, keys, preset.motion.with_intensity(keys.intensity))
+                                       : make_motion(t, kind, way, keys, preset.motion.duration_s());
+        s.speed_mm_s = keys.mean_speed_mm_s(way.length_mm());
         return s;
     }
     const path way = kind == "points" ? read_points(t)
                      : kind == "arc"
                          ? read_arc(t)
                          : t.at_key(kind, [&, data = *t.text("path")] { return path::from_svg(data); });
-    stroke s = described(detail::along_as_told(t, kind, way, asked, {}));
-    s.speed_mm_s = detail::kept_speed(asked, way.length_mm());
-    s.usual_pace = !asked.duration_s && !s.speed_mm_s;
+    s.motion = make_motion(t, kind, way, keys, {});
+    s.speed_mm_s = keys.mean_speed_mm_s(way.length_mm());
+    s.usual_pace = !keys.duration_s && !s.speed_mm_s;
     if (s.usual_pace)
         s.speed_mm_s = default_speed_mm_s;
     return s;
 }
 
-detail::entry read_one(const toml_table& t, std::string name, const reading& r)
+/// Strokes that are one entry of the file: their starts count from one another, and the first's is the
+/// entry's.
+struct file_entry {
+    std::vector<stroke> strokes = {};
+    double lead_s = 0.0; ///< from the entry's start to that of its first stroke
+};
+
+void start(stroke& s, double start_s, start_from_kind from, std::size_t back)
 {
-    t.only(join_keys(kinds, drawing_keys, placed_keys, detail::movement_keys, detail::order_keys,
-                     detail::choice_keys, detail::sound_keys,
-                     std::array<std::string_view, 2>{"stroke", "reverse"}));
-    stroke s = detail::levelled(t, detail::chosen(t, read_drawn(t, std::move(name), r.intensity_max)));
-    detail::read_sound(t, r.folder, s);
-    if (t.boolean("reverse").value_or(false)) {
-        s.motion = t.at_key("reverse", [&] { return s.motion.reversed(); });
-        s.sound.carrier_profile = detail::from_the_end(s.sound.carrier_profile);
-    }
-    detail::entry e;
-    e.strokes.push_back(detail::placed(t, std::move(s)));
-    return detail::repeated(t, std::move(e));
+    s.start_s = start_s;
+    s.anchor = {from, static_cast<unsigned>(back)}; // at most most_strokes
 }
 
-detail::entry read_entry(const toml_table& t, const std::string& name, const reading& r, unsigned depth);
-
-detail::entry read_all(const std::vector<toml_table>& tables, detail::sequence::of what,
-                       const std::string& name, const reading& r, unsigned depth)
+/// Places a stroke after the last `back` strokes. Right after the last one it gets no number: that is exact
+/// to the frame.
+void follow(stroke& s, double wait_s, std::size_t back)
 {
-    detail::sequence all(what);
+    if (wait_s == 0.0 && back == 1) {
+        s.start_s.reset();
+        s.anchor = {};
+    } else {
+        start(s, wait_s, start_from_kind::end, back);
+    }
+}
+
+void check_count(const toml_table& t, std::string_view key, std::size_t strokes)
+{
+    if (strokes > most_strokes)
+        t.fail(key, fmt::format("{} strokes in all", strokes), fmt::format("at most {}", most_strokes));
+}
+
+start_from_kind read_from(const toml_table& t)
+{
+    return t.kind<start_from_kind>("start_from").value_or(start_from_kind::piece);
+}
+
+/// Strokes one after the other as the keys start_s and start_from of their tables say.
+class sequence {
+public:
+    /// `in_group`: starts count from a group's start, not from that of the whole file.
+    explicit sequence(bool in_group) noexcept : in_group_(in_group) {}
+
+    /// Adds the entry of table `t`.
+    void add(const toml_table& t, file_entry e)
+    {
+        check_count(t, "stroke", all_.strokes.size() + e.strokes.size());
+        if (all_.strokes.empty())
+            place_first(t, e.strokes.front(), e.lead_s);
+        else
+            place(t, e.strokes.front(), e.lead_s);
+        last_size_ = e.strokes.size();
+        last_lead_s_ = e.lead_s;
+        std::move(e.strokes.begin(), e.strokes.end(), std::back_inserter(all_.strokes));
+    }
+
+    file_entry take() && { return std::move(all_); }
+
+private:
+    void place_first(const toml_table& t, stroke& first, double lead_s)
+    {
+        static_cast<void>(read_from(t)); // whatever it is, there is nothing before
+        const auto start_s = t.number("start_s", {0.0, longest_stroke_s});
+        const double after_s = start_s.value_or(0.0) + lead_s;
+        if (in_group_)
+            all_.lead_s = after_s;
+        else if (start_s || lead_s > 0.0)
+            start(first, after_s, start_from_kind::piece, 1);
+    }
+
+    void place(const toml_table& t, stroke& first, double lead_s) const
+    {
+        const start_from_kind from = read_from(t);
+        const double least_s = from == start_from_kind::piece ? 0.0 : -longest_stroke_s;
+        const auto start_s = t.number("start_s", {least_s, longest_stroke_s});
+        const double after_s = start_s.value_or(0.0) + lead_s;
+        if (start_s && *start_s < 0.0)
+            first.places.start = t.where("start_s");
+        if (from == start_from_kind::end || (!start_s && !t.has("start_from")))
+            follow(first, after_s, last_size_);
+        else if (from == start_from_kind::start)
+            start(first, after_s - last_lead_s_, from, last_size_);
+        else if (in_group_)
+            start(first, after_s - all_.lead_s, start_from_kind::start, all_.strokes.size());
+        else
+            start(first, after_s, from, 1);
+    }
+
+    bool in_group_;
+    file_entry all_;
+    std::size_t last_size_ = 0;
+    double last_lead_s_ = 0.0;
+};
+
+/// Returns the entry as often as `repeat` says, with `pause_s` between.
+file_entry repeat_entry(const toml_table& t, file_entry e)
+{
+    const unsigned times = t.whole("repeat", 1, most_repeats).value_or(1);
+    const auto pause = t.number("pause_s", {0.0, longest_stroke_s});
+    if (pause && times == 1)
+        t.fail("pause_s", "nothing is repeated",
+               "add repeat = 2 or more; pauses = [[part, seconds], ...] is along a path");
+    if (times == 1)
+        return e;
+    const std::size_t once = e.strokes.size();
+    check_count(t, "repeat", once * times);
+    e.strokes.reserve(once * times);
+    for (std::size_t i = once; i < once * times; ++i) {
+        e.strokes.push_back(e.strokes[i - once]);
+        if (i % once == 0)
+            follow(e.strokes[i], pause.value_or(0.0) + e.lead_s, once);
+    }
+    for (std::size_t i = 0; i < e.strokes.size(); ++i)
+        e.strokes[i].name += fmt::format(" ({} of {})", i / once + 1, times);
+    return e;
+}
+
+file_entry read_one(const toml_table& t, std::string name, const reading& r)
+{
+    t.only(join_keys(kinds, movement_keys, placing_keys, order_keys, fit_keys, choice_keys, sound_keys));
+    stroke s = read_drawing(t, std::move(name), r.intensity_max);
+    read_choices(t, s);
+    read_sound(t, r.folder, s);
+    if (t.boolean("reverse").value_or(false)) {
+        s.motion = t.at_key("reverse", [&] { return s.motion.reversed(); });
+        s.sound.carrier_profile = from_the_end(s.sound.carrier_profile);
+    }
+    place_stroke(t, s);
+    return repeat_entry(t, {.strokes = {std::move(s)}});
+}
+
+file_entry read_entry(const toml_table& t, const std::string& name, const reading& r, unsigned depth);
+
+file_entry read_all(const std::vector<toml_table>& tables, bool in_group, const std::string& name,
+                    const reading& r, unsigned depth)
+{
+    sequence all(in_group);
     std::size_t number = 0;
     for (const toml_table& t : tables)
         all.add(t, read_entry(t, fmt::format("{}-{}", name, ++number), r, depth));
@@ -219,44 +557,40 @@ detail::entry read_all(const std::vector<toml_table>& tables, detail::sequence::
 }
 
 // Reads strokes that are placed, made weaker and repeated together.
-detail::entry read_group(const toml_table& t, const std::string& name, const reading& r, unsigned depth)
+file_entry read_group(const toml_table& t, const std::string& name, const reading& r, unsigned depth)
 {
-    t.only(join_keys(placed_keys, detail::order_keys,
-                     std::array<std::string_view, 4>{"stroke", "level_db", "fit", "fit_margin_mm"}));
+    t.only(join_keys(placing_keys, order_keys, fit_keys));
     if (depth == deepest_group)
         t.fail("stroke", "groups in groups too deep", fmt::format("at most {}", deepest_group));
     const std::vector<toml_table> inside = t.tables("stroke");
     if (inside.empty())
         t.fail("stroke", "a group without a stroke", "add [[stroke.stroke]]");
-    detail::entry e =
-        read_all(inside, detail::sequence::of::group, t.text("name").value_or(name), r, depth + 1);
-    auto fit = detail::read_fit(t);
+    file_entry e = read_all(inside, true, t.text("name").value_or(name), r, depth + 1);
+    auto fit = read_fit(t);
     if (fit)
         fit->group = t.where().line; // no other group of the file begins there
     for (stroke& s : e.strokes) {
-        s = detail::placed(t, detail::levelled(t, std::move(s)));
-        if (!fit)
-            continue;
-        if (s.fit)
+        place_stroke(t, s);
+        if (fit && s.fit)
             t.fail("fit", fmt::format("{} is fitted already", detail::quoted(s.name)),
                    "fit the group, or what is in it");
-        s.fit = fit;
+        if (fit)
+            s.fit = fit;
     }
-    return detail::repeated(t, std::move(e));
+    return repeat_entry(t, std::move(e));
 }
 
-detail::entry read_entry(const toml_table& t, const std::string& name, const reading& r, unsigned depth)
+file_entry read_entry(const toml_table& t, const std::string& name, const reading& r, unsigned depth)
 {
-    const bool group = t.has("stroke") && std::none_of(kinds.begin(), kinds.end(),
-                                                       [&t](std::string_view k) { return t.has(k); });
+    const bool group = t.has("stroke") && std::none_of(std::begin(kinds), std::end(kinds),
+                                                       [&t](auto kind) { return t.has(kind); });
     return group ? read_group(t, name, r, depth) : read_one(t, name, r);
 }
 
 std::vector<stroke> read_strokes(std::string_view text, const std::string& name, const reading& r)
 {
-    detail::check_size(text, name, detail::max_tree_bytes,
-                       "timed points by the million belong in a CSV file");
-    const toml::table document = detail::parse_toml(text, name);
+    check_size(text, name, max_tree_bytes, "timed points by the million belong in a CSV file");
+    const toml::table document = parse_toml(text, name);
     const toml_table root(document, "a stroke file", name);
     for (const char* key : {"array", "output", "defaults"})
         if (root.has(key))
@@ -264,37 +598,44 @@ std::vector<stroke> read_strokes(std::string_view text, const std::string& name,
                       "give it as {array=FILE} or {config=FILE}");
     root.only({"stroke"});
     if (!root.has("stroke"))
-        detail::fail_at({name, 0, 0}, "there is no stroke in it", "add [stroke] or [[stroke]]");
+        fail_at({name, 0, 0}, "there is no stroke in it", "add [stroke] or [[stroke]]");
 
-    const std::string stem = detail::stem(name);
     if (root.node("stroke")->is_table()) {
-        detail::sequence one(detail::sequence::of::piece);
+        sequence one(false);
         const toml_table t = *root.table("stroke", "[stroke]", "[stroke]");
-        one.add(t, read_entry(t, stem, r, 0));
+        one.add(t, read_entry(t, stem(name), r, 0));
         return std::move(one).take().strokes;
     }
     const std::vector<toml_table> tables = root.tables("stroke");
     if (tables.empty())
         root.fail("stroke", "there is no stroke in it", "add [stroke] or [[stroke]]");
-    return read_all(tables, detail::sequence::of::piece, stem, r, 0).strokes;
+    return read_all(tables, false, stem(name), r, 0).strokes;
 }
 
 } // namespace
 
-std::vector<stroke> parse_strokes_toml(std::string_view text, const std::string& name, double intensity_max)
+affine read_turn(const toml_table& t, double scale)
 {
-    return read_strokes(text, name, {nullptr, intensity_max});
+    const affine turn = rotation(t.number("rotate_deg", turn_deg).value_or(0.0));
+    const std::string mirror = t.choice("mirror", {"x", "y"}).value_or("");
+    return turn * affine{mirror == "x" ? -scale : scale, 0.0, 0.0, mirror == "y" ? -scale : scale, 0.0, 0.0};
 }
 
-} // namespace v0
-} // namespace tactor
-
-namespace tactor::detail {
-
-std::vector<stroke> strokes_of_toml_file(std::string_view text, const std::string& name, double intensity_max)
+std::vector<stroke> read_strokes_file(std::string_view text, const std::string& name, double intensity_max)
 {
     const std::filesystem::path folder = std::filesystem::path(name).parent_path();
     return read_strokes(text, name, {&folder, intensity_max});
 }
 
 } // namespace tactor::detail
+
+namespace tactor {
+inline namespace v0 {
+
+std::vector<stroke> parse_strokes_toml(std::string_view text, const std::string& name, double intensity_max)
+{
+    return detail::read_strokes(text, name, {nullptr, intensity_max});
+}
+
+} // namespace v0
+} // namespace tactor

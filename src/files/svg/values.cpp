@@ -5,8 +5,6 @@
 #include <cmath>
 #include <string>
 
-#include <boost/math/special_functions/cos_pi.hpp>
-#include <boost/math/special_functions/sin_pi.hpp>
 #include <fmt/format.h>
 
 #include "core/path/number.hpp"
@@ -32,14 +30,6 @@ double number_at(std::string_view text, std::size_t& at)
 affine translation(double x, double y)
 {
     return {1.0, 0.0, 0.0, 1.0, x, y};
-}
-
-affine rotation(double degrees)
-{
-    // Exact for quarter turns.
-    const double c = boost::math::cos_pi(degrees / 180.0);
-    const double s = boost::math::sin_pi(degrees / 180.0);
-    return {c, s, -s, c, 0.0, 0.0};
 }
 
 double tangent(double degrees)
