@@ -6,6 +6,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <utility>
 #include <variant>
 #include <vector>
@@ -20,6 +21,56 @@
 namespace tactor::detail {
 namespace {
 
+/// Lines "key = value" and headings, one after the other.
+class lines {
+public:
+    void begin_table(std::string_view heading) { all_ += fmt::format("\n{}\n", heading); }
+
+    template <class T>
+    void add(std::string_view key, const T& v)
+    {
+        if constexpr (std::is_enum_v<T>)
+            add_value(key, toml_string(to_string(v)));
+        else if constexpr (std::is_arithmetic_v<T>)
+            add_value(key, fmt::format("{}", v));
+        else
+            add_value(key, toml_string(v));
+    }
+    /// Adds nothing without a value.
+    template <class T>
+    void add(std::string_view key, const std::optional<T>& v)
+    {
+        if (v)
+            add(key, *v);
+    }
+    /// Adds nothing for the usual value.
+    template <class T>
+    void add_unusual(std::string_view key, const T& v, const T& usual)
+    {
+        if (v != usual)
+            add(key, v);
+    }
+    void add_value(std::string_view key, std::string_view value)
+    {
+        all_ += fmt::format("{} = {}\n", key, value);
+    }
+    /// Adds [[a, b], ...]; nothing for an empty list. `row` returns "a, b".
+    template <class List, class Row>
+    void add_rows(std::string_view key, const List& list, Row row)
+    {
+        std::string text;
+        for (const auto& entry : list)
+            text += fmt::format("{}[{}]", text.empty() ? "" : ", ", row(entry));
+        if (!list.empty())
+            add_value(key, "[" + text + "]");
+    }
+    bool empty() const { return all_.empty(); }
+    std::string take() { return std::move(all_); }
+
+private:
+    std::string all_;
+};
+
 std::string line_text(const gpio_line_name& l)
 {
     if (!l.name.empty())
@@ -33,130 +84,56 @@ std::string ms(double s)
     return fmt::format("{:.15g}", s * 1e3);
 }
 
-template <typename T>
-void add(std::string& to, std::string_view key, const std::optional<T>& v)
-{
-    if (v)
-        to += fmt::format("{} = {}\n", key, *v);
-}
-
 std::string output_text(const output_settings& o)
 {
-    std::string s;
-    if (o.pcm)
-        s += fmt::format("pcm = {}\n", toml_string(*o.pcm));
-    add(s, "rate", o.rate);
-    add(s, "channels", o.channels);
-    add(s, "period_frames", o.period_frames);
-    add(s, "periods", o.periods);
-    return s.empty() ? s : "\n[output]\n" + s;
+    lines out;
+    out.add("pcm", o.pcm);
+    out.add("rate", o.rate);
+    out.add("channels", o.channels);
+    out.add("period_frames", o.period_frames);
+    out.add("periods", o.periods);
+    return out.empty() ? "" : "\n[output]\n" + out.take();
 }
 
-std::string lines_text(const setup& u)
+void add_lines(lines& out, const setup& u)
 {
-    std::string s;
-    if (u.amplifier)
-        s += fmt::format("\n[amplifier]\nline = {{ {} }}\nactive_low = {}\nsettle_ms = {}\n",
-                         line_text(u.amplifier->line), u.amplifier->active_low, ms(u.amplifier->settle_s));
+    if (u.amplifier) {
+        out.begin_table("[amplifier]");
+        out.add_value("line", fmt::format("{{ {} }}", line_text(u.amplifier->line)));
+        out.add("active_low", u.amplifier->active_low);
+        out.add_value("settle_ms", ms(u.amplifier->settle_s));
+    }
     if (!u.sync)
-        return s;
-    s += "\n[sync]\n";
+        return;
+    out.begin_table("[sync]");
     if (u.sync->out)
-        s += fmt::format("out = {{ {}, pulse_ms = {} }}\n", line_text(*u.sync->out), ms(u.sync->pulse_s));
-    add(s, "channel", u.sync->channel);
+        out.add_value("out",
+                      fmt::format("{{ {}, pulse_ms = {} }}", line_text(*u.sync->out), ms(u.sync->pulse_s)));
+    out.add("channel", u.sync->channel);
     if (u.sync->in)
-        s += fmt::format("in = {{ {}, edge = \"{}\", debounce_ms = {}, pull = \"{}\" }}\n",
-                         line_text(*u.sync->in), to_string(u.sync->edge), ms(u.sync->debounce_s),
-                         to_string(u.sync->pull));
-    return s;
+        out.add_value("in", fmt::format("{{ {}, edge = \"{}\", debounce_ms = {}, pull = \"{}\" }}",
+                                        line_text(*u.sync->in), to_string(u.sync->edge),
+                                        ms(u.sync->debounce_s), to_string(u.sync->pull)));
 }
 
-std::string limits_text(const limit_settings& l)
+void add_tactor(lines& out, const tactor_spec& t)
 {
-    std::string s = "\n[limits]\n";
-    add(s, "power_dbfs", l.power_dbfs);
-    add(s, "max_drive_s", l.max_drive_s);
-    add(s, "window_s", l.window_s);
-    return s;
-}
-
-std::string list_text(const std::vector<threshold_point>& points)
-{
-    std::string s;
-    for (const threshold_point& p : points)
-        s += fmt::format("{}[{}, {}]", s.empty() ? "" : ", ", p.hz, p.dbfs);
-    return fmt::format("threshold_dbfs = [{}]\n", s);
-}
-
-std::string tactor_text(const tactor_spec& t)
-{
-    std::string s = fmt::format("\n[[tactor]]\nx_mm = {}\ny_mm = {}\nchannel = {}\n", t.position.x_mm,
-                                t.position.y_mm, t.channel);
-    if (t.gain_db != 0.0)
-        s += fmt::format("gain_db = {}\n", t.gain_db);
-    if (t.max_dbfs != 0.0)
-        s += fmt::format("max_dbfs = {}\n", t.max_dbfs);
+    out.begin_table("[[tactor]]");
+    out.add("x_mm", t.position.x_mm);
+    out.add("y_mm", t.position.y_mm);
+    out.add("channel", t.channel);
+    out.add_unusual("gain_db", t.gain_db, 0.0);
+    out.add_unusual("max_dbfs", t.max_dbfs, 0.0);
     if (t.thresholds.empty())
-        add(s, "threshold_dbfs", t.threshold_dbfs);
-    else
-        s += list_text(t.thresholds);
-    if (t.polarity != 1)
-        s += fmt::format("polarity = {}\n", t.polarity);
-    if (t.actuator != actuator_kind::unknown)
-        s += fmt::format("actuator = \"{}\"\n", to_string(t.actuator));
+        out.add("threshold_dbfs", t.threshold_dbfs);
+    out.add_rows("threshold_dbfs", t.thresholds,
+                 [](const threshold_point& p) { return fmt::format("{}, {}", p.hz, p.dbfs); });
+    out.add_unusual("polarity", t.polarity, 1);
+    out.add_unusual("actuator", t.actuator, actuator_kind::unknown);
     if (t.rise_s)
-        s += fmt::format("rise_ms = {}\n", ms(*t.rise_s));
-    add(s, "displacement_um_at_0dbfs", t.displacement_um_at_0dbfs);
-    return s;
+        out.add_value("rise_ms", ms(*t.rise_s));
+    out.add("displacement_um_at_0dbfs", t.displacement_um_at_0dbfs);
 }
-
-std::string calibrated_text(const calibrated_tactor& t)
-{
-    std::string s = fmt::format("\n[[calibration.tactor]]\ntactor = {}\n", t.tactor);
-    add(s, "threshold_dbfs", t.threshold_dbfs);
-    add(s, "sd_db", t.sd_db);
-    return s + fmt::format("trials = {}\n", t.trials);
-}
-
-std::string value_text(const written_value& d)
-{
-    if (const auto* text = std::get_if<std::string>(&d.said))
-        return toml_string(*text);
-    const auto* flag = std::get_if<bool>(&d.said);
-    return flag != nullptr ? fmt::format("{}", *flag) : fmt::format("{}", std::get<double>(d.said));
-}
-
-/// Lines "key = value", one after the other.
-class lines {
-public:
-    void add(std::string_view key, double v) { append(key, fmt::format("{}", v)); }
-    void add(std::string_view key, std::string_view text) { append(key, toml_string(text)); }
-    void append(std::string_view key, std::string_view value)
-    {
-        all_ += fmt::format("{} = {}\n", key, value);
-    }
-    template <class T>
-    void maybe(std::string_view key, const std::optional<T>& v)
-    {
-        if (v)
-            add(key, *v);
-    }
-    /// [[a, b], ...]
-    template <class List, class Row>
-    void rows(std::string_view key, const List& list, Row row)
-    {
-        if (list.empty())
-            return;
-        std::string text;
-        for (const auto& entry : list)
-            text += fmt::format("{}[{}]", text.empty() ? "" : ", ", row(entry));
-        append(key, "[" + text + "]");
-    }
-    std::string take() { return std::move(all_); }
-
-private:
-    std::string all_;
-};
 
 [[noreturn]] void refuse(const stroke& s, const std::string& why, const std::string& hint)
 {
@@ -170,29 +147,28 @@ std::string pair(const profile_point& p)
 
 void add_timed(lines& out, const trajectory::impl& i, const timed_points& law)
 {
-    out.rows("timed", *law.points, [&](const timed_point& p) {
+    out.add_rows("timed", *law.points, [&](const timed_point& p) {
         return fmt::format("{}, {}, {}, {}", p.t_s, p.position.x_mm, p.position.y_mm, p.intensity * i.gain);
     });
     if (law.duration_s() != i.duration_s)
         out.add("duration_s", i.duration_s);
 }
 
-// Speeds and times as they are now: the movement may have been stretched since it was said.
+// Writes speeds and times as they are now: the movement may have been stretched.
 void add_movement(lines& out, const trajectory::impl& i, const drawn_path& law)
 {
     const pace& p = *law.moves;
     const movement& m = p.given();
     const double longer = i.duration_s / p.total_s();
-    if (m.easing != easing_kind::linear)
-        out.add("easing", to_string(m.easing));
+    out.add_unusual("easing", m.easing, easing_kind::linear);
     if (m.speed_mm_s.empty())
         out.add("duration_s", i.duration_s);
     const double faster =
         m.speed_mm_s.empty() ? 1.0 : time_at_speeds_s(m, law.way.length_mm()) / (p.moving_s() * longer);
-    out.rows("speed_mm_s", m.speed_mm_s, [&](const profile_point& v) {
+    out.add_rows("speed_mm_s", m.speed_mm_s, [&](const profile_point& v) {
         return pair({v.part, v.value * faster});
     });
-    out.rows("pauses", m.rests, [&](const rest& r) {
+    out.add_rows("pauses", m.rests, [&](const rest& r) {
         return fmt::format("{}, {}, {}", r.part, r.time_s * longer, r.intensity);
     });
 }
@@ -203,11 +179,11 @@ void add_path(lines& out, const stroke& s, const trajectory::impl& i, const draw
     const bool varies = law.moves && !law.moves->given().intensity.empty();
     const double strength = law.intensity * i.gain;
     if (varies)
-        out.rows("intensity", law.moves->given().intensity, [strength](const profile_point& p) {
+        out.add_rows("intensity", law.moves->given().intensity, [strength](const profile_point& p) {
             return pair({p.part, p.value * strength});
         });
-    else if (strength != 1.0)
-        out.add("intensity", strength);
+    else
+        out.add_unusual("intensity", strength, 1.0);
     if (law.moves)
         add_movement(out, i, law);
     else if (s.speed_mm_s && law.way.length_mm() / *s.speed_mm_s == i.duration_s)
@@ -219,9 +195,9 @@ void add_path(lines& out, const stroke& s, const trajectory::impl& i, const draw
 void add_sound(lines& out, const stroke& s)
 {
     if (s.sound.carrier_profile.empty())
-        out.maybe("carrier_hz", s.sound.carrier_hz);
-    out.rows("carrier_profile", s.sound.carrier_profile,
-             [](const carrier_part& p) { return fmt::format("{}, {}", p.part, p.hz); });
+        out.add("carrier_hz", s.sound.carrier_hz);
+    out.add_rows("carrier_profile", s.sound.carrier_profile,
+                 [](const carrier_part& p) { return fmt::format("{}, {}", p.part, p.hz); });
     if (s.sound.wave) {
         const waveform& w = *s.sound.wave;
         const bool recorded = w.kind == waveform_kind::recording;
@@ -229,9 +205,9 @@ void add_sound(lines& out, const stroke& s)
         out.add("waveform",
                 recorded ? std::filesystem::absolute(waveform_text(w)).string() : waveform_text(w));
         if (w.kind == waveform_kind::noise)
-            out.add("noise_seed", static_cast<double>(w.seed));
+            out.add("noise_seed", w.seed);
         if (recorded)
-            out.add("texture", to_string(w.texture));
+            out.add("texture", w.texture);
         if (recorded && w.texture_mm > 0.0)
             out.add("texture_mm", w.texture_mm);
     }
@@ -243,20 +219,16 @@ void add_sound(lines& out, const stroke& s)
 
 void add_choices(lines& out, const stroke& s)
 {
-    if (s.choices.algorithm)
-        out.add("algorithm", to_string(*s.choices.algorithm));
-    if (s.choices.phantom)
-        out.add("phantom", to_string(*s.choices.phantom));
-    if (s.choices.faces)
-        out.add("faces", to_string(*s.choices.faces));
-    out.maybe("soa_s", s.choices.soa_s);
-    out.maybe("burst_s", s.choices.burst_s);
-    if (s.choices.level_db != 0.0)
-        out.add("level_db", s.choices.level_db);
+    out.add("algorithm", s.choices.algorithm);
+    out.add("phantom", s.choices.phantom);
+    out.add("faces", s.choices.faces);
+    out.add("soa_s", s.choices.soa_s);
+    out.add("burst_s", s.choices.burst_s);
+    out.add_unusual("level_db", s.choices.level_db, 0.0);
     if (s.fit && s.fit->group != 0)
         refuse(s, "it is fitted together with others of its group", "apply_fits() fits them");
     if (s.fit) {
-        out.append("fit", "true");
+        out.add("fit", true);
         out.add("fit_margin_mm", s.fit->margin_mm);
     }
 }
@@ -265,9 +237,9 @@ void add_choices(lines& out, const stroke& s)
 void add_start(lines& out, const stroke& s, bool follows)
 {
     if (s.anchor.from != start_from_kind::piece && follows)
-        out.add("start_from", to_string(s.anchor.from));
+        out.add("start_from", s.anchor.from);
     if (s.anchor.from == start_from_kind::piece || follows)
-        out.maybe("start_s", s.start_s);
+        out.add("start_s", s.start_s);
 }
 
 std::string keys_text(const stroke& s, bool follows)
@@ -303,29 +275,39 @@ std::string toml_string(std::string_view s)
 
 std::string array_text(const array& a)
 {
-    std::string s = fmt::format("[array]\nname = {}\n", toml_string(a.name));
-    for (const auto& [key, text] : {std::pair("site", &a.site), std::pair("up", &a.up)})
-        if (!text->empty())
-            s += fmt::format("{} = {}\n", key, toml_string(*text));
+    lines out;
+    out.add("name", a.name);
+    out.add_unusual("site", a.site, {});
+    out.add_unusual("up", a.up, {});
     if (a.place)
-        s += fmt::format("place = [{}, {}]\n", a.place->x_mm, a.place->y_mm);
-    add(s, "turn", a.turn_deg);
-    add(s, "body", a.body_mm);
+        out.add_value("place", fmt::format("[{}, {}]", a.place->x_mm, a.place->y_mm));
+    out.add("turn", a.turn_deg);
+    out.add("body", a.body_mm);
     for (const tactor_spec& t : a.tactors)
-        s += tactor_text(t);
-    return s;
+        add_tactor(out, t);
+    return "[array]\n" + out.take();
 }
 
 std::string besides_text(const setup& besides)
 {
-    std::string s = output_text(besides.output) + lines_text(besides);
-    if (besides.limits)
-        s += limits_text(*besides.limits);
+    lines out;
+    add_lines(out, besides);
+    if (const auto& l = besides.limits) {
+        out.begin_table("[limits]");
+        out.add("power_dbfs", l->power_dbfs);
+        out.add("max_drive_s", l->max_drive_s);
+        out.add("window_s", l->window_s);
+    }
     if (!besides.defaults.empty())
-        s += "\n[defaults]\n";
+        out.begin_table("[defaults]");
     for (const written_value& d : besides.defaults)
-        s += fmt::format("{} = {}\n", d.name, value_text(d));
-    return s;
+        if (const auto* text = std::get_if<std::string>(&d.said))
+            out.add(d.name, *text);
+        else if (const bool* flag = std::get_if<bool>(&d.said))
+            out.add(d.name, *flag);
+        else
+            out.add(d.name, std::get<double>(d.said));
+    return output_text(besides.output) + out.take();
 }
 
 std::string array_text(const array& a, const setup& besides)
@@ -335,21 +317,26 @@ std::string array_text(const array& a, const setup& besides)
 
 std::string origin_text(const calibration_origin& o)
 {
-    std::string s = fmt::format("\n[calibration]\nparticipant = {}\nmethod = {}\n",
-                                toml_string(o.participant), toml_string(o.method));
-    const auto quote = [](const std::optional<std::string>& text) {
-        return text ? std::optional(toml_string(*text)) : std::nullopt;
-    };
-    add(s, "rule", quote(o.rule));
-    s += fmt::format("carrier_hz = {}\ninterval_s = {}\n", o.carrier_hz, o.interval_s);
-    add(s, "feedback", o.feedback);
-    add(s, "masker", quote(o.masker));
-    add(s, "date", quote(o.date));
-    add(s, "seed", o.seed);
-    s += fmt::format("simulated = {}\n", o.simulated);
-    for (const calibrated_tactor& t : o.tactors)
-        s += calibrated_text(t);
-    return s;
+    lines out;
+    out.begin_table("[calibration]");
+    out.add("participant", o.participant);
+    out.add("method", o.method);
+    out.add("rule", o.rule);
+    out.add("carrier_hz", o.carrier_hz);
+    out.add("interval_s", o.interval_s);
+    out.add("feedback", o.feedback);
+    out.add("masker", o.masker);
+    out.add("date", o.date);
+    out.add("seed", o.seed);
+    out.add("simulated", o.simulated);
+    for (const calibrated_tactor& t : o.tactors) {
+        out.begin_table("[[calibration.tactor]]");
+        out.add("tactor", t.tactor);
+        out.add("threshold_dbfs", t.threshold_dbfs);
+        out.add("sd_db", t.sd_db);
+        out.add("trials", t.trials);
+    }
+    return out.take();
 }
 
 std::string stroke_text(const stroke& s)
