@@ -95,7 +95,7 @@ double drive_guard::gain(const cell& c, std::int64_t at) const noexcept
         return 1.0; // it is cut later in this block
     if (k >= fade_)
         return falls ? 0.0 : 1.0;
-    const double half = 0.5 * sincos_cycles(0.5 * static_cast<double>(k) / static_cast<double>(fade_)).cos;
+    const double half = 0.5 * sincos_turns(0.5 * static_cast<double>(k) / static_cast<double>(fade_)).cos;
     return falls ? 0.5 + half : 0.5 - half;
 }
 

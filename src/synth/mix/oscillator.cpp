@@ -26,14 +26,6 @@ TACTOR_CLONES void fill(oscillator_table& t, double cycles_per_frame) noexcept
 {
     double* __restrict sin = t.sin.data();
     double* __restrict cos = t.cos.data();
-    if (!(std::abs(cycles_per_frame * table_frames) < most_turns)) {
-        for (unsigned j = 0; j < table_frames; ++j) {
-            const sine_cosine v = sincos_cycles(cycles_per_frame * j);
-            sin[j] = v.sin;
-            cos[j] = v.cos;
-        }
-        return;
-    }
     for (int j = 0; j < static_cast<int>(table_frames); ++j) {
         const sine_cosine v = sincos_turns(cycles_per_frame * j);
         sin[j] = v.sin;
@@ -56,16 +48,6 @@ static_assert(base_angles::most >= block_frames / table_frames + 1);
     base_angles a;
     const auto at = static_cast<double>(first);
     const std::size_t count = (frames + table_frames - 1) / table_frames;
-    // Far longer than any stroke.
-    if (!(std::abs((at + 2.0 * block_frames) * cycles_per_frame) < most_turns)) {
-        for (std::size_t i = 0; i < count; ++i) {
-            const sine_cosine v =
-                sincos_cycles((at + static_cast<double>(i * table_frames)) * cycles_per_frame);
-            a.sin[i] = v.sin;
-            a.cos[i] = v.cos;
-        }
-        return a;
-    }
     for (std::size_t i = 0; i < count; i += base_angles::vector) {
         for (std::size_t j = i; j < i + base_angles::vector; ++j) {
             const sine_cosine v =

@@ -43,7 +43,7 @@ void half_cosine(oscillator_tables& tables, std::int64_t first, std::uint64_t ra
         return;
     const oscillator_table& t = tables.get(ramp_cycles(ramp));
     for_each_part(first, p.lo, p.hi, [&](const table_part& q) {
-        times_cosine(t, sincos_cycles(turns(q.base, ramp)), 0.5, scale, q, out);
+        times_cosine(t, sincos_turns(turns(q.base, ramp)), 0.5, scale, q, out);
     });
 }
 
@@ -77,7 +77,7 @@ double rising(std::int64_t k, std::uint32_t frames, envelope_kind shape) noexcep
     case envelope_kind::tukey:
         break;
     }
-    return 0.5 - 0.5 * sincos_cycles(turns(k, frames)).cos;
+    return 0.5 - 0.5 * sincos_turns(turns(k, frames)).cos;
 }
 
 /// Returns the window `left` frames before the end of a release. An exponential release falls fastest at its
@@ -86,12 +86,6 @@ double falling(std::int64_t left, std::uint32_t frames, envelope_kind shape) noe
 {
     return shape == envelope_kind::exponential ? 1.0 - rising(frames - left, frames, shape)
                                                : rising(left, frames, shape);
-}
-
-burst_window even(std::uint64_t length, std::uint64_t ramp) noexcept
-{
-    const auto frames = static_cast<std::uint32_t>(ramp);
-    return {length, frames, frames};
 }
 
 void zero(part p, double* out) noexcept
@@ -112,20 +106,10 @@ double window_at(std::int64_t k, const burst_window& w) noexcept
     return n - k < static_cast<std::int64_t>(w.release) ? falling(n - k, w.release, w.shape) : 1.0;
 }
 
-double window_at(std::int64_t k, std::uint64_t length, std::uint64_t ramp) noexcept
-{
-    return window_at(k, even(length, ramp));
-}
-
 bool window_is_flat(std::int64_t from, std::int64_t to, const burst_window& w) noexcept
 {
     return (w.attack == 0 && w.release == 0) || (from >= static_cast<std::int64_t>(w.attack) &&
                                                  to <= static_cast<std::int64_t>(w.length - w.release));
-}
-
-bool window_is_flat(std::int64_t from, std::int64_t to, std::uint64_t length, std::uint64_t ramp) noexcept
-{
-    return window_is_flat(from, to, even(length, ramp));
 }
 
 void window_block(oscillator_tables& tables, std::int64_t first, const burst_window& w, unsigned lo,
@@ -149,12 +133,6 @@ void window_block(oscillator_tables& tables, std::int64_t first, const burst_win
         out[j] *= rising(first + j, w.attack, w.shape);
     for (unsigned j = fall.lo; j < fall.hi; ++j)
         out[j] *= falling(n - (first + j), w.release, w.shape);
-}
-
-void window_block(oscillator_tables& tables, std::int64_t first, std::uint64_t length, std::uint64_t ramp,
-                  unsigned lo, unsigned hi, double* out) noexcept
-{
-    window_block(tables, first, even(length, ramp), lo, hi, out);
 }
 
 void fade_block(oscillator_tables& tables, std::int64_t first, std::uint64_t length, unsigned lo, unsigned hi,

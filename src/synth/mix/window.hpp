@@ -21,23 +21,17 @@ struct burst_window {
     bool operator==(const burst_window&) const = default;
 };
 
-/// Do the same as the functions below, for a burst_window.
-double window_at(std::int64_t k, const burst_window& w) noexcept;
-bool window_is_flat(std::int64_t from, std::int64_t to, const burst_window& w) noexcept;
-void window_block(oscillator_tables& tables, std::int64_t first, const burst_window& w, unsigned lo,
-                  unsigned hi, double* out) noexcept;
-
-/// Returns frame k of a window of `length` frames: (1 - cos(pi k / ramp)) / 2 for k < ramp, (1 - cos(pi
-/// (length - k) / ramp)) / 2 for the last `ramp`, 1 between, 0 outside. For planning; the mixer uses
+/// Returns frame k of a window: for a raised cosine (1 - cos(pi k / attack)) / 2 for k < attack, (1 - cos(pi
+/// (length - k) / release)) / 2 for the last `release`, 1 between, 0 outside. For planning; the mixer uses
 /// window_block().
-double window_at(std::int64_t k, std::uint64_t length, std::uint64_t ramp) noexcept;
+double window_at(std::int64_t k, const burst_window& w) noexcept;
 
 /// Returns true if the window is 1 in frames from ... to - 1.
-bool window_is_flat(std::int64_t from, std::int64_t to, std::uint64_t length, std::uint64_t ramp) noexcept;
+bool window_is_flat(std::int64_t from, std::int64_t to, const burst_window& w) noexcept;
 
 /// Computes out[j] *= w(first + j) for lo <= j < hi.
-void window_block(oscillator_tables& tables, std::int64_t first, std::uint64_t length, std::uint64_t ramp,
-                  unsigned lo, unsigned hi, double* out) noexcept;
+void window_block(oscillator_tables& tables, std::int64_t first, const burst_window& w, unsigned lo,
+                  unsigned hi, double* out) noexcept;
 
 /// Computes out[j] *= (1 + cos(pi k / length)) / 2 with k = first + j for lo <= j < hi; 1 before, 0 after.
 void fade_block(oscillator_tables& tables, std::int64_t first, std::uint64_t length, unsigned lo, unsigned hi,

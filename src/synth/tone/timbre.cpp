@@ -196,7 +196,7 @@ void modulate_block(oscillator_tables& tables, double cycles_per_frame, double d
     const double whole = 1.0 / (1.0 + depth);
     for_each_part(first, 0, n, [&](const table_part& p) {
         // A sine is the cosine of a quarter of a cycle before.
-        const sine_cosine base = sincos_cycles(static_cast<double>(p.base) * cycles_per_frame - 0.25);
+        const sine_cosine base = sincos_turns(static_cast<double>(p.base) * cycles_per_frame - 0.25);
         times_cosine(t, base, whole, depth * whole, p, out);
     });
 }
