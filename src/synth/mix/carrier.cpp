@@ -67,13 +67,6 @@ void add_stretch(const double* s, const stretch& p, std::uint64_t at, unsigned n
     }
 }
 
-void set_stretch(const double* s, const stretch& p, std::uint64_t at, unsigned n, double* sum) noexcept
-{
-    const auto [from, to] = p.within(at, n);
-    const auto k = static_cast<double>(static_cast<std::int64_t>(at - p.start));
-    set_line(s, p.drive.from, p.drive.slope, k, from, to, sum);
-}
-
 TACTOR_CLONES void set_constant(const double* s, double a, unsigned lo, unsigned hi, double* sum) noexcept
 {
     const double* __restrict in = s;
@@ -88,15 +81,6 @@ TACTOR_CLONES void add_constant(const double* s, double a, unsigned lo, unsigned
     double* __restrict out = sum;
     for (unsigned j = lo; j < hi; ++j)
         out[j] += a * in[j];
-}
-
-TACTOR_CLONES void set_line(const double* s, double a, double slope, double k, unsigned lo, unsigned hi,
-                            double* sum) noexcept
-{
-    const double* __restrict in = s;
-    double* __restrict out = sum;
-    for (int j = static_cast<int>(lo); j < static_cast<int>(hi); ++j)
-        out[j] = 0.0 + (a + slope * (k + j)) * in[j]; // a zero never has a sign, as in a sum
 }
 
 TACTOR_CLONES void add_line(const double* s, double a, double slope, double k, unsigned lo, unsigned hi,

@@ -56,18 +56,11 @@ private:
 /// stretch.
 void add_stretch(const double* s, const stretch& p, std::uint64_t at, unsigned n, double* sum) noexcept;
 
-/// Computes the same with an empty sum.
-void set_stretch(const double* s, const stretch& p, std::uint64_t at, unsigned n, double* sum) noexcept;
-
 /// Computes sum[j] = a * s[j] for lo <= j < hi.
 void set_constant(const double* s, double a, unsigned lo, unsigned hi, double* sum) noexcept;
 
 /// Computes sum[j] += a * s[j] for lo <= j < hi.
 void add_constant(const double* s, double a, unsigned lo, unsigned hi, double* sum) noexcept;
-
-/// Computes sum[j] = (a + slope * (k + j)) * s[j] for lo <= j < hi; a zero has no sign.
-void set_line(const double* s, double a, double slope, double k, unsigned lo, unsigned hi,
-              double* sum) noexcept;
 
 /// Computes sum[j] += (a + slope * (k + j)) * s[j] for lo <= j < hi.
 void add_line(const double* s, double a, double slope, double k, unsigned lo, unsigned hi,

@@ -158,14 +158,14 @@ struct mixer::impl {
                                [](double sum, double l) { return sum + clean_limit(l) * clean_limit(l); });
     }
 
-    // Returns false for a constant on a tactor's channel, which would displace the tactor as long as it
-    // lasts.
+    // Returns true if a marker is only on channels without a tactor, which a constant would displace, and
+    // another voice only on channels with one.
     bool plays(const voice& v) const noexcept
     {
-        bool only_spare = true;
-        if (v.cycles_per_frame == 0.0)
-            each_channel(v, [&](std::uint32_t c) { only_spare = only_spare && strips[c].spare; });
-        return only_spare;
+        bool fits = true;
+        each_channel(v,
+                     [&](std::uint32_t c) { fits = fits && strips[c].spare == (v.cycles_per_frame == 0.0); });
+        return fits;
     }
     // Returns the carrier of a voice as it sounds.
     const double* shaped(const voice& v, std::uint64_t at, unsigned n, wave w) noexcept
@@ -424,10 +424,6 @@ void mixer::impl::mix(const voice& v, bool last, unsigned n) noexcept
         const voice_drive& d = v.drive[i];
         const double peak = d.peak(v.end - v.start);
         strip& t = strips[d.channel];
-        if (t.spare && v.cycles_per_frame != 0.0) {
-            limited += to - from; // the channel has no tactor
-            continue;
-        }
         if (!t.sounding) {
             begin_strip(d.channel, v, from);
             t.steady = d.slope == 0.0 && carrier.is_plain(s);
@@ -467,36 +463,26 @@ void mixer::impl::begin_strip(std::uint32_t channel, const voice& v, unsigned fr
 void mixer::impl::mix_line(const voice& v, const double* s, unsigned n) noexcept
 {
     strip& t = strips[v.line.channel];
-    const bool meant = !t.spare || v.cycles_per_frame == 0.0;
     const bool alone = !t.sounding;
     double* sum = alone ? t.sum.data() : t.summed(n);
+    if (alone)
+        std::fill_n(sum, n, 0.0);
     unsigned first = n;
     unsigned end = 0;
     double peak = 0.0;
     each_stretch(v, position, n, [&](const stretch& p) {
         const auto [from, to] = p.within(position, n);
-        if (meant && !alone) {
-            add_stretch(s, p, position, n, sum);
-        } else if (meant) {
-            std::fill(sum + end, sum + from, 0.0);
-            set_stretch(s, p, position, n, sum);
-        }
+        add_stretch(s, p, position, n, sum);
         first = std::min(first, from);
         end = to;
         peak = std::max(peak, p.drive.peak(p.end - p.start));
     });
     if (end == 0)
         return;
-    if (!meant) {
-        limited += end - first; // the channel has no tactor
-        return;
-    }
-    if (alone) {
-        std::fill(sum + end, sum + n, 0.0);
+    if (alone)
         begin_strip(v.line.channel, v, first);
-    } else {
+    else
         t.join(v);
-    }
     t.reach(static_cast<unsigned>(std::max(v.start, position) - position), end, peak);
 }
 
