@@ -23,7 +23,6 @@
 #include "rounds.hpp"
 #include "synth/guard/guard.hpp"
 #include "synth/mix/mixer.hpp"
-#include "synth/score/continuous_peaks.hpp"
 #include "synth/score/event_source.hpp"
 #include "synth/score/levels.hpp"
 #include "synth/score/score.hpp"

@@ -38,11 +38,26 @@ double tactor_limit(const array& a, std::size_t i);
 [[noreturn]] void refuse_tactor(const array& a, std::size_t i, const render_options& o, std::string_view why,
                                 std::string_view hint);
 
+/// Returns the greatest amplitude of each of so many tactors over all samples of a continuous plan; between
+/// them it is linear.
+/// \throws error (bad_input) for a tactor that the array does not have, and an amplitude that is not finite.
+std::vector<double> continuous_peaks(const plan& p, std::size_t tactors);
+
+/// Returns upper bounds of continuous_peaks() without a look at the samples: the greatest intensity for all.
+/// Empty if the intensity is not known to be a bound.
+std::vector<double> continuous_bounds(const plan& p, std::size_t tactors);
+
 /// Compares the levels that the items ask of each tactor, added up where they sound together, with its limit
 /// and with full scale. For continuous strokes, too, these are bounds, not samples. Returns the greatest
 /// level of each tactor, linear. Tactors that nobody measured must not be driven, and have no gain
-/// afterwards. \throws error (bad_input) with the
-/// tactor's line.
+/// afterwards.
+/// \throws error (bad_input) with the tactor's line.
 std::vector<double> check_peaks(score::impl& s, const array& a, const render_options& o);
+
+/// Lets the actuators of tactors with a rise_s reach a burst's strength as soon as the tactor's limit allows:
+/// adds a second burst over the first half cycles of the carrier. Only for bursts that sound on their tactor
+/// alone. `peaks`: greatest level of each tactor before, linear; the rest up to its limit may be used.
+/// Returns true if there are new items, which stand at the end.
+bool boost_rises(score::impl& s, const array& a, const std::vector<double>& peaks);
 
 } // namespace tactor::synth

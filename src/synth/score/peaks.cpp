@@ -11,7 +11,9 @@
 
 #include <tactor/error.hpp>
 
-#include "synth/score/continuous_peaks.hpp"
+#include "core/trajectory/spans.hpp"
+#include "core/words.hpp"
+#include "plan/curve_impl.hpp"
 #include "synth/score/expander.hpp"
 #include "synth/score/levels.hpp"
 
@@ -41,15 +43,15 @@ public:
     /// `from`: as score::impl::heard_from(). `factor` is in the peak, for the threshold at the carrier.
     void note(std::size_t tactor, const item& it, std::uint64_t from, double peak, double factor)
     {
-        if (peak > 0.0 && from < it.end()) {
-            if (peak > loudest_[tactor]) {
-                loudest_[tactor] = peak;
-                factors_[tactor] = factor;
-            }
-            pass(it.start);
-            add({from, peak, tactor});
-            add({it.end(), -peak, tactor});
+        if (!(peak > 0.0 && from < it.end()))
+            return;
+        if (peak > loudest_[tactor]) {
+            loudest_[tactor] = peak;
+            factors_[tactor] = factor;
         }
+        pass(it.start);
+        add({from, peak, tactor});
+        add({it.end(), -peak, tactor});
     }
 
     const std::vector<double>& peaks()
@@ -87,9 +89,6 @@ private:
     std::vector<double> factors_;
 };
 
-/// Amplitudes that a continuous plan asks of each of so many tactors at most.
-using asked_of_each = std::function<std::vector<double>(const plan& p, std::size_t tactors)>;
-
 double joined_peak(const score::impl& s, std::size_t number)
 {
     double peak = 0.0;
@@ -101,7 +100,8 @@ double joined_peak(const score::impl& s, std::size_t number)
     return peak;
 }
 
-sweep swept(const score::impl& s, const asked_of_each& continuous)
+/// Sums what the items may reach; `exact`: also where the intensity of a continuous stroke is a bound.
+sweep sweep_items(const score::impl& s, bool exact)
 {
     sweep all(s.tactors.size());
     const item_list& list = s.list;
@@ -113,7 +113,11 @@ sweep swept(const score::impl& s, const asked_of_each& continuous)
             all.note(it.tactor, it, from, joined_peak(s, i), s.equalised(it.tactor, it.plan, it.start));
             break;
         case item_kind::continuous: {
-            const std::vector<double> peaks = continuous(s.plans[it.plan].plan, s.tactors.size());
+            const plan& p = s.plans[it.plan].plan;
+            std::vector<double> peaks =
+                exact ? std::vector<double>{} : continuous_bounds(p, s.tactors.size());
+            if (peaks.empty())
+                peaks = continuous_peaks(p, s.tactors.size());
             for (std::size_t k = 0; k < peaks.size(); ++k) {
                 const double factor = s.most_equalised(k, it.plan); // at the carrier that needs most
                 all.note(k, it, from, peaks[k] * (std::abs(s.tactors[k].gain) * factor), factor);
@@ -158,11 +162,13 @@ void check(const array& a, std::size_t i, double peak, double factor, const rend
         fmt::format("lower {{level_dbfs}} or the tactor's gain_db by {:.2f} dB or more{}", excess_db, raise));
 }
 
-/// Silences tactors without a threshold: no drive of theirs may sound at full scale.
-void silence_unmeasured(score::impl& s)
+/// Refuses drives that cannot be rendered. A curve has them in order of tactor.
+void check_drives(const burst& b, std::size_t tactors)
 {
-    for (const std::size_t i : s.unmeasured)
-        s.tactors[i].gain = 0.0;
+    for (const drive& d : b.drives)
+        if (d.tactor >= tactors || !std::isfinite(d.amplitude))
+            throw error(error_kind::bad_input, "stroke at " + seconds_text(b.onset_s),
+                        fmt::format("tactor {} at amplitude {} cannot be rendered", d.tactor, d.amplitude));
 }
 
 } // namespace
@@ -170,6 +176,33 @@ void silence_unmeasured(score::impl& s)
 double in_db(double amplitude)
 {
     return 20.0 * std::log10(amplitude);
+}
+
+std::vector<double> continuous_bounds(const plan& p, std::size_t tactors)
+{
+    const trajectory* motion = curve_access::of(*p.curve).bounds(tactors);
+    if (motion == nullptr)
+        return {};
+    double greatest = 0.0;
+    detail::for_each_span(*motion, [&](const detail::trajectory_span& s) {
+        greatest = s.intensity <= greatest ? greatest : s.intensity;
+        return std::isfinite(greatest);
+    });
+    return std::isfinite(greatest) ? std::vector<double>(tactors, greatest) : std::vector<double>{};
+}
+
+std::vector<double> continuous_peaks(const plan& p, std::size_t tactors)
+{
+    std::vector<double> peaks(tactors, 0.0);
+    burst now;
+    detail::same_tactors seen;
+    for (std::uint64_t k = 0; k < p.curve->size(); ++k) {
+        curve_access::of(*p.curve).sample(k, seen, now);
+        check_drives(now, tactors);
+        for (const drive& d : now.drives)
+            peaks[d.tactor] = std::max(peaks[d.tactor], std::abs(d.amplitude));
+    }
+    return peaks;
 }
 
 std::vector<double> check_peaks(score::impl& s, const array& a, const render_options& o)
@@ -182,23 +215,17 @@ std::vector<double> check_peaks(score::impl& s, const array& a, const render_opt
                             [&](std::size_t i) { return peaks[i] > 0.0; });
     };
     // Nearly always the intensities say that all is well, and hours need not be looked through.
-    bool exact = true;
-    sweep all = swept(s, [&exact](const plan& p, std::size_t tactors) {
-        std::vector<double> bounds = continuous_bounds(p, tactors);
-        exact = exact && bounds.empty();
-        return bounds.empty() ? continuous_peaks(p, tactors) : bounds;
-    });
-    std::vector<double> peaks = all.peaks();
-    if (!exact && !within(peaks)) {
-        all = swept(s, continuous_peaks);
-        peaks = all.peaks();
-    }
+    sweep all = sweep_items(s, false);
+    if (!within(all.peaks()))
+        all = sweep_items(s, true);
+    const std::vector<double>& peaks = all.peaks();
     for (const std::size_t i : s.unmeasured)
         if (peaks[i] > 0.0)
             refuse_unmeasured(a, i, o);
     for (std::size_t i = 0; i < peaks.size(); ++i)
         check(a, i, peaks[i], all.factors()[i], o);
-    silence_unmeasured(s);
+    for (const std::size_t i : s.unmeasured)
+        s.tactors[i].gain = 0.0; // nothing may sound there at full scale
     return peaks;
 }
 

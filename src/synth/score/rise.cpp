@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: MIT
-#include "synth/score/rise.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <iterator>
@@ -27,6 +25,41 @@ double window_share(const burst_window& w, std::uint64_t from, std::uint64_t to,
         y = kept * y + (1.0 - kept) * window_at(static_cast<std::int64_t>(k), w);
     return y;
 }
+
+/// Strength that an actuator reaches in a burst, by the model of a first-order lag: 1 - e^(-t / rise_s) of a
+/// steady vibration after t.
+class lag {
+public:
+    /// Prepares for bursts that rise in `attack` frames and fall in `release`; `rise` in frames, above 0.
+    lag(double rise, std::uint32_t attack, std::uint32_t release, envelope_kind shape)
+        : rise_(rise), attack_(attack), release_(release)
+    {
+        const burst_window w{std::uint64_t{attack} + release, attack, release, shape};
+        after_attack_ = window_share(w, 0, attack, rise);
+        of_release_ = window_share(w, attack, w.length, rise);
+    }
+
+    /// Returns the part of a strength that is left after so many frames.
+    double left(double frames) const noexcept { return std::exp(-frames / rise_); }
+    /// Returns the strength reached `frames` after the burst's begin, if strength 1 is asked for; not for
+    /// times before the end of its attack.
+    double risen(double frames) const noexcept
+    {
+        return 1.0 - (1.0 - after_attack_) * left(frames - attack_);
+    }
+    /// Returns the same at the end of a burst of so many frames, after its release.
+    double fallen(double frames) const noexcept
+    {
+        return risen(frames - release_) * left(release_) + of_release_;
+    }
+
+private:
+    double rise_;
+    double attack_;
+    double release_;
+    double after_attack_;
+    double of_release_; ///< what the release itself adds
+};
 
 /// State of a tactor when the next burst begins.
 struct motion {
@@ -153,29 +186,6 @@ private:
 };
 
 } // namespace
-
-lag::lag(double rise, std::uint32_t attack, std::uint32_t release, envelope_kind shape)
-    : rise_(rise), attack_(attack), release_(release)
-{
-    const burst_window w{std::uint64_t{attack} + release, attack, release, shape};
-    after_attack_ = window_share(w, 0, attack, rise);
-    of_release_ = window_share(w, attack, w.length, rise);
-}
-
-double lag::left(double frames) const noexcept
-{
-    return std::exp(-frames / rise_);
-}
-
-double lag::risen(double frames) const noexcept
-{
-    return 1.0 - (1.0 - after_attack_) * left(frames - attack_);
-}
-
-double lag::fallen(double frames) const noexcept
-{
-    return risen(frames - release_) * left(release_) + of_release_;
-}
 
 bool boost_rises(score::impl& s, const array& a, const std::vector<double>& peaks)
 {

@@ -22,7 +22,6 @@
 #include "synth/mix/mixer.hpp"
 #include "synth/score/frames.hpp"
 #include "synth/score/levels.hpp"
-#include "synth/score/rise.hpp"
 #include "synth/tone/make_timbre.hpp"
 
 namespace tactor {
