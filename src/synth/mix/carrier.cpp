@@ -67,14 +67,6 @@ void add_stretch(const double* s, const stretch& p, std::uint64_t at, unsigned n
     }
 }
 
-TACTOR_CLONES void set_constant(const double* s, double a, unsigned lo, unsigned hi, double* sum) noexcept
-{
-    const double* __restrict in = s;
-    double* __restrict out = sum;
-    for (unsigned j = lo; j < hi; ++j)
-        out[j] = a * in[j];
-}
-
 TACTOR_CLONES void add_constant(const double* s, double a, unsigned lo, unsigned hi, double* sum) noexcept
 {
     const double* __restrict in = s;

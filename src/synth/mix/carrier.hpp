@@ -56,9 +56,6 @@ private:
 /// stretch.
 void add_stretch(const double* s, const stretch& p, std::uint64_t at, unsigned n, double* sum) noexcept;
 
-/// Computes sum[j] = a * s[j] for lo <= j < hi.
-void set_constant(const double* s, double a, unsigned lo, unsigned hi, double* sum) noexcept;
-
 /// Computes sum[j] += a * s[j] for lo <= j < hi.
 void add_constant(const double* s, double a, unsigned lo, unsigned hi, double* sum) noexcept;
 

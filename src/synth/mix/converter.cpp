@@ -131,29 +131,6 @@ void scatter(const lane& v, std::size_t bytes, unsigned n, std::byte* out, std::
 
 constexpr lane silent{};
 
-// These clones show which version the loader chose for all others.
-#ifdef TACTOR_HAS_CLONES
-__attribute__((target("arch=x86-64-v4"))) const char* taken()
-{
-    return "avx-512";
-}
-
-__attribute__((target("avx2"))) const char* taken()
-{
-    return "avx2";
-}
-
-__attribute__((target("default"))) const char* taken()
-{
-    return "baseline";
-}
-#else
-const char* taken()
-{
-    return "baseline";
-}
-#endif
-
 } // namespace
 
 void interleave(format_kind f, std::span<const channel_samples> sounding, std::size_t channels, unsigned n,
@@ -194,7 +171,13 @@ void interleave(format_kind f, std::span<const channel_samples> sounding, std::s
 
 const char* vector_path() noexcept
 {
-    return taken();
+#ifdef TACTOR_HAS_CLONES
+    if (__builtin_cpu_supports("x86-64-v4"))
+        return "avx-512";
+    if (__builtin_cpu_supports("avx2"))
+        return "avx2";
+#endif
+    return "baseline";
 }
 
 } // namespace tactor::synth

@@ -67,10 +67,9 @@ struct strip {
     // Returns the sum, computed now if a single voice replaced it.
     double* summed(unsigned n) noexcept
     {
-        if (lone != nullptr) {
-            set_constant(lone, gain, 0, n, sum.data());
-            lone = nullptr;
-        }
+        if (lone != nullptr)
+            std::transform(lone, lone + n, sum.begin(), [this](double x) { return gain * x; });
+        lone = nullptr;
         return sum.data();
     }
 };

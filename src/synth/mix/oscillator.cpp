@@ -20,9 +20,8 @@ std::size_t hash_row(double cycles_per_frame, std::size_t rows) noexcept
            rows;
 }
 
-/// Fills a table in whole vectors. If more carriers sound than there are places, each block fills one for
-/// each.
-TACTOR_CLONES void fill(oscillator_table& t, double cycles_per_frame) noexcept
+/// Fills the table of a frequency.
+void fill(oscillator_table& t, double cycles_per_frame) noexcept
 {
     double* __restrict sin = t.sin.data();
     double* __restrict cos = t.cos.data();

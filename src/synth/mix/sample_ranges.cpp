@@ -4,8 +4,6 @@
 #include <algorithm>
 #include <limits>
 
-#include "core/clones.hpp"
-
 namespace tactor::synth {
 
 namespace {
@@ -14,8 +12,7 @@ constexpr std::size_t vector_floats = 16; // of the widest vectors
 constexpr std::size_t most_floats = 2048; // of a row: both rows stay in the fastest cache
 
 /// Widens the ranges by `rows` rows of `length` samples, one below the other.
-TACTOR_CLONES void widen(const float* samples, std::size_t rows, std::size_t length, float* low,
-                         float* high) noexcept
+void widen(const float* samples, std::size_t rows, std::size_t length, float* low, float* high) noexcept
 {
     float* __restrict least = low;
     float* __restrict most = high;

@@ -12,45 +12,20 @@ namespace tactor::synth {
 
 namespace {
 
-TACTOR_CLONES void linear_turns(double first, double cycles_per_frame, unsigned n, double* out) noexcept
+/// Computes the turns of a carrier in n frames from the stroke's frame `first` on. Copies the part, which
+/// `out` then cannot change.
+void turn(course_part p, double first, unsigned n, double* out) noexcept
 {
-    double* __restrict o = out;
-    for (int j = 0; j < static_cast<int>(n); ++j)
-        o[j] = (first + j) * cycles_per_frame;
-}
-
-TACTOR_CLONES void swept_turns(const course_part& p, double first, unsigned n, double* out) noexcept
-{
-    double* __restrict o = out;
-    const double cycles = p.cycles;
-    const double speed = p.cycles_per_frame;
-    const double half_slope = p.half_slope;
-    const double from = first - p.start;
-    for (int j = 0; j < static_cast<int>(n); ++j) {
-        const double k = from + j;
-        o[j] = cycles + k * (speed + k * half_slope);
-    }
-}
-
-TACTOR_CLONES void bent_turns(const course_part& p, double first, unsigned n, double* out) noexcept
-{
-    double* __restrict o = out;
-    const double cycles = p.cycles;
     const double from = first - p.start;
     const double unit = 1.0 / p.frames;
-    const std::array<double, 6> c = p.bent;
+    const std::array<double, 6>& c = p.bent;
     for (int j = 0; j < static_cast<int>(n); ++j) {
-        const double u = (from + j) * unit;
-        o[j] = cycles + u * (c[0] + u * (c[1] + u * (c[2] + u * (c[3] + u * (c[4] + u * c[5])))));
+        const double k = from + j;
+        const double u = k * unit;
+        out[j] = p.frames > 0.0
+                     ? p.cycles + u * (c[0] + u * (c[1] + u * (c[2] + u * (c[3] + u * (c[4] + u * c[5])))))
+                     : p.cycles + k * (p.cycles_per_frame + k * p.half_slope);
     }
-}
-
-void turn(const course_part& p, double first, unsigned n, double* out) noexcept
-{
-    if (p.frames > 0.0)
-        bent_turns(p, first, n, out);
-    else
-        swept_turns(p, first, n, out);
 }
 
 TACTOR_CLONES void sines(const double* turns, unsigned n, bool cosine, double* out) noexcept
@@ -62,35 +37,22 @@ TACTOR_CLONES void sines(const double* turns, unsigned n, bool cosine, double* o
         o[j] = sincos_turns(in[j] + ahead).sin;
 }
 
-TACTOR_CLONES void widen(const float* from, unsigned n, double* to) noexcept
-{
-    const float* __restrict in = from;
-    double* __restrict out = to;
-    for (unsigned j = 0; j < n; ++j)
-        out[j] = static_cast<double>(in[j]);
-}
-
 void read_loop(const wave_samples& loop, std::int64_t first, unsigned n, double* out) noexcept
 {
     const auto size = static_cast<std::int64_t>(loop.size());
     auto at = static_cast<std::size_t>(((first % size) + size) % size);
     while (n > 0) {
         const auto length = static_cast<unsigned>(std::min<std::size_t>(n, loop.size() - at));
-        widen(loop.data() + at, length, out);
-        out += length;
+        out = std::copy_n(loop.data() + at, length, out);
         n -= length;
         at = 0;
     }
 }
 
 /// Computes the second wave, which makes the envelope of all frames equal.
-TACTOR_CLONES void complete_envelope(double power, unsigned n, double* x) noexcept
+void complete_envelope(double power, unsigned n, double* x) noexcept
 {
-    double* __restrict o = x;
-    for (unsigned j = 0; j < n; ++j) {
-        const double rest = power - o[j] * o[j];
-        o[j] = std::sqrt(rest > 0.0 ? rest : 0.0);
-    }
+    std::transform(x, x + n, x, [power](double v) { return std::sqrt(std::max(power - v * v, 0.0)); });
 }
 
 void play(const timbre& t, const double* turns, unsigned n, wave w, double* out) noexcept
@@ -130,7 +92,9 @@ void follow(const timbre& t, std::int64_t first, std::int64_t origin, unsigned n
 {
     alignas(64) block turns;
     if (t.course.empty()) {
-        linear_turns(static_cast<double>(first - origin), t.cycles_per_frame, n, turns.data());
+        const auto from = static_cast<double>(first - origin);
+        for (int j = 0; j < static_cast<int>(n); ++j)
+            turns[static_cast<std::size_t>(j)] = (from + j) * t.cycles_per_frame;
         play(t, turns.data(), n, w, out);
         return;
     }
