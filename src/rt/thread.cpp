@@ -13,9 +13,9 @@
 #include <sys/prctl.h>
 #include <sys/resource.h>
 #include <unistd.h>
-#include <xmmintrin.h>
 
 #if defined(__SSE2__)
+#include <xmmintrin.h>
 #endif
 
 namespace tactor::rt {
