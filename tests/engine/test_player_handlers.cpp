@@ -22,7 +22,6 @@
 #include <boost/asio/strand.hpp>
 #include <boost/asio/use_future.hpp>
 #include <doctest/doctest.h>
-#include <fcntl.h>
 #include <sys/eventfd.h>
 #include <unistd.h>
 
@@ -357,14 +356,10 @@ TEST_CASE("after the end all members may be called, and an empty function is ref
     p.on_report([](const stroke_report&) {});
 }
 
-TEST_CASE("a trigger whose descriptor cannot be polled is an error")
+TEST_CASE("a trigger whose descriptor is not open is an error")
 {
     has(refused_trigger(-1, EBADF), "trigger: its descriptor -1: Bad file descriptor");
     has(refused_trigger(1 << 30, EBADF), "Bad file descriptor");
-    const int file = ::open("/dev/null", O_RDONLY | O_CLOEXEC);
-    REQUIRE(file >= 0);
-    has(refused_trigger(file, EPERM), "Operation not permitted");
-    ::close(file);
     const int event = ::eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC);
     CHECK(refused_trigger(event) == "no error");
     ::close(event);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// The control thread: Boost.Asio, woken by the audio thread.
+/// The control thread, which the audio thread wakes.
 #pragma once
 
 #include <functional>
@@ -11,13 +11,11 @@
 
 namespace tactor::engine {
 
-/// A thread that calls `woken` for each signal of an eventfd. GPIO edges, sockets and timers can join the
-/// same io_context.
+/// A thread that calls `woken` for each signal of an eventfd, and watches one more descriptor.
 class control_thread {
 public:
     /// Starts the thread.
-    /// \throws std::system_error or boost::system::system_error when the system refuses descriptors or
-    ///         threads.
+    /// \throws std::system_error when the system refuses threads.
     control_thread(rt::event_fd& e, std::function<void()> woken);
     /// Ends the thread; it does not call `woken` and `readable` any more. If one of these destroys this
     /// object in the thread itself, the destructor returns at once, and the thread ends when they have
@@ -27,9 +25,7 @@ public:
     control_thread& operator=(const control_thread&) = delete;
 
     /// Calls `readable` in the control thread whenever a descriptor is readable, until it returns false. The
-    /// caller keeps the descriptor, which must live as long as this object. Call it once, before the first
-    /// signal.
-    /// \throws std::system_error when the descriptor cannot be polled.
+    /// caller keeps the descriptor, which must live as long as this object. Call it once.
     void watch(int fd, std::function<bool()> readable);
 
     bool is_current() const noexcept { return thread_.is_current(); }

@@ -2,6 +2,7 @@
 #include <tactor/player.hpp>
 
 #include <algorithm>
+#include <cerrno>
 #include <cmath>
 #include <limits>
 #include <mutex>
@@ -9,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include <boost/system/system_error.hpp>
+#include <fcntl.h>
 #include <fmt/format.h>
 
 #include <tactor/error.hpp>
@@ -121,8 +122,6 @@ try : impl_(std::make_shared<impl>(std::move(s), a, o, std::move(lines))) {
     impl_->start(o);
 } catch (const error&) {
     throw;
-} catch (const boost::system::system_error& e) {
-    detail::refused_by_system("player", e.code().value(), e.code().message());
 } catch (const std::system_error& e) {
     detail::refused_by_system("player", e.code().value(), e.what());
 }
@@ -300,15 +299,13 @@ void player::impl::start(const player_options& o)
 void player::impl::listen()
 {
     const int fd = lines.trigger->descriptor();
-    try {
-        control->watch(fd, [this] { return edges(); });
-    } catch (const std::system_error& e) {
-        if (e.code() != std::errc::bad_file_descriptor && e.code() != std::errc::operation_not_permitted)
-            throw;
-        detail::throw_caused(error(
-            error_kind::bad_input, "trigger", fmt::format("its descriptor {}: {}", fd, e.code().message()),
-            "edge_input::descriptor() is one that can be polled, and open as long as the input"));
-    }
+    if (const int code = ::fcntl(fd, F_GETFD) < 0 ? errno : 0; code != 0)
+        detail::throw_caused(
+            error(error_kind::bad_input, "trigger",
+                  fmt::format("its descriptor {}: {}", fd, std::generic_category().message(code)),
+                  "edge_input::descriptor() is one that can be polled, and open as long as the input"),
+            code);
+    control->watch(fd, [this] { return edges(); });
 }
 
 void player::impl::start_lines(const player_options& o)
