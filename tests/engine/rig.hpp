@@ -145,6 +145,7 @@ public:
             feed.handle(r);
         for (const stroke_report& e : std::exchange(feed.reports(), {}))
             ended[e.id].push_back(e);
+        feed.beginnings().clear();
         feed.pump(status().written, link.clock.load());
         if (also_control)
             also_control();

@@ -280,7 +280,7 @@ TEST_CASE("the lateness of a timed stroke is known even where the clock of its b
                      .frame = 480,
                      .started = true,
                      .started_ns = 1'250'000'000});
-        REQUIRE(feed.has_reports());
+        REQUIRE_FALSE(feed.reports().empty());
         CHECK(feed.reports().front().late_s == doctest::Approx(0.25));
     }
 }

@@ -8,6 +8,8 @@
 #include <span>
 #include <utility>
 
+#include "engine/control/trigger_thread.hpp"
+
 namespace tactor::engine {
 namespace {
 
@@ -290,8 +292,8 @@ void feeder::handle(const report& r)
         return end_all(r);
     slot& s = slots_[ticket_place(r.score)]; // still belongs to this ticket: only its last report releases it
     active& a = *s.use;
-    if (r.what != report::kind::begun && ended_)
-        ended_(a.id, r.what == report::kind::over && r.frame > 0);
+    if (r.what != report::kind::begun && pulses_ != nullptr)
+        pulses_->forget(a.id, r.what == report::kind::over && r.frame > 0);
     switch (r.what) {
     case report::kind::begun:
         return begun(a, r.frame);
@@ -451,11 +453,12 @@ void feeder::begun(active& a, std::uint64_t frame)
 {
     a.begun = true;
     a.base = frame;
-    if (begins_ && a.score)
+    const clock_line clock = link_.clock.load();
+    if (pulses_ != nullptr && a.score)
         for (const std::uint64_t start : a.score->starts())
-            begins_(a.id, frame + start);
-    else if (begins_)
-        begins_(a.id, frame);
+            pulses_->add(a.id, frame + start, clock);
+    else if (pulses_ != nullptr)
+        pulses_->add(a.id, frame, clock);
     if (a.due_ns && clock_.valid() && frame >= clock_.first)
         a.late_s = late(clock_.time_at(frame), *a.due_ns, clock_.ns_per_frame);
     else if (!a.due_ns && a.at != 0 && frame > a.at && a.score)
@@ -463,8 +466,8 @@ void feeder::begun(active& a, std::uint64_t frame)
     else if (!a.due_ns)
         a.late_s = 0.0;
     // Comes last: without memory the report is handled again, and no handler must hear it twice.
-    if (keeps_beginnings_)
-        beginnings_.push_back({a.id, frame});
+    const bool known = clock.valid() && frame >= clock.first;
+    beginnings_.emplace_back(a.id, known ? std::optional(clock.time_at(frame)) : std::nullopt);
 }
 
 void feeder::over(const active& a, const report& r)

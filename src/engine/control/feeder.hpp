@@ -5,7 +5,6 @@
 
 #include <array>
 #include <cstdint>
-#include <functional>
 #include <list>
 #include <map>
 #include <memory>
@@ -23,6 +22,8 @@
 #include "synth/score/event_source.hpp"
 
 namespace tactor::engine {
+
+class trigger_thread;
 
 /// Merges the drives of the submitted scores by start frame and keeps the ring filled. A full ring or table
 /// makes scores wait here. Nothing is lost, and memory does not grow with the length of a score. No threads:
@@ -48,15 +49,8 @@ public:
     /// with the next pump(), because thousands may wait.
     void cancel_all(stroke_id last) noexcept;
 
-    /// Sets two handlers. `begins` gets each stroke that begins, with its first frame of the stream. `ended`
-    /// gets each stroke that ends or that an xrun stopped before it had begun; its argument is true if a part
-    /// of it was played.
-    void on_first_frames(std::function<void(stroke_id, std::uint64_t)> begins,
-                         std::function<void(stroke_id, bool)> ended)
-    {
-        begins_ = std::move(begins);
-        ended_ = std::move(ended);
-    }
+    /// Plans a sync pulse for each stroke that begins from now on. `t` must outlive the strokes.
+    void set_pulses(trigger_thread& t) noexcept { pulses_ = &t; }
 
     /// Hands over the drives within the horizon after stream frame `written`, as far as they fit. Strokes
     /// with a start time wait until the clock is known.
@@ -72,22 +66,17 @@ public:
     /// Returns the reports of strokes that ended, in order of their ends. The caller removes them.
     std::list<stroke_report>& reports() noexcept { return reports_; }
 
-    /// A stroke that began, and the frame of the stream at which its first frame was written.
-    struct first_frame {
-        stroke_id id = {};
-        std::uint64_t frame = 0;
-    };
-    /// Keeps beginnings from now on; the caller removes them from the list.
-    void keep_beginnings() noexcept { keeps_beginnings_ = true; }
-    std::list<first_frame>& beginnings() noexcept { return beginnings_; }
+    /// A stroke that began, and the CLOCK_MONOTONIC time, ns, of its first frame at the DAC, if the clock is
+    /// known.
+    using stroke_start = std::pair<stroke_id, std::optional<std::int64_t>>;
+    /// Returns the beginnings in order. The caller removes them.
+    std::list<stroke_start>& beginnings() noexcept { return beginnings_; }
 
     using live_map = std::map<stroke_id, std::shared_ptr<live_voice>>;
     /// Returns the live strokes that have ended. Take them out and destroy them without a lock: the last
     /// owner of one destroys its phantom model, which may be the program's.
     live_map& gone_live() noexcept { return gone_live_; }
 
-    /// Returns true if there are reports.
-    bool has_reports() const noexcept { return !reports_.empty(); }
     /// Returns true if the stroke has not ended, or its report has not been removed yet.
     bool knows(stroke_id id) const;
     /// Returns true if the stream has ended; then every stroke has been reported.
@@ -173,10 +162,8 @@ private:
     std::vector<command> batch_;        ///< of fixed capacity
     std::map<stroke_id, float> gains_;  ///< of strokes that have one
     std::list<stroke_report> reports_;
-    std::list<first_frame> beginnings_;
-    bool keeps_beginnings_ = false;
-    std::function<void(stroke_id, std::uint64_t)> begins_;
-    std::function<void(stroke_id, bool)> ended_;
+    std::list<stroke_start> beginnings_;
+    trigger_thread* pulses_ = nullptr;
     stroke_id cancelled_to_ = {}; ///< last one of cancel_all(), until the strokes that wait have ended
     bool urgent_ = false;
     bool stream_over_ = false;

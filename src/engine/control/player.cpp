@@ -16,10 +16,13 @@
 #include <tactor/error.hpp>
 #include <tactor/version.hpp>
 
+#include "core/access.hpp"
 #include "core/log.hpp"
 #include "core/refused.hpp"
 #include "core/words.hpp"
 #include "engine/control/player_impl.hpp"
+#include "engine/live/live_stroke.hpp"
+#include "rt/clock.hpp"
 #include "rt/thread.hpp"
 
 namespace tactor {
@@ -101,6 +104,14 @@ player_lines checked(player_lines l, unsigned rate)
     return l;
 }
 
+float to_gain(double level_db)
+{
+    if (!(level_db >= player::least_level_db && level_db <= 0.0))
+        throw error(error_kind::bad_input, "level_db", fmt::format("it is {}", level_db),
+                    fmt::format("{} to 0 dB", player::least_level_db));
+    return static_cast<float>(std::pow(10.0, level_db / 20.0));
+}
+
 std::unique_ptr<sink> not_null(std::unique_ptr<sink> s)
 {
     if (s == nullptr)
@@ -138,17 +149,32 @@ const stream_setup& player::setup() const noexcept
 
 stroke_id player::submit(const score& s, start_at start, double level_db)
 {
-    return impl_->submit(s, start, level_db);
+    const float gain = to_gain(level_db);
+    engine::check_fits(s, impl_->out->setup(), impl_->limits);
+    const std::lock_guard lock(impl_->mutex);
+    impl_->check_open();
+    const stroke_id id = impl_->next_id();
+    impl_->feed.submit(id, s, start);
+    if (level_db != 0.0)
+        impl_->feed.set_gain(id, gain);
+    impl_->pump(); // if memory runs out here, the control thread does it later
+    return id;
 }
 
 bool player::set_level(stroke_id id, double db)
 {
-    return impl_->set_level(id, db);
+    const float gain = to_gain(db);
+    const std::lock_guard lock(impl_->mutex);
+    if (!impl_->feed.set_gain(id, gain))
+        return false;
+    impl_->link.to_audio.signal();
+    return true;
 }
 
 std::optional<std::uint64_t> player::first_frame(stroke_id id) const
 {
-    return impl_->first_frame(id);
+    const std::lock_guard lock(impl_->mutex);
+    return impl_->feed.find_first_frame(id);
 }
 
 std::size_t player::fire(std::int64_t monotonic_ns)
@@ -158,22 +184,60 @@ std::size_t player::fire(std::int64_t monotonic_ns)
 
 live_stroke player::begin(const live_options& o)
 {
-    return impl_->begin(o);
+    const stream_setup& setup =
+        impl_->out->setup(); // not under the lock, because a sink may be the program's own
+    const std::unique_lock lock(impl_->mutex);
+    impl_->check_open();
+    if (!impl_->faces)
+        impl_->faces.emplace(impl_->tactors);
+    const stroke_id id = impl_->next_id();
+    auto stroke = std::make_shared<live_stroke::impl>(id, impl_->tactors, *impl_->faces, setup, o);
+    impl_->feed.submit(id, std::shared_ptr<engine::live_voice>(stroke, &stroke->voice));
+    impl_->pump();
+    return detail::access::make<live_stroke>(std::move(stroke));
 }
 
 bool player::on_end(stroke_id id, std::function<void(const stroke_report&)> done)
 {
-    return impl_->on_end(id, std::move(done));
+    if (!done)
+        throw error(error_kind::bad_input, "on_end", "there is nothing to call", "give a function");
+    std::unique_lock lock(impl_->mutex);
+    const auto found = impl_->find_report(id);
+    if (found == impl_->ended.end()) {
+        if (!impl_->feed.knows(id))
+            return false;
+        impl_->watchers.emplace(id, std::move(done));
+        return true;
+    }
+    const stroke_report r = *found;
+    lock.unlock();
+    done(r);
+    return true;
 }
 
 bool player::cancel(stroke_id id)
 {
-    return impl_->cancel(id);
+    const std::lock_guard lock(impl_->mutex);
+    const bool known = impl_->feed.cancel(id);
+    if (known) {
+        impl_->link.to_audio.signal();
+        impl_->link.to_control.signal(); // a stroke that had not been handed over is reported at once
+    }
+    return known;
 }
 
 bool player::cancel_all()
 {
-    return impl_->cancel_all();
+    const std::lock_guard lock(impl_->mutex);
+    // In a longer buffer a fade comes too late: the end of the stream cuts what was written before it.
+    if (impl_->made.buffer_frames * rt::ns_per_s > engine::longest_stop_ns * impl_->made.rate)
+        impl_->end_stream(false);
+    if (impl_->stopping || impl_->feed.stream_over())
+        return false;
+    impl_->feed.cancel_all(impl_->last_id);
+    impl_->link.to_audio.signal();
+    impl_->link.to_control.signal();
+    return true;
 }
 
 wait_result player::wait(stroke_id id, std::optional<double> timeout_s)
@@ -192,8 +256,6 @@ void player::on_begin(std::function<void(stroke_id, std::optional<std::int64_t>)
 {
     auto shared = handler ? std::make_shared<const impl::begin_handler>(std::move(handler)) : nullptr;
     const std::lock_guard lock(impl_->mutex);
-    if (shared != nullptr)
-        impl_->feed.keep_beginnings();
     impl_->on_begun.swap(shared); // destroyed after the lock, as above
 }
 
@@ -322,9 +384,7 @@ void player::impl::start_lines(const player_options& o)
                                .audio = true};
     pulses = std::make_unique<engine::trigger_thread>(
         link, *lines.sync_out, std::int64_t{to_frames(lines.pulse_s, 1'000'000, "pulse_s")} * 1000, t);
-    feed.on_first_frames(
-        [this](stroke_id id, std::uint64_t frame) { pulses->add(id, frame, link.clock.load()); },
-        [this](stroke_id id, bool was_played) { pulses->forget(id, was_played); });
+    feed.set_pulses(*pulses);
 }
 
 void player::impl::check_start(const player_options& o)

@@ -17,8 +17,6 @@
 
 #include <tactor/error.hpp>
 
-#include "core/access.hpp"
-#include "engine/live/live_stroke.hpp"
 #include "rt/clock.hpp"
 
 namespace tactor {
@@ -34,14 +32,6 @@ std::chrono::steady_clock::time_point deadline(double timeout_s)
     constexpr double century_s = 100.0 * 365.0 * 86400.0;
     const double wait_s = timeout_s > 0.0 ? std::min(timeout_s, century_s) : 0.0;
     return std::chrono::steady_clock::now() + std::chrono::nanoseconds(std::llround(wait_s * 1e9));
-}
-
-float to_gain(double level_db)
-{
-    if (!(level_db >= player::least_level_db && level_db <= 0.0))
-        throw error(error_kind::bad_input, "level_db", fmt::format("it is {}", level_db),
-                    fmt::format("{} to 0 dB", player::least_level_db));
-    return static_cast<float>(std::pow(10.0, level_db / 20.0));
 }
 
 // Number of reads without an edge after which a readable descriptor counts as broken.
@@ -70,20 +60,6 @@ void player::impl::close()
     out.reset();
 }
 
-stroke_id player::impl::submit(const score& s, start_at start, double level_db)
-{
-    const float gain = to_gain(level_db);
-    engine::check_fits(s, out->setup(), limits);
-    const std::lock_guard lock(mutex);
-    check_open();
-    const stroke_id id = next_id();
-    feed.submit(id, s, start);
-    if (level_db != 0.0)
-        feed.set_gain(id, gain);
-    pump(); // if memory runs out here, the control thread does it later
-    return id;
-}
-
 void player::impl::check_open() const
 {
     if (!stopping && !feed.stream_over())
@@ -100,48 +76,6 @@ stream_end player::impl::end() const
     return feed.end();
 }
 
-bool player::impl::cancel(stroke_id id)
-{
-    const std::lock_guard lock(mutex);
-    const bool known = feed.cancel(id);
-    if (known) {
-        link.to_audio.signal();
-        link.to_control.signal(); // a stroke that had not been handed over is reported at once
-    }
-    return known;
-}
-
-std::optional<std::uint64_t> player::impl::first_frame(stroke_id id)
-{
-    const std::lock_guard lock(mutex);
-    return feed.find_first_frame(id);
-}
-
-bool player::impl::set_level(stroke_id id, double db)
-{
-    const float gain = to_gain(db);
-    const std::lock_guard lock(mutex);
-    if (!feed.set_gain(id, gain))
-        return false;
-    link.to_audio.signal();
-    return true;
-}
-
-bool player::impl::cancel_all()
-{
-    const std::lock_guard lock(mutex);
-    // In a longer buffer a fade comes too late: the end of the stream cuts what was written before it.
-    if (made.buffer_frames * rt::ns_per_s > engine::longest_stop_ns * made.rate)
-        end_stream(false);
-    if (stopping || feed.stream_over())
-        return false;
-    feed.cancel_all(last_id);
-    link.to_audio.signal();
-    link.to_control.signal();
-    return true;
-}
-
-// Asks the audio thread to fade out and to end the stream, under the mutex.
 void player::impl::end_stream(bool closing) noexcept
 {
     if (std::exchange(stopping, true))
@@ -152,8 +86,6 @@ void player::impl::end_stream(bool closing) noexcept
     link.to_audio.signal();
 }
 
-// Hands over drives, under the mutex. Returns false if memory ran out: nothing is lost, and the control
-// thread tries again.
 bool player::impl::pump()
 {
     bool done = true;
@@ -161,7 +93,7 @@ bool player::impl::pump()
         feed.pump(link.status.load().written, link.clock.load());
         if (pulses)
             pulses->hand_over();
-        if (feed.has_reports())
+        if (!feed.reports().empty())
             link.to_control.signal();
     } catch (const std::bad_alloc&) {
         done = false;
@@ -175,7 +107,7 @@ bool player::impl::pump()
 wait_result player::impl::wait(stroke_id id, std::optional<double> timeout_s)
 {
     std::unique_lock lock(mutex);
-    const auto settled = [&] { return ended.contains(id) || !feed.knows(id); };
+    const auto settled = [&] { return find_report(id) != ended.end() || !feed.knows(id); };
     // In the control thread it would wait for itself.
     if (!control->is_current()) {
         if (timeout_s)
@@ -183,10 +115,9 @@ wait_result player::impl::wait(stroke_id id, std::optional<double> timeout_s)
         else
             news.wait(lock, settled);
     }
-    const auto found = ended.find(id);
+    const auto found = find_report(id);
     if (found != ended.end()) {
-        wait_result r(std::move(found->second.report));
-        by_end.erase(found->second.nth);
+        wait_result r(std::move(*found));
         ended.erase(found);
         return r;
     }
@@ -245,41 +176,28 @@ bool player::impl::take_reports()
         if (unfired)
             feed.fire(*unfired);
         unfired.reset();
-        const engine::clock_line clock = link.clock.load();
-        for (auto& first = feed.beginnings(); !first.empty(); first.pop_front()) {
-            const std::uint64_t frame = first.front().frame;
-            const bool known = clock.valid() && frame >= clock.first;
-            begun.emplace_back(first.front().id, known ? std::optional(clock.time_at(frame)) : std::nullopt);
-        }
-        std::list<stroke_report>& news_of_strokes = feed.reports();
-        for (stroke_report& r : news_of_strokes) {
+        begun.splice(begun.end(), feed.beginnings());
+        for (auto& reports = feed.reports(); !reports.empty();) {
+            stroke_report& r = reports.front();
             if (!handler_failed.empty() && r.reason == reason_kind::closed) {
-                r.reason = reason_kind::handler;
                 r.why = handler_failed;
+                r.reason = reason_kind::handler;
             }
-            keep(r);
-        }
-        for (const stroke_report& r : news_of_strokes)
+            ended.push_back(r);
+            if (ended.size() > most_unread_reports)
+                ended.pop_front();
             log.look_at_end(r);
-        unreported.splice(unreported.end(), news_of_strokes);
+            unreported.splice(unreported.end(), reports, reports.begin());
+        }
     } catch (const std::bad_alloc&) {
         return false;
-    }
-    while (ended.size() > most_unread_reports) {
-        ended.erase(by_end.begin()->second);
-        by_end.erase(by_end.begin());
     }
     return true;
 }
 
-// Keeps a report. Runs again for the same report if memory ran out.
-void player::impl::keep(const stroke_report& r)
+std::deque<stroke_report>::iterator player::impl::find_report(stroke_id id)
 {
-    if (ended.contains(r.id))
-        return;
-    by_end.insert_or_assign(ends, r.id);
-    ended.emplace(r.id, kept_report{r, ends});
-    ++ends;
+    return std::find_if(ended.begin(), ended.end(), [id](const stroke_report& r) { return r.id == id; });
 }
 
 std::size_t player::impl::fire(std::int64_t time_ns)
@@ -311,38 +229,6 @@ bool player::impl::edges()
     }
     empty_reads = any ? 0 : empty_reads + 1;
     return empty_reads < most_empty_reads;
-}
-
-live_stroke player::impl::begin(const live_options& o)
-{
-    const stream_setup& setup = out->setup(); // not under the lock, because a sink may be the program's own
-    const std::unique_lock lock(mutex);
-    check_open();
-    if (!faces)
-        faces.emplace(tactors);
-    const stroke_id id = next_id();
-    auto stroke = std::make_shared<live_stroke::impl>(id, tactors, *faces, setup, o);
-    feed.submit(id, std::shared_ptr<engine::live_voice>(stroke, &stroke->voice));
-    pump();
-    return detail::access::make<live_stroke>(std::move(stroke));
-}
-
-bool player::impl::on_end(stroke_id id, report_handler done)
-{
-    if (!done)
-        throw error(error_kind::bad_input, "on_end", "there is nothing to call", "give a function");
-    std::unique_lock lock(mutex);
-    const auto found = ended.find(id);
-    if (found == ended.end()) {
-        if (!feed.knows(id))
-            return false;
-        watchers.emplace(id, std::move(done));
-        return true;
-    }
-    const stroke_report r = found->second.report;
-    lock.unlock();
-    done(r);
-    return true;
 }
 
 template <typename Call>

@@ -5,6 +5,7 @@
 
 #include <condition_variable>
 #include <cstdint>
+#include <deque>
 #include <functional>
 #include <list>
 #include <map>
@@ -59,19 +60,24 @@ struct player::impl : std::enable_shared_from_this<player::impl> {
     /// Ends all threads, and closes the sink and the lines. Call it once, after start().
     void close();
 
-    stroke_id submit(const score& s, start_at start, double level_db);
-    bool set_level(stroke_id id, double db);
-    std::optional<std::uint64_t> first_frame(stroke_id id);
     std::size_t fire(std::int64_t time_ns);
-    live_stroke begin(const live_options& o);
-    bool on_end(stroke_id id, report_handler done);
-    bool cancel(stroke_id id);
-    bool cancel_all();
     wait_result wait(stroke_id id, std::optional<double> timeout_s);
     void stop(bool closing);
-    /// Returns the end of the stream, also if it is only near. Under the mutex.
+
+    // Under the mutex.
+
+    /// Throws error (runtime) if the stream has ended or is about to.
+    void check_open() const;
+    /// Hands over drives. Returns false if memory ran out: nothing is lost, and the control thread tries
+    /// again.
+    bool pump();
+    /// Requests the end of the stream from the audio thread, after a fade.
+    void end_stream(bool closing) noexcept;
+    /// Returns the end of the stream, also if it is only near.
     stream_end end() const;
-    void keep(const stroke_report& r);
+    /// Finds an unread report; ended.end() if there is none.
+    std::deque<stroke_report>::iterator find_report(stroke_id id);
+    stroke_id next_id() noexcept { return {++last_id.number}; }
 
     std::unique_ptr<sink> out;
     /// Set-up at the stream's start. The audio thread may change the sink's own.
@@ -82,24 +88,16 @@ struct player::impl : std::enable_shared_from_this<player::impl> {
     std::mutex mutex; ///< guards all members below but the threads; the audio thread never uses it
     std::condition_variable news;
     engine::feeder feed;
-    /// An unread report, and its number in the order of ends.
-    struct kept_report {
-        stroke_report report;
-        std::uint64_t nth = 0;
-    };
-    std::map<stroke_id, kept_report> ended;
-    std::map<std::uint64_t, stroke_id> by_end; ///< order of `ended`
-    std::uint64_t ends = 0;
+    std::deque<stroke_report> ended;     ///< unread reports, the oldest first
     std::list<stroke_report> unreported; ///< not yet passed to the handlers
     std::shared_ptr<const report_handler> handler;
-    std::list<std::pair<stroke_id, std::optional<std::int64_t>>> begun; ///< not yet passed to its handler
+    std::list<engine::feeder::stroke_start> begun; ///< not yet passed to its handler
     std::shared_ptr<const begin_handler> on_begun;
     std::multimap<stroke_id, report_handler> watchers;
     array tactors;
     std::vector<double> limits;  ///< of the array, by channel of the stream
     std::optional<layout> faces; ///< faces of the array, once a live stroke needs them
     stroke_id last_id = {};
-    stroke_id next_id() noexcept { return {++last_id.number}; }
     bool stopping = false;
     std::string handler_failed; ///< text of an exception from a handler of the program; empty: none
     int empty_reads = 0;        ///< of the trigger line, control thread
@@ -123,9 +121,6 @@ private:
     void listen();
     void woken();
     bool take_reports();
-    bool pump();
-    void end_stream(bool closing) noexcept;
-    void check_open() const;
     bool edges();
     void call_handlers();
     void report_beginnings();
