@@ -43,7 +43,6 @@ void sequence::handle(event e, std::int64_t now, played_frames at) noexcept
         prove();
         break;
     case event::silent:
-    case event::lost:
     case event::failed:
         state_ = state::ended;
         return;

@@ -25,7 +25,6 @@ enum class event {
     recovered, ///< the audio thread runs again
     lapsed,    ///< the line went off by itself
     silent,    ///< the last sound is out: the stream is about to stop
-    lost,      ///< the device is gone
     failed,    ///< the device or the line failed
     tick,      ///< time has passed
 };
@@ -51,8 +50,6 @@ public:
     bool line() const noexcept { return state_ == state::switching || state_ >= state::settling; }
     /// Returns true if strokes may sound.
     bool ready() const noexcept { return state_ == state::ready; }
-    /// Returns true if the line is off for good.
-    bool ended() const noexcept { return state_ == state::ended; }
     /// Returns the time when a tick is due, if it can change anything.
     std::optional<std::int64_t> deadline() const noexcept;
 

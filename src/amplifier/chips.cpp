@@ -260,16 +260,10 @@ gpio_line_place look_up(const gpio_line_name& wanted)
     return {c.path, c.label, c.lines[p.offset]};
 }
 
-located_line locate(const gpio_line_name& wanted)
-{
-    const gpio_line_place p = look_up(wanted);
-    return {p.path, p.line.offset};
-}
-
-std::string find_holder(const located_line& l)
+std::string find_holder(const gpio_line_place& l)
 {
     const chip c = read_chip(l.path);
-    return l.offset < c.info.lines.size() ? c.info.lines[l.offset].consumer : std::string();
+    return l.line.offset < c.info.lines.size() ? c.info.lines[l.line.offset].consumer : std::string();
 }
 
 line_place find_line(std::span<const chip> chips, const gpio_line_name& wanted)

@@ -209,12 +209,6 @@ int open_pidfd(pid_t pid) noexcept
     return static_cast<int>(::syscall(SYS_pidfd_open, pid, 0U)); // Linux 5.3
 }
 
-void close_if_open(int fd) noexcept
-{
-    if (fd >= 0)
-        ::close(fd);
-}
-
 /// Returns true if one of the events came in time.
 bool wait_for(int fd, short events, int timeout_ms) noexcept
 {
@@ -227,20 +221,6 @@ bool wait_for(int fd, short events, int timeout_ms) noexcept
             return n > 0;
     }
 }
-
-class descriptor {
-public:
-    explicit descriptor(int fd) : fd_(fd) {}
-    ~descriptor() { close_if_open(fd_); }
-    descriptor(const descriptor&) = delete;
-    descriptor& operator=(const descriptor&) = delete;
-    int get() const noexcept { return fd_; }
-    int release() noexcept { return std::exchange(fd_, -1); }
-    void reset() noexcept { close_if_open(release()); }
-
-private:
-    int fd_;
-};
 
 [[noreturn]] void fail(const char* step, int code)
 {
@@ -303,9 +283,13 @@ std::vector<int> kept_descriptors(const held_line& line, const holder_job& job)
 
 } // namespace
 
-holder_link::holder_link(int socket, std::int32_t pid, std::function<bool()> rescue,
+holder_link::holder_link(detail::owned_fd socket, std::int32_t pid, std::function<bool()> rescue,
                          const holder_limits& limits)
-    : socket_(socket), pid_(pid), process_(open_pidfd(pid)), rescue_(std::move(rescue)), limits_(limits)
+    : socket_(std::move(socket)),
+      pid_(pid),
+      process_(open_pidfd(pid)),
+      rescue_(std::move(rescue)),
+      limits_(limits)
 {
 }
 
@@ -315,12 +299,10 @@ holder_link::~holder_link()
     if (on_)
         set(false);
     if (!gone_) {
-        ::shutdown(socket_, SHUT_WR);
-        if (!wait_for(socket_, 0, limits_.answer_ms)) // the holder closes its side
+        ::shutdown(socket_.get(), SHUT_WR);
+        if (!wait_for(socket_.get(), 0, limits_.answer_ms)) // the holder closes its side
             give_up();
     }
-    close_if_open(process_);
-    close_if_open(socket_);
 }
 
 bool holder_link::set(bool on) noexcept
@@ -349,7 +331,7 @@ bool holder_link::beat() noexcept
 bool holder_link::send(message_kind kind) noexcept
 {
     const message m{kind, ++number_, true, 0};
-    if (::send(socket_, &m, sizeof m, MSG_NOSIGNAL | MSG_DONTWAIT) != static_cast<ssize_t>(sizeof m)) {
+    if (::send(socket_.get(), &m, sizeof m, MSG_NOSIGNAL | MSG_DONTWAIT) != static_cast<ssize_t>(sizeof m)) {
         give_up();
         return false;
     }
@@ -368,7 +350,7 @@ bool holder_link::await_answer(message_kind kind) noexcept
             return m->done;
         }
         const std::int64_t left = until - rt::monotonic_ms();
-        if (!gone_ && (left <= 0 || !wait_for(socket_, POLLIN, static_cast<int>(left))))
+        if (!gone_ && (left <= 0 || !wait_for(socket_.get(), POLLIN, static_cast<int>(left))))
             give_up();
     }
     return false;
@@ -379,7 +361,7 @@ std::optional<message> holder_link::receive() noexcept
 {
     message m;
     for (;;) {
-        const ssize_t n = ::recv(socket_, &m, sizeof m, MSG_DONTWAIT);
+        const ssize_t n = ::recv(socket_.get(), &m, sizeof m, MSG_DONTWAIT);
         if (n == static_cast<ssize_t>(sizeof m))
             break;
         if (n < 0 && errno == EINTR)
@@ -397,9 +379,9 @@ std::optional<message> holder_link::receive() noexcept
 void holder_link::give_up() noexcept
 {
     gone_ = true;
-    if (process_ >= 0) {
-        ::syscall(SYS_pidfd_send_signal, process_, SIGKILL, nullptr, 0U);
-        wait_for(process_, POLLIN, limits_.answer_ms);
+    if (process_) {
+        ::syscall(SYS_pidfd_send_signal, process_.get(), SIGKILL, nullptr, 0U);
+        wait_for(process_.get(), POLLIN, limits_.answer_ms);
     }
     rescued_ = switch_off_here();
 }
@@ -419,9 +401,9 @@ std::unique_ptr<holder_link> start_holder(const held_line& line, std::function<b
     std::array<int, 2> ends{};
     if (::socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0, ends.data()) != 0)
         fail("socketpair", errno);
-    descriptor ours(ends[0]);
-    descriptor theirs(ends[1]);
-    const descriptor player(open_pidfd(::getpid()));
+    detail::owned_fd ours(ends[0]);
+    detail::owned_fd theirs(ends[1]);
+    const detail::owned_fd player(open_pidfd(::getpid()));
 
     holder_job job{line.set, line.line, theirs.get(), player.get(), ours.get(), nullptr, 0, limits};
     std::vector<int> keep = kept_descriptors(line, job);
@@ -429,13 +411,13 @@ std::unique_ptr<holder_link> start_holder(const held_line& line, std::function<b
     job.keep_count = static_cast<unsigned>(keep.size());
     if (const int code = fork_holder(job); code != 0)
         fail("fork", code);
-    theirs.reset();
+    theirs.close();
 
     message hello;
     if (!wait_for(ours.get(), POLLIN, limits.start_ms) ||
         ::recv(ours.get(), &hello, sizeof hello, MSG_DONTWAIT) != static_cast<ssize_t>(sizeof hello))
         fail("no greeting", ETIMEDOUT);
-    return std::make_unique<holder_link>(ours.release(), hello.pid, std::move(rescue), limits);
+    return std::make_unique<holder_link>(std::move(ours), hello.pid, std::move(rescue), limits);
 }
 
 } // namespace tactor::amplifier

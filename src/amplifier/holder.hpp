@@ -14,6 +14,8 @@
 
 #include <tactor/lines.hpp>
 
+#include "core/owned.hpp"
+
 namespace tactor::amplifier {
 
 /// Times that the player and the holder wait for each other. Programs use the defaults. Tests that do not
@@ -56,7 +58,8 @@ struct held_line {
 /// A line that a holder owns. One thread at a time.
 class holder_link final : public enable_line {
 public:
-    holder_link(int socket, std::int32_t pid, std::function<bool()> rescue, const holder_limits& limits);
+    holder_link(detail::owned_fd socket, std::int32_t pid, std::function<bool()> rescue,
+                const holder_limits& limits);
     ~holder_link() override;
     holder_link(const holder_link&) = delete;
     holder_link& operator=(const holder_link&) = delete;
@@ -73,9 +76,9 @@ private:
     void give_up() noexcept;
     bool switch_off_here() noexcept;
 
-    int socket_;
+    detail::owned_fd socket_;
     pid_t pid_;
-    int process_; ///< pidfd of the holder
+    detail::owned_fd process_; ///< pidfd of the holder
     std::function<bool()> rescue_;
     holder_limits limits_;
     std::uint8_t number_ = 0;

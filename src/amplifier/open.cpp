@@ -48,7 +48,7 @@ private:
 };
 
 template <typename T>
-std::unique_ptr<T> take(requested<T> r, const gpio_line_name& wanted, const located_line& at)
+std::unique_ptr<T> take(requested<T> r, const gpio_line_name& wanted, const gpio_line_place& at)
 {
     if (!r.line)
         detail::throw_caused(request_error(wanted, r.code, find_holder(at)), r.code);
@@ -84,8 +84,8 @@ edge_input::~edge_input() = default;
 
 std::unique_ptr<enable_line> open_amplifier(const amplifier_settings& s)
 {
-    const located_line at = locate(s.line);
-    const output_request request{at.path, at.offset, s.active_low};
+    const gpio_line_place at = look_up(s.line);
+    const output_request request{at.path, at.line.offset, s.active_low};
     // This process requests the line, because it can report errors and libgpiod may allocate here. The holder
     // inherits the request, and owns it alone once this copy is released.
     const std::unique_ptr<output> line = take(request_output(request), s.line, at);
@@ -95,21 +95,18 @@ std::unique_ptr<enable_line> open_amplifier(const amplifier_settings& s)
 
 std::unique_ptr<enable_line> open_output(const gpio_line_name& line, bool active_low)
 {
-    const located_line at = locate(line);
-    return std::make_unique<own_output>(take(request_output({at.path, at.offset, active_low}), line, at));
+    const gpio_line_place at = look_up(line);
+    return std::make_unique<own_output>(
+        take(request_output({at.path, at.line.offset, active_low}), line, at));
 }
 
 std::unique_ptr<edge_input> open_edges(const gpio_line_name& line, edge_kind edge, double debounce_s,
                                        pull_kind pull)
 {
-    input_request request;
-    request.edge = edge;
-    request.bias = pull;
     const debounce filter = make_debounce(line, debounce_s);
-    const located_line at = locate(line);
-    request.path = at.path;
-    request.offset = at.offset;
-    return std::make_unique<debounced_input>(take(request_input(request), line, at), filter);
+    const gpio_line_place at = look_up(line);
+    return std::make_unique<debounced_input>(
+        take(request_input({at.path, at.line.offset, edge, pull}), line, at), filter);
 }
 
 } // namespace v0
