@@ -37,31 +37,31 @@ std::string near(const std::string& name, const std::vector<std::string>& known)
 
 // Returns a hint of the PCM that may be meant: one that is defined, or a card of which only the id or the
 // name is written.
-std::string near(const std::string& name, const std::vector<card>& cards,
+std::string near(const std::string& name, const std::vector<card_info>& cards,
                  const std::vector<std::string>& pcms)
 {
     std::vector<std::string_view> views;
-    for (const card& c : cards)
+    for (const card_info& c : cards)
         views.insert(views.end(), {c.id, c.name});
     views.insert(views.end(), pcms.begin(), pcms.end());
     const std::string_view like = detail::nearest_name(name, views);
     if (like.empty())
         return {};
-    for (const card& c : cards)
+    for (const card_info& c : cards)
         if (like == c.id || like == c.name)
             return fmt::format("did you mean hw:CARD={}? ", c.id);
     return fmt::format("did you mean {}? ", like);
 }
 
-std::vector<std::string> ids(const std::vector<card>& cards)
+std::vector<std::string> ids(const std::vector<card_info>& cards)
 {
     std::vector<std::string> all;
-    for (const card& c : cards)
+    for (const card_info& c : cards)
         all.push_back(c.id);
     return all;
 }
 
-error no_card(const std::string& name, const device_name& d, const std::vector<card>& cards)
+error no_card(const std::string& name, const device_name& d, const std::vector<card_info>& cards)
 {
     if (cards.empty())
         return {error_kind::not_available, thing(name), "there is no sound card", no_card_hint};
@@ -70,9 +70,11 @@ error no_card(const std::string& name, const device_name& d, const std::vector<c
                         fmt::join(ids(cards), ", "))};
 }
 
-error no_device(const std::string& name, unsigned device, const card& c, const surroundings& s)
+error no_device(const std::string& name, unsigned device, const card_info& c, const surroundings& s)
 {
-    const auto devices = playback_devices(s.root, c.index);
+    std::vector<unsigned> devices;
+    for (const playback_device& d : playback_devices(s.root, c.index))
+        devices.push_back(d.number);
     const std::string why = fmt::format("card {} has no playback device {}", c.id, device);
     if (devices.empty())
         return {error_kind::not_available, thing(name), why, "it has none at all: take another card"};
@@ -141,11 +143,12 @@ error no_pcm(const std::string& name, const std::string& detail, const surroundi
         if (!c)
             return no_card(name, *d, cards);
         const auto devices = playback_devices(s.root, c->index);
-        if (std::find(devices.begin(), devices.end(), d->device) == devices.end())
+        if (std::none_of(devices.begin(), devices.end(),
+                         [&](const auto& p) { return p.number == d->device; }))
             return no_device(name, d->device, *c, s);
     }
     const std::string plain = name.substr(0, name.find(':'));
-    const bool defined = std::find(s.pcms.begin(), s.pcms.end(), plain) != s.pcms.end();
+    const bool defined = contains(s.pcms, plain);
     if (defined && cards.empty() && wants_card(s))
         return {error_kind::not_available, thing(name), with_detail("there is no sound card", detail),
                 no_card_hint};
@@ -160,12 +163,6 @@ error no_pcm(const std::string& name, const std::string& detail, const surroundi
         hint += fmt::format("cards: {}; ", fmt::join(ids(cards), ", "));
     return {error_kind::not_available, thing(name), with_detail("no such PCM", detail),
             hint + "{command:devices} lists all"};
-}
-
-bool is_sound_server(const std::string& program)
-{
-    constexpr std::array servers{"pipewire", "pipewire-pulse", "wireplumber", "pulseaudio", "jackd"};
-    return std::find(servers.begin(), servers.end(), program) != servers.end();
 }
 
 // Returns the error of a name such as "hw:CARD=Tactor,", whose arguments its definition does not take.
@@ -187,12 +184,13 @@ error busy(const std::string& name, const surroundings& s)
     if (holders.empty())
         return {error_kind::not_available, thing(name), "it is busy: another program plays on it",
                 "stop that program; sudo fuser -v /dev/snd/* names it"};
+    constexpr std::array servers{"pipewire", "pipewire-pulse", "wireplumber", "pulseaudio", "jackd"};
     std::string who;
     bool server = false;
-    for (const holder& h : holders) {
+    for (const process_info& h : holders) {
         who += fmt::format("{}{} (process {})", who.empty() ? "" : ", ",
                            h.program.empty() ? "a program" : h.program, h.pid);
-        server = server || is_sound_server(h.program);
+        server = server || contains(servers, h.program);
     }
     return {error_kind::not_available, thing(name), fmt::format("it is busy: {} plays on it", who),
             server ? "a sound server has it: the udev rules keep those off the card Tactor"

@@ -17,6 +17,12 @@
 namespace tactor::alsa {
 namespace {
 
+void must(int code, const std::string& name, const char* call)
+{
+    if (code < 0)
+        tactor::detail::throw_caused(call_error(name, call, code), -code);
+}
+
 // Formats a range. Software PCMs report 1073741823 channels or 4294967295 Hz, which means no limit.
 std::string range(unsigned least, unsigned most, unsigned beyond)
 {
@@ -160,18 +166,16 @@ void set_sizes(snd_pcm_t* p, const hw_params& h, const alsa_options& o)
     snd_pcm_hw_params_set_periods_integer(p, h.get()); // some devices refuse this, and work without it
     int direction = 0;
     snd_pcm_uframes_t period = o.period_frames;
-    if (const int code = snd_pcm_hw_params_set_period_size_near(p, h.get(), &period, &direction); code < 0)
-        tactor::detail::throw_caused(call_error(o.pcm, "snd_pcm_hw_params_set_period_size_near", code),
-                                     -code);
+    must(snd_pcm_hw_params_set_period_size_near(p, h.get(), &period, &direction), o.pcm,
+         "snd_pcm_hw_params_set_period_size_near");
     // Sets the buffer as well: otherwise a software PCM chooses hours of frames.
     unsigned periods = o.periods;
     direction = 0;
     if (snd_pcm_hw_params_set_periods_near(p, h.get(), &periods, &direction) == 0)
         return;
     snd_pcm_uframes_t buffer = period * o.periods;
-    if (const int code = snd_pcm_hw_params_set_buffer_size_near(p, h.get(), &buffer); code < 0)
-        tactor::detail::throw_caused(call_error(o.pcm, "snd_pcm_hw_params_set_buffer_size_near", code),
-                                     -code);
+    must(snd_pcm_hw_params_set_buffer_size_near(p, h.get(), &buffer), o.pcm,
+         "snd_pcm_hw_params_set_buffer_size_near");
 }
 
 stream_setup read_back(const hw_params& h, const alsa_options& o, const fixed& asked_for)
@@ -218,13 +222,11 @@ void check(const alsa_options& o)
 hw_params configuration_space(snd_pcm_t* p, const std::string& name)
 {
     hw_params h = make_hw_params();
-    if (const int code = snd_pcm_hw_params_any(p, h.get()); code < 0)
-        tactor::detail::throw_caused(call_error(name, "snd_pcm_hw_params_any", code), -code);
+    must(snd_pcm_hw_params_any(p, h.get()), name, "snd_pcm_hw_params_any");
     // Forbids resampling. Not every plugin knows the setting, but open() forbids it as well.
     snd_pcm_hw_params_set_rate_resample(p, h.get(), 0);
-    if (const int code = snd_pcm_hw_params_set_access(p, h.get(), SND_PCM_ACCESS_RW_INTERLEAVED); code < 0)
-        tactor::detail::throw_caused(call_error(name, "snd_pcm_hw_params_set_access (interleaved)", code),
-                                     -code);
+    must(snd_pcm_hw_params_set_access(p, h.get(), SND_PCM_ACCESS_RW_INTERLEAVED), name,
+         "snd_pcm_hw_params_set_access (interleaved)");
     return h;
 }
 
@@ -240,37 +242,33 @@ stream_setup negotiate(snd_pcm_t* p, const alsa_options& o)
     if (!best)
         throw error(refused(p, space, o));
     set_sizes(p, best->params, o);
-    if (const int code = snd_pcm_hw_params(p, best->params.get()); code < 0)
-        tactor::detail::throw_caused(call_error(o.pcm, "snd_pcm_hw_params", code), -code);
+    must(snd_pcm_hw_params(p, best->params.get()), o.pcm, "snd_pcm_hw_params");
     return read_back(best->params, o, *best);
 }
 
 void set_software(snd_pcm_t* p, const stream_setup& s)
 {
     const sw_params w = make_sw_params();
-    const auto must = [&s](int code, const char* call) {
-        if (code < 0)
-            tactor::detail::throw_caused(call_error(s.name, call, code), -code);
-    };
-    must(snd_pcm_sw_params_current(p, w.get()), "snd_pcm_sw_params_current");
+    const auto call = [&s](int code, const char* name) { must(code, s.name, name); };
+    call(snd_pcm_sw_params_current(p, w.get()), "snd_pcm_sw_params_current");
     snd_pcm_uframes_t boundary = 0;
-    must(snd_pcm_sw_params_get_boundary(w.get(), &boundary), "snd_pcm_sw_params_get_boundary");
+    call(snd_pcm_sw_params_get_boundary(w.get(), &boundary), "snd_pcm_sw_params_get_boundary");
 
     // Only snd_pcm_start() starts the DAC, so the instant is known, and the amplifier can follow it.
-    must(snd_pcm_sw_params_set_start_threshold(p, w.get(), boundary),
+    call(snd_pcm_sw_params_set_start_threshold(p, w.get(), boundary),
          "snd_pcm_sw_params_set_start_threshold");
     // An underrun stops the DAC. A threshold beyond the buffer would replay old frames for ever.
-    must(snd_pcm_sw_params_set_stop_threshold(p, w.get(), s.buffer_frames),
+    call(snd_pcm_sw_params_set_stop_threshold(p, w.get(), s.buffer_frames),
          "snd_pcm_sw_params_set_stop_threshold");
-    must(snd_pcm_sw_params_set_avail_min(p, w.get(), s.period_frames), "snd_pcm_sw_params_set_avail_min");
-    must(snd_pcm_sw_params_set_tstamp_mode(p, w.get(), SND_PCM_TSTAMP_ENABLE),
+    call(snd_pcm_sw_params_set_avail_min(p, w.get(), s.period_frames), "snd_pcm_sw_params_set_avail_min");
+    call(snd_pcm_sw_params_set_tstamp_mode(p, w.get(), SND_PCM_TSTAMP_ENABLE),
          "snd_pcm_sw_params_set_tstamp_mode");
-    must(snd_pcm_sw_params_set_tstamp_type(p, w.get(), SND_PCM_TSTAMP_TYPE_MONOTONIC),
+    call(snd_pcm_sw_params_set_tstamp_type(p, w.get(), SND_PCM_TSTAMP_TYPE_MONOTONIC),
          "snd_pcm_sw_params_set_tstamp_type");
     // Overwrites played frames with silence, for a device that runs on past the last frame.
-    must(snd_pcm_sw_params_set_silence_threshold(p, w.get(), 0), "snd_pcm_sw_params_set_silence_threshold");
-    must(snd_pcm_sw_params_set_silence_size(p, w.get(), boundary), "snd_pcm_sw_params_set_silence_size");
-    must(snd_pcm_sw_params(p, w.get()), "snd_pcm_sw_params");
+    call(snd_pcm_sw_params_set_silence_threshold(p, w.get(), 0), "snd_pcm_sw_params_set_silence_threshold");
+    call(snd_pcm_sw_params_set_silence_size(p, w.get(), boundary), "snd_pcm_sw_params_set_silence_size");
+    call(snd_pcm_sw_params(p, w.get()), "snd_pcm_sw_params");
 }
 
 } // namespace tactor::alsa

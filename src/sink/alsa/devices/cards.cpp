@@ -22,30 +22,6 @@ std::string long_name(const std::string& line)
     return dash == line.npos ? "" : trimmed(line.substr(dash + 3));
 }
 
-struct listed_device {
-    unsigned number = 0;
-    std::string name = {};
-};
-
-std::vector<listed_device> listed_devices(const fs::path& root, unsigned card_index)
-{
-    // Lines read "01-00: ID : NAME : playback 1 : capture 1".
-    std::vector<listed_device> devices;
-    for (const std::string& line : read_lines(root / "proc/asound/pcm")) {
-        const auto dash = line.find('-');
-        const auto colon = line.find(':');
-        if (dash == line.npos || colon == line.npos || colon < dash || line.find(": playback") == line.npos ||
-            detail::number_in<unsigned>(line.substr(0, dash)) != card_index)
-            continue;
-        const auto d = detail::number_in<unsigned>(line.substr(dash + 1, colon - dash - 1));
-        if (d)
-            devices.push_back({*d, trimmed(line.substr(colon + 1, line.find(':', colon + 1) - colon - 1))});
-    }
-    return devices;
-}
-
-namespace fs = std::filesystem;
-
 // Returns card and device of "pcmC1D0p", if it is the name of a playback device.
 std::optional<which_device> playback_node(const std::string& name)
 {
@@ -120,11 +96,11 @@ void add_all_owners(const fs::path& proc, const which_device& wanted, std::map<i
 
 } // namespace
 
-std::vector<card> sound_cards(const system_root& root)
+std::vector<card_info> sound_cards(const system_root& root)
 {
     // Lines read " 1 [DAC8x          ]: HifiberryDac8x - snd_rpi_hifiberry_dac8x", each followed by a line
     // with the long name.
-    std::vector<card> cards;
+    std::vector<card_info> cards;
     for (const std::string& line : read_lines(root / "proc/asound/cards")) {
         const auto open = line.find('[');
         const auto close = line.find("]:");
@@ -136,20 +112,21 @@ std::vector<card> sound_cards(const system_root& root)
     return cards;
 }
 
-std::vector<unsigned> playback_devices(const system_root& root, unsigned card_index)
+std::vector<playback_device> playback_devices(const system_root& root, unsigned card_index)
 {
-    std::vector<unsigned> numbers;
-    for (const listed_device& d : listed_devices(root, card_index))
-        numbers.push_back(d.number);
-    return numbers;
-}
-
-std::string playback_device_name(const system_root& root, unsigned card_index, unsigned device)
-{
-    for (const listed_device& d : listed_devices(root, card_index))
-        if (d.number == device)
-            return d.name;
-    return {};
+    // Lines read "01-00: ID : NAME : playback 1 : capture 1".
+    std::vector<playback_device> devices;
+    for (const std::string& line : read_lines(root / "proc/asound/pcm")) {
+        const auto dash = line.find('-');
+        const auto colon = line.find(':');
+        if (dash == line.npos || colon == line.npos || colon < dash || line.find(": playback") == line.npos ||
+            detail::number_in<unsigned>(line.substr(0, dash)) != card_index)
+            continue;
+        const auto d = detail::number_in<unsigned>(line.substr(dash + 1, colon - dash - 1));
+        if (d)
+            devices.push_back({*d, trimmed(line.substr(colon + 1, line.find(':', colon + 1) - colon - 1))});
+    }
+    return devices;
 }
 
 std::optional<device_name> named_device(std::string_view pcm)
@@ -175,10 +152,10 @@ std::optional<device_name> named_device(std::string_view pcm)
     return n;
 }
 
-std::optional<card> find_card(const std::vector<card>& cards, const std::string& id_or_index)
+std::optional<card_info> find_card(const std::vector<card_info>& cards, const std::string& id_or_index)
 {
     const auto index = detail::number_in<unsigned>(id_or_index);
-    const auto found = std::find_if(cards.begin(), cards.end(), [&](const card& c) {
+    const auto found = std::find_if(cards.begin(), cards.end(), [&](const card_info& c) {
         return c.id == id_or_index || (index && c.index == *index);
     });
     return found == cards.end() ? std::nullopt : std::optional(*found);
@@ -219,7 +196,7 @@ std::vector<fs::path> entries(const fs::path& folder)
     return all;
 }
 
-std::vector<holder> playback_holders(const system_root& root, const which_device& wanted)
+std::vector<process_info> playback_holders(const system_root& root, const which_device& wanted)
 {
     std::map<int, std::string> found;
     add_all_owners(root / "proc", wanted, found);
@@ -228,7 +205,7 @@ std::vector<holder> playback_holders(const system_root& root, const which_device
         if (pid && !found.contains(*pid) && holds_playback(process, wanted))
             found[*pid] = program_name(process);
     }
-    std::vector<holder> holders;
+    std::vector<process_info> holders;
     for (const auto& [pid, program] : found)
         holders.push_back({pid, program});
     return holders;

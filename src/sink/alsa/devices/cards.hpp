@@ -19,20 +19,15 @@ namespace tactor::alsa {
 /// Folder that contains /proc and /dev; another one in tests.
 using system_root = std::filesystem::path;
 
-struct card {
-    unsigned index = 0;
-    std::string id = {};   ///< as in hw:CARD=ID
-    std::string name = {}; ///< for people
-};
-
 /// Returns the cards by index; none without a sound driver.
-std::vector<card> sound_cards(const system_root& root);
+std::vector<card_info> sound_cards(const system_root& root);
 
-/// Returns the numbers of a card's playback devices.
-std::vector<unsigned> playback_devices(const system_root& root, unsigned card_index);
-
-/// Returns the driver's name of a playback device; empty if it gives none.
-std::string playback_device_name(const system_root& root, unsigned card_index, unsigned device);
+/// A playback device of a card.
+struct playback_device {
+    unsigned number = 0;
+    std::string name = {}; ///< by the driver; may be empty
+};
+std::vector<playback_device> playback_devices(const system_root& root, unsigned card_index);
 
 /// Card and device to which an ALSA name refers, as in "hw:CARD=Tactor,DEV=1" or "plughw:0,1".
 struct device_name {
@@ -42,12 +37,7 @@ struct device_name {
 std::optional<device_name> named_device(std::string_view pcm);
 
 /// Returns the card with that id or index, if any.
-std::optional<card> find_card(const std::vector<card>& cards, const std::string& id_or_index);
-
-struct holder {
-    int pid = 0;
-    std::string program = {};
-};
+std::optional<card_info> find_card(const std::vector<card_info>& cards, const std::string& id_or_index);
 
 /// A playback device of a card. Without `device`: any of the card. Without both: any of any card.
 struct which_device {
@@ -57,16 +47,13 @@ struct which_device {
 
 /// Returns the processes that have such a playback device open, in order of pid. Of other users' processes it
 /// sees only those that the sound driver reports.
-std::vector<holder> playback_holders(const system_root& root, const which_device& wanted);
+std::vector<process_info> playback_holders(const system_root& root, const which_device& wanted);
 
 /// Returns the group whose members may open the playback devices; empty if it is not known.
 std::string playback_group(const system_root& root);
 
 /// Lists the PCMs as list_pcms() does, with the cards of `root`.
 std::vector<pcm_info> list(const system_root& root, const std::optional<alsa_options>& wanted);
-
-/// Returns the processes that hold a device, as values of the interface.
-std::vector<process_info> processes(const std::vector<holder>& holders);
 
 /// Fills in the abilities of an open PCM, and the reason why it does not fit.
 void look_at(snd_pcm_t* p, const std::optional<alsa_options>& wanted, pcm_info& into);

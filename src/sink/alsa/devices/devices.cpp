@@ -110,16 +110,12 @@ std::string joined(const std::string& a, const std::string& b)
 std::vector<pcm_info> card_devices(const system_root& root)
 {
     std::vector<pcm_info> all;
-    for (const card& c : sound_cards(root)) {
-        for (const unsigned device : playback_devices(root, c.index)) {
-            pcm_info p;
-            p.name = fmt::format("hw:CARD={},DEV={}", c.id, device);
-            p.description = joined(c.name, playback_device_name(root, c.index, device));
-            p.hardware = true;
-            p.holders = processes(playback_holders(root, {c.index, device}));
-            all.push_back(std::move(p));
-        }
-    }
+    for (const card_info& c : sound_cards(root))
+        for (const playback_device& d : playback_devices(root, c.index))
+            all.push_back({.name = fmt::format("hw:CARD={},DEV={}", c.id, d.number),
+                           .description = joined(c.name, d.name),
+                           .hardware = true,
+                           .holders = playback_holders(root, {c.index, d.number})});
     return all;
 }
 
@@ -177,14 +173,6 @@ void probe(const std::optional<alsa_options>& wanted, snd_config_t* top, pcm_inf
 }
 
 } // namespace
-
-std::vector<process_info> processes(const std::vector<holder>& holders)
-{
-    std::vector<process_info> all;
-    for (const holder& h : holders)
-        all.push_back({h.pid, h.program});
-    return all;
-}
 
 void look_at(snd_pcm_t* pcm, const std::optional<alsa_options>& wanted, pcm_info& into)
 {
@@ -268,11 +256,10 @@ void tactor::require_device_name(const std::string& pcm)
 std::optional<tactor::card_info> tactor::read_card(const std::string& pcm)
 {
     const auto d = alsa::named_device(pcm);
-    const auto c = d ? alsa::find_card(alsa::sound_cards("/"), d->card) : std::nullopt;
-    return c ? std::optional(card_info{c->index, c->id, c->name}) : std::nullopt;
+    return d ? alsa::find_card(alsa::sound_cards("/"), d->card) : std::nullopt;
 }
 
 std::vector<tactor::process_info> tactor::card_holders(unsigned card_index)
 {
-    return alsa::processes(alsa::playback_holders("/", {card_index, {}}));
+    return alsa::playback_holders("/", {card_index, {}});
 }

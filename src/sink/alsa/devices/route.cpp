@@ -14,7 +14,6 @@
 
 #include <tactor/error.hpp>
 
-#include "sink/alsa/handle.hpp"
 #include "sink/alsa/library_messages.hpp"
 
 namespace tactor::alsa {
@@ -34,14 +33,8 @@ constexpr std::array lasting{"dmix", "dshare", "softvol", "hooks", "ctl_elems", 
 unsigned slave_channels(snd_config_t* top, snd_config_t* slave)
 {
     configuration named;
-    const char* name = nullptr;
-    snd_config_t* definition = nullptr;
-    if (slave != nullptr && snd_config_get_string(slave, &name) >= 0 && name != nullptr &&
-        snd_config_search_definition(top, "pcm_slave", name, &definition) >= 0) {
-        named.reset(definition);
-        slave = definition;
-    }
-    return channel_number(value_text(member(slave, "channels"))).value_or(most_channels);
+    return channel_number(value_text(member(find_slave(top, slave, named), "channels")))
+        .value_or(most_channels);
 }
 
 // Returns the fault of a definition's tables of channels, as libasound does not check them; empty if it has
@@ -80,15 +73,13 @@ public:
     // Visits the definition of a name and those behind it.
     void name(const char* base, const std::string& name, int depth)
     {
-        snd_config_t* definition = nullptr;
-        if (full(depth) || snd_config_search_definition(top_, base, name.c_str(), &definition) < 0)
+        const configuration definition = full(depth) ? nullptr : look_up(top_, base, name);
+        if (definition == nullptr)
             return;
-        const std::unique_ptr<snd_config_t, deleter<snd_config_delete>> owned(definition);
-        const char* other = nullptr;
-        if (snd_config_get_string(definition, &other) >= 0 && other != nullptr)
+        if (const char* other = string_value(definition.get()))
             this->name(base, other, depth + 1);
         else
-            add_definition(definition, depth + 1, false);
+            add_definition(definition.get(), depth + 1, false);
     }
 
     types found() && { return std::move(found_); }
@@ -114,20 +105,19 @@ private:
         if (fault_.empty())
             fault_ = find_table_fault(top_, definition);
         each_member(definition, [&](const std::string& id, snd_config_t* member) {
-            const char* text = nullptr;
             if (id == "capture" || id == "hint")
                 return;
             if (snd_config_get_type(member) == SND_CONFIG_TYPE_COMPOUND) {
                 if (!full(depth))
                     add_definition(member, depth, id == "slaves");
-            } else if (snd_config_get_string(member, &text) < 0 || text == nullptr)
-                return;
-            else if (id == "type")
-                found_.emplace_back(text);
-            else if (id == "pcm")
-                name("pcm", text, depth);
-            else if (slaves || id == "slave" || id == "playback")
-                name("pcm_slave", text, depth);
+            } else if (const char* text = string_value(member)) {
+                if (id == "type")
+                    found_.emplace_back(text);
+                else if (id == "pcm")
+                    name("pcm", text, depth);
+                else if (slaves || id == "slave" || id == "playback")
+                    name("pcm_slave", text, depth);
+            }
         });
     }
 
@@ -217,8 +207,30 @@ std::string value_text(snd_config_t* value)
     char* text = nullptr;
     if (value == nullptr || snd_config_get_ascii(value, &text) < 0 || text == nullptr)
         return {};
-    const std::unique_ptr<char, deleter<std::free>> freed(text);
+    const c_text freed(text);
     return text;
+}
+
+const char* string_value(snd_config_t* value)
+{
+    const char* text = nullptr;
+    return value != nullptr && snd_config_get_string(value, &text) >= 0 ? text : nullptr;
+}
+
+configuration look_up(snd_config_t* top, const char* base, const std::string& name)
+{
+    snd_config_t* definition = nullptr;
+    snd_config_search_definition(top, base, name.c_str(), &definition);
+    return configuration(definition);
+}
+
+snd_config_t* find_slave(snd_config_t* top, snd_config_t* slave, configuration& named)
+{
+    const char* name = string_value(slave);
+    if (name == nullptr)
+        return slave;
+    named = look_up(top, "pcm_slave", name);
+    return named.get();
 }
 
 std::optional<unsigned> channel_number(const std::string& s)

@@ -14,6 +14,8 @@
 #include <tactor/alsa.hpp>
 #include <tactor/sink.hpp>
 
+#include "sink/alsa/handle.hpp"
+
 namespace tactor::alsa {
 
 /// Calls `visit` for each member of a compound, with its name. Does nothing for other nodes and for none.
@@ -36,6 +38,16 @@ snd_config_t* member(snd_config_t* compound, const char* id);
 
 /// Returns a value as text; empty for null and for a compound.
 std::string value_text(snd_config_t* value);
+
+/// Returns a string's text, which the node owns; null for other nodes and for none.
+const char* string_value(snd_config_t* value);
+
+/// Returns the definition of a name under `base`; null if there is none.
+configuration look_up(snd_config_t* top, const char* base, const std::string& name);
+
+/// Returns a slave, or the definition of the one that it names, which `named` then owns. Null if there is
+/// none.
+snd_config_t* find_slave(snd_config_t* top, snd_config_t* slave, configuration& named);
 
 /// Reads a number as libasound does: any base, and no other text. Returns most_channels for a number that no
 /// device has.

@@ -10,7 +10,6 @@
 #include <fmt/format.h>
 
 #include "sink/alsa/devices/route.hpp"
-#include "sink/alsa/handle.hpp"
 #include "sink/alsa/library_messages.hpp"
 
 namespace tactor::alsa {
@@ -43,9 +42,9 @@ class tracer {
 public:
     explicit tracer(snd_config_t* top) : top_(top) {}
 
-    outputs named(const char* base, const std::string& name, unsigned channels, int depth)
+    outputs named(const std::string& name, unsigned channels, int depth)
     {
-        const configuration definition = look_up(base, name);
+        const configuration definition = look_up(top_, "pcm", name);
         if (definition == nullptr)
             throw hidden{fmt::format("{}, which is not defined", name)};
         return at(definition.get(), channels, depth);
@@ -55,22 +54,13 @@ public:
     const std::string& level_by() const noexcept { return level_by_; }
 
 private:
-    configuration look_up(const char* base, const std::string& name)
-    {
-        snd_config_t* definition = nullptr;
-        if (snd_config_search_definition(top_, base, name.c_str(), &definition) < 0)
-            return nullptr;
-        return configuration(definition);
-    }
-
     // Returns the outputs of a definition, or of the name of one.
     outputs at(snd_config_t* definition, unsigned channels, int depth)
     {
         if (depth > deepest || ++definitions_ > most_definitions)
             throw hidden{"more definitions than anyone has"};
-        const char* other = nullptr;
-        if (snd_config_get_string(definition, &other) >= 0 && other != nullptr)
-            return named("pcm", other, channels, depth + 1);
+        if (const char* other = string_value(definition))
+            return named(other, channels, depth + 1);
         const std::string type = value_text(member(definition, "type"));
         if (type == "hw")
             return device(fmt::format("{},{}", value_text(member(definition, "card")),
@@ -106,13 +96,9 @@ private:
     // Returns the outputs of a slave. `channels` counts if its definition gives no number.
     outputs slave(snd_config_t* definition, unsigned channels, int depth)
     {
-        configuration kept;
-        const char* name = nullptr;
-        if (definition != nullptr && snd_config_get_string(definition, &name) >= 0 && name != nullptr) {
-            kept = look_up("pcm_slave", name);
-            definition = kept.get();
-        }
-        snd_config_t* pcm = definition == nullptr ? nullptr : member(definition, "pcm");
+        configuration own;
+        definition = find_slave(top_, definition, own);
+        snd_config_t* pcm = member(definition, "pcm");
         if (pcm == nullptr)
             throw hidden{"a slave that is not defined"};
         long count = 0;
@@ -241,7 +227,7 @@ stream_wiring find_wiring(snd_config_t* top, const std::string& name, unsigned c
         return w;
     try {
         tracer t(top);
-        outputs all = t.named("pcm", name, device_channels, 0);
+        outputs all = t.named(name, device_channels, 0);
         all.resize(channels);
         w.most_gain = take_ends(all);
         if (!is_straight(all))
