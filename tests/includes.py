@@ -61,7 +61,7 @@ ONLY_IN = {
     "cairo": ["src/plot/"],
     "lo/": ["src/net/osc_lo.cpp"],
     "kainjow/": ["src/study/"],
-    "nlohmann/": ["src/cli/", "src/files/json/", "src/files/plan/", "src/net/", "src/server/", "src/session/", "src/study/"],
+    "nlohmann/": ["src/cli/", "src/files/json/", "src/files/plan/", "src/net/", "src/python/", "src/server/", "src/session/", "src/study/"],
 }
 # Standard headers of threads and clocks that the pure folders must not see.
 PURE = {"core", "files", "plan", "percept", "synth"}

@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: MIT
-// Paths and strokes as bytes.
+// Paths and strokes as bytes: their members in MessagePack. Numbers keep their last bit.
 #include <cstdint>
 #include <cstring>
 #include <memory>
 #include <optional>
-#include <type_traits>
 #include <utility>
 #include <variant>
 #include <vector>
+
+#include <nlohmann/json.hpp>
 
 #include "core/access.hpp"
 #include "core/path/impl.hpp"
@@ -15,265 +16,185 @@
 #include "core/trajectory/impl.hpp"
 #include "python/binding.hpp"
 
+template <class T>
+struct nlohmann::adl_serializer<std::optional<T>> {
+    static void to_json(json& j, const std::optional<T>& v) { j = v ? json(*v) : json(); }
+    static void from_json(const json& j, std::optional<T>& v)
+    {
+        v = j.is_null() ? std::nullopt : std::optional(j.get<T>());
+    }
+};
+
+namespace tactor {
+inline namespace v0 {
+
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(point, x_mm, y_mm)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(profile_point, part, value)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(rest, part, time_s, intensity)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(movement, easing, speed_mm_s, intensity, rests)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(recording, file, rate_hz, samples, sha256, missing)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(modulation, hz, depth)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(carrier_part, part, hz)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(stroke_choices, algorithm, phantom, faces, soa_s, burst_s, level_db)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(stroke_fit, margin_mm, group)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(start_anchor, from, back)
+
+} // namespace v0
+
+namespace detail {
+
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(cubic, p)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(elliptic, centre, u, v, from, sweep)
+
+inline void to_json(nlohmann::json& j, const shape& s)
+{
+    std::visit([&j](const auto& form) { j = form; }, s);
+}
+
+inline void from_json(const nlohmann::json& j, shape& s)
+{
+    s = j.contains("centre") ? shape(j.get<elliptic>()) : shape(j.get<cubic>());
+}
+
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(outline::curve, segment, form)
+
+// Copies a list as it lies in memory: as JSON a million points take ten times as much.
+template <class T>
+nlohmann::json pack(const std::vector<T>& list)
+{
+    const auto* const first = reinterpret_cast<const std::uint8_t*>(list.data());
+    return nlohmann::json::binary({first, first + list.size() * sizeof(T)});
+}
+
+template <class T>
+std::vector<T> unpack(const nlohmann::json& packed)
+{
+    const auto& bytes = packed.get_binary();
+    std::vector<T> list(bytes.size() / sizeof(T));
+    std::memcpy(list.data(), bytes.data(), list.size() * sizeof(T));
+    return list;
+}
+
+} // namespace detail
+} // namespace tactor
+
+template <>
+struct nlohmann::adl_serializer<std::shared_ptr<const tactor::recording>> {
+    using pointer = std::shared_ptr<const tactor::recording>;
+
+    static void to_json(json& j, const pointer& p) { j = p != nullptr ? json(*p) : json(); }
+    static void from_json(const json& j, pointer& p)
+    {
+        p = j.is_null() ? nullptr : std::make_shared<const tactor::recording>(j.get<tactor::recording>());
+    }
+};
+
+template <>
+struct nlohmann::adl_serializer<tactor::path> {
+    static void to_json(json& j, const tactor::path& p)
+    {
+        const tactor::path::impl& i = tactor::detail::access::of(p);
+        std::vector<tactor::detail::outline::curve> curves;
+        for (const auto& c : i.curves)
+            curves.push_back({c.segment, c.form});
+        j = {{"vertices", tactor::detail::pack(i.vertices)}, {"curves", curves}};
+    }
+    static tactor::path from_json(const json& j)
+    {
+        tactor::detail::outline o{tactor::detail::unpack<tactor::point>(j.at("vertices")), {}};
+        j.at("curves").get_to(o.curves);
+        return tactor::detail::make_path(std::move(o), [] { return "pickle"; });
+    }
+};
+
+namespace tactor {
+inline namespace v0 {
+
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(waveform, kind, low_hz, high_hz, seed, recorded, texture, texture_mm)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(stroke_sound, carrier_hz, carrier_profile, wave, am)
+
+inline void to_json(nlohmann::json& j, const trajectory& t)
+{
+    const trajectory::impl& i = detail::access::of(t);
+    j = {{"duration_s", i.duration_s}, {"gain", i.gain}};
+    if (const auto* timed = std::get_if<detail::timed_points>(&i.law)) {
+        j["points"] = detail::pack(*timed->points);
+        j["length_mm"] = timed->length_mm;
+        return;
+    }
+    const auto& drawn = std::get<detail::drawn_path>(i.law);
+    j["path"] = drawn.way;
+    j["intensity"] = drawn.intensity;
+    if (drawn.moves != nullptr) {
+        j["moves"] = drawn.moves->given();
+        j["moving_s"] = drawn.moves->moving_s();
+    }
+}
+
+inline decltype(trajectory::impl::law) read_law(const nlohmann::json& j)
+{
+    if (j.contains("points"))
+        return detail::timed_points{
+            std::make_shared<const std::vector<timed_point>>(detail::unpack<timed_point>(j.at("points"))),
+            j.at("length_mm").get<double>()};
+    detail::drawn_path drawn{j.at("path").get<path>(), j.at("intensity").get<double>()};
+    if (j.contains("moves"))
+        drawn.moves = std::make_shared<const detail::pace>(j.at("moves").get<movement>(),
+                                                           j.at("moving_s").get<double>());
+    return drawn;
+}
+
+inline void from_json(const nlohmann::json& j, trajectory& t)
+{
+    t = detail::access::make<trajectory>(std::make_shared<const trajectory::impl>(
+        trajectory::impl{read_law(j), j.at("duration_s").get<double>(), j.at("gain").get<double>()}));
+}
+
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(stroke, name, motion, start_s, anchor, speed_mm_s, usual_pace, fit, sound,
+                                   choices, note, warnings)
+
+} // namespace v0
+} // namespace tactor
+
 namespace tactor::python {
 namespace {
 
-[[noreturn]] void refuse()
+std::string write(const nlohmann::json& value)
 {
+    std::string state;
+    nlohmann::json::to_msgpack(value, state);
+    return state;
+}
+
+template <class T>
+T read(std::string_view state)
+try {
+    return nlohmann::json::from_msgpack(state.begin(), state.end()).get<T>();
+} catch (const nlohmann::json::exception&) {
     throw error(error_kind::bad_input, "pickle", "its bytes are not those of a path or stroke",
                 "make it anew with this version of tactor");
-}
-
-/// Values as bytes: those with members() by these, closed sets by their names, all else as it lies in memory.
-/// Writes them, or reads them in the same order.
-class archive {
-public:
-    archive() = default;
-    explicit archive(std::string_view written) : reads_(true), left_(written) {}
-
-    bool reads() const noexcept { return reads_; }
-    template <class... T>
-    void operator()(T&&... values)
-    {
-        (one(values), ...);
-    }
-    template <class T>
-    T next()
-    {
-        T v{};
-        one(v);
-        return v;
-    }
-    /// Writes, or reads and returns, a number of things that take at least so many bytes each.
-    std::size_t count(std::uint64_t n, std::size_t bytes_each)
-    {
-        one(n);
-        if (reads_ && n > left_.size() / bytes_each)
-            refuse();
-        return static_cast<std::size_t>(n);
-    }
-    /// Returns the bytes that it has written.
-    std::string take() { return std::move(written_); }
-    /// Refuses bytes that were not read.
-    void end() const
-    {
-        if (!left_.empty())
-            refuse();
-    }
-
-private:
-    void bytes(void* at, std::size_t n)
-    {
-        if (!reads_) {
-            written_.append(static_cast<const char*>(at), n);
-            return;
-        }
-        if (left_.size() < n)
-            refuse();
-        std::memcpy(at, left_.data(), n);
-        left_.remove_prefix(n);
-    }
-    template <class T>
-    void one(T& v)
-    {
-        if constexpr (requires { members(*this, v); }) {
-            members(*this, v);
-        } else if constexpr (std::is_enum_v<T>) {
-            std::string name(reads_ ? std::string_view() : to_string(v));
-            one(name);
-            if (reads_)
-                v = from_string<T>(name);
-        } else {
-            static_assert(std::is_trivially_copyable_v<T>);
-            bytes(&v, sizeof v);
-        }
-    }
-    void one(bool& v)
-    {
-        char c = v ? 1 : 0;
-        bytes(&c, 1);
-        v = c != 0;
-    }
-    void one(std::string& text)
-    {
-        text.resize(count(text.size(), 1));
-        bytes(text.data(), text.size());
-    }
-    template <class T>
-    void one(std::vector<T>& list)
-    {
-        list.resize(count(list.size(), std::is_trivially_copyable_v<T> ? sizeof(T) : 1));
-        for (T& v : list)
-            one(v);
-    }
-    template <class T>
-    void one(std::optional<T>& v)
-    {
-        bool there = v.has_value();
-        one(there);
-        if (there)
-            one(v ? *v : v.emplace());
-    }
-    void one(std::shared_ptr<const recording>& samples)
-    {
-        bool there = samples != nullptr;
-        one(there);
-        if (!there)
-            return;
-        recording r = reads_ ? recording() : *samples;
-        one(r);
-        if (reads_)
-            samples = std::make_shared<const recording>(std::move(r));
-    }
-
-    bool reads_ = false;
-    std::string written_;
-    std::string_view left_;
-};
-
-void members(archive& io, recording& r)
-{
-    io(r.file, r.rate_hz, r.samples, r.sha256, r.missing);
-}
-
-void members(archive& io, waveform& w)
-{
-    io(w.kind, w.low_hz, w.high_hz, w.seed, w.texture, w.texture_mm, w.recorded);
-}
-
-void members(archive& io, movement& m)
-{
-    io(m.easing, m.speed_mm_s, m.intensity, m.rests);
-}
-
-void members(archive& io, stroke_fit& f)
-{
-    io(f.margin_mm, f.group);
-}
-
-void put_path(archive& io, const path& p)
-{
-    const path::impl& i = detail::access::of(p);
-    io(std::vector(i.vertices));
-    io.count(i.curves.size(), 1);
-    for (const auto& c : i.curves) {
-        io(std::uint64_t{c.segment}, static_cast<char>(c.form.index()));
-        std::visit([&io](auto form) { io(form); }, c.form);
-    }
-}
-
-path get_path(archive& io)
-{
-    detail::outline o;
-    io(o.vertices);
-    if (o.vertices.size() < 2)
-        refuse();
-    for (std::size_t n = io.count(0, sizeof(detail::elliptic)); n > 0; --n) {
-        const auto segment = io.next<std::uint64_t>();
-        const bool ascends = o.curves.empty() || segment > o.curves.back().segment;
-        if (segment + 1 >= o.vertices.size() || !ascends)
-            refuse();
-        const bool is_cubic = io.next<char>() == 0;
-        o.curves.push_back(
-            {static_cast<std::size_t>(segment), is_cubic ? detail::shape(io.next<detail::cubic>())
-                                                         : detail::shape(io.next<detail::elliptic>())});
-    }
-    return detail::make_path(std::move(o), [] { return "pickle"; });
-}
-
-void put_motion(archive& io, trajectory::impl i)
-{
-    io(static_cast<char>(i.law.index()), i.duration_s, i.gain);
-    const auto* drawn = std::get_if<detail::drawn_path>(&i.law);
-    if (drawn == nullptr) {
-        io(std::vector(*std::get<detail::timed_points>(i.law).points));
-        return;
-    }
-    io(double{drawn->intensity});
-    put_path(io, drawn->way);
-    io(drawn->moves != nullptr);
-    if (drawn->moves)
-        io(drawn->moves->moving_s(), movement(drawn->moves->given()));
-}
-
-std::shared_ptr<const detail::pace> get_pace(archive& io)
-{
-    const auto moving_s = io.next<double>();
-    auto m = io.next<movement>();
-    detail::check_movement(m);
-    detail::check_duration(moving_s);
-    return std::make_shared<const detail::pace>(std::move(m), moving_s);
-}
-
-trajectory get_drawn(archive& io, double duration_s)
-{
-    const auto intensity = io.next<double>();
-    detail::check_intensity("pickle", intensity);
-    const path way = get_path(io);
-    if (!io.next<bool>())
-        return trajectory::along(way, duration_s, intensity);
-    detail::check_duration(duration_s);
-    detail::drawn_path law{way, intensity, get_pace(io)};
-    return detail::access::make<trajectory>(
-        std::make_shared<const trajectory::impl>(trajectory::impl{std::move(law), duration_s, 1.0}));
-}
-
-void members(archive& io, trajectory& m)
-{
-    if (!io.reads()) {
-        put_motion(io, detail::access::of(m));
-        return;
-    }
-    const bool is_drawn = io.next<char>() == 0;
-    const auto duration_s = io.next<double>();
-    const auto gain = io.next<double>();
-    m = is_drawn ? get_drawn(io, duration_s) : trajectory::timed(io.next<std::vector<timed_point>>());
-    if (!is_drawn && m.duration_s() != duration_s)
-        m = m.with_duration(duration_s);
-    if (gain != 1.0) // one factor, unless the stroke was made stronger or weaker several times
-        m = detail::scaled(m, gain);
-}
-
-void members(archive& io, stroke& s)
-{
-    io(s.name, s.motion, s.start_s, s.anchor.from, s.anchor.back, s.speed_mm_s, s.usual_pace);
-    io(s.choices.algorithm, s.choices.phantom, s.choices.faces, s.choices.soa_s, s.choices.burst_s,
-       s.choices.level_db, s.fit);
-    io(s.sound.carrier_hz, s.sound.wave, s.sound.am, s.sound.carrier_profile, s.note, s.warnings);
 }
 
 } // namespace
 
 std::string write_state(const path& p)
 {
-    archive io;
-    put_path(io, p);
-    return io.take();
+    return write(p);
 }
 
 std::string write_state(const stroke& s)
 {
-    archive io;
-    io(stroke(s));
-    return io.take();
+    return write(s);
 }
 
 path read_path(std::string_view state)
 {
-    archive io(state);
-    path p = get_path(io);
-    io.end();
-    return p;
+    return read<path>(state);
 }
 
 stroke read_stroke(std::string_view state)
 {
-    archive io(state);
-    auto s = io.next<stroke>();
-    io.end();
-    if (s.sound.wave)
-        validate(*s.sound.wave);
-    return s;
+    return read<stroke>(state);
 }
 
 } // namespace tactor::python
