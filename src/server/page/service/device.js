@@ -91,7 +91,7 @@ listen("token", "submit", e => { e.preventDefault(); connect_with(by_id("token-t
 addEventListener("hashchange", () => { if (state.link !== "connected") connect(); });
 
 const fact = (name, v) => v === null || v === undefined || v === "" ? [] : [make("dt", {}, name), make("dd", {}, String(v))];
-listen("p-device", "toggle", show_facts);
+listen("p-device", "beforetoggle", show_facts);
 function show_facts() {
   const h = state.hello, s = state.status;
   by_id("facts").replaceChildren(...!h ? fact("State", "no connection") : [
@@ -111,7 +111,7 @@ on_change(what => {
     {class: "button outlined", "aria-label": `Try tactor ${t.tactor ?? i}`, onclick: () => test_tactor(i)},
     String(t.tactor ?? i))));
 });
-listen("p-others", "toggle", () => {
+listen("p-others", "beforetoggle", () => {
   by_id("people").replaceChildren(...(state.status?.who ?? []).map(w => make("li", {},
     make("b", {}, w.client === state.hello?.client ? `${w.name || "You"} (this page)` : w.name ? `“${w.name}”` : "no name"),
     make("small", {}, `${w.from}${state.status.strokes.some(k => k.client === w.client && k.state === "started") ? ", playing" : ", silent"}`))));

@@ -96,7 +96,7 @@ on_click("save-all", () => {
 by_id("save-list").replaceChildren(...KINDS.map(([kind, name, why]) => make("button",
   {class: "save-item", "data-kind": kind, onclick: () => save_as(kind)}, make("b", {}, name),
   make("small", {}, why), make("span", {}, `.${kind}`))));
-listen("p-save", "toggle", async e => {
+listen("p-save", "beforetoggle", async e => {
   if (e.newState !== "open") return;
   const take = current_take();
   show_only_if(document.querySelector("#save-list [data-kind=csv]"), !(take?.strokes.length > 1));
@@ -119,7 +119,7 @@ async function copy(id) {
 all_of("[data-copy]").forEach(b => listen(b, "click", () => copy(b.dataset.copy)));
 
 // A link, with the token, for a phone beside the array: its code is shown where a phone can open it.
-listen("p-share", "toggle", async e => {
+listen("p-share", "beforetoggle", async e => {
   if (e.newState !== "open") return;
   const own = is_own_host(location.hostname);
   show_only_if(by_id("qr"), !own);
