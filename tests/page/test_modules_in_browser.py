@@ -104,8 +104,8 @@ class Sound(ModulesTest):
         left, right = self.call(self.open(), "/service/loudspeaker.js", """
             const context = new OfflineAudioContext(2, 48000, 48000);
             Object.assign(context, {resume: async () => {}, close() {}});
-            const sound = m.start_loudspeaker({tactors: 2, places: [{x_mm: 0, y_mm: 0}, {x_mm: 40, y_mm: 0}], total_s: 0.3,
-                strokes: [{first: 0, count: 2, continuous: false}], onsets: [0, 0.2], durations: [0.1, 0.1], amplitudes: [1, 0, 0, 0.5]}, 0, {context});
+            const sound = m.start_loudspeaker({tactors: 2, strokes: [{first: 0, count: 2, continuous: false}],
+                onsets: [0, 0.2], durations: [0.1, 0.1], amplitudes: [1, 0, 0, 0.5]}, [{x_mm: 0, y_mm: 0}, {x_mm: 40, y_mm: 0}], 0, {context});
             const heard = await context.startRendering();
             sound.stop();
             return [0, 1].map(side => Array.from({length: 40}, (_, i) =>

@@ -257,7 +257,7 @@ function tap_tactor(i) {
 export function hear_it() {
   silence_speaker();
   if (!state.speaker || !state.plan || !state.hello) return;
-  speaker = start_loudspeaker({...state.plan, places: state.hello.array.tactors}, state.at_s, {gain: take_gain(), pitched: is_simulated()});
+  speaker = start_loudspeaker(state.plan, state.hello.array.tactors, state.at_s, {gain: take_gain(), pitched: is_simulated()});
 }
 export function silence_speaker() { speaker?.stop(); speaker = null; }
 export function look_at(s) {
