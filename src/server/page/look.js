@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Icons, colours and letters of the theme.
+// Icons, and colours of the theme.
 import {make} from "../../net/page/dom.js";
 
 // Paths on a grid of 20.
@@ -64,6 +64,4 @@ export function colour(name) {
   return colours[name] ??= getComputedStyle(document.documentElement).getPropertyValue(`--${name}`).trim();
 }
 export function forget_colours() { colours = {}; }
-let family = "";
-export const font = (size, weight = 400) => `${weight} ${size}px ${family ||= getComputedStyle(document.body).fontFamily}`;
 export const is_dark = () => document.documentElement.dataset.theme === "dark";

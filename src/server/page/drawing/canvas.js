@@ -2,9 +2,9 @@
 // The picture of the array at one moment: over ground and strokes, what is driven and felt.
 import {state, current_take, ceiling_dbfs, take_gain, is_simulated, now_ms} from "../state.js";
 import {by_id} from "../../../net/page/dom.js";
-import {colour, font} from "../look.js";
+import {paint, write, disc} from "./pen.js";
 import {interpolate} from "../takes/stroke.js";
-import {array, view, layers, stale, start_layer, trace, trace_rows, disc, to_px} from "./view.js";
+import {array, view, layers, stale, start_layer, trace, trace_rows, to_px} from "./view.js";
 import {draw_ground} from "./ground.js";
 import {draw_ink, draw_number} from "./ink.js";
 import {draw_share, number_place} from "./labels.js";
@@ -57,33 +57,29 @@ export function draw_frame() {
   draw_outside();
 }
 function draw_disc(q, i, share) {
-  const c = to_px(q), r = array.radius * view.scale, p = pen;
-  if (share > 0.001) {
-    disc(p, c, r);
-    p.strokeStyle = colour("felt"); p.lineWidth = 2.5; p.stroke();
-    p.globalAlpha = 0.4;
-    if (is_simulated()) for (const far of [0.3, 0.6]) { disc(p, c, r * (1 + far * share)); p.stroke(); }
-    p.globalAlpha = 1;
-    disc(p, c, r * Math.sqrt(share) * 0.93);
-    p.fillStyle = colour("felt"); p.fill();
-    draw_share(p, i, share);
-    const [x, y] = number_place(i), reach = Math.hypot(x - c[0], y - c[1]);
-    draw_number(p, i, Math.sqrt(share) * 0.93 * r > reach + Math.min(6, 0.2 * r) ? "on-felt" : "ink");
+  if (share <= 0.001) return;
+  const c = to_px(q), r = array.radius * view.scale, filled = r * Math.sqrt(share) * 0.93;
+  disc(pen, c, r);
+  paint(pen, {line: "felt", width: 2.5});
+  if (is_simulated()) for (const far of [0.3, 0.6]) {
+    disc(pen, c, r * (1 + far * share));
+    paint(pen, {line: "felt", width: 2.5, alpha: 0.4});
   }
+  disc(pen, c, filled);
+  paint(pen, {fill: "felt"});
+  draw_share(pen, i, share);
+  const [x, y] = number_place(i), reach = Math.hypot(x - c[0], y - c[1]);
+  draw_number(pen, i, filled > reach + Math.min(6, 0.2 * r) ? "on-felt" : "ink");
 }
 function draw_arms(now) {
   if (!state.plan || state.drawing) return;
   const places = felt_at(state.plan, state.at_s);
   if (!places.length || !shows_moment()) return;
-  pen.strokeStyle = colour("felt");
-  pen.globalAlpha = 0.35;
   for (const f of places) now.forEach((share, i) => {
     if (share < 0.01) return;
-    pen.lineWidth = 1 + 7 * share;
     trace(pen, [[f[1], f[2]], array.places[i]]);
-    pen.stroke();
+    paint(pen, {line: "felt", width: 1 + 7 * share, alpha: 0.35});
   });
-  pen.globalAlpha = 1;
 }
 // Draws the target of this moment as a ring, and where it is felt as a dot.
 function draw_moment() {
@@ -92,22 +88,20 @@ function draw_moment() {
   for (const s of take.strokes) {
     const t = state.at_s - s.start_s;
     if (t < 0 || t > s.timed.at(-1)[0]) continue;
-    const c = to_px(interpolate(s.timed, t).slice(1));
-    disc(pen, c, 11);
-    pen.strokeStyle = colour("skin"); pen.lineWidth = 5; pen.stroke();
-    pen.strokeStyle = colour("ink"); pen.lineWidth = 2.5; pen.stroke();
+    disc(pen, to_px(interpolate(s.timed, t).slice(1)), 11);
+    paint(pen, {line: "skin", width: 5});
+    paint(pen, {line: "ink", width: 2.5});
   }
   for (const f of felt_at(state.plan, state.at_s)) felt_dot(to_px([f[1], f[2]]));
 }
 function felt_dot(c) {
   disc(pen, c, 7);
-  pen.fillStyle = colour("felt"); pen.fill();
-  pen.strokeStyle = colour("skin"); pen.lineWidth = 2; pen.stroke();
+  paint(pen, {fill: "felt", line: "skin", width: 2});
 }
 function draw_fingers() {
   for (const k of state.drawing?.tracks ?? []) {
     trace_rows(pen, k.points);
-    pen.strokeStyle = colour("ink"); pen.lineWidth = 2.5; pen.stroke();
+    paint(pen, {line: "ink", width: 2.5});
     if (k.down) felt_dot(to_px(k.points.at(-1).slice(1, 3)));
   }
 }
@@ -116,21 +110,18 @@ function draw_others() {
     if (now_ms() - t.at > 3000) { state.touches.delete(id); continue; }
     const c = to_px([t.x_mm, t.y_mm]);
     disc(pen, c, 13);
-    pen.strokeStyle = colour("info"); pen.lineWidth = 3; pen.stroke();
+    paint(pen, {line: "info", width: 3});
     const who = state.status?.who?.find(w => w.client === t.client)?.name;
-    if (who) { pen.font = font(12, 600); pen.textAlign = "center"; pen.fillStyle = colour("info");
-      pen.fillText(`“${who}”`, c[0], c[1] - 20); }
+    if (who) write(pen, `“${who}”`, c[0], c[1] - 20, "info", {weight: 600});
   }
 }
 // A mark where the end of a stroke lies beyond the array.
 function draw_outside() {
-  for (const w of state.outside ?? []) {
+  for (const w of state.outside) {
     const [x, y] = to_px(w.place).map((v, k) => Math.min((k ? view.height : view.width) - 14, Math.max(14, v)));
     disc(pen, [x, y], 11);
-    pen.fillStyle = colour("warn-ground"); pen.fill();
-    pen.strokeStyle = colour("warn"); pen.lineWidth = 1.5; pen.stroke();
-    pen.font = font(13, 700); pen.textAlign = "center"; pen.fillStyle = colour("warn");
-    pen.fillText("!", x, y + 4.5);
+    paint(pen, {fill: "warn-ground", line: "warn", width: 1.5});
+    write(pen, "!", x, y + 4.5, "warn", {size: 13, weight: 700});
   }
 }
 // Returns true while a frame differs from the one before though nothing was changed.

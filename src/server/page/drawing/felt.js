@@ -2,8 +2,8 @@
 // Moves what is felt: a diamond for each point of the stroke, where it is felt. The point moves until it is felt where the diamond
 // was put, or as near as can be.
 import {state, changed, on_change, current_take, current_stroke, say, now_ms} from "../state.js";
-import {colour} from "../look.js";
-import {array, trace_rows, disc, to_px, px_per_mm} from "./view.js";
+import {plot, paint, disc} from "./pen.js";
+import {array, trace_rows, to_px, px_per_mm} from "./view.js";
 import {edit_stroke} from "../takes/takes.js";
 import {editable, changed_knot, nearest_knot, knot_times, interpolate, within} from "../takes/stroke.js";
 import {number_text} from "../words.js";
@@ -66,19 +66,16 @@ on_change(what => {
 // Draws the diamonds, and of a wish its ring, how far it is from there, and the former path.
 export function draw_felt_points(p, s) {
   const places = felt_points(s).map(q => to_px([q.x, q.y]));
-  p.strokeStyle = colour("felt");
   if (wish?.at && wish.after === s && places.length) {
-    const at = to_px(wish.at);
-    p.lineWidth = 1.5;
+    const at = to_px(wish.at), thin = {line: "felt", width: 1.5};
     p.setLineDash([4, 4]);
-    trace_rows(p, wish.before); p.stroke();
-    disc(p, at, 13); p.stroke();
+    trace_rows(p, wish.before); paint(p, thin);
+    disc(p, at, 13); paint(p, thin);
     p.setLineDash([]);
-    p.beginPath(); p.moveTo(...at); p.lineTo(...places[wish.knot]); p.stroke();
+    plot(p, at, places[wish.knot]); paint(p, thin);
   }
   places.forEach(([x, y], i) => {
-    p.beginPath(); p.moveTo(x, y - 9); p.lineTo(x + 9, y); p.lineTo(x, y + 9); p.lineTo(x - 9, y); p.closePath();
-    p.fillStyle = colour(i === state.knot ? "felt" : "raised"); p.fill();
-    p.lineWidth = 2; p.stroke();
+    plot(p, [x, y - 9], [x + 9, y], [x, y + 9], [x - 9, y], [x, y - 9]);
+    paint(p, {fill: i === state.knot ? "felt" : "raised", line: "felt", width: 2});
   });
 }

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Places of the labels on the canvas: no label lies on another, on a disc or on a stroke. Where no place is free it stays away.
 import {state} from "../state.js";
-import {colour, font} from "../look.js";
+import {colour} from "../look.js";
+import {font} from "./pen.js";
 import {array, view, to_px} from "./view.js";
 
 const HIGH_PX = 15, SHARE_PX = 40; // "100 %"
@@ -11,8 +12,8 @@ const POINTS = 200; // of a stroke, that labels avoid
 
 let circles = [], boxes = [], share_places = [], number_places = [];
 
-export const labels_touch = (a, b) => a[0] < b[2] && b[0] < a[2] && a[1] < b[3] && b[1] < a[3];
-export const circle_touches = ([x, y, r], b) => Math.hypot(x - Math.min(b[2], Math.max(b[0], x)), y - Math.min(b[3], Math.max(b[1], y))) < r;
+const labels_touch = (a, b) => a[0] < b[2] && b[0] < a[2] && a[1] < b[3] && b[1] < a[3];
+const circle_touches = ([x, y, r], b) => Math.hypot(x - Math.min(b[2], Math.max(b[0], x)), y - Math.min(b[3], Math.max(b[1], y))) < r;
 function is_free(b) {
   return b[0] > 2 && b[1] > 2 && b[2] < view.width - 2 && b[3] < view.height - 2
     && !boxes.some(o => labels_touch(o, b)) && !circles.some(c => circle_touches(c, b));
@@ -34,7 +35,7 @@ function* places_round([x, y], w, first) {
 // Finds places for the number of each tactor, where no stroke hides it, and for what the tactor may show.
 export function place_labels(strokes) {
   const r = array.radius * view.scale, centres = array.places.map(to_px);
-  circles = [...centres.map(c => [...c, r + 2]), ...(state.outside ?? []).map(w => [...to_px(w.place), 13])];
+  circles = [...centres.map(c => [...c, r + 2]), ...state.outside.map(w => [...to_px(w.place), 13])];
   boxes = [];
   if (array.up) { const [x, y] = to_px([array.box.middle[0], array.box.least[1] - array.radius]); boxes.push([x - 50, y - 21, x + 50, y - 2]); }
   const away = HIGH_PX / 2 + r + 3, beside = r + SHARE_PX / 2 + 4;
@@ -48,13 +49,11 @@ export function place_labels(strokes) {
   circles.push(...path);
 }
 export const number_place = i => number_places[i];
-// Draws the names of the ends of the chosen stroke, where there is a place.
-export function draw_labels(p, strokes) {
-  const own = strokes[state.stroke];
-  if (!own) return;
+// Draws the names of the ends of a stroke, where there is a place.
+export function draw_labels(p, {timed: rows}) {
   p.font = font(12, 600);
   p.textAlign = "center";
-  const rows = own.timed, first = to_px(rows[0].slice(1)), last = to_px(rows.at(-1).slice(1));
+  const first = to_px(rows[0].slice(1)), last = to_px(rows.at(-1).slice(1));
   draw_end(p, "start", first, to_px(rows[Math.min(rows.length - 1, 3)].slice(1)));
   if (Math.hypot(first[0] - last[0], first[1] - last[1]) > 24) draw_end(p, "end", last, to_px(rows[Math.max(0, rows.length - 4)].slice(1)));
 }

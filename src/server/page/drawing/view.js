@@ -104,9 +104,7 @@ export function start_layer(c) {
 }
 export function trace(p, places, closed = false) {
   p.beginPath();
-  places.forEach((q, i) => { const [x, y] = to_px(q); if (i) p.lineTo(x, y); else p.moveTo(x, y); });
+  for (const q of places) p.lineTo(...to_px(q));
   if (closed) p.closePath();
 }
 export const trace_rows = (p, rows) => trace(p, rows.map(q => [q[1], q[2]]));
-export function disc(p, [x, y], r) { p.beginPath(); p.arc(x, y, Math.max(0, r), 0, 2 * Math.PI); }
-

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Speed and strength along the strokes: as asked for, as felt, and the points by which they are changed.
 import {state, current_take, current_stroke} from "../state.js";
-import {colour, font} from "../look.js";
-import {left, right, to_x, plot} from "./time_axis.js";
+import {paint, write, plot} from "../drawing/pen.js";
+import {left, right, to_x} from "./time_axis.js";
 import {edit_stroke} from "../takes/takes.js";
 import {editable, rebuild, interpolate, duration_s, find_speeds, length_mm, parts_reached, kept_for} from "../takes/stroke.js";
 
@@ -13,15 +13,13 @@ export function draw_curves(p, l) {
   const take = current_take(), top = l.height - l.curves, bottom = l.height - 8;
   if (!take?.strokes.length || !l.curves) return;
   const most = most_speed(take), y_speed = v => bottom - Math.min(1, v / most) * (bottom - top - 12);
-  p.strokeStyle = colour("line2"); p.lineWidth = 1;
-  plot(p, [left(l), bottom + 0.5], [l.width - right(l), bottom + 0.5]); p.stroke();
-  p.font = font(11);
-  p.textAlign = "right"; p.fillStyle = colour("ink3");
-  p.fillText(`${Math.round(most)} mm/s`, l.width - 4, top + 16); p.fillText("0", l.width - 4, bottom);
-  [["speed", "ink", state.show_speed], ["as felt", "felt-ink", state.show_speed],
-    ["strength", "ink2", state.show_strength]].forEach(([w, c, on], i) => {
-    if (on) { p.fillStyle = colour(c); p.fillText(w, left(l) - 8, top + 16 + 15 * i); }
-  });
+  plot(p, [left(l), bottom + 0.5], [l.width - right(l), bottom + 0.5]);
+  paint(p, {line: "line2"});
+  const letters = {size: 11, align: "right"};
+  write(p, `${Math.round(most)} mm/s`, l.width - 4, top + 16, "ink3", letters);
+  write(p, "0", l.width - 4, bottom, "ink3", letters);
+  [["speed", "ink", state.show_speed], ["as felt", "felt-ink", state.show_speed], ["strength", "ink2", state.show_strength]]
+    .forEach(([name, tone, on], i) => on && write(p, name, left(l) - 8, top + 16 + 15 * i, tone, letters));
   take.strokes.forEach((s, i) => {
     if (state.show_speed) draw_speed(p, l, s, i, y_speed);
     if (state.show_strength) draw_strength(p, l, s, top, bottom);
@@ -56,7 +54,7 @@ export const felt_speeds = plan => plan ? speeds_felt(plan) : [];
 function draw_speed(p, l, s, i, y) {
   const line = (rows, from, tone) => {
     plot(p, ...rows.map(([t, v]) => [to_x(l, from + t), y(v)]));
-    p.strokeStyle = colour(tone); p.lineWidth = 1.5; p.lineJoin = "round"; p.stroke();
+    paint(p, {line: tone, width: 1.5});
   };
   line(felt_speeds(state.plan)[i] ?? [], 0, "felt");
   line(speed_rows(s.timed), s.start_s, "ink");
@@ -82,13 +80,15 @@ const reached = (s, part) => interpolate(s.pace.kind === "even" ? [[0, 0], [1, 1
 function draw_strength(p, l, s, top, bottom) {
   const rows = s.timed.length > 400 ? Array.from({length: 200}, (_, k) => interpolate(s.timed, duration_s(s) * k / 199)) : s.timed;
   plot(p, ...rows.map(q => [to_x(l, s.start_s + q[0]), y_strength(Math.min(1, q[3] ?? 1), top, bottom)]));
-  p.setLineDash([1, 4]); p.lineCap = "round"; p.strokeStyle = colour("ink2"); p.lineWidth = 2; p.stroke(); p.setLineDash([]);
+  p.setLineDash([1, 4]);
+  paint(p, {line: "ink2", width: 2});
+  p.setLineDash([]);
 }
 function draw_handles(p, l) {
   for (const h of handles(l)) {
     p.beginPath();
     if (h.kind === "speed") p.rect(h.x - 4, h.y - 4, 8, 8); else p.arc(h.x, h.y, 5, 0, 7);
-    p.fillStyle = colour("panel"); p.fill(); p.strokeStyle = colour("ink2"); p.lineWidth = 1.75; p.stroke();
+    paint(p, {fill: "panel", line: "ink2", width: 1.75});
   }
 }
 

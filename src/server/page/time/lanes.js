@@ -2,10 +2,11 @@
 // Lanes that show who plays when: a ruler, the strokes as clips, a lane for each tactor. The lanes are drawn again only when something
 // has changed; the moment is drawn over them each frame.
 import {state, current_take, marks} from "../state.js";
-import {colour, is_dark, font} from "../look.js";
+import {colour, is_dark} from "../look.js";
+import {paint, write, plot} from "../drawing/pen.js";
 import {array} from "../drawing/view.js";
 import {viridis} from "../../../net/page/viridis.js";
-import {full, mini, total, shown, left, right, to_x, clip_box, lane_tactors, plot, silent_count, lane_height, most_scroll, CLIP, LEAST_AMPLITUDE} from "./time_axis.js";
+import {full, mini, total, shown, left, right, to_x, clip_box, lane_tactors, silent_count, lane_height, most_scroll, CLIP, LEAST_AMPLITUDE} from "./time_axis.js";
 import {draw_curves} from "./curves.js";
 import {place_clips} from "./clips.js";
 import {draw_time_marks} from "./marks.js";
@@ -13,10 +14,13 @@ import {end_s} from "../takes/stroke.js";
 import {look_at} from "../service/player.js";
 import {seconds_text} from "../words.js";
 
+const STEPS_S = [0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 30, 60, 120]; // of the ruler
+
 function draw_layer(l) {
   const p = l.layer.getContext("2d");
   p.setTransform(l.dpr, 0, 0, l.dpr, 0, 0);
   p.clearRect(0, 0, l.width, l.height);
+  p.lineJoin = p.lineCap = "round";
   if (!array) return;
   const lanes = lane_tactors(), h = lane_height(l), end = l.width - right(l), most = most_scroll(l);
   l.scroll = Math.min(l.scroll, most);
@@ -27,43 +31,33 @@ function draw_layer(l) {
   lanes.forEach((i, row) => {
     const y = top + (row + 1) * h;
     if (l.thin) { p.fillStyle = colour("well"); p.fillRect(left(l), y - h * 0.8, end - left(l), Math.max(1, h * 0.6)); return; }
-    p.strokeStyle = colour(i === state.hot ? "ink2" : "grid");
-    p.lineWidth = 1;
-    plot(p, [left(l), y - 0.5], [end, y - 0.5]); p.stroke();
-    p.textAlign = "right";
-    p.fillStyle = colour(i === state.hot ? "ink" : "ink2");
-    p.font = font(12, i === state.hot ? 700 : 600);
-    const number = String(array.tactors[i].tactor ?? i), x = left(l) - 12 - p.measureText(number).width;
-    p.fillText(number, left(l) - 8, y - 2);
-    if (row === 0) { p.font = font(11); p.fillText("tactor", x, y - 2); }
+    const hot = i === state.hot, tone = hot ? "ink" : "ink2", number = String(array.tactors[i].tactor ?? i);
+    plot(p, [left(l), y - 0.5], [end, y - 0.5]);
+    paint(p, {line: hot ? "ink2" : "grid"});
+    write(p, number, left(l) - 8, y - 2, tone, {weight: hot ? 700 : 600, align: "right"});
+    if (row === 0) write(p, "tactor", left(l) - 12 - p.measureText(number).width, y - 2, tone, {size: 11, align: "right"});
   });
-  if (silent_count() && !l.thin) {
-    p.font = font(12); p.textAlign = "left"; p.fillStyle = colour("ink3");
-    p.fillText(`${silent_count()} silent of ${array.places.length}; the others in the order they begin`, left(l), top + (lanes.length + 1) * h - 4);
-  }
+  if (silent_count() && !l.thin) write(p, `${silent_count()} silent of ${array.places.length}; the others in the order they begin`,
+    left(l), top + (lanes.length + 1) * h - 4, "ink3", {align: "left"});
   if (state.plan) draw_bars(p, l, h, top, lanes);
   p.restore();
   if (most && !l.thin) {
     const room = l.bottom - l.top;
-    p.fillStyle = colour("ink3");
-    p.beginPath(); p.roundRect(l.width - 9, l.top + room * l.scroll / (most + room), 4, room * room / (most + room), 2); p.fill();
+    p.beginPath(); p.roundRect(l.width - 9, l.top + room * l.scroll / (most + room), 4, room * room / (most + room), 2);
+    paint(p, {fill: "ink3"});
   }
   if (!l.mini && !state.drawing) { draw_clips(p, l); draw_curves(p, l); }
   draw_time_marks(p, l);
   if (!l.mini) place_clips(l);
 }
 function draw_ruler(p, l, bottom) {
-  const s = shown(l), step = [0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 30, 60,
-    120].find(v => v / s * (l.width - left(l) - right(l)) > 58) ?? 300;
-  p.textAlign = "center";
-  p.font = font(11);
+  const s = shown(l), step = STEPS_S.find(v => v / s * (l.width - left(l) - right(l)) > 58) ?? 300;
   for (let i = Math.ceil(l.from / step); i * step <= l.from + s; ++i) {
     const x = to_x(l, i * step);
-    p.strokeStyle = colour("grid"); p.lineWidth = 1;
-    plot(p, [x, l.ruler], [x, bottom]); p.stroke();
-    p.fillStyle = colour("ink2");
+    plot(p, [x, l.ruler], [x, bottom]);
+    paint(p, {line: "grid"});
     if (marks().range?.some(t => Math.abs(to_x(l, t) - x) < 26)) continue;
-    p.fillText(`${(i * step).toFixed(step < 0.1 ? 2 : step < 1 ? 1 : 0)}${i === 0 ? " s" : ""}`, x, 12);
+    write(p, `${(i * step).toFixed(step < 0.1 ? 2 : step < 1 ? 1 : 0)}${i === 0 ? " s" : ""}`, x, 12, "ink2", {size: 11});
   }
   const until = to_x(l, Math.min(total(), l.from + s)), from = to_x(l, l.from);
   const g = p.createLinearGradient(to_x(l, 0), 0, to_x(l, total()), 0);
@@ -86,8 +80,10 @@ function draw_bars(p, l, h, top, lanes) {
     if (state.shape === "tactile-brush")
       return plot(p, [x, y - 1], [x + ramp, y - 1 - tall], [x + w - ramp, y - 1 - tall], [x + w, y - 1]), p.fill();
     p.fillRect(x, y - 1 - tall, w - (w > 3 && !plan.continuous ? 0.75 : -0.3), tall);
-    if (w > 4 && tall > 5 && !plan.continuous) { p.fillStyle = is_dark() ? "#eceeef61" : "#17181a61";
-      p.fillRect(x, y - 1 - tall, w - 0.75, 1); }
+    if (w > 4 && tall > 5 && !plan.continuous) {
+      plot(p, [x, y - 0.5 - tall], [x + w - 0.75, y - 0.5 - tall]);
+      paint(p, {line: "ink", alpha: 0.38});
+    }
   };
   if (rows) return rows.forEach(r => one(...r));
   for (let i = 0; i < n; ++i) {
@@ -115,27 +111,24 @@ function draw_clips(p, l) {
   order.forEach(([i, s]) => {
     const [a, b] = clip_box(l, s), own = i === state.stroke, w = Math.max(6, b - a);
     p.beginPath(); p.roundRect(a, l.ruler, w, CLIP - 4, 6);
-    p.fillStyle = colour(own ? "raised" : "well"); p.fill();
-    p.strokeStyle = colour(own ? "ink" : "line2"); p.lineWidth = own ? 2 : 1.5; p.stroke();
+    paint(p, own ? {fill: "raised", line: "ink", width: 2} : {fill: "well", line: "line2", width: 1.5});
     if (own && w > 24) { p.fillStyle = colour("ink"); for (const x of [a + 4, b - 7]) p.fillRect(x, l.ruler + 5, 3, CLIP - 14); }
     p.save();
     p.beginPath(); p.rect(a + 10, l.ruler, Math.max(0, w - 20), CLIP); p.clip();
-    p.fillStyle = colour(own ? "ink" : "ink2"); p.textAlign = "left";
-    p.font = font(12, own ? 600 : 500);
-    p.fillText(take.strokes.length === 1 ? take.name : s.name, a + 13, l.ruler + 15);
+    write(p, take.strokes.length === 1 ? take.name : s.name, a + 13, l.ruler + 15, own ? "ink" : "ink2", {weight: own ? 600 : 500, align: "left"});
     p.restore();
     const before = take.strokes.filter((_, k) => k !== i).map(end_s).filter(e => e <= s.start_s + 1e-9);
     const gap = before.length ? s.start_s - Math.max(...before) : 0;
     if (gap <= 0.005 || to_x(l, gap) - to_x(l, 0) < 34) return;
-    p.font = font(11); p.fillStyle = colour("ink3"); p.textAlign = "center";
-    p.fillText(`${gap.toFixed(2)} s`, to_x(l, s.start_s - gap / 2), l.ruler + 15);
+    write(p, `${gap.toFixed(2)} s`, to_x(l, s.start_s - gap / 2), l.ruler + 15, "ink3", {size: 11});
   });
   const x = to_x(l, total()) + 8;
   if (x < l.width - 24) {
-    p.setLineDash([3, 3]); p.strokeStyle = colour(state.append ? "felt" : "line2"); p.lineWidth = 1.5;
-    p.beginPath(); p.roundRect(x, l.ruler, 28, CLIP - 4, 6); p.stroke(); p.setLineDash([]);
-    p.strokeStyle = colour(state.append ? "felt" : "ink2");
-    for (const [dx, dy] of [[5, 0], [0, 5]]) { plot(p, [x + 14 - dx, l.ruler + 11 - dy], [x + 14 + dx, l.ruler + 11 + dy]); p.stroke(); }
+    p.setLineDash([3, 3]);
+    p.beginPath(); p.roundRect(x, l.ruler, 28, CLIP - 4, 6);
+    paint(p, {line: state.append ? "felt" : "line2", width: 1.5});
+    p.setLineDash([]);
+    write(p, "+", x + 14, l.ruler + 17, state.append ? "felt" : "ink2", {size: 18});
   }
 }
 
@@ -150,10 +143,9 @@ export function draw_lanes() {
     p.setTransform(l.dpr, 0, 0, l.dpr, 0, 0);
     const x = to_x(l, state.drawing ? total() : state.at_s);
     if (x < left(l) - 1 || x > l.width - right(l) + 20) continue;
-    p.fillStyle = p.strokeStyle = colour("ink");
-    p.lineWidth = 2;
-    plot(p, [x, l.thin ? 2 : 20], [x, l.height - (l.thin ? 2 : 8)]); p.stroke();
-    if (!l.thin) { plot(p, [x - 6, 15], [x + 6, 15], [x + 6, 21], [x, 27], [x - 6, 21]); p.fill(); }
+    plot(p, [x, l.thin ? 2 : 20], [x, l.height - (l.thin ? 2 : 8)]);
+    paint(p, {line: "ink", width: 2});
+    if (!l.thin) { plot(p, [x - 6, 15], [x + 6, 15], [x + 6, 21], [x, 27], [x - 6, 21]); paint(p, {fill: "ink"}); }
   }
   // The moment follows where it leaves what is shown.
   if (state.playing && full.span && (state.at_s > full.from + full.span * 0.95

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: MIT
 // Marks of the time axis: where Play starts and the range that it plays; and the moments to which pointers snap.
 import {state, changed, current_take, marks} from "../state.js";
-import {colour, font} from "../look.js";
+import {colour} from "../look.js";
+import {write, paint, plot} from "../drawing/pen.js";
 import {end_s} from "../takes/stroke.js";
 import {seconds_text} from "../words.js";
-import {left, to_x, plot, LEAST_S} from "./time_axis.js";
+import {left, to_x, LEAST_S} from "./time_axis.js";
 
 const SNAP_PX = 5;
 
@@ -23,11 +24,12 @@ export function draw_time_marks(p, l) {
     const [a, b] = range.map(t => Math.max(left(l), to_x(l, t)));
     p.fillStyle = colour("ink"); p.globalAlpha = 0.07; p.fillRect(a, 0, b - a, bottom); p.globalAlpha = 1;
     p.fillRect(a - 3, 1, 3, l.ruler - 5); p.fillRect(b, 1, 3, l.ruler - 5); p.fillRect(a, 1, b - a, l.thin ? 3 : 14);
-    p.font = font(11, 600); p.textAlign = "center"; p.fillStyle = colour("panel");
-    if (b - a > 40 && !l.thin) p.fillText(`${state.loop && b - a > 80 ? "loop " : ""}${seconds_text(range[1] - range[0])}`, (a + b) / 2, 12);
+    const text = `${state.loop && b - a > 80 ? "loop " : ""}${seconds_text(range[1] - range[0])}`;
+    if (b - a > 40 && !l.thin) write(p, text, (a + b) / 2, 12, "panel", {size: 11, weight: 600});
   }
   if (!start_s || x < left(l)) return;
-  p.strokeStyle = p.fillStyle = colour("ink2"); p.setLineDash([2, 3]);
-  plot(p, [x, 14], [x, bottom]); p.stroke(); p.setLineDash([]);
-  plot(p, [x, 13], [x + 9, 18], [x, 24]); p.fill();
+  p.setLineDash([2, 3]);
+  plot(p, [x, 14], [x, bottom]); paint(p, {line: "ink2", width: 1.5});
+  p.setLineDash([]);
+  plot(p, [x, 13], [x + 9, 18], [x, 24]); paint(p, {fill: "ink2"});
 }

@@ -43,8 +43,6 @@ export const left = l => l.thin ? EDGE : LABEL;
 export const right = l => l.mini ? EDGE : RIGHT;
 export const to_x = (l, t) => left(l) + (t - l.from) / shown(l) * (l.width - left(l) - right(l));
 export const to_time = (l, x) => l.from + (x - left(l)) / (l.width - left(l) - right(l)) * shown(l);
-// Begins a path along places in pixels.
-export function plot(p, ...places) { p.beginPath(); for (const q of places) p.lineTo(...q); }
 export const clip_box = (l, s) => [to_x(l, s.start_s), to_x(l, end_s(s))];
 
 // Lanes: the tactors in the order in which they begin where there are many, else all.
