@@ -17,7 +17,6 @@
 
 #include "python/options.hpp"
 #include "session/device.hpp"
-#include "session/device_list.hpp"
 #include "session/lines.hpp"
 #include "session/live_remarks.hpp"
 

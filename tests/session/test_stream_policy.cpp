@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Decisions of a stream's policy, without a device and without a clock.
-#include "session/stream_policy.hpp"
+#include "session/device_stream.hpp"
 
 #include <optional>
 #include <vector>

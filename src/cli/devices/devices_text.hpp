@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "session/device_list.hpp"
+#include "session/device.hpp"
 
 namespace tactor::cli {
 

@@ -13,7 +13,7 @@
 #include "cli/play/play_report.hpp"
 #include "files/json/schema.hpp"
 #include "files/plan/plan_json.hpp"
-#include "session/device_list.hpp"
+#include "session/device.hpp"
 
 namespace {
 
