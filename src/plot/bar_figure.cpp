@@ -7,7 +7,6 @@
 #include <fmt/format.h>
 
 #include "plot/draw/axes.hpp"
-#include "plot/draw/notes.hpp"
 #include "plot/figure.hpp"
 #include "plot/paint/text.hpp"
 

@@ -12,7 +12,6 @@
 #include "core/words.hpp"
 #include "plot/draw/array_frame.hpp"
 #include "plot/draw/axes.hpp"
-#include "plot/draw/notes.hpp"
 #include "plot/figure.hpp"
 #include "plot/paint/text.hpp"
 

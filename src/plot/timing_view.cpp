@@ -13,8 +13,6 @@
 #include "core/words.hpp"
 #include "plot/draw/axes.hpp"
 #include "plot/draw/lanes.hpp"
-#include "plot/draw/notes.hpp"
-#include "plot/draw/stroke_starts.hpp"
 #include "plot/draw/timeline.hpp"
 #include "plot/paint/text.hpp"
 

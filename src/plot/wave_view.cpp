@@ -17,8 +17,6 @@
 
 #include "plot/draw/axes.hpp"
 #include "plot/draw/lanes.hpp"
-#include "plot/draw/notes.hpp"
-#include "plot/draw/stroke_starts.hpp"
 #include "plot/paint/text.hpp"
 #include "synth/mix/sample_ranges.hpp"
 

@@ -6,7 +6,7 @@
 
 #include <doctest/doctest.h>
 
-#include "plot/draw/label_placer.hpp"
+#include "plot/draw/array_frame.hpp"
 #include "plot/paint/text.hpp"
 
 namespace labels_test {

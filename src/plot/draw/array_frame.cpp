@@ -2,20 +2,45 @@
 #include "plot/draw/array_frame.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <tactor/phantom.hpp>
 
-#include "core/words.hpp"
 #include "plot/draw/axes.hpp"
 #include "plot/paint/text.hpp"
 
 namespace tactor::plot {
 namespace {
+
+constexpr std::size_t most_obstacles = 4000; // more do not change the places in a crowded picture
+constexpr double refused = 1e6; // cost of a place for a label on a tactor, on a label or off the page
+
+// Directions in order of preference: below, right, left, above, then the corners; y down.
+struct direction {
+    double x;
+    double y;
+};
+constexpr std::array<direction, 8> directions{
+    {{0, 1}, {1, 0}, {-1, 0}, {0, -1}, {1, 1}, {-1, 1}, {1, -1}, {-1, -1}}};
+constexpr double farther = 1.5;  // pt, from ring to ring of places
+constexpr double clearly = 1.25; // nearer than any other by this factor
+
+double overlap_area(box a, box b) noexcept
+{
+    const double w = std::min(a.right(), b.right()) - std::max(a.x, b.x);
+    const double h = std::min(a.bottom(), b.bottom()) - std::max(a.y, b.y);
+    return w > 0.0 && h > 0.0 ? w * h : 0.0;
+}
+
+double distance(box b, spot s) noexcept
+{
+    return std::hypot(std::max({b.x - s.x, s.x - b.right(), 0.0}),
+                      std::max({b.y - s.y, s.y - b.bottom(), 0.0}));
+}
 
 constexpr double largest_pitch = 100.0; // pt: neighbours are not farther apart on the page
 constexpr double lone_tactor_mm = 20.0; // shown around a tactor without neighbours
@@ -25,7 +50,6 @@ constexpr double least_number = 5.2;
 constexpr double rim = 0.4; // between a number and its circle
 constexpr double largest_radius = 7.0;
 constexpr double largest_share = 0.28; // of the distance of neighbours, for a circle's radius
-constexpr double beside = 3.0;         // pt: farther away a label has lost its tactor
 
 double pitch_mm(const array& a)
 {
@@ -77,195 +101,69 @@ void size_tactors(array_frame& f, const array& a)
     f.radius = std::max(std::clamp(0.2 * space, 0.3, largest_radius), f.number * half + rim);
 }
 
-std::string note_missing(std::size_t n, const array& a)
+} // namespace
+
+void label_placer::block_disc(spot centre, double radius, double weight)
 {
-    return n == 0                  ? ""
-           : n == a.tactors.size() ? "no space for the numbers of the tactors"
-                                   : "no space for the number of " + counted(n, "tactor");
+    block({centre.x - radius, centre.y - radius, 2.0 * radius, 2.0 * radius}, weight);
 }
 
-constexpr double arrow_length = 4.6;
-constexpr double arrow_half_width = 2.1;
-constexpr double arrow_every = 75.0;    // pt along the path
-constexpr std::size_t most_arrows = 60; // in a picture
-constexpr double farthest_number = 7.0;
-constexpr double same_start = 1.0;      // pt
-constexpr double farthest_label = 20.0; // from a start or end, pt
-constexpr std::size_t most_marked = 60; // strokes with marked ends
-
-class marker {
-public:
-    marker(canvas& c, const scene& s, const timeline& t, const array_frame& f, double dot,
-           label_placer& taken)
-        : canvas_(c), scene_(s), time_(t), frame_(f), dot_(dot), taken_(taken)
-    {
-    }
-
-    void draw()
-    {
-        const std::size_t n = std::min(scene_.strokes.size(), most_marked);
-        for (std::size_t i = 0; i < n; ++i)
-            draw_ends(i);
-        for (std::size_t i = 0; i < n; ++i)
-            draw_arrows(scene_.strokes[i].motion, n);
-    }
-
-    std::string label()
-    {
-        if (scene_.strokes.size() == 1) {
-            const trajectory& motion = scene_.strokes[0].motion;
-            const bool start = label("start", "start-label", motion.position(0.0));
-            const bool end = label("end", "end-label", motion.position(motion.duration_s()));
-            return start && end ? "" : "the ring is the start, the square the end";
+void label_placer::block_line(const std::vector<spot>& line, double width, double weight)
+{
+    const double step = std::max(2.0, width);
+    for (std::size_t i = 1; i < line.size() && taken_.size() < most_obstacles; ++i) {
+        const spot a = line[i - 1];
+        const spot b = line[i];
+        const auto n = static_cast<int>(std::min(std::hypot(b.x - a.x, b.y - a.y) / step, 200.0)) + 1;
+        for (int k = 0; k < n; ++k) {
+            const double t = (k + 0.5) / n;
+            block_disc({a.x + t * (b.x - a.x), a.y + t * (b.y - a.y)}, step / 2.0, weight);
         }
-        std::vector<spot> starts;
-        std::vector<std::vector<std::size_t>> strokes; // that start there
-        std::size_t left_out = 0;
-        for (std::size_t i = 0; i < scene_.strokes.size(); ++i) {
-            const spot at = frame_(scene_.strokes[i].motion.position(0.0));
-            const auto same = std::find_if(starts.begin(), starts.end(), [&](spot s) {
-                return std::hypot(s.x - at.x, s.y - at.y) < same_start;
-            });
-            if (!on_page(at) || i >= most_marked) {
-                ++left_out;
-            } else if (same != starts.end()) {
-                strokes[static_cast<std::size_t>(same - starts.begin())].push_back(i);
-            } else {
-                starts.push_back(at);
-                strokes.push_back({i});
-            }
-        }
-        for (std::size_t k = 0; k < starts.size(); ++k)
-            left_out += number_start(starts, k, strokes[k]) ? 0 : strokes[k].size();
-        return left_out == 0 ? "" : "no space for the number of " + counted(left_out, "stroke");
     }
+}
 
-private:
-    // Draws numbers in a box of the first stroke's colour, because plain numbers are tactors. Returns false
-    // if there is no space.
-    bool number_start(const std::vector<spot>& starts, std::size_t k, const std::vector<std::size_t>& strokes)
-    {
-        std::vector<std::size_t> numbers;
-        for (const std::size_t i : strokes)
-            numbers.push_back(i + 1);
-        const std::string text = fmt::format("{}", fmt::join(numbers, ", "));
-        const auto place =
-            taken_.place(" " + text + " ", small_text, starts, k, radius() + 1.5, farthest_number);
-        if (!place)
-            return false;
-        const colour fill = stroke_colour(time_.looks[strokes.front()]);
-        const double height = cap_height(small_text);
-        const double pad = text_width(" ", small_text);
-        const double air = 1.3;
-        canvas_.rect(
-            {place->x, place->y - height - air, text_width(text, small_text) + 2.0 * pad, height + 2.0 * air},
-            {.fill = fill, .stroke = white, .width = 0.5}, {.kind = "start-box"});
-        canvas_.text({place->x + pad, place->y}, text,
-                     {.size = small_text, .ink = is_dark(fill) ? white : black}, {.kind = "start-label"});
+double label_placer::cost(box b) const
+{
+    double sum = forbidden * (b.width * b.height - overlap_area(b, area_));
+    for (const obstacle& o : taken_)
+        sum += o.weight * overlap_area(b, o.b);
+    return sum;
+}
+
+std::optional<spot> label_placer::place(std::string_view text, double size, const std::vector<spot>& sites,
+                                        std::size_t own, double gap, double reach)
+{
+    const double w = text_width(text, size);
+    const double h = cap_height(size);
+    constexpr double air = 0.8;
+    const spot at = sites[own];
+    const auto nearest_own = [&](box b) {
+        const double near = clearly * distance(b, at);
+        for (std::size_t i = 0; i < sites.size(); ++i)
+            if (i != own && distance(b, sites[i]) <= near)
+                return false;
         return true;
-    }
-
-    static bool is_dark(colour c) { return 0.299 * c.r + 0.587 * c.g + 0.114 * c.b < 140.0; }
-
-    bool on_page(spot s) const
-    {
-        return s.x >= frame_.area.x && s.x <= frame_.area.right() && s.y >= frame_.area.y &&
-               s.y <= frame_.area.bottom();
-    }
-
-    box arrow_box(spot at) const
-    {
-        const double r = arrow_length / 2.0 + 0.7;
-        return {at.x - r, at.y - r, 2.0 * r, 2.0 * r};
-    }
-
-    // Returns the time near `wanted` at which an arrow covers least.
-    double clear_time(const trajectory& motion, double wanted, double range) const
-    {
-        constexpr int tries = 40;
-        double best = wanted;
-        double least = taken_.cost(arrow_box(frame_(motion.position(wanted))));
-        for (int k = 1; k <= tries; ++k)
-            for (const double side : {1.0, -1.0}) {
-                const double t = wanted + side * range * k / tries;
-                const double c = taken_.cost(arrow_box(frame_(motion.position(t)))) + 1.0 * k;
-                if (c < least) {
-                    least = c;
-                    best = t;
-                }
+    };
+    std::optional<box> best;
+    double least = refused;
+    double preference = 0.0;
+    for (double more = 0.0; more <= reach; more += farther)
+        for (const direction& d : directions) {
+            const double away = (gap + more) * (d.x != 0.0 && d.y != 0.0 ? 0.72 : 1.0);
+            const box b{at.x + d.x * (away + w / 2.0) - w / 2.0 - air,
+                        at.y + d.y * (away + h / 2.0) - h / 2.0 - air, w + 2.0 * air, h + 2.0 * air};
+            const double c = cost(b) + preference;
+            preference += 0.2;
+            if (c < least && nearest_own(b)) {
+                least = c;
+                best = b;
             }
-        return best;
-    }
-
-    void draw_arrow(const trajectory& motion, double wanted, double range)
-    {
-        const double t = clear_time(motion, wanted, range);
-        const double step = 1e-3 * motion.duration_s();
-        const spot from = frame_(motion.position(t - step));
-        const spot to = frame_(motion.position(t + step));
-        const spot at = frame_(motion.position(t));
-        const double length = std::hypot(to.x - from.x, to.y - from.y);
-        if (length < 1e-6 || !on_page(at))
-            return; // the target rests
-        const spot along{(to.x - from.x) / length, (to.y - from.y) / length};
-        const auto corner = [&](double forward, double aside) {
-            return spot{at.x + forward * along.x - aside * along.y,
-                        at.y + forward * along.y + aside * along.x};
-        };
-        taken_.block(arrow_box(at), 8.0);
-        canvas_.poly({corner(arrow_length / 2.0, 0.0), corner(-arrow_length / 2.0, arrow_half_width),
-                      corner(-arrow_length / 2.0, -arrow_half_width)},
-                     true, {.fill = ink, .stroke = white, .width = 0.4}, {.kind = "direction"});
-    }
-
-    void draw_arrows(const trajectory& motion, std::size_t strokes)
-    {
-        const auto wanted = std::max(1L, std::lround(motion.length_mm() * frame_.scale / arrow_every));
-        const std::size_t n =
-            std::min({static_cast<std::size_t>(wanted), most_arrows / strokes, most_arrows / 6});
-        const double each = motion.duration_s() / static_cast<double>(n);
-        for (std::size_t k = 0; k < n; ++k)
-            draw_arrow(motion, (static_cast<double>(k) + 0.5) * each, 0.4 * each);
-    }
-
-    double radius() const { return end_mark_radius(dot_); }
-
-    void draw_ends(std::size_t stroke)
-    {
-        const trajectory& motion = scene_.strokes[stroke].motion;
-        const spot start = frame_(motion.position(0.0));
-        const spot end = frame_(motion.position(motion.duration_s()));
-        const style look{.stroke = ink, .width = 0.9};
-        const double r = radius();
-        if (on_page(start))
-            canvas_.circle(start, r, look, {.kind = "start"});
-        if (on_page(end))
-            canvas_.rect({end.x - r, end.y - r, 2.0 * r, 2.0 * r}, look, {.kind = "end"});
-        taken_.block_disc(start, r, 12.0);
-        taken_.block_disc(end, r, 12.0);
-    }
-
-    // Labels a place. Returns false if there is no space.
-    bool label(const std::string& text, const char* kind, point where)
-    {
-        const spot at = frame_(where);
-        if (!on_page(at))
-            return true;
-        const auto place = taken_.place(text, label_text, {at}, 0, radius() + 1.5, farthest_label);
-        if (place)
-            canvas_.text(*place, text, {.size = label_text, .halo = true}, {.kind = kind});
-        return place.has_value();
-    }
-
-    canvas& canvas_;
-    const scene& scene_;
-    const timeline& time_;
-    const array_frame& frame_;
-    double dot_;
-    label_placer& taken_;
-};
-
-} // namespace
+        }
+    if (!best)
+        return std::nullopt;
+    block(*best, forbidden);
+    return spot{best->x + air, best->bottom() - air};
+}
 
 void extent::add(point p) noexcept
 {
@@ -288,7 +186,7 @@ extent shown_extent(const array& a, const std::vector<stroke>& strokes)
     return e;
 }
 
-array_frame fit_array(const array& a, const extent& shown, box at_most, surround space)
+array_frame fit_array(const array& a, const extent& shown, box at_most, spot space)
 {
     const double w = shown.x1 - shown.x0;
     const double h = shown.y1 - shown.y0;
@@ -325,56 +223,6 @@ bool channels_are_numbers(const array& a)
     return true;
 }
 
-void draw_tactors(canvas& c, const array_frame& f, const array& a, const tactor_looks& looks,
-                  label_placer& taken)
-{
-    const group all(c, {.id = "tactors"});
-    for (unsigned i = 0; i < a.tactors.size(); ++i) {
-        const tactor_spec& t = a.tactors[i];
-        const spot at = f(t.position);
-        const colour rim = looks.plays[i] ? ink : grey;
-        const style look =
-            f.radius < 1.5 ? style{.fill = rim} : style{.fill = white, .stroke = rim, .width = 0.7};
-        taken.block_disc(at, f.radius, label_placer::forbidden);
-        const group one(c, {.id = fmt::format("tactor-{}", i),
-                            .kind = "tactor",
-                            .title = fmt::format("tactor {}, channel {}, at {}, {} mm", i, t.channel,
-                                                 number(t.position.x_mm), number(t.position.y_mm)),
-                            .data = {{"tactor", fmt::format("{}", i)}}});
-        c.circle(at, f.radius, look);
-        if (looks.inside[i])
-            c.text({at.x, at.y + cap_height(f.number) / 2.0}, fmt::format("{}", i),
-                   {.size = f.number, .anchor = align::middle, .ink = looks.plays[i] ? ink : dark_grey},
-                   {.kind = "number"});
-    }
-}
-
-std::string draw_tactor_labels(canvas& c, const array_frame& f, const array& a, const tactor_looks& looks,
-                               label_placer& taken)
-{
-    const group all(c, {.id = "tactor-labels"});
-    const bool channels = !channels_are_numbers(a);
-    std::vector<spot> sites;
-    for (const tactor_spec& t : a.tactors)
-        sites.push_back(f(t.position));
-    std::size_t missing = 0;
-    for (unsigned i = 0; i < a.tactors.size(); ++i) {
-        const std::string channel = channels ? fmt::format("ch {}", a.tactors[i].channel) : "";
-        const std::string text = looks.inside[i] ? channel
-                                 : channels      ? fmt::format("{} ({})", i, channel)
-                                                 : fmt::format("{}", i);
-        if (text.empty())
-            continue;
-        const auto at = taken.place(text, small_text, sites, i, f.radius + 1.2, beside);
-        if (at)
-            c.text(*at, text, {.size = small_text, .ink = looks.plays[i] ? ink : dark_grey, .halo = true},
-                   {.kind = "tactor-label", .data = {{"tactor", fmt::format("{}", i)}}});
-        else
-            ++missing;
-    }
-    return note_missing(missing, a);
-}
-
 void draw_scale_bar(canvas& c, const array_frame& f, spot at)
 {
     constexpr double longest = 60.0; // pt
@@ -389,18 +237,6 @@ void draw_scale_bar(canvas& c, const array_frame& f, spot at)
     for (const double x : {at.x, at.x + length})
         c.line({x, at.y - 2.0}, {x, at.y + 2.0}, {.stroke = ink, .width = 0.7});
     c.text({at.x + length + 4.0, at.y + cap_height(small_text) / 2.0}, text, {.size = small_text});
-}
-
-void draw_path_marks(canvas& c, const scene& s, const timeline& t, const array_frame& f, double dot,
-                     label_placer& taken)
-{
-    marker(c, s, t, f, dot, taken).draw();
-}
-
-std::string label_strokes(canvas& c, const scene& s, const timeline& t, const array_frame& f, double dot,
-                          label_placer& taken)
-{
-    return marker(c, s, t, f, dot, taken).label();
 }
 
 } // namespace tactor::plot

@@ -1,19 +1,52 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// The array on the page, to scale.
+/// The array on the page, to scale, and places of labels next to it.
 #pragma once
 
+#include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <tactor/array.hpp>
 #include <tactor/stroke.hpp>
 
-#include "plot/draw/label_placer.hpp"
 #include "plot/draw/timeline.hpp"
 #include "plot/paint/canvas.hpp"
 
 namespace tactor::plot {
+
+/// Keeper of the taken places. Finds for each label the place at which it covers least.
+class label_placer {
+public:
+    /// Labels stay inside `area`.
+    explicit label_placer(box area) : area_(area) {}
+
+    /// Weight of a tactor or label, on which no label may lie.
+    static constexpr double forbidden = 1e9;
+
+    /// Blocks a box. `weight`: cost of covering a square point.
+    void block(box b, double weight) { taken_.push_back({b, weight}); }
+    void block_disc(spot centre, double radius, double weight);
+    void block_line(const std::vector<spot>& line, double width, double weight);
+
+    /// Returns the start of the baseline of `text` next to one of many sites, from `gap` up to `reach` pt
+    /// farther away, and takes that place. Returns nothing if each place is off the area, on a tactor or
+    /// label, or not clearly nearer to that site than to the others.
+    std::optional<spot> place(std::string_view text, double size, const std::vector<spot>& sites,
+                              std::size_t own, double gap, double reach);
+
+    /// Returns the sum of the covered square points, each with its weight.
+    double cost(box b) const;
+
+private:
+    struct obstacle {
+        box b;
+        double weight;
+    };
+    box area_;
+    std::vector<obstacle> taken_;
+};
 
 /// A rectangle on the skin, mm.
 struct extent {
@@ -40,14 +73,8 @@ struct array_frame {
 /// Returns the extent of the array and of the strokes near it.
 extent shown_extent(const array& a, const std::vector<stroke>& strokes);
 
-/// Space for labels around the extent, pt.
-struct surround {
-    double x = 17.0;
-    double y = 14.0;
-};
-
-/// Fits the extent into the upper middle of a box, as large as possible.
-array_frame fit_array(const array& a, const extent& shown, box at_most, surround space = {});
+/// Fits the extent into the upper middle of a box, as large as possible. `space`: for labels around it, pt.
+array_frame fit_array(const array& a, const extent& shown, box at_most, spot space = {17.0, 14.0});
 
 /// Returns the path on the page, in parts inside the frame's area. The number of points is bounded.
 std::vector<std::vector<spot>> path_on_page(const array_frame& f, const trajectory& motion);
@@ -55,38 +82,7 @@ std::vector<std::vector<spot>> path_on_page(const array_frame& f, const trajecto
 /// Returns true if each tactor is on the channel of the same number, so that one number is enough.
 bool channels_are_numbers(const array& a);
 
-/// Looks of tactors, by index.
-struct tactor_looks {
-    std::vector<bool> plays = {};  ///< false: lighter
-    std::vector<bool> inside = {}; ///< true: its number is in its circle
-};
-
-/// Draws circles, with the numbers that are inside, and keeps labels away from them.
-void draw_tactors(canvas& c, const array_frame& f, const array& a, const tactor_looks& looks,
-                  label_placer& taken);
-
-/// Draws numbers that are not in their circles, and channels that differ from numbers, each next to its
-/// tactor and on nothing else. Returns a note on labels without space; empty: all have space.
-std::string draw_tactor_labels(canvas& c, const array_frame& f, const array& a, const tactor_looks& looks,
-                               label_placer& taken);
-
 /// Draws a bar of a round number of mm with its label, left end at `at`.
 void draw_scale_bar(canvas& c, const array_frame& f, spot at);
-
-/// Draws arrowheads on the path where they cover least, a ring at the start and a square at the end. `dot`:
-/// radius of the bursts' dots, pt.
-void draw_path_marks(canvas& c, const scene& s, const timeline& t, const array_frame& f, double dot,
-                     label_placer& taken);
-
-/// Returns the radius of the ring at a start, and half a side of the square at an end, pt.
-constexpr double end_mark_radius(double dot) noexcept
-{
-    return dot + 1.7;
-}
-
-/// Writes start and end next to those marks; for several strokes, the number of each at its start. Returns a
-/// note on labels without space; empty: all have space.
-std::string label_strokes(canvas& c, const scene& s, const timeline& t, const array_frame& f, double dot,
-                          label_placer& taken);
 
 } // namespace tactor::plot

@@ -5,6 +5,8 @@
 #include <array>
 #include <cmath>
 #include <optional>
+#include <string>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -106,6 +108,22 @@ bool finite(spot s) noexcept
     return std::isfinite(s.x) && std::isfinite(s.y);
 }
 
+// Returns ticks whose labels do not touch along a horizontal axis.
+ticks horizontal_ticks(const scale& x)
+{
+    const double length = std::abs(x.page_to - x.page_from);
+    ticks t;
+    for (std::size_t most = 11; most > 1; --most) {
+        t = nice_ticks(x.from, x.to, most);
+        double widest = 0.0;
+        for (const double v : t.at)
+            widest = std::max(widest, text_width(t.label(v), small_text));
+        if (t.at.size() < 2 || t.step * std::abs(x.per_unit()) >= widest + 7.0 || widest + 7.0 > length)
+            break;
+    }
+    return t;
+}
+
 } // namespace
 
 double distance(spot p, spot a, spot b) noexcept
@@ -148,27 +166,12 @@ ticks nice_ticks(double lo, double hi, std::size_t most)
         }
 }
 
-ticks horizontal_ticks(const scale& x, double text_size)
-{
-    const double length = std::abs(x.page_to - x.page_from);
-    ticks t;
-    for (std::size_t most = 11; most > 1; --most) {
-        t = nice_ticks(x.from, x.to, most);
-        double widest = 0.0;
-        for (const double v : t.at)
-            widest = std::max(widest, text_width(t.label(v), text_size));
-        if (t.at.size() < 2 || t.step * std::abs(x.per_unit()) >= widest + 7.0 || widest + 7.0 > length)
-            break;
-    }
-    return t;
-}
-
 void draw_horizontal_axis(canvas& c, const scale& x, double y, double grid_top, const std::string& title)
 {
     const group g(c, {.kind = "axis",
                       .data = {{"x0", fmt::format("{:.9g}", x(0.0))},
                                {"x-scale", fmt::format("{:.9g}", x.per_unit())}}});
-    const ticks t = horizontal_ticks(x, small_text);
+    const ticks t = horizontal_ticks(x);
     const style thin{.stroke = ink, .width = 0.6};
     for (const double v : t.at)
         if (grid_top < y)
@@ -323,6 +326,40 @@ box draw_chart(canvas& c, const chart& ch)
     }
     draw_line_legend(&c, ch.lines, inside.x, ch.where.y, inside.width);
     return inside;
+}
+
+double draw_words(canvas& c, std::string_view text, box where, std::size_t most_lines, const char* kind)
+{
+    double y = where.y;
+    for (const std::string& line : wrap(text, small_text, where.width, most_lines)) {
+        c.text({where.x, y + cap_height(small_text) + 1.0}, line, {.size = small_text, .ink = dark_grey},
+               {.kind = kind});
+        y += note_height;
+    }
+    return y - where.y;
+}
+
+std::string join(const std::vector<std::string>& parts, std::string_view separator)
+{
+    std::string all;
+    for (const std::string& p : parts)
+        if (!p.empty())
+            all.append(all.empty() ? "" : separator).append(p);
+    return all;
+}
+
+double draw_notes(canvas& c, const std::vector<std::string>& notes, box where, std::size_t most_lines)
+{
+    return draw_words(c, join(notes, "; "), where, most_lines, "note");
+}
+
+double draw_heading(canvas& c, const std::string& title, std::string_view text, box where)
+{
+    const double title_height = cap_height(title_size);
+    c.text({where.x, where.y + title_height}, shorten(title, title_size, where.width, true),
+           {.size = title_size, .bold = true});
+    where.y += title_height + 2.5;
+    return title_height + draw_words(c, text, where, 3, "facts");
 }
 
 } // namespace tactor::plot

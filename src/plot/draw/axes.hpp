@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// Axes, line charts, and dimensions as on technical drawings.
+/// Axes, line charts, dimensions as on technical drawings; headings over a picture and notes under it.
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "plot/paint/canvas.hpp"
@@ -31,9 +32,6 @@ struct ticks {
 };
 /// Returns at most `most` ticks in lo ... hi, and at least one if lo <= 0 <= hi.
 ticks nice_ticks(double lo, double hi, std::size_t most);
-
-/// Returns ticks whose labels do not touch along a horizontal axis.
-ticks horizontal_ticks(const scale& x, double text_size);
 
 inline constexpr double small_text = 6.0; ///< pt, the least at one print column
 inline constexpr double label_text = 6.5;
@@ -102,5 +100,20 @@ void draw_dimension(canvas& c, double x0, double x1, double y, double below, con
 
 /// Draws slanted lines inside a box, and its rim.
 void draw_hatch(canvas& c, box b, const mark& m);
+
+inline constexpr double note_height = 8.0; ///< of a line, pt
+
+/// Returns the parts that are not empty, with a separator between them.
+std::string join(const std::vector<std::string>& parts, std::string_view separator);
+
+/// Draws a text in at most `most_lines` small lines, from the upper edge of a box down. Returns the height
+/// taken.
+double draw_words(canvas& c, std::string_view text, box where, std::size_t most_lines, const char* kind);
+
+/// Draws the notes that are not empty in the same way.
+double draw_notes(canvas& c, const std::vector<std::string>& notes, box where, std::size_t most_lines);
+
+/// Draws a title and a text under it, from the upper edge of a box down. Returns the height taken.
+double draw_heading(canvas& c, const std::string& title, std::string_view text, box where);
 
 } // namespace tactor::plot

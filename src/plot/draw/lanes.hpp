@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// Rows of a diagram over time, one for each tactor that plays; one for several tactors if there are very
-/// many.
+/// Diagrams over time: their rows, one for each tactor that plays or for several if there are very many; the
+/// starts of strokes above them, and the legend of strokes.
 #pragma once
 
 #include <string>
@@ -10,6 +10,8 @@
 #include <tactor/array.hpp>
 
 #include "plot/draw/axes.hpp"
+#include "plot/draw/timeline.hpp"
+#include "plot/paint/canvas.hpp"
 
 namespace tactor::plot {
 
@@ -57,5 +59,17 @@ std::vector<std::vector<spot>> outline(const std::vector<column_range>& columns,
                                        const scale& y);
 
 inline constexpr double column_width = 0.4; ///< pt
+
+/// Height that draw_stroke_starts() needs over the diagram, pt; 0 for one stroke.
+double starts_height(const timeline& t);
+
+/// Draws a line at the start of each of several strokes, from over the diagram's top to its bottom, with the
+/// numbers of all that start there. Returns a note on starts without space; empty: none.
+std::string draw_stroke_starts(canvas& c, const timeline& t, const scale& x, double top, double bottom);
+
+/// Draws, for a scene of several strokes, the number, colour and name of each, repeats together, in columns
+/// from the upper edge of a box. Returns the height taken; 0 for one stroke. `colours`: the picture has
+/// colours of strokes.
+double draw_stroke_legend(canvas& c, const scene& s, const timeline& t, box where, bool colours);
 
 } // namespace tactor::plot

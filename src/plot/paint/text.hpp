@@ -18,7 +18,6 @@ double text_width(std::string_view utf8, double size, bool bold = false) noexcep
 /// Sizes in every figure, pt.
 inline constexpr double margin = 5.0;
 inline constexpr double title_size = 8.0;
-inline constexpr double line_pitch = 8.0;
 
 /// Returns the height of digits and capitals, pt.
 constexpr double cap_height(double size) noexcept
