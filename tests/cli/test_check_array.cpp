@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Findings of `check` about arrays, levels and actuators.
 #include "cli/check/finding.hpp"
-#include "session/device.hpp"
 
 #include <algorithm>
 #include <utility>
@@ -28,7 +27,7 @@ finding array_finding(const array& a, const std::string& check, const settings& 
 {
     environment e;
     e.tactors = a;
-    return named(check_array(s, e, session::settle_limits({}, e)), check);
+    return named(check_array(s, e), check);
 }
 
 finding limits_finding(const limit_settings& l, array a = preset_array("palm-3x3"))
@@ -36,7 +35,7 @@ finding limits_finding(const limit_settings& l, array a = preset_array("palm-3x3
     environment e;
     e.tactors = std::move(a);
     e.config.limits = l;
-    return named(check_array({}, e, session::settle_limits({}, e)), "limits");
+    return named(check_array({}, e), "limits");
 }
 
 array with_actuator(actuator_kind kind)
@@ -97,13 +96,12 @@ TEST_CASE("check lists channels and the marker")
 {
     environment e;
     e.tactors = preset_array("palm-3x3");
-    CHECK(named(check_array({}, e, session::settle_limits({}, e)), "channels").found ==
-          "9 of 9 channels drive tactors: 0 to 8");
+    CHECK(named(check_array({}, e), "channels").found == "9 of 9 channels drive tactors: 0 to 8");
     e.tactors.tactors[8].channel = 12;
     e.config.output.channels = 16;
     e.config.sync.emplace();
     e.config.sync->channel = 15;
-    CHECK(named(check_array({}, e, session::settle_limits({}, e)), "channels").found ==
+    CHECK(named(check_array({}, e), "channels").found ==
           "9 of 16 channels drive tactors: 0, 1, 2, 3, 4, 5, 6, 7, 12; 15 marks strokes");
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Findings of `check` on machines made of files.
-#include "cli/check/system_facts.hpp"
+#include "cli/check/check_system.hpp"
 
 #include <algorithm>
 
@@ -24,7 +24,7 @@ public:
         files_.write(file, text);
         return *this;
     }
-    system_facts read() const { return read_system({.user = "ann"}, files_.path()); }
+    system_facts read() const { return read_system(files_.path(), "ann"); }
     const fs::path& path() const { return files_.path(); }
 
 private:
@@ -35,10 +35,10 @@ private:
 system_facts good()
 {
     system_facts f;
-    f.own = {.user = "ann",
-             .groups = {"ann", "audio", "gpio"},
-             .rights = {.priority = 70, .lockable_bytes = 256U << 20},
-             .memory_bytes = 100U << 20};
+    f.user = "ann";
+    f.groups = {"ann", "audio", "gpio"};
+    f.rights = {.priority = 70, .lockable_bytes = 256U << 20};
+    f.memory_bytes = 100U << 20;
     f.sound = {{"/dev/snd/pcmC1D0p", "audio", true}};
     f.gpio = {{"/dev/gpiochip0", "gpio", true}};
     f.releases_outputs = true;
@@ -77,7 +77,7 @@ TEST_CASE("an empty machine is read without complaint")
     CHECK(f.sound.empty());
     CHECK(f.gpio.empty());
     CHECK(f.servers.empty());
-    CHECK_FALSE(f.keeps_outputs.has_value());
+    CHECK(f.keeps_outputs.empty());
     CHECK_FALSE(f.raspberry_pi);
     CHECK(worst_status(check_system(f, {})) == 0);
 }
@@ -99,7 +99,7 @@ TEST_CASE("groups and devices are read")
 TEST_CASE("a device that may not be opened names the group to join, or the missing login")
 {
     system_facts f = good();
-    f.own.groups = {"ann"};
+    f.groups = {"ann"};
     f.sound[0].may_open = false;
     const finding x = judged(f, card_and_amplifier(), "sound rights");
     CHECK(x.how == level::error);
@@ -119,19 +119,19 @@ TEST_CASE("a device that may not be opened names the group to join, or the missi
 TEST_CASE("limits below what play asks for are warnings, and errors where real time is required")
 {
     system_facts f = good();
-    f.own.rights = {.priority = 0, .lockable_bytes = 8U << 20};
+    f.rights = {.priority = 0, .lockable_bytes = 8U << 20};
     system_needs n = card_and_amplifier();
     CHECK(judged(f, n, "real time").how == level::warning);
     CHECK(has(judged(f, n, "real time").found, "RLIMIT_RTPRIO is 0"));
     CHECK(has(judged(f, n, "memory").found,
               "8 MiB may be locked (RLIMIT_MEMLOCK), 100 MiB must be, a reserve included"));
     CHECK_FALSE(judged(f, n, "memory").cure.empty());
-    f.own.rights.priority = 40;
+    f.rights.priority = 40;
     CHECK(has(judged(f, n, "real time").found, "SCHED_FIFO up to 40 only, 65 is asked for"));
     n.require_realtime = true;
     CHECK(judged(f, n, "real time").how == level::error);
     CHECK(judged(f, n, "memory").kind == error_kind::not_available);
-    f.own.rights = {.priority = 99, .lockable_bytes = {}};
+    f.rights = {.priority = 99, .lockable_bytes = {}};
     CHECK(judged(f, n, "real time").how == level::ok);
     CHECK(judged(f, n, "memory").how == level::ok);
 }
@@ -178,7 +178,7 @@ TEST_CASE("lines that keep their level are a warning where an amplifier hangs on
         .write("proc/device-tree/model", std::string("Raspberry Pi 5 Model B\0", 23));
     system_facts f = r.read();
     CHECK(f.raspberry_pi);
-    REQUIRE(f.keeps_outputs.has_value());
+    CHECK_FALSE(f.keeps_outputs.empty());
     const finding x = judged(f, card_and_amplifier(), "GPIO release");
     CHECK(x.how == level::warning);
     CHECK(has(x.found, "nothing switches the amplifier off when player and holder are killed together"));

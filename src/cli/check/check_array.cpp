@@ -12,6 +12,7 @@
 
 #include "core/words.hpp"
 #include "plot/sound_text.hpp"
+#include "session/device.hpp"
 #include "session/environment.hpp"
 #include "session/walk.hpp"
 
@@ -275,14 +276,14 @@ finding check_carrier(double carrier_hz, double burst_s, bool has_bursts, unsign
 
 } // namespace
 
-std::vector<finding> check_array(const settings& s, const environment& e, const drive_limits& l)
+std::vector<finding> check_array(const settings& s, const environment& e)
 {
     const render_options r = session::settle_render(s, e);
     std::vector<finding> all{check_places(e.tactors), check_channels(r, e.tactors),
                              check_levels(r, e.tactors, s.plan)};
     for (finding& f : check_bursts(s.plan, e.tactors, r.rate))
         all.push_back(std::move(f));
-    all.push_back(check_limits(l, e.tactors.tactors.size()));
+    all.push_back(check_limits(session::settle_limits(s.stream, e), e.tactors.tactors.size()));
     return all;
 }
 

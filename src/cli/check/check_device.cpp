@@ -56,7 +56,7 @@ std::string line_words(const gpio_line_place& p)
                        p.line.name.empty() ? "" : fmt::format(" \"{}\"", p.line.name), p.label, p.path);
 }
 
-finding check_line(const char* check, const gpio_line_name& name, const line_finder& find)
+finding check_line(const char* check, const gpio_line_name& name, line_finder find)
 {
     try {
         const gpio_line_place p = find(name);
@@ -93,7 +93,7 @@ finding check_device(const alsa_options& device, const session::stream_options& 
     }
 }
 
-std::vector<finding> check_lines(const setup& config, bool felt, const line_finder& find)
+std::vector<finding> check_lines(const setup& config, bool felt, line_finder find)
 {
     std::vector<finding> all;
     if (!config.amplifier)

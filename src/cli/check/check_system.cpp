@@ -1,15 +1,123 @@
 // SPDX-License-Identifier: MIT
-#include "cli/check/system_facts.hpp"
+#include "cli/check/check_system.hpp"
 
 #include <algorithm>
+#include <array>
+#include <fstream>
+#include <sstream>
+#include <system_error>
+
+#include <grp.h>
+#include <pwd.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 #include <fmt/format.h>
 
 #include "cli/devices/devices_text.hpp"
+#include "core/split.hpp"
 #include "rt/thread.hpp"
+#include "session/own_memory.hpp"
 
 namespace tactor::cli {
 namespace {
+
+namespace fs = std::filesystem;
+
+// Returns the entries of a folder by name; none if it cannot be read.
+std::vector<fs::path> entries(const fs::path& folder)
+{
+    std::vector<fs::path> all;
+    std::error_code gone;
+    for (fs::directory_iterator i(folder, gone), end; !gone && i != end; i.increment(gone))
+        all.push_back(i->path());
+    std::sort(all.begin(), all.end());
+    return all;
+}
+
+// Returns the text of a file without the end of the last line, and without the zeros with which /proc ends
+// texts; empty if it cannot be read. Reads by operator<<, which does not throw if the process ends meanwhile.
+std::string read_trimmed(const fs::path& file)
+{
+    std::ifstream in(file, std::ios::binary);
+    std::ostringstream text;
+    text << in.rdbuf();
+    std::string s = text.str();
+    while (!s.empty() && (s.back() == '\n' || s.back() == '\0'))
+        s.pop_back();
+    return s;
+}
+
+std::string group_name(gid_t id)
+{
+    const group* g = ::getgrgid(id);
+    return g != nullptr ? g->gr_name : fmt::format("{}", id);
+}
+
+std::vector<std::string> own_groups()
+{
+    std::vector<gid_t> ids(static_cast<std::size_t>(std::max(0, ::getgroups(0, nullptr))));
+    ids.resize(static_cast<std::size_t>(std::max(0, ::getgroups(static_cast<int>(ids.size()), ids.data()))));
+    ids.push_back(::getegid());
+    std::vector<std::string> names;
+    for (const gid_t id : ids)
+        names.push_back(group_name(id));
+    return names;
+}
+
+std::vector<device_node> nodes(const fs::path& folder, bool (*wanted)(const std::string&))
+{
+    std::vector<device_node> all;
+    for (const fs::path& f : entries(folder)) {
+        struct stat s {};
+        if (wanted(f.filename().string()) && ::stat(f.c_str(), &s) == 0)
+            all.push_back({f.string(), group_name(s.st_gid), ::access(f.c_str(), R_OK | W_OK) == 0});
+    }
+    return all;
+}
+
+// Returns the groups of a user, from lines "name:x:29:ann,bob".
+std::vector<std::string> find_groups(const std::string& user, const fs::path& file)
+{
+    std::vector<std::string> all;
+    std::ifstream in(file);
+    for (std::string line; std::getline(in, line);) {
+        const std::string members = fmt::format(",{},", line.substr(line.rfind(':') + 1));
+        if (!user.empty() && members.find(fmt::format(",{},", user)) != std::string::npos)
+            all.push_back(line.substr(0, line.find(':')));
+    }
+    return all;
+}
+
+bool has(const std::string& text, const char* part)
+{
+    return text.find(part) != std::string::npos;
+}
+
+std::vector<process_info> find_sound_servers(const fs::path& root)
+{
+    constexpr std::array known{"pulseaudio",  "pipewire", "pipewire-pulse",
+                               "wireplumber", "jackd",    "jackdbus"};
+    std::vector<process_info> all;
+    for (const fs::path& process : entries(root / "proc")) {
+        const auto pid = detail::number_in<int>(process.filename().string());
+        const std::string program = pid ? read_trimmed(process / "comm") : "";
+        if (std::find(known.begin(), known.end(), program) != known.end())
+            all.push_back({*pid, program});
+    }
+    std::sort(all.begin(), all.end(), [](const auto& a, const auto& b) { return a.pid < b.pid; });
+    return all;
+}
+
+bool is_playback(const std::string& name)
+{
+    return name.starts_with("pcmC") && name.ends_with('p');
+}
+
+bool is_chip(const std::string& name)
+{
+    return name.starts_with("gpiochip");
+}
 
 bool contains(const std::vector<std::string>& names, const std::string& name)
 {
@@ -22,8 +130,8 @@ std::string how_to_join(const system_facts& f, const std::string& group)
     if (group == "root")
         return "the device is root's alone: install the udev rules (tactor-raspberry-pi(7) says how), or run "
                "as root";
-    if (contains(f.joined, group) && !contains(f.own.groups, group))
-        return fmt::format("{} is in the group {} already: log out and in again", f.own.user, group);
+    if (contains(f.joined, group) && !contains(f.groups, group))
+        return fmt::format("{} is in the group {} already: log out and in again", f.user, group);
     return fmt::format("sudo usermod -aG {} $USER, then log out and in again", group);
 }
 
@@ -40,9 +148,8 @@ finding check_nodes(const system_facts& f, const char* check, const std::vector<
                     const char* usual_group, bool needed)
 {
     if (nodes.empty())
-        return fine(
-            check, fmt::format("no device to open{}", f.own.root ? "; you are root" : ""),
-            f.own.root || contains(f.own.groups, usual_group) || !needed ? "" : how_to_join(f, usual_group));
+        return fine(check, fmt::format("no device to open{}", f.root ? "; you are root" : ""),
+                    f.root || contains(f.groups, usual_group) || !needed ? "" : how_to_join(f, usual_group));
     for (const device_node& n : nodes) {
         if (n.may_open)
             continue;
@@ -52,36 +159,35 @@ finding check_nodes(const system_facts& f, const char* check, const std::vector<
     return fine(check,
                 fmt::format("{} may be opened{}",
                             nodes.size() == 1 ? nodes.front().path : fmt::format("{} devices", nodes.size()),
-                            f.own.root ? "; you are root" : ", group " + nodes.front().group));
+                            f.root ? "; you are root" : ", group " + nodes.front().group));
 }
 
 finding check_priority(const system_facts& f, const system_needs& n)
 {
-    if (f.own.rights.priority >= n.priority)
+    if (f.rights.priority >= n.priority)
         return fine("real time",
-                    fmt::format("SCHED_FIFO up to {}, {} is asked for", f.own.rights.priority, n.priority));
+                    fmt::format("SCHED_FIFO up to {}, {} is asked for", f.rights.priority, n.priority));
     const std::string found =
-        f.own.rights.priority == 0
+        f.rights.priority == 0
             ? std::string("no real-time priority: RLIMIT_RTPRIO is 0")
-            : fmt::format("SCHED_FIFO up to {} only, {} is asked for", f.own.rights.priority, n.priority);
-    return insist(warning("real time", found, rt::realtime_advice(f.own.rights, n.priority)),
-                  n.require_realtime);
+            : fmt::format("SCHED_FIFO up to {} only, {} is asked for", f.rights.priority, n.priority);
+    return insist(warning("real time", found, rt::realtime_advice(f.rights, n.priority)), n.require_realtime);
 }
 
 finding check_memory(const system_facts& f, const system_needs& n)
 {
     constexpr std::uint64_t mib = 1U << 20;
-    const std::uint64_t wanted = (f.own.memory_bytes + mib - 1) / mib;
-    if (!f.own.rights.lockable_bytes)
+    const std::uint64_t wanted = (f.memory_bytes + mib - 1) / mib;
+    if (!f.rights.lockable_bytes)
         return fine("memory", "may be locked without limit");
-    const std::uint64_t most = *f.own.rights.lockable_bytes / mib;
-    if (*f.own.rights.lockable_bytes >= f.own.memory_bytes)
+    const std::uint64_t most = *f.rights.lockable_bytes / mib;
+    if (*f.rights.lockable_bytes >= f.memory_bytes)
         return fine("memory", fmt::format("{} MiB may be locked, {} MiB must be", most, wanted));
     return insist(
         warning("memory",
                 fmt::format("{} MiB may be locked (RLIMIT_MEMLOCK), {} MiB must be, a reserve included", most,
                             wanted),
-                rt::realtime_advice(f.own.rights, n.priority)),
+                rt::realtime_advice(f.rights, n.priority)),
         n.require_realtime);
 }
 
@@ -127,12 +233,12 @@ std::vector<finding> check_release(const system_facts& f, const system_needs& n)
     constexpr const char* cure =
         "dtparam=strict_gpiod in /boot/firmware/config.txt, then reboot, and a pull-down resistor at the "
         "amplifier's enable input; where tactor is a service, ExecStopPost=tactor off";
-    if (f.keeps_outputs)
+    if (!f.keeps_outputs.empty())
         return {warning(
             "GPIO release",
             fmt::format("{} is Y: a line keeps its level when its program ends, so that nothing switches "
                         "the amplifier off when player and holder are killed together",
-                        *f.keeps_outputs),
+                        f.keeps_outputs),
             cure)};
     if (f.releases_outputs)
         return {fine("GPIO release", "lines become inputs when their program ends")};
@@ -147,6 +253,42 @@ std::vector<finding> check_release(const system_facts& f, const system_needs& n)
 }
 
 } // namespace
+
+std::string own_user()
+{
+    const passwd* p = ::getpwuid(::geteuid());
+    return p != nullptr ? p->pw_name : "";
+}
+
+system_facts read_system(const fs::path& root, const std::string& user)
+{
+    system_facts f;
+    f.root = ::geteuid() == 0;
+    f.user = user;
+    f.groups = own_groups();
+    f.joined = find_groups(user, root / "etc/group");
+    f.rights = probe_realtime_rights();
+    f.memory_bytes = session::memory_to_lock();
+    f.sound = nodes(root / "dev/snd", is_playback);
+    f.gpio = nodes(root / "dev", is_chip);
+    f.servers = find_sound_servers(root);
+    for (const fs::path& module : entries(root / "sys/module")) {
+        const fs::path file = module / "parameters/persist_gpio_outputs";
+        const std::string value = read_trimmed(file);
+        if (value == "Y" || value == "1")
+            f.keeps_outputs = file.string();
+        else if (!value.empty())
+            f.releases_outputs = true;
+    }
+    f.raspberry_pi = has(read_trimmed(root / "proc/device-tree/model"), "Raspberry Pi");
+    return f;
+}
+
+bool servers_ignore(unsigned card_index, const fs::path& root)
+{
+    const std::string data = read_trimmed(root / "run/udev/data" / fmt::format("+sound:card{}", card_index));
+    return has(data, "E:ACP_IGNORE=1") && has(data, "E:PULSE_IGNORE=1");
+}
 
 std::vector<finding> check_system(const system_facts& f, const system_needs& n)
 {

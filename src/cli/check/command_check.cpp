@@ -6,8 +6,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "cli/check/check_system.hpp"
 #include "cli/check/finding.hpp"
-#include "cli/check/system_facts.hpp"
 #include "cli/check/walk_session.hpp"
 #include "cli/commands.hpp"
 #include "cli/say.hpp"
@@ -43,7 +43,7 @@ void check_machine(const setup& config, const alsa_options& device, const sessio
     n.amplifier = config.amplifier && !o.no_gpio;
     n.gpio = n.amplifier || (!o.no_gpio && config.sync && (config.sync->out || config.sync->in));
     n.require_realtime = o.require_realtime;
-    for (finding& f : check_system(read_system(read_own()), n))
+    for (finding& f : check_system(read_system(), n))
         all.push_back(std::move(f));
 }
 
@@ -64,7 +64,7 @@ finding check_drive_time(const std::string& pcm)
 
 std::vector<finding> check_all(const settings& s, const environment& e)
 {
-    std::vector<finding> all = check_array(s, e, session::settle_limits(s.stream, e));
+    std::vector<finding> all = check_array(s, e);
     alsa_options device;
     try {
         device = device_for(s, e);
@@ -75,7 +75,7 @@ std::vector<finding> check_all(const settings& s, const environment& e)
         all.push_back(failure("device", x));
     }
     if (!s.stream.no_gpio)
-        for (finding& f : check_lines(e.config, session::is_felt(device.pcm), find_gpio_line))
+        for (finding& f : check_lines(e.config, session::is_felt(device.pcm)))
             all.push_back(std::move(f));
     check_machine(e.config, device, s.stream, all);
     return all;
@@ -120,7 +120,7 @@ void conclude(const check_options& o, const environment& e, const session::walk_
 
 int run_walk(const settings& s, const check_options& o, const environment& e, const std::vector<finding>& all)
 {
-    const walk_options how{s.stream, o.json(), s.plan.carrier_hz, !o.no_questions, o.output};
+    const walk_options how{s.stream, o.json(), s.plan.carrier_hz, !o.no_questions};
     const walk_result w = walk(device_for(s, e), e, session::settle_render(s, e), how);
     if (w.signal != 0)
         return session::interrupt::status(w.signal);

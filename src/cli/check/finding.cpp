@@ -67,13 +67,7 @@ void check_members(Io& io, const std::vector<finding>& all, const std::optional<
             [&walk](auto& inner) { walk_members(inner, *walk); });
 }
 
-} // namespace
-
-std::string_view to_string(level l)
-{
-    return l == level::ok ? "ok" : l == level::warning ? "warning" : "error";
-}
-
+// Returns a line or two for each finding, at most 80 columns wide.
 std::string findings_text(const std::vector<finding>& all)
 {
     std::string s;
@@ -85,6 +79,13 @@ std::string findings_text(const std::vector<finding>& all)
             s += wrapped(fmt::format("{:<24}-> ", ""), first == f ? f->cure : "as for " + first->check);
     }
     return s;
+}
+
+} // namespace
+
+std::string_view to_string(level l)
+{
+    return l == level::ok ? "ok" : l == level::warning ? "warning" : "error";
 }
 
 int worst_status(const std::vector<finding>& all)

@@ -4,7 +4,6 @@
 #pragma once
 
 #include <cstddef>
-#include <functional>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -53,9 +52,6 @@ inline finding failure(std::string check, const error& of_library)
 
 std::string_view to_string(level l);
 
-/// Returns a line or two for each finding, at most 80 columns wide.
-std::string findings_text(const std::vector<finding>& all);
-
 /// Returns the exit status: that of bad input before that of a device before any other; 0 without an error.
 int worst_status(const std::vector<finding>& all);
 
@@ -74,12 +70,11 @@ std::string check_json(const std::vector<finding>& all, const std::optional<walk
 /// Returns the schema of such an object.
 nlohmann::ordered_json check_schema();
 
-/// Finds a line, or throws what find_gpio_line() throws.
-using line_finder = std::function<gpio_line_place(const gpio_line_name&)>;
+using line_finder = gpio_line_place (*)(const gpio_line_name&);
 
 /// Checks that each line is there and free, and, if the array is `felt`, that its amplifier has one. Requests
-/// and drives none.
-std::vector<finding> check_lines(const setup& config, bool felt, const line_finder& find);
+/// and drives none. `find`: find_gpio_line() but in tests.
+std::vector<finding> check_lines(const setup& config, bool felt, line_finder find = find_gpio_line);
 
 /// Opens and closes the device, unless it writes a file; plays nothing. `named`: false for the default
 /// device.
@@ -98,7 +93,7 @@ std::vector<std::size_t> tactors_where(const array& a, F&& take)
 }
 
 /// Checks places, channels, levels, actuators, bursts and limits. Looks at values only.
-std::vector<finding> check_array(const settings& s, const environment& e, const drive_limits& l);
+std::vector<finding> check_array(const settings& s, const environment& e);
 
 /// Checks actuators against burst length and carrier, as a part of check_array(). `rate`: Hz.
 std::vector<finding> check_bursts(const plan_options& p, const array& a, unsigned rate);

@@ -58,6 +58,15 @@ std::string without_blanks(std::string s)
     return s;
 }
 
+// Returns three bursts on one tactor.
+piece walk_one(const array& a, unsigned tactor, double carrier_hz)
+{
+    plan p = session::walk_plan(a, tactor, carrier_hz);
+    const point there = a.tactors[tactor].position;
+    stroke stays{"", trajectory::timed({{0.0, there}, {p.total_s, there}})};
+    return {fmt::format("tactor {}", tactor), {std::move(stays)}, {{std::move(p)}}};
+}
+
 class walker {
 public:
     walker(session::play_session& s, const environment& e, const render_options& r, const walk_options& o)
@@ -168,14 +177,6 @@ private:
 };
 
 } // namespace
-
-piece walk_one(const array& a, unsigned tactor, double carrier_hz)
-{
-    plan p = session::walk_plan(a, tactor, carrier_hz);
-    const point there = a.tactors[tactor].position;
-    stroke stays{"", trajectory::timed({{0.0, there}, {p.total_s, there}})};
-    return {fmt::format("tactor {}", tactor), {std::move(stays)}, {{std::move(p)}}};
-}
 
 walk_result walk(const alsa_options& device, const environment& e, const render_options& render,
                  const walk_options& o, const session::stream_source& source)

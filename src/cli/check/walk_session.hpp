@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// The walk: sounds, questions, answers, and the array file with the channels as they were felt.
+/// The walk: sounds, questions and answers.
 #pragma once
 
 #include <string>
@@ -16,8 +16,7 @@ struct walk_options {
     session::stream_options stream;
     bool json = false; ///< questions go to standard error
     double carrier_hz = 250.0;
-    bool ask = true;    ///< false: each is only named
-    std::string output; ///< file for the map; empty: none
+    bool ask = true; ///< false: each is only named
 };
 
 struct walk_result {
@@ -25,14 +24,10 @@ struct walk_result {
     session::walk_answers felt;
 };
 
-/// Returns three bursts on one tactor.
-piece walk_one(const array& a, unsigned tactor, double carrier_hz);
-
 /// Drives each tactor and asks where it was felt, on standard input. Questions go to standard output, or to
 /// standard error if that is JSON.
 /// \throws error: errors of play; runtime when the walk is left before its end, or a tactor was interrupted
-/// and
-///         not driven again.
+///         and not driven again.
 walk_result walk(const alsa_options& device, const environment& e, const render_options& render,
                  const walk_options& o, const session::stream_source& source = {});
 

@@ -23,32 +23,27 @@ struct device_node {
     bool may_open = false;
 };
 
-/// Facts of this process, which no file under `root` has.
-struct own_facts {
-    bool root = false;
+struct system_facts {
+    bool root = false; ///< this process may do all
     std::string user = {};
     std::vector<std::string> groups = {}; ///< groups in force
+    std::vector<std::string> joined = {}; ///< groups of the user, in force or not
     realtime_rights rights = {};
-    std::uint64_t memory_bytes = 0; ///< memory that play would lock
-};
-
-struct system_facts {
-    own_facts own;
-    std::vector<std::string> joined = {};   ///< groups of the user, in force or not
+    std::uint64_t memory_bytes = 0;         ///< memory that play would lock
     std::vector<device_node> sound = {};    ///< playback devices
     std::vector<device_node> gpio = {};     ///< chips
     std::vector<process_info> servers = {}; ///< running sound servers
-    std::optional<std::string> keeps_outputs =
-        {};                        ///< file with the setting that lines keep their level when released
-    bool releases_outputs = false; ///< a file has the setting that they do not
+    std::string keeps_outputs = {}; ///< file with the setting that lines keep their level when released
+    bool releases_outputs = false;  ///< a file has the setting that they do not
     bool raspberry_pi = false;
 };
 
-/// Returns the facts of this process.
-own_facts read_own();
+/// Returns the name of the user that this process runs as; empty if it has none.
+std::string own_user();
 
-/// Reads files under `root`, "/" but in tests. Leaves out files that cannot be read. Blocks shortly.
-system_facts read_system(own_facts own, const std::filesystem::path& root = "/");
+/// Returns the facts of this process and of files under `root`, "/" but in tests. Leaves out files that
+/// cannot be read. Blocks shortly.
+system_facts read_system(const std::filesystem::path& root = "/", const std::string& user = own_user());
 
 /// Returns true if udev keeps desktop sound servers off a card.
 bool servers_ignore(unsigned card_index, const std::filesystem::path& root = "/");
