@@ -135,7 +135,10 @@ std::optional<std::uint64_t> play_session::stroke_frame() const
 stroke_report play_session::follow(const std::function<look()>& each)
 {
     player& p = *stream_.current();
-    const std::shared_ptr<void> at_rest(nullptr, [this](void*) { stream_.set_busy(false); });
+    const struct resting {
+        device_stream& stream;
+        ~resting() { stream.set_busy(false); }
+    } at_end{stream_};
     for (;;) {
         if (const auto report = p.wait(playing_, 0.0)) {
             // The loss of the device is reported after the strokes that it interrupted.

@@ -119,9 +119,11 @@ private:
     void sound(unsigned i)
     {
         const piece p = walk_one(environment_.tactors, i, options_.carrier_hz);
-        const stroke_report r =
-            play_drawn(session_, environment_.tactors, p, make_score(p, environment_, render_),
-                       !options_.json && !options_.stream.verbose);
+        const score samples = make_score(p, environment_, render_);
+        const auto ended = session_.submit(samples);
+        const stroke_report r = ended ? *ended
+                                      : follow_drawn(session_, environment_.tactors, p, samples,
+                                                     !options_.json && !options_.stream.verbose);
         session_.log_end(p.name, r);
         if (session_.signal() != 0)
             throw walk_interrupted{};

@@ -46,17 +46,17 @@ constexpr const char* wait_hint = "--reopen-s S waits for the device to come bac
 bool play_piece(session::play_session& session, bool as_json, const array& a, const piece& p, const score& s,
                 stroke_outcome& out)
 {
-    const auto armed = [&] {
-        if (!session.asked().arm || as_json)
-            return;
-        say(stdout, "{}: armed\n", shown_name(p.name));
-        flush_output();
-    };
     for (bool again = false;; again = true) {
         if (session.lost() && !session.reopen())
             return false;
+        out.report = session.submit(s);
+        if (!out.report && session.asked().arm && !as_json) {
+            say(stdout, "{}: armed\n", shown_name(p.name));
+            flush_output();
+        }
         // No picture with --verbose: it would overwrite log lines.
-        out.report = play_drawn(session, a, p, s, !as_json && !session.asked().verbose, armed);
+        if (!out.report)
+            out.report = follow_drawn(session, a, p, s, !as_json && !session.asked().verbose);
         const bool untouched =
             out.report->state == state_kind::interrupted && out.report->frames == 0 && session.lost();
         if (!untouched || again || !session.waits())

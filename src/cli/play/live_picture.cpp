@@ -22,6 +22,7 @@
 #include "cli/say.hpp"
 #include "core/words.hpp"
 #include "rt/variable.hpp"
+#include "synth/score/sounding_now.hpp"
 
 namespace tactor::cli {
 namespace {
@@ -149,30 +150,9 @@ std::string status_line(const instant& now, double t_s, double total_s, unsigned
     return {};
 }
 
-// Time for a slow terminal. One that takes nothing blocks the next printed line anyway.
-constexpr int patience_ms = 2000;
-
-std::string to_its_beginning(std::size_t lines)
-{
-    return lines == 0 ? "\r" : fmt::format("\r\033[{}A", lines);
-}
-
-volatile std::sig_atomic_t stop_asked = 0;
-
-void ask_to_stop(int) noexcept
-{
-    stop_asked = 1;
-}
-
-// Returns true in the background. A terminal that does not control this process has no foreground group.
-bool is_in_background() noexcept
-{
-    const pid_t front = ::tcgetpgrp(STDOUT_FILENO);
-    return front >= 0 && front != ::getpgrp();
-}
-
-} // namespace
-
+// Returns the array with each tactor's level and the place of the touch, and under it time, place and
+// progress: at most rows - 1 lines of columns - 1 characters, so that nothing wraps or scrolls. With less
+// space the array is smaller, then left out, and then the last line gets shorter.
 std::vector<std::string> picture_lines(const array& a, const instant& now, double t_s, double total_s,
                                        terminal_size size, picture_style style)
 {
@@ -199,37 +179,26 @@ std::vector<std::string> picture_lines(const array& a, const instant& now, doubl
     return lines;
 }
 
-piece_follower::piece_follower(const piece& p, const score& s, const array& a)
-    : piece_(p), score_(s), faces_(a), sounding_(s)
+// Returns the place of the touch at a time of the piece, s; nothing between two strokes.
+std::optional<point> find_target(const piece& p, const score& s, const layout& faces, double t_s)
 {
-}
-
-instant piece_follower::at(double t_s)
-{
-    instant now{sounding_.at(static_cast<std::uint64_t>(t_s * score_.rate())), {}};
-    for (std::size_t i = 0; i < std::min(piece_.strokes.size(), score_.plans().size()); ++i) {
-        const double t = t_s - static_cast<double>(score_.starts()[i]) / score_.rate();
-        if (t < 0.0 || t > score_.plans()[i].plan.total_s)
+    for (std::size_t i = 0; i < std::min(p.strokes.size(), s.plans().size()); ++i) {
+        const double t = t_s - static_cast<double>(s.starts()[i]) / s.rate();
+        if (t < 0.0 || t > s.plans()[i].plan.total_s)
             continue;
-        const point p = piece_.strokes[i].motion.position(t);
-        now.target = faces_.contains(p) ? p : faces_.nearest(p);
-        break;
+        const point at = p.strokes[i].motion.position(t);
+        return faces.contains(at) ? at : faces.nearest(at);
     }
-    return now;
+    return {};
 }
 
-bool can_draw()
-{
-    const std::string kind = rt::variable("TERM");
-    return isatty(STDOUT_FILENO) != 0 && !kind.empty() && kind != "dumb";
-}
-
+// Returns true unless NO_COLOR asks for no colours (no-color.org: set, and not empty).
 bool may_colour()
 {
     return rt::variable("NO_COLOR").empty();
 }
 
-// Reads the environment: the program itself stays in the C locale.
+// Returns true if the characters of the environment's locale are UTF-8. The program stays in the C locale.
 bool speaks_utf8()
 {
     for (const char* name : {"LC_ALL", "LC_CTYPE", "LANG"}) {
@@ -241,18 +210,40 @@ bool speaks_utf8()
     return false;
 }
 
-// Opens standard output again: O_NONBLOCK on it would hold for all processes that share it, such as the
-// shell.
-terminal::terminal() : fd_(open("/proc/self/fd/1", O_WRONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC))
+// Time for a slow terminal. One that takes nothing blocks the next printed line anyway.
+constexpr int patience_ms = 2000;
+
+std::string to_its_beginning(std::size_t lines)
 {
-    if (fd_ < 0) // no /proc: writes may block
-        fd_ = fcntl(STDOUT_FILENO, F_DUPFD_CLOEXEC, 0);
+    return lines == 0 ? "\r" : fmt::format("\r\033[{}A", lines);
 }
 
-terminal::~terminal()
+volatile std::sig_atomic_t stop_asked = 0;
+
+void ask_to_stop(int) noexcept
 {
-    if (fd_ >= 0)
-        close(fd_);
+    stop_asked = 1;
+}
+
+// Returns true in the background. A terminal that does not control this process has no foreground group.
+bool is_in_background() noexcept
+{
+    const pid_t front = ::tcgetpgrp(STDOUT_FILENO);
+    return front >= 0 && front != ::getpgrp();
+}
+
+} // namespace
+
+bool can_draw()
+{
+    const std::string kind = rt::variable("TERM");
+    return isatty(STDOUT_FILENO) != 0 && !kind.empty() && kind != "dumb";
+}
+
+// Opens standard output again: O_NONBLOCK on it would hold for all processes that share it, such as the
+// shell.
+terminal::terminal() : file_(open("/proc/self/fd/1", O_WRONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC))
+{
 }
 
 terminal_size terminal::size() const noexcept
@@ -266,7 +257,7 @@ terminal_size terminal::size() const noexcept
 bool terminal::idle()
 {
     while (!left_.empty()) {
-        const ssize_t n = ::write(fd_, left_.data(), left_.size());
+        const ssize_t n = ::write(file_.get(), left_.data(), left_.size());
         if (n < 0 && errno == EINTR)
             continue;
         if (n < 0 && (errno == EAGAIN || errno == EWOULDBLOCK))
@@ -288,7 +279,7 @@ void terminal::write(std::string text)
 void terminal::finish()
 {
     for (int waited = 0; !idle() && waited < patience_ms; waited += patience_ms / 10) {
-        pollfd p{.fd = fd_, .events = POLLOUT, .revents = 0};
+        pollfd p{.fd = file_.get(), .events = POLLOUT, .revents = 0};
         ::poll(&p, 1, patience_ms / 10);
     }
 }
@@ -354,22 +345,20 @@ void live_picture::draw(const instant& now, double t_s, double total_s)
     drawn_lines_ = lines.size();
 }
 
-stroke_report play_drawn(session::play_session& session, const array& a, const piece& p, const score& s,
-                         bool wanted, const std::function<void()>& armed)
+stroke_report follow_drawn(session::play_session& session, const array& a, const piece& p, const score& s,
+                           bool wanted)
 {
-    if (const auto ended = session.submit(s))
-        return *ended;
-    armed();
     live_picture picture(a, wanted);
     if (!picture.active())
         return session.follow();
-    piece_follower follower(p, s, a);
+    synth::sounding_now sounding(s);
+    const layout faces(a);
     const double total_s = static_cast<double>(s.frames()) / s.rate();
-    double t_s = 0.0; // keeps its value until the report of the stroke's end arrives
+    std::uint64_t frame = 0; // keeps its value until the report of the stroke's end arrives
     return session.follow([&] {
-        if (const auto frame = session.stroke_frame())
-            t_s = static_cast<double>(*frame) / s.rate();
-        picture.draw(follower.at(t_s), t_s, total_s);
+        frame = session.stroke_frame().value_or(frame);
+        const double t_s = static_cast<double>(frame) / s.rate();
+        picture.draw({sounding.at(frame), find_target(p, s, faces, t_s)}, t_s, total_s);
         return session::look{.most_ms = session::frame_ms};
     });
 }

@@ -4,7 +4,6 @@
 #pragma once
 
 #include <csignal>
-#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -12,8 +11,8 @@
 #include <tactor/tactor.hpp>
 
 #include "cli/input.hpp"
+#include "core/owned.hpp"
 #include "session/play_session.hpp"
-#include "synth/score/sounding_now.hpp"
 
 namespace tactor::cli {
 
@@ -23,27 +22,9 @@ struct instant {
     std::optional<point> target; ///< place of the touch
 };
 
-/// Follower of a piece from its beginning on.
-class piece_follower {
-public:
-    /// Follows `p`, which must live as long.
-    piece_follower(const piece& p, const score& s, const array& a);
-
-    /// Returns the state at a time, s from the start of the piece. Times must ascend.
-    instant at(double t_s);
-
-private:
-    const piece& piece_;
-    score score_;
-    layout faces_;
-    synth::sounding_now sounding_;
-};
-
 struct terminal_size {
     unsigned columns = 80;
     unsigned rows = 24;
-
-    friend bool operator==(const terminal_size&, const terminal_size&) = default;
 };
 
 struct picture_style {
@@ -51,29 +32,14 @@ struct picture_style {
     bool colours = true;
 };
 
-/// Returns the array with each tactor's level and the place of the touch, and under it time, place and
-/// progress: at most rows - 1 lines of columns - 1 characters, so that nothing wraps or scrolls. With less
-/// space the array is smaller, then left out, and then the last line gets shorter.
-std::vector<std::string> picture_lines(const array& a, const instant& now, double t_s, double total_s,
-                                       terminal_size size, picture_style style);
-
 /// Returns true if standard output is a terminal on which lines can be drawn again.
 bool can_draw();
-
-/// Returns true unless NO_COLOR asks for no colours (no-color.org: set, and not empty).
-bool may_colour();
-
-/// Returns true if the locale's characters are UTF-8.
-bool speaks_utf8();
 
 /// Writer to the terminal that never waits for it: a terminal that is stopped (Ctrl-S) or slow must not keep
 /// a signal from ending the program.
 class terminal {
 public:
     terminal();
-    ~terminal();
-    terminal(const terminal&) = delete;
-    terminal& operator=(const terminal&) = delete;
 
     /// Returns the size as it is now: windows change.
     terminal_size size() const noexcept;
@@ -86,7 +52,7 @@ public:
     void finish();
 
 private:
-    int fd_;
+    detail::owned_fd file_;
     std::string left_;
 };
 
@@ -115,10 +81,9 @@ private:
     struct sigaction before_ = {}; ///< previous action of SIGTSTP
 };
 
-/// Plays a score of a piece to its end, and draws it on a terminal if that is `wanted`. With
-/// stream_options::arm `armed` is called once the score waits for its trigger. \throws error.
-stroke_report play_drawn(
-    session::play_session& session, const array& a, const piece& p, const score& s, bool wanted,
-    const std::function<void()>& armed = [] {});
+/// Follows a score of a piece, which was submitted, to its end, and draws it on a terminal if that is
+/// `wanted`.
+stroke_report follow_drawn(session::play_session& session, const array& a, const piece& p, const score& s,
+                           bool wanted);
 
 } // namespace tactor::cli
