@@ -18,15 +18,6 @@ std::vector<profile_point>::const_iterator first_after(const std::vector<profile
                             [](double v, const profile_point& p) noexcept { return v < p.part; });
 }
 
-template <class Point>
-std::vector<Point> mirrored(std::vector<Point> points)
-{
-    std::reverse(points.begin(), points.end());
-    for (Point& p : points)
-        p.part = 1.0 - p.part;
-    return points;
-}
-
 } // namespace
 
 void check_profile_points(std::string_view what, const std::vector<profile_point>& points, double low,
@@ -67,16 +58,6 @@ double greatest_between(const std::vector<profile_point>& points, double from, d
     for (auto p = first_after(points, from); p != points.end() && p->part < to; ++p)
         most = std::max(most, p->value);
     return most;
-}
-
-std::vector<profile_point> from_the_end(const std::vector<profile_point>& points)
-{
-    return mirrored(points);
-}
-
-std::vector<carrier_part> from_the_end(const std::vector<carrier_part>& points)
-{
-    return mirrored(points);
 }
 
 } // namespace tactor::detail

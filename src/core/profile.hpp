@@ -2,6 +2,7 @@
 // A value over the part of a path, linear between points.
 #pragma once
 
+#include <algorithm>
 #include <string_view>
 #include <vector>
 
@@ -21,8 +22,14 @@ double profile_at(const std::vector<profile_point>& points, double part) noexcep
 /// Returns the greatest value between two parts. O(log n + points between them).
 double greatest_between(const std::vector<profile_point>& points, double from, double to) noexcept;
 
-/// Returns the profile as seen from the other end.
-std::vector<profile_point> from_the_end(const std::vector<profile_point>& points);
-std::vector<carrier_part> from_the_end(const std::vector<carrier_part>& points);
+/// Returns points by part of the path, in the order from its other end.
+template <class Point>
+std::vector<Point> from_the_end(std::vector<Point> points)
+{
+    std::reverse(points.begin(), points.end());
+    for (Point& p : points)
+        p.part = 1.0 - p.part;
+    return points;
+}
 
 } // namespace tactor::detail

@@ -1,8 +1,13 @@
 // SPDX-License-Identifier: MIT
-// Grammar of path data. svg_pen.cpp draws its commands.
+#include "core/path/svg_data.hpp"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
+#include <limits>
+#include <numbers>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -13,23 +18,185 @@
 #include "core/limits.hpp"
 #include "core/path/impl.hpp"
 #include "core/path/number.hpp"
-#include "core/path/svg_pen.hpp"
 #include "core/suggest.hpp"
 #include "core/words.hpp"
 
-namespace tactor {
-inline namespace v0 {
+namespace tactor::detail {
 namespace {
 
-using detail::subpaths;
-using detail::value_fault;
+/// Arguments of one command, as many as it has. Flags are 0 or 1.
+using path_arguments = std::array<double, 7>;
+
+/// Returns 'M' for 'm'. A character that is not a letter never becomes one.
+constexpr char upper(char c) noexcept
+{
+    return c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c;
+}
+
+// Returns the arc of command A: part of the ellipse with radii rx and ry (signs do not matter) whose x axis
+// is turned by `turn_deg`, from point to point, the longer or the shorter way round. If the radii do not
+// reach, they grow together until they do. Returns nothing for a straight line, for example with a radius of
+// 0.
+// https://www.w3.org/TR/SVG2/implnote.html#ArcImplementationNotes
+//
+// Turns the ellipse straight and stretches it to a circle with the longer radius. The computation works on
+// that circle.
+std::optional<elliptic> svg_arc(point from, double rx, double ry, double turn_deg, bool longer,
+                                bool clockwise, point to)
+{
+    const double radius = std::max(std::abs(rx), std::abs(ry));
+    const double kx = std::abs(rx) / radius;
+    const double ky = std::abs(ry) / radius;
+    const affine turn = rotation(std::remainder(turn_deg, 360.0));
+    const double c = turn.a;
+    const double s = turn.b;
+
+    // Vector from the middle of the chord to the start.
+    const point half = 0.5 * (from - to);
+    const point h{(c * half.x_mm + s * half.y_mm) / kx, (c * half.y_mm - s * half.x_mm) / ky};
+    const double reach = std::hypot(h.x_mm, h.y_mm);
+    if (!(kx > 0.0 && ky > 0.0 && reach > 0.0))
+        return std::nullopt;
+
+    // A half circle's reach equals the radius but for rounding. A root would enlarge that error to a
+    // ten-millionth of the radius.
+    constexpr double rounding = 8.0 * std::numeric_limits<double>::epsilon();
+    const bool half_turn = reach >= radius * (1.0 - rounding);
+    const double r = half_turn ? reach : radius;
+    const double away = half_turn ? 0.0 : std::sqrt((r - reach) * (r + reach));
+    const double side = longer != clockwise ? away / reach : -away / reach;
+    const point centre{side * h.y_mm, -side * h.x_mm};
+
+    const double short_way = 2.0 * std::atan2(reach, away);
+    const double way = longer ? 2.0 * std::numbers::pi - short_way : short_way;
+    const point u{r * kx * c, r * kx * s};
+    const point v{-r * ky * s, r * ky * c};
+    return elliptic{0.5 * (from + to) + (centre.x_mm / r) * u + (centre.y_mm / r) * v, u, v,
+                    std::atan2(h.y_mm - centre.y_mm, h.x_mm - centre.x_mm), clockwise ? way : -way};
+}
+
+/// Draws the commands of path data.
+class path_pen {
+public:
+    /// Draws one of M L H V C S Q T A. Lower case counts from the place of the pen.
+    void draw(char command, const path_arguments& v)
+    {
+        const char kind = upper(command);
+        const point base = command == kind ? point{} : at_;
+        const auto to = [&](std::size_t i) { return point{base.x_mm + v[i], base.y_mm + v[i + 1]}; };
+        switch (kind) {
+        case 'M':
+            return move(to(0));
+        case 'L':
+            return line(to(0));
+        case 'H':
+            return line({base.x_mm + v[0], at_.y_mm});
+        case 'V':
+            return line({at_.x_mm, base.y_mm + v[0]});
+        case 'C':
+            return cubic(to(0), to(2), to(4));
+        case 'S':
+            return cubic(cubic_handle_, to(0), to(2));
+        case 'Q':
+            return quadratic(to(0), to(2));
+        case 'T':
+            return quadratic(quadratic_handle_, to(0));
+        default:
+            return arc(v, to(5));
+        }
+    }
+
+    /// Draws Z: a line to the start of the subpath. A command that follows without a move begins there, too.
+    void close()
+    {
+        line(start_);
+        move(start_);
+    }
+
+    /// Returns the subpaths that were drawn, and forgets them.
+    std::vector<outline> take()
+    {
+        finish();
+        return std::exchange(drawn_, {});
+    }
+
+    /// Returns the place of the last move.
+    point start() const { return start_; }
+
+private:
+    void move(point to)
+    {
+        finish();
+        start_ = to;
+        open_.vertices.assign(1, to);
+        arrive(to);
+        draws_ = false;
+    }
+
+    void line(point to)
+    {
+        open_.line(to);
+        arrive(to);
+    }
+
+    void cubic(point c1, point c2, point to)
+    {
+        open_.bezier(c1, c2, to);
+        arrive(to);
+        cubic_handle_ = to + (to - c2);
+    }
+
+    void quadratic(point c, point to)
+    {
+        open_.quadratic(c, to);
+        arrive(to);
+        quadratic_handle_ = to + (to - c);
+    }
+
+    void arc(const path_arguments& v, point to)
+    {
+        if (to == at_) {
+            cubic_handle_ = quadratic_handle_ = to;
+            return; // SVG draws no arc here, where a line would have no length
+        }
+        if (const auto a = svg_arc(at_, v[0], v[1], v[2], v[3] != 0.0, v[4] != 0.0, to))
+            open_.arc(*a, to);
+        else
+            open_.line(to);
+        arrive(to);
+    }
+
+    // Records that something was drawn, if only a point. Every command but M does.
+    void arrive(point to)
+    {
+        draws_ = true;
+        at_ = cubic_handle_ = quadratic_handle_ = to;
+    }
+
+    void finish()
+    {
+        if (draws_)
+            drawn_.push_back(std::move(open_));
+        open_ = {};
+        draws_ = false;
+    }
+
+    std::vector<outline> drawn_;
+    outline open_;
+    bool draws_ = false; ///< something was drawn since the last move
+    point start_;
+    point at_;
+    // The mirrored last handle, if the last command was of the kind that S or T continues.
+    point cubic_handle_;
+    point quadratic_handle_;
+};
 
 constexpr const char* starts = "it starts with M x y";
 
 // Returns the arguments of a command: n is a number, f a flag.
 std::string_view argument_kinds(char command) noexcept
 {
-    switch (detail::upper(command)) {
+    switch (upper(command)) {
     case 'M':
     case 'L':
     case 'T':
@@ -56,18 +223,18 @@ public:
     {
     }
 
-    std::vector<detail::outline> run()
+    std::vector<outline> run()
     {
-        detail::skip_blanks(data_, at_);
+        skip_blanks(data_, at_);
         if (at_ == data_.size())
             fail("is empty", starts);
-        if (detail::upper(data_[at_]) != 'M')
+        if (upper(data_[at_]) != 'M')
             fail(fmt::format("{} where a path starts", found()), starts);
         while (at_ < data_.size()) {
             command();
-            detail::skip_blanks(data_, at_);
+            skip_blanks(data_, at_);
         }
-        std::vector<detail::outline> drawn = pen_.take();
+        std::vector<outline> drawn = pen_.take();
         if (one_ && drawn.empty()) // a move alone is a single place
             drawn.push_back({{pen_.start()}, {}});
         return drawn;
@@ -77,7 +244,7 @@ private:
     void command()
     {
         const char c = data_[at_];
-        const char kind = detail::upper(c);
+        const char kind = upper(c);
         const std::string_view wanted = argument_kinds(c);
         if (wanted.empty() && kind != 'Z')
             fail(fmt::format("{} is not a path command", found()),
@@ -89,7 +256,7 @@ private:
         ++at_;
         if (closed_)
             return pen_.close();
-        detail::skip_blanks(data_, at_);
+        skip_blanks(data_, at_);
         groups(c, wanted);
     }
 
@@ -107,9 +274,9 @@ private:
         }
     }
 
-    detail::path_arguments group(char c, std::string_view wanted)
+    path_arguments group(char c, std::string_view wanted)
     {
-        detail::path_arguments values{};
+        path_arguments values{};
         for (std::size_t i = 0; i < wanted.size(); ++i) {
             if (i > 0)
                 separator();
@@ -128,7 +295,7 @@ private:
     double number(char c, std::size_t count)
     {
         const std::size_t begin = at_;
-        const auto value = detail::scan_number(data_, at_);
+        const auto value = scan_number(data_, at_);
         if (!value)
             fail(fmt::format("{} where {} wants a number", found(), c),
                  fmt::format("{} takes {}", c, counted(count, "number")));
@@ -141,11 +308,11 @@ private:
 
     bool separator()
     {
-        detail::skip_blanks(data_, at_);
+        skip_blanks(data_, at_);
         if (at_ == data_.size() || data_[at_] != ',')
             return false;
         ++at_;
-        detail::skip_blanks(data_, at_);
+        skip_blanks(data_, at_);
         return true;
     }
 
@@ -154,10 +321,7 @@ private:
         return (c >= '0' && c <= '9') || c == '.' || c == '+' || c == '-';
     }
 
-    std::string found() const
-    {
-        return at_ == data_.size() ? "the end" : detail::quoted(data_.substr(at_, 1));
-    }
+    std::string found() const { return at_ == data_.size() ? "the end" : quoted(data_.substr(at_, 1)); }
 
     [[noreturn]] void fail(std::string why, std::string hint = {}) const
     {
@@ -170,15 +334,10 @@ private:
     std::size_t at_ = 0;
     bool begun_ = false;
     bool closed_ = false;
-    detail::path_pen pen_;
+    path_pen pen_;
 };
 
 } // namespace
-
-} // namespace v0
-} // namespace tactor
-
-namespace tactor::detail {
 
 std::vector<outline> parse_path_data(std::string_view data, double limit, subpaths wanted)
 {
@@ -194,9 +353,10 @@ path path::from_svg(std::string_view data)
 {
     constexpr const char* what = "path data";
     try {
-        std::vector<detail::outline> found = detail::parse_path_data(data, detail::max_mm, subpaths::one);
+        std::vector<detail::outline> found =
+            detail::parse_path_data(data, detail::max_mm, detail::subpaths::one);
         return detail::make_path(std::move(found.front()), [] { return what; });
-    } catch (const value_fault& f) {
+    } catch (const detail::value_fault& f) {
         throw error(error_kind::bad_input, what, fmt::format("column {}: {}", f.offset + 1, f.why), f.hint);
     }
 }

@@ -48,34 +48,21 @@ struct trajectory::impl {
     double duration_s = 0.0;
     double gain = 1.0;
 
-    /// Convert a time t of this trajectory to the time of its timed points, and back.
-    double own_time(const detail::timed_points& l, double t_s) const noexcept
+    /// Convert a time of this trajectory to that of its points or pace, which take `own_s`, and back.
+    double to_own(double t_s, double own_s) const noexcept
     {
-        const double own = l.duration_s();
-        return own == duration_s ? t_s : t_s / duration_s * own;
+        return own_s == duration_s ? t_s : t_s / duration_s * own_s;
     }
-
-    double time_of_own(const detail::timed_points& l, double own_s) const noexcept
+    double from_own(double t_s, double own_s) const noexcept
     {
-        const double own = l.duration_s();
-        return own == duration_s ? own_s : own_s / own * duration_s;
-    }
-
-    /// Convert a time t of this trajectory to the time of its pace, and back.
-    double pace_time(const detail::pace& p, double t_s) const noexcept
-    {
-        return p.total_s() == duration_s ? t_s : t_s / duration_s * p.total_s();
-    }
-    double time_of_pace(const detail::pace& p, double pace_s) const noexcept
-    {
-        return p.total_s() == duration_s ? pace_s : std::min(pace_s / p.total_s() * duration_s, duration_s);
+        return own_s == duration_s ? t_s : std::min(t_s / own_s * duration_s, duration_s);
     }
 
     /// Returns the time at which the target reaches an arc length of its path.
     double arrival_s(const detail::drawn_path& l, double s_mm) const noexcept
     {
         const double length = l.way.length_mm();
-        return l.moves ? time_of_pace(*l.moves, l.moves->arrival_s(s_mm / length))
+        return l.moves ? from_own(l.moves->arrival_s(s_mm / length), l.moves->total_s())
                        : s_mm / length * duration_s;
     }
 

@@ -79,9 +79,9 @@ std::vector<double> smooth_between(const trajectory::impl& i, const drawn_path& 
         times = i.vertices();
     if (law.moves) {
         for (const double t : law.moves->bends())
-            times.push_back(i.time_of_pace(*law.moves, t));
+            times.push_back(i.from_own(t, law.moves->total_s()));
         for (const profile_point& p : law.moves->given().intensity)
-            times.push_back(i.time_of_pace(*law.moves, law.moves->arrival_s(p.part)));
+            times.push_back(i.from_own(law.moves->arrival_s(p.part), law.moves->total_s()));
     }
     std::sort(times.begin(), times.end());
     times.front() = 0.0;
@@ -100,7 +100,7 @@ std::vector<timed_point> sample_points(const trajectory& t)
     const auto& law = std::get<timed_points>(i.law);
     std::vector<timed_point> points = *law.points;
     for (timed_point& p : points) {
-        p.t_s = i.time_of_own(law, p.t_s);
+        p.t_s = i.from_own(p.t_s, law.duration_s());
         p.intensity *= i.gain;
     }
     return points;

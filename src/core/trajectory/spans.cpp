@@ -46,15 +46,14 @@ void along_path(const trajectory::impl& motion, const drawn_path& law, const vis
     }
 }
 
-void between_points(const timed_points& law, double duration_s, double gain, const visitor& visit)
+void between_points(const trajectory::impl& motion, const timed_points& law, const visitor& visit)
 {
     const std::vector<timed_point>& p = *law.points;
-    const double own = law.duration_s();
     trajectory_span span;
     for (std::size_t i = 0; i + 1 < p.size(); ++i) {
         span.from_s = span.to_s;
-        span.to_s = own == duration_s ? p[i + 1].t_s : p[i + 1].t_s / own * duration_s;
-        span.intensity = gain * std::max(p[i].intensity, p[i + 1].intensity);
+        span.to_s = motion.from_own(p[i + 1].t_s, law.duration_s());
+        span.intensity = motion.gain * std::max(p[i].intensity, p[i + 1].intensity);
         if (!visit(span))
             return;
     }
@@ -165,12 +164,10 @@ const pace* find_smooth_law(const trajectory& t)
 /// Scales the times to the duration of this trajectory, which may differ from its pace's own.
 std::vector<progress_point> scale_times(const trajectory& t, const std::vector<progress_point>& own)
 {
-    const double duration_s = access::of(t).duration_s;
-    const double own_s = own.back().t_s;
     std::vector<progress_point> progress;
     progress.reserve(own.size());
     for (const progress_point& w : own)
-        add(progress, {own_s == duration_s ? w.t_s : w.t_s / own_s * duration_s, w.part});
+        add(progress, {access::of(t).from_own(w.t_s, own.back().t_s), w.part});
     return progress;
 }
 
@@ -190,7 +187,7 @@ void for_each_span(const trajectory& t, const visitor& visit)
     if (const auto* c = std::get_if<drawn_path>(&d.law))
         along_path(d, *c, visit);
     else
-        between_points(*std::get_if<timed_points>(&d.law), d.duration_s, d.gain, visit);
+        between_points(d, *std::get_if<timed_points>(&d.law), visit);
 }
 
 std::vector<progress_point> progress_over_time(const trajectory& t)
@@ -203,10 +200,9 @@ smooth_progress find_smooth_progress(const trajectory& t, std::span<const double
 {
     smooth_progress progress;
     if (const pace* p = find_smooth_law(t)) {
-        const double duration_s = access::of(t).duration_s;
         std::vector<double> own_s;
         for (const double when_s : find_bends(*p, at)) {
-            const double t_s = p->total_s() == duration_s ? when_s : when_s / p->total_s() * duration_s;
+            const double t_s = access::of(t).from_own(when_s, p->total_s());
             if (own_s.empty() || t_s > progress.points.back().t_s) {
                 progress.points.emplace_back();
                 own_s.emplace_back();

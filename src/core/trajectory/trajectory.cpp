@@ -14,8 +14,41 @@
 #include "core/limits.hpp"
 #include "core/path/impl.hpp"
 #include "core/path/outline.hpp"
+#include "core/profile.hpp"
 #include "core/refused.hpp"
 #include "core/trajectory/impl.hpp"
+
+namespace tactor::detail {
+
+void check_duration(double duration_s)
+{
+    if (!(duration_s > 0.0 && duration_s <= longest_stroke_s))
+        throw detail::bad_field("duration_s", fmt::format("{:g} s", duration_s),
+                                fmt::format("it is more than 0 and at most {:g} s", longest_stroke_s));
+}
+
+void refuse_one_place()
+{
+    throw error(error_kind::bad_input, "path", "has no length", "{duration_s} makes it a tap")
+        .with_field("duration_s");
+}
+
+void check_intensity(std::string_view what, double intensity)
+{
+    if (!(intensity >= 0.0 && intensity <= max_intensity))
+        throw error(error_kind::bad_input, what, fmt::format("intensity {:g}", intensity),
+                    fmt::format("it is a factor from 0 to {:g}", max_intensity))
+            .with_field("intensity");
+}
+
+trajectory scaled(const trajectory& t, double factor)
+{
+    trajectory::impl made = access::of(t);
+    made.gain *= factor;
+    return access::make<trajectory>(std::make_shared<const trajectory::impl>(std::move(made)));
+}
+
+} // namespace tactor::detail
 
 namespace tactor {
 inline namespace v0 {
@@ -25,6 +58,7 @@ using detail::axis;
 using detail::check_duration;
 using detail::check_intensity;
 using detail::drawn_path;
+using detail::pace;
 using detail::timed_points;
 
 void check_point(const std::vector<timed_point>& points, std::size_t i)
@@ -86,50 +120,80 @@ private:
     double line_;
 };
 
+double sum_of_rests(const movement& m)
+{
+    double all = 0.0;
+    for (const rest& r : m.rests)
+        all += r.time_s;
+    return all;
+}
+
+/// Returns the time between the rests.
+double moving_time_s(const movement& m, double length_mm)
+{
+    const double rests = sum_of_rests(m);
+    if (!m.duration_s) {
+        const double moving =
+            m.speed_mm_s.empty() ? length_mm / default_speed_mm_s : detail::time_at_speeds_s(m, length_mm);
+        check_duration(moving + rests);
+        return moving;
+    }
+    check_duration(*m.duration_s);
+    if (!(rests < *m.duration_s))
+        throw detail::bad_field(
+            "rests",
+            fmt::format("{:g} s in all leave nothing of the {:g} s of the stroke", rests, *m.duration_s),
+            "the duration is that of all, with its pauses");
+    return *m.duration_s - rests;
+}
+
+bool is_even(const movement& m)
+{
+    return m.easing == easing_kind::linear && m.speed_mm_s.empty() && m.intensity.empty() && m.rests.empty();
+}
+
+/// Returns the outline of a path in reverse.
+detail::outline backwards(const path::impl& p)
+{
+    detail::outline o;
+    o.vertices.assign(p.vertices.rbegin(), p.vertices.rend());
+    for (auto c = p.curves.rbegin(); c != p.curves.rend(); ++c) {
+        detail::shape form = c->form;
+        if (auto* cubic = std::get_if<detail::cubic>(&form)) {
+            std::reverse(cubic->p.begin(), cubic->p.end());
+        } else {
+            auto& arc = std::get<detail::elliptic>(form);
+            arc.from += arc.sweep;
+            arc.sweep = -arc.sweep;
+        }
+        o.curves.push_back({p.vertices.size() - 2 - c->segment, form});
+    }
+    return o;
+}
+
+movement backwards(movement m)
+{
+    m.speed_mm_s = detail::from_the_end(m.speed_mm_s);
+    m.intensity = detail::from_the_end(m.intensity);
+    m.rests = detail::from_the_end(m.rests);
+    return m;
+}
+
+std::vector<timed_point> backwards(std::vector<timed_point> points)
+{
+    const double end = points.back().t_s;
+    std::reverse(points.begin(), points.end());
+    for (timed_point& p : points)
+        p.t_s = end - p.t_s;
+    return points;
+}
+
 } // namespace
-
-} // namespace v0
-} // namespace tactor
-
-namespace tactor::detail {
-
-void check_duration(double duration_s)
-{
-    if (!(duration_s > 0.0 && duration_s <= longest_stroke_s))
-        throw bad_field("duration_s", fmt::format("{:g} s", duration_s),
-                        fmt::format("it is more than 0 and at most {:g} s", longest_stroke_s));
-}
-
-void refuse_one_place()
-{
-    throw error(error_kind::bad_input, "path", "has no length", "{duration_s} makes it a tap")
-        .with_field("duration_s");
-}
-
-void check_intensity(std::string_view what, double intensity)
-{
-    if (!(intensity >= 0.0 && intensity <= max_intensity))
-        throw error(error_kind::bad_input, what, fmt::format("intensity {:g}", intensity),
-                    fmt::format("it is a factor from 0 to {:g}", max_intensity))
-            .with_field("intensity");
-}
-
-trajectory scaled(const trajectory& t, double factor)
-{
-    trajectory::impl made = access::of(t);
-    made.gain *= factor;
-    return access::make<trajectory>(std::make_shared<const trajectory::impl>(std::move(made)));
-}
-
-} // namespace tactor::detail
-
-namespace tactor {
-inline namespace v0 {
 
 trajectory::impl::bracket trajectory::impl::find(const detail::timed_points& l, double t_s) const noexcept
 {
     const std::vector<timed_point>& p = *l.points;
-    const double t = own_time(l, t_s);
+    const double t = to_own(t_s, l.duration_s());
     if (!(t > 0.0))
         return {&p.front(), &p.front(), 0.0};
     if (t >= p.back().t_s || t_s >= duration_s)
@@ -155,7 +219,7 @@ std::vector<double> trajectory::impl::meets(axis a, double line) const
     const timed_nodes nodes(*l.points, a, line);
     times = detail::line_meetings(nodes).find();
     for (double& t : times)
-        t = time_of_own(l, t);
+        t = from_own(t, l.duration_s());
     return times;
 }
 
@@ -169,7 +233,7 @@ std::vector<double> trajectory::impl::vertices() const
     }
     const auto& l = std::get<timed_points>(law);
     for (const timed_point& p : *l.points)
-        times.push_back(time_of_own(l, p.t_s));
+        times.push_back(from_own(p.t_s, l.duration_s()));
     return times;
 }
 
@@ -191,6 +255,22 @@ trajectory trajectory::along(path p, double duration_s, double intensity)
     if (rests)
         return timed({{0.0, p.at(0.0), intensity}, {duration_s, p.at(0.0), intensity}});
     return trajectory(std::make_shared<impl>(impl{drawn_path{p, intensity, {}}, duration_s, 1.0}));
+}
+
+trajectory trajectory::along(path p, const movement& m, double intensity)
+{
+    detail::check_movement(m);
+    check_intensity("stroke", intensity);
+    const bool one_place = p.length_mm() == 0.0;
+    if (one_place && (m.duration_s.value_or(0.0) == 0.0 || !m.intensity.empty() || !m.rests.empty()))
+        detail::refuse_one_place();
+    const double moving = moving_time_s(m, p.length_mm());
+    if (one_place || is_even(m))
+        return along(p, moving, intensity);
+    auto moves = std::make_shared<const pace>(m, moving);
+    const double duration = m.duration_s.value_or(moves->total_s());
+    return trajectory(
+        std::make_shared<impl>(impl{drawn_path{p, intensity, std::move(moves)}, duration, 1.0}));
 }
 
 trajectory trajectory::timed(std::vector<timed_point> points)
@@ -216,6 +296,44 @@ trajectory trajectory::with_duration(double duration_s) const
     return trajectory(std::make_shared<impl>(impl{impl_->law, duration_s, impl_->gain}));
 }
 
+trajectory trajectory::with_speed(double speed_mm_s) const
+{
+    const double length = length_mm();
+    if (!(speed_mm_s > 0.0 && std::isfinite(speed_mm_s)))
+        throw detail::bad_field("speed_mm_s", fmt::format("{:g} mm/s", speed_mm_s), "it is more than 0");
+    if (!(length > 0.0))
+        return *this;
+    const double moving = length / speed_mm_s;
+    const auto* c = std::get_if<drawn_path>(&impl_->law);
+    if (c == nullptr || !c->moves || c->moves->given().rests.empty())
+        return with_duration(moving);
+    movement m = c->moves->given();
+    const double stretched = impl_->duration_s / c->moves->total_s();
+    for (rest& r : m.rests)
+        r.time_s *= stretched;
+    check_duration(moving + sum_of_rests(m));
+    auto moves = std::make_shared<const pace>(std::move(m), moving);
+    const double duration = moves->total_s();
+    return trajectory(std::make_shared<impl>(
+        impl{drawn_path{c->way, c->intensity, std::move(moves)}, duration, impl_->gain}));
+}
+
+trajectory trajectory::reversed() const
+{
+    if (const auto* c = std::get_if<drawn_path>(&impl_->law)) {
+        drawn_path l{detail::make_path(backwards(detail::access::of(c->way)), [] { return "stroke"; }),
+                     c->intensity,
+                     {}};
+        if (c->moves)
+            l.moves = std::make_shared<const pace>(backwards(c->moves->given()), c->moves->moving_s());
+        return trajectory(std::make_shared<impl>(impl{std::move(l), impl_->duration_s, impl_->gain}));
+    }
+    const auto& l = std::get<timed_points>(impl_->law);
+    const trajectory back = timed(backwards(*l.points));
+    return trajectory(
+        std::make_shared<impl>(impl{detail::access::of(back).law, impl_->duration_s, impl_->gain}));
+}
+
 trajectory trajectory::with_intensity(double factor) const
 {
     check_intensity("stroke", factor < 0.0 ? factor : factor * greatest_intensity(*impl_));
@@ -238,7 +356,7 @@ point trajectory::position(double t_s) const noexcept
 {
     if (const auto* c = std::get_if<drawn_path>(&impl_->law)) {
         const double part =
-            c->moves ? c->moves->part(impl_->pace_time(*c->moves, t_s)) : t_s / impl_->duration_s;
+            c->moves ? c->moves->part(impl_->to_own(t_s, c->moves->total_s())) : t_s / impl_->duration_s;
         return c->way.at(part * c->way.length_mm());
     }
     const auto b = impl_->find(*std::get_if<timed_points>(&impl_->law), t_s);
@@ -249,7 +367,7 @@ double trajectory::intensity(double t_s) const noexcept
 {
     if (const auto* c = std::get_if<drawn_path>(&impl_->law))
         return impl_->gain * c->intensity *
-               (c->moves ? c->moves->intensity(impl_->pace_time(*c->moves, t_s)) : 1.0);
+               (c->moves ? c->moves->intensity(impl_->to_own(t_s, c->moves->total_s())) : 1.0);
     const auto b = impl_->find(*std::get_if<timed_points>(&impl_->law), t_s);
     return impl_->gain * (b.before->intensity + b.part * (b.after->intensity - b.before->intensity));
 }

@@ -8,7 +8,7 @@
 
 #include <fmt/format.h>
 
-#include "core/path/svg_pen.hpp"
+#include "core/path/svg_data.hpp"
 
 namespace tactor::detail {
 namespace {
