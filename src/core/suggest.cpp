@@ -141,18 +141,13 @@ std::string preset_hint(std::string_view name, const std::vector<std::string>& p
 std::string quoted(std::string_view name)
 {
     constexpr std::size_t shown = 40;
-    std::string t = "'";
-    for (const char c : name.substr(0, shown))
-        t += static_cast<unsigned char>(c) < 0x20 || c == 0x7f ? '?' : c;
-    if (name.size() > shown) {
-        // Cuts at the start of a character of several bytes.
-        while (!t.empty() && (static_cast<unsigned char>(t.back()) & 0xc0) == 0x80)
-            t.pop_back();
-        if (!t.empty() && static_cast<unsigned char>(t.back()) >= 0xc0)
-            t.pop_back();
-        t += "...";
-    }
-    return t + "'";
+    std::size_t end = std::min(name.size(), shown);
+    while (end > 0 && end < name.size() && (static_cast<unsigned char>(name[end]) & 0xc0U) == 0x80)
+        --end; // within a character of UTF-8
+    std::string t(name.substr(0, end));
+    std::replace_if(
+        t.begin(), t.end(), [](unsigned char c) { return c < 0x20 || c == 0x7f; }, '?');
+    return fmt::format("'{}{}'", t, end < name.size() ? "..." : "");
 }
 
 } // namespace tactor::detail
