@@ -136,10 +136,7 @@ std::string choices_text(const option& o)
 
 std::string range_text(const option& o)
 {
-    if (!o.range.empty())
-        return std::string(o.range);
-    return fmt::format("{}{} to {}{}{}", o.allowed.above_low ? "above " : "", plain_number(o.allowed.low),
-                       plain_number(o.allowed.high), o.unit.empty() ? "" : " ", o.unit);
+    return o.range.empty() ? range_text(o.allowed, o.unit) : std::string(o.range);
 }
 
 std::string type_text(const option& o)
@@ -165,7 +162,7 @@ value read_text(const option& o, const std::string& text)
     if (o.what != kind::number && o.what != kind::whole)
         return read_value(o, text);
     try {
-        return read_value(o, parse_number(mark(o), text, o.allowed, std::string(o.unit), range_text(o)));
+        return read_value(o, parse_number(mark(o), text, o.allowed, o.unit, range_text(o)));
     } catch (const error& e) {
         throw e.with_field(o.name);
     }

@@ -11,16 +11,17 @@
 
 #include <tactor/error.hpp>
 
+#include "core/split.hpp"
 #include "core/words.hpp"
 
 namespace tactor::options {
 namespace {
 
 // Returns one of the given unit in the option's own; 0 for another kind of unit.
-double unit_factor(std::string_view given, const std::string& unit)
+double unit_factor(std::string_view given, std::string_view unit)
 {
     struct entry {
-        const char* unit;
+        std::string_view unit;
         std::string_view given;
         double factor;
     };
@@ -45,18 +46,14 @@ double unit_factor(std::string_view given, const std::string& unit)
     return given == unit ? 1.0 : 0.0;
 }
 
-// "70ms" for seconds: the number to give instead, where it can be told; "1,5": a decimal point.
+// Returns what to write for "70ms" where seconds are meant, and for "1,5"; empty where that is not known.
 std::string without_unit(const std::string& text, double v, std::string_view rest, detail::bounds b,
-                         const std::string& unit)
+                         std::string_view unit)
 {
     if (rest.front() == ',') {
         std::string point = text;
         point[point.find(',')] = '.';
-        double w = 0.0;
-        const auto r = std::from_chars(point.data(), point.data() + point.size(), w);
-        return r.ec == std::errc() && r.ptr == point.data() + point.size()
-                   ? fmt::format("write a decimal point, as {}", point)
-                   : "";
+        return detail::number_in<double>(point) ? fmt::format("write a decimal point, as {}", point) : "";
     }
     rest.remove_prefix(std::min(rest.find_first_not_of(' '), rest.size()));
     const double meant = v * unit_factor(rest, unit);
@@ -67,16 +64,20 @@ std::string without_unit(const std::string& text, double v, std::string_view res
 
 } // namespace
 
-double parse_number(const std::string& what, const std::string& text, detail::bounds b,
-                    const std::string& unit, const std::string& range_text)
+std::string range_text(detail::bounds b, std::string_view unit)
+{
+    return fmt::format("{}{} to {}{}{}", b.above_low ? "above " : "", plain_number(b.low),
+                       plain_number(b.high), unit.empty() ? "" : " ", unit);
+}
+
+double parse_number(const std::string& what, const std::string& text, detail::bounds b, std::string_view unit,
+                    std::string range)
 {
     double v = 0.0;
     const char* end = text.data() + text.size();
     const auto r = std::from_chars(text.data(), end, v);
-    const std::string range = range_text.empty()
-                                  ? fmt::format("{} to {}{}", plain_number(b.low), plain_number(b.high),
-                                                unit.empty() ? "" : " " + unit)
-                                  : range_text;
+    if (range.empty())
+        range = range_text(b, unit);
     if (r.ec == std::errc::invalid_argument || r.ptr != end) {
         const std::string meant = r.ec == std::errc() ? without_unit(text, v, {r.ptr, end}, b, unit) : "";
         throw error(error_kind::bad_input, what, fmt::format("\"{}\" is not a number", text),
@@ -88,8 +89,7 @@ double parse_number(const std::string& what, const std::string& text, detail::bo
     return v;
 }
 
-double parse_whole(const std::string& what, const std::string& text, detail::bounds b,
-                   const std::string& unit)
+double parse_whole(const std::string& what, const std::string& text, detail::bounds b, std::string_view unit)
 {
     const double v = parse_number(what, text, b, unit);
     if (v != std::floor(v))

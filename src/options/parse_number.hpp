@@ -4,18 +4,21 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 
 #include "core/bounds.hpp"
 
 namespace tactor::options {
 
-/// A finite number within bounds. \throws error (bad_input) naming `what`, the text, the number to give where
-/// the text has a unit, and the range (`range_text`, where what is sensible is less than what is taken).
-double parse_number(const std::string& what, const std::string& text, detail::bounds b,
-                    const std::string& unit, const std::string& range_text = {});
-/// The same, and it is whole.
-double parse_whole(const std::string& what, const std::string& text, detail::bounds b,
-                   const std::string& unit);
+/// Returns the bounds in words: "0 to 10 s".
+std::string range_text(detail::bounds b, std::string_view unit);
+
+/// Returns a finite number within bounds. \throws error (bad_input) about `what`, with the text, the number
+/// to give where the text has a unit, and the range, in words of its own unless empty.
+double parse_number(const std::string& what, const std::string& text, detail::bounds b, std::string_view unit,
+                    std::string range = {});
+/// Returns a whole number within bounds. \throws error (bad_input) likewise.
+double parse_whole(const std::string& what, const std::string& text, detail::bounds b, std::string_view unit);
 
 /// Returns "did you mean -12? " for a number that is out of bounds without its minus sign, else nothing.
 std::string sign_hint(detail::bounds b, double v);

@@ -3,12 +3,10 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <cstdint>
 #include <limits>
 #include <string_view>
-#include <system_error>
 #include <variant>
 
 #include <fmt/format.h>
@@ -17,6 +15,7 @@
 
 #include "core/bounds.hpp"
 #include "core/prefix_bits.hpp"
+#include "core/split.hpp"
 #include "core/suggest.hpp"
 #include "core/words.hpp"
 #include "options/option.hpp"
@@ -67,9 +66,7 @@ bool is_host(std::string_view text)
 
 bool is_port(std::string_view text)
 {
-    std::uint16_t port = 0;
-    const auto r = std::from_chars(text.data(), text.data() + text.size(), port);
-    return r.ec == std::errc() && r.ptr == text.data() + text.size();
+    return detail::number_in<std::uint16_t>(text).has_value();
 }
 
 // Returns whether it is [HOST:]PORT. Whether this machine has such a host shows when it listens there.

@@ -25,11 +25,6 @@ void forget(wishes& w, const option& o)
         w.usual_speed_mm_s.reset();
 }
 
-const option* find_rival(const option& o)
-{
-    return o.rival.empty() ? nullptr : find(o.rival);
-}
-
 // The alternatives that can be given at this place.
 std::string needed(const wishes& w, const option& o)
 {
@@ -71,7 +66,7 @@ bool is_said(const wishes& w, std::string_view name)
 // Returns true where the place has the option, and the user gave neither it nor its rival.
 bool takes_default(const wishes& w, const option& o)
 {
-    const option* rival = find_rival(o);
+    const option* rival = find(o.rival);
     return (o.where & w.place) != 0 && !w.given[index(o)] && (rival == nullptr || !w.given[index(*rival)]);
 }
 
@@ -86,7 +81,7 @@ error at_place(const source_place& at, const option& o, const error& e)
 
 void give(wishes& w, const option& o, const value& v)
 {
-    if (const option* rival = find_rival(o)) {
+    if (const option* rival = find(o.rival)) {
         if (w.given[index(*rival)])
             throw refusal(o, fmt::format("there is also {}", mark(*rival)), "give one of them");
         forget(w, *rival);
@@ -101,7 +96,7 @@ std::vector<said_default> read_defaults(const setup& says)
     std::vector<said_default> all;
     for (const written_value& d : says.defaults) {
         const option& o = find_default(d);
-        refuse_both(says, d, find_rival(o));
+        refuse_both(says, d, find(o.rival));
         const auto* text = std::get_if<std::string>(&d.said);
         try {
             // A value in quotes is taken as typed: "0.07" is 0.07.
@@ -122,7 +117,7 @@ void apply_defaults(wishes& w, const setup& says)
         const option& o = *d.row;
         if (!takes_default(w, o))
             continue;
-        if (const option* rival = find_rival(o))
+        if (const option* rival = find(o.rival))
             forget(w, *rival);
         try {
             o.to.set(w, d.said);
