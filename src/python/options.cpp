@@ -23,11 +23,6 @@ using namespace py::literals;
 
 constexpr std::uint64_t of_python = options::in_plan | options::in_score | options::in_compare;
 
-[[noreturn]] void refuse(std::string_view name, const std::string& why, const std::string& hint = {})
-{
-    throw error(error_kind::bad_input, name, why, hint).with_field(name);
-}
-
 std::string shown(py::handle v)
 {
     try {
@@ -46,7 +41,7 @@ bool is_plain(py::handle v)
 double number(const option& o, py::handle v)
 {
     if (!is_plain(v))
-        refuse(o.name, fmt::format("{} is not a number", shown(v)), range_text(o));
+        throw refusal(o, fmt::format("{} is not a number", shown(v)), range_text(o));
     double d = PyFloat_AsDouble(v.ptr());
     bool is_one = !py::isinstance<py::bool_>(v);
     if (PyErr_Occurred() != nullptr) {
@@ -55,11 +50,11 @@ double number(const option& o, py::handle v)
         d = HUGE_VAL;
     }
     if (!is_one)
-        refuse(o.name, fmt::format("{} is not a number", shown(v)), range_text(o));
+        throw refusal(o, fmt::format("{} is not a number", shown(v)), range_text(o));
     const bool is_rounded = PyLong_Check(v.ptr()) && !py::float_(d).equal(v);
     if (is_rounded || !o.allowed.holds(d))
-        refuse(o.name, fmt::format("{} is out of range", shown(v)),
-               options::sign_hint(o.allowed, d) + range_text(o));
+        throw refusal(o, fmt::format("{} is out of range", shown(v)),
+                      options::sign_hint(o.allowed, d) + range_text(o));
     return d;
 }
 
@@ -69,7 +64,7 @@ bool truth(const option& o, py::handle v)
     const bool is_one = py::isinstance<py::bool_>(v) || py::hasattr(v, "dtype");
     if (!is_one || t < 0) {
         PyErr_Clear();
-        refuse(o.name, fmt::format("{} is neither True nor False", shown(v)));
+        throw refusal(o, fmt::format("{} is neither True nor False", shown(v)), "");
     }
     return t != 0;
 }
@@ -77,13 +72,13 @@ bool truth(const option& o, py::handle v)
 std::string text(const option& o, py::handle v)
 {
     if (!py::isinstance<py::str>(v))
-        refuse(o.name,
-               o.choices == nullptr ? fmt::format("{} is no text", shown(v))
-                                    : fmt::format("{} is not known", shown(v)),
-               o.choices == nullptr ? "" : fmt::format("one of {}", choices_text(o)));
+        throw refusal(o,
+                      o.choices == nullptr ? fmt::format("{} is no text", shown(v))
+                                           : fmt::format("{} is not known", shown(v)),
+                      o.choices == nullptr ? "" : fmt::format("one of {}", choices_text(o)));
     auto said = v.cast<std::string>();
     if (said.find('\0') != std::string::npos)
-        refuse(o.name, fmt::format("{} has a zero byte in it", shown(v)));
+        throw refusal(o, fmt::format("{} has a zero byte in it", shown(v)), "");
     return said;
 }
 
@@ -113,7 +108,7 @@ void refuse_rivals(const py::dict& given)
     };
     for (const option& o : options::all())
         if (!o.rival.empty() && o.name < o.rival && says(o.name) && says(o.rival))
-            refuse(o.name, fmt::format("there is also {}", o.rival), "give one of them");
+            throw refusal(o, fmt::format("there is also {{{}}}", o.rival), "give one of them");
 }
 
 /// A phantom model that is a Python object: name, and weights(x_mm, y_mm, intensity).
