@@ -303,18 +303,6 @@ TEST_CASE("the interval of a share is that of Clopper and Pearson")
     CHECK(binomial_interval(10, 10).second == 1.0);
 }
 
-TEST_CASE("the quick test gives the t and p of the full one")
-{
-    const std::vector<double> v{62.5, 70.0, 41.0, 88.5, 50.0};
-    const t_test quick = quick_test_mean(v, 50.0);
-    const t_test whole = test_mean(v, 50.0);
-    CHECK(quick.t == whole.t);
-    CHECK(quick.p == whole.p);
-    CHECK(quick.se == whole.se);
-    CHECK(quick.df == whole.df);
-    CHECK_FALSE(quick.d_ci.has_value());
-}
-
 TEST_CASE("where both methods are equal, one study in twenty is significant")
 {
     const rig r("tactile-brush", std::string(choose) + rate);
