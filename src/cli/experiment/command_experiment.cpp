@@ -233,14 +233,6 @@ int check_noise(const study::prepared_experiment& p, const experiment_options& o
     return signal != 0 ? session::interrupt::status(signal) : 0;
 }
 
-std::size_t describe_trials(const study::prepared_experiment& p)
-{
-    std::size_t n = 0;
-    for (const study::run_sequence& s : p.runs)
-        n += s.trials.size();
-    return n;
-}
-
 int hold_session(const study::prepared_experiment& p, const experiment_options& o, const settings& s)
 {
     const study::sound_servers between = o.simulate ? study::sound_servers{} : check_real_session(p, o, s);
@@ -248,24 +240,24 @@ int hold_session(const study::prepared_experiment& p, const experiment_options& 
     study::study_folder folder(o.folder, p.definition, o.simulate.has_value());
     for (const std::string& w : folder.warnings())
         say(stderr, "tactor: warning: {}: {}\n", o.folder, w);
-    study::session_store store(folder, p.participant, study::describe_session(p, o.simulate, o.masker),
-                               o.resume);
-    const std::string who =
-        fmt::format("sub-{}{}", p.participant, o.simulate ? ": SIMULATED, nobody was asked" : "");
-    std::vector<const study::run_definition*> runs;
+    study::runs_in_order runs;
     for (const study::run_sequence& r : p.runs)
         runs.push_back(&p.definition.runs[r.run]);
-    store.check_tables(runs);
+    study::session_store store(folder, p.participant, std::move(runs),
+                               study::describe_session(p, o.simulate, o.masker), o.resume);
+    const std::string who =
+        fmt::format("sub-{}{}", p.participant, o.simulate ? ": SIMULATED, nobody was asked" : "");
+    store.check_tables();
     if (store.resumed() && study::finished(p, store)) {
-        store.refuse_cut_lines(runs);
+        store.refuse_cut_lines();
         for (const std::filesystem::path& lost : store.missing(p.stimuli.all()))
             say(stderr, "tactor: warning: {}: it is missing (put it back from a copy)\n", lost.string());
         say(stdout, "{}: the session is finished\n", who);
         return status_ok;
     }
-    store.try_to_write(p.definition.runs);
+    store.try_to_write();
     if (store.resumed())
-        for (const std::string& what : store.mend(runs))
+        for (const std::string& what : store.mend())
             say(stderr, "tactor: warning: {}\n", what);
     study::stage::left why{0};
     if (o.simulate) {
@@ -282,8 +274,11 @@ int hold_session(const study::prepared_experiment& p, const experiment_options& 
                 o.folder);
         return session::interrupt::status(why.signal);
     }
-    say(stdout, "{}: {} in {}, in {}\n", who, counted(describe_trials(p), "trial"),
-        counted(p.runs.size(), "run"), o.folder);
+    std::size_t trials = 0;
+    for (const study::run_sequence& r : p.runs)
+        trials += r.trials.size();
+    say(stdout, "{}: {} in {}, in {}\n", who, counted(trials, "trial"), counted(p.runs.size(), "run"),
+        o.folder);
     return status_ok;
 }
 

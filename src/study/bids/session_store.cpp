@@ -57,20 +57,38 @@ std::string new_table(const named_cells& cells)
     return text_table("", header_line(cells)).with_line(cells);
 }
 
+std::pair<std::uintmax_t, fs::file_time_type> find_state(const fs::path& file)
+{
+    std::error_code ignored;
+    return {fs::file_size(file, ignored), fs::last_write_time(file, ignored)};
+}
+
+// Appends a line to a table and returns its header. A table that cannot be read any more takes an answer
+// nevertheless: in the order of a new table.
+std::optional<std::string> append_to_read(const fs::path& file, const named_cells& cells)
+{
+    std::string text = new_table(cells);
+    text.erase(0, text.find('\n'));
+    std::optional<std::string> header;
+    try {
+        const text_table t(file, last_line::may_be_cut);
+        text = t.missing_end() + t.line(cells);
+        header = t.header();
+    } catch (const error&) { // the text is in the order of a new table
+    }
+    append_text(file, text);
+    return header;
+}
+
 } // namespace
 
-session_store::session_store(study_folder& folder, std::string code, const ordered& facts, bool resume)
-    : folder_(folder), code_(std::move(code)), facts_(facts), source_(folder.path() / source_path(code_))
-{
-    settle(resume);
-}
-
-session_store::~session_store()
-{
-    release();
-}
-
-void session_store::settle(bool resume)
+session_store::session_store(study_folder& folder, std::string code, runs_in_order runs, const ordered& facts,
+                             bool resume)
+    : folder_(folder),
+      code_(std::move(code)),
+      runs_(std::move(runs)),
+      facts_(facts),
+      source_(folder.path() / source_path(code_))
 {
     const fs::path file = source_ / "session.json";
     const fs::path data = folder_.path() / ("sub-" + code_) / "beh";
@@ -106,12 +124,21 @@ void session_store::settle(bool resume)
     resumed_ = true;
 }
 
-void session_store::try_to_write(const std::vector<run_definition>& runs) const
+session_store::~session_store()
 {
-    folder_.try_to_write(code_);
-    for (const run_definition& r : runs)
-        study::try_to_write(table(r));
-    study::try_to_write(source_ / "session.json");
+    release();
+}
+
+void session_store::try_to_write() const
+{
+    std::vector<fs::path> files = missing({});
+    for (const fs::path& list : {folder_.path() / "participants.tsv", folder_.scans(code_)})
+        files.push_back(list);
+    for (const run_definition* r : runs_)
+        files.push_back(table(*r));
+    files.push_back(source_ / "session.json");
+    for (const fs::path& file : files)
+        study::try_to_write(file);
 }
 
 void session_store::begin(const std::vector<const stimulus*>& stimuli)
@@ -177,71 +204,40 @@ void session_store::append(const run_definition& r, const trial_row& row, const 
 {
     const fs::path file = table(r);
     keeping([&] {
-        if (there(file)) {
-            append_line(file, make_cells(row));
-            return;
+        if (!there(file)) {
+            make_folder(file.parent_path().parent_path());
+            make_folder(file.parent_path());
+            folder_.add_participant(code_);
+            folder_.add_scan(code_, scan_name(r), acq_time);
         }
-        make_folder(file.parent_path().parent_path());
-        make_folder(file.parent_path());
-        folder_.add_participant(code_);
-        folder_.add_scan(code_, scan_name(r), acq_time);
-        begin_table(file, make_cells(row));
+        write_line(file, make_cells(row));
     });
 }
 
 void session_store::append_practice(const run_definition& r, const trial_row& row)
 {
-    const fs::path practice = source_ / "practice.tsv";
     named_cells cells = make_cells(row);
     cells.insert(cells.begin(), {"run", r.outline.name});
-    keeping([&] {
-        if (there(practice))
-            append_line(practice, cells);
-        else
-            begin_table(practice, cells);
-    });
+    keeping([&] { write_line(source_ / "practice.tsv", cells); });
 }
 
-void session_store::begin_table(const fs::path& table, const named_cells& cells)
+// Appends a line, or makes the table with it. Reads the table only the first time, and after somebody else
+// has changed it.
+void session_store::write_line(const fs::path& file, const named_cells& cells)
 {
-    write_whole(table, new_table(cells));
-    remember(table, header_line(cells));
-}
-
-// Reads the table only the first time, and after somebody else has changed it. A table that cannot be read
-// any more takes an answer nevertheless: in the order of a new table.
-void session_store::append_line(const fs::path& table, const named_cells& cells)
-{
-    std::error_code ignored;
-    const auto known = known_.find(table);
-    if (known != known_.end() && fs::file_size(table, ignored) == known->second.bytes &&
-        fs::last_write_time(table, ignored) == known->second.changed) {
-        append_text(table, known->second.header.line(cells));
-        known->second.bytes = fs::file_size(table, ignored);
-        known->second.changed = fs::last_write_time(table, ignored);
-        return;
-    }
-    std::string text;
+    const auto known = known_.find(file);
     std::optional<std::string> header;
-    try {
-        const text_table t(table, last_line::may_be_cut);
-        text = t.missing_end() + t.line(cells);
-        header = t.header();
-    } catch (const error&) {
-        text = new_table(cells);
-        text.erase(0, text.find('\n'));
+    if (!there(file)) {
+        write_whole(file, new_table(cells));
+        header = header_line(cells);
+    } else if (known != known_.end() && known->second.left == find_state(file)) {
+        append_text(file, known->second.header.line(cells));
+        known->second.left = find_state(file);
+    } else {
+        header = append_to_read(file, cells);
     }
-    append_text(table, text);
     if (header)
-        remember(table, *header);
-}
-
-void session_store::remember(const fs::path& table, std::string header)
-{
-    std::error_code ignored;
-    known_.insert_or_assign(table,
-                            known_table{text_table(table, std::move(header)), fs::file_size(table, ignored),
-                                        fs::last_write_time(table, ignored)});
+        known_.insert_or_assign(file, known_table{text_table(file, *std::move(header)), find_state(file)});
 }
 
 void session_store::make_last_void(const run_definition& r)
@@ -290,13 +286,11 @@ void session_store::keeping(const std::function<void()>& write)
     }
 }
 
-namespace fs = std::filesystem;
-
-void session_store::check_tables(const std::vector<const run_definition*>& runs) const
+void session_store::check_tables() const
 {
     folder_.check_lists(code_);
     const run_definition* lost = nullptr;
-    for (const run_definition* r : runs) {
+    for (const run_definition* r : runs_) {
         check_description(folder_.path() / description_path(r->outline), r->outline);
         if (!there(table(*r)))
             lost = lost == nullptr ? r : lost;
@@ -309,15 +303,15 @@ void session_store::check_tables(const std::vector<const run_definition*>& runs)
     }
 }
 
-void session_store::refuse_cut_lines(const std::vector<const run_definition*>& runs) const
+void session_store::refuse_cut_lines() const
 {
-    for (const run_definition* r : runs)
+    for (const run_definition* r : runs_)
         if (there(table(*r)))
             if (const text_table t = read_trials(table(*r)); t.cut_at())
                 t.refuse_cut("complete it, or delete it: the session is finished");
 }
 
-std::vector<std::string> session_store::mend(const std::vector<const run_definition*>& runs)
+std::vector<std::string> session_store::mend()
 {
     std::vector<std::string> done;
     const auto cut = [&](const fs::path& file) {
@@ -331,7 +325,7 @@ std::vector<std::string> session_store::mend(const std::vector<const run_definit
     const bool lost_scans = !there(folder_.scans(code_));
     bool added = false;
     bool entered = false;
-    for (const run_definition* r : runs) {
+    for (const run_definition* r : runs_) {
         if (!there(table(*r)))
             continue;
         if (cut(table(*r)))

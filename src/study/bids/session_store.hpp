@@ -10,6 +10,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <nlohmann/json.hpp>
@@ -22,35 +23,39 @@
 
 namespace tactor::study {
 
+/// A session's runs in its order; the definition must live as long.
+using runs_in_order = std::vector<const run_definition*>;
+
 class session_store {
 public:
-    /// Settles a new session, or with `resume` one that is there. `facts` go into session.json; those of a
+    /// Prepares a new session, or with `resume` one that is there. `facts` go into session.json; those of a
     /// session that is there must be the same, except the ones that `may_differ` lists.
     /// \throws error: bad_input if there is a session of this participant (and not `resume`), or it began
     ///         with other facts; runtime for what the system refuses.
-    session_store(study_folder& folder, std::string code, const nlohmann::ordered_json& facts, bool resume);
+    session_store(study_folder& folder, std::string code, runs_in_order runs,
+                  const nlohmann::ordered_json& facts, bool resume);
     ~session_store();
     session_store(const session_store&) = delete;
     session_store& operator=(const session_store&) = delete;
 
     /// Makes sure, before anybody answers, that there will be a place for each answer: tries each name that
     /// the session will write. \throws as study::try_to_write().
-    void try_to_write(const std::vector<run_definition>& runs) const;
+    void try_to_write() const;
 
     /// Writes session.json and the files of the study unless they are there, and each plan under its hash.
     void begin(const std::vector<const stimulus*>& stimuli);
 
     /// Lists the files that a session which has ended should have and lacks, except its tables.
     std::vector<std::filesystem::path> missing(const std::vector<const stimulus*>& stimuli) const;
-    /// Reads the tables of these runs, in their order, as the analysis does. \throws error (bad_input) with
-    /// file and line, and if a run has no table and a later one has.
-    void check_tables(const std::vector<const run_definition*>& runs) const;
+    /// Reads the tables as the analysis does. \throws error (bad_input) with file and line, and if a run has
+    /// no table and a later one has.
+    void check_tables() const;
     /// Refuses tables whose last line is cut off. \throws error (bad_input).
-    void refuse_cut_lines(const std::vector<const run_definition*>& runs) const;
+    void refuse_cut_lines() const;
     /// Cuts off what a crash left of a last line and keeps it beside the table; adds participant and runs to
     /// their lists if they are missing there. Returns a sentence for each thing it did. Call it after
     /// check_tables(). \throws error (runtime).
-    std::vector<std::string> mend(const std::vector<const run_definition*>& runs);
+    std::vector<std::string> mend();
 
     /// Returns true if this session goes on with one that was begun.
     bool resumed() const noexcept { return resumed_; }
@@ -79,24 +84,21 @@ public:
 private:
     std::filesystem::path table(const run_definition& r) const;
     std::string scan_name(const run_definition& r) const;
-    void settle(bool resume);
     void reserve();
     void release() noexcept;
     void keeping(const std::function<void()>& write);
-    void append_line(const std::filesystem::path& table, const named_cells& cells);
-    void begin_table(const std::filesystem::path& table, const named_cells& cells);
-    void remember(const std::filesystem::path& table, std::string header);
+    void write_line(const std::filesystem::path& file, const named_cells& cells);
 
-    /// A table as this process left it: the next line needs its header alone, unless it has another size or
-    /// time by then, because somebody else changed it.
+    /// A table as this process left it, with its size and time: the next line needs its header alone, unless
+    /// somebody else has changed it.
     struct known_table {
         text_table header;
-        std::uintmax_t bytes;
-        std::filesystem::file_time_type changed;
+        std::pair<std::uintmax_t, std::filesystem::file_time_type> left;
     };
 
     study_folder& folder_;
     std::string code_;
+    runs_in_order runs_;
     nlohmann::ordered_json facts_;
     std::filesystem::path source_; ///< sourcedata/sub-CODE
     bool resumed_ = false;

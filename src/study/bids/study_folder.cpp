@@ -172,15 +172,6 @@ void study_folder::refuse_others(const experiment_definition& d, bool simulated)
                     "simulated and real sessions need a folder each");
 }
 
-void study_folder::try_to_write(const std::string& code) const
-{
-    for (const run_definition& r : definition_.runs)
-        if (const fs::path file = description(r); !there(file))
-            study::try_to_write(file);
-    study::try_to_write(folder_ / "participants.tsv");
-    study::try_to_write(scans(code));
-}
-
 std::string study_folder::alike(const std::string& code) const
 {
     const std::string own = "sub-" + code;

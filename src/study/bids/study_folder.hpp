@@ -38,10 +38,6 @@ public:
     std::filesystem::path description(const run_definition& r) const;
     std::filesystem::path scans(const std::string& code) const;
 
-    /// Tries to write the descriptions of the study and the lists that name a participant. \throws as
-    /// study::try_to_write().
-    void try_to_write(const std::string& code) const;
-
     /// Writes the descriptions that are not there yet: dataset_description.json, README, participants.json,
     /// one of each run's tables. Call it after session.json is written. \throws error (runtime).
     void describe() const;
