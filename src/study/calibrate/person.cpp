@@ -173,44 +173,37 @@ calibration_answer person::choose(const calibration_trial& t)
     }
 }
 
-// Returns true if the keys end this series.
-bool person::change_level(const std::string& keys, const calibration_trial& t, double& level_dbfs,
-                          std::optional<calibration_answer>& out) const
-{
-    for (const char k : keys) {
-        const double by = k == '+' ? 2.0 : k == '-' ? -2.0 : k == '>' ? 0.5 : k == '<' ? -0.5 : 0.0;
-        level_dbfs = std::clamp(level_dbfs + by, floor_dbfs, t.ceiling_dbfs);
-        if (k == 'a')
-            out = {.set_dbfs = level_dbfs};
-        else if (k == 'n')
-            out.emplace();
-        if (out)
-            return true;
-    }
-    return false;
-}
-
 calibration_answer person::adjust(const calibration_trial& t)
 {
     const std::int64_t began_ns = rt::monotonic_ns();
     double level = t.level_dbfs;
     std::optional<calibration_answer> out;
     std::optional<std::uint64_t> onset;
+    const auto press = [&](char k) {
+        const double by = k == '+' ? 2.0 : k == '-' ? -2.0 : k == '>' ? 0.5 : k == '<' ? -0.5 : 0.0;
+        level = std::clamp(level + by, floor_dbfs, t.ceiling_dbfs);
+        if (k == 'a')
+            out = {.set_dbfs = level};
+        else if (k == 'n')
+            out.emplace();
+    };
+    const auto take = [&] {
+        while (!out) {
+            const auto k = keys_.poll();
+            if (!k)
+                return;
+            for (std::size_t i = 0; i < k->text.size() && !out; ++i)
+                press(k->text[i]);
+            if (!k->text.empty() && !out)
+                on_page(adjust_screen(words_)); // each change is an answer
+        }
+    };
     keys_.drop_keys();
     session::show(fmt::format("series {}: + - > < a n\n", t.number));
     const noise_around noise(stage_);
     on_page(adjust_screen(words_));
     while (!out) {
         const score s = trial_score(t.tactor, level, 0.0, settings_.interval_s + interval_gap_s);
-        const auto take = [&] {
-            while (!out) {
-                const auto k = keys_.poll();
-                if (!k || change_level(k->text, t, level, out))
-                    return;
-                if (!k->text.empty())
-                    on_page(adjust_screen(words_)); // each change is an answer
-            }
-        };
         const given_stimulus p = play(t, s, [&](double) { take(); });
         onset = onset ? onset : p.first_frame;
         take();

@@ -46,8 +46,6 @@ private:
     given_stimulus play(const calibration_trial& t, const score& s, const std::function<void(double)>& watch);
     /// Lets time pass until the limits allow the trial to drive its tactor. \throws stage::left.
     void make_room(const score& s);
-    bool change_level(const std::string& keys, const calibration_trial& t, double& level_dbfs,
-                      std::optional<calibration_answer>& out) const;
     void begin();
     void on_page(page_screen s);
 
