@@ -44,15 +44,11 @@ double mean_distance(const std::vector<point>& a, const std::vector<point>& b)
     return sum / static_cast<double>(a.size());
 }
 
-// A participant's trials of a run: as planned, and as the analysis has them, before the answers.
-struct prepared_run {
+// A participant's trials of a run: as planned, and as the analysis has them.
+struct person_run {
+    std::string code;
     std::vector<planned_trial> planned = {};
     std::vector<trial> trials = {};
-};
-
-struct prepared_person {
-    std::string code;
-    std::vector<prepared_run> runs = {}; ///< by place in the definition
 };
 
 std::size_t place_in(const std::vector<std::size_t>& places, std::size_t of)
@@ -60,40 +56,31 @@ std::size_t place_in(const std::vector<std::size_t>& places, std::size_t of)
     return static_cast<std::size_t>(std::find(places.begin(), places.end(), of) - places.begin());
 }
 
-prepared_run prepare_run(const experiment_definition& d, std::size_t run, const std::string& code,
-                         std::uint64_t seed)
+// Prepares a run for n participants, without their answers.
+std::vector<person_run> prepare_people(const experiment_definition& d, std::size_t run, std::size_t n,
+                                       const std::optional<std::uint64_t>& seed)
 {
     const run_definition& r = d.runs[run];
-    prepared_run p;
-    p.planned = make_run(d, run, code, seed).trials;
-    for (const planned_trial& t : p.planned) {
-        trial one;
-        one.place = static_cast<unsigned>(p.trials.size() + 1);
-        one.motion = place_in(r.motions, t.motion);
-        one.method_1 = place_in(r.methods, t.method_1);
-        if (t.method_2)
-            one.method_2 = place_in(r.methods, *t.method_2);
-        p.trials.push_back(one);
-    }
-    return p;
-}
-
-std::vector<prepared_person> prepare_people(const experiment_definition& d, std::size_t n,
-                                            const std::optional<std::uint64_t>& asked)
-{
-    std::vector<prepared_person> all;
+    std::vector<person_run> all;
     for (std::size_t i = 1; i <= n; ++i) {
-        prepared_person p{fmt::format("{:02}", i), {}};
-        const std::uint64_t seed = asked.value_or(d.seed.value_or(default_seed(p.code)));
-        for (std::size_t run = 0; run < d.runs.size(); ++run)
-            p.runs.push_back(prepare_run(d, run, p.code, seed));
+        person_run p{fmt::format("{:02}", i)};
+        p.planned = make_run(d, run, p.code, seed.value_or(d.seed.value_or(default_seed(p.code)))).trials;
+        for (const planned_trial& t : p.planned) {
+            trial one;
+            one.place = static_cast<unsigned>(p.trials.size() + 1);
+            one.motion = place_in(r.motions, t.motion);
+            one.method_1 = place_in(r.methods, t.method_1);
+            if (t.method_2)
+                one.method_2 = place_in(r.methods, *t.method_2);
+            p.trials.push_back(one);
+        }
         all.push_back(std::move(p));
     }
     return all;
 }
 
 // Fills the answers in; a trial that is void comes again until it is not.
-void answer_all(prepared_run& p, const simulated_observer& who, const run_definition& r)
+void answer_all(person_run& p, const simulated_observer& who, const run_definition& r)
 {
     for (std::size_t i = 0; i < p.trials.size(); ++i) {
         simulated_answer a;
@@ -241,10 +228,11 @@ std::optional<std::vector<run_power>> simulate_power(const experiment_definition
                                                      const stimulus_set& stimuli, const power_request& r,
                                                      const std::function<bool()>& go_on)
 {
-    std::vector<prepared_person> people =
-        prepare_people(d, *std::max_element(r.participants.begin(), r.participants.end()), r.seed);
+    const std::size_t most = *std::max_element(r.participants.begin(), r.participants.end());
     std::vector<run_power> all;
+    std::vector<std::vector<person_run>> people; // by run
     for (std::size_t run = 0; run < d.runs.size(); ++run) {
+        people.push_back(prepare_people(d, run, most, r.seed));
         all.push_back({run, {}});
         if (d.runs[run].outline.task != task_kind::rate || d.runs[run].methods.size() > 1)
             for (const std::size_t n : r.participants)
@@ -260,9 +248,9 @@ std::optional<std::vector<run_power>> simulate_power(const experiment_definition
                 continue;
             const run_definition& run = d.runs[p.run];
             std::vector<std::optional<double>> values;
-            for (prepared_person& who : people) {
-                answer_all(who.runs[p.run], {s, d, run, stimuli, who.code}, run);
-                const auto cells = compute_cells(run.outline, who.runs[p.run].trials);
+            for (person_run& who : people[p.run]) {
+                answer_all(who, {s, d, run, stimuli, who.code}, run);
+                const auto cells = compute_cells(run.outline, who.trials);
                 values.push_back(cells ? compared_value(run.outline, *cells) : std::nullopt);
             }
             for (power_at& at : p.at)
