@@ -14,13 +14,55 @@
 namespace tactor::cli {
 namespace {
 
-using study::effect_text;
-using study::interval_text;
-using study::p_clause;
-using study::p_text;
-using study::t_text;
 using study::task_kind;
-using study::value_text;
+
+std::string value_text(std::optional<double> v)
+{
+    return v ? fmt::format("{:.2f}", *v) : "-";
+}
+
+std::string p_text(std::optional<double> p)
+{
+    return !p ? "-" : *p < 0.001 ? "<.001" : fmt::format("{:.3f}", *p);
+}
+
+std::string p_clause(std::optional<double> p)
+{
+    return !p ? "p -" : *p < 0.001 ? "p < 0.001" : fmt::format("p = {:.3f}", *p);
+}
+
+std::string interval_text(const std::optional<study::interval>& i)
+{
+    return i ? fmt::format("{:.2f} ... {:.2f}", i->first, i->second) : "-";
+}
+
+// An interval from t knows no bounds of the values.
+std::string interval_text(const std::optional<study::interval>& i, const study::interval& possible)
+{
+    if (!i)
+        return "-";
+    return interval_text(
+        study::interval{std::max(i->first, possible.first), std::min(i->second, possible.second)});
+}
+
+// Needs a test that has a t.
+std::string t_text(const study::t_test& t)
+{
+    return fmt::format("t({:.0f}) = {:.2f}, {}", *t.df, *t.t, p_clause(t.p));
+}
+
+// Needs an effect that has an F.
+std::string effect_text(const study::effect& e)
+{
+    std::string text =
+        fmt::format("F({:.0f}, {:.0f}) = {:.2f}, {}; eta squared partial {:.3f}, generalised {:.3f}", e.df1,
+                    e.df2, *e.f, p_clause(e.p), *e.eta2_partial, *e.eta2_generalised);
+    if (e.epsilon_gg)
+        text += fmt::format("; Greenhouse-Geisser {:.3f}, {}", *e.epsilon_gg, p_clause(e.p_gg));
+    if (e.mauchly_w)
+        text += fmt::format("; Mauchly W = {:.3f}, {}", *e.mauchly_w, p_clause(e.mauchly_p));
+    return text;
+}
 
 std::size_t widest(const std::vector<std::string>& names)
 {
@@ -36,10 +78,9 @@ void print_tests(std::FILE* out, const study::by_motion& b, const std::vector<st
     fmt::print(out, "  {:<{}} {:>6} {:>5} {:>16} {:>6} {:>5} {:>5} {:>5}  {}\n", "", w, "mean", "se", "95 %",
                "t", "p", "Holm", "signs", "d");
     const auto row = [&](const std::string& name, const study::t_test& t, std::optional<double> holm) {
-        const std::string d = t.d ? fmt::format("{:.2f}", *t.d) : "-";
         say(out, "  {:<{}} {:>6} {:>5} {:>16} {:>6} {:>5} {:>5} {:>5}  {}\n", name, w, value_text(t.mean),
             value_text(t.se), interval_text(t.ci, study::per_cents), value_text(t.t), p_text(t.p),
-            p_text(holm), p_text(t.p_signflip), d);
+            p_text(holm), p_text(t.p_signflip), value_text(t.d));
     };
     row("all", b.all, {});
     for (std::size_t m = 0; m < motions.size(); ++m)

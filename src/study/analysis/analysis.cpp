@@ -90,6 +90,20 @@ void count_answers(run_analysis& r, const std::vector<const run_data*>& data)
             ++r.confusion[t.method_1][t.motion][t.response];
 }
 
+// Returns the per cent of trials, one or more, in which the first interval was chosen.
+double first_chosen(const std::vector<trial>& trials)
+{
+    const auto first =
+        std::count_if(trials.begin(), trials.end(), [](const trial& t) { return t.response == 1; });
+    return 100.0 * static_cast<double>(first) / static_cast<double>(trials.size());
+}
+
+std::size_t count_early(const run_data& d)
+{
+    return static_cast<std::size_t>(std::count_if(d.trials.begin(), d.trials.end(),
+                                                  [](const trial& t) { return t.early.value_or(false); }));
+}
+
 run_analysis analyse_run(const dataset& d, std::size_t which)
 {
     run_analysis r;
@@ -254,60 +268,9 @@ std::optional<double> compared_value(const run_outline& run, const cell_values& 
     return std::abs(difference) > rounding_in(run) ? difference : 0.0;
 }
 
-double first_chosen(const std::vector<trial>& trials)
-{
-    const auto first =
-        std::count_if(trials.begin(), trials.end(), [](const trial& t) { return t.response == 1; });
-    return 100.0 * static_cast<double>(first) / static_cast<double>(trials.size());
-}
-
-std::string value_text(std::optional<double> v, int decimals)
-{
-    return v ? fmt::format("{:.{}f}", *v, decimals) : "-";
-}
-
-std::string p_text(std::optional<double> p)
-{
-    return !p ? "-" : *p < 0.001 ? "<.001" : fmt::format("{:.3f}", *p);
-}
-
-std::string p_clause(std::optional<double> p)
-{
-    return !p ? "p -" : *p < 0.001 ? "p < 0.001" : fmt::format("p = {:.3f}", *p);
-}
-
-std::string interval_text(const std::optional<interval>& i)
-{
-    return i ? fmt::format("{:.2f} ... {:.2f}", i->first, i->second) : "-";
-}
-
 interval possible_values(const run_outline& run)
 {
     return run.task == task_kind::rate ? interval{1.0, run.scale} : per_cents;
-}
-
-std::string interval_text(const std::optional<interval>& i, const interval& possible)
-{
-    if (!i)
-        return "-";
-    return interval_text(interval{std::max(i->first, possible.first), std::min(i->second, possible.second)});
-}
-
-std::string t_text(const t_test& t)
-{
-    return fmt::format("t({:.0f}) = {:.2f}, {}", *t.df, *t.t, p_clause(t.p));
-}
-
-std::string effect_text(const effect& e)
-{
-    std::string text =
-        fmt::format("F({:.0f}, {:.0f}) = {:.2f}, {}; eta squared partial {:.3f}, generalised {:.3f}", e.df1,
-                    e.df2, *e.f, p_clause(e.p), *e.eta2_partial, *e.eta2_generalised);
-    if (e.epsilon_gg)
-        text += fmt::format("; Greenhouse-Geisser {:.3f}, {}", *e.epsilon_gg, p_clause(e.p_gg));
-    if (e.mauchly_w)
-        text += fmt::format("; Mauchly W = {:.3f}, {}", *e.mauchly_w, p_clause(e.mauchly_p));
-    return text;
 }
 
 } // namespace tactor::study

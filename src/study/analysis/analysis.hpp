@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// The results of a study: means, tests and effect sizes, run by run, as values; and their texts.
+/// The results of a study: means, tests and effect sizes, run by run, as values.
 #pragma once
 
 #include <cstddef>
@@ -78,35 +78,11 @@ double rounding_in(const run_outline& run) noexcept;
 /// identify: per cent correct by the last method, against chance. Sets to 0 what rounding leaves of 0.
 std::optional<double> compared_value(const run_outline& run, const cell_values& cells);
 
-/// Returns the per cent of trials of choose, one or more, in which the first interval was chosen.
-double first_chosen(const std::vector<trial>& trials);
-
 /// Returns true if a trial of choose was answered with the last method.
 bool last_chosen(const trial& t, const run_outline& run) noexcept;
-
-std::string value_text(std::optional<double> v, int decimals = 2);
-
-/// Returns "<.001" or "0.012".
-std::string p_text(std::optional<double> p);
-
-/// Returns "p < 0.001" or "p = 0.012".
-std::string p_clause(std::optional<double> p);
-
-/// Returns "1.20 ... 3.40".
-std::string interval_text(const std::optional<interval>& i);
 
 /// Limits of a mean of per cents, and of a run's values: per cents or ratings.
 inline constexpr interval per_cents{0.0, 100.0};
 interval possible_values(const run_outline& run);
-
-/// Returns the same within the possible values: an interval from t knows no bounds.
-std::string interval_text(const std::optional<interval>& i, const interval& possible);
-
-/// Returns "t(11) = 6.84, p < 0.001" for a test that has a t.
-std::string t_text(const t_test& t);
-
-/// Returns F with its degrees of freedom, p, both eta squared and the tests of sphericity, for an effect that
-/// has an F.
-std::string effect_text(const effect& e);
 
 } // namespace tactor::study

@@ -263,12 +263,6 @@ run_data read_run(const text_table& t, const run_outline& run)
     return d;
 }
 
-std::size_t count_early(const run_data& d) noexcept
-{
-    return static_cast<std::size_t>(std::count_if(d.trials.begin(), d.trials.end(),
-                                                  [](const trial& t) { return t.early.value_or(false); }));
-}
-
 dataset read_dataset(const fs::path& folder, const selection& who)
 {
     std::error_code failed;

@@ -23,7 +23,7 @@
 
 namespace tactor::study {
 
-/// A trial that counts. Motion and methods are places in those of the run.
+/// A valid trial. `motion` and the methods are indices into the run's lists.
 struct trial {
     unsigned place = 0; ///< in the sequence, from 1
     unsigned attempt = 1;
@@ -39,9 +39,6 @@ struct run_data {
     std::vector<trial> trials = {};
     std::size_t voids = 0; ///< lines that do not count
 };
-
-/// Returns how many of the trials were answered sooner than min_response_s.
-std::size_t count_early(const run_data& d) noexcept;
 
 /// Somebody whose trials are left out, and why.
 struct left_out {
