@@ -2,7 +2,7 @@
 #include "files/input_files.hpp"
 
 #include <algorithm>
-#include <iterator>
+#include <bit>
 #include <map>
 #include <mutex>
 #include <system_error>
@@ -18,8 +18,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t least_room = 64;
-constexpr std::size_t most_inputs = 65536;
+constexpr std::size_t least_forgotten = 64;
 
 struct input {
     dev_t device = 0;
@@ -39,18 +38,6 @@ struct input {
 struct inputs {
     std::mutex guard;
     std::map<fs::path, input> all; ///< by absolute name
-    std::size_t room = least_room;
-
-    /// Forgets what is gone whenever the room is full: a process may live long.
-    void make_room()
-    {
-        if (all.size() < room)
-            return;
-        std::erase_if(all, [](const auto& e) { return !e.second.is_still(e.first); });
-        if (all.size() == most_inputs)
-            all.erase(all.begin(), std::next(all.begin(), most_inputs / 2));
-        room = std::clamp(2 * all.size(), least_room, most_inputs);
-    }
 };
 
 inputs& known()
@@ -91,8 +78,9 @@ void note_input(const fs::path& file, owner_kind owner)
     const auto old = i.all.find(whole);
     if (old != i.all.end())
         owner = std::min(owner, old->second.owner); // once the user's, always the user's
-    else
-        i.make_room();
+    // A process may live long: forgets what is gone whenever the number of files has doubled.
+    else if (i.all.size() >= least_forgotten && std::has_single_bit(i.all.size()))
+        std::erase_if(i.all, [](const auto& e) { return !e.second.is_still(e.first); });
     i.all[std::move(whole)] = {s.st_dev, s.st_ino, owner};
 }
 

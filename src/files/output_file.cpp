@@ -20,6 +20,7 @@
 
 #include "core/refused.hpp"
 #include "core/split.hpp"
+
 namespace tactor::detail {
 
 namespace fs = std::filesystem;
@@ -272,21 +273,13 @@ std::int64_t output_file::write(const void* data, std::int64_t bytes)
 
 void output_file::commit()
 {
-    const bool beside = !temporary_.empty();
-    // Else a power cut could leave an empty file under the name.
-    if (beside && good() && ::fsync(fd_.get()) != 0)
-        fail(errno);
-    publish();
-    if (beside)
-        sync_folder(parent_folder(target_));
-}
-
-void output_file::publish()
-{
     if (failure_ != 0)
         fail(failure_);
     if (given_up_)
         fail(ECANCELED);
+    // Else a power cut could leave an empty file under the name.
+    if (!temporary_.empty() && ::fsync(fd_.get()) != 0)
+        fail(errno);
     // A network file system may tell of a full disk only now.
     if (fd_.close() != 0 && errno != EINTR)
         fail(errno);
@@ -295,6 +288,7 @@ void output_file::publish()
     if (::rename(temporary_.c_str(), target_.c_str()) != 0)
         fail(errno);
     temporary_.clear();
+    sync_folder(parent_folder(target_));
 }
 
 } // namespace tactor::detail

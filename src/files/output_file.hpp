@@ -19,8 +19,8 @@ namespace tactor::detail {
 void check_replaced(const std::filesystem::path& file, bool force,
                     const std::function<bool(std::string_view begin, std::string_view end)>& is_ours);
 
-/// Brings the names in a folder (empty: this one) to the disk, so that they survive a power cut, too. Not
-/// every file system can, and none says so.
+/// Syncs the names in a folder (empty: this one), so that they survive a power cut, too. Not every file
+/// system can, and none says so.
 void sync_folder(const std::filesystem::path& folder) noexcept;
 
 /// Opens a new file beside `file`; commit() gives it that name, the destructor removes it otherwise: whoever
@@ -31,7 +31,7 @@ void sync_folder(const std::filesystem::path& folder) noexcept;
 /// members may block on the file system.
 class output_file {
 public:
-    /// Asked some 50 times a second while a pipe has no reader or is full; false gives up.
+    /// Returns false to give up. Called some 50 times a second while a pipe has no reader or is full.
     using patience = std::function<bool()>;
 
     /// Waits for a reader where `file` is a pipe without one. `writer`: who owns what is written.
@@ -43,8 +43,8 @@ public:
     output_file(const output_file&) = delete;
     output_file& operator=(const output_file&) = delete;
 
-    /// Appends all of it, or less and an error that stays: failure() or given_up() tells. Returns the bytes
-    /// written.
+    /// Appends all of it, or less where the system fails or the caller gives up; commit() says why. Returns
+    /// the bytes written.
     std::int64_t write(const void* data, std::int64_t bytes);
 
     /// Returns errno of the first write that failed, or 0.
@@ -53,16 +53,12 @@ public:
     bool given_up() const noexcept { return given_up_; }
     /// Returns true if nothing failed, and nobody gave up.
     bool good() const noexcept { return failure_ == 0 && !given_up_; }
-    /// Brings the file to the disk and gives it its name. \throws error (runtime): a write failed before,
-    /// this did, or it was given up.
+    /// Syncs the file and renames it to its final name. \throws error (runtime) if a write, the sync or the
+    /// rename failed, or the caller gave up.
     void commit();
-    /// Gives the file its name without waiting for the disk: for what is worth nothing after a restart of the
-    /// system. \throws error as commit().
-    void publish();
-    /// Refuses an errno. \throws error (runtime) with the file's name.
-    [[noreturn]] void fail(int code) const;
 
 private:
+    [[noreturn]] void fail(int code) const;
     void open_descriptor(int descriptor, owner_kind writer);
     void open_directly();
     void open_beside();

@@ -45,6 +45,22 @@ T get(std::string_view bytes, std::size_t at)
     return v;
 }
 
+/// A format chunk, checked.
+struct wav_format {
+    std::uint16_t tag = 0; ///< 1 integers, 3 floats
+    std::uint16_t channels = 0;
+    std::uint32_t rate = 0;
+    std::uint16_t bits = 0;  ///< of a sample
+    std::uint16_t bytes = 0; ///< of a sample with its padding
+};
+
+/// Format and samples of a WAV file, whatever chunks lie between and whatever sizes a recorder left open.
+struct wav_parts {
+    wav_format format;
+    std::string_view samples;    ///< within the file
+    std::uint64_t announced = 0; ///< bytes of samples by the header; as many as there are where that is open
+};
+
 [[noreturn]] void refuse_wav(const std::string& name, std::string_view why,
                              std::string_view hint = "give a WAV file of one channel")
 {
@@ -136,8 +152,7 @@ float decode_integer(std::string_view sample, std::size_t bytes)
     return static_cast<float>(std::bit_cast<std::int32_t>(upper)) * 0x1p-31F;
 }
 
-} // namespace
-
+/// Returns the first `most` samples, integers as fractions of full scale.
 std::vector<float> decode_wav(const wav_parts& parts, std::size_t most)
 {
     const wav_format& f = parts.format;
@@ -182,6 +197,25 @@ wav_parts find_wav_parts(std::string_view file, const std::string& name)
     refuse_wav(name, "there are no samples in it");
 }
 
+} // namespace
+
+recording parse_recording(std::string_view bytes, const std::string& name)
+{
+    waveform as_texture;
+    as_texture.kind = waveform_kind::recording;
+    as_texture.texture = texture_kind::time;
+    const wav_parts parts = find_wav_parts(bytes, name);
+    const auto shared = std::make_shared<recording>();
+    shared->file = name;
+    shared->rate_hz = parts.format.rate;
+    shared->samples = decode_wav(parts, most_recording_samples + 1);
+    shared->sha256 = sha256_text(bytes);
+    shared->missing = (parts.announced - parts.samples.size()) / parts.format.bytes;
+    as_texture.recorded = shared;
+    validate(as_texture);
+    return std::move(*shared);
+}
+
 } // namespace tactor::detail
 
 namespace tactor {
@@ -209,33 +243,6 @@ waveform parse_noise(std::string_view band)
 }
 
 } // namespace
-
-} // namespace v0
-} // namespace tactor
-
-namespace tactor::detail {
-
-recording parse_recording(std::string_view bytes, const std::string& name)
-{
-    waveform as_texture;
-    as_texture.kind = waveform_kind::recording;
-    as_texture.texture = texture_kind::time;
-    const wav_parts parts = find_wav_parts(bytes, name);
-    const auto shared = std::make_shared<recording>();
-    shared->file = name;
-    shared->rate_hz = parts.format.rate;
-    shared->samples = decode_wav(parts, most_recording_samples + 1);
-    shared->sha256 = sha256_text(bytes);
-    shared->missing = (parts.announced - parts.samples.size()) / parts.format.bytes;
-    as_texture.recorded = shared;
-    validate(as_texture);
-    return std::move(*shared);
-}
-
-} // namespace tactor::detail
-
-namespace tactor {
-inline namespace v0 {
 
 recording load_recording(const std::filesystem::path& file)
 {

@@ -141,7 +141,6 @@ TEST_CASE("a reader that leaves is a failure that says so")
     CHECK(f.write("x", 1) == 1);
     ::close(reader);
     CHECK(f.write("x", 1) == 0);
-    CHECK(f.failure() == EPIPE);
     CHECK_THROWS_WITH_AS(f.commit(), doctest::Contains("ended before"), error);
 }
 
