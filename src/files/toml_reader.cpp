@@ -48,54 +48,48 @@ std::size_t after_string(std::string_view t, std::size_t i)
     return t.size();
 }
 
-void refuse_deep_keys(std::string_view t, const std::string& name)
+/// A text without its strings and comments, for a look at what remains. Offsets and lines are the text's.
+struct masked_text {
+    std::string text = {};                       ///< '_' in strings, '#' in comments
+    std::optional<std::size_t> open_string = {}; ///< start of the first string without an end
+};
+
+masked_text mask_strings(std::string_view t)
 {
-    unsigned dots = 0;
-    unsigned line = 1;
-    std::size_t line_start = 0;
+    masked_text m{std::string(t)};
     for (std::size_t i = 0; i < t.size();) {
         const std::size_t from = i;
-        if (t[i] == '"' || t[i] == '\'') {
-            i = after_string(t, i);
-        } else if (t[i] == '#') {
-            while (i < t.size() && t[i] != '\n')
-                ++i;
-        } else {
-            if (t[i] == '.')
-                ++dots;
-            else if (!bare(t[i]))
-                dots = 0;
-            ++i;
-        }
-        for (std::size_t k = from; k < i && k < t.size(); ++k) {
-            if (t[k] == '\n') {
-                ++line;
-                line_start = k + 1;
-            }
-        }
-        if (dots > max_dots)
-            fail_at({name, line, static_cast<unsigned>(from - line_start + 1)}, "a key of too many parts",
-                    "no key has more than three");
-    }
-}
-
-// Returns the start of the first string without an end: on its line, or with three quotes in the text.
-std::optional<std::size_t> open_string(std::string_view t)
-{
-    for (std::size_t i = 0; i < t.size();) {
         if (t[i] == '#') {
             i = std::min(t.find('\n', i), t.size());
         } else if (t[i] == '"' || t[i] == '\'') {
-            const std::size_t from = i;
-            const std::size_t quotes = t.substr(i, 3) == std::string(3, t[i]) ? 3 : 1;
+            const std::string quotes(t.substr(i, 3) == std::string(3, t[i]) ? 3 : 1, t[i]);
             i = after_string(t, i);
-            if (i < from + 2 * quotes || t.substr(i - quotes, quotes) != std::string(quotes, t[from]))
-                return from;
+            const std::string_view whole = t.substr(from, i - from);
+            if (!m.open_string && (whole.size() < 2 * quotes.size() || !whole.ends_with(quotes)))
+                m.open_string = from;
         } else {
             ++i;
+            continue;
         }
+        for (std::size_t k = from; k < i; ++k)
+            if (t[k] != '\n')
+                m.text[k] = t[from] == '#' ? '#' : '_';
     }
-    return std::nullopt;
+    return m;
+}
+
+void refuse_deep_keys(std::string_view t, const std::string& name)
+{
+    const std::string masked = mask_strings(t).text;
+    unsigned dots = 0;
+    for (std::size_t i = 0; i < masked.size(); ++i) {
+        if (masked[i] == '.')
+            ++dots;
+        else if (!bare(masked[i]))
+            dots = 0;
+        if (dots > max_dots)
+            fail_at(find_place(t, i, name), "a key of too many parts", "no key has more than three");
+    }
 }
 
 bool in_unit(char c) noexcept
@@ -104,41 +98,31 @@ bool in_unit(char c) noexcept
            static_cast<unsigned char>(c) >= 0x80;
 }
 
-// Refuses a line with a number that has a unit or a decimal comma, as people write them.
-void refuse_foreign_number(std::string_view text, const source_place& line)
+// Refuses a line with a number that has a unit or a decimal comma, as people write them. `masked` is the text
+// without its strings.
+void refuse_foreign_number(std::string_view masked, const source_place& line)
 {
-    for (unsigned i = 1; i < line.line && !text.empty(); ++i)
-        text.remove_prefix(std::min(text.find('\n'), text.size() - 1) + 1);
-    text = text.substr(0, text.find_first_of("\n#"));
-    for (std::size_t i = 0; i < text.size();) {
-        if (text[i] == '"' || text[i] == '\'') {
-            i = after_string(text, i);
-            continue;
-        }
+    for (unsigned i = 1; i < line.line && !masked.empty(); ++i)
+        masked.remove_prefix(std::min(masked.find('\n'), masked.size() - 1) + 1);
+    const std::string_view text = masked.substr(0, masked.find_first_of("\n#"));
+    for (std::size_t i = 0; (i = text.find_first_of("=[,", i)) != std::string_view::npos;) {
         const bool value = text[i] == '=';
-        if (!value && text[i] != '[' && text[i] != ',') {
-            ++i;
-            continue;
-        }
         skip_blanks(text, ++i);
         const std::size_t begin = i;
         if (!scan_number(text, i))
             continue;
-        std::size_t end = i;
-        if (std::size_t digits = i + 1; value && text.substr(i, 1) == "," && scan_number(text, digits)) {
-            const std::string_view number = text.substr(begin, digits - begin);
-            fail_at({line.file, line.line, static_cast<unsigned>(begin + 1)},
-                    fmt::format("{} has a decimal comma", quoted(number)),
+        const source_place place{line.file, line.line, static_cast<unsigned>(begin + 1)};
+        if (std::size_t digits = i + 1; value && text.substr(i, 1) == "," && scan_number(text, digits))
+            fail_at(place, fmt::format("{} has a decimal comma", quoted(text.substr(begin, digits - begin))),
                     fmt::format("write {}.{}", text.substr(begin, i - begin),
                                 text.substr(i + 1, digits - i - 1)));
-        }
+        std::size_t end = i;
         skip_blanks(text, end);
         const std::size_t unit = end;
         while (end < text.size() && in_unit(text[end]))
             ++end;
         if (end > unit)
-            fail_at({line.file, line.line, static_cast<unsigned>(begin + 1)},
-                    fmt::format("{} is a number with a unit", quoted(text.substr(begin, end - begin))),
+            fail_at(place, fmt::format("{} is a number with a unit", quoted(text.substr(begin, end - begin))),
                     "give the number alone: its unit is in the name of the key, or in the manual");
     }
 }
@@ -171,7 +155,8 @@ toml::table parse_toml(std::string_view text, const std::string& name, const tom
     } catch (const toml::parse_error& e) {
         refuse_other_form(text, name, "toml", hints.kinds);
         const auto& at = e.source().begin;
-        if (const auto open = open_string(text)) {
+        const masked_text masked = mask_strings(text);
+        if (const auto open = masked.open_string) {
             const source_place begin = find_place(text, *open, name);
             const std::string three(3, text[*open]);
             if (begin.line <= at.line)
@@ -183,7 +168,7 @@ toml::table parse_toml(std::string_view text, const std::string& name, const tom
         if (e.description().find("utf-8") != std::string_view::npos)
             fail_at({name, at.line, at.column}, "this is not UTF-8",
                     "save it as UTF-8 in the editor, or convert it: iconv -f LATIN1 -t UTF-8 OLD > NEW");
-        refuse_foreign_number(text, {name, at.line, 0});
+        refuse_foreign_number(masked.text, {name, at.line, 0});
         const std::string manual = fmt::format("see {}", hints.manual);
         if (e.description().find("could not determine value type") != std::string_view::npos)
             fail_at({name, at.line, at.column}, "this is no value",
@@ -311,8 +296,7 @@ double toml_table::to_number(const toml::node& n, std::string_view called, bound
 
 double toml_table::within(const toml::node& n, std::string_view called, double v, bounds b) const
 {
-    const bool inside = v <= b.high && (b.above_low ? v > b.low : v >= b.low);
-    if (!std::isfinite(v) || !inside)
+    if (!std::isfinite(v) || !b.holds(v))
         fail_at(where(n), fmt::format("{} is {}", called, v), fmt::format("allowed: {}", bounds_text(b)),
                 called);
     return v;
