@@ -59,7 +59,7 @@ void add_outline(const trajectory& t, std::vector<point>& corners, std::vector<s
 trajectory moved(const trajectory& t, point from, const affine& m, std::optional<point> line,
                  const std::function<std::string()>& what)
 {
-    const affine to_origin{1.0, 0.0, 0.0, 1.0, -from.x_mm, -from.y_mm};
+    const affine to_origin = translation({-from.x_mm, -from.y_mm});
     const trajectory::impl& d = access::of(t);
     if (const auto* c = std::get_if<drawn_path>(&d.law)) {
         outline o = mapped(make_outline(access::of(c->way)), to_origin);

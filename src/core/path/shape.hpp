@@ -101,6 +101,11 @@ struct affine {
     double determinant() const noexcept { return a * d - b * c; }
 };
 
+inline affine translation(point by) noexcept
+{
+    return {1.0, 0.0, 0.0, 1.0, by.x_mm, by.y_mm};
+}
+
 /// Returns the turn about the origin, clockwise where y points down; exact for quarter turns.
 affine rotation(double degrees);
 

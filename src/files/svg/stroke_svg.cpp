@@ -34,6 +34,7 @@ using detail::svg_properties;
 using detail::svg_style;
 using detail::svg_tag;
 using detail::svg_view_box;
+using detail::translation;
 using pugi::xml_node;
 
 // <use> can multiply a small file without end.
@@ -58,11 +59,6 @@ struct scope {
 
     bool is_painted() const noexcept { return (filled || outlined) && !clear; }
 };
-
-affine translation(point to)
-{
-    return {1.0, 0.0, 0.0, 1.0, to.x_mm, to.y_mm};
-}
 
 bool has(const std::optional<svg_length>& l, svg_length::unit u)
 {
