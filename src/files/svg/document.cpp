@@ -126,27 +126,12 @@ svg_length parse_svg_length(std::string_view text)
     const double v = number_at(text, at);
     const std::string unit = in_small_letters(std::string(without_blanks(text.substr(at))));
     if (unit.empty())
-        return {v, svg_length::unit::none};
-    if (unit == "%")
-        return {v, svg_length::unit::percent};
+        return {v};
     for (const known_unit& u : units)
         if (u.name == unit)
-            return {v * u.mm, svg_length::unit::mm};
+            return {v * u.mm, true};
     throw value_fault{at, fmt::format("unit {} is not known", detail::quoted(unit)),
-                      "known units: mm, cm, in, pt, pc, px, Q, %"};
-}
-
-double svg_length::user_units(const svg_viewport& v, svg_extent e) const noexcept
-{
-    if (in == unit::none)
-        return value;
-    if (in == unit::mm)
-        return value * v.per_mm;
-    const double whole = e == svg_extent::width ? v.width
-                         : e == svg_extent::height
-                             ? v.height
-                             : std::sqrt(0.5 * (v.width * v.width + v.height * v.height));
-    return value / 100.0 * whole;
+                      "known units: mm, cm, in, pt, pc, px, Q"};
 }
 
 svg_view_box parse_svg_view_box(std::string_view text)
@@ -280,12 +265,12 @@ left_out svg_document::fault(pugi::xml_node n, pugi::xml_attribute a, const valu
             fmt::format("{} of {}: {}", a.name(), called(n), f.why), f.hint};
 }
 
-double svg_document::length(pugi::xml_node n, const char* attribute, const svg_viewport& v, svg_extent e,
-                            double otherwise) const
+double svg_document::length(pugi::xml_node n, const char* attribute, double per_mm) const
 {
     const pugi::xml_attribute a = n.attribute(attribute);
     try {
-        return a ? parse_svg_length(a.value()).user_units(v, e) : otherwise;
+        const svg_length l = a ? parse_svg_length(a.value()) : svg_length{};
+        return l.in_mm ? l.value * per_mm : l.value;
     } catch (const value_fault& f) {
         throw fault(n, a, f);
     }

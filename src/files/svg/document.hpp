@@ -29,22 +29,9 @@ inline constexpr double max_user_units = 1e9;
 
 inline constexpr double mm_per_px = 25.4 / 96.0;
 
-/// Reference of relative lengths.
-struct svg_viewport {
-    double width = 100.0;  ///< 100 % across, user units
-    double height = 100.0; ///< 100 % down
-    double per_mm = 1.0;   ///< user units in a millimetre
-};
-
-/// Side to which the percentage of a length refers.
-enum class svg_extent { width, height, diagonal };
-
 struct svg_length {
-    enum class unit { none, percent, mm };
-    double value = 0.0;
-    unit in = unit::none;
-
-    double user_units(const svg_viewport& v, svg_extent e) const noexcept;
+    double value = 0.0; ///< mm, or user units
+    bool in_mm = false;
 };
 
 struct svg_view_box {
@@ -148,9 +135,8 @@ public:
         }
     }
 
-    /// Reads a length in user units. \throws left_out
-    double length(pugi::xml_node n, const char* attribute, const svg_viewport& v, svg_extent e,
-                  double otherwise = 0.0) const;
+    /// Reads a length in user units, of which a millimetre has `per_mm`; 0 if it is missing. \throws left_out
+    double length(pugi::xml_node n, const char* attribute, double per_mm) const;
 
     /// Reads a number from low to high.
     std::optional<double> number(pugi::xml_node n, const char* attribute, double low, double high) const;
@@ -194,8 +180,8 @@ std::string_view svg_tag(pugi::xml_node n);
 /// Returns true for the tags that svg_shape() takes.
 bool is_svg_shape(std::string_view tag) noexcept;
 
-/// Returns the subpaths of a shape in user units; none for a shape that SVG does not draw (no data, a radius
-/// or a side of 0). \throws error (bad_input), left_out
-std::vector<outline> svg_shape(const svg_document& doc, pugi::xml_node n, const svg_viewport& v);
+/// Returns the subpaths of a shape in user units, of which a millimetre has `per_mm`; none for a shape that
+/// SVG does not draw (no data, a radius or a side of 0). \throws error (bad_input), left_out
+std::vector<outline> svg_shape(const svg_document& doc, pugi::xml_node n, double per_mm);
 
 } // namespace tactor::detail

@@ -18,17 +18,13 @@ constexpr double quarter = std::numbers::pi / 2.0;
 struct element {
     const svg_document& doc;
     pugi::xml_node node;
-    const svg_viewport& viewport;
+    double per_mm;
 
-    double x(const char* attribute) const { return doc.length(node, attribute, viewport, svg_extent::width); }
-    double y(const char* attribute) const
-    {
-        return doc.length(node, attribute, viewport, svg_extent::height);
-    }
+    double length(const char* attribute) const { return doc.length(node, attribute, per_mm); }
 
-    double size(const char* attribute, svg_extent e) const
+    double size(const char* attribute) const
     {
-        const double v = doc.length(node, attribute, viewport, e);
+        const double v = length(attribute);
         if (v < 0.0)
             doc.leave_out(
                 node, fmt::format("{} of {}: {:g} is less than 0", attribute, svg_document::called(node), v),
@@ -36,20 +32,16 @@ struct element {
         return v;
     }
 
-    // Reads a radius of rect or ellipse; nothing for "auto", which is the other radius.
-    std::optional<double> radius(const char* attribute, svg_extent e) const
-    {
-        const std::string_view text = node.attribute(attribute).value();
-        if (text.empty() || text == "auto")
-            return std::nullopt;
-        return size(attribute, e);
-    }
-
+    // Reads the radii of rect or ellipse. Each may be missing or "auto": then it is the other one.
     std::pair<double, double> radii() const
     {
-        const auto rx = radius("rx", svg_extent::width);
-        const auto ry = radius("ry", svg_extent::height);
-        return {rx ? *rx : ry.value_or(0.0), ry ? *ry : rx.value_or(0.0)};
+        const auto has = [this](const char* attribute) {
+            const std::string_view text = node.attribute(attribute).value();
+            return !text.empty() && text != "auto";
+        };
+        if (!has("rx") && !has("ry"))
+            return {};
+        return {size(has("rx") ? "rx" : "ry"), size(has("ry") ? "ry" : "rx")};
     }
 };
 
@@ -62,8 +54,8 @@ outline from(point p)
 
 std::vector<outline> line(const element& e)
 {
-    outline o = from({e.x("x1"), e.y("y1")});
-    o.line({e.x("x2"), e.y("y2")});
+    outline o = from({e.length("x1"), e.length("y1")});
+    o.line({e.length("x2"), e.length("y2")});
     return {std::move(o)};
 }
 
@@ -90,7 +82,7 @@ std::vector<outline> ellipse(const element& e, double rx, double ry)
 {
     if (rx == 0.0 || ry == 0.0)
         return {};
-    const point centre{e.x("cx"), e.y("cy")};
+    const point centre{e.length("cx"), e.length("cy")};
     outline o = from({centre.x_mm + rx, centre.y_mm});
     o.arc({centre, {rx, 0.0}, {0.0, ry}, 0.0, 4.0 * quarter}, o.vertices.front());
     return {std::move(o)};
@@ -99,10 +91,10 @@ std::vector<outline> ellipse(const element& e, double rx, double ry)
 // Draws from the left end of the upper side clockwise.
 std::vector<outline> rectangle(const element& e)
 {
-    const double left = e.x("x");
-    const double top = e.y("y");
-    const double width = e.size("width", svg_extent::width);
-    const double height = e.size("height", svg_extent::height);
+    const double left = e.length("x");
+    const double top = e.length("y");
+    const double width = e.size("width");
+    const double height = e.size("height");
     if (width == 0.0 || height == 0.0)
         return {};
     auto [rx, ry] = e.radii();
@@ -147,9 +139,9 @@ bool is_svg_shape(std::string_view tag) noexcept
     return std::find(tags.begin(), tags.end(), tag) != tags.end();
 }
 
-std::vector<outline> svg_shape(const svg_document& doc, pugi::xml_node n, const svg_viewport& v)
+std::vector<outline> svg_shape(const svg_document& doc, pugi::xml_node n, double per_mm)
 {
-    const element e{doc, n, v};
+    const element e{doc, n, per_mm};
     const std::string_view tag = svg_tag(n);
     if (tag == "path")
         return path_element(e);
@@ -160,7 +152,7 @@ std::vector<outline> svg_shape(const svg_document& doc, pugi::xml_node n, const 
     if (tag == "rect")
         return rectangle(e);
     if (tag == "circle") {
-        const double r = e.size("r", svg_extent::diagonal);
+        const double r = e.size("r");
         return ellipse(e, r, r);
     }
     const auto [rx, ry] = e.radii();

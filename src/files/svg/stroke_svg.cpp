@@ -28,7 +28,6 @@ namespace {
 using detail::affine;
 using detail::left_out;
 using detail::outline;
-using detail::svg_extent;
 using detail::svg_length;
 using detail::svg_properties;
 using detail::svg_style;
@@ -46,7 +45,6 @@ constexpr double highest_carrier_hz = 20000.0;
 // Properties that an element inherits from those round it.
 struct scope {
     affine to_mm;
-    detail::svg_viewport viewport;
     std::optional<double> speed_mm_s;
     double intensity = 1.0;
     bool visible = true; ///< visibility, which those inside may set anew; unlike display
@@ -60,11 +58,6 @@ struct scope {
     bool is_painted() const noexcept { return (filled || outlined) && !clear; }
 };
 
-bool has(const std::optional<svg_length>& l, svg_length::unit u)
-{
-    return l && l->in == u;
-}
-
 bool is_one(std::string_view word, std::initializer_list<std::string_view> words)
 {
     return std::find(words.begin(), words.end(), word) != words.end();
@@ -73,7 +66,7 @@ bool is_one(std::string_view word, std::initializer_list<std::string_view> words
 bool draws(xml_node n)
 {
     const std::string_view tag = svg_tag(n);
-    return is_one(tag, {"g", "a", "switch", "svg", "use"}) || detail::is_svg_shape(tag);
+    return is_one(tag, {"g", "a", "switch", "use"}) || detail::is_svg_shape(tag);
 }
 
 class svg_reader {
@@ -106,59 +99,56 @@ public:
 private:
     // Returns the scope inside the root. A document with a size in physical units is as large as it says. In
     // any other, one user unit is one millimetre and coordinates are as they stand.
-    scope root_scope(xml_node n, const svg_style& style) const
+    scope root_scope(xml_node n, const svg_style& style)
     {
-        using unit = svg_length::unit;
         const auto width = read_side(n, style, "width");
         const auto height = read_side(n, style, "height");
         const auto box = doc_.read(n, "viewBox", detail::parse_svg_view_box);
         scope s;
-        if (!has(width, unit::mm) && !has(height, unit::mm)) {
-            s.viewport.width = box ? box->width : has(width, unit::none) ? width->value : 100.0;
-            s.viewport.height = box ? box->height : has(height, unit::none) ? height->value : 100.0;
-            if (box && has(width, unit::none) && has(height, unit::none))
-                note_aspect(n, *box, width->value, height->value);
-        } else {
-            const auto px = [&](const auto& l) -> std::optional<double> {
-                if (!l || l->in == unit::percent)
-                    return std::nullopt;
-                if (!(l->value > 0.0))
+        if ((width && width->in_mm) || (height && height->in_mm)) {
+            const auto px = [&](const svg_length& l) {
+                if (!(l.value > 0.0))
                     doc_.fail(n, fmt::format("{} has no size", doc_.called(n)),
                               "width and height are more than 0");
-                return l->in == unit::mm ? l->value / detail::mm_per_px : l->value;
+                return l.in_mm ? l.value / detail::mm_per_px : l.value;
             };
-            const auto w = px(width);
-            const auto h = px(height);
             const double ratio = box ? box->width / box->height : 1.0;
+            const double w = width ? px(*width) : px(*height) * ratio;
+            const double h = height ? px(*height) : px(*width) / ratio;
+            per_mm_ = 1.0 / detail::mm_per_px;
             s.to_mm = {detail::mm_per_px, 0.0, 0.0, detail::mm_per_px, 0.0, 0.0};
-            s.viewport = {w ? *w : *h * ratio, h ? *h : *w / ratio, 1.0 / detail::mm_per_px};
             if (box)
-                enter_box(n, s, *box, {}, s.viewport.width, s.viewport.height);
+                s.to_mm = s.to_mm * fill_box(n, *box, w, h);
+        } else if (box && width && height) {
+            note_aspect(n, *box, width->value, height->value);
         }
         inherit(n, style, s);
         return s;
     }
 
-    // Returns a side of the drawing: of its style where that says a physical one, else of its attribute.
+    // Returns a side of the drawing: of its style where that says a physical one, else of its attribute;
+    // nothing for a part of the window, in per cent.
     std::optional<svg_length> read_side(xml_node n, const svg_style& style, const char* name) const
     {
-        const auto attribute = doc_.follow(n, name, n.attribute(name).value(), detail::parse_svg_length);
-        const std::string_view text = style.value(name);
-        const auto own = doc_.follow(n, name, text == "auto" ? "" : text, detail::parse_svg_length);
-        return has(own, svg_length::unit::mm) ? own : attribute;
+        const auto read = [&](std::string_view text) {
+            return doc_.follow(n, name, text == "auto" || text.ends_with('%') ? "" : text,
+                               detail::parse_svg_length);
+        };
+        const auto own = read(style.value(name));
+        return own && own->in_mm ? own : read(n.attribute(name).value());
     }
 
-    // Enters an element with a view box, which fills width x height (user units) from `corner`.
-    void enter_box(xml_node n, scope& s, const svg_view_box& box, point corner, double width,
-                   double height) const
+    // Returns the map of a view box that fills width x height (user units), in the middle.
+    affine fill_box(xml_node n, const svg_view_box& box, double width, double height) const
     {
-        const double k = std::min(width / box.width, height / box.height);
-        const double x = corner.x_mm - box.corner.x_mm * k + 0.5 * (width - box.width * k);
-        const double y = corner.y_mm - box.corner.y_mm * k + 0.5 * (height - box.height * k);
-        s.to_mm = s.to_mm * affine{k, 0.0, 0.0, k, x, y};
-        s.viewport.width = box.width;
-        s.viewport.height = box.height;
         note_aspect(n, box, width, height);
+        const double k = std::min(width / box.width, height / box.height);
+        return {k,
+                0.0,
+                0.0,
+                k,
+                -box.corner.x_mm * k + 0.5 * (width - box.width * k),
+                -box.corner.y_mm * k + 0.5 * (height - box.height * k)};
     }
 
     void note_aspect(xml_node n, const svg_view_box& box, double width, double height) const
@@ -206,8 +196,6 @@ private:
         inherit(n, style, s);
         if (is_one(tag, {"g", "a", "switch"}))
             return children(n, s);
-        if (tag == "svg")
-            return frame(n, n, s, read_corner(n, s));
         for (const xml_node c : n.children())
             note_no_shape(c); // an animation
         if (tag == "use")
@@ -315,35 +303,6 @@ private:
                       ": data-intensity says how strong a line is");
     }
 
-    point read_corner(xml_node n, const scope& s) const
-    {
-        return {doc_.length(n, "x", s.viewport, svg_extent::width),
-                doc_.length(n, "y", s.viewport, svg_extent::height)};
-    }
-
-    // Draws a nested svg, or a symbol that `sized` uses.
-    void frame(xml_node n, xml_node sized, scope s, point corner)
-    {
-        const auto side = [&](const char* attribute, svg_extent e, double whole) {
-            const xml_node from = sized.attribute(attribute) ? sized : n;
-            const double v = doc_.length(from, attribute, s.viewport, e, whole);
-            if (!(v > 0.0))
-                doc_.leave_out(from, fmt::format("{} has no size", doc_.called(from)),
-                               "width and height are more than 0");
-            return v;
-        };
-        const double width = side("width", svg_extent::width, s.viewport.width);
-        const double height = side("height", svg_extent::height, s.viewport.height);
-        if (const auto box = doc_.read(n, "viewBox", detail::parse_svg_view_box)) {
-            enter_box(n, s, *box, corner, width, height);
-        } else {
-            s.to_mm = s.to_mm * translation(corner);
-            s.viewport.width = width;
-            s.viewport.height = height;
-        }
-        children(n, s);
-    }
-
     void use(xml_node n, scope s)
     {
         std::string_view href = n.attribute("href").value();
@@ -356,18 +315,17 @@ private:
         if (!target)
             doc_.leave_out(n, fmt::format("{} refers to {}, which is not in this file", doc_.called(n), href),
                            "correct the id");
-        s.to_mm = s.to_mm * translation(read_corner(n, s));
-        const std::string_view tag = svg_tag(target);
-        if (tag != "symbol" && tag != "svg")
-            return visit(target, s);
-        ++s.depth;
-        inherit(target, svg_style(target), s);
-        frame(target, n, s, {});
+        if (!draws(target))
+            doc_.leave_out(
+                n, fmt::format("{} refers to {}, which does not play", doc_.called(n), doc_.called(target)),
+                "refer to a shape or a group");
+        s.to_mm = s.to_mm * translation({doc_.length(n, "x", per_mm_), doc_.length(n, "y", per_mm_)});
+        visit(target, s);
     }
 
     void shape(xml_node n, const scope& s)
     {
-        std::vector<outline> outlines = svg_shape(doc_, n, s.viewport);
+        std::vector<outline> outlines = svg_shape(doc_, n, per_mm_);
         if (outlines.empty())
             doc_.leave_out(n, fmt::format("{} draws nothing", doc_.called(n)),
                            "it needs a size, or path data that draws");
@@ -459,6 +417,7 @@ private:
     std::optional<left_out> left_out_; ///< the first
     std::unordered_set<std::size_t> looks_;
     xml_node hidden_;
+    double per_mm_ = 1.0; ///< user units
     std::size_t elements_ = 0;
     std::size_t vertices_ = 0;
 };
