@@ -43,6 +43,14 @@ std::optional<T> omit_usual(const T& v, const T& usual)
     return v == usual ? std::nullopt : std::optional(v);
 }
 
+/// Describes a member that is absent for the usual value.
+template <class Io, class T>
+void unless_usual(Io& io, const char* name, T& v, const std::remove_const_t<T>& usual, const about& what)
+{
+    io.with(
+        name, omit_usual(v, usual), [&v](const auto& read) { v = read.value_or(v); }, what);
+}
+
 /// A member that is always there, as null where it has no value. Without it, an optional is left out.
 template <class T>
 struct nullable {

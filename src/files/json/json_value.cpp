@@ -2,7 +2,6 @@
 #include "files/json/json_value.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
 
 #include <fmt/format.h>
@@ -96,14 +95,6 @@ std::optional<std::string> json_value::text() const
 std::optional<bool> json_value::truth() const
 {
     return get<bool>(&ordered_json::is_boolean, "is neither true nor false");
-}
-
-int json_value::need_whole(int least, int most) const
-{
-    const double v = need_number();
-    if (!(v >= least && v <= most) || v != std::floor(v))
-        refuse(fmt::format("is no whole number from {} to {}", least, most));
-    return static_cast<int>(v);
 }
 
 std::vector<json_value> json_value::need_list() const

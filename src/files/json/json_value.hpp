@@ -49,25 +49,19 @@ public:
     std::optional<double> number() const;
     std::optional<std::string> text() const;
     std::optional<bool> truth() const;
-    /// Returns a value of a closed set, by its name.
-    template <class Kind>
-    std::optional<Kind> kind() const
-    {
-        const std::optional<std::string> name = text();
-        const std::optional<Kind> k = name ? detail::find_kind<Kind>(*name) : std::nullopt;
-        if (name && !k)
-            refuse("is \"" + *name + "\", which is not known");
-        return k;
-    }
 
     double need_number() const { return need(number()); }
-    int need_whole(int least, int most) const;
     std::string need_text() const { return need(text()); }
     bool need_truth() const { return need(truth()); }
+    /// Returns a value of a closed set, by its name.
     template <class Kind>
     Kind need_kind() const
     {
-        return need(kind<Kind>());
+        const std::string name = need_text();
+        const std::optional<Kind> k = detail::find_kind<Kind>(name);
+        if (!k)
+            refuse("is \"" + name + "\", which is not known");
+        return *k;
     }
     std::vector<json_value> need_list() const;
     std::vector<double> need_numbers() const;

@@ -23,6 +23,9 @@
 
 namespace tactor::files {
 
+using detail::either;
+using detail::unless_usual;
+
 /// Contents of a WAV file, as far as they tell whether it has changed.
 struct recording_facts {
     std::string file = {};
@@ -48,7 +51,7 @@ plan_sound record_sound(const plan& p);
 /// stands. \throws error (bad_input).
 void set_sound(plan& p, const plan_sound& sound, const json_value& stroke, recordings_kind recordings);
 
-template <class Io, detail::either<recording_facts> Facts>
+template <class Io, either<recording_facts> Facts>
 void members(Io& io, Facts& f)
 {
     io("file", f.file, {"its whole name"});
@@ -57,20 +60,20 @@ void members(Io& io, Facts& f)
     io("rate", f.rate, {"their rate in hertz", detail::above_0});
 }
 
-template <class Io, detail::either<carrier_point> Point>
+template <class Io, either<carrier_point> Point>
 void members(Io& io, Point& c)
 {
     io("t_s", c.t_s, {"time from the stroke's beginning", detail::from_0});
     io("hz", c.hz, {"frequency", {0.0, detail::bounds_of::carrier_hz.high}});
-    io.with("bend", detail::omit_usual(c.bend, carrier_point{}.bend),
-            [&c](const auto& given) { c.bend = given.value_or(c.bend); },
-            {"only where easing or a change of speed bends it: [a, b, c, d], Hz. With u from 0 to 1 between "
-             "the times of this point and the next, the carrier is hz + u (next - hz) + u (1 - u) (a + b u + "
-             "c u^2 + d u^3); the carrier's cycles are its integral, to 1e-9 over an hour",
-             {-1e7, 1e7}});
+    unless_usual(
+        io, "bend", c.bend, carrier_point{}.bend,
+        {"only where easing or a change of speed bends it: [a, b, c, d], Hz. With u from 0 to 1 between "
+         "the times of this point and the next, the carrier is hz + u (next - hz) + u (1 - u) (a + b u + "
+         "c u^2 + d u^3); the carrier's cycles are its integral, to 1e-9 over an hour",
+         {-1e7, 1e7}});
 }
 
-template <class Io, detail::either<plan_sound> Sound>
+template <class Io, either<plan_sound> Sound>
 void members(Io& io, Sound& s)
 {
     constexpr detail::about texture{
@@ -90,8 +93,6 @@ void members(Io& io, Sound& s)
        {"only of a carrier that changes: its frequency over time, linear between these points where bend "
         "does not say otherwise; of a WAV file along the path, how often that comes round"});
 }
-
-using detail::either;
 
 /// A thing that is one number, or one for each of several frequencies in Hz.
 using thresholds = detail::nullable<std::variant<double, std::vector<std::array<double, 2>>>>;
@@ -340,9 +341,8 @@ void render_members(Io& io, Parts& r)
         "peak_dbfs", [&r] { return list_peaks_dbfs(r.tactors, r.plan.carrier_hz, r.options); },
         {"of each tactor in order: the peak of its channel for amplitude 1, with its gain or threshold in "
          "it; null where the level is above a threshold that it does not have, and nothing drives it"});
-    io.with("envelope", detail::omit_usual(o.envelope, burst_envelope{}),
-            [&o](const auto& given) { o.envelope = given.value_or(o.envelope); },
-            {"how bursts rise and fall; absent: by raised cosines of ramp_s"});
+    unless_usual(io, "envelope", o.envelope, burst_envelope{},
+                 {"how bursts rise and fall; absent: by raised cosines of ramp_s"});
     io.with("marker",
             detail::nullable<marker>{o.marker_channel ? std::optional(marker{*o.marker_channel, o.marker_s})
                                                       : std::nullopt},
@@ -363,10 +363,10 @@ void plan_members(Io& io, Parts& r)
     io.template named<algorithm_kind>("algorithm", p.algorithm, {"park2016, tactile-brush or continuous"});
     io.template named<phantom_kind>(
         "phantom", p.phantom, {"the phantom model: inverse-distance, barycentric, linear, log or gaussian"});
-    io.with("faces", detail::omit_usual(p.faces, faces_kind::delaunay),
-            [&p](const auto& given) { p.faces = given.value_or(p.faces); },
-            {"nearest where the three closest tactors of the array make a phantom; without it it is those of "
-             "the Delaunay face, as with {faces=delaunay}"});
+    unless_usual(
+        io, "faces", p.faces, faces_kind::delaunay,
+        {"nearest where the three closest tactors of the array make a phantom; without it it is those of "
+         "the Delaunay face, as with {faces=delaunay}"});
     io("start_s", r.start_s,
        {"start of the stroke in the piece, which is all strokes of the file; all other times count from "
         "there",
