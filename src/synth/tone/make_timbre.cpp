@@ -72,29 +72,20 @@ std::vector<course_part> make_course(const std::vector<carrier_point>& points, u
     return parts;
 }
 
-double highest_hz(const plan& p)
+/// Returns the lowest and the highest frequency of the carrier at the points of its course.
+std::pair<double, double> carrier_range(const plan& p)
 {
-    return p.course.empty()
-               ? p.carrier_hz
-               : std::max_element(p.course.begin(), p.course.end(),
-                                  [](const carrier_point& a, const carrier_point& b) { return a.hz < b.hz; })
-                     ->hz;
-}
-
-double lowest_hz(const plan& p)
-{
-    return p.course.empty()
-               ? p.carrier_hz
-               : std::min_element(p.course.begin(), p.course.end(),
-                                  [](const carrier_point& a, const carrier_point& b) { return a.hz < b.hz; })
-                     ->hz;
+    if (p.course.empty())
+        return {p.carrier_hz, p.carrier_hz};
+    const auto lower = [](const carrier_point& a, const carrier_point& b) { return a.hz < b.hz; };
+    const auto [low, high] = std::minmax_element(p.course.begin(), p.course.end(), lower);
+    return {low->hz, high->hz};
 }
 
 /// Refuses a modulation at a harmonic of the carrier, or which a varying carrier's harmonic passes.
 void refuse_displacement(const timbre& t, const plan& p)
 {
-    const double low_hz = lowest_hz(p);
-    const double high_hz = highest_hz(p);
+    const auto [low_hz, high_hz] = carrier_range(p);
     const std::size_t points = t.is_sine() ? 4 : t.samples->size() - cycle_margin;
     const double first = std::max(std::ceil((p.am.hz - least_beat_hz) / high_hz), 1.0);
     const double last = std::min(std::floor((p.am.hz + least_beat_hz) / low_hz), 0.5 * points - 1.0);
@@ -166,10 +157,11 @@ void fill_in(timbre& t, const plan& p, unsigned rate)
         t.form = timbre::form_kind::loop;
         t.samples = std::make_shared<const wave_samples>(recorded_loop(*w.recorded, rate));
     } else {
-        check_free_place(carrier_field(p), highest_hz(p), am_hz, rate);
+        const double high_hz = carrier_range(p).second;
+        check_free_place(carrier_field(p), high_hz, am_hz, rate);
         if (w.kind == waveform_kind::sine)
             return;
-        const std::size_t harmonics = harmonics_below(highest_hz(p), am_hz, rate);
+        const std::size_t harmonics = harmonics_below(high_hz, am_hz, rate);
         t.form = timbre::form_kind::cycle;
         t.samples = std::make_shared<const wave_samples>(
             w.kind == waveform_kind::recording ? recorded_cycle(*w.recorded, harmonics)
@@ -220,18 +212,17 @@ bool crosses_zero(const plan& p) noexcept
 
 std::shared_ptr<const timbre> timbre_shelf::get(const plan& p, unsigned rate)
 {
-    const auto there =
-        std::find_if(places_.begin(), places_.end(), [&](const place& q) { return sound_alike(q.asked, p); });
-    if (there != places_.end())
-        return there->made;
+    for (const place& q : places_)
+        if (sound_alike(q.sound, p))
+            return q.made;
     std::shared_ptr<const timbre> made = make_timbre(p, rate);
     if (made && places_.size() < most_places) {
-        plan asked;
-        asked.carrier_hz = p.carrier_hz;
-        asked.wave = p.wave;
-        asked.am = p.am;
-        asked.course = p.course;
-        places_.push_back({std::move(asked), made});
+        plan sound;
+        sound.carrier_hz = p.carrier_hz;
+        sound.wave = p.wave;
+        sound.am = p.am;
+        sound.course = p.course;
+        places_.push_back({std::move(sound), made});
     }
     return made;
 }

@@ -31,7 +31,7 @@ public:
 
 private:
     struct place {
-        plan asked; ///< only the members that determine the sound count
+        plan sound; ///< only with the members that determine the sound
         std::shared_ptr<const timbre> made;
     };
     std::vector<place> places_;

@@ -206,16 +206,21 @@ complex times(complex a, complex b)
     return {a.real() * b.real() - a.imag() * b.imag(), a.real() * b.imag() + a.imag() * b.real()};
 }
 
-void reverse_bits(spectrum& x)
+/// Writes the sum of the n elements that are `step` apart from `from` on to `to`: that of the even ones and
+/// that of the odd ones, turned (Cooley and Tukey 1965). `units[k]` is exp(2 pi i k / size) of the whole.
+void add_up(const complex* from, std::size_t step, std::size_t n, const spectrum& units, complex* to)
 {
-    const std::size_t n = x.size();
-    for (std::size_t i = 1, j = 0; i < n; ++i) {
-        std::size_t bit = n >> 1U;
-        for (; (j & bit) != 0; bit >>= 1U)
-            j ^= bit;
-        j ^= bit;
-        if (i < j)
-            std::swap(x[i], x[j]);
+    if (n == 1) {
+        *to = *from;
+        return;
+    }
+    const std::size_t half = n / 2;
+    add_up(from, 2 * step, half, units, to);
+    add_up(from + step, 2 * step, half, units, to + half);
+    for (std::size_t k = 0; k < half; ++k) {
+        const complex odd = times(units[k * step], to[half + k]);
+        to[half + k] = to[k] - odd;
+        to[k] += odd;
     }
 }
 
@@ -298,21 +303,11 @@ double wave_power(const wave_samples& x) noexcept
 
 void fourier_sum(spectrum& x)
 {
-    reverse_bits(x);
-    const std::size_t n = x.size();
-    spectrum turn(std::max<std::size_t>(n / 2, 1));
-    for (std::size_t k = 0; k < turn.size(); ++k)
-        turn[k] = unit(static_cast<double>(k) / static_cast<double>(n));
-    for (std::size_t half = 1; half < n; half *= 2) {
-        const std::size_t step = n / (2 * half);
-        for (std::size_t from = 0; from < n; from += 2 * half) {
-            for (std::size_t k = 0; k < half; ++k) {
-                const complex odd = times(turn[k * step], x[from + half + k]);
-                x[from + half + k] = x[from + k] - odd;
-                x[from + k] += odd;
-            }
-        }
-    }
+    spectrum units(x.size() / 2);
+    for (std::size_t k = 0; k < units.size(); ++k)
+        units[k] = unit(static_cast<double>(k) / static_cast<double>(x.size()));
+    const spectrum from = x;
+    add_up(from.data(), 1, from.size(), units, x.data());
 }
 
 // Computes a sum of any length as a convolution, whose length may be a power of 2 (Bluestein 1970).
