@@ -56,28 +56,39 @@ double greatest_sum(const burst& b)
     return energy > b.intensity * b.intensity * (1.0 + 1e-9) ? std::sqrt(energy) : b.intensity;
 }
 
-/// When a burst sounds.
-struct stretch {
-    double from_s;
+/// A burst that sounds in at least one frame.
+struct placed_burst {
+    const burst* source;
     double to_s;
     std::uint64_t from; ///< frame of the plan
     std::uint64_t to;
 };
 
-stretch find_stretch(const burst& b, unsigned rate)
+/// Returns the bursts that sound, by start.
+std::vector<placed_burst> sort_bursts(std::span<const burst> bursts, unsigned rate)
 {
-    const double to_s = b.onset_s + b.duration_s;
-    return {b.onset_s, to_s, frame_at(b.onset_s, rate), frame_at(to_s, rate)};
+    std::vector<placed_burst> all;
+    all.reserve(bursts.size());
+    for (const burst& b : bursts) {
+        const double to_s = b.onset_s + b.duration_s;
+        const placed_burst placed{&b, to_s, frame_at(b.onset_s, rate), frame_at(to_s, rate)};
+        if (placed.to > placed.from)
+            all.push_back(placed);
+    }
+    const auto earlier = [](const placed_burst& a, const placed_burst& b) { return a.from < b.from; };
+    if (!std::is_sorted(all.begin(), all.end(), earlier)) // planners leave them in order
+        std::stable_sort(all.begin(), all.end(), earlier);
+    return all;
 }
 
 /// The latest bursts of one tactor of which each overlaps with one before it. They arrive by start.
 class run {
 public:
     /// Returns true if the burst continues the run; if not, it begins another one.
-    bool takes(const stretch& s)
+    bool takes(const placed_burst& s)
     {
         constexpr double touch_s = 1e-9;
-        const bool goes_on = s.from < end_ && s.from_s < end_s_ - touch_s;
+        const bool goes_on = s.from < end_ && s.source->onset_s < end_s_ - touch_s;
         end_ = goes_on ? std::max(end_, s.to) : s.to;
         end_s_ = goes_on ? std::max(end_s_, s.to_s) : s.to_s;
         return goes_on;
@@ -86,39 +97,6 @@ public:
 private:
     std::uint64_t end_ = 0;
     double end_s_ = 0.0;
-};
-
-/// A plan's bursts by start.
-class bursts_by_start {
-public:
-    bursts_by_start(std::span<const burst> bursts, unsigned rate) : bursts_(bursts), rate_(rate)
-    {
-        const auto earlier = [](const burst& a, const burst& b) { return a.onset_s < b.onset_s; };
-        if (std::is_sorted(bursts.begin(), bursts.end(), earlier))
-            return; // as planners leave them
-        order_.resize(bursts.size());
-        std::iota(order_.begin(), order_.end(), std::size_t{0});
-        std::stable_sort(order_.begin(), order_.end(), [&](std::size_t a, std::size_t b) {
-            return frame_at(bursts[a].onset_s, rate) < frame_at(bursts[b].onset_s, rate);
-        });
-    }
-
-    /// Calls f(burst, stretch) for each that sounds in at least one frame.
-    template <class F>
-    void for_each(F f) const
-    {
-        for (std::size_t i = 0; i < bursts_.size(); ++i) {
-            const burst& b = bursts_[order_.empty() ? i : order_[i]];
-            const stretch s = find_stretch(b, rate_);
-            if (s.to > s.from)
-                f(b, s);
-        }
-    }
-
-private:
-    std::span<const burst> bursts_;
-    unsigned rate_;
-    std::vector<std::size_t> order_; // empty: as they are
 };
 
 /// Places the bursts of one plan. What sounds by itself is put there at once; a bit for each drive says
@@ -133,7 +111,7 @@ public:
           tactors_(tactors),
           options_(o),
           out_(out),
-          bursts_(bursts, o.rate)
+          bursts_(sort_bursts(bursts, o.rate))
     {
     }
 
@@ -152,9 +130,9 @@ private:
     {
         std::vector<run> runs(tactors_);
         std::vector<std::size_t> latest(tactors_); // drive of each tactor
-        bursts_.for_each([&](const burst& b, const stretch& s) {
+        for (const placed_burst& s : bursts_) {
             end_ = std::max(end_, start_ + s.to);
-            for (const drive& d : b.drives) {
+            for (const drive& d : s.source->drives) {
                 const bool goes_on = runs[d.tactor].takes(s);
                 if (goes_on) {
                     joined_[latest[d.tactor]] = true;
@@ -163,7 +141,7 @@ private:
                 latest[d.tactor] = joined_.size();
                 joined_.push_back(goes_on);
             }
-        });
+        }
     }
 
     /// Items of bursts that overlap on a tactor, by start and then by tactor.
@@ -173,20 +151,19 @@ private:
         std::vector<std::vector<item_member>> members(tactors_); // of the latest run
         const std::size_t before = out_.items.size();
         std::size_t number = 0;
-        bursts_.for_each([&](const burst& b, const stretch& s) {
-            for (const drive& d : b.drives) {
+        for (const placed_burst& s : bursts_)
+            for (const drive& d : s.source->drives) {
                 const bool goes_on = runs[d.tactor].takes(s);
                 if (!joined_[number++])
                     continue;
                 if (!goes_on)
                     join(d.tactor, members[d.tactor]);
-                const std::uint32_t attack = ramp(b, s);
+                const std::uint32_t attack = ramp(s);
                 const std::uint32_t release =
                     release_frames(options_.envelope, options_.rate, s.to - s.from, attack);
                 members[d.tactor].push_back(
-                    {start_ + s.from, s.to - s.from, attack, release, d.amplitude, greatest_sum(b)});
+                    {start_ + s.from, s.to - s.from, attack, release, d.amplitude, greatest_sum(*s.source)});
             }
-        });
         for (std::size_t i = 0; i < tactors_; ++i)
             join(i, members[i]);
         std::stable_sort(out_.items.begin() + static_cast<std::ptrdiff_t>(before), out_.items.end(),
@@ -218,20 +195,20 @@ private:
     {
         std::vector<drive> single;
         std::size_t number = 0;
-        bursts_.for_each([&](const burst& b, const stretch& s) {
+        for (const placed_burst& s : bursts_) {
             single.clear();
-            for (const drive& d : b.drives)
+            for (const drive& d : s.source->drives)
                 if (!joined_[number++])
                     single.push_back(d);
             if (single.empty())
-                return;
+                continue;
             const auto lower = [](const drive& x, const drive& y) { return x.tactor < y.tactor; };
             if (!std::is_sorted(single.begin(), single.end(), lower))
                 std::stable_sort(single.begin(), single.end(), lower);
             item it;
             it.start = start_ + s.from;
             it.length = s.to - s.from;
-            it.ramp = ramp(b, s);
+            it.ramp = ramp(s);
             it.plan = number_;
             it.first = out_.drive_tactors.size();
             it.count = static_cast<std::uint32_t>(single.size());
@@ -240,13 +217,13 @@ private:
                 out_.drive_amplitudes.push_back(d.amplitude);
             }
             out_.items.push_back(it);
-        });
+        }
     }
 
-    std::uint32_t ramp(const burst& b, const stretch& s) const
+    std::uint32_t ramp(const placed_burst& s) const
     {
-        return attack_frames(plain_ramp_s(b.onset_s, b.duration_s, plan_, options_), options_.envelope,
-                             options_.rate, s.to - s.from);
+        return attack_frames(plain_ramp_s(s.source->onset_s, s.source->duration_s, plan_, options_),
+                             options_.envelope, options_.rate, s.to - s.from);
     }
 
     const plan& plan_;
@@ -255,7 +232,7 @@ private:
     std::size_t tactors_;
     const render_options& options_;
     item_list& out_;
-    bursts_by_start bursts_;
+    std::vector<placed_burst> bursts_;
     std::uint64_t end_ = start_;
     std::vector<bool> joined_; // by drive, in order of bursts_
     bool any_joined_ = false;
