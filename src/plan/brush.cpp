@@ -27,6 +27,22 @@ std::vector<double> meeting_times(const std::vector<meeting>& points)
     return tau;
 }
 
+/// Returns the shortest duration in which the same movement is possible: each part is linear in it.
+double shortest_duration_s(const timing_profile& p, const std::vector<double>& tau_s)
+{
+    // part = grow * T + fixed, with tau_i = share_i * T.
+    double grow = 0.0;
+    double fixed = 0.0;
+    double shortest = 0.0;
+    for (std::size_t i = 1; i < tau_s.size(); ++i) {
+        const double share = (tau_s[i] - tau_s[i - 1]) / tau_s.back();
+        grow = (share + (1.0 - p.slope) * grow) / (1.0 + p.slope);
+        fixed = (-p.intercept_s + (1.0 - p.slope) * fixed) / (1.0 + p.slope);
+        shortest = std::max(shortest, -fixed / grow);
+    }
+    return shortest;
+}
+
 [[noreturn]] void refuse(const job& j, const std::vector<double>& tau)
 {
     const double shortest = shortest_duration_s(j.options.profile, tau);
@@ -46,14 +62,13 @@ std::vector<double> meeting_times(const std::vector<meeting>& points)
 std::vector<meeting> drop_points(const job& j, const std::vector<meeting>& points, plan& out)
 {
     const std::vector<std::size_t> keep = thin_out(j.options.profile, meeting_times(points));
-    std::vector<meeting> left;
-    for (std::size_t i = 0, k = 0; i < points.size(); ++i) {
-        const bool kept = k < keep.size() && keep[k] == i;
-        k += kept ? 1 : 0;
-        (kept ? left : out.dropped).push_back(points[i]);
+    std::vector<meeting> rest;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        const bool stays = rest.size() < keep.size() && keep[rest.size()] == i;
+        (stays ? rest : out.dropped).push_back(points[i]);
     }
     if (out.dropped.empty())
-        return left;
+        return rest;
     std::string places;
     constexpr std::size_t named = 8;
     for (std::size_t i = 0; i < std::min(named, out.dropped.size()); ++i)
@@ -61,20 +76,12 @@ std::vector<meeting> drop_points(const job& j, const std::vector<meeting>& point
     out.warnings.push_back(
         fmt::format("{} of {} places on the grid left out, for which there is no time: {}{}",
                     out.dropped.size(), points.size(), places, out.dropped.size() > named ? ", ..." : ""));
-    return left;
+    return rest;
 }
 
-// A part that is negative by a rounding error is none.
-constexpr double slack_s = 1e-10;
-
-bool possible(double part_s)
-{
-    return part_s >= -slack_s;
-}
-
-/// Returns the interior virtual tactors in the order in which they go: the one with the smallest gap, the
-/// first of equals.
-std::vector<std::size_t> order_of_going(const std::vector<double>& tau_s)
+/// Returns the interior virtual tactors in the order in which they are dropped: the one with the smallest gap
+/// first, of equals the first.
+std::vector<std::size_t> find_drop_order(const std::vector<double>& tau_s)
 {
     const std::size_t n = tau_s.size();
     std::vector<std::size_t> before(n);
@@ -109,16 +116,16 @@ std::vector<std::size_t> order_of_going(const std::vector<double>& tau_s)
     return order;
 }
 
-/// Returns the places, ascending, that remain of n when the first `gone` of `order` have gone.
-std::vector<std::size_t> remaining_after(std::size_t n, const std::vector<std::size_t>& order,
-                                         std::size_t gone)
+/// Returns the places, ascending, that remain of n without the first `count` of `order`.
+std::vector<std::size_t> remaining_places(std::size_t n, const std::vector<std::size_t>& order,
+                                          std::size_t count)
 {
-    std::vector<bool> out(n, false);
-    for (std::size_t k = 0; k < gone; ++k)
-        out[order[k]] = true;
+    std::vector<bool> dropped(n, false);
+    for (std::size_t k = 0; k < count; ++k)
+        dropped[order[k]] = true;
     std::vector<std::size_t> places;
     for (std::size_t i = 0; i < n; ++i)
-        if (!out[i])
+        if (!dropped[i])
             places.push_back(i);
     return places;
 }
@@ -254,89 +261,9 @@ void check_inside(const job& j, const std::vector<virtual_tactor>& crossed)
     check_to(j.motion.motion.duration_s());
 }
 
-} // namespace
-
-void plan_brush(const job& j, plan& out)
-{
-    const std::optional<grid_lines> grid = find_grid(j.tactors);
-    if (!grid)
-        throw error(error_kind::bad_input, fmt::format("array \"{}\"", j.tactors.name),
-                    "is no rectangular grid, which the Tactile Brush needs", "use {algorithm=park2016}")
-            .with_field("algorithm");
-    std::vector<meeting> points = virtual_tactors(j, *grid);
-    if (j.options.drop_points)
-        points = drop_points(j, points, out);
-    const std::vector<double> tau = meeting_times(points);
-    const std::vector<double> before = parts_s(j.options.profile, tau);
-    if (before.empty())
-        refuse(j, tau);
-
-    for (std::size_t i = 0; i < points.size(); ++i) {
-        const double after = i + 1 < points.size() ? before[i + 1] : 0.0;
-        burst b = make_burst(j, tau[i] - before[i], before[i] + after, points[i].position, tau[i]);
-        b.tau_s = tau[i];
-        // The last burst ends with the stroke, but the one before it may sound on for longer.
-        out.total_s = std::max(out.total_s, b.onset_s + b.duration_s);
-        out.bursts.push_back(std::move(b));
-    }
-}
-
-double next_part_s(const timing_profile& p, double gap_s, double part_s)
-{
-    return (gap_s - p.intercept_s + (1.0 - p.slope) * part_s) / (1.0 + p.slope);
-}
-
-std::vector<double> parts_s(const timing_profile& p, const std::vector<double>& tau_s)
-{
-    std::vector<double> parts{0.0};
-    for (std::size_t i = 1; i < tau_s.size(); ++i) {
-        const double part = next_part_s(p, tau_s[i] - tau_s[i - 1], parts.back());
-        if (!possible(part))
-            return {};
-        parts.push_back(std::max(part, 0.0));
-    }
-    return parts;
-}
-
-double shortest_duration_s(const timing_profile& p, const std::vector<double>& tau_s)
-{
-    // part = grow * T + fixed, with tau_i = share_i * T.
-    double grow = 0.0;
-    double fixed = 0.0;
-    double shortest = 0.0;
-    for (std::size_t i = 1; i < tau_s.size(); ++i) {
-        const double share = (tau_s[i] - tau_s[i - 1]) / tau_s.back();
-        grow = (share + (1.0 - p.slope) * grow) / (1.0 + p.slope);
-        fixed = (-p.intercept_s + (1.0 - p.slope) * fixed) / (1.0 + p.slope);
-        shortest = std::max(shortest, -fixed / grow);
-    }
-    return shortest;
-}
-
-std::vector<std::size_t> thin_out(const timing_profile& p, const std::vector<double>& tau_s)
-{
-    const std::vector<std::size_t> order = order_of_going(tau_s);
-    const auto works = [&](std::size_t gone) {
-        std::vector<double> tau;
-        for (const std::size_t i : remaining_after(tau_s.size(), order, gone))
-            tau.push_back(tau_s[i]);
-        return !parts_s(p, tau).empty();
-    };
-    // When a place goes, the part of the next grows by (2 slope part + intercept) / (1 + slope), with the
-    // part of the one that went. No part is below -intercept / (2 slope), so that is never negative: what
-    // works with some gone works with more gone.
-    std::size_t few = 0;
-    std::size_t many = order.size();
-    while (few < many) {
-        const std::size_t half = few + (many - few) / 2;
-        if (works(half))
-            many = half;
-        else
-            few = half + 1;
-    }
-    return remaining_after(tau_s.size(), order, many);
-}
-
+/// Finds the start, every crossing with a grid line and the end, in path order, each place once where the
+/// target does not leave it in between; start and end are never joined. At least two.
+/// \throws error (bad_input) if the path leaves the array, or starts or ends off the grid's lines.
 std::vector<meeting> virtual_tactors(const job& j, const grid_lines& grid)
 {
     const in_array path(j);
@@ -366,6 +293,71 @@ std::vector<meeting> virtual_tactors(const job& j, const grid_lines& grid)
     for (const virtual_tactor& v : all)
         out.push_back({v.t_s, v.place});
     return out;
+}
+
+} // namespace
+
+void plan_brush(const job& j, plan& out)
+{
+    const std::optional<grid_lines> grid = find_grid(j.tactors);
+    if (!grid)
+        throw error(error_kind::bad_input, fmt::format("array \"{}\"", j.tactors.name),
+                    "is no rectangular grid, which the Tactile Brush needs", "use {algorithm=park2016}")
+            .with_field("algorithm");
+    std::vector<meeting> points = virtual_tactors(j, *grid);
+    if (j.options.drop_points)
+        points = drop_points(j, points, out);
+    const std::vector<double> tau = meeting_times(points);
+    const std::vector<double> before = parts_s(j.options.profile, tau);
+    if (before.empty())
+        refuse(j, tau);
+
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        const double after = i + 1 < points.size() ? before[i + 1] : 0.0;
+        burst b = make_burst(j, tau[i] - before[i], before[i] + after, points[i].position, tau[i]);
+        b.tau_s = tau[i];
+        // The last burst ends with the stroke, but the one before it may sound on for longer.
+        out.total_s = std::max(out.total_s, b.onset_s + b.duration_s);
+        out.bursts.push_back(std::move(b));
+    }
+}
+
+std::vector<double> parts_s(const timing_profile& p, const std::vector<double>& tau_s)
+{
+    constexpr double slack_s = 1e-10; // a part that is negative by a rounding error is none
+    std::vector<double> parts{0.0};
+    for (std::size_t i = 1; i < tau_s.size(); ++i) {
+        const double gap_s = tau_s[i] - tau_s[i - 1];
+        const double part = (gap_s - p.intercept_s + (1.0 - p.slope) * parts.back()) / (1.0 + p.slope);
+        if (!(part >= -slack_s))
+            return {};
+        parts.push_back(std::max(part, 0.0));
+    }
+    return parts;
+}
+
+std::vector<std::size_t> thin_out(const timing_profile& p, const std::vector<double>& tau_s)
+{
+    const std::vector<std::size_t> order = find_drop_order(tau_s);
+    const auto works = [&](std::size_t dropped) {
+        std::vector<double> tau;
+        for (const std::size_t i : remaining_places(tau_s.size(), order, dropped))
+            tau.push_back(tau_s[i]);
+        return !parts_s(p, tau).empty();
+    };
+    // Without a place, the part of the next grows by (2 slope part + intercept) / (1 + slope), with the part
+    // of the dropped one. No part is below -intercept / (2 slope), so that is never negative: a schedule that
+    // works stays possible if more places are dropped.
+    std::size_t few = 0;
+    std::size_t many = order.size();
+    while (few < many) {
+        const std::size_t half = few + (many - few) / 2;
+        if (works(half))
+            many = half;
+        else
+            few = half + 1;
+    }
+    return remaining_places(tau_s.size(), order, many);
 }
 
 } // namespace tactor::detail
