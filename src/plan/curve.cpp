@@ -17,12 +17,69 @@
 #include "plan/curve_impl.hpp"
 #include "plan/rounded.hpp"
 
-namespace tactor {
-inline namespace v0 {
+namespace tactor::detail {
 namespace {
 
 // A sample counts as being at times so near to it.
-constexpr double same_step = detail::same_time_s / continuous_step_s;
+constexpr double same_step = same_time_s / continuous_step_s;
+
+void scale(burst& b, double factor)
+{
+    b.intensity *= factor;
+    for (drive& d : b.drives)
+        d.amplitude *= factor;
+}
+
+class scaled_curve final : public curve::impl {
+public:
+    scaled_curve(const curve& from, double factor) : impl(from.duration_s()), from_(from), factor_(factor)
+    {
+        if (const trajectory* b = curve_access::of(from_).bounds(max_channels))
+            bounds_ = scaled(*b, factor);
+    }
+
+    void fill(std::uint64_t k, same_tactors& seen, burst& out) const override
+    {
+        curve_access::of(from_).fill(k, seen, out);
+        scale(out, factor_);
+    }
+    const trajectory* bounds(std::size_t tactors) const noexcept override
+    {
+        return curve_access::of(from_).bounds(tactors) != nullptr ? &*bounds_ : nullptr;
+    }
+
+private:
+    curve from_;
+    double factor_;
+    std::optional<trajectory> bounds_;
+};
+
+} // namespace
+
+std::uint64_t count_samples(double duration_s) noexcept
+{
+    return static_cast<std::uint64_t>(std::ceil(duration_s / continuous_step_s - same_step)) + 1;
+}
+
+double sample_time_s(std::uint64_t k, double duration_s) noexcept
+{
+    return std::min(static_cast<double>(k) * continuous_step_s, duration_s);
+}
+
+plan scaled(plan p, double factor)
+{
+    for (burst& b : p.bursts)
+        scale(b, factor);
+    if (p.curve)
+        p.curve = curve_access::make(std::make_shared<scaled_curve>(*p.curve, factor));
+    return p;
+}
+
+} // namespace tactor::detail
+
+namespace tactor {
+inline namespace v0 {
+namespace {
 
 class sampled final : public curve::impl {
 public:
@@ -30,7 +87,11 @@ public:
 
     void fill(std::uint64_t k, detail::same_tactors&, burst& out) const override
     {
-        detail::read(all_, static_cast<std::size_t>(k), out);
+        const auto i = static_cast<std::size_t>(k);
+        const drive* first = all_.drives.data() + (i == 0 ? 0 : all_.ends[i - 1]);
+        out.position = all_.positions[i];
+        out.intensity = all_.intensities[i];
+        out.drives.assign(first, all_.drives.data() + all_.ends[i]);
     }
 
 private:
@@ -126,77 +187,6 @@ void curve::impl::sample(std::uint64_t k, detail::same_tactors& seen, burst& out
     out.tau_s.reset();
 }
 
-} // namespace v0
-} // namespace tactor
-
-namespace tactor::detail {
-namespace {
-
-void scale(burst& b, double factor)
-{
-    b.intensity *= factor;
-    for (drive& d : b.drives)
-        d.amplitude *= factor;
-}
-
-class scaled_curve final : public curve::impl {
-public:
-    scaled_curve(const curve& from, double factor) : impl(from.duration_s()), from_(from), factor_(factor)
-    {
-        if (const trajectory* b = curve_access::of(from_).bounds(max_channels))
-            bounds_ = scaled(*b, factor);
-    }
-
-    void fill(std::uint64_t k, same_tactors& seen, burst& out) const override
-    {
-        curve_access::of(from_).fill(k, seen, out);
-        scale(out, factor_);
-    }
-    const trajectory* bounds(std::size_t tactors) const noexcept override
-    {
-        return curve_access::of(from_).bounds(tactors) != nullptr ? &*bounds_ : nullptr;
-    }
-
-private:
-    curve from_;
-    double factor_;
-    std::optional<trajectory> bounds_;
-};
-
-} // namespace
-
-std::uint64_t count_samples(double duration_s) noexcept
-{
-    return static_cast<std::uint64_t>(std::ceil(duration_s / continuous_step_s - same_step)) + 1;
-}
-
-double sample_time_s(std::uint64_t k, double duration_s) noexcept
-{
-    return std::min(static_cast<double>(k) * continuous_step_s, duration_s);
-}
-
-void read(const curve_samples& all, std::size_t i, burst& out)
-{
-    const drive* first = all.drives.data() + (i == 0 ? 0 : all.ends[i - 1]);
-    out.position = all.positions[i];
-    out.intensity = all.intensities[i];
-    out.drives.assign(first, all.drives.data() + all.ends[i]);
-}
-
-plan scaled(plan p, double factor)
-{
-    for (burst& b : p.bursts)
-        scale(b, factor);
-    if (p.curve)
-        p.curve = curve_access::make(std::make_shared<scaled_curve>(*p.curve, factor));
-    return p;
-}
-
-} // namespace tactor::detail
-
-namespace tactor {
-inline namespace v0 {
-
 curve::curve(double duration_s, curve_samples samples) : impl_(checked(duration_s, std::move(samples)))
 {
 }
@@ -229,7 +219,7 @@ void curve::sample(std::uint64_t k, burst& out) const
 void curve::at(double t_s, burst& out) const
 {
     const double t = t_s > 0.0 ? std::min(t_s, impl_->duration_s) : 0.0;
-    const auto k = static_cast<std::uint64_t>(t / continuous_step_s + same_step);
+    const auto k = static_cast<std::uint64_t>(t / continuous_step_s + detail::same_step);
     sample(k, out);
     const double here = detail::sample_time_s(k, impl_->duration_s);
     if (t - here <= detail::same_time_s || k + 1 >= impl_->size)

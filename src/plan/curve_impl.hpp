@@ -50,9 +50,6 @@ namespace tactor::detail {
 std::uint64_t count_samples(double duration_s) noexcept;
 double sample_time_s(std::uint64_t k, double duration_s) noexcept;
 
-/// Reads position, intensity and drives of one sample.
-void read(const curve_samples& all, std::size_t i, burst& out);
-
 /// Returns the plan with all its amplitudes and intensities times a factor, above 0. Samples of a curve are
 /// scaled when they are read.
 plan scaled(plan p, double factor);

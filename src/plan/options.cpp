@@ -13,26 +13,10 @@
 #include "core/words.hpp"
 #include "plan/rounded.hpp"
 
-namespace tactor {
-inline namespace v0 {
-
+namespace tactor::detail {
 namespace {
 
-constexpr double shortest_burst_s = 0.0001; // under a frame at 8 kHz there would be nothing to hear
-constexpr double longest_free_soa_s = 10.0;
-
-} // namespace
-
-} // namespace v0
-} // namespace tactor
-
-namespace tactor::detail {
-
-double law_duration_s(const timing_profile& p, double soa_s)
-{
-    return std::min((soa_s - p.intercept_s) / p.slope, soa_s);
-}
-
+/// \throws error (bad_input) for a law that no SOA can follow.
 void check_profile(const timing_profile& p)
 {
     const auto refuse = [](std::string_view what, double value, std::string_view hint) {
@@ -49,11 +33,17 @@ void check_profile(const timing_profile& p)
                fmt::format("more than the intercept, {}", p.intercept_s));
 }
 
+} // namespace
+
+double law_duration_s(const timing_profile& p, double soa_s)
+{
+    return std::min((soa_s - p.intercept_s) / p.slope, soa_s);
+}
+
 void check_options(const plan_options& o)
 {
-    if (o.algorithm == algorithm_kind::continuous)
-        return;
-    check_profile(o.profile);
+    if (o.algorithm == algorithm_kind::tactile_brush)
+        check_profile(o.profile);
     if (o.algorithm != algorithm_kind::park2016)
         return;
     static_cast<void>(burst_duration_s(o)); // checks what it is made of
@@ -76,10 +66,30 @@ double check_carrier(double hz)
     return hz;
 }
 
+plan_options chosen(plan_options common, const stroke_choices& c)
+{
+    common.algorithm = c.algorithm.value_or(common.algorithm);
+    common.soa_s = c.soa_s.value_or(common.soa_s);
+    common.burst_s = c.burst_s ? c.burst_s : common.burst_s;
+    common.scale.level_db += c.level_db;
+    common.faces = c.faces.value_or(common.faces);
+    if (c.phantom) {
+        common.phantom = *c.phantom;
+        common.custom_phantom.reset();
+    }
+    return common;
+}
+
 } // namespace tactor::detail
 
 namespace tactor {
 inline namespace v0 {
+namespace {
+
+constexpr double shortest_burst_s = 0.0001; // under a frame at 8 kHz there would be nothing to hear
+constexpr double longest_free_soa_s = 10.0;
+
+} // namespace
 
 double burst_duration_s(const timing_profile& p, double soa_s)
 {
@@ -117,30 +127,6 @@ double burst_duration_s(const plan_options& o)
             fmt::format("use at most {} s, or a longer SOA", o.soa_s));
     return *o.burst_s;
 }
-
-} // namespace v0
-} // namespace tactor
-
-namespace tactor::detail {
-
-plan_options chosen(plan_options common, const stroke_choices& c)
-{
-    common.algorithm = c.algorithm.value_or(common.algorithm);
-    common.soa_s = c.soa_s.value_or(common.soa_s);
-    common.burst_s = c.burst_s ? c.burst_s : common.burst_s;
-    common.scale.level_db += c.level_db;
-    common.faces = c.faces.value_or(common.faces);
-    if (c.phantom) {
-        common.phantom = *c.phantom;
-        common.custom_phantom.reset();
-    }
-    return common;
-}
-
-} // namespace tactor::detail
-
-namespace tactor {
-inline namespace v0 {
 
 double intensity_scale::amplitude(double intensity) const
 {

@@ -10,9 +10,6 @@ namespace tactor::detail {
 /// Solves Eq. (1) for the duration, with Eq. (11): a burst never outlasts its SOA. No check of bounds.
 double law_duration_s(const timing_profile& p, double soa_s);
 
-/// \throws error (bad_input) for a law that no SOA can follow.
-void check_profile(const timing_profile& p);
-
 /// \throws error (bad_input) for what the chosen algorithm cannot use.
 void check_options(const plan_options& o);
 
