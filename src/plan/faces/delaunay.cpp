@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <map>
 #include <numeric>
+#include <set>
 #include <span>
 #include <tuple>
 #include <utility>
@@ -41,21 +42,14 @@ std::vector<site> quantise(const std::vector<point>& points)
 
 void check_distinct(const std::vector<point>& points, const std::vector<site>& sites)
 {
-    std::vector<unsigned> order(sites.size());
-    std::iota(order.begin(), order.end(), 0U);
-    const auto place = [&](unsigned i) { return std::tuple(sites[i].x(), sites[i].y(), i); };
-    std::sort(order.begin(), order.end(), [&](unsigned a, unsigned b) { return place(a) < place(b); });
-    const auto twin = std::adjacent_find(order.begin(), order.end(),
-                                         [&](unsigned a, unsigned b) { return sites[a] == sites[b]; });
-    if (twin == order.end())
-        return;
-    const point p = points[*twin];
-    throw error(
-        error_kind::bad_input, "array",
-        fmt::format(
-            "two tactors at ({:.9g}, {:.9g}) mm are too near to each other for an array of this extent",
-            p.x_mm, p.y_mm),
-        "check the unit: places are in millimetres");
+    std::set<std::pair<std::int32_t, std::int32_t>> places;
+    for (std::size_t i = 0; i < sites.size(); ++i)
+        if (!places.emplace(sites[i].x(), sites[i].y()).second)
+            throw error(error_kind::bad_input, "array",
+                        fmt::format("two tactors at ({:.9g}, {:.9g}) mm are too near to each other for an "
+                                    "array of this extent",
+                                    points[i].x_mm, points[i].y_mm),
+                        "check the unit: places are in millimetres");
 }
 
 std::vector<triangle> triangulate(const std::vector<site>& sites)
@@ -83,6 +77,30 @@ void orient(const std::vector<point>& points, std::vector<triangle>& triangles)
     for (triangle& t : triangles)
         if (turn(points[t[0]], points[t[1]], points[t[2]]) < 0.0)
             std::swap(t[1], t[2]);
+}
+
+/// An edge of a triangulation and a triangle that it borders; `low` < `high`.
+struct bordering {
+    unsigned low;
+    unsigned high;
+    unsigned triangle;
+};
+
+/// Returns the edges of all triangles, sorted so that the two borders of one edge are neighbours.
+std::vector<bordering> borders(const std::vector<triangle>& triangles)
+{
+    std::vector<bordering> edges;
+    edges.reserve(3 * triangles.size());
+    for (unsigned t = 0; t < triangles.size(); ++t)
+        for (unsigned i = 0; i < 3; ++i) {
+            const unsigned a = triangles[t][i];
+            const unsigned b = triangles[t][(i + 1) % 3];
+            edges.push_back({std::min(a, b), std::max(a, b), t});
+        }
+    std::sort(edges.begin(), edges.end(), [](const bordering& a, const bordering& b) {
+        return std::tie(a.low, a.high, a.triangle) < std::tie(b.low, b.high, b.triangle);
+    });
+    return edges;
 }
 
 /// Drops, from the hull inwards, triangles that are flat against the hull.
@@ -246,22 +264,6 @@ std::vector<unsigned> from_lowest(const triangle& t)
 }
 
 } // namespace
-
-std::vector<bordering> borders(const std::vector<triangle>& triangles)
-{
-    std::vector<bordering> edges;
-    edges.reserve(3 * triangles.size());
-    for (unsigned t = 0; t < triangles.size(); ++t)
-        for (unsigned i = 0; i < 3; ++i) {
-            const unsigned a = triangles[t][i];
-            const unsigned b = triangles[t][(i + 1) % 3];
-            edges.push_back({std::min(a, b), std::max(a, b), t});
-        }
-    std::sort(edges.begin(), edges.end(), [](const bordering& a, const bordering& b) {
-        return std::tie(a.low, a.high, a.triangle) < std::tie(b.low, b.high, b.triangle);
-    });
-    return edges;
-}
 
 std::vector<triangle> delaunay(const std::vector<point>& points)
 {

@@ -12,16 +12,6 @@ namespace tactor::detail {
 
 using triangle = std::array<unsigned, 3>;
 
-/// An edge of a triangulation and a triangle that it borders; `low` < `high`.
-struct bordering {
-    unsigned low;
-    unsigned high;
-    unsigned triangle;
-};
-
-/// Returns the edges of all triangles, so sorted that the two borders of one edge are neighbours.
-std::vector<bordering> borders(const std::vector<triangle>& triangles);
-
 /// Returns Delaunay triangles of points that are not all in one line, each with positive turn(). Slivers on
 /// the hull that are thinner than same_place_mm are left out: the points are in line there.
 /// \throws error (bad_input) where two points are too near to each other for the extent of them all.

@@ -40,21 +40,15 @@ std::vector<unsigned> ranked(const std::vector<point>& places)
 /// Ranks along the line on which all tactors lie; empty where they do not.
 std::vector<unsigned> in_line(const std::vector<point>& points)
 {
-    const auto farthest = [&](point from) {
-        return *std::max_element(points.begin(), points.end(), [&](point a, point b) {
-            return distance_mm(from, a) < distance_mm(from, b);
-        });
-    };
-    const point b = farthest(points.front());
-    const point a = farthest(b);
-    const double length = distance_mm(a, b);
+    const std::pair<point, point> ends = detail::find_ends(points);
+    const double length = distance_mm(ends.first, ends.second);
+    for (const point p : points)
+        if (std::abs(turn(ends.second, ends.first, p)) > same_place_mm * length)
+            return {};
     std::vector<unsigned> order(points.size());
     std::iota(order.begin(), order.end(), 0U);
-    if (std::any_of(points.begin(), points.end(),
-                    [&](point p) { return std::abs(detail::turn(a, b, p)) > same_place_mm * length; }))
-        return {};
-    std::sort(order.begin(), order.end(),
-              [&](unsigned i, unsigned j) { return distance_mm(a, points[i]) < distance_mm(a, points[j]); });
+    const auto away = [&](unsigned i) { return distance_mm(ends.second, points[i]); };
+    std::sort(order.begin(), order.end(), [&](unsigned i, unsigned j) { return away(i) < away(j); });
     return order;
 }
 
@@ -126,48 +120,38 @@ bool is_clear(point a, point b, point p, double clear_mm) noexcept
 
 } // namespace
 
-layout::impl layout::impl::build(const array& a)
+layout::impl::impl(const array& a)
 {
     validate(a);
-    std::vector<point> places;
     for (const tactor_spec& t : a.tactors)
         places.push_back(t.position);
-    std::vector<unsigned> order = ranked(places);
-    std::vector<point> points;
-    for (const unsigned i : order)
+    index_of = ranked(places);
+    for (const unsigned i : index_of)
         points.push_back(places[i]);
-
     const std::vector<unsigned> line = in_line(points);
-    rings faces = line.empty() ? detail::join_cocircular(points, detail::delaunay(points)) : segments(line);
-    std::vector<point> hull = line.empty() ? detail::convex_hull(points) : std::vector<point>{};
-    std::vector<std::pair<point, point>> rim;
-    if (line.empty())
-        for (std::size_t i = 0; i < hull.size(); ++i)
-            rim.emplace_back(hull[i], hull[(i + 1) % hull.size()]);
-    else
-        for (const auto& f : faces)
-            rim.emplace_back(points[f.front()], points[f.back()]);
-
-    rings by_index;
-    if (line.empty())
+    if (line.empty()) {
+        faces = detail::join_cocircular(points, detail::delaunay(points));
         for (const auto& f : faces) {
             by_index.emplace_back();
             for (const unsigned v : f)
-                by_index.back().push_back(order[v]);
+                by_index.back().push_back(index_of[v]);
         }
-    std::vector<box> face_boxes = make_boxes(faces, points);
-    const double pitch = median_pitch(faces, points);
+        hull = detail::convex_hull(points);
+        for (std::size_t i = 0; i < hull.size(); ++i)
+            rim.emplace_back(hull[i], hull[(i + 1) % hull.size()]);
+    } else {
+        faces = segments(line);
+        for (const auto& f : faces)
+            rim.emplace_back(points[f.front()], points[f.back()]);
+    }
+    face_boxes = make_boxes(faces, points);
+    pitch_mm = median_pitch(faces, points);
     const box all = detail::box_around(points);
     // Faces may lap over each other by the grain of the sites from which they were made.
-    const double clear = 1e-4 + 1e-7 * distance_mm(all.low, all.high);
-    return {std::move(places),     std::move(by_index),
-            std::move(points),     std::move(order),
-            std::move(faces),      std::move(hull),
-            std::move(rim),        pitch,
-            std::move(face_boxes), clear};
+    clear_mm = 1e-4 + 1e-7 * distance_mm(all.low, all.high);
 }
 
-layout::layout(const array& a) : impl_(std::make_shared<const impl>(impl::build(a)))
+layout::layout(const array& a) : impl_(std::make_shared<const impl>(a))
 {
 }
 
@@ -183,12 +167,29 @@ const std::vector<std::vector<unsigned>>& layout::faces() const noexcept
 
 bool layout::contains(point p) const
 {
-    return impl_->in_hull(p);
+    if (impl_->clear_face(p))
+        return true;
+    if (!detail::finite(p))
+        return false;
+    return inside(impl_->hull, p) || distance_mm(p, nearest(p)) <= same_place_mm;
 }
 
 point layout::nearest(point p) const
 {
-    return impl_->nearest_in_hull(p);
+    if (!detail::finite(p))
+        throw error(error_kind::bad_input, "point", "is not finite");
+    if (inside(impl_->hull, p))
+        return p;
+    point best;
+    double least = std::numeric_limits<double>::infinity();
+    for (const auto& [a, b] : impl_->rim) {
+        const point on_edge = detail::nearest_on_segment(a, b, p);
+        if (const double d = distance_mm(p, on_edge); d < least) {
+            least = d;
+            best = on_edge;
+        }
+    }
+    return best;
 }
 
 double layout::pitch_mm() const noexcept
@@ -198,7 +199,7 @@ double layout::pitch_mm() const noexcept
 
 std::optional<unsigned> layout::impl::clear_face(point p) const noexcept
 {
-    const unsigned face = latest.get();
+    const unsigned face = latest.load(std::memory_order_relaxed);
     const std::vector<unsigned>& ring = faces[face];
     if (ring.size() < 3)
         return std::nullopt;
@@ -223,33 +224,6 @@ bool layout::impl::clear_of_diagonals(unsigned face, point p) const noexcept
                 return false;
         }
     return true;
-}
-
-bool layout::impl::in_hull(point p) const
-{
-    if (clear_face(p))
-        return true;
-    if (!detail::finite(p))
-        return false;
-    return inside(hull, p) || distance_mm(p, nearest_in_hull(p)) <= same_place_mm;
-}
-
-point layout::impl::nearest_in_hull(point p) const
-{
-    if (!detail::finite(p))
-        throw error(error_kind::bad_input, "point", "is not finite");
-    if (inside(hull, p))
-        return p;
-    point best;
-    double least = std::numeric_limits<double>::infinity();
-    for (const auto& [a, b] : rim) {
-        const point there = detail::nearest_on_segment(a, b, p);
-        if (const double d = distance_mm(p, there); d < least) {
-            least = d;
-            best = there;
-        }
-    }
-    return best;
 }
 
 unsigned layout::impl::nearest_tactor(point p) const
@@ -292,7 +266,7 @@ void layout::impl::faces_at(point p, std::vector<unsigned>& out) const
             if (face_boxes[f].holds(p, margin) && face_holds(f, p, margin))
                 out.push_back(f);
         if (!out.empty()) {
-            latest.set(out.front());
+            latest.store(out.front(), std::memory_order_relaxed);
             return;
         }
     }

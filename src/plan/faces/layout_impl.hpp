@@ -13,30 +13,12 @@
 
 #include "plan/faces/plane.hpp"
 
-namespace tactor::detail {
-
-/// A guess that threads share: a wrong one costs time and nothing else.
-class guess {
-public:
-    guess() = default;
-    guess(guess&& other) noexcept : face_(other.get()) {}
-    unsigned get() const noexcept { return face_.load(std::memory_order_relaxed); }
-    void set(unsigned face) noexcept
-    {
-        if (get() != face)
-            face_.store(face, std::memory_order_relaxed);
-    }
-
-private:
-    std::atomic<unsigned> face_{0};
-};
-
-} // namespace tactor::detail
-
 namespace tactor {
 inline namespace v0 {
 
 struct layout::impl {
+    explicit impl(const array& a);
+
     std::vector<point> places;                   ///< by index
     std::vector<std::vector<unsigned>> by_index; ///< faces for the public
 
@@ -51,10 +33,9 @@ struct layout::impl {
 
     std::vector<detail::box> face_boxes; ///< round each face
 
-    double clear_mm = 0.0;             ///< farther from an edge than any rounding reaches
-    mutable detail::guess latest = {}; ///< face of the point before: mostly the next one's too
-
-    static impl build(const array& a);
+    double clear_mm = 0.0; ///< farther from an edge than any rounding reaches
+    /// Face of the point before, mostly the next one's too. Threads share it; a wrong one only costs time.
+    mutable std::atomic<unsigned> latest = 0;
 
     /// Replaces `out` by the faces that hold p within same_place_mm; never none. p must be in the hull.
     void faces_at(point p, std::vector<unsigned>& out) const;
@@ -67,8 +48,6 @@ struct layout::impl {
 
     /// Returns the rank of the tactor nearest to p.
     unsigned nearest_tactor(point p) const;
-    bool in_hull(point p) const;
-    point nearest_in_hull(point p) const;
 };
 
 } // namespace v0
