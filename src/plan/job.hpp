@@ -72,9 +72,6 @@ std::shared_ptr<const phantom_model> choose_model(const layout& l, const plan_op
 /// Returns the kind of faces that the algorithm takes.
 faces_kind faces_used(const plan_options& o);
 
-/// \throws error (bad_input) for what is no amplitude of a phantom.
-void check_intensity(double a_v);
-
 /// Drives from a model. \throws error (bad_input) when a model of the user's own breaks its contract.
 void drives_at(const phantom_model& m, const layout& l, point p, double a_v, std::vector<drive>& out);
 

@@ -264,12 +264,6 @@ void check_burst_count(const job& j, double bursts)
                     fmt::format("at most {:.0f}; make it shorter or the SOA longer", most_bursts));
 }
 
-void check_intensity(double a_v)
-{
-    if (!(a_v >= 0.0 && std::isfinite(a_v)))
-        throw detail::bad_field("intensity", fmt::format("{} is not a number from 0 up", a_v));
-}
-
 void drives_at(const phantom_model& m, const layout& l, point p, double a_v, std::vector<drive>& out)
 {
     out.clear();

@@ -2,8 +2,8 @@
 #include <tactor/phantom.hpp>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -48,10 +48,15 @@ void check_faces(phantom_kind k, faces_kind f)
                         "use {faces=delaunay} or {phantom=inverse-distance}");
 }
 
+void check_intensity(double a_v)
+{
+    if (!(a_v >= 0.0 && std::isfinite(a_v)))
+        throw bad_field("intensity", fmt::format("{} is not a number from 0 up", a_v));
+}
+
 point check_request(const layout& l, point p, double a_v)
 {
-    if (!std::isfinite(a_v) || a_v < 0.0)
-        throw detail::bad_field("intensity", fmt::format("{} is not a number from 0 up", a_v));
+    check_intensity(a_v);
     return l.contains(p) ? p : l.nearest(p);
 }
 

@@ -22,8 +22,11 @@ std::shared_ptr<const phantom_model> make_gaussian(const layout& l);
 /// \throws error (bad_input) where the model has nothing to choose the faces for.
 void check_faces(phantom_kind k, faces_kind f);
 
-/// Checks what every model is asked for, and brings p into the hull.
-/// \throws error (bad_input) for a point or an intensity that is no finite number, or < 0.
+/// \throws error (bad_input) for an intensity that is not finite, or below 0.
+void check_intensity(double a_v);
+
+/// Checks the arguments of every model, and brings p into the hull.
+/// \throws error (bad_input) for a point that is not finite, and as check_intensity() does.
 point check_request(const layout& l, point p, double a_v);
 
 /// Adds a drive for the tactor of that rank if its amplitude is above 0.
