@@ -21,20 +21,6 @@ std::size_t live_reserve(const stream_setup& s) noexcept
     return live_voices * live_drives(s.channels, s.period_frames, s.rate);
 }
 
-template <typename T>
-void raise_to(std::atomic<T>& a, T value) noexcept
-{
-    if (value > a.load(std::memory_order_relaxed))
-        a.store(value, std::memory_order_relaxed);
-}
-
-template <typename T>
-void lower_to(std::atomic<T>& a, T value) noexcept
-{
-    if (value < a.load(std::memory_order_relaxed))
-        a.store(value, std::memory_order_relaxed);
-}
-
 // A level changes within 20 ms.
 constexpr unsigned ramps_per_s = 50;
 
@@ -147,8 +133,10 @@ void audio_loop::take_requests() noexcept
             scores_.begin_live(r);
             break;
         case request::kind::stop:
-            if (!stop_requested_)
-                scores_.stop(r.closing);
+            if (!stop_requested_ && r.closing)
+                scores_.stop(state_kind::interrupted, reason_kind::closed);
+            else if (!stop_requested_)
+                scores_.stop(state_kind::cancelled, reason_kind::none);
             request_stop();
             break;
         }
@@ -231,7 +219,8 @@ void audio_loop::write_periods(std::int64_t now) noexcept
         return broken(available.status, available.code, now);
     std::size_t left = available.frames;
     if (left > setup_.period_frames)
-        raise_to<std::uint64_t>(link_.count.late_frames, left - setup_.period_frames);
+        link_.count.late_frames =
+            std::max<std::uint64_t>(link_.count.late_frames, left - setup_.period_frames);
 
     // This is a bound even if a device claims more space than its buffer has.
     left = std::min<std::size_t>(left, setup_.buffer_frames);
@@ -241,7 +230,7 @@ void audio_loop::write_periods(std::int64_t now) noexcept
                 break;
             take_commands();
             if (scores_.being_fed())
-                lower_to<std::uint64_t>(link_.count.low_water, mixer_.size());
+                link_.count.low_water = std::min<std::uint64_t>(link_.count.low_water, mixer_.size());
             mix_period();
         }
         const io_result r = write_pending();
@@ -298,7 +287,7 @@ void audio_loop::publish() noexcept
     stream_status s{.written = offset_ + mixer_.position(),
                     .played = offset_ + played_,
                     .running = phase_ == phase::running,
-                    .stage = static_cast<stream_stage>(phase_),
+                    .stage = phase_,
                     .epoch = clock_.line().epoch,
                     .epoch_played = played_,
                     .mutes = mutes_};

@@ -83,7 +83,7 @@ public:
     std::int64_t timeout_ns() const noexcept;
 
 private:
-    enum class phase { idle, running, suspended, closing, over };
+    using phase = stream_stage;
 
     void take_requests() noexcept;
     void take_commands() noexcept;

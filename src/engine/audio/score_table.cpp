@@ -199,14 +199,6 @@ void score_table::fade(entry& e) noexcept
     e.finish = mixer_.position() + e.fade;
 }
 
-void score_table::stop(bool closing) noexcept
-{
-    if (closing)
-        stop(state_kind::interrupted, reason_kind::closed);
-    else
-        stop(state_kind::cancelled, reason_kind::none);
-}
-
 void score_table::stop(state_kind s, reason_kind why) noexcept
 {
     stopping_ = true;

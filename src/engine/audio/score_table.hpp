@@ -19,8 +19,8 @@ class score_table {
 public:
     /// Makes an empty table. `reserve`: drives of the mixer that are kept for live strokes.
     /// `ramp_frames`: in which a gain changes.
-    score_table(synth::mixer& m, link& l, std::uint32_t fade_frames, std::size_t reserve = 0,
-                std::uint32_t ramp_frames = 960) noexcept
+    score_table(synth::mixer& m, link& l, std::uint32_t fade_frames, std::size_t reserve,
+                std::uint32_t ramp_frames) noexcept
         : mixer_(m), link_(l), fade_(fade_frames), ramp_(ramp_frames), reserve_(reserve)
     {
     }
@@ -52,8 +52,6 @@ public:
     /// Fades a score out, or ends it at once if it has not begun. Its begin() may still come.
     void cancel(ticket t) noexcept;
     /// Fades everything out. Scores that have not begun end at once, and so do later ones.
-    void stop(bool closing) noexcept;
-    /// Stops in the same way, with a reason.
     void stop(state_kind s, reason_kind why) noexcept;
     /// Fades out the scores that sound, because the amplifier is off, and returns those that have not begun.
     void mute() noexcept;

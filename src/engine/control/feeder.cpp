@@ -39,10 +39,7 @@ constexpr double clock_right_s = 0.001;
 // Returns the delay in seconds, 0 within a frame. The requested time can be any number.
 double late(std::int64_t started_ns, std::int64_t due_ns, double ns_per_frame)
 {
-    std::int64_t d = 0;
-    const double ns = __builtin_sub_overflow(started_ns, due_ns, &d)
-                          ? static_cast<double>(started_ns) - static_cast<double>(due_ns)
-                          : static_cast<double>(d);
+    const double ns = static_cast<double>(started_ns) - static_cast<double>(due_ns);
     return ns > ns_per_frame ? ns * 1e-9 : 0.0;
 }
 
