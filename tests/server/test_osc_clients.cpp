@@ -313,22 +313,20 @@ TEST_CASE("no time is more than a minute ahead")
     CHECK(rig.next(me) == "/tactor/stroke 1 cancelled");
 }
 
-TEST_CASE("an address is sent ten errors a second, whatever its ports")
+TEST_CASE("ten errors a second are sent")
 {
     osc_rig rig;
     ready(rig);
     for (std::uint16_t port = 1; port <= 100; ++port)
         rig.say(osc_rig::at(port), "/tactor/nonsense");
     CHECK(rig.sent.size() == 10);
-    rig.say(osc_rig::at(1, "127.0.0.2"), "/tactor/nonsense");
-    CHECK(rig.sent.size() == 11);
     rig.pass(0.999);
     rig.say(me, "/tactor/nonsense");
-    CHECK(rig.sent.size() == 11);
+    CHECK(rig.sent.size() == 10);
     rig.pass(0.001);
     for (int i = 0; i < 100; ++i)
         rig.say(me, "/tactor/nonsense");
-    CHECK(rig.sent.size() == 21);
+    CHECK(rig.sent.size() == 20);
     CHECK(rig.osc.count() == 0);
 }
 

@@ -36,9 +36,29 @@ double find_intensity_max(const net::json& params)
 }
 
 constexpr double silent_dbfs = -200.0;
+constexpr std::int64_t second_ns = 1'000'000'000;
 constexpr std::size_t most_words = 1000; // of an error, in bytes
 
 } // namespace
+
+/// The way from the service to a sender.
+class osc_clients::sender_link final : public client_link {
+public:
+    sender_link(osc_clients& all, endpoint to) : all_(&all), to_(std::move(to)), alive_(all.alive_) {}
+    void send(std::string message) override
+    {
+        if (!alive_.expired())
+            all_->deliver(to_, message);
+    }
+    // A datagram is sent, or lost.
+    std::size_t waiting() const override { return 0; }
+    void finish() override {}
+
+private:
+    osc_clients* all_;
+    endpoint to_;
+    std::weak_ptr<const int> alive_;
+};
 
 osc_clients::osc_clients(boost::asio::io_context& io, service& s, outside o)
     : io_(io), service_(s), outside_(std::move(o))
@@ -127,12 +147,8 @@ void osc_clients::stop(const endpoint& from)
 {
     if (sender* s = find(from))
         return ask(*s, {.address = std::string(osc_stop), .method = "stop"});
-    class nowhere final : public client_link {
-        void send(std::string) override {}
-        std::size_t waiting() const override { return 0; }
-        void finish() override {}
-    };
-    const client_number n = service_.connect(std::make_shared<nowhere>(), client_kind::datagram);
+    const client_number n =
+        service_.connect(std::make_shared<sender_link>(*this, from), client_kind::datagram);
     service_.receive(n, R"({"jsonrpc":"2.0","method":"stop"})");
     service_.disconnect(n);
 }
@@ -250,25 +266,6 @@ void osc_clients::drop_held(const std::function<bool(const held&)>& which)
         check_later(gone.from);
     }
 }
-
-/// The way from the service to a sender.
-class osc_clients::sender_link final : public client_link {
-public:
-    sender_link(osc_clients& all, endpoint to) : all_(&all), to_(std::move(to)), alive_(all.alive_) {}
-    void send(std::string message) override
-    {
-        if (!alive_.expired())
-            all_->deliver(to_, message);
-    }
-    // A datagram is sent, or lost.
-    std::size_t waiting() const override { return 0; }
-    void finish() override {}
-
-private:
-    osc_clients* all_;
-    endpoint to_;
-    std::weak_ptr<const int> alive_;
-};
 
 // Calls `f` later, because the service may be in the middle of something.
 template <typename F>
@@ -410,8 +407,13 @@ void osc_clients::send_stroke(const endpoint& to, std::int32_t number, const std
 
 void osc_clients::refuse(const endpoint& to, const std::string& address, const std::string& why)
 {
-    if (errors_.take(to.address(), outside_.now_ns()))
-        outside_.send(to, net::osc_packet("/tactor/error", {address, why.substr(0, most_words)}));
+    const std::int64_t now = outside_.now_ns();
+    while (!errors_ns_.empty() && errors_ns_.front() + second_ns <= now)
+        errors_ns_.pop_front();
+    if (errors_ns_.size() == most_errors)
+        return;
+    errors_ns_.push_back(now);
+    outside_.send(to, net::osc_packet("/tactor/error", {address, why.substr(0, most_words)}));
 }
 
 void osc_clients::refuse(const endpoint& to, const std::string& address, const net::rpc_fault& f)

@@ -24,34 +24,6 @@
 
 namespace tactor::server {
 
-/// Limit on the errors that an address is sent in any second: a forger of an address cannot bury it in them.
-class error_allowance {
-public:
-    static constexpr std::size_t most = 10;
-    static constexpr std::size_t most_addresses = 1024;
-    static constexpr std::int64_t span_ns = 1'000'000'000;
-
-    /// Returns true if one more may be sent now, and counts it.
-    bool take(const boost::asio::ip::address& to, std::int64_t now_ns)
-    {
-        if (sent_.size() >= most_addresses && !sent_.contains(to))
-            std::erase_if(sent_, [&](const auto& s) { return s.second.back() + span_ns <= now_ns; });
-        if (sent_.size() >= most_addresses && !sent_.contains(to))
-            return false;
-        std::deque<std::int64_t>& times = sent_[to];
-        if (times.size() == most) {
-            if (times.front() + span_ns > now_ns)
-                return false;
-            times.pop_front();
-        }
-        times.push_back(now_ns);
-        return true;
-    }
-
-private:
-    std::map<boost::asio::ip::address, std::deque<std::int64_t>> sent_; ///< when, the oldest first
-};
-
 /// Server of all senders. Each address and port is a client while it has strokes, requests without an answer,
 /// messages for later or a subscription. Then it is forgotten. Members are called in the context's thread.
 class osc_clients {
@@ -70,6 +42,8 @@ public:
     static constexpr std::size_t most_held_of_all = 1024;
     /// Most messages that wait for the number of a stroke that is being planned or begun.
     static constexpr std::size_t most_waiting = 256;
+    /// Most errors that are sent in any second: who forges an address cannot bury it in them.
+    static constexpr std::size_t most_errors = 10;
     static constexpr double farthest_s = 60.0;     ///< most that a time tag may be ahead
     static constexpr double subscription_s = 10.0; ///< a subscription must be renewed after it
 
@@ -99,7 +73,6 @@ private:
     };
     using held_messages = std::multimap<std::int64_t, held>; ///< by when they are due
 
-    // clients.cpp
     void take(const net::osc_message& m, const endpoint& from);
     void stop(const endpoint& from);
     void subscribe(const osc_request& r, const endpoint& from);
@@ -111,8 +84,6 @@ private:
     void read_clocks();
     std::optional<std::int64_t> due_ns(const net::osc_message& m) const;
     std::int64_t lead_ns();
-
-    // answers.cpp
     sender* find(const endpoint& from);
     sender& admit(const endpoint& from);
     void ask(sender& s, const osc_request& r);
@@ -134,10 +105,10 @@ private:
     outside outside_;
     std::map<endpoint, std::unique_ptr<sender>> senders_;
     held_messages held_;
-    std::set<endpoint> to_check_; ///< senders that may be idle
-    error_allowance errors_;
-    std::int64_t unix_ns_ = 0;   ///< time of the packet
-    std::int64_t offset_ns_ = 0; ///< CLOCK_MONOTONIC minus the system's clock
+    std::set<endpoint> to_check_;        ///< senders that may be idle
+    std::deque<std::int64_t> errors_ns_; ///< times of the last errors, the oldest first
+    std::int64_t unix_ns_ = 0;           ///< time of the packet
+    std::int64_t offset_ns_ = 0;         ///< CLOCK_MONOTONIC minus the system's clock
     std::shared_ptr<const int> alive_ = std::make_shared<const int>();
 };
 
