@@ -10,11 +10,13 @@
 #include <exception>
 #include <map>
 #include <memory>
+#include <new>
 #include <optional>
 #include <set>
 #include <string>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 #include <fcntl.h>
 #include <sys/resource.h>
@@ -22,9 +24,11 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <boost/asio/buffer.hpp>
 #include <boost/asio/executor_work_guard.hpp>
 #include <boost/asio/generic/stream_protocol.hpp>
 #include <boost/asio/io_context.hpp>
+#include <boost/asio/ip/udp.hpp>
 #include <boost/asio/posix/stream_descriptor.hpp>
 #include <boost/asio/socket_base.hpp>
 #include <boost/asio/steady_timer.hpp>
@@ -36,7 +40,8 @@
 #include "net/listener.hpp"
 #include "net/osc.hpp"
 #include "net/web_connection.hpp"
-#include "server/osc/endpoint.hpp"
+#include "rt/clock.hpp"
+#include "server/osc/clients.hpp"
 
 namespace tactor::server {
 namespace {
@@ -88,6 +93,101 @@ std::string why_given_up(connection_fault f, const service_limits& l, bool admit
     return {};
 }
 
+using udp = asio::ip::udp;
+
+udp find_protocol(int fd)
+{
+    sockaddr_storage at{};
+    socklen_t size = sizeof at;
+    // NOLINTNEXTLINE(cppcoreguidelines-pro-type-reinterpret-cast): as sockets want it
+    const bool known = ::getsockname(fd, reinterpret_cast<sockaddr*>(&at), &size) == 0;
+    return known && at.ss_family == AF_INET6 ? udp::v6() : udp::v4();
+}
+
+/// OSC over UDP: a socket for all senders.
+class osc_endpoint {
+public:
+    /// Uses `fd`, a bound socket, which stays its owner's. Accepts only `peers` of other machines.
+    osc_endpoint(asio::io_context& io, int fd, service& s, std::vector<net::address_prefix> peers,
+                 std::size_t most_bytes)
+        : socket_(io, find_protocol(fd), fd),
+          due_(io),
+          peers_(std::move(peers)),
+          clients_(io, s,
+                   {[this](const udp::endpoint& to, const std::string& packet) { send(to, packet); },
+                    rt::monotonic_ns, unix_ns, std::min(most_bytes, packet_.size())})
+    {
+        socket_.non_blocking(true);
+    }
+    ~osc_endpoint()
+    {
+        boost::system::error_code ignored;
+        socket_.release(ignored);
+    }
+    osc_endpoint(const osc_endpoint&) = delete;
+    osc_endpoint& operator=(const osc_endpoint&) = delete;
+
+    void start()
+    {
+        socket_.async_wait(udp::socket::wait_read, [this](const boost::system::error_code& e) {
+            if (e)
+                return;
+            take();
+            start();
+        });
+    }
+    /// Stops receiving; known senders still get the ends of their strokes.
+    void stop()
+    {
+        boost::system::error_code ignored;
+        socket_.cancel(ignored);
+        due_.cancel();
+        clients_.drop_held();
+    }
+
+private:
+    // Handles one packet, then lets others have their turn.
+    void take()
+    {
+        boost::system::error_code failed;
+        udp::endpoint from;
+        const std::size_t n = socket_.receive_from(asio::buffer(packet_), from, 0, failed);
+        if (!failed && net::is_accepted(from.address(), peers_))
+            try {
+                clients_.receive({packet_.data(), n}, from);
+            } catch (const std::bad_alloc&) { // NOLINT(bugprone-empty-catch): lost, as it may be on its way
+            }
+        arm();
+    }
+    void arm()
+    {
+        const auto next = clients_.next_ns();
+        if (!next)
+            return static_cast<void>(due_.cancel());
+        due_.expires_at(std::chrono::steady_clock::time_point(std::chrono::nanoseconds(*next)));
+        due_.async_wait([this](const boost::system::error_code& e) {
+            if (e)
+                return;
+            clients_.act();
+            arm();
+        });
+    }
+    // Sends a datagram. It is lost if the system has no space, as it may be on its way.
+    void send(const udp::endpoint& to, const std::string& packet)
+    {
+        boost::system::error_code lost;
+        socket_.send_to(asio::buffer(packet), to, 0, lost);
+    }
+
+    static constexpr std::size_t largest_packet = 65536;
+
+    udp::socket socket_;
+    asio::steady_timer due_;
+    std::vector<net::address_prefix> peers_;
+    std::array<char, largest_packet> packet_{};
+    osc_clients clients_;
+};
+
 class server {
 public:
     server(asio::io_context& io, const endpoints& at, service_options o, stream_options s, network_options w)
@@ -114,8 +214,7 @@ public:
                 std::make_unique<listener>(io, at.http.get(), net::no_descriptors_for_browsers(),
                                            [this](socket_type c) { take_browser(std::move(c)); }));
         if (at.osc)
-            osc_.emplace(io, at.osc.get(), service_, std::move(w.osc_peers),
-                         std::min(limits_.max_message_bytes, osc_endpoint::largest_packet));
+            osc_.emplace(io, at.osc.get(), service_, std::move(w.osc_peers), limits_.max_message_bytes);
         service_.on_all_sent([this](client_number n) { finish(n); });
     }
 
