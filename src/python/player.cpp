@@ -27,7 +27,7 @@ using namespace py::literals;
 using free_call = py::call_guard<without_lock>;
 
 struct log_line {
-    std::string kind;
+    log_kind kind;
     std::string text;
 };
 
@@ -79,16 +79,6 @@ private:
     bool closed_ = false;
 };
 
-bool same_map(const array& a, const array& b)
-{
-    if (a.tactors.size() != b.tactors.size())
-        return false;
-    for (std::size_t i = 0; i < a.tactors.size(); ++i)
-        if (a.tactors[i].channel != b.tactors[i].channel)
-            return false;
-    return true;
-}
-
 // Returns the configuration that applies, with this array; null: with the configuration's. Fills in rate and
 // format from [defaults] where `s` has none.
 session::environment read_environment(session::settings& s, const array* a)
@@ -97,7 +87,7 @@ session::environment read_environment(session::settings& s, const array* a)
     if (a == nullptr)
         return e;
     // A channel count belongs to its map.
-    if (!same_map(e.tactors, *a))
+    if (!std::ranges::equal(e.tactors.tactors, a->tactors, {}, &tactor_spec::channel, &tactor_spec::channel))
         e.config.output.channels.reset();
     e.tactors = *a;
     return e;
@@ -117,7 +107,7 @@ public:
         const auto events = events_;
         if (wants_log)
             device.log = [events](log_kind k, std::string_view text) {
-                events->put(log_line{std::string(to_string(k)), std::string(text)});
+                events->put(log_line{k, std::string(text)});
             };
         session::settle_server(device.pcm);
         const bool waits_for_edges = !s.stream.no_gpio && e.config.sync && e.config.sync->in;
@@ -241,24 +231,16 @@ private:
     std::unique_ptr<open_state> open_ = std::make_unique<open_state>();
 };
 
-// Takes a keyword argument, if it is given.
-template <class T>
-void take(const py::dict& given, const char* name, std::optional<T>& into)
-{
-    if (given.contains(name) && !given[name].is_none())
-        into = given[name].cast<T>();
-}
-
 std::shared_ptr<player_handle> open(const std::shared_ptr<array_handle>& on, const std::string& pcm,
-                                    const py::dict& given, bool keep)
+                                    const py::dict& options, const std::optional<std::string>& config,
+                                    const std::optional<std::string>& array_file, bool wants_log, bool keep)
 {
     session::settings s;
     s.place = options::in_player;
     s.pcm = pcm;
-    take(given, "config", s.config_file);
-    take(given, "array_file", s.array_name);
-    give_player_options(s, given);
-    const auto wants_log = given["log"].cast<bool>();
+    s.config_file = config;
+    s.array_name = array_file;
+    give_player_options(s, options);
     const without_lock free;
     return std::make_shared<player_handle>(on->value(), std::move(s), keep, wants_log);
 }
@@ -288,16 +270,11 @@ py::object next_event(player_handle& h)
     if (const auto* r = std::get_if<stroke_report>(&*e))
         return report_tuple(*r);
     const auto& l = std::get<log_line>(*e);
-    return py::make_tuple(l.kind, l.text);
+    return py::make_tuple(std::string(to_string(l.kind)), l.text);
 }
 
 std::int64_t nanoseconds(double s)
 {
-    constexpr double most = 9e9; // s: 285 years
-    if (!(std::abs(s) <= most))
-        throw error(error_kind::bad_input, "at_s", "it is no time of CLOCK_MONOTONIC",
-                    "give seconds as time.monotonic() does")
-            .with_field("at_s");
     return static_cast<std::int64_t>(std::llround(s * 1e9));
 }
 
@@ -362,6 +339,13 @@ struct live_handle {
     live_handle(live_handle&&) noexcept = default;
     live_handle& operator=(live_handle&&) = delete;
 
+    /// Returns the stroke. \throws error in a forked process.
+    live_stroke& use() const
+    {
+        of->refuse_child();
+        return *stroke;
+    }
+
     std::shared_ptr<player_handle> of;
     std::unique_ptr<live_stroke> stroke;
     double intensity_max;
@@ -412,25 +396,14 @@ void bind_live(py::module_& m)
         .def_property_readonly("id", [](const live_handle& l) { return l.stroke->id().number; })
         .def(
             "to",
-            [](live_handle& l, double x, double y, double intensity, std::optional<double> at_s) {
-                l.of->refuse_child();
-                return l.stroke->to(x, y, intensity, at_s ? std::optional(nanoseconds(*at_s)) : std::nullopt);
+            [](const live_handle& l, double x, double y, double intensity, std::optional<double> at_s) {
+                return l.use().to(x, y, intensity, at_s ? std::optional(nanoseconds(*at_s)) : std::nullopt);
             },
             free_call())
         .def(
-            "end",
-            [](live_handle& l) {
-                l.of->refuse_child();
-                l.stroke->end();
-            },
-            free_call())
+            "end", [](const live_handle& l) { l.use().end(); }, free_call())
         .def(
-            "cancel",
-            [](live_handle& l) {
-                l.of->refuse_child();
-                l.stroke->cancel();
-            },
-            free_call())
+            "cancel", [](const live_handle& l) { l.use().cancel(); }, free_call())
         .def_property_readonly("intensity_max", [](const live_handle& l) { return l.intensity_max; })
         .def("remarks",
              [](live_handle& l, double x, double y, double intensity) {

@@ -74,15 +74,6 @@ auto read_rows(const numbers& a, Make make)
     return rows;
 }
 
-// Reads places from an (n, 2) array.
-std::vector<point> read_points(const numbers& a)
-{
-    if (a.ndim() != 2 || a.shape(1) != 2)
-        throw error(error_kind::bad_input, "points", "they are no list of (x, y)",
-                    "give [(x_mm, y_mm), ...] or an array of shape (n, 2)");
-    return read_rows(a, [](const double* r) { return point{r[0], r[1]}; });
-}
-
 py::tuple pair(point p)
 {
     return py::make_tuple(p.x_mm, p.y_mm);
@@ -192,7 +183,11 @@ void bind_path(py::module_& m)
 {
     py::class_<path>(m, "Path")
         .def_static("svg", [](const std::string& data) { return path::from_svg(data); })
-        .def_static("polyline", [](const numbers& a) { return path::polyline(read_points(a)); })
+        .def_static(
+            "polyline",
+            [](const numbers& a) {
+                return path::polyline(read_rows(a, [](const double* r) { return point{r[0], r[1]}; }));
+            })
         .def_static("arc",
                     [](double x, double y, double radius, double from, double sweep) {
                         return path::arc({x, y}, radius, from, sweep);

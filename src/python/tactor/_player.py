@@ -103,9 +103,8 @@ class Player(_Unique):
         for name, least, hint in (("latency", 0.0001, "0.0001 to 10 s"), ("sync_delay", 0.0, "0 to 10 s")):
             value = given.pop(name)
             given[f"{name}_ms"] = None if value is None else 1e3 * _number(name, value, least, 10.0, hint)
-        given.update(config=None if config is None else encoded(config, "config"),
-                     array_file=None if array._file is None else encoded(array._file), log=log is not None)
-        core = _tactor.Player(array._core, device, given, keep_drive_time)
+        files = None if config is None else encoded(config, "config"), None if array._file is None else encoded(array._file)
+        core = _tactor.Player(array._core, device, given, *files, log is not None, keep_drive_time)
         self._setup: dict[str, _t.Any] = core.setup()
         doubt = _tactor.find_drive_doubt(device) if keep_drive_time else ""
         if doubt:

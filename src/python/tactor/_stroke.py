@@ -6,7 +6,7 @@ import os
 import typing as _t
 
 from tactor import _tactor
-from tactor._array import Array, Point
+from tactor._array import Array, Point, _places
 from tactor._checks import _floats, _Member, _need, _number, _place, reading, _Stated
 from tactor._errors import InputError
 
@@ -44,7 +44,7 @@ class Path(_Stated):
     @classmethod
     def polyline(cls, points: _ArrayLike) -> Path:
         """Straight lines from point to point, shape (n, 2), mm."""
-        return cls._wrap(_tactor.Path.polyline(_floats("points", points)))
+        return cls._wrap(_tactor.Path.polyline(_places("points", points)))
 
     @classmethod
     def arc(cls, centre: _t.Sequence[float], radius_mm: float, from_deg: float, sweep_deg: float) -> Path:
