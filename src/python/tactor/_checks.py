@@ -102,19 +102,6 @@ def _need(value: object, kind: type, what: str) -> None:
         raise TypeError(f"{what}: {article} {kind.__name__} is wanted, not {type(value).__name__}")
 
 
-def _split_envelope(given: dict[str, _t.Any]) -> dict[str, _t.Any]:
-    """Splits the tool's envelope "tukey:PART" into its two options."""
-    envelope = given.get("envelope")
-    if not isinstance(envelope, str) or not envelope.startswith("tukey:"):
-        return given
-    if given.get("tukey_part") is not None:
-        raise InputError("envelope", f'there are "{envelope}" and tukey_part', "give the part once", field="envelope")
-    try:
-        return {**given, "envelope": "tukey", "tukey_part": float(envelope[len("tukey:"):])}
-    except ValueError:
-        raise InputError("envelope", f'"{envelope}" is not known', "tukey:PART, such as tukey:0.3", field="envelope") from None
-
-
 def _counted(n: int, noun: str) -> str:
     return f"{n} {noun}" if n == 1 else f"{n} {noun}s"
 

@@ -27,7 +27,7 @@ class Reply(_Awaited[_t.Any]):
     Both give the result, or raise what the service refused it with: `InputError`, `DeviceError` or `StreamError` with its words.
     """
 
-    def __init__(self, client: _Connection, convert: _t.Callable[[_t.Any], _t.Any]) -> None:
+    def __init__(self, client: _Connection, convert: _t.Callable[[_t.Any], _t.Any] = lambda result: result) -> None:
         super().__init__()
         self._client = client
         self._convert = convert
@@ -63,10 +63,6 @@ class Reply(_Awaited[_t.Any]):
             raise TimeoutError(f"there is no answer after {timeout:g} s")
         return self._answer()
 
-    def add_done_callback(self, callback: _t.Callable[[_t.Any], object]) -> None:
-        """Calls `callback(reply)` once the answer is there: in the client's thread, or at once and here when it is already."""
-        super().add_done_callback(callback)
-
     def _take(self, result: _t.Any) -> None:
         """The service's result."""
         try:
@@ -86,7 +82,7 @@ class RemoteStroke(Reply):
     """A stroke that a service plays. Awaiting it, or `wait`, gives its `Report`; who cancels the awaiting cancels the stroke."""
 
     def __init__(self, client: _Connection) -> None:
-        super().__init__(client, lambda result: result)
+        super().__init__(client)
         self._numbers: list[int] = []
         self._left: set[int] = set()
         self._wish: str | None = None
@@ -135,7 +131,8 @@ class RemoteStroke(Reply):
         self._client.strokes.pop(event["stroke"], None)
         self._left.discard(event["stroke"])
         if not self._left:
-            self._end(Report(event["state"], event.get("reason") or "", event["frames"], event.get("started_s"), event.get("late_s") or 0.0))
+            self._end(Report(*(event[name] for name in ("state", "reason", "frames", "started_s", "late_s")), None,
+                             event["held_points"], event["outside_points"]))
 
 
 class RemoteLive(RemoteStroke):
@@ -206,7 +203,8 @@ class _Connection:
         """Sends a message that gets no answer."""
         self._send({"jsonrpc": "2.0", "method": method, "params": params})
 
-    def ask(self, reply: Reply, method: str, params: dict[str, _t.Any]) -> None:
+    def ask(self, reply: _R, method: str, params: dict[str, _t.Any]) -> _R:
+        """Sends a request; gives its reply back."""
         with self.lock:
             self.last += 1
             number = self.last
@@ -216,6 +214,7 @@ class _Connection:
         except Error:
             self.waiting.pop(number, None)
             raise
+        return reply
 
     def _send(self, message: dict[str, _t.Any]) -> None:
         if os.getpid() != self.owner:
@@ -271,11 +270,9 @@ class _Connection:
 
 
 def _refused(error: dict[str, _t.Any]) -> Error:
-    data = error.get("data") or {}
-    what: str = data.get("what") or "service"
-    kind: type[Error] = _KINDS.get(data.get("kind", ""), StreamError)
-    why: str = data.get("why") or error.get("message") or ""
-    return kind(what, why, data.get("hint") or "", field=what.rpartition(".")[2] or None)
+    data: dict[str, str] = error["data"]
+    kind: type[Error] = _KINDS.get(data["kind"], StreamError)
+    return kind(data["what"], data["why"], data["hint"], field=data["what"].rpartition(".")[2] or None)
 
 
 def _connected(socket: str | os.PathLike[str] | None) -> _Connection:
@@ -317,7 +314,6 @@ class Client(_Unique):
     """
 
     def __init__(self, socket: str | os.PathLike[str] | None = None) -> None:
-        self._wire: _Connection | None = None
         self._wire = _connected(socket)
         try:
             self._hello: dict[str, _t.Any] = self.call("hello").wait(_HELLO_S)
@@ -333,12 +329,12 @@ class Client(_Unique):
     @property
     def closed(self) -> bool:
         """True once it was closed, or the service has gone."""
-        return self._get().gone
+        return self._wire.gone
 
     def call(self, method: str, **params: _t.Any) -> Reply:
         """Calls any method of the protocol, with its parameters; gives its result as JSON has it."""
         _need(method, str, "method")
-        return self._ask(Reply(self._get(), lambda result: result), method, params)
+        return self._wire.ask(Reply(self._wire), method, params)
 
     def play(self, stroke: _t.Union[Stroke, Path, str], *, start: _t.Union[str, dict[str, float]] = "now", at_s: float | None = None,
              delay: float | None = None, **options: _t.Any) -> RemoteStroke:
@@ -374,11 +370,11 @@ class Client(_Unique):
             start = {"monotonic_s": _number("at_s", at_s)}
         elif delay is not None:
             start = {"delay_s": _number("delay", delay)}
-        return self._ask(RemoteStroke(self._get()), "play", {**_drawn(stroke), "options": _said(options), "start": start})
+        return self._wire.ask(RemoteStroke(self._wire), "play", {**_drawn(stroke), "options": _said(options), "start": start})
 
     def plan(self, stroke: _t.Union[Stroke, Path, str], **options: _t.Any) -> Reply:
         """Plans a stroke as `play` would, and plays nothing; gives a `Plan`."""
-        return self._ask(Reply(self._get(), Plan.from_dict), "plan", {**_drawn(stroke), "options": _said(options)})
+        return self._wire.ask(Reply(self._wire, Plan.from_dict), "plan", {**_drawn(stroke), "options": _said(options)})
 
     def live(self, *, timeout: float | None = None, smooth: float | None = None, **options: _t.Any) -> RemoteLive:
         """Begins a stroke that is fed point by point; silent until the first. Blocks until the service has answered.
@@ -406,17 +402,15 @@ class Client(_Unique):
             params["timeout_s"] = _number("timeout", timeout)
         if smooth is not None:
             params["smooth_s"] = _number("smooth", smooth)
-        wire = self._get()
-        stroke = RemoteLive(wire)
-        begun = Reply(wire, stroke._take)
-        self._ask(begun, "begin", params).wait()
+        stroke = RemoteLive(self._wire)
+        self._wire.ask(Reply(self._wire, stroke._take), "begin", params).wait()
         return stroke
 
     def drive(self, tactor: int, intensity: float = 1.0, duration: float = 0.5) -> RemoteStroke:
         """Drives one tactor for a while, s, at an intensity of 0 to 1; gives a `Report`."""
         params = {"tactor": _whole("tactor", tactor, 0, 1023), "intensity": _number("intensity", intensity, 0.0, 1.0),
                   "duration_s": _number("duration", duration, 0.0)}
-        return self._ask(RemoteStroke(self._get()), "drive", params)
+        return self._wire.ask(RemoteStroke(self._wire), "drive", params)
 
     def stop(self) -> Reply:
         """Fades everybody's strokes out; the service goes on."""
@@ -424,7 +418,7 @@ class Client(_Unique):
 
     def fire(self) -> Reply:
         """Starts everybody's armed strokes; gives their count."""
-        return self._ask(Reply(self._get(), lambda result: result["count"]), "fire", {})
+        return self._wire.ask(Reply(self._wire, lambda result: result["count"]), "fire", {})
 
     def status(self) -> Reply:
         """Asks for the state of the service: a dict with stream, amplifier, clients, strokes and limits."""
@@ -432,16 +426,7 @@ class Client(_Unique):
 
     def close(self) -> None:
         """Leaves the service: live strokes end, what was asked to be played is played."""
-        self._get().close()
-
-    def _ask(self, reply: _R, method: str, params: dict[str, _t.Any]) -> _R:
-        reply._client.ask(reply, method, params)
-        return reply
-
-    def _get(self) -> _Connection:
-        if self._wire is None:
-            raise RuntimeError("the client never had a service")
-        return self._wire
+        self._wire.close()
 
     def __enter__(self) -> Client:
         return self
@@ -461,7 +446,7 @@ class Client(_Unique):
             wire.close()
 
     def __repr__(self) -> str:
-        return f"<tactor.Client: {'closed' if self.closed else self._get().path}>"
+        return f"<tactor.Client: {'closed' if self.closed else self._wire.path}>"
 
 
 def _drawn(stroke: _t.Any) -> dict[str, str]:

@@ -10,7 +10,7 @@ import typing as _t
 
 from tactor import _tactor
 from tactor._array import Array, Point
-from tactor._checks import _Columns, _Member, _need, reading, _shown, _split_envelope, _Value
+from tactor._checks import _Columns, _Member, _need, reading, _shown, _Value
 from tactor._errors import Error, InputError
 from tactor._stroke import Stroke
 
@@ -560,7 +560,7 @@ def plan(array: Array, stroke: Stroke, *, duration: float | None = None, speed: 
     del given["array"], given["stroke"]
     _need(array, Array, "array")
     _need(stroke, Stroke, "stroke")
-    return Plan._wrap(_tactor.Plan(array._core, stroke._core, _split_envelope(given), array._settings()), array)
+    return Plan._wrap(_tactor.Plan(array._core, stroke._core, given, array._settings()), array)
 
 
 def burst_duration(*, soa: float | None = None, burst: float | None = None, slope: float | None = None,

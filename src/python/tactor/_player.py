@@ -12,7 +12,7 @@ import weakref
 
 from tactor import _tactor
 from tactor._array import Array
-from tactor._checks import encoded, _need, _number, _split_envelope, _Unique, _whole
+from tactor._checks import encoded, _need, _number, _Unique, _whole
 from tactor._errors import InputError
 from tactor._score import Score
 from tactor._ticket import LiveStroke, Report, Ticket, _call, _Held, _Shared
@@ -92,7 +92,6 @@ class Player(_Unique):
         given = dict(locals())
         for name in ("self", "device", "array", "config", "log", "keep_drive_time"):
             del given[name]
-        self._shared: _Shared | None = None
         self._array: Array = array
         _need(array, Array, "array")
         _need(device, str, "device")
@@ -243,7 +242,7 @@ class Player(_Unique):
         times = (_number("timeout", timeout, 0.001, 86400.0), None if longest is None else _number("longest", longest, 0.001, 86400.0),
                  _number("smooth", smooth, 0.0, 1.0), None if intensity_max is None else _number("intensity_max", intensity_max, 0.001, 1e6))
         with shared.lock:
-            core = shared.core.live(self._array._core, _split_envelope(given), *times, self._array._settings())
+            core = shared.core.live(self._array._core, given, *times, self._array._settings())
             stroke = LiveStroke(shared, core)
             self._held.tickets[stroke.id] = stroke
         return stroke
@@ -282,8 +281,6 @@ class Player(_Unique):
             shared.held = weakref.ref(held)
 
     def _get(self) -> _Shared:
-        if self._shared is None:
-            raise RuntimeError("the player was never opened")
         self._shared.core.refuse_child()
         return self._shared
 
@@ -292,7 +289,7 @@ class Player(_Unique):
         return self
 
     def __exit__(self, kind: type[BaseException] | None, value: BaseException | None, trace: _TracebackType | None) -> None:
-        if self._shared is not None and not self._shared.core.forked:
+        if not self._shared.core.forked:
             self.close()
 
     def __del__(self) -> None:
@@ -315,5 +312,5 @@ _open: weakref.WeakSet[Player] = weakref.WeakSet()
 def _close_all() -> None:
     """A forgotten player is closed, and its amplifier off, while Python can still say so."""
     for player in list(_open):
-        if player._shared is not None and not player._shared.core.forked:
+        if not player._shared.core.forked:
             _call(player.close)

@@ -8,7 +8,7 @@ import typing as _t
 
 from tactor import _tactor
 from tactor._array import Array
-from tactor._checks import _counted, _Member, _need, _number, reading, _split_envelope, _Value, _whole
+from tactor._checks import _counted, _Member, _need, _number, reading, _Value, _whole
 from tactor._errors import InputError
 from tactor._plan import Plan
 
@@ -106,7 +106,7 @@ class Score(_Value):
         given = dict(locals())
         del given["self"], given["array"], given["plans"]
         _need(array, Array, "array")
-        self._take(array, tuple(placed(plans)), _split_envelope(given))
+        self._take(array, tuple(placed(plans)), given)
 
     def _take(self, array: Array, plans: tuple[tuple[float | None, Plan], ...], options: dict[str, _t.Any]) -> None:
         self._array = array
