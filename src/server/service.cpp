@@ -374,7 +374,6 @@ void service::disconnect(client_number number)
     clients_.erase(found);
     planners_.forget(number);
     gather_levels();
-    count_touch_listeners();
 }
 
 void service::tell_stream(stream_state s, const std::string& reason)

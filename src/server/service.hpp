@@ -195,7 +195,6 @@ private:
     reply_json limits_json() const;
     reply_json people() const;
     void tell_subscribers(const std::string& event, reply_json params, client_number except = 0);
-    void count_touch_listeners();
     void touch(stroke_record& r);
     void touch_later(std::uint32_t stroke);
     void end_touch(stroke_record& r);
@@ -273,8 +272,6 @@ private:
     client_number stopped_by_ = 0; ///< client of the last stop
     boost::asio::steady_timer touch_timer_;
     std::set<std::uint32_t> touches_due_ = {}; ///< live strokes whose last place others were not told
-    allowance touches_ = {};
-    std::size_t touch_listeners_ = 0;
     std::map<std::string, double> wrong_token_wait_s_ = {}; ///< by address; the last answer's
     std::list<boost::asio::steady_timer> late_answers_ = {};
     std::size_t jobs_ = 0;            ///< that wait to be planned or are

@@ -53,7 +53,6 @@ bool is_taken_name(std::string_view name)
 }
 
 constexpr std::chrono::nanoseconds touch_step{1'000'000'000 / 30}; // for each stroke
-constexpr double most_touches_per_s = 10'000.0;                    // to all clients together
 
 } // namespace
 
@@ -237,7 +236,6 @@ void service::subscribe(client& c, const json& params, const answer& to)
     c.levels.assign(stream_.peaks().size(), 0.0F);
     c.levels_timer.cancel();
     gather_levels();
-    count_touch_listeners();
     if (!c.events.contains("levels"))
         return;
     c.levels_timer.expires_after(std::chrono::nanoseconds(std::llround(1e9 / c.levels_hz)));
@@ -303,22 +301,11 @@ void service::tell_subscribers(const std::string& event, reply_json params, clie
             c->link->send(line);
 }
 
-void service::count_touch_listeners()
-{
-    touch_listeners_ =
-        static_cast<std::size_t>(std::count_if(clients_.begin(), clients_.end(), [](const auto& c) {
-            return c.second->events.contains("touches");
-        }));
-}
-
 // Shows the last point of a live stroke to others, as often as touch_step allows: now or later.
 void service::touch(stroke_record& r)
 {
-    if (touch_listeners_ == 0)
-        return;
     const std::int64_t now = options_.now_ns();
-    const bool soon = r.touch_told_ns && now - *r.touch_told_ns < touch_step.count();
-    if (soon || !touches_.take(static_cast<double>(touch_listeners_), most_touches_per_s, now))
+    if (r.touch_told_ns && now - *r.touch_told_ns < touch_step.count())
         return touch_later(r.number);
     touches_due_.erase(r.number);
     r.touch_told_ns = now;
@@ -343,7 +330,7 @@ void service::touch_later(std::uint32_t stroke)
 void service::end_touch(stroke_record& r)
 {
     touches_due_.erase(r.number);
-    if (r.touched && touch_listeners_ != 0)
+    if (r.touched)
         tell_touch(r, false);
 }
 

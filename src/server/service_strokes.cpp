@@ -367,21 +367,18 @@ void service::start_followers(stroke_record& first, std::int64_t at_ns)
             continue;
         }
         const score later = *std::exchange(r.submits_later, {});
-        try {
-            if (out == nullptr)
-                no_stream("");
-            add_submission(
-                r, out->submit(later, start_at::time(at_ns + std::llround(after_s * 1e9)), level_db(r)));
-            r.state = "waiting";
-        } catch (const error& e) {
-            finish(r, {.state = state_kind::interrupted,
-                       .reason = reason_kind::failed,
-                       .why = out->ended() ? "the stream has ended" : e.what()});
-        } catch (...) {
-            finish(r, {.state = state_kind::interrupted,
-                       .reason = reason_kind::failed,
-                       .why = "the stream has ended"});
-        }
+        std::string why = "the stream has ended";
+        if (out != nullptr)
+            try {
+                add_submission(
+                    r, out->submit(later, start_at::time(at_ns + std::llround(after_s * 1e9)), level_db(r)));
+                r.state = "waiting";
+                continue;
+            } catch (const error& e) {
+                if (!out->ended())
+                    why = e.what();
+            }
+        finish(r, {.state = state_kind::interrupted, .reason = reason_kind::failed, .why = why});
     }
 }
 
