@@ -5,6 +5,8 @@
 
 #include <functional>
 
+#include <tactor/error.hpp>
+
 namespace CLI {
 class App;
 }
@@ -12,13 +14,15 @@ class App;
 namespace tactor::cli {
 
 /// Exit statuses (see tactor(1)).
-enum exit_status {
-    status_ok = 0,
-    status_failed = 1,
-    status_usage = 2,
-    status_device = 3,
-    status_interrupted = 130
-};
+enum exit_status { status_ok = 0, status_failed = 1, status_usage = 2, status_device = 3 };
+
+/// Returns the exit status for an error.
+constexpr int exit_status_for(error_kind kind) noexcept
+{
+    return kind == error_kind::bad_input       ? status_usage
+           : kind == error_kind::not_available ? status_device
+                                               : status_failed;
+}
 
 /// Runs after the command line was parsed; returns the exit status, throws tactor::error.
 using command = std::function<int()>;

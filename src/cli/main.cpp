@@ -31,19 +31,6 @@
 namespace tactor::cli {
 namespace {
 
-int exit_status_for(error_kind kind)
-{
-    switch (kind) {
-    case error_kind::bad_input:
-        return status_usage;
-    case error_kind::not_available:
-        return status_device;
-    case error_kind::runtime:
-        break;
-    }
-    return status_failed;
-}
-
 struct named_command {
     std::string_view name;
     command (*add)(CLI::App&);

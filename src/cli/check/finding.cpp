@@ -90,18 +90,11 @@ std::string_view to_string(level l)
 
 int worst_status(const std::vector<finding>& all)
 {
-    int status = status_ok;
-    for (const finding& f : all) {
-        if (f.how != level::error)
-            continue;
-        if (f.kind == error_kind::bad_input)
-            return status_usage;
-        if (f.kind == error_kind::not_available)
-            status = status_device;
-        else if (status == status_ok)
-            status = status_failed;
-    }
-    return status;
+    for (const error_kind k : {error_kind::bad_input, error_kind::not_available, error_kind::runtime})
+        if (std::any_of(all.begin(), all.end(),
+                        [k](const finding& f) { return f.how == level::error && f.kind == k; }))
+            return exit_status_for(k);
+    return status_ok;
 }
 
 std::string check_text(const std::vector<finding>& all, bool brief)
