@@ -127,13 +127,6 @@ void use_plan_sound(const files::plan_file& f, settings& s)
     s.render.marker_s = f.render.marker_s;
 }
 
-// Returns the plan's array, with the settings that its array file had when the plan was made.
-array use_plan_array(const files::plan_file& f, environment& e)
-{
-    e.plan_channels = f.render.channels;
-    return f.tactors;
-}
-
 // Its error lists the presets.
 array named_array(const std::string& name)
 {
@@ -149,9 +142,11 @@ array find_array(settings& s, environment& e)
     setup& config = e.config;
     if (!s.array_name) {
         e.array_file = config.array ? e.config_name : "";
-        if (const files::plan_file* f = first_plan(s, e); f != nullptr && !config.array)
-            return use_plan_array(*f, e);
-        return config.array ? *config.array : preset_array("palm-3x3");
+        const files::plan_file* planned = first_plan(s, e);
+        if (config.array || planned == nullptr)
+            return config.array.value_or(preset_array("palm-3x3"));
+        e.plan_channels = planned->render.channels;
+        return planned->tactors; // with the settings that its array file had when the plan was made
     }
     if (is_preset(array_presets(), *s.array_name)) {
         config.output.channels.reset();
