@@ -196,6 +196,22 @@ void draw_columns(canvas& c, const scene& s, const timeline& t, const timing_fra
     }
 }
 
+// Draws slanted lines inside a box, and its rim.
+void draw_hatch(canvas& c, box b, const mark& m)
+{
+    const group g(c, m);
+    const style thin{.stroke = black, .width = 0.4};
+    constexpr double apart = 2.4;
+    // Lines x + y = k through the page, so that neighbouring boxes continue each other.
+    const double first = std::ceil((b.x + b.y) / apart) * apart;
+    for (double k = first; k < b.right() + b.bottom(); k += apart) {
+        const double x_top = std::min(b.right(), k - b.y);
+        const double x_bottom = std::max(b.x, k - b.bottom());
+        c.line({x_bottom, k - x_bottom}, {x_top, k - x_top}, thin);
+    }
+    c.rect(b, {.stroke = black, .width = 0.5}, {.kind = "rim"});
+}
+
 // Hatches the times in which one tactor serves two bursts. Returns true if there are any.
 bool draw_conflicts(canvas& c, const scene& s, const timeline& t, const timing_frame& f)
 {
@@ -213,6 +229,26 @@ bool draw_conflicts(canvas& c, const scene& s, const timeline& t, const timing_f
                        {.kind = "conflict", .data = {{"tactor", fmt::format("{}", k.tactor)}}});
         }
     return drawn != 0;
+}
+
+// Draws a line with ends from x0 to x1 at y, and its label in it or to its right. Thin lines run down to
+// `below` at both ends.
+void draw_dimension(canvas& c, double x0, double x1, double y, double below, const std::string& label,
+                    const mark& m)
+{
+    const group g(c, m);
+    const style thin{.stroke = ink, .width = 0.45};
+    for (const double x : {x0, x1}) {
+        c.line({x, y - 3.0}, {x, below}, {.stroke = dark_grey, .width = 0.35, .dash = 1.0});
+        c.line({x, y - 1.5}, {x, y + 1.5}, thin);
+    }
+    const double width = text_width(label, small_text);
+    const bool inside = x1 - x0 >= width + 12.0;
+    const double left = inside ? (x0 + x1 - width) / 2.0 : x1 + 2.5;
+    c.line({x0, y}, {inside ? left - 2.0 : x1, y}, thin);
+    if (inside)
+        c.line({left + width + 2.0, y}, {x1, y}, thin);
+    c.text({left, y + cap_height(small_text) / 2.0}, label, {.size = small_text, .halo = true});
 }
 
 class timing_drawing {

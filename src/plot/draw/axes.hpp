@@ -93,14 +93,6 @@ std::vector<spot> simplify(const std::vector<spot>& line, double tolerance);
 /// Returns the distance of a point from the segment between two others, pt.
 double distance(spot p, spot a, spot b) noexcept;
 
-/// Draws a line with ends from x0 to x1 at y, and its label in it or to its right. Thin lines run down to
-/// `below` at both ends.
-void draw_dimension(canvas& c, double x0, double x1, double y, double below, const std::string& label,
-                    const mark& m);
-
-/// Draws slanted lines inside a box, and its rim.
-void draw_hatch(canvas& c, box b, const mark& m);
-
 inline constexpr double note_height = 8.0; ///< of a line, pt
 
 /// Returns the parts that are not empty, with a separator between them.
