@@ -26,12 +26,6 @@ def grid(rows, columns, pitch):
     return f'[array]\nname = "grid"\ngrid = {{ rows = {rows}, columns = {columns}, pitch_mm = {pitch}.0 }}\n'
 
 
-def irregular():
-    places = [(0, 0), (17, -3), (38, 2), (55, 8), (-4, 22), (14, 25), (33, 19), (60, 27), (2, 47), (22, 44), (41, 50), (58, 45)]
-    return '[array]\nname = "sleeve"\n' + "".join(
-        f"[[tactor]]\nx_mm = {x}.0\ny_mm = {y}.0\nchannel = {i * 5 % 12}\n" for i, (x, y) in enumerate(places))
-
-
 def numbers(text):
     """Returns the numbers of "1-3, 5"."""
     runs = [[int(n) for n in run.split("-")] for run in text.split(", ")]
@@ -103,12 +97,6 @@ class Array(PlotTest):
         for point in points:
             self.near(math.dist(point, (cx, cy)), 16 * float(svg.id("array").get("data-mm-scale")), 0.06)
 
-    def test_colours_run_from_dark_to_light_with_time(self):
-        greys = [0.2126 * r + 0.7152 * g + 0.0722 * b for r, g, b in
-                 ((int(e.get("fill")[i:i + 2], 16) for i in (1, 3, 5)) for e in self.svg("park2016-3").all("burst"))]
-        self.assertEqual(greys, sorted(greys))
-        self.assertGreater(greys[-1] - greys[0], 120)
-
     def test_several_strokes_share_one_time_and_one_array(self):
         plans, svg = self.plan(SEVERAL)["plans"], self.svg(SEVERAL)
         self.assertEqual(len(svg.all("path")), len(plans))
@@ -164,41 +152,6 @@ class Timing(PlotTest):
     def test_each_tactor_of_each_burst_has_a_bar(self):
         self.check_bars("park2016-3")
         self.check_bars("park2016-3", "--duration", "0.3", "--array", ROOT / "examples/arrays/palm-measured.toml")
-
-    def test_conflicts_are_hatched(self):
-        plan, svg = self.check_bars("park2016-1", *BRUSH)
-        self.assertTrue(plan["conflicts"])
-        for h, c in zip(svg.all("conflict"), plan["conflicts"], strict=True):
-            rim = [e for e in h if e.get("class") == "rim"][0]
-            self.near(number(rim, "x"), svg.time(c["from_s"]))
-            self.near(number(rim, "x") + number(rim, "width"), svg.time(c["to_s"]))
-            for line in h.findall(NS + "line"):
-                for at, size in (("x", "width"), ("y", "height")):
-                    for end in "12":
-                        self.assertTrue(-0.01 <= number(line, at + end) - number(rim, at) <= number(rim, size) + 0.01)
-        self.assertIn("two bursts on one tactor", svg.texts())
-        self.assertEqual({b.get("fill-opacity") for b in svg.all("bar", "sound")}, {"0.7"})
-        self.assertNotIn("two bursts on one tactor", self.svg("park2016-1").texts())
-
-    def test_times_soa_and_duration_are_marked(self):
-        plan, svg = self.plan("park2016-3"), self.svg("park2016-3")
-        ticks = [e for e in svg.all("axis")[0] if e.get("class") == "tick-label"]
-        self.assertGreaterEqual(len(ticks), 4)
-        for tick in ticks:
-            self.near(number(tick, "x"), svg.time(float(tick.text)))
-        for got, t_s in zip([number(l, "x1") for l in svg.id("soa").findall(NS + "line") if l.get("stroke-dasharray")], (0, plan["soa_s"])):
-            self.near(got, svg.time(t_s))
-        self.assertTrue({"time (s)", "SOA 0.07 s", "duration 0.07 s"} <= set(svg.texts()))
-        brush = self.plan("park2016-1", *BRUSH)["bursts"]
-        self.assertTrue({f"first SOA {brush[1]['onset_s'] - brush[0]['onset_s']:.4g} s", f"first duration {brush[0]['duration_s']:.4g} s"}
-                        <= set(self.svg("park2016-1", *BRUSH).texts()))
-        for speed in ("60", "400"):  # no line strikes through a number
-            svg = self.svg("park2016-1", "--speed", speed)
-            for name in ("soa", "duration"):
-                (text,) = svg.id(name).findall(NS + "text")
-                for line in svg.id(name).findall(NS + "line"):
-                    (x0, x1), (y0, y1) = (sorted((number(line, c + "1"), number(line, c + "2"))) for c in "xy")
-                    self.assertFalse(overlap(box(text), (x0, y0 - 0.1, x1, y1 + 0.1)), (speed, name))
 
     def test_an_all_silent_plan_is_drawn_too(self):
         self.write("s.toml", '[stroke]\npath = "M 0 20 H 40"\nintensity = 0\n')
@@ -384,47 +337,6 @@ class Crowded(PlotTest):
     def apart(self, labels, what):
         for a, b in itertools.combinations(labels, 2):
             self.assertFalse(overlap(box(a), box(b)), (what, a.text, b.text))
-
-    def test_names_and_colours_are_in_the_legend(self):
-        self.write("a.toml", grid(3, 3, 20))
-        for count in (3, 10):
-            self.write("s.toml", "".join(f'[[stroke]]\nname = "a long name of stroke {i + 1}"\npath = "M {i} 0 L 40 40"\n' for i in range(count)))
-            for width in (60, 170):
-                svg = self.drawn(width=width)
-                names, colours = svg.all("stroke-name"), [e.get("fill") for e in svg.all("stroke-colour")]
-                self.assertEqual([e.text.split()[0] for e in names], [str(i + 1) for i in range(count)])
-                self.assertEqual(len(set(colours)), count)
-                self.assertEqual([e.get("stroke") for e in svg.all("path")], colours)
-                for bar in svg.all("bar", "sound"):
-                    self.assertEqual(bar.get("fill"), colours[int(bar.get("data-stroke"))])
-                self.apart(names, (count, width))
-
-    def test_the_strip_of_colours_is_only_for_time_and_a_channel_is_named_once(self):
-        self.write("s.toml", '[[stroke]]\npath = "M 5 20 L 40 25"\n')
-        self.write("a.toml", irregular())
-        svg = self.drawn()
-        self.assertTrue("tactor (ch)" in [e.text for e in svg.all("row-heading")] and all("(" in e.text for e in svg.all("row-label")))
-        self.assertTrue(any("ch" in e.text for e in svg.all("tactor-label")))
-        self.write("a.toml", grid(3, 3, 20))
-        for strokes, times, legend in ((1, 2, "time-colours"), (3, 1, "strokes")):
-            self.write("s.toml", '[[stroke]]\npath = "M 5 20 L 40 25"\n' * strokes)
-            svg = self.drawn()
-            self.assertEqual(svg.texts().count("time (s)"), times)
-            self.assertEqual([e.get("id") for e in svg.root.iter() if e.get("id") in ("time-colours", "strokes")], [legend])
-            self.assertIn("tactor", [e.text for e in svg.all("row-heading")])
-            self.assertFalse(any("(" in e.text for e in svg.all("row-label")) or any("ch" in e.text for e in svg.all("tactor-label")))
-            self.assertIn("tactor n on channel n", " ".join(svg.texts()))
-
-    def test_repeats_look_alike_and_their_numbers_do_not_read_as_tactors(self):
-        svg = self.svg(KNOCKS)
-        self.assertEqual([e.text for e in svg.all("stroke-name")], ["1, 3, 5 knock-1", "2, 4, 6 knock-2", "7 after"])
-        colours, paths = [e.get("fill") for e in svg.all("stroke-colour")], svg.all("path")
-        self.assertEqual((len(set(colours)), [p.get("stroke") for p in paths]), (3, colours))
-        self.assertEqual([bool(p.get("stroke-dasharray")) for p in paths], [False, True, False])  # the second lies on the first
-        self.assertEqual({e.get("stroke") for e in svg.all("join")}, {"#969696"})
-        self.assertEqual({e.text for e in svg.all("start-label")}, {"1, 3, 5", "2, 4, 6", "7"})
-        for e, b in zip(svg.all("start-label"), svg.all("start-box"), strict=True):
-            self.assertTrue(e.get("font-weight") is None and number(b, "x") < box(e)[0] and box(e)[2] < number(b, "x") + number(b, "width"))
 
     def test_bars_of_simultaneous_strokes_do_not_overlap(self):
         self.write("a.toml", grid(3, 3, 20))

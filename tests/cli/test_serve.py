@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: MIT
 """tactor serve for other programs: its sockets, their permissions, the protocol, its limits, and its end."""
 import array
-import contextlib
-import itertools
 import json
 import math
 import os
@@ -17,8 +15,6 @@ import time
 from harness import PATIENCE_S, TOOL, main
 from serving import LONG, SHORT, Client, ServeTest
 from websocket import Peer
-
-STATUS = b'{"jsonrpc":"2.0","id":1,"method":"status"}\n'
 
 
 class Sockets(ServeTest):
@@ -183,18 +179,6 @@ class Sockets(ServeTest):
         self.assertIsNone(c.next())
         s.client().ok("status")
 
-    def test_a_token_that_does_not_come_ends_the_connection(self):
-        token = self.write("token", "secret\n")
-        token.chmod(0o600)
-        s = self.serve("--tcp", "0", config=f'[serve]\ntoken_file = "{token}"\nmax_message_s = 0.2\n')
-        for said in (b"\n", b'{"jsonrpc":"2.0","id":1,"method":"hello"}\n'):
-            c = s.client(tcp=True)
-            with contextlib.suppress(BrokenPipeError, ConnectionResetError):
-                c.raw(said)
-            *_, last = iter(c.next, None)
-            self.check_error(last["error"], -32001, "max_message_s")
-            self.assertIn("token", last["error"]["data"]["why"])
-
 
 class Protocol(ServeTest):
     """tests/net and tests/server have the cases; here each method once, by its schema."""
@@ -210,31 +194,6 @@ class Protocol(ServeTest):
         self.assertEqual((r["stream"]["pcm"], r["stream"]["channels"], r["max_level_dbfs"]), ("null", 9, -12.0))
         self.assertIn("park2016-1", r["presets"])
         self.assertLess(abs(r["clock"]["monotonic_s"] - time.monotonic()), PATIENCE_S)
-
-    def test_json_rpc_is_followed(self):
-        c = self.serve().client()
-
-        def answer(raw):
-            c.raw(raw + b"\n")
-            return c.reply()
-
-        for raw, code, number in (
-                (b"{", -32700, None), (b"[]", -32600, None), (b'{"jsonrpc":"2.0","id":"x","method":"dance"}', -32601, "x"),
-                (b'{"jsonrpc":"2.0","id":3.5,"method":"status","params":[1]}', -32602, 3.5),
-                (b'{"jsonrpc":"2.0","id":5,"method":"status","params":{"x":1}}', -32602, 5),
-                (b'{"jsonrpc":"2.0","id":6,"method":"play","params":{"path":"M 0 0 L 9 9","":1}}', -32602, 6),
-                (b"[" * 65, -32001, None)):
-            r = answer(raw)
-            self.assertEqual((r["jsonrpc"], r["id"]), ("2.0", number), raw)
-            self.check_error(r["error"], code)
-        # Notifications have no reply, in a batch and alone.
-        c.raw(b'{"jsonrpc":"2.0","method":"status"}\n{"jsonrpc":"2.0","method":"dance"}\n'
-              b'[{"jsonrpc":"2.0","method":"stop"}]\n')
-        batch = answer(b'[{"jsonrpc":"2.0","id":1,"method":"stop"}, 1, {"jsonrpc":"2.0","method":"stop"},'
-                       b'{"jsonrpc":"2.0","id":2,"method":"play","params":' + json.dumps(SHORT).encode() + b'}]\r')
-        self.assertEqual([r.get("id") for r in batch], [1, None, 2])
-        self.assertEqual(batch[1]["error"]["code"], -32600)
-        self.assertEqual(c.await_end(batch[2]["result"]["stroke"])["state"], "finished")
 
     def test_play_takes_all_forms_and_plan_gives_the_output_of_the_tool(self):
         c = self.serve().client()
@@ -415,28 +374,6 @@ class Limits(ServeTest):
         self.check_error(c.next()["error"], -32001, "max_message_s")
         self.assertIsNone(c.next())
 
-    def test_places_are_limited_and_freed(self):
-        s = self.serve("--tcp", "0", config="[serve]\nmax_clients = 4\nkept_clients = 2\n")
-        for _ in range(2):  # a place that leaks shows in the second round
-            network = [s.client(tcp=True) for _ in range(2)]
-            for c in network:
-                c.ok("hello")
-            third = s.client(tcp=True)
-            refused = third.next()["error"]
-            self.check_error(refused, -32001, "max_clients")
-            self.assertIn("4 clients are the most, 2 of them on this machine's socket", refused["message"])
-            self.assertIsNone(third.next())
-            local = [s.client() for _ in range(2)]
-            for c in local:
-                self.assertEqual(c.ok("hello")["protocol"], "tactor/1")
-            self.check_error(s.client().next()["error"], -32001, "max_clients")
-            for c in network + local[1:]:
-                c.socket.shutdown(socket.SHUT_WR)
-                self.assertIsNone(c.next())
-            self.assertEqual(local[0].ok("status")["clients"], 1)
-            local[0].socket.shutdown(socket.SHUT_WR)
-            self.assertIsNone(local[0].next())
-
     def test_exhausted_descriptors_refuse_new_clients(self):
         s = self.serve("--http", "0")
         busy = s.client()
@@ -494,52 +431,6 @@ class Limits(ServeTest):
         c.close()
         p.terminate()
         self.assertEqual(p.wait(PATIENCE_S), 0)
-
-    def test_stop_stops_beside_large_messages_and_in_a_refused_one(self):
-        s = self.serve()
-        c = s.client()
-        path = "M 0 0" + "".join(f" L {i % 40} {i * 7 % 40}" for i in range(100_000))
-        plan = {"jsonrpc": "2.0", "id": 1, "method": "plan", "params": {"path": path, "options": {"duration": 1}, "view": "bursts"}}
-        many = [s.client() for _ in range(12)]
-        for client, noise in zip(many, itertools.cycle((b"x" * (1 << 20), b"[" * 500_000 + b"]" * 500_000, json.dumps(plan).encode()))):
-            client.raw(noise + b"\n")
-        mine = c.ok("play", **LONG)["stroke"]
-        self.assertEqual(c.ok("stop"), {})
-        self.assertEqual(c.await_end(mine)["reason"], "cancelled by its client")
-        for client in many:
-            self.assertIsNotNone(client.next())
-        mine = c.ok("play", **LONG)["stroke"]
-        many[0].raw(b"[" + b'{"jsonrpc":"2.0","method":"status"},' * 9000 + b'{"jsonrpc":"2.0","method":"stop"}]\n')
-        self.check_error(many[0].reply()["error"], -32001)
-        self.assertEqual(c.await_end(mine)["state"], "cancelled")
-        self.assertEqual(c.await_end(c.ok("play", **SHORT)["stroke"])["state"], "finished")
-        self.assertEqual(s.terminate()[0], 0)
-
-    def test_a_client_that_does_not_read_is_dropped_and_others_play_on(self):
-        s = self.serve(config="[serve]\nmax_unread_bytes = 100000\n")
-        deaf, other = s.client(), s.client()
-        with self.assertRaises((BrokenPipeError, ConnectionResetError)):
-            for _ in range(1_000_000):
-                deaf.raw(STATUS * 100)
-        n = other.ok("play", **SHORT)["stroke"]
-        self.assertEqual(other.await_end(n)["state"], "finished")
-
-    def test_each_number_has_one_end_at_a_stop(self):
-        s = self.serve()
-        c = s.client()
-        numbers = [c.ok("play", **LONG)["stroke"] for _ in range(3)] + [c.ok("play", **SHORT, start="armed")["stroke"]]
-        live = c.ok("begin", timeout_s=3600)["stroke"]
-        c.ok("to", stroke=live, x_mm=1, y_mm=1)
-        c.stroke(numbers[0], "started")
-        s.process.terminate()
-        told = c.told
-        while (m := c.next()) is not None:
-            told.append(m)
-        ends = [(m["params"]["stroke"], m["params"]["state"]) for m in told
-                if m["method"] == "stroke" and m["params"]["state"] != "started"]
-        self.assertEqual(sorted(ends), [(n, "cancelled") for n in sorted(numbers + [live])])
-        self.assertIn("closing", [m["params"]["state"] for m in told if m["method"] == "stream"])
-        self.assertEqual(s.process.wait(PATIENCE_S), 0)
 
     def test_a_card_that_comes_later_is_used(self):
         conf = self.dir / "late.conf"

@@ -7,7 +7,7 @@ import socket
 import struct
 import subprocess
 
-from harness import PATIENCE_S, TOOL, main
+from harness import PATIENCE_S, main
 from osc import Sender, begun_by_a_time_tag, message
 from serving import ServeTest
 
@@ -42,16 +42,6 @@ class ServeOsc(ServeTest):
         told = [a.next(), a.next()]
         self.assertIn(["/tactor/stroke", 1, "cancelled"], told)
         self.assertIn(["/tactor/stream", "closing"], told)
-
-    def test_text_has_the_endpoint_too(self):
-        self.write("t.toml", "[serve]\nosc = 0\n")
-        p = subprocess.Popen([TOOL, "serve", "-D", "null", "--socket", "t.sock", "--config", "t.toml"], cwd=self.dir,
-                             env=self.env, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True)
-        self.addCleanup(p.stdout.close)
-        self.assertEqual(p.stdout.readline(), "listening: socket t.sock\n")
-        self.assertRegex(p.stdout.readline(), r"^listening: osc 127\.0\.0\.1:\d+\n$")
-        p.terminate()
-        self.assertEqual(p.wait(PATIENCE_S), 0)
 
     def test_beyond_loopback_only_peers_are_heard(self):
         for address, says in (("0.0.0.0:0", "osc_peers"), ("[::]:0", "osc_peers"), ("nonsense:1:2", "no address")):

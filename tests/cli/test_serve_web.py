@@ -5,11 +5,8 @@ import gzip
 import hashlib
 import json
 import re
-import shutil
 import struct
-import subprocess
 import time
-import unittest
 
 from harness import PATIENCE_S, main
 from serving import MESSAGE, ServeTest
@@ -134,19 +131,6 @@ class Web(ServeTest):
         for b in b"GET / HTTP/1.1\r\nHost: %s\r\n\r\n" % s.address.encode():
             p.send(bytes([b]))
         self.assertEqual(p.head()[0], 200)
-
-    @unittest.skipUnless(shutil.which("curl"), "curl is not here")
-    def test_curl_works(self):
-        http = self.serve().where["http"]
-
-        def curl(*args):
-            return subprocess.run(["curl", "--silent", "--show-error", "--noproxy", "*", *args], cwd=self.dir, capture_output=True,
-                                  text=True, timeout=PATIENCE_S, check=True).stdout
-        self.assertEqual(json.loads(curl(http + "status"))["stream"]["state"], "running")
-        code = ("--output", "page.html", "--write-out", "%{http_code}")
-        for args, status in (((http,), "200"), (("--header", "Origin: http://evil.example", http + "status"), "403"),
-                             (("--data", '{"jsonrpc":"2.0","id":1,"method":"stop"}', http + "rpc"), "405")):
-            self.assertEqual(curl(*code, *args), status)
 
     # Permissions; tests/net has more names.
 
@@ -276,25 +260,6 @@ class Web(ServeTest):
         patient = self.in_time(s, "hello")
         self.assertEqual(self.in_time(s).end(), 1008)  # patient was silent for that long
         self.assertIn("result", patient.call("status"))
-
-    def test_places_are_limited(self):
-        s = self.serve(config="[serve]\nmax_clients = 3\nkept_clients = 1\n")
-        first, second = self.websocket(s), self.websocket(s)
-        first.call("hello")
-        second.call("hello")
-        self.assertEqual(s.peer().upgrade(), 503)
-        local = s.client()
-        local.ok("status")
-        local.close()
-        first.frame(CLOSE, struct.pack("!H", 1000))
-        self.assertEqual(first.end(), 1000)
-        while True:
-            p = s.peer()
-            status = p.upgrade()
-            if status == 101:
-                break
-            self.assertEqual(status, 503)
-            p.socket.close()  # there may be more of them than descriptors
 
     def test_visitors_beyond_the_places_are_refused_with_a_reason(self):
         s = self.serve(config="[serve]\nmax_clients = 1\nkept_clients = 0\nmax_message_s = 3600\n")
