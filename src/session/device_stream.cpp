@@ -16,7 +16,6 @@ namespace tactor::session {
 namespace {
 
 constexpr double longest_pause_s = 5.0;
-constexpr double renewed_s = 0.5; // interval of keeping drive time while strokes go on
 
 stream_policy::time later(stream_policy::time t, double s)
 {
@@ -74,8 +73,6 @@ stream_policy::act stream_policy::step_open(time now)
         set(stream_state::idle, "nothing was drawn for a while; the next stroke starts it");
         return act::close;
     }
-    if (busy_)
-        again_ = std::min(again_.value_or(time::max()), later(now, renewed_s));
     return act::nothing;
 }
 

@@ -74,7 +74,6 @@ stream_parts play_session::make_parts(alsa_options device, const stream_source& 
             detail::log(log, log_kind::info, "PCM \"{}\" is back", pcm_);
         return s;
     };
-    p.begun = [this](std::uint64_t, stroke_id, std::optional<std::int64_t>) { begun_ = true; };
     return p;
 }
 
@@ -106,7 +105,6 @@ player_position play_session::position() const
 std::optional<stroke_report> play_session::submit(const score& s, start_at start)
 {
     player& p = *stream_.current();
-    begun_ = !options_.arm;
     try {
         playing_ = p.submit(s, options_.arm ? start_at::trigger() : start);
     } catch (const error&) {
@@ -120,7 +118,6 @@ std::optional<stroke_report> play_session::submit(const score& s, start_at start
 
 live_stroke play_session::begin(const live_options& o)
 {
-    begun_ = true;
     live_stroke s = stream_.current()->begin(o);
     playing_ = s.id();
     return s;
@@ -135,10 +132,6 @@ std::optional<std::uint64_t> play_session::stroke_frame() const
 stroke_report play_session::follow(const std::function<look()>& each)
 {
     player& p = *stream_.current();
-    const struct resting {
-        device_stream& stream;
-        ~resting() { stream.set_busy(false); }
-    } at_end{stream_};
     for (;;) {
         if (const auto report = p.wait(playing_, 0.0)) {
             // The loss of the device is reported after the strokes that it interrupted.
@@ -147,7 +140,6 @@ stroke_report play_session::follow(const std::function<look()>& each)
             return *report;
         }
         const look l = each();
-        stream_.set_busy(l.drives && begun_);
         const bool go_on =
             wait_for(stream_.descriptor(), milliseconds_until(stream_.step(), l.most_ms), l.descriptor);
         stream_.take_news();

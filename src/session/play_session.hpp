@@ -3,7 +3,6 @@
 /// A run on a device, one stroke after the other: blocks, and ends with a signal.
 #pragma once
 
-#include <atomic>
 #include <cstdint>
 #include <functional>
 #include <optional>
@@ -40,7 +39,6 @@ using stream_source = std::function<void(stream_parts&)>;
 struct look {
     int most_ms = 1000;  ///< the next one comes after so long,
     int descriptor = -1; ///< or when this can be read
-    bool drives = true;  ///< the array may be driven once the stroke has begun
 };
 
 class play_session {
@@ -104,7 +102,6 @@ private:
     std::string pcm_;
     interrupt stop_;
     session_log log_;
-    std::atomic<bool> begun_ = false; ///< the latest stroke, or it may do so at any time
     bool locked_ = false;
     device_stream stream_;
     stroke_id playing_ = {};

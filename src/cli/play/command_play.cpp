@@ -106,18 +106,16 @@ stroke_report follow_lines(session::play_session& session, const live_options& o
 {
     live_stroke stroke = session.begin(o);
     session::live_remarks remarks(lines.intensity_max());
-    bool begun = false;
     bool ended = false;
     return session.follow([&] {
         while (const auto p = lines.next()) {
             stroke.to(p->position.x_mm, p->position.y_mm, p->intensity);
             for (const std::string& remark : remarks.take(stroke, p->position, p->intensity))
                 lines.warn(remark);
-            begun = true;
         }
         if (lines.over() && !std::exchange(ended, true))
             stroke.end();
-        return session::look{.descriptor = lines.over() ? -1 : lines.descriptor(), .drives = begun};
+        return session::look{.descriptor = lines.over() ? -1 : lines.descriptor()};
     });
 }
 
