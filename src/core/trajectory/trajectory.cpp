@@ -23,8 +23,8 @@ namespace tactor::detail {
 void check_duration(double duration_s)
 {
     if (!(duration_s > 0.0 && duration_s <= longest_stroke_s))
-        throw detail::bad_field("duration_s", fmt::format("{:g} s", duration_s),
-                                fmt::format("it is more than 0 and at most {:g} s", longest_stroke_s));
+        throw bad_field("duration_s", fmt::format("{:g} s", duration_s),
+                        fmt::format("it is more than 0 and at most {:g} s", longest_stroke_s));
 }
 
 void refuse_one_place()
