@@ -101,13 +101,4 @@ void add_strokes(CLI::App& command, settings& into, int most)
     strokes->expected(1, most)->allow_extra_args(most > 1);
 }
 
-int run_with(const settings& s, const std::function<int()>& act)
-{
-    try {
-        return act();
-    } catch (const error& e) {
-        throw options::at_default(s, e);
-    }
-}
-
 } // namespace tactor::cli

@@ -13,6 +13,7 @@
 #include <tactor/tactor.hpp>
 
 #include "options/option.hpp"
+#include "options/settle.hpp"
 #include "session/environment.hpp"
 
 namespace CLI {
@@ -37,7 +38,15 @@ std::string asked_of_stream(const settings& s);
 void add_strokes(CLI::App& command, settings& into, int most = 1);
 
 /// Runs a command: an error about a value of [defaults] names its place there.
-int run_with(const settings& s, const std::function<int()>& act);
+template <class F>
+int run_with(const settings& s, F act)
+{
+    try {
+        return act();
+    } catch (const error& e) {
+        throw options::at_default(s, e);
+    }
+}
 
 /// Lists the command's own options that are added next under this heading, of which --help has the names.
 void begin_group(CLI::App& command, const std::string& heading = "Options");

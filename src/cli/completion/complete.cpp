@@ -70,10 +70,11 @@ void offer_values(lines& out, const std::string& type, const std::string& typed,
 void offer_options(lines& out, const CLI::App& command, const std::string& typed)
 {
     for (const CLI::Option* o : command.get_options()) {
+        const std::string help = spelled(o->get_description());
         for (const std::string& name : o->get_lnames())
-            offer(out, typed, "--" + name, spelled(o->get_description()));
+            offer(out, typed, "--" + name, help);
         for (const std::string& name : o->get_snames())
-            offer(out, typed, "-" + name, spelled(o->get_description()));
+            offer(out, typed, "-" + name, help);
     }
 }
 
