@@ -4,7 +4,6 @@
 #include <array>
 #include <cstddef>
 #include <filesystem>
-#include <functional>
 #include <iterator>
 #include <new>
 #include <optional>
@@ -28,6 +27,7 @@
 #include "server/service_impl.hpp"
 #include "server/stroke_source.hpp"
 #include "server/tool_line.hpp"
+#include "session/piece.hpp"
 #include "sink/wav/wav.hpp"
 
 namespace tactor::server {
@@ -97,13 +97,10 @@ read_file read_bytes(std::string bytes, const std::string& name, double intensit
     if (is_plan(bytes, name))
         return {read_plan_strokes(bytes, name)};
     const std::string_view format = detail::find_stroke_format(bytes, name);
-    if (format == "svg")
-        return {parse_strokes_svg(bytes, name)};
-    if (format == "csv")
-        return {parse_strokes_csv(bytes, name, intensity_max)};
-    std::vector<stroke> strokes = parse_strokes_toml(bytes, name, intensity_max);
-    if (intensity_max != 1.0)
-        bytes.clear(); // its intensities are not what others would read
+    std::vector<stroke> strokes =
+        session::read_strokes(format, bytes, name, {.intensity_max = intensity_max});
+    if (format != "toml" || intensity_max != 1.0)
+        bytes.clear(); // others would read other intensities
     return {std::move(strokes), std::move(bytes)};
 }
 
@@ -114,21 +111,21 @@ std::string toml_text(std::vector<stroke> strokes, const std::vector<double>& st
 }
 
 // Appends the points of each stroke, by hand: a document of a million numbers takes too much memory.
-void append_points(std::string& out, const std::vector<stroke>& strokes, std::size_t most_bytes)
+void append_points(std::string& out, const std::vector<stroke>& strokes)
 {
     for (const stroke& k : strokes) {
         out += out.back() == '[' ? "[" : ",[";
         for (const timed_point& p : detail::sample_points(k.motion)) {
             fmt::format_to(std::back_inserter(out), "{}[{},{},{},{}]", out.back() == '[' ? "" : ",", p.t_s,
                            p.position.x_mm, p.position.y_mm, p.intensity);
-            if (out.size() > most_bytes)
+            if (out.size() > most_file_bytes)
                 limit_reached("import", "its result is too large to be sent", "make it shorter or simpler");
         }
         out += ']';
     }
 }
 
-std::string result_text(const read_file& f, std::size_t most_bytes)
+std::string result_text(const read_file& f)
 {
     const std::vector<double> starts = path_starts_s(f.strokes);
     net::reply_json strokes = net::reply_json::array();
@@ -142,7 +139,7 @@ std::string result_text(const read_file& f, std::size_t most_bytes)
     const net::reply_json toml = f.toml.empty() ? toml_text(f.strokes, starts) : f.toml;
     std::string out =
         fmt::format(R"({{"toml":{},"strokes":{},"points":[)", net::json_line(toml), net::json_line(strokes));
-    append_points(out, f.strokes, most_bytes);
+    append_points(out, f.strokes);
     return out + fmt::format(R"(],"warnings":{}}})", net::json_line(warnings));
 }
 
@@ -158,9 +155,8 @@ void check_import(const json& params)
 }
 
 // Returns the result as JSON on one line. Opens no file. Runs off the thread of the sockets. \throws
-// fault_error, also for a result above `most_bytes`.
-std::string import_strokes(const planning& with, const layout& faces, const json& params,
-                           std::size_t most_bytes)
+// fault_error.
+std::string import_strokes(const planning& with, const layout& faces, const json& params)
 {
     const std::string source = find_content(params);
     const std::string name = source == "stroke" ? source : file_name(params);
@@ -172,21 +168,11 @@ std::string import_strokes(const planning& with, const layout& faces, const json
         if (fit)
             f.toml.clear();
         f.strokes = settle_strokes(with, faces, std::move(f.strokes), with.owner, fit);
-        return result_text(f, most_bytes);
+        return result_text(f);
     } catch (...) {
         throw fault_error(current_fault(source, name));
     }
 }
-
-// Everything that an exported file depends on beside the request. What it refers to must outlive it.
-struct exporting {
-    const planning& with;
-    const layout& faces;
-    const tool_files& named; // in the tool's command line
-    // Returns the tactor-plan/1 text of a plan; throws std::bad_alloc beyond so many bytes.
-    const std::function<std::string(const planned&, std::size_t most_bytes)>& plan_text;
-    std::size_t most_bytes; // of the file
-};
 
 // A kind of file, and the command of the tool that makes it, or plays it.
 struct file_kind {
@@ -226,9 +212,9 @@ const file_kind& find_kind(const json& params)
     return *found;
 }
 
-[[noreturn]] void too_large(std::size_t most_bytes)
+[[noreturn]] void too_large()
 {
-    limit_reached("export", fmt::format("the file is larger than {} MiB", most_bytes >> 20U),
+    limit_reached("export", fmt::format("the file is larger than {} MiB", most_file_bytes >> 20U),
                   "make it shorter, or make it with the tool");
 }
 
@@ -239,37 +225,15 @@ std::string choose_name(const json& params, const std::vector<stroke>& strokes)
     return make_file_name(strokes.size() == 1 ? strokes.front().name : "strokes");
 }
 
-format_kind sample_format(const options::wishes& s)
-{
-    return s.format.value_or(format_kind::float32);
-}
-
-// Refuses a WAV file before it is rendered. A plan may last a little longer than its path.
-void check_samples(const exporting& e, const options::wishes& s, double seconds)
-{
-    const double frame_bytes = static_cast<double>(s.render.channels * sample_bytes(sample_format(s)));
-    if (seconds * s.render.rate * frame_bytes > static_cast<double>(e.most_bytes))
-        too_large(e.most_bytes);
-}
-
-double end_s(const std::vector<stroke>& strokes)
-{
-    const std::vector<double> starts = path_starts_s(strokes);
-    double end = 0.0;
-    for (std::size_t i = 0; i < strokes.size(); ++i)
-        end = std::max(end, starts[i] + strokes[i].motion.duration_s());
-    return end;
-}
-
 // Gives strokes that count from a group a start in seconds, which takes their plans: a plan may last longer
 // than its path.
-void place_by_plans(const exporting& e, const options::wishes& s, std::vector<stroke>& strokes,
-                    const go_on_check& go_on)
+void place_by_plans(const service_options& o, const layout& faces, const options::wishes& s,
+                    std::vector<stroke>& strokes, const go_on_check& go_on)
 {
     if (std::none_of(strokes.begin(), strokes.end(), counts_from_group))
         return;
     planned p{{"", strokes}, s.render};
-    plan_strokes(e.with, e.faces, p, s, "stroke", go_on);
+    plan_strokes(o.plans, faces, p, s, "stroke", go_on);
     count_from_piece(strokes, p.starts_s());
 }
 
@@ -295,53 +259,53 @@ std::string csv_text(const std::vector<stroke>& strokes)
     return out;
 }
 
-std::string file_bytes(const exporting& e, const file_kind& kind, const planned& p, const options::wishes& s)
+std::string file_bytes(const service_options& o, const file_kind& kind, const planned& p,
+                       const options::wishes& s)
 {
     if (kind.picture) {
         const std::string title = plot::name_scene(p.strokes, p.name + ".toml");
-        const plot::scene shown{e.with.tactors, title, p.strokes, p.plans, nullptr, p.moved};
+        const plot::scene shown{o.plans.tactors, title, p.strokes, p.plans, nullptr, p.moved};
         return plot::to_bytes(plot::draw_figure(shown, {}), *kind.picture, plot::usual_dpi);
     }
-    try {
-        if (kind.extension == "json")
-            return e.plan_text(p, e.most_bytes);
-    } catch (const std::bad_alloc&) {
-        too_large(e.most_bytes);
-    }
-    check_samples(e, s, p.total_s());
-    return wav::bytes(score(e.with.tactors, p.plans, p.render), sample_format(s));
+    if (kind.extension == "json")
+        return o.plan_text(p, most_file_bytes);
+    const format_kind format = s.format.value_or(format_kind::float32);
+    const double frames = p.total_s() * s.render.rate;
+    if (frames * static_cast<double>(s.render.channels * sample_bytes(format)) > most_file_bytes)
+        too_large(); // before it is rendered
+    return wav::bytes(score(o.plans.tactors, p.plans, p.render), format);
 }
 
-std::string command_line(const exporting& e, const file_kind& kind, const std::string& name,
+std::string command_line(const service_options& o, const file_kind& kind, const std::string& name,
                          const options::wishes& s)
 {
     return fmt::format("tactor {} {}{} {} {}", kind.command,
                        quote_word(fmt::format("{}.{}", name, kind.reads)),
-                       option_words(s, kind.place, e.with.tactors, e.named, kind.reads == "toml"), kind.into,
+                       option_words(s, kind.place, o.plans.tactors, o.named, kind.reads == "toml"), kind.into,
                        quote_word(fmt::format("{}.{}", name, kind.writes)));
 }
 
-std::string result_text(const exporting& e, const file_kind& kind, const std::string& name,
+std::string result_text(const service_options& o, const file_kind& kind, const std::string& name,
                         const options::wishes& s, const std::string& bytes)
 {
-    if (bytes.size() > e.most_bytes)
-        too_large(e.most_bytes);
+    if (bytes.size() > most_file_bytes)
+        too_large();
     std::string out = fmt::format(R"({{"name":{},"mime":"{}","command":{},"base64":")",
                                   net::json_line(fmt::format("{}.{}", name, kind.extension)), kind.mime,
-                                  net::json_line(command_line(e, kind, name, s)));
+                                  net::json_line(command_line(o, kind, name, s)));
     net::append_base64(out, bytes);
     return out + "\"}";
 }
 
 // Writes and reads the strokes: an exported file has the digits that the tool finds in it.
-std::string make_bytes(const exporting& e, const file_kind& kind, const std::string& source,
-                       const std::string& name, std::vector<stroke> strokes, const options::wishes& s,
-                       const go_on_check& go_on)
+std::string make_bytes(const service_options& o, const layout& faces, const file_kind& kind,
+                       const std::string& source, const std::string& name, std::vector<stroke> strokes,
+                       const options::wishes& s, const go_on_check& go_on)
 {
     if (kind.extension == "csv")
         return csv_text(strokes);
     if (kind.extension != "json") {
-        place_by_plans(e, s, strokes, go_on);
+        place_by_plans(o, faces, s, strokes, go_on);
         for (stroke& k : strokes)
             put_options(k, s);
         std::string toml = detail::strokes_text(strokes);
@@ -350,8 +314,8 @@ std::string make_bytes(const exporting& e, const file_kind& kind, const std::str
         strokes = read_again(toml, source, strokes);
     }
     planned p{{name, std::move(strokes)}, s.render};
-    plan_strokes(e.with, e.faces, p, s, source, go_on);
-    return file_bytes(e, kind, p, s);
+    plan_strokes(o.plans, faces, p, s, source, go_on);
+    return file_bytes(o, kind, p, s);
 }
 
 // Checks the parameters as far as no text must be read. \throws fault_error.
@@ -368,20 +332,22 @@ void check_export(const planning& with, const json& params)
 
 // Returns the result as JSON on one line. Runs off the thread of the sockets. \throws fault_error, and what
 // `go_on` throws.
-std::string export_strokes(const exporting& e, const json& params, const go_on_check& go_on)
+std::string export_strokes(const service_options& o, const layout& faces, const json& params,
+                           const go_on_check& go_on)
 {
     const std::string source = find_source(params);
     const file_kind& kind = find_kind(params);
-    const options::wishes s = settle_options(e.with.owner, params);
+    const options::wishes s = settle_options(o.plans.owner, params);
     try {
         std::vector<stroke> strokes =
-            settle_strokes(e.with, e.faces, read_strokes(source, params[source], s), s, flag(params, "fit"));
+            settle_strokes(o.plans, faces, read_strokes(source, params[source], s), s, flag(params, "fit"));
         if (!kind.has_plan())
-            check_level(e.with, s, 1.0, s.plan.carrier_hz, source);
-        if (kind.extension == "wav")
-            check_samples(e, s, end_s(strokes));
+            check_level(o.plans, s, 1.0, s.plan.carrier_hz, source);
         const std::string name = choose_name(params, strokes);
-        return result_text(e, kind, name, s, make_bytes(e, kind, source, name, std::move(strokes), s, go_on));
+        return result_text(o, kind, name, s,
+                           make_bytes(o, faces, kind, source, name, std::move(strokes), s, go_on));
+    } catch (const std::bad_alloc&) {
+        too_large();
     } catch (...) {
         throw fault_error(current_fault(source));
     }
@@ -394,7 +360,7 @@ void service::import_file(client& c, json&& params, const answer& to, std::size_
     check_import(params);
     plan_job job{.to = to, .bytes = bytes};
     job.make_text = [this](const json& p, const go_on_check&) {
-        return import_strokes(options_.plans, faces_, p, most_file_bytes);
+        return import_strokes(options_.plans, faces_, p);
     };
     job.params = std::move(params);
     admit_job(c, std::move(job));
@@ -405,8 +371,7 @@ void service::export_file(client& c, json&& params, const answer& to, std::size_
     check_export(options_.plans, params);
     plan_job job{.to = to, .bytes = bytes};
     job.make_text = [this](const json& p, const go_on_check& go_on) {
-        return export_strokes({options_.plans, faces_, options_.named, options_.plan_text, most_file_bytes},
-                              p, go_on);
+        return export_strokes(options_, faces_, p, go_on);
     };
     job.params = std::move(params);
     admit_job(c, std::move(job));
