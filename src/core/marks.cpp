@@ -15,17 +15,16 @@ constexpr std::string_view letters = "abcdefghijklmnopqrstuvwxyz_";
 std::optional<mark> read(std::string_view text) noexcept
 {
     const std::string_view inside = text.substr(1, text.size() - 2);
-    mark m;
-    m.text = text;
-    m.setting = inside.substr(0, inside.find('|'));
-    m.clause = inside.substr(std::min(m.setting.size() + 1, inside.size()));
-    const std::size_t named = m.setting.starts_with(command) ? command.size() : 0;
-    m.name = m.setting.substr(0, std::min(m.setting.find_first_not_of(letters, named), m.setting.size()));
-    const std::string_view rest = m.setting.substr(m.name.size());
-    if (m.name.size() == named || (!rest.empty() && rest.front() != '='))
+    const std::string_view setting = inside.substr(0, inside.find('|'));
+    const std::string_view name = setting.substr(0, setting.find('='));
+    const std::string_view word = name.substr(name.starts_with(command) ? command.size() : 0);
+    if (word.empty() || word.find_first_not_of(letters) != word.npos)
         return std::nullopt;
-    m.value = rest.substr(rest.empty() ? 0 : 1);
-    return m;
+    return mark{.text = text,
+                .setting = setting,
+                .name = name,
+                .value = setting.substr(std::min(name.size() + 1, setting.size())),
+                .clause = inside.substr(std::min(setting.size() + 1, inside.size()))};
 }
 
 } // namespace

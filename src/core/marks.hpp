@@ -14,11 +14,11 @@
 namespace tactor::detail {
 
 struct mark {
-    std::string_view text;    ///< all of it, braces included
-    std::string_view setting; ///< what names it: "soa_s", "timing=fit", "command:devices"
-    std::string_view name;    ///< "timing"
-    std::string_view value;   ///< "fit"; empty: none
-    std::string_view clause;  ///< text behind it
+    std::string_view text = {};    ///< all of it, braces included
+    std::string_view setting = {}; ///< name and value: "soa_s", "timing=fit", "command:devices"
+    std::string_view name = {};    ///< "timing"
+    std::string_view value = {};   ///< "fit"; empty: none
+    std::string_view clause = {};  ///< text behind it
 };
 
 /// Finds the first mark. Other braces are none.

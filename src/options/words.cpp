@@ -41,10 +41,7 @@ std::string spell(std::string_view text, const spelling& by, bool in_file)
 
 std::string spell_field(std::string_view field, const spelling& by)
 {
-    if (const own_word* own = find_own(field, by))
-        return std::string(own->here);
-    const option* o = find(field);
-    return o == nullptr || (o->where & by.where) == 0 ? std::string(field) : by.write(*o, {});
+    return write({.text = field, .setting = field, .name = field}, by, false);
 }
 
 error spell(const error& e, const spelling& by)

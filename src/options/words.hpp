@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// Names of options and commands in errors, written as the user of a front end knows them.
+/// From an error of the library to the message of a front end.
 ///
-/// The library's hints and the table's errors have marks (core/marks.hpp). What an error is about is its
-/// field.
+/// An error has a field ("soa_s"), a place in a file, and marks in its texts (core/marks.hpp). Each front end
+/// has a spelling that writes field and marks: cli/option_words.cpp ("--soa"), server/faults.cpp
+/// ("options.soa"), python/options.cpp ("soa"), study/experiment/definition.cpp. at_default() puts the place
+/// in [defaults] before an option's error. None of them looks into the words.
 #pragma once
 
 #include <cstdint>
