@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "core/refused.hpp"
 #include "core/suggest.hpp"
 #include "core/words.hpp"
 #include "options/parse_number.hpp"
@@ -126,7 +127,7 @@ std::string shown(const value& v)
 
 error refusal(const option& o, std::string_view why, std::string_view hint)
 {
-    return error(error_kind::bad_input, mark(o), why, hint).with_field(o.name);
+    return detail::bad_field(o.name, why, hint);
 }
 
 std::string choices_text(const option& o)
@@ -161,11 +162,7 @@ value read_text(const option& o, const std::string& text)
         return text == "true";
     if (o.what != kind::number && o.what != kind::whole)
         return read_value(o, text);
-    try {
-        return read_value(o, parse_number(mark(o), text, o.allowed, o.unit, range_text(o)));
-    } catch (const error& e) {
-        throw e.with_field(o.name);
-    }
+    return read_value(o, parse_number(o.name, text, o.allowed, o.unit, range_text(o)));
 }
 
 value read_value(const option& o, const value& said)
@@ -196,9 +193,9 @@ void put(wishes& w, const option& o, const value& v)
     try {
         o.to.set(w, v);
     } catch (const error& e) {
-        const bool is_own = e.field() == o.name;
-        throw e.reworded(is_own ? mark(o) : fmt::format("{}: {}", mark(o), e.subject()), e.why(), e.hint())
-            .with_field(o.name);
+        if (e.field() == o.name)
+            throw;
+        throw e.reworded(fmt::format("{}: {}", mark(o), e.subject()), e.why(), e.hint()).with_field(o.name);
     }
 }
 

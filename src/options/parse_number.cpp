@@ -9,8 +9,7 @@
 
 #include <fmt/format.h>
 
-#include <tactor/error.hpp>
-
+#include "core/refused.hpp"
 #include "core/split.hpp"
 #include "core/words.hpp"
 
@@ -70,7 +69,7 @@ std::string range_text(detail::bounds b, std::string_view unit)
                        plain_number(b.high), unit.empty() ? "" : " ", unit);
 }
 
-double parse_number(const std::string& what, const std::string& text, detail::bounds b, std::string_view unit,
+double parse_number(std::string_view what, const std::string& text, detail::bounds b, std::string_view unit,
                     std::string range)
 {
     double v = 0.0;
@@ -80,21 +79,20 @@ double parse_number(const std::string& what, const std::string& text, detail::bo
         range = range_text(b, unit);
     if (r.ec == std::errc::invalid_argument || r.ptr != end) {
         const std::string meant = r.ec == std::errc() ? without_unit(text, v, {r.ptr, end}, b, unit) : "";
-        throw error(error_kind::bad_input, what, fmt::format("\"{}\" is not a number", text),
-                    meant.empty() ? range : fmt::format("{}; {}", meant, range));
+        throw detail::bad_field(what, fmt::format("\"{}\" is not a number", text),
+                                meant.empty() ? range : fmt::format("{}; {}", meant, range));
     }
     if (r.ec != std::errc() || !std::isfinite(v) || !b.holds(v))
-        throw error(error_kind::bad_input, what, fmt::format("{} is out of range", text),
-                    sign_hint(b, v) + range);
+        throw detail::bad_field(what, fmt::format("{} is out of range", text), sign_hint(b, v) + range);
     return v;
 }
 
-double parse_whole(const std::string& what, const std::string& text, detail::bounds b, std::string_view unit)
+double parse_whole(std::string_view what, const std::string& text, detail::bounds b, std::string_view unit)
 {
     const double v = parse_number(what, text, b, unit);
     if (v != std::floor(v))
-        throw error(error_kind::bad_input, what, fmt::format("{} is not a whole number", text),
-                    fmt::format("give one, as {}", plain_number(std::max(b.low, std::floor(v)))));
+        throw detail::bad_field(what, fmt::format("{} is not a whole number", text),
+                                fmt::format("give one, as {}", plain_number(std::max(b.low, std::floor(v)))));
     return v;
 }
 

@@ -72,8 +72,7 @@ bool takes_default(const wishes& w, const option& o)
 
 error at_place(const source_place& at, const option& o, const error& e)
 {
-    const bool is_own = e.subject() == mark(o) || e.subject() == e.field();
-    const std::string about = is_own ? "" : detail::plain(e.subject()) + ": ";
+    const std::string about = e.subject() == e.field() ? "" : detail::plain(e.subject()) + ": ";
     return e.reworded(at.text(), fmt::format("{}: {}{}", dashed(o), about, e.why()), e.hint()).with_place(at);
 }
 
