@@ -4,6 +4,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -275,15 +280,6 @@ void give_player_options(wishes& into, const py::dict& given)
         if ((o.where & options::in_player) != 0 && given.contains(name) && !given[name].is_none())
             options::give(into, o, read_handle(o, given[name]));
     }
-}
-
-std::vector<std::string> option_names()
-{
-    std::vector<std::string> names;
-    for (const option& o : options::all())
-        if ((o.where & of_python) != 0)
-            names.emplace_back(o.name);
-    return names;
 }
 
 py::dict default_values(const setup& says)

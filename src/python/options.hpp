@@ -3,11 +3,6 @@
 /// Keyword arguments: options of the table.
 #pragma once
 
-#include <string>
-#include <string_view>
-#include <utility>
-#include <vector>
-
 #include "options/option.hpp"
 #include "python/binding.hpp"
 
@@ -23,9 +18,6 @@ void take_options(wishes& into, const py::dict& given, std::size_t tactors, cons
 
 /// Takes the options of a player among `given`. \throws error (bad_input).
 void give_player_options(wishes& into, const py::dict& given);
-
-/// Returns the names of all options that take_options() knows.
-std::vector<std::string> option_names();
 
 /// Returns the rows of the table, for src/options/write.py.
 py::list option_rows();

@@ -248,7 +248,6 @@ session::piece place_stroke(const stroke& s, const layout& faces, const wishes& 
 
 void bind_plan(py::module_& m)
 {
-    m.def("option_names", &option_names);
     m.def("option_rows", &option_rows);
     m.def("burst_duration", [](const py::dict& options) {
         wishes w;
