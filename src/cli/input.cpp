@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <system_error>
 #include <utility>
 
 #include <fmt/format.h>
@@ -22,18 +23,10 @@ std::vector<stroke> read_one(const settings& s, const environment& e, const std:
     if (e.plans.contains(argument))
         throw error(error_kind::bad_input, shown_name(argument), "it is a plan",
                     "give the stroke, which is planned here");
-    if (session::is_preset(stroke_presets(), argument))
-        return {preset_stroke(argument)};
+    if (const auto preset = find_preset(argument))
+        return {*preset};
     if (argument == "-")
         return e.standard_input;
-    std::error_code ignored;
-    if (!fs::exists(argument, ignored) && argument.find_first_of("./") == std::string::npos) {
-        const auto& shapes = stroke_shapes();
-        if (std::find(shapes.begin(), shapes.end(), argument) != shapes.end())
-            throw error(error_kind::bad_input, argument, "it is a shape, not a preset",
-                        fmt::format("--shape {}", argument));
-        return {preset_stroke(argument)}; // its error lists the presets
-    }
     session::check_readable(argument);
     return load_strokes(argument, s.intensity_max.value_or(1.0));
 }
@@ -154,6 +147,20 @@ std::vector<std::string> stroke_arguments(const settings& s)
         throw error(error_kind::bad_input, "command line", "no stroke",
                     "give a preset such as park2016-1, a stroke file, -, --path DATA or --shape circle");
     return s.strokes;
+}
+
+std::optional<stroke> find_preset(const std::string& argument)
+{
+    std::error_code ignored;
+    const bool is_file =
+        argument == "-" || argument.find_first_of("./") != std::string::npos || fs::exists(argument, ignored);
+    if (is_file && !session::is_preset(stroke_presets(), argument))
+        return {};
+    const auto& shapes = stroke_shapes();
+    if (std::find(shapes.begin(), shapes.end(), argument) != shapes.end())
+        throw error(error_kind::bad_input, argument, "it is a shape, not a preset",
+                    fmt::format("--shape {}", argument));
+    return preset_stroke(argument); // its error lists the presets
 }
 
 std::string shown_name(const std::string& argument)

@@ -3,6 +3,7 @@
 /// From STROKE arguments to strokes, plans and scores.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -22,7 +23,11 @@ struct piece : session::piece {
 /// them.
 std::vector<std::string> stroke_arguments(const settings& s);
 
-/// A STROKE argument as people read it: - is standard input.
+/// Returns the preset that a STROKE argument names; nothing if it is a file. \throws error (bad_input) for a
+/// name that is neither.
+std::optional<stroke> find_preset(const std::string& argument);
+
+/// Returns a STROKE argument as people read it: - is standard input.
 std::string shown_name(const std::string& argument);
 
 /// Returns the name of the piece's stroke i as every command prints it: the STROKE argument, followed by the
@@ -42,12 +47,12 @@ piece read_one_piece(const settings& s, const environment& e, const layout& face
 /// Reads and plans where only one STROKE is taken.
 piece plan_one_piece(const settings& s, const environment& e);
 
-/// Makes the score of what was opened, with `render.rate` and channels settled. Nobody keeps any bursts: what
-/// is planned here is never there as a whole, and plans that were there leave the piece. \throws error.
+/// Makes the score of a piece, with `render.rate` and channels settled. Takes the plans that the piece has;
+/// plans of other strokes become a part of the score one by one. \throws error.
 score plan_and_score(piece& p, const settings& s, const environment& e, const layout& faces,
                      const render_options& render);
 
-/// The score of a piece that keeps its plans. \throws error.
+/// Makes the score of a piece that keeps its plans. \throws error.
 score make_score(const piece& p, const environment& e, const render_options& render);
 
 } // namespace tactor::cli

@@ -5,9 +5,7 @@
 #include <array>
 #include <chrono>
 #include <cmath>
-#include <filesystem>
 #include <string_view>
-#include <system_error>
 #include <thread>
 #include <type_traits>
 #include <utility>
@@ -61,12 +59,9 @@ error name_argument(const error& e, const std::string& argument)
 net::json make_params(const std::string& argument)
 {
     constexpr std::size_t most_bytes = 48U << 20;
+    if (const auto preset = find_preset(argument))
+        return {{"stroke", preset->name}};
     const bool piped = argument == "-";
-    std::error_code ignored;
-    if (session::is_preset(stroke_presets(), argument) ||
-        (!piped && !std::filesystem::exists(argument, ignored) &&
-         argument.find_first_of("./") == std::string::npos))
-        return {{"stroke", preset_stroke(argument).name}}; // its error lists the presets
     if (!piped)
         session::check_readable(argument);
     const detail::whole_text text = piped ? detail::read_text(STDIN_FILENO, shown_name(argument), most_bytes)
