@@ -109,11 +109,6 @@ std::vector<std::string> dashed_names(std::uint64_t where)
     return names;
 }
 
-std::string mark(const option& o)
-{
-    return fmt::format("{{{}}}", o.name);
-}
-
 std::string shown(const value& v)
 {
     if (const auto* b = std::get_if<bool>(&v))
@@ -165,27 +160,27 @@ value read_text(const option& o, const std::string& text)
     return read_value(o, parse_number(o.name, text, o.allowed, o.unit, range_text(o)));
 }
 
-value read_value(const option& o, const value& said)
+value read_value(const option& o, const value& v)
 {
     switch (o.what) {
     case kind::number:
     case kind::whole:
-        return check_number(o, said);
+        return check_number(o, v);
     case kind::flag:
-        if (!std::holds_alternative<bool>(said))
-            throw refusal(o, shown(said) + " is neither true nor false", "");
-        return said;
+        if (!std::holds_alternative<bool>(v))
+            throw refusal(o, shown(v) + " is neither true nor false", "");
+        return v;
     case kind::choice:
-        return choose(o, said);
+        return choose(o, v);
     case kind::text:
         break;
     }
     // A text that may be a number, such as HZ[:DEPTH].
-    if (std::holds_alternative<double>(said) && o.allowed.high > 0.0)
-        return check_number(o, said);
-    if (!std::holds_alternative<std::string>(said))
-        throw refusal(o, shown(said) + " is no text", "put it in quotes");
-    return said;
+    if (std::holds_alternative<double>(v) && o.allowed.high > 0.0)
+        return check_number(o, v);
+    if (!std::holds_alternative<std::string>(v))
+        throw refusal(o, shown(v) + " is no text", "put it in quotes");
+    return v;
 }
 
 void put(wishes& w, const option& o, const value& v)
@@ -195,7 +190,8 @@ void put(wishes& w, const option& o, const value& v)
     } catch (const error& e) {
         if (e.field() == o.name)
             throw;
-        throw e.reworded(fmt::format("{}: {}", mark(o), e.subject()), e.why(), e.hint()).with_field(o.name);
+        throw e.reworded(fmt::format("{{{}}}: {}", o.name, e.subject()), e.why(), e.hint())
+            .with_field(o.name);
     }
 }
 

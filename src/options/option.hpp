@@ -109,8 +109,6 @@ struct option {
 [[nodiscard]] std::string dashed(const option& o);
 /// Returns the names of all rows with a bit of `where`, with - between their words.
 [[nodiscard]] std::vector<std::string> dashed_names(std::uint64_t where);
-/// Returns the mark of a row: "{soa}".
-[[nodiscard]] std::string mark(const option& o);
 /// Returns a value as messages show it.
 [[nodiscard]] std::string shown(const value& v);
 /// Returns an error about an option. Its texts may have marks.
@@ -127,9 +125,9 @@ struct option {
 /// \throws error (bad_input) about the option, with its bounds or choices.
 value read_text(const option& o, const std::string& text);
 
-/// Returns what a typed value is to the option: a number stays within its bounds, a text is one of its
-/// choices. \throws error (bad_input) as above.
-value read_value(const option& o, const value& said);
+/// Returns a typed value as it is, checked: a number is within the bounds, a text one of the choices.
+/// \throws error (bad_input) likewise.
+value read_value(const option& o, const value& v);
 
 /// Sets an option to what read_text() or read_value() returned. \throws error (bad_input), about the option,
 /// for a text that cannot be read.

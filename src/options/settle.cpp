@@ -25,16 +25,13 @@ void forget(wishes& w, const option& o)
         w.usual_speed_mm_s.reset();
 }
 
-// The alternatives that can be given at this place.
+// Returns a hint with the alternatives that the front end has.
 std::string needed(const wishes& w, const option& o)
 {
     std::string all;
-    for (const std::string_view one : detail::split(o.needs, '|')) {
-        const std::string_view name = one.substr(1, one.find_first_of("=}") - 1);
-        if ((find(name)->where & w.place) == 0)
-            continue;
-        all.append(all.empty() ? "" : " or ").append(one);
-    }
+    for (const std::string_view one : detail::split(o.needs, '|'))
+        if ((find(detail::find_mark(one)->name)->where & w.place) != 0)
+            all.append(all.empty() ? "" : " or ").append(one);
     return "add " + all;
 }
 
@@ -58,11 +55,6 @@ void refuse_both(const setup& says, const written_value& d, const option* rival)
                         fmt::format("[defaults] has both {} and {}", other.name, d.name), "keep one of them");
 }
 
-bool is_said(const wishes& w, std::string_view name)
-{
-    return w.gives(name) || w.in_file.contains(index(*find(name)));
-}
-
 // Returns true where the place has the option, and the user gave neither it nor its rival.
 bool takes_default(const wishes& w, const option& o)
 {
@@ -82,7 +74,7 @@ void give(wishes& w, const option& o, const value& v)
 {
     if (const option* rival = find(o.rival)) {
         if (w.given[index(*rival)])
-            throw refusal(o, fmt::format("there is also {}", mark(*rival)), "give one of them");
+            throw refusal(o, fmt::format("there is also {{{}}}", rival->name), "give one of them");
         forget(w, *rival);
     }
     put(w, o, v);
@@ -138,8 +130,9 @@ void settle(wishes& w)
         for (const char* ramp : {"attack", "release", "ramp"})
             if (w.gives(ramp))
                 throw refusal(*find(ramp), "{envelope=tukey} has its own ramps", "leave one of them out");
+    const auto is_set = [&w](const option& o) { return w.gives(o) || w.in_file.contains(index(o)); };
     timing_profile& law = w.plan.profile;
-    if (is_said(w, "slope") || is_said(w, "intercept"))
+    if (is_set(*find("slope")) || is_set(*find("intercept")))
         law.max_soa_s = law.intercept_s / (1.0 - law.slope);
     if (w.plan.scale.kind == scale_kind::sl && (find("sl")->where & w.place) != 0) {
         if (!(w.render.sl_db.value_or(0.0) > 0.0))
