@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <cstdint>
+#include <optional>
 #include <variant>
 
 #include <fmt/format.h>
@@ -25,28 +27,18 @@ bool is_in_file(const option& o, const options::wishes& s)
     return ((o.where & kept) == kept && !(is_recorded && is_recording(s))) || o.name == "am";
 }
 
-// Returns the options as a command has them: strokes are settled, and the array is named.
+// Returns the options as a command has them: the strokes have their times, and the array has a name.
 options::wishes for_command(options::wishes s, const array& a, const tool_files& files)
 {
     constexpr unsigned usual_rate = 48000;
-    s.path_data.reset();
-    s.shape.reset();
-    s.config_file.reset();
-    if (!files.config.empty())
-        s.config_file = files.config;
+    const auto value_if = [](bool is_set, auto v) { return is_set ? std::optional(v) : std::nullopt; };
+    s.array_name = value_if(!files.array.empty(), files.array);
+    s.config_file = value_if(!files.config.empty(), files.config);
     s.duration_s.reset();
     s.speed_mm_s.reset();
     s.intensity_max.reset();
-    s.fit = false;
-    s.array_name.reset();
-    if (!files.array.empty())
-        s.array_name = files.array;
-    s.rate.reset();
-    if (s.render.rate != usual_rate)
-        s.rate = s.render.rate;
-    s.channels.reset();
-    if (s.render.channels > a.channels())
-        s.channels = s.render.channels;
+    s.rate = value_if(s.render.rate != usual_rate, s.render.rate);
+    s.channels = value_if(s.render.channels > a.channels(), s.render.channels);
     return s;
 }
 
