@@ -2,11 +2,11 @@
 #include "cli/calibrate/calibrate_options.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <filesystem>
 #include <functional>
 #include <limits>
+#include <map>
 #include <numeric>
 #include <string>
 #include <string_view>
@@ -28,8 +28,6 @@
 
 namespace tactor::cli {
 namespace {
-
-using take = std::function<void(const std::string&)>;
 
 constexpr double most_seed = std::numeric_limits<std::uint32_t>::max();
 constexpr std::size_t most_steps = 20;
@@ -53,34 +51,22 @@ void add_staircase_options(CLI::App& c, calibrate_options& o)
 {
     study::staircase_options& s = o.settings.staircase;
     begin_group(c, "Staircase");
-    const auto only = [&o](const char* name, const take& t) {
-        return [&o, name, t](const std::string& text) {
-            t(text);
-            o.of_staircase.emplace_back(name);
-        };
-    };
     add_text(c, "--rule", "1up3down|1up2down",
-             "find the level felt in 79.4 % of trials (default), or in 70.7 %",
-             only("--rule", [&s](const std::string& t) {
+             "find the level felt in 79.4 % of trials (default), or in 70.7 %", [&s](const std::string& t) {
                  s.right_for_down = choose("--rule", t, {"1up3down", "1up2down"}) == 0 ? 3 : 2;
-             }));
+             });
     add_text(c, "--steps", "DB,DB,...", "steps; the next begins after every second reversal (default 4,2,1)",
-             only("--steps", [&s](const std::string& t) { s.steps_db = steps(t); }));
+             [&s](const std::string& t) { s.steps_db = steps(t); });
     add_text(c, "--reversals", "N", "number of reversals of a staircase (default 12)",
-             only("--reversals", [&s](const std::string& t) {
-                 s.reversals = whole("--reversals", t, 2, static_cast<double>(study::most_reversals));
-             }));
+             [&s](const std::string& t) { s.reversals = whole("--reversals", t, 2, study::most_reversals); });
     add_text(c, "--discard", "N", "number of first reversals that do not count (default 4)",
-             only("--discard", [&s](const std::string& t) {
-                 s.discard = whole("--discard", t, 0, static_cast<double>(study::most_reversals));
-             }));
+             [&s](const std::string& t) { s.discard = whole("--discard", t, 0, study::most_reversals); });
     add_text(c, "--feedback", "on|off", "show the participant what was right (default on)",
-             only("--feedback", [&o](const std::string& t) {
+             [&o](const std::string& t) {
                  o.settings.feedback = choose("--feedback", t, {"on", "off"}) == 0;
-             }));
+             });
     add_text(c, "--practice", "N", "first trials that do not count (default 0)",
-             only("--practice",
-                  [&o](const std::string& t) { o.settings.practice = whole("--practice", t, 0, 1000); }));
+             [&o](const std::string& t) { o.settings.practice = whole("--practice", t, 0, 1000); });
     begin_group(c);
 }
 
@@ -110,15 +96,14 @@ constexpr double power_margin_db = 1e-3;
 
 unsigned tactor_in(std::string_view text, const std::string& all, std::size_t n)
 {
-    unsigned i = 0;
-    const auto [stop, failed] = std::from_chars(text.data(), text.data() + text.size(), i);
-    if (failed == std::errc::invalid_argument || stop != text.data() + text.size())
+    const auto i = detail::number_in<std::uint64_t>(text);
+    if (!i)
         refuse_option("--tactors", fmt::format("\"{}\" is no list of tactors", all), "as 0,3-5");
-    if (failed != std::errc() || i >= n)
+    if (*i >= n)
         refuse_option("--tactors", fmt::format("there is no tactor {}", text),
                       n == 1 ? std::string("the array has tactor 0 only")
                              : fmt::format("the array has 0 to {}", n - 1));
-    return i;
+    return static_cast<unsigned>(*i);
 }
 
 std::vector<unsigned> tactors_in(const std::string& text, std::size_t n)
@@ -179,25 +164,6 @@ void check_masker(const calibrate_options& o)
 double find_ceiling(const array& a, std::size_t tactor, const drive_limits& l)
 {
     return std::min({0.0, a.tactors[tactor].max_dbfs, l.power_dbfs - power_margin_db});
-}
-
-// Lists the measured tactors by their ceilings, in the order of the first of each.
-std::vector<std::pair<double, std::vector<unsigned>>> group_by_ceiling(const study::calibration_settings& c)
-{
-    std::vector<std::pair<double, std::vector<unsigned>>> groups;
-    for (std::size_t i = 0; i < c.tactors.size(); ++i) {
-        auto at = std::find_if(groups.begin(), groups.end(),
-                               [&](const auto& g) { return g.first == c.ceilings_dbfs[i]; });
-        if (at == groups.end())
-            at = groups.insert(at, {c.ceilings_dbfs[i], {}});
-        at->second.push_back(c.tactors[i]);
-    }
-    return groups;
-}
-
-std::string name_tactors(const std::vector<unsigned>& tactors)
-{
-    return fmt::format("{} {}", tactors.size() == 1 ? "tactor" : "tactors", fmt::join(tactors, ", "));
 }
 
 // Returns the longest time that a tactor is driven in any window: in one trial of a staircase, before which
@@ -299,7 +265,7 @@ study::calibration_settings settle_calibration(const calibrate_options& o, const
     const array& a = e.tactors;
     const drive_limits limits = session::settle_limits({}, e);
     if (c.method == study::calibration_method::adjustment && !o.of_staircase.empty())
-        refuse_option(o.of_staircase.front(), "an adjustment does not have that",
+        refuse_option(o.of_staircase, "an adjustment does not have that",
                       "leave it out, or use --method staircase");
     check_staircase(c);
     check_masker(o);
@@ -338,22 +304,26 @@ study::calibration_settings settle_calibration(const calibrate_options& o, const
     return c;
 }
 
+std::string name_tactors(const std::vector<unsigned>& tactors)
+{
+    return fmt::format("{} {}", tactors.size() == 1 ? "tactor" : "tactors", fmt::join(tactors, ", "));
+}
+
 void tell_of_ceilings(const study::calibration_settings& c)
 {
-    std::string all;
-    for (const auto& [ceiling_dbfs, tactors] : group_by_ceiling(c))
-        all +=
-            fmt::format("{}{:.4g} dBFS at {}", all.empty() ? "" : "; ", ceiling_dbfs, name_tactors(tactors));
-    say(stderr, "tactor: highest level: {}\n", all);
-    std::vector<unsigned> unlimited;
+    std::map<double, std::vector<unsigned>, std::greater<>> tactors; // by ceiling
     for (std::size_t i = 0; i < c.tactors.size(); ++i)
-        if (c.ceilings_dbfs[i] == 0.0)
-            unlimited.push_back(c.tactors[i]);
-    if (!unlimited.empty())
+        tactors[c.ceilings_dbfs[i]].push_back(c.tactors[i]);
+    std::string all;
+    for (const auto& [ceiling_dbfs, of_ceiling] : tactors)
+        all += fmt::format("{}{:.4g} dBFS at {}", all.empty() ? "" : "; ", ceiling_dbfs,
+                           name_tactors(of_ceiling));
+    say(stderr, "tactor: highest level: {}\n", all);
+    if (const auto unlimited = tactors.find(0.0); unlimited != tactors.end())
         say(stderr,
             "tactor: warning: no max_dbfs below 0 limits {}: the level may go to full scale (set max_dbfs in "
             "[[tactor]] of the array file)\n",
-            name_tactors(unlimited));
+            name_tactors(unlimited->second));
 }
 
 } // namespace tactor::cli

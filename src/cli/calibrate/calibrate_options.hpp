@@ -31,8 +31,8 @@ struct calibrate_options {
     std::optional<study::page_words> words; ///< of the page; none: English
     std::string masker;                     ///< PCM of the masking noise; empty: none
     study::masking_options masking;
-    std::vector<std::string> of_staircase; ///< options given that an adjustment does not have
-    bool start_asked = false;              ///< a start level above a ceiling is no slip of the defaults then
+    std::string of_staircase; ///< an option from the command line that an adjustment does not have
+    bool start_asked = false; ///< a start level above a ceiling is no slip of the defaults then
     bool resume = false;
 };
 
@@ -44,6 +44,9 @@ void settle_names(calibrate_options& o);
 /// Returns the settings for this array, within its limits. \throws error (bad_input).
 study::calibration_settings settle_calibration(const calibrate_options& o, const settings& s,
                                                const environment& e);
+
+/// Returns "tactor 3" or "tactors 3, 4".
+std::string name_tactors(const std::vector<unsigned>& tactors);
 
 /// Says the highest level of each tactor, and warns where nothing but full scale holds it.
 void tell_of_ceilings(const study::calibration_settings& c);

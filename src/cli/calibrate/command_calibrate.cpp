@@ -7,7 +7,6 @@
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include "cli/calibrate/calibrate_options.hpp"
 #include "cli/commands.hpp"
@@ -113,15 +112,14 @@ void tell_of_others(const environment& e, const study::calibration_settings& s)
     if (!earlier || !study::is_foreign(*earlier, s))
         return;
     const std::vector<tactor_spec>& all = e.tactors.tactors;
-    std::vector<std::size_t> left;
-    for (std::size_t i = 0; i < all.size(); ++i)
+    std::vector<unsigned> left;
+    for (unsigned i = 0; i < all.size(); ++i)
         if ((all[i].threshold_dbfs || !all[i].thresholds.empty()) &&
             std::find(s.tactors.begin(), s.tactors.end(), i) == s.tactors.end())
             left.push_back(i);
     if (!left.empty())
         say(stderr, "tactor: warning: the array file's thresholds are {}{}: those of {} {} left out\n",
-            earlier->participant, earlier->simulated ? "'s, simulated" : "'s",
-            fmt::format("{} {}", left.size() == 1 ? "tactor" : "tactors", fmt::join(left, ", ")),
+            earlier->participant, earlier->simulated ? "'s, simulated" : "'s", name_tactors(left),
             left.size() == 1 ? "is" : "are");
 }
 
@@ -209,7 +207,12 @@ command add_calibrate(CLI::App& app)
     c->footer("tactor calibrate --participant P07 -o P07.toml -D hw:CARD=Tactor\n"
               "tactor calibrate --participant P07 -o P07.toml -D hw:CARD=Tactor --resume\n"
               "tactor calibrate --participant S01 -o S01.toml --simulate threshold=-45,seed=1");
-    return [s, o] { return run_with(*s, [&] { return calibrate(*s, *o); }); };
+    return [s, o, c] {
+        for (const char* name : {"--rule", "--steps", "--reversals", "--discard", "--feedback", "--practice"})
+            if (o->of_staircase.empty() && c->count(name) > 0)
+                o->of_staircase = name;
+        return run_with(*s, [&] { return calibrate(*s, *o); });
+    };
 }
 
 } // namespace tactor::cli
