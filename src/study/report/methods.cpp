@@ -103,10 +103,9 @@ std::string ages_text(const study_facts& f)
         return not_recorded;
     std::vector<std::string> parts;
     if (!ages.empty()) {
-        const t_test t = test_mean(ages, 0.0);
-        parts.push_back(fmt::format("{} years, mean {:.1f}", range_text(ages), *t.mean));
-        if (t.se)
-            parts.back() += fmt::format(", sd {:.1f}", *t.se * std::sqrt(static_cast<double>(ages.size())));
+        parts.push_back(fmt::format("{} years, mean {:.1f}", range_text(ages), mean(ages)));
+        if (ages.size() > 1)
+            parts.back() += fmt::format(", sd {:.1f}", deviation(ages, mean(ages)));
         if (!others.empty())
             parts.back() += fmt::format(", of {}", counted(ages.size(), "participant"));
     }
@@ -227,11 +226,10 @@ json tabulate_thresholds(const study_facts& f)
     json summary = json::array();
     json numbers = json::array();
     for (const std::vector<double>& column : columns) {
-        const t_test t = quick_test_mean(column, 0.0);
-        const double sd = t.se.value_or(0.0) * std::sqrt(static_cast<double>(column.size()));
-        summary.push_back(!t.mean ? "none"
-                          : !t.se ? fmt::format("{:.2f}", *t.mean)
-                                  : fmt::format("{:.2f} ({:.2f})", *t.mean, sd));
+        std::string text = column.empty() ? "none" : fmt::format("{:.2f}", mean(column));
+        if (column.size() > 1)
+            text += fmt::format(" ({:.2f})", deviation(column, mean(column)));
+        summary.push_back(text);
         numbers.push_back(fmt::format("{}", numbers.size()));
     }
     rows.push_back({{"who", "mean (sd)"}, {"values", summary}});
@@ -525,14 +523,6 @@ json describe_results(json runs, const dataset& d)
     return runs;
 }
 
-json list_excluded(const dataset& d)
-{
-    json all = json::array();
-    for (const left_out& one : d.excluded)
-        all.push_back({{"participant", one.participant}, {"why", one.why}});
-    return all;
-}
-
 } // namespace
 
 nlohmann::ordered_json collect_facts(const study_facts& f, const dataset& d, const json& analysis)
@@ -600,7 +590,9 @@ nlohmann::ordered_json collect_facts(const study_facts& f, const dataset& d, con
                                   : v["tactor"].words();
     });
     all["definitions"] = join_texts(f, [](const session_facts& s) { return s.definition_hash; });
-    all["excluded"] = list_excluded(d);
+    all["excluded"] = json::array();
+    for (const left_out& one : d.excluded)
+        all["excluded"].push_back({{"participant", one.participant}, {"why", one.why}});
     all["results"] = describe_results(analysis.at("runs"), d);
     all["warnings"] = analysis.at("warnings");
     return all;

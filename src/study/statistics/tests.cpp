@@ -302,15 +302,11 @@ double deviation(std::span<const double> values, double mean)
 
 bool varies(std::span<const double> values, double rounding)
 {
-    double largest = 0.0;
-    double low = values.empty() ? 0.0 : values[0];
-    double high = low;
-    for (const double x : values) {
-        largest = std::max(largest, std::abs(x));
-        low = std::min(low, x);
-        high = std::max(high, x);
-    }
-    return high - low > std::max(few_digits * largest, rounding);
+    if (values.empty())
+        return false;
+    const auto [low, high] = std::minmax_element(values.begin(), values.end());
+    const double largest = std::max(std::abs(*low), std::abs(*high));
+    return *high - *low > std::max(few_digits * largest, rounding);
 }
 
 double p_of_t(double t, double df)
