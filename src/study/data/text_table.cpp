@@ -88,6 +88,59 @@ std::size_t count_line_ends(std::string_view text)
     return n;
 }
 
+// Splits a text, from a byte on.
+std::vector<table_line> split_table(std::string_view text, std::size_t from)
+{
+    std::vector<table_line> lines;
+    std::size_t number = 1;
+    for (std::size_t at = from; at < text.size(); ++number) {
+        table_line line{.number = number};
+        for (bool more = true; more;) {
+            line.cells.push_back(cell_at(text, at));
+            at = line.end();
+            number += count_line_ends(text.substr(line.cells.back().begin, at - line.cells.back().begin));
+            more = at < text.size() && text[at] == '\t';
+            at += more ? 1 : 0;
+        }
+        line.ended = at < text.size();
+        if (line.ended)
+            at += line_end_length(text, at);
+        if (std::any_of(line.cells.begin(), line.cells.end(),
+                        [](const table_cell& c) { return !c.text.empty(); }))
+            lines.push_back(std::move(line));
+    }
+    return lines;
+}
+
+// Writes a cell in quotes where it would be read as another.
+std::string written_cell(std::string_view text)
+{
+    if (text != "NA" && !text.starts_with('"') && text.find_first_of(ends) == text.npos)
+        return std::string(text);
+    std::string q = "\"";
+    for (const char c : text)
+        q += c == '"' ? std::string("\"\"") : std::string(1, c);
+    return q + '"';
+}
+
+// Tests for UTF-8 without bytes of 0.
+bool is_plain_text(std::string_view text) noexcept
+{
+    int more = 0; // bytes that the character still has
+    for (const char c : text) {
+        const auto byte = static_cast<unsigned char>(c);
+        if (byte == 0 || (more > 0) != ((byte & 0xC0U) == 0x80U))
+            return false;
+        if (more > 0)
+            --more;
+        else if (byte >= 0xF8U)
+            return false;
+        else
+            more = byte >= 0xF0U ? 3 : byte >= 0xE0U ? 2 : byte >= 0xC0U ? 1 : 0;
+    }
+    return more == 0;
+}
+
 } // namespace
 
 std::string read_file(const std::filesystem::path& file)
@@ -331,56 +384,6 @@ std::string text_table::with_cells(std::size_t row, const named_cells& cells) co
             if (columns_[i] == column)
                 text.replace(old[i].begin, old[i].end - old[i].begin, written_cell(value));
     return text;
-}
-
-std::vector<table_line> split_table(std::string_view text, std::size_t from)
-{
-    std::vector<table_line> lines;
-    std::size_t number = 1;
-    for (std::size_t at = from; at < text.size(); ++number) {
-        table_line line{.number = number};
-        for (bool more = true; more;) {
-            line.cells.push_back(cell_at(text, at));
-            at = line.end();
-            number += count_line_ends(text.substr(line.cells.back().begin, at - line.cells.back().begin));
-            more = at < text.size() && text[at] == '\t';
-            at += more ? 1 : 0;
-        }
-        line.ended = at < text.size();
-        if (line.ended)
-            at += line_end_length(text, at);
-        if (std::any_of(line.cells.begin(), line.cells.end(),
-                        [](const table_cell& c) { return !c.text.empty(); }))
-            lines.push_back(std::move(line));
-    }
-    return lines;
-}
-
-std::string written_cell(std::string_view text)
-{
-    if (text != "NA" && !text.starts_with('"') && text.find_first_of(ends) == text.npos)
-        return std::string(text);
-    std::string q = "\"";
-    for (const char c : text)
-        q += c == '"' ? std::string("\"\"") : std::string(1, c);
-    return q + '"';
-}
-
-bool is_plain_text(std::string_view text) noexcept
-{
-    int more = 0; // bytes that the character still has
-    for (const char c : text) {
-        const auto byte = static_cast<unsigned char>(c);
-        if (byte == 0 || (more > 0) != ((byte & 0xC0U) == 0x80U))
-            return false;
-        if (more > 0)
-            --more;
-        else if (byte >= 0xF8U)
-            return false;
-        else
-            more = byte >= 0xF0U ? 3 : byte >= 0xE0U ? 2 : byte >= 0xC0U ? 1 : 0;
-    }
-    return more == 0;
 }
 
 } // namespace tactor::study

@@ -35,16 +35,6 @@ struct table_line {
     std::size_t end() const noexcept { return cells.back().end; }
 };
 
-/// Splits a text, from a byte on. Lines end in LF, CR LF or CR; blank ones, tabs alone too, are left out. A
-/// cell in quotes may have tabs and line ends, and two quotes for one.
-std::vector<table_line> split_table(std::string_view text, std::size_t from);
-
-/// Returns the cell as it is written: in quotes where it would be read as another.
-std::string written_cell(std::string_view text);
-
-/// Tests for UTF-8 without bytes of 0.
-bool is_plain_text(std::string_view text) noexcept;
-
 /// Returns the bytes of a regular file; refuses a pipe or a device in a study's folder without waiting for
 /// it. \throws error (bad_input) naming it.
 std::string read_file(const std::filesystem::path& file);
@@ -66,8 +56,9 @@ std::string header_line(const named_cells& cells);
 /// Says whether a table's last line may be one that a crash cut off.
 enum class last_line { whole, may_be_cut };
 
-/// A table with a header line, as tactor writes it and other programs save it: see split_table(). A byte
-/// order mark before it and empty cells after a line's last are left out.
+/// A table with a header line, as tactor writes it and other programs save it. Lines end in LF, CR LF or CR;
+/// blank ones, tabs alone too, are left out, as are a byte order mark and empty cells after a line's last. A
+/// cell in quotes may have tabs and line ends, and two quotes for one.
 class text_table {
 public:
     /// \throws error (bad_input) with file and line: UTF-16 or another kind of file, commas or other
