@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include <CLI/CLI.hpp>
@@ -89,16 +90,22 @@ int ask_person(study::calibration& c, study::calibration_log& log, const setting
     const session::stream_options& o = s.stream;
     const alsa_options device = session::device_options(s, o, e, render.channels, render.rate);
     const std::string server = session::settle_server(device.pcm);
-    study::person who(device, o, e, render, c.settings(), asked.keypads, open_page(asked.page),
-                      asked.words.value_or(study::page_words()));
+    net::owned_fd listening = open_page(asked.page);
+    study::stage stage(device, o, e);
+    const study::page_words words = asked.words.value_or(study::page_words());
+    std::optional<study::participant_page> page; // its thread has the signals blocked that the stage takes
+    if (listening)
+        page.emplace(words, e.tactors, std::move(listening));
+    study::person who(stage, e.tactors, render, c.settings(), {page ? &*page : nullptr, asked.keypads},
+                      words);
     session::warn_of_server(server);
     if (!asked.masker.empty()) {
         study::masking_options noise = asked.masking;
         noise.seed = fmt::format("{}/calibrate/{}/noise", c.settings().seed, c.settings().participant);
-        who.mask(asked.masker, noise);
+        stage.mask(asked.masker, noise);
     }
     show(study::time_text(c) + ".\n");
-    const study::stage::left why = study::until_left(who, [&] {
+    const study::stage::left why = study::until_left(stage, [&] {
         ask(c, log, who, [&](const study::calibration_record& r) { who.tell(r); });
         who.thank();
     });

@@ -31,17 +31,9 @@ page_screen adjust_screen(const page_words& w)
 
 } // namespace
 
-person::person(const alsa_options& device, const session::stream_options& o, const session::environment& e,
-               const render_options& render, const calibration_settings& s,
-               const std::vector<std::string>& keypads, net::owned_fd listening, const page_words& words)
-    : environment_(e),
-      render_(render),
-      settings_(s),
-      words_(words),
-      stage_(device, o, e),
-      page_(listening ? std::make_unique<participant_page>(words_, e.tactors, std::move(listening))
-                      : nullptr),
-      keys_(stage_, {page_.get(), keypads})
+person::person(stage& s, const array& a, const render_options& render, const calibration_settings& c,
+               const answering& with, const page_words& words)
+    : stage_(s), array_(a), render_(render), settings_(c), page_(with.page), words_(words), keys_(s, with)
 {
     render_.ramp_s = interval_ramp_s;
     render_.sl_db = 0.0;
@@ -51,7 +43,7 @@ person::person(const alsa_options& device, const session::stream_options& o, con
 // gain: the tactor gets this level in dBFS.
 score person::trial_score(unsigned tactor, double level_dbfs, double onset_s, double total_s) const
 {
-    array a = environment_.tactors;
+    array a = array_;
     for (tactor_spec& t : a.tactors) {
         t.threshold_dbfs = level_dbfs;
         t.thresholds.clear();
@@ -114,15 +106,15 @@ void person::begin()
                  "n: not felt at any level.\n");
     if (!keys_.has_keys())
         return;
-    session::show(page_ ? "The participant begins, Ctrl-C ends; what was answered is kept.\n"
-                        : "Any key begins, Ctrl-C ends; what was answered is kept.\n");
+    session::show(page_ != nullptr ? "The participant begins, Ctrl-C ends; what was answered is kept.\n"
+                                   : "Any key begins, Ctrl-C ends; what was answered is kept.\n");
     while (keys_.wait().text.empty())
         ;
 }
 
 void person::on_page(page_screen s)
 {
-    if (page_)
+    if (page_ != nullptr)
         page_->show(std::move(s));
 }
 

@@ -4,12 +4,9 @@
 #pragma once
 
 #include <functional>
-#include <memory>
-#include <optional>
 #include <string>
 #include <vector>
 
-#include "session/environment.hpp"
 #include "study/calibrate/calibration.hpp"
 #include "study/experiment/definition.hpp"
 #include "study/session/key_input.hpp"
@@ -20,14 +17,11 @@ namespace tactor::study {
 
 class person {
 public:
-    /// Opens the device and the keypads. `render` has the array's options except the level. Serves a page if
-    /// `listening` is a socket, with these words. \throws error.
-    person(const alsa_options& device, const session::stream_options& o, const session::environment& e,
-           const render_options& render, const calibration_settings& s,
-           const std::vector<std::string>& keypads, net::owned_fd listening, const page_words& words);
+    /// Opens the keypads. `render` has the array's options except the level. All that it refers to must live
+    /// as long. \throws error.
+    person(stage& s, const array& a, const render_options& render, const calibration_settings& c,
+           const answering& with, const page_words& words);
 
-    /// Plays noise through both intervals of each trial from now on. \throws error as open_alsa().
-    void mask(const std::string& pcm, const masking_options& o) { stage_.mask(pcm, o); }
     /// Plays a trial and takes the answer to it. \throws stage::left; error (runtime) if the device is gone
     /// or no answer can come any more.
     calibration_answer answer(const calibration_trial& t);
@@ -35,8 +29,6 @@ public:
     void tell(const calibration_record& r);
     /// Says that all trials are answered.
     void thank();
-    /// Ends the stream in silence. \throws error if the amplifier may be on.
-    void finish() { stage_.finish(); }
 
 private:
     calibration_answer choose(const calibration_trial& t);
@@ -49,13 +41,12 @@ private:
     void begin();
     void on_page(page_screen s);
 
-    const session::environment& environment_;
+    stage& stage_;
+    const array& array_;
     render_options render_;
     calibration_settings settings_;
+    participant_page* page_; ///< null: none
     page_words words_;
-    stage stage_;
-    /// Null: none. Its thread has the signals blocked that the stage takes.
-    std::unique_ptr<participant_page> page_;
     session_keys keys_;
     bool begun_ = false;
 };

@@ -107,10 +107,10 @@ private:
     stage& stage_;
 };
 
-/// Calls `held`, which uses a stage (or a person, who has one), and ends its streams in each case. Returns
-/// the reason for leaving. \throws what `held` throws, except stage::left.
-template <typename Stage, typename Held>
-[[nodiscard]] stage::left until_left(Stage& s, const Held& held)
+/// Calls `held`, which uses the stage, and ends its streams in each case. Returns the reason for leaving.
+/// \throws what `held` throws, except stage::left.
+template <typename Held>
+[[nodiscard]] stage::left until_left(stage& s, const Held& held)
 {
     stage::left why{0};
     try {
