@@ -47,7 +47,7 @@ TEST_CASE("the shipped experiment is the paper's")
     CHECK(d.runs[2].outline.scale == 5);
     CHECK(d.methods[0].options.algorithm == algorithm_kind::tactile_brush);
     CHECK(d.text == shipped_experiment("park2016"));
-    CHECK(d.masking.noise == noise_kind::white);
+    CHECK(d.masking.noise->color == noise_color::white);
 }
 
 TEST_CASE("a recording of a motion may have intensities of another scale")
@@ -73,7 +73,7 @@ TEST_CASE("missing keys have defaults")
     CHECK(d.gap_s == 1.0);
     CHECK(!d.seed);
     CHECK(!d.array);
-    CHECK(d.masking.noise == noise_kind::none);
+    CHECK(!d.masking.noise);
     for (const page_word& w : page_words_in_english())
         CHECK(d.page[w.key] == w.english);
     CHECK(d.runs[0].practice == 0);

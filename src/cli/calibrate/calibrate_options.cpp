@@ -146,8 +146,7 @@ std::string masker_text(const calibrate_options& o)
 {
     if (o.masker.empty())
         return {};
-    return fmt::format("{} noise, {} dBFS", o.masking.color == study::noise_color::white ? "white" : "pink",
-                       o.masking.level_dbfs);
+    return fmt::format("{} noise, {} dBFS", to_string(o.masking.color), o.masking.level_dbfs);
 }
 
 void check_masker(const calibrate_options& o)

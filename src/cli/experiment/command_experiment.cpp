@@ -48,7 +48,7 @@ void check_keys(const study::prepared_experiment& p)
 
 void check_noise(const study::prepared_experiment& p, const experiment_options& o)
 {
-    const bool none = p.definition.masking.noise == study::noise_kind::none;
+    const bool none = !p.definition.masking.noise;
     if (none && !o.masker.empty())
         throw error(error_kind::bad_input, "--masker", "the definition has no masking noise",
                     "[masking], or leave it out");
@@ -154,10 +154,11 @@ std::unique_ptr<study::stage> open_stage(const study::prepared_experiment& p, co
     how.reopen_s = patience_s;
     const alsa_options device = session::device_options(s, how, p.where, p.render.channels, p.render.rate);
     auto there = std::make_unique<study::stage>(device, how, p.where);
-    if (!o.masker.empty())
-        there->mask(o.masker, study::noise_options(
-                                  p.definition.masking,
-                                  fmt::format("{}/{}/{}/noise", p.seed, p.definition.name, p.participant)));
+    if (!o.masker.empty()) {
+        study::masking_options noise = p.definition.masking.noise.value();
+        noise.seed = fmt::format("{}/{}/{}/noise", p.seed, p.definition.name, p.participant);
+        there->mask(o.masker, noise);
+    }
     return there;
 }
 
@@ -225,10 +226,10 @@ void try_noise(const study::prepared_experiment& p, study::stage& there)
 int check_noise(const study::prepared_experiment& p, const experiment_options& o, const settings& s)
 {
     static_cast<void>(check_real_session(p, o, s));
-    const study::masking_definition& m = p.definition.masking;
+    const study::masking_options& noise = p.definition.masking.noise.value();
     const std::unique_ptr<study::stage> there = open_stage(p, o, s);
     show(fmt::format("{} noise, {} dBFS, on {}. n noise on and off, s a stimulus under it, q ends.\n",
-                     to_string(m.noise), m.level_dbfs, o.masker));
+                     to_string(noise.color), noise.level_dbfs, o.masker));
     const int signal = study::until_left(*there, [&] { try_noise(p, *there); }).signal;
     return signal != 0 ? session::interrupt::status(signal) : 0;
 }

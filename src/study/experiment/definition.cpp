@@ -258,18 +258,18 @@ masking_definition read_masking(const toml_table& root)
         return m;
     t->only({"noise", "level_dbfs", "fade_s", "while"});
     const std::string noise = t->choice("noise", {"white", "pink", "none"}).value_or("white");
-    m.noise = noise == "white" ? noise_kind::white : noise == "pink" ? noise_kind::pink : noise_kind::none;
-    m.level_dbfs = t->number("level_dbfs", detail::bounds_of::masker_dbfs).value_or(m.level_dbfs);
-    if (m.noise != noise_kind::none) {
-        const double most = greatest_noise_dbfs(noise_options(m, {}).color);
-        if (m.level_dbfs > most)
-            t->fail("level_dbfs",
-                    fmt::format("level_dbfs is {}, and the peaks of {} noise are at full scale from {} on",
-                                m.level_dbfs, noise, most),
-                    "less here, and more at the amplifier of the headphones");
-    }
-    m.fade_s = t->number("fade_s", {0.0, 10.0}).value_or(m.fade_s);
+    masking_options o{.color = noise == "pink" ? noise_color::pink : noise_color::white};
+    o.level_dbfs = t->number("level_dbfs", detail::bounds_of::masker_dbfs).value_or(o.level_dbfs);
+    const double most = greatest_noise_dbfs(o.color);
+    if (noise != "none" && o.level_dbfs > most)
+        t->fail("level_dbfs",
+                fmt::format("level_dbfs is {}, and the peaks of {} noise are at full scale from {} on",
+                            o.level_dbfs, noise, most),
+                "less here, and more at the amplifier of the headphones");
+    o.fade_s = t->number("fade_s", {0.0, 10.0}).value_or(o.fade_s);
     m.through_run = t->choice("while", {"stimulus", "run"}).value_or("stimulus") == "run";
+    if (noise != "none")
+        m.noise = std::move(o);
     return m;
 }
 
@@ -511,11 +511,6 @@ std::string in_definition_words(std::string_view hint)
     return options::spell(hint, {write_choice, options::in_method, own_words});
 }
 
-std::string_view to_string(noise_kind k) noexcept
-{
-    return k == noise_kind::white ? "white" : k == noise_kind::pink ? "pink" : "none";
-}
-
 experiment_definition read_definition(std::string_view toml, const std::string& name, const fs::path& folder)
 {
     return definition_in(toml, name, {.folder = &folder});
@@ -563,14 +558,6 @@ experiment_definition load_definition(const std::string& name_or_file)
         return read_definition(shipped_experiment(name_or_file), name_or_file, {});
     const detail::whole_text text = detail::read_text_file(name_or_file, most_bytes_of_text);
     return read_definition(text, name_or_file, fs::path(name_or_file).parent_path());
-}
-
-masking_options noise_options(const masking_definition& m, std::string seed)
-{
-    return {.color = m.noise == noise_kind::pink ? noise_color::pink : noise_color::white,
-            .level_dbfs = m.level_dbfs,
-            .fade_s = m.fade_s,
-            .seed = std::move(seed)};
 }
 
 std::span<const page_word> page_words_in_english()

@@ -22,9 +22,6 @@
 
 namespace tactor::study {
 
-enum class noise_kind { none, white, pink };
-std::string_view to_string(noise_kind k) noexcept;
-
 /// A text of the participant's page or terminal besides the definition's questions.
 struct page_word {
     std::string_view key;
@@ -53,9 +50,7 @@ page_words load_page_words(const std::string& file);
 
 /// [masking]: noise from loudspeakers or headphones, so that nobody hears the array.
 struct masking_definition {
-    noise_kind noise = noise_kind::none;
-    double level_dbfs = -30.0; ///< root of the mean square, dB below that of a full-scale square
-    double fade_s = 0.05;
+    std::optional<masking_options> noise = {};
     bool through_run = false; ///< while = "run": not only around each stimulus
 };
 
@@ -154,8 +149,5 @@ std::string_view park2016_text() noexcept;
 /// Returns a hint of the library with a definition's keys in place of fields, without options that a
 /// definition cannot set.
 std::string in_definition_words(std::string_view hint);
-
-/// Returns the options of the noise that `m` asks for. The same seed gives the same noise.
-masking_options noise_options(const masking_definition& m, std::string seed);
 
 } // namespace tactor::study

@@ -21,6 +21,10 @@ enum class noise_color {
     white, ///< the same power in every Hz
     pink,  ///< the same power in every octave
 };
+constexpr std::string_view to_string(noise_color c) noexcept
+{
+    return c == noise_color::white ? "white" : "pink";
+}
 
 /// Returns the greatest level, dBFS, without clipping. White noise is uniform; pink noise has peaks, which
 /// are clipped at full scale (15 dB above this level, once in minutes).
@@ -46,7 +50,7 @@ private:
 
 struct masking_options {
     noise_color color = noise_color::white;
-    double level_dbfs = -30.0; ///< see noise
+    double level_dbfs = -30.0; ///< root of the mean square, dB below that of a full-scale square
     double fade_s = 0.05;      ///< raised cosine, in and out
     std::string seed = {};
     double patience_s = 5.0; ///< masker: so much longer than the fade may take

@@ -296,11 +296,11 @@ json level_facts(const experiment_definition& d)
 
 json masking_facts(const masking_definition& m)
 {
-    if (m.noise == noise_kind::none)
+    if (!m.noise)
         return nullptr;
-    return {{"noise", std::string(to_string(m.noise))},
-            {"level_dbfs", m.level_dbfs},
-            {"fade_s", m.fade_s},
+    return {{"noise", std::string(to_string(m.noise->color))},
+            {"level_dbfs", m.noise->level_dbfs},
+            {"fade_s", m.noise->fade_s},
             {"while", m.through_run ? "run" : "stimulus"}};
 }
 
