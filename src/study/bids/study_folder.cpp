@@ -101,6 +101,53 @@ std::string response_meaning(const run_definition& r)
     return "The motion that was named";
 }
 
+std::string readme_text(const experiment_definition& d, bool simulated)
+{
+    return fmt::format(
+        "{}\n\n{}This folder was written by tactor experiment (definition: {}). Vibrations moved over the "
+        "skin, and after\n"
+        "each trial a question was answered; each run is a task of its own, and sub-CODE/beh has a line for "
+        "each\n"
+        "trial. What the columns mean is in task-NAME_beh.json. The definition, the array, the levels and "
+        "each\n"
+        "stimulus, named by the SHA-256 of its plan, are in sourcedata. Trials whose column void is true "
+        "were\n"
+        "played or answered under conditions that were not as planned; they do not count, and come again.\n"
+        "tactor analyze prints the statistics.\n",
+        d.title, simulated ? std::string(simulated_note) + "\n\n" : std::string(), d.name);
+}
+
+std::string participants_text(bool simulated)
+{
+    ordered j;
+    j["participant_id"] =
+        column_json(simulated ? simulated_note : "A code, which says nothing about who it is");
+    j["age"] = column_json("Age", "years");
+    j["sex"] = column_json("Sex, as the participant says");
+    j["sex"]["Levels"] = {{"F", "female"}, {"M", "male"}, {"O", "other"}};
+    j["handedness"] = column_json("Hand that the participant prefers");
+    j["handedness"]["Levels"] = {{"R", "right"}, {"L", "left"}, {"A", "both"}};
+    return json_text(j);
+}
+
+std::string task_text(const run_definition& r, bool simulated)
+{
+    ordered j{{"TaskName", r.outline.name}};
+    j["TaskDescription"] = fmt::format(
+        "{}{}", simulated ? std::string(simulated_note) + " " : "",
+        r.outline.task == task_kind::choose ? "Two stimuli, one after the other, of which one is chosen"
+        : r.outline.task == task_kind::rate ? "One stimulus, which is rated"
+                                            : "One stimulus, whose motion is named");
+    j["Instructions"] = r.question;
+    if (!r.labels.empty())
+        j["Labels"] = r.labels;
+    for (const trial_column& c : trial_columns)
+        j[std::string(c.name)] = column_json(c.meaning.empty() ? response_meaning(r) : c.meaning, c.unit);
+    j["early"]["Levels"] = {{"true", fmt::format("sooner than {} s", r.min_response_s)}, {"false", "later"}};
+    j["void"]["Levels"] = {{"true", "does not count"}, {"false", "counts"}};
+    return json_text(j);
+}
+
 constexpr std::int64_t second_ns = 1000000000;
 constexpr std::int64_t microsecond_ns = 1000;
 constexpr std::size_t fraction_digits = 6;
@@ -296,53 +343,6 @@ std::optional<bool> says_simulated(const std::string& dataset_description)
             return false;
     }
     return {};
-}
-
-std::string readme_text(const experiment_definition& d, bool simulated)
-{
-    return fmt::format(
-        "{}\n\n{}This folder was written by tactor experiment (definition: {}). Vibrations moved over the "
-        "skin, and after\n"
-        "each trial a question was answered; each run is a task of its own, and sub-CODE/beh has a line for "
-        "each\n"
-        "trial. What the columns mean is in task-NAME_beh.json. The definition, the array, the levels and "
-        "each\n"
-        "stimulus, named by the SHA-256 of its plan, are in sourcedata. Trials whose column void is true "
-        "were\n"
-        "played or answered under conditions that were not as planned; they do not count, and come again.\n"
-        "tactor analyze prints the statistics.\n",
-        d.title, simulated ? std::string(simulated_note) + "\n\n" : std::string(), d.name);
-}
-
-std::string participants_text(bool simulated)
-{
-    ordered j;
-    j["participant_id"] =
-        column_json(simulated ? simulated_note : "A code, which says nothing about who it is");
-    j["age"] = column_json("Age", "years");
-    j["sex"] = column_json("Sex, as the participant says");
-    j["sex"]["Levels"] = {{"F", "female"}, {"M", "male"}, {"O", "other"}};
-    j["handedness"] = column_json("Hand that the participant prefers");
-    j["handedness"]["Levels"] = {{"R", "right"}, {"L", "left"}, {"A", "both"}};
-    return json_text(j);
-}
-
-std::string task_text(const run_definition& r, bool simulated)
-{
-    ordered j{{"TaskName", r.outline.name}};
-    j["TaskDescription"] = fmt::format(
-        "{}{}", simulated ? std::string(simulated_note) + " " : "",
-        r.outline.task == task_kind::choose ? "Two stimuli, one after the other, of which one is chosen"
-        : r.outline.task == task_kind::rate ? "One stimulus, which is rated"
-                                            : "One stimulus, whose motion is named");
-    j["Instructions"] = r.question;
-    if (!r.labels.empty())
-        j["Labels"] = r.labels;
-    for (const trial_column& c : trial_columns)
-        j[std::string(c.name)] = column_json(c.meaning.empty() ? response_meaning(r) : c.meaning, c.unit);
-    j["early"]["Levels"] = {{"true", fmt::format("sooner than {} s", r.min_response_s)}, {"false", "later"}};
-    j["void"]["Levels"] = {{"true", "does not count"}, {"false", "counts"}};
-    return json_text(j);
 }
 
 std::string acq_time_text(std::int64_t utc_ns)

@@ -77,19 +77,11 @@ private:
     std::vector<std::string> warnings_ = {};
 };
 
-// Texts of the files that describe a study. Each says it if the study is simulated.
-
-/// Returns dataset_description.json.
+/// Returns dataset_description.json, which says it if the study is simulated.
 std::string dataset_text(const experiment_definition& d, bool simulated);
 /// Returns true if a dataset_description.json is of a simulated study; nothing if tactor experiment did not
 /// write it.
 std::optional<bool> says_simulated(const std::string& dataset_description);
-/// Returns README.
-std::string readme_text(const experiment_definition& d, bool simulated);
-/// Returns participants.json.
-std::string participants_text(bool simulated);
-/// Returns task-NAME_beh.json.
-std::string task_text(const run_definition& r, bool simulated);
 
 /// Returns "2026-11-21T14:03:00.123456Z": UTC, whole microseconds, from ns since 1970.
 std::string acq_time_text(std::int64_t utc_ns);

@@ -42,16 +42,11 @@ std::vector<std::string> label_choices(const prepared_experiment& p, const run_d
     return all;
 }
 
-page_progress where_is(const prepared_experiment& p, const session_step& s)
+page_progress find_progress(const prepared_experiment& p, const session_step& s)
 {
     const run_sequence& run = p.runs[s.run];
-    return {s.run + 1, p.runs.size(), s.practice, s.which.trial,
+    return {s.run + 1, p.runs.size(), s.practice, s.what == step_kind::trial ? s.which.trial : 0,
             s.practice ? run.practice.size() : run.trials.size()};
-}
-
-page_progress before_trials(const prepared_experiment& p, const session_step& s)
-{
-    return {s.run + 1, p.runs.size(), false, 0, p.runs[s.run].trials.size()};
 }
 
 // Returns the steps of the scale with their labels, or its ends.
@@ -133,14 +128,14 @@ page_screen introduce_screen(const prepared_experiment& p, const session_step& s
                       .question = p.run_at(s.run).question,
                       .choices = {p.definition.page["begin"]},
                       .keys = " "};
-    shown.where = before_trials(p, s);
+    shown.where = find_progress(p, s);
     return shown;
 }
 
 page_screen rest_screen(const prepared_experiment& p, const session_step& s)
 {
     page_screen shown = idle_screen(p, "rest");
-    shown.where = before_trials(p, s);
+    shown.where = find_progress(p, s);
     shown.lasts_s = p.run_at(s.run).break_s;
     return shown;
 }
@@ -151,7 +146,7 @@ page_screen target_screen(const prepared_experiment& p, const session_step& s, c
     shown.lasts_s = target.motion.duration_s();
     shown.path = sample_way(target, p.where.tactors,
                             std::clamp(std::ceil(shown.lasts_s * points_per_s), 50.0, most_points));
-    shown.where = where_is(p, s);
+    shown.where = find_progress(p, s);
     return shown;
 }
 
@@ -160,7 +155,7 @@ page_screen stimulus_screen(const prepared_experiment& p, const session_step& s,
     page_screen shown = idle_screen(p, "stimulus");
     shown.stimuli = p.run_at(s.run).outline.task == task_kind::choose ? 2 : 0;
     shown.playing = playing;
-    shown.where = where_is(p, s);
+    shown.where = find_progress(p, s);
     return shown;
 }
 
@@ -174,7 +169,7 @@ page_screen question_screen(const prepared_experiment& p, const session_step& s)
         for (const std::size_t m : r.motions)
             shown.pictures.push_back(
                 sample_way(p.definition.motions[m].drawn, p.where.tactors, picture_points));
-    shown.where = where_is(p, s);
+    shown.where = find_progress(p, s);
     return shown;
 }
 
