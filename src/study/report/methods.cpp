@@ -48,19 +48,16 @@ std::string name_subjects(const study_facts& f, const std::vector<std::string>& 
 
 // Facts in the order in which they came, each with the sessions that have it.
 template <class Fact>
-class shared_facts {
-public:
-    std::vector<std::string>& operator[](const Fact& fact)
-    {
-        const auto at =
-            std::find_if(all_.begin(), all_.end(), [&](const auto& f) { return f.first == fact; });
-        return at == all_.end() ? all_.emplace_back(fact, std::vector<std::string>()).second : at->second;
-    }
-    const auto& all() const noexcept { return all_; }
+using shared_facts = std::vector<std::pair<Fact, std::vector<std::string>>>;
 
-private:
-    std::vector<std::pair<Fact, std::vector<std::string>>> all_;
-};
+template <class Fact>
+void add_fact(shared_facts<Fact>& all, const Fact& fact, const std::string& code)
+{
+    auto at = std::find_if(all.begin(), all.end(), [&](const auto& f) { return f.first == fact; });
+    if (at == all.end())
+        at = all.emplace(at, fact, std::vector<std::string>());
+    at->second.push_back(code);
+}
 
 bool is_simulated(const session_facts& s)
 {
@@ -146,10 +143,10 @@ json list_arrays(const study_facts& f)
                 row[key] = t[key].words();
             tactors.push_back(row);
         }
-        tables[tactors].push_back(s.code);
+        add_fact(tables, tactors, s.code);
     }
     json all = json::array();
-    for (const auto& [tactors, codes] : tables.all())
+    for (const auto& [tactors, codes] : tables)
         all.push_back({{"who", name_subjects(f, codes)}, {"tactors", tactors}});
     return all;
 }
@@ -368,9 +365,9 @@ json list_stimuli(const study_facts& f)
     shared_facts<json> rows;
     for (const session_facts& s : f.sessions)
         for (const planned_stimulus& p : s.stimuli)
-            rows[describe_stimulus(p)].push_back(s.code);
+            add_fact(rows, describe_stimulus(p), s.code);
     json all = json::array();
-    for (const auto& [row, codes] : rows.all()) {
+    for (const auto& [row, codes] : rows) {
         all.push_back(row);
         all.back()["who"] = name_subjects(f, codes);
     }
@@ -603,11 +600,11 @@ std::string join_texts(const study_facts& f, const std::function<std::string(con
     shared_facts<std::string> texts;
     for (const session_facts& s : f.sessions) {
         const std::string own = text(s);
-        texts[own.empty() ? not_recorded : own].push_back(s.code);
+        add_fact(texts, own.empty() ? not_recorded : own, s.code);
     }
     std::vector<std::string> parts;
-    for (const auto& [own, codes] : texts.all())
-        parts.push_back(texts.all().size() == 1 ? own : fmt::format("{} ({})", own, list_subjects(codes)));
+    for (const auto& [own, codes] : texts)
+        parts.push_back(texts.size() == 1 ? own : fmt::format("{} ({})", own, list_subjects(codes)));
     return parts.empty() ? not_recorded : join(parts, "; ");
 }
 
