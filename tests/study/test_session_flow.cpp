@@ -38,15 +38,15 @@ TEST_CASE("consent, then each tactor, then the question, practice, trials, a bre
 {
     session_flow f({make_flow_run(1, 1, true), make_flow_run(1, 0, true)}, true, 2);
     CHECK(f.next().what == step_kind::consent);
-    f.agree(true);
+    f.agree();
     CHECK(f.next() == session_step{.what = step_kind::walk, .tactor = 0});
-    f.felt(walk_answer::felt);
+    f.felt();
     CHECK(f.next().tactor == 1);
-    f.felt(walk_answer::again);
-    CHECK(f.next().tactor == 1);
-    f.felt(walk_answer::back);
-    f.felt(walk_answer::felt);
-    f.felt(walk_answer::felt);
+    f.walk_back();
+    f.walk_back();
+    CHECK(f.next().tactor == 0);
+    f.felt();
+    f.felt();
     CHECK(f.next() == session_step{.what = step_kind::introduce, .run = 0});
     f.go_on();
     CHECK(f.next() == session_step{.what = step_kind::trial, .run = 0, .practice = true, .which = {1, 1}});
@@ -60,17 +60,6 @@ TEST_CASE("consent, then each tactor, then the question, practice, trials, a bre
     CHECK(f.next() == trial_step(1, 1));
     f.took(false);
     CHECK(f.next().what == step_kind::over); // no break after the last
-}
-
-TEST_CASE("without consent, or where a tactor is not felt, nothing follows")
-{
-    session_flow no({make_flow_run(1)}, true, 3);
-    no.agree(false);
-    CHECK(no.next().what == step_kind::refused);
-    session_flow f({make_flow_run(1)}, false, 3);
-    f.felt(walk_answer::felt);
-    f.felt(walk_answer::not_felt);
-    CHECK(f.next() == session_step{.what = step_kind::not_felt, .tactor = 1});
 }
 
 TEST_CASE("a void trial comes again at the end of its run, its attempt counted up")

@@ -25,10 +25,6 @@ void session_flow::leave_done_run(bool rest)
 
 session_step session_flow::next() const
 {
-    if (refused_)
-        return {.what = step_kind::refused};
-    if (not_felt_)
-        return {.what = step_kind::not_felt, .tactor = walked_};
     if (run_ == runs_.size())
         return {.what = step_kind::over};
     if (ask_consent_)
@@ -46,22 +42,6 @@ session_step session_flow::next() const
     s.practice = r.practised < r.practice;
     s.which = s.practice ? pending_trial{r.practised + 1, 1} : r.trials.next();
     return s;
-}
-
-void session_flow::agree(bool yes)
-{
-    ask_consent_ = false;
-    refused_ = !yes;
-}
-
-void session_flow::felt(walk_answer a)
-{
-    if (a == walk_answer::felt)
-        ++walked_;
-    else if (a == walk_answer::back && walked_ > 0)
-        --walked_;
-    else if (a == walk_answer::not_felt)
-        not_felt_ = true;
 }
 
 void session_flow::go_on()

@@ -57,14 +57,12 @@ private:
 /// Kind of the next step.
 enum class step_kind {
     consent,   ///< the text is shown: agree()
-    walk,      ///< a tactor is driven: felt()
+    walk,      ///< a tactor is driven: felt() or walk_back()
     introduce, ///< the run's question is shown: go_on()
     trial,     ///< a trial is played and answered: took()
     rest,      ///< a break between runs: go_on()
     pause,     ///< the experimenter's: go_on()
     over,      ///< all runs are through
-    refused,   ///< there was no consent
-    not_felt,  ///< a tactor of the walk was not
 };
 
 struct session_step {
@@ -76,9 +74,6 @@ struct session_step {
 
     friend bool operator==(const session_step&, const session_step&) = default;
 };
-
-/// Answer about a tactor of the walk.
-enum class walk_answer { felt, not_felt, again, back };
 
 /// A run at the place where the session begins or goes on.
 struct flow_run {
@@ -98,8 +93,9 @@ public:
 
     session_step next() const;
 
-    void agree(bool yes);
-    void felt(walk_answer a);
+    void agree() noexcept { ask_consent_ = false; }
+    void felt() noexcept { ++walked_; }
+    void walk_back() noexcept { walked_ -= walked_ > 0 ? 1 : 0; }
     void go_on();
     /// Takes a trial that is over and on the disk.
     void took(bool is_void);
@@ -120,10 +116,8 @@ private:
 
     std::vector<flow_run> runs_;
     bool ask_consent_;
-    bool refused_ = false;
     unsigned tactors_;
     unsigned walked_ = 0;
-    bool not_felt_ = false;
     std::size_t run_ = 0;
     place place_ = place::introduce;
     bool paused_ = false;

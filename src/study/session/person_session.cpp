@@ -80,12 +80,6 @@ void person_session::step(const session_step& s)
         return rest(s);
     case step_kind::pause:
         return pause();
-    case step_kind::refused:
-        throw error(error_kind::runtime, "sub-" + p_.participant, "did not agree",
-                    "there are no data of the session");
-    case step_kind::not_felt:
-        throw error(error_kind::runtime, fmt::format("tactor {}", s.tactor), "it was not felt",
-                    "tactor check --walk finds out why; then begin again");
     case step_kind::over:
         return;
     }
@@ -418,9 +412,11 @@ void person_session::ask_consent()
         if (k.text != "y" && k.text != "n")
             continue;
         session::show(k.text == "y" ? w["yes"] + "\n\n" : w["no"] + "\n");
-        if (k.text == "y")
-            agreed_at_ = acq_time_text(utc_now_ns());
-        return flow_.agree(k.text == "y");
+        if (k.text == "n")
+            throw error(error_kind::runtime, "sub-" + p_.participant, "did not agree",
+                        "there are no data of the session");
+        agreed_at_ = acq_time_text(utc_now_ns());
+        return flow_.agree();
     }
 }
 
@@ -449,15 +445,17 @@ void person_session::walk(unsigned tactor)
         if (k.text != "y" && k.text != "n" && k.text != "r" && (k.text != "b" || tactor == 0))
             continue;
         session::show(k.text + "\n");
-        if (k.text == "y")
+        if (k.text == "y") {
             walked_.push_back({{"tactor", tactor}, {"asked", acq_time_text(utc_now_ns())}});
-        // On a page a finger slips: the first No offers the tactor once more.
-        if (k.text == "n" && page_ != nullptr && std::exchange(doubted_, tactor) != tactor)
-            return flow_.felt(walk_answer::again);
-        return flow_.felt(k.text == "y"   ? walk_answer::felt
-                          : k.text == "n" ? walk_answer::not_felt
-                          : k.text == "r" ? walk_answer::again
-                                          : walk_answer::back);
+            flow_.felt();
+        } else if (k.text == "b") {
+            flow_.walk_back();
+        } else if (k.text == "n" && (page_ == nullptr || std::exchange(doubted_, tactor) == tactor)) {
+            // On a page a finger slips: the first No drives the tactor once more.
+            throw error(error_kind::runtime, fmt::format("tactor {}", tactor), "it was not felt",
+                        "tactor check --walk finds out why; then begin again");
+        }
+        return;
     }
 }
 
