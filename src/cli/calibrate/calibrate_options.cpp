@@ -225,7 +225,7 @@ void add_calibrate_options(CLI::App& c, calibrate_options& o)
     add_text(
         c, "--start-dbfs", "DB", "level of the first trial (default -20)", [&o, &s](const std::string& t) {
             s.staircase.start_dbfs = options::parse_number("--start-dbfs", t, {study::floor_dbfs, 0}, "dBFS");
-            o.start_asked = true;
+            o.has_start = true;
         });
     add_staircase_options(c, o);
     add_masker_options(c, o);
@@ -288,7 +288,7 @@ study::calibration_settings settle_calibration(const calibrate_options& o, const
     }
     for (const unsigned t : c.tactors) {
         const double ceiling = find_ceiling(a, t, limits);
-        if (o.start_asked && c.start_dbfs() > ceiling)
+        if (o.has_start && c.start_dbfs() > ceiling)
             refuse_option(
                 "--start-dbfs",
                 fmt::format("tactor {} may have {:.4g} dBFS at most ({}), and {:.4g} dBFS is the start", t,
@@ -308,7 +308,7 @@ std::string name_tactors(const std::vector<unsigned>& tactors)
     return fmt::format("{} {}", tactors.size() == 1 ? "tactor" : "tactors", fmt::join(tactors, ", "));
 }
 
-void tell_of_ceilings(const study::calibration_settings& c)
+void print_ceilings(const study::calibration_settings& c)
 {
     std::map<double, std::vector<unsigned>, std::greater<>> tactors; // by ceiling
     for (std::size_t i = 0; i < c.tactors.size(); ++i)

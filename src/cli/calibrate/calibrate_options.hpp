@@ -32,7 +32,7 @@ struct calibrate_options {
     std::string masker;                     ///< PCM of the masking noise; empty: none
     study::masking_options masking;
     std::string of_staircase; ///< an option from the command line that an adjustment does not have
-    bool start_asked = false; ///< a start level above a ceiling is no slip of the defaults then
+    bool has_start = false;   ///< the command line gives the start level, which no ceiling may lower
     bool resume = false;
 };
 
@@ -48,7 +48,7 @@ study::calibration_settings settle_calibration(const calibrate_options& o, const
 /// Returns "tactor 3" or "tactors 3, 4".
 std::string name_tactors(const std::vector<unsigned>& tactors);
 
-/// Says the highest level of each tactor, and warns where nothing but full scale holds it.
-void tell_of_ceilings(const study::calibration_settings& c);
+/// Prints the highest level of each tactor, and warns where only full scale limits it.
+void print_ceilings(const study::calibration_settings& c);
 
 } // namespace tactor::cli

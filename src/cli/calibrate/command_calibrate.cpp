@@ -28,7 +28,7 @@ constexpr double paper_sl_db = 7.0; // Park et al. 2016
 
 // Returns the other contents of the array's own file. A configuration is read anyway when its array is
 // replaced, but for the channels.
-setup said_besides(const environment& e)
+setup read_other_tables(const environment& e)
 {
     setup s;
     if (!e.array_file.empty() && e.array_file != e.config_name)
@@ -70,13 +70,13 @@ void print(const study::tactor_threshold& t, double ceiling_dbfs)
 }
 
 // Asks the trials that are left; each is in the log before the next.
-template <typename Who, typename Told>
-void ask(study::calibration& c, study::calibration_log& log, Who& who, const Told& told)
+template <typename Who, typename After>
+void ask(study::calibration& c, study::calibration_log& log, Who& who, const After& after)
 {
     while (!c.done()) {
         const study::calibration_record r = c.answer(who.answer(c.next()));
         log.append(r);
-        told(r);
+        after(r);
     }
 }
 
@@ -105,7 +105,7 @@ int ask_person(study::calibration& c, study::calibration_log& log, const setting
         stage.mask(asked.masker, noise);
     }
     show(study::time_text(c) + ".\n");
-    const study::stage::left why = study::until_left(stage, [&] {
+    const study::stage::interruption why = study::until_interrupted(stage, [&] {
         ask(c, log, who, [&](const study::calibration_record& r) { who.tell(r); });
         who.thank();
     });
@@ -113,7 +113,7 @@ int ask_person(study::calibration& c, study::calibration_log& log, const setting
 }
 
 // Warns of thresholds that are not measured now: they would pass for this session's.
-void tell_of_others(const environment& e, const study::calibration_settings& s)
+void warn_of_others(const environment& e, const study::calibration_settings& s)
 {
     const auto& earlier = e.config.calibration;
     if (!earlier || !study::is_foreign(*earlier, s))
@@ -163,7 +163,7 @@ int calibrate(settings& s, calibrate_options& o)
         simulated = study::parse_observer(*o.simulate, begun.tactors, e.tactors.tactors.size());
     else if (!there && !session::names_device(s, e))
         throw error(error_kind::bad_input, "-D", "no device is configured", "-D PCM, or --simulate SPEC");
-    const setup besides = said_besides(e);
+    const setup besides = read_other_tables(e);
     begun.array = detail::sha256_text(study::array_text(e.tactors, besides));
     if (there) {
         study::check_beginning(o.log, begun);
@@ -171,8 +171,8 @@ int calibrate(settings& s, calibrate_options& o)
         say(stdout, "{} is there: the session is finished\n", o.output);
         return status_ok;
     }
-    tell_of_ceilings(begun);
-    tell_of_others(e, begun);
+    print_ceilings(begun);
+    warn_of_others(e, begun);
 
     study::calibration_log log(o.log, o.resume, begun);
     study::calibration c(begun);

@@ -164,15 +164,15 @@ std::unique_ptr<study::stage> open_stage(const study::prepared_experiment& p, co
 
 // Runs the trials that are left, with a person at the terminal or, where `listening` is a socket, at a page.
 // Returns why the session ended. \throws error.
-study::stage::left hold_real_session(const study::prepared_experiment& p, const experiment_options& o,
-                                     const settings& s, const study::sound_servers& between,
-                                     net::owned_fd listening, study::session_store& store)
+study::stage::interruption hold_real_session(const study::prepared_experiment& p, const experiment_options& o,
+                                             const settings& s, const study::sound_servers& between,
+                                             net::owned_fd listening, study::session_store& store)
 {
     const std::unique_ptr<study::stage> there = open_stage(p, o, s);
     std::optional<study::participant_page> page; // its thread has the signals blocked that the stage takes
     if (listening)
         page.emplace(p.definition.page, p.where.tactors, std::move(listening));
-    return study::until_left(*there, [&] {
+    return study::until_interrupted(*there, [&] {
         const study::answering with{page ? &*page : nullptr, o.keypads};
         const study::target_display display{can_draw(), show_target};
         study::person_session(p, store, *there, with, display, {p.pcm, o.masker, between}).hold();
@@ -230,7 +230,7 @@ int check_noise(const study::prepared_experiment& p, const experiment_options& o
     const std::unique_ptr<study::stage> there = open_stage(p, o, s);
     show(fmt::format("{} noise, {} dBFS, on {}. n noise on and off, s a stimulus under it, q ends.\n",
                      to_string(noise.color), noise.level_dbfs, o.masker));
-    const int signal = study::until_left(*there, [&] { try_noise(p, *there); }).signal;
+    const int signal = study::until_interrupted(*there, [&] { try_noise(p, *there); }).signal;
     return signal != 0 ? session::interrupt::status(signal) : 0;
 }
 
@@ -260,7 +260,7 @@ int hold_session(const study::prepared_experiment& p, const experiment_options& 
     if (store.resumed())
         for (const std::string& what : store.mend())
             say(stderr, "tactor: warning: {}\n", what);
-    study::stage::left why{0};
+    study::stage::interruption why{0};
     if (o.simulate) {
         store.begin(p.stimuli.all());
         why.signal = study::simulate_session(p, *o.simulate, store);

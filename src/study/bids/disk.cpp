@@ -31,7 +31,7 @@ namespace fs = std::filesystem;
     throw error(error_kind::runtime, file.string(), std::strerror(code), what_is_kept(code));
 }
 
-detail::owned_fd opened(const fs::path& file, int flags)
+detail::owned_fd open_file(const fs::path& file, int flags)
 {
     detail::owned_fd fd(::open(file.c_str(), flags | O_CLOEXEC | O_NOFOLLOW));
     if (!fd)
@@ -70,7 +70,7 @@ void write_whole(const fs::path& file, std::string_view text)
 
 void append_text(const fs::path& file, std::string_view text, bool synced)
 {
-    const detail::owned_fd d = opened(file, O_WRONLY | O_APPEND);
+    const detail::owned_fd d = open_file(file, O_WRONLY | O_APPEND);
     struct stat before {};
     if (::fstat(d.get(), &before) != 0)
         fail_on_disk(file, errno);
@@ -83,16 +83,16 @@ void append_text(const fs::path& file, std::string_view text, bool synced)
 fs::path cut_file(const fs::path& file, std::size_t at)
 {
     fs::path kept;
-    for (unsigned n = 1; kept.empty() || there(kept); ++n)
+    for (unsigned n = 1; kept.empty() || is_on_disk(kept); ++n)
         kept = file.string() + fmt::format(".cut-{}", n);
     write_whole(kept, read_file(file).substr(at));
-    const detail::owned_fd d = opened(file, O_WRONLY);
+    const detail::owned_fd d = open_file(file, O_WRONLY);
     if (::ftruncate(d.get(), static_cast<off_t>(at)) != 0 || ::fsync(d.get()) != 0)
         fail_on_disk(file, errno);
     return kept;
 }
 
-bool there(const fs::path& p) noexcept
+bool is_on_disk(const fs::path& p) noexcept
 {
     std::error_code ignored;
     return fs::exists(fs::symlink_status(p, ignored));
@@ -116,13 +116,13 @@ void make_folder(const fs::path& folder)
 void try_to_write(const fs::path& file)
 {
     fs::path folder = file.parent_path();
-    while (!there(folder))
+    while (!is_on_disk(folder))
         folder = folder.parent_path();
     const std::string tail = ".part"; // remove_leftovers() knows it, should this end here
     const std::size_t length = std::max(file.filename().string().size(), tail.size() + 2);
     const fs::path probe = folder / ("." + std::string(length - tail.size() - 1, 'x') + tail);
     const detail::owned_fd fd(::open(probe.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0666));
-    if (fd && (!there(file) || ::access(file.c_str(), W_OK) == 0)) {
+    if (fd && (!is_on_disk(file) || ::access(file.c_str(), W_OK) == 0)) {
         ::unlink(probe.c_str());
         return;
     }

@@ -30,7 +30,7 @@ void append_text(const std::filesystem::path& file, std::string_view text, bool 
 std::filesystem::path cut_file(const std::filesystem::path& file, std::size_t at);
 
 /// Returns true if anything has this name, be it a link that leads nowhere.
-bool there(const std::filesystem::path& p) noexcept;
+bool is_on_disk(const std::filesystem::path& p) noexcept;
 
 /// Makes a folder in one that is there, unless it is there already. \throws error (runtime).
 void make_folder(const std::filesystem::path& folder);

@@ -94,8 +94,8 @@ session_store::session_store(study_folder& folder, std::string code, runs_in_ord
     const fs::path data = folder_.path() / ("sub-" + code_) / "beh";
     for (const fs::path& p : {source_.parent_path(), source_, source_ / "plans", data.parent_path(), data})
         remove_leftovers(p);
-    if (!there(file)) {
-        if (there(data))
+    if (!is_on_disk(file)) {
+        if (is_on_disk(data))
             throw error(error_kind::bad_input, file.string(),
                         fmt::format("it is missing, and sub-{} has data", code_),
                         "put it back, or choose another code");
@@ -150,7 +150,7 @@ void session_store::begin(const std::vector<const stimulus*>& stimuli)
     reserve();
     for (const stimulus* s : stimuli) {
         const fs::path file = source_ / "plans" / (s->hash + ".json");
-        if (!there(file))
+        if (!is_on_disk(file))
             write_whole(file, s->text);
     }
     if (!resumed_)
@@ -163,7 +163,7 @@ std::vector<fs::path> session_store::missing(const std::vector<const stimulus*>&
     std::vector<fs::path> all = folder_.list_files(code_);
     for (const stimulus* s : stimuli)
         all.push_back(source_ / "plans" / (s->hash + ".json"));
-    std::erase_if(all, [](const fs::path& p) { return there(p); });
+    std::erase_if(all, [](const fs::path& p) { return is_on_disk(p); });
     return all;
 }
 
@@ -179,7 +179,7 @@ std::string session_store::scan_name(const run_definition& r) const
 
 std::vector<trial_row> session_store::rows(const run_definition& r) const
 {
-    if (!there(table(r)))
+    if (!is_on_disk(table(r)))
         return {};
     const text_table t = read_trials(table(r));
     read_run(t, r.outline); // refuses what the analysis would refuse
@@ -189,7 +189,7 @@ std::vector<trial_row> session_store::rows(const run_definition& r) const
 std::vector<trial_row> session_store::practice_rows(const run_definition& r) const
 {
     const fs::path practice = source_ / "practice.tsv";
-    if (!there(practice))
+    if (!is_on_disk(practice))
         return {};
     const text_table t = read_trials(practice);
     std::vector<trial_row> all = read_rows(t);
@@ -204,7 +204,7 @@ void session_store::append(const run_definition& r, const trial_row& row, const 
 {
     const fs::path file = table(r);
     keeping([&] {
-        if (!there(file)) {
+        if (!is_on_disk(file)) {
             make_folder(file.parent_path().parent_path());
             make_folder(file.parent_path());
             folder_.add_participant(code_);
@@ -227,7 +227,7 @@ void session_store::write_line(const fs::path& file, const named_cells& cells)
 {
     const auto known = known_.find(file);
     std::optional<std::string> header;
-    if (!there(file)) {
+    if (!is_on_disk(file)) {
         write_whole(file, new_table(cells));
         header = header_line(cells);
     } else if (known != known_.end() && known->second.left == find_state(file)) {
@@ -261,7 +261,7 @@ void session_store::note(const std::string& key, const ordered& value)
 void session_store::reserve()
 {
     for (const char* name : reserved)
-        if (const fs::path file = source_ / name; !there(file))
+        if (const fs::path file = source_ / name; !is_on_disk(file))
             write_whole(file, std::string(name == reserved.front() ? reserved_bytes : 0, '\n'));
 }
 
@@ -277,7 +277,7 @@ void session_store::keeping(const std::function<void()>& write)
     try {
         write();
     } catch (const error& e) {
-        if (!there(source_ / reserved.front()))
+        if (!is_on_disk(source_ / reserved.front()))
             throw;
         release();
         write();
@@ -292,7 +292,7 @@ void session_store::check_tables() const
     const run_definition* lost = nullptr;
     for (const run_definition* r : runs_) {
         check_description(folder_.path() / description_path(r->outline), r->outline);
-        if (!there(table(*r)))
+        if (!is_on_disk(table(*r)))
             lost = lost == nullptr ? r : lost;
         else if (lost != nullptr)
             throw error(error_kind::bad_input, table(*lost).string(),
@@ -306,7 +306,7 @@ void session_store::check_tables() const
 void session_store::refuse_cut_lines() const
 {
     for (const run_definition* r : runs_)
-        if (there(table(*r)))
+        if (is_on_disk(table(*r)))
             if (const text_table t = read_trials(table(*r)); t.cut_at())
                 t.refuse_cut("complete it, or delete it: the session is finished");
 }
@@ -321,12 +321,12 @@ std::vector<std::string> session_store::mend()
                                        file.string(), cut_file(file, *at).string()));
         return at.has_value();
     };
-    const bool lost_people = !there(folder_.path() / "participants.tsv");
-    const bool lost_scans = !there(folder_.scans(code_));
+    const bool lost_people = !is_on_disk(folder_.path() / "participants.tsv");
+    const bool lost_scans = !is_on_disk(folder_.scans(code_));
     bool added = false;
     bool entered = false;
     for (const run_definition* r : runs_) {
-        if (!there(table(*r)))
+        if (!is_on_disk(table(*r)))
             continue;
         if (cut(table(*r)))
             folder_.ignore_cut_lines();
@@ -345,7 +345,7 @@ std::vector<std::string> session_store::mend()
         note_lost(lost_people, folder_.path() / "participants.tsv", "sub-" + code_);
     if (entered)
         note_lost(lost_scans, folder_.scans(code_), "a run");
-    if (const fs::path practice = source_ / "practice.tsv"; there(practice))
+    if (const fs::path practice = source_ / "practice.tsv"; is_on_disk(practice))
         cut(practice);
     return done;
 }

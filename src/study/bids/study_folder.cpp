@@ -41,8 +41,8 @@ bool has_other_things(const fs::path& folder)
     return false;
 }
 
-// Makes the folder; returns false if it was there.
-bool made(const fs::path& folder)
+// Makes the folder; returns false if it exists.
+bool make_study_folder(const fs::path& folder)
 {
     if (folder.empty())
         throw error(error_kind::bad_input, "-o", "the folder's name is empty", "name a folder");
@@ -51,9 +51,9 @@ bool made(const fs::path& folder)
     if (!parent.empty() && !fs::is_directory(parent, ignored))
         throw error(error_kind::bad_input, folder.string(),
                     fmt::format("the folder \"{}\" does not exist", parent.string()), "make it first");
-    if (there(folder) && !fs::is_directory(folder, ignored))
+    if (is_on_disk(folder) && !fs::is_directory(folder, ignored))
         throw error(error_kind::bad_input, folder.string(), "it is no folder", "name a folder for the study");
-    const bool is_new = !there(folder);
+    const bool is_new = !is_on_disk(folder);
     make_folder(folder);
     return is_new;
 }
@@ -63,7 +63,7 @@ constexpr const char* new_scans = "filename\tacq_time\n";
 
 text_table read_or_begin(const fs::path& file, const char* header)
 {
-    return there(file) ? text_table(file) : text_table(file, std::string(header));
+    return is_on_disk(file) ? text_table(file) : text_table(file, std::string(header));
 }
 
 // Returns the row with this cell, if any.
@@ -163,13 +163,13 @@ void check_code(const std::string& code)
 
 study_folder::study_folder(fs::path folder, const experiment_definition& d, bool simulated)
     : folder_(folder.has_filename() ? std::move(folder) : folder.parent_path()),
-      is_new_(made(folder_)),
+      is_new_(make_study_folder(folder_)),
       lock_(folder_),
       definition_(d),
       simulated_(simulated)
 {
     remove_leftovers(folder_);
-    if (!there(folder_ / "dataset_description.json") && has_other_things(folder_))
+    if (!is_on_disk(folder_ / "dataset_description.json") && has_other_things(folder_))
         throw error(error_kind::bad_input, folder_.string(), "there are other things in it",
                     "a study needs a folder of its own");
     refuse_others(d, simulated);
@@ -188,7 +188,7 @@ void study_folder::refuse_others(const experiment_definition& d, bool simulated)
     std::error_code failed;
     for (const fs::directory_entry& e : fs::directory_iterator(folder_ / "sourcedata", failed)) {
         const fs::path file = e.path() / "session.json";
-        if (!there(file))
+        if (!is_on_disk(file))
             continue;
         const session_data s = read_session(file);
         const std::string who = e.path().filename().string();
@@ -212,7 +212,7 @@ void study_folder::refuse_others(const experiment_definition& d, bool simulated)
                                         fmt::join(otherwise, ", ")));
     }
     const fs::path description = folder_ / "dataset_description.json";
-    if (there(description) && says_simulated(read_file(description)).value_or(simulated) != simulated)
+    if (is_on_disk(description) && says_simulated(read_file(description)).value_or(simulated) != simulated)
         throw error(error_kind::bad_input, description.string(),
                     fmt::format("it is of {} sessions, and this one is {}", simulated ? "real" : "simulated",
                                 simulated ? "simulated" : "real"),
@@ -245,7 +245,7 @@ std::vector<fs::path> study_folder::list_files(const std::string& code) const
 void study_folder::describe() const
 {
     const auto put = [](const fs::path& file, const std::string& text) {
-        if (!there(file))
+        if (!is_on_disk(file))
             write_whole(file, text);
     };
     // First, because it makes the folder known as a study's.
@@ -308,7 +308,7 @@ void study_folder::add_scan(const std::string& code, const std::string& file_nam
 void study_folder::ignore_cut_lines() const
 {
     const fs::path file = folder_ / ".bidsignore";
-    std::string text = there(file) ? read_file(file) : std::string();
+    std::string text = is_on_disk(file) ? read_file(file) : std::string();
     if (("\n" + text).find("\n*.cut-*") != text.npos)
         return;
     text += text.empty() || text.ends_with('\n') ? "" : "\n";

@@ -125,7 +125,7 @@ fs::path settings_file(const fs::path& log)
 void check_beginning(const fs::path& log, calibration_settings& s)
 {
     const fs::path beginning = settings_file(log);
-    if (!there(beginning))
+    if (!is_on_disk(beginning))
         throw error(error_kind::bad_input, beginning.string(),
                     "it is missing, which says how the session was begun", "begin another, with other names");
     take_beginning(beginning, s);
@@ -135,12 +135,12 @@ calibration_log::calibration_log(fs::path file, bool resume, calibration_setting
     : file_(std::move(file)), synced_(s.simulate.empty()), lines_(file_, new_log())
 {
     const fs::path beginning = settings_file(file_);
-    const bool begun = there(beginning);
+    const bool begun = is_on_disk(beginning);
     if (begun && resume)
         take_beginning(beginning, s);
     else if (begun)
         parse_settings(beginning, s);
-    made_ = !begun && !there(file_);
+    made_ = !begun && !is_on_disk(file_);
     open();
     try {
         lines_ = read_lines();

@@ -153,17 +153,17 @@ calibration_answer observer::adjust(const calibration_trial& t)
 std::string time_text(const calibration& c)
 {
     const calibration_settings& s = c.settings();
-    calibration left = c;
+    calibration rest = c;
     observer typical({.thresholds_dbfs = {-45.0}}, s);
     const double trial_s = before_s + 2.0 * s.interval_s + interval_gap_s + usual_answer_s;
     double seconds = 0.0;
     std::size_t trials = 0;
     std::set<unsigned> tactors;
-    for (; !left.done(); ++trials) {
-        const calibration_trial t = left.next();
+    for (; !rest.done(); ++trials) {
+        const calibration_trial t = rest.next();
         tactors.insert(t.tactor);
         seconds += t.interval != 0 ? trial_s : series_s;
-        static_cast<void>(left.answer(typical.answer(t)));
+        static_cast<void>(rest.answer(typical.answer(t)));
     }
     const auto minutes = static_cast<std::uint64_t>(std::max(1.0, std::round(seconds / 60.0)));
     return fmt::format("{}, about {}: some {}", counted(tactors.size(), "tactor"), counted(trials, "trial"),

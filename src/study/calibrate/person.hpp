@@ -22,8 +22,8 @@ public:
     person(stage& s, const array& a, const render_options& render, const calibration_settings& c,
            const answering& with, const page_words& words);
 
-    /// Plays a trial and takes the answer to it. \throws stage::left; error (runtime) if the device is gone
-    /// or no answer can come any more.
+    /// Plays a trial and takes the answer to it. \throws stage::interruption; error (runtime) if the device
+    /// is gone or no answer can come any more.
     calibration_answer answer(const calibration_trial& t);
     /// Says if the answer was right, with feedback only.
     void tell(const calibration_record& r);
@@ -36,7 +36,7 @@ private:
     /// Makes a trial's score: one burst on the tactor, in a time of total_s.
     score trial_score(unsigned tactor, double level_dbfs, double onset_s, double total_s) const;
     given_stimulus play(const calibration_trial& t, const score& s, const std::function<void(double)>& watch);
-    /// Lets time pass until the limits allow the trial to drive its tactor. \throws stage::left.
+    /// Lets time pass until the limits allow the trial to drive its tactor. \throws stage::interruption.
     void make_room(const score& s);
     void begin();
     void on_page(page_screen s);

@@ -76,7 +76,7 @@ std::string calibration_text(const calibration_settings& s, const std::vector<ta
 
 void check_new_output(const std::filesystem::path& file)
 {
-    if (there(file))
+    if (is_on_disk(file))
         throw error(error_kind::bad_input, file.string(), "there is such a file already",
                     "choose another name: it is not overwritten");
     const detail::output_file tried(file);

@@ -57,7 +57,7 @@ std::vector<planned_trial> draw_cells(const std::vector<planned_trial>& cells, s
     return some;
 }
 
-std::vector<planned_trial> balanced(const run_definition& run, std::size_t n, random_numbers& r)
+std::vector<planned_trial> draw_balanced(const run_definition& run, std::size_t n, random_numbers& r)
 {
     const std::vector<planned_trial> cells = list_cells(run);
     std::vector<planned_trial> all;
@@ -129,7 +129,7 @@ run_sequence make_run(const experiment_definition& d, std::size_t run, std::stri
 {
     const run_definition& r = d.runs[run];
     random_numbers numbers(fmt::format("{}/{}/{}/{}", seed, d.name, code, r.outline.name));
-    run_sequence s{run, {}, balanced(r, r.outline.trials, numbers)};
+    run_sequence s{run, {}, draw_balanced(r, r.outline.trials, numbers)};
     std::size_t draws = 0;
     do {
         if (++draws > most_draws(r.outline.trials))
@@ -140,7 +140,7 @@ run_sequence make_run(const experiment_definition& d, std::size_t run, std::stri
                 "several runs with fewer trials");
         shuffle(std::span(s.trials), numbers);
     } while (r.motions.size() > 1 && too_many_in_a_row(s.trials));
-    s.practice = balanced(r, r.practice, numbers);
+    s.practice = draw_balanced(r, r.practice, numbers);
     shuffle(std::span(s.practice), numbers);
     draw_rests(s.practice, d.rest, numbers);
     draw_rests(s.trials, d.rest, numbers);

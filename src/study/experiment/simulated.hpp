@@ -62,7 +62,7 @@ private:
 
 struct power_request {
     simulation observer = {};
-    std::vector<std::size_t> participants = {}; ///< numbers of them, each 2 or more
+    std::vector<std::size_t> participants = {}; ///< sample sizes to simulate, each at least 2
     std::size_t studies = 200;
     std::optional<std::uint64_t> seed = {}; ///< of the orders; none: the definition's, or the codes'
 };
@@ -81,8 +81,8 @@ struct power_at {
 };
 
 struct run_power {
-    std::size_t run = 0; ///< its place in the definition
-    /// In the order asked for; empty where there is nothing to compare: ratings of one method.
+    std::size_t run = 0; ///< index in the definition
+    /// By sample size; empty for ratings of one method, where there is nothing to compare.
     std::vector<power_at> at = {};
 };
 

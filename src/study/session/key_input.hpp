@@ -110,8 +110,8 @@ public:
     /// Returns the next key or line, if any, also an unknown one. Leaves out keys that a terminal repeats,
     /// and says so the first time. \throws error (runtime) if a source cannot be read.
     std::optional<session_key> poll();
-    /// Waits for the next key. \throws stage::left; error (runtime) as poll(), and if nothing more can come;
-    /// `subject` names what then has no answer.
+    /// Waits for the next key. \throws stage::interruption; error (runtime) as poll(), and if nothing more
+    /// can come; `subject` names what then has no answer.
     session_key wait(const std::string& subject = "the session");
     /// Returns true if nothing more can come.
     bool ended() const noexcept { return page_ == nullptr && ended_ && text_.empty() && keypads_.empty(); }

@@ -31,11 +31,11 @@ nlohmann::ordered_json make_facts(const page_words& texts, const array& a)
 participant_page::participant_page(const page_words& words, const array& a, net::owned_fd listening)
     : dialogue_(make_facts(words, a)),
       server_(std::move(listening), document,
-              {[this](auto v, std::string_view text) { return hear(v, text); }, [this](auto v) { left(v); }})
+              {[this](auto v, std::string_view text) { return hear(v, text); }, [this](auto v) { leave(v); }})
 {
 }
 
-// Under the lock, so that pages get all in the order in which it came to be.
+// Sends under the lock, so that every page receives messages in order.
 void participant_page::send(const std::vector<page_dialogue::message>& all)
 {
     for (const page_dialogue::message& m : all) {
@@ -91,7 +91,7 @@ void participant_page::take(const page_dialogue::heard& h, std::int64_t now_ns)
     answered_.signal();
 }
 
-void participant_page::left(net::page_server::visitor v)
+void participant_page::leave(net::page_server::visitor v)
 {
     const std::lock_guard guard(mutex_);
     dialogue_.leave(v);

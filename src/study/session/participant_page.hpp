@@ -44,7 +44,7 @@ public:
 private:
     void take(const page_dialogue::heard& h, std::int64_t now_ns);
     bool hear(net::page_server::visitor v, std::string_view text);
-    void left(net::page_server::visitor v);
+    void leave(net::page_server::visitor v);
     void send(const std::vector<page_dialogue::message>& all);
 
     std::mutex mutex_;

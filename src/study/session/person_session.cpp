@@ -180,7 +180,7 @@ void person_session::obey(operator_key k)
         session::say(stderr, "tactor: a pause comes before the next trial\n");
         return;
     case operator_key::quit:
-        throw stage::left{SIGINT, experimenter};
+        throw stage::interruption{SIGINT, experimenter};
     case operator_key::repeat:
     case operator_key::go_on:
         return;
@@ -202,7 +202,7 @@ void person_session::rest(const session_step& s)
         return !ended && flow_.next() == s;
     });
     if (!there)
-        return find_device(); // and the break again
+        return find_device(); // the break begins again
     if (flow_.next() == s)
         flow_.go_on();
 }
@@ -319,7 +319,7 @@ given_stimulus person_session::give(const session_step& s, const planned_trial& 
     }
     heed(); // drops keys that were pressed too early
     if (quit_)
-        throw stage::left{SIGINT, experimenter};
+        throw stage::interruption{SIGINT, experimenter};
     if (std::exchange(repeat_, false))
         g.flaw = "the experimenter repeats it";
     else
@@ -344,7 +344,7 @@ void person_session::trial(const session_step& s)
         row.frame_2 = *g.first_frame + p_.stimuli.second(t);
     std::string flaw = g.flaw;
     if (flaw.empty()) {
-        const asked_answer a = ask(s, g);
+        const timed_answer a = ask(s, g);
         if (a.choice == 0) {
             flaw = "the experimenter repeats it";
         } else {
@@ -364,7 +364,7 @@ void person_session::trial(const session_step& s)
     find_device();
 }
 
-person_session::asked_answer person_session::ask(const session_step& s, const given_stimulus& g)
+person_session::timed_answer person_session::ask(const session_step& s, const given_stimulus& g)
 {
     const run_definition& r = p_.run_at(s.run);
     on_page(question_screen(p_, s));

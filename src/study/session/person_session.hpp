@@ -49,9 +49,9 @@ public:
     person_session(const prepared_experiment& p, session_store& store, stage& s, const answering& with,
                    target_display display, session_devices devices);
 
-    /// Holds the rest of the session. \throws stage::left; error (runtime): the participant did not agree or
-    /// did not feel a tactor, no answer can come any more, the device did not come back, or the system
-    /// refuses to write.
+    /// Holds the rest of the session. \throws stage::interruption; error (runtime): the participant did not
+    /// agree or did not feel a tactor, no answer can come any more, the device did not come back, or the
+    /// system refuses to write.
     void hold();
 
 private:
@@ -66,7 +66,7 @@ private:
     /// Returns false if the last trial was made void, so that the session goes on.
     bool end();
 
-    struct asked_answer {
+    struct timed_answer {
         unsigned choice = 0; ///< 0: the experimenter repeats the trial
         double time_s = 0.0;
     };
@@ -79,7 +79,7 @@ private:
     given_stimulus give(const session_step& s, const planned_trial& t);
     /// Returns a watcher that shows on the page which of two stimuli plays at a frame, and what came before.
     std::function<void(std::uint64_t)> marks(const session_step& s, const planned_trial& t);
-    asked_answer ask(const session_step& s, const given_stimulus& g);
+    timed_answer ask(const session_step& s, const given_stimulus& g);
 
     /// Shows the participant a screen, if there is a page.
     void on_page(page_screen s);

@@ -69,7 +69,7 @@ void stage::mask(const std::string& pcm, const masking_options& o)
 void stage::check_signal() const
 {
     if (signal() != 0)
-        throw left{signal()};
+        throw interruption{signal()};
 }
 
 bool stage::fade_in()
@@ -167,7 +167,7 @@ bool stage::pass(double seconds, const std::function<bool(double)>& watch)
 void stage::wait_for(int descriptor)
 {
     if (!play_session::wait_for(descriptor))
-        throw left{signal()};
+        throw interruption{signal()};
 }
 
 bool stage::reopen()

@@ -34,10 +34,10 @@ struct given_stimulus {
 /// A session on the array that a signal ends by an exception. One thread.
 class stage : public session::play_session {
 public:
-    /// The reason for leaving a session.
-    struct left {
-        int signal;                       ///< 0: nobody left
-        std::string_view by = "a signal"; ///< for messages: who ended it
+    /// Early end of a session.
+    struct interruption {
+        int signal;                       ///< 0: the session was not interrupted
+        std::string_view by = "a signal"; ///< what ended it, for messages
     };
 
     /// Opens the device. \throws error.
@@ -58,8 +58,8 @@ public:
 
     /// Called some 25 times a second with the stimulus' current frame.
     using watcher = std::function<void(std::uint64_t stimulus_frame)>;
-    /// Plays a score. Masking noise, if any, sounds before it and goes on after it. \throws left; error if
-    /// the noise's device cannot be opened again.
+    /// Plays a score. Masking noise, if any, sounds before it and goes on after it. \throws interruption;
+    /// error if the noise's device cannot be opened again.
     given_stimulus give(const score& s, double lead_s, const watcher& watch);
 
     /// Plays a score as give(). If a limit changed it, because earlier runs drove the tactors, lets these
@@ -74,12 +74,12 @@ public:
     io_kind noise_ended() const noexcept { return masker_ ? masker_->ended() : io_kind::ok; }
 
     /// Lets so much of the stream's time pass; the watcher gets the time passed and returns false to stop
-    /// early. Returns false if the stream has ended meanwhile. \throws left.
+    /// early. Returns false if the stream has ended meanwhile. \throws interruption.
     bool pass(double seconds, const std::function<bool(double passed_s)>& watch);
-    /// Waits for a descriptor. \throws left.
+    /// Waits for a descriptor. \throws interruption.
     void wait_for(int descriptor);
 
-    /// Waits for the device to come back. Returns false if it did not. \throws left.
+    /// Waits for the device to come back. Returns false if it did not. \throws interruption.
     bool reopen();
     /// Ends the streams in silence. \throws error if the amplifier may be on.
     void finish();
@@ -107,15 +107,15 @@ private:
     stage& stage_;
 };
 
-/// Calls `held`, which uses the stage, and ends its streams in each case. Returns the reason for leaving.
-/// \throws what `held` throws, except stage::left.
+/// Calls `held`, which uses the stage, and ends its streams in each case. Returns the early end, if any.
+/// \throws what `held` throws, except stage::interruption.
 template <typename Held>
-[[nodiscard]] stage::left until_left(stage& s, const Held& held)
+[[nodiscard]] stage::interruption until_interrupted(stage& s, const Held& held)
 {
-    stage::left why{0};
+    stage::interruption why{0};
     try {
         held();
-    } catch (const stage::left& l) {
+    } catch (const stage::interruption& l) {
         why = l;
     } catch (const error&) {
         s.finish();
