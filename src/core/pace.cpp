@@ -8,7 +8,6 @@
 #include <fmt/format.h>
 
 #include "core/limits.hpp"
-#include "core/profile.hpp"
 #include "core/refused.hpp"
 
 namespace tactor::detail {
@@ -40,31 +39,8 @@ double half_uneased(easing_kind k, double way) noexcept
         [](double u) { return 30.0 * u * u * (1.0 - u) * (1.0 - u); });
 }
 
-/// Returns log(1 + x) / x; the next function returns (exp(x) - 1) / x. Both are 1 at 0.
-double log_part(double x) noexcept
-{
-    return x == 0.0 ? 1.0 : std::log1p(x) / x;
-}
-
-double exp_part(double x) noexcept
-{
-    return x == 0.0 ? 1.0 : std::expm1(x) / x;
-}
-
-/// Returns the speeds with one at either end of the path.
-std::vector<profile_point> whole(std::vector<profile_point> speeds)
-{
-    if (speeds.empty())
-        return {{0.0, 1.0}, {1.0, 1.0}};
-    if (speeds.front().part > 0.0)
-        speeds.insert(speeds.begin(), {0.0, speeds.front().value});
-    if (speeds.back().part < 1.0)
-        speeds.push_back({1.0, speeds.back().value});
-    return speeds;
-}
-
-} // namespace
-
+/// Returns the part of the length that is covered after a part u of the time (0 to 1); uneased() inverts it
+/// to the last digits.
 double eased(easing_kind k, double u) noexcept
 {
     if (!(u > 0.0))
@@ -93,6 +69,82 @@ double uneased(easing_kind k, double way) noexcept
     return way <= 0.5 ? half_uneased(k, way) : 1.0 - half_uneased(k, 1.0 - way);
 }
 
+/// Returns log(1 + x) / x; the next function returns (exp(x) - 1) / x. Both are 1 at 0.
+double log_part(double x) noexcept
+{
+    return x == 0.0 ? 1.0 : std::log1p(x) / x;
+}
+
+double exp_part(double x) noexcept
+{
+    return x == 0.0 ? 1.0 : std::expm1(x) / x;
+}
+
+/// Returns the speeds with one at either end of the path.
+std::vector<profile_point> whole(std::vector<profile_point> speeds)
+{
+    if (speeds.empty())
+        return {{0.0, 1.0}, {1.0, 1.0}};
+    if (speeds.front().part > 0.0)
+        speeds.insert(speeds.begin(), {0.0, speeds.front().value});
+    if (speeds.back().part < 1.0)
+        speeds.push_back({1.0, speeds.back().value});
+    return speeds;
+}
+
+std::vector<profile_point>::const_iterator first_after(const std::vector<profile_point>& points,
+                                                       double part) noexcept
+{
+    return std::upper_bound(points.begin(), points.end(), part,
+                            [](double v, const profile_point& p) noexcept { return v < p.part; });
+}
+
+/// Refuses a profile unless parts ascend within 0 to 1 and values are within low ... high; `above_low`
+/// excludes low itself.
+void check_profile_points(std::string_view what, const std::vector<profile_point>& points, double low,
+                          double high, bool above_low)
+{
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        const auto refuse = [&](std::string_view why, std::string_view hint) {
+            throw bad_field(what, fmt::format("point {}: {}", i + 1, why), hint);
+        };
+        const auto [part, value] = points[i];
+        if (!(part >= 0.0 && part <= 1.0))
+            refuse(fmt::format("part {}", part), "0 is the path's start, 1 its end");
+        if (i > 0 && !(part > points[i - 1].part))
+            refuse(fmt::format("part {} does not come after {}", part, points[i - 1].part), "parts ascend");
+        if (!(value <= high && (above_low ? value > low : value >= low)))
+            refuse(fmt::format("{}", value),
+                   above_low ? fmt::format("it is more than {:g} and at most {:g}", low, high)
+                             : fmt::format("it is from {:g} to {:g}", low, high));
+    }
+}
+
+/// Returns the value at a part, linear between points; 1 without points. O(log n).
+double profile_at(const std::vector<profile_point>& points, double part) noexcept
+{
+    if (points.empty())
+        return 1.0;
+    const auto after = first_after(points, part);
+    if (after == points.begin())
+        return points.front().value;
+    const profile_point& a = *(after - 1);
+    if (after == points.end() || a.part == part)
+        return a.value;
+    return a.value + (part - a.part) / (after->part - a.part) * (after->value - a.value);
+}
+
+/// Returns the greatest value between two parts.
+double greatest_between(const std::vector<profile_point>& points, double from, double to) noexcept
+{
+    double most = std::max(profile_at(points, from), profile_at(points, to));
+    for (auto p = first_after(points, from); p != points.end() && p->part < to; ++p)
+        most = std::max(most, p->value);
+    return most;
+}
+
+} // namespace
+
 double time_at_speeds_s(const movement& m, double length_mm)
 {
     const std::vector<profile_point> speeds = whole(m.speed_mm_s);
@@ -114,8 +166,8 @@ void check_movement(const movement& m)
     check_profile_points("pauses", times, 0.0, longest_stroke_s, true);
     for (const rest& r : m.rests)
         if (!(r.intensity >= 0.0 && r.intensity <= 1.0))
-            throw detail::bad_field("pauses", fmt::format("intensity {:g}", r.intensity),
-                                    "it is a factor from 0 to 1");
+            throw bad_field("pauses", fmt::format("intensity {:g}", r.intensity),
+                            "it is a factor from 0 to 1");
 }
 
 pace::pace(movement m, double moving_s) : given_(std::move(m)), moving_s_(moving_s)

@@ -9,11 +9,6 @@
 
 namespace tactor::detail {
 
-/// Returns the part of the length that is covered after a part u of the time (0 to 1); uneased() inverts it
-/// to the last digits.
-double eased(easing_kind k, double u) noexcept;
-double uneased(easing_kind k, double way) noexcept;
-
 /// Returns the time that a length takes at the speeds of a movement, s, without rests.
 double time_at_speeds_s(const movement& m, double length_mm);
 

@@ -8,13 +8,6 @@
 namespace tactor::detail {
 namespace {
 
-std::size_t digits_end(std::string_view text, std::size_t at) noexcept
-{
-    while (at < text.size() && text[at] >= '0' && text[at] <= '9')
-        ++at;
-    return at;
-}
-
 // Returns true if the number is too large. std::from_chars reports too large and too small as the same error.
 bool too_large(std::string_view number) noexcept
 {
@@ -48,33 +41,21 @@ void skip_blanks(std::string_view text, std::size_t& at) noexcept
 
 std::optional<double> scan_number(std::string_view text, std::size_t& at) noexcept
 {
-    const auto is = [text](std::size_t i, char a, char b) {
-        return i < text.size() && (text[i] == a || text[i] == b);
-    };
-    const std::size_t unsigned_from = is(at, '+', '-') ? at + 1 : at;
-    std::size_t end = digits_end(text, unsigned_from);
-    std::size_t digits = end - unsigned_from;
-    if (is(end, '.', '.')) {
-        const std::size_t fraction_end = digits_end(text, end + 1);
-        digits += fraction_end - end - 1;
-        end = fraction_end;
-    }
-    if (digits == 0)
+    const bool has_sign = at < text.size() && (text[at] == '+' || text[at] == '-');
+    const std::size_t from = has_sign ? at + 1 : at;
+    // std::from_chars also takes a minus, inf and nan.
+    if (from >= text.size() || std::string_view(".0123456789").find(text[from]) == std::string_view::npos)
         return std::nullopt;
-    if (is(end, 'e', 'E')) {
-        const std::size_t exponent = is(end + 1, '+', '-') ? end + 2 : end + 1;
-        if (const std::size_t exponent_end = digits_end(text, exponent); exponent_end > exponent)
-            end = exponent_end;
-    }
     double value = 0.0;
-    const auto result = std::from_chars(text.data() + unsigned_from, text.data() + end, value);
-    if (result.ec == std::errc::result_out_of_range)
-        value = too_large(text.substr(unsigned_from, end - unsigned_from))
-                    ? std::numeric_limits<double>::infinity()
-                    : 0.0;
-    if (is(at, '-', '-'))
+    const char* const begin = text.data() + from;
+    const auto [end, fault] = std::from_chars(begin, text.data() + text.size(), value);
+    if (fault == std::errc::invalid_argument)
+        return std::nullopt;
+    if (fault == std::errc::result_out_of_range)
+        value = too_large({begin, end}) ? std::numeric_limits<double>::infinity() : 0.0;
+    if (text[at] == '-')
         value = -value;
-    at = end;
+    at = static_cast<std::size_t>(end - text.data());
     return value;
 }
 
