@@ -178,19 +178,6 @@ TEST_CASE("a start that counts from a group is not written")
     has(caught_message([&] { return detail::strokes_text(std::vector{stroke{}, stroke{}, late}); }), "group");
 }
 
-TEST_CASE("every example stroke is read")
-{
-    const auto files = files_in(source / "examples/strokes");
-    CHECK(files.size() >= 4);
-    for (const fs::path& f : files) {
-        CAPTURE(f.string());
-        if (f.extension() == ".wav") // a waveform of one of them
-            continue;
-        const std::string said = caught_message([&] { CHECK_FALSE(load_strokes(f).empty()); });
-        CHECK(said == "");
-    }
-}
-
 TEST_CASE("the example configuration is read")
 {
     const setup s = load_setup(source / "examples/tactor.toml");

@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <clocale>
-#include <random>
 #include <string>
 
 #include <tactor/setup.hpp>
@@ -253,29 +252,6 @@ TEST_CASE("keys and values nested without end are refused, not followed")
         complaint(
             "[output]\npcm = \"a.b.c.d.e.f.g.h.i.j.k.l.m.n.o.p.q.r.s.t\" # . . . . . . . . . . . . . . . .\n")
             .empty());
-}
-
-TEST_CASE("damaged files are refused or read, never worse")
-{
-    std::mt19937_64 random(3);
-    std::uniform_int_distribution<std::size_t> where(0, whole.size() - 1);
-    std::uniform_int_distribution<int> byte(0, 255);
-    int refused = 0;
-    for (int round = 0; round < 4000; ++round) {
-        std::string text = whole;
-        for (int k = 0; k <= round % 3; ++k)
-            text[where(random)] = static_cast<char>(byte(random));
-        if (round % 5 == 0)
-            text.resize(where(random));
-        const std::string why = complaint(text);
-        refused += why.empty() ? 0 : 1;
-        // Every complaint has file, line and column.
-        if (!why.empty()) {
-            REQUIRE(why.starts_with("t.toml:"));
-            REQUIRE(why.find(": ") > why.find(':', 7));
-        }
-    }
-    CHECK(refused > 2000);
 }
 
 TEST_CASE("impossible limits are reported")

@@ -2,7 +2,6 @@
 // Stroke files by their names, and the placing and movement of their strokes.
 #include <cmath>
 #include <filesystem>
-#include <random>
 #include <string>
 #include <vector>
 
@@ -167,22 +166,6 @@ TEST_CASE("text of gigabytes is refused before it is read")
     CHECK(caught_message([&] {
               return tactor::parse_strokes_svg(long_text, "x");
           }).find("x: longer than 48 MB") == 0);
-}
-
-TEST_CASE("random bytes are refused by every reader")
-{
-    std::mt19937_64 random(1);
-    std::uniform_int_distribution<int> byte(0, 255);
-    for (int n = 0; n < 5000; ++n) {
-        std::string text(1 + static_cast<std::size_t>(n % 60), ' ');
-        for (char& c : text)
-            c = static_cast<char>(byte(random));
-        CAPTURE(text);
-        CHECK_FALSE(caught_message([&] { return tactor::parse_strokes(text, "x"); }).empty());
-        CHECK_FALSE(caught_message([&] { return tactor::parse_strokes_csv(text, "x"); }).empty());
-        CHECK_FALSE(caught_message([&] { return tactor::parse_strokes_svg(text, "x"); }).empty());
-        CHECK_FALSE(caught_message([&] { return tactor::path::from_svg(text); }).empty());
-    }
 }
 
 TEST_CASE("keys place a stroke in order: mirror, scale, turn, move")
