@@ -148,16 +148,14 @@ struct tap_summary {
 };
 
 /// Predicts where the observer feels a plan's bursts. Bursts without drives are not felt. `p` must be a plan
-/// of `s` on `a`. O(n log m) in n bursts and the m points of the stroke.
+/// of `s` on `a`. `who` is another person than the one for whom it was made. O(n log m) in n bursts and the m
+/// points of the stroke.
 /// \throws error (bad_input) as felt_places() does, for a continuous plan, for which the observer has no
-///         prediction, and for a plan that names a tactor that the array does not have.
+///         prediction, for a plan that names a tactor that the array does not have, and as predict_percept()
+///         does for a person.
 [[nodiscard]] TACTOR_API std::vector<tap> predict_taps(const array& a, const stroke& s, const plan& p,
-                                                       const low_speed_observer& o = {});
-
-/// Predicts the same for another person.
-/// \throws error (bad_input) as predict_percept() does for a person.
-[[nodiscard]] TACTOR_API std::vector<tap> predict_taps(const array& a, const stroke& s, const plan& p,
-                                                       const low_speed_observer& o, const person& who);
+                                                       const low_speed_observer& o = {},
+                                                       const person& who = {});
 
 /// Summarises taps.
 [[nodiscard]] TACTOR_API tap_summary summarise(const std::vector<tap>& taps);

@@ -5,8 +5,6 @@
 #include <utility>
 #include <vector>
 
-#include "percept/summaries.hpp"
-
 namespace tactor::detail {
 
 namespace {

@@ -5,6 +5,7 @@
 
 #include <functional>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -34,6 +35,13 @@ struct prediction {
     std::vector<tap> taps = {};   ///< by low_speed
     std::string unpredicted = {}; ///< reason why low_speed has no prediction; empty: it has one
 };
+
+/// Returns summarise() of predict_percept() for each plan, equal to the last bit. Stores no samples, and
+/// looks the target up once for all plans. Passes the samples of each plan to `each`, without their speeds.
+/// \throws error (bad_input) as predict_percept().
+std::vector<percept_summary> predict_summaries(const array& a, const stroke& s,
+                                               std::span<const plan* const> plans,
+                                               const std::function<void(const percept_sample&)>& each = {});
 
 /// Predicts how a plan of a stroke feels. For the centroid, passes each sample to `each`, without its speed.
 /// \throws error (bad_input) as predict_percept() and predict_taps().

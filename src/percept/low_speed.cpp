@@ -82,14 +82,6 @@ std::vector<point> pushed(std::span<const double> give, std::span<const point> f
     return m;
 }
 
-void check_has_taps(const plan& p)
-{
-    if (p.curve)
-        throw error(error_kind::bad_input, "plan",
-                    "it is continuous, and the low-speed observer predicts taps only",
-                    "take an algorithm that has bursts");
-}
-
 std::optional<point> find_centre(const array& a, const burst& b, std::span<const double> gains)
 {
     double energy = 0.0;

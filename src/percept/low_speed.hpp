@@ -22,9 +22,6 @@ std::vector<point> pulled(std::span<const double> give, std::span<const point> a
 /// Returns (I + K) x. No `give` may be 0.
 std::vector<point> pushed(std::span<const double> give, std::span<const point> felt);
 
-/// Throws error (bad_input) for a plan without separate bursts, as `continuous` makes it.
-void check_has_taps(const plan& p);
-
 /// Returns the centre of energy of a burst's drives, multiplied by the gains of their tactors, if any;
 /// nothing for a silent burst.
 /// \throws error (bad_input) for a tactor that the array does not have.

@@ -62,15 +62,13 @@ std::string describe(const low_speed_observer& o)
                        plain_number(o.sigma_mm), plain_number(o.sigma_v_mm_s));
 }
 
-std::vector<tap> predict_taps(const array& a, const stroke& s, const plan& p, const low_speed_observer& o)
-{
-    return predict_taps(a, s, p, o, person{});
-}
-
 std::vector<tap> predict_taps(const array& a, const stroke& s, const plan& p, const low_speed_observer& o,
                               const person& who)
 {
-    detail::check_has_taps(p);
+    if (p.curve)
+        throw error(error_kind::bad_input, "plan",
+                    "it is continuous, and the low-speed observer predicts taps only",
+                    "take an algorithm that has bursts");
     const array felt_at = detail::felt_array(a, who);
     const std::vector<double> gains = detail::person_gains(a, who);
     std::vector<tap> taps;

@@ -14,8 +14,8 @@
 
 #include "core/distance.hpp"
 #include "core/words.hpp"
+#include "percept/compare.hpp"
 #include "percept/person.hpp"
-#include "percept/summaries.hpp"
 #include "plan/rounded.hpp"
 
 namespace tactor::detail {

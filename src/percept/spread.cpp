@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <functional>
 #include <numbers>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -40,66 +42,72 @@ private:
     std::uint64_t state_;
 };
 
-// Figures of each person.
-struct gathered {
-    std::vector<std::optional<double>> rms = {};
-    std::vector<std::optional<double>> largest = {};
-    std::vector<std::optional<double>> speed_cv = {};
-    std::vector<std::optional<double>> intensity_cv = {};
-    std::vector<std::optional<double>> length = {};
-    std::vector<std::optional<double>> ratio = {};
+// Speeds at each time, by person.
+struct speed_table {
     std::vector<double> times_s = {};
-    std::vector<std::vector<std::optional<double>>> speeds = {}; // by time, then by person
+    std::vector<std::vector<std::optional<double>>> speeds = {};
+
+    void add(std::size_t at, double t_s, std::optional<double> v)
+    {
+        if (speeds.size() <= at) {
+            speeds.resize(at + 1);
+            times_s.resize(at + 1);
+            times_s[at] = t_s;
+        }
+        speeds[at].push_back(v);
+    }
 };
 
-void keep_speed(gathered& g, std::size_t at, double t_s, std::optional<double> v)
+void add_track(row_spread& r, std::vector<point> track)
 {
-    if (g.speeds.size() <= at) {
-        g.speeds.resize(at + 1);
-        g.times_s.resize(at + 1);
-        g.times_s[at] = t_s;
-    }
-    g.speeds[at].push_back(v);
+    if (r.tracks.size() < most_tracks)
+        r.tracks.push_back(std::move(track));
 }
 
-void feel_taps(gathered& g, row_spread& r, const std::vector<tap>& taps, bool for_picture)
+void draw_taps(speed_table& speeds, row_spread& r, const std::vector<tap>& taps)
 {
-    const tap_summary s = summarise(taps);
-    g.rms.push_back(s.rms_error_mm);
-    g.largest.push_back(s.largest_error_mm);
-    g.length.push_back(s.felt_length_mm);
-    g.ratio.push_back(s.length_ratio);
-    if (!for_picture)
-        return;
     std::vector<point> track;
     for (std::size_t i = 0, at = 0; i < taps.size(); ++i) {
         track.push_back(taps[i].felt);
         if (i > 0 && taps[i].onset_s > taps[i - 1].onset_s)
-            keep_speed(g, at++, (taps[i].onset_s + taps[i - 1].onset_s) / 2.0,
+            speeds.add(at++, (taps[i].onset_s + taps[i - 1].onset_s) / 2.0,
                        distance_mm(taps[i].felt, taps[i - 1].felt) / (taps[i].onset_s - taps[i - 1].onset_s));
     }
-    if (r.tracks.size() < most_tracks)
-        r.tracks.push_back(std::move(track));
+    add_track(r, std::move(track));
 }
 
-void keep_summary(gathered& g, const percept_summary& s)
-{
-    g.rms.push_back(s.rms_error_mm);
-    g.largest.push_back(s.largest_error_mm);
-    g.speed_cv.push_back(s.speed_cv);
-    g.intensity_cv.push_back(s.intensity_cv);
-}
-
-void keep_samples(gathered& g, row_spread& r, const std::vector<percept_sample>& samples)
+void draw_samples(speed_table& speeds, row_spread& r, const std::vector<percept_sample>& samples)
 {
     std::vector<point> track;
     for (std::size_t i = 0; i < samples.size(); ++i) {
-        keep_speed(g, i, samples[i].t_s, samples[i].speed_mm_s);
+        speeds.add(i, samples[i].t_s, samples[i].speed_mm_s);
         if (samples[i].felt && (track.empty() || !(track.back() == *samples[i].felt)))
             track.push_back(*samples[i].felt);
     }
-    if (r.tracks.size() < most_tracks)
-        r.tracks.push_back(std::move(track));
+    add_track(r, std::move(track));
+}
+
+// Returns a quantile of a sorted list that is not empty, linear between its members.
+double quantile(const std::vector<double>& sorted, double part)
+{
+    const double at = part * static_cast<double>(sorted.size() - 1);
+    const auto i = static_cast<std::size_t>(at);
+    const std::size_t next = std::min(i + 1, sorted.size() - 1);
+    return sorted[i] + (at - static_cast<double>(i)) * (sorted[next] - sorted[i]);
+}
+
+// Returns the interval of a figure; nothing if one of the people lacks it.
+template <class Person, class Figure>
+std::optional<interval> find_interval(const std::vector<Person>& people, Figure figure)
+{
+    std::vector<double> sorted;
+    for (const Person& one : people)
+        if (const std::optional<double> v = std::invoke(figure, one))
+            sorted.push_back(*v);
+    if (sorted.empty() || sorted.size() != people.size())
+        return {};
+    std::sort(sorted.begin(), sorted.end());
+    return interval{quantile(sorted, low_part), quantile(sorted, high_part)};
 }
 
 } // namespace
@@ -130,26 +138,6 @@ std::vector<drawn_person> draw_people(const spread_choice& c, std::size_t tactor
     return people;
 }
 
-double quantile(const std::vector<double>& sorted, double part)
-{
-    const double at = part * static_cast<double>(sorted.size() - 1);
-    const auto i = static_cast<std::size_t>(at);
-    const std::size_t next = std::min(i + 1, sorted.size() - 1);
-    return sorted[i] + (at - static_cast<double>(i)) * (sorted[next] - sorted[i]);
-}
-
-std::optional<interval> find_interval(std::vector<std::optional<double>> values)
-{
-    std::vector<double> sorted;
-    for (const std::optional<double>& v : values)
-        if (v)
-            sorted.push_back(*v);
-    if (sorted.empty() || sorted.size() != values.size())
-        return {};
-    std::sort(sorted.begin(), sorted.end());
-    return interval{quantile(sorted, low_part), quantile(sorted, high_part)};
-}
-
 row_spread predict_spread(const std::vector<drawn_person>& people, const array& a, const stroke& s,
                           const plan& p, const std::optional<low_speed_observer>& low_speed, bool for_picture,
                           const std::function<void()>& after_person)
@@ -162,31 +150,41 @@ row_spread predict_spread(const std::vector<drawn_person>& people, const array& 
                                 seconds_text(s.motion.duration_s())),
                     "ask for fewer people, or draw no picture")
             .with_field("spread");
-    gathered g;
+    std::vector<percept_summary> felt;
+    std::vector<tap_summary> tapped;
+    speed_table speeds;
     row_spread r;
     for (const drawn_person& x : people) {
         if (low_speed) {
             low_speed_observer o = *low_speed;
             o.sigma_mm = std::clamp(o.sigma_mm * x.sigma_factor, least_sigma_mm, most_sigma_mm);
-            feel_taps(g, r, predict_taps(a, s, p, o, x.who), for_picture);
+            const std::vector<tap> taps = predict_taps(a, s, p, o, x.who);
+            tapped.push_back(summarise(taps));
+            if (for_picture)
+                draw_taps(speeds, r, taps);
         } else if (for_picture) {
             const std::vector<percept_sample> samples = predict_percept(a, s, p, x.who);
-            keep_summary(g, summarise(samples));
-            keep_samples(g, r, samples);
+            felt.push_back(summarise(samples));
+            draw_samples(speeds, r, samples);
         } else {
-            keep_summary(g, summarise(a, s, p, x.who));
+            felt.push_back(summarise(a, s, p, x.who));
         }
         after_person();
     }
-    r.rms_error_mm = find_interval(std::move(g.rms));
-    r.largest_error_mm = find_interval(std::move(g.largest));
-    r.speed_cv = find_interval(std::move(g.speed_cv));
-    r.intensity_cv = find_interval(std::move(g.intensity_cv));
-    r.felt_length_mm = find_interval(std::move(g.length));
-    r.length_ratio = find_interval(std::move(g.ratio));
-    for (std::size_t i = 0; i < g.speeds.size(); ++i)
-        if (const auto range = find_interval(std::move(g.speeds[i])))
-            r.speeds.push_back({g.times_s[i], range->low, range->high});
+    if (low_speed) {
+        r.rms_error_mm = find_interval(tapped, &tap_summary::rms_error_mm);
+        r.largest_error_mm = find_interval(tapped, &tap_summary::largest_error_mm);
+        r.felt_length_mm = find_interval(tapped, &tap_summary::felt_length_mm);
+        r.length_ratio = find_interval(tapped, &tap_summary::length_ratio);
+    } else {
+        r.rms_error_mm = find_interval(felt, &percept_summary::rms_error_mm);
+        r.largest_error_mm = find_interval(felt, &percept_summary::largest_error_mm);
+        r.speed_cv = find_interval(felt, &percept_summary::speed_cv);
+        r.intensity_cv = find_interval(felt, &percept_summary::intensity_cv);
+    }
+    for (std::size_t i = 0; i < speeds.speeds.size(); ++i)
+        if (const auto range = find_interval(speeds.speeds[i], std::identity{}))
+            r.speeds.push_back({speeds.times_s[i], range->low, range->high});
     return r;
 }
 

@@ -44,12 +44,6 @@ struct interval {
     double high = 0.0;
 };
 
-/// Returns a quantile of a sorted list, linear between its members. \pre not empty.
-double quantile(const std::vector<double>& sorted, double part);
-
-/// Returns the interval of the values; nothing if one is missing.
-std::optional<interval> find_interval(std::vector<std::optional<double>> values);
-
 /// Band of a speed chart at one time.
 struct speed_range {
     double t_s = 0.0;

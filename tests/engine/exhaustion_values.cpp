@@ -196,7 +196,7 @@ call_table plan_calls(const call_things& t)
         {"felt_places", [inside] { return felt_places({}, onsets_s, inside); }},
         {"felt_places, of too few", [few] { return felt_places({}, onsets_s, few); }},
         {"predict_taps", [&t] { return predict_taps(t.a, t.s, t.p); }},
-        {"predict_taps", [&t, who] { return predict_taps(t.a, t.s, t.p, {}, who); }},
+        {"predict_taps, of a person", [&t, who] { return predict_taps(t.a, t.s, t.p, {}, who); }},
         {"compensate", [&t, inside] { return compensate(t.l, {}, onsets_s, inside); }},
         {"compensate, at the edge", [&t, edges] { return compensate(t.l, {}, onsets_s, edges); }},
         {"make_compensated_plan", [&t] { return make_compensated_plan(t.a, t.l, t.s, {}); }},

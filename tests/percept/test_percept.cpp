@@ -10,7 +10,7 @@
 
 #include "../plan/arrays.hpp"
 #include "../plan/strokes.hpp"
-#include "percept/summaries.hpp"
+#include "percept/compare.hpp"
 
 namespace percept_test {
 
