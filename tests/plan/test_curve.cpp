@@ -380,6 +380,15 @@ TEST_CASE("where the target rests a recording along the path stays, and the carr
     CHECK(held_s == doctest::Approx(rest_s));
 }
 
+TEST_CASE("a carrier profile ascends along the path and holds carriers")
+{
+    stroke s = moving(eased);
+    s.sound.carrier_profile = {{0.5, 100.0}, {0.5, 200.0}};
+    has(refusal(palm, s, {}), "carrier_profile: the part 0.5 is out of order or range");
+    s.sound.carrier_profile = {{0.5, 0.5}};
+    has(refusal(palm, s, {}), "not a carrier");
+}
+
 TEST_CASE("a course has as many points as its bends need")
 {
     stroke s = moving({.duration_s = 2.0, .intensity = {{0.0, 0.2}, {1.0, 0.8}}});

@@ -77,28 +77,6 @@ TEST_CASE("a piece within the limits has the same bytes with and without them")
            render(loud(9, {{0.0, 1.0}}, 1.0, {}, -12.0), format_kind::s32)));
 }
 
-TEST_CASE("excess power is held down from the first wave on, without a step")
-{
-    for (const unsigned tactors : {4U, 9U, 64U}) {
-        const score s = loud(tactors, {{0.1, 0.5}}, 0.7, no_longest(4.771212547196624));
-        std::vector<std::vector<double>> x;
-        for (unsigned c = 0; c < tactors; ++c)
-            x.push_back(channel(s, c));
-        double most = 0.0;
-        for (std::size_t i = 0; i < x[0].size(); ++i) {
-            double sum = 0.0;
-            for (const auto& c : x)
-                sum += c[i] * c[i];
-            most = std::max(most, sum);
-        }
-        CAPTURE(tactors);
-        CHECK(most <= 3.0 * (1.0 + 1e-6));
-        CHECK(most > 2.9);
-        const double wave = 2.0 * std::sin(pi * 250.0 / rate);
-        CHECK(largest_step(x[0]) <= wave);
-    }
-}
-
 TEST_CASE("the gain recovers a while after the loud part")
 {
     const score s = loud(9, {{0.0, 0.2}, {1.2, 0.1}}, 1.4, no_longest(4.771212547196624));
@@ -120,55 +98,6 @@ TEST_CASE("a tactor may be driven for five seconds, then it fades")
     CHECK(largest(x, 6.06, 8.56) == 0.0); // it rests for 2.52 s, until half of it is left
     CHECK(largest_step(x) <= 2.0 * std::sin(pi * 250.0 / rate) + 1e-3);
     CHECK(largest(x, 8.6, 8.8) == doctest::Approx(1.0));
-}
-
-TEST_CASE("no window of ten seconds has more than seven and a half of drive, for any pattern")
-{
-    std::mt19937_64 random(17);
-    std::uniform_real_distribution<double> unit(0.0, 1.0);
-    for (int run = 0; run < 20; ++run) {
-        std::vector<std::pair<double, double>> times;
-        double t = unit(random);
-        while (t < 50.0) {
-            const double d = 0.05 + 3.0 * unit(random);
-            times.emplace_back(t, d);
-            t += d + 2.0 * unit(random) * unit(random);
-        }
-        const std::vector<double> x = channel(loud(1, times, t + 1.0, drive_limits{}), 0);
-        // Sounding in 4 ms (one cycle) pieces.
-        const std::size_t piece = rate / 250;
-        std::vector<unsigned> sounds;
-        for (std::size_t i = 0; i + piece <= x.size(); i += piece) {
-            double most = 0.0;
-            for (std::size_t j = i; j < i + piece; ++j)
-                most = std::max(most, std::abs(x[j]));
-            sounds.push_back(most > 0.01 ? 1 : 0);
-        }
-        unsigned sum = 0;
-        unsigned most = 0;
-        for (std::size_t i = 0; i < sounds.size(); ++i) {
-            sum += sounds[i];
-            sum -= i >= 2500 ? sounds[i - 2500] : 0;
-            most = std::max(most, sum);
-        }
-        // Fades, and each burst has two edges.
-        CHECK(most * 0.004 < 7.5 + 3 * 0.02 + 0.1);
-        CHECK(most * 0.004 > 3.5);
-    }
-}
-
-TEST_CASE("limits act in the same frames for any block size")
-{
-    std::mt19937_64 random(23);
-    drive_limits l{.power_dbfs = 1.0, .max_drive_s = 0.3, .window_s = 1.0};
-    const score s = loud(5, {{0.05, 0.4}, {0.46, 0.7}, {1.3, 0.2}, {1.9, 0.9}}, 3.0, l);
-    const auto whole = render(s, format_kind::s32);
-    CHECK((whole !=
-           render(loud(5, {{0.05, 0.4}, {0.46, 0.7}, {1.3, 0.2}, {1.9, 0.9}}, 3.0, {}), format_kind::s32)));
-    for (const std::size_t largest_block : {1, 7, 64, 65, 96, 128, 1000}) {
-        CHECK((whole == render(
-                            s, format_kind::s32, [&] { return 1 + random() % largest_block; }, s.frames())));
-    }
 }
 
 TEST_CASE("an epoch's end does not give a tactor its time back")

@@ -140,23 +140,6 @@ TEST_CASE("a tactor's limit is compared with the score's level for it")
     has(refusal(a, {{one, {}}, {one, 0.03}}, {}), "tactor 0");
 }
 
-TEST_CASE("a sensation level that is too high names the threshold and the excess")
-{
-    array a = row(2);
-    a.tactors[0].threshold_dbfs = -30.0;
-    a.tactors[1].threshold_dbfs = -6.0;
-    a.tactors[1].where = {"me.toml", 9, 1};
-    render_options o;
-    o.sl_db = 9.0; // 0.8 of it: 7.06 dB above -6 dBFS
-    const std::string text = refusal(a, {{one, {}}}, o);
-    has(text, "me.toml:9:1: tactor 1 would be driven at 1.062 dBFS, above full scale (0 dBFS): with "
-              "its threshold of -6 dBFS 1.07 dB are missing");
-    has(text, "lower sl_db by 1.07 dB or more");
-    a.tactors[1].max_dbfs = -3.0;
-    has(refusal(a, {{one, {}}}, o),
-        "above its limit of -3 dBFS (max_dbfs): with its threshold of -6 dBFS 4.07 dB are missing");
-}
-
 TEST_CASE("a sensation level that is too high names the threshold at the stroke's carrier")
 {
     array a = row(2);
@@ -320,30 +303,6 @@ TEST_CASE("impossible render options are refused")
     CHECK(has(with([](auto&, auto& p, auto&) { p.bursts[0].drives[1].tactor = 2; }), "tactor 2"));
 }
 
-TEST_CASE("overlapping bursts share one carrier that starts with the first")
-{
-    struct rule {
-        overlap_kind join;
-        double a;
-        double b;
-        double both;
-    };
-    const rule rules[] = {{overlap_kind::energy, 0.6, 0.5, std::sqrt(0.61)},
-                          {overlap_kind::energy, 0.9, 0.8, 1.0},
-                          {overlap_kind::max, 0.6, 0.5, 0.6},
-                          {overlap_kind::sum, 0.4, 0.5, 0.9}};
-    for (const rule& r : rules) {
-        const score s = make_score(two_bursts(r.join, r.a, r.b), 0.0);
-        const auto x = channel(s, 0);
-        REQUIRE(x.size() == 7680);
-        for (std::size_t k = 0; k < x.size(); ++k) {
-            const double a = k < 2880 ? r.a : (k < 4800 ? r.both : r.b);
-            REQUIRE(std::abs(x[k] - a * std::sin(2.0 * pi * 250.0 * static_cast<double>(k) / 48000.0)) <
-                    1e-6);
-        }
-    }
-}
-
 TEST_CASE("the largest intensity is that of any sounding burst, not only of the last")
 {
     for (const bool louder_first : {true, false}) {
@@ -378,17 +337,9 @@ TEST_CASE("a joined burst falls as smoothly as alone, however slowly it has rise
     }
 }
 
-TEST_CASE("energy never exceeds the largest sounding intensity")
-{
-    plan p = make_plan({make_burst(0.0, 0.1, {{0, 0.5}}, 0.5), make_burst(0.06, 0.1, {{0, 0.5}}, 0.6)});
-    const auto x = channel(make_score(p, 0.0), 0);
-    CHECK(*std::max_element(x.begin() + 2880, x.begin() + 4800) == doctest::Approx(0.6));
-    CHECK(*std::max_element(x.begin() + 4800, x.end()) == doctest::Approx(0.5));
-}
-
 TEST_CASE("ramps of overlapping bursts go into the joined amplitude, at the default length exactly")
 {
-    for (const std::int64_t ramp : {96, 480}) {
+    for (const std::int64_t ramp : {0, 96, 480}) {
         const double a = 0.5;
         const double b = 0.4;
         for (const overlap_kind join : {overlap_kind::energy, overlap_kind::max, overlap_kind::sum}) {
@@ -400,7 +351,7 @@ TEST_CASE("ramps of overlapping bursts go into the joined amplitude, at the defa
                 double e = std::min(1.0, std::sqrt(wa * wa + wb * wb));
                 e = join == overlap_kind::max ? std::max(wa, wb) : (join == overlap_kind::sum ? wa + wb : e);
                 const double exact = e * std::sin(2.0 * pi * 250.0 * static_cast<double>(k) / 48000.0);
-                REQUIRE(std::abs(x[static_cast<std::size_t>(k)] - exact) < (ramp == 96 ? 1e-6 : 2e-3));
+                REQUIRE(std::abs(x[static_cast<std::size_t>(k)] - exact) < (ramp <= 96 ? 1e-6 : 2e-3));
             }
         }
     }

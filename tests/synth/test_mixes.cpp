@@ -368,42 +368,6 @@ TEST_CASE("a burst is the formula to one float ulp")
     }
 }
 
-TEST_CASE("integers are the formula times 2^(bits - 1), rounded")
-{
-    for (const format_kind f : all_formats) {
-        if (f == format_kind::float32)
-            continue;
-        std::size_t wrong = 0;
-        std::size_t loud = 0;
-        for (const example& e : examples()) {
-            const score s = make_score(e);
-            const auto x = formula(e, s.frames());
-            const auto bytes = render(s, f);
-            for (std::size_t k = 0; k < x.size(); ++k) {
-                const double scaled = x[k] * full_scale(f);
-                const double exact = std::min(std::nearbyint(scaled), full_scale(f) - 1.0);
-                const auto got = static_cast<double>(integer(bytes, f, 2 * k + 1));
-                // The two sides may fall to either side of a tie, no more.
-                const bool tie = std::abs(std::abs(scaled - std::floor(scaled)) - 0.5) <
-                                 1e-3 * full_scale(f) / 2147483648.0;
-                wrong += got == exact || (tie && std::abs(got - exact) <= 1.0) ? 0 : 1;
-                loud += std::abs(got) > 0.5 * full_scale(f) ? 1 : 0;
-            }
-        }
-        CAPTURE(to_string(f));
-        CHECK(wrong == 0);
-        CHECK(loud > 1000);
-    }
-}
-
-TEST_CASE("a ramp never takes more than half of the burst")
-{
-    const score s = make_score({0.0, 0.01, 1.0, 1000.0, 48000, 0.0, 1.0, phase_kind::burst});
-    const auto x = channel(s, 1);
-    CHECK(std::abs(x[252]) == doctest::Approx(window(252, 480, 240)).epsilon(1e-6));
-    CHECK(std::abs(x[240 + 12]) > 0.9);
-}
-
 TEST_CASE("bursts that touch after rounding share no frame")
 {
     // 0.07 s at 22050 Hz is 1543.5 frames: every other boundary is a tie.

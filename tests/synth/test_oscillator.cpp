@@ -2,10 +2,8 @@
 // Oscillators, the start of the phase, blocks of any size, and sample formats.
 #include <algorithm>
 #include <cmath>
-#include <complex>
 #include <cstddef>
 #include <limits>
-#include <numeric>
 #include <random>
 #include <span>
 #include <vector>
@@ -43,25 +41,6 @@ render_options at_full_scale()
     render_options o{.level_dbfs = 0.0};
     return o;
 }
-
-/// Returns the amplitude of the line at hz in dB; the length must be a whole number of its cycles.
-double line_db(const std::vector<double>& x, double hz, double rate = 48000.0)
-{
-    std::complex<double> sum = 0.0;
-    for (std::size_t k = 0; k < x.size(); ++k) {
-        const double angle = 2.0 * pi * hz * static_cast<double>(k) / rate;
-        sum += x[k] * std::complex<double>(std::cos(angle), -std::sin(angle));
-    }
-    return 20.0 * std::log10(2.0 * std::abs(sum) / static_cast<double>(x.size()) + 1e-12);
-}
-
-double mean(const std::vector<double>& x)
-{
-    return std::accumulate(x.begin(), x.end(), 0.0) / static_cast<double>(x.size());
-}
-
-constexpr double split_hz =
-    1.0 / (2.0 * 0.07); // 250 Hz flipped each 70 ms: half of 1 / 0.07 s to either side
 
 std::vector<score> various()
 {
@@ -146,24 +125,6 @@ TEST_CASE("an hour of carrier stays within 1e-4 of the exact sine")
     }
 }
 
-TEST_CASE("a carrier that starts after an hour has the phase of the hour")
-{
-    render_options o{.phase = phase_kind::stroke, .level_dbfs = 0.0};
-    const double hz = 251.3;
-    const score s(row(1), {{make_plan({make_burst(3600.0, 0.01, {{0, 1.0}})}, hz), {}}}, o);
-    REQUIRE(s.frames() == 3600U * 48000U + 480U);
-    renderer r(s, format_kind::float32);
-    std::vector<float> x(48000);
-    for (int second = 0; second < 3600; ++second)
-        r.process(std::as_writable_bytes(std::span(x)));
-    r.process(std::as_writable_bytes(std::span(x).first(480)));
-    for (std::uint64_t k = 96; k < 384; ++k) {
-        const long double cycles = 251.3L * static_cast<long double>(3600U * 48000U + k) / 48000.0L;
-        const long double exact = std::sin(2.0L * 3.14159265358979323846264L * std::fmod(cycles, 1.0L));
-        CHECK(std::abs(static_cast<double>(x[k]) - static_cast<double>(exact)) < 1e-6);
-    }
-}
-
 TEST_CASE("more frequencies than tables only cost time")
 {
     synth::oscillator_tables tables;
@@ -200,29 +161,6 @@ TEST_CASE("the window at any place is the formula")
                 REQUIRE(std::abs(synth::window_at(k, w) - exact) < 1e-14);
         }
     }
-}
-
-TEST_CASE("a tactor that plays burst after burst has its carrier's line, no other, and no mean")
-{
-    const score s(row(1), {{row_of_bursts(), {}}}, at_full_scale());
-    const auto x = channel(s, 0);
-    REQUIRE(x.size() == 134400);
-    CHECK(line_db(x, 250.0) == doctest::Approx(0.0).epsilon(0.001));
-    CHECK(line_db(x, 250.0 - split_hz) < -100.0);
-    CHECK(line_db(x, 250.0 + split_hz) < -100.0);
-    CHECK(std::abs(mean(x)) < 1e-9);
-}
-
-TEST_CASE("a restart at each burst splits the line in two and leaves a mean")
-{
-    render_options o = at_full_scale();
-    o.phase = phase_kind::burst;
-    const score s(row(1), {{row_of_bursts(), {}}}, o);
-    const auto x = channel(s, 0);
-    CHECK(line_db(x, 250.0) < -30.0);
-    CHECK(line_db(x, 250.0 - split_hz) > -6.0);
-    CHECK(line_db(x, 250.0 + split_hz) > -6.0);
-    CHECK(mean(x) > 0.01);
 }
 
 TEST_CASE("the carrier counts from its stroke's first frame, at any start")
@@ -355,22 +293,6 @@ TEST_CASE("a part of a frame is refused and writes nothing; an empty block is ac
     CHECK(r.position() == 100);
 }
 
-TEST_CASE("more voices than a block has frames keep their order")
-{
-    // Hundreds of overlapping plans on one tactor: sums in another order would differ in the last bits.
-    std::mt19937_64 random(5);
-    std::vector<placed_plan> plans;
-    for (int i = 0; i < tactor::test::rounds(400); ++i)
-        plans.push_back({make_random(random, 3, 3, 0.05), 0.0005 * i});
-    render_options o{.level_dbfs = -60.0};
-    const score s(row(3), plans, o);
-    const auto whole = render(s, format_kind::float32);
-    CHECK((whole == render(
-                        s, format_kind::float32, [] { return 1; }, s.frames())));
-    CHECK((whole == render(
-                        s, format_kind::float32, [&] { return 1 + random() % 300; }, s.frames())));
-}
-
 TEST_CASE("a stroke has the same bytes at any start")
 {
     std::mt19937_64 random(23);
@@ -425,13 +347,6 @@ TEST_CASE("integers are rounded to the nearest, ties to even")
         for (std::size_t i = 0; i < x.size(); ++i)
             CHECK(static_cast<double>(integer(bytes, f, i)) == std::nearbyint(x[i] * full_scale(f)));
     }
-}
-
-TEST_CASE("S24 in four bytes is right-aligned and sign-extended")
-{
-    const auto bytes = converted(format_kind::s24_4, {-0.5, 0.5});
-    CHECK(sample<std::int32_t>(bytes, 0) == -4194304);
-    CHECK(sample<std::int32_t>(bytes, 1) == 4194304);
 }
 
 TEST_CASE("silence has no negative zeros")

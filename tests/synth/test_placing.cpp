@@ -478,18 +478,6 @@ COUNTING_TEST_CASE("rendering allocates nothing")
     }
 }
 
-COUNTING_TEST_CASE("walking through a score allocates nothing")
-{
-    const score s = busy_score();
-    synth::event_source source(s);
-    std::size_t events = 0;
-    const count_allocations count;
-    for (; source.peek() != nullptr; source.pop())
-        ++events;
-    CHECK(count.calls() == 0);
-    CHECK(events > 1000);
-}
-
 COUNTING_TEST_CASE("a mixer allocates nothing after its construction")
 {
     const score s = busy_score();

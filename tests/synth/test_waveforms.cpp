@@ -2,7 +2,6 @@
 // Waveforms, computed and recorded.
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <string>
 #include <vector>
 
@@ -282,25 +281,6 @@ TEST_CASE("the phase of a carrier that changes is its integral, to 1e-9 cycles a
     CHECK(worst < 1e-9);
 }
 
-TEST_CASE("a carrier along the path follows its list, without a jump")
-{
-    stroke s{"", trajectory::timed({{0.0, {0, 0}}, {1.0, {10, 0}}, {3.0, {40, 0}}}), {}, {}, {}};
-    s.sound.carrier_profile = {{0.1, 100.0}, {0.5, 200.0}, {1.0, 50.0}};
-    const plan p = make_plan(row(3), s, {.algorithm = algorithm_kind::continuous});
-    // 4 mm after 0.4 s, 10 mm (half-way to the next point) after 1 s, 20 mm after 1.6667 s.
-    REQUIRE(p.course.size() == 5);
-    CHECK(p.course[0] == carrier_point{0.0, 100.0});
-    CHECK(p.course[1].t_s == doctest::Approx(0.4));
-    CHECK(p.course[2] == carrier_point{1.0, 137.5});
-    CHECK(p.course[3].t_s == doctest::Approx(5.0 / 3.0));
-    CHECK(p.course[3].hz == 200.0);
-    CHECK(p.course[4] == carrier_point{3.0, 50.0});
-    s.sound.carrier_profile = {{0.5, 100.0}, {0.5, 200.0}};
-    has(caught_message([&] { return make_plan(row(3), s, {}); }), "carrier_profile");
-    s.sound.carrier_profile = {{0.5, 0.5}};
-    has(caught_message([&] { return make_plan(row(3), s, {}); }), "not a carrier");
-}
-
 TEST_CASE("a modulation at a harmonic that the wave has is refused: it would be a displacement")
 {
     const auto refusal = [](const waveform& w, double am_hz, const std::vector<carrier_point>& course = {}) {
@@ -445,26 +425,6 @@ TEST_CASE("a recording sounds alike in any unit of its samples")
             REQUIRE(x.size() == as_it_is.size());
             for (std::size_t i = 0; i < x.size(); ++i)
                 REQUIRE(std::abs(x[i] - as_it_is[i]) < 1e-6);
-        }
-    }
-}
-
-TEST_CASE("the greatest and least floats give neither infinities nor non-numbers")
-{
-    constexpr float most = std::numeric_limits<float>::max();
-    constexpr float least = std::numeric_limits<float>::denorm_min();
-    const std::vector<std::vector<float>> all{{most, -most, -most, most, most},
-                                              {most, 0.0F, 0.0F},
-                                              {least, 0.0F, -least},
-                                              {most, least, -most, 1.0F},
-                                              {most, most, -most}};
-    for (const auto& samples : all) {
-        for (const texture_kind texture : {texture_kind::cycle, texture_kind::time}) {
-            for (const double rate_hz : {8000.0, 48000.0}) {
-                const auto x = played(tone(recorded(samples, texture, rate_hz), 250.0, 0.1));
-                REQUIRE(std::all_of(x.begin(), x.end(), [](double v) { return std::abs(v) <= 1.0 + 1e-6; }));
-                REQUIRE(greatest(x) > 0.5);
-            }
         }
     }
 }
