@@ -216,43 +216,6 @@ TEST_CASE("conflicts of bursts inside one another, one after the other, and side
     CHECK(found[2].to_s == doctest::Approx(1.0));
 }
 
-TEST_CASE("conflicts are times with two bursts or more on a tactor, merged, by time and then by tactor")
-{
-    generator g(34);
-    for (unsigned i = 0; i < 200; ++i) {
-        plan_options o = brush();
-        o.snap = true;
-        std::vector<point> corners;
-        for (unsigned k = 0; k < 3; ++k)
-            corners.push_back({between(g, 0.0, 45.0), between(g, 0.0, 30.0)});
-        const stroke s = make_stroke(trajectory::along(path::polyline(corners), between(g, 1.0, 4.0)));
-        if (!refusal(arm, s, o).empty())
-            continue;
-        const plan p = make_plan(arm, s, o);
-        const auto reported = [&](unsigned tactor, double t) {
-            return std::any_of(p.conflicts.begin(), p.conflicts.end(), [&](const conflict& c) {
-                return c.tactor == tactor && c.from_s < t && t < c.to_s;
-            });
-        };
-        for (unsigned k = 0; k < 300; ++k) {
-            const double t = between(g, 0.0, p.total_s);
-            for (unsigned tactor = 0; tactor < arm.tactors.size(); ++tactor) {
-                unsigned sounding = 0;
-                for (const burst& b : p.bursts)
-                    for (const drive& d : b.drives)
-                        sounding +=
-                            d.tactor == tactor && b.onset_s < t && t < b.onset_s + b.duration_s ? 1 : 0;
-                REQUIRE(reported(tactor, t) == (sounding >= 2));
-            }
-        }
-        for (std::size_t k = 0; k < p.conflicts.size(); ++k) {
-            REQUIRE(p.conflicts[k].from_s < p.conflicts[k].to_s);
-            if (k > 0)
-                REQUIRE(p.conflicts[k - 1].from_s <= p.conflicts[k].from_s);
-        }
-    }
-}
-
 TEST_CASE("the array must be a grid; a single row is one")
 {
     has(refusal(make_ring(5, 20.0, true), along("M 0 0 L 10 0", 1.0), brush()), "grid");

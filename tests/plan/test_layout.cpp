@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Faces of arrays, ordinary and extreme.
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <set>
 
@@ -12,7 +11,6 @@
 #include "arrays.hpp"
 #include "core/access.hpp"
 #include "oracle.hpp"
-#include "plan/faces/delaunay.hpp"
 #include "plan/faces/layout_impl.hpp"
 #include "rounds.hpp"
 
@@ -135,24 +133,6 @@ TEST_CASE("faces are Delaunay: no tactor in the circle round one, every tactor i
         }
         REQUIRE(seen.size() == a.tactors.size());
     }
-}
-
-TEST_CASE("four points are on one circle when moves of a nanometre put them there, thin or not")
-{
-    CHECK(detail::cocircular({point{0, 0}, {20, 0}, {20, 40}, {0, 40}}));
-    CHECK(detail::cocircular({point{0, 0}, {20, 0}, {20, 40 + 1e-6}, {0, 40}}));
-    CHECK_FALSE(detail::cocircular({point{0, 0}, {20, 0}, {20, 40 + 1e-5}, {0, 40}}));
-    // Nearly in line, so that three of them fix their circle badly.
-    const auto thin = [](double radius, double off) {
-        const auto at = [&](double angle) {
-            return point{radius * std::sin(angle), radius * (1.0 - std::cos(angle))};
-        };
-        std::array<point, 4> p{at(0.0), at(10.0 / radius), at(20.0 / radius), at(30.0 / radius)};
-        p[2].y_mm += off;
-        return detail::cocircular(p);
-    };
-    CHECK(thin(1e4, 0.0));
-    CHECK_FALSE(thin(1e4, 1e-4));
 }
 
 TEST_CASE("the hull holds its edge within a nanometre, and nearest() lies on it")

@@ -215,15 +215,6 @@ TEST_CASE("a continuous plan has no bursts, and the phantom at every time")
     CHECK(b.position == point{0.0, 20.0});
 }
 
-TEST_CASE("a continuous plan finds a short way out between two bursts")
-{
-    plan_options o;
-    const stroke s = timed({{0.0, {30, 20}}, {0.03, {50, 20}}, {0.06, {30, 20}}, {1.0, {20, 20}}});
-    CHECK(refusal(palm, s, o).empty());
-    o.algorithm = algorithm_kind::continuous;
-    CHECK(refusal(palm, s, o).find("(40.000, 20.000) mm after 0.015 s") != std::string::npos);
-}
-
 TEST_CASE("a way out of five milliseconds is found in a day, to the microsecond")
 {
     for (const double duration : {10.0, 2000.0, 86400.0}) {

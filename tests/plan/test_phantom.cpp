@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numeric>
 
 #include <doctest/doctest.h>
 
@@ -105,36 +104,6 @@ TEST_CASE("inverse distance chooses tactors by the rules, by brute force")
             CAPTURE(p.y_mm);
             REQUIRE(list_tactors(d) == expected_tactors(l, p));
         }
-    }
-}
-
-TEST_CASE("on a square grid these are the paper's three closest tactors")
-{
-    const array a = preset_array("palm-3x3");
-    const layout l(a);
-    generator g(3);
-    for (unsigned i = 0; i < 5000; ++i) {
-        const point p{between(g, 0.0, 40.0), between(g, 0.0, 40.0)};
-        std::vector<unsigned> order(9);
-        std::iota(order.begin(), order.end(), 0U);
-        std::sort(order.begin(), order.end(), [&](unsigned x, unsigned y) {
-            return distance_mm(p, l.places()[x]) < distance_mm(p, l.places()[y]);
-        });
-        order.resize(3);
-        std::sort(order.begin(), order.end());
-        REQUIRE(list_tactors(weights(l, phantom_kind::inverse_distance, p)) == order);
-    }
-}
-
-TEST_CASE("on a 20 x 40 mm grid no point is played by three tactors in one line")
-{
-    const layout l(make_grid("g", 3, 3, 20.0, 40.0));
-    generator g(4);
-    for (unsigned i = 0; i < 5000; ++i) {
-        const auto t = list_tactors(
-            weights(l, phantom_kind::inverse_distance, {between(g, 0.0, 40.0), between(g, 0.0, 80.0)}));
-        REQUIRE(t.size() == 3);
-        REQUIRE(std::abs(cross(l.places()[t[0]], l.places()[t[1]], l.places()[t[2]])) > 1.0);
     }
 }
 

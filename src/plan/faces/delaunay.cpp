@@ -243,6 +243,33 @@ std::vector<unsigned> outline(const std::vector<triangle>& group)
     return ring.size() == border ? ring : std::vector<unsigned>{};
 }
 
+/// Returns true if four points lie on one circle when each may move by same_place_mm.
+bool cocircular(const std::array<point, 4>& p)
+{
+    std::array<double, 4> area{}; // of the triangle without point i, twice
+    for (std::size_t i = 0; i < 4; ++i)
+        area[i] = std::abs(turn(p[(i + 1) % 4], p[(i + 2) % 4], p[(i + 3) % 4]));
+    const auto best = static_cast<std::size_t>(std::max_element(area.begin(), area.end()) - area.begin());
+    if (!(area[best] > 0.0))
+        return false;
+    // Circle through the best conditioned three, seen from one of them.
+    const point o = p[(best + 1) % 4];
+    const point u{p[(best + 2) % 4].x_mm - o.x_mm, p[(best + 2) % 4].y_mm - o.y_mm};
+    const point v{p[(best + 3) % 4].x_mm - o.x_mm, p[(best + 3) % 4].y_mm - o.y_mm};
+    const point w{p[best].x_mm - o.x_mm, p[best].y_mm - o.y_mm};
+    const double uu = u.x_mm * u.x_mm + u.y_mm * u.y_mm;
+    const double vv = v.x_mm * v.x_mm + v.y_mm * v.y_mm;
+    const double ww = w.x_mm * w.x_mm + w.y_mm * w.y_mm;
+    const double d = 2.0 * (u.x_mm * v.y_mm - u.y_mm * v.x_mm);
+    const point centre{(v.y_mm * uu - u.y_mm * vv) / d, (u.x_mm * vv - v.x_mm * uu) / d};
+    const double radius = std::hypot(centre.x_mm, centre.y_mm);
+    const double power = ww - 2.0 * (w.x_mm * centre.x_mm + w.y_mm * centre.y_mm);
+    const double off = std::abs(power) / (distance_mm(w, centre) + radius);
+    // The in-circle determinant changes with a move of point i as area[i] * radius, so this asks
+    // whether moves of same_place_mm make it zero. Thin triangles count for what they weigh.
+    return off * area[best] <= same_place_mm * (area[0] + area[1] + area[2] + area[3]);
+}
+
 /// Neighbours on one circle each need not mean that all are: a chain may drift off it.
 bool on_one_circle(const std::vector<point>& points, const std::vector<unsigned>& ring)
 {
@@ -273,32 +300,6 @@ std::vector<triangle> delaunay(const std::vector<point>& points)
     orient(points, triangles);
     sliver_filter(points, triangles).run();
     return triangles;
-}
-
-bool cocircular(const std::array<point, 4>& p)
-{
-    std::array<double, 4> area{}; // of the triangle without point i, twice
-    for (std::size_t i = 0; i < 4; ++i)
-        area[i] = std::abs(turn(p[(i + 1) % 4], p[(i + 2) % 4], p[(i + 3) % 4]));
-    const auto best = static_cast<std::size_t>(std::max_element(area.begin(), area.end()) - area.begin());
-    if (!(area[best] > 0.0))
-        return false;
-    // Circle through the best conditioned three, seen from one of them.
-    const point o = p[(best + 1) % 4];
-    const point u{p[(best + 2) % 4].x_mm - o.x_mm, p[(best + 2) % 4].y_mm - o.y_mm};
-    const point v{p[(best + 3) % 4].x_mm - o.x_mm, p[(best + 3) % 4].y_mm - o.y_mm};
-    const point w{p[best].x_mm - o.x_mm, p[best].y_mm - o.y_mm};
-    const double uu = u.x_mm * u.x_mm + u.y_mm * u.y_mm;
-    const double vv = v.x_mm * v.x_mm + v.y_mm * v.y_mm;
-    const double ww = w.x_mm * w.x_mm + w.y_mm * w.y_mm;
-    const double d = 2.0 * (u.x_mm * v.y_mm - u.y_mm * v.x_mm);
-    const point centre{(v.y_mm * uu - u.y_mm * vv) / d, (u.x_mm * vv - v.x_mm * uu) / d};
-    const double radius = std::hypot(centre.x_mm, centre.y_mm);
-    const double power = ww - 2.0 * (w.x_mm * centre.x_mm + w.y_mm * centre.y_mm);
-    const double off = std::abs(power) / (distance_mm(w, centre) + radius);
-    // The in-circle determinant changes with a move of point i as area[i] * radius, so this asks
-    // whether moves of same_place_mm make it zero. Thin triangles count for what they weigh.
-    return off * area[best] <= same_place_mm * (area[0] + area[1] + area[2] + area[3]);
 }
 
 std::vector<std::vector<unsigned>> join_cocircular(const std::vector<point>& points,

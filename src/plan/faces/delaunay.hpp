@@ -22,7 +22,4 @@ std::vector<triangle> delaunay(const std::vector<point>& points);
 std::vector<std::vector<unsigned>> join_cocircular(const std::vector<point>& points,
                                                    const std::vector<triangle>& triangles);
 
-/// Returns true if four points lie on one circle when each may move by same_place_mm.
-bool cocircular(const std::array<point, 4>& p);
-
 } // namespace tactor::detail
