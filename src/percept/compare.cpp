@@ -86,11 +86,11 @@ bool comparison::playable() const
     return std::any_of(rows.begin(), rows.end(), [](const comparison_row& r) { return r.plan.has_value(); });
 }
 
-comparison compare(const stroke& given, const array& a, const layout& faces, const plan_options& options,
+comparison compare(const stroke& target, const array& a, const layout& faces, const plan_options& options,
                    const comparison_choice& choice)
 {
     // The caller's choices count here, not the stroke's: plans are compared side by side.
-    stroke s = given;
+    stroke s = target;
     s.choices.algorithm.reset();
     s.choices.phantom.reset();
     s.choices.faces.reset();

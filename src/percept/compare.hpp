@@ -84,7 +84,7 @@ struct comparison_choice {
 /// Plans and predicts with every algorithm and every model, in this order. An algorithm that cannot play the
 /// stroke becomes a row with the reason.
 /// \throws errors other than bad_input.
-comparison compare(const stroke& given, const array& a, const layout& faces, const plan_options& options,
+comparison compare(const stroke& target, const array& a, const layout& faces, const plan_options& options,
                    const comparison_choice& choice);
 
 } // namespace tactor::detail

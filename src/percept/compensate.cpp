@@ -136,10 +136,10 @@ std::vector<point> fit_on_array(const layout& l, std::span<const double> give, s
         double moved = 0.0;
         for (std::size_t i = 0; i < n; ++i) {
             const point wanted = z[i] + relaxation * m[i] - relaxation * z[i] + u[i];
-            const point there = l.nearest(wanted);
-            moved += std::pow(distance_mm(there, z[i]), 2.0);
-            u[i] = wanted - there;
-            z[i] = there;
+            const point nearest = l.nearest(wanted);
+            moved += std::pow(distance_mm(nearest, z[i]), 2.0);
+            u[i] = wanted - nearest;
+            z[i] = nearest;
         }
         const double off = squares(m, z);
         if (step % look == 0) {
@@ -240,8 +240,8 @@ compensated_plan make_compensated_plan(const array& a, const layout& l, const st
 {
     if (s.fit)
         return make_compensated_plan(a, l, apply_fits({s}, l).front(), o, m);
-    const plan_options chosen = detail::chosen(o, s.choices);
-    if (chosen.algorithm == algorithm_kind::continuous)
+    const plan_options own = detail::apply_choices(o, s.choices);
+    if (own.algorithm == algorithm_kind::continuous)
         throw detail::bad_field("algorithm",
                                 "continuous has no bursts that could be moved for the low-speed observer",
                                 "{algorithm=park2016}, or no compensation");
@@ -259,7 +259,7 @@ compensated_plan make_compensated_plan(const array& a, const layout& l, const st
         }
     const compensated_places places = compensate(l, m, onsets_s, targets);
     std::erase(r.plan.warnings, missed_warning(l, r.plan)); // counted again for the moved bursts
-    const std::shared_ptr<const phantom_model> model = detail::choose_model(l, chosen);
+    const std::shared_ptr<const phantom_model> model = detail::choose_model(l, own);
     for (std::size_t i = 0; i < felt.size(); ++i) {
         burst& b = *felt[i];
         b.position = places.played[i];

@@ -18,7 +18,7 @@ namespace {
 constexpr double low_part = 0.05;
 constexpr double high_part = 0.95;
 constexpr std::size_t most_tracks = 40;
-constexpr std::size_t most_kept = 20'000'000; // speeds of all people, for a picture
+constexpr std::size_t most_speeds = 20'000'000; // speeds of all people, for a picture
 
 // SplitMix64 (Steele, Lea and Flood 2014), equal on every machine.
 class random_draws {
@@ -142,9 +142,9 @@ row_spread predict_spread(const std::vector<drawn_person>& people, const array& 
                           const plan& p, const std::optional<low_speed_observer>& low_speed, bool for_picture,
                           const std::function<void()>& after_person)
 {
-    const double kept =
+    const double speeds_each =
         low_speed ? static_cast<double>(p.bursts.size()) : s.motion.duration_s() / percept_step_s;
-    if (for_picture && kept * static_cast<double>(people.size()) > static_cast<double>(most_kept))
+    if (for_picture && speeds_each * static_cast<double>(people.size()) > static_cast<double>(most_speeds))
         throw error(error_kind::bad_input, "spread",
                     fmt::format("{} people are too many for a picture of a stroke of {}", people.size(),
                                 seconds_text(s.motion.duration_s())),

@@ -123,7 +123,7 @@ private:
 };
 
 // Asks the user's model once for each sample, so that the plan is a value.
-curve asked(const job& j)
+curve sample_model(const job& j)
 {
     const followed f(j);
     if (static_cast<double>(f.size) > most_bursts)
@@ -150,7 +150,8 @@ void plan_continuous(const job& j, plan& out)
     if (j.options.outside == outside_kind::error)
         check_inside(j);
     out.total_s = out.stroke_duration_s;
-    out.curve = j.options.custom_phantom ? asked(j) : curve_access::make(std::make_shared<followed>(j));
+    out.curve =
+        j.options.custom_phantom ? sample_model(j) : curve_access::make(std::make_shared<followed>(j));
 }
 
 } // namespace tactor::detail

@@ -119,7 +119,7 @@ void check_sample(const curve_samples& s, std::size_t i, std::size_t first)
     }
 }
 
-std::shared_ptr<const curve::impl> checked(double duration_s, curve_samples s)
+std::shared_ptr<const curve::impl> make_samples(double duration_s, curve_samples s)
 {
     if (!(duration_s > 0.0 && duration_s <= detail::longest_stroke_s))
         throw error(error_kind::bad_input, "curve", fmt::format("it lasts {:g} s", duration_s),
@@ -187,7 +187,7 @@ void curve::impl::sample(std::uint64_t k, detail::same_tactors& seen, burst& out
     out.tau_s.reset();
 }
 
-curve::curve(double duration_s, curve_samples samples) : impl_(checked(duration_s, std::move(samples)))
+curve::curve(double duration_s, curve_samples samples) : impl_(make_samples(duration_s, std::move(samples)))
 {
 }
 
@@ -212,7 +212,7 @@ double curve::time_s(std::uint64_t k) const noexcept
 
 void curve::sample(std::uint64_t k, burst& out) const
 {
-    detail::same_tactors nowhere{.in_vain = 1}; // one sample is not worth a look around
+    detail::same_tactors nowhere{.skips = 1}; // one sample is not worth a look around
     impl_->sample(k, nowhere, out);
 }
 

@@ -223,16 +223,16 @@ fitted_strokes fit_strokes(const std::vector<stroke>& strokes, const layout& l, 
 std::vector<stroke> apply_fits(std::vector<stroke> strokes, const layout& l)
 {
     std::vector<std::vector<std::size_t>> pictures;
-    std::map<unsigned, std::size_t> of_group;
+    std::map<unsigned, std::size_t> groups;
     for (std::size_t i = 0; i < strokes.size(); ++i) {
         const stroke& s = strokes[i];
         if (!s.fit)
             continue;
-        const auto [there, is_new] = of_group.try_emplace(s.fit->group, pictures.size());
+        const auto [group, is_new] = groups.try_emplace(s.fit->group, pictures.size());
         if (is_new || s.fit->group == 0)
             pictures.push_back({i});
         else
-            pictures[there->second].push_back(i);
+            pictures[group->second].push_back(i);
     }
     for (const std::vector<std::size_t>& members : pictures) {
         std::vector<stroke> together;

@@ -20,10 +20,10 @@ point follower::at(double t_s)
         inside_s_ = t_s;
         return p;
     }
-    const point there = job_.faces.nearest(p);
-    if (job_.options.outside == outside_kind::error && distance_mm(p, there) > edge_tolerance_mm)
+    const point edge = job_.faces.nearest(p);
+    if (job_.options.outside == outside_kind::error && distance_mm(p, edge) > edge_tolerance_mm)
         refuse(t_s);
-    return there;
+    return edge;
 }
 
 double follower::farthest_outside_mm(double from_s) const
@@ -75,12 +75,12 @@ std::vector<conflict> find_conflicts(const std::vector<burst>& bursts)
             const double end = b.onset_s + b.duration_s;
             if (d.tactor >= tactors.size())
                 tactors.resize(d.tactor + std::size_t{1});
-            std::optional<state>& there = tactors[d.tactor];
-            if (!there) {
-                there = state{end};
+            std::optional<state>& known = tactors[d.tactor];
+            if (!known) {
+                known = state{end};
                 continue;
             }
-            state& s = *there;
+            state& s = *known;
             const double until = std::min(end, s.sounds_until_s);
             if (until - b.onset_s > same_time_s) {
                 if (s.last >= 0 && b.onset_s <= found[static_cast<std::size_t>(s.last)].to_s + same_time_s) {

@@ -149,12 +149,12 @@ void check_chosen(const plan_options& o, const stroke& s)
     }
 }
 
-plan planned(const array& a, const layout& l, const stroke& s, const plan_options& common,
-             const detail::burst_taker& take)
+plan plan_stroke(const array& a, const layout& l, const stroke& s, const plan_options& common,
+                 const detail::burst_taker& take)
 {
     if (s.fit)
-        return planned(a, l, apply_fits({s}, l).front(), common, take);
-    const plan_options o = detail::chosen(common, s.choices);
+        return plan_stroke(a, l, apply_fits({s}, l).front(), common, take);
+    const plan_options o = detail::apply_choices(common, s.choices);
     check_chosen(o, s);
     if (l.places().size() != a.tactors.size())
         throw error(
@@ -206,7 +206,7 @@ plan planned(const array& a, const layout& l, const stroke& s, const plan_option
 
 plan make_plan(const array& a, const layout& l, const stroke& s, const plan_options& o)
 {
-    return planned(a, l, s, o, {});
+    return plan_stroke(a, l, s, o, {});
 }
 
 plan make_plan(const array& a, const stroke& s, const plan_options& o)
@@ -222,7 +222,7 @@ namespace tactor::detail {
 plan plan_in_pieces(const array& a, const layout& l, const stroke& s, const plan_options& o,
                     const burst_taker& take)
 {
-    return planned(a, l, s, o, take);
+    return plan_stroke(a, l, s, o, take);
 }
 
 void pass_on(const job& j, plan& p)

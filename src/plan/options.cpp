@@ -66,7 +66,7 @@ double check_carrier(double hz)
     return hz;
 }
 
-plan_options chosen(plan_options common, const stroke_choices& c)
+plan_options apply_choices(plan_options common, const stroke_choices& c)
 {
     common.algorithm = c.algorithm.value_or(common.algorithm);
     common.soa_s = c.soa_s.value_or(common.soa_s);

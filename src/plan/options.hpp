@@ -13,8 +13,8 @@ double law_duration_s(const timing_profile& p, double soa_s);
 /// \throws error (bad_input) for what the chosen algorithm cannot use.
 void check_options(const plan_options& o);
 
-/// Returns the common options, but for what the stroke chooses.
-plan_options chosen(plan_options common, const stroke_choices& c);
+/// Returns the common options with the choices of a stroke.
+plan_options apply_choices(plan_options common, const stroke_choices& c);
 
 /// Returns the frequency, if it is one. \throws error (bad_input)
 double check_carrier(double hz);

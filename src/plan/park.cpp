@@ -12,7 +12,7 @@ namespace tactor::detail {
 namespace {
 
 /// `fit`: the fewest intervals no longer than the SOA. \throws error where their bursts are too short.
-double fitted_soa(const job& j, double duration_s)
+double fit_soa(const job& j, double duration_s)
 {
     const plan_options& o = j.options;
     const double n = std::ceil((duration_s - same_time_s) / o.soa_s);
@@ -40,7 +40,7 @@ void plan_park(const job& j, plan& out)
     const double end = j.motion.motion.duration_s();
     const bool one_burst = end < j.options.soa_s - same_time_s;
     const bool fit = j.options.timing == timing_kind::fit && !one_burst;
-    const double soa = fit ? fitted_soa(j, end) : j.options.soa_s;
+    const double soa = fit ? fit_soa(j, end) : j.options.soa_s;
     const double count = one_burst ? 1.0 : std::floor((end + same_time_s) / soa) + 1.0;
     check_burst_count(j, count);
 

@@ -126,11 +126,11 @@ public:
                     for (const bordering& b : sides(ordered(triangles_[t][i], triangles_[t][(i + 1) % 3])))
                         work.push_back(b.triangle);
         }
-        std::vector<triangle> kept;
+        std::vector<triangle> rest;
         for (unsigned t = 0; t < triangles_.size(); ++t)
             if (!dropped_[t])
-                kept.push_back(triangles_[t]);
-        triangles_.swap(kept);
+                rest.push_back(triangles_[t]);
+        triangles_.swap(rest);
     }
 
 private:

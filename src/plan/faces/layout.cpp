@@ -20,7 +20,7 @@ using detail::turn;
 using rings = std::vector<std::vector<unsigned>>;
 
 /// Indices by row, then by column; rows nearer than same_place_mm are one row.
-std::vector<unsigned> ranked(const std::vector<point>& places)
+std::vector<unsigned> rank_places(const std::vector<point>& places)
 {
     std::vector<unsigned> order(places.size());
     std::iota(order.begin(), order.end(), 0U);
@@ -38,7 +38,7 @@ std::vector<unsigned> ranked(const std::vector<point>& places)
 }
 
 /// Ranks along the line on which all tactors lie; empty where they do not.
-std::vector<unsigned> in_line(const std::vector<point>& points)
+std::vector<unsigned> find_line_order(const std::vector<point>& points)
 {
     const std::pair<point, point> ends = detail::find_ends(points);
     const double length = distance_mm(ends.first, ends.second);
@@ -125,10 +125,10 @@ layout::impl::impl(const array& a)
     validate(a);
     for (const tactor_spec& t : a.tactors)
         places.push_back(t.position);
-    index_of = ranked(places);
+    index_of = rank_places(places);
     for (const unsigned i : index_of)
         points.push_back(places[i]);
-    const std::vector<unsigned> line = in_line(points);
+    const std::vector<unsigned> line = find_line_order(points);
     if (line.empty()) {
         faces = detail::join_cocircular(points, detail::delaunay(points));
         for (const auto& f : faces) {

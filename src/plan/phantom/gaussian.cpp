@@ -19,10 +19,10 @@ public:
 
     std::string_view name() const noexcept override { return to_string(phantom_kind::gaussian); }
 
-    void weights(point asked, double a_v, std::vector<drive>& out) const override
+    void weights(point target, double a_v, std::vector<drive>& out) const override
     {
         out.clear();
-        const point p = check_request(layout_, asked, a_v);
+        const point p = check_request(layout_, target, a_v);
         const layout::impl& l = detail::access::of(layout_);
         const unsigned first = l.nearest_tactor(p);
         if (!(variance_ > 0.0)) {

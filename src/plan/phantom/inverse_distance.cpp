@@ -50,10 +50,10 @@ public:
 
     std::string_view name() const noexcept override { return to_string(phantom_kind::inverse_distance); }
 
-    void weights(point asked, double a_v, std::vector<drive>& out) const override
+    void weights(point target, double a_v, std::vector<drive>& out) const override
     {
         out.clear();
-        const point p = check_request(layout_, asked, a_v);
+        const point p = check_request(layout_, target, a_v);
         const layout::impl& l = detail::access::of(layout_);
         const auto clear = l.clear_face(p);
         if (clear && l.faces[*clear].size() <= few && l.clear_of_diagonals(*clear, p) &&
@@ -141,10 +141,10 @@ public:
 
     std::string_view name() const noexcept override { return to_string(phantom_kind::inverse_distance); }
 
-    void weights(point asked, double a_v, std::vector<drive>& out) const override
+    void weights(point target, double a_v, std::vector<drive>& out) const override
     {
         out.clear();
-        const point p = check_request(layout_, asked, a_v);
+        const point p = check_request(layout_, target, a_v);
         const layout::impl& l = access::of(layout_);
         const unsigned first = l.nearest_tactor(p);
         const double first_mm = length_mm(p, l.points[first]);

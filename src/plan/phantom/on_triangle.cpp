@@ -63,10 +63,10 @@ public:
 
     std::string_view name() const noexcept override { return to_string(kind_); }
 
-    void weights(point asked, double a_v, std::vector<drive>& out) const override
+    void weights(point target, double a_v, std::vector<drive>& out) const override
     {
         out.clear();
-        const point p = check_request(layout_, asked, a_v);
+        const point p = check_request(layout_, target, a_v);
         const layout::impl& l = detail::access::of(layout_);
         auto face = l.clear_face(p);
         if (!face) {
@@ -110,7 +110,7 @@ public:
     {
         // Beside the triangle they come in an order of their own.
         std::array<double, 3> out{};
-        for (const weight& w : settled(in_triangle(detail::access::of(layout_), three, p)))
+        for (const weight& w : drop_least(in_triangle(detail::access::of(layout_), three, p)))
             if (const double a = amplitude(w.b) * a_v; a > 0.0)
                 out[w.rank == three[0] ? 0 : w.rank == three[1] ? 1 : 2] = a;
         return out;
@@ -122,11 +122,11 @@ private:
     {
         const layout::impl& l = detail::access::of(layout_);
         const std::vector<unsigned>& ring = l.faces[face];
-        return settled(ring.size() < 3 ? on_segment(l, ring.front(), ring.back(), p)
-                                       : in_triangle(l, fan_triangle(l, face, p), p));
+        return drop_least(ring.size() < 3 ? on_segment(l, ring.front(), ring.back(), p)
+                                          : in_triangle(l, fan_triangle(l, face, p), p));
     }
 
-    static weights_of_three settled(weights_of_three w)
+    static weights_of_three drop_least(weights_of_three w)
     {
         normalise(w);
         for (weight& x : w)

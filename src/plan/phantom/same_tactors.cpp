@@ -11,8 +11,8 @@
 namespace tactor::detail {
 namespace {
 
-// On a border, where no disc is, the neighbours mostly have none either.
-constexpr unsigned not_asked = 16;
+// On a border without a disc, the neighbours mostly have none either.
+constexpr unsigned most_skips = 16;
 
 // Distance at which a point counts as on a segment whatever the rounding of the formula.
 constexpr double surely_on_mm = 0.5 * same_place_mm;
@@ -72,15 +72,15 @@ void drives_of_same(const model_of_three& m, const layout& l, const same_tactors
 
 void look_around(const model_of_three& m, const layout& l, point p, same_tactors& seen)
 {
-    if (seen.in_vain > 0) {
-        --seen.in_vain;
+    if (seen.skips > 0) {
+        --seen.skips;
         return;
     }
     const layout::impl& in = access::of(l);
     seen.centre = p;
     take_around(m, in, p, seen);
     if (seen.radius_mm == 0.0) {
-        seen.in_vain = not_asked;
+        seen.skips = most_skips;
         return;
     }
     seen.by_index = {0, 1, 2};

@@ -23,7 +23,7 @@ struct same_tactors {
     unsigned count = 3;                        ///< 2: they are the ends of the segment
     bool on_segment = false;                   ///< not in all of the disc
     std::array<point, 2> ends = {};            ///< of the segment
-    unsigned in_vain = 0;                      ///< so many next places are not asked about
+    unsigned skips = 0;                        ///< next places at which look_around() does nothing
 
     bool holds(point p) const noexcept
     {

@@ -20,7 +20,7 @@ public:
     const double* get(const voice& v, const fade* f, const score_gain* g, std::uint64_t at, unsigned n,
                       wave w = wave::sine) noexcept;
     /// Returns true if `s`, which get() returned for the sine, has no window, fade or gain.
-    bool is_plain(const double* s) const noexcept { return s == kept_[0].plain.data(); }
+    bool is_plain(const double* s) const noexcept { return s == entries_[0].plain.data(); }
     void forget() noexcept;
 
 private:
@@ -41,7 +41,7 @@ private:
         score_gain gain = {};
         bool operator==(const shape&) const = default;
     };
-    struct kept {
+    struct entry {
         place plain_place;
         place shaped_place;
         shape shaped_shape;
@@ -49,7 +49,7 @@ private:
         alignas(64) block shaped{};
     };
     oscillator_tables tables_;
-    std::array<kept, 2> kept_; ///< by wave
+    std::array<entry, 2> entries_; ///< by wave
 };
 
 /// Computes sum[j] += amplitude * s[j] for those of n frames from frame `at` of the stream on that are in the

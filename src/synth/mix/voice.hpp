@@ -127,9 +127,9 @@ public:
 
     /// Removes the sounding voices that have ended by a frame.
     void retire(std::uint64_t by) noexcept;
-    /// Removes the voices, waiting or sounding, for which gone(voice&) returns true. Linear in the voices.
-    template <class Gone>
-    void forget_if(Gone gone) noexcept;
+    /// Removes the voices, waiting or sounding, for which test(voice&) returns true. Linear in the voices.
+    template <class Test>
+    void forget_if(Test test) noexcept;
     void clear() noexcept;
 
 private:
@@ -144,8 +144,8 @@ private:
     }
     void heapify() noexcept;
     void insert(std::uint32_t slot) noexcept;
-    template <class Gone>
-    void forget_active(Gone gone) noexcept;
+    template <class Test>
+    void forget_active(Test test) noexcept;
 
     std::vector<voice> voices_;
     std::vector<std::uint32_t> free_;
@@ -155,33 +155,33 @@ private:
     std::uint64_t earliest_end_ = ~std::uint64_t{0};
 };
 
-template <class Gone>
-void voice_list::forget_active(Gone gone) noexcept
+template <class Test>
+void voice_list::forget_active(Test test) noexcept
 {
-    std::size_t kept = 0;
+    std::size_t rest = 0;
     earliest_end_ = ~std::uint64_t{0};
     for (const std::uint32_t slot : active_) {
-        if (gone(voices_[slot])) {
+        if (test(voices_[slot])) {
             free_.push_back(slot);
         } else {
-            active_[kept++] = slot;
+            active_[rest++] = slot;
             earliest_end_ = voices_[slot].end < earliest_end_ ? voices_[slot].end : earliest_end_;
         }
     }
-    active_.resize(kept);
+    active_.resize(rest);
 }
 
-template <class Gone>
-void voice_list::forget_if(Gone gone) noexcept
+template <class Test>
+void voice_list::forget_if(Test test) noexcept
 {
-    forget_active(gone);
-    std::size_t kept = 0;
+    forget_active(test);
+    std::size_t rest = 0;
     for (const waiting& w : heap_)
-        if (gone(voices_[w.slot]))
+        if (test(voices_[w.slot]))
             free_.push_back(w.slot);
         else
-            heap_[kept++] = w;
-    heap_.resize(kept);
+            heap_[rest++] = w;
+    heap_.resize(rest);
     heapify();
 }
 

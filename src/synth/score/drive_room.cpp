@@ -24,10 +24,10 @@ struct need {
 
     void drive(std::uint64_t from, std::uint64_t to, double leak) noexcept
     {
-        const double gone = leak * static_cast<double>(from - until);
+        const double leaked = leak * static_cast<double>(from - until);
         const auto driven = static_cast<double>(to - from);
-        sum += driven - gone;
-        rested = std::max(rested - gone, 0.0) + driven;
+        sum += driven - leaked;
+        rested = std::max(rested - leaked, 0.0) + driven;
         most = std::max(most, sum);
         most_rested = std::max(most_rested, rested);
         until = to;

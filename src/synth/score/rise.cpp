@@ -19,10 +19,10 @@ constexpr double least_boost = 1e-5;
 /// Returns what a window adds to a lag in frames from ... to - 1, at frame `to`.
 double window_share(const burst_window& w, std::uint64_t from, std::uint64_t to, double rise)
 {
-    const double kept = std::exp(-1.0 / rise);
+    const double decay = std::exp(-1.0 / rise);
     double y = 0.0;
     for (std::uint64_t k = from; k < to; ++k)
-        y = kept * y + (1.0 - kept) * window_at(static_cast<std::int64_t>(k), w);
+        y = decay * y + (1.0 - decay) * window_at(static_cast<std::int64_t>(k), w);
     return y;
 }
 
@@ -40,17 +40,17 @@ public:
     }
 
     /// Returns the part of a strength that is left after so many frames.
-    double left(double frames) const noexcept { return std::exp(-frames / rise_); }
+    double decay(double frames) const noexcept { return std::exp(-frames / rise_); }
     /// Returns the strength reached `frames` after the burst's begin, if strength 1 is asked for; not for
     /// times before the end of its attack.
     double risen(double frames) const noexcept
     {
-        return 1.0 - (1.0 - after_attack_) * left(frames - attack_);
+        return 1.0 - (1.0 - after_attack_) * decay(frames - attack_);
     }
     /// Returns the same at the end of a burst of so many frames, after its release.
     double fallen(double frames) const noexcept
     {
-        return risen(frames - release_) * left(release_) + of_release_;
+        return risen(frames - release_) * decay(release_) + of_release_;
     }
 
 private:
@@ -90,11 +90,11 @@ public:
                     take_burst(it, s_.list.drive_tactors[k], s_.list.drive_amplitudes[k], more);
                 break;
             case item_kind::joined:
-                moved(motions_[it.tactor], it.end(), s_.list.members[it.first].intensity);
+                note(motions_[it.tactor], it.end(), s_.list.members[it.first].intensity);
                 break;
             case item_kind::continuous:
                 for (motion& m : motions_)
-                    moved(m, it.end(), 1.0);
+                    note(m, it.end(), 1.0);
                 break;
             case item_kind::marker:
                 break;
@@ -104,7 +104,7 @@ public:
     }
 
 private:
-    static void moved(motion& m, std::uint64_t end, double strength)
+    static void note(motion& m, std::uint64_t end, double strength)
     {
         m.strength = strength;
         m.until = std::max(m.until, end);
@@ -116,22 +116,22 @@ private:
         const auto rise_s = a_.tactors[tactor].rise_s;
         // Rounding may put the end of a burst into the first frame of the next, which it touches.
         if (!rise_s || it.start + 1 < m.until) {
-            moved(m, it.end(), amplitude);
+            note(m, it.end(), amplitude);
             return;
         }
         const std::uint32_t release = release_frames(s_.envelope, s_.rate, it.length, it.ramp);
         const lag l(*rise_s * s_.rate, it.ramp, release, s_.envelope.kind);
         const std::uint64_t pause = it.start - std::min(m.until, it.start);
-        const double before = m.strength * l.left(static_cast<double>(pause));
+        const double before = m.strength * l.decay(static_cast<double>(pause));
         const double unit = std::abs(s_.tactors[tactor].gain) * s_.equalised(tactor, it.plan, it.start);
         const double headroom = (tactor_limit(a_, tactor) * (1.0 - 2e-9) - peaks_[tactor]) / unit;
         const boost b = find_boost(it, l, release, amplitude, before, headroom, *rise_s);
         if (b.amplitude * unit > least_boost)
             add(it, tactor, b, more);
         const auto length = static_cast<double>(it.length);
-        m.strength = before * l.left(length) + amplitude * l.fallen(length) +
+        m.strength = before * l.decay(length) + amplitude * l.fallen(length) +
                      b.amplitude * l.fallen(static_cast<double>(b.length)) *
-                         l.left(length - static_cast<double>(b.length));
+                         l.decay(length - static_cast<double>(b.length));
         m.until = it.end();
     }
 
@@ -152,7 +152,7 @@ private:
         const auto needed = [&](std::uint64_t half_cycles) -> boost {
             const std::uint64_t frames = frame_at(static_cast<double>(half_cycles) * half_cycle, 1.0);
             const auto t = static_cast<double>(frames);
-            const double missing = amplitude * (1.0 - l.risen(t)) - before * l.left(t);
+            const double missing = amplitude * (1.0 - l.risen(t)) - before * l.decay(t);
             return {frames, std::max(missing, 0.0) / l.fallen(t)};
         };
         std::uint64_t low = std::max<std::uint64_t>(first, 1);

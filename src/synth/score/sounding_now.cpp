@@ -29,9 +29,9 @@ sounding_now::sounding_now(const score& s)
 {
 }
 
-const std::vector<double>& sounding_now::at(std::uint64_t asked)
+const std::vector<double>& sounding_now::at(std::uint64_t frame)
 {
-    const std::uint64_t frame = latest_ = std::max(asked, latest_);
+    frame = latest_ = std::max(frame, latest_);
     for (const drive_event* e = source_.peek(); e != nullptr && e->start <= frame; e = source_.peek()) {
         if (e->start + e->length > frame)
             open_.push_back(*e);

@@ -12,16 +12,16 @@
 
 namespace tactor::synth {
 
-/// Walks along with a score, so that nothing is kept of drives that are over. Control side, one thread at a
+/// Follows a score and keeps only the drives that sound. Control side, one thread at a
 /// time.
 class sounding_now {
 public:
     explicit sounding_now(const score& s);
 
-    /// Returns the amplitude of each tactor in a frame of the score, by index; 1 is the intensity asked for.
-    /// Frames may not go back: an earlier frame than the last one asked for counts as that one. Valid until
-    /// the next call.
-    const std::vector<double>& at(std::uint64_t asked);
+    /// Returns the amplitude of each tactor in a frame of the score, by index; 1 is the requested intensity.
+    /// Frames do not go back: an earlier frame than the last one counts as the last one. Valid until the next
+    /// call.
+    const std::vector<double>& at(std::uint64_t frame);
 
 private:
     score score_;
