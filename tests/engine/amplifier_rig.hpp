@@ -4,8 +4,6 @@
 #pragma once
 
 #include <cstdint>
-#include <deque>
-#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -21,27 +19,10 @@ namespace tactor::test {
 
 using event_log = std::vector<std::string>;
 
-/// Results of the next writes; ok with fewer frames than offered is a short write.
-using write_results = std::deque<io_result>;
-
-/// Logs prepare, start and drop, and can spoil writes.
+/// Logs prepare, start and drop.
 class logging_sink final : public forwarding_sink {
 public:
-    logging_sink(std::unique_ptr<sink> s, event_log& log, std::shared_ptr<write_results> spoilt)
-        : forwarding_sink(std::move(s)), log_(log), spoilt_(std::move(spoilt))
-    {
-    }
-
-    io_result write(std::span<const std::byte> frames) noexcept override
-    {
-        if (spoilt_->empty())
-            return forwarding_sink::write(frames);
-        const io_result r = spoilt_->front();
-        spoilt_->pop_front();
-        if (r.status == io_kind::ok && r.frames > 0)
-            return write_first(std::min(frames.size() / setup().frame_bytes(), r.frames), frames);
-        return r;
-    }
+    logging_sink(std::unique_ptr<sink> s, event_log& log) : forwarding_sink(std::move(s)), log_(log) {}
 
     io_kind prepare() noexcept override { return note("prepare", forwarding_sink::prepare()); }
     io_kind start() noexcept override { return note("start", forwarding_sink::start()); }
@@ -58,7 +39,6 @@ private:
         return s;
     }
     event_log& log_;
-    std::shared_ptr<write_results> spoilt_;
 };
 
 /// Logs on and off. Can fail, and can go off by itself.
@@ -94,10 +74,7 @@ private:
 inline constexpr std::int64_t ms = 1'000'000;
 
 struct amplifier_rig : rig {
-    explicit amplifier_rig(rig_options o = {})
-        : amplifier_rig(o, std::make_shared<event_log>(), std::make_shared<write_results>())
-    {
-    }
+    explicit amplifier_rig(const rig_options& o = {}) : amplifier_rig(o, std::make_shared<event_log>()) {}
 
     /// Plays until strokes may sound.
     void warm_up()
@@ -117,26 +94,21 @@ struct amplifier_rig : rig {
     event_log news() { return std::exchange(*log, {}); }
 
     std::shared_ptr<event_log> log;
-    std::shared_ptr<write_results> spoilt;
     logging_line line{*log};
     engine::amplifier_driver driver;
 
 private:
-    amplifier_rig(rig_options o, const std::shared_ptr<event_log>& l, const std::shared_ptr<write_results>& w)
-        : rig(prepared(std::move(o), l, w)),
+    amplifier_rig(rig_options o, const std::shared_ptr<event_log>& l)
+        : rig(prepared(std::move(o), l)),
           log(l),
-          spoilt(w),
           driver(link, line, {.amplifier = {.proof_frames = 2 * options.period}}, [this] { return now; })
     {
         also_control = [this] { driver.update(); };
     }
-    static rig_options prepared(rig_options o, const std::shared_ptr<event_log>& l,
-                                const std::shared_ptr<write_results>& w)
+    static rig_options prepared(rig_options o, const std::shared_ptr<event_log>& l)
     {
         o.loop.amplifier = true;
-        o.wrap = [l, w](std::unique_ptr<sink> s) {
-            return std::make_unique<logging_sink>(std::move(s), *l, w);
-        };
+        o.wrap = [l](std::unique_ptr<sink> s) { return std::make_unique<logging_sink>(std::move(s), *l); };
         return o;
     }
 };

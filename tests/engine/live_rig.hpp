@@ -3,10 +3,8 @@
 /// Support for tests of live strokes.
 #pragma once
 
-#include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <cstring>
 #include <memory>
 #include <vector>
 
@@ -54,42 +52,14 @@ public:
         return end(s.id);
     }
 
-    std::vector<double> channel(unsigned c, std::uint64_t from = 0) const
-    {
-        const std::vector<std::byte> all = dac.captured(from);
-        std::vector<double> samples;
-        for (std::size_t f = 0; f < all.size() / dac.frame_bytes(); ++f) {
-            std::int32_t v = 0;
-            std::memcpy(&v, &all[f * dac.frame_bytes() + 4 * c], 4);
-            samples.push_back(v / 2147483648.0);
-        }
-        return samples;
-    }
-
     std::shared_ptr<live_stroke::impl> live;
 };
-
-inline double peak(const std::vector<double>& s, std::size_t from = 0, std::size_t to = SIZE_MAX)
-{
-    double most = 0.0;
-    for (std::size_t i = from; i < std::min(to, s.size()); ++i)
-        most = std::max(most, std::abs(s[i]));
-    return most;
-}
 
 inline live_options bursts()
 {
     live_options o;
     o.plan.algorithm = algorithm_kind::park2016;
     return o;
-}
-
-inline double largest_step(const std::vector<double>& s)
-{
-    double most = 0.0;
-    for (std::size_t i = 1; i < s.size(); ++i)
-        most = std::max(most, std::abs(s[i] - s[i - 1]));
-    return most;
 }
 
 } // namespace tactor::test

@@ -5,7 +5,9 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
+#include <cstring>
 #include <functional>
 #include <map>
 #include <memory>
@@ -209,6 +211,19 @@ public:
         return part;
     }
 
+    /// Returns the samples of a channel from a frame on, of format s32.
+    std::vector<double> channel(unsigned c, std::uint64_t from = 0) const
+    {
+        const std::vector<std::byte> all = dac.captured(from);
+        std::vector<double> samples;
+        for (std::size_t f = 0; f < all.size() / dac.frame_bytes(); ++f) {
+            std::int32_t v = 0;
+            std::memcpy(&v, &all[f * dac.frame_bytes() + 4 * c], 4);
+            samples.push_back(v / 2147483648.0);
+        }
+        return samples;
+    }
+
     /// Returns the first captured frame that is not silent; none if all are.
     std::optional<std::uint64_t> first_sound(std::uint64_t from = 0) const
     {
@@ -240,5 +255,21 @@ public:
     std::function<void()> also_control{}; ///< called at the end of control()
     std::map<stroke_id, std::vector<stroke_report>> ended;
 };
+
+inline double peak(const std::vector<double>& s, std::size_t from = 0, std::size_t to = SIZE_MAX)
+{
+    double most = 0.0;
+    for (std::size_t i = from; i < std::min(to, s.size()); ++i)
+        most = std::max(most, std::abs(s[i]));
+    return most;
+}
+
+inline double largest_step(const std::vector<double>& s)
+{
+    double most = 0.0;
+    for (std::size_t i = 1; i < s.size(); ++i)
+        most = std::max(most, std::abs(s[i] - s[i - 1]));
+    return most;
+}
 
 } // namespace tactor::test

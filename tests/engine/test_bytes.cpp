@@ -4,7 +4,6 @@
 #include <cerrno>
 #include <cstddef>
 #include <cstdint>
-#include <cstdio>
 #include <cstring>
 #include <map>
 #include <random>
@@ -63,24 +62,6 @@ void add(std::vector<std::byte>& sum, const std::vector<std::byte>& part, std::s
 }
 
 constexpr unsigned period = 48;
-
-struct latencies {
-    std::map<std::uint64_t, unsigned> ring; ///< in frames
-    std::map<std::uint64_t, unsigned> dac;
-};
-
-void print(const char* what, const std::map<std::uint64_t, unsigned>& m)
-{
-    unsigned n = 0;
-    double sum = 0.0;
-    for (const auto& [frames, count] : m) {
-        n += count;
-        sum += static_cast<double>(frames) * count;
-    }
-    std::printf("%s: least %.2f, mean %.2f, most %.2f periods of %u frames (%u strokes at random phases)\n",
-                what, static_cast<double>(m.begin()->first) / period, sum / n / period,
-                static_cast<double>(m.rbegin()->first) / period, period, n);
-}
 
 // Plays frame by frame, so that a call may come at any phase of a period.
 void frames(rig& r, std::uint64_t n)
@@ -226,17 +207,6 @@ TEST_CASE("a stroke submitted for a frame starts at that frame")
     }
 }
 
-TEST_CASE("a stroke for a frame that is over starts now")
-{
-    rig r;
-    r.play(9600);
-    const std::uint64_t next = r.status().written;
-    const score s = random_score(9, 2);
-    r.submit(s, 17);
-    r.play_out();
-    CHECK(r.captured(next, s.frames()) == rendered(s, format_kind::s32));
-}
-
 TEST_CASE("a tiny ring delays drives and loses none")
 {
     for (const std::size_t ring : {2U, 4U, 7U}) {
@@ -263,19 +233,6 @@ TEST_CASE("a mixer without space makes drives wait in the ring")
     CHECK(r.captured(from, s.frames()) == rendered(s, format_kind::s32));
 }
 
-TEST_CASE("three hundred strokes at once wait for a place, and each ends once")
-{
-    rig r;
-    for (int i = 0; i < 300; ++i)
-        r.submit(tone(0.02));
-    r.play_out();
-    CHECK(r.ended.size() == 300);
-    for (const auto& [id, reports] : r.ended) {
-        REQUIRE(reports.size() == 1);
-        CHECK(reports[0].state == state_kind::finished);
-    }
-}
-
 TEST_CASE("short writes and writes of nothing lose no frame")
 {
     rig r({.wrap = [](auto s) { return std::make_unique<stingy_sink>(std::move(s)); }});
@@ -298,7 +255,8 @@ TEST_CASE("48 frames x 3 at 48 kHz: in the device's buffer within a period, at t
     std::mt19937_64 random(9);
     rig r({.channels = 9, .period = period, .periods = 3});
     frames(r, 500);
-    latencies found;
+    std::uint64_t to_ring = 0;
+    std::uint64_t to_dac = 0;
     for (int i = 0; i < 400; ++i) {
         frames(r, 1 + random() % 300);
         const std::uint64_t played = r.status().played;
@@ -313,15 +271,13 @@ TEST_CASE("48 frames x 3 at 48 kHz: in the device's buffer within a period, at t
             REQUIRE(waited < 10 * period);
         }
         const std::uint64_t first = *r.first_sound(from) - 1;
-        ++found.ring[waited];
-        ++found.dac[first - played];
+        to_ring = std::max(to_ring, waited);
+        to_dac = std::max(to_dac, first - played);
         while (!r.report(id))
             frames(r, 16);
     }
-    print("first sample in the device's buffer after", found.ring);
-    print("first sample at the DAC after", found.dac);
-    CHECK(found.ring.rbegin()->first <= period);
-    CHECK(found.dac.rbegin()->first <= 4 * period);
+    CHECK(to_ring <= period);
+    CHECK(to_dac <= 4 * period);
 }
 
 TEST_CASE("400 strokes at once all play")

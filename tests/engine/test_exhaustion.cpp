@@ -9,7 +9,6 @@
 #include <iterator>
 #include <map>
 #include <memory>
-#include <mutex>
 #include <new>
 #include <span>
 #include <string>
@@ -119,29 +118,6 @@ void try_without_descriptors(const exhausted_call& c)
     }
 }
 
-// Repeats a call with more memory each time, until it succeeds.
-template <typename Call>
-std::uint64_t until_it_fits(Call call)
-{
-    for (std::uint64_t granted = 0;; ++granted) {
-        REQUIRE(granted < 100'000);
-        refuse_allocations(granted, UINT64_MAX);
-        bool fits = false;
-        try {
-            call();
-            fits = true;
-        } catch (const std::bad_alloc&) {
-            fits = false;
-        } catch (...) {
-            refuse_allocations(0, 0);
-            throw;
-        }
-        refuse_allocations(0, 0);
-        if (fits)
-            return granted;
-    }
-}
-
 // Makes a continuous stroke, each of whose samples needs memory.
 score greedy_score(double seconds)
 {
@@ -246,45 +222,6 @@ EXHAUSTING_TEST_CASE(
 EXHAUSTING_TEST_CASE("every call without descriptors does its work, or reports that it was refused one")
 {
     check_calls(try_without_descriptors);
-}
-
-COUNTING_TEST_CASE("without memory a call throws std::bad_alloc and has no effect")
-{
-    std::map<stroke_id, int> told;
-    std::vector<stroke_id> accepted;
-    std::mutex mutex;
-    clocked_player p;
-    p.on_report([&](const stroke_report& r) {
-        const std::lock_guard lock(mutex);
-        ++told[r.id];
-    });
-    accepted.reserve(100);
-    const score s = tone(0.001);
-    std::uint64_t calls = 0;
-    for (const start_at when :
-         {start_at::now(), start_at::frame(0), start_at::time(0), start_at::trigger()}) {
-        calls += until_it_fits([&] { accepted.push_back(p.submit(s, when)); });
-        calls += until_it_fits([&] { accepted.push_back(p.submit(s, start_at::trigger())); });
-        calls += until_it_fits([&] { p.cancel(accepted.back()); });
-    }
-    calls += until_it_fits([&] { p.fire(0); });
-    calls += until_it_fits([&] {
-        live_stroke live = p.begin();
-        accepted.push_back(live.id());
-        live.to(1.0, 1.0);
-        live.end();
-    });
-    CHECK(calls > 8);
-    p.submit(s, start_at::trigger());
-    until_it_fits([&] { return p.on_end(accepted.back(), [](const stroke_report&) {}); });
-    until_it_fits([&] { return p.stats(); });
-    until_it_fits([&] { return p.ended(); });
-    until_it_fits([&] { p.stop(); });
-    for (const stroke_id id : accepted) {
-        CAPTURE(id);
-        CHECK(told[id] == 1);
-        CHECK(p.wait(id));
-    }
 }
 
 COUNTING_TEST_CASE("every call without memory reports it at any of its allocations, and works again")
@@ -438,37 +375,6 @@ COUNTING_TEST_CASE("the counter counts")
     CHECK(calls == 2);
     CHECK(held >= 400);
     CHECK(left == 0);
-}
-
-COUNTING_TEST_CASE("minutes of strokes, or an hour, need no more memory in the feeder than a second")
-{
-    const score hour = random_score(3, rounds(6'400, 51'000));
-    REQUIRE(hour.frames() > static_cast<std::uint64_t>(rounds(430, 3500)) * rate);
-    rig r;
-    r.dac.reserve_capture(1 << 16);
-    r.submit(hour);
-    r.play(48'000);
-    std::uint64_t calls = 0;
-    std::uint64_t most_in_ring = 0;
-    while (r.ended.empty()) {
-        r.dac.advance_queued(96);
-        r.step();
-        engine::report report;
-        while (r.link.reports.pop(report))
-            r.feed.handle(report);
-        {
-            const count_allocations count;
-            r.feed.pump(r.status().written);
-            calls += count.calls();
-        }
-        most_in_ring = std::max<std::uint64_t>(most_in_ring, r.link.commands.size());
-        for (const stroke_report& e : std::exchange(r.feed.reports(), {}))
-            r.ended[e.id].push_back(e);
-    }
-    CHECK(calls == 0);
-    CHECK(most_in_ring < 64);
-    CHECK(r.end({1}).state == state_kind::finished);
-    CHECK(r.end({1}).frames == hour.frames());
 }
 
 } // namespace exhaustion_test

@@ -300,39 +300,6 @@ TEST_CASE("a cancelled stroke stays cancelled where the stream ends before its f
     CHECK(ending(ends.back()) == "interrupted, lost: the device is gone");
 }
 
-TEST_CASE(
-    "a stroke longer than the horizon is fed to its end by a control side that sleeps until it is woken")
-{
-    rig r;
-    const score s = random_score(1, 100);
-    const stroke_id id = r.submit(s);
-    REQUIRE(s.frames() > 10 * r.options.loop.horizon_frames);
-    int periods = 0;
-    int woken = 0;
-    for (; !r.report(id) && periods < 10'000; ++periods) {
-        if (wakes(r)) {
-            r.control();
-            ++woken;
-        }
-    }
-    CHECK(r.end(id).state == state_kind::finished);
-    CHECK(woken < periods / 10);
-}
-
-TEST_CASE("a stroke for a time before the stream's clock is known begins at that time")
-{
-    rig r;
-    r.link.to_control.consume(); // that it has started
-    r.control();
-    // After the buffer's frames, and long before the feeder's next wake-up.
-    const std::int64_t at_ns = r.now + 2 * 288 * std::int64_t{1'000'000'000} / rate;
-    const stroke_id id = r.submit(tone(0.01), start_at::time(at_ns));
-    for (int i = 0; i < 200 && !r.report(id); ++i)
-        if (wakes(r))
-            r.control();
-    CHECK(r.end(id).late_s == 0.0);
-}
-
 TEST_CASE("the control side sleeps while there is no stroke, and feeds a new one at once")
 {
     rig r;

@@ -322,15 +322,6 @@ TEST_CASE("live strokes vibrate with any wave, its peak at their level")
     }
 }
 
-TEST_CASE("a live stroke's noise depends on its seed alone")
-{
-    live_options o = with_wave("noise:50-500");
-    const std::vector<double> one = heard(o);
-    CHECK(heard(o) == one);
-    o.plan.wave.seed = 2;
-    CHECK(heard(o) != one);
-}
-
 TEST_CASE("amplitude modulation goes down to the rest that its depth leaves")
 {
     live_options o;

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
 // Ends of live strokes, and those that wait for a point or a place.
-#include <cmath>
 #include <memory>
 #include <new>
 #include <stdexcept>
@@ -11,9 +10,7 @@
 #include <doctest/doctest.h>
 #include <fmt/format.h>
 
-#include "count_allocations.hpp"
 #include "live_rig.hpp"
-#include "rounds.hpp"
 
 namespace live_ends_test {
 
@@ -269,38 +266,6 @@ TEST_CASE("a model that exceeds its amplitude ends a stroke before it sounds or 
                                    "amplitude 0.01001, above the 0.01 asked for");
     }
     CHECK_FALSE(r.first_sound());
-}
-
-COUNTING_TEST_CASE("an hour of a live stroke: no heap in the audio thread, nothing grows")
-{
-    live_rig r({}, {.period = 960});
-    r.dac.reserve_capture(1 << 16);
-    for (int i = 0; i < 100; ++i) {
-        r.live->to({20.0, 1.0 * (i % 40)}, 1.0);
-        r.play(960);
-    }
-    std::uint64_t calls = 0;
-    std::int64_t held = 0; // by the producer, whose phantom model may use the heap
-    for (int i = 0; i < rounds(180'000); ++i) {
-        {
-            const count_allocations count;
-            r.live->to({20.0 + 20.0 * std::sin(0.01 * i), 20.0 + 20.0 * std::cos(0.013 * i)}, 1.0);
-            held += count.bytes();
-        }
-        r.dac.advance_queued(960);
-        {
-            const count_allocations count;
-            r.step();
-            calls += count.calls();
-        }
-        r.control();
-        REQUIRE(r.ended.empty());
-    }
-    CHECK(calls == 0);
-    CHECK(held == 0);
-    const auto report = r.finish();
-    CHECK(report.state == state_kind::finished);
-    CHECK(report.frames > static_cast<std::uint64_t>(rounds(3600)) * rate);
 }
 
 TEST_CASE("a model that fails ends the stroke with its message; one that refuses a point does not")

@@ -9,16 +9,12 @@
 #include <span>
 #include <string>
 #include <string_view>
-#include <system_error>
 #include <utility>
 #include <vector>
 
 #include <doctest/doctest.h>
-#include <fcntl.h>
 #include <poll.h>
 #include <sys/eventfd.h>
-#include <sys/resource.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
 #include <tactor/error.hpp>
@@ -26,12 +22,10 @@
 
 #include "amplifier_rig.hpp"
 #include "clock_runner.hpp"
-#include "engine/control/control_thread.hpp"
 #include "engine/control/stream_log.hpp"
 #include "has.hpp"
 #include "player_support.hpp"
 #include "rig.hpp"
-#include "rt/event_fd.hpp"
 #include "scores.hpp"
 
 namespace log_test {
@@ -174,17 +168,6 @@ TEST_CASE("limits that act are logged once a second at most")
     CHECK(r.told.count("warning the power of all tactors was held at -60 dBFS") == 3);
 }
 
-TEST_CASE("without a log nothing is gathered")
-{
-    engine::link l;
-    engine::stream_log silent({}, l, {});
-    l.count.count_xrun(5);
-    silent.look({}, 1);
-    silent.end("");
-    silent.write();
-    CHECK_FALSE(silent.on());
-}
-
 TEST_CASE("a player logs its start and its end, and survives a log that throws")
 {
     for (const bool throws : {false, true}) {
@@ -246,33 +229,6 @@ TEST_CASE("the length of each xrun is kept, of many the newest")
     CHECK_FALSE(r.loop.over());
 }
 
-TEST_CASE("a device that does not stamp its stop still gives the length of an xrun")
-{
-    rig r;
-    r.play(960);
-    r.dac.advance(1 << 20);
-    r.step();
-    REQUIRE(r.link.count.xruns == 1);
-    // Virtual frames in real nanoseconds: only a bound can be checked.
-    CHECK(r.link.count.xrun_ns[0] >= 0);
-    CHECK(r.link.count.xrun_ns[0] < 60'000'000'000);
-}
-
-TEST_CASE("stats of a stream that never ran dry")
-{
-    player p(open_alsa(nine()), preset_array("palm-3x3"), {.realtime = false});
-    CHECK_FALSE(p.ended());
-    p.stop();
-    REQUIRE(p.ended());
-    CHECK(p.ended()->why.empty());
-    const player_stats s = p.stats();
-    CHECK(s.xruns == 0);
-    CHECK(s.xrun_s.empty());
-    CHECK_FALSE(s.realtime);
-    CHECK(s.frames > 0);
-    CHECK(s.ring_low_water == 0); // no stroke was fed
-}
-
 TEST_CASE("an audio thread that never rests gives up real time, reports it once, and plays on")
 {
     std::atomic<bool> fifo{false};
@@ -301,29 +257,6 @@ TEST_CASE("an audio thread that never rests gives up real time, reports it once,
     if (fifo)
         has(text,
             "the audio thread gave up its real-time priority: it had worked for some 0.1 s without a pause");
-}
-
-TEST_CASE("a control thread that cannot be made leaves the descriptor of its event open")
-{
-    const pid_t child = ::fork();
-    REQUIRE(child >= 0);
-    if (child == 0) {
-        constexpr uid_t nobody = 65534; // root may have any number of threads
-        const rlimit none{0, 0};
-        if ((::geteuid() == 0 && ::setuid(nobody) != 0) || ::setrlimit(RLIMIT_NPROC, &none) != 0)
-            ::_exit(2);
-        rt::event_fd event;
-        try {
-            const engine::control_thread t(event, [] {});
-            ::_exit(3);
-        } catch (const std::system_error&) {
-            ::_exit(::fcntl(event.fd(), F_GETFD) < 0 ? 1 : 0);
-        }
-    }
-    int status = 0;
-    REQUIRE(::waitpid(child, &status, 0) == child);
-    REQUIRE(WIFEXITED(status));
-    CHECK(WEXITSTATUS(status) == 0);
 }
 
 } // namespace log_test

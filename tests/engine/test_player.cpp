@@ -4,7 +4,6 @@
 #include <array>
 #include <atomic>
 #include <ctime>
-#include <exception>
 #include <future>
 #include <memory>
 #include <mutex>
@@ -13,8 +12,6 @@
 #include <utility>
 #include <vector>
 
-#include <boost/asio/bind_executor.hpp>
-#include <boost/asio/io_context.hpp>
 #include <boost/asio/use_future.hpp>
 #include <doctest/doctest.h>
 #include <fcntl.h>
@@ -480,35 +477,6 @@ TEST_CASE("on_end works in time, late, for unknown strokes, and several times fo
     CHECK(calls == 3);
     CHECK(p.wait(id));
     CHECK_FALSE(p.on_end(id, count));
-}
-
-TEST_CASE("Asio: callbacks in the caller's executor")
-{
-    clocked_player p;
-    boost::asio::io_context context;
-    const auto here = std::this_thread::get_id();
-    std::vector<stroke_report> done;
-    std::exception_ptr refused;
-    const auto ran = [&](std::exception_ptr failed, const stroke_report& r) {
-        CHECK(std::this_thread::get_id() == here);
-        CHECK_FALSE(failed);
-        done.push_back(r);
-    };
-    async_play(p, tone(0.01), start_at::now(), boost::asio::bind_executor(context, ran));
-    const stroke_id id = p.submit(tone(endless_s));
-    async_wait(p, id, boost::asio::bind_executor(context, ran));
-    async_play(p, random_score(1, 1, 10), start_at::now(),
-               boost::asio::bind_executor(
-                   context, [&](std::exception_ptr failed, const stroke_report&) { refused = failed; }));
-    CHECK_FALSE(refused); // never within the call
-    p.cancel(id);
-    context.run();
-    REQUIRE(done.size() == 2);
-    std::sort(done.begin(), done.end(), [](const auto& a, const auto& b) { return a.id < b.id; });
-    CHECK(done[0].state == state_kind::finished);
-    CHECK(done[1].state == state_kind::cancelled);
-    REQUIRE(refused);
-    CHECK_THROWS_AS(std::rethrow_exception(refused), error);
 }
 
 TEST_CASE("Asio: futures work, and an unknown stroke is an error")

@@ -226,24 +226,6 @@ TEST_CASE("a file that cannot be written ends the stream with the reason")
     CHECK(said.find("the device failed: Input/output error") != std::string::npos);
 }
 
-TEST_CASE("null paces a stroke in real time, multi of nulls too")
-{
-    const std::string multi =
-        "pcm.n { type null }\n"
-        "pcm.t { type multi slaves.a { pcm n channels 8 } slaves.b { pcm n channels 1 }\n"
-        "bindings { 0 { slave a channel 0 } 1 { slave a channel 1 } 2 { slave a channel 2 }\n"
-        "3 { slave a channel 3 } 4 { slave a channel 4 } 5 { slave a channel 5 }\n"
-        "6 { slave a channel 6 } 7 { slave a channel 7 } 8 { slave b channel 0 } } }\n";
-    for (const bool many : {false, true}) {
-        CAPTURE(many);
-        player p(open_alsa(many ? configured(multi) : nine()), palm(), patient());
-        const auto begun = std::chrono::steady_clock::now();
-        CHECK(p.wait(p.submit(tone(0.1)))->state == state_kind::finished);
-        CHECK(std::chrono::steady_clock::now() - begun >= std::chrono::milliseconds(100));
-        CHECK(p.stats().xruns == 0);
-    }
-}
-
 TEST_CASE("a stream with fewer channels than the array is refused with the tactor that would be mute")
 {
     const array palm = preset_array("palm-3x3");

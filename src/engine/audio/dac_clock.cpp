@@ -78,7 +78,6 @@ void dac_clock::begin_line(std::int64_t time_ns, std::uint64_t frame) noexcept
     line_.frame = frame;
     line_.time_ns = time_ns;
     line_.ns_per_frame = nominal_;
-    line_.error_ns = std::sqrt(noise_);
     fraction_ = 0.0;
     drift_ = 0.0;
     p_time_ = noise_;
@@ -118,7 +117,6 @@ void dac_clock::add(std::int64_t time_ns, std::uint64_t frame) noexcept
     line_.time_ns = later(line_.time_ns, whole);
     fraction_ = move - whole;
     line_.ns_per_frame = nominal_ * (1.0 + drift_);
-    line_.error_ns = std::sqrt(p_time_);
 }
 
 } // namespace tactor::engine

@@ -15,7 +15,6 @@ struct clock_line {
     std::uint64_t frame = 0;   ///< stream frame ...
     std::int64_t time_ns = 0;  ///< ... that is at the DAC at this time
     double ns_per_frame = 0.0; ///< 0: not known yet
-    double error_ns = 0.0;     ///< standard deviation that the filter expects of time_ns
 
     bool valid() const noexcept { return ns_per_frame > 0.0; }
     /// Returns the CLOCK_MONOTONIC time at which a frame is (was, will be) at the DAC. Only if valid.
