@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Errors of ALSA, its library's messages, and calls without descriptors and memory.
+// Errors of ALSA and its library's messages.
 #include <cerrno>
 #include <cstdarg>
-#include <cstdlib>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -14,9 +13,7 @@
 #include <tactor/error.hpp>
 
 #include "caught.hpp"
-#include "descriptors_left.hpp"
 #include "fake_system.hpp"
-#include "folder.hpp"
 #include "has.hpp"
 #include "sink/alsa/devices/cards.hpp"
 #include "sink/alsa/error_text.hpp"
@@ -50,66 +47,6 @@ private:
         return e.what();
     }
 };
-
-// A configuration like the system's, not read yet: a file that loads the user's, if it can, which includes
-// another.
-class own_configuration {
-public:
-    own_configuration()
-    {
-        const auto included = here_.write("included.conf", "pcm.mine { type plug slave.pcm null }\n");
-        const auto users = here_.write("asoundrc", "<" + included.string() + ">\n");
-        const auto top = here_.write("alsa.conf", "@hooks [ { func load files [ \"" + users.string() +
-                                                      "\" ] errors false } ]\npcm.null { type null }\n");
-        if (const char* p = std::getenv(variable))
-            before_ = p;
-        ::setenv(variable, top.c_str(), 1);
-        snd_config_update_free_global();
-    }
-    ~own_configuration()
-    {
-        if (before_.empty())
-            ::unsetenv(variable);
-        else
-            ::setenv(variable, before_.c_str(), 1);
-        snd_config_update_free_global();
-    }
-    own_configuration(const own_configuration&) = delete;
-    own_configuration& operator=(const own_configuration&) = delete;
-
-private:
-    static constexpr const char* variable = "ALSA_CONFIG_PATH";
-
-    folder here_;
-    std::string before_;
-};
-
-alsa_options of(const char* pcm)
-{
-    return {.pcm = pcm, .channels = 9};
-}
-
-// Returns false where a call failed for want of descriptors.
-template <typename Call>
-bool answers(Call call)
-{
-    try {
-        call();
-        return true;
-    } catch (const error& e) {
-        CHECK(e.kind() == error_kind::runtime);
-        has(e.what(), "Too many open files");
-        has(e.what(), "ulimit -n");
-        CHECK(e.os_code() == EMFILE);
-        return false;
-    }
-}
-
-bool opens_with(unsigned descriptors, const char* pcm)
-{
-    const test::descriptors_left few(descriptors);
-    return answers([pcm] { return open_alsa(of(pcm)); });
-}
 
 } // namespace
 
@@ -272,16 +209,6 @@ TEST_CASE("a PCM whose definition refers to a missing one is not reported as mis
     has(said, "nobodys");
 }
 
-TEST_CASE("up to twelve names are all proposed, more are not")
-{
-    const fake_system s;
-    s.two_cards();
-    std::vector<std::string> names{"n1", "n2", "n3", "n4", "n5", "n6", "n7", "n8", "n9", "n10", "n11", "n12"};
-    has(s.says("something", -ENOENT, names), "known: n1, n2");
-    names.emplace_back("n13");
-    CHECK(s.says("something", -ENOENT, names).find("known") == std::string::npos);
-}
-
 TEST_CASE("a card's id or name alone proposes the card's PCM")
 {
     const fake_system s;
@@ -289,13 +216,6 @@ TEST_CASE("a card's id or name alone proposes the card's PCM")
     for (const char* name : {"DAC8x", "dac8x", "DAC8", "snd_rpi_hifiberry_dac8x"})
         has(s.says(name, -ENOENT, {"default", "null"}), "no such PCM (did you mean hw:CARD=DAC8x? ");
     has(s.says("nul", -ENOENT, {"default", "null"}), "did you mean null? ");
-}
-
-TEST_CASE("names defined in a configuration text are proposed")
-{
-    const std::string said = caught_message(
-        [] { return open_alsa({.pcm = "palmm", .channels = 1, .config_text = "pcm.palm { type null }"}); });
-    has(said, "did you mean palm?");
 }
 
 TEST_CASE("a missing permission names the group to join, and how")
@@ -387,57 +307,6 @@ TEST_CASE("nested listeners hear the inner messages, and the outer one continues
     CHECK(outer.first() == "");
     SNDERR("three \n");
     CHECK(outer.first() == "three");
-}
-
-TEST_CASE("a PCM that could not be opened for want of descriptors opens when there are some")
-{
-    for (const char* pcm : {"null", "mine"}) {
-        CAPTURE(pcm);
-        bool opened = false;
-        for (unsigned n = 0; !opened; ++n) {
-            CAPTURE(n);
-            REQUIRE(n < 20);
-            const own_configuration fresh;
-            opened = opens_with(n, pcm);
-            CHECK(open_alsa(of("mine"))->setup().channels == 9);
-        }
-    }
-}
-
-TEST_CASE("waiting for a lost PCM reports a want of descriptors")
-{
-    const test::descriptors_left none(0);
-    CHECK_THROWS_WITH_AS(reopen_alsa(of("null"), [n = 0](double) mutable { return ++n < 3; }),
-                         doctest::Contains("Too many open files"), error);
-}
-
-TEST_CASE("queries of names without descriptors say so, and leave nothing broken behind")
-{
-    for (unsigned n = 0; n < 10; ++n) {
-        CAPTURE(n);
-        const own_configuration fresh;
-        {
-            const test::descriptors_left few(n);
-            // Its files are open at the same time: one and the one that it names.
-            CHECK(answers([] { CHECK(read_route("mine").types.size() == 2); }) == (n >= 2));
-            CHECK(answers([] { return read_wiring("mine", 9); }) == (n >= 2));
-            CHECK(answers([] { require_device_name("mine"); }) == (n >= 2));
-            CHECK(answers([] { return list_pcms(); }) == (n >= 2));
-        }
-        CHECK(read_route("mine").types == std::vector<std::string>{"plug", "null"});
-        CHECK(open_alsa(of("mine"))->setup().channels == 9);
-    }
-}
-
-TEST_CASE("a configuration that another part of the program could not read is read anew")
-{
-    const own_configuration fresh;
-    {
-        const test::descriptors_left none(0);
-        const alsa::library_messages silent;
-        snd_config_update();
-    }
-    CHECK(open_alsa(of("mine"))->setup().channels == 9);
 }
 
 } // namespace alsa_errors_test

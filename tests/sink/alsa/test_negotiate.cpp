@@ -464,15 +464,6 @@ TEST_CASE("an adopted PCM is closed with its sink, and when it does not fit")
     CHECK(other.closed());
 }
 
-TEST_CASE("errors of opening come with hints")
-{
-    CHECK(std::string(alsa::open_error("x", -EBUSY, "").what()).find("another program") != std::string::npos);
-    CHECK(std::string(alsa::open_error("x", -EACCES, "").what()).find("group audio") != std::string::npos);
-    CHECK(std::string(alsa::open_error("x", -ENOENT, "").what()).find("tactor devices") != std::string::npos);
-    CHECK(std::string(alsa::open_error("x", -ENODEV, "why").what()).find("why") != std::string::npos);
-    CHECK(alsa::open_error("x", -EIO, "").kind() == error_kind::not_available);
-}
-
 TEST_CASE("a plugin that passes its channels on changes nothing")
 {
     for (const char* name :

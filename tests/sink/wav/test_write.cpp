@@ -235,12 +235,6 @@ TEST_CASE("a full disk is a failure at run time that leaves nothing")
     }
 }
 
-TEST_CASE("a device is written to, not replaced")
-{
-    CHECK(write_wav(make_score(), format_kind::s16, "/dev/null"));
-    CHECK(fs::is_character_file("/dev/null"));
-}
-
 TEST_CASE("a forbidden write is a failure at run time")
 {
     if (::geteuid() == 0)
