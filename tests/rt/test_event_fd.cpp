@@ -30,18 +30,4 @@ TEST_CASE("an eventfd does not block and is not inherited by programs")
     CHECK((::fcntl(e.fd(), F_GETFD) & FD_CLOEXEC) != 0);
 }
 
-TEST_CASE("a signal wakes another thread")
-{
-    tactor::rt::event_fd e;
-    std::uint64_t seen = 0;
-    std::thread t([&] {
-        pollfd p{.fd = e.fd(), .events = POLLIN, .revents = 0};
-        ::poll(&p, 1, -1);
-        seen = e.consume();
-    });
-    e.signal();
-    t.join();
-    CHECK(seen == 1);
-}
-
 } // namespace event_fd_test
