@@ -14,7 +14,6 @@
 #include "caught.hpp"
 #include "engine/live/live_stroke.hpp"
 #include "live_rig.hpp"
-#include "synth/guard/guard.hpp"
 
 namespace live_test {
 
@@ -272,35 +271,6 @@ TEST_CASE("impossible options of a live stroke are errors that name their field"
         o.plan.profile.intercept_s = 0.0;
         o.plan.soa_s = 0.001;
     });
-}
-
-TEST_CASE("live strokes that are weak one by one count by their sum, together with a plan's")
-{
-    drive_limits limits{.max_drive_s = 0.3, .window_s = 1.0};
-    rig_options few;
-    few.loop.guards = synth::make_guards(limits, rate);
-    live_options weak;
-    weak.render.level_dbfs = -41.0;
-    const auto cuts = [&](unsigned strokes, bool continuous) {
-        live_rig r(weak, few);
-        const auto all = r.fill(strokes, weak);
-        if (continuous) {
-            plan_options o{.algorithm = algorithm_kind::continuous};
-            render_options level{.level_dbfs = -41.0};
-            const point stay[] = {{0.0, 0.0}, {0.1, 0.0}};
-            const stroke there{"", trajectory::along(path::polyline(stay), 1.0)};
-            r.submit(score(palm(), {{make_plan(palm(), there, o), {}}}, level));
-        }
-        for (unsigned i = 0; i < 100; ++i) {
-            for (const auto& s : all)
-                s->to({0.0, 0.0}, 1.0);
-            r.play(480);
-        }
-        return r.link.count.drives_cut.load();
-    };
-    CHECK(cuts(1, false) == 0);
-    CHECK(cuts(1, true) >= 1);
-    CHECK(cuts(16, false) >= 1);
 }
 
 TEST_CASE("live strokes vibrate with any wave, its peak at their level")

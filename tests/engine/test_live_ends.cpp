@@ -294,21 +294,6 @@ TEST_CASE("a model that fails ends the stroke with its message; one that refuses
         }
 }
 
-TEST_CASE("live strokes without points take no place from those with points")
-{
-    live_rig r;
-    std::vector<std::shared_ptr<live_stroke::impl>> unfed;
-    for (int i = 0; i < 60; ++i)
-        unfed.push_back(r.add());
-    const auto fed = r.add();
-    fed->to({0.0, 0.0}, 1.0);
-    const std::uint64_t next = r.status().written;
-    r.play(960);
-    const auto sound = r.first_sound();
-    REQUIRE(sound);
-    CHECK(*sound <= next + 2);
-}
-
 TEST_CASE("the time-out holds before the first point, with and without a handle")
 {
     live_rig r(short_timeout());
@@ -389,20 +374,6 @@ TEST_CASE("hundreds of live strokes at once: each can be cancelled, ended or tim
     fresh->to({0.0, 0.0}, 1.0);
     r.play(960);
     CHECK(r.first_sound());
-}
-
-TEST_CASE("a live stroke that waits for a place is cancelled by its number, once")
-{
-    live_rig r;
-    const auto all = r.fill(engine::live_places + 1);
-    const auto& last = all.back();
-    CHECK(r.feed.knows(last->id));
-    CHECK(r.feed.cancel(last->id));
-    CHECK_FALSE(r.feed.cancel(last->id));
-    CHECK(last->voice.closed());
-    r.control();
-    CHECK(r.end(last->id).state == state_kind::cancelled);
-    CHECK_FALSE(r.feed.knows(last->id));
 }
 
 } // namespace live_ends_test

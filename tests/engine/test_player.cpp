@@ -198,45 +198,6 @@ TEST_CASE("in a buffer of more than 0.4 s cancel_all ends the stream instead of 
     CHECK(p.ended()->reason == reason_kind::none);
 }
 
-TEST_CASE("a player destroyed while strokes sound reports them as interrupted")
-{
-    fake_dac dac;
-    const running_clock clock(dac);
-    std::vector<stroke_report> told;
-    {
-        player p(alsa::adopt(dac.pcm(), nine()), palm(), patient());
-        p.on_report([&](const stroke_report& r) { told.push_back(r); });
-        p.submit(tone(endless_s));
-        p.submit(tone(endless_s), start_at::frame(4'000'000'000));
-    }
-    REQUIRE(told.size() == 2);
-    for (const stroke_report& r : told)
-        CHECK(ending(r) == "interrupted, closed: the player was closed");
-    CHECK(dac.closed());
-}
-
-TEST_CASE("a handler may submit, cancel and stop, and never waits for itself")
-{
-    std::atomic<int> rounds{0};
-    std::atomic<stroke_id> last{stroke_id{}};
-    clocked_player p;
-    p.on_report([&](const stroke_report& r) {
-        if (rounds++ < 5) {
-            last = p.submit(tone(0.01));
-            CHECK(p.wait(last).outcome() == wait_kind::timeout);
-            CHECK_FALSE(p.cancel(r.id));
-        } else {
-            p.stop();
-        }
-        rounds.notify_all();
-    });
-    p.submit(tone(0.01));
-    for (int n = rounds; n < 6; n = rounds)
-        rounds.wait(n);
-    p.stop();
-    CHECK(rounds == 6);
-}
-
 TEST_CASE("an unplugged device ends the waits and the stream")
 {
     dac_player p;
@@ -247,20 +208,6 @@ TEST_CASE("an unplugged device ends the waits and the stream")
         std::this_thread::yield();
     CHECK_THROWS_WITH_AS(p.submit(tone(0.1)), doctest::Contains("the device is gone"), error);
     p.stop();
-}
-
-TEST_CASE("an xrun is counted and survived")
-{
-    dac_player p;
-    const stroke_id id = p.submit(tone(endless_s));
-    run_until(p.dac, 288, [&] { return p.position().stroke == id; });
-    p.dac.advance(10'000);
-    CHECK(ending(*p.wait(id)) == "interrupted, xrun: xrun: the device ran dry");
-    p.dac.await([&] { return p.dac.starts() == 2; });
-    CHECK(p.stats().xruns == 1);
-    const running_clock clock(p.dac);
-    CHECK(p.wait(p.submit(tone(0.01)))->state == state_kind::finished);
-    p.stop(); // while the clock still runs
 }
 
 TEST_CASE("a wait tells a time-out, a report taken before, and an unknown stroke apart")
