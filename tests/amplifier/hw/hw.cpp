@@ -1,12 +1,23 @@
 // SPDX-License-Identifier: MIT
-// Outputs and inputs through the kernel.
+// Lines and the amplifier against a real kernel: hw FOLDER [doctest options], where FOLDER is that of a
+// gpio-sim chip with at least 6 lines, not used before, of which line 2 has a name. Needs root.
+#define DOCTEST_CONFIG_IMPLEMENT
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <csignal>
+#include <cstdint>
+#include <cstdio>
+#include <fstream>
+#include <memory>
+#include <optional>
+#include <stdexcept>
 #include <string>
 
 #include <poll.h>
+#include <sched.h>
 #include <sys/wait.h>
 #include <unistd.h>
-
-#include <doctest/doctest.h>
 
 #include <tactor/error.hpp>
 #include <tactor/lines.hpp>
@@ -14,14 +25,77 @@
 #include "../../support/count_allocations.hpp"
 #include "../fake_line.hpp"
 #include "amplifier/line.hpp"
-#include "sim.hpp"
 
-namespace hw_lines_test {
+namespace hw_test {
 
 using namespace tactor;
 using namespace tactor::test;
 
 namespace {
+
+/// The other side of a gpio-sim chip, in place of the hardware.
+class sim_chip {
+public:
+    /// `folder`: /sys/devices/platform/<device>/<chip>.
+    explicit sim_chip(const std::string& folder);
+
+    /// /dev/gpiochipN
+    std::string path() const;
+    /// Returns the driven value of an output, or the pull of an input.
+    int value(unsigned line) const;
+    /// Pulls an input up or down, like a button.
+    void pull(unsigned line, bool up) const;
+    /// Polls a line; returns the CLOCK_MONOTONIC time in ns at which it was first low.
+    std::optional<std::int64_t> low_at(unsigned line, std::int64_t within_ms) const;
+
+private:
+    std::string folder_;
+};
+
+std::unique_ptr<sim_chip> the_chip;
+
+sim_chip::sim_chip(const std::string& folder) : folder_(folder)
+{
+    while (folder_.ends_with('/'))
+        folder_.pop_back();
+}
+
+std::string sim_chip::path() const
+{
+    return "/dev/" + folder_.substr(folder_.rfind('/') + 1);
+}
+
+int sim_chip::value(unsigned line) const
+{
+    std::ifstream in(folder_ + "/sim_gpio" + std::to_string(line) + "/value");
+    int v = -1;
+    in >> v;
+    return v;
+}
+
+void sim_chip::pull(unsigned line, bool up) const
+{
+    std::ofstream out(folder_ + "/sim_gpio" + std::to_string(line) + "/pull");
+    out << (up ? "pull-up" : "pull-down") << std::flush;
+    if (!out)
+        throw std::runtime_error("cannot pull line " + std::to_string(line));
+}
+
+std::optional<std::int64_t> sim_chip::low_at(unsigned line, std::int64_t within_ms) const
+{
+    const std::int64_t until = now_ns() + within_ms * 1'000'000;
+    while (now_ns() < until) {
+        if (value(line) == 0)
+            return now_ns();
+        ::sched_yield();
+    }
+    return std::nullopt;
+}
+
+const sim_chip& chip()
+{
+    return *the_chip;
+}
 
 gpio_chip_info listed()
 {
@@ -52,6 +126,70 @@ bool waits(const edge_input& in, int timeout_ms)
 {
     pollfd p{in.descriptor(), POLLIN, 0};
     return ::poll(&p, 1, timeout_ms) > 0;
+}
+
+constexpr unsigned amplifier_line = 3;
+constexpr std::int64_t promised_off_ms = 200;
+
+amplifier_settings amplifier(bool active_low = false)
+{
+    amplifier_settings s;
+    s.line = {.chip = chip().path(), .offset = amplifier_line};
+    s.active_low = active_low;
+    return s;
+}
+
+/// A process that has the amplifier on and beats.
+class process {
+public:
+    explicit process(bool active_low = false)
+    {
+        int ends[2] = {-1, -1};
+        REQUIRE(::pipe(ends) == 0);
+        pid_ = ::fork();
+        if (pid_ == 0)
+            play(active_low, ends[1]);
+        ::close(ends[1]);
+        char x = 0;
+        REQUIRE(::read(ends[0], &x, 1) == 1);
+        ::close(ends[0]);
+    }
+    ~process()
+    {
+        ::kill(pid_, SIGKILL);
+        ::waitpid(pid_, nullptr, 0);
+    }
+    process(const process&) = delete;
+    process& operator=(const process&) = delete;
+    pid_t pid() const { return pid_; }
+
+private:
+    [[noreturn]] static void play(bool active_low, int tell) noexcept
+    {
+        die_quietly();
+        const auto amp = open_amplifier(amplifier(active_low));
+        if (!amp->set(true) || ::write(tell, "x", 1) != 1)
+            ::_exit(1);
+        while (amp->beat())
+            ::poll(nullptr, 0, 50);
+        ::_exit(2);
+    }
+
+    pid_t pid_ = -1;
+};
+
+/// Waits until the line is free: that is some time after the holder switched it off.
+std::unique_ptr<enable_line> open_when_free()
+{
+    const std::int64_t until = now_ns() + 5'000'000'000;
+    for (;;) {
+        try {
+            return open_amplifier(amplifier());
+        } catch (const error&) {
+            if (now_ns() > until)
+                throw;
+        }
+    }
 }
 
 } // namespace
@@ -251,4 +389,91 @@ TEST_CASE("pull resistors are set on request")
     CHECK(chip().value(5) == 0);
 }
 
-} // namespace hw_lines_test
+TEST_CASE("the amplifier is off by default, follows, and is free again at once")
+{
+    for (int i = 0; i < 5; ++i) {
+        auto amp = open_amplifier(amplifier());
+        CHECK(chip().value(amplifier_line) == 0);
+        CHECK(amp->set(true));
+        CHECK(chip().value(amplifier_line) == 1);
+        CHECK(amp->set(false));
+        CHECK(chip().value(amplifier_line) == 0);
+        CHECK(amp->set(true));
+        amp.reset();
+        CHECK(chip().value(amplifier_line) == 0);
+    }
+}
+
+TEST_CASE("an amplifier that is active low is off when the line is high")
+{
+    auto amp = open_amplifier(amplifier(true));
+    CHECK(chip().value(amplifier_line) == 1);
+    CHECK(amp->set(true));
+    CHECK(chip().value(amplifier_line) == 0);
+    CHECK(amp->set(false));
+    CHECK(chip().value(amplifier_line) == 1);
+}
+
+TEST_CASE("the player keeps no copy of the line, and the holder none of the player's other lines")
+{
+    auto sync = open_output({.chip = chip().path(), .offset = 1});
+    const auto amp = open_amplifier(amplifier());
+    sync.reset();
+    CHECK_NOTHROW(open_output({.chip = chip().path(), .offset = 1}));
+    CHECK_THROWS_AS(open_amplifier(amplifier()), error);
+}
+
+// Reading the line takes time itself: the numbers are upper bounds.
+TEST_CASE("the line is off within 200 ms of the player's end or stop")
+{
+    for (const int number : {SIGKILL, SIGTERM, SIGINT, SIGHUP, SIGSTOP}) {
+        CAPTURE(number);
+        std::int64_t worst = 0;
+        for (int i = 0; i < 5; ++i) {
+            const process p;
+            CHECK(chip().value(amplifier_line) == 1);
+            const std::int64_t since = now_ns();
+            ::kill(p.pid(), number);
+            const auto off = chip().low_at(amplifier_line, 2000);
+            REQUIRE(off.has_value());
+            worst = std::max(worst, *off - since);
+            ::kill(p.pid(), SIGKILL); // the stopped one, whose holder would keep the line
+            CHECK(open_when_free()->set(false));
+        }
+        std::printf("signal %d: off within %.1f ms (largest of 5)\n", number,
+                    static_cast<double>(worst) / 1e6);
+        CHECK(worst < promised_off_ms * 1'000'000);
+    }
+}
+
+TEST_CASE("a killed holder leaves the line to the player, which switches it off")
+{
+    amplifier_settings s = amplifier();
+    const auto amp = open_amplifier(s);
+    CHECK(amp->set(true));
+    const pid_t holder = dynamic_cast<amplifier::holder_link&>(*amp).pid();
+    const int end = open_pidfd(holder);
+    ::kill(holder, SIGKILL);
+    CHECK(ends(end));
+    ::close(end);
+    CHECK(!amp->beat());
+    CHECK(chip().value(amplifier_line) == 0);
+    CHECK(amp->set(false));
+}
+
+} // namespace hw_test
+
+int main(int argc, char** argv)
+{
+    if (argc < 2 || argv[1][0] == '-') {
+        std::fputs("usage: hw /sys/devices/platform/gpio-sim.N/gpiochipM [doctest options]\n", stderr);
+        return 2;
+    }
+    hw_test::the_chip = std::make_unique<hw_test::sim_chip>(argv[1]);
+    if (hw_test::chip().value(0) < 0) {
+        std::fprintf(stderr, "hw: %s is not the folder of a gpio-sim chip\n", argv[1]);
+        return 2;
+    }
+    doctest::Context context(argc - 1, argv + 1);
+    return context.run();
+}

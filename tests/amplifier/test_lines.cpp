@@ -1,20 +1,33 @@
 // SPDX-License-Identifier: MIT
-// Search for the user's line, on chips that are plain values.
-#include "amplifier/chips.hpp"
-
+// Chips and lines: the list, the search for the user's line, and messages for what the kernel refuses.
 #include <cerrno>
+#include <filesystem>
+#include <limits>
 #include <string>
 #include <vector>
+
+#include <sys/inotify.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 #include <doctest/doctest.h>
 
 #include <tactor/error.hpp>
+#include <tactor/lines.hpp>
 
-namespace find_test {
+#include "amplifier/chips.hpp"
+#include "amplifier/errors.hpp"
+#include "amplifier/line.hpp"
+#include "folder.hpp"
+#include "has.hpp"
 
-using tactor::gpio_line_name;
-using tactor::amplifier::chip;
-using tactor::amplifier::find_line;
+namespace lines_test {
+
+using namespace tactor;
+using amplifier::chip;
+using amplifier::find_line;
+
+namespace fs = std::filesystem;
 
 namespace {
 
@@ -50,16 +63,32 @@ gpio_line_name by_name(const std::string& name, const std::string& on = {})
     return {.chip = on, .name = name};
 }
 
-std::string complaint(const std::vector<chip>& chips, const gpio_line_name& wanted,
-                      tactor::error_kind kind = tactor::error_kind::not_available)
+// Returns the message of a call's error, which is of this kind; "" for none.
+template <typename Call>
+std::string complaint(Call call, error_kind kind = error_kind::not_available)
 {
     try {
-        find_line(chips, wanted);
-    } catch (const tactor::error& e) {
+        call();
+    } catch (const error& e) {
         CHECK(e.kind() == kind);
         return e.what();
     }
-    return "found";
+    return {};
+}
+
+std::string complaint(const std::vector<chip>& chips, const gpio_line_name& wanted,
+                      error_kind kind = error_kind::not_available)
+{
+    return complaint([&] { return find_line(chips, wanted); }, kind);
+}
+
+std::string refusal(int code, const std::string& holder)
+{
+    gpio_line_name l{.chip = "pinctrl-rp1", .offset = 17};
+    l.where = {"palm.toml", 12, 1};
+    const error e = amplifier::request_error(l, code, holder);
+    CHECK(e.kind() == error_kind::not_available);
+    return e.what();
 }
 
 } // namespace
@@ -163,14 +192,13 @@ TEST_CASE("a chip that may not be opened is named with the group to join")
 
 TEST_CASE("a line without chip, offset and name is bad input, with the place where it was written")
 {
-    CHECK(complaint(pi, {}, tactor::error_kind::bad_input) ==
+    CHECK(complaint(pi, {}, error_kind::bad_input) ==
           "GPIO line: a line needs chip and offset, or a name (line = { chip = \"pinctrl-rp1\", offset = 17 "
           "} or { name = \"GPIO17\" })");
     gpio_line_name half;
     half.chip = "pinctrl-rp1";
     half.where = {"palm.toml", 12, 3};
-    CHECK(complaint(pi, half, tactor::error_kind::bad_input)
-              .starts_with("palm.toml:12:3: GPIO line: a line needs"));
+    CHECK(complaint(pi, half, error_kind::bad_input).starts_with("palm.toml:12:3: GPIO line: a line needs"));
 }
 
 TEST_CASE("a long list is cut")
@@ -182,4 +210,104 @@ TEST_CASE("a long list is cut")
     CHECK(text.find("PIN11 and 42 more)") != std::string::npos);
 }
 
-} // namespace find_test
+TEST_CASE("a busy line is named with its holder")
+{
+    CHECK(refusal(EBUSY, "gpiomon") == "palm.toml:12:1: GPIO line 17 of pinctrl-rp1: busy: \"gpiomon\" holds "
+                                       "it (stop that program, or choose another line)");
+    CHECK(refusal(EBUSY, "tactor") ==
+          "palm.toml:12:1: GPIO line 17 of pinctrl-rp1: busy: another tactor holds it (stop that one first)");
+    CHECK(refusal(EBUSY, amplifier::nameless_consumer) ==
+          "palm.toml:12:1: GPIO line 17 of pinctrl-rp1: busy: the kernel holds it (a driver or overlay uses "
+          "the pin; choose another line)");
+    has(refusal(EBUSY, ""), "busy: the kernel holds it");
+}
+
+TEST_CASE("a missing ability of the chip is reported as such")
+{
+    has(refusal(ENOTSUP, ""), "the chip cannot do this with the line: ");
+    has(refusal(EPERM, ""), "the kernel does not permit this use of the line");
+    has(refusal(EIO, ""), "the line cannot be had: ");
+}
+
+TEST_CASE("a listed chip that cannot be opened has a hint")
+{
+    amplifier::chip c;
+    c.info.path = "/dev/gpiochip0";
+    c.code = EACCES;
+    c.group = "gpio";
+    CHECK(amplifier::advice(c) ==
+          "no permission to open /dev/gpiochip0 (sudo usermod -aG gpio $USER, then log in again)");
+}
+
+TEST_CASE("impossible times are refused before any device is touched")
+{
+    const gpio_line_name l{.name = "no such line"};
+    for (const double s :
+         {-0.001, 10.001, std::numeric_limits<double>::infinity(), std::numeric_limits<double>::quiet_NaN()})
+        has(complaint([&] { return open_edges(l, edge_kind::rising, s); }, error_kind::bad_input),
+            "a debounce time of");
+}
+
+TEST_CASE("chips are listed by number, each once")
+{
+    const folder f;
+    for (const char* name :
+         {"gpiochip10", "gpiochip2", "gpiochip0", "gpiochip", "gpiochip1x", "gpiomem", "mygpiochip1"})
+        f.write(name);
+    fs::create_symlink("gpiochip0", f / "gpiochip4");
+    const auto at = [&](const char* name) { return (f / name).string(); };
+    CHECK(amplifier::chip_paths(f.path()) == std::vector{at("gpiochip0"), at("gpiochip2"), at("gpiochip10")});
+    CHECK(amplifier::chip_paths(f / "nowhere").empty());
+}
+
+TEST_CASE("a file's group has a name, a missing file's is the usual one")
+{
+    CHECK(amplifier::find_group("/dev/null") == "root");
+    CHECK(amplifier::find_group("/nowhere") == "gpio");
+}
+
+TEST_CASE("a file that is no GPIO chip is not opened")
+{
+    const folder f;
+    f.write("gpiochip0");
+    for (const std::string& path :
+         {(f / "gpiochip0").string(), std::string("/dev/null"), f.path().string()}) {
+        const amplifier::chip c = amplifier::read_chip(path);
+        CHECK(c.code != 0);
+        CHECK(c.info.path == path);
+        CHECK(c.info.lines.empty());
+    }
+    CHECK(amplifier::read_chip("/nowhere").code == ENOENT);
+}
+
+TEST_CASE("a pipe, file or socket named as a chip is never opened")
+{
+    const folder f;
+    f.write("file");
+    REQUIRE(::mkfifo((f / "pipe").c_str(), 0600) == 0);
+    REQUIRE(::mknod((f / "socket").c_str(), S_IFSOCK | 0600, 0) == 0);
+    const int watch = ::inotify_init1(IN_NONBLOCK | IN_CLOEXEC);
+    REQUIRE(watch >= 0);
+    for (const char* name : {"file", "pipe", "socket"})
+        REQUIRE(::inotify_add_watch(watch, (f / name).c_str(), IN_OPEN) >= 0);
+    for (const char* name : {"file", "pipe", "socket"}) {
+        CAPTURE(name);
+        const std::string path = (f / name).string();
+        CHECK(amplifier::not_a_chip(path) == ENOTTY);
+        has(complaint([&] { return find_gpio_line({.chip = path, .offset = 0}); }), "is not a GPIO chip");
+    }
+    char event[512];
+    CHECK(::read(watch, event, sizeof event) == -1);
+    CHECK(errno == EAGAIN);
+    ::close(watch);
+}
+
+TEST_CASE("a path that is no GPIO chip is an error that says so")
+{
+    const gpio_line_name l{.chip = "/dev/null", .offset = 3};
+    const std::string text = complaint([&] { return open_output(l); });
+    CHECK(text.starts_with("GPIO line 3 of /dev/null: /dev/null is not a GPIO chip"));
+    CHECK(text.ends_with("(tactor devices lists the chips)"));
+}
+
+} // namespace lines_test
