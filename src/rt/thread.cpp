@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cerrno>
-#include <climits>
 #include <csignal>
 #include <latch>
 #include <system_error>
@@ -80,40 +79,21 @@ void* enter(void* argument) noexcept
     return nullptr;
 }
 
-class attributes {
-public:
-    explicit attributes(std::size_t stack_bytes)
-    {
-        pthread_attr_init(&value_);
-        const long least = sysconf_stack_min();
-        pthread_attr_setstacksize(&value_, std::max(stack_bytes, static_cast<std::size_t>(least)));
-    }
-    ~attributes() { pthread_attr_destroy(&value_); }
-    attributes(const attributes&) = delete;
-    attributes& operator=(const attributes&) = delete;
-
-    const pthread_attr_t* get() const noexcept { return &value_; }
-
-private:
-    // PTHREAD_STACK_MIN calls sysconf since glibc 2.34, and has type long.
-    static long sysconf_stack_min() { return PTHREAD_STACK_MIN; }
-
-    pthread_attr_t value_{};
-};
-
 } // namespace
 
 thread::thread(const thread_options& o, std::function<void()> body)
 {
-    const attributes attr(o.stack_bytes);
     launch l{.options = o, .body = std::move(body)};
-
+    pthread_attr_t attr;
+    pthread_attr_init(&attr);
+    pthread_attr_setstacksize(&attr, o.stack_bytes);
     sigset_t all;
     sigset_t before;
     sigfillset(&all);
     pthread_sigmask(SIG_SETMASK, &all, &before); // the new thread inherits the mask
-    const int code = pthread_create(&handle_, attr.get(), enter, &l);
+    const int code = pthread_create(&handle_, &attr, enter, &l);
     pthread_sigmask(SIG_SETMASK, &before, nullptr);
+    pthread_attr_destroy(&attr);
     if (code != 0)
         throw std::system_error(code, std::generic_category(), "thread " + o.name);
 

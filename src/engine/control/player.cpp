@@ -37,6 +37,11 @@ std::uint32_t to_frames(double seconds, unsigned rate, const char* name)
     return static_cast<std::uint32_t>(std::lround(seconds * rate));
 }
 
+std::int64_t to_ns(double seconds, const char* name)
+{
+    return std::int64_t{to_frames(seconds, 1'000'000, name)} * 1000;
+}
+
 // Returns the horizon. Drives handed over later than the least one would be late.
 std::uint64_t horizon_frames(const player_options& o, const stream_setup& s)
 {
@@ -52,8 +57,7 @@ engine::loop_options loop_options(const player_options& o, const engine::drive_b
     l.horizon_frames = horizon_frames(o, s);
     // Long periods make long pauses.
     const std::int64_t periods = 16LL * s.period_frames * 1'000'000'000 / s.rate;
-    const auto asked = std::int64_t{to_frames(o.stall_s, 1'000'000, "stall_s")} * 1000;
-    l.stall_ns = std::max(periods, asked);
+    l.stall_ns = std::max(periods, to_ns(o.stall_s, "stall_s"));
     l.amplifier = amplifier;
     l.guards = synth::make_guards(o.limits, s.rate);
     if (before.kept() && l.guards.drive_frames == 0.0)
@@ -62,36 +66,24 @@ engine::loop_options loop_options(const player_options& o, const engine::drive_b
     return l;
 }
 
-// Returns a SCHED_FIFO priority within its range.
-int priority(const player_options& o, int higher)
+// Returns the options of a thread whose SCHED_FIFO priority differs so much from the audio thread's.
+rt::thread_options thread_options(const player_options& o, const char* name, int higher, bool audio)
 {
-    return std::clamp(std::clamp(o.priority, 1, 99) + higher, 1, 99);
-}
-
-rt::thread_options thread_options(const player_options& o)
-{
-    return {.name = "tactor-audio",
+    return {.name = name,
             .fifo = o.realtime || o.require_realtime,
-            .priority = priority(o, 0),
-            .audio = true};
+            .priority = std::clamp(std::clamp(o.priority, 1, 99) + higher, 1, 99),
+            .audio = audio};
 }
 
 engine::driver_options driver_options(const player_lines& l, const stream_setup& s)
 {
     const std::int64_t four_periods = 4LL * s.period_frames * 1'000'000'000 / s.rate;
     engine::driver_options d;
-    d.amplifier.settle_ns = std::int64_t{to_frames(l.settle_s, 1'000'000, "settle_s")} * 1000;
+    d.amplifier.settle_ns = to_ns(l.settle_s, "settle_s");
     d.amplifier.proof_frames =
         std::max<std::uint64_t>(2ULL * s.period_frames, to_frames(l.proof_s, s.rate, "proof_s"));
     d.watchdog_ns = std::max(d.watchdog_ns, four_periods);
     return d;
-}
-
-// Returns the options of the amplifier's thread. Its priority is below the audio thread, which it watches,
-// but high, because the line's holder waits for 150 ms only.
-rt::thread_options amplifier_thread_options(const player_options& o)
-{
-    return {.name = "tactor-amp", .fifo = o.realtime || o.require_realtime, .priority = priority(o, -5)};
 }
 
 // Checks the lines before there are threads that an error would have to stop.
@@ -331,7 +323,7 @@ player::impl::impl(std::unique_ptr<sink> s, const array& a, const player_options
       book(o.keep_drive_time ? out->setup().device : std::string(),
            synth::make_guards(o.limits, out->setup().rate)),
       loop(*out, link, limits, loop_options(o, book, out->setup(), lines.amplifier != nullptr)),
-      audio(loop, *out, link, thread_options(o))
+      audio(loop, *out, link, thread_options(o, "tactor-audio", 0, true))
 {
 }
 
@@ -372,18 +364,16 @@ void player::impl::listen()
 
 void player::impl::start_lines(const player_options& o)
 {
+    // Below the audio thread, which it watches, but high, because the line's holder waits for 150 ms only.
     if (lines.amplifier != nullptr)
-        amplifier = std::make_unique<engine::amplifier_thread>(
-            link, *lines.amplifier, driver_options(lines, out->setup()), amplifier_thread_options(o));
+        amplifier = std::make_unique<engine::amplifier_thread>(link, *lines.amplifier,
+                                                               driver_options(lines, out->setup()),
+                                                               thread_options(o, "tactor-amp", -5, false));
     if (lines.sync_out == nullptr)
         return;
     // Above the audio thread: it sleeps nearly always, and its work takes microseconds.
-    const rt::thread_options t{.name = "tactor-sync",
-                               .fifo = o.realtime || o.require_realtime,
-                               .priority = priority(o, 1),
-                               .audio = true};
-    pulses = std::make_unique<engine::trigger_thread>(
-        link, *lines.sync_out, std::int64_t{to_frames(lines.pulse_s, 1'000'000, "pulse_s")} * 1000, t);
+    pulses = std::make_unique<engine::trigger_thread>(link, *lines.sync_out, to_ns(lines.pulse_s, "pulse_s"),
+                                                      thread_options(o, "tactor-sync", 1, true));
     feed.set_pulses(*pulses);
 }
 

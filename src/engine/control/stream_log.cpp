@@ -16,6 +16,12 @@ std::uint64_t grown(const std::atomic<std::uint64_t>& counter, std::uint64_t& se
     return now - std::exchange(seen, now);
 }
 
+// Returns true if a condition has become true since the last look.
+bool rose(bool now, bool& seen) noexcept
+{
+    return !std::exchange(seen, now) && now;
+}
+
 } // namespace
 
 void stream_log::add(log_kind k, std::string text)
@@ -54,15 +60,11 @@ void stream_log::look_at_stream(const stream_status& s)
                         ns == 0 ? ""
                                 : fmt::format(" for {}", seconds_text(static_cast<double>(ns) * 1e-9, 3))));
     }
-    const bool given_up = link_.count.realtime_given_up.load(std::memory_order_relaxed);
-    if (given_up && !given_up_)
+    if (rose(link_.count.realtime_given_up.load(std::memory_order_relaxed), given_up_))
         add(log_kind::warning, "the audio thread gave up its real-time priority: it had worked for some 0.1 "
                                "s without a pause (longer periods, or fewer strokes at once, need less)");
-    given_up_ = given_up;
-    const bool asleep = s.stage == stream_stage::suspended;
-    if (asleep && !asleep_)
+    if (rose(s.stage == stream_stage::suspended, asleep_))
         add(log_kind::warning, "the system sleeps: the stream stands still");
-    asleep_ = asleep;
     if (s.running && s.epoch > epoch_) {
         epoch_ = s.epoch;
         add(log_kind::info, fmt::format("the stream runs again, started {} times by now", s.epoch));
@@ -72,22 +74,17 @@ void stream_log::look_at_stream(const stream_status& s)
 void stream_log::look_at_amplifier(const stream_status& s)
 {
     const amplifier_link& a = link_.amplifier;
-    if (const std::uint64_t n = grown(link_.count.stalls, stalls_); n != 0)
+    if (grown(link_.count.stalls, stalls_) != 0)
         add(log_kind::warning, "the audio thread, or the whole process, stood still: the amplifier goes off");
-    if (a.mutes.load(std::memory_order_acquire) != mutes_) {
-        mutes_ = a.mutes.load(std::memory_order_relaxed);
+    if (const std::uint32_t mutes = a.mutes.load(std::memory_order_acquire);
+        std::exchange(mutes_, mutes) != mutes)
         add(log_kind::warning, "the amplifier was muted: what sounded is not felt");
-    }
     if (grown(link_.count.off_failures, off_failures_) != 0)
         add(log_kind::error, "the amplifier's line refuses to be switched off: it is tried again");
-    if (a.stuck.load(std::memory_order_seq_cst) && !stuck_) {
-        stuck_ = true;
+    if (rose(a.stuck.load(std::memory_order_seq_cst), stuck_))
         add(log_kind::error, "the amplifier may be on: its line was given up");
-    }
-    const bool ready = a.ready.load(std::memory_order_acquire) && s.running;
-    if (ready && !ready_)
+    if (rose(a.ready.load(std::memory_order_acquire) && s.running, ready_))
         add(log_kind::info, "strokes may sound");
-    ready_ = ready;
 }
 
 void stream_log::look_at_limits()
