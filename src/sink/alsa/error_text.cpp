@@ -28,6 +28,11 @@ std::string thing(const std::string& name)
     return fmt::format("PCM \"{}\"", name);
 }
 
+error unavailable(const std::string& name, std::string_view why, std::string_view hint = {})
+{
+    return {error_kind::not_available, thing(name), why, hint};
+}
+
 std::string near(const std::string& name, const std::vector<std::string>& known)
 {
     const std::vector<std::string_view> views(known.begin(), known.end());
@@ -64,10 +69,10 @@ std::vector<std::string> ids(const std::vector<card_info>& cards)
 error no_card(const std::string& name, const device_name& d, const std::vector<card_info>& cards)
 {
     if (cards.empty())
-        return {error_kind::not_available, thing(name), "there is no sound card", no_card_hint};
-    return {error_kind::not_available, thing(name), fmt::format("there is no card {}", d.card),
-            fmt::format("{}cards: {}; {{command:devices}} lists all", near(d.card, ids(cards)),
-                        fmt::join(ids(cards), ", "))};
+        return unavailable(name, "there is no sound card", no_card_hint);
+    return unavailable(name, fmt::format("there is no card {}", d.card),
+                       fmt::format("{}cards: {}; {{command:devices}} lists all", near(d.card, ids(cards)),
+                                   fmt::join(ids(cards), ", ")));
 }
 
 error no_device(const std::string& name, unsigned device, const card_info& c, const surroundings& s)
@@ -77,9 +82,8 @@ error no_device(const std::string& name, unsigned device, const card_info& c, co
         devices.push_back(d.number);
     const std::string why = fmt::format("card {} has no playback device {}", c.id, device);
     if (devices.empty())
-        return {error_kind::not_available, thing(name), why, "it has none at all: take another card"};
-    return {error_kind::not_available, thing(name), why,
-            fmt::format("its playback devices: {}", fmt::join(devices, ", "))};
+        return unavailable(name, why, "it has none at all: take another card");
+    return unavailable(name, why, fmt::format("its playback devices: {}", fmt::join(devices, ", ")));
 }
 
 std::string on_a_card(const surroundings& s)
@@ -115,14 +119,14 @@ error no_plugin(const std::string& name, const std::string& type, const std::str
     else
         hint =
             fmt::format("is the type {} in its definition misspelt? Else install what has that file", type);
-    return {error_kind::not_available, thing(name), with_detail("a plugin of ALSA's is missing", detail),
-            fmt::format("{}; or {}", hint, on_a_card(s))};
+    return unavailable(name, with_detail("a plugin of ALSA's is missing", detail),
+                       fmt::format("{}; or {}", hint, on_a_card(s)));
 }
 
 error no_jack(const std::string& name, const surroundings& s)
 {
-    return {error_kind::not_available, thing(name), "it leads to JACK, whose server does not run",
-            "start it, as the user who is logged in: jackd, or QjackCtl; or " + on_a_card(s)};
+    return unavailable(name, "it leads to JACK, whose server does not run",
+                       "start it, as the user who is logged in: jackd, or QjackCtl; or " + on_a_card(s));
 }
 
 // Returns true if the route would end in a card, if there were one. An unknown route probably does.
@@ -150,8 +154,7 @@ error no_pcm(const std::string& name, const std::string& detail, const surroundi
     const std::string plain = name.substr(0, name.find(':'));
     const bool defined = contains(s.pcms, plain);
     if (defined && cards.empty() && wants_card(s))
-        return {error_kind::not_available, thing(name), with_detail("there is no sound card", detail),
-                no_card_hint};
+        return unavailable(name, with_detail("there is no sound card", detail), no_card_hint);
     if (defined)
         return {error_kind::not_available, thing(name),
                 with_detail("ALSA's configuration defines it, but not all that it refers to", detail),
@@ -161,8 +164,7 @@ error no_pcm(const std::string& name, const std::string& detail, const surroundi
         hint = fmt::format("known: {}; ", fmt::join(s.pcms, ", "));
     if (!cards.empty())
         hint += fmt::format("cards: {}; ", fmt::join(ids(cards), ", "));
-    return {error_kind::not_available, thing(name), with_detail("no such PCM", detail),
-            hint + "{command:devices} lists all"};
+    return unavailable(name, with_detail("no such PCM", detail), hint + "{command:devices} lists all");
 }
 
 // Returns the error of a name such as "hw:CARD=Tactor,", whose arguments its definition does not take.
@@ -182,8 +184,8 @@ error busy(const std::string& name, const surroundings& s)
             which.card = c->index;
     const auto holders = playback_holders(s.root, which);
     if (holders.empty())
-        return {error_kind::not_available, thing(name), "it is busy: another program plays on it",
-                "stop that program; sudo fuser -v /dev/snd/* names it"};
+        return unavailable(name, "it is busy: another program plays on it",
+                           "stop that program; sudo fuser -v /dev/snd/* names it");
     constexpr std::array servers{"pipewire", "pipewire-pulse", "wireplumber", "pulseaudio", "jackd"};
     std::string who;
     bool server = false;
@@ -192,20 +194,20 @@ error busy(const std::string& name, const surroundings& s)
                            h.program.empty() ? "a program" : h.program, h.pid);
         server = server || contains(servers, h.program);
     }
-    return {error_kind::not_available, thing(name), fmt::format("it is busy: {} plays on it", who),
-            server ? "a sound server has it: the udev rules keep those off the card Tactor"
-                   : fmt::format("stop it, e.g. kill {}", holders.front().pid)};
+    return unavailable(name, fmt::format("it is busy: {} plays on it", who),
+                       server ? "a sound server has it: the udev rules keep those off the card Tactor"
+                              : fmt::format("stop it, e.g. kill {}", holders.front().pid));
 }
 
 error forbidden(const std::string& name, const surroundings& s)
 {
     const std::string group = playback_group(s.root);
     if (group == "root")
-        return {error_kind::not_available, thing(name), "no permission to open it",
-                "/dev/snd is root's alone: run as root, or let udev give it to the group audio"};
-    return {error_kind::not_available, thing(name), "no permission to open it",
-            fmt::format("join the group {0}: sudo usermod -aG {0} $USER, then log in again",
-                        group.empty() ? "audio" : group)};
+        return unavailable(name, "no permission to open it",
+                           "/dev/snd is root's alone: run as root, or let udev give it to the group audio");
+    return unavailable(name, "no permission to open it",
+                       fmt::format("join the group {0}: sudo usermod -aG {0} $USER, then log in again",
+                                   group.empty() ? "audio" : group));
 }
 
 // Returns the error of a sound server that does not run. "default" leads to a server if its plugin is
@@ -252,14 +254,13 @@ error open_error(const std::string& name, int code, const std::string& detail, c
         return {error_kind::runtime, thing(name), with_detail(snd_strerror(code), detail),
                 tactor::detail::advice_for(-code)};
     default:
-        return {error_kind::not_available, thing(name), with_detail(snd_strerror(code), detail),
-                "{command:devices} lists the PCMs"};
+        return unavailable(name, with_detail(snd_strerror(code), detail), "{command:devices} lists the PCMs");
     }
 }
 
 error call_error(const std::string& name, const char* call, int code)
 {
-    return {error_kind::not_available, thing(name), fmt::format("{} failed: {}", call, snd_strerror(code))};
+    return unavailable(name, fmt::format("{} failed: {}", call, snd_strerror(code)));
 }
 
 } // namespace tactor::alsa

@@ -28,25 +28,13 @@ unsigned bounded(snd_pcm_uframes_t n)
     return n >= beyond ? no_limit : static_cast<unsigned>(n);
 }
 
-using unsigned_bound = int (*)(const snd_pcm_hw_params_t*, unsigned*, int*);
-using frames_bound = int (*)(const snd_pcm_hw_params_t*, snd_pcm_uframes_t*, int*);
-
 // Returns a range. The direction says whether a bound itself is outside it.
-count_range range(const hw_params& p, unsigned_bound least, unsigned_bound most)
+template <typename Number>
+count_range range(const hw_params& p, int (*least)(const snd_pcm_hw_params_t*, Number*, int*),
+                  int (*most)(const snd_pcm_hw_params_t*, Number*, int*))
 {
-    unsigned low = 0;
-    unsigned high = 0;
-    int above = 0;
-    int below = 0;
-    least(p.get(), &low, &above);
-    most(p.get(), &high, &below);
-    return {low + (above > 0 ? 1U : 0U), bounded(high - (below < 0 && high > 0 ? 1U : 0U))};
-}
-
-count_range range(const hw_params& p, frames_bound least, frames_bound most)
-{
-    snd_pcm_uframes_t low = 0;
-    snd_pcm_uframes_t high = 0;
+    Number low = 0;
+    Number high = 0;
     int above = 0;
     int below = 0;
     least(p.get(), &low, &above);
