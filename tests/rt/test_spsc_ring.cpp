@@ -24,40 +24,13 @@ TEST_CASE("capacity is the next power of two")
     CHECK(spsc_ring<int>(65).capacity() == 128);
 }
 
-TEST_CASE("every size from 1 to 64 fills, refuses, empties and wraps")
-{
-    for (std::size_t size = 1; size <= 64; ++size) {
-        CAPTURE(size);
-        // Starts so near to the end of the index type that it wraps on the way.
-        spsc_ring<std::size_t> ring(size, std::numeric_limits<std::size_t>::max() - size / 2);
-        std::size_t next = 0;
-        std::size_t expected = 0;
-        std::size_t value = 0;
-        for (int round = 0; round < 5; ++round) {
-            CHECK(ring.size() == 0);
-            CHECK(ring.front() == nullptr);
-            CHECK_FALSE(ring.pop(value));
-            for (std::size_t i = 0; i < ring.capacity(); ++i)
-                REQUIRE(ring.push(next++));
-            CHECK_FALSE(ring.push(std::size_t{99}));
-            CHECK(ring.available() == 0);
-            CHECK(ring.size() == ring.capacity());
-            while (ring.pop(value))
-                REQUIRE(value == expected++);
-            CHECK(expected == next);
-            // Shifts the place of the wrap.
-            REQUIRE(ring.push(next++));
-            REQUIRE(ring.pop(value));
-            REQUIRE(value == expected++);
-        }
-    }
-}
-
 TEST_CASE("the ring behaves like a deque of bounded length")
 {
     std::mt19937_64 random(1);
     for (int round = 0; round < 2000; ++round) {
-        spsc_ring<std::uint32_t> ring(1 + random() % 40, random());
+        // The indices wrap on the way.
+        spsc_ring<std::uint32_t> ring(1 + random() % 40,
+                                      std::numeric_limits<std::size_t>::max() - random() % 500);
         std::deque<std::uint32_t> model;
         std::vector<std::uint32_t> some;
         for (int step = 0; step < 200; ++step) {

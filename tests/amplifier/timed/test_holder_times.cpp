@@ -84,18 +84,4 @@ TEST_CASE("a player that is stopped leaves the line off, learns of it, and may s
     check_off(line, p.signal(SIGKILL), limit);
 }
 
-TEST_CASE(
-    "another process that keeps the player's descriptors open does not keep the line on until silence would")
-{
-    fake_line line;
-    const player p(line, shipped, keep_beating_with_a_child);
-    const pid_t other = p.told();
-    REQUIRE(other > 0);
-    p.signal(SIGKILL);
-    const auto s = line.next(100);
-    ::kill(other, SIGKILL);
-    REQUIRE(s.has_value());
-    CHECK(!s->on);
-}
-
 } // namespace holder_times_test

@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: MIT
-// Sync pulses: which, when, in which order, and their counts.
+// Lines of a player: sync pulses (which, when, in which order, and their counts), and the amplifier on a
+// paced null PCM in real time, or on a DAC that stands still.
 #include <algorithm>
 #include <atomic>
+#include <chrono>
 #include <condition_variable>
+#include <memory>
 #include <mutex>
 #include <numeric>
 #include <optional>
@@ -22,7 +25,7 @@
 #include "rt/clock.hpp"
 #include "scores.hpp"
 
-namespace pulses_test {
+namespace player_lines_test {
 
 using namespace tactor;
 using namespace tactor::test;
@@ -63,28 +66,53 @@ void send(engine::pulse_emitter& e, std::int64_t due_ns)
         e.miss();
 }
 
-struct pulse_log {
+struct line_state {
     std::mutex mutex;
     std::condition_variable changed;
-    std::vector<std::pair<bool, std::int64_t>> log;
+    std::vector<bool> log;
+    bool works = true;
+
+    void await(std::size_t n)
+    {
+        std::unique_lock lock(mutex);
+        changed.wait(lock, [&] { return log.size() >= n; });
+    }
 };
 
-class logged_output final : public enable_line {
+class watched_line final : public enable_line {
 public:
-    explicit logged_output(std::shared_ptr<pulse_log> l) : log_(std::move(l)) {}
+    explicit watched_line(std::shared_ptr<line_state> s) : state_(std::move(s)) {}
     bool set(bool on) noexcept override
     {
-        timespec t{};
-        clock_gettime(CLOCK_MONOTONIC, &t);
-        const std::lock_guard lock(log_->mutex);
-        log_->log.emplace_back(on, std::int64_t{t.tv_sec} * 1'000'000'000 + t.tv_nsec);
-        log_->changed.notify_all();
-        return true;
+        const std::lock_guard lock(state_->mutex);
+        state_->log.push_back(on);
+        state_->changed.notify_all();
+        return state_->works;
     }
 
 private:
-    std::shared_ptr<pulse_log> log_;
+    std::shared_ptr<line_state> state_;
 };
+
+player_lines with(const std::shared_ptr<line_state>& s)
+{
+    player_lines l{.amplifier = std::make_unique<watched_line>(s)};
+    return l;
+}
+
+class any_line final : public enable_line {
+public:
+    bool set(bool) noexcept override { return true; }
+};
+
+player_lines slow_amplifier()
+{
+    player_lines l{.amplifier = std::make_unique<any_line>(), .settle_s = 600.0};
+    return l;
+}
+
+// Only a failure takes so long.
+constexpr double long_enough_s = 60.0;
 
 /// Counts the heap calls of the thread that switches it, from the first time on.
 class counting_output final : public enable_line {
@@ -197,10 +225,10 @@ TEST_CASE("a pulse called off while it waits is not sent; a line that fails is c
 
 TEST_CASE("the player sends or misses one pulse for each stroke")
 {
-    const auto log = std::make_shared<pulse_log>();
+    const auto state = std::make_shared<line_state>();
     std::uint64_t sent = 0;
     {
-        player_lines lines{.sync_out = std::make_unique<logged_output>(log), .pulse_s = 0.001};
+        player_lines lines{.sync_out = std::make_unique<watched_line>(state), .pulse_s = 0.001};
         player p(open_alsa(nine()), palm(), patient(), std::move(lines));
         for (int i = 0; i < 3; ++i) {
             // A busy machine may miss one, and be so late that its stroke is over: that is counted.
@@ -209,9 +237,9 @@ TEST_CASE("the player sends or misses one pulse for each stroke")
                 const player_stats s = p.stats();
                 return s.sync_pulses + s.sync_missed == static_cast<std::uint64_t>(i) + 1;
             };
-            std::unique_lock lock(log->mutex);
+            std::unique_lock lock(state->mutex);
             while (!settled())
-                log->changed.wait_for(lock, std::chrono::milliseconds(10));
+                state->changed.wait_for(lock, std::chrono::milliseconds(10));
             lock.unlock();
             sent = p.stats().sync_pulses;
             if (i > 0)
@@ -219,10 +247,10 @@ TEST_CASE("the player sends or misses one pulse for each stroke")
             CHECK(p.wait(id)->state == (i == 0 ? state_kind::finished : state_kind::cancelled));
         }
     }
-    REQUIRE(log->log.size() >= 2 * sent);
+    REQUIRE(state->log.size() >= 2 * sent);
     for (std::size_t i = 0; i < 2 * sent; ++i)
-        CHECK(log->log[i].first == (i % 2 == 0));
-    CHECK((log->log.empty() || !log->log.back().first));
+        CHECK(state->log[i] == (i % 2 == 0));
+    CHECK((state->log.empty() || !state->log.back()));
 }
 
 TEST_CASE("the thread sends or misses each of more pulses than there are places")
@@ -353,4 +381,102 @@ TEST_CASE("planned by one thread and sent by another, each pulse comes at most o
     CHECK(strangers == 0);
 }
 
-} // namespace pulses_test
+TEST_CASE("the amplifier waits until the DAC has played for the given time")
+{
+    const auto state = std::make_shared<line_state>();
+    player_lines l = with(state);
+    l.proof_s = 0.3;
+    player p(open_alsa(nine()), palm(), patient(), std::move(l));
+    state->await(1);
+    CHECK(p.position().played >= 14400);
+    p.stop();
+    CHECK(state->log == std::vector<bool>{true, false});
+}
+
+TEST_CASE("the player switches its amplifier on once, plays, and off once")
+{
+    const auto state = std::make_shared<line_state>();
+    std::uint64_t stalls = 0;
+    {
+        player p(open_alsa(nine()), palm(), {}, with(state));
+        const auto report = p.wait(p.submit(tone(0.05)));
+        REQUIRE(report);
+        state->await(1);
+        p.stop();
+        stalls = p.stats().stalls;
+        // On a busy machine the watchdog may have acted.
+        if (stalls == 0)
+            CHECK(report->state == state_kind::finished);
+    }
+    CHECK_FALSE(state->log.back());
+    if (stalls == 0)
+        CHECK(state->log == std::vector<bool>{true, false});
+    for (std::size_t i = 0; i < state->log.size(); ++i)
+        CHECK(state->log[i] == (i % 2 == 0));
+}
+
+TEST_CASE("a player destroyed at any moment leaves its amplifier off")
+{
+    for (int i = 0; i < 20; ++i) {
+        const auto state = std::make_shared<line_state>();
+        {
+            player p(open_alsa(nine()), palm(), {}, with(state));
+            p.submit(tone(0.01));
+            if (i % 2 == 1)
+                state->await(1);
+        }
+        CHECK((state->log.empty() || !state->log.back()));
+    }
+}
+
+TEST_CASE("an amplifier whose line fails ends the player's stream")
+{
+    const auto state = std::make_shared<line_state>();
+    state->works = false;
+    player p(open_alsa(nine()), palm(), {}, with(state));
+    std::string why;
+    try {
+        const auto report = p.wait(p.submit(tone(0.05)));
+        REQUIRE(report);
+        CHECK(report->state == state_kind::interrupted);
+        why = report->why;
+    } catch (const error& e) {
+        why = e.what(); // the stream was over before the stroke came
+    }
+    CHECK(why.find("the amplifier's line cannot be switched") != std::string::npos);
+    p.stop();
+    CHECK_THROWS_AS(p.submit(tone(0.05)), error);
+    // It refuses to go off as well.
+    REQUIRE(p.ended());
+    CHECK(p.ended()->reason == reason_kind::left_on);
+    CHECK(p.ended()->why == "the amplifier's line cannot be switched off: it may be on");
+    CHECK(p.stats().left_on);
+    // Each try but the first was to switch it off. The last one is counted a moment later.
+    const auto tries = [&] {
+        const std::lock_guard lock(state->mutex);
+        return state->log.size();
+    };
+    while (p.stats().off_failures != tries() - 1)
+        std::this_thread::yield();
+}
+
+TEST_CASE("cancel() is reported without a frame being played")
+{
+    dac_player p(patient(), slow_amplifier());
+    const stroke_id score = p.submit(tone(1.0));
+    const live_stroke live = p.begin({.timeout_s = 86400.0});
+    CHECK_FALSE(p.wait(score, 1e-9));
+    CHECK(p.cancel(score));
+    CHECK(p.cancel(live.id()));
+    for (const stroke_id id : {score, live.id()}) {
+        const auto r = p.wait(id, long_enough_s);
+        REQUIRE(r);
+        CHECK(r->state == state_kind::cancelled);
+        CHECK(r->frames == 0);
+    }
+    CHECK(p.position().played == 0);
+    const running_clock clock(p.dac);
+    p.stop();
+}
+
+} // namespace player_lines_test
