@@ -14,6 +14,8 @@ namespace {
 constexpr std::string_view bundle_mark{"#bundle\0", 8};
 constexpr std::size_t time_bytes = 8;
 constexpr std::size_t size_bytes = 4;
+constexpr std::size_t most_depth = 8;
+constexpr std::size_t most_messages = 256;
 
 [[noreturn]] void broken(std::string why)
 {
@@ -43,17 +45,14 @@ std::optional<std::int64_t> unix_time(std::uint64_t tag)
     return static_cast<std::int64_t>((since_1900 - from_1900) * 1'000'000'000U + fraction_ns);
 }
 
-struct reading {
-    const osc_limits& limits;
-    std::vector<osc_message> all = {};
-};
+using messages = std::vector<osc_message>;
 
-void read_element(reading& r, std::string_view bytes, std::optional<std::int64_t> at, std::size_t depth);
+void read_element(messages& all, std::string_view bytes, std::optional<std::int64_t> at, std::size_t depth);
 
-void read_bundle(reading& r, std::string_view bytes, std::size_t depth)
+void read_bundle(messages& all, std::string_view bytes, std::size_t depth)
 {
-    if (depth > r.limits.nesting)
-        broken(fmt::format("its bundles nest deeper than {}", r.limits.nesting));
+    if (depth > most_depth)
+        broken(fmt::format("its bundles nest deeper than {}", most_depth));
     bytes.remove_prefix(bundle_mark.size());
     if (bytes.size() < time_bytes)
         broken("a bundle without its time");
@@ -66,30 +65,30 @@ void read_bundle(reading& r, std::string_view bytes, std::size_t depth)
         bytes.remove_prefix(size_bytes);
         if (size > bytes.size() || size == 0 || size % 4 != 0)
             broken(fmt::format("an element of {} bytes where {} are left", size, bytes.size()));
-        read_element(r, bytes.substr(0, size), at, depth);
+        read_element(all, bytes.substr(0, size), at, depth);
         bytes.remove_prefix(size);
     }
 }
 
-void read_element(reading& r, std::string_view bytes, std::optional<std::int64_t> at, std::size_t depth)
+void read_element(messages& all, std::string_view bytes, std::optional<std::int64_t> at, std::size_t depth)
 {
     if (bytes.starts_with(bundle_mark))
-        return read_bundle(r, bytes, depth + 1);
-    if (r.all.size() == r.limits.messages)
-        broken(fmt::format("more than {} messages", r.limits.messages));
-    r.all.push_back(parse_osc_message(bytes));
-    r.all.back().unix_ns = at;
+        return read_bundle(all, bytes, depth + 1);
+    if (all.size() == most_messages)
+        broken(fmt::format("more than {} messages", most_messages));
+    all.push_back(parse_osc_message(bytes));
+    all.back().unix_ns = at;
 }
 
 } // namespace
 
-std::vector<osc_message> parse_osc(std::string_view packet, const osc_limits& l)
+std::vector<osc_message> parse_osc(std::string_view packet)
 {
     if (packet.empty() || packet.size() % 4 != 0)
         broken(fmt::format("{} bytes are no multiple of 4", packet.size()));
-    reading r{l};
-    read_element(r, packet, {}, 0);
-    return std::move(r.all);
+    messages all;
+    read_element(all, packet, {}, 0);
+    return all;
 }
 
 } // namespace tactor::net

@@ -29,19 +29,14 @@ struct osc_message {
     std::string fault = {}; ///< why its values cannot be read; empty: they can
 };
 
-struct osc_limits {
-    std::size_t nesting = 8;    ///< bundles in bundles
-    std::size_t messages = 256; ///< in one packet
-};
-
 /// Returns true if this build has OSC. If not, the functions below throw.
 bool osc_is_built() noexcept;
 
 /// Returns all messages of a packet, in order, also those whose values cannot be read.
-/// \throws error (bad_input) for a broken packet.
-std::vector<osc_message> parse_osc(std::string_view packet, const osc_limits& l = {});
+/// \throws error (bad_input) for a broken packet, and for more than 256 messages or 8 bundles in each other.
+std::vector<osc_message> parse_osc(std::string_view packet);
 
-/// Returns a packet of one message: numbers as i and f, without those that do not fit, and text as s.
+/// Encodes a message as an OSC packet: integers as i, clamped to 32 bits, reals as f, text as s.
 std::string osc_packet(const std::string& address, const std::vector<osc_value>& values);
 
 /// Parses a message (not a bundle) of a packet by liblo.
