@@ -131,8 +131,8 @@ class RemoteStroke(Reply):
         self._client.strokes.pop(event["stroke"], None)
         self._left.discard(event["stroke"])
         if not self._left:
-            self._end(Report(*(event[name] for name in ("state", "reason", "frames", "started_s", "late_s")), None,
-                             event["held_points"], event["outside_points"]))
+            self._end(Report(event["state"], event["reason"], event["frames"], event["started_s"], event["late_s"],
+                             held_points=event["held_points"], outside_points=event["outside_points"]))
 
 
 class RemoteLive(RemoteStroke):
