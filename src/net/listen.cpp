@@ -95,19 +95,29 @@ bool listens(int fd)
     return option(fd, SO_TYPE) == SOCK_STREAM && option(fd, SO_ACCEPTCONN) == 1;
 }
 
-struct bound_to {
+/// The address of an end of a socket.
+struct socket_end {
     sockaddr_storage at{};
     socklen_t size = sizeof(sockaddr_storage);
-};
 
-bound_to local(int fd)
-{
-    bound_to b;
+    explicit socket_end(int fd, decltype(&::getsockname) get = ::getsockname)
+    {
+        if (get(fd, generic(), &size) != 0)
+            at.ss_family = AF_UNSPEC;
+    }
     // NOLINTNEXTLINE(cppcoreguidelines-pro-type-reinterpret-cast): the socket API requires it
-    if (::getsockname(fd, reinterpret_cast<sockaddr*>(&b.at), &b.size) != 0)
-        b.at.ss_family = AF_UNSPEC;
-    return b;
-}
+    sockaddr* generic() { return reinterpret_cast<sockaddr*>(&at); }
+    /// Returns the IP address; none for a Unix socket, and for a peer that is gone.
+    std::optional<boost::asio::ip::address> address()
+    {
+        char host[NI_MAXHOST];
+        if (::getnameinfo(generic(), size, host, sizeof host, nullptr, 0, NI_NUMERICHOST) != 0)
+            return {};
+        boost::system::error_code other;
+        const auto found = boost::asio::ip::make_address(&host[0], other);
+        return other ? std::nullopt : std::optional(found);
+    }
+};
 
 [[noreturn]] void refused_port(const std::string& what, std::uint16_t port, bool stream, int code)
 {
@@ -215,11 +225,10 @@ owned_fd bind_udp(const host_and_port& at, const std::string& what)
 
 std::string local_address(int fd)
 {
-    const bound_to b = local(fd);
+    socket_end b(fd);
     char host[NI_MAXHOST];
     char port[NI_MAXSERV];
-    // NOLINTNEXTLINE(cppcoreguidelines-pro-type-reinterpret-cast)
-    if (::getnameinfo(reinterpret_cast<const sockaddr*>(&b.at), b.size, host, sizeof host, port, sizeof port,
+    if (::getnameinfo(b.generic(), b.size, host, sizeof host, port, sizeof port,
                       NI_NUMERICHOST | NI_NUMERICSERV) != 0)
         return {};
     return b.at.ss_family == AF_INET6 ? fmt::format("[{}]:{}", &host[0], &port[0])
@@ -228,49 +237,30 @@ std::string local_address(int fd)
 
 std::string peer_address(int fd)
 {
-    sockaddr_storage at{};
-    socklen_t size = sizeof at;
-    char host[NI_MAXHOST];
-    // NOLINTBEGIN(cppcoreguidelines-pro-type-reinterpret-cast)
-    if (::getpeername(fd, reinterpret_cast<sockaddr*>(&at), &size) != 0 ||
-        ::getnameinfo(reinterpret_cast<const sockaddr*>(&at), size, host, sizeof host, nullptr, 0,
-                      NI_NUMERICHOST) != 0)
-        return {};
-    // NOLINTEND(cppcoreguidelines-pro-type-reinterpret-cast)
-    boost::system::error_code other;
-    const auto address = boost::asio::ip::make_address(&host[0], other);
-    return other ? std::string() : plain(address).to_string();
+    const auto address = socket_end(fd, ::getpeername).address();
+    return address ? plain(*address).to_string() : std::string();
 }
 
 bool is_loopback(int fd)
 {
-    const bound_to b = local(fd);
-    if (b.at.ss_family == AF_INET) {
-        sockaddr_in four{};
-        std::memcpy(&four, &b.at, sizeof four);
-        return (ntohl(four.sin_addr.s_addr) >> 24U) == 127U;
-    }
-    if (b.at.ss_family != AF_INET6)
-        return false;
-    sockaddr_in6 six{};
-    std::memcpy(&six, &b.at, sizeof six);
-    return std::memcmp(&six.sin6_addr, &in6addr_loopback, sizeof six.sin6_addr) == 0;
+    const auto address = socket_end(fd).address();
+    return address && address->is_loopback();
 }
 
 bool is_unix_listener(int fd)
 {
-    return local(fd).at.ss_family == AF_UNIX && listens(fd);
+    return socket_end(fd).at.ss_family == AF_UNIX && listens(fd);
 }
 
 bool is_tcp_listener(int fd)
 {
-    const auto family = local(fd).at.ss_family;
+    const auto family = socket_end(fd).at.ss_family;
     return (family == AF_INET || family == AF_INET6) && listens(fd);
 }
 
 bool is_bound_udp(int fd)
 {
-    const bound_to b = local(fd);
+    const socket_end b(fd);
     sockaddr_in four{}; // the port is at the same place in both families
     std::memcpy(&four, &b.at, sizeof four);
     const bool internet = b.at.ss_family == AF_INET || b.at.ss_family == AF_INET6;
@@ -279,7 +269,7 @@ bool is_bound_udp(int fd)
 
 std::string bound_path(int fd)
 {
-    const bound_to b = local(fd);
+    const socket_end b(fd);
     sockaddr_un a{};
     if (b.at.ss_family != AF_UNIX)
         return {};
