@@ -4,7 +4,6 @@
 #include <string>
 #include <utility>
 
-#include "core/words.hpp"
 #include "files/plan/plan_json.hpp"
 #include "percept/compare.hpp"
 #include "plot/compare_figure.hpp"
@@ -57,26 +56,9 @@ compared compare(const std::shared_ptr<array_handle>& on, const stroke& s, const
     return c;
 }
 
-void check_width(double width_mm)
-{
-    if (!(width_mm >= plot::least_width_mm && width_mm <= plot::most_width_mm))
-        throw error(error_kind::bad_input, "width", plain_number(width_mm) + " mm is out of range",
-                    plain_number(plot::least_width_mm) + " to " + plain_number(plot::most_width_mm) + " mm")
-            .with_field("width");
-}
-
 plot::canvas draw(const compared& c, double width_mm)
 {
-    check_width(width_mm);
     return plot::draw_comparison(c.on->value(), c.result, c.result.target.name, width_mm);
-}
-
-void check_dpi(unsigned dpi)
-{
-    if (dpi < plot::least_dpi || dpi > plot::most_dpi)
-        throw error(error_kind::bad_input, "dpi", std::to_string(dpi) + " is out of range",
-                    std::to_string(plot::least_dpi) + " to " + std::to_string(plot::most_dpi))
-            .with_field("dpi");
 }
 
 plot::figure_view view_from(const std::string& name)
@@ -93,7 +75,6 @@ plot::figure_view view_from(const std::string& name)
 plot::canvas draw(const array_handle& on, const plans& all, const std::string& name, const score* sound,
                   const std::string& view, double width_mm)
 {
-    check_width(width_mm);
     files::piece shown;
     for (const auto& [start_s, p] : all) {
         check_same_array(*p, on.value());
@@ -112,6 +93,8 @@ plot::canvas draw(const array_handle& on, const plans& all, const std::string& n
 
 void bind_tool(py::module_& m)
 {
+    m.attr("WIDTHS_MM") = py::make_tuple(plot::least_width_mm, plot::most_width_mm);
+    m.attr("DPI") = py::make_tuple(plot::least_dpi, plot::most_dpi);
     py::class_<compared>(m, "Compared")
         .def(py::init(&compare))
         .def("json",
@@ -127,7 +110,6 @@ void bind_tool(py::module_& m)
         .def("save",
              [](const compared& c, const std::string& file, double width_mm, unsigned dpi, bool force) {
                  const without_lock free;
-                 check_dpi(dpi);
                  plot::save(draw(c, width_mm), file, dpi, force);
              });
     m.def("svg",
@@ -139,7 +121,6 @@ void bind_tool(py::module_& m)
           [](const array_handle& on, const plans& all, const std::string& name, const score* sound,
              const std::string& view, const std::string& file, double width_mm, unsigned dpi, bool force) {
               const without_lock free;
-              check_dpi(dpi);
               plot::check_output(file, force);
               plot::save(draw(on, all, name, sound, view, width_mm), file, dpi, force);
           });

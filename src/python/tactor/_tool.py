@@ -21,7 +21,7 @@ if _t.TYPE_CHECKING:
 
 
 def _size(width: float, dpi: int) -> tuple[float, int]:
-    return _number("width", width, hint="mm"), _whole("dpi", dpi, 30, 2400)
+    return _number("width", width, *_tactor.WIDTHS_MM), _whole("dpi", dpi, *_tactor.DPI)
 
 
 class Comparison(list[dict[str, _t.Any]]):
