@@ -5,7 +5,7 @@
 * $defs/options of the protocol's schema.
 * In man: heads and ranges of options, and the options that commands share (write_manual.py).
 
-tests/python/test_written.py holds all of them current.
+tests/python/test_package.py holds all of them current.
 """
 import functools
 import json

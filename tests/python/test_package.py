@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The installed package, its documentation, types and costs."""
+"""The installed package, its documentation and types, and files written from the table of options."""
 import graphlib
 import importlib.metadata
 import importlib.util
@@ -13,6 +13,7 @@ import sys
 import pytest
 
 import tactor
+from conftest import ROOT
 
 pytestmark = pytest.mark.unsanitized
 FOLDER = pathlib.Path(tactor.__file__).parent
@@ -101,3 +102,51 @@ def test_the_extension_exports_only_its_entry_point():
     assert [line.split()[-1] for line in r.stdout.splitlines()] == ["PyInit__tactor"]
     r = subprocess.run(["ldd", file], capture_output=True, text=True, check=True)
     assert "libtactor.so" not in r.stdout and "cairo" not in r.stdout
+
+
+@pytest.fixture(scope="module")
+def pages(tmp_path_factory):
+    if importlib.util.find_spec("sphinx") is None:
+        pytest.skip("Sphinx is not here: the reference is not made")
+    source = ROOT / "src/python/reference"
+    folder = tmp_path_factory.mktemp("reference")
+    command = [sys.executable, "-m", "sphinx", "-q", "-W", "--keep-going", "-d", folder / "read", "-b", "html", source, folder / "html"]
+    r = subprocess.run(command, env={**os.environ, "LC_ALL": "C.UTF-8"}, capture_output=True, text=True, check=False)
+    assert (r.returncode, r.stderr) == (0, "")
+    return {p.name: p.read_text(encoding="utf-8") for p in (folder / "html").glob("*.html")}
+
+
+def test_each_module_has_a_page(pages):
+    public = {p.stem for p in pathlib.Path(tactor.__file__).parent.glob("[a-z]*.py")}
+    assert {"index.html", "tactor.html"} | {f"{name}.html" for name in public} <= set(pages)
+
+
+def test_everything_public_is_on_the_page(pages):
+    on_it = set(re.findall(r'id="tactor\.([\w.]+)"', pages["tactor.html"]))
+    assert {name for name, _ in public_things()} - on_it == set()
+    assert "Type:" not in re.sub(r"<[^>]*>", "", pages["tactor.html"]), "a property's first sentence is taken for a type"
+
+
+@pytest.fixture(scope="module")
+def writer():
+    sys.path.insert(0, str(ROOT / "src/options"))
+    return importlib.import_module("write")
+
+
+def test_written_files_are_current(writer):
+    assert {"_plan.py", "_player.py", "tactor-protocol-1.schema.json", "tactor-options.7", "tactor-play.1"} <= {file.name for file in writer.WRITTEN}
+    for file, write in writer.WRITTEN.items():
+        text = file.read_text(encoding="utf-8")
+        assert text == write(text), f"{file.name}: run python3 src/options/write.py, where tactor can be imported"
+
+
+def test_signatures_and_docstrings_have_each_option(writer):
+    calls = {"plan": tactor.plan, "compare": tactor.compare, "score": tactor.Score, "player": tactor.Player}
+    for row in map(writer.in_seconds, writer.ROWS):
+        for place in set(row["places"]) & set(calls):
+            assert inspect.signature(calls[place]).parameters[row["name"]].default is None
+            doc = inspect.getdoc(calls[place].__init__ if inspect.isclass(calls[place]) else calls[place])
+            assert re.search(rf"^(\w+, )*{row['name']}(,| :|$)", doc, re.M), row["name"]
+    live = inspect.signature(tactor.Player.live).parameters
+    assert {"soa", "envelope", "timeout"} <= set(live) and "duration" not in live
+    assert live["smooth"].default == 0.0 and str(live["algorithm"].annotation) == "_Algorithm | None"

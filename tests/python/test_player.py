@@ -3,7 +3,6 @@
 import asyncio
 import gc
 import os
-import pathlib
 import signal
 import subprocess
 import sys

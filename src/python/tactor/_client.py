@@ -63,6 +63,10 @@ class Reply(_Awaited[_t.Any]):
             raise TimeoutError(f"there is no answer after {timeout:g} s")
         return self._answer()
 
+    def add_done_callback(self, callback: _t.Callable[[_t.Any], object]) -> None:
+        """Calls `callback(reply)` once the answer is there: in the client's thread, or at once and here when it is already."""
+        super().add_done_callback(callback)
+
     def _take(self, result: _t.Any) -> None:
         """The service's result."""
         try:

@@ -94,7 +94,6 @@ class _Awaited(_Unique, _t.Generic[_T]):
         return True
 
     def add_done_callback(self, callback: _t.Callable[[_t.Any], object]) -> None:
-        """Calls `callback` with this once it has ended: in the thread of the player or client, or at once and here when it has already."""
         with self._lock:
             if not self._done:
                 self._callbacks.append(callback)
