@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: MIT
 """Phantom models that are Python objects, and their faults."""
-import collections.abc
 import os
 import subprocess
 import sys
@@ -108,32 +107,11 @@ def test_a_program_ends_while_a_daemon_thread_is_in_the_package(what):
         assert r.returncode == 0 and "terminate" not in r.stderr and "Fatal" not in r.stderr, r.stderr
 
 
-class Pairs(collections.abc.Mapping):
-    """An answer with keys that no dict would hold."""
-
-    def __init__(self, *pairs):
-        self.pairs = pairs
-
-    def items(self):
-        return self.pairs
-
-    def __iter__(self):
-        return iter(())
-
-    def __len__(self):
-        return len(self.pairs)
-
-    def __getitem__(self, key):
-        raise KeyError(key)
-
-
 RUBBISH = [
-    (None, "it returned None"), (3, "it returned 3"), ([(0, 1.0)], "it returned [(0, 1.0)]"), ({9: 1.0}, "tactor 9 of 9"), ({-1: 1.0}, "tactor -1 of 9"),
-    ({2**70: 1.0}, f"tactor {2**70} of 9"), ({-2**70: 1.0}, f"tactor {-2**70} of 9"), ({1.7: 1.0}, "tactor 1.7, which is no whole number"),
-    ({1.0: 1.0}, "tactor 1.0, which is no whole number"), ({"3": 1.0}, "tactor '3', which is no whole number"), ({None: 1.0}, "tactor None"),
-    (Pairs((1, 0.5), (0, 0.1), (1, 0.5)), "it drives tactor 1 twice"), (Pairs((1, 0.5, 3)), "its items() have (1, 0.5, 3)"), (Pairs(7), "its items() have 7"),
-    ({0: float("nan")}, "amplitude nan"), ({0: -1.0}, "amplitude -1.0"), ({0: "0.5"}, "amplitude '0.5'"), ({0: 10**400}, "tactor 0 has the amplitude 1000"),
-    ({0: None}, "amplitude None"),
+    (None, "it returned None"), (3, "it returned 3"), ([(0, 1.0)], "it returned [(0, 1.0)]"), ({9: 1.0}, "9 is out of range"),
+    ({-1: 1.0}, "-1 is out of range"), ({2**70: 1.0}, "is out of range"), ({1.7: 1.0}, "1.7 is not a whole number"),
+    ({"3": 1.0}, "'3' is not a number"), ({None: 1.0}, "None is not a number"), ({0: float("nan")}, "nan is out of range"),
+    ({0: -1.0}, "-1.0 is out of range"), ({0: "0.5"}, "'0.5' is not a number"), ({0: 10**400}, "is out of range"), ({0: None}, "None is not a number"),
 ]
 
 

@@ -205,7 +205,7 @@ class All:
         return {4: intensity} if x_mm > 10 else {40: intensity}
 
 
-@pytest.mark.parametrize("x_mm,raised,why", [(35, ZeroDivisionError, "ZeroDivisionError: mine"), (5, tactor.InputError, "it drives tactor 40 of 9")])
+@pytest.mark.parametrize("x_mm,raised,why", [(35, ZeroDivisionError, "ZeroDivisionError: mine"), (5, tactor.InputError, "40 is out of range")])
 def test_a_model_of_python_shapes_a_live_stroke_until_it_raises_or_returns_rubbish(player, x_mm, raised, why):
     with player.live(phantom=All()) as finger:
         assert finger.to(20, 20) and finger.to(21, 20)

@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 import collections.abc as _abc
-import math
-import operator
 import os
 import typing as _t
 
 from tactor import _tactor
 from tactor._array import Array, Point
-from tactor._checks import _Columns, _Member, _need, reading, _shown, _Value
+from tactor._checks import _Columns, _Member, _need, _number, reading, _shown, _Value, _whole
 from tactor._errors import Error, InputError
 from tactor._stroke import Stroke
 
@@ -44,45 +42,14 @@ class PhantomModel(_t.Protocol):
 
 def ask_model(model: _t.Any, name: str, x_mm: float, y_mm: float, intensity: float, tactors: int) -> list[tuple[int, float]]:
     """Returns the tactors and amplitudes above 0 that a model gives, in order of tactor; called by the extension."""
-    said = model.weights(x_mm, y_mm, intensity)
-    if not hasattr(said, "items"):
-        raise _refused_answer(name, f"it returned {_shown(said)}")
-    drives = []
-    for one in said.items():
-        if not isinstance(one, tuple) or len(one) != 2:
-            raise _refused_answer(name, f"its items() have {_shown(one)}")
-        drives.append((_answered_tactor(name, one[0], tactors), _answered_amplitude(name, *one)))
-    drives.sort()
-    for (tactor, _), (following, _) in zip(drives, drives[1:]):
-        if tactor == following:
-            raise _refused_answer(name, f"it drives tactor {tactor} twice")
-    return [drive for drive in drives if drive[1] > 0.0]
-
-
-def _answered_tactor(name: str, key: _t.Any, tactors: int) -> int:
-    try:
-        tactor = operator.index(key)
-    except TypeError:
-        raise _refused_answer(name, f"it drives tactor {_shown(key)}, which is no whole number") from None
-    if not 0 <= tactor < tactors:
-        raise _refused_answer(name, f"it drives tactor {_shown(tactor)} of {tactors}")
-    return tactor
-
-
-def _answered_amplitude(name: str, key: _t.Any, value: _t.Any) -> float:
-    amplitude = -1.0
-    if not isinstance(value, (str, bytes, bytearray)):
-        try:
-            amplitude = float(value)
-        except (TypeError, ValueError, OverflowError):
-            pass
-    if not 0.0 <= amplitude < math.inf:
-        raise _refused_answer(name, f"tactor {_shown(key)} has the amplitude {_shown(value)}")
-    return amplitude
-
-
-def _refused_answer(name: str, why: str) -> InputError:
-    return InputError(f"phantom {name}", why, "weights() returns a dict of tactor and amplitude, which is finite and not below 0")
+    what = f"phantom {name}"
+    hint = f"weights() returns a dict of tactor, 0 to {tactors - 1}, and amplitude, which is finite and not below 0"
+    answer = model.weights(x_mm, y_mm, intensity)
+    if not hasattr(answer, "items"):
+        raise InputError(what, f"it returned {_shown(answer)}", hint)
+    drives = [(_whole(what, tactor, 0, tactors - 1, hint), _number(what, amplitude, 0.0, hint=hint))
+              for tactor, amplitude in dict(answer.items()).items()]
+    return sorted(drive for drive in drives if drive[1] > 0.0)
 
 
 _T = _t.TypeVar("_T")
