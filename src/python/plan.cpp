@@ -135,8 +135,7 @@ py::object samples(const plan_handle& p)
                           given(std::move(all), tactors));
 }
 
-// Columns of the prediction: t, targets, places felt (NaN where nothing is), intensities, target intensities,
-// shared, speeds.
+// Returns the columns of Percept. Places and speeds are NaN where nothing is felt.
 py::tuple felt(const plan_handle& p)
 {
     constexpr double none = std::numeric_limits<double>::quiet_NaN();
@@ -154,9 +153,9 @@ py::tuple felt(const plan_handle& p)
             speeds.push_back(s.speed_mm_s.value_or(none));
         }
     }
-    return py::make_tuple(given(std::move(t)), given(std::move(targets), 2), given(std::move(places), 2),
-                          given(std::move(intensities)), given(std::move(asked)), given(std::move(shared)),
-                          given(std::move(speeds)));
+    return py::make_tuple(given(std::move(t)), given(std::move(places), 2), given(std::move(intensities)),
+                          given(std::move(speeds)), given(std::move(targets), 2), given(std::move(asked)),
+                          given(std::move(shared)).attr("astype")("bool"));
 }
 
 // Amplitudes of all tactors for a phantom at each of the places.

@@ -89,10 +89,6 @@ class PerceptMap(_Columns):
     error_mm: _NDArray[_np.float64]
     intensity: _NDArray[_np.float64]
 
-    def __init__(self, y: _NDArray[_np.float64], x: _NDArray[_np.float64], positions: _NDArray[_np.float64],
-                 error_mm: _NDArray[_np.float64], intensity: _NDArray[_np.float64]) -> None:
-        self._take(y, x, positions, error_mm, intensity)
-
     def __repr__(self) -> str:
         return f"<tactor.PerceptMap: {len(self.y)} x {len(self.x)} places>"
 

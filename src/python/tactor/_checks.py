@@ -162,17 +162,16 @@ class _Columns(_Value):
 
     __slots__: tuple[str, ...] = ()
 
-    def _take(self, *columns: _NDArray[_t.Any]) -> None:
+    def __init__(self, *columns: _NDArray[_t.Any]) -> None:
         for name, values in zip(self.__slots__, columns):
             values = values.view()
             values.flags.writeable = False
             object.__setattr__(self, name, values)
 
-    def __setattr__(self, name: str, value: object) -> None:
+    def __setattr__(self, name: str, *_: object) -> None:
         raise AttributeError(f"a {type(self).__name__.lower()} cannot be changed, nor its {name!r}")
 
-    def __delattr__(self, name: str) -> None:
-        raise AttributeError(f"a {type(self).__name__.lower()} cannot be changed, nor its {name!r}")
+    __delattr__ = __setattr__
 
     def __reduce__(self) -> tuple[_t.Callable[..., _t.Any], tuple[_t.Any, ...]]:
         return type(self), tuple(getattr(self, name) for name in self.__slots__)

@@ -137,10 +137,6 @@ class Curve(_Columns):
     intensities: _NDArray[_np.float64]
     amplitudes: _NDArray[_np.float64]
 
-    def __init__(self, t: _NDArray[_np.float64], positions: _NDArray[_np.float64], intensities: _NDArray[_np.float64],
-                 amplitudes: _NDArray[_np.float64]) -> None:
-        self._take(t, positions, intensities, amplitudes)
-
     def __repr__(self) -> str:
         return f"<tactor.Curve: {len(self)} samples in {self.t[-1]:.6g} s>"
 
@@ -177,11 +173,6 @@ class Percept(_Columns):
     targets: _NDArray[_np.float64]
     target_intensity: _NDArray[_np.float64]
     shared: _NDArray[_np.bool_]
-
-    def __init__(self, t: _NDArray[_np.float64], positions: _NDArray[_np.float64], intensity: _NDArray[_np.float64],
-                 speed: _NDArray[_np.float64], targets: _NDArray[_np.float64], target_intensity: _NDArray[_np.float64],
-                 shared: _NDArray[_np.bool_]) -> None:
-        self._take(t, positions, intensity, speed, targets, target_intensity, shared)
 
     @_t.overload
     def __getitem__(self, i: int) -> PerceptSample: ...
@@ -359,10 +350,7 @@ class Plan(_Value):
         Percept
             With the arrays t, positions, intensity and speed.
         """
-        def made() -> Percept:
-            t, targets, positions, intensity, target_intensity, shared, speed = self._core.felt()
-            return Percept(t, positions, intensity, speed, targets, target_intensity, shared != 0.0)
-        return self._keep("percept", made)  # type: ignore[no-any-return]
+        return self._keep("percept", lambda: Percept(*self._core.felt()))  # type: ignore[no-any-return]
 
     def percept_summary(self) -> dict[str, float | None]:
         """Compares prediction and target: rms_error_mm, largest_error_mm, speed_cv, intensity_cv, silent_share, shared_share."""
