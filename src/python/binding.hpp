@@ -102,7 +102,7 @@ inline py::array_t<double> make_view(std::vector<py::ssize_t> shape, std::vector
 }
 
 /// Gives doubles to NumPy without a copy, in rows of `columns` (0: a plain row); they cannot be written.
-py::array_t<double> given(std::vector<double> values, std::size_t columns = 0);
+py::array_t<double> to_numpy(std::vector<double> values, std::size_t columns = 0);
 
 /// Writes paths and strokes as bytes, for pickles and for comparing: the same bytes, the same value.
 std::string write_state(const path& p);

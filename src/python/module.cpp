@@ -7,7 +7,7 @@
 
 namespace tactor::python {
 
-py::array_t<double> given(std::vector<double> values, std::size_t columns)
+py::array_t<double> to_numpy(std::vector<double> values, std::size_t columns)
 {
     auto kept = std::make_unique<std::vector<double>>(std::move(values));
     const auto size = static_cast<py::ssize_t>(kept->size());
@@ -35,7 +35,7 @@ void set_error(const error& marked)
     const error e = in_keywords(marked);
     try {
         const py::object x =
-            called(py::module_::import("tactor._errors").attr("made"),
+            called(py::module_::import("tactor._errors").attr("make_error"),
                    py::make_tuple(std::string(to_string(e.kind())), text(e.subject()), text(e.why()),
                                   text(e.hint()), text(e.field()), text(e.place().file), e.place().line,
                                   e.place().column, e.os_code()));

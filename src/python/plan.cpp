@@ -31,7 +31,7 @@ plan_handle planned(const std::shared_ptr<array_handle>& on, const stroke& given
         const bool is_sound = (o.where & options::in_plan) != 0 && (o.where & options::planning) == 0;
         const bool is_set = w.gives(o) || w.in_file.contains(index(o)) || (o.name == "rate" && w.rate);
         if (is_sound && is_set)
-            p.asked.emplace_back(o.name);
+            p.sound_options.emplace_back(o.name);
     }
     std::optional<without_lock> free;
     if (!w.plan.custom_phantom) // which takes the lock for each point
@@ -60,7 +60,7 @@ py::array_t<double> column(const py::object& self)
 {
     const auto& bursts = self.cast<const plan_handle&>().plan().bursts;
     if (bursts.empty())
-        return given({});
+        return to_numpy({});
     return make_view({static_cast<py::ssize_t>(bursts.size())}, {sizeof(burst)}, &(bursts.front().*Member),
                      self);
 }
@@ -69,7 +69,7 @@ py::array_t<double> positions(const py::object& self)
 {
     const auto& bursts = self.cast<const plan_handle&>().plan().bursts;
     if (bursts.empty())
-        return given({}, 2);
+        return to_numpy({}, 2);
     return make_view({static_cast<py::ssize_t>(bursts.size()), 2}, {sizeof(burst), sizeof(double)},
                      &bursts.front().position.x_mm, self);
 }
@@ -82,7 +82,7 @@ py::array_t<double> amplitudes(const plan_handle& p)
     for (std::size_t i = 0; i < bursts.size(); ++i)
         for (const drive& d : bursts[i].drives)
             all[i * tactors + d.tactor] = d.amplitude;
-    return given(std::move(all), tactors);
+    return to_numpy(std::move(all), tactors);
 }
 
 py::array_t<double> taus(const plan_handle& p)
@@ -90,7 +90,7 @@ py::array_t<double> taus(const plan_handle& p)
     std::vector<double> all;
     for (const burst& b : p.plan().bursts)
         all.push_back(b.tau_s.value_or(std::numeric_limits<double>::quiet_NaN()));
-    return given(std::move(all));
+    return to_numpy(std::move(all));
 }
 
 py::list list_drives(const burst& b)
@@ -131,8 +131,8 @@ py::object samples(const plan_handle& p)
                 all[k * tactors + d.tactor] = d.amplitude;
         }
     }
-    return py::make_tuple(given(std::move(t)), given(std::move(places), 2), given(std::move(intensities)),
-                          given(std::move(all), tactors));
+    return py::make_tuple(to_numpy(std::move(t)), to_numpy(std::move(places), 2),
+                          to_numpy(std::move(intensities)), to_numpy(std::move(all), tactors));
 }
 
 // Returns the columns of Percept. Places and speeds are NaN where nothing is felt.
@@ -153,9 +153,10 @@ py::tuple felt(const plan_handle& p)
             speeds.push_back(s.speed_mm_s.value_or(none));
         }
     }
-    return py::make_tuple(given(std::move(t)), given(std::move(places), 2), given(std::move(intensities)),
-                          given(std::move(speeds)), given(std::move(targets), 2), given(std::move(asked)),
-                          given(std::move(shared)).attr("astype")("bool"));
+    return py::make_tuple(to_numpy(std::move(t)), to_numpy(std::move(places), 2),
+                          to_numpy(std::move(intensities)), to_numpy(std::move(speeds)),
+                          to_numpy(std::move(targets), 2), to_numpy(std::move(asked)),
+                          to_numpy(std::move(shared)).attr("astype")("bool"));
 }
 
 // Amplitudes of all tactors for a phantom at each of the places.
@@ -183,7 +184,7 @@ py::array_t<double> weights(const std::string& kind, const std::string& of_faces
         for (const drive& d : drives)
             all[static_cast<std::size_t>(i) * tactors + d.tactor] = d.amplitude;
     }
-    return given(std::move(all), tactors);
+    return to_numpy(std::move(all), tactors);
 }
 
 py::dict summary(const plan_handle& p)
@@ -260,7 +261,7 @@ void bind_plan(py::module_& m)
         .def_static("from_json", &plan_from_json)
         .def_static("from_parts",
                     [](const std::string& text, const stroke& drawn, const std::shared_ptr<array_handle>& on,
-                       std::vector<std::string> asked) {
+                       std::vector<std::string> sound_options) {
                         plan_handle p = plan_from_json(text, "plan");
                         check_same_array(p, on->value());
                         p.one.strokes = {drawn};
@@ -269,7 +270,7 @@ void bind_plan(py::module_& m)
                             p.one.plans.front().anchor = drawn.anchor;
                         }
                         p.on = on;
-                        p.asked = std::move(asked);
+                        p.sound_options = std::move(sound_options);
                         return p;
                     })
         .def("json", &write_json)
@@ -307,7 +308,7 @@ void bind_plan(py::module_& m)
                                    return all;
                                })
         .def_property_readonly("size", [](const plan_handle& p) { return p.plan().bursts.size(); })
-        .def_readonly("asked", &plan_handle::asked)
+        .def_readonly("sound_options", &plan_handle::sound_options)
         .def_property_readonly("continuous", [](const plan_handle& p) { return p.plan().curve.has_value(); })
         .def_property_readonly("onsets", &column<&burst::onset_s>)
         .def_property_readonly("durations", &column<&burst::duration_s>)

@@ -16,9 +16,9 @@ namespace tactor::python {
 
 struct plan_handle {
     std::shared_ptr<array_handle> on;
-    session::piece one;                  ///< of one stroke
-    render_options sound = {};           ///< how it sounds where nobody says otherwise
-    std::vector<std::string> asked = {}; ///< names of the options of that which were set
+    session::piece one;                          ///< of one stroke
+    render_options sound = {};                   ///< how it sounds where nobody says otherwise
+    std::vector<std::string> sound_options = {}; ///< names of those that were set
 
     /// Returns the plan placed at `start_s`. Its own start counts from its stroke's anchor.
     placed_plan at(std::optional<double> start_s) const

@@ -31,7 +31,7 @@ render_options settle_sound(const plan_handle& p, const py::dict& given, bool el
     w.place = options::in_score;
     w.render = p.sound;
     if (elsewhere)
-        for (const std::string& name : p.asked)
+        for (const std::string& name : p.sound_options)
             w.given.set(index(*options::find(name)));
     take_options(w, given, 0, file);
     // A plan that was recorded says how many channels it had without a marker.

@@ -88,7 +88,7 @@ py::array_t<double> places(const numbers& all, F&& find)
         const point p = find(all.data()[i]);
         out.insert(out.end(), {p.x_mm, p.y_mm});
     }
-    return given(std::move(out), 2);
+    return to_numpy(std::move(out), 2);
 }
 
 // Writes a file whole or not at all.
@@ -350,7 +350,7 @@ void bind_stroke(py::module_& m)
                  std::vector<double> out;
                  for (py::ssize_t i = 0; i < t.size(); ++i)
                      out.push_back(s.motion.intensity(t.data()[i]));
-                 return given(std::move(out));
+                 return to_numpy(std::move(out));
              })
         .def("text", &stroke_toml)
         .def("meets_x", [](const stroke& s, double x) { return s.motion.meets_x(x); })

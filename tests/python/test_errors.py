@@ -72,10 +72,10 @@ def test_they_are_pickled(kind):
 
 
 def test_each_kind_of_the_library_has_its_class():
-    assert type(_errors.made("bad-input", "soa", "no", "yes")) is tactor.InputError
-    assert type(_errors.made("not-available", "pcm", "no", "")) is tactor.DeviceError
-    assert _errors.made("not-available", "pcm", "why", "hint", errno=19).args == ("pcm", "why", "hint")
-    assert type(_errors.made("runtime", "stream", "no", "")) is tactor.StreamError
+    assert type(_errors.make_error("bad-input", "soa", "no", "yes")) is tactor.InputError
+    assert type(_errors.make_error("not-available", "pcm", "no", "")) is tactor.DeviceError
+    assert _errors.make_error("not-available", "pcm", "why", "hint", errno=19).args == ("pcm", "why", "hint")
+    assert type(_errors.make_error("runtime", "stream", "no", "")) is tactor.StreamError
 
 
 @pytest.mark.parametrize("call,hint", [

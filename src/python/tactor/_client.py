@@ -88,8 +88,8 @@ class RemoteStroke(Reply):
     def __init__(self, client: _Connection) -> None:
         super().__init__(client)
         self._numbers: list[int] = []
-        self._left: set[int] = set()
-        self._wish: str | None = None
+        self._open: set[int] = set()
+        self._pending: str | None = None
         self.warnings: list[str] = []
         """Oddities that were accepted; there once the service has answered."""
 
@@ -110,8 +110,8 @@ class RemoteStroke(Reply):
     def _later(self, method: str) -> None:
         """Sends it for each stroke: now, or once the numbers are known."""
         with self._lock:
-            self._wish = method
-            numbers = list(self._left)
+            self._pending = method
+            numbers = list(self._open)
         for number in numbers:
             self._client.tell(method, stroke=number)
 
@@ -121,20 +121,20 @@ class RemoteStroke(Reply):
     def _take(self, result: _t.Any) -> None:
         with self._lock:
             self._numbers = result.get("strokes", [result["stroke"]])
-            self._left = set(self._numbers)
+            self._open = set(self._numbers)
             self.warnings = result.get("warnings", [])
-            wish = self._wish
+            pending = self._pending
         for number in self._numbers:
             self._client.strokes[number] = self
-        if wish is not None:
-            self._later(wish)
+        if pending is not None:
+            self._later(pending)
 
-    def _told(self, event: dict[str, _t.Any]) -> None:
+    def _take_event(self, event: dict[str, _t.Any]) -> None:
         if event["state"] == "started":
             return
         self._client.strokes.pop(event["stroke"], None)
-        self._left.discard(event["stroke"])
-        if not self._left:
+        self._open.discard(event["stroke"])
+        if not self._open:
             self._end(Report(event["state"], event["reason"], event["frames"], event["started_s"], event["late_s"],
                              held_points=event["held_points"], outside_points=event["outside_points"]))
 
@@ -251,7 +251,7 @@ class _Connection:
         if message.get("method") == "stroke":
             stroke = self.strokes.get(message["params"]["stroke"])
             if stroke is not None:
-                stroke._told(message["params"])
+                stroke._take_event(message["params"])
             return
         reply = self.waiting.pop(message.get("id") or 0, None)
         if reply is None:
@@ -374,11 +374,11 @@ class Client(_Unique):
             start = {"monotonic_s": _number("at_s", at_s)}
         elif delay is not None:
             start = {"delay_s": _number("delay", delay)}
-        return self._wire.ask(RemoteStroke(self._wire), "play", {**_drawn(stroke), "options": _said(options), "start": start})
+        return self._wire.ask(RemoteStroke(self._wire), "play", {**_source(stroke), "options": _option_values(options), "start": start})
 
     def plan(self, stroke: _t.Union[Stroke, Path, str], **options: _t.Any) -> Reply:
         """Plans a stroke as `play` would, and plays nothing; gives a `Plan`."""
-        return self._wire.ask(Reply(self._wire, Plan.from_dict), "plan", {**_drawn(stroke), "options": _said(options)})
+        return self._wire.ask(Reply(self._wire, Plan.from_dict), "plan", {**_source(stroke), "options": _option_values(options)})
 
     def live(self, *, timeout: float | None = None, smooth: float | None = None, **options: _t.Any) -> RemoteLive:
         """Begins a stroke that is fed point by point; silent until the first. Blocks until the service has answered.
@@ -401,7 +401,7 @@ class Client(_Unique):
         Error
             What the service refuses it with.
         """
-        params: dict[str, _t.Any] = {"options": _said(options)}
+        params: dict[str, _t.Any] = {"options": _option_values(options)}
         if timeout is not None:
             params["timeout_s"] = _number("timeout", timeout)
         if smooth is not None:
@@ -453,7 +453,7 @@ class Client(_Unique):
         return f"<tactor.Client: {'closed' if self.closed else self._wire.path}>"
 
 
-def _drawn(stroke: _t.Any) -> dict[str, str]:
+def _source(stroke: _t.Any) -> dict[str, str]:
     if isinstance(stroke, Stroke):
         return {"toml": stroke._core.text()}
     if isinstance(stroke, Path):
@@ -463,13 +463,13 @@ def _drawn(stroke: _t.Any) -> dict[str, str]:
     raise TypeError(f"stroke: a Stroke, a Path or the name of a preset is wanted, not {type(stroke).__name__}")
 
 
-def _said(options: dict[str, _t.Any]) -> dict[str, _t.Any]:
+def _option_values(options: dict[str, _t.Any]) -> dict[str, _t.Any]:
     """Returns the options that are set, in JSON's types."""
-    said = {}
+    values = {}
     for name, value in options.items():
         if value is None:
             continue
         if hasattr(value, "weights"):
             raise InputError(name, f"{_shown(value)} is of this process", "a service has built-in models only", field=name)
-        said[name] = value.item() if hasattr(value, "item") else value
-    return said
+        values[name] = value.item() if hasattr(value, "item") else value
+    return values

@@ -107,8 +107,8 @@ def _again(kind: type[Error], of_system: bool, what: str, why: str, hint: str, f
     return made(what, why, hint, file=file, line=line, column=column, field=field, errno=errno)
 
 
-def made(kind: str, what: str, why: str, hint: str, field: str = "", file: str = "", line: int = 0, column: int = 0,
-         errno: int = 0) -> Error:
+def make_error(kind: str, what: str, why: str, hint: str, field: str = "", file: str = "", line: int = 0, column: int = 0,
+               errno: int = 0) -> Error:
     """Makes the exception of a library's error; called by the extension."""
     return _system_kind(_KINDS[kind], errno)(what, why, hint, file=file or None, line=line or None, column=column or None, field=field or None,
                                            errno=errno)

@@ -399,7 +399,7 @@ class Plan(_Value):
         return _tactor.svg(self._array._core, [(self.start, self._core)], self.stroke.name, "both")  # type: ignore[no-any-return]
 
     def __reduce__(self) -> tuple[_t.Callable[..., _t.Any], tuple[_t.Any, ...]]:
-        return _plan_again, (self._core.json(), self._core.stroke.state(), self._array, self._recorded, self._core.asked)
+        return _plan_again, (self._core.json(), self._core.stroke.state(), self._array, self._recorded, self._core.sound_options)
 
 
 def plan(array: Array, stroke: Stroke, *, duration: float | None = None, speed: float | None = None, outside: _Outside | None = None,
@@ -560,5 +560,5 @@ def _plain(value: _t.Any) -> _t.Any:
     raise TypeError(f"there is a {type(value).__name__} in it")
 
 
-def _plan_again(text: str, stroke: bytes, array: Array, recorded: bool, asked: list[str]) -> Plan:
-    return Plan._wrap(_tactor.Plan.from_parts(text, _tactor.Stroke.from_state(stroke), array._core, asked), array, recorded)
+def _plan_again(text: str, stroke: bytes, array: Array, recorded: bool, sound_options: list[str]) -> Plan:
+    return Plan._wrap(_tactor.Plan.from_parts(text, _tactor.Stroke.from_state(stroke), array._core, sound_options), array, recorded)

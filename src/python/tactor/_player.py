@@ -277,7 +277,7 @@ class Player(_Unique):
             shared.core.close()
         _open.discard(self)
         if threading.current_thread() is not shared.thread:
-            shared.wait_told()
+            shared.wait_reported()
             shared.held = weakref.ref(held)
 
     def _get(self) -> _Shared:

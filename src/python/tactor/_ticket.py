@@ -340,7 +340,7 @@ class _Shared:
         self.closing = threading.RLock()
         self.held: _t.Callable[[], _Held | None] = weakref.ref(held)
         self.events: collections.deque[tuple[_t.Any, ...]] = collections.deque()
-        self.told = _Gate()
+        self.reported = _Gate()
         self.joined = False
         self.thread = threading.Thread(target=self._run, name="tactor", daemon=True)
         self.thread.start()
@@ -349,21 +349,21 @@ class _Shared:
         try:
             while (event := self.core.next()) is not None:
                 self.events.append(event)
-                self._tell()
-            self._tell()
+                self._report()
+            self._report()
         finally:
-            self.told.open()
+            self.reported.open()
 
-    def wait_told(self) -> None:
-        """Waits until all has been told and the thread has ended."""
-        while not self.told.wait(_LOOK_S):
+    def wait_reported(self) -> None:
+        """Waits until all is reported and the thread has ended."""
+        while not self.reported.wait(_LOOK_S):
             pass
         # A handler that interrupts join() must not join, too: it would wait for a lock that the interrupted one has.
         if not self.joined:
             self.joined = True
             self.thread.join()
 
-    def _tell(self) -> None:
+    def _report(self) -> None:
         held = self.held()
         if held is None:  # the player is being collected: its close() gives it back
             return
