@@ -14,6 +14,7 @@ namespace tactor::net {
 namespace {
 
 constexpr std::size_t most_id_bytes = 80;
+constexpr std::size_t most_requests = 64; // of a batch
 
 // Replaces numbers that no double holds with null. Null is no number either, but the message can be answered
 // by its id.
@@ -70,15 +71,13 @@ rpc_refusal invalid(json id, std::string why)
             std::move(id)};
 }
 
-bool has_method(const json& j, std::string_view method)
+bool is_stop(const json& j)
 {
-    if (method.empty() || !j.is_object())
-        return false;
-    const auto m = j.find("method");
-    return m != j.end() && *m == method;
+    const auto method = j.find("method"); // end() of what is no object
+    return method != j.end() && *method == "stop";
 }
 
-std::variant<rpc_request, rpc_refusal> read_request(json& j, std::string_view any_form)
+std::variant<rpc_request, rpc_refusal> read_request(json& j)
 {
     if (!j.is_object())
         return invalid(nullptr, "it is no object");
@@ -91,8 +90,8 @@ std::variant<rpc_request, rpc_refusal> read_request(json& j, std::string_view an
     const bool usable = text || (r.wants_reply && (id->is_number() || id->is_null()));
     if (usable)
         r.id = *id;
-    if (has_method(j, any_form)) {
-        r.method = any_form;
+    if (is_stop(j)) {
+        r.method = "stop";
         return r;
     }
     if (r.wants_reply && !usable)
@@ -126,24 +125,23 @@ rpc_refusal over(std::string what, std::string why, std::string hint)
 }
 
 // Refuses a batch as a whole.
-rpc_message refused(rpc_refusal why, const json& batch, std::string_view any_form)
+rpc_message refused(rpc_refusal why, const json& batch)
 {
     rpc_message m = alone(std::move(why));
-    m.refused_any_form = std::any_of(batch.begin(), batch.end(),
-                                     [any_form](const json& one) { return has_method(one, any_form); });
+    m.has_stop = std::any_of(batch.begin(), batch.end(), is_stop);
     return m;
 }
 
 } // namespace
 
-rpc_message parse_rpc(std::string_view text, const rpc_limits& l)
+rpc_message parse_rpc(std::string_view text, std::size_t most_nesting)
 {
     const auto too_deep = [&] {
-        return over("max_nesting", fmt::format("a message nests deeper than {} levels", l.nesting), "");
+        return over("max_nesting", fmt::format("a message nests deeper than {} levels", most_nesting), "");
     };
     parsed_text p;
     try {
-        parse(p, text, l.nesting);
+        parse(p, text, most_nesting);
     } catch (const json::exception& e) {
         if (p.too_deep)
             return alone(too_deep());
@@ -159,24 +157,24 @@ rpc_message parse_rpc(std::string_view text, const rpc_limits& l)
     json& j = p.value;
     rpc_message m;
     if (!j.is_array()) {
-        auto part = read_request(j, l.any_form);
-        if (const auto* r = std::get_if<rpc_request>(&part);
-            p.too_deep && (r == nullptr || r->method != l.any_form))
+        auto part = read_request(j);
+        if (const auto* r = std::get_if<rpc_request>(&part); p.too_deep && !is_stop(j))
             part = rpc_refusal{too_deep().why, r != nullptr ? r->id : nullptr};
         m.parts.push_back(std::move(part));
         return m;
     }
     if (j.empty())
         return alone(p.too_deep ? too_deep() : invalid(nullptr, "the batch is empty"));
-    if (j.size() > l.batch)
-        return refused(over("batch", fmt::format("{} requests in a batch of at most {}", j.size(), l.batch),
+    if (j.size() > most_requests)
+        return refused(over("batch",
+                            fmt::format("{} requests in a batch of at most {}", j.size(), most_requests),
                             "send several"),
-                       j, l.any_form);
+                       j);
     if (p.too_deep)
-        return refused(too_deep(), j, l.any_form);
+        return refused(too_deep(), j);
     m.batch = true;
     for (json& one : j)
-        m.parts.push_back(read_request(one, l.any_form));
+        m.parts.push_back(read_request(one));
     return m;
 }
 

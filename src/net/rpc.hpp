@@ -59,19 +59,12 @@ struct rpc_refusal {
 struct rpc_message {
     std::vector<std::variant<rpc_request, rpc_refusal>> parts;
     bool batch = false;
-    /// The message is refused as a whole, but a request in it has the method that is accepted in any form.
-    bool refused_any_form = false;
+    bool has_stop = false; ///< it is refused as a whole, but asks for a stop
 };
 
-struct rpc_limits {
-    std::size_t nesting = 64; ///< levels of arrays and objects
-    std::size_t batch = 64;   ///< requests in one message
-    /// Method that is accepted in any form: with any params, id and version. Empty: none.
-    std::string_view any_form = {};
-};
-
-/// Parses a message. Never throws because of the text: faults are in the parts.
-rpc_message parse_rpc(std::string_view text, const rpc_limits& l);
+/// Parses a message: a request, or a batch of at most 64. Never throws because of the text: faults are in the
+/// parts. A stop is accepted in any form: with any params, id and version.
+rpc_message parse_rpc(std::string_view text, std::size_t most_nesting = 64);
 
 reply_json result_reply(const json& id, reply_json result);
 /// Shortens a text that a message repeats from a client: words and quoted pieces to 80 characters, all to

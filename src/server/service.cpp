@@ -33,11 +33,6 @@ net::rpc_message within_memory(Parse parse)
     }
 }
 
-net::rpc_message parsed(std::string_view text, const service_limits& l)
-{
-    return net::parse_rpc(text, {.nesting = l.max_nesting, .any_form = "stop"});
-}
-
 // A message that came in parts, while it is parsed on another thread.
 struct message_in_parts {
     std::vector<std::string> parts;
@@ -50,7 +45,7 @@ struct message_in_parts {
         for (const std::string& part : std::exchange(parts, {}))
             text += part;
         bytes = text.size();
-        net::rpc_message m = parsed(text, l);
+        net::rpc_message m = net::parse_rpc(text, l.max_nesting);
         for (auto& part : m.parts)
             if (auto* r = std::get_if<net::rpc_request>(&part); r != nullptr && r->params.is_object())
                 pack_points(r->params);
@@ -218,7 +213,7 @@ bool service::receive(client_number number, std::string_view text)
     const client* c = find(number);
     if (c == nullptr)
         return false;
-    net::rpc_message m = within_memory([&] { return parsed(text, options_.limits); });
+    net::rpc_message m = within_memory([&] { return net::parse_rpc(text, options_.limits.max_nesting); });
     return receive(number, m, text.size(), mark(*c));
 }
 
@@ -278,7 +273,7 @@ bool service::receive(client_number number, net::rpc_message& m, std::size_t byt
             {r != nullptr ? r->id : std::get<net::rpc_refusal>(part).id, r == nullptr || r->wants_reply});
     }
     ++c->unanswered;
-    if (m.refused_any_form && c->admitted)
+    if (m.has_stop && c->admitted)
         stop_all(number);
     bytes /= m.parts.size();
     const std::uint64_t stops = stops_;

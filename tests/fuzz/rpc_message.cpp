@@ -58,8 +58,7 @@ public:
     /// Notes which answers a message needs.
     void ask(std::string_view text)
     {
-        for (const auto& part :
-             net::parse_rpc(text, {.nesting = small_limits().max_nesting, .any_form = "stop"}).parts)
+        for (const auto& part : net::parse_rpc(text, small_limits().max_nesting).parts)
             if (const auto* r = std::get_if<net::rpc_request>(&part); r == nullptr)
                 owed_.push_back(std::get<net::rpc_refusal>(part).id);
             else if (r->wants_reply)

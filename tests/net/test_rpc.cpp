@@ -27,7 +27,7 @@ namespace {
 
 int refusal_code(std::string_view text)
 {
-    const rpc_message m = parse_rpc(text, {});
+    const rpc_message m = parse_rpc(text);
     REQUIRE(m.parts.size() == 1);
     const auto* r = std::get_if<rpc_refusal>(&m.parts.front());
     return r == nullptr ? 0 : r->why.code;
@@ -98,7 +98,7 @@ struct pair {
 
 TEST_CASE("requests, notifications and batches are told apart")
 {
-    const rpc_message one = parse_rpc(R"({"jsonrpc":"2.0","id":"a","method":"m","params":{"x":1}})", {});
+    const rpc_message one = parse_rpc(R"({"jsonrpc":"2.0","id":"a","method":"m","params":{"x":1}})");
     REQUIRE(one.parts.size() == 1);
     CHECK_FALSE(one.batch);
     const auto& r = std::get<rpc_request>(one.parts.front());
@@ -106,12 +106,12 @@ TEST_CASE("requests, notifications and batches are told apart")
     CHECK(r.id == "a");
     CHECK(r.params["x"] == 1);
     CHECK(r.wants_reply);
-    const rpc_message many = parse_rpc(R"([{"jsonrpc":"2.0","method":"m"},7])", {});
+    const rpc_message many = parse_rpc(R"([{"jsonrpc":"2.0","method":"m"},7])");
     CHECK(many.batch);
     REQUIRE(many.parts.size() == 2);
     CHECK_FALSE(std::get<rpc_request>(many.parts[0]).wants_reply);
     CHECK(std::get<rpc_refusal>(many.parts[1]).why.code == code_invalid_request);
-    CHECK(parse_rpc(R"([{"jsonrpc":"2.0","method":"m"}])", {}).batch);
+    CHECK(parse_rpc(R"([{"jsonrpc":"2.0","method":"m"}])").batch);
 }
 
 TEST_CASE("a bad request has the standard's code")
@@ -133,7 +133,7 @@ TEST_CASE("no parameters are the same in each form")
           R"({"jsonrpc":"2.0","method":"m","params":[]})",
           R"({"jsonrpc":"2.0","method":"m","params":null})"}) {
         CAPTURE(text);
-        CHECK(std::get<rpc_request>(parse_rpc(text, {}).parts.front()).params == json::object());
+        CHECK(std::get<rpc_request>(parse_rpc(text).parts.front()).params == json::object());
     }
     for (const char* params : {"0", "false", "\"\"", "1"})
         CHECK(refusal_code(R"({"jsonrpc":"2.0","method":"m","params":)" + std::string(params) + "}") ==
@@ -146,10 +146,10 @@ TEST_CASE("a method that is accepted in any form is a request, whatever is besid
          {"", R"(,"params":1)", R"(,"params":["x"],"id":5)", R"(,"jsonrpc":"1.0","params":{"x":[]},"id":5)",
           R"(,"id":{},"params":null)", R"(,"id":true)"}) {
         CAPTURE(rest);
-        const std::string text = R"({"method":"halt")" + std::string(rest) + "}";
-        const rpc_message m = parse_rpc(text, {.any_form = "halt"});
+        const std::string text = R"({"method":"stop")" + std::string(rest) + "}";
+        const rpc_message m = parse_rpc(text);
         const auto& r = std::get<rpc_request>(m.parts.front());
-        CHECK(r.method == "halt");
+        CHECK(r.method == "stop");
         CHECK(r.params == json::object());
         CHECK(r.wants_reply == (text.find("id") != std::string::npos));
         CHECK(r.id == (text.find("5") != std::string::npos ? json(5) : json(nullptr)));
@@ -160,23 +160,28 @@ TEST_CASE("a method that is accepted in any form is a request, whatever is besid
 TEST_CASE("a message refused as a whole still reports a method that is accepted in any form")
 {
     const auto acts = [](const std::string& text) {
-        const rpc_message m = parse_rpc(text, {.batch = 3, .any_form = "halt"});
+        const rpc_message m = parse_rpc(text);
         CHECK(std::holds_alternative<rpc_refusal>(m.parts.front()));
-        return m.refused_any_form;
+        return m.has_stop;
+    };
+    const auto crowd = [](const std::string& last) {
+        std::string all = "[";
+        for (int i = 0; i < 64; ++i)
+            all += "1,";
+        return all + last + ']';
     };
     const std::string deep = std::string(99, '[') + std::string(99, ']');
-    CHECK(acts(R"([1,{"method":"x"},3,{"id":[1,{}],"method":"halt"}])"));
-    CHECK_FALSE(acts(R"([1,{"method":"x"},3,{"params":{"method":"halt"}}])"));
-    CHECK_FALSE(acts(R"([1,[{"method":"halt"}],3,4])"));
-    CHECK_FALSE(acts(R"([1,"method","halt",{"x":"halt"}])"));
-    CHECK(acts(R"([{"params":[1e400,-1e999,)" + deep + R"(]},{"method":"halt"}])"));
-    CHECK_FALSE(acts(R"({"method":"x","params":{"x":)" + deep + R"(,"method":"halt"}})"));
-    CHECK_FALSE(acts(R"({"method":["halt"],"params":)" + deep + "}"));
-    CHECK_FALSE(parse_rpc("[1,2,3,4]", {.batch = 3}).refused_any_form);
+    CHECK(acts(crowd(R"({"method":"x"},{"id":[1,{}],"method":"stop"})")));
+    CHECK_FALSE(acts(crowd(R"({"params":{"method":"stop"}})")));
+    CHECK_FALSE(acts(crowd(R"([{"method":"stop"}])")));
+    CHECK_FALSE(acts(crowd(R"("method","stop",{"x":"stop"})")));
+    CHECK(acts(R"([{"params":[1e400,-1e999,)" + deep + R"(]},{"method":"stop"}])"));
+    CHECK_FALSE(acts(R"({"method":"x","params":{"x":)" + deep + R"(,"method":"stop"}})"));
+    CHECK_FALSE(acts(R"({"method":["stop"],"params":)" + deep + "}"));
     // Such a request is accepted also where it nests too deep.
-    for (const std::string& text : {R"({"params":)" + deep + R"(,"id":7,"method":"halt"})",
-                                    R"({"id":7,"method":"halt","params":{"x":)" + deep + "}}"}) {
-        const rpc_message m = parse_rpc(text, {.any_form = "halt"});
+    for (const std::string& text : {R"({"params":)" + deep + R"(,"id":7,"method":"stop"})",
+                                    R"({"id":7,"method":"stop","params":{"x":)" + deep + "}}"}) {
+        const rpc_message m = parse_rpc(text);
         CHECK(std::get<rpc_request>(m.parts.front()).id == 7);
     }
 }
@@ -184,8 +189,7 @@ TEST_CASE("a message refused as a whole still reports a method that is accepted 
 TEST_CASE("a number that no double holds is no number, and its message is answered")
 {
     const rpc_message m = parse_rpc(
-        R"({"jsonrpc":"2.0","id":6,"method":"a\"1e400","params":{"x":1e400,"y":[-1E+400,1e-400],"z":"1e400","d":2}})",
-        {});
+        R"({"jsonrpc":"2.0","id":6,"method":"a\"1e400","params":{"x":1e400,"y":[-1E+400,1e-400],"z":"1e400","d":2}})");
     const auto& r = std::get<rpc_request>(m.parts.front());
     CHECK(r.id == 6);
     CHECK(r.method == "a\"1e400");
@@ -207,10 +211,9 @@ TEST_CASE("nesting is counted outside of texts, and what is deeper is never buil
     CHECK(refusal_code(closed(1'000'000)) == code_limit);
     CHECK(refusal_code(nested(1'000'000)) == code_limit);
     CHECK(refusal_code(nested(64)) == code_parse_error);
-    CHECK(std::get<rpc_refusal>(parse_rpc(closed(65), {}).parts.front()).why.what == "max_nesting");
+    CHECK(std::get<rpc_refusal>(parse_rpc(closed(65)).parts.front()).why.what == "max_nesting");
     CHECK(refusal_code(closed(64)) == code_invalid_request);
-    const rpc_message m =
-        parse_rpc(R"({"jsonrpc":"2.0","id":5,"method":"m","params":)" + closed(64) + "}", {});
+    const rpc_message m = parse_rpc(R"({"jsonrpc":"2.0","id":5,"method":"m","params":)" + closed(64) + "}");
     CHECK(std::get<rpc_refusal>(m.parts.front()).why.what == "max_nesting");
     CHECK(std::get<rpc_refusal>(m.parts.front()).id == 5);
     CHECK(refusal_code("\"" + nested(100) + "\\\"" + nested(100) + "\"") == code_invalid_request);
@@ -243,10 +246,10 @@ TEST_CASE("an error repeats at most 80 characters of a client's text")
     CHECK(fault_text(f) == x80 + ": no '" + x80 + "' (not \"" + x80 + "\")");
     CHECK(refusal_code(R"({"jsonrpc":"2.0","method":"m","id":")" + x + "\"}") == code_invalid_request);
     CHECK(refusal_code(R"({"jsonrpc":"2.0","method":"m","id":")" + x.substr(0, 80) + "\"}") == 0);
-    CHECK(json_line(
-              error_reply(nullptr,
-                          std::get<rpc_refusal>(parse_rpc(std::string(1U << 20, 'x'), {}).parts.front()).why))
-              .size() < 1000);
+    CHECK(
+        json_line(error_reply(nullptr,
+                              std::get<rpc_refusal>(parse_rpc(std::string(1U << 20, 'x')).parts.front()).why))
+            .size() < 1000);
 }
 
 TEST_CASE("errors have kind, what, why and hint")
