@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: MIT
-import {by_id, show_only_if} from "../../../net/page/dom.js";
-import {follow_theme} from "./theme.js";
-import {show_progress, show_no_progress, show_bar_if} from "./progress.js";
+import {by_id, make, show_only_if} from "../../../net/page/dom.js";
 import {draw_target, move_target} from "./motion.js";
 import {show_answers, enable_answers, mark_answer, show_stimuli} from "./answers.js";
 
@@ -12,13 +10,13 @@ const BETWEEN = ["wait", "pause"];  // screens that leave the progress as it is
 
 let socket = null, words = {}, tactors = [], state = {screen: "wait", ask: 0}, began = 0;
 
-// The program has all there is to know; this page shows what it was told last, and keeps nothing.
+// The program holds the session's state; this page shows its last message, and keeps nothing.
 function connect() {
   socket = new WebSocket(`ws://${location.host}/rpc`);
   socket.onopen = () => socket.send('{"hello":true}');
   socket.onmessage = m => {
-    const said = JSON.parse(m.data);
-    if (said.words) greet(said); else show(said);
+    const message = JSON.parse(m.data);
+    if (message.words) greet(message); else show(message);
   };
   socket.onclose = () => {
     if (LAST.includes(state.screen)) return;
@@ -48,9 +46,7 @@ function show(s) {
   by_id("text").tabIndex = s.screen === "consent" ? 0 : -1; // a long one is scrolled
   by_id("question").textContent = s.question ?? "";
   for (const mark of by_id("mark").children) show_only_if(mark, !s.stimuli && mark.dataset.on.split(" ").includes(s.screen));
-  if (s.progress) show_progress(s.progress, words, s.screen === "rest");
-  else if (!BETWEEN.includes(s.screen)) show_no_progress();
-  if (s.progress || !BETWEEN.includes(s.screen)) show_bar_if(s.progress);
+  if (s.progress || !BETWEEN.includes(s.screen)) show_progress(s.progress, s.screen === "rest");
   show_stimuli(s.stimuli ?? 0, s.playing ?? 0);
   show_answers(s, tactors, answer);
   enable_answers(state.ask > 0);
@@ -58,6 +54,24 @@ function show(s) {
   show_only_if(by_id("rest"), s.screen === "rest");
   if (s.path) draw_target(tactors, s.path);
   if (s.lasts_s) move(s);
+}
+
+// Shows where the session is. The bar has a segment for each part; the present one fills with its trials.
+function show_progress(p, part_is_over) {
+  const bar = by_id("bar"), parts = [];
+  show_only_if(bar, p);
+  if (p?.runs > 1 || p && !p.trial) parts.push(`${words.part} ${p.run} / ${p.runs}`);
+  if (p?.practice) parts.push(words.practice);
+  if (p?.trial) parts.push(`${p.trial} / ${p.trials}`);
+  by_id("where").textContent = parts.join(" · ");
+  if (!p) return;
+  const done = part_is_over ? p.trials : Math.max(0, p.trial - 1);
+  bar.setAttribute("aria-valuemax", p.trials);
+  bar.setAttribute("aria-valuenow", done);
+  bar.classList.toggle("practice", p.practice);
+  while (bar.children.length > p.runs) bar.lastChild.remove();
+  while (bar.children.length < p.runs) bar.append(make("i"));
+  [...bar.children].forEach((segment, i) => segment.style.setProperty("--done", i + 1 < p.run ? 1 : i + 1 === p.run ? done / p.trials : 0));
 }
 
 // The target moves, and a break passes, in the program's own time.
@@ -77,7 +91,7 @@ function show_left(left_s, lasts_s) {
 function answer(choice) {
   if (!state.ask || choice > state.choices.length || socket.readyState !== WebSocket.OPEN) return;
   socket.send(JSON.stringify({ask: state.ask, answer: choice}));
-  state.ask = 0; // whether it came to be known is seen by what comes next
+  state.ask = 0; // the next message shows whether the answer arrived
   enable_answers(false);
   mark_answer(choice);
 }
@@ -97,7 +111,11 @@ by_id("full").addEventListener("click", () => {
   done.catch(() => {});
   by_id("full").blur(); // or space would answer it
 });
-follow_theme();
+// Follows the system's light or dark.
+const dark = matchMedia("(prefers-color-scheme: dark)");
+const set_theme = () => { document.documentElement.dataset.theme = dark.matches ? "dark" : "light"; };
+dark.onchange = set_theme;
+set_theme();
 connect();
 
 // For the console, and for tests: what esbuild joins is not seen from outside.
