@@ -67,7 +67,7 @@ class Page:
         self.browser = browser
         self.target = browser.call("Target.createTarget", url="about:blank")["targetId"]
         self.session = browser.call("Target.attachToTarget", targetId=self.target, flatten=True)["sessionId"]
-        self.call("Emulation.setDeviceMetricsOverride", width=size[0], height=size[1], deviceScaleFactor=1, mobile=False)
+        self.resize(size)
         for domain in ("Network", "Page", "Runtime", "Log"):
             self.call(f"{domain}.enable")
         self.call("Page.navigate", url=address)
@@ -95,6 +95,17 @@ class Page:
                 else setTimeout(look, 16); }};
             look(); }})""")
 
+    def frames(self):
+        """Waits until the page has drawn what has changed."""
+        self.value("new Promise(f => requestAnimationFrame(() => requestAnimationFrame(() => setTimeout(f, 0))))")
+
+    def resize(self, size, density=1):
+        self.call("Emulation.setDeviceMetricsOverride", width=size[0], height=size[1], deviceScaleFactor=density, mobile=False)
+
+    def element_at(self, x, y, selector="button"):
+        """Returns the id of what a pointer meets there, or of its button."""
+        return self.value(f"document.elementFromPoint({x}, {y})?.closest({json.dumps(selector)})?.id")
+
     def requests(self):
         return [e["params"]["request"]["url"] for e in self.browser.events
                 if e.get("sessionId") == self.session and e.get("method") == "Network.requestWillBeSent"]
@@ -115,10 +126,16 @@ class Page:
         self.call("Input.dispatchMouseEvent", type=kind, x=x, y=y, button="left", buttons=0 if kind == "mouseReleased" else 1,
                   clickCount=1)
 
-    def click(self, selector):
-        x, y = self.middle(selector)
+    def tap(self, x, y):
         self.mouse("mousePressed", x, y)
         self.mouse("mouseReleased", x, y)
+
+    def click(self, selector):
+        self.tap(*self.middle(selector))
+
+    def open_popover(self, button, popover):
+        self.click(button)
+        self.until(f"document.querySelector({json.dumps(popover)}).matches(':popover-open')")
 
     def move_to(self, *places):
         """Moves the mouse with its button down."""

@@ -79,28 +79,11 @@ test("what is fitted or trimmed plays as it was drawn, again", () => {
   }
 });
 
-test("a stroke that was kept with its points and without its ink can be edited", () => {
-  const old = {name: "old", start_s: 0, timed: circle(), knots: [{x: 36, y: 20, corner: false}, {x: 4, y: 20, corner: false}, {x: 20, y: 4, corner: false}],
-    pace: {kind: "even"}, strength: [[0, 1], [1, 1]]};
-  const ready = s.editable(old);
-  assert.equal(ready.timed, old.timed);
-  assert.equal(s.shape(ready), null);
-  assert.ok(farthest(s.rebuild(ready).timed, old.timed) < 0.05);
-  assert.ok(off_line([[0, 1, 1]], s.changed_knot(ready, 1, {x: 1, y: 1}).timed) < 0.03);
-});
-
 test("a drawing that stops half-way keeps its pace", () => {
   const raw = [...Array.from({length: 51}, (_, i) => [i / 100, i / 5, 0, 1]), ...Array.from({length: 50}, (_, i) => [1.5 + i / 100, 10 + (i + 1) / 5, 0, 1])];
   const drawn = s.from_drawing(raw, "stops");
   assert.ok(Math.abs(s.interpolate(drawn.timed, 1)[1] - 10) < 0.5);
   assert.ok(farthest(drawn.timed, raw) < 0.6, `${farthest(drawn.timed, raw)} mm`);
-});
-
-test("a corner stays a corner", () => {
-  const raw = [...Array.from({length: 41}, (_, i) => [i / 40, i / 2, 0, 1]), ...Array.from({length: 40}, (_, i) => [1 + (i + 1) / 40, 20, (i + 1) / 2, 1])];
-  const drawn = s.from_drawing(raw, "corner");
-  assert.equal(drawn.knots.filter(k => k.corner).length, 1);
-  assert.ok(Math.min(...drawn.timed.map(p => Math.hypot(p[1] - 20, p[2]))) < 0.6);
 });
 
 test("imported points are played as they are until they are edited", () => {
@@ -109,13 +92,6 @@ test("imported points are played as they are until they are edited", () => {
   assert.equal(s.editable(ready), ready);
   assert.equal(ready.pace.kind, "even");
   assert.ok(farthest(s.rebuild(ready).timed, stroke.timed) < 0.3);
-});
-
-test("a moved knot moves the path there and leaves the duration", () => {
-  const stroke = s.from_drawing(circle(), "round"), k = 4;
-  const moved = s.changed_knot(stroke, k, {x: 5, y: 5});
-  assert.ok(Math.min(...moved.timed.map(p => Math.hypot(p[1] - 5, p[2] - 5))) < 0.5);
-  assert.ok(Math.abs(s.duration_s(moved) - s.duration_s(stroke)) < 1e-3);
 });
 
 test("a knot is put in where the path is touched", () => {

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
 """The studio in a browser, for its tests: a service, a page of it, and hands that draw."""
+import base64
 import json
 import pathlib
 import sys
@@ -123,6 +124,25 @@ class StudioTest(BrowserTest, ToolTest):
         p.value("offer.click()")
 
     @staticmethod
+    def choose_files(p, files):
+        """Opens files, {name: text or bytes}, by the page's field for files."""
+        data = {name: base64.b64encode(v.encode() if isinstance(v, str) else v).decode() for name, v in files.items()}
+        p.value("""(files => { const d = new DataTransfer(), e = document.querySelector("#file");
+            for (const [name, v] of Object.entries(files)) d.items.add(new File([Uint8Array.from(atob(v), c => c.charCodeAt(0))], name));
+            e.files = d.files; e.dispatchEvent(new Event("change")); })(%s)""" % json.dumps(data))
+
+    @staticmethod
+    def add_example(p):
+        p.value("document.querySelector('#examples button').click()")
+
+    @staticmethod
+    def set_slider(p, label, place):
+        """Sets a slider of the pane to one of its places, 0 to 1000."""
+        p.until("(globalThis.found = [...document.querySelectorAll('#pane .slider')].find(s => s.textContent.startsWith(%s))?.querySelector('input'))"
+                % quoted(label))
+        p.value(f"found.value = {place}, found.dispatchEvent(new Event('input')), found.dispatchEvent(new Event('change'))")
+
+    @staticmethod
     def next_stroke(watcher, state):
         return watcher.notification(lambda m: m["method"] == "stroke" and m["params"]["state"] == state)["params"]["stroke"]
 
@@ -135,8 +155,7 @@ class StudioTest(BrowserTest, ToolTest):
         folder.mkdir(exist_ok=True)
         p.browser.call("Browser.setDownloadBehavior", behavior="allow", downloadPath=str(folder), eventsEnabled=True)
         since = len(p.browser.events)
-        p.click("#save")
-        p.until("document.querySelector('#p-save').matches(':popover-open')")
+        p.open_popover("#save", "#p-save")
         p.click(f"#p-save [data-kind={kind}]")
         while True:
             done = next((e["params"] for e in p.browser.events[since:] if e.get("method") == "Browser.downloadProgress"

@@ -14,14 +14,6 @@ from harness import ROOT, ToolTest, main  # noqa: E402
 
 
 class Files(http.server.SimpleHTTPRequestHandler):
-    """The modules. With ?sandbox a page may not have anything of its origin, as where a user forbids it."""
-
-    def end_headers(self):
-        self.send_header("Access-Control-Allow-Origin", "*")
-        if self.path.endswith("?sandbox"):
-            self.send_header("Content-Security-Policy", "sandbox allow-scripts")
-        super().end_headers()
-
     def log_message(self, *_):
         pass
 
@@ -35,8 +27,8 @@ class ModulesTest(BrowserTest, ToolTest):
         threading.Thread(target=server.serve_forever).start()
         self.address = f"http://127.0.0.1:{server.server_port}"
 
-    def open(self, more=""):
-        p = self.page(f"{self.address}/takes/address.js{more}")
+    def open(self):
+        p = self.page(f"{self.address}/takes/address.js")
         p.until("location.pathname === '/takes/address.js' && document.readyState === 'complete'")
         return p
 
@@ -92,10 +84,6 @@ class Storage(ModulesTest):
             await s.write({takes: [{id: 1, version: "theirs"}, {id: 2, version: "known"}]});
             const others = await s.write({takes: [{id: 1, version: "own"}, {id: 2, version: "own"}, {id: 3, version: "own"}]}, new Map([[1, "before"], [2, "known"]]));
             return [others, (await s.load()).map(t => t.version)]; """), [[{"id": 1, "version": "theirs"}], ["theirs", "own", "own"]])
-
-    def test_where_the_browser_keeps_nothing_there_is_no_storage(self):
-        p = self.open("?sandbox")
-        self.assertTrue(self.call(p, f"{self.address}/takes/storage.js", "return m.open_storage('takes').then(() => false, () => true);"))
 
 
 class Sound(ModulesTest):

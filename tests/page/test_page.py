@@ -140,8 +140,7 @@ class Drawing(StudioTest):
     def test_a_tap_tries_a_tactor_and_a_long_one_shows_its_facts(self):
         p, watcher = self.ready(self.serve())
         place = self.at(p, [20, 20])[0]
-        p.mouse("mousePressed", *place)
-        p.mouse("mouseReleased", *place)
+        p.tap(*place)
         self.next_stroke(watcher, "started")
         self.toast(p, "Tactor 4")
         p.mouse("mousePressed", *place)
@@ -163,8 +162,8 @@ class Drawing(StudioTest):
         # A message is over the field, and cannot be touched by mistake.
         self.assertEqual(p.value("getComputedStyle(document.querySelector('#banner')).pointerEvents"), "none")
         p.value("document.querySelector('#settings').click()")
-        p.call("Emulation.setDeviceMetricsOverride", width=PHONE[0], height=PHONE[1] - 60, deviceScaleFactor=1, mobile=False)  # an address bar
-        p.value("new Promise(requestAnimationFrame).then(() => new Promise(requestAnimationFrame)).then(() => 1)")
+        p.resize((PHONE[0], PHONE[1] - 60))  # an address bar
+        p.frames()
         self.assertEqual((self.at(p, *corners), p.value(field)), before)
         p.mouse("mouseReleased", *last)
         p.until("tactor.state.takes.length === 1")

@@ -18,12 +18,8 @@ class Body(StudioTest):
         p, _ = self.ready(self.serve(), **more)
         p.key("KeyH", "h")
         p.until("document.querySelector('#place-bar').checkVisibility()")
-        self.still(p)
+        p.frames()
         return p
-
-    @staticmethod
-    def still(p):
-        p.value("new Promise(f => requestAnimationFrame(() => requestAnimationFrame(() => setTimeout(f, 0))))")
 
     @staticmethod
     def lines(p):
@@ -37,7 +33,7 @@ class Body(StudioTest):
     def file_says(self, p, **values):
         """Lets the service say what it reads from the array's file."""
         p.value(f"Object.assign(tactor.state.hello.array, {json.dumps(values)}), tactor.changed('array')")
-        self.still(p)
+        p.frames()
 
     def on_hand(self, p, x, y, place=(1, -56)):
         """Returns true if a place, mm from the middle of the wrist crease, is drawn as hand. The array lies around 20, 20."""
@@ -62,7 +58,7 @@ class Body(StudioTest):
             p.click("[aria-label=Longer]")
         self.says(p, body=200)
         p.key("Digit0", "0")
-        self.still(p)
+        p.frames()
         self.assertTrue(self.on_hand(p, -10.6, -196))
         self.assertFalse(self.on_hand(p, -10.6, -203))
         for _ in range(60):
@@ -75,7 +71,7 @@ class Body(StudioTest):
         self.assertFalse(self.on_hand(p, 60, -70))
         p.value("[...document.querySelectorAll('#place-bar button')].find(b => b.textContent === 'Right').click()")
         self.says(p, site="right palm", place=[-1, -56])
-        self.still(p)
+        p.frames()
         self.assertTrue(self.on_hand(p, 60, -70, (-1, -56)))
         self.assertFalse(self.on_hand(p, -60, -70, (-1, -56)))
 
@@ -136,7 +132,7 @@ class Body(StudioTest):
             with self.subTest(size=size):
                 p, _ = self.ready(self.serve("--socket", self.dir / f"{size[0]}.sock"), size=size, fingers=size != DESKTOP)
                 p.until("document.querySelector('#locator .outline rect')")
-                p.value("document.querySelector('#examples button').click()")
+                self.add_example(p)
                 p.until("document.querySelector('#hint').hidden")
                 left, top, right, bottom = p.value("(r => [r.left, r.top, r.right, r.bottom])(document.querySelector('#locator').getBoundingClientRect())")
                 self.assertEqual((right - left, bottom - top), (74, 86))
@@ -145,13 +141,14 @@ class Body(StudioTest):
                     away = max(left - x, x - right, 0) ** 2 + max(top - y, y - bottom, 0) ** 2
                     self.assertGreaterEqual(away, r * r, (x, y))
                 x, y = p.middle("#locator")
-                self.assertEqual(p.value(f"document.elementFromPoint({x}, {y}).closest('button')?.id"), "locator")
-                p.touch("touchStart", (0, x, y)) if size == PHONE else p.click("#locator")
+                self.assertEqual(p.element_at(x, y), "locator")
                 if size == PHONE:
+                    p.touch("touchStart", (0, x, y))
                     p.touch("touchEnd")
+                else:
+                    p.tap(x, y)
                 p.until("document.querySelector('#place-bar').checkVisibility()")
-                x, y = p.middle("#stop")
-                self.assertEqual(p.value(f"document.elementFromPoint({x}, {y}).closest('button')?.id"), "stop")
+                self.assertEqual(p.element_at(*p.middle("#stop")), "stop")
 
     def test_drawing_draws_the_outline_once(self):
         p, _ = self.ready(self.serve())

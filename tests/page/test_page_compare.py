@@ -21,7 +21,7 @@ class Compare(StudioTest):
     def compare(self, s):
         """Returns a page that compares the methods of an example, and a client."""
         p, watcher = self.ready(s)
-        p.value("document.querySelector('#examples button').click()")
+        self.add_example(p)
         p.until(f"tactor.state.plan_of && tactor.state.plan_of === {TAKE}")
         p.value(SPY)
         p.key("KeyB", "b")
@@ -96,8 +96,7 @@ class Compare(StudioTest):
 
     def test_a_study_of_it_runs(self):
         p, _ = self.compare(self.serve())
-        p.click("#study-open")
-        p.until("document.querySelector('#p-study').matches(':popover-open')")
+        p.open_popover("#study-open", "#p-study")
         folder = self.dir / "study"
         folder.mkdir()
         p.browser.call("Browser.setDownloadBehavior", behavior="allow", downloadPath=str(folder), eventsEnabled=True)
@@ -126,7 +125,7 @@ class Felt(StudioTest):
     def felt(self):
         """Returns a page with an example and the tool Felt."""
         p, _ = self.ready(self.serve())
-        p.value("document.querySelector('#examples button').click()")
+        self.add_example(p)
         p.until("tactor.state.takes.length")
         p.key("KeyW", "w")
         p.until("tactor.state.tool === 'felt'")

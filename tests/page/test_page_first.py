@@ -27,6 +27,7 @@ class Simulated(StudioTest):
         self.assertIn("No card, so this page plays itself.", p.value("document.querySelector('#hint').innerText"))
         p.click("#hint-example")
         p.until("tactor.state.playing && tactor.state.at_s > 0")
+        self.assertEqual(p.value("[...document.querySelectorAll('#examples b')].map(b => b.textContent)"), ["Three-quarter circle"])
         # Each tactor is a frequency at its place.
         self.assertEqual(p.value("heard.map(o => Math.round(o.frequency.value))"), [880] * 3 + [539] * 3 + [330] * 3)
         self.assertEqual(p.value("[tactor.state.takes.length, document.querySelector('#take-name').textContent]"), [0, "Three-quarter circle"])
@@ -42,20 +43,22 @@ class Simulated(StudioTest):
         p.until("document.querySelector('#loudest').textContent.startsWith('loudest: tactor 4')")
         p.click("#stop")
         p.until("!tactor.state.drawing && tactor.state.dbfs.every(v => v === null)")
-        place = self.at(p, [0, 0])[0]
-        p.mouse("mousePressed", *place)
-        p.mouse("mouseReleased", *place)
+        p.tap(*self.at(p, [0, 0])[0])
         p.until("heard.length === 18 && tactor.state.dbfs[0] !== null")
         p.until("tactor.state.dbfs.length === 0")
         p.click("#feel")
         p.until("document.querySelector('#feel-text').textContent === 'Hear off'")
         self.draw(p, *self.way([5, 5], [35, 35]))
+        self.planned(p)
+        p.click("#play")
+        self.toast(p, "No card: shown, not felt")
+        p.until("tactor.state.playing && tactor.state.at_s > 0")
+        p.until("!tactor.state.playing")
         self.assertEqual(p.value("heard.length"), 18)
 
     def test_share_shows_the_command_where_no_other_device_can_open_the_address(self):
         p, _ = self.ready(self.serve())
-        p.click("#share")
-        p.until("document.querySelector('#p-share').matches(':popover-open')")
+        p.open_popover("#share", "#p-share")
         self.assertRegex(p.value("document.querySelector('#link').textContent"), r"^tactor serve --http 0\.0\.0\.0:\d+ --config FILE$")
         self.assertFalse(p.value("document.querySelector('#qr').checkVisibility()"))
 
@@ -74,8 +77,7 @@ class Gallery(StudioTest):
         p.key("KeyG", "g")
         p.until(f"document.querySelector('#p-gallery').checkVisibility() && {CARDS}.length === 20")
         for name in ("stop", "level"):
-            x, y = p.middle(f"#{name}")
-            self.assertEqual(p.value(f"document.elementFromPoint({x}, {y}).closest('#{name}')?.id"), name)
+            self.assertEqual(p.element_at(*p.middle(f"#{name}"), f"#{name}"), name)
         for i in range(20):
             p.value(f"{CARDS}[{i}].click()")
             name = p.value(f"{CARDS}[{i}].querySelector('b').textContent")
@@ -109,8 +111,7 @@ class Gallery(StudioTest):
 class Tour(StudioTest):
     def test_six_steps_that_play(self):
         p, watcher = self.ready(self.serve(), size=PHONE, fingers=True)
-        p.click("#more")
-        p.until("document.querySelector('#p-more').matches(':popover-open')")
+        p.open_popover("#more", "#p-more")
         p.click("#p-more [data-press=tour-open]")
         p.until("document.querySelector('#p-tour').textContent.startsWith('One tactorTactor 4 buzzes')")
         for step in range(1, 7):
@@ -120,8 +121,7 @@ class Tour(StudioTest):
                     p.click("#p-tour .row button:last-child")
                 self.next_stroke(watcher, "started")
                 p.click("#p-tour .row:last-child button:last-child")
-        x, y = p.middle("#stop")
-        self.assertEqual(p.value(f"document.elementFromPoint({x}, {y}).closest('button').id"), "stop")
+        self.assertEqual(p.element_at(*p.middle("#stop")), "stop")
         p.click("#p-tour .row button")
         p.until("!document.querySelector('#p-tour').matches(':popover-open') && tactor.state.current === null")
         self.assertEqual(p.value("tactor.state.takes.length"), 0)

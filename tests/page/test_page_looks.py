@@ -2,6 +2,7 @@
 """The looks of the studio in a real Chromium, in each state, size and theme. Usage: test_page_looks.py TOOL SOURCE_ROOT [FOLDER_FOR_PICTURES]"""
 import pathlib
 import sys
+import unittest
 
 PICTURES = pathlib.Path(sys.argv.pop(3)).resolve() if len(sys.argv) > 3 else None
 from studio import DARK, LIVE, MISSING, SIZES, TAKE, StudioTest  # noqa: E402
@@ -12,30 +13,29 @@ from harness import ROOT, main  # noqa: E402
 class Looks(StudioTest):
     """Each state in each size, light and dark: within the screen, Stop to be seen, nothing that axe-core finds."""
 
+    @unittest.skipUnless(AXE, "axe-core is not there (tests/lanes/page gets it)")
     def test_axe_core_is_there(self):
-        if not AXE:
-            self.skipTest("axe-core is not there (tests/lanes/page gets it)")
+        pass
 
     def look(self, p, name, sizes=SIZES):
         for size in sizes:
-            p.call("Emulation.setDeviceMetricsOverride", width=size[0], height=size[1], deviceScaleFactor=1, mobile=False)
+            p.resize(size)
             p.call("Emulation.setTouchEmulationEnabled", enabled=size[0] < 1100, maxTouchPoints=5)
             for theme in ("light", "dark"):
                 p.call("Emulation.setEmulatedMedia", features=DARK if theme == "dark" else [])
                 p.until(f"document.documentElement.dataset.theme === '{theme}'")
-                p.value("new Promise(f => requestAnimationFrame(() => requestAnimationFrame(() => setTimeout(f, 0))))")
+                p.frames()
                 p.until("document.getAnimations().length === 0")
                 picture = f"{name}-{size[0]}x{size[1]}-{theme}"
                 if PICTURES:
                     p.picture(PICTURES / f"studio-{picture}.png")
                 with self.subTest(picture=picture):
                     self.assertEqual(p.value("[document.documentElement.scrollWidth, document.documentElement.scrollHeight]"), list(size))
-                    x, y = p.middle("#stop")
-                    self.assertEqual(p.value(f"document.elementFromPoint({x}, {y})?.closest('button')?.id"), "stop")
+                    self.assertEqual(p.element_at(*p.middle("#stop")), "stop")
                     if AXE:
                         self.assertEqual(p.axe_findings(), [])
         p.call("Emulation.setTouchEmulationEnabled", enabled=False)
-        p.call("Emulation.setDeviceMetricsOverride", width=SIZES[0][0], height=SIZES[0][1], deviceScaleFactor=1, mobile=False)
+        p.resize(SIZES[0])
         p.until(f"innerWidth === {SIZES[0][0]} && (f => f.clientHeight === f.parentElement.clientHeight)(document.querySelector('#field'))")
 
     def pretend(self, p, **values):
@@ -179,12 +179,12 @@ class Shapes(StudioTest):
         return [[0.5, 0.5], [0.05, 0.2], [0.95, 0.8]].some(([x, y]) => !b.contains(document.elementFromPoint(r.x + x * r.width, r.y + y * r.height)));
     }).map(b => b.id || b.type)"""
 
-    def resize(self, p, size, touch, density=1):
-        p.call("Emulation.setDeviceMetricsOverride", width=size[0], height=size[1], deviceScaleFactor=density, mobile=False)
+    def resize(self, p, size, touch):
+        p.resize(size)
         p.call("Emulation.setTouchEmulationEnabled", enabled=touch, maxTouchPoints=5)
         p.until(f"innerWidth === {size[0]} && innerHeight === {size[1]} && matchMedia('(pointer: coarse)').matches === {str(touch).lower()}"
                 " && (f => f.clientHeight === f.parentElement.clientHeight)(document.querySelector('#field'))")
-        p.value("new Promise(f => requestAnimationFrame(() => requestAnimationFrame(() => setTimeout(f, 0))))")
+        p.frames()
 
     def warned(self, s):
         """Returns a page with a take that leaves the array."""
@@ -229,7 +229,7 @@ class Shapes(StudioTest):
             for theme in ("light", "dark"):
                 p.call("Emulation.setEmulatedMedia", features=DARK if theme == "dark" else [])
                 p.until(f"document.documentElement.dataset.theme === '{theme}'")
-                p.value("new Promise(f => requestAnimationFrame(() => requestAnimationFrame(() => setTimeout(f, 0))))")
+                p.frames()
                 name = f"{size[0]}x{size[1]}-{theme}"
                 if PICTURES:
                     p.picture(PICTURES / f"settings-{name}.png")

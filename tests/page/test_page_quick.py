@@ -5,13 +5,11 @@ import math
 import statistics
 import sys
 import time
-import urllib.request
 
 del sys.argv[3:]
-from studio import PHONE, TAKE, StudioTest, quoted  # noqa: E402
+from studio import PHONE, TAKE, StudioTest  # noqa: E402
 from harness import main  # noqa: E402
 
-MOST_BYTES = 190_000
 # Frames in two seconds, the longest time between two, what the page's own code takes of one, and tasks that took longer than 50 ms.
 FRAMES = """new Promise(done => {
     const tasks = [], observer = new PerformanceObserver(l => tasks.push(...l.getEntries().map(e => Math.round(e.duration))));
@@ -31,15 +29,12 @@ def part(sorted_values, p):
 
 
 class Quick(StudioTest):
-    def test_the_page_is_small_and_its_first_picture_soon(self):
+    def test_the_first_picture_is_soon(self):
         s = self.serve()
-        with urllib.request.urlopen(s.where["http"]) as answer:
-            size = len(answer.read())
         p, _ = self.ready(s)
         first_ms = p.until("performance.getEntriesByName('first-contentful-paint')[0]?.startTime")
         connected_ms = p.value("performance.now()")
-        print(f"page: {size} bytes; first picture after {first_ms:.0f} ms, with array and examples before {connected_ms:.0f} ms")
-        self.assertLessEqual(size, MOST_BYTES)
+        print(f"page: first picture after {first_ms:.0f} ms, with array and examples before {connected_ms:.0f} ms")
         self.assertLess(first_ms, 2000)
 
     def test_from_a_pointer_to_the_service(self):
@@ -119,15 +114,13 @@ class Quick(StudioTest):
         p, watcher = self.ready(self.serve(), **screen)
         p.value(SPENT)
         began = time.monotonic()
-        p.value(f"""(() => {{ const d = new DataTransfer(); d.items.add(new File([{quoted('t_s,x_mm,y_mm' + chr(10) + rows + chr(10))}], "long.csv"));
-            const f = document.querySelector("#file"); f.files = d.files; f.dispatchEvent(new Event("change")); }})()""")
+        self.choose_files(p, {"long.csv": f"t_s,x_mm,y_mm\n{rows}\n"})
         p.until(f"tactor.state.takes.length && tactor.state.plan && tactor.state.plan_of === {TAKE}")
         opened = time.monotonic() - began
         p.click("#play")
         self.next_stroke(watcher, "started")
         p.until("tactor.state.at_s > 0.2")
         seen = p.value(FRAMES)
-        # Another look at it while it plays: the whole, and a part.
         p.click("#stop")
         own = seen["own"]
         print(f"ten minutes {screen}: opened and planned in {opened:.1f} s; {seen['frames']} frames in 2 s (an empty page: {empty['frames']}), the longest {seen['longest']} ms;"

@@ -105,9 +105,8 @@ class Screens(StudioTest):
                             self.assertTrue(w >= 43.5 and h >= 43.5, (x, y, w, h))
                 # The array is whole, and nothing lies over Stop.
                 for x, y in self.at(p, [0, 0], [40, 40]):
-                    self.assertEqual(p.value(f"document.elementFromPoint({x}, {y}).id"), "field")
-                x, y = p.middle("#stop")
-                self.assertEqual(p.value(f"document.elementFromPoint({x}, {y}).closest('button').id"), "stop")
+                    self.assertEqual(p.element_at(x, y, "*"), "field")
+                self.assertEqual(p.element_at(*p.middle("#stop")), "stop")
 
 
 if __name__ == "__main__":

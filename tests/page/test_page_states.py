@@ -6,7 +6,7 @@ import signal
 import sys
 
 del sys.argv[3:]
-from studio import TAKE, LIVE, MISSING, StudioTest, quoted  # noqa: E402
+from studio import TAKE, LIVE, StudioTest, quoted  # noqa: E402
 from harness import main  # noqa: E402
 
 
@@ -103,20 +103,6 @@ class NothingIsLost(StudioTest):
         self.end(p)
         self.plays(p, s)
 
-    def test_stop_is_sent_to_a_service_that_does_not_answer(self):
-        s = self.serve()
-        p, watcher = self.ready(s)
-        number = s.client().ok("play", path="M 0 0 L 40 40", options={"algorithm": "continuous", "duration": 300})["stroke"]
-        watcher.stroke(number, "started")
-        os.kill(s.process.pid, signal.SIGSTOP)
-        p.key("Space", " ")
-        self.says(p, "No answer")
-        self.assertNotEqual(p.value("document.querySelector('#toast').textContent"), "Stopped, everybody's strokes")
-        os.kill(s.process.pid, signal.SIGCONT)
-        self.assertEqual(watcher.await_end(number)["state"], "cancelled")
-        self.toast(p, "Stopped, everybody's strokes")
-        self.says(p, "Stopped")
-
     def test_the_token_changes(self):
         s = self.serve(config=self.token("secret"))
         p = self.begin(s, "#token=secret")
@@ -132,20 +118,6 @@ class NothingIsLost(StudioTest):
         self.says(p, "Running")
         self.assertEqual(p.value("[location.hash, tactor.state.takes.length]"), ["", 2])
         self.plays(p, again)
-
-
-class Devices(StudioTest):
-    def test_without_a_card_it_is_drawn_and_shown(self):
-        p = self.open(self.serve(device=MISSING))
-        self.says(p, "Simulated")
-        p.click("#feel")
-        p.until("document.querySelector('#feel-text').textContent === 'Hear off'")
-        self.draw(p, *self.way([5, 5], [35, 35]))
-        self.planned(p)
-        p.click("#play")
-        self.toast(p, "No card: shown, not felt")
-        p.until("tactor.state.playing && tactor.state.at_s > 0")
-        p.until("!tactor.state.playing")
 
 
 class Others(StudioTest):
@@ -239,7 +211,7 @@ class Everywhere(StudioTest):
         p.until("document.querySelector('#lanes').width === 600 && document.querySelector('#field').width === 600")
         # The emulated browser tells of another density only with another size; that of the canvases stays.
         for density in (2, 1):
-            p.call("Emulation.setDeviceMetricsOverride", width=1440 + density, height=900, deviceScaleFactor=density, mobile=False)
+            p.resize((1440 + density, 900), density)
             p.until(f"['field', 'lanes'].every(id => (c => Math.abs(c.width - c.clientWidth * {density}) < 2)(document.getElementById(id)))")
 
     def test_lanes_of_many_tactors(self):
@@ -267,9 +239,9 @@ class Everywhere(StudioTest):
             self.draw(p, *self.way(*way))
             self.planned(p)
             for size in ((1440, 900), (390, 844), (960, 540)):
-                p.call("Emulation.setDeviceMetricsOverride", width=size[0], height=size[1], deviceScaleFactor=1, mobile=False)
+                p.resize(size)
                 p.until(f"innerWidth === {size[0]} && (f => f.clientHeight === f.parentElement.clientHeight)(document.querySelector('#field'))")
-                p.value("new Promise(f => requestAnimationFrame(() => requestAnimationFrame(() => setTimeout(f, 0))))")
+                p.frames()
                 boxes = p.value("tactor.label_boxes()")
                 self.assertGreater(len(boxes), 9)
                 r = p.value("0.215 * 20 * tactor.view.scale")
@@ -281,7 +253,7 @@ class Everywhere(StudioTest):
                     for x, y in discs:
                         near = (min(a[2], max(a[0], x)), min(a[3], max(a[1], y)))
                         self.assertGreaterEqual(((near[0] - x) ** 2 + (near[1] - y) ** 2) ** 0.5, r - 0.01)
-            p.call("Emulation.setDeviceMetricsOverride", width=1440, height=900, deviceScaleFactor=1, mobile=False)
+            p.resize((1440, 900))
             p.until("innerWidth === 1440 && document.querySelector('#field').clientWidth > 800")
 
     def test_an_empty_page_has_no_time(self):
@@ -343,8 +315,7 @@ class Everywhere(StudioTest):
 
     def test_a_phone_that_lies_has_open_share_and_help(self):
         p, _ = self.ready(self.serve(), size=(844, 390), fingers=True)
-        p.click("#more")
-        p.until("document.querySelector('#p-more').matches(':popover-open')")
+        p.open_popover("#more", "#p-more")
         self.assertEqual(p.value("[...document.querySelectorAll('#p-more button')].map(b => b.textContent)"),
                          ["Open", "Share", "Place on the body", "Gallery", "Tour", "Light or dark", "Keys and help"])
         p.click("#p-more [data-press=help]")

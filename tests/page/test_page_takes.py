@@ -15,14 +15,15 @@ STORE = """new Promise((done, failed) => { const asked = indexedDB.open("tactor"
         t.oncomplete = () => { asked.result.close(); done(1); }; }; })"""
 
 
-class Takes(StudioTest):
+class TakesTest(StudioTest):
     def menu(self, p, number, word):
         """Chooses from the menu of one of the takes."""
         p.until("document.querySelectorAll('#takes li').length === tactor.state.takes.length")
-        p.click(f"#takes li:nth-child({number}) .more-button")
-        p.until("document.querySelector('#p-take').matches(':popover-open')")
+        p.open_popover(f"#takes li:nth-child({number}) .more-button", "#p-take")
         p.value(f"[...document.querySelectorAll('#p-take button')].find(b => b.textContent.includes({quoted(word)})).click()")
 
+
+class Takes(TakesTest):
     def test_takes_are_named_duplicated_deleted_undone_and_outlast_the_page(self):
         p, _ = self.ready(self.serve())
         for y in (5, 20, 35):
@@ -73,8 +74,7 @@ class Takes(StudioTest):
         # The plus stands right of the last clip.
         x, y, w = p.value("(r => [r.x, r.y, r.width])(document.querySelector('#lanes').getBoundingClientRect())")
         for step in range(int(w), 0, -8):
-            p.mouse("mousePressed", x + step, y + 40)
-            p.mouse("mouseReleased", x + step, y + 40)
+            p.tap(x + step, y + 40)
             if p.value("tactor.state.append"):
                 break
         self.assertTrue(p.value("tactor.state.append"))
@@ -144,8 +144,7 @@ class Takes(StudioTest):
         self.draw(p, *self.way([4, 20], [36, 20]))
         p.click("[data-tab=timing]")
         for place in (0, 1000):
-            p.until("(globalThis.found = [...document.querySelectorAll('#pane .slider')].find(s => s.textContent.startsWith('Duration'))?.querySelector('input'))")
-            p.value(f"found.value = {place}, found.dispatchEvent(new Event('input')), found.dispatchEvent(new Event('change'))")
+            self.set_slider(p, "Duration", place)
             p.until(f"tactor.state.plan_of === {TAKE} || tactor.state.plan_fault")
             self.assertIsNone(p.value("tactor.state.plan_fault"))
 
@@ -196,14 +195,6 @@ class Takes(StudioTest):
         p.click("#hint-example")
         p.until("[...document.querySelectorAll('#pane .error')].length > 5 && [...document.querySelectorAll('#pane .error')].every(e => /mm|not possible/.test(e.textContent))")
 
-    def test_examples_have_names_for_people_and_play(self):
-        p, watcher = self.ready(self.serve())
-        self.assertEqual(p.value("[...document.querySelectorAll('#examples b')].map(b => b.textContent)"), ["Three-quarter circle"])
-        p.click("#hint-example")
-        number = self.next_stroke(watcher, "started")
-        self.assertEqual(self.next_stroke(watcher, "finished"), number)
-        self.assertEqual(self.names(p), ["Three-quarter circle"])
-
     def test_a_loop_plays_round_after_round(self):
         p, watcher = self.ready(self.serve())
         self.draw(p, *self.way([5, 5], [35, 35]))
@@ -224,8 +215,7 @@ class Takes(StudioTest):
         p.until("tactor.state.takes.length === 1")
         x, y = p.value("(r => [r.x + r.width / 2, r.y + 43])(document.querySelector('#lanes').getBoundingClientRect())")
         for wanted in (1, 2, 0):
-            p.mouse("mousePressed", x, y)
-            p.mouse("mouseReleased", x, y)
+            p.tap(x, y)
             p.until(f"tactor.state.stroke === {wanted}")
 
     def test_a_clip_is_trimmed_and_the_moment_is_looked_at(self):
@@ -233,8 +223,7 @@ class Takes(StudioTest):
         p.click("#hint-example")
         p.until(f"tactor.state.takes.length && !tactor.state.playing && tactor.state.at_s > 1 && tactor.state.plan_of === {TAKE}")
         x, y, w = p.value("(r => [r.x, r.y, r.width])(document.querySelector('#lanes').getBoundingClientRect())")
-        p.mouse("mousePressed", x + w / 2, y + 100)
-        p.mouse("mouseReleased", x + w / 2, y + 100)
+        p.tap(x + w / 2, y + 100)
         p.until("tactor.state.at_s > 0.4 && tactor.state.at_s < 1.3")
         p.value("document.querySelector('#lanes').focus()")
         at = p.value("tactor.state.at_s")
@@ -248,7 +237,7 @@ class Takes(StudioTest):
         p.until(f"{TAKE}.strokes[0].timed.at(-1)[0] < {before} - 0.1")
 
 
-class Kept(StudioTest):
+class Kept(TakesTest):
     REFUSE = """globalThis.put = IDBObjectStore.prototype.put; globalThis.closing = () => dispatchEvent(new Event("beforeunload", {cancelable: true}));
         IDBObjectStore.prototype.put = () => { throw new DOMException("full", "QuotaExceededError"); }"""
 
@@ -335,14 +324,12 @@ class Kept(StudioTest):
         p, _ = self.ready(self.serve())
         for y in (5, 20):
             self.draw(p, *self.way([5, y], [35, y]))
-        p.value("document.querySelector('#takes .more-button').click()")
-        p.value("[...document.querySelectorAll('#p-take button')].find(b => b.textContent.includes('Delete')).click()")
+        self.menu(p, 1, "Delete")
         self.toast(p, "Deleted “Take 2”Undo")
         p.until("document.querySelector('#bin-text').textContent === '1, kept for 30 days'")
         p.click("#toast button")
         p.until("tactor.state.takes.length === 2 && document.querySelector('#bin').hidden")
-        p.value("document.querySelector('#takes .more-button').click()")
-        p.value("[...document.querySelectorAll('#p-take button')].find(b => b.textContent.includes('Delete')).click()")
+        self.menu(p, 1, "Delete")
         p.until("tactor.state.takes.length === 1")
         p.reload()
         self.await_service(p)
@@ -353,8 +340,7 @@ class Kept(StudioTest):
         p.until("document.querySelectorAll('#takes li').length === 2")
         self.assertEqual(self.names(p), ["Take 2", "Take 1"])
         # After thirty days it is gone.
-        p.value("document.querySelector('#takes .more-button').click()")
-        p.value("[...document.querySelectorAll('#p-take button')].find(b => b.textContent.includes('Delete')).click()")
+        self.menu(p, 1, "Delete")
         p.until("tactor.state.bin.length === 1")
         p.call("Page.addScriptToEvaluateOnNewDocument", source="{ const now = Date.now; Date.now = () => now() + 31 * 24 * 3600e3; }")
         p.reload()

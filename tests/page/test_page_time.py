@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
 """The studio's timeline in a real Chromium: what plays from when until when, what is felt and copied. Usage: test_page_time.py TOOL SOURCE_ROOT"""
+import math
 import sys
 
 del sys.argv[3:]
@@ -20,8 +21,7 @@ class Time(StudioTest):
         p.until("!tactor.state.feel")
         self.draw(p, *self.way([4, 20], [36, 20]))
         p.value("document.querySelector('#tab-timing').click()")
-        p.until("(globalThis.found = [...document.querySelectorAll('#pane .slider')].find(s => s.textContent.startsWith('Duration'))?.querySelector('input'))")
-        p.value("found.value = 1000 * Math.log(1 / 0.06) / Math.log(599.9 / 0.06), found.dispatchEvent(new Event('input')), found.dispatchEvent(new Event('change'))")
+        self.set_slider(p, "Duration", 1000 * math.log(1 / 0.06) / math.log(599.9 / 0.06))
         self.planned(p)
         p.value(WATCH)
         return p, watcher
@@ -37,11 +37,6 @@ class Time(StudioTest):
         p.move_to(*((ax + (bx - ax) * k / 8, ay + (by - ay) * k / 8) for k in range(1, 9)))
         if up:
             p.mouse("mouseReleased", bx, by)
-
-    def tap(self, p, t, y):
-        x, y = self.at_time(p, t, y)
-        p.mouse("mousePressed", x, y)
-        p.mouse("mouseReleased", x, y)
 
     def started(self, watcher):
         m = watcher.notification(lambda m: m["method"] == "stroke" and m["params"]["state"] == "started")
@@ -91,12 +86,12 @@ class Time(StudioTest):
         p.until("Math.abs(tactor.state.marks.range[1] - 0.8) < 0.02")
         self.assertAlmostEqual(p.value("tactor.state.marks.range[0]"), low, places=3)
         for _ in range(2):
-            self.tap(p, 0.6, RULER)
+            p.tap(*self.at_time(p, 0.6, RULER))
         p.until("!tactor.state.marks.range && !tactor.state.marks.start_s")
 
     def test_play_begins_at_the_start_that_is_tapped(self):
         p, watcher = self.drawn()
-        self.tap(p, 0.5, RULER)
+        p.tap(*self.at_time(p, 0.5, RULER))
         start = p.until("tactor.state.marks.start_s")
         self.assertAlmostEqual(start, 0.5, delta=0.02)
         p.key("KeyP", "p")
