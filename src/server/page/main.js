@@ -3,7 +3,7 @@
 import {state, changed, on_change, on_toast, current_take, current_stroke, is_simulated, say, remember, remembered, now_ms} from "./state.js";
 import {by_id, make, on_click, show_pressed, all_of, listen, set_text} from "../../net/page/dom.js";
 import {place_icons, forget_colours, is_dark} from "./look.js";
-import {connect, call, on_hello, page_link} from "./service/connection.js";
+import {connect, call, on_hello} from "./service/connection.js";
 import {undo, redo, can_undo, can_redo, steps_of_undo, restore_undo, rename_take} from "./takes/takes.js";
 import {open_takes, write_at_once} from "./takes/keeping.js";
 import {draw_frame, moves} from "./drawing/canvas.js";
@@ -21,7 +21,6 @@ import "./service/simulated.js";
 import {show_tactor, own_name} from "./service/device.js";
 import {choose_tool, new_take, open_sheet, fold_time} from "./settings/keys.js";
 import {full, lane_tactors, lane_height, show_all_time, zoom_time} from "./time/time_axis.js";
-import "./drawing/point_keys.js";
 import "./takes/files.js";
 import "./takes/shape_switch.js";
 import "./settings/inspector.js";
@@ -33,6 +32,7 @@ import {length_mm, editable, total_s} from "./takes/stroke.js";
 
 const TOAST_MS = 2200, UNDO_MS = 6000;
 const DONE_MS = 600; // for which the button says that it has stopped
+const SWITCHES = ["loop", "speaker", "scrub", "snap", "show_speed", "show_strength"]; // buttons, and parts of the state
 
 // Light and dark.
 const dark = matchMedia("(prefers-color-scheme: dark)");
@@ -45,7 +45,7 @@ function set_theme(theme) {
 set_theme(remembered("theme"));
 // A page that is opened again is no louder than it was.
 state.level_db = Math.min(0, Math.max(LEAST_LEVEL_DB, Number(remembered("level") ?? 0) || 0));
-on_change(what => { if (what.has("level")) remember("level", state.level_db); });
+on_change(() => remember("level", state.level_db), "level");
 listen(dark, "change", () => { if (!remembered("theme")) set_theme(null); });
 on_click("theme", () => {
   const theme = is_dark() ? "light" : "dark";
@@ -76,19 +76,13 @@ on_click("new-take", () => { new_take(); say("Draw a new take"); });
 on_click("zoom-in", () => zoom(1.3));
 on_click("zoom-out", () => zoom(1 / 1.3));
 on_click("zoom-all", look_at_all);
-on_click("loop", () => { state.loop = !state.loop; changed("playing", "curves"); });
-for (const id of ["scrub", "snap"]) on_click(id, () => { state[id] = !state[id]; changed("tool"); });
 // The keys of a headset and of a screen that is locked.
 for (const key of ["pause", "stop"]) navigator.mediaSession?.setActionHandler(key, stop);
+for (const name of SWITCHES) on_click(name, () => { state[name] = !state[name]; changed("playing", "curves"); });
 on_click("speaker", () => {
-  state.speaker = !state.speaker;
-  if (state.speaker) say(is_simulated() ? "You hear it while you draw"
-    : "Play is heard on this computer's own loudspeakers; they must not be the array's card");
-    else silence_speaker();
-  changed("playing");
+  if (!state.speaker) return silence_speaker();
+  say(is_simulated() ? "You hear it while you draw" : "Play is heard on this computer's own loudspeakers; they must not be the array's card");
 });
-on_click("show-speed", () => { state.show_speed = !state.show_speed; changed("curves"); });
-on_click("show-strength", () => { state.show_strength = !state.show_strength; changed("curves"); });
 on_click("point-curve", () => change_point({corner: false}));
 on_click("point-corner", () => change_point({corner: true}));
 on_click("point-bin", remove_point);
@@ -97,8 +91,7 @@ on_click("time-out", () => zoom_time(1.5));
 on_click("time-in", () => zoom_time(1 / 1.5));
 on_click("time-all", show_all_time);
 on_click("time-fold", fold_time);
-for (const b of all_of("[data-press]")) listen(b, "click",
-  () => { by_id("p-more").hidePopover(); by_id(b.dataset.press).click(); });
+for (const b of all_of("[data-press]")) listen(b, "click", () => { by_id("p-more").hidePopover(); by_id(b.dataset.press).click(); });
 on_click("pill", () => open_sheet("inspector"));
 on_click("settings", () => open_sheet(document.body.dataset.sheetOpen ? "" : state.sheet || "inspector"));
 on_click("sheet-close", () => open_sheet(""));
@@ -117,17 +110,12 @@ on_change(() => {
   by_id("play").dataset.on = p !== null;
   set_text("play-text", p ? "Playing" : "Play");
   show_stop();
-  show_pressed(by_id("loop"), state.loop);
-  show_pressed(by_id("speaker"), state.speaker);
-  for (const id of ["scrub", "snap"]) show_pressed(by_id(id), state[id]);
-  show_pressed(by_id("show-speed"), state.show_speed);
-  show_pressed(by_id("show-strength"), state.show_strength);
+  for (const name of SWITCHES) show_pressed(by_id(name), state[name]);
   for (const b of all_of("button[data-tool]")) show_pressed(b, b.dataset.tool === state.tool);
   by_id("field").dataset.tool = state.tool;
-  const anew = state.drawing !== null && !state.drawing.append;
-  set_text("take-name", anew ? "New take" : take?.name ?? "New take");
-  set_text("take-facts", anew ? "" : take_facts(take));
-  set_text("take-origin", !anew && take?.origin.includes("-") ? ` · ${take.origin}` : "");
+  const shown = state.drawing && !state.drawing.append ? null : take;
+  set_text("take-name", shown?.name ?? "New take");
+  set_text("take-facts", take_facts(shown));
   by_id("no-lanes").hidden = Boolean(take?.strokes.length || state.drawing);
   show_point();
 });
@@ -179,10 +167,9 @@ new ResizeObserver(() => { resize(); changed("frame"); }).observe(by_id("stage")
 addEventListener("beforeunload", e => { if (state.unkept.size) e.preventDefault(); });
 addEventListener("pagehide", () => { finish_early(); write_at_once(); });
 // Another density of the screen changes no size of the page: all is drawn again.
-function watch_density() {
+(function watch_density() {
   listen(matchMedia(`(resolution: ${devicePixelRatio}dppx)`), "change", () => { changed("layout"); watch_density(); }, {once: true});
-}
-watch_density();
+})();
 
 // The start.
 on_hello(async h => {
@@ -193,15 +180,6 @@ on_hello(async h => {
 open_takes(steps_of_undo, restore_undo);
 connect(own_name());
 changed("takes", "take", "theme", "tool");
-
-// For a home screen, where the browser allows it.
-const icon_url = `data:image/svg+xml,${encodeURIComponent('<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 20 20"><circle cx="10" cy="10" r="7" fill="#d1480b"/></svg>')}`;
-document.querySelector('link[rel="icon"]').href = icon_url;
-document.head.append(Object.assign(document.createElement("link"), {rel: "manifest",
-  href: URL.createObjectURL(new Blob([JSON.stringify({
-  name: "tactor", short_name: "tactor", start_url: page_link(), display: "standalone", background_color: "#efeeea",
-    theme_color: "#f8f7f4",
-  icons: [{src: icon_url, sizes: "any", type: "image/svg+xml"}]})], {type: "application/manifest+json"}))}));
 
 // For the console, and for tests.
 globalThis.tactor = {state, changed, place_in_page, rename: rename_take, view, lanes: full, label_boxes, lane_tactors, lane_height, felt_points};

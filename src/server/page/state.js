@@ -33,24 +33,22 @@ export const state = {
 export const now_ms = () => performance.now();
 
 const listeners = [];
-let asked = new Set(), waiting = false;
+let pending = new Set();
 
-// Calls f(changes) at most once a frame, with the set of what has changed.
-// A further point of a drawing, "ink", is told to those that ask for it.
-export function on_change(f, of_ink = false) { listeners.push({f, of_ink}); }
+// Calls f(changes) at most once a frame, with the set of what has changed, if one of the names is in it; without names after each change but
+// "ink", a further point of a drawing.
+export function on_change(f, ...names) { listeners.push({f, names}); }
 export function changed(...what) {
-  what.forEach(w => asked.add(w));
-  if (waiting) return;
-  waiting = true;
+  const is_first = !pending.size;
+  what.forEach(w => pending.add(w));
+  if (!is_first) return;
   // A tab that is not shown has no frames.
   if (document.hidden) setTimeout(flush, 0); else requestAnimationFrame(flush);
 }
 function flush() {
-  waiting = false;
-  const now = asked;
-  asked = new Set();
-  const only_ink = now.size === 1 && now.has("ink");
-  listeners.forEach(l => (l.of_ink || !only_ink) && l.f(now));
+  const now = pending, only_ink = now.size === 1 && now.has("ink");
+  pending = new Set();
+  for (const {f, names} of listeners) if (names.length ? names.some(n => now.has(n)) : !only_ink) f(now);
 }
 
 // Messages: a toast that goes away, with a button if something can be undone, and a banner that stays.
@@ -67,9 +65,9 @@ export const current_take = () => take_by_id(state.current);
 export const marks = () => state.marks.take === state.current ? state.marks : {start_s: 0};
 // The stroke of the take that is edited.
 export const current_stroke = () => current_take()?.strokes[state.stroke] ?? null;
-// Returns true where the service has never had a card: the page itself plays then.
 // The service plays to the PCM null where nothing names another.
 export const plays_to_nobody = () => state.hello?.stream.pcm === "null";
+// Returns true where the service has never had a card: the page itself plays then.
 export const is_simulated = () => state.link === "connected" && state.stream.state === "lost" && state.hello.stream.format === null;
 export const ceiling_dbfs = () => state.hello?.max_level_dbfs ?? -12;
 export const level_dbfs = () => ceiling_dbfs() + state.level_db;

@@ -71,13 +71,13 @@ export const body_matrix = ([x, y], scale) => new DOMMatrix().translate(x, y).ro
 // Returns the corners of the part, mm, around an array whose middle is given.
 export const body_corners = (middle, [x, y, w, h] = part().box, m = body_matrix(middle, 1)) =>
   [x, x + w].flatMap(u => [y, y + h].map(v => m.transformPoint({x: u, y: v}))).map(q => [q.x, q.y]);
-on_change(what => {
+on_change(() => {
   const a = state.hello?.array, site = a?.site ?? "left palm";
-  if (!a || !what.has("array")) return;
+  if (!a) return;
   Object.assign(body, usual_place(Object.keys(PARTS).findLast(name => PARTS[name].find.test(site)), /right/i.test(site)));
   const {place: [x, y] = [body.x, body.y], body: length = body.length, turn = 90 * Math.max(0, directions().indexOf(a.up))} = a;
   Object.assign(body, {x, y, turn, length});
   [in_file, place_key] = [a.site ? JSON.stringify(body) : "", `body-${a.name}-${a.tactors.length}`];
   const [file, kept] = JSON.parse(remembered(place_key)) ?? [];
   if (file === in_file) Object.assign(body, kept);
-});
+}, "array");

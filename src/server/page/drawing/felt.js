@@ -3,7 +3,7 @@
 // was put, or as near as can be.
 import {state, changed, on_change, current_take, current_stroke, say, now_ms} from "../state.js";
 import {plot, paint, disc} from "./pen.js";
-import {array, trace_rows, to_px, px_per_mm} from "./view.js";
+import {array, trace_rows, to_px, view} from "./view.js";
 import {edit_stroke} from "../takes/takes.js";
 import {editable, changed_knot, nearest_knot, knot_times, interpolate, within} from "../takes/stroke.js";
 import {number_text} from "../words.js";
@@ -26,7 +26,7 @@ function start_wish(knot) {
 // Takes the diamond at a place, if there is one.
 export function grasp_felt(mm) {
   const near = nearest_knot(felt_points(), mm);
-  if (near.off * px_per_mm() > GRASP_PX) return false;
+  if (near.off * view.scale > GRASP_PX) return false;
   start_wish(near.index);
   return true;
 }
@@ -58,10 +58,8 @@ function solve() {
   else if (!solved) solve();
   wish.after = current_stroke();
 }
-on_change(what => {
-  if (what.has("tool")) wish = null;
-  if (what.has("plan")) solve();
-});
+on_change(() => { wish = null; }, "tool");
+on_change(solve, "plan");
 
 // Draws the diamonds, and of a wish its ring, how far it is from there, and the former path.
 export function draw_felt_points(p, s) {

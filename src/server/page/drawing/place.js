@@ -4,8 +4,7 @@ import {state, on_change} from "../state.js";
 import {by_id, make, on_click, listen} from "../../../net/page/dom.js";
 import {plain_name} from "../words.js";
 import {choice, button} from "../settings/controls.js";
-import {array, view, to_px, handle_px, look_at_all, outdated} from "./view.js";
-import {ARROWS} from "./point_keys.js";
+import {array, view, to_px, handle_px, look_at_all, outdated, ARROWS} from "./view.js";
 import {PARTS, body, part, mirror, outline_mm, usual_place, is_in_file, set_body, up_word, place_name} from "./body.js";
 
 const TURN_STEP = 15, REACH_OF_HANDLE_PX = 26;
@@ -35,8 +34,8 @@ export function show_place(on = !state.placing) {
   set_and_fit({}); skin.focus();
 }
 on_click("locator", () => show_place(true));
-on_change(what => {
-  if (!array || !(what.has("body") || what.has("array"))) return;
+on_change(() => {
+  if (!array) return;
   // The whole part with the array's square on it.
   const {x, y, turn} = body, k = outline_mm(), [w, h] = array.box.size.map(v => (v + 2 * array.radius) / k), {from, measure: name} = part();
   by_id("locator").replaceChildren(part_picture(part(), make("rect", {x: -w / 2, y: -h / 2, width: w, height: h,
@@ -47,7 +46,7 @@ on_change(what => {
   const site = JSON.stringify(place_name()), up = up_word();
   lines.textContent = `[array]\nsite = ${site}\nup = "${up}"\nplace = [${x}, ${y}]\nturn = ${turn}\nbody = ${body.length}`;
   outdated("ground");
-});
+}, "body", "array");
 // Hands and keys on the canvas.
 let grip = null;
 const over_body = (x, y) => new DOMMatrix().rotate(-body.turn).transformPoint({x, y}); // a distance on the screen

@@ -3,11 +3,11 @@
 import {state, changed, current_take, current_stroke, ceiling_dbfs, is_simulated, say, now_ms} from "../state.js";
 import {by_id, listen} from "../../../net/page/dom.js";
 import {call, tell, is_connected, on_lost} from "../service/connection.js";
-import {array, to_mm, to_px, px_per_mm, tactor_at, zoom, zoom_by_two, pan} from "./view.js";
+import {array, to_mm, to_px, view, tactor_at, zoom, zoom_by_two, pan, ARROWS} from "./view.js";
 import {add_take, edit_take, edit_stroke, end_edit, request_options} from "../takes/takes.js";
 import {say_if_kept} from "../takes/keeping.js";
 import {from_drawing, straight, editable, nearest_knot, insert_knot, changed_knot, without_knot, total_s, outside_mm} from "../takes/stroke.js";
-import {grasp_felt, pull} from "./felt.js";
+import {grasp_felt, pull, step_felt} from "./felt.js";
 import {test_tactor, tell_level, on_stop} from "../service/player.js";
 
 const RESTING_MS = 100;    // a finger that rests says so, or its stroke would end
@@ -16,6 +16,7 @@ const HOLD_MS = 500;
 const LEAST_STEP_MS = 2;   // between points that are sent
 const REACH_PX = 22;
 const LINE_MM_S = 60;
+const MOVE_MM = 0.5, FINE_MOVE_MM = 0.1; // of a point, by keys
 export const PAUSE_S = 0.1; // between strokes of a take that were drawn, or copied, one after the other
 const NAMES = {mouse: "drawn", touch: "drawn", pen: "drawn with a pen", key: "drawn with keys"};
 
@@ -33,8 +34,7 @@ function down(id, px, e) {
   if (!array || state.placing || fingers.has(id)) return;
   if (e.pointerType === "touch" && [...fingers.values()].some(f => f.kind === "pen")) return; // it is the hand of the pen
   const mm = to_mm(...px);
-  const f = {id, px, from: mm, at: mm, strength: strength(e), kind: e.pointerType ?? "key", down_ms: e.timeStamp
-    ?? now_ms(), mode: "tap",
+  const f = {id, px, from: mm, at: mm, strength: strength(e), kind: e.pointerType, down_ms: e.timeStamp, mode: "tap",
     straight: state.tool === "line" || e.shiftKey, sent_ms: 0, number: null};
   if (state.tool === "felt") { f.mode = "felt"; if (!grasp_felt(mm)) return; }
   if (f.mode === "felt" || state.tool === "points" && grasp(f, mm)) { fingers.set(id, f); return; }
@@ -61,7 +61,7 @@ function moved(id, px, e) {
   f.at = mm;
   f.strength = strength(e);
   if (f.mode === "felt") return pull(mm);
-  if (f.mode === "knot") return drag_knot(f, mm);
+  if (f.mode === "knot") return move_knot(f.knot, mm, f.key);
   if (f.mode === "tap" && Math.hypot(mm[0] - f.from[0], mm[1] - f.from[1]) > LEAST_MM && state.tool !== "points") begin(f);
   if (f.mode === "draw") record(f, mm, e.timeStamp);
 }
@@ -71,28 +71,25 @@ function begin(f) {
   f.mode = "draw";
   const now = f.down_ms;
   if (!state.drawing) {
-    const take = current_take();
-    const before = state.append && take ? take.strokes : [];
-    state.drawing = {began: now - 1000 * total_s(before), before, tracks: [], kind: f.kind, append: state.append
-      && take !== null};
+    const append = state.append && current_take() !== null, before = append ? current_take().strokes : [];
+    state.drawing = {began: now - 1000 * total_s(before), before, tracks: [], kind: f.kind, append};
     state.stopped = null;
     document.body.classList.add("touching");
   }
-  f.track = {start_s: Math.max(0, seconds(now - state.drawing.began)), began: now, points: [], down: true, straight: f.straight,
-    strength: f.strength};
+  f.track = {start_s: Math.max(0, seconds(now - state.drawing.began)), began: now, points: [[0, ...rounded(f.from), f.strength]], down: true,
+    straight: f.straight};
   state.drawing.tracks.push(f.track);
-  f.track.points.push([0, ...rounded(f.from), f.strength]);
   if (state.feel && is_connected() && !is_simulated()) begin_live(f);
   changed("drawing", "link");
 }
 const rounded = p => p.map(v => +v.toFixed(3));
 
 function record(f, mm, at_ms) {
-  const t = seconds(at_ms - f.track.began), last = f.track.points.at(-1);
+  const t = seconds(at_ms - f.track.began);
   if (f.straight) f.track.points.length = 1;
   if (t <= f.track.points.at(-1)[0]) return;
   f.track.points.push([t, ...rounded(mm), f.strength]);
-  if (last[0] !== t) send(f, at_ms);
+  send(f, at_ms);
   changed("ink");
 }
 
@@ -112,8 +109,7 @@ export function begin_live(f) {
 export function send(f, at_ms, always = false) {
   if (f.number === null || (!always && at_ms - f.sent_ms < LEAST_STEP_MS)) return;
   f.sent_ms = at_ms;
-  tell("to", {stroke: f.number, x_mm: f.at[0], y_mm: f.at[1],
-    intensity: f.strength});
+  tell("to", {stroke: f.number, x_mm: f.at[0], y_mm: f.at[1], intensity: f.strength});
 }
 setInterval(() => fingers.forEach(f => f.mode === "draw" && send(f, now_ms(), true)), RESTING_MS);
 
@@ -156,25 +152,18 @@ function finish(take_name) {
   document.body.classList.remove("touching");
   const tracks = d.tracks.filter(k => k.points.length > 1);
   if (!tracks.length) return changed("drawing");
-  const many = tracks.length > 1;
   const strokes = tracks.map((k, i) => {
-    const n = d.before.length + i + 1, name = many ? `finger ${i + 1}` : `stroke ${n}`;
-    return k.straight ? straight(k.points[0].slice(1, 3), k.points.at(-1).slice(1, 3), LINE_MM_S, name, k.start_s,
-      k.points.at(-1)[3])
-      : from_drawing(k.points, name, k.start_s);
+    const name = tracks.length > 1 ? `finger ${i + 1}` : `stroke ${d.before.length + 1}`;
+    const start = k.points[0].slice(1, 3), [, x, y, strong] = k.points.at(-1);
+    return k.straight ? straight(start, [x, y], LINE_MM_S, name, k.start_s, strong) : from_drawing(k.points, name, k.start_s);
   });
+  // Further strokes follow the last one, whenever they were drawn; the last burst of that one has ended by then.
+  const first = Math.min(...strokes.map(s => s.start_s)), from_s = d.append ? total_s(d.before) + PAUSE_S : 0;
+  const placed = strokes.map(s => ({...s, start_s: +(s.start_s - first + from_s).toFixed(4)}));
   if (d.append) {
-    // It follows the last stroke, whenever it was drawn; the last burst of that one has ended by then.
-    const first = Math.min(...strokes.map(s => s.start_s)), after = total_s(d.before) + PAUSE_S;
-    edit_take(t => ({strokes: [...t.strokes, ...strokes.map(s => ({...s, start_s: +(s.start_s - first + after).toFixed(4)}))]}));
-    state.stroke = d.before.length;
-    state.append = false;
-  } else {
-    const first = Math.min(...strokes.map(s => s.start_s));
-    const take = add_take(strokes.map(s => ({...s, start_s: +(s.start_s - first).toFixed(4)})),
-      {name: take_name, origin: NAMES[d.kind] ?? "drawn"});
-    say_if_kept(take);
-  }
+    edit_take(t => ({strokes: [...t.strokes, ...placed]}));
+    Object.assign(state, {stroke: d.before.length, append: false});
+  } else say_if_kept(add_take(placed, {name: take_name, origin: NAMES[d.kind]}));
   state.at_s = 0;
   changed("drawing", "take");
 }
@@ -195,29 +184,21 @@ on_lost(() => fingers.forEach(f => { f.number = null; }));
 // Points.
 const edited_stroke = () => current_stroke() && editable(current_stroke());
 function grasp(f, mm) {
-  const s = edited_stroke();
-  if (!s) return false;
-  const near = nearest_knot(s.knots, mm);
-  if (near.off * px_per_mm() > REACH_PX) return false;
-  f.mode = "knot";
-  f.knot = near.index;
-  f.key = `knot ${f.id} ${now_ms()}`;
+  const near = nearest_knot(edited_stroke()?.knots ?? [], mm);
+  if (near.off * view.scale > REACH_PX) return false;
+  Object.assign(f, {mode: "knot", knot: near.index, key: `knot ${f.id} ${now_ms()}`});
   state.knot = near.index;
   changed("knot");
   return true;
 }
-function drag_knot(f, [x, y]) { edit_stroke(s => changed_knot(s, f.knot, {x: +x.toFixed(3), y: +y.toFixed(3)}), f.key); }
+const move_knot = (at, place, same) => edit_stroke(s => { const [x, y] = rounded(place); return changed_knot(s, at, {x, y}); }, same);
 function add_point(mm) {
-  const s = edited_stroke();
-  if (!s) return;
-  const added = insert_knot(s, mm);
+  const added = insert_knot(edited_stroke(), mm);
   edit_stroke(() => added.stroke);
   state.knot = added.index;
   changed("knot");
 }
-export function change_point(how) {
-  edit_stroke(s => changed_knot(s, state.knot, how));
-}
+export const change_point = change => edit_stroke(s => changed_knot(s, state.knot, change));
 export function remove_point() {
   const s = edited_stroke();
   if (!s || state.knot < 0 || s.knots.length <= 2) return;
@@ -228,7 +209,7 @@ export function remove_point() {
 // Chooses the stroke whose path is nearest; returns true if there is one.
 function choose_stroke(mm) {
   const take = current_take();
-  let best = {off: REACH_PX / px_per_mm(), i: -1};
+  let best = {off: REACH_PX / view.scale, i: -1};
   take?.strokes.forEach((s, i) => s.timed.forEach(p => {
     const off = Math.hypot(p[1] - mm[0], p[2] - mm[1]);
     if (off < best.off) best = {off, i};
@@ -278,10 +259,30 @@ function set_hot(i) {
   changed("hot");
 }
 
-// Keys within the canvas: Enter touches and lifts, arrows move.
+// Keys within the canvas. With Points and Felt Tab walks the points, arrows move the chosen one, Enter makes it a curve or a corner. Tab
+// after the last one leaves the canvas.
+function act_on_point(e) {
+  const felt = state.tool === "felt";
+  if ((state.tool !== "points" && !felt) || !current_stroke()) return false;
+  const {knots} = edited_stroke(), at = state.knot, k = knots[at], step = ARROWS[e.key];
+  if (e.key === "Tab") {
+    const next = at < 0 && e.shiftKey ? knots.length - 1 : at + (e.shiftKey ? -1 : 1);
+    state.knot = knots[next] ? next : -1;
+    changed("knot");
+    return state.knot >= 0;
+  }
+  if (!k || (!step && (felt || e.key !== "Enter"))) return false;
+  const mm = e.shiftKey ? FINE_MOVE_MM : MOVE_MM;
+  if (!step) change_point({corner: !k.corner});
+  else if (felt) step_felt(at, step.map(v => v * mm));
+  else move_knot(at, [k.x + step[0] * mm, k.y + step[1] * mm], `key knot ${at}`);
+  return true;
+}
+// Otherwise Enter touches and lifts, and arrows move.
 let key = null;
 listen(field, "keydown", e => {
   if (!array || state.placing || e.ctrlKey || e.metaKey || e.altKey) return;
+  if (act_on_point(e)) return e.preventDefault();
   if (e.key === "Enter") {
     e.preventDefault();
     if (key) { key = null; up("key"); return; }
@@ -289,10 +290,9 @@ listen(field, "keydown", e => {
     down("key", to_px(key), {pointerType: "key", timeStamp: now_ms()});
     return;
   }
-  const step = {ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1]}[e.key];
+  const step = ARROWS[e.key], mm = Math.max(...array.box.size, 10) / (e.shiftKey ? 100 : 25);
   if (!step) return;
   e.preventDefault();
-  const mm = Math.max(...array.box.size, 10) / (e.shiftKey ? 100 : 25);
   if (!key) return;
   key = [key[0] + step[0] * mm, key[1] + step[1] * mm];
   moved("key", to_px(key), {pointerType: "key", timeStamp: now_ms()});

@@ -8,6 +8,7 @@ import {body_corners} from "./body.js";
 const canvas = by_id("field");
 export const layers = {ground: by_id("ground"), ink: by_id("ink"), moment: canvas}; // each lies over the one before
 export const view = {zoom: 1, x: 0, y: 0, scale: 1, left: 0, top: 0, width: 0, height: 0, dpr: 1, scale_bottom: 20};
+export const ARROWS = {ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1]}; // keys
 export const stale = {ground: true, ink: true};
 export let array = null; // {tactors, edge, pitch, radius}
 
@@ -27,7 +28,6 @@ export const to_mm = (px, py) => [(px - view.left) / view.scale + array.box.midd
 export const place_in_page = p => { const r = canvas.getBoundingClientRect(), [x, y] = to_px(p); return [r.left + x, r.top + y];
   };
 export const handle_px = () => Math.max(...array.box.size) / 2 * view.scale + 44; // from the middle of the array, where the body is placed
-export const px_per_mm = () => view.scale;
 export function tactor_at([x, y]) {
   return array ? array.places.findIndex(p => Math.hypot(p[0] - x, p[1] - y) <= array.radius * 1.05) : -1;
 }
@@ -88,11 +88,9 @@ function is_outgrown() {
   return r.width !== view.width || r.height !== view.height;
 }
 export function outdated(...names) { names.forEach(l => { stale[l] = true; }); changed("frame"); }
-on_change(what => {
-  if (what.has("take") || what.has("plan") || what.has("drawing") || what.has("tool") || what.has("knot")) outdated("ink");
-  if (what.has("theme") || what.has("array")) outdated("ground", "ink");
-  if (what.has("layout") || (what.has("drawing") && is_outgrown())) resize();
-});
+on_change(() => outdated("ink"), "take", "plan", "drawing", "tool", "knot");
+on_change(() => outdated("ground", "ink"), "theme", "array");
+on_change(what => { if (what.has("layout") || is_outgrown()) resize(); }, "layout", "drawing");
 
 // Begins a layer anew.
 export function start_layer(c) {

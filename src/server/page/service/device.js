@@ -48,46 +48,45 @@ function warn() {
   return null;
 }
 
-let closed = "", said = {};
+let closed = "", shown_icon = "";
 function show_device() {
   const [picture, word, tone, why] = describe();
-  const text = `${picture} ${word} ${why}`;
-  if (text !== said.chip) {
-    said.chip = text;
-    by_id("device-icon").replaceChildren(icon(picture));
-    set_text("state", word);
-    set_text("state-why", why ? ` · ${why}` : "");
-    by_id("device").dataset.tone = tone;
-  }
+  if (picture !== shown_icon) by_id("device-icon").replaceChildren(icon(shown_icon = picture));
+  set_text("state", word);
+  set_text("state-why", why ? ` · ${why}` : "");
+  by_id("device").dataset.tone = tone;
   set_text("array-name", state.hello ? array_name(state.hello.array) : "tactor");
   const others = Math.max(0, (state.status?.who?.length ?? state.status?.clients ?? 1) - 1);
   by_id("others").hidden = others === 0;
   by_id("others-text").replaceChildren(String(others), make("i", {}, others === 1 ? " other" : " others"));
   by_id("others").setAttribute("aria-label", `${others} ${others === 1 ? "other" : "others"}`);
-  const b = warn(), key = b ? b[0] : "";
-  if (key !== closed && key === "") closed = "";
+  const [text, banner_tone, details] = warn() ?? ["", "", ""];
+  if (!text) closed = "";
   by_id("banner-close").hidden = state.unkept.size > 0;
   by_id("save-all").hidden = !state.unkept.size;
-  by_id("banner").hidden = !b || closed === key;
-  if (b && closed !== key && key !== said.banner) {
-    by_id("banner").dataset.tone = b[1];
-    by_id("banner-icon").replaceChildren(icon("warn"));
-    set_text("banner-text", b[0]);
-    set_text("banner-details", b[2]);
-    by_id("banner-more").hidden = !b[2];
-    by_id("token").hidden = state.link !== "token";
-  }
-  said.banner = by_id("banner").hidden ? "" : key;
+  by_id("banner").hidden = text === closed;
+  if (text === closed) return;
+  by_id("banner").dataset.tone = banner_tone;
+  set_text("banner-text", text);
+  set_text("banner-details", details);
+  by_id("banner-more").hidden = !details;
+  by_id("token").hidden = state.link !== "token";
 }
-on_click("banner-close", () => { closed = by_id("banner-text").textContent; state.fault = null;
-  changed("link"); });
+on_click("banner-close", () => {
+  closed = by_id("banner-text").textContent;
+  state.fault = null;
+  changed("link");
+});
 on_click("banner-more", () => {
   const d = by_id("banner-details");
   d.hidden = !d.hidden;
   by_id("banner-more").setAttribute("aria-expanded", !d.hidden);
 });
-listen("token", "submit", e => { e.preventDefault(); connect_with(by_id("token-text").value.trim());
-  by_id("token-text").value = ""; });
+listen("token", "submit", e => {
+  e.preventDefault();
+  connect_with(by_id("token-text").value.trim());
+  by_id("token-text").value = "";
+});
 addEventListener("hashchange", () => { if (state.link !== "connected") connect(); });
 
 const fact = (name, v) => v === null || v === undefined || v === "" ? [] : [make("dt", {}, name), make("dd", {}, String(v))];
@@ -105,12 +104,12 @@ function show_facts() {
       `${number_text(ceiling_dbfs(), 0)} dBFS`), ...fact("Version", h.version),
     ...fact("Takes", state.storage_fault ? `not kept: ${state.storage_fault}` : "kept in this browser")]);
 }
-on_change(what => {
-  if (!what.has("array") || !state.hello) return;
+on_change(() => {
+  if (!state.hello) return;
   by_id("try").replaceChildren(...state.hello.array.tactors.map((t, i) => make("button",
     {class: "button outlined", "aria-label": `Try tactor ${t.tactor ?? i}`, onclick: () => test_tactor(i)},
     String(t.tactor ?? i))));
-});
+}, "array");
 listen("p-others", "beforetoggle", () => {
   by_id("people").replaceChildren(...(state.status?.who ?? []).map(w => make("li", {},
     make("b", {}, w.client === state.hello?.client ? `${w.name || "You"} (this page)` : w.name ? `“${w.name}”` : "no name"),
@@ -137,6 +136,6 @@ export function show_tactor(i, at) {
   p.style.inset = `${Math.max(8, Math.min(innerHeight - 220, at[1] + 60))}px auto auto ${Math.max(8, Math.min(innerWidth - 352, at[0]))}px`;
 }
 // A fault is about the take as it was.
-on_change(what => { if (what.has("take")) state.fault = null; });
-on_change(what => { if (["take", "link", "status", "stream", "array", "playing"].some(w => what.has(w))) show_device(); });
+on_change(() => { state.fault = null; }, "take");
+on_change(show_device, "take", "link", "status", "stream", "array", "playing");
 setInterval(() => { if (state.stopped) show_device(); }, 1000);

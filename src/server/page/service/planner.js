@@ -2,10 +2,9 @@
 // Plans for the picture: one question at a time, always about what is newest.
 import {state, ceiling_dbfs, changed, on_change, current_take, say, now_ms} from "../state.js";
 import {call, is_connected} from "./connection.js";
-import {make_request, put_take, take_s, with_side} from "../takes/takes.js";
+import {make_request, put_take, take_s, with_side, row, value} from "../takes/takes.js";
 import {number_text} from "../words.js";
 import {thin} from "../takes/stroke.js";
-import {row, value} from "../settings/values.js";
 
 const COMPARED_MS = 500;   // quiet before other methods are predicted
 const COMPARED_S = 30;     // the longest take for which they are
@@ -102,7 +101,4 @@ export function predicted_key(take, name, v) {
   return `${numbers.get(take)} ${name} ${v} ${state.observer ?? ""} ${state.level_db}${state.compare?.on ? JSON.stringify(state.compare.other) : ""}`;
 }
 
-on_change(what => {
-  if (what.has("take") || what.has("drawing") || what.has("ink") || what.has("level") || what.has("link") || what.has("observer")) { ++round;
-    plan_soon(); }
-}, true);
+on_change(() => { ++round; plan_soon(); }, "take", "drawing", "ink", "level", "link", "observer");

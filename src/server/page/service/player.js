@@ -52,7 +52,7 @@ async function play_unfelt(take, own) {
   if (state.playing !== own) return;
   if (is_shown(own)) hear_it(); else end_playing();
 }
-on_change(what => { if (what.has("level")) speaker?.set_gain(take_gain()); });
+on_change(() => speaker?.set_gain(take_gain()), "level");
 
 // Tells the service the level: all that this page plays is played at the ceiling and turned down there, so that what sounds
 // follows, too.

@@ -2,8 +2,7 @@
 // Comparison of two methods on one stroke: side 0 is the take as it is, side 1 has other options. Both loop in step, and one is silent.
 import {state, changed, on_change, current_take, say} from "../state.js";
 import {by_id, on_click, show_pressed, all_of, listen, set_text} from "../../../net/page/dom.js";
-import {row, value} from "./values.js";
-import {with_side} from "../takes/takes.js";
+import {row, value, with_side} from "../takes/takes.js";
 import {play, quit_playing, tell_level, hear_it} from "../service/player.js";
 import {ALGORITHMS, PHANTOMS, number_text} from "../words.js";
 

@@ -4,18 +4,17 @@ import {make, listen} from "../../../net/page/dom.js";
 import {icon} from "../look.js";
 
 let last_id = 0;
-const ids = () => `c${++last_id}`;
+const new_id = () => `c${++last_id}`;
 
-// A slider. `to` and `from` map a value to 0..1000 and back, so that ranges can be logarithmic.
-export function slider({label, get, set, least, most, text, done, step = 0, log = false, described}) {
-  const id = ids(), output = make("output", {for: id});
+// Makes a slider. `to` and `from` map a value to 0..1000 and back, so that ranges can be logarithmic.
+export function slider({label, get, set, least, most, text, done, step = 0, log = false}) {
+  const id = new_id(), output = make("output", {for: id});
   const to = v => log ? 1000 * Math.log(v / least) / Math.log(most / least) : 1000 * (v - least) / (most - least);
   const from = p => {
     const v = log ? least * (most / least) ** (p / 1000) : least + (most - least) * p / 1000;
     return Math.min(most, Math.max(least, step ? Math.round(v / step) * step : +v.toPrecision(4)));
   };
-  const input = make("input", {id, type: "range", min: 0, max: 1000, step: step && !log ? 1000 * step / (most - least) : 1,
-    "aria-describedby": described});
+  const input = make("input", {id, type: "range", min: 0, max: 1000, step: step && !log ? 1000 * step / (most - least) : 1});
   listen(input, "input", () => { set(from(Number(input.value))); update(); });
   listen(input, "change", () => done?.());
   function update() {
@@ -30,33 +29,33 @@ export function slider({label, get, set, least, most, text, done, step = 0, log 
   return {element: make("div", {class: "slider"}, make("label", {for: id}, label), output, input), update, input};
 }
 
-// Buttons of which one is chosen; arrows move, as in any group of radio buttons.
-export function choice({label, get, set, values, shape = "segments", visible_label = true}) {
-  const buttons = values.map(v => make("button", {role: "radio", "data-value": v.value,
-    onclick: () => pick(v.value)}, ...v.content ?? [v.name]));
-  const group = make("div", {role: "radiogroup", "aria-label": label, class: shape}, ...buttons);
+// Lets arrows choose the next of the buttons, or the one before.
+export function choose_by_arrows(group, buttons) {
   listen(group, "keydown", e => {
     const step = {ArrowRight: 1, ArrowDown: 1, ArrowLeft: -1, ArrowUp: -1}[e.key];
     if (!step) return;
     e.preventDefault();
-    const at = buttons.indexOf(document.activeElement), next = buttons[(at + step + buttons.length) % buttons.length];
+    const next = buttons[(buttons.indexOf(document.activeElement) + step + buttons.length) % buttons.length];
     next.focus();
     next.click();
   });
-  function pick(v) { set(v); update(); }
+}
+// Makes buttons of which one is chosen; arrows move, as in any group of radio buttons.
+export function choice({label, get, set, values, shape = "segments", visible_label = true}) {
+  const buttons = values.map(v => make("button", {role: "radio", "data-value": v.value,
+    onclick: () => { set(v.value); update(); }}, ...v.content ?? [v.name]));
+  const group = make("div", {role: "radiogroup", "aria-label": label, class: shape}, ...buttons);
+  choose_by_arrows(group, buttons);
   function update() {
-    const now = get();
-    const any = values.some(v => v.value === now);
+    const at = values.findIndex(v => v.value === get());
     buttons.forEach((b, i) => {
-      const on = values[i].value === now;
-      b.setAttribute("aria-checked", on);
-      b.tabIndex = on || (!any && i === 0) ? 0 : -1;
+      b.setAttribute("aria-checked", i === at);
+      b.tabIndex = i === Math.max(0, at) ? 0 : -1;
+      values[i].update?.(b);
     });
-    values.forEach((v, i) => v.update?.(buttons[i]));
   }
   update();
-  const element = visible_label ? make("div", {class: "field"}, make("div", {class: "label"}, label), group) : group;
-  return {element, update, buttons};
+  return {element: visible_label ? make("div", {class: "field"}, make("div", {}, label), group) : group, update};
 }
 
 export function toggle({label, hint, get, set}) {
@@ -69,7 +68,7 @@ export function toggle({label, hint, get, set}) {
 
 // A text or a number that is typed; a wrong one is told by the service.
 export function entry({label, get, set, hint, unit, numeric}) {
-  const id = ids(), input = make("input", {id, type: "text", inputmode: numeric ? "decimal" : null, autocomplete: "off",
+  const id = new_id(), input = make("input", {id, type: "text", inputmode: numeric ? "decimal" : null, autocomplete: "off",
     spellcheck: "false", placeholder: hint});
   listen(input, "change", () => {
     const text = input.value.trim();
@@ -78,7 +77,7 @@ export function entry({label, get, set, hint, unit, numeric}) {
     if (numeric && !Number.isFinite(v)) return update(true);
     set(v);
   });
-  function update(always = false) { if (always === true || document.activeElement !== input) input.value = get() ?? ""; }
+  function update(always = false) { if (always || document.activeElement !== input) input.value = get() ?? ""; }
   update();
   return {element: make("div", {class: "entry"}, make("label", {for: id}, label), input, unit && make("span", {}, unit)), update};
 }

@@ -4,14 +4,13 @@
 import {state, changed, on_change, current_take, current_stroke} from "../state.js";
 import {by_id, make, all_of, listen} from "../../../net/page/dom.js";
 import {icon} from "../look.js";
-import {slider, choice, toggle, entry, button} from "./controls.js";
-import {set_option, end_edit, edit_stroke, edit_take, put_stroke} from "../takes/takes.js";
+import {slider, choice, toggle, entry, button, choose_by_arrows} from "./controls.js";
+import {set_option, end_edit, edit_stroke, edit_take, put_stroke, row, value, algorithm} from "../takes/takes.js";
 import {predicted_key} from "../service/planner.js";
 import {algorithm_picture, phantom_picture, wave_picture, timing_picture, envelope_picture} from "./diagrams.js";
 import {ALGORITHMS, PHANTOMS, OPTION_NAMES, number_text, plain_name, seconds_text} from "../words.js";
 import {duration_s, length_mm, with_duration, rebuild, find_speeds, editable, trimmed} from "../takes/stroke.js";
 import {set_strength, strengths, set_speed} from "../time/curves.js";
-import {row, value, algorithm} from "./values.js";
 import {toggle_compare} from "./compare.js";
 import {LEAST_S, MOST_S} from "../time/time_axis.js";
 import {starting_at} from "../time/clips.js";
@@ -25,28 +24,23 @@ const OWN = new Set(["algorithm", "phantom", "soa", "burst", "waveform", "carrie
 // Options that only one algorithm knows.
 const ONLY = {snap: "tactile-brush", drop_points: "tactile-brush", overlap: "tactile-brush", soa: "park2016", burst: "park2016"};
 
-const ms = v => `${number_text(v * 1000, 0)} ms`;
+const ms = (v, digits = 0) => `${number_text(v * 1000, digits)} ms`;
+const percent = v => `${Math.round(100 * v)} %`;
+const tabs = [...all_of("[data-tab]")];
 
 let controls = [], structure = "";
 
 // The panes.
-function algorithm_choice() {
-  return cards("Algorithm", "algorithm", row("algorithm")?.choices ?? Object.keys(ALGORITHMS), ALGORITHMS, algorithm_picture,
-    true);
-}
-function phantom_choice() {
-  return cards("Phantom: how tactors share a point", "phantom", row("phantom")?.choices ?? Object.keys(PHANTOMS), PHANTOMS,
-    phantom_picture, false);
-}
-function cards(label, name, ids, words, picture, large) {
-  const c = choice({label, visible_label: false, shape: "cards", get: () => value(name), set: v => set_option(name, v),
-    values: ids.map(id => {
+const algorithm_choice = () => cards("Algorithm", "algorithm", ALGORITHMS, algorithm_picture, true);
+const phantom_choice = () => cards("Phantom: how tactors share a point", "phantom", PHANTOMS, phantom_picture, false);
+function cards(label, name, words, picture, large) {
+  const c = choice({label, visible_label: false, shape: large ? "cards large" : "cards", get: () => value(name), set: v => set_option(name, v),
+    values: (row(name)?.choices ?? Object.keys(words)).map(id => {
       const error = make("span", {class: "error"});
-      return {value: id, name: id, content: [picture(id), make("b", {}, words[id]?.[0] ?? plain_name(id)), error,
+      return {value: id, content: [picture(id), make("b", {}, words[id]?.[0] ?? plain_name(id)), error,
         make("p", {}, words[id]?.[1] ?? "")],
         update: () => { error.textContent = predicted_text(name, id); }};
     })});
-  c.element.classList.toggle("large", large);
   return {element: make("section", {}, make("h2", {}, label, large && make("span", {}, "predicted error")), c.element),
     update: c.update};
 }
@@ -72,8 +66,7 @@ function pace_controls() {
   const speeds = make("details", {class: "more"}, make("summary", {}, "Speed and strength along the path"));
   const rows = parts.map((word, i) => slider({label: `Speed ${word}`, least: 0.1, most: 5, log: true,
     get: () => current_stroke() ? find_speeds(editable(current_stroke()).pace)[i]?.[1] ?? 1 : 1, set: v => set_speed(i, v, `speed ${i}`),
-      done: end_edit,
-    text: v => `${Math.round(100 * v)} %`}));
+      done: end_edit, text: percent}));
   const strong = make("div"), made = {count: 0, list: []};
   function update() {
     const s = current_stroke();
@@ -84,7 +77,7 @@ function pace_controls() {
       made.count = n;
       made.list = strengths().map((_, i) => slider({label: `Strength, point ${i + 1}`, least: 0, most: 1,
         get: () => strengths()[i]?.[1] ?? 1,
-        set: v => set_strength(i, v, `strength ${i}`), done: end_edit, text: v => `${Math.round(100 * v)} %`}));
+        set: v => set_strength(i, v, `strength ${i}`), done: end_edit, text: percent}));
       strong.replaceChildren(...made.list.map(c => c.element));
     }
     made.list.forEach(c => c.update());
@@ -116,16 +109,17 @@ function stroke_controls() {
 }
 const can_be_drawn = () => { const s = current_stroke(); return s && (s.drawn || editable(s).pace.kind === "drawn"); };
 
-// The timing law, and what the take says of it.
+// The timing law, with the take's own values.
 const slope = () => value("slope") ?? 0.32, intercept = () => value("intercept") ?? 0.0473;
 const soa = () => value("soa") ?? 0.07, burst = () => value("burst") ?? (soa() - intercept()) / slope();
+const option_slider = (name, more) => slider({label: OPTION_NAMES[name], set: v => set_option(name, v), done: end_edit, ...more});
 function burst_controls() {
   const picture = make("div", {class: "picture"}), law = make("div", {class: "law"});
-  const bursts = slider({label: OPTION_NAMES.burst, least: 0.005, most: 0.4, step: 0.001, get: burst, done: end_edit, text: ms,
-    set: v => { set_option("burst", v, "burst"); }});
-  const interval = slider({label: OPTION_NAMES.soa, least: 0.02, most: 0.4, step: 0.001, get: soa, done: end_edit, text: ms,
-    set: v => { if (value("burst") === null && v > 0.07) set_option("burst", +burst().toFixed(4), "soa");
-      set_option("soa", v, "soa"); }});
+  const bursts = option_slider("burst", {least: 0.005, most: 0.4, step: 0.001, get: burst, text: v => ms(v)});
+  const interval = option_slider("soa", {least: 0.02, most: 0.4, step: 0.001, get: soa, text: v => ms(v), set: v => {
+    if (value("burst") === null && v > 0.07) set_option("burst", +burst().toFixed(4), "option soa");
+    set_option("soa", v);
+  }});
   function update() {
     bursts.update(); interval.update();
     picture.replaceChildren(timing_picture(Math.max(0.001, burst()), soa()));
@@ -149,16 +143,12 @@ function vibration_controls() {
     values: WAVE_NAMES.map(([v, name]) => ({value: v, name, content: [wave_picture(v), name]}))});
   const noise = entry({label: "Noise from – to, Hz", get: () => String(value("waveform")).split(":")[1] ?? "",
     set: v => set_option("waveform", v ? `noise:${v}` : null), hint: "100-400"});
-  const carrier = slider({label: "Carrier", least: 20, most: 1000, log: true, step: 1, get: () => value("carrier") ?? 250,
-    set: v => set_option("carrier", v, "carrier"), done: end_edit,
-    text: v => `${Math.round(v)} Hz`});
+  const carrier = option_slider("carrier", {least: 20, most: 1000, log: true, step: 1, get: () => value("carrier") ?? 250, text: v => `${Math.round(v)} Hz`});
   const near = make("p", {class: "hint-text"}, "Skin is most sensitive near 250 Hz.");
   const picture = make("div", {class: "picture"});
   const attack = () => value("attack") ?? value("ramp") ?? 0.002, release = () => value("release") ?? attack();
-  const rise = slider({label: "Attack", least: 0, most: 0.05, step: 0.0005, get: attack,
-    set: v => set_option("attack", v, "attack"), done: end_edit, text: v => `${number_text(v * 1000)} ms`});
-  const fall = slider({label: "Release", least: 0, most: 0.05, step: 0.0005, get: release,
-    set: v => set_option("release", v, "release"), done: end_edit, text: v => `${number_text(v * 1000)} ms`});
+  const envelope = {least: 0, most: 0.05, step: 0.0005, text: v => ms(v, 1)};
+  const rise = option_slider("attack", {...envelope, get: attack}), fall = option_slider("release", {...envelope, get: release});
   const phase_row = row("phase"), through = phase_row?.choices?.[0];
   const phase = toggle({label: "One carrier through the stroke", hint: "Off: it starts again with each burst",
     get: () => (value("phase") ?? through) === through, set: on => set_option("phase", on ? null : phase_row?.choices?.[1])});
@@ -197,10 +187,9 @@ function others(tab) {
 
 function observer_choice() {
   const o = row("observer");
-  const names = o?.choices ?? ["centroid", "low-speed"];
   return choice({label: "Predicted by", get: () => state.observer ?? o?.default ?? "centroid",
     set: v => { state.observer = v; changed("observer"); },
-    values: names.map(v => ({value: v, name: plain_name(v)}))});
+    values: (o?.choices ?? ["centroid", "low-speed"]).map(v => ({value: v, name: plain_name(v)}))});
 }
 
 function build() {
@@ -217,26 +206,17 @@ function build() {
   controls = section.filter(Boolean);
   by_id("pane").replaceChildren(...controls.map(c => c.element));
   by_id("pane").setAttribute("aria-labelledby", `tab-${state.tab}`);
-  for (const b of all_of("[data-tab]")) {
+  for (const b of tabs) {
     b.setAttribute("aria-selected", b.dataset.tab === state.tab);
     b.tabIndex = b.dataset.tab === state.tab ? 0 : -1;
   }
 }
-for (const b of all_of("[data-tab]")) listen(b, "click",
-  () => { state.tab = b.dataset.tab; changed("tab"); });
-listen("tabs", "keydown", e => {
-  const all = [...all_of("[data-tab]")], step = {ArrowLeft: -1, ArrowRight: 1}[e.key];
-  if (!step) return;
-  e.preventDefault();
-  const next = all[(all.indexOf(document.activeElement) + step + all.length) % all.length];
-  next.focus();
-  next.click();
-});
+for (const b of tabs) listen(b, "click", () => { state.tab = b.dataset.tab; changed("tab"); });
+choose_by_arrows(by_id("tabs"), tabs);
 
 on_change(what => {
-  const all = ["take", "plan", "predicted", "tab", "array", "options", "theme", "level", "observer", "drawing"];
-  if (!all.some(w => what.has(w)) || state.drawing && !what.has("drawing")) return;
+  if (state.drawing && !what.has("drawing")) return;
   state.shape = algorithm();
   build();
   controls.forEach(c => c.update());
-});
+}, "take", "plan", "predicted", "tab", "array", "options", "theme", "level", "observer", "drawing");

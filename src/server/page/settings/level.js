@@ -34,8 +34,7 @@ export function draw_meter() {
   bar.style.width = `${100 * (1 - below_db / LEAST_LEVEL_DB)}%`;
 }
 
-on_change(what => {
-  if (!what.has("level") && !what.has("array")) return;
+on_change(() => {
   level.update();
   set_text("ceiling", `ceiling ${number_text(ceiling_dbfs(), 0)} dBFS`);
-});
+}, "level", "array");

@@ -3,29 +3,26 @@
 import {state, changed, on_change, current_take, current_stroke, say} from "../state.js";
 import {by_id, make, set_text} from "../../../net/page/dom.js";
 import {icon} from "../look.js";
-import {set_option, edit_take, fit_take} from "../takes/takes.js";
+import {set_option, edit_take, fit_take, algorithm} from "../takes/takes.js";
 import {excess_db, weaken_take} from "../service/planner.js";
 import {spark} from "./diagrams.js";
 import {place_word, even_word, number_text, plain_name} from "../words.js";
 import {duration_s, length_mm, outside_mm, interpolate} from "../takes/stroke.js";
 import {array} from "../drawing/view.js";
 import {felt_speeds} from "../time/curves.js";
-import {algorithm} from "./values.js";
 
 const OUTSIDE_MM = 0.5;
 
 // Predictions.
 function show_predicted() {
-  const e = state.plan?.errors, box = by_id("predicted");
-  const numbers = e && typeof e.rms_error_mm === "number" ? [
-    tile(number_text(e.rms_error_mm), "mm off", [place_word(e.rms_error_mm / array.pitch), ", RMS"], spark(errors_over_time())),
-    e.speed_cv === undefined || e.speed_cv === null ? tile("–", "", ["speed is not predicted"], spark([]))
-      : tile(`${Math.round(100 / (1 + e.speed_cv))}`, "% even", [even_word(e.speed_cv), `, CV ${e.speed_cv.toFixed(2)}`],
-        spark(felt_speed(), mean_speed()))]
-    : [make("p", {class: "hint-text"}, state.plan_fault ? "There is no plan." : "Draw, and the prediction shows here.")];
-  box.replaceChildren(...numbers);
-  by_id("pill").hidden = typeof e?.rms_error_mm !== "number";
-  set_text("pill-text", e && typeof e.rms_error_mm === "number" ? `${number_text(e.rms_error_mm)} mm off` : "");
+  const {rms_error_mm: mm, speed_cv: cv} = state.plan?.errors ?? {}, is_known = typeof mm === "number";
+  by_id("pill").hidden = !is_known;
+  set_text("pill-text", is_known ? `${number_text(mm)} mm off` : "");
+  by_id("predicted").replaceChildren(...!is_known
+    ? [make("p", {class: "hint-text"}, state.plan_fault ? "There is no plan." : "Draw, and the prediction shows here.")]
+    : [tile(number_text(mm), "mm off", [place_word(mm / array.pitch), ", RMS"], spark(errors_over_time())),
+      typeof cv !== "number" ? tile("–", "", ["speed is not predicted"], spark([]))
+        : tile(`${Math.round(100 / (1 + cv))}`, "% even", [even_word(cv), `, CV ${cv.toFixed(2)}`], spark(felt_speed(), mean_speed()))]);
 }
 const tile = (figure, unit, word, picture) => make("div", {class: "tile"}, make("div", {}, make("b", {}, figure),
   make("small", {}, unit)), make("p", {}, word[0], make("i", {}, word[1] ?? "")), picture);
@@ -58,15 +55,17 @@ function show_warnings() {
   if (over_db && take) found.push({text: `${take.strokes.length > 1 ? "Together the strokes are" : "It is"} ${number_text(over_db)} dB stronger than may be played.`,
     short: `${number_text(over_db)} dB too strong`, buttons: [["Make this take weaker", () => weaken_take(take).catch(e => say(e.message))]]});
   for (const w of new Set(state.plan?.warnings)) if (!w.kind && !/outside/.test(w)) found.push({text: w, buttons: []});
-  const box = by_id("warnings");
+  const box = by_id("warnings"), more = found.length - 1;
   box.toggleAttribute("data-all", false);
-  box.replaceChildren(...found.map(w => make("div", {class: "warning"}, icon("warn"),
-    make("div", {}, make("p", {}, make("span", {class: w.short && "long"}, w.text), w.short && make("span", {class: "short"}, w.short)), w.buttons.length > 0 && make("div", {class: "row"}, ...w.buttons.map(([t, f], i) =>
-      make("button", {class: i === 0 ? "button outlined" : "button", onclick: f}, ...[t].flat())))))),
-    ...found.length > 1 ? [make("button", {class: "button small", onclick: () => box.toggleAttribute("data-all", true)},
-      `and ${found.length - 1} more`)] : []);
+  box.replaceChildren(...found.map(make_warning),
+    more > 0 ? make("button", {class: "button small", onclick: () => box.toggleAttribute("data-all", true)}, `and ${more} more`) : "");
   by_id("pill").dataset.warn = found.length > 0;
   changed("frame");
+}
+function make_warning({text, short, buttons}) {
+  const words = make("p", {}, make("span", {class: short && "long"}, text), short && make("span", {class: "short"}, short));
+  const row = make("div", {class: "row"}, ...buttons.map(([t, f], i) => make("button", {class: i === 0 ? "button outlined" : "button", onclick: f}, t)));
+  return make("div", {class: "warning"}, icon("warn"), make("div", {}, words, buttons.length > 0 && row));
 }
 function outside_text() {
   const n = state.outside.length, mm = Math.max(1, Math.round(Math.max(...state.outside.map(w => w.off))));
@@ -91,6 +90,4 @@ function mending(f) {
   return list;
 }
 
-on_change(what => {
-  if (["plan", "take", "array", "drawing"].some(w => what.has(w))) { show_predicted(); show_warnings(); }
-});
+on_change(() => { show_predicted(); show_warnings(); }, "plan", "take", "array", "drawing");

@@ -84,8 +84,8 @@ let example = GALLERY[0];
 export const open_example = () => { const take = as_take(example); add_take(take.strokes, take); };
 export const try_entry = (entry = example) => { try_take(as_take(entry)); play(); };
 
-on_change(what => {
-  if (!what.has("array") || !array) return;
+on_change(() => {
+  if (!array) return;
   const allows = array.edge.length > 2 ? 4 : array.places.length > 2 ? 2 : 1;
   example = GALLERY[allows > 2 ? 3 : 0];
   const entry = (g, kind, onclick) => {
@@ -95,4 +95,4 @@ on_change(what => {
   };
   by_id("strokes").replaceChildren(...GALLERY.map(g => entry(g, "card", () => try_entry(g))));
   by_id("examples").replaceChildren(entry(example, "", open_example));
-});
+}, "array");

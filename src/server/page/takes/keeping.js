@@ -1,20 +1,19 @@
 // SPDX-License-Identifier: MIT
 // Takes in the browser's storage and in other tabs: each change is written, and what is not written is said.
-import {state, changed, say, remember, remembered} from "../state.js";
+import {state, changed, say, remember, remembered, take_by_id} from "../state.js";
 import {open_storage} from "./storage.js";
 
-const AGAIN_MS = 3000;        // after a write that failed
-const HISTORY_MS = 1000;      // after an edit, until the steps of undo are written
-const TOLD_MS = 10000;        // of a change in another tab
-const TAB_MS = 24 * 3600e3;   // a tab that wrote nothing for so long is closed
+const AGAIN_MS = 3000;   // after a write that failed
+const HISTORY_MS = 1000; // after an edit, until the steps of undo are written
+const SHOWN_MS = 10000;  // of a change in another tab
 export const BIN_DAYS = 30;
-export const DAY_MS = 24 * 3600e3;
+export const DAY_MS = 24 * 3600e3; // a tab that wrote nothing for so long is closed
 
-let all = [];                 // takes with those of the bin, newest first
-let storage = null, writing = null, asked_for = {history: () => null, restore: () => {}};
-const NEWEST = "newest";     // no take has this id: the first one is shown
-const unwritten = new Map();       // takes that are not written yet, by id; null where one was removed
-const known = new Map();      // versions in the storage, by id
+let all = [];             // takes with those of the bin, newest first
+let storage = null, writing = null, undo_steps = {history: () => null, restore: () => {}};
+const NEWEST = "newest";  // no take has this id: the first one is shown
+const unwritten = new Map(); // takes that are not written yet, by id; null where one was removed
+const known = new Map();  // versions in the storage, by id
 let current_owed = false, history_timer = 0, tabs = {}; // times of the last write of each tab
 
 export const new_id = () => `${Date.now().toString(36)}-${Math.floor(Math.random() * 1e9).toString(36)}`;
@@ -24,14 +23,16 @@ export const all_takes = () => all;
 // Shows takes, and which one is edited.
 function show(takes, current = state.current) {
   all = [...takes.values()].sort((a, b) => b.made - a.made);
-  const at = state.takes.findIndex(t => t.id === current);
+  const at = Math.max(0, state.takes.findIndex(t => t.id === current));
   state.takes = all.filter(t => !t.deleted);
   state.bin = all.filter(t => t.deleted);
-  const found = state.takes.find(t => t.id === current) ?? (current && state.trial?.id === current ? state.trial : current && state.takes[Math.min(Math.max(0, at), state.takes.length - 1)]);
+  // Where the take is gone, the one at its place in the list follows.
+  const found = current && (take_by_id(current) ?? state.takes[Math.min(at, state.takes.length - 1)]);
   Object.assign(state, {current: found?.id ?? null, stroke: Math.min(state.stroke, Math.max(0, (found?.strokes.length ?? 1) - 1))});
   changed("takes", "take");
 }
 const by_ids = () => new Map(all.map(t => [t.id, t]));
+const takes_and_removed = changes => ({takes: [...changes.values()].filter(Boolean), removed: [...changes.keys()].filter(id => !changes.get(id))});
 
 // Takes over changes, [[id, take or null], ...], and writes them.
 export function put_takes(changes, current) {
@@ -49,7 +50,7 @@ export function keep_current() { current_owed = true; write_owed(); }
 
 // Opens the storage, reads it, and calls restore(steps of undo); history() returns the steps to be written.
 export function open_takes(history, restore) {
-  asked_for = {history, restore};
+  undo_steps = {history, restore};
   return write_owed();
 }
 async function open() {
@@ -75,8 +76,8 @@ async function open() {
     known.set(t.id, t.version);
     if (t.deleted < Date.now() - BIN_DAYS * DAY_MS) unwritten.set(t.id, null); else takes.set(t.id, t);
   }
-  if (steps) asked_for.restore(steps);
-  for (const name of Object.keys(tabs)) if (tabs[name] < Date.now() - TAB_MS) {
+  if (steps) undo_steps.restore(steps);
+  for (const name of Object.keys(tabs)) if (tabs[name] < Date.now() - DAY_MS) {
     opened.write({values: {[`history ${name}`]: undefined}});
     delete tabs[name];
   }
@@ -89,7 +90,7 @@ const tab = (() => {
 })();
 function history_values() {
   tabs[tab] = Date.now();
-  return {tabs, [`history ${tab}`]: asked_for.history()};
+  return {tabs, [`history ${tab}`]: undo_steps.history()};
 }
 
 // Somebody deleted what was kept: all takes are written again.
@@ -102,7 +103,7 @@ function storage_lost() {
 }
 
 // Writes what is unwritten; resolves when it is written or has failed.
-export function write_owed() {
+function write_owed() {
   return writing ??= write_all().finally(() => {
     writing = null;
     if (unwritten.size && !state.storage_fault) write_owed();
@@ -112,7 +113,7 @@ async function write_all() {
   try {
     if (!storage) await open();
     while (unwritten.size || current_owed) {
-      const batch = new Map(unwritten), takes = [...batch.values()].filter(t => t), removed = [...batch.keys()].filter(id => !batch.get(id));
+      const batch = new Map(unwritten), {takes, removed} = takes_and_removed(batch);
       current_owed = false;
       const others = await storage.write({takes, removed, values: {current: state.current}}, known);
       const own = takes.filter(t => !others.some(o => o.id === t.id));
@@ -137,7 +138,7 @@ setInterval(() => { if (state.storage_fault && unwritten.size) write_owed(); }, 
 function set_fault(text) {
   const before = state.unkept.size;
   state.storage_fault = text;
-  state.unkept = new Set(text ? [...unwritten.keys()].filter(id => unwritten.get(id)) : []);
+  state.unkept = new Set(text ? takes_and_removed(unwritten).takes.map(t => t.id) : []);
   if (before && !state.unkept.size) say(before === 1 ? "Kept again" : `Kept again, all ${before}`);
   if (text || before) changed("takes", "link");
 }
@@ -149,10 +150,9 @@ export async function say_if_kept(take) {
 // Writes all at once while the page goes away: the browser may drop what is written to the database then, so it is
 // written to the local storage, too.
 export function write_at_once() {
-  const removed = [...unwritten.keys()].filter(id => !unwritten.get(id));
   if (unwritten.size) remember("unwritten", JSON.stringify([...JSON.parse(remembered("unwritten") || "[]"),
     ...[...unwritten].map(([id, take]) => [id, take, known.get(id)])]));
-  storage?.write({takes: [...unwritten.values()].filter(t => t), removed, values: {current: state.current, ...history_values()}}).catch(() => {});
+  storage?.write({...takes_and_removed(unwritten), values: {current: state.current, ...history_values()}}).catch(() => {});
 }
 
 // Other tabs.
@@ -164,7 +164,7 @@ channel?.addEventListener("message", ({data}) => {
     known.set(t.id, t.version);
     takes.set(t.id, t);
     state.elsewhere.add(t.id);
-    setTimeout(() => { state.elsewhere.delete(t.id); changed("takes"); }, TOLD_MS);
+    setTimeout(() => { state.elsewhere.delete(t.id); changed("takes"); }, SHOWN_MS);
   }
   for (const id of data.removed) if (!unwritten.has(id)) { known.delete(id); takes.delete(id); }
   show(takes);

@@ -26,4 +26,4 @@ function show_shape() {
 on_click("shape-ink", () => { if (shape(current_stroke()) !== "drawn") edit_stroke(as_drawn); });
 on_click("shape-curve", () => { if (shape(current_stroke()) === "drawn") edit_stroke(as_edited); });
 listen("fit-mm", "input", e => edit_stroke(s => fitted_within(s, +e.target.value), "fit"));
-on_change(what => { if (["take", "drawing", "tool"].some(w => what.has(w))) show_shape(); });
+on_change(show_shape, "take", "drawing", "tool");

@@ -77,14 +77,18 @@ export function put_stroke(change, same, index = state.stroke) {
 export const edit_stroke = (change, same) => put_stroke(s => change(editable(s)), same);
 // Returns a take as a side of a comparison plays it: 0 is the take itself. Without a number, the side that sounds.
 export const with_side = (take, side = state.compare?.on) => side && take ? {...take, options: {...take.options, ...state.compare.other}} : take;
-export function set_option(name, value, same = `option ${name}`) {
+// Options of the take, and the rows of the table that describe them.
+export const row = name => state.options.find(o => o.name === name);
+export const value = name => with_side(current_take())?.options[name] ?? row(name)?.default ?? null;
+export const algorithm = () => value("algorithm") ?? "park2016";
+export function set_option(name, v, same = `option ${name}`) {
   if (state.compare?.on) {
-    state.compare.other = {...state.compare.other, [name]: value ?? undefined};
+    state.compare.other = {...state.compare.other, [name]: v ?? undefined};
     return changed("take");
   }
   const take = current_take() ?? add_take([], {name: "Settings"});
   const options = {...take.options};
-  if (value === undefined || value === null) delete options[name]; else options[name] = value;
+  if (v === null) delete options[name]; else options[name] = v;
   edit([{...take, options}], {same});
 }
 export function choose_take(id) {

@@ -13,7 +13,7 @@ import {seconds_text} from "../words.js";
 const SIZE = 48;
 const rows = new Map(); // by take: {take, element}
 const seen = new IntersectionObserver(list => list.filter(e => e.isIntersecting).forEach(e => { seen.unobserve(e.target);
-  e.target.draw?.(); }), {rootMargin: "300px"});
+  e.target.draw(); }), {rootMargin: "300px"});
 
 // A small picture of strokes over the tactors, drawn when it comes into view.
 export function thumb(strokes) {
@@ -107,9 +107,5 @@ function show_takes() {
   rows.get(state.current)?.element.firstChild.setAttribute("aria-current", "true");
   by_id("no-takes").hidden = now.length > 0;
 }
-function draw_thumbs() { for (const c of all_of(".thumb")) c.draw?.(); }
-
-on_change(what => {
-  if (what.has("takes") || what.has("take")) show_takes();
-  if (what.has("theme") || what.has("array")) draw_thumbs();
-});
+on_change(show_takes, "takes", "take");
+on_change(() => all_of(".thumb").forEach(c => c.draw()), "theme", "array");

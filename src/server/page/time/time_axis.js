@@ -82,11 +82,10 @@ export function zoom_time(by, at_s = state.at_s) {
 }
 
 let shown_take = null;
-on_change(what => {
-  if (["take", "plan", "hot", "theme", "array", "layout", "curves", "drawing",
-    "level"].some(w => what.has(w))) full.stale = mini.stale = true;
+on_change(() => { full.stale = mini.stale = true; }, "take", "plan", "hot", "theme", "array", "curves", "drawing", "level");
+on_change(() => { measure(full); measure(mini); }, "layout");
+on_change(() => {
   if (state.current !== shown_take) Object.assign(full, {from: 0, span: null, scroll: 0});
   shown_take = state.current;
-  if (what.has("layout")) { measure(full); measure(mini); }
-});
+}, "take");
 

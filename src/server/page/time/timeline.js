@@ -5,12 +5,12 @@ import {state, changed, current_take, marks, say, now_ms} from "../state.js";
 import {put_stroke, edit_take, end_edit} from "../takes/takes.js";
 import {trimmed, duration_s, end_s} from "../takes/stroke.js";
 import {look_at} from "../service/player.js";
-import {PAUSE_S} from "../drawing/pointer.js";
+import {PAUSE_S, begin_live, send} from "../drawing/pointer.js";
 import {full, mini, total, shown, left, to_x, to_time, clip_box, most_scroll, scroll_to, show_time, zoom_time, CLIP, LEAST_S} from "./time_axis.js";
 import {handles, set_strength, set_speed} from "./curves.js";
 import {choose_clip, toggle_append, copy_clip, with_copies, starting_at} from "./clips.js";
 import {set_marks, set_range, clear_marks, snapped} from "./marks.js";
-import {scrub_to, end_scrub} from "./scrub.js";
+import {tell} from "../service/connection.js";
 
 const REACH = 14;
 const REPEAT_PX = 24, DOUBLE_MS = 350; // for each copy; of two taps
@@ -98,6 +98,36 @@ function lane_up(e) {
   end_scrub();
   held = null;
 }
+
+// The moment that is dragged is felt: the burst under it, by a live stroke.
+const FELT_STEP_MS = 50, FELT_REST_MS = 500; // between bursts; of a moment that rests, until it is silent
+let live = null, moved_ms = 0, feeler;
+
+const has_stopped = since_ms => state.playing || state.stopping || state.stopped?.at > since_ms;
+// Looks at a moment. It is felt unless a stop came after the drag began.
+function scrub_to(s, began_ms) {
+  const before = state.at_s;
+  look_at(s);
+  if (!state.scrub || state.at_s === before || state.link !== "connected" || has_stopped(began_ms)) return;
+  moved_ms = now_ms();
+  feeler ||= setInterval(feel_moment, FELT_STEP_MS);
+}
+function end_scrub() {
+  feeler = clearInterval(feeler);
+  if (live) live.track.down = false; // one that has no number yet ends when it has
+  if (live?.number) tell("end", {stroke: live.number});
+  live = null;
+}
+function feel_moment() {
+  const now = now_ms(), plan = state.plan, t = state.at_s + 1e-4;
+  const row = plan?.onsets.findLastIndex((onset, i) => onset <= t && t < onset + plan.durations[i]) ?? -1;
+  if (row < 0 || now - moved_ms > FELT_REST_MS || has_stopped(moved_ms)) return end_scrub();
+  const is_new = !live;
+  live ??= {number: null, sent_ms: 0, track: {down: true}};
+  Object.assign(live, {at: plan.positions.slice(2 * row, 2 * row + 2), strength: plan.intensities[row]});
+  if (is_new) begin_live(live); else send(live, now);
+}
+
 for (const l of [full, mini]) {
   listen(l.canvas, "pointerdown", e => { if (e.button === 0) lane_down(l, e); });
   listen(l.canvas, "pointermove", lane_moved);
