@@ -103,7 +103,7 @@ class StudioTest(BrowserTest, ToolTest):
         """Draws with the mouse; returns once it is a take."""
         before = p.value("tactor.state.takes.length")
         p.mouse("mouseReleased", *self.press(p, *places))
-        p.until(f"tactor.state.takes.length === {before + 1} && !tactor.state.drawing")
+        p.until(f"tactor.state.takes.length > {before} && !tactor.state.drawing")
 
     @staticmethod
     def way(start, end, steps=12):

@@ -70,21 +70,6 @@ class Storage(ModulesTest):
             try { await s.write({takes: [{id: 2, bytes: new Uint8Array(5e6).map(() => 256 * Math.random())}]}); } catch (e) { return e.name; } """), "QuotaExceededError")
         self.assertEqual(self.storage(p, "return s.load();"), [{"id": 1, "name": "kept"}])
 
-    def test_a_database_that_is_deleted_meanwhile_rejects(self):
-        p = self.open()
-        self.assertEqual(self.call(p, f"{self.address}/takes/storage.js", """
-            let gone = 0;
-            const s = await m.open_storage("takes", () => { ++gone; });
-            await new Promise((done, failed) => Object.assign(indexedDB.deleteDatabase("takes"), {onsuccess: done, onerror: failed, onblocked: failed}));
-            try { await s.write({takes: [{id: 1}]}); } catch (e) { return e.name + gone; } """), "InvalidStateError1")
-
-    def test_a_take_that_another_tab_has_changed_is_not_replaced(self):
-        p = self.open()
-        self.assertEqual(self.storage(p, """
-            await s.write({takes: [{id: 1, version: "theirs"}, {id: 2, version: "known"}]});
-            const others = await s.write({takes: [{id: 1, version: "own"}, {id: 2, version: "own"}, {id: 3, version: "own"}]}, new Map([[1, "before"], [2, "known"]]));
-            return [others, (await s.load()).map(t => t.version)]; """), [[{"id": 1, "version": "theirs"}], ["theirs", "own", "own"]])
-
 
 class Sound(ModulesTest):
     def test_a_burst_is_heard_on_its_side_and_in_its_time(self):

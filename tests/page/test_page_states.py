@@ -48,16 +48,6 @@ class NothingIsLost(StudioTest):
         number = self.next_stroke(watcher, "started")
         self.assertEqual(watcher.await_end(number)["state"], "finished")
 
-    def test_a_name_is_kept_over_a_lost_connection(self):
-        s = self.serve()
-        p, _ = self.ready(s)
-        p.value("(e => { e.value = 'Ann'; e.dispatchEvent(new Event('change')); })(document.querySelector('#own-name-text'))")
-        p.until("tactor.state.status.who.some(w => w.name === 'Ann')")
-        self.restart(s)
-        p.until("tactor.state.link === 'lost'")
-        self.await_service(p)
-        p.until("tactor.state.status.who.some(w => w.name === 'Ann')")
-
     def test_the_service_is_killed_and_comes_back_later(self):
         s = self.serve()
         p = self.begin(s)
@@ -116,6 +106,7 @@ class NothingIsLost(StudioTest):
         p.call("Input.insertText", text="another")
         p.click("#token button")
         self.says(p, "Running")
+        self.assertTrue(p.until("document.querySelector('#banner').hidden"))
         self.assertEqual(p.value("[location.hash, tactor.state.takes.length]"), ["", 2])
         self.plays(p, again)
 
@@ -154,7 +145,7 @@ class Others(StudioTest):
         self.toast(p, "Stopped by “A phone”")
         p.until("!tactor.state.playing")
 
-    def test_the_own_name_is_told_to_others(self):
+    def test_the_own_name_is_told_to_others_and_outlasts_a_lost_connection(self):
         s = self.serve()
         p, watcher = self.ready(s)
         p.until("!document.querySelector('#others').hidden")
@@ -164,6 +155,10 @@ class Others(StudioTest):
         p.call("Input.insertText", text="Ada's laptop")
         p.value("document.querySelector('#own-name-text').blur()")
         self.until(lambda: "Ada's laptop" in [w["name"] for w in watcher.ok("status")["who"]])
+        self.restart(s)
+        p.until("tactor.state.link === 'lost'")
+        self.await_service(p)
+        p.until("tactor.state.status.who.some(w => w.name === `Ada's laptop`)")
 
 
 class Everywhere(StudioTest):

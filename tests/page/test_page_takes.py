@@ -14,6 +14,11 @@ STORE = """new Promise((done, failed) => { const asked = indexedDB.open("tactor"
             {name: "stroke 1", start_s: 0, timed: Array.from({length: 60}, (_, k) => [k / 50, 20 + 18 * Math.cos(k / 10 + i), 20 + 18 * Math.sin(k / 10 + i), 1])}]});
         t.oncomplete = () => { asked.result.close(); done(1); }; }; })"""
 
+# Names of the takes that the browser has kept.
+STORED = """new Promise((done, failed) => { const asked = indexedDB.open("tactor", 1);
+    asked.onerror = failed; asked.onsuccess = () => { const all = asked.result.transaction("takes").objectStore("takes").getAll();
+        all.onsuccess = () => { asked.result.close(); done(all.result.map(t => t.name)); }; }; })"""
+
 
 class TakesTest(StudioTest):
     def menu(self, p, number, word):
@@ -62,6 +67,7 @@ class Takes(TakesTest):
         p.until("document.querySelectorAll('#takes li').length === 1")
         p.reload()
         self.await_service(p)
+        p.until("tactor.state.takes.length === 1")  # the browser has read them
         self.draw(p, *self.way([5, 35], [35, 35]))
         p.until("document.querySelectorAll('#takes li').length === 2")
         self.assertEqual(len(set(self.names(p))), 2)
@@ -370,8 +376,7 @@ class Kept(TakesTest):
         # Both change one take before they hear of each other: both stay.
         a.value("BroadcastChannel.prototype.postMessage = () => {}")
         a.value(f"tactor.rename({TAKE}.id, 'Slow S')")
-        a.until("tactor.state.unkept.size === 0")
-        a.value("new Promise(done => setTimeout(done))")
+        self.until(lambda: "Slow S" in a.value(STORED))
         b.value("tactor.rename(tactor.state.takes[1].id, 'Fast S')")
         b.until("tactor.state.takes.length === 3")
         self.assertEqual(sorted(b.value("tactor.state.takes.map(t => t.name)")), ["Fast S, other tab", "Slow S", "Take 2"])
