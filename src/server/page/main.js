@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The page to draw on: what belongs to no part of it, and the start.
-import {state, changed, on_change, on_toast, current_take, current_stroke, is_simulated, say, remember, remembered, now_ms} from "./state.js";
+import {state, changed, on_change, current_take, current_stroke, is_simulated, say, remember, remembered, now_ms} from "./state.js";
 import {by_id, make, on_click, show_pressed, all_of, listen, set_text} from "../../net/page/dom.js";
 import {place_icons, forget_colours, is_dark} from "./look.js";
 import {connect, call, on_hello} from "./service/connection.js";
@@ -14,11 +14,11 @@ import {draw_lanes, clock_text} from "./time/lanes.js";
 import "./time/timeline.js";
 import {LEAST_LEVEL_DB} from "./service/planner.js";
 import {play, stop, tick, silence_speaker, unanswered_s} from "./service/player.js";
-import {change_point, remove_point, on_tactor_held, finish_early} from "./drawing/pointer.js";
+import {change_point, remove_point, finish_early} from "./drawing/pointer.js";
 import "./takes/takes_panel.js";
 import {open_tour} from "./takes/tour.js";
 import "./service/simulated.js";
-import {show_tactor, own_name} from "./service/device.js";
+import {own_name} from "./service/device.js";
 import {choose_tool, new_take, open_sheet, fold_time} from "./settings/keys.js";
 import {full, lane_tactors, lane_height, show_all_time, zoom_time} from "./time/time_axis.js";
 import "./takes/files.js";
@@ -30,7 +30,6 @@ import "./settings/prediction.js";
 import {seconds_text} from "./words.js";
 import {length_mm, editable, total_s} from "./takes/stroke.js";
 
-const TOAST_MS = 2200, UNDO_MS = 6000;
 const DONE_MS = 600; // for which the button says that it has stopped
 const SWITCHES = ["loop", "speaker", "scrub", "snap", "show_speed", "show_strength"]; // buttons, and parts of the state
 
@@ -53,17 +52,6 @@ on_click("theme", () => {
   set_theme(theme);
 });
 place_icons();
-
-// Messages that go away.
-let toast_timer = 0;
-const hide_toast = () => by_id("toast").classList.remove("on");
-on_toast((text, take_back) => {
-  by_id("toast").replaceChildren(text, ...take_back ? [make("button", {onclick: () => { take_back(); hide_toast(); }},
-    "Undo")] : []);
-  by_id("toast").classList.add("on");
-  clearTimeout(toast_timer);
-  toast_timer = setTimeout(hide_toast, take_back ? UNDO_MS : TOAST_MS);
-});
 
 // Buttons.
 on_click("play", () => play());
@@ -99,7 +87,6 @@ on_click("gallery-open", () => open_sheet(""));
 on_click("tour-open", () => { open_sheet(""); open_tour(); });
 for (const b of all_of("button[data-tool]")) listen(b, "click", () => choose_tool(b.dataset.tool));
 for (const b of all_of("button[data-sheet]")) listen(b, "click", () => open_sheet(b.dataset.sheet));
-on_tactor_held(show_tactor);
 
 // Texts and states of buttons.
 on_change(() => {

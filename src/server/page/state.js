@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: MIT
 // State of the page, and who is told of changes.
+import {by_id, make} from "../../net/page/dom.js";
+
+const TOAST_MS = 2200, UNDO_MS = 6000;
 
 export const state = {
   // The service.
@@ -51,10 +54,15 @@ function flush() {
   for (const {f, names} of listeners) if (names.length ? names.some(n => now.has(n)) : !only_ink) f(now);
 }
 
-// Messages: a toast that goes away, with a button if something can be undone, and a banner that stays.
-let toast = null;
-export function on_toast(f) { toast = f; }
-export function say(text, take_back = null) { toast?.(text, take_back); }
+// Shows a message that goes away, with a button if something can be undone.
+let toast_timer = 0;
+export function say(text, take_back = null) {
+  const toast = by_id("toast"), hide = () => toast.classList.remove("on");
+  toast.replaceChildren(text, take_back ? make("button", {onclick: () => { take_back(); hide(); }}, "Undo") : "");
+  toast.classList.add("on");
+  clearTimeout(toast_timer);
+  toast_timer = setTimeout(hide, take_back ? UNDO_MS : TOAST_MS);
+}
 
 // Small things that the browser remembers, where it does.
 export const remembered = name => { try { return localStorage.getItem(`tactor-${name}`); } catch { return null; } };

@@ -9,6 +9,7 @@ import {say_if_kept} from "../takes/keeping.js";
 import {from_drawing, straight, editable, nearest_knot, insert_knot, changed_knot, without_knot, total_s, outside_mm} from "../takes/stroke.js";
 import {grasp_felt, pull, step_felt} from "./felt.js";
 import {test_tactor, tell_level, on_stop} from "../service/player.js";
+import {show_tactor} from "../service/device.js";
 
 const RESTING_MS = 100;    // a finger that rests says so, or its stroke would end
 const LEAST_MM = 1;        // a shorter touch is a tap
@@ -22,8 +23,6 @@ const NAMES = {mouse: "drawn", touch: "drawn", pen: "drawn with a pen", key: "dr
 
 const field = by_id("field");
 const fingers = new Map();
-let show_held = () => {};
-export function on_tactor_held(f) { show_held = f; }
 
 const to_pixel = e => { const r = field.getBoundingClientRect(); return [e.clientX - r.left, e.clientY - r.top]; };
 // A pen's pressure; mice and most fingers have none to tell.
@@ -39,7 +38,7 @@ function down(id, px, e) {
   if (state.tool === "felt") { f.mode = "felt"; if (!grasp_felt(mm)) return; }
   if (f.mode === "felt" || state.tool === "points" && grasp(f, mm)) { fingers.set(id, f); return; }
   const tactor = tactor_at(mm);
-  if (tactor >= 0) f.hold = setTimeout(() => { if (f.mode === "tap") { f.mode = "held"; show_held(tactor, px); } }, HOLD_MS);
+  if (tactor >= 0) f.hold = setTimeout(() => { if (f.mode === "tap") { f.mode = "held"; show_tactor(tactor, px); } }, HOLD_MS);
   f.tactor = tactor;
   fingers.set(id, f);
   // Two fingers that begin together on the ground zoom; they draw nothing.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Buttons of the strokes in time, for the keyboard: they lie over the drawn clips, and pointers go through them to the canvas.
+// The strokes in time: buttons below the canvas of the lanes, which takes pointers and draws the moment over them.
 import {state, changed, current_take, say} from "../state.js";
 import {by_id, make, show_pressed} from "../../../net/page/dom.js";
 import {put_stroke, edit_take, end_edit} from "../takes/takes.js";
@@ -44,19 +44,19 @@ const clip_button = i => make("button", {onclick: () => choose_clip(i), onblur: 
   e.preventDefault();
   put_stroke(s => starting_at(s, s.start_s + step * (e.shiftKey ? FINE_MOVE_S : MOVE_S)), `clip key ${i}`, i);
 }});
-const add_button = make("button", {onclick: toggle_append, "aria-label": "Add the next drawing to this take"});
+const add_button = make("button", {onclick: toggle_append, "aria-label": "Add the next drawing to this take"}, "+");
+clips_box.append(add_button);
 
-// Lays the buttons over the clips as they are drawn.
 export function place_clips(l) {
-  const strokes = state.drawing ? [] : current_take()?.strokes ?? [];
-  while (clips_box.childElementCount - 1 > strokes.length || (!strokes.length && clips_box.firstChild)) clips_box.firstChild.remove();
-  if (!strokes.length) return;
-  if (clips_box.lastChild !== add_button) clips_box.append(add_button); // one that is put again loses the focus
+  const take = current_take(), strokes = state.drawing ? [] : take?.strokes ?? [];
+  clips_box.hidden = !strokes.length;
+  while (clips_box.childElementCount - 1 > strokes.length) clips_box.firstChild.remove();
   while (clips_box.childElementCount - 1 < strokes.length) add_button.before(clip_button(clips_box.childElementCount - 1));
   const put = (b, x, width) => Object.assign(b.style, {left: `${x}px`, top: `${l.ruler}px`, width: `${width}px`, height: `${CLIP - 4}px`});
   strokes.forEach((s, i) => {
     const [a, b] = clip_box(l, s), button = clips_box.children[i];
     put(button, a, Math.max(6, b - a));
+    button.textContent = strokes[1] ? s.name : take.name;
     button.setAttribute("aria-label", `${s.name}, starts at ${seconds_text(s.start_s)}, lasts ${seconds_text(duration_s(s))}; arrows move it`);
     show_pressed(button, i === state.stroke);
   });

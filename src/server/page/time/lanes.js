@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-// Lanes that show who plays when: a ruler, the strokes as clips, a lane for each tactor. The lanes are drawn again only when something
-// has changed; the moment is drawn over them each frame.
+// Lanes that show who plays when: a ruler, the strokes, a lane for each tactor. They are drawn only when something has changed; the moment
+// is an element above them.
 import {state, current_take, marks} from "../state.js";
 import {colour, is_dark} from "../look.js";
 import {paint, write, plot} from "../drawing/pen.js";
 import {array} from "../drawing/view.js";
 import {viridis} from "../../../net/page/viridis.js";
-import {full, mini, total, shown, left, right, to_x, clip_box, lane_tactors, silent_count, lane_height, most_scroll, CLIP, LEAST_AMPLITUDE} from "./time_axis.js";
+import {full, mini, total, shown, left, right, to_x, lane_tactors, silent_count, lane_height, most_scroll, LEAST_AMPLITUDE, CLIP} from "./time_axis.js";
 import {draw_curves} from "./curves.js";
 import {place_clips} from "./clips.js";
 import {draw_time_marks} from "./marks.js";
@@ -16,8 +16,8 @@ import {seconds_text} from "../words.js";
 
 const STEPS_S = [0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 30, 60, 120]; // of the ruler
 
-function draw_layer(l) {
-  const p = l.layer.getContext("2d");
+function draw_lane(l) {
+  const p = l.canvas.getContext("2d");
   p.setTransform(l.dpr, 0, 0, l.dpr, 0, 0);
   p.clearRect(0, 0, l.width, l.height);
   p.lineJoin = p.lineCap = "round";
@@ -46,7 +46,7 @@ function draw_layer(l) {
     p.beginPath(); p.roundRect(l.width - 9, l.top + room * l.scroll / (most + room), 4, room * room / (most + room), 2);
     paint(p, {fill: "ink3"});
   }
-  if (!l.mini && !state.drawing) { draw_clips(p, l); draw_curves(p, l); }
+  if (!l.mini && !state.drawing) { draw_gaps(p, l); draw_curves(p, l); }
   draw_time_marks(p, l);
   if (!l.mini) place_clips(l);
 }
@@ -54,7 +54,7 @@ function draw_ruler(p, l, bottom) {
   const s = shown(l), step = STEPS_S.find(v => v / s * (l.width - left(l) - right(l)) > 58) ?? 300;
   for (let i = Math.ceil(l.from / step); i * step <= l.from + s; ++i) {
     const x = to_x(l, i * step);
-    plot(p, [x, l.ruler], [x, bottom]);
+    plot(p, [x, l.ruler + CLIP], [x, bottom]);
     paint(p, {line: "grid"});
     if (marks().range?.some(t => Math.abs(to_x(l, t) - x) < 26)) continue;
     write(p, `${(i * step).toFixed(step < 0.1 ? 2 : step < 1 ? 1 : 0)}${i === 0 ? " s" : ""}`, x, 12, "ink2", {size: 11});
@@ -103,49 +103,23 @@ function merged_rows(l, plan, t) {
   }
   return [...bins].map(([key, a]) => [l.from + Math.floor(key / t) * width, width * 1.4, key % t, a]);
 }
-function draw_clips(p, l) {
-  const take = current_take();
-  if (!take) return;
-  // The one that is edited lies above others of its time.
-  const order = [...take.strokes.entries()].sort((a, b) => (a[0] === state.stroke) - (b[0] === state.stroke));
-  order.forEach(([i, s]) => {
-    const [a, b] = clip_box(l, s), own = i === state.stroke, w = Math.max(6, b - a);
-    p.beginPath(); p.roundRect(a, l.ruler, w, CLIP - 4, 6);
-    paint(p, own ? {fill: "raised", line: "ink", width: 2} : {fill: "well", line: "line2", width: 1.5});
-    if (own && w > 24) { p.fillStyle = colour("ink"); for (const x of [a + 4, b - 7]) p.fillRect(x, l.ruler + 5, 3, CLIP - 14); }
-    p.save();
-    p.beginPath(); p.rect(a + 10, l.ruler, Math.max(0, w - 20), CLIP); p.clip();
-    write(p, take.strokes.length === 1 ? take.name : s.name, a + 13, l.ruler + 15, own ? "ink" : "ink2", {weight: own ? 600 : 500, align: "left"});
-    p.restore();
-    const before = take.strokes.filter((_, k) => k !== i).map(end_s).filter(e => e <= s.start_s + 1e-9);
+// Writes how long nothing plays before a stroke.
+function draw_gaps(p, l) {
+  const strokes = current_take()?.strokes ?? [];
+  strokes.forEach((s, i) => {
+    const before = strokes.filter((_, k) => k !== i).map(end_s).filter(e => e <= s.start_s + 1e-9);
     const gap = before.length ? s.start_s - Math.max(...before) : 0;
-    if (gap <= 0.005 || to_x(l, gap) - to_x(l, 0) < 34) return;
-    write(p, `${gap.toFixed(2)} s`, to_x(l, s.start_s - gap / 2), l.ruler + 15, "ink3", {size: 11});
+    if (gap > 0.005 && to_x(l, gap) - to_x(l, 0) >= 34) write(p, `${gap.toFixed(2)} s`, to_x(l, s.start_s - gap / 2), l.ruler + 15, "ink3", {size: 11});
   });
-  const x = to_x(l, total()) + 8;
-  if (x < l.width - 24) {
-    p.setLineDash([3, 3]);
-    p.beginPath(); p.roundRect(x, l.ruler, 28, CLIP - 4, 6);
-    paint(p, {line: state.append ? "felt" : "line2", width: 1.5});
-    p.setLineDash([]);
-    write(p, "+", x + 14, l.ruler + 17, state.append ? "felt" : "ink2", {size: 18});
-  }
 }
 
 export function draw_lanes() {
   for (const l of [full, mini]) {
     if (!l.width || !l.height || state.drawing && !l.stale) continue; // a drawing is longer with each of its plans
-    if (l.stale) { draw_layer(l); l.stale = false; }
-    const p = l.canvas.getContext("2d");
-    p.setTransform(1, 0, 0, 1, 0, 0);
-    p.clearRect(0, 0, l.canvas.width, l.canvas.height);
-    p.drawImage(l.layer, 0, 0);
-    p.setTransform(l.dpr, 0, 0, l.dpr, 0, 0);
+    if (l.stale) { draw_lane(l); l.stale = false; }
     const x = to_x(l, state.drawing ? total() : state.at_s);
-    if (x < left(l) - 1 || x > l.width - right(l) + 20) continue;
-    plot(p, [x, l.thin ? 2 : 20], [x, l.height - (l.thin ? 2 : 8)]);
-    paint(p, {line: "ink", width: 2});
-    if (!l.thin) { plot(p, [x - 6, 15], [x + 6, 15], [x + 6, 21], [x, 27], [x - 6, 21]); paint(p, {fill: "ink"}); }
+    l.moment.style.translate = `${x}px`;
+    l.moment.hidden = x < left(l) - 1 || x > l.width - right(l) + 20;
   }
   // The moment follows where it leaves what is shown.
   if (state.playing && full.span && (state.at_s > full.from + full.span * 0.95

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The two timelines: seconds to pixels, tactors to lanes, and what part of both is shown.
 import {state, changed, on_change, current_take} from "../state.js";
-import {by_id} from "../../../net/page/dom.js";
+import {by_id, make} from "../../../net/page/dom.js";
 import {take_s} from "../takes/takes.js";
 import {end_s, kept_for} from "../takes/stroke.js";
 import {array} from "../drawing/view.js";
@@ -17,7 +17,8 @@ export const MOST_S = 599.9; // with its last burst a stroke has at most 600 s
 const LABEL = 64, RIGHT = 58, EDGE = 14;
 
 function make_lanes(canvas, mini) {
-  const own = {canvas, mini, layer: document.createElement("canvas"), width: 0, height: 0, stale: true, from: 0, span: null, scroll: 0};
+  const own = {canvas, mini, moment: make("i", {class: "moment"}), width: 0, height: 0, stale: true, from: 0, span: null, scroll: 0};
+  canvas.after(own.moment);
   new ResizeObserver(() => { measure(own); changed("frame"); }).observe(canvas.parentElement);
   return own;
 }
@@ -33,7 +34,8 @@ function measure(l) {
     curves: !thin && r.height >= ROOM_FOR_CURVES_PX ? CURVES : 0});
   l.top = l.mini ? 8 : l.ruler + CLIP + (thin ? 0 : 8);
   l.bottom = l.height - l.curves - (thin ? 6 : 2);
-  for (const c of [l.canvas, l.layer]) { c.width = Math.round(r.width * dpr); c.height = Math.round(r.height * dpr); }
+  l.canvas.width = Math.round(r.width * dpr); l.canvas.height = Math.round(r.height * dpr);
+  l.moment.classList.toggle("thin", thin);
 }
 // Part of a take that is shown, or all of it.
 export const total = () => Math.max(state.plan?.total_s ?? 0, state.drawing ? 0 : take_s(current_take()));
