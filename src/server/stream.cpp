@@ -109,9 +109,9 @@ void stream::go_on()
     if (number() != 0 || failure() != nullptr)
         if (const auto refused = std::exchange(refused_, {}); refused && is_misfit(failure()))
             return refused(failure());
-    if (auto todo = work())
-        boost::asio::post(worker_, [this, todo = std::move(todo)] {
-            todo();
+    if (begin_work())
+        boost::asio::post(worker_, [this] {
+            work();
             boost::asio::post(io_, [this] { go_on(); });
         });
     tell();

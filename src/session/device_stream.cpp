@@ -199,6 +199,7 @@ stream_parts open_parts(const alsa_options& device, const stream_options& o, con
 
 struct device_stream::outcome {
     bool closes = false;
+    double proof_s = 0.0;
     std::unique_ptr<tactor::player> player = {}; ///< that was opened, or is to be closed
     std::exception_ptr failure = {};
     std::string why = {};
@@ -215,6 +216,11 @@ device_stream::device_stream(stream_parts p)
             log(k, text);
         news_.signal();
     };
+}
+
+device_stream::~device_stream()
+{
+    finish();
 }
 
 void device_stream::finish() noexcept
@@ -247,35 +253,42 @@ std::optional<device_stream::time> device_stream::step(time now)
     return again();
 }
 
-std::function<void()> device_stream::work()
+bool device_stream::begin_work()
 {
     const act a = std::exchange(due_, act::nothing);
     if (a == act::nothing)
-        return {};
+        return false;
     begin();
-    outcome_ = std::make_shared<outcome>();
+    outcome_ = std::make_unique<outcome>();
     outcome_->closes = a == act::close;
+    outcome_->proof_s = proves() ? parts_.times.proof_s : 0.0;
     outcome_->player = std::move(player_);
+    return true;
+}
+
+void device_stream::work()
+{
     if (outcome_->closes)
-        return [this, o = outcome_.get()] { close(*o); };
-    return [this, o = outcome_.get(), proof_s = proves() ? parts_.times.proof_s : 0.0] { open(*o, proof_s); };
+        close();
+    else
+        open();
+    outcome_->done = true;
 }
 
 bool device_stream::work_here()
 {
-    const auto todo = work();
-    if (!todo)
+    if (!begin_work())
         return false;
-    todo();
+    work();
     step();
     return true;
 }
 
-void device_stream::open(outcome& o, double proof_s)
+void device_stream::open()
 {
     try {
         auto p = std::make_unique<player>(parts_.open(), parts_.tactors, parts_.player,
-                                          parts_.lines.lend(proof_s));
+                                          parts_.lines.lend(outcome_->proof_s));
         p->on_begin([this, number = number_ + 1](stroke_id id, std::optional<std::int64_t> at_ns) {
             if (parts_.begun)
                 parts_.begun(number, id, at_ns);
@@ -289,20 +302,18 @@ void device_stream::open(outcome& o, double proof_s)
         if (!std::exchange(drive_time_looked_at_, true))
             if (const std::string doubt = find_drive_doubt(p->setup().device); !doubt.empty())
                 say(stderr, "tactor: warning: {}\n", doubt);
-        o.player = std::move(p);
+        outcome_->player = std::move(p);
     } catch (const std::exception& e) {
-        o.failure = std::current_exception();
-        o.why = e.what();
+        outcome_->failure = std::current_exception();
+        outcome_->why = e.what();
     }
-    o.done = true;
 }
 
-void device_stream::close(outcome& o)
+void device_stream::close()
 {
-    o.player->stop();
-    o.last = o.player->stats();
-    o.player.reset(); // reports what is left; it holds the device and borrows the lines
-    o.done = true;
+    outcome_->player->stop();
+    outcome_->last = outcome_->player->stats();
+    outcome_->player.reset(); // reports what is left; it holds the device and borrows the lines
 }
 
 void device_stream::settle()

@@ -127,7 +127,7 @@ stream_parts open_parts(const alsa_options& device, const stream_options& o, con
 class device_stream : private stream_policy {
 public:
     explicit device_stream(stream_parts p);
-    ~device_stream() { finish(); }
+    ~device_stream();
     device_stream(const device_stream&) = delete;
     device_stream& operator=(const device_stream&) = delete;
 
@@ -137,9 +137,11 @@ public:
     /// Looks at what has happened. Call it when descriptor() is readable, after work, and at the time that it
     /// returns. Does not block.
     std::optional<time> step(time now = time::clock::now());
-    /// Returns what step() found to do, or nothing: opens or closes the device and blocks, in any thread.
-    std::function<void()> work();
-    /// Does the work here, if there is any, and returns whether there was. Blocks.
+    /// Begins the work that step() found, and returns true if there is any: then call work().
+    bool begin_work();
+    /// Opens or closes the device, and blocks. Any thread.
+    void work();
+    /// Does both here. Blocks.
     bool work_here();
     /// Cancels all strokes. If the buffer is too long to wait for their fades, step() then closes the device;
     /// wake() opens it again.
@@ -166,14 +168,14 @@ public:
 private:
     struct outcome;
 
-    void open(outcome& o, double proof_s);
-    void close(outcome& o);
+    void open();
+    void close();
     void settle();
 
     rt::event_fd news_;
     stream_parts parts_;
     act due_ = act::nothing;
-    std::shared_ptr<outcome> outcome_; ///< of work under way
+    std::unique_ptr<outcome> outcome_; ///< of work under way
     std::unique_ptr<player> player_;
     std::uint64_t number_ = 0;
     std::exception_ptr failure_;

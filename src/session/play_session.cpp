@@ -139,7 +139,7 @@ stroke_report play_session::follow(const std::function<look()>& each)
                 wait_for(-1, settled_ms);
             return *report;
         }
-        const look l = each();
+        const look l = each ? each() : look{};
         const bool go_on =
             wait_for(stream_.descriptor(), milliseconds_until(stream_.step(), l.most_ms), l.descriptor);
         stream_.take_news();

@@ -59,8 +59,8 @@ public:
     /// Begins a stroke that points move. \throws error.
     live_stroke begin(const live_options& o);
     /// Follows what was submitted or begun to its end, or until a signal comes, see signal(), and looks at it
-    /// again and again. \throws what `each` throws.
-    stroke_report follow(const std::function<look()>& each = [] { return look{}; });
+    /// by `each`, if any, again and again. \throws what `each` throws.
+    stroke_report follow(const std::function<look()>& each = {});
     /// Returns the stroke's frame at the DAC; nothing while it does not sound.
     std::optional<std::uint64_t> stroke_frame() const;
     /// Fades out what plays.
