@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdint>
 
+#include <boost/locale/utf.hpp>
 #include <fmt/format.h>
 
 #include "core/split.hpp"
@@ -24,35 +25,13 @@ constexpr double bold_factor = 1.13;
 constexpr std::string_view replacement = "\xEF\xBF\xBD";
 constexpr std::string_view ellipsis = "\xE2\x80\xA6";
 
-struct sequence {
-    std::size_t bytes = 0; // 0: not UTF-8
-    char32_t value = 0;
-};
+using utf8 = boost::locale::utf::utf_traits<char>;
 
-sequence decode(std::string_view s) noexcept
-{
-    const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(s[i]); };
-    const unsigned first = byte(0);
-    if (first < 0x80)
-        return {1, first};
-    const std::size_t n = first >= 0xF0 ? 4 : first >= 0xE0 ? 3 : 2;
-    if (first < 0xC2 || first > 0xF4 || s.size() < n)
-        return {};
-    char32_t v = first & (0x7FU >> n);
-    for (std::size_t i = 1; i < n; ++i) {
-        if ((byte(i) & 0xC0U) != 0x80U)
-            return {};
-        v = (v << 6U) | (byte(i) & 0x3FU);
-    }
-    const bool too_long = (n == 3 && v < 0x800) || (n == 4 && v < 0x10000);
-    if (too_long || v > 0x10FFFF || (v >= 0xD800 && v <= 0xDFFF))
-        return {};
-    return {n, v};
-}
+constexpr std::uint32_t highest = 0x10FFFF;
 
-bool printable(char32_t v) noexcept
+bool printable(std::uint32_t v) noexcept
 {
-    return v >= 0x20 && v != 0x7F && !(v >= 0x80 && v < 0xA0) && v != 0xFFFE && v != 0xFFFF;
+    return v >= 0x20 && v != 0x7F && !(v >= 0x80 && v < 0xA0) && v != 0xFFFE && v != 0xFFFF && v <= highest;
 }
 
 } // namespace
@@ -73,13 +52,15 @@ double text_width(std::string_view utf8, double size, bool bold) noexcept
 std::string clean(std::string_view text)
 {
     std::string out;
-    while (!text.empty()) {
-        const sequence q = decode(text);
-        if (q.bytes == 0 || !printable(q.value))
-            out += q.value == '\t' || q.value == '\n' ? " " : replacement;
+    for (const char* at = text.data(); at != text.data() + text.size();) {
+        const char* const first = at;
+        const std::uint32_t v = utf8::decode(at, text.data() + text.size());
+        if (v > highest) // not UTF-8: what follows the first byte may be
+            at = first + 1;
+        if (printable(v))
+            out.append(first, at);
         else
-            out += text.substr(0, q.bytes);
-        text.remove_prefix(q.bytes == 0 ? 1 : q.bytes);
+            out += v == '\t' || v == '\n' ? " " : replacement;
     }
     return out;
 }
@@ -93,7 +74,7 @@ std::string shorten(std::string_view text, double size, double width, bool bold)
     std::string out;
     double used = 0.0;
     for (std::string_view rest = all; !rest.empty();) {
-        const std::size_t n = decode(rest).bytes;
+        const auto n = static_cast<std::size_t>(utf8::trail_length(rest.front())) + 1;
         used += text_width(rest.substr(0, n), size, bold);
         if (used > space)
             break;
