@@ -3,7 +3,6 @@
 #include <doctest/doctest.h>
 
 #include "cli/devices/devices_text.hpp"
-#include "cli/say.hpp"
 
 namespace devices_text_test {
 
@@ -109,18 +108,6 @@ TEST_CASE("JSON has the numbers, and names that are not UTF-8 do not break it")
     for (const char* part : {"\"schema\": \"tactor-devices/1\"", "\"fits\": true", "\"fits\": null",
                              "\"pid\": 812", "\"consumer\": \"tactor\"", "\"label\": \"pinctrl-rp1\""})
         CHECK_MESSAGE(json.find(part) != std::string::npos, part);
-}
-
-TEST_CASE("lines break at blanks, by characters")
-{
-    const std::string long_word(100, 'x');
-    CHECK(wrapped("  ", "a b") == "  a b\n");
-    CHECK(wrapped("- ", long_word + " b") == "- " + long_word + "\n  b\n");
-    std::string words;
-    for (int i = 0; i < 30; ++i)
-        words += "\u00e4\u00e4\u00e4\u00e4\u00e4 ";
-    const std::string lines = wrapped("", words);
-    CHECK(lines.find('\n') == 13 * 11 - 1); // 13 words of 5 characters, 10 bytes, and the blanks between
 }
 
 } // namespace devices_text_test

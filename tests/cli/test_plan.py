@@ -2,12 +2,10 @@
 """tactor plan: strokes as the user names them, and the plan as JSON, CSV and text."""
 import csv
 import io
-import json
 import math
 import re
 
 from harness import ROOT, ToolTest, main, wav_bytes
-from serving import Server
 
 LINE = ("--path", "M 0 0 L 40 0")
 LOW = ("--array", "palm-2x4")
@@ -250,15 +248,6 @@ class Strokes(PlanTest):
         self.plan("--shape", "tap", "--array", "one.toml")
         for args in (("circle", "--array", "one.toml"), ("square",), ("tap", "park2016-1"), ("tap", "--path", "M 0 0 L 9 9")):
             self.refused(2, "plan", "--shape", *args)
-
-    def test_the_service_has_taps_and_shapes(self):
-        s = Server(self)
-        client = s.client()
-        self.assertEqual(client.ok("plan", path="M 20 20", options={"duration": 1})["stroke"]["length_mm"], 0)
-        self.assertIn("options.duration", json.dumps(client.error("plan", path="M 20 20")))
-        self.assertAlmostEqual(client.ok("plan", stroke="circle")["stroke"]["length_mm"], math.pi * 40, 3)
-        self.assertIn("palm-2x4 is the one", json.dumps(client.error("plan", stroke="wave-2x4")))
-        self.ok("play", "--shape", "tap", "--socket", s.where["socket"])
 
     def test_all_commands_call_a_stroke_alike(self):
         self.write("tap.csv", "t_s,x_mm,y_mm\n0,20,20\n1,20,20\n")

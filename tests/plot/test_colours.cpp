@@ -66,12 +66,6 @@ TEST_CASE("colours of strokes differ, are visible on white, and repeat")
     CHECK(stroke_colour(stroke_colours) == stroke_colour(0));
 }
 
-TEST_CASE("luminance is 0 for black and 1 for white")
-{
-    CHECK(luminance(black) == doctest::Approx(0.0));
-    CHECK(luminance(white) == doctest::Approx(1.0));
-}
-
 TEST_CASE("colours of lines differ in lightness")
 {
     CHECK(std::abs(luminance(blue) - luminance(orange)) > 0.15);
