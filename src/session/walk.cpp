@@ -74,16 +74,21 @@ walk_verdict judge(const array& a, const walk_answers& felt)
     return v;
 }
 
+bounds find_bounds(const array& a)
+{
+    bounds b{a.tactors.front().position, a.tactors.front().position};
+    for (const tactor_spec& t : a.tactors) {
+        b.low = {std::min(b.low.x_mm, t.position.x_mm), std::min(b.low.y_mm, t.position.y_mm)};
+        b.high = {std::max(b.high.x_mm, t.position.x_mm), std::max(b.high.y_mm, t.position.y_mm)};
+    }
+    return b;
+}
+
 std::string numbered_map(const array& a)
 {
     constexpr double widest = 74.0; // columns
     constexpr double mm_per_column = 2.5;
-    point low = a.tactors.front().position;
-    point high = low;
-    for (const tactor_spec& t : a.tactors) {
-        low = {std::min(low.x_mm, t.position.x_mm), std::min(low.y_mm, t.position.y_mm)};
-        high = {std::max(high.x_mm, t.position.x_mm), std::max(high.y_mm, t.position.y_mm)};
-    }
+    const auto [low, high] = find_bounds(a);
     // A character is about twice as tall as wide.
     const double scale = std::max(mm_per_column, (high.x_mm - low.x_mm) / widest);
     const auto cells = [](double v) { return static_cast<std::size_t>(std::lround(v)); };

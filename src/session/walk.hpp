@@ -30,7 +30,16 @@ struct walk_verdict {
 /// A map is made only of answers that name each tactor once.
 walk_verdict judge(const array& a, const walk_answers& felt);
 
-/// The numbers of the tactors, about where these are; no line longer than 79 columns.
+/// A rectangle on the skin.
+struct bounds {
+    point low;
+    point high;
+};
+
+/// Returns the smallest rectangle with all tactors.
+bounds find_bounds(const array& a);
+
+/// Returns the numbers of the tactors, about where these are; no line longer than 79 columns.
 std::string numbered_map(const array& a);
 
 } // namespace tactor::session

@@ -50,8 +50,7 @@ spread neighbours(const array& a)
         double nearest = std::numeric_limits<double>::infinity();
         for (const tactor_spec& other : a.tactors)
             if (&other != &t)
-                nearest = std::min(nearest, std::hypot(other.position.x_mm - t.position.x_mm,
-                                                       other.position.y_mm - t.position.y_mm));
+                nearest = std::min(nearest, distance_mm(other.position, t.position));
         all.add(nearest);
     }
     return all;
@@ -66,19 +65,14 @@ std::string shape(const array& a)
 
 finding check_places(const array& a)
 {
-    spread x;
-    spread y;
-    for (const tactor_spec& t : a.tactors) {
-        x.add(t.position.x_mm);
-        y.add(t.position.y_mm);
-    }
+    const auto [low, high] = session::find_bounds(a);
     const std::size_t n = a.tactors.size();
     if (n == 1)
         return warning("array", fmt::format("{}: 1 tactor, so nothing moves", a.name),
                        "two or more make a stroke");
     const spread d = neighbours(a);
-    const double width = x.most - x.least;
-    const double height = y.most - y.least;
+    const double width = high.x_mm - low.x_mm;
+    const double height = high.y_mm - low.y_mm;
     const std::string found = fmt::format("{}: {} tactors, {}, {:.4g} x {:.4g} mm, neighbours {} apart",
                                           a.name, n, shape(a), width, height, d.text("mm"));
     if (d.least < closest_mm || std::max(width, height) > widest_mm)

@@ -175,8 +175,8 @@ std::string process_names(const std::vector<process_info>& all)
 
 std::string devices_text(const session::device_list& d)
 {
-    return fmt::format("{} needs {} channel{} at {} Hz.\n\n", d.array_name, d.wanted.channels,
-                       d.wanted.channels == 1 ? "" : "s", d.wanted.rate) +
+    return fmt::format("{} needs {} at {} Hz.\n\n", d.array_name, counted(d.wanted.channels, "channel"),
+                       d.wanted.rate) +
            pcms_text(d) + chips_text(d.chips);
 }
 

@@ -22,6 +22,7 @@
 #include "cli/say.hpp"
 #include "core/words.hpp"
 #include "rt/variable.hpp"
+#include "session/walk.hpp"
 #include "synth/score/sounding_now.hpp"
 
 namespace tactor::cli {
@@ -36,21 +37,6 @@ constexpr const char* level_colour = "\033[35m";
 constexpr const char* target_colour = "\033[7m";
 constexpr const char* no_colour = "\033[0m";
 
-struct bounds {
-    point low;
-    point high;
-};
-
-bounds find_bounds(const array& a)
-{
-    bounds b{a.tactors.front().position, a.tactors.front().position};
-    for (const tactor_spec& t : a.tactors) {
-        b.low = {std::min(b.low.x_mm, t.position.x_mm), std::min(b.low.y_mm, t.position.y_mm)};
-        b.high = {std::max(b.high.x_mm, t.position.x_mm), std::max(b.high.y_mm, t.position.y_mm)};
-    }
-    return b;
-}
-
 // Returns the level of a tactor as a shade: changes of digits would be hard to see.
 const char* shade(double level, bool unicode)
 {
@@ -63,7 +49,7 @@ const char* shade(double level, bool unicode)
 // Grid of characters, which are about twice as high as wide.
 class grid {
 public:
-    grid(const bounds& b, unsigned columns, unsigned rows) : low_(b.low)
+    grid(const session::bounds& b, unsigned columns, unsigned rows) : low_(b.low)
     {
         const double wide = b.high.x_mm - b.low.x_mm;
         const double tall = b.high.y_mm - b.low.y_mm;
@@ -161,7 +147,7 @@ std::vector<std::string> picture_lines(const array& a, const instant& now, doubl
     const unsigned columns = size.columns - 1;
     const unsigned rows = size.rows - 1;
     const unsigned gap = rows >= 6 ? 1 : 0; // between array and status
-    const bounds b = find_bounds(a);
+    const session::bounds b = session::find_bounds(a);
     // A single line for several rows of an array would show touches at wrong places.
     const unsigned least_rows = b.high.y_mm - b.low.y_mm > natural_mm ? 2 : 1;
 
