@@ -215,7 +215,6 @@ constexpr std::array own_words{options::own_word{"command:devices", "tactor.devi
                                options::own_word{"array", "Array.preset(\"{}\")"},
                                options::own_word{"force=true", "force=True"},
                                options::own_word{"wider=true", "without channels= it"},
-                               options::own_word{"rests", "pauses"},
                                options::own_word{"pitch_x_mm", "pitch_mm"},
                                options::own_word{"pitch_y_mm", "pitch_mm"},
                                options::own_word{"start_s", "start"},

@@ -260,7 +260,7 @@ TEST_CASE("impossible movements are refused")
     CHECK(refusal({.intensity = {{0.0, nan_value}}}).find("intensity: point 1: nan") == 0);
     CHECK(refusal({.rests = {{0.5, 0.0}}}).find("pauses: point 1: 0") == 0);
     CHECK(refusal({.rests = {{0.5, 1.0, 1.5}}}).find("pauses: intensity 1.5") == 0);
-    CHECK(refusal({.duration_s = 1.0, .rests = {{0.5, 0.5}, {0.6, 0.5}}}).find("rests: 1 s in all") == 0);
+    CHECK(refusal({.duration_s = 1.0, .rests = {{0.5, 0.5}, {0.6, 0.5}}}).find("pauses: 1 s in all") == 0);
     CHECK(refusal({.duration_s = 0.0}).find("duration_s: 0 s") == 0);
     CHECK(refusal({.rests = {{0.5, 86400.0}}}).find("duration_s: ") == 0);
     CHECK(refusal({.speed_mm_s = {{0.5, 1e-6}}}).find("duration_s: ") == 0);

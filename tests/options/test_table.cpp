@@ -176,14 +176,14 @@ TEST_CASE("marks are spelled, other braces stay")
 TEST_CASE("a front end uses its own words, and leaves out what it lacks")
 {
     constexpr std::array own{own_word{"fit=true", ""}, own_word{"array", "<array:{}>"},
-                             own_word{"rests", "<r>"}};
+                             own_word{"at_ns", "<at>"}};
     const spelling client{bracketed, by_client, own};
     CHECK(spell("{array=a b| is another, }{fit=true| scales it, }or {outside=clamp}", client) ==
           "<array:a b> is another, or <outside:clamp>");
     CHECK(spell("lower {max_drive_s} or {soa}", client) == "lower max_drive_s or <soa>"); // no client has it
     CHECK(spell("{command:devices} lists all", client) == "tactor devices lists all");
     CHECK(spell("{soa_s}, {sl_db}, {phantom=log}", client, true) == "soa_s, <sl>, phantom = log");
-    CHECK(spell_field("rests", client) == "<r>");
+    CHECK(spell_field("at_ns", client) == "<at>");
     CHECK(spell_field("soa_s", client) == "<soa>");
     CHECK(spell_field("gain_db", client) == "gain_db");
     CHECK(spell_field("", client).empty());

@@ -141,7 +141,7 @@ double moving_time_s(const movement& m, double length_mm)
     check_duration(*m.duration_s);
     if (!(rests < *m.duration_s))
         throw detail::bad_field(
-            "rests",
+            "pauses",
             fmt::format("{:g} s in all leave nothing of the {:g} s of the stroke", rests, *m.duration_s),
             "the duration is that of all, with its pauses");
     return *m.duration_s - rests;
