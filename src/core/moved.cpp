@@ -57,7 +57,7 @@ void add_outline(const trajectory& t, std::vector<point>& corners, std::vector<s
 }
 
 trajectory moved(const trajectory& t, point from, const affine& m, std::optional<point> line,
-                 const std::function<std::string()>& what)
+                 std::string_view what)
 {
     const affine to_origin = translation({-from.x_mm, -from.y_mm});
     const trajectory::impl& d = access::of(t);

@@ -2,9 +2,8 @@
 // A movement moved to another place and size.
 #pragma once
 
-#include <functional>
 #include <optional>
-#include <string>
+#include <string_view>
 #include <vector>
 
 #include <tactor/stroke.hpp>
@@ -22,6 +21,6 @@ void add_outline(const trajectory& t, std::vector<point>& corners, std::vector<s
 /// messages.
 /// \throws error (bad_input) for coordinates beyond the limit of a path.
 trajectory moved(const trajectory& t, point from, const affine& m, std::optional<point> line,
-                 const std::function<std::string()>& what);
+                 std::string_view what);
 
 } // namespace tactor::detail

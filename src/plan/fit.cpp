@@ -213,7 +213,7 @@ fitted_strokes fit_strokes(const std::vector<stroke>& strokes, const layout& l, 
     const affine map = make_map(all.placed);
     for (stroke& s : all.strokes) {
         s.motion = detail::moved(s.motion, all.placed.from, map, all.placed.line,
-                                 [&] { return fmt::format("stroke \"{}\" as fitted", s.name); });
+                                 fmt::format("stroke \"{}\" as fitted", s.name));
         if (s.speed_mm_s)
             s.motion = s.motion.with_speed(*s.speed_mm_s);
     }

@@ -5,9 +5,8 @@
 
 #include <cmath>
 #include <cstddef>
-#include <functional>
 #include <memory>
-#include <string>
+#include <string_view>
 #include <vector>
 
 #include <tactor/path.hpp>
@@ -124,8 +123,8 @@ struct path::impl {
 
 namespace tactor::detail {
 
-/// Measures an outline. `what` returns its name for messages.
+/// Measures an outline. `what` is its name in messages.
 /// \throws error (bad_input) for coordinates that are not finite or beyond max_mm.
-path make_path(outline o, const std::function<std::string()>& what);
+path make_path(outline o, std::string_view what);
 
 } // namespace tactor::detail

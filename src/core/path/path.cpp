@@ -191,10 +191,10 @@ void write(out o, const detail::elliptic& e, point to)
 
 namespace tactor::detail {
 
-path make_path(outline o, const std::function<std::string()>& what)
+path make_path(outline o, std::string_view what)
 {
     if (const auto bad = absurd_coordinate(o))
-        refuse_absurd(what(), *bad);
+        refuse_absurd(what, *bad);
     auto made = std::make_shared<path::impl>();
     made->curves.reserve(o.curves.size());
     for (const outline::curve& c : o.curves)
@@ -234,7 +234,7 @@ path path::polyline(std::span<const point> points)
     o.vertices.push_back(points.front());
     for (const point p : points.subspan(1))
         o.line(p);
-    return detail::make_path(std::move(o), [] { return "polyline"; });
+    return detail::make_path(std::move(o), "polyline");
 }
 
 path path::arc(point centre, double radius_mm, double from_deg, double sweep_deg)
@@ -258,7 +258,7 @@ path path::arc(point centre, double radius_mm, double from_deg, double sweep_deg
     o.vertices.push_back(on_circle(centre, radius_mm, from));
     o.arc({centre, {radius_mm, 0.0}, {0.0, radius_mm}, from * radian, sweep_deg * radian},
           whole ? o.vertices.front() : on_circle(centre, radius_mm, from + sweep_deg));
-    return detail::make_path(std::move(o), [] { return "arc"; });
+    return detail::make_path(std::move(o), "arc");
 }
 
 path::path(std::shared_ptr<const impl> p) noexcept : impl_(std::move(p))

@@ -355,7 +355,7 @@ path path::from_svg(std::string_view data)
     try {
         std::vector<detail::outline> found =
             detail::parse_path_data(data, detail::max_mm, detail::subpaths::one);
-        return detail::make_path(std::move(found.front()), [] { return what; });
+        return detail::make_path(std::move(found.front()), what);
     } catch (const detail::value_fault& f) {
         throw error(error_kind::bad_input, what, fmt::format("column {}: {}", f.offset + 1, f.why), f.hint);
     }

@@ -321,9 +321,7 @@ trajectory trajectory::with_speed(double speed_mm_s) const
 trajectory trajectory::reversed() const
 {
     if (const auto* c = std::get_if<drawn_path>(&impl_->law)) {
-        drawn_path l{detail::make_path(backwards(detail::access::of(c->way)), [] { return "stroke"; }),
-                     c->intensity,
-                     {}};
+        drawn_path l{detail::make_path(backwards(detail::access::of(c->way)), "stroke"), c->intensity, {}};
         if (c->moves)
             l.moves = std::make_shared<const pace>(backwards(c->moves->given()), c->moves->moving_s());
         return trajectory(std::make_shared<impl>(impl{std::move(l), impl_->duration_s, impl_->gain}));

@@ -339,9 +339,10 @@ private:
             vertices_ += o.vertices.size();
             if (vertices_ > most_vertices)
                 doc_.fail(n, "too many points", "simplify the drawing");
-            // Looks the place up only for an error: that reads the whole file before it.
-            const auto what = [&] { return fmt::format("{}: {}", doc_.where(n).text(), doc_.called(n)); };
             outline placed = mapped(std::move(o), s.to_mm);
+            // Looks the place up only for an error: that reads the whole file before it.
+            const std::string what =
+                absurd_coordinate(placed) ? fmt::format("{}: {}", doc_.where(n).text(), doc_.called(n)) : "";
             for (const point p : placed.vertices) {
                 boost::hash_combine(look, p.x_mm);
                 boost::hash_combine(look, p.y_mm);

@@ -65,7 +65,7 @@ void mirror_motions(experiment_definition& d, const array& a)
     for (motion_definition& m : d.motions)
         if (m.mirror)
             m.drawn.motion = detail::moved(m.drawn.motion, {middle_mm, 0.0}, exchanged, {},
-                                           [&] { return fmt::format("motion \"{}\"", m.name); });
+                                           fmt::format("motion \"{}\"", m.name));
 }
 
 // Mirrors the motions for a left hand. A session with a person needs the hand if a motion depends on it.
