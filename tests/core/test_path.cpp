@@ -8,14 +8,12 @@
 #include <utility>
 #include <vector>
 
-#include <boost/math/quadrature/gauss.hpp>
 #include <doctest/doctest.h>
 #include <fmt/format.h>
 
 #include <tactor/path.hpp>
 
 #include "caught.hpp"
-#include "core/path/shape.hpp"
 #include "path_samples.hpp"
 #include "rounds.hpp"
 
@@ -435,34 +433,6 @@ TEST_CASE("flat ellipses turn sharply and keep their length")
         CHECK(std::abs(p.length_mm() - want) < 1e-5 * b + 1e-7);
         CHECK(tactor::distance_mm(p.at(0.25 * p.length_mm()), {0.0, b}) < 1e-6);
         CHECK(tactor::distance_mm(p.at(0.5 * p.length_mm()), {-100.0, 0.0}) < 1e-6);
-    }
-}
-
-TEST_CASE("several nodes at once give the last digit of Boost's quadrature")
-{
-    std::mt19937_64 g(15);
-    std::uniform_real_distribution<double> place(-50.0, 50.0);
-    std::uniform_real_distribution<double> part(0.0, 1.0);
-    for (int round = 0; round < rounds(20000); ++round) {
-        tactor::detail::cubic c{};
-        for (point& p : c.p)
-            p = {place(g), place(g)};
-        double from = part(g);
-        double to = part(g);
-        if (to < from)
-            std::swap(from, to);
-        const auto speed = [&](double t) {
-            const double r = 1.0 - t;
-            const auto& p = c.p;
-            const auto along = [&](double a, double b, double z, double y) {
-                return 3.0 * r * r * (b - a) + 6.0 * r * t * (z - b) + 3.0 * t * t * (y - z);
-            };
-            const double dx = along(p[0].x_mm, p[1].x_mm, p[2].x_mm, p[3].x_mm);
-            const double dy = along(p[0].y_mm, p[1].y_mm, p[2].y_mm, p[3].y_mm);
-            return std::sqrt(dx * dx + dy * dy);
-        };
-        REQUIRE(tactor::detail::cubic_length(c, from, to) ==
-                boost::math::quadrature::gauss<double, 15>::integrate(speed, from, to));
     }
 }
 

@@ -69,10 +69,6 @@ speed_change speed_and_rate(const shape& c, double t) noexcept;
 /// Returns the length from one parameter to another, by Gauss-Legendre quadrature on fifteen nodes.
 double length_between(const shape& c, double from, double to) noexcept;
 
-/// Returns length_between() of a cubic, from < to, equal to the last bit: the same fifteen nodes, several at
-/// once.
-double cubic_length(const cubic& c, double from, double to) noexcept;
-
 /// Returns true if the speed is constant but for rounding, as on an arc of a circle.
 bool is_even(const shape& c) noexcept;
 
