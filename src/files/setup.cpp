@@ -32,7 +32,7 @@ struct setup_source {
 
 // A setup, and the places of values on which two tables must agree.
 struct located_setup {
-    setup said;
+    setup contents;
     source_place channels_at;
     source_place sync_channel_at;
 };
@@ -60,7 +60,8 @@ std::optional<double> seconds(std::optional<double> ms)
     return ms ? std::optional(*ms * 1e-3) : std::nullopt;
 }
 
-written_value said_at(const toml_table& t, const toml_table::said_key& e, const toml::node& n, bool in_list)
+written_value read_value(const toml_table& t, const toml_table::said_key& e, const toml::node& n,
+                         bool in_list)
 {
     return {std::string(e.key), t.plain(n, e.key), in_list, t.where(n), e.key_at};
 }
@@ -69,15 +70,15 @@ constexpr bounds any_level_db{min_db, 0.0};
 constexpr bounds spread_db{0.0, -min_db};
 constexpr unsigned any_number = std::numeric_limits<unsigned>::max();
 
-calibrated_tactor read_tactor(const toml_table& t, std::vector<const toml_table*>& said)
+calibrated_tactor read_tactor(const toml_table& t, std::vector<const toml_table*>& entries)
 {
     t.only({"tactor", "threshold_dbfs", "sd_db", "trials", "reversals_dbfs", "check_right",
             "check_below_right", "staircases"});
-    const unsigned i = t.need(t.whole("tactor", 0, static_cast<unsigned>(said.size()) - 1), "tactor");
-    if (said[i] != nullptr)
-        t.fail("tactor", fmt::format("tactor {} has an entry already ({})", i, said[i]->where().text()),
+    const unsigned i = t.need(t.whole("tactor", 0, static_cast<unsigned>(entries.size()) - 1), "tactor");
+    if (entries[i] != nullptr)
+        t.fail("tactor", fmt::format("tactor {} has an entry already ({})", i, entries[i]->where().text()),
                "it is measured once in a calibration");
-    said[i] = &t;
+    entries[i] = &t;
     calibrated_tactor r{i, t.number("threshold_dbfs", any_level_db), t.number("sd_db", spread_db),
                         t.need(t.whole("trials", 0, any_number), "trials")};
     for (const char* key : {"check_right", "check_below_right", "staircases"})
@@ -140,19 +141,19 @@ array read_included(const toml_table& table, const setup_source& source, located
     setup_source next{file.string(), file.parent_path(), source.opened};
     next.opened.push_back(full);
     out = read_setup(text, next);
-    out.said.output.pcm_included = out.said.output.pcm.has_value();
-    if (!out.said.array)
+    out.contents.output.pcm_included = out.contents.output.pcm.has_value();
+    if (!out.contents.array)
         table.fail("file", fmt::format("{} has no array", file.string()), "name an array file");
-    return *std::exchange(out.said.array, std::nullopt);
+    return *std::exchange(out.contents.array, std::nullopt);
 }
 
 // Reads a text that is shown to people as it is.
 std::optional<std::string> read_label(const toml_table& t, std::string_view key)
 {
-    std::optional<std::string> said = t.text(key);
-    if (const std::string why = said ? label_fault(*said) : ""; !why.empty())
+    std::optional<std::string> text = t.text(key);
+    if (const std::string why = text ? label_fault(*text) : ""; !why.empty())
         t.fail(key, fmt::format("{} {}", key, why), label_hint);
-    return said;
+    return text;
 }
 
 // Reads the kind of actuator. A missing one is unknown, which no file can say.
@@ -219,8 +220,8 @@ void append_tactors(const std::vector<toml_table>& entries, array& a)
         const unsigned i = static_cast<unsigned>(a.tactors.size());
         if (i == max_channels)
             e.fail(fmt::format("more than {} tactors", max_channels));
-        if (const auto said = e.whole("tactor", 0, max_channels - 1); said && *said != i)
-            e.fail("tactor", fmt::format("tactor is {}, but this is entry {}", *said, i),
+        if (const auto number = e.whole("tactor", 0, max_channels - 1); number && *number != i)
+            e.fail("tactor", fmt::format("tactor is {}, but this is entry {}", *number, i),
                    "without a grid, tactors are numbered from 0 in the order of the file");
         tactor_spec t;
         t.position = {e.need(e.number("x_mm", anywhere), "x_mm"), e.need(e.number("y_mm", anywhere), "y_mm")};
@@ -233,7 +234,7 @@ void append_tactors(const std::vector<toml_table>& entries, array& a)
 // Reads entries beside a grid, a preset or a file: each adds to the tactor that it names.
 void adjust_tactors(const std::vector<toml_table>& entries, std::string_view base, array& a)
 {
-    std::vector<const toml_table*> said(a.tactors.size());
+    std::vector<const toml_table*> by_tactor(a.tactors.size());
     const unsigned last = static_cast<unsigned>(a.tactors.size()) - 1;
     for (const toml_table& e : entries) {
         for (const char* key : {"x_mm", "y_mm"})
@@ -246,10 +247,11 @@ void adjust_tactors(const std::vector<toml_table>& entries, std::string_view bas
             e.fail("[[tactor]] does not say which tactor it is",
                    fmt::format("add tactor = INDEX, 0 to {}", last));
         const unsigned i = *e.whole("tactor", 0, last);
-        if (said[i])
-            e.fail("tactor", fmt::format("tactor {} has an entry already ({})", i, said[i]->where().text()),
+        if (by_tactor[i])
+            e.fail("tactor",
+                   fmt::format("tactor {} has an entry already ({})", i, by_tactor[i]->where().text()),
                    "join the two");
-        said[i] = &e;
+        by_tactor[i] = &e;
         read_tactor(e, a.tactors[i]);
     }
 }
@@ -301,13 +303,13 @@ std::string place_note(const source_place& at)
 // Refuses a channel count in which the map, or the marker, does not fit.
 void check_channels(const located_setup& s)
 {
-    const auto& count = s.said.output.channels;
+    const auto& count = s.contents.output.channels;
     if (!count)
         return;
-    if (s.said.array) {
-        const unsigned needed = s.said.array->channels();
-        for (std::size_t i = 0; needed > *count && i < s.said.array->tactors.size(); ++i) {
-            const tactor_spec& t = s.said.array->tactors[i];
+    if (s.contents.array) {
+        const unsigned needed = s.contents.array->channels();
+        for (std::size_t i = 0; needed > *count && i < s.contents.array->tactors.size(); ++i) {
+            const tactor_spec& t = s.contents.array->tactors[i];
             if (t.channel + 1 == needed)
                 fail_at(s.channels_at,
                         fmt::format("channels is {}, but tactor {}{} is on channel {}", *count, i,
@@ -315,9 +317,9 @@ void check_channels(const located_setup& s)
                         fmt::format("the array needs {}; they count from 0", counted(needed, "channel")));
         }
     }
-    if (s.said.sync && s.said.sync->channel && *s.said.sync->channel >= *count)
+    if (s.contents.sync && s.contents.sync->channel && *s.contents.sync->channel >= *count)
         fail_at(s.sync_channel_at,
-                fmt::format("the marker's channel is {}, but there {} {}{}", *s.said.sync->channel,
+                fmt::format("the marker's channel is {}, but there {} {}{}", *s.contents.sync->channel,
                             *count == 1 ? "is" : "are", counted(*count, "channel"),
                             place_note(s.channels_at)),
                 "channels count from 0");
@@ -325,11 +327,11 @@ void check_channels(const located_setup& s)
 
 void check_marker(const located_setup& s)
 {
-    if (!s.said.array || !s.said.sync || !s.said.sync->channel)
+    if (!s.contents.array || !s.contents.sync || !s.contents.sync->channel)
         return;
-    for (std::size_t i = 0; i < s.said.array->tactors.size(); ++i) {
-        const tactor_spec& t = s.said.array->tactors[i];
-        if (t.channel == *s.said.sync->channel)
+    for (std::size_t i = 0; i < s.contents.array->tactors.size(); ++i) {
+        const tactor_spec& t = s.contents.array->tactors[i];
+        if (t.channel == *s.contents.sync->channel)
             fail_at(s.sync_channel_at,
                     fmt::format("the marker's channel {} is that of tactor {}{}", t.channel, i,
                                 place_note(t.where)),
@@ -365,7 +367,7 @@ void read_output(const toml_table& root, located_setup& out)
     if (!t)
         return;
     t->only({"pcm", "rate", "channels", "period_frames", "periods"});
-    output_settings& o = out.said.output;
+    output_settings& o = out.contents.output;
     if (t->has("pcm")) {
         o.pcm = t->text("pcm");
         o.pcm_at = t->where("pcm");
@@ -396,7 +398,7 @@ void read_amplifier(const toml_table& root, located_setup& out)
     a.line = read_line(line);
     a.active_low = t->boolean("active_low").value_or(a.active_low);
     a.settle_s = seconds(t->number("settle_ms", {0.0, 10000.0})).value_or(a.settle_s);
-    out.said.amplifier = a;
+    out.contents.amplifier = a;
 }
 
 void read_sync(const toml_table& root, located_setup& out)
@@ -420,7 +422,7 @@ void read_sync(const toml_table& root, located_setup& out)
     }
     s.channel = t->whole("channel", bounds_of::marker_channel);
     out.sync_channel_at = t->where("channel");
-    out.said.sync = s;
+    out.contents.sync = s;
 }
 
 void read_limits(const toml_table& root, located_setup& out)
@@ -433,7 +435,7 @@ void read_limits(const toml_table& root, located_setup& out)
     l.power_dbfs = t->number("power_dbfs", bounds_of::power_dbfs);
     l.max_drive_s = t->number("max_drive_s", bounds_of::drive_s);
     l.window_s = t->number("window_s", bounds_of::drive_s);
-    out.said.limits = l;
+    out.contents.limits = l;
 }
 
 // Reads [defaults] as it is written.
@@ -444,7 +446,7 @@ void read_defaults(const toml_table& root, setup& out)
         return;
     for (const toml_table::said_key& e : t->entries()) {
         std::erase_if(out.defaults, [&e](const written_value& d) { return d.name == e.key; });
-        out.defaults.push_back(said_at(*t, e, *e.value, false));
+        out.defaults.push_back(read_value(*t, e, *e.value, false));
     }
 }
 
@@ -458,19 +460,19 @@ void read_serve(const toml_table& root, setup& out)
     for (const toml_table::said_key& e : t->entries())
         if (const toml::array* list = e.value->as_array())
             for (const toml::node& n : *list)
-                out.serve.push_back(said_at(*t, e, n, true));
+                out.serve.push_back(read_value(*t, e, n, true));
         else
-            out.serve.push_back(said_at(*t, e, *e.value, false));
+            out.serve.push_back(read_value(*t, e, *e.value, false));
 }
 
 // Reads and checks [calibration] and [[calibration.tactor]], which say how thresholds were measured, after
 // the array. Keeps the participant and the carrier.
-void read_calibration(const toml_table& root, located_setup& said)
+void read_calibration(const toml_table& root, located_setup& out)
 {
     const auto t = root.table("calibration", "[calibration]", "[calibration]");
     if (!t)
         return;
-    if (!said.said.array)
+    if (!out.contents.array)
         t->fail("there is no array that it is of",
                 "it stands in an array file, as {command:calibrate} writes it");
     t->only({"participant", "method", "rule", "carrier_hz", "interval_s", "feedback", "masker", "date",
@@ -487,10 +489,10 @@ void read_calibration(const toml_table& root, located_setup& said)
     r.seed = t->whole("seed", 0, any_number);
     r.simulated = t->boolean("simulated").value_or(false);
     const std::vector<toml_table> entries = t->tables("tactor");
-    std::vector<const toml_table*> seen(said.said.array->tactors.size());
+    std::vector<const toml_table*> seen(out.contents.array->tactors.size());
     for (const toml_table& e : entries)
         r.tactors.push_back(read_tactor(e, seen));
-    said.said.calibration = std::move(r);
+    out.contents.calibration = std::move(r);
 }
 
 // Reads [array] and [[tactor]]; keeps the other tables of an included file, too.
@@ -542,7 +544,7 @@ void read_array(const toml_table& root, const setup_source& source, located_setu
             if (!t.displacement_um_at_0dbfs)
                 t.displacement_um_at_0dbfs = um;
     a.where = root.has("array") ? table.where() : entries.front().where();
-    out.said.array = std::move(a);
+    out.contents.array = std::move(a);
 }
 
 located_setup read_setup(std::string_view text, const setup_source& source)
@@ -563,14 +565,14 @@ located_setup read_setup(std::string_view text, const setup_source& source)
     read_amplifier(root, out);
     read_sync(root, out);
     read_limits(root, out);
-    read_serve(root, out.said);
-    read_defaults(root, out.said);
+    read_serve(root, out.contents);
+    read_defaults(root, out.contents);
 
-    if (out.said.array)
-        validate(*out.said.array);
+    if (out.contents.array)
+        validate(*out.contents.array);
     check_channels(out);
     check_marker(out);
-    check_lines(out.said);
+    check_lines(out.contents);
     return out;
 }
 
@@ -586,12 +588,12 @@ setup load_setup(const std::filesystem::path& file)
     std::error_code ignored;
     return detail::read_setup(
                text, {file.string(), file.parent_path(), {std::filesystem::weakly_canonical(file, ignored)}})
-        .said;
+        .contents;
 }
 
 setup parse_setup(std::string_view toml, const std::string& name)
 {
-    return detail::read_setup(toml, {name, {}, {}}).said;
+    return detail::read_setup(toml, {name, {}, {}}).contents;
 }
 
 } // namespace v0

@@ -193,10 +193,7 @@ private:
     {
         const std::size_t begin = at;
         at = std::min(line_.find(',', begin), line_.size());
-        std::size_t end = at;
-        while (end > begin && detail::blank(line_[end - 1]))
-            --end;
-        return {line_.substr(begin, end - begin), begin + 1};
+        return {without_blanks(line_.substr(begin, at - begin)), begin + 1};
     }
 
     field quoted_field(std::size_t& at)

@@ -375,13 +375,6 @@ private:
                            "it draws a point"});
     }
 
-    static trajectory eased(const path& p, double duration_s, const scope& s)
-    {
-        if (s.easing == easing_kind::linear)
-            return trajectory::along(p, duration_s, s.intensity);
-        return trajectory::along(p, movement{.duration_s = duration_s, .easing = s.easing}, s.intensity);
-    }
-
     // Adds a shape. Its subpaths share its duration by their lengths.
     void add(xml_node n, const scope& s, const std::vector<path>& paths)
     {
@@ -403,12 +396,13 @@ private:
             if (time > detail::longest_stroke_s)
                 doc_.fail(n, fmt::format("{} takes {:g} s", doc_.called(n), time),
                           "a stroke takes at most a day");
-            strokes_.push_back({.name = paths.size() == 1 ? name : fmt::format("{}-{}", name, i + 1),
-                                .motion = eased(paths[i], time, s),
-                                .start_s = start,
-                                .speed_mm_s = duration ? std::nullopt : std::optional(speed),
-                                .usual_pace = !duration && !s.speed_mm_s,
-                                .sound = {.carrier_hz = s.carrier_hz}});
+            strokes_.push_back(
+                {.name = paths.size() == 1 ? name : fmt::format("{}-{}", name, i + 1),
+                 .motion = trajectory::along(paths[i], {.duration_s = time, .easing = s.easing}, s.intensity),
+                 .start_s = start,
+                 .speed_mm_s = duration ? std::nullopt : std::optional(speed),
+                 .usual_pace = !duration && !s.speed_mm_s,
+                 .sound = {.carrier_hz = s.carrier_hz}});
             start.reset();
         }
     }
