@@ -3,64 +3,55 @@
 /// Definition of the name functions of an enumeration.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
-#include <string>
 #include <string_view>
+#include <utility>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <tactor/api.hpp>
 #include <tactor/error.hpp>
 
 namespace tactor::detail {
 
-template <typename Kind>
-struct kind_name {
-    Kind kind;
-    std::string_view name;
-};
-
 /// Names of an enumeration, in the order of declaration. `what` names the enumeration in messages.
 template <typename Kind, std::size_t N>
-class kind_table {
-public:
-    constexpr kind_table(std::string_view what, const std::array<kind_name<Kind>, N>& all) noexcept
-        : what_(what)
-    {
-        for (std::size_t i = 0; i < N; ++i) {
-            kinds_[i] = all[i].kind;
-            names_[i] = all[i].name;
-        }
-    }
+struct kind_table {
+    std::string_view what;
+    std::array<Kind, N> kinds{};
+    std::array<std::string_view, N> names{};
 
     constexpr std::string_view name(Kind k) const noexcept
     {
-        for (std::size_t i = 0; i < N; ++i)
-            if (kinds_[i] == k)
-                return names_[i];
-        return "unknown";
+        const auto at = static_cast<std::size_t>(std::find(kinds.begin(), kinds.end(), k) - kinds.begin());
+        return at < N ? names[at] : "unknown";
     }
 
     Kind kind(std::string_view name) const
     {
-        std::string all;
-        for (std::size_t i = 0; i < N; ++i) {
-            if (names_[i] == name)
-                return kinds_[i];
-            all += (all.empty() ? "" : ", ") + std::string(names_[i]);
-        }
-        throw error(error_kind::bad_input, what_, fmt::format("\"{}\" is not known", name), "one of " + all)
-            .with_field(what_);
+        const auto at = static_cast<std::size_t>(std::find(names.begin(), names.end(), name) - names.begin());
+        if (at < N)
+            return kinds[at];
+        throw error(error_kind::bad_input, what, fmt::format("\"{}\" is not known", name),
+                    fmt::format("one of {}", fmt::join(names, ", ")))
+            .with_field(what);
     }
-
-    constexpr const std::array<Kind, N>& kinds() const noexcept { return kinds_; }
-
-private:
-    std::string_view what_;
-    std::array<Kind, N> kinds_{};
-    std::array<std::string_view, N> names_{};
 };
+
+template <typename Kind, std::size_t N>
+constexpr kind_table<Kind, N> make_kind_table(std::string_view what,
+                                              const std::pair<Kind, std::string_view> (&all)[N]) noexcept
+{
+    kind_table<Kind, N> table{what};
+    for (std::size_t i = 0; i < N; ++i) {
+        table.kinds[i] = all[i].first;
+        table.names[i] = all[i].second;
+    }
+    return table;
+}
 
 } // namespace tactor::detail
 
@@ -70,7 +61,7 @@ private:
     namespace {                                                                                              \
     constexpr auto Kind##_names = [] {                                                                       \
         using enum Kind;                                                                                     \
-        return detail::kind_table(what, std::to_array<detail::kind_name<Kind>>({__VA_ARGS__}));              \
+        return detail::make_kind_table<Kind>(what, {__VA_ARGS__});                                           \
     }();                                                                                                     \
     }                                                                                                        \
     std::string_view to_string(Kind k) noexcept                                                              \
@@ -85,6 +76,6 @@ private:
     template <>                                                                                              \
     std::span<const Kind> all_values<Kind>() noexcept                                                        \
     {                                                                                                        \
-        return Kind##_names.kinds();                                                                         \
+        return Kind##_names.kinds;                                                                           \
     }                                                                                                        \
     static_assert(true)

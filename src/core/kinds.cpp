@@ -1,4 +1,8 @@
 // SPDX-License-Identifier: MIT
+#include <algorithm>
+
+#include <fmt/format.h>
+
 #include <tactor/array.hpp>
 #include <tactor/choices.hpp>
 #include <tactor/error.hpp>
@@ -25,6 +29,19 @@ TACTOR_KIND_NAMES(io_kind, "state of a sink", {ok, "ok"}, {again, "again"}, {xru
 TACTOR_KIND_NAMES(log_kind, "kind of log line", {debug, "debug"}, {info, "info"}, {warning, "warning"},
                   {error, "error"});
 
+TACTOR_KIND_NAMES(algorithm_kind, "algorithm", {park2016, "park2016"}, {tactile_brush, "tactile-brush"},
+                  {continuous, "continuous"});
+TACTOR_KIND_NAMES(phantom_kind, "phantom", {inverse_distance, "inverse-distance"},
+                  {barycentric, "barycentric"}, {linear, "linear"}, {log, "log"}, {gaussian, "gaussian"});
+TACTOR_KIND_NAMES(faces_kind, "faces", {delaunay, "delaunay"}, {nearest, "nearest"});
+TACTOR_KIND_NAMES(timing_kind, "timing", {fixed, "fixed"}, {fit, "fit"});
+TACTOR_KIND_NAMES(outside_kind, "outside", {error, "error"}, {clamp, "clamp"});
+TACTOR_KIND_NAMES(overlap_kind, "overlap", {energy, "energy"}, {max, "max"}, {sum, "sum"});
+TACTOR_KIND_NAMES(scale_kind, "intensity scale", {linear, "linear"}, {sl, "sl"}, {stevens, "stevens"});
+TACTOR_KIND_NAMES(phase_kind, "phase", {stroke, "stroke"}, {burst, "burst"});
+TACTOR_KIND_NAMES(observer_kind, "observer", {centroid, "centroid"}, {low_speed, "low-speed"});
+TACTOR_KIND_NAMES(start_from_kind, "start_from", {piece, "piece"}, {start, "start"}, {end, "end"});
+
 std::size_t sample_bytes(format_kind f) noexcept
 {
     switch (f) {
@@ -42,6 +59,29 @@ std::size_t sample_bytes(format_kind f) noexcept
 
 TACTOR_KIND_NAMES(format_kind, "sample format", {float32, "float"}, {s16, "s16"}, {s24_3, "s24"},
                   {s24_4, "s24-4"}, {s32, "s32"});
+
+double resolve_start_s(std::optional<double> start_s, const start_anchor& anchor,
+                       std::span<const double> starts_s, std::span<const double> ends_s)
+{
+    if (!start_s)
+        return ends_s.empty() ? 0.0 : ends_s.back();
+    if (anchor.from == start_from_kind::piece)
+        return *start_s;
+    double from = 0.0;
+    const std::size_t back = anchor.back;
+    if (anchor.from == start_from_kind::start)
+        from = back >= 1 && back <= starts_s.size() ? starts_s[starts_s.size() - back] : 0.0;
+    else
+        for (const double end : ends_s.last(std::min(back, ends_s.size())))
+            from = std::max(from, end);
+    if (from + *start_s >= 0.0)
+        return from + *start_s;
+    throw error(error_kind::bad_input, "start of the stroke",
+                fmt::format("{:g} s before the {} of what comes before it is before the piece", -*start_s,
+                            to_string(anchor.from)),
+                fmt::format("{:g} s before is the start of the piece", from))
+        .with_field("start_s");
+}
 
 } // namespace v0
 } // namespace tactor

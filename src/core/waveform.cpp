@@ -9,6 +9,7 @@
 
 #include <tactor/error.hpp>
 
+#include "core/bounds.hpp"
 #include "core/kind_table.hpp"
 #include "core/path/number.hpp"
 #include "core/recording_name.hpp"
@@ -19,14 +20,11 @@ namespace tactor {
 inline namespace v0 {
 namespace {
 
-constexpr double highest_hz = 384000.0;
-constexpr double highest_modulation_hz = 20000.0;
-constexpr double longest_texture_mm = 1e6;
-
 void check_noise(const waveform& w)
 {
     // NaN fails this test, too.
-    if (!(w.low_hz >= least_noise_hz && w.high_hz >= w.low_hz + least_noise_hz && w.high_hz <= highest_hz))
+    if (!(w.low_hz >= least_noise_hz && w.high_hz >= w.low_hz + least_noise_hz &&
+          w.high_hz <= detail::bounds_of::carrier_hz.high))
         throw error(error_kind::bad_input, "waveform",
                     fmt::format("noise from {} to {} Hz cannot be made", w.low_hz, w.high_hz),
                     "give frequencies from 1 Hz up, the second 1 Hz above the first or more, as noise:50-500")
@@ -62,7 +60,7 @@ void check_recording(const waveform& w)
                                 counted(w.recorded->samples.size(), "sample"), to_string(w.texture)),
                     fmt::format("at most {}, which is 8 s at 8 kHz; or texture time", most_cycle_samples))
             .with_field("recorded");
-    if (!(w.texture_mm >= 0.0 && w.texture_mm <= longest_texture_mm))
+    if (!detail::bounds_of::texture_mm.holds(w.texture_mm))
         throw detail::bad_field("texture_mm", fmt::format("{} mm is not a length", w.texture_mm),
                                 "give above 0 to 1000000, or 0 for the whole path");
 }
@@ -128,10 +126,10 @@ void validate(const waveform& w)
 
 void validate(const modulation& m)
 {
-    if (!(m.hz >= 0.0 && m.hz <= highest_modulation_hz))
+    if (!detail::bounds_of::am_hz.holds(m.hz))
         throw detail::bad_field("am", fmt::format("{} Hz cannot modulate", m.hz),
                                 "give 0 to 20000 Hz; 0 is none");
-    if (!(m.depth >= 0.0 && m.depth <= 1.0))
+    if (!detail::bounds_of::part.holds(m.depth))
         throw detail::bad_field("am", fmt::format("{} is not a depth", m.depth),
                                 "give 0 to 1, which goes down to silence");
 }
@@ -148,7 +146,7 @@ burst_envelope parse_envelope(std::string_view text)
         return e;
     std::size_t at = colon + 1;
     const auto part = detail::scan_number(text, at);
-    if (e.kind != envelope_kind::tukey || !part || at != text.size() || !(*part >= 0.0 && *part <= 1.0))
+    if (e.kind != envelope_kind::tukey || !part || at != text.size() || !detail::bounds_of::part.holds(*part))
         throw detail::bad_field("envelope", fmt::format("\"{}\" is not known", text),
                                 "only tukey has a part, 0 to 1, as tukey:0.5");
     e.tukey_part = *part;

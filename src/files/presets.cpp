@@ -6,6 +6,8 @@
 #include <tactor/stroke.hpp>
 
 #include <array>
+#include <cmath>
+#include <optional>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -37,38 +39,27 @@ constexpr std::array motions{
     motion{"park2016-4", {20.0, 20.0}, 0.0, -270.0},
 };
 
-// Within 0 ... 60 by 0 ... 20 mm, in whole numbers of bursts of 0.07 s.
 struct drawing {
     std::string_view name;
     std::string_view path;
-    double duration_s;
+    double duration_s = 0.0; // 0: at the usual speed
 };
 
+// Within 0 ... 60 by 0 ... 20 mm, in whole numbers of bursts of 0.07 s.
 constexpr std::array drawings{
     drawing{"wave-2x4", "M 0 10 C 5 -2 15 -2 20 10 S 35 22 40 10 S 55 -2 60 10", 2.1},
     drawing{"round-2x4", "M 58 10 A 28 8 0 0 1 2 10 A 28 8 0 0 1 58 10", 2.8},
 };
 
 // For first steps on any array, which gives them their size. y points down: they begin clockwise.
-struct shape {
-    std::string_view name;
-    std::string_view path;
-};
-
-constexpr double tap_s = 0.3;
-
 constexpr std::array shapes{
-    shape{"tap", "M 0 0"},
-    shape{"line", "M 0 0 H 100"},
-    shape{"circle", "M 50 0 A 50 50 0 0 1 50 100 A 50 50 0 0 1 50 0"},
-    shape{"eight", "M 50 25 A 25 25 0 0 1 100 25 A 25 25 0 0 1 50 25 A 25 25 0 0 0 0 25 A 25 25 0 0 0 50 25"},
-    shape{"spiral", "M 0 0 A 5 5 0 0 1 10 0 A 10 10 0 0 1 -10 0 A 15 15 0 0 1 20 0 A 20 20 0 0 1 -20 0"},
+    drawing{"tap", "M 0 0", 0.3},
+    drawing{"line", "M 0 0 H 100"},
+    drawing{"circle", "M 50 0 A 50 50 0 0 1 50 100 A 50 50 0 0 1 50 0"},
+    drawing{"eight",
+            "M 50 25 A 25 25 0 0 1 100 25 A 25 25 0 0 1 50 25 A 25 25 0 0 0 0 25 A 25 25 0 0 0 50 25"},
+    drawing{"spiral", "M 0 0 A 5 5 0 0 1 10 0 A 10 10 0 0 1 -10 0 A 15 15 0 0 1 20 0 A 20 20 0 0 1 -20 0"},
 };
-
-double duration_s(const motion& m)
-{
-    return (m.sweep_deg < 0.0 ? -m.sweep_deg : m.sweep_deg) / 90.0 * quarter_turn_s;
-}
 
 struct preset {
     std::string_view name;
@@ -108,7 +99,7 @@ stroke preset_stroke(std::string_view name)
         if (m.name == name)
             return {.name = std::string(name),
                     .motion = trajectory::along(path::arc(m.centre, radius_mm, m.from_deg, m.sweep_deg),
-                                                duration_s(m)),
+                                                std::abs(m.sweep_deg) / 90.0 * quarter_turn_s),
                     .note = note_kind::reconstructed,
                     .made_for = "palm-3x3"};
     for (const drawing& d : drawings)
@@ -128,17 +119,15 @@ const std::vector<std::string>& stroke_shapes()
 
 stroke shape_stroke(std::string_view name)
 {
-    for (const shape& s : shapes) {
-        if (s.name != name)
+    for (const drawing& d : shapes) {
+        if (d.name != name)
             continue;
-        const path p = path::from_svg(s.path);
-        const bool tap = p.length_mm() == 0.0;
-        stroke k{.name = std::string(name),
-                 .motion = trajectory::along(p, tap ? tap_s : p.length_mm() / default_speed_mm_s),
-                 .fit = stroke_fit{}};
-        if (!tap)
-            k.speed_mm_s = default_speed_mm_s;
-        return k;
+        const path p = path::from_svg(d.path);
+        const bool has_time = d.duration_s > 0.0;
+        return {.name = std::string(name),
+                .motion = trajectory::along(p, has_time ? d.duration_s : p.length_mm() / default_speed_mm_s),
+                .speed_mm_s = has_time ? std::nullopt : std::optional(default_speed_mm_s),
+                .fit = stroke_fit{}};
     }
     throw detail::bad_field("shape", fmt::format("{} is not known", detail::quoted(name)),
                             fmt::format("one of {}", fmt::join(stroke_shapes(), ", ")));
