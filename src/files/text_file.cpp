@@ -59,40 +59,38 @@ bool looks_like_csv(std::string_view line)
 void refuse_other_kind(std::string_view text, const std::string& name, std::string_view hint)
 {
     struct other_kind {
-        std::string_view begin;
+        std::size_t at;
+        std::string_view bytes;
         std::string_view what;
     };
-    constexpr other_kind others[] = {{"\x89PNG", "a PNG picture"},
-                                     {"\xFF\xD8\xFF", "a JPEG picture"},
-                                     {"%PDF-", "a PDF document"},
-                                     {"PK\x03\x04", "a ZIP archive or office document"},
-                                     {"\x1F\x8B", "compressed by gzip"},
-                                     {"fLaC", "FLAC sound"},
-                                     {"OggS", "Ogg sound"},
-                                     {"ID3", "MP3 sound"},
-                                     {"GIF8", "a GIF picture"},
-                                     {"II*\0"sv, "a TIFF picture"},
-                                     {"MM\0*"sv, "a TIFF picture"},
-                                     {"\xD0\xCF\x11\xE0", "an old Excel or Word document"},
-                                     {"\x93NUMPY", "an array of NumPy"},
-                                     {"\x89HDF", "HDF5 data"},
-                                     {"MATLAB 5.0", "data of MATLAB"}};
-    std::string_view what;
-    const std::string_view head = text.substr(0, 12);
-    if ((head.starts_with("RIFF") || head.starts_with("RF64")) && head.ends_with("WAVE"))
-        what = "a WAV file";
-    if (head.starts_with("RIFF") && head.ends_with("WEBP"))
-        what = "a WebP picture";
-    if (head.size() == 12 && head.substr(4, 4) == "ftyp") {
-        constexpr std::string_view pictures = "heic heix mif1 msf1 avif";
-        what = pictures.find(head.substr(8)) != std::string_view::npos ? "a HEIC or AVIF picture"
-                                                                       : "a film or sound in MP4";
-    }
+    constexpr other_kind others[] = {{0, "\x89PNG", "a PNG picture"},
+                                     {0, "\xFF\xD8\xFF", "a JPEG picture"},
+                                     {0, "GIF8", "a GIF picture"},
+                                     {0, "II*\0"sv, "a TIFF picture"},
+                                     {0, "MM\0*"sv, "a TIFF picture"},
+                                     {8, "WEBPVP8", "a WebP picture"},
+                                     {4, "ftypheic", "a HEIC or AVIF picture"},
+                                     {4, "ftypheix", "a HEIC or AVIF picture"},
+                                     {4, "ftypmif1", "a HEIC or AVIF picture"},
+                                     {4, "ftypmsf1", "a HEIC or AVIF picture"},
+                                     {4, "ftypavif", "a HEIC or AVIF picture"},
+                                     {4, "ftyp", "a film or sound in MP4"},
+                                     {0, "RIFF", "a WAV file"},
+                                     {0, "RF64", "a WAV file"},
+                                     {0, "fLaC", "FLAC sound"},
+                                     {0, "OggS", "Ogg sound"},
+                                     {0, "ID3", "MP3 sound"},
+                                     {0, "%PDF-", "a PDF document"},
+                                     {0, "\xD0\xCF\x11\xE0", "an old Excel or Word document"},
+                                     {0, "PK\x03\x04", "a ZIP archive or office document"},
+                                     {0, "\x1F\x8B", "compressed by gzip"},
+                                     {0, "\x93NUMPY", "an array of NumPy"},
+                                     {0, "\x89HDF", "HDF5 data"},
+                                     {0, "MATLAB 5.0", "data of MATLAB"}};
     for (const other_kind& o : others)
-        if (text.starts_with(o.begin))
-            what = o.what;
-    if (!what.empty())
-        throw error(error_kind::bad_input, source_place{name}, fmt::format("is {}, not text", what), hint);
+        if (text.size() > o.at && text.substr(o.at).starts_with(o.bytes))
+            throw error(error_kind::bad_input, source_place{name}, fmt::format("is {}, not text", o.what),
+                        hint);
 }
 
 } // namespace

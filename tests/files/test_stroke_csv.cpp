@@ -455,14 +455,4 @@ TEST_CASE("files without a stroke are refused")
           "w.toml:4:1: unknown key 'pat' in [[stroke]] (did you mean 'path'?)");
 }
 
-TEST_CASE("two hundred thousand timed points are read")
-{
-    std::string text = "timed = [\n";
-    for (int i = 0; i < 200000; ++i)
-        text += fmt::format("[{:.3f}, {}, 5],\n", i * 0.001, i % 40);
-    const stroke s = one(text + "]");
-    CHECK(s.motion.duration_s() == doctest::Approx(199.999));
-    check_near(s.motion.position(0.007), 7.0, 5.0);
-}
-
 } // namespace stroke_csv_test
