@@ -25,9 +25,9 @@ namespace {
 
 // Source of a text.
 struct setup_source {
-    std::string name;                          // in messages
-    std::filesystem::path folder;              // of relative names; empty: the current one
-    std::vector<std::filesystem::path> opened; // the files that led here, this one included
+    std::string name;             // in messages
+    std::filesystem::path folder; // of relative names; empty: the current one
+    unsigned depth = 1;           // files that led here, this one included
 };
 
 // A setup, and the places of values on which two tables must agree.
@@ -89,7 +89,7 @@ calibrated_tactor read_tactor(const toml_table& t, std::vector<const toml_table*
     return r;
 }
 
-constexpr std::size_t longest_chain = 16;
+constexpr unsigned longest_chain = 16;
 constexpr bounds anywhere{-max_mm, max_mm};
 constexpr bounds limit_db{min_db, 0.0};
 constexpr bounds body_mm{1.0, 3000.0};
@@ -124,23 +124,16 @@ array read_grid(const toml_table& grid)
 array read_included(const toml_table& table, const setup_source& source, located_setup& out)
 {
     const std::filesystem::path file = source.folder / *table.text("file");
+    if (source.depth == longest_chain)
+        table.fail("file", "a chain of too many files",
+                   fmt::format("at most {}, and none that names itself", longest_chain));
     std::error_code ignored;
-    const std::filesystem::path full = std::filesystem::weakly_canonical(file, ignored);
-    if (std::find(source.opened.begin(), source.opened.end(), full) != source.opened.end())
-        table.fail("file",
-                   fmt::format("{} takes its array from itself",
-                               full == source.opened.back() ? "it" : file.string()),
-                   "break the circle of files");
-    if (source.opened.size() == longest_chain)
-        table.fail("file", "a chain of too many files", fmt::format("at most {}", longest_chain));
     // Opening a pipe that someone else's file names could block, and a device may take it for a command.
     if (std::filesystem::exists(file, ignored) && !std::filesystem::is_directory(file, ignored) &&
         !std::filesystem::is_regular_file(file, ignored))
         table.fail("file", fmt::format("{} is not a regular file", file.string()), "name an array file");
     const whole_text text = table.at_key("file", [&] { return read_text_file(file, max_setup_bytes); });
-    setup_source next{file.string(), file.parent_path(), source.opened};
-    next.opened.push_back(full);
-    out = read_setup(text, next);
+    out = read_setup(text, {file.string(), file.parent_path(), source.depth + 1});
     out.contents.output.pcm_included = out.contents.output.pcm.has_value();
     if (!out.contents.array)
         table.fail("file", fmt::format("{} has no array", file.string()), "name an array file");
@@ -585,15 +578,12 @@ inline namespace v0 {
 setup load_setup(const std::filesystem::path& file)
 {
     const detail::whole_text text = detail::read_text_file(file, detail::max_setup_bytes);
-    std::error_code ignored;
-    return detail::read_setup(
-               text, {file.string(), file.parent_path(), {std::filesystem::weakly_canonical(file, ignored)}})
-        .contents;
+    return detail::read_setup(text, {file.string(), file.parent_path()}).contents;
 }
 
 setup parse_setup(std::string_view toml, const std::string& name)
 {
-    return detail::read_setup(toml, {name, {}, {}}).contents;
+    return detail::read_setup(toml, {name, {}}).contents;
 }
 
 } // namespace v0
