@@ -21,62 +21,50 @@ namespace tactor::detail {
 /// stays within a nanometre of its tangent for 0.01 mm.
 inline constexpr double shortest_run_mm = 0.1;
 
-/// Meetings of a movement given as nodes. Between two nodes the distance from the line is monotone. N has
+/// Returns the meetings with a line of a movement that is given as nodes. Between two nodes the distance from
+/// the line is monotone. N has
 ///   size()       number of nodes
 ///   off(i)       signed distance of node i from the line, mm
 ///   when(i)      arc length or time of node i
 ///   length(i, j) length from node i to node j, mm
 ///   root(i)      meeting between nodes i and i + 1, which lie on different sides
 template <class N>
-class line_meetings {
-public:
-    explicit line_meetings(const N& nodes) : nodes_(nodes) {}
-
-    std::vector<double> find() const
-    {
-        std::vector<double> found;
-        const std::size_t n = nodes_.size();
-        for (std::size_t i = 0; i < n;) {
-            if (!on_line(i)) {
-                if (i + 1 < n && !on_line(i + 1) && crosses(i))
-                    found.push_back(nodes_.root(i));
-                ++i;
-                continue;
-            }
-            std::size_t last = i;
-            while (last + 1 < n && on_line(last + 1))
-                ++last;
-            if (nodes_.length(i, last) <= shortest_run_mm)
-                found.push_back(touch(i, last));
-            i = last + 1;
-        }
-        return found;
-    }
-
-private:
-    bool on_line(std::size_t i) const { return std::abs(nodes_.off(i)) <= same_place_mm; }
-
-    bool crosses(std::size_t i) const { return (nodes_.off(i) < 0.0) != (nodes_.off(i + 1) < 0.0); }
-
+std::vector<double> find_meetings(const N& nodes)
+{
+    const auto on_line = [&](std::size_t i) { return std::abs(nodes.off(i)) <= same_place_mm; };
+    const auto crosses = [&](std::size_t i) { return (nodes.off(i) < 0.0) != (nodes.off(i + 1) < 0.0); };
     // Returns the single meeting of the nodes first ... last, which all lie on the line.
-    double touch(std::size_t first, std::size_t last) const
-    {
-        if (last > first && nodes_.length(first, last) <= same_place_mm)
-            return nodes_.when(first); // a rest: the time of arrival
+    const auto touch = [&](std::size_t first, std::size_t last) {
+        if (last > first && nodes.length(first, last) <= same_place_mm)
+            return nodes.when(first); // a rest: the time of arrival
         std::size_t nearest = first;
         for (std::size_t i = first > 0 ? first - 1 : first; i <= last; ++i) {
-            if (nodes_.off(i) == 0.0)
-                return nodes_.when(i);
-            if (i + 1 < nodes_.size() && nodes_.off(i + 1) != 0.0 && crosses(i))
-                return nodes_.root(i);
-            if (std::abs(nodes_.off(i)) < std::abs(nodes_.off(nearest)))
+            if (nodes.off(i) == 0.0)
+                return nodes.when(i);
+            if (i + 1 < nodes.size() && nodes.off(i + 1) != 0.0 && crosses(i))
+                return nodes.root(i);
+            if (std::abs(nodes.off(i)) < std::abs(nodes.off(nearest)))
                 nearest = i;
         }
-        return nodes_.when(nearest);
+        return nodes.when(nearest);
+    };
+    std::vector<double> found;
+    for (std::size_t i = 0; i < nodes.size();) {
+        if (!on_line(i)) {
+            if (i + 1 < nodes.size() && !on_line(i + 1) && crosses(i))
+                found.push_back(nodes.root(i));
+            ++i;
+            continue;
+        }
+        std::size_t last = i;
+        while (last + 1 < nodes.size() && on_line(last + 1))
+            ++last;
+        if (nodes.length(i, last) <= shortest_run_mm)
+            found.push_back(touch(i, last));
+        i = last + 1;
     }
-
-    const N& nodes_;
-};
+    return found;
+}
 
 /// A table of (parameter, arc length). It is so fine that Gauss quadrature from one entry towards the next is
 /// accurate to about a nanometre, even at cusps.

@@ -129,8 +129,7 @@ std::vector<double> meets(const path::impl& p, axis a, double line)
 {
     if (!std::isfinite(line))
         return {};
-    const path_nodes nodes(p, a, line);
-    return detail::line_meetings(nodes).find();
+    return detail::find_meetings(path_nodes(p, a, line));
 }
 
 using out = std::back_insert_iterator<std::string>;

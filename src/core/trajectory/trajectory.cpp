@@ -92,7 +92,7 @@ double greatest_intensity(const trajectory::impl& i)
     return i.gain * most;
 }
 
-// Points as nodes for line_meetings.
+// Points as nodes for find_meetings.
 class timed_nodes {
 public:
     timed_nodes(const std::vector<timed_point>& points, axis a, double line)
@@ -216,8 +216,7 @@ std::vector<double> trajectory::impl::meets(axis a, double line) const
         return times;
     }
     const auto& l = std::get<timed_points>(law);
-    const timed_nodes nodes(*l.points, a, line);
-    times = detail::line_meetings(nodes).find();
+    times = detail::find_meetings(timed_nodes(*l.points, a, line));
     for (double& t : times)
         t = from_own(t, l.duration_s());
     return times;
