@@ -281,21 +281,6 @@ void give_player_options(wishes& into, const py::dict& given)
     }
 }
 
-py::dict default_values(const setup& says)
-{
-    py::dict all;
-    for (const options::said_default& d : options::read_defaults(says)) {
-        const py::str name(d.row->name.data(), d.row->name.size());
-        std::visit(
-            [&]<class T>(const T& v) {
-                if constexpr (!std::is_same_v<T, std::monostate>)
-                    all[name] = v;
-            },
-            d.said);
-    }
-    return all;
-}
-
 py::list option_rows()
 {
     constexpr std::array places{

@@ -22,10 +22,6 @@ void give_player_options(wishes& into, const py::dict& given);
 /// Returns the rows of the table, for src/options/write.py.
 py::list option_rows();
 
-/// Returns the values of [defaults] by the names of options. \throws error (bad_input) with the place in the
-/// file.
-py::dict default_values(const setup& says);
-
 /// Returns an error of the library with options as keyword arguments: "soa", timing="fit".
 error in_keywords(const error& e);
 

@@ -171,12 +171,9 @@ void bind_array(py::module_& m)
              [](const setup& s) {
                  return s.calibration ? detail::origin_text(*s.calibration) : std::string();
              })
-        .def_property_readonly("array",
-                               [](const setup& s) -> std::optional<array_handle> {
-                                   return s.array ? std::optional<array_handle>(std::in_place, *s.array)
-                                                  : std::nullopt;
-                               })
-        .def_property_readonly("defaults", &default_values);
+        .def_property_readonly("array", [](const setup& s) -> std::optional<array_handle> {
+            return s.array ? std::optional<array_handle>(std::in_place, *s.array) : std::nullopt;
+        });
 }
 
 void bind_path(py::module_& m)

@@ -126,7 +126,7 @@ def test_arrays_are_written(tool, filed, tmp_path):
     assert "13 channels, 44100 Hz" in tool("render", "park2016-1", "--array", "b.toml", "-o", "x.wav")
     again = pickle.loads(pickle.dumps(kept))
     (tmp_path / "a.toml").unlink()
-    assert again == kept and again._settings().defaults["level_dbfs"] == -40.0
+    assert again == kept
     with pytest.raises(tactor.InputError):
         kept.write(tmp_path / "none" / "b.toml")
 

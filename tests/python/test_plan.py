@@ -85,7 +85,7 @@ def test_options_have_the_names_of_the_tools(tool):
     own = {"channels", "marker_channel", "marker_s", "power_dbfs", "max_drive_s", "drive_window_s",  # a score's, from files and `play`
            "usual_speed",  # from [defaults] speed
            "tukey_part"}  # the tool's --envelope tukey:PART
-    ours = {r["name"] for r in _tactor.option_rows() if {"plan", "score", "compare"} & set(r["places"])}
+    ours = {row["name"] for row in _tactor.option_rows() if {"plan", "score", "compare"} & set(row["places"])}
     assert said - not_ours == ours - own
 
 
