@@ -76,3 +76,21 @@ def stroke():
 @pytest.fixture
 def root():
     return ROOT
+
+
+@pytest.fixture
+def player(palm):
+    with tactor.Player("null", palm, config=os.devnull) as p:
+        yield p
+
+
+@pytest.fixture
+def short(palm):
+    stroke = tactor.Stroke.along(tactor.Path.svg("M 0 10 L 40 30"), duration=0.1)
+    return tactor.Score(palm, tactor.plan(palm, stroke, algorithm="continuous"))
+
+
+@pytest.fixture
+def endless(palm):
+    stroke = tactor.Stroke.along(tactor.Path.svg("M 0 10 L 40 30"), duration=60)
+    return tactor.Score(palm, tactor.plan(palm, stroke, algorithm="continuous"), level_dbfs=-60)

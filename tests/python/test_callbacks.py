@@ -8,7 +8,7 @@ import warnings
 import pytest
 
 import tactor
-from test_player import endless, player, run, short  # noqa: F401 (fixtures)
+from test_player import run
 
 
 class Experiment:
@@ -28,7 +28,7 @@ class Experiment:
 
 
 @pytest.mark.parametrize("with_log", [False, True])
-def test_bound_methods_do_not_keep_a_forgotten_player_alive(palm, endless, with_log):  # noqa: F811
+def test_bound_methods_do_not_keep_a_forgotten_player_alive(palm, endless, with_log):
     experiment = Experiment(palm, endless, with_log)
     thread, ended = experiment.player._shared.thread, experiment.ended
     with pytest.warns(ResourceWarning, match="unclosed"):
@@ -38,7 +38,7 @@ def test_bound_methods_do_not_keep_a_forgotten_player_alive(palm, endless, with_
     assert ended == ["cancelled"]
 
 
-def test_a_log_without_other_references_gets_its_lines(palm, short):  # noqa: F811
+def test_a_log_without_other_references_gets_its_lines(palm, short):
     lines = []
 
     class Log:
@@ -51,7 +51,7 @@ def test_a_log_without_other_references_gets_its_lines(palm, short):  # noqa: F8
     assert lines
 
 
-def test_a_ticket_outlives_a_player_that_was_forgotten(palm, endless):  # noqa: F811
+def test_a_ticket_outlives_a_player_that_was_forgotten(palm, endless):
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", ResourceWarning)
         ticket = tactor.Player("null", palm, config=os.devnull).submit(endless)

@@ -27,12 +27,6 @@ def said(tmp_path, monkeypatch):
 
 
 @pytest.fixture
-def player(palm):
-    with tactor.Player("null", palm, config=os.devnull) as p:
-        yield p
-
-
-@pytest.fixture
 def score(palm):
     return tactor.Score(palm, tactor.plan(palm, tactor.Stroke.along(tactor.Path.svg("M 0 10 L 40 30"), duration=0.1)))
 

@@ -13,12 +13,6 @@ import tactor
 LONG = 120.0  # s: a longer answer never comes
 
 
-@pytest.fixture
-def player(palm):
-    with tactor.Player("null", palm, config=os.devnull) as p:
-        yield p
-
-
 class Meddling:
     """A model that acts on the stroke that asks it."""
 
