@@ -318,9 +318,6 @@ class Refusals(AnalyzeTest):
         self.says("task-other_beh.tsv: it is of no run of the experiment")
         other.rename(other.with_name(f".{other.name}"))
         self.ok("analyze", self.folder)
-        self.changed("task-taste_beh.json", '{"TaskName": "marks"}', 'task-taste_beh.json: its TaskName is not "taste"')
-        (self.folder / "task-taste_beh.json").unlink()
-        self.ok("analyze", self.folder)
 
 
 if __name__ == "__main__":

@@ -87,12 +87,6 @@ class Tables(ExperimentTest):
             self.simulate("01", "--resume", run=lambda *a: self.refused(2, *a))
             self.assertEqual(contents(self.dir / "study"), before)
         table.write_text(good)
-        description = self.dir / "study/task-howgood_beh.json"
-        text = description.read_text()
-        description.write_text(text.replace('"how good"', '"bad"'))
-        self.simulate("01", "--resume", run=lambda *a: self.refused(2, *a))
-        self.refused(2, "analyze", "study")
-        description.write_text(text)
         people = self.dir / "study/participants.tsv"
         text = people.read_text()
         people.write_text(text.replace("participant_id", "id"))

@@ -291,7 +291,6 @@ void session_store::check_tables() const
     folder_.check_lists(code_);
     const run_definition* lost = nullptr;
     for (const run_definition* r : runs_) {
-        check_description(folder_.path() / description_path(r->outline), r->outline);
         if (!is_on_disk(table(*r)))
             lost = lost == nullptr ? r : lost;
         else if (lost != nullptr)

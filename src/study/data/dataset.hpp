@@ -6,7 +6,6 @@
 ///   sub-CODE/beh/sub-CODE_task-NAME_beh.tsv   the trials; columns trial attempt motion method_1 method_2
 ///                                             response rating void response_time, early if it is there,
 ///                                             others are left alone
-///   task-NAME_beh.json                        where it is there: an object whose TaskName is the run's
 ///   sourcedata/sub-CODE/session.json          {"simulated": bool, "experiment": {"text": TOML}}, others are
 ///                                             left alone: the order of motions and methods, and the runs
 #pragma once

@@ -53,8 +53,4 @@ struct session_data {
 /// Reads a session.json. \throws error (bad_input) with file and, where it has one, line.
 session_data read_session(const std::filesystem::path& file);
 
-/// Checks the description of a run's table, if it is there. \throws error (bad_input) if it is no JSON object
-/// or describes another run.
-void check_description(const std::filesystem::path& file, const run_outline& run);
-
 } // namespace tactor::study
