@@ -85,8 +85,13 @@ public:
         return free_mm(l, *face, p, true);
     }
 
-    std::array<double, 3> amplitudes(const rank_triple& three, point p, double a_v) const override
+    std::array<double, 3> amplitudes(const rank_triple& three, unsigned count, point p,
+                                     double a_v) const override
     {
+        if (count == 2) {
+            const std::array<double, 2> two = share_of_two(layout_, {three[0], three[1]}, p, a_v);
+            return {two[0], two[1], 0.0};
+        }
         return share_of_three(
             {distance(layout_, three[0], p), distance(layout_, three[1], p), distance(layout_, three[2], p)},
             a_v);
@@ -101,11 +106,6 @@ public:
             return 0;
         taken = {on.first, on.second, 0};
         return 2;
-    }
-
-    std::array<double, 2> amplitudes_of_two(const rank_pair& two, point p, double a_v) const override
-    {
-        return share_of_two(layout_, two, p, a_v);
     }
 
 private:

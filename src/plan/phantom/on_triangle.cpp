@@ -106,7 +106,7 @@ public:
         return 3;
     }
 
-    std::array<double, 3> amplitudes(const rank_triple& three, point p, double a_v) const override
+    std::array<double, 3> amplitudes(const rank_triple& three, unsigned, point p, double a_v) const override
     {
         // Beside the triangle they come in an order of their own.
         std::array<double, 3> out{};

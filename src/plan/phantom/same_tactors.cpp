@@ -14,21 +14,6 @@ namespace {
 // On a border without a disc, the neighbours mostly have none either.
 constexpr unsigned most_skips = 16;
 
-// Distance at which a point counts as on a segment whatever the rounding of the formula.
-constexpr double surely_on_mm = 0.5 * same_place_mm;
-
-template <std::size_t N>
-void add_drives(const std::array<double, N>& amplitudes, const layout& l, const same_tactors& seen,
-                std::vector<drive>& out)
-{
-    const std::vector<unsigned>& index_of = access::of(l).index_of;
-    for (std::size_t k = 0; k < N; ++k) {
-        const std::uint8_t i = seen.by_index[k];
-        if (amplitudes[i] > 0.0)
-            out.push_back({index_of[seen.ranks[i]], amplitudes[i]});
-    }
-}
-
 // The three or two that the model takes from p on.
 void take_around(const model_of_three& m, const layout::impl& l, point p, same_tactors& seen)
 {
@@ -50,24 +35,16 @@ void take_around(const model_of_three& m, const layout::impl& l, point p, same_t
 
 } // namespace
 
-bool same_tactors::is_on_segment(point p) const noexcept
-{
-    return segment_distance_mm(ends[0], ends[1], p) <= surely_on_mm;
-}
-
-std::array<double, 2> model_of_three::amplitudes_of_two(const rank_pair&, point, double) const
-{
-    return {};
-}
-
 void drives_of_same(const model_of_three& m, const layout& l, const same_tactors& seen, point p, double a_v,
                     std::vector<drive>& out)
 {
     out.clear();
-    if (seen.count == 3)
-        add_drives(m.amplitudes(seen.ranks, p, a_v), l, seen, out);
-    else
-        add_drives(m.amplitudes_of_two({seen.ranks[0], seen.ranks[1]}, p, a_v), l, seen, out);
+    const std::array<double, 3> amplitudes = m.amplitudes(seen.ranks, seen.count, p, a_v);
+    for (std::size_t k = 0; k < seen.count; ++k) {
+        const std::uint8_t i = seen.by_index[k];
+        if (amplitudes[i] > 0.0)
+            out.push_back({access::of(l).index_of[seen.ranks[i]], amplitudes[i]});
+    }
 }
 
 void look_around(const model_of_three& m, const layout& l, point p, same_tactors& seen)

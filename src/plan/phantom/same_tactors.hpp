@@ -10,6 +10,7 @@
 #include <tactor/phantom.hpp>
 
 #include "plan/faces/face_rules.hpp"
+#include "plan/faces/plane.hpp"
 
 namespace tactor::detail {
 
@@ -29,11 +30,12 @@ struct same_tactors {
     {
         const double dx = p.x_mm - centre.x_mm;
         const double dy = p.y_mm - centre.y_mm;
-        return dx * dx + dy * dy < radius_mm * radius_mm && (!on_segment || is_on_segment(p));
+        return dx * dx + dy * dy < radius_mm * radius_mm &&
+               (!on_segment || segment_distance_mm(ends[0], ends[1], p) <= surely_on_mm);
     }
 
-private:
-    bool is_on_segment(point p) const noexcept;
+    /// Distance at which a point counts as on a segment whatever the rounding of the formula.
+    static constexpr double surely_on_mm = 0.5 * same_place_mm;
 };
 
 /// A model that takes three tactors nearly everywhere, and on a segment between two of them the same three or
@@ -43,16 +45,16 @@ public:
     /// Finds the three tactors that it takes at p and around it. Returns the distance around, mm; 0 if it
     /// does not take three at p, or if p is on the border between two choices.
     virtual double three_around(point p, rank_triple& three) const = 0;
-    /// Returns what weights() gives the three, in their order, within that disc.
-    virtual std::array<double, 3> amplitudes(const rank_triple& three, point p, double a_v) const = 0;
+    /// Returns what weights() gives the first `count` (2 or 3) of the ranks, in their order, within that disc
+    /// or on that part of the segment.
+    virtual std::array<double, 3> amplitudes(const rank_triple& ranks, unsigned count, point p,
+                                             double a_v) const = 0;
 
     /// Returns the number of tactors that the model takes at p: 2 (those of `on`) or 3; 0 if it may take
     /// others a little farther along. p is on the segment between the two `on` and on no tactor. `faces`
     /// hold p.
     virtual unsigned taken_along(const std::vector<unsigned>& faces, rank_pair on, point p,
                                  rank_triple& taken) const = 0;
-    /// Returns what weights() gives two, on that part of the segment.
-    virtual std::array<double, 2> amplitudes_of_two(const rank_pair& two, point p, double a_v) const;
 };
 
 /// Computes the drives that weights() gives at p, which `seen` holds; a_v > 0.
