@@ -329,11 +329,20 @@ private:
     double largest_ = 0.0;
 };
 
-/// A plan, summed while it is followed.
+/// Sums of a plan while time passes.
 struct followed_plan {
     detail::sounding now;
     running_speed speed = {};
     summing sums = {};
+
+    /// Fills in what is felt at a time, and adds it.
+    void add(percept_sample& x)
+    {
+        now.at(x.t_s, x);
+        sums.add(x);
+        if (const auto v = speed.next(x.felt); v && speed.was_felt())
+            sums.add_speed(*v);
+    }
 };
 
 } // namespace
@@ -400,11 +409,7 @@ std::vector<percept_summary> predict_summaries(const array& a, const stroke& s,
     for (std::size_t i = 0; i < count; ++i) {
         percept_sample x = target_at(s, i);
         for (followed_plan& f : all) {
-            f.now.at(x.t_s, x);
-            f.sums.add(x);
-            const auto v = f.speed.next(x.felt);
-            if (v && f.speed.was_felt())
-                f.sums.add_speed(*v);
+            f.add(x);
             if (each)
                 each(x);
         }
