@@ -60,6 +60,43 @@ double amplitude(const item_member* first, const item_member* last, std::uint64_
     return std::min(intensity, std::sqrt(energy));
 }
 
+/// Amplitude of a group's carrier from one frame to another.
+struct joined_stretch {
+    std::uint64_t end = 0;
+    double from = 0.0;
+    double to = 0.0;
+};
+
+/// Returns the stretch from frame `at` on in which the amplitude is taken as linear: to the next start or end
+/// of a member, and within ramps to the next 64th of the ramp. All members before `first` have ended; moves
+/// it on.
+joined_stretch join_members(const item_member* members, std::size_t count, std::size_t& first,
+                            std::uint64_t at, overlap_kind rule, envelope_kind shape) noexcept
+{
+    while (first + 1 < count && members[first].end() <= at)
+        ++first;
+    joined_stretch s;
+    s.end = at + longest_event;
+    std::size_t last = first;
+    for (; last < count; ++last) {
+        const item_member& m = members[last];
+        if (m.end() > at)
+            s.end = std::min(s.end, next_break(m, at));
+        if (m.start > at)
+            break;
+    }
+    s.from = amplitude(members + first, members + last, at, at, rule, shape);
+    s.to = amplitude(members + first, members + last, at, s.end, rule, shape);
+    return s;
+}
+
+/// Returns the frame of control point k of a stroke of `length` frames, from its start. Points beyond the end
+/// are at it.
+std::uint64_t control_frame(std::uint64_t k, unsigned rate, std::uint64_t length) noexcept
+{
+    return std::min(length, frame_at(static_cast<double>(k) * continuous_step_s, rate));
+}
+
 } // namespace
 
 void expander::begin(const score::impl& s, std::size_t item_number, control_points* points)
@@ -236,11 +273,6 @@ void control_points::add(std::size_t i) noexcept
     }
 }
 
-std::uint64_t control_frame(std::uint64_t k, unsigned rate, std::uint64_t length) noexcept
-{
-    return std::min(length, frame_at(static_cast<double>(k) * continuous_step_s, rate));
-}
-
 /// Replaces points()->now by control point number `step`. Throws std::bad_alloc.
 void expander::take_sample(std::uint64_t step)
 {
@@ -277,26 +309,6 @@ bool expander::next_points()
     }
     c.open = false;
     return true;
-}
-
-joined_stretch join_members(const item_member* members, std::size_t count, std::size_t& first,
-                            std::uint64_t at, overlap_kind rule, envelope_kind shape) noexcept
-{
-    while (first + 1 < count && members[first].end() <= at)
-        ++first;
-    joined_stretch s;
-    s.end = at + longest_event;
-    std::size_t last = first;
-    for (; last < count; ++last) {
-        const item_member& m = members[last];
-        if (m.end() > at)
-            s.end = std::min(s.end, next_break(m, at));
-        if (m.start > at)
-            break;
-    }
-    s.from = amplitude(members + first, members + last, at, at, rule, shape);
-    s.to = amplitude(members + first, members + last, at, s.end, rule, shape);
-    return s;
 }
 
 } // namespace tactor::synth

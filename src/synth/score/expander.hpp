@@ -68,22 +68,4 @@ private:
     drive_event event_;
 };
 
-/// Amplitude of a group's carrier from one frame to another.
-struct joined_stretch {
-    std::uint64_t end = 0;
-    double from = 0.0;
-    double to = 0.0;
-};
-
-/// Returns the stretch from frame `at` on in which the amplitude is taken as linear: to the next start or end
-/// of a member, and within ramps to the next 64th of the ramp. `first`: all members before this one have
-/// ended; it is moved on.
-joined_stretch join_members(const item_member* members, std::size_t count, std::size_t& first,
-                            std::uint64_t at, overlap_kind rule,
-                            envelope_kind shape = envelope_kind::raised_cosine) noexcept;
-
-/// Returns the frame of control point k of a stroke of `length` frames, from its start. Points beyond the end
-/// are at it.
-std::uint64_t control_frame(std::uint64_t k, unsigned rate, std::uint64_t length) noexcept;
-
 } // namespace tactor::synth

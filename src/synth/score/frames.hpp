@@ -55,12 +55,6 @@ inline std::uint32_t ramp_frames(double ramp_s, double rate, std::uint64_t lengt
     return static_cast<std::uint32_t>(std::min({frame_at(ramp_s, rate), length / 2, longest_event}));
 }
 
-inline std::uint32_t ramp_frames(std::optional<double> ramp_s, double carrier_s, double duration_s,
-                                 double carrier_hz, double rate, std::uint64_t length) noexcept
-{
-    return ramp_frames(ramp_seconds(ramp_s, carrier_s, duration_s, carrier_hz), rate, length);
-}
-
 /// Frames in which a burst of `length` rises; `ramp_s` is used where its envelope has no attack. Ramps that
 /// do not fit are shortened in the same ratio.
 inline std::uint32_t attack_frames(double ramp_s, const burst_envelope& e, double rate,

@@ -177,20 +177,14 @@ void measure(score::impl& s)
     const auto walked = [](const item& it) {
         return it.kind == item_kind::burst && it.length <= synth::longest_event ? it.start : it.end();
     };
-    s.open_items = most_open(items, walked, [](const item&) -> std::size_t { return 1; });
-    s.open_continuous = most_open(
-        items, end, [](const item& it) -> std::size_t { return it.kind == item_kind::continuous ? 1 : 0; });
-    s.open_events = most_open(items, end, [&](const item& it) -> std::size_t {
-        switch (it.kind) {
-        case item_kind::burst:
-            return events(it.count);
-        case item_kind::continuous:
-            return s.tactors.size(); // a line for each
-        case item_kind::joined:
-        case item_kind::marker:
-            break;
-        }
-        return 1;
+    const auto is_continuous = [](const item& it) { return it.kind == item_kind::continuous; };
+    s.open_items = most_open(items, walked, [](const item&) { return std::size_t{1}; });
+    s.open_continuous =
+        most_open(items, end, [&](const item& it) { return std::size_t{is_continuous(it) ? 1U : 0U}; });
+    s.open_events = most_open(items, end, [&](const item& it) {
+        return is_continuous(it)             ? s.tactors.size() // a line for each
+               : it.kind == item_kind::burst ? events(it.count)
+                                             : std::size_t{1};
     });
 }
 
