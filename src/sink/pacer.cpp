@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "sink/pacer.hpp"
 
-#include <algorithm>
 #include <cerrno>
 #include <system_error>
 
@@ -52,7 +51,7 @@ void virtual_queue::start(std::int64_t now, std::uint64_t written) noexcept
 
 std::uint64_t virtual_queue::played(std::int64_t now) noexcept
 {
-    const auto t = static_cast<std::uint64_t>(std::max<std::int64_t>(now - origin_, 0));
+    const auto t = static_cast<std::uint64_t>(now - origin_);
     const std::uint64_t due = t / second * rate_ + t % second * rate_ / second;
     if (due <= written_)
         return due;

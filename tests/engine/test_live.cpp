@@ -267,6 +267,10 @@ TEST_CASE("impossible options of a live stroke are errors that name their field"
     refused("sl_db", [](live_options& o) { o.render.sl_db = 7.0; });
     for (const double bad : {-1.0, 10.1})
         refused("ramp_s", [bad](live_options& o) { o.render.ramp_s = bad; });
+    refused("texture", [](live_options& o) { // its path is not known
+        o.plan.wave.kind = waveform_kind::recording;
+        o.plan.wave.texture = texture_kind::length;
+    });
     refused("soa_s", [](live_options& o) {
         o.plan.profile.intercept_s = 0.0;
         o.plan.soa_s = 0.001;
@@ -358,16 +362,6 @@ TEST_CASE("a live stroke whose object is gone leaves no sound behind")
         REQUIRE(s.size() > 480);
         CHECK(peak(s, s.size() - 240, s.size()) == 0.0);
     }
-}
-
-TEST_CASE("a recording cannot lie along a path that is not known")
-{
-    live_options o;
-    o.plan.wave.kind = waveform_kind::recording;
-    o.plan.wave.texture = texture_kind::length;
-    o.plan.wave.recorded = std::make_shared<const recording>(recording{"x", 8000.0, {0.5F, -0.5F}});
-    live_rig r;
-    CHECK_THROWS_WITH_AS(r.add(o), doctest::Contains("length of its path"), error);
 }
 
 TEST_CASE("a live stroke's report has the delay of its points to the DAC")

@@ -5,13 +5,8 @@
 
 #include <doctest/doctest.h>
 
-#include <tactor/alsa.hpp>
-#include <tactor/player.hpp>
-
 #include "live_rig.hpp"
-#include "player_support.hpp"
 #include "rig.hpp"
-#include "rt/clock.hpp"
 
 namespace start_test {
 
@@ -322,23 +317,6 @@ TEST_CASE("a live stroke reports when its first point was felt")
     r.play_out();
     REQUIRE(r.first_sound());
     check_started(r, r.live->id, true_time(r, *r.first_sound() - 1));
-}
-
-TEST_CASE("every stroke played on null has its start, the first of each player too")
-{
-    for (int n = 0; n < 10; ++n) {
-        CAPTURE(n);
-        const std::int64_t before = rt::monotonic_ns();
-        player p(open_alsa(nine()), palm());
-        for (int k = 0; k < 2; ++k) {
-            const auto r = p.wait(p.submit(tone(0.005)));
-            REQUIRE(r);
-            CHECK(r->state == state_kind::finished);
-            REQUIRE(r->started_ns);
-            CHECK(*r->started_ns > before);
-            CHECK(*r->started_ns < rt::monotonic_ns());
-        }
-    }
 }
 
 } // namespace start_test

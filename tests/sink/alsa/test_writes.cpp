@@ -240,14 +240,6 @@ TEST_CASE("a writer that comes too late stops the virtual clock, and nothing is 
     CHECK(q.time_of_room(288) == late + 2'000'000);
 }
 
-TEST_CASE("time that runs backwards plays nothing back")
-{
-    virtual_queue q(48000, 288);
-    q.start(1'000'000'000, 288);
-    CHECK(q.played(0) == 0);
-    CHECK(q.available(0) == 0);
-}
-
 TEST_CASE("the timer becomes readable when a period fits")
 {
     detail::pacer p(48000, 288, 96);
