@@ -33,9 +33,6 @@ std::string describe_options(const CLI::App& app, std::string_view given);
 /// Returns the error for a command line without a command.
 error no_command();
 
-/// Returns the error for a word in a command's place.
-error no_such_command(const CLI::App& app, const std::string& given);
-
 /// Returns an error that names what was probably meant by the words of a refused command line: a dash or
 /// quotation mark that no keyboard types, a word before the command, path data or a file's name with blanks
 /// and without quotes. Nothing if there is no such slip. `commands`: names of all commands.

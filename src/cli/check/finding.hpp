@@ -76,11 +76,6 @@ using line_finder = gpio_line_place (*)(const gpio_line_name&);
 /// and drives none. `find`: find_gpio_line() but in tests.
 std::vector<finding> check_lines(const setup& config, bool felt, line_finder find = find_gpio_line);
 
-/// Opens and closes the device, unless it writes a file; plays nothing. `named`: false for the default
-/// device.
-finding check_device(const alsa_options& device, const session::stream_options& o, const environment& e,
-                     bool named);
-
 /// Returns the numbers of the tactors for which `take` holds.
 template <class F>
 std::vector<std::size_t> tactors_where(const array& a, F&& take)
