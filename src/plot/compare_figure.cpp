@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "plot/compare_figure.hpp"
+#include "plot/figure.hpp"
 
 #include <algorithm>
 #include <array>
@@ -12,7 +12,6 @@
 #include "core/words.hpp"
 #include "plot/draw/array_frame.hpp"
 #include "plot/draw/axes.hpp"
-#include "plot/figure.hpp"
 #include "plot/paint/text.hpp"
 
 namespace tactor::plot {

@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// The whole picture, and its views.
+/// Whole pictures: of strokes with their views, and of predicted percepts.
 #pragma once
 
 #include <string>
 #include <vector>
 
+#include <tactor/array.hpp>
+
+#include "percept/compare.hpp"
 #include "plot/draw/timeline.hpp"
 #include "plot/paint/canvas.hpp"
 
@@ -36,6 +39,13 @@ std::string name_scene(const std::vector<stroke>& strokes, const std::string& fi
 /// wider than 170 mm. \throws error (bad_input): for the waveform, see draw_wave_view(); for more than
 /// most_animated_bursts.
 canvas draw_figure(const scene& s, const figure_options& o);
+
+/// Draws predicted percepts of several algorithms (as figure 6 of Park et al. 2016): for each phantom model a
+/// row of panels, one for each algorithm, and under it their speeds over time. Rows need their samples.
+/// `title` is above the picture, with the target's length and time; empty: neither. \throws error (bad_input)
+/// for a width out of bounds.
+canvas draw_comparison(const array& a, const detail::comparison& all, const std::string& title,
+                       double width_mm);
 
 /// Most bursts that are drawn; if there are more, or they would overlap, every n-th is drawn.
 inline constexpr std::size_t most_shown_bursts = 120;

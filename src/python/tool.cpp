@@ -6,7 +6,6 @@
 
 #include "files/plan/plan_json.hpp"
 #include "percept/compare.hpp"
-#include "plot/compare_figure.hpp"
 #include "plot/figure.hpp"
 #include "plot/paint/output.hpp"
 #include "python/plan_handle.hpp"

@@ -21,7 +21,7 @@
 #include "core/words.hpp"
 #include "files/plan/plan_json.hpp"
 #include "percept/compare.hpp"
-#include "plot/compare_figure.hpp"
+#include "plot/figure.hpp"
 #include "plot/paint/output.hpp"
 #include "session/pipes.hpp"
 
