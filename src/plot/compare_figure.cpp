@@ -269,13 +269,6 @@ double draw_speeds(canvas& c, const std::string& phantom, std::vector<series> li
     return chart_height;
 }
 
-// Draws the scale, which is the same in all panels, under the first row.
-double draw_scale(canvas& c, const panel_ground& g, box cell)
-{
-    draw_scale_bar(c, panel_frame(g, cell), {cell.x, cell.y + scale_height / 2.0});
-    return scale_height;
-}
-
 // Draws the panels of a phantom model and their speeds.
 double draw_row(canvas& c, const panel_ground& g, const std::vector<comparison_row>& all,
                 const std::vector<algorithm_kind>& algorithms, phantom_kind phantom, bool first, box where)
@@ -300,8 +293,11 @@ double draw_row(canvas& c, const panel_ground& g, const std::vector<comparison_r
             bands.push_back(make_band(p, look));
     }
     y += tallest;
-    if (first)
-        y += draw_scale(c, g, {where.x, y, width, std::min(width, 260.0)});
+    if (first) { // the scale is the same in all panels
+        draw_scale_bar(c, panel_frame(g, {where.x, y, width, std::min(width, 260.0)}),
+                       {where.x, y + scale_height / 2.0});
+        y += scale_height;
+    }
     if (!lines.empty())
         y += draw_speeds(c, std::string(to_string(phantom)), std::move(lines), std::move(bands),
                          g.target.motion.duration_s(), {where.x, y + 2.0, where.width, 0.0});

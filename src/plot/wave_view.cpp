@@ -83,11 +83,6 @@ constexpr double least_peak_row = 5.6;
 constexpr std::size_t most_wave_notes = 3; // lines
 constexpr double most_around_waves = 88.0; // pt: heading, starts, axis, legend and notes
 
-double dbfs(double linear)
-{
-    return 20.0 * std::log10(linear);
-}
-
 class wave_drawing {
 public:
     wave_drawing(canvas& c, const scene& s, const timeline& t, box where)
@@ -187,7 +182,7 @@ private:
                              {.kind = "envelope"});
         if (with_peaks())
             canvas_.text({where_.right(), middle + cap_height(small_text) / 2.0},
-                         fmt::format("{:.1f}", dbfs(static_cast<double>(loudest))),
+                         fmt::format("{:.1f}", 20.0 * std::log10(static_cast<double>(loudest))),
                          {.size = small_text, .anchor = align::end}, {.kind = "peak"});
     }
 

@@ -57,15 +57,6 @@ double pitch_mm(const array& a)
     return p > 0.0 ? p : lone_tactor_mm;
 }
 
-extent tactors_extent(const array& a)
-{
-    const point first = a.tactors.front().position;
-    extent e{first.x_mm, first.y_mm, first.x_mm, first.y_mm};
-    for (const tactor_spec& t : a.tactors)
-        e.add(t.position);
-    return e;
-}
-
 std::vector<point> sample(const trajectory& motion)
 {
     constexpr double step_mm = 0.1;
@@ -175,7 +166,10 @@ void extent::add(point p) noexcept
 
 extent shown_extent(const array& a, const std::vector<stroke>& strokes)
 {
-    extent e = tactors_extent(a);
+    const point first = a.tactors.front().position;
+    extent e{first.x_mm, first.y_mm, first.x_mm, first.y_mm};
+    for (const tactor_spec& t : a.tactors)
+        e.add(t.position);
     const double space = std::max({pitch_mm(a), 0.5 * (e.x1 - e.x0), 0.5 * (e.y1 - e.y0)});
     const extent most{e.x0 - space, e.y0 - space, e.x1 + space, e.y1 + space};
     for (const stroke& s : strokes)

@@ -159,8 +159,6 @@ struct canvas {
     std::string description = {};
     std::vector<element> elements = {};
 
-    void begin(mark m) { elements.emplace_back(item::group_begin{std::move(m)}); }
-    void end() { elements.emplace_back(item::group_end{}); }
     void line(spot from, spot to, const style& s, mark m = {})
     {
         elements.emplace_back(item::line{from, to, s, std::move(m)});
@@ -187,8 +185,8 @@ struct canvas {
 /// A group that ends with its scope.
 class group {
 public:
-    group(canvas& c, mark m) : canvas_(c) { c.begin(std::move(m)); }
-    ~group() { canvas_.end(); }
+    group(canvas& c, mark m) : canvas_(c) { c.elements.emplace_back(item::group_begin{std::move(m)}); }
+    ~group() { canvas_.elements.emplace_back(item::group_end{}); }
     group(const group&) = delete;
     group& operator=(const group&) = delete;
 
