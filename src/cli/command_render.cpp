@@ -24,11 +24,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-bool ends_in_wav(const fs::path& file)
-{
-    return in_small_letters(file.extension().string()) == ".wav";
-}
-
 // Returns true for a file that may be replaced: an empty one, or a WAV file.
 bool holds_wav(const fs::path& file)
 {
@@ -56,7 +51,7 @@ fs::path checked_output(const std::string& name)
     const fs::file_status there = fs::status(file, none);
     if (name.empty() || fs::is_directory(there) || (fs::exists(there) && !fs::is_regular_file(there)))
         return file;
-    if (!ends_in_wav(file))
+    if (in_small_letters(file.extension().string()) != ".wav")
         throw error(error_kind::bad_input, name, "the name of a WAV file ends in .wav",
                     "name it so, or write -o - > FILE");
     if (fs::exists(there) && !holds_wav(file))

@@ -56,10 +56,12 @@ std::string version_text()
     return fmt::format("tactor {}\n{}", version(), build_facts());
 }
 
-bool is_command(std::string_view name)
+// Returns the command of that name; null if there is none.
+const named_command* find_command(std::string_view name)
 {
-    return std::any_of(commands.begin(), commands.end(),
-                       [&](const named_command& c) { return c.name == name; });
+    const auto c = std::find_if(commands.begin(), commands.end(),
+                                [&](const named_command& x) { return x.name == name; });
+    return c == commands.end() ? nullptr : &*c;
 }
 
 // `tactor help plan` is `tactor plan --help`, for whoever has no manual pages.
@@ -70,9 +72,9 @@ std::vector<std::string> arguments(int argc, char** argv)
         return all;
     while (!all.empty() && all.front() == "help")
         all.erase(all.begin());
-    if (all.size() == 1 && !is_command(all.front()))
+    if (all.size() == 1 && find_command(all.front()) == nullptr)
         return {"help", all.front()};
-    if (all.empty() || is_command(all.front())) // another is complained of
+    if (all.empty() || find_command(all.front()) != nullptr) // another is complained of
         all.emplace_back("--help");
     return all;
 }
@@ -107,11 +109,10 @@ int run(const std::vector<std::string>& given)
     app.footer("tactor plan park2016-1\ntactor help play\ntactor help soa");
     // To describe all options of all commands takes as long as to plan a stroke: of a command that is
     // named, its own.
-    const auto named = std::find_if(commands.begin(), commands.end(),
-                                    [&](const named_command& c) { return c.name == first; });
+    const named_command* const named = find_command(first);
     std::vector<std::pair<std::string_view, command>> added;
     for (const named_command& c : commands)
-        if (named == commands.end() || c.name == first)
+        if (named == nullptr || named == &c)
             added.emplace_back(c.name, c.add(app));
     if (first == complete_command) {
         for (const std::string& line : complete(app, {given.begin() + 1, given.end()}))

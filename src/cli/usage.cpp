@@ -206,12 +206,6 @@ std::string nearest(const std::string& given, const std::vector<std::string>& na
     return std::string(detail::nearest_name(given, views));
 }
 
-const CLI::App& used_command(const CLI::App& app)
-{
-    const auto used = app.get_subcommands();
-    return used.empty() ? app : *used.front();
-}
-
 // Without the dashes, which would make any two names more alike than they are.
 std::vector<std::string> option_names(const CLI::App& command)
 {
@@ -402,11 +396,6 @@ bool may_be_typeset(std::string_view word)
     });
 }
 
-std::string quote_blanks(const std::string& word)
-{
-    return word.find(' ') == std::string::npos ? word : fmt::format("\"{}\"", word);
-}
-
 std::string join(const words_type& words, std::size_t begin, std::size_t end)
 {
     return fmt::format("{}", fmt::join(words.begin() + static_cast<std::ptrdiff_t>(begin),
@@ -440,7 +429,7 @@ std::optional<error> find_late_command(const words_type& words, const words_type
     std::string line = "tactor " + *at;
     for (auto w = words.begin(); w != words.end(); ++w)
         if (w != at)
-            line += " " + quote_blanks(*w);
+            line += w->find(' ') == std::string::npos ? " " + *w : fmt::format(" \"{}\"", *w);
     return error(error_kind::bad_input, words.front(), "it stands before the command",
                  "the command comes first: " + line);
 }
@@ -535,7 +524,8 @@ error no_command()
 
 error usage_error(const CLI::App& app, const CLI::ParseError& e)
 {
-    const CLI::App& command = used_command(app);
+    const auto used = app.get_subcommands();
+    const CLI::App& command = used.empty() ? app : *used.front();
     if (!app.remaining().empty()) // words before the command
         return unknown(app, app);
     if (dynamic_cast<const CLI::ExtrasError*>(&e) != nullptr)

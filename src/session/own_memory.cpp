@@ -29,13 +29,6 @@ namespace {
 // allocations fail.
 constexpr std::uint64_t reserve_bytes = 32U << 20;
 
-std::uint64_t mapped_bytes()
-{
-    std::uint64_t pages = 0;
-    std::ifstream("/proc/self/statm") >> pages;
-    return pages * static_cast<std::uint64_t>(sysconf(_SC_PAGESIZE));
-}
-
 /// Returns true for memory that the audio thread runs in; `self` is the program's own file, which contains
 /// the library. Other libraries use memory only for the pages in use, which are locked when they come.
 bool is_needed(std::string_view mapped, std::string_view self)
@@ -103,7 +96,9 @@ void limit_runaway_threads()
 
 std::uint64_t memory_to_lock()
 {
-    return mapped_bytes() + reserve_bytes;
+    std::uint64_t pages = 0;
+    std::ifstream("/proc/self/statm") >> pages;
+    return pages * static_cast<std::uint64_t>(sysconf(_SC_PAGESIZE)) + reserve_bytes;
 }
 
 bool settle_realtime(bool required)

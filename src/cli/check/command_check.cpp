@@ -163,12 +163,6 @@ std::vector<finding> check_all(const settings& s, const environment& e)
     return all;
 }
 
-error no_map(const session::walk_verdict& v)
-{
-    return {error_kind::runtime, "channel map", fmt::format("{}", fmt::join(v.problems, "; ")),
-            "look after wires and amplifier channels, then walk again; no map is written"};
-}
-
 // Writes an array file with these channels and all else that the file in use says. It needs no other file.
 void write_channels(const std::string& name, const environment& e, const std::vector<unsigned>& channels)
 {
@@ -185,7 +179,8 @@ void write_channels(const std::string& name, const environment& e, const std::ve
 void conclude(const check_options& o, const environment& e, const session::walk_verdict& v)
 {
     if (!v.problems.empty())
-        throw no_map(v);
+        throw error(error_kind::runtime, "channel map", fmt::format("{}", fmt::join(v.problems, "; ")),
+                    "look after wires and amplifier channels, then walk again; no map is written");
     if (!o.output.empty())
         write_channels(o.output, e, v.channels);
     if (o.json())
@@ -265,15 +260,6 @@ int check(settings& s, const check_options& o)
     return walks ? run_walk(s, o, *e, all) : status_ok;
 }
 
-void add_walk_options(CLI::App& c, check_options& o)
-{
-    c.add_flag("--walk", o.walk, "then drive each tactor in turn and ask where it is felt");
-    c.add_flag("--auto", o.no_questions, "with --walk: ask no questions");
-    add_text(c, "-o,--output", "FILE.toml",
-             "with --walk: array file to write, with the channels as they were felt",
-             [&o](const std::string& t) { o.output = t; });
-}
-
 } // namespace
 
 std::vector<finding> check_lines(const setup& config, bool felt, line_finder find)
@@ -303,7 +289,11 @@ command add_check(CLI::App& app)
     auto s = std::make_shared<settings>();
     auto o = std::make_shared<check_options>();
     add_options(*c, *s, options::on_check);
-    add_walk_options(*c, *o);
+    c->add_flag("--walk", o->walk, "then drive each tactor in turn and ask where it is felt");
+    c->add_flag("--auto", o->no_questions, "with --walk: ask no questions");
+    c->add_option("-o,--output", o->output,
+                  "with --walk: array file to write, with the channels as they were felt")
+        ->type_name("FILE.toml");
     add_format_option(*c, o->format, {"text", "json"}, "how to print it (default text)");
     c->footer("tactor check -D hw:CARD=Tactor\n"
               "tactor check --array palm-2x4 --walk -o palm-felt.toml --level-dbfs -40 -D hw:CARD=Tactor\n"
