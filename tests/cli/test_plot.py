@@ -26,12 +26,6 @@ def grid(rows, columns, pitch):
     return f'[array]\nname = "grid"\ngrid = {{ rows = {rows}, columns = {columns}, pitch_mm = {pitch}.0 }}\n'
 
 
-def numbers(text):
-    """Returns the numbers of "1-3, 5"."""
-    runs = [[int(n) for n in run.split("-")] for run in text.split(", ")]
-    return [n for run in runs for n in range(run[0], run[-1] + 1)]
-
-
 class Array(PlotTest):
     def check_bursts(self, svg, plan, bursts):
         """Checks for dots where the plan has bursts, joined to the tactors that play them."""
@@ -322,22 +316,6 @@ class Crowded(PlotTest):
     def drawn(self, *args, view="both", width="170"):
         return self.svg("s.toml", "--array", "a.toml", "--view", view, "--width", width, "--level-dbfs", "-40", *args)
 
-    def curves(self, count, gap):
-        """Returns strokes over 64 tactors, one after the other or each `gap` seconds."""
-        return "".join(f'[[stroke]]\nname = "stroke {i + 1}"\npath = "M {12 * i % 200} {10 + 190 * i // count} C 63 0 126 210 {200 - 10 * i} '
-                       f'{10 + 190 * (3 * i % count) // count}"\nspeed_mm_s = 60.0\n' + (f"start_s = {gap * i}\n" if gap else "") for i in range(count))
-
-    def sheets(self, view):
-        self.write("a.toml", grid(8, 8, 30))
-        for count, gap in ((10, 0.3), (14, None)):
-            self.write("s.toml", self.curves(count, gap))
-            for width in (60, 170):
-                yield (count, gap, width), self.drawn(view=view, width=width)
-
-    def apart(self, labels, what):
-        for a, b in itertools.combinations(labels, 2):
-            self.assertFalse(overlap(box(a), box(b)), (what, a.text, b.text))
-
     def test_bars_of_simultaneous_strokes_do_not_overlap(self):
         self.write("a.toml", grid(3, 3, 20))
         self.write("s.toml", "".join(f'[[stroke]]\npath = "M 0 {10 * i} L 40 {20 - i}"\nspeed_mm_s = 60.0\nstart_s = {0.1 * i}\n' for i in range(3)))
@@ -350,30 +328,6 @@ class Crowded(PlotTest):
                 seen += min(p[2], q[2]) > max(p[0], q[0])
                 self.assertFalse(overlap(p, q))
         self.assertGreater(seen, 20)
-
-    def test_it_fits_a_page_and_each_row_has_its_number_and_each_bar_its_row(self):
-        for what, svg in self.sheets("both"):
-            rows, labels = sorted(number(e, "y1") for e in svg.all("row-line")), svg.all("row-label")
-            self.assertLessEqual(float(svg.root.get("height")[:-2]), PAGE_MM, what)
-            self.assertNotIn("\u2026", self.notes(svg), what)
-            tops = [float(svg.id("timing").get("data-top")), *rows]
-            for e, top, bottom in zip(labels, tops, rows, strict=False):
-                self.assertTrue(top < (box(e)[1] + box(e)[3]) / 2 < bottom, (what, e.text))
-            self.assertEqual(len(labels), len(rows), what)
-            self.apart(labels, what)
-            for bar in svg.all("bar", "sound"):
-                i = [e.text for e in labels].index(bar.get("data-tactor"))
-                self.assertTrue(tops[i] - 0.01 <= number(bar, "y") and number(bar, "y") + number(bar, "height") <= rows[i] + 0.01, what)
-
-    def test_each_start_has_its_number_or_the_rest_is_counted(self):
-        for view in ("timing", "wave"):
-            for what, svg in self.sheets(view):
-                texts = svg.id("stroke-starts").findall(NS + "text")
-                shown = [n for e in texts for n in numbers(e.text.replace("stroke ", ""))]
-                missing = what[0] - len(set(shown))
-                self.assertEqual(f"no space for the start's number of {missing} stroke" in self.notes(svg), missing > 0, what)
-                self.assertLessEqual(missing, 8 if what[2] == 60 else 0, what)
-                self.apart(texts, what)
 
     def test_what_has_no_space_is_stated_and_very_many_strokes_make_a_page(self):
         self.write("a.toml", grid(30, 30, 5))

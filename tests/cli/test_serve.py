@@ -221,13 +221,10 @@ class Protocol(ServeTest):
     def test_bad_parameters_are_named(self):
         c = self.serve().client()
         path = "M 0 0 L 40 40"
-        for what, params in (("options.nonsense", {"path": path, "options": {"nonsense": 1}}), ("options", {"path": path, "options": []}),
-                             ("options.snap", {"path": path, "options": {"snap": "true"}}),
-                             ("points", {"points": [[0, 0, 0], [1, 20, 20, 1.1]]}), ("points", {"points": [[0, 0, 0]]}),
-                             ("points", {"points": [[0, 0], [1, 2, 3]]}), ("path", {"path": "M 0 x"}), ("path", {"path": 1}),
-                             ("stroke", {"stroke": "/etc/passwd"}), ("svg", {"svg": "<svg"}),
-                             ("stroke", {}), ("path", {"stroke": "park2016-1", "path": path}), ("start", {"path": path, "start": "soon"}),
-                             ("start.delay_s", {"path": path, "start": {"delay_s": -1}}), ("dance", {"path": path, "dance": 1})):
+        for what, params in (("options.nonsense", {"path": path, "options": {"nonsense": 1}}), ("points", {"points": [[0, 0], [1, 2, 3]]}),
+                             ("path", {"path": 1}), ("stroke", {"stroke": "/etc/passwd"}), ("svg", {"svg": "<svg"}),
+                             ("path", {"stroke": "park2016-1", "path": path}), ("start.delay_s", {"path": path, "start": {"delay_s": -1}}),
+                             ("dance", {"path": path, "dance": 1})):
             for method in ("play", "plan"):
                 self.check_error(c.error(method, **params), -32602, what)
         said = c.error("play", path=path, options={"carrier": 30000})
@@ -236,12 +233,8 @@ class Protocol(ServeTest):
         said = c.error("play", toml='[stroke]\npath = "M 0 0 L 40 40"\nsoas = 1\n')
         self.assertEqual((said["data"]["line"], said["data"]["column"]), (3, 1), said)
         self.assertTrue(said["message"].startswith("toml:3:1: "), said)
-        for method, what, params in (("begin", "options.sl", {"options": {"sl": 1}}), ("begin", "options.carrier", {"options": {"carrier": 24001}}),
-                                     ("begin", "options.algorithm", {"options": {"algorithm": "tactile-brush"}}),
-                                     ("begin", "options.duration", {"options": {"duration": 1}}), ("to", "x_mm", {"stroke": 1}),
-                                     ("drive", "tactor", {"tactor": 9}), ("drive", "tactor", {}), ("drive", "tactor", {"tactor": 0.5}),
-                                     ("drive", "intensity", {"tactor": 0, "intensity": 1.1}), ("drive", "duration_s", {"tactor": 0, "duration_s": -1}),
-                                     ("subscribe", "events", {"events": ["x"]}), ("subscribe", "levels_hz", {"events": [], "levels_hz": 101}),
+        for method, what, params in (("begin", "options.duration", {"options": {"duration": 1}}), ("to", "x_mm", {"stroke": 1}),
+                                     ("drive", "tactor", {"tactor": 9}), ("subscribe", "events", {"events": ["x"]}),
                                      ("hello", "name", {"name": "a\x1bb"})):
             self.check_error(c.error(method, **params), -32602, what)
         self.assertTrue(c.ok("options")["options"])
