@@ -31,17 +31,12 @@ std::string common(const scene& s, Get&& get)
     return first;
 }
 
-// Returns the duration of the movement; for several strokes, of the whole.
-double seconds(const scene& s, const timeline& t)
-{
-    return s.plans.size() == 1 ? s.plans[0].plan.stroke_duration_s : t.total_s;
-}
-
 std::vector<std::string> details(const scene& s, const timeline& t)
 {
     double length = 0.0;
     for (const placed_plan& p : s.plans)
         length += p.plan.stroke_length_mm;
+    const double lasts_s = s.plans.size() == 1 ? s.plans[0].plan.stroke_duration_s : t.total_s;
     std::vector<std::string> d{clean(s.tactors.name)};
     d.push_back(common(s, [](const plan& p) { return p.algorithm; }));
     d.push_back(common(s, describe_phantom));
@@ -49,8 +44,8 @@ std::vector<std::string> details(const scene& s, const timeline& t)
         d.push_back(fmt::format("{} strokes", s.plans.size()));
     if (!t.sampled)
         d.push_back(counted(t.bursts.size(), "burst"));
-    d.push_back(fmt::format("{} mm in {}", plain_number(length, length < 1000.0 ? 4 : 5),
-                            seconds_text(seconds(s, t), 4)));
+    d.push_back(
+        fmt::format("{} mm in {}", plain_number(length, length < 1000.0 ? 4 : 5), seconds_text(lasts_s, 4)));
     if (channels_are_numbers(s.tactors))
         d.emplace_back(s.tactors.tactors.size() == 1 ? "tactor 0 on channel 0" : "tactor n on channel n");
     d.push_back(common(s, describe_sound));

@@ -65,12 +65,14 @@ std::vector<std::string> own_groups()
     return names;
 }
 
-std::vector<device_node> nodes(const fs::path& folder, bool (*wanted)(const std::string&))
+// Returns the devices of a folder whose names begin and end so.
+std::vector<device_node> nodes(const fs::path& folder, std::string_view begin, std::string_view end = "")
 {
     std::vector<device_node> all;
     for (const fs::path& f : entries(folder)) {
         struct stat s {};
-        if (wanted(f.filename().string()) && ::stat(f.c_str(), &s) == 0)
+        const std::string name = f.filename().string();
+        if (name.starts_with(begin) && name.ends_with(end) && ::stat(f.c_str(), &s) == 0)
             all.push_back({f.string(), group_name(s.st_gid), ::access(f.c_str(), R_OK | W_OK) == 0});
     }
     return all;
@@ -107,16 +109,6 @@ std::vector<process_info> find_sound_servers(const fs::path& root)
     }
     std::sort(all.begin(), all.end(), [](const auto& a, const auto& b) { return a.pid < b.pid; });
     return all;
-}
-
-bool is_playback(const std::string& name)
-{
-    return name.starts_with("pcmC") && name.ends_with('p');
-}
-
-bool is_chip(const std::string& name)
-{
-    return name.starts_with("gpiochip");
 }
 
 bool contains(const std::vector<std::string>& names, const std::string& name)
@@ -269,8 +261,8 @@ system_facts read_system(const fs::path& root, const std::string& user)
     f.joined = find_groups(user, root / "etc/group");
     f.rights = probe_realtime_rights();
     f.memory_bytes = session::memory_to_lock();
-    f.sound = nodes(root / "dev/snd", is_playback);
-    f.gpio = nodes(root / "dev", is_chip);
+    f.sound = nodes(root / "dev/snd", "pcmC", "p");
+    f.gpio = nodes(root / "dev", "gpiochip");
     f.servers = find_sound_servers(root);
     for (const fs::path& module : entries(root / "sys/module")) {
         const fs::path file = module / "parameters/persist_gpio_outputs";

@@ -213,15 +213,6 @@ int run_walk(const settings& s, const check_options& o, const environment& e, co
     return status_ok;
 }
 
-int complain(const std::vector<finding>& all)
-{
-    const auto first =
-        std::find_if(all.begin(), all.end(), [](const auto& f) { return f.how == level::error; });
-    say(stderr, "tactor: {}: {}{}\n", first->check, first->found,
-        first->cure.empty() ? "" : fmt::format(" ({})", first->cure));
-    return worst_status(all);
-}
-
 void check_usage(const settings& s, const check_options& o)
 {
     if (!o.walk && (o.no_questions || !o.output.empty()))
@@ -249,15 +240,18 @@ int check(settings& s, const check_options& o)
         all = {failure("array", x)};
         check_machine({}, {.pcm = s.pcm.value_or("null")}, s.stream, all);
     }
-    const bool walks = o.walk && worst_status(all) == status_ok;
+    const auto first =
+        std::find_if(all.begin(), all.end(), [](const auto& f) { return f.how == level::error; });
+    const bool walks = o.walk && first == all.end();
     if (!o.json())
         say(stdout, "{}", check_text(all, o.walk));
     else if (!walks)
         fmt::print("{}", check_json(all, {}));
     flush_output();
-    if (worst_status(all) != status_ok)
-        return complain(all);
-    return walks ? run_walk(s, o, *e, all) : status_ok;
+    if (first != all.end())
+        say(stderr, "tactor: {}: {}{}\n", first->check, first->found,
+            first->cure.empty() ? "" : fmt::format(" ({})", first->cure));
+    return walks ? run_walk(s, o, *e, all) : worst_status(all);
 }
 
 } // namespace

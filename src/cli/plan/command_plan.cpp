@@ -108,13 +108,6 @@ void print_csv(std::FILE* out, const piece& p, const environment& e)
     }
 }
 
-// A plan of an hour ends where its reader does.
-void write_part(std::string_view part)
-{
-    if (std::fwrite(part.data(), 1, part.size(), stdout) != part.size())
-        throw std::system_error(errno, std::generic_category(), "cannot write a plan");
-}
-
 int print_plan(settings& s, const std::string& format)
 {
     const environment e = session::read_environment(s);
@@ -123,7 +116,11 @@ int print_plan(settings& s, const std::string& format)
     const score samples = make_score(p, e, sound); // levels and carrier are checked when planned
     session::tell_of_other_carrier(e, sound, std::span(&samples, 1));
     if (format == "json")
-        files::write_plans({p, e.tactors, samples, sound}, write_part);
+        files::write_plans({p, e.tactors, samples, sound}, [](std::string_view part) {
+            // A plan of an hour ends where its reader does.
+            if (std::fwrite(part.data(), 1, part.size(), stdout) != part.size())
+                throw std::system_error(errno, std::generic_category(), "cannot write a plan");
+        });
     else if (format == "csv") {
         say_warnings(collect_warnings(p.plans)); // there is no place for them in a table
         print_csv(stdout, p, e);

@@ -178,12 +178,6 @@ std::optional<point> find_target(const piece& p, const score& s, const layout& f
     return {};
 }
 
-// Returns true unless NO_COLOR asks for no colours (no-color.org: set, and not empty).
-bool may_colour()
-{
-    return rt::variable("NO_COLOR").empty();
-}
-
 // Returns true if the characters of the environment's locale are UTF-8. The program stays in the C locale.
 bool speaks_utf8()
 {
@@ -270,7 +264,8 @@ void terminal::finish()
     }
 }
 
-live_picture::live_picture(const array& a, bool wanted) : array_(a), style_{speaks_utf8(), may_colour()}
+live_picture::live_picture(const array& a, bool wanted)
+    : array_(a), style_{speaks_utf8(), rt::variable("NO_COLOR").empty()}
 {
     flush_output(); // printed lines stay above it
     if (!wanted || !can_draw())

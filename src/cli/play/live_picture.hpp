@@ -29,7 +29,7 @@ struct terminal_size {
 
 struct picture_style {
     bool unicode = true; ///< true: shades, false: letters
-    bool colours = true;
+    bool colours = true; ///< false: NO_COLOR is set and not empty (no-color.org)
 };
 
 /// Returns true if standard output is a terminal on which lines can be drawn again.
