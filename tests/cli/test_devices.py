@@ -82,26 +82,6 @@ class Devices(DevicesTest):
         self.assertIn("hw:CARD=Nowhere   <- the one that is configured", self.ok("devices", "-D", "hw:CARD=Nowhere").stdout)
         self.assertEqual(((self.dir / "kept.raw").read_text(), (self.dir / "out.raw").exists()), ("precious", False))
 
-    def test_definitions_that_alsa_cannot_take_are_refused_and_the_rest_listed(self):
-        self.write("alsa.conf", ALSA_CONFIG + """pcm.hole { type multi slaves.a { pcm "null" channels 4 }
-            bindings { 0 { slave a channel 0 } 1 { slave a channel 1 } 3 { slave a channel 3 } } }\n""")
-        _, pcms = self.devices()
-        self.assertIn("type multi leaves a hole in its bindings: it binds no channel 2", pcms["hole"]["error"])
-        self.assertTrue(pcms["null"]["fits"])
-        self.refused(3, "play", "park2016-1", "-D", "hole")
-        self.check_device("hole", status=3)
-        self.write("alsa.conf", ALSA_CONFIG + "pcm.output {\n  type hw\n  card \n}\n")
-        self.assertIn(": ALSA cannot read its configuration", self.devices()[1]["null"]["error"])
-        self.refused(3, "play", "park2016-1", "-D", "null")
-        (self.dir / "plugins").mkdir()
-        for kind, package in (("pulse", "libasound2-plugins"), ("pipewire", "pipewire-alsa")):
-            self.write("alsa.conf", f"pcm.!default {{ type {kind} }}\n")
-            for command in (("play", "park2016-1"), ("check",)):
-                r = self.refused(3, *command, "-D", "default", env={"ALSA_PLUGIN_DIR": str(self.dir / "plugins")})
-                said = r.stdout + r.stderr
-                self.assertTrue(f"libasound_module_pcm_{kind}.so" in said and f"sudo apt install {package}" in said, said)
-                self.assertNotIn("no sound card", said)
-
     def test_text_is_plain_fits_80_columns_and_has_a_hint_where_there_is_nothing(self):
         r = self.ok("devices", env={"LC_ALL": "de_DE.UTF-8"})
         self.assertEqual((r.stderr, "\033" in r.stdout), ("", False))
@@ -189,10 +169,7 @@ class Wiring(DevicesTest):
     PCMS = """
 pcm.summed { type route slave.pcm "null" ttable { 0.0 1 1.1 1 2.2 1 3.3 1 4.4 1 5.5 1 6.6 1 7.7 1 8.3 1 } }
 pcm.straight { type plug slave.pcm { type copy slave.pcm "null" } }
-pcm.named { type route slave.pcm "null" ttable { 0.FL 1 1.FR 1 2.RL 1 3.RR 1 4.FC 1 5.LFE 1 6.SL 1 7.SR 1 8.RC 1 } }
 pcm.kept { type route slave.pcm { type file slave.pcm "null" file "kept.raw" format raw } ttable { 0.0 1 } }
-pcm.quiet { type route slave { pcm "null" channels 10 } ttable { 0.0 0.1 1.1 1 2.2 -1 3.3 1 4.4 1 5.5 1 6.6 1 7.7 1 8.8 0.5 8.9 1 } }
-pcm.loud { type route slave.pcm "null" ttable { 0.0 1 1.1 2 2.2 1 3.3 1 4.4 1 5.5 1 6.6 1 7.7 1 8.8 1 } }
 """
     LOST = "tactor 8 of palm-3x3 is on channel 8, which reaches no channel of the device"
 
@@ -223,23 +200,6 @@ pcm.loud { type route slave.pcm "null" ttable { 0.0 1 1.1 2 2.2 1 3.3 1 4.4 1 5.
         self.assertEqual((pcms["tactor8"]["fits"], pcms["tactor8"]["misfit"]), (False, self.LOST))
         self.assertEqual((pcms["straight"]["fits"], pcms["straight"]["misfit"]), (True, None))
         self.assertIn("    unfit     tactor 8 of palm-3x3 is on channel 8", self.ok("devices").stdout)
-
-    def test_changed_levels_and_unknown_wiring_are_warnings_and_a_louder_one_is_refused(self):
-        for pcm, notes in (("quiet", ("tactor 0 of palm-3x3 is on channel 0, which ALSA's configuration plays at -20 dB",
-                                      "tactor 2 of palm-3x3 is on channel 2, which ALSA's configuration plays at 0 dB with its polarity reversed",
-                                      "tactor 8 of palm-3x3 is on channel 8, which reaches 2 channels of the device, at -6.02 dB, 0 dB")),
-                           ("named", ("not known: type route to a channel FL is between",))):
-            found, r = self.check_device(pcm), self.ok("play", *self.STROKE, "-D", pcm)
-            self.assertTrue(found["level"] == "warning" and found["cure"], found)
-            self.assertIn("played", r.stdout)
-            for note in notes:
-                self.assertIn(note, found["found"])
-                self.assertRegex(r.stderr, f"tactor: warning: .*{note}")
-            self.assertEqual(found["found"].count("tactor "), len(notes) if pcm == "quiet" else found["found"].count("tactor "))
-        louder = "tactor 1 of palm-3x3 is on channel 1, which ALSA's configuration plays at 6.02 dB: louder than its limit allows"
-        self.assertIn(louder, self.check_device("loud", status=3)["found"])
-        self.refused(3, "play", *self.STROKE, "-D", "loud", says=[louder])
-        self.assertEqual(self.devices()[1]["loud"]["misfit"], louder)
 
     def test_samples_that_alsa_clips_on_the_way_are_a_warning(self):
         tables = [" ".join(f"{c}.{c} {gain}" for c in range(9)) for gain in (0.5, 2)]
