@@ -131,11 +131,15 @@ session_store::~session_store()
 
 void session_store::try_to_write() const
 {
-    std::vector<fs::path> files = missing({});
-    for (const fs::path& list : {folder_.path() / "participants.tsv", folder_.scans(code_)})
-        files.push_back(list);
-    for (const run_definition* r : runs_)
-        files.push_back(table(*r));
+    const std::vector<run_definition>& runs = folder_.definition().runs;
+    std::vector<fs::path> files;
+    for (const run_definition& r : runs)
+        if (const fs::path file = folder_.description(r); !is_on_disk(file))
+            files.push_back(file);
+    files.push_back(folder_.path() / "participants.tsv");
+    files.push_back(folder_.scans(code_));
+    for (const run_definition& r : runs)
+        files.push_back(table(r));
     files.push_back(source_ / "session.json");
     for (const fs::path& file : files)
         study::try_to_write(file);

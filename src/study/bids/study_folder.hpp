@@ -31,6 +31,7 @@ public:
     study_folder& operator=(const study_folder&) = delete;
 
     const std::filesystem::path& path() const noexcept { return folder_; }
+    const experiment_definition& definition() const noexcept { return definition_; }
 
     /// Sentences about allowed differences from the sessions that are there.
     const std::vector<std::string>& warnings() const noexcept { return warnings_; }
