@@ -3,22 +3,20 @@
 /// Output of `tactor analyze`, from values.
 #pragma once
 
-#include <cstdio>
-
 #include <nlohmann/json.hpp>
 
 #include "study/analysis/analysis.hpp"
 
 namespace tactor::cli {
 
-void print_analysis_text(std::FILE* out, const study::analysis& a);
+void print_analysis_text(const study::analysis& a);
 
 /// Returns an object with the schema tactor-analysis/1.
 nlohmann::ordered_json make_analysis_json(const study::analysis& a);
 
 /// Every trial that counts on a line, with tabs between, after lines that begin with # and tell R how to read
 /// and fit it.
-void print_trials(std::FILE* out, const study::dataset& d);
+void print_trials(const study::dataset& d);
 
 /// Prints all warnings on stderr, but only the first about a missing figure, which the text shows as a dash.
 void print_warnings(const study::analysis& a);

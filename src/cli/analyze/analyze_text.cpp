@@ -72,13 +72,13 @@ std::size_t widest(const std::vector<std::string>& names)
     return w;
 }
 
-void print_tests(std::FILE* out, const study::by_motion& b, const std::vector<std::string>& motions)
+void print_tests(const study::by_motion& b, const std::vector<std::string>& motions)
 {
     const std::size_t w = widest(motions);
-    fmt::print(out, "  {:<{}} {:>6} {:>5} {:>16} {:>6} {:>5} {:>5} {:>5}  {}\n", "", w, "mean", "se", "95 %",
-               "t", "p", "Holm", "signs", "d");
+    fmt::print("  {:<{}} {:>6} {:>5} {:>16} {:>6} {:>5} {:>5} {:>5}  {}\n", "", w, "mean", "se", "95 %", "t",
+               "p", "Holm", "signs", "d");
     const auto row = [&](const std::string& name, const study::t_test& t, std::optional<double> holm) {
-        say(out, "  {:<{}} {:>6} {:>5} {:>16} {:>6} {:>5} {:>5} {:>5}  {}\n", name, w, value_text(t.mean),
+        say(stdout, "  {:<{}} {:>6} {:>5} {:>16} {:>6} {:>5} {:>5} {:>5}  {}\n", name, w, value_text(t.mean),
             value_text(t.se), interval_text(t.ci, study::per_cents), value_text(t.t), p_text(t.p),
             p_text(holm), p_text(t.p_signflip), value_text(t.d));
     };
@@ -86,7 +86,7 @@ void print_tests(std::FILE* out, const study::by_motion& b, const std::vector<st
     for (std::size_t m = 0; m < motions.size(); ++m)
         row(motions[m], b.motion[m], b.p_holm[m]);
     if (b.all.t)
-        fmt::print(out, "  all: {}; d = {:.2f} ({})\n", t_text(b.all), *b.all.d, interval_text(b.all.d_ci));
+        fmt::print("  all: {}; d = {:.2f} ({})\n", t_text(b.all), *b.all.d, interval_text(b.all.d_ci));
 }
 
 constexpr const char* column_legend =
@@ -95,34 +95,33 @@ constexpr const char* column_legend =
     "number of motions; signs is the exact p of all changes of sign; d is the effect size, (mean - guessing) "
     "/ sd.";
 
-void print_effect(std::FILE* out, const char* name, const study::effect& e)
+void print_effect(const char* name, const study::effect& e)
 {
     if (e.f)
-        fmt::print(out, "{}", wrapped(fmt::format("  {}: ", name), effect_text(e)));
+        fmt::print("{}", wrapped(fmt::format("  {}: ", name), effect_text(e)));
 }
 
-void print_pairs(std::FILE* out, const std::vector<study::comparison>& pairs,
-                 const std::vector<std::string>& motions, const std::string& of)
+void print_pairs(const std::vector<study::comparison>& pairs, const std::vector<std::string>& motions,
+                 const std::string& of)
 {
     if (pairs.empty() || !pairs[0].q)
         return;
-    say(out, "  Tukey{}:\n", of);
+    say(stdout, "  Tukey{}:\n", of);
     const std::size_t w = widest(motions);
     for (const study::comparison& c : pairs)
-        say(out, "    {:<{}} - {:<{}} {:>7} q = {:>5}, {}\n", motions[c.a], w, motions[c.b], w,
+        say(stdout, "    {:<{}} - {:<{}} {:>7} q = {:>5}, {}\n", motions[c.a], w, motions[c.b], w,
             value_text(c.difference), value_text(c.q), p_clause(c.p));
 }
 
-void print_choose(std::FILE* out, const study::run_analysis& r)
+void print_choose(const study::run_analysis& r)
 {
-    say(out, "  per cent of trials in which {} was chosen, against 50\n", r.run.methods.back());
-    print_tests(out, r.cells[0], r.run.motions);
+    say(stdout, "  per cent of trials in which {} was chosen, against 50\n", r.run.methods.back());
+    print_tests(r.cells[0], r.run.motions);
     const study::t_test& first = r.first_interval;
     if (first.mean)
-        fmt::print(out, "  first interval chosen: {:.1f} %{}\n", *first.mean,
-                   first.t ? ", " + t_text(first) : "");
-    print_effect(out, "motion", r.effects.second);
-    print_pairs(out, r.pairs[0], r.run.motions, "");
+        fmt::print("  first interval chosen: {:.1f} %{}\n", *first.mean, first.t ? ", " + t_text(first) : "");
+    print_effect("motion", r.effects.second);
+    print_pairs(r.pairs[0], r.run.motions, "");
 }
 
 std::string paired_text(const study::t_test& t)
@@ -137,42 +136,42 @@ std::string paired_text(const study::t_test& t)
     return text;
 }
 
-void print_rate(std::FILE* out, const study::run_analysis& r)
+void print_rate(const study::run_analysis& r)
 {
-    say(out, "  mean rating (se), 1 to {}\n", r.run.scale);
+    say(stdout, "  mean rating (se), 1 to {}\n", r.run.scale);
     const std::size_t w = widest(r.run.methods);
     const auto cell = [](const study::t_test& t) {
         return fmt::format("{} ({})", value_text(t.mean), value_text(t.se));
     };
     for (std::size_t m = 0; m < r.run.methods.size(); ++m) {
-        say(out, "  {:<{}} all {}", r.run.methods[m], w, cell(r.cells[m].all));
-        fmt::print(out, ", 95 % {}\n", interval_text(r.cells[m].all.ci, study::possible_values(r.run)));
+        say(stdout, "  {:<{}} all {}", r.run.methods[m], w, cell(r.cells[m].all));
+        fmt::print(", 95 % {}\n", interval_text(r.cells[m].all.ci, study::possible_values(r.run)));
         for (std::size_t k = 0; k < r.run.motions.size(); ++k)
-            say(out, "  {:<{}} {} {}\n", "", w, r.run.motions[k], cell(r.cells[m].motion[k]));
+            say(stdout, "  {:<{}} {} {}\n", "", w, r.run.motions[k], cell(r.cells[m].motion[k]));
     }
     if (r.run.methods.size() > 1 && r.paired.mean)
-        say(out, "{}",
+        say(stdout, "{}",
             wrapped(fmt::format("  {} - {}: ", r.run.methods.back(), r.run.methods.front()),
                     paired_text(r.paired)));
-    print_effect(out, "method", r.effects.first);
-    print_effect(out, "motion", r.effects.second);
-    print_effect(out, "method:motion", r.effects.interaction);
+    print_effect("method", r.effects.first);
+    print_effect("motion", r.effects.second);
+    print_effect("method:motion", r.effects.interaction);
     for (std::size_t m = 0; m < r.run.methods.size(); ++m)
-        print_pairs(out, r.pairs[m], r.run.motions, " within " + r.run.methods[m]);
+        print_pairs(r.pairs[m], r.run.motions, " within " + r.run.methods[m]);
 }
 
-void print_identify(std::FILE* out, const study::run_analysis& r)
+void print_identify(const study::run_analysis& r)
 {
     const std::size_t w = widest(r.run.motions);
     for (std::size_t m = 0; m < r.run.methods.size(); ++m) {
-        say(out, "  {}: per cent correct, against {:.2f}\n", r.run.methods[m], study::chance(r.run));
-        print_tests(out, r.cells[m], r.run.motions);
-        say(out, "  answers, from left to right in the order of the rows:\n");
+        say(stdout, "  {}: per cent correct, against {:.2f}\n", r.run.methods[m], study::chance(r.run));
+        print_tests(r.cells[m], r.run.motions);
+        say(stdout, "  answers, from left to right in the order of the rows:\n");
         for (std::size_t i = 0; i < r.run.motions.size(); ++i) {
             std::string row;
             for (const std::size_t count : r.confusion[m][i])
                 row += fmt::format(" {:>5}", count);
-            say(out, "    {:<{}}{}\n", r.run.motions[i], w, row);
+            say(stdout, "    {:<{}}{}\n", r.run.motions[i], w, row);
         }
     }
 }
@@ -198,28 +197,28 @@ std::string_view in_the_paper(std::string_view experiment, std::string_view run)
     return {};
 }
 
-void print_run(std::FILE* out, const study::analysis& a, const study::run_analysis& r)
+void print_run(const study::analysis& a, const study::run_analysis& r)
 {
-    say(out, "\n{}: {}, {}, {}\n", r.run.name, to_string(r.run.task), counted(r.n, "participant"),
+    say(stdout, "\n{}: {}, {}, {}\n", r.run.name, to_string(r.run.task), counted(r.n, "participant"),
         counted(r.trials, "trial"));
     if (r.early != 0)
-        fmt::print(out, "  {} early (sooner after the stimulus than min_response_s), counted\n",
+        fmt::print("  {} early (sooner after the stimulus than min_response_s), counted\n",
                    counted(r.early, "answer"));
     if (r.n == 0)
         return;
     switch (r.run.task) {
     case task_kind::choose:
-        print_choose(out, r);
+        print_choose(r);
         break;
     case task_kind::rate:
-        print_rate(out, r);
+        print_rate(r);
         break;
     case task_kind::identify:
-        print_identify(out, r);
+        print_identify(r);
         break;
     }
     if (const std::string_view paper = in_the_paper(a.experiment, r.run.name); !paper.empty())
-        say(out, "{}", wrapped("  Park et al. 2016: ", std::string(paper)));
+        say(stdout, "{}", wrapped("  Park et al. 2016: ", std::string(paper)));
 }
 
 // A text in quotes, as R reads it.
@@ -277,22 +276,22 @@ std::string answer(const study::trial& t, const study::run_outline& r)
 
 } // namespace
 
-void print_analysis_text(std::FILE* out, const study::analysis& a)
+void print_analysis_text(const study::analysis& a)
 {
-    say(out, "{}: {}{}\n", a.experiment, counted(a.participants, "participant"),
+    say(stdout, "{}: {}{}\n", a.experiment, counted(a.participants, "participant"),
         a.simulated ? ", SIMULATED: these are no people's answers" : "");
     std::size_t voids = 0;
     for (const study::run_analysis& r : a.runs)
         voids += r.voids;
     if (voids != 0)
-        fmt::print(out, "{} void, not counted\n", counted(voids, "trial"));
+        fmt::print("{} void, not counted\n", counted(voids, "trial"));
     for (const study::left_out& one : a.excluded)
-        say(out, "excluded: sub-{} ({})\n", one.participant, one.why);
+        say(stdout, "excluded: sub-{} ({})\n", one.participant, one.why);
     for (const study::run_analysis& r : a.runs)
-        print_run(out, a, r);
+        print_run(a, r);
     if (std::any_of(a.runs.begin(), a.runs.end(),
                     [](const study::run_analysis& r) { return r.n != 0 && r.run.task != task_kind::rate; }))
-        fmt::print(out, "\n{}", wrapped("Columns: ", column_legend));
+        fmt::print("\n{}", wrapped("Columns: ", column_legend));
 }
 
 void print_warnings(const study::analysis& a)
@@ -306,7 +305,7 @@ void print_warnings(const study::analysis& a)
         more == 0 ? "" : fmt::format(" ({}: --format json)", counted(more, "more warning")));
 }
 
-void print_trials(std::FILE* out, const study::dataset& d)
+void print_trials(const study::dataset& d)
 {
     std::string text;
     if (d.simulated)
@@ -332,7 +331,7 @@ void print_trials(std::FILE* out, const study::dataset& d)
                                     t.response_time_s ? fmt::format("{}", *t.response_time_s) : "n/a",
                                     t.early ? (*t.early ? "true" : "false") : "n/a");
         }
-    fmt::print(out, "{}", text);
+    fmt::print("{}", text);
 }
 
 } // namespace tactor::cli

@@ -103,9 +103,9 @@ int run(const analyze_options& o)
         fmt::print("{}\n",
                    make_analysis_json(a).dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
     else if (o.format == "tsv")
-        print_trials(stdout, d);
+        print_trials(d);
     else
-        print_analysis_text(stdout, a);
+        print_analysis_text(a);
     return status_ok;
 }
 

@@ -301,9 +301,9 @@ int run(const experiment_options& o, settings& s)
     if (!o.dry_run)
         return o.check_noise ? check_noise(p, o, s) : hold_session(p, o, s);
     if (o.format == "json")
-        print_dry_run_json(stdout, p);
+        print_dry_run_json(p);
     else
-        print_dry_run_text(stdout, p);
+        print_dry_run_text(p);
     return status_ok;
 }
 

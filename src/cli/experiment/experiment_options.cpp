@@ -267,7 +267,7 @@ void check_experiment_options(const settings& s, const experiment_options& o)
         refuse_option("-o", "it is not said where the data go", "the folder of the study");
 }
 
-void print_dry_run_json(std::FILE* out, const study::prepared_experiment& p)
+void print_dry_run_json(const study::prepared_experiment& p)
 {
     json j{{"schema", "tactor-experiment/1"}};
     const study::experiment_definition& d = p.definition;
@@ -287,30 +287,28 @@ void print_dry_run_json(std::FILE* out, const study::prepared_experiment& p)
         j["runs"].push_back(run_json(p, p.runs[i], times[i]));
     j["stimuli"] = study::stimulus_facts(p);
     j["warnings"] = p.warnings;
-    fmt::print(out, "{}\n", j.dump(1, ' ', false, json::error_handler_t::replace));
+    fmt::print("{}\n", j.dump(1, ' ', false, json::error_handler_t::replace));
 }
 
-void print_dry_run_text(std::FILE* out, const study::prepared_experiment& p)
+void print_dry_run_text(const study::prepared_experiment& p)
 {
     const study::experiment_definition& d = p.definition;
-    say_text(out, fmt::format("{}: {}\nparticipant {}, seed {}, array {}, level {}\n", d.name, d.title,
-                              p.participant, p.seed, p.where.tactors.name,
-                              d.level_dbfs ? fmt::format("{} dBFS", *d.level_dbfs)
-                                           : fmt::format("{} dB SL", d.sl_db)));
+    say(stdout, "{}: {}\nparticipant {}, seed {}, array {}, level {}\n", d.name, d.title, p.participant,
+        p.seed, p.where.tactors.name,
+        d.level_dbfs ? fmt::format("{} dBFS", *d.level_dbfs) : fmt::format("{} dB SL", d.sl_db));
     const auto row = [&](const study::planned_trial& t, const std::string& place) {
         const study::trial_row r = study::planned_row(p, t, {});
-        say_text(out, fmt::format("{:>8}  {:<16} {:<16} {:<16} {:>7.3f}\n", place, r.motion, r.method_1,
-                                  r.method_2.empty() ? "-" : r.method_2, r.duration_s));
+        say(stdout, "{:>8}  {:<16} {:<16} {:<16} {:>7.3f}\n", place, r.motion, r.method_1,
+            r.method_2.empty() ? "-" : r.method_2, r.duration_s);
     };
     const std::vector<study::run_time> times = study::session_times(p);
     for (std::size_t i = 0; i < p.runs.size(); ++i) {
         const study::run_sequence& s = p.runs[i];
         const study::run_definition& r = d.runs[s.run];
-        say_text(out, fmt::format("\nrun {} of {}: {} ({}{}), {}, {}\n{}\n", i + 1, p.runs.size(),
-                                  r.outline.name, to_string(r.outline.task), r.animation ? ", animation" : "",
-                                  counted(s.trials.size(), "trial"), time_text(times[i]), r.question));
-        say_text(out, fmt::format("{:>8}  {:<16} {:<16} {:<16} {:>7}\n", "trial", "motion", "method_1",
-                                  "method_2", "s"));
+        say(stdout, "\nrun {} of {}: {} ({}{}), {}, {}\n{}\n", i + 1, p.runs.size(), r.outline.name,
+            to_string(r.outline.task), r.animation ? ", animation" : "", counted(s.trials.size(), "trial"),
+            time_text(times[i]), r.question);
+        say(stdout, "{:>8}  {:<16} {:<16} {:<16} {:>7}\n", "trial", "motion", "method_1", "method_2", "s");
         for (const study::planned_trial& t : s.practice)
             row(t, "practice");
         for (std::size_t k = 0; k < s.trials.size(); ++k)

@@ -5,7 +5,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <cstdio>
 #include <optional>
 #include <string>
 #include <vector>
@@ -50,9 +49,9 @@ void add_experiment_options(CLI::App& command, experiment_options& o);
 /// Checks that options go together and none is missing. \throws error (bad_input).
 void check_experiment_options(const settings& s, const experiment_options& o);
 
-void print_dry_run_text(std::FILE* out, const study::prepared_experiment& p);
+void print_dry_run_text(const study::prepared_experiment& p);
 /// Schema tactor-experiment/1.
-void print_dry_run_json(std::FILE* out, const study::prepared_experiment& p);
+void print_dry_run_json(const study::prepared_experiment& p);
 
 /// Prints the power of the design; returns the exit status, which is that of a signal where one ended it,
 /// with nothing printed. \throws error (bad_input).
