@@ -19,23 +19,11 @@ constexpr double tolerance_mm = 0.005;
 constexpr double tolerance_intensity = 0.002;
 constexpr double shortest_s = 1e-4;
 
-class sampler {
-public:
-    explicit sampler(const trajectory& t) : from_(t) {}
-
-    std::vector<timed_point> take(const std::vector<double>& times)
-    {
-        points_.push_back(at(times.front()));
-        for (std::size_t i = 1; i < times.size(); ++i)
-            add_until(at(times[i]));
-        return std::move(points_);
-    }
-
-private:
-    timed_point at(double t_s) const { return {t_s, from_.position(t_s), from_.intensity(t_s)}; }
-
-    bool is_straight(const timed_point& a, const timed_point& b) const
-    {
+// Returns points at the times and between them, halving each stretch that is not straight.
+std::vector<timed_point> sample_between(const trajectory& t, const std::vector<double>& times)
+{
+    const auto at = [&t](double t_s) { return timed_point{t_s, t.position(t_s), t.intensity(t_s)}; };
+    const auto is_straight = [&at](const timed_point& a, const timed_point& b) {
         for (const double part : {0.25, 0.5, 0.75}) {
             const timed_point p = at(std::lerp(a.t_s, b.t_s, part));
             const point even{std::lerp(a.position.x_mm, b.position.x_mm, part),
@@ -45,34 +33,30 @@ private:
                 return false;
         }
         return true;
-    }
-
-    // Adds points after the last one until `end`, halving what is not straight.
-    void add_until(const timed_point& end)
-    {
-        std::vector<timed_point> ends{end};
+    };
+    std::vector<timed_point> points{at(times.front())};
+    for (std::size_t i = 1; i < times.size(); ++i) {
+        std::vector<timed_point> ends{at(times[i])};
         while (!ends.empty()) {
-            const timed_point last = points_.back();
+            const timed_point last = points.back();
             const timed_point next = ends.back();
             if (next.t_s - last.t_s > shortest_s && !is_straight(last, next)) {
                 ends.push_back(at(0.5 * (last.t_s + next.t_s)));
                 continue;
             }
-            points_.push_back(next);
+            points.push_back(next);
             ends.pop_back();
-            if (points_.size() > most_sampled_points)
+            if (points.size() > most_sampled_points)
                 throw error(error_kind::bad_input, "stroke",
                             fmt::format("it takes more than {} timed points", most_sampled_points),
                             "make it shorter or simpler");
         }
     }
-
-    const trajectory& from_;
-    std::vector<timed_point> points_;
-};
+    return points;
+}
 
 // Returns the times between which the movement is smooth, ascending, from 0 to the duration.
-std::vector<double> smooth_between(const trajectory::impl& i, const drawn_path& law)
+std::vector<double> find_smooth_times(const trajectory::impl& i, const drawn_path& law)
 {
     std::vector<double> times{0.0, i.duration_s};
     if (law.way.length_mm() > 0.0)
@@ -96,7 +80,7 @@ std::vector<timed_point> sample_points(const trajectory& t)
 {
     const trajectory::impl& i = access::of(t);
     if (const auto* law = std::get_if<drawn_path>(&i.law))
-        return sampler(t).take(smooth_between(i, *law));
+        return sample_between(t, find_smooth_times(i, *law));
     const auto& law = std::get<timed_points>(i.law);
     std::vector<timed_point> points = *law.points;
     for (timed_point& p : points) {

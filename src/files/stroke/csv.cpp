@@ -36,10 +36,16 @@ using detail::without_blanks;
 constexpr std::string_view first_column = "t_s";
 constexpr std::size_t longest_look = 4096;
 
-[[noreturn]] void refuse_form(const source_place& at, std::string_view why, std::string_view hint)
-{
-    throw error(error_kind::bad_input, at, why, hint);
-}
+struct other_separator {
+    char separator;
+    std::string_view name;
+    std::string_view hint;
+};
+
+constexpr other_separator other_separators[] = {
+    {';', "semicolons", "separate them by commas, and write numbers with a decimal point"},
+    {'\t', "tabs", "separate them by commas: tr '\\t' ',' < OLD > NEW"},
+    {' ', "blanks", "separate them by commas: tr -s ' ' ',' < OLD > NEW"}};
 
 // Returns true for nan in any case and for NA.
 bool is_missing(std::string_view value)
@@ -63,28 +69,29 @@ void refuse_lone_cr(std::string_view text, const std::string& name)
     while (!first.empty() && first.back() == '\r')
         first.remove_suffix(1);
     if (const std::size_t at = first.find('\r'); at != std::string_view::npos)
-        refuse_form(detail::find_place(text, at, name), "its lines end in CR alone",
+        throw error(error_kind::bad_input, detail::find_place(text, at, name), "its lines end in CR alone",
                     "save it with line ends of Unix, or convert it: tr '\\r' '\\n' < OLD > NEW");
 }
 
-/// Returns the word for separators other than commas in a line of names or numbers; empty for none.
-std::string_view separators(std::string_view line)
+/// Returns the separator of a line of names or numbers if it is no comma, else null.
+const other_separator* find_other_separator(std::string_view line)
 {
     if (line.find(',') != std::string_view::npos && line.find(';') == std::string_view::npos)
-        return {};
-    for (const auto& [separator, words] : {std::pair(';', "semicolons"), {'\t', "tabs"}, {' ', "blanks"}}) {
-        const std::vector<std::string_view> parts = split(line, separator);
-        const auto fits = [](std::string_view s) {
+        return nullptr;
+    for (const other_separator& s : other_separators) {
+        std::size_t filled = 0;
+        bool fits = false;
+        for (const std::string_view part : split(line, s.separator)) {
+            const std::string_view value = without_blanks(part);
+            filled += value.empty() ? 0 : 1;
             // 0,5 is a number where semicolons separate.
-            return without_blanks(s).empty() || without_blanks(s) == first_column ||
-                   is_number(s.substr(0, s.find(',')));
-        };
-        const auto holds = std::count_if(parts.begin(), parts.end(),
-                                         [](std::string_view s) { return !without_blanks(s).empty(); });
-        if (holds > 1 && std::any_of(parts.begin(), parts.end(), fits))
-            return words;
+            fits =
+                fits || value.empty() || value == first_column || is_number(part.substr(0, part.find(',')));
+        }
+        if (filled > 1 && fits)
+            return &s;
     }
-    return {};
+    return nullptr;
 }
 
 // Refuses line ends of CR alone, other separators than commas, and a header that is missing or in a comment,
@@ -104,19 +111,17 @@ void refuse_other_columns(std::string_view text, const std::string& name)
             continue;
         }
         const source_place here = detail::find_place(text, at, name);
-        if (const std::string_view words = separators(line); !words.empty())
-            refuse_form(here, fmt::format("{} separate its columns", words),
-                        words == "semicolons"
-                            ? "separate them by commas, and write numbers with a decimal point"
-                        : words == "tabs" ? "separate them by commas: tr '\\t' ',' < OLD > NEW"
-                                          : "separate them by commas: tr -s ' ' ',' < OLD > NEW");
+        if (const other_separator* other = find_other_separator(line))
+            throw error(error_kind::bad_input, here, fmt::format("{} separate its columns", other->name),
+                        other->hint);
         const std::vector<std::string_view> parts = split(line, ',');
         if (parts.size() < 2 || !std::all_of(parts.begin(), parts.end(), is_number))
             return;
         if (comment.line != 0)
-            refuse_form(comment, "the line that names the columns is a comment",
+            throw error(error_kind::bad_input, comment, "the line that names the columns is a comment",
                         "take its # away; numpy.savetxt() takes comments=\"\"");
-        refuse_form(here, "there is no line that names the columns", "begin with: t_s,x_mm,y_mm");
+        throw error(error_kind::bad_input, here, "there is no line that names the columns",
+                    "begin with: t_s,x_mm,y_mm");
     }
 }
 
