@@ -136,30 +136,6 @@ TEST_CASE("arc length and its inverse hold to a micrometre on awkward curves")
     }
 }
 
-TEST_CASE("equal steps of arc length are chords no longer than the step")
-{
-    std::mt19937_64 random(20160701);
-    std::uniform_real_distribution<double> place(-50.0, 50.0);
-    for (int n = 0; n < tactor::test::rounds(300); ++n) {
-        const std::string data = tactor::test::random_path(random, 1 + n % 8);
-        CAPTURE(data);
-        const path p = path::from_svg(data);
-        const double step = p.length_mm() / 2000.0;
-        double chords = 0.0;
-        point before = p.at(0.0);
-        bool short_enough = true;
-        for (int k = 1; k <= 2000; ++k) {
-            const point now = p.at(step * k);
-            const double chord = tactor::distance_mm(before, now);
-            short_enough = short_enough && chord <= step + 1e-6;
-            chords += chord;
-            before = now;
-        }
-        CHECK(short_enough);
-        CHECK(chords > 0.99 * p.length_mm());
-    }
-}
-
 TEST_CASE("all commands of path data, absolute and relative, mean the same")
 {
     const path a = path::from_svg("M 10 10 L 20 10 H 30 V 20 C 35 20 40 25 40 30 S 45 40 50 40 Q 55 40 60 45 "

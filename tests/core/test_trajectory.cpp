@@ -253,25 +253,6 @@ TEST_CASE("senseless timed points are refused by their number")
     CHECK(timed_refusal({{0.0, {}}, {1.0, {}, infinite}}).find("point 2: intensity inf") == 0);
 }
 
-TEST_CASE("a timed walk meets each line where the walk is on it")
-{
-    std::mt19937_64 random(11);
-    std::uniform_real_distribution<double> n(-30.0, 30.0);
-    for (int k = 0; k < 2000; ++k) {
-        std::vector<timed_point> points;
-        for (int i = 0; i < 20; ++i)
-            points.push_back({0.1 * i, {std::round(n(random)), std::round(n(random))}, 1.0});
-        const trajectory t = trajectory::timed(points).with_duration(3.0);
-        double last = -1.0;
-        bool good = true;
-        for (const double time : t.meets_x(5.0)) {
-            good = good && time > last && std::abs(t.position(time).x_mm - 5.0) < 1e-9;
-            last = time;
-        }
-        CHECK(good);
-    }
-}
-
 TEST_CASE("places at hand are within 1e-9 mm of those that are computed, at cusps and in narrow turns, too")
 {
     std::vector<std::string> all(test::awkward_curves.begin(), test::awkward_curves.end());

@@ -3,7 +3,6 @@
 // way.
 #include <doctest/doctest.h>
 
-#include <algorithm>
 #include <string>
 #include <vector>
 
@@ -206,42 +205,36 @@ TEST_CASE("a group is fitted together")
 
 TEST_CASE("their faults have their place")
 {
-    for (const std::string wrong : {"repeat = 0",
-                                    "repeat = 1.5",
-                                    "repeat = 10001",
-                                    "repeat = \"2\"",
-                                    "pause_s = 0.5",
-                                    "repeat = 2\npause_s = -1",
-                                    "repeat = 2\npause_s = \"1\"",
-                                    "start_s = -1",
-                                    "start_s = nan",
-                                    "start_from = \"before\"",
-                                    "start_from = 1",
-                                    "start_from = \"end\"\nstart_s = -90000",
-                                    "reverse = 1",
-                                    "algorithm = \"park\"",
-                                    "algorithm = 1",
-                                    "phantom = \"baricentric\"",
-                                    "soa_s = 0",
-                                    "soa_s = 11",
-                                    "burst_s = 0",
-                                    "burst_s = \"1\"",
-                                    "soa_s = 0.05\nburst_s = 0.06",
-                                    "level_db = 61",
-                                    "level_db = -121",
-                                    "level_db = \"1\"",
-                                    "fit = 1",
-                                    "fit_margin_mm = 2",
-                                    "fit = true\nfit_margin_mm = -1",
-                                    "stroke = [1]",
-                                    "repeats = 2",
-                                    "level_dbfs = -6"}) {
-        const std::string why = complaint(one + line(1) + one + line(1, wrong));
-        CAPTURE(wrong);
-        CAPTURE(why);
-        const auto lines = 8 + std::count(wrong.begin(), wrong.end(), '\n');
-        CHECK(why.find(fmt::format("p.toml:{}:", lines)) == 0);
-    }
+    // `before` are keys that the wrong one needs.
+    const auto check_refused = [](const std::string& key, std::initializer_list<const char*> values,
+                                  const std::string& before = "") {
+        for (const char* wrong : values) {
+            const std::string why =
+                complaint(one + line(1) + one + line(1, before + fmt::format("{} = {}", key, wrong)));
+            CAPTURE(key);
+            CAPTURE(why);
+            CHECK(why.find(before.empty() ? "p.toml:8:" : "p.toml:9:") == 0);
+        }
+    };
+    check_refused("repeat", {"0", "1.5", "10001", "\"2\""});
+    check_refused("pause_s", {"0.5"});
+    check_refused("pause_s", {"-1", "\"1\""}, "repeat = 2\n");
+    check_refused("start_s", {"-1", "nan"});
+    check_refused("start_from", {"\"before\"", "1"});
+    check_refused("start_s", {"-90000"}, "start_from = \"end\"\n");
+    check_refused("reverse", {"1"});
+    check_refused("algorithm", {"\"park\"", "1"});
+    check_refused("phantom", {"\"baricentric\""});
+    check_refused("soa_s", {"0", "11"});
+    check_refused("burst_s", {"0", "\"1\""});
+    check_refused("burst_s", {"0.06"}, "soa_s = 0.05\n");
+    check_refused("level_db", {"61", "-121", "\"1\""});
+    check_refused("fit", {"1"});
+    check_refused("fit_margin_mm", {"2"});
+    check_refused("fit_margin_mm", {"-1"}, "fit = true\n");
+    check_refused("stroke", {"[1]"});
+    check_refused("repeats", {"2"});
+    check_refused("level_dbfs", {"-6"});
     CHECK(complaint(one + "stroke = []").find("p.toml:2:") == 0);
     has(complaint(one + "speed_mm_s = 30\n" + inside + line(1)), "unknown key 'speed_mm_s'");
     CHECK(complaint(one + line(1) + inside + line(1)).find("has both") != std::string::npos);
