@@ -171,9 +171,9 @@ void read_threshold(const toml_table& entry, tactor_spec& t)
         return;
     }
     for (const toml::node& e : *entry.list("threshold_dbfs", "[Hz, dBFS]")) {
-        const auto [hz, dbfs] = entry.pair(e, "a threshold");
-        const threshold_point p{entry.within(e, "the frequency", hz, bounds_of::carrier_hz),
-                                entry.within(e, "the threshold", dbfs, limit_db)};
+        const toml::array& pair = entry.pair(e, "a threshold");
+        const threshold_point p{entry.to_number(pair[0], "the frequency", bounds_of::carrier_hz),
+                                entry.to_number(pair[1], "the threshold", limit_db)};
         if (!t.thresholds.empty() && p.hz <= t.thresholds.back().hz)
             fail_at(entry.where(e),
                     fmt::format("the frequency {} does not come after {}", p.hz, t.thresholds.back().hz),

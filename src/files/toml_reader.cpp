@@ -291,11 +291,7 @@ double toml_table::to_number(const toml::node& n, std::string_view called, bound
 {
     if (!n.is_number())
         wrong_type(called, n, "a number");
-    return within(n, called, *n.value<double>(), b);
-}
-
-double toml_table::within(const toml::node& n, std::string_view called, double v, bounds b) const
-{
+    const double v = *n.value<double>();
     if (!std::isfinite(v) || !b.holds(v))
         fail_at(where(n), fmt::format("{} is {}", called, v), fmt::format("allowed: {}", bounds_text(b)),
                 called);
@@ -396,19 +392,22 @@ const toml::array* toml_table::list(std::string_view key, std::string_view of_wh
 std::optional<point> toml_table::place(std::string_view key) const
 {
     const toml::node* n = node(key);
-    if (!n)
-        return std::nullopt;
-    const auto [x, y] = pair(*n, key);
-    return point{x, y};
+    return n ? std::optional(to_point(*n, key)) : std::nullopt;
 }
 
-std::array<double, 2> toml_table::pair(const toml::node& entry, std::string_view called) const
+const toml::array& toml_table::pair(const toml::node& entry, std::string_view called) const
 {
     const toml::array* a = entry.as_array();
     if (!a || a->size() != 2)
         wrong_type(called, entry, "a list of 2 numbers");
+    return *a;
+}
+
+point toml_table::to_point(const toml::node& xy, std::string_view called) const
+{
     constexpr bounds any_mm{-max_mm, max_mm};
-    return {to_number((*a)[0], called, any_mm), to_number((*a)[1], called, any_mm)};
+    const toml::array& a = pair(xy, called);
+    return {to_number(a[0], called, any_mm), to_number(a[1], called, any_mm)};
 }
 
 std::string_view toml_table::one_of(const std::vector<std::string_view>& keys) const

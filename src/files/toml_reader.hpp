@@ -2,7 +2,6 @@
 // TOML with types, ranges and known keys checked; every complaint has its line and column.
 #pragma once
 
-#include <array>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -51,7 +50,6 @@ public:
 
     bool has(std::string_view key) const;
     const std::string& title() const noexcept { return title_; }
-    const std::string& file() const noexcept { return *file_; }
 
     source_place where() const;                     ///< where the table begins
     source_place where(std::string_view key) const; ///< where the value of a key begins
@@ -83,15 +81,13 @@ public:
 
     /// Reads [x, y] in mm.
     std::optional<point> place(std::string_view key) const;
-    /// Reads a list of two numbers within max_mm.
-    std::array<double, 2> pair(const toml::node& entry, std::string_view called) const;
+    /// Returns a list of two values.
+    const toml::array& pair(const toml::node& entry, std::string_view called) const;
+    point to_point(const toml::node& xy, std::string_view called) const;
     /// Reads a flag, a number or a text. Refuses whole numbers that a double does not hold.
     std::variant<std::monostate, bool, double, std::string> plain(const toml::node& n,
                                                                   std::string_view called) const;
     double to_number(const toml::node& n, std::string_view called, bounds b) const;
-    /// Returns v, which stands at n, if it is within b.
-    double within(const toml::node& n, std::string_view called, double v, bounds b) const;
-
     /// Returns a value that must be there. \throws error that says the key is missing.
     template <class T>
     T need(std::optional<T> value, std::string_view key) const

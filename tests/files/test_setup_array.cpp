@@ -194,9 +194,9 @@ TEST_CASE("wrong types and ranges are reported at the value")
           "palm.toml:4:12: polarity is 0 (1, or -1 where it is wired the other way round)");
     CHECK(complaint(one + "threshold_dbfs = [[1, -200], [384000, 0]]\n").empty());
     CHECK(complaint(one + "threshold_dbfs = [[0.9, -20]]\n") ==
-          "palm.toml:4:19: the frequency is 0.9 (allowed: 1 to 384000)");
+          "palm.toml:4:20: the frequency is 0.9 (allowed: 1 to 384000)");
     CHECK(complaint(one + "threshold_dbfs = [[384001, -20]]\n") ==
-          "palm.toml:4:19: the frequency is 384001 (allowed: 1 to 384000)");
+          "palm.toml:4:20: the frequency is 384001 (allowed: 1 to 384000)");
     CHECK(complaint(one + "threshold_dbfs = [[100, -20], [100, -41]]\n") ==
           "palm.toml:4:31: the frequency 100 does not come after 100 (put thresholds in order of frequency, "
           "each once)");

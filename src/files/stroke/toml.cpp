@@ -312,10 +312,8 @@ path read_points(const toml_table& t)
     std::vector<point> points;
     const toml::array& list = *t.list("points", "[x, y]");
     points.reserve(list.size());
-    for (const toml::node& entry : list) {
-        const auto [x, y] = t.pair(entry, "a point");
-        points.push_back({x, y});
-    }
+    for (const toml::node& entry : list)
+        points.push_back(t.to_point(entry, "a point"));
     return t.at_key("points", [&] { return path::polyline(points); });
 }
 
