@@ -44,17 +44,7 @@ TACTOR_KIND_NAMES(start_from_kind, "start_from", {piece, "piece"}, {start, "star
 
 std::size_t sample_bytes(format_kind f) noexcept
 {
-    switch (f) {
-    case format_kind::s16:
-        return 2;
-    case format_kind::s24_3:
-        return 3;
-    case format_kind::float32:
-    case format_kind::s24_4:
-    case format_kind::s32:
-        break;
-    }
-    return 4;
+    return f == format_kind::s16 ? 2 : f == format_kind::s24_3 ? 3 : 4;
 }
 
 TACTOR_KIND_NAMES(format_kind, "sample format", {float32, "float"}, {s16, "s16"}, {s24_3, "s24"},

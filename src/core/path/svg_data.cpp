@@ -5,10 +5,12 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <iterator>
 #include <limits>
 #include <numbers>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 
 #include <fmt/format.h>
@@ -193,28 +195,10 @@ private:
 
 constexpr const char* starts = "it starts with M x y";
 
-// Returns the arguments of a command: n is a number, f a flag.
-std::string_view argument_kinds(char command) noexcept
-{
-    switch (upper(command)) {
-    case 'M':
-    case 'L':
-    case 'T':
-        return "nn";
-    case 'H':
-    case 'V':
-        return "n";
-    case 'S':
-    case 'Q':
-        return "nnnn";
-    case 'C':
-        return "nnnnnn";
-    case 'A':
-        return "nnnffnn";
-    default:
-        return {};
-    }
-}
+// Arguments of the commands: n is a number, f a flag.
+constexpr std::pair<char, std::string_view> commands[] = {
+    {'M', "nn"},   {'L', "nn"},   {'H', "n"},  {'V', "n"},       {'C', "nnnnnn"},
+    {'S', "nnnn"}, {'Q', "nnnn"}, {'T', "nn"}, {'A', "nnnffnn"}, {'Z', ""}};
 
 class path_reader {
 public:
@@ -245,8 +229,9 @@ private:
     {
         const char c = data_[at_];
         const char kind = upper(c);
-        const std::string_view wanted = argument_kinds(c);
-        if (wanted.empty() && kind != 'Z')
+        const auto* const known = std::find_if(std::begin(commands), std::end(commands),
+                                               [kind](const auto& k) { return k.first == kind; });
+        if (known == std::end(commands))
             fail(fmt::format("{} is not a path command", found()),
                  "the commands are M L H V C S Q T A Z and the same in lower case");
         if (one_ && begun_ && (kind == 'M' || (closed_ && kind != 'Z')))
@@ -257,7 +242,7 @@ private:
         if (closed_)
             return pen_.close();
         skip_blanks(data_, at_);
-        groups(c, wanted);
+        groups(c, known->second);
     }
 
     // Reads groups of arguments. Groups after a move's first one are lines.
