@@ -315,20 +315,16 @@ void svg_document::note_rules(pugi::xml_node style)
             for_each_declaration(
                 css.substr(open + 1, close - open), [&](std::size_t property, std::string_view v) {
                     const bool hides = property == svg_display && tidy(v.substr(0, v.find('!'))) == "none";
-                    if (property >= svg_paints && !(hides && add_hidden(selectors)))
-                        note_rule(style, property);
+                    if (property < svg_paints || (hides && add_hidden(selectors)) || notes_.contains("style"))
+                        return;
+                    note(offset(style), "style",
+                         fmt::format("{} in {} is not followed", svg_properties[property], called(style)), "",
+                         ": what it hides or moves plays as if it were not there (export presentation "
+                         "attributes)");
                 });
             css.remove_prefix(close + 1);
         }
     }
-}
-
-void svg_document::note_rule(pugi::xml_node style, std::size_t property)
-{
-    if (notes_.find("style") == notes_.end())
-        note(offset(style), "style",
-             fmt::format("{} in {} is not followed", svg_properties[property], called(style)), "",
-             ": what it hides or moves plays as if it were not there (export presentation attributes)");
 }
 
 bool svg_document::add_hidden(std::string_view selectors)

@@ -160,7 +160,6 @@ private:
     source_place place(std::optional<std::size_t> offset) const;
     left_out fault(pugi::xml_node n, pugi::xml_attribute a, const value_fault& f) const;
     void note_rules(pugi::xml_node style);
-    void note_rule(pugi::xml_node style, std::size_t property);
     /// Keeps the classes of ".st0, .st1" as hidden. Returns false for selectors that are not only classes.
     bool add_hidden(std::string_view selectors);
 
