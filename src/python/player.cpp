@@ -278,13 +278,13 @@ std::int64_t nanoseconds(double s)
     return static_cast<std::int64_t>(std::llround(s * 1e9));
 }
 
-std::uint32_t submit(const player_handle& h, const score& s, const std::string& what, double at_s,
-                     std::int64_t frame)
+std::uint32_t submit(const player_handle& h, const score& s, bool armed, std::optional<double> at_s,
+                     std::optional<std::int64_t> frame)
 {
-    const start_at start = what == "armed"   ? start_at::trigger()
-                           : what == "time"  ? start_at::time(nanoseconds(at_s))
-                           : what == "frame" ? start_at::frame(frame)
-                                             : start_at::now();
+    const start_at start = armed   ? start_at::trigger()
+                           : at_s  ? start_at::time(nanoseconds(*at_s))
+                           : frame ? start_at::frame(*frame)
+                                   : start_at::now();
     return h.use([&](player& p) { return p.submit(s, start).number; });
 }
 

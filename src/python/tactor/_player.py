@@ -180,15 +180,13 @@ class Player(_Unique):
         times = [t for t in (at_s, delay, frame) if t is not None]
         if len(times) > 1 or (times and at != "now"):
             raise InputError("at", "there are several starts", "give one of at, at_s, delay and frame")
-        what = at if not times else "frame" if frame is not None else "time"
-        when = 0.0
         if at_s is not None:
-            when = _number("at_s", at_s, -_LATEST_S, _LATEST_S, _CLOCK)
+            at_s = _number("at_s", at_s, -_LATEST_S, _LATEST_S, _CLOCK)
         elif delay is not None:
-            when = time.monotonic() + _number("delay", delay, -_LATEST_S, _LATEST_S, "seconds")
+            at_s = time.monotonic() + _number("delay", delay, -_LATEST_S, _LATEST_S, "seconds")
         core = self._fitting(score)
         with shared.lock:
-            number = shared.core.submit(core, what, when, 0 if frame is None else frame)
+            number = shared.core.submit(core, at == "armed", at_s, frame)
             ticket = self._held.tickets[number] = Ticket(shared, number)
         return ticket
 

@@ -20,24 +20,19 @@ if _t.TYPE_CHECKING:
     _Plans = _t.Union[Plan, _t.Iterable[_t.Union[Plan, "tuple[float | None, Plan]"]]]
 
 
-_FORMATS = {"float32": "float", "int16": "s16", "int32": "s32"}
-_dtypes: dict[str, _t.Any] = {}  # of these names, for NumPy takes its time for each
+_FORMATS = {"<f4": "float", "<i2": "s16", "<i4": "s32"}  # by dtype.str
 
 
-def _find_format(dtype: _DTypeLike) -> str:
-    """Name of a type that can be rendered, which then stands in _dtypes."""
-    name = dtype if isinstance(dtype, str) else ""
-    if name not in _dtypes:
-        import numpy as np
-        try:
-            wanted = np.dtype(dtype)
-        except TypeError:
-            wanted = None
-        if wanted is None or wanted.name not in _FORMATS or not wanted.isnative:
-            raise InputError("dtype", f"{dtype!r} is not known", 'one of "float32", "int16", "int32"', field="dtype")
-        name = wanted.name
-        _dtypes[name] = wanted
-    return name
+def _find_type(dtype: _DTypeLike) -> _np.dtype[_t.Any]:
+    """Returns a type of samples that can be rendered."""
+    import numpy as np
+    try:
+        found = np.dtype(dtype)
+        if found.str in _FORMATS:
+            return found
+    except TypeError:
+        pass
+    raise InputError("dtype", f"{dtype!r} is not known", 'one of "float32", "int16", "int32"', field="dtype")
 
 
 def placed(plans: _Plans) -> list[tuple[float | None, Plan]]:
@@ -166,17 +161,17 @@ class Score(_Value):
         InputError
             For another type, and for an array that does not fit.
         """
-        name = _find_format(dtype if out is None else out.dtype)
+        sample_type = _find_type(dtype if out is None else out.dtype)
         first = _whole("start", start, 0, 1 << 62)
         count = max(self.frames - first, 0) if frames is None and out is None else \
             len(_t.cast(_t.Any, out)) if frames is None else _whole("frames", frames, 0, 1 << 40)
         if out is None:
             import numpy as np
-            out = np.empty((count, self.channels), _dtypes[name])
+            out = np.empty((count, self.channels), sample_type)
         elif out.shape != (count, self.channels) or not out.flags.c_contiguous or not out.flags.writeable:
             raise InputError("out", f"an array of shape {out.shape} does not fit",
                              f"give one of shape ({count}, {self.channels}) that can be written, in C's order", field="out")
-        renderer = _tactor.Renderer(self._core, _FORMATS[name])
+        renderer = _tactor.Renderer(self._core, _FORMATS[sample_type.str])
         renderer.skip(min(first, self.frames))
         renderer.into(out)
         return out
@@ -201,14 +196,13 @@ class Score(_Value):
         InputError
             For another type or number.
         """
-        name = _find_format(dtype)
-        return self._blocks(name, _whole("frames", frames, 1, 1 << 24))
+        return self._blocks(_find_type(dtype), _whole("frames", frames, 1, 1 << 24))
 
-    def _blocks(self, name: str, frames: int) -> _t.Iterator[_NDArray[_t.Any]]:
+    def _blocks(self, sample_type: _np.dtype[_t.Any], frames: int) -> _t.Iterator[_NDArray[_t.Any]]:
         import numpy as np
-        renderer = _tactor.Renderer(self._core, _FORMATS[name])
+        renderer = _tactor.Renderer(self._core, _FORMATS[sample_type.str])
         for first in range(0, self.frames, frames):
-            block = np.empty((min(frames, self.frames - first), self.channels), _dtypes[name])
+            block = np.empty((min(frames, self.frames - first), self.channels), sample_type)
             renderer.into(block)
             yield block
 

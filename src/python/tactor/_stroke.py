@@ -61,12 +61,9 @@ class Path(_Stated):
     def at(self, s_mm: _t.Sequence[float] | _NDArray[_np.float64]) -> _NDArray[_np.float64]: ...
     def at(self, s_mm: _t.Any) -> _t.Any:
         """Returns the point at an arc length, clamped to 0 ... length; of an array of lengths the points, shape (n, 2)."""
-        if isinstance(s_mm, (int, float)) and -1e300 < s_mm < 1e300:
-            return Point(*self._core.at(s_mm))
-        lengths = _floats("s_mm", s_mm)
-        if lengths.ndim == 0:
-            return Point(*self._core.at(float(lengths)))
-        return self._core.at_all(lengths.ravel())
+        if _is_one(s_mm):
+            return Point(*self._core.at(_number("s_mm", s_mm)))
+        return self._core.at_all(_floats("s_mm", s_mm).ravel())
 
     def meets_x(self, x_mm: float) -> list[float]:
         """Returns the arc lengths, ascending, at which the path meets the line x = x_mm, touching included."""
