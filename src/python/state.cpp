@@ -62,8 +62,9 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(outline::curve, segment, form)
 template <class T>
 nlohmann::json pack(const std::vector<T>& list)
 {
-    const auto* const first = reinterpret_cast<const std::uint8_t*>(list.data());
-    return nlohmann::json::binary({first, first + list.size() * sizeof(T)});
+    std::vector<std::uint8_t> bytes(list.size() * sizeof(T));
+    std::memcpy(bytes.data(), list.data(), bytes.size());
+    return nlohmann::json::binary(std::move(bytes));
 }
 
 template <class T>
