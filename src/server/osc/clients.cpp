@@ -208,7 +208,7 @@ void osc_clients::draw(osc_request r, std::optional<std::int64_t> at_ns, const e
 
 void osc_clients::hold(sender& s, std::int64_t due_ns, held h)
 {
-    if (s.held >= most_held || held_.size() >= most_held_of_all)
+    if (s.held >= most_held)
         limit_reached("strokes", "too many wait for their time", "send them later");
     ++s.held;
     held_.emplace(due_ns, std::move(h));

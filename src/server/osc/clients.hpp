@@ -37,9 +37,8 @@ public:
         std::size_t most_bytes = 65536;        ///< of a packet
     };
 
-    /// Most live strokes that wait for their time: of one sender, and of all.
+    /// Most live strokes of a sender that wait for their time.
     static constexpr std::size_t most_held = 64;
-    static constexpr std::size_t most_held_of_all = 1024;
     /// Most messages that wait for the number of a stroke that is being planned or begun.
     static constexpr std::size_t most_waiting = 256;
     /// Most errors that are sent in any second: who forges an address cannot bury it in them.
