@@ -55,13 +55,7 @@ class Reply(_Awaited[_t.Any]):
         Error
             What the service answered, or that it has gone.
         """
-        if timeout is not None:
-            timeout = _number("timeout", timeout, finite=False)
-        if not self._done and threading.current_thread() is self._client.thread:
-            raise RuntimeError("a callback cannot wait for an answer")
-        if not self._reached(timeout):
-            raise TimeoutError(f"there is no answer after {timeout:g} s")
-        return self._answer()
+        return self._wait("the request", timeout, self._client.thread)
 
     def add_done_callback(self, callback: _t.Callable[[_t.Any], object]) -> None:
         """Calls `callback(reply)` once the answer is there: in the client's thread, or at once and here when it is already."""

@@ -85,13 +85,18 @@ class _Awaited(_Unique, _t.Generic[_T]):
         self._error: Error | None = None
         self._done = False
 
-    def _reached(self, timeout: float | None) -> bool:
-        """Waits for the end. Where the kernel gives a signal to another thread, nothing wakes one that waits: it looks for itself."""
+    def _wait(self, what: str, timeout: float | None, thread: threading.Thread) -> _T:
+        """Waits for the end in another thread than `thread`, which reports it."""
+        if timeout is not None:
+            timeout = _number("timeout", timeout, finite=False)
+        if not self._done and threading.current_thread() is thread:
+            raise RuntimeError(f"a callback cannot wait for {what}")
         until = None if timeout is None else time.monotonic() + timeout
+        # Looks for itself now and then: a signal that the kernel gives to another thread wakes none that waits.
         while not self._gate.wait(_LOOK_S if until is None else min(max(until - time.monotonic(), 0.0), _LOOK_S)):
             if until is not None and time.monotonic() >= until:
-                return False
-        return True
+                raise TimeoutError(f"{what} has not ended after {timeout:g} s")
+        return self._answer()
 
     def add_done_callback(self, callback: _t.Callable[[_t.Any], object]) -> None:
         with self._lock:
@@ -194,21 +199,14 @@ class Ticket(_Awaited[Report]):
         RuntimeError
             In a callback, for a stroke that has not ended: its thread would have to bring the report.
         """
-        if timeout is not None:
-            timeout = _number("timeout", timeout, finite=False)
         if not self._done:
             self._player.core.refuse_child()
-            if threading.current_thread() is self._player.thread:
-                raise RuntimeError("a callback cannot wait for a stroke that goes on")
-            try:
-                ended = self._reached(timeout)
-            except KeyboardInterrupt:
-                self.cancel()
-                self._gate.wait(1.0)
-                raise
-            if not ended:
-                raise TimeoutError(f"stroke {self._number} goes on after {timeout:g} s")
-        return self._answer()
+        try:
+            return self._wait(f"stroke {self._number}", timeout, self._player.thread)
+        except KeyboardInterrupt:
+            self.cancel()
+            self._gate.wait(1.0)
+            raise
 
     def cancel(self) -> bool:
         """Fades it out. False when it has ended."""
