@@ -3,12 +3,13 @@
 /// The drives of a score, one after the other.
 #pragma once
 
-#include <cstdint>
+#include <cstddef>
 #include <memory>
+#include <vector>
 
 #include <tactor/render.hpp>
 
-#include "synth/score/event.hpp"
+#include "synth/score/expander.hpp"
 
 namespace tactor::synth {
 
@@ -17,9 +18,9 @@ namespace tactor::synth {
 class event_source {
 public:
     explicit event_source(const score& s);
-    ~event_source();
-    event_source(event_source&&) noexcept;
-    event_source& operator=(event_source&&) noexcept;
+    event_source(const event_source&) = delete;
+    event_source(event_source&&) noexcept = default;
+    event_source& operator=(event_source&&) noexcept = default;
 
     /// Returns the next event, or nothing at the end; does not move on. Throws std::bad_alloc where there is
     /// no memory for a sample of a continuous plan; the event is then there when it is asked for again.
@@ -28,8 +29,20 @@ public:
     void pop() noexcept;
 
 private:
-    struct impl;
-    std::unique_ptr<impl> impl_;
+    static bool later(const expander* a, const expander* b) noexcept;
+    void move_on();
+    void begin_items();
+    void release(expander* e) noexcept;
+
+    // Items that have begun are expanders in a heap; the score knows how many that are at most.
+    std::shared_ptr<const score::impl> piece_;
+    std::vector<expander> expanders_;
+    std::vector<control_points> points_;
+    std::vector<expander*> free_expanders_;
+    std::vector<control_points*> free_points_;
+    std::vector<expander*> heap_;
+    std::size_t next_item_ = 0;
+    bool popped_ = false; ///< the first event of the heap
 };
 
 } // namespace tactor::synth
