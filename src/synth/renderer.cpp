@@ -32,14 +32,9 @@ struct score_mixer {
     score_mixer(const score& s, format_kind f)
         : source(s),
           mix(detail::access::of(s).limits, f, detail::access::of(s).open_events + 256,
-              find_guards(detail::access::of(s))),
+              detail::access::of(s).guards),
           frame_bytes(s.channels() * sample_bytes(f))
     {
-    }
-
-    static guard_settings find_guards(const score::impl& s)
-    {
-        return s.guards ? make_guards(*s.guards, s.rate) : guard_settings{};
     }
 
     /// Hands over the drives that start before a frame. Returns the frame up to which none is missing.

@@ -19,10 +19,8 @@ struct guard_settings {
     unsigned rate = 48000;
 };
 
-/// Checks the limits.
-/// \throws error (bad_input) for impossible ones.
-void check_limits(const drive_limits& l);
-/// Converts limits to a sample rate. Throws like check_limits().
+/// Converts limits to a sample rate.
+/// \throws error (bad_input) for impossible limits.
 guard_settings make_guards(const drive_limits& l, unsigned rate);
 
 /// Limits n samples to -limit ... limit; NaN becomes 0. Returns the number of changed samples, not counting

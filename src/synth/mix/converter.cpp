@@ -39,6 +39,7 @@ quad load(const lane& v, unsigned i) noexcept
     return q;
 }
 
+/// Writes n frames, `stride` bytes apart, of the lanes' samples next to each other.
 template <class Row>
 void write(const lane_pointers& from, unsigned n, std::byte* out, std::size_t stride) noexcept
 {
@@ -59,17 +60,6 @@ void write(const lane_pointers& from, unsigned n, std::byte* out, std::size_t st
     }
     for (; i < n; ++i, out += stride)
         store<Row>(quad{(*from[0])[i], (*from[1])[i], (*from[2])[i], (*from[3])[i]}, out);
-}
-
-/// Writes for each of n frames, `stride` bytes apart, the low `bytes` (2 or 4) of the lanes' samples, next to
-/// each other.
-void write_abreast(const lane_pointers& from, std::size_t bytes, unsigned n, std::byte* out,
-                   std::size_t stride) noexcept
-{
-    if (bytes == 2)
-        write<short_quad>(from, n, out, stride);
-    else
-        write<quad>(from, n, out, stride);
 }
 
 static_assert(std::endian::native == std::endian::little, "the formats are little-endian");
@@ -163,7 +153,10 @@ void interleave(format_kind f, std::span<const channel_samples> sounding, std::s
             to_bits(f, c, n, lanes[i]);
             from[i] = &lanes[i];
         }
-        write_abreast(from, sample, n, out + first * sample, stride);
+        if (sample == 2)
+            write<short_quad>(from, n, out + first * sample, stride);
+        else
+            write<quad>(from, n, out + first * sample, stride);
         sounding = sounding.subspan(count);
         written = first + abreast;
     }

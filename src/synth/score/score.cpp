@@ -218,8 +218,7 @@ struct score_builder::impl {
         s->channels = settle_channels(a, o);
         check_marker(a, o, s->channels);
         if (o.limits)
-            synth::check_limits(*o.limits);
-        s->guards = o.limits;
+            s->guards = synth::make_guards(*o.limits, o.rate);
         s->tactors = synth::tactor_levels(a, o);
         s->unmeasured = synth::unmeasured_tactors(a, o);
         const auto curved = [](const tactor_spec& t) { return !t.thresholds.empty(); };

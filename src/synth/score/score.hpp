@@ -13,6 +13,7 @@
 
 #include <tactor/render.hpp>
 
+#include "synth/guard/guard.hpp"
 #include "synth/tone/timbre.hpp"
 
 namespace tactor::synth {
@@ -90,7 +91,7 @@ struct score::impl {
     unsigned rate = 0;
     phase_kind phase = phase_kind::stroke;
     burst_envelope envelope = {};
-    std::optional<drive_limits> guards;
+    synth::guard_settings guards;    ///< for the renderer
     std::size_t open_items = 0;      ///< most items that have started and not ended at once
     std::size_t open_continuous = 0; ///< of these, continuous ones
     std::size_t open_events = 0;     ///< most events that sound in one frame
