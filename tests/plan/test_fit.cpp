@@ -219,17 +219,6 @@ TEST_CASE("strokes ask for a fit alone, or together")
         CHECK_FALSE(k.fit);
 }
 
-TEST_CASE("small pictures far away and huge ones are fitted")
-{
-    for (const char* path : {"M 900000 900000 l 0.01 0 l 0 0.02", "M -1000000 -1000000 L 1000000 1000000",
-                             "M 900000 0 a 0.01 0.02 0 1 1 0.01 0"}) {
-        CAPTURE(path);
-        const stroke s = along(path, 1.0);
-        const fitted_strokes r = fit_strokes({s}, low);
-        CHECK(refusal(preset_array("palm-2x4"), r.strokes[0], strictly(algorithm_kind::continuous)).empty());
-    }
-}
-
 TEST_CASE("any fitted picture is accepted with outside = error, and no larger one would be")
 {
     generator g(22);
