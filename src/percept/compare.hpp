@@ -30,7 +30,7 @@ std::string prediction_note(const observer_choice& o);
 
 /// Prediction of how a plan feels.
 struct prediction {
-    percept_summary felt = {};    ///< by the centroid; by low_speed only the errors
+    percept_summary felt = {};    ///< of the centroid observer; low_speed sets only the errors
     tap_summary tapped = {};      ///< by low_speed
     std::vector<tap> taps = {};   ///< by low_speed
     std::string unpredicted = {}; ///< reason why low_speed has no prediction; empty: it has one

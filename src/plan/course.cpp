@@ -41,7 +41,8 @@ constexpr double last_digits = 1e-12;
 /// Between two points the phase is off by at most `phase_error`, or as far as rounding lets it.
 constexpr double phase_error = 1e-11; // cycles
 constexpr double rounding = 2e-14;    // of the frequency
-/// Cycles between two points of a bent course: of more, sixteen digits do not tell 1e-10.
+/// Most carrier cycles between two points of a bent course; beyond it a double cannot resolve 1e-10 of a
+/// cycle.
 constexpr double most_cycles = 4096.0;
 constexpr int most_halvings = 12;
 

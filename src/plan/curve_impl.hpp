@@ -25,11 +25,10 @@ struct curve::impl {
     /// faster if the reader takes neighbouring samples one after the other.
     void sample(std::uint64_t k, detail::same_tactors& seen, burst& out) const;
 
-    /// Fills in position, intensity and drives of sample k, which is there.
+    /// Fills in position, intensity and drives of sample k < size.
     virtual void fill(std::uint64_t k, detail::same_tactors& seen, burst& out) const = 0;
-    /// Returns the movement that bounds what so many tactors get, and no others get anything: none is given
-    /// more than its intensity, which is linear between the trajectory's points. Null where that is not
-    /// known.
+    /// Returns a movement whose intensity, linear between its points, no drive exceeds, if the curve drives
+    /// only the first so many tactors; null if no bound is known.
     virtual const trajectory* bounds(std::size_t /*tactors*/) const noexcept { return nullptr; }
 
     const double duration_s;

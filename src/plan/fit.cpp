@@ -31,10 +31,10 @@ using detail::operator+;
 using detail::operator-;
 using detail::operator*;
 
-/// Lower than this part of the pitch, an array is a line: places that were measured are never quite in one.
+/// Height, as a part of the pitch, below which an array is a line. Measured places are never exactly in one.
 constexpr double thin_by_pitch = 0.1;
 
-/// Everything that is drawn; measures its extent.
+/// Picture of all strokes, with its extent.
 class picture {
 public:
     explicit picture(const std::vector<stroke>& strokes)
@@ -117,7 +117,7 @@ std::optional<point> find_line(const layout::impl& l, std::pair<point, point> en
                 "turn it, or use an array with two rows");
 }
 
-/// Refuses strokes of which one would lose its length: people could no longer feel its direction.
+/// Refuses the strokes if one would lose its length: people could no longer feel its direction.
 void check_along(const std::vector<stroke>& strokes, const fitting& f)
 {
     for (std::size_t i = 0; i < strokes.size(); ++i) {
@@ -184,7 +184,7 @@ fitting find_fit(const picture& drawn, const layout::impl& l, double margin_mm)
     return fit_to_hull(drawn, l, margin_mm);
 }
 
-/// Returns the fitting as a map of places whose origin is `from` already.
+/// Returns the fitting as a map of places relative to `from`.
 affine make_map(const fitting& f)
 {
     const point d = f.line.value_or(point{});

@@ -27,11 +27,11 @@ struct burst_count {
     missed_places missed = {};
 };
 
-/// Takes the next bursts of a plan; at their end nothing sounds. `so_far` has what else is known of the plan
-/// by then: its carrier, its phantom and such.
+/// Takes the next bursts of a plan; nothing sounds at their end. `so_far` has the other members of the plan,
+/// such as carrier and phantom.
 using burst_taker = std::function<void(const plan& so_far, std::span<const burst> next)>;
 
-/// Bursts that are handed over at once where they are not kept.
+/// Most bursts that a burst_taker gets at once.
 inline constexpr std::size_t bursts_at_once = 1024;
 
 /// Input of the algorithms; lives as long as make_plan().
@@ -49,11 +49,11 @@ struct job {
     std::string name() const;
 };
 
-/// Plans a stroke as make_plan() does, but hands its bursts over as they come, instead of keeping them.
+/// Plans a stroke as make_plan() does, and passes its bursts to `take` instead of storing them.
 plan plan_in_pieces(const array& a, const layout& l, const stroke& s, const plan_options& o,
                     const burst_taker& take);
 
-/// Counts the plan's bursts, and hands them over where they are not kept.
+/// Counts the plan's bursts, and passes them to job::take if there is one.
 void pass_on(const job& j, plan& p);
 
 /// Plan by an algorithm; each fills in its own part of the plan.
@@ -82,7 +82,7 @@ burst make_burst(const job& j, double onset_s, double duration_s, point p, doubl
 /// are ordered by onset.
 std::vector<conflict> find_conflicts(const std::vector<burst>& bursts);
 
-/// Places along the stroke, kept in the array as the user wants it.
+/// Places along the stroke, in the array as plan_options::outside says.
 class follower {
 public:
     explicit follower(const job& j) : job_(j) {}
@@ -98,7 +98,7 @@ private:
     double farthest_outside_mm(double from_s) const;
 
     const job& job_;
-    double inside_s_ = -1.0; // the last time known to be inside
+    double inside_s_ = -1.0; // the last time at which the target was inside
 };
 
 /// Returns plan::course of a stroke that is played with a waveform.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// Places that the triangle of their tactors does not hold, as may be with faces_kind::nearest.
+/// Places outside the triangle of their three tactors, as faces_kind::nearest may choose them.
 #pragma once
 
 #include <cstddef>
@@ -11,15 +11,15 @@
 
 namespace tactor::detail {
 
-/// Counts them over a plan.
+/// Count of such places in a plan.
 class missed_places {
 public:
-    /// Looks at a burst, or at a sample of a curve.
+    /// Counts a burst, or a sample of a curve.
     void add(const layout& l, const burst& b);
-    /// Looks at a curve, at some 4000 samples where it has more.
+    /// Counts the samples of a curve, some 4000 if it has more.
     void add(const layout& l, const curve& c);
 
-    /// Returns the plan's warning of them; empty if there are none. `what` is a place: burst, sample.
+    /// Returns the plan's warning; empty if there are none. `what` names a place: burst, sample.
     std::string warning(std::string_view what) const;
 
 private:
@@ -29,8 +29,8 @@ private:
     point first_ = {};
 };
 
-/// Adds the plan's warnings of faces: where they miss the place, and that the algorithm does not use them.
-/// `missed` has seen the bursts.
+/// Warns of faces that miss their places, and of faces that the algorithm does not use. `missed` has counted
+/// the bursts.
 void warn_of_faces(const layout& l, const plan_options& o, missed_places& missed, plan& p);
 
 } // namespace tactor::detail

@@ -46,7 +46,7 @@ void check_options(const plan_options& o)
         check_profile(o.profile);
     if (o.algorithm != algorithm_kind::park2016)
         return;
-    static_cast<void>(burst_duration_s(o)); // checks what it is made of
+    static_cast<void>(burst_duration_s(o)); // checks SOA and burst
     if (o.timing != timing_kind::fit || o.burst_s)
         return;
     const double longest = law_duration_s(o.profile, o.soa_s);
@@ -130,7 +130,7 @@ double burst_duration_s(const plan_options& o)
 
 double intensity_scale::amplitude(double intensity) const
 {
-    // Nothing, and what is no intensity, is left to those who take it.
+    // Callers refuse intensities that are negative or not numbers.
     if (!(intensity > 0.0))
         return intensity;
     if (level_db != 0.0) {

@@ -11,7 +11,8 @@
 namespace tactor::detail {
 namespace {
 
-/// `fit`: the fewest intervals no longer than the SOA. \throws error where their bursts are too short.
+/// Returns the SOA of the fewest intervals that are not longer than the requested one.
+/// \throws error (bad_input) if their bursts are too short.
 double fit_soa(const job& j, double duration_s)
 {
     const plan_options& o = j.options;
@@ -51,7 +52,7 @@ void plan_park(const job& j, plan& out)
     const auto all = static_cast<std::size_t>(count);
     out.bursts.reserve(j.take ? std::min(all, bursts_at_once) : all);
     for (double k = 0.0; k < count; ++k) {
-        // No burst lasts longer than the SOA, so that none overlaps what was handed over.
+        // No burst lasts longer than the SOA, so none overlaps those that were passed on.
         if (j.take && out.bursts.size() == bursts_at_once)
             pass_on(j, out);
         // The last one may be a rounding error past the end.

@@ -8,7 +8,7 @@
 namespace tactor::detail {
 namespace {
 
-// A count of nanoseconds that is whole but for rounding in the last digits counts as whole.
+// Distance from a whole number of nanoseconds that is rounding in the last digits.
 constexpr double slack = 1e-4;
 
 std::string seconds(double nanoseconds)

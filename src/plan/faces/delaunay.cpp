@@ -265,8 +265,8 @@ bool cocircular(const std::array<point, 4>& p)
     const double radius = std::hypot(centre.x_mm, centre.y_mm);
     const double power = ww - 2.0 * (w.x_mm * centre.x_mm + w.y_mm * centre.y_mm);
     const double off = std::abs(power) / (distance_mm(w, centre) + radius);
-    // The in-circle determinant changes with a move of point i as area[i] * radius, so this asks
-    // whether moves of same_place_mm make it zero. Thin triangles count for what they weigh.
+    // The in-circle determinant changes with a move of point i as area[i] * radius, so this is
+    // true if moves of same_place_mm make it zero. Thin triangles have little weight.
     return off * area[best] <= same_place_mm * (area[0] + area[1] + area[2] + area[3]);
 }
 

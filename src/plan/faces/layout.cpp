@@ -258,8 +258,8 @@ void layout::impl::faces_at(point p, std::vector<unsigned>& out) const
         out.assign(1, *face);
         return;
     }
-    // Slivers left out at the hull are thinner than the margin; the wider rounds are for what
-    // rounding may do to arrays that are all slivers.
+    // Slivers dropped at the hull are thinner than the first margin; arrays that are all slivers may need a
+    // wider one, because of rounding.
     for (double margin = same_place_mm; margin < 1e7; margin *= 10.0) {
         out.clear();
         for (unsigned f = 0; f < faces.size(); ++f)

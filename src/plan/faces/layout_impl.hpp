@@ -40,7 +40,7 @@ struct layout::impl {
     /// Replaces `out` by the faces that hold p within same_place_mm; never none. p must be in the hull.
     void faces_at(point p, std::vector<unsigned>& out) const;
     /// Returns the one face that holds p, if p keeps clear of its edges. Looks only at the face of the point
-    /// before; if it returns none, faces_at() must be asked.
+    /// before; if it returns none, use faces_at().
     std::optional<unsigned> clear_face(point p) const noexcept;
     /// Returns true if p also keeps clear of all segments between the tactors of a face.
     bool clear_of_diagonals(unsigned face, point p) const noexcept;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// The array's edge as seen from outside: what lies beyond it, and how far curves go there.
+/// Sides of the array's hull, and places at which curves are farthest beyond them.
 #pragma once
 
 #include <array>

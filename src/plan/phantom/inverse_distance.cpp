@@ -123,15 +123,14 @@ private:
         for (const unsigned f : faces)
             if (in_face(f, p, a_v, out))
                 return;
-        // Beside a face by more than the tolerance, where rounding opened a gap.
+        // Rounding can leave a gap between two faces; p may lie in it.
         add_two(layout_, nearest_edge(detail::access::of(layout_), faces.front(), p), p, a_v, out);
     }
 
     layout layout_;
 };
 
-/// The rule of Park et al. 2016 as it is written: the three closest of all tactors, wherever their triangle
-/// lies.
+/// The literal rule of Park et al. 2016: the three closest of all tactors, even if their triangle misses p.
 class nearest_three final : public phantom_model {
 public:
     explicit nearest_three(const layout& l) : layout_(l), ranks_(l.places().size())

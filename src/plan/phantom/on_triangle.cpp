@@ -56,7 +56,7 @@ bool is_edge(const std::vector<unsigned>& ring, rank_pair ends)
     return false;
 }
 
-/// Barycentric coordinates in the Delaunay triangle of p, and what is made of them.
+/// Models of the barycentric coordinates in the Delaunay triangle of p.
 class on_triangle final : public model_of_three {
 public:
     on_triangle(phantom_kind k, const layout& l) : kind_(k), layout_(l) {}

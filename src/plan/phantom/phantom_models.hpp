@@ -19,7 +19,7 @@ std::shared_ptr<const phantom_model> make_nearest_three(const layout& l);
 std::shared_ptr<const phantom_model> make_on_triangle(phantom_kind k, const layout& l);
 std::shared_ptr<const phantom_model> make_gaussian(const layout& l);
 
-/// \throws error (bad_input) where the model has nothing to choose the faces for.
+/// \throws error (bad_input) for faces_kind::nearest with another model than inverse_distance.
 void check_faces(phantom_kind k, faces_kind f);
 
 /// \throws error (bad_input) for an intensity that is not finite, or below 0.
@@ -32,12 +32,12 @@ point check_request(const layout& l, point p, double a_v);
 /// Adds a drive for the tactor of that rank if its amplitude is above 0.
 void add_drive(const layout& l, unsigned rank, double amplitude, std::vector<drive>& out);
 
-/// Adds what two tactors play for a point between them: Eq. (2) of Park et al. 2016.
+/// Adds the drives of two tactors for a point between them: Eq. (2) of Park et al. 2016.
 void add_two(const layout& l, const rank_pair& two, point p, double a_v, std::vector<drive>& out);
-/// Adds what three tactors play: Eq. (10).
+/// Adds the drives of three tactors: Eq. (10).
 void add_three(const layout& l, const near_triple& three, double a_v, std::vector<drive>& out);
 
-/// Brings drives into the order of tactor.
+/// Sorts drives by tactor.
 void sort_drives(std::vector<drive>& out);
 
 } // namespace tactor::detail

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// The phantom of a target that moves on: mostly its tactors are those of the place before.
+/// The phantom of a moving target, whose tactors are mostly those of the place before.
 #pragma once
 
 #include <array>

@@ -55,7 +55,7 @@ public:
 private:
     struct cell {
         double level = 0.0;  ///< frames, at frame `at`
-        std::int64_t at = 0; ///< the end of what was counted
+        std::int64_t at = 0; ///< frame up to which drives are counted
         std::uint64_t driven = 0;
         std::int64_t closed_at = 0;
         std::int64_t opens_at = 0;

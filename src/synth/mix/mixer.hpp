@@ -51,7 +51,7 @@ public:
     /// `ramp` frames from the next one on; until then it is 1. The limits still count with the drives' full
     /// amplitudes where they look at amplitudes alone. Returns false if 512 scores have one already.
     bool set_gain(std::uint32_t score, double gain, std::uint32_t ramp) noexcept;
-    /// Forgets the factor of a score of which nothing sounds any more.
+    /// Forgets the factor of a score that has ended.
     void forget_gain(std::uint32_t score) noexcept;
 
     /// Returns the frames in which a channel was driven so far; 0 where drive time is not counted.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// Scores that sound weaker than their drives say, and scores that fade out.
+/// Gains and fades of scores.
 #pragma once
 
 #include <algorithm>
@@ -44,11 +44,11 @@ public:
     /// Leads the factor of a score to `to`, from frame `at` on. Returns false if all are in use.
     bool set(std::uint32_t score, double to, std::uint64_t at, std::uint64_t length) noexcept;
     void forget(std::uint32_t score) noexcept;
-    /// Ends what goes on: each factor is the one that it was led to.
+    /// Ends all ramps: each factor takes its final value.
     void settle() noexcept;
 
 private:
-    /// Returns the place of a score's factor; used_: there is none.
+    /// Returns the place of a score's factor, or used_.
     std::size_t place(std::uint32_t score) const noexcept
     {
         const auto end = gains_.begin() + static_cast<std::ptrdiff_t>(used_);

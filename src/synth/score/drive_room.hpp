@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// When a piece may begin so that the limit on the time of a drive leaves it as it is.
+/// Time that a piece must wait so that the limit on drive time does not cut it.
 #pragma once
 
 #include <cstddef>
@@ -12,23 +12,23 @@
 
 namespace tactor::synth {
 
-/// Keeps the levels of drive time of an array that is given pieces, as the mixer's drive_guard does, and a
-/// little more strictly: a drive counts from its first frame to its last, and from half the amplitude on. So
-/// what has room here is not cut there, unless somebody else drives the array, too. Control side, one thread
-/// at a time.
+/// Levels of drive time of an array that plays pieces, as in the mixer's drive_guard, but a little stricter:
+/// a drive counts from its first frame to its last, and from half the amplitude on. So the guard does not cut
+/// a piece that has room here, unless another program drives the array, too. Control side, one thread at a
+/// time.
 class drive_room {
 public:
     /// \throws error (bad_input) for impossible limits.
     drive_room(std::size_t channels, const drive_limits& l, unsigned rate);
 
-    /// Returns the frames that a piece has to wait from frame `clock` on. None where it would be cut on an
-    /// array that has rested.
+    /// Returns the frames that a piece must wait from frame `clock` on; none if it would be cut even on a
+    /// rested array.
     std::optional<std::uint64_t> wait(const score& s, std::uint64_t clock) const;
 
-    /// Takes note of a score that was played from this frame on. Scores come in order of time.
+    /// Adds a score that was played from this frame on. Scores come in order of time.
     void played(const score& s, std::uint64_t clock);
 
-    /// Time in which a tactor that was driven for as long as it may rests completely, s; 0 without a limit.
+    /// Returns the time in which a tactor at the limit rests completely, s; 0 without a limit.
     double rest_s() const noexcept { return limit_ / leak_ / rate_; }
 
 private:

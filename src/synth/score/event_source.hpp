@@ -13,8 +13,8 @@
 
 namespace tactor::synth {
 
-/// Walks through a score in order of start frame. Memory does not grow with the length of what was
-/// walked through. Control side, one thread at a time.
+/// Walk through the events of a score in order of start frame. Memory does not grow with the length of the
+/// score. Control side, one thread at a time.
 class event_source {
 public:
     explicit event_source(const score& s);
@@ -22,10 +22,10 @@ public:
     event_source(event_source&&) noexcept = default;
     event_source& operator=(event_source&&) noexcept = default;
 
-    /// Returns the next event, or nothing at the end; does not move on. Throws std::bad_alloc where there is
-    /// no memory for a sample of a continuous plan; the event is then there when it is asked for again.
+    /// Returns the next event; null at the end. Does not move on. Throws std::bad_alloc without memory for a
+    /// sample of a continuous plan; the next call then tries again.
     const drive_event* peek();
-    /// Moves on from what peek() returned.
+    /// Moves on to the next event.
     void pop() noexcept;
 
 private:

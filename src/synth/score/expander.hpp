@@ -32,8 +32,8 @@ struct control_points {
     detail::same_tactors seen;
 };
 
-/// Gives the events of one item in order of start. Allocates nothing but what a sample of a continuous plan
-/// needs: begin() and advance() throw std::bad_alloc, and do the rest when they are called again.
+/// Events of one item in order of start. Allocates only for samples of continuous plans: begin() and
+/// advance() may throw std::bad_alloc, and continue when they are called again.
 class expander {
 public:
     /// Begins an item. `points` is for a continuous one; not to be shared while this expander is in use.

@@ -15,7 +15,8 @@ namespace tactor::synth {
 
 namespace {
 
-// Full scale where there is no threshold, so that what drives such a tactor is seen.
+// Returns a tactor's level, dBFS. Without a threshold it is full scale, so that check_peaks() finds its
+// drives.
 double level_db(const array& a, std::size_t i, const render_options& o)
 {
     const tactor_spec& t = a.tactors[i];

@@ -31,8 +31,8 @@ struct change {
     bool operator>(const change& c) const { return std::tie(frame, by) > std::tie(c.frame, c.by); }
 };
 
-/// The greatest amplitude of each tactor, summed over what may sound at once. Items arrive by start, so that
-/// only the changes of those that sound are kept.
+/// The greatest amplitude of each tactor, summed over the items that may sound at once. Items arrive by
+/// start, so the heap holds only the changes of those that sound.
 class sweep {
 public:
     explicit sweep(std::size_t tactors)
@@ -70,7 +70,7 @@ private:
         std::push_heap(heap_.begin(), heap_.end(), std::greater<>{});
     }
 
-    /// Takes what changes before a frame.
+    /// Applies the changes before a frame.
     void pass(std::uint64_t frame)
     {
         while (!heap_.empty() && heap_.front().frame < frame) {

@@ -47,7 +47,7 @@ void check(const burst& b, std::size_t number, std::size_t tactors)
     }
 }
 
-/// Returns the most that overlapping bursts add up to: A_v, or what an intensity scale has made of it.
+/// Returns the greatest sum of overlapping bursts: A_v, or its value on an intensity scale.
 double greatest_sum(const burst& b)
 {
     const double energy =
@@ -99,8 +99,8 @@ private:
     double end_s_ = 0.0;
 };
 
-/// Places the bursts of one plan. What sounds by itself is put there at once; a bit for each drive says
-/// which do, so that nothing else grows with the plan.
+/// Places the bursts of one plan. A bit for each drive says whether it overlaps with another one on its
+/// tactor and is joined with it.
 class placer {
 public:
     placer(std::span<const burst> bursts, const plan& p, std::uint32_t number, std::uint64_t start,

@@ -11,7 +11,7 @@ namespace tactor::synth {
 
 namespace {
 
-/// After so many of its time constants an actuator has got there: 0.7 % are missing.
+/// Time constants after which an actuator has its strength, but for 0.7 %.
 constexpr double enough_rises = 5.0;
 /// Least amplitude of an added burst, of full scale (-100 dB).
 constexpr double least_boost = 1e-5;
@@ -61,10 +61,10 @@ private:
     double of_release_; ///< what the release itself adds
 };
 
-/// State of a tactor when the next burst begins.
+/// State of a tactor after its latest drive.
 struct motion {
-    std::uint64_t until = 0; ///< it is driven
-    double strength = 0.0;   ///< of its actuator then, in amplitudes of drives
+    std::uint64_t until = 0; ///< end of the drive
+    double strength = 0.0;   ///< of the actuator at that time, as an amplitude of drives
 };
 
 /// A boost: how long and how strong, in amplitudes of drives.
@@ -135,8 +135,7 @@ private:
         m.until = it.end();
     }
 
-    /// Returns the shortest burst of whole half cycles that is enough, or the longest that there is space
-    /// for.
+    /// Returns the shortest burst of whole half cycles that is enough, or the longest that fits.
     boost find_boost(const item& it, const lag& l, std::uint32_t release, double amplitude, double before,
                      double headroom, double rise_s) const
     {

@@ -229,8 +229,8 @@ struct score_builder::impl {
 
     std::uint32_t number() const noexcept { return static_cast<std::uint32_t>(s->plans.size()); }
 
-    /// Returns the frame at which the next plan starts. That of its time also where it follows another: what
-    /// rounding took from the end of each would add up.
+    /// Returns the frame at which the next plan starts, from its time: the frames of the plans before it
+    /// would add up their rounding.
     std::uint64_t start(std::optional<double> start_s, const start_anchor& anchor)
     {
         const double at_s = times.start(start_s, anchor);
@@ -244,7 +244,7 @@ struct score_builder::impl {
         return synth::place_bursts(bursts, first, p, number(), start, a.tactors.size(), o, s->list);
     }
 
-    /// Takes a plan whose bursts are placed.
+    /// Ends a plan whose bursts are placed.
     void close(plan p, std::optional<double> start_s, const start_anchor& anchor, std::uint64_t start,
                std::uint64_t bursts_end)
     {

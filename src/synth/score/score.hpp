@@ -60,8 +60,7 @@ static_assert(sizeof(item) == 40);
 struct item_list {
     // Deques grow without being copied: a copy would take half as much memory again.
     std::deque<item> items;
-    // The drives of bursts: amplitude 1 is the intensity asked for. Two deques, for one of pairs would be
-    // padded.
+    // The drives of bursts: amplitude 1 is the requested intensity. One deque of pairs would be padded.
     std::deque<std::uint16_t> drive_tactors;
     std::deque<double> drive_amplitudes;
     std::vector<item_member> members;
@@ -84,7 +83,7 @@ struct score::impl {
     /// By tactor: greatest level that it is driven with, linear; 0 where it is not driven. A continuous
     /// stroke counts for all tactors. The boost for a slow actuator's rise is not included.
     std::vector<double> asked;
-    std::optional<unsigned> marker; ///< its channel, where there is one
+    std::optional<unsigned> marker; ///< channel of the markers, if any
     synth::item_list list;
     std::uint64_t frames = 0;
     unsigned channels = 0;

@@ -54,7 +54,7 @@ struct timbre {
     void fill(std::int64_t first, std::int64_t origin, unsigned n, double* out, wave w) const noexcept;
 };
 
-/// Points that interpolation needs besides a cycle's own: one before, and two and a last after.
+/// Extra samples for interpolation: one before the cycle, three after it.
 inline constexpr std::size_t cycle_margin = 4;
 
 /// Computes out[j], the cycle at place turns[j], between four points by Lagrange. Any number of turns below
