@@ -131,6 +131,14 @@ void warn_of_own_duration(const plan_options& o, const detail::burst_count& c, p
                         seconds_text(law.slope * d + law.intercept_s, 4)));
 }
 
+double check_carrier(double hz)
+{
+    if (!(hz > 0.0 && std::isfinite(hz)))
+        throw detail::bad_field("carrier_hz", fmt::format("{} Hz is not a frequency", hz),
+                                "more than 0; 250 is usual");
+    return hz;
+}
+
 /// Returns true if the stroke itself sets the impossible SOA or burst.
 bool is_own(const error& e, const stroke_choices& c)
 {
@@ -149,64 +157,11 @@ void check_chosen(const plan_options& o, const stroke& s)
     }
 }
 
-plan plan_stroke(const array& a, const layout& l, const stroke& s, const plan_options& common,
-                 const detail::burst_taker& take)
-{
-    if (s.fit)
-        return plan_stroke(a, l, apply_fits({s}, l).front(), common, take);
-    const plan_options o = detail::apply_choices(common, s.choices);
-    check_chosen(o, s);
-    if (l.places().size() != a.tactors.size())
-        throw error(
-            error_kind::bad_input, "layout",
-            fmt::format("has {} and the array {}", counted(l.places().size(), "tactor"), a.tactors.size()),
-            "build the layout from the same array");
-    detail::burst_count bursts;
-    const detail::job j{a, l, s, o, detail::choose_model(l, o), bursts, take};
-    plan p;
-    p.warnings = s.warnings;
-    p.algorithm = to_string(o.algorithm);
-    p.phantom = j.model->name();
-    p.faces = detail::faces_used(o);
-    p.stroke_duration_s = s.motion.duration_s();
-    p.stroke_length_mm = s.motion.length_mm();
-    p.carrier_hz =
-        detail::check_carrier(s.sound.carrier_profile.empty() ? s.sound.carrier_hz.value_or(o.carrier_hz)
-                                                              : s.sound.carrier_profile.front().hz);
-    p.overlap = o.overlap;
-    p.wave = s.sound.wave.value_or(o.wave);
-    p.am = s.sound.am.value_or(o.am);
-    validate(p.wave);
-    validate(p.am);
-    p.course = detail::make_course(s, p.wave);
-    switch (o.algorithm) {
-    case algorithm_kind::park2016:
-        detail::plan_park(j, p);
-        break;
-    case algorithm_kind::tactile_brush:
-        detail::plan_brush(j, p);
-        break;
-    case algorithm_kind::continuous:
-        detail::plan_continuous(j, p);
-        break;
-    }
-    p.conflicts = detail::find_conflicts(p.bursts);
-    detail::pass_on(j, p);
-    warn_of_short_travel(l.pitch_mm(), p);
-    warn_of_wide_faces(l, *j.model, p);
-    detail::warn_of_faces(l, o, bursts.missed, p);
-    warn_of_long_bursts(bursts, p);
-    warn_of_short_bursts(bursts, p);
-    warn_of_own_duration(o, bursts, p);
-    warn_of_missing_samples(p);
-    return p;
-}
-
 } // namespace
 
 plan make_plan(const array& a, const layout& l, const stroke& s, const plan_options& o)
 {
-    return plan_stroke(a, l, s, o, {});
+    return detail::plan_in_pieces(a, l, s, o, {});
 }
 
 plan make_plan(const array& a, const stroke& s, const plan_options& o)
@@ -219,10 +174,56 @@ plan make_plan(const array& a, const stroke& s, const plan_options& o)
 
 namespace tactor::detail {
 
-plan plan_in_pieces(const array& a, const layout& l, const stroke& s, const plan_options& o,
+plan plan_in_pieces(const array& a, const layout& l, const stroke& s, const plan_options& common,
                     const burst_taker& take)
 {
-    return plan_stroke(a, l, s, o, take);
+    if (s.fit)
+        return plan_in_pieces(a, l, apply_fits({s}, l).front(), common, take);
+    const plan_options o = apply_choices(common, s.choices);
+    check_chosen(o, s);
+    if (l.places().size() != a.tactors.size())
+        throw error(
+            error_kind::bad_input, "layout",
+            fmt::format("has {} and the array {}", counted(l.places().size(), "tactor"), a.tactors.size()),
+            "build the layout from the same array");
+    burst_count bursts;
+    const job j{a, l, s, o, choose_model(l, o), bursts, take};
+    plan p;
+    p.warnings = s.warnings;
+    p.algorithm = to_string(o.algorithm);
+    p.phantom = j.model->name();
+    p.faces = faces_used(o);
+    p.stroke_duration_s = s.motion.duration_s();
+    p.stroke_length_mm = s.motion.length_mm();
+    p.carrier_hz = check_carrier(s.sound.carrier_profile.empty() ? s.sound.carrier_hz.value_or(o.carrier_hz)
+                                                                 : s.sound.carrier_profile.front().hz);
+    p.overlap = o.overlap;
+    p.wave = s.sound.wave.value_or(o.wave);
+    p.am = s.sound.am.value_or(o.am);
+    validate(p.wave);
+    validate(p.am);
+    p.course = make_course(s, p.wave);
+    switch (o.algorithm) {
+    case algorithm_kind::park2016:
+        plan_park(j, p);
+        break;
+    case algorithm_kind::tactile_brush:
+        plan_brush(j, p);
+        break;
+    case algorithm_kind::continuous:
+        plan_continuous(j, p);
+        break;
+    }
+    p.conflicts = find_conflicts(p.bursts);
+    pass_on(j, p);
+    warn_of_short_travel(l.pitch_mm(), p);
+    warn_of_wide_faces(l, *j.model, p);
+    warn_of_faces(l, o, bursts.missed, p);
+    warn_of_long_bursts(bursts, p);
+    warn_of_short_bursts(bursts, p);
+    warn_of_own_duration(o, bursts, p);
+    warn_of_missing_samples(p);
+    return p;
 }
 
 void pass_on(const job& j, plan& p)

@@ -58,14 +58,6 @@ void check_options(const plan_options& o)
             .with_field("min_duration_s");
 }
 
-double check_carrier(double hz)
-{
-    if (!(hz > 0.0 && std::isfinite(hz)))
-        throw detail::bad_field("carrier_hz", fmt::format("{} Hz is not a frequency", hz),
-                                "more than 0; 250 is usual");
-    return hz;
-}
-
 plan_options apply_choices(plan_options common, const stroke_choices& c)
 {
     common.algorithm = c.algorithm.value_or(common.algorithm);

@@ -16,7 +16,4 @@ void check_options(const plan_options& o);
 /// Returns the common options with the choices of a stroke.
 plan_options apply_choices(plan_options common, const stroke_choices& c);
 
-/// Returns the frequency, if it is one. \throws error (bad_input)
-double check_carrier(double hz);
-
 } // namespace tactor::detail
