@@ -106,10 +106,10 @@ void close_others(const holder_job& job) noexcept
         return;
     unsigned from = 0;
     for (unsigned i = 0; i < job.keep_count; ++i) {
-        const unsigned kept = static_cast<unsigned>(job.keep[i]);
-        if (kept > from)
-            close_span(from, kept - 1);
-        from = kept + 1;
+        const unsigned fd = static_cast<unsigned>(job.keep[i]);
+        if (fd > from)
+            close_span(from, fd - 1);
+        from = fd + 1;
     }
     close_span(from, ~0U);
 }
@@ -215,8 +215,8 @@ bool wait_for(int fd, short events, int timeout_ms) noexcept
     const std::int64_t until = rt::monotonic_ms() + timeout_ms;
     for (;;) {
         pollfd p{fd, events, 0};
-        const std::int64_t left = std::max<std::int64_t>(until - rt::monotonic_ms(), 0);
-        const int n = ::poll(&p, 1, static_cast<int>(left));
+        const std::int64_t rest_ms = std::max<std::int64_t>(until - rt::monotonic_ms(), 0);
+        const int n = ::poll(&p, 1, static_cast<int>(rest_ms));
         if (n >= 0 || errno != EINTR)
             return n > 0;
     }
@@ -349,8 +349,8 @@ bool holder_link::await_answer(message_kind kind) noexcept
             lapsed_ = lapsed_ && !m->done;
             return m->done;
         }
-        const std::int64_t left = until - rt::monotonic_ms();
-        if (!gone_ && (left <= 0 || !wait_for(socket_.get(), POLLIN, static_cast<int>(left))))
+        const std::int64_t rest_ms = until - rt::monotonic_ms();
+        if (!gone_ && (rest_ms <= 0 || !wait_for(socket_.get(), POLLIN, static_cast<int>(rest_ms))))
             give_up();
     }
     return false;

@@ -73,9 +73,9 @@ struct counters {
     }
 };
 
-/// Factors that scores are to have, by place in the audio thread's table. The control side writes them, at
-/// any rate: the newest counts.
-class asked_gains {
+/// Requested factors of scores, by place in the audio thread's table. The control side writes them at any
+/// rate; the newest counts.
+class gain_requests {
 public:
     void set(ticket t, float gain) noexcept
     {
@@ -106,7 +106,7 @@ struct link {
     rt::spsc_ring<request> requests{std::size_t{4} * voices};
     // Cannot overflow: a ticket has at most two reports, and is reused only after its last one was read.
     rt::spsc_ring<report> reports{std::size_t{4} * voices};
-    asked_gains gains;
+    gain_requests gains;
     rt::event_fd to_audio;
     rt::event_fd to_control;
     /// Set by the feeder when the command ring is full. The audio thread then signals when there is space.

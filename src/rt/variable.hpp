@@ -27,8 +27,8 @@ inline std::string service_folder()
 /// XDG_RUNTIME_DIR; empty where nothing says which.
 inline std::string runtime_folder()
 {
-    const std::string given = service_folder();
-    return given.empty() ? variable("XDG_RUNTIME_DIR") : given;
+    const std::string folder = service_folder();
+    return folder.empty() ? variable("XDG_RUNTIME_DIR") : folder;
 }
 
 } // namespace tactor::rt

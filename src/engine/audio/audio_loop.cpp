@@ -217,16 +217,16 @@ void audio_loop::write_periods(std::int64_t now) noexcept
     const io_result available = sink_.available();
     if (available.status != io_kind::ok)
         return broken(available.status, available.code, now);
-    std::size_t left = available.frames;
-    if (left > setup_.period_frames)
+    std::size_t room = available.frames;
+    if (room > setup_.period_frames)
         link_.count.late_frames =
-            std::max<std::uint64_t>(link_.count.late_frames, left - setup_.period_frames);
+            std::max<std::uint64_t>(link_.count.late_frames, room - setup_.period_frames);
 
     // This is a bound even if a device claims more space than its buffer has.
-    left = std::min<std::size_t>(left, setup_.buffer_frames);
-    while (left > 0) {
+    room = std::min<std::size_t>(room, setup_.buffer_frames);
+    while (room > 0) {
         if (pending_ == 0) {
-            if (left < setup_.period_frames)
+            if (room < setup_.period_frames)
                 break;
             take_commands();
             if (scores_.being_fed())
@@ -240,7 +240,7 @@ void audio_loop::write_periods(std::int64_t now) noexcept
             break;
         if (r.status != io_kind::ok)
             return broken(r.status, r.code, now);
-        left -= std::min(r.frames, left);
+        room -= std::min(r.frames, room);
     }
 }
 

@@ -148,13 +148,13 @@ void look_up(const std::string& device, const std::string& path, int flags, Chan
 {
     memory& m = here();
     const std::lock_guard lock(m.mutex);
-    drive_levels& kept = m.by_device[device];
+    drive_levels& own = m.by_device[device];
     const locked_file file(path, flags);
     drive_levels l = file.open() ? drive_levels::read(file.read()) : drive_levels();
     if (l.levels_s.empty())
-        l = kept;
+        l = own;
     if (change(l) && !(file.open() && file.write(l.text())))
-        kept = std::move(l);
+        own = std::move(l);
 }
 
 } // namespace
@@ -239,7 +239,7 @@ drive_book::drive_book(std::string device, const synth::guard_settings& g)
 std::vector<double> drive_book::read() const
 {
     std::vector<double> now;
-    if (kept())
+    if (has_device())
         look_up(device_, path_, O_RDWR, [&](drive_levels& l) {
             now = l.after_rest(rt::boottime_ns(), limit_s_, leak_);
             return false;
@@ -251,7 +251,7 @@ void drive_book::enter(std::span<const std::atomic<std::uint64_t>> driven, bool 
 {
     const std::int64_t now_ns = rt::boottime_ns();
     const bool ahead = share_.ahead_s > 0.0;
-    if (!kept() || (sounds && ahead && now_ns - share_.entered_ns < renewed_ns))
+    if (!has_device() || (sounds && ahead && now_ns - share_.entered_ns < renewed_ns))
         return;
     try {
         std::vector<std::uint64_t> now(driven.size());

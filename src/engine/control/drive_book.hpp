@@ -55,7 +55,7 @@ public:
     /// \param device empty: no book is kept
     drive_book(std::string device, const synth::guard_settings& g);
 
-    bool kept() const noexcept { return !device_.empty(); }
+    bool has_device() const noexcept { return !device_.empty(); }
     /// Returns the levels of drive time now, s, by channel. Blocks shortly.
     std::vector<double> read() const;
     /// Enters what was driven, if it is time to. `driven`: frames by channel so far. `sounds`: a channel may

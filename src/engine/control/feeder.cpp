@@ -130,7 +130,7 @@ void feeder::end_waiting(stroke_id last, End end)
         const auto w = waiting_live_.begin();
         end(w->first);
         w->second->close();
-        gone_live_.insert(waiting_live_.extract(w));
+        ended_live_.insert(waiting_live_.extract(w));
     }
 }
 
@@ -277,7 +277,7 @@ void feeder::release(slot& s) noexcept
     const auto place = static_cast<std::uint32_t>(&s - slots_.data());
     in_use_.erase(std::find(in_use_.begin(), in_use_.end(), place));
     if (s.use->voice != nullptr)
-        gone_live_.insert(playing_live_.extract(s.use->id));
+        ended_live_.insert(playing_live_.extract(s.use->id));
     s.use.reset();
     // Wraps after 16 million uses of one place; skips 0.
     s.generation = s.generation + 1 < UINT32_MAX / voices ? s.generation + 1 : 1;
@@ -394,12 +394,12 @@ void feeder::look_at_waiting_live(std::uint64_t written)
     for (auto next = waiting_live_.begin(); next != waiting_live_.end();) {
         live_voice& v = *next->second;
         v.wait(frames);
-        const live_voice::action asked = v.requested();
-        if (asked == live_voice::action::cancel)
+        const live_voice::action request = v.requested();
+        if (request == live_voice::action::cancel)
             report_end({.id = next->first, .state = state_kind::cancelled});
-        else if (asked == live_voice::action::fail)
+        else if (request == live_voice::action::fail)
             report_end(interrupted(next->first, reason_kind::plan, v.failure()));
-        else if (asked == live_voice::action::end && !v.has_point())
+        else if (request == live_voice::action::end && !v.has_point())
             report_end({.id = next->first, .state = state_kind::finished});
         else if (v.starved())
             report_end(interrupted(next->first, reason_kind::starved, text(reason_kind::starved, 0)));
@@ -408,7 +408,7 @@ void feeder::look_at_waiting_live(std::uint64_t written)
             continue;
         }
         v.close();
-        gone_live_.insert(waiting_live_.extract(next++));
+        ended_live_.insert(waiting_live_.extract(next++));
     }
 }
 
@@ -434,7 +434,7 @@ bool feeder::cancel_waiting(stroke_id id)
     const auto live = waiting_live_.find(id);
     if (live != waiting_live_.end()) {
         live->second->close();
-        gone_live_.insert(waiting_live_.extract(live));
+        ended_live_.insert(waiting_live_.extract(live));
         return true;
     }
     return erase_task(waiting_, id) || erase_task(timed_, id) || erase_task(armed_, id);

@@ -75,7 +75,7 @@ public:
     using live_map = std::map<stroke_id, std::shared_ptr<live_voice>>;
     /// Returns the live strokes that have ended. Take them out and destroy them without a lock: the last
     /// owner of one destroys its phantom model, which may be the program's.
-    live_map& gone_live() noexcept { return gone_live_; }
+    live_map& ended_live() noexcept { return ended_live_; }
 
     /// Returns true if the stroke has not ended, or its report has not been removed yet.
     bool knows(stroke_id id) const;
@@ -153,7 +153,7 @@ private:
     std::map<stroke_id, task> armed_;
     live_map waiting_live_;
     live_map playing_live_;
-    live_map gone_live_;
+    live_map ended_live_;
     std::optional<std::uint64_t> seen_written_ = {}; ///< at the last look at waiting_live_
     clock_line clock_;
     std::array<slot, voices> slots_;

@@ -60,7 +60,7 @@ engine::loop_options loop_options(const player_options& o, const engine::drive_b
     l.stall_ns = std::max(periods, to_ns(o.stall_s, "stall_s"));
     l.amplifier = amplifier;
     l.guards = synth::make_guards(o.limits, s.rate);
-    if (before.kept() && l.guards.drive_frames == 0.0)
+    if (before.has_device() && l.guards.drive_frames == 0.0)
         l.guards.drive_frames = std::numeric_limits<double>::infinity(); // counted for others
     l.driven_s = before.read();
     return l;

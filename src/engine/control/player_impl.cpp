@@ -136,7 +136,7 @@ void player::impl::stop(bool closing)
 
 void player::impl::woken()
 {
-    engine::feeder::live_map gone;
+    engine::feeder::live_map ended_strokes;
     std::unique_lock lock(mutex);
     const bool done = take_reports() && (feed.stream_over() || pump());
     const bool last = done && feed.stream_over();
@@ -144,9 +144,9 @@ void player::impl::woken()
         log.look(link.status.load(), rt::monotonic_ns());
     if (last)
         log.end(handler_failed.empty() ? feed.end().why : handler_failed); // no copy: there may be no memory
-    gone.swap(feed.gone_live());
+    ended_strokes.swap(feed.ended_live());
     lock.unlock();
-    gone.clear();
+    ended_strokes.clear();
     news.notify_all();
     log.write();
     book.enter(link.driven, !last && link.sounds.load(std::memory_order_relaxed));

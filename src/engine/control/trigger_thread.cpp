@@ -173,9 +173,9 @@ std::int64_t trigger_thread::step() noexcept
     if (!line.valid())
         return no_clock_ns;
     const std::int64_t due = line.time_at(p->what.frame);
-    const std::int64_t left = due - real_time().now() - pulse_lead_ns;
-    if (left > 0)
-        return std::min(left, longest_wait_ns);
+    const std::int64_t wait_ns = due - real_time().now() - pulse_lead_ns;
+    if (wait_ns > 0)
+        return std::min(wait_ns, longest_wait_ns);
     const bool in_time = emitter_.await(due);
     // The pulse may have been withdrawn meanwhile, and an xrun may have ended its epoch.
     if (board_.take(*p)) {
@@ -199,9 +199,9 @@ void trigger_thread::wait(std::int64_t ns) noexcept
 
 void pulse_plan::forget(stroke_id id, bool was_played)
 {
-    const std::size_t left =
+    const std::size_t unsent =
         std::erase_if(waiting_, [id](const pulse& p) { return p.id == id; }) + board_.forget(id);
-    missed_ += was_played ? left : 0;
+    missed_ += was_played ? unsent : 0;
     hand_over();
 }
 
@@ -221,13 +221,13 @@ bool pulse_plan::hand_over()
     bool any = false;
     while (!waiting_.empty()) {
         const pulse first = *waiting_.begin();
-        const std::optional<pulse> left = board_.offer(first);
-        if (left == first)
+        const std::optional<pulse> displaced = board_.offer(first);
+        if (displaced == first)
             break;
         any = true;
         waiting_.erase(waiting_.begin());
-        if (left)
-            waiting_.insert(*left);
+        if (displaced)
+            waiting_.insert(*displaced);
     }
     return any;
 }

@@ -26,14 +26,14 @@ namespace tactor::engine {
 
 void smoothing::to(std::uint64_t frame, const place& p)
 {
-    if (!given_.empty() && given_.back().from == frame)
-        given_.back().where = p;
+    if (!places_.empty() && places_.back().from == frame)
+        places_.back().where = p;
     else
-        given_.push_back({frame, p});
+        places_.push_back({frame, p});
     // Keeps the newest place that is older than the window, and drops older ones.
-    const auto counts = std::find_if(given_.begin() + 1, given_.end(),
-                                     [&](const given& g) { return g.from + window_ > frame; });
-    given_.erase(given_.begin(), counts - 1);
+    const auto counts = std::find_if(places_.begin() + 1, places_.end(),
+                                     [&](const entry& g) { return g.from + window_ > frame; });
+    places_.erase(places_.begin(), counts - 1);
 }
 
 smoothing::place smoothing::at(std::uint64_t frame) const
@@ -41,18 +41,18 @@ smoothing::place smoothing::at(std::uint64_t frame) const
     place mean{{0.0, 0.0}, 0.0};
     point silent{0.0, 0.0};
     double touched = 0.0; // touched part of the window
-    std::uint64_t left = window_;
+    std::uint64_t rest = window_;
     std::uint64_t end = frame;
-    for (auto g = given_.rbegin(); g != given_.rend() && left != 0; ++g) {
-        const bool oldest = g + 1 == given_.rend();
-        const std::uint64_t n = oldest ? left : std::min(left, end - std::min(end, g->from));
+    for (auto g = places_.rbegin(); g != places_.rend() && rest != 0; ++g) {
+        const bool oldest = g + 1 == places_.rend();
+        const std::uint64_t n = oldest ? rest : std::min(rest, end - std::min(end, g->from));
         const double part = static_cast<double>(n) / static_cast<double>(window_);
         point& sum = g->where.intensity > 0.0 ? mean.at : silent;
         sum.x_mm += part * g->where.at.x_mm;
         sum.y_mm += part * g->where.at.y_mm;
         touched += g->where.intensity > 0.0 ? part : 0.0;
         mean.intensity += part * g->where.intensity;
-        left -= n;
+        rest -= n;
         end = g->from;
     }
     if (touched == 0.0)
@@ -208,13 +208,13 @@ bool live_stroke::impl::to(point p, double intensity, std::optional<std::int64_t
     const std::lock_guard lock(mutex);
     if (voice.closed() || voice.requested() != engine::live_voice::action::go_on)
         return false;
-    const point there = faces.contains(p) ? p : faces.nearest(p);
-    const bool inside = distance_mm(p, there) <= edge_tolerance_mm;
+    const point place = faces.contains(p) ? p : faces.nearest(p);
+    const bool inside = distance_mm(p, place) <= edge_tolerance_mm;
     if (!inside && outside == outside_kind::error)
         throw refused("outside", fmt::format("({:.6g}, {:.6g}) is outside the array", p.x_mm, p.y_mm),
                       "{outside=clamp} plays the nearest point of the array");
     const bool held = intensity > 1.0 && std::isfinite(intensity);
-    const bool limited = write_course(there, held ? 1.0 : intensity);
+    const bool limited = write_course(place, held ? 1.0 : intensity);
     if (!excess.empty()) {
         voice.fail(std::move(excess));
         return false;
@@ -275,9 +275,9 @@ bool live_stroke::impl::compute_course(const engine::smoothing::place& p, engine
     // Begins at the end, which has the given intensity, so that an error names that one.
     for (std::size_t k = course.knots; k-- > 0;) {
         const std::uint64_t after = course.knots == 1 ? 0 : course.length * k / (course.knots - 1);
-        const auto there = next.at(course.start + after);
-        const point q = faces.contains(there.at) ? there.at : faces.nearest(there.at);
-        const bool held = amplitudes_at(q, there.intensity, all.subspan(k * channels, channels));
+        const auto mean = next.at(course.start + after);
+        const point q = faces.contains(mean.at) ? mean.at : faces.nearest(mean.at);
+        const bool held = amplitudes_at(q, mean.intensity, all.subspan(k * channels, channels));
         limited = limited || held;
     }
     smooth = std::move(next);
@@ -298,10 +298,10 @@ bool live_stroke::impl::amplitudes_at(point p, double intensity, std::span<doubl
             excess = fmt::format(
                 "phantom model \"{}\" gave tactor {} amplitude {:.6g}, above the {:.6g} asked for",
                 model->name(), d.tactor, d.amplitude, most);
-        const double asked = t.gain * d.amplitude;
+        const double wanted = t.gain * d.amplitude;
         const double limit = limits[t.channel];
-        by_channel[t.channel] = std::clamp(asked, -limit, limit);
-        limited = limited || std::abs(asked) > limit;
+        by_channel[t.channel] = std::clamp(wanted, -limit, limit);
+        limited = limited || std::abs(wanted) > limit;
     }
     return limited;
 }

@@ -43,16 +43,16 @@ public:
     /// Returns the place of the stroke at a frame after the newest, if no other place comes.
     place at(std::uint64_t frame) const;
     /// Returns the frames from the newest on until the stroke is at its place.
-    std::uint64_t settles_in() const noexcept { return given_.size() < 2 ? 0 : window_; }
+    std::uint64_t settles_in() const noexcept { return places_.size() < 2 ? 0 : window_; }
 
 private:
-    struct given {
+    struct entry {
         std::uint64_t from;
         place where;
     };
 
     std::uint64_t window_;
-    std::vector<given> given_; ///< places that still count, the oldest first
+    std::vector<entry> places_; ///< places that still count, the oldest first
 };
 
 } // namespace tactor::engine

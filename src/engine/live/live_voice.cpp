@@ -155,8 +155,8 @@ void live_voice::aim(std::uint64_t frame) noexcept
 {
     const live_course& c = points_.value();
     const std::size_t last = c.knots - 1;
-    const std::uint64_t gone = std::min(frame - std::min(frame, c.start), c.length);
-    const std::uint64_t scaled = gone * last;
+    const std::uint64_t elapsed = std::min(frame - std::min(frame, c.start), c.length);
+    const std::uint64_t scaled = elapsed * last;
     const std::uint64_t knot = c.length == 0 ? last : scaled / c.length;
     const double* a = &c.amplitudes[knot * setup_.channels];
     std::copy(a, a + setup_.channels, to_.begin());

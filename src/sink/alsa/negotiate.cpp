@@ -103,9 +103,9 @@ unsigned set_channels(snd_pcm_t* p, const hw_params& h, const alsa_options& o)
     if (snd_pcm_hw_params_set_channels(p, h.get(), o.channels) == 0)
         return o.channels;
     unsigned n = o.channels;
-    const bool there = o.wider && snd_pcm_hw_params_set_channels_min(p, h.get(), &n) == 0 &&
-                       snd_pcm_hw_params_set_channels_first(p, h.get(), &n) == 0;
-    return there && n <= most_channels ? n : 0;
+    const bool fits = o.wider && snd_pcm_hw_params_set_channels_min(p, h.get(), &n) == 0 &&
+                      snd_pcm_hw_params_set_channels_first(p, h.get(), &n) == 0;
+    return fits && n <= most_channels ? n : 0;
 }
 
 // Names each setting that the device cannot do. If it can do each alone, only the combination fails.

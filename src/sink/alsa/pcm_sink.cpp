@@ -33,7 +33,7 @@ io_kind pcm_sink::prepare() noexcept
     played_ = 0;
     went_round_ = false;
     const int code = snd_pcm_prepare(handle_.get());
-    return code < 0 ? of_error(code, state()) : io_kind::ok;
+    return code < 0 ? classify_error(code, state()) : io_kind::ok;
 }
 
 io_kind pcm_sink::start() noexcept
@@ -41,7 +41,7 @@ io_kind pcm_sink::start() noexcept
     const quiet silent;
     const int code = snd_pcm_start(handle_.get());
     if (code < 0)
-        return of_error(code, state());
+        return classify_error(code, state());
     if (!paced_ && runs_without_clock()) {
         paced_ = true;
         setup_.has_clock = false;
@@ -113,16 +113,16 @@ io_kind pcm_sink::ready(std::span<pollfd> fds) noexcept
     if (paced_)
         return pacer_.due() ? io_kind::ok : io_kind::again;
     if (fds.empty())
-        return poll_error_ < 0 ? of_error(poll_error_, state()) : of_state(state());
+        return poll_error_ < 0 ? classify_error(poll_error_, state()) : classify_state(state());
     unsigned short events = 0;
     const int code = snd_pcm_poll_descriptors_revents(handle_.get(), fds.data(),
                                                       static_cast<unsigned>(fds.size()), &events);
     if (code < 0)
-        return of_error(code, state());
+        return classify_error(code, state());
     if ((events & POLLNVAL) != 0)
         return io_kind::lost;
     if ((events & POLLERR) != 0) {
-        const io_kind s = of_state(state());
+        const io_kind s = classify_state(state());
         if (s != io_kind::ok)
             return s;
     }
@@ -136,7 +136,7 @@ io_result pcm_sink::available() noexcept
         return {io_kind::ok, static_cast<std::size_t>(pacer_.available()), 0};
     const snd_pcm_sframes_t n = snd_pcm_avail_update(handle_.get());
     if (n < 0)
-        return {of_error(n, state()), 0, static_cast<int>(n)};
+        return {classify_error(n, state()), 0, static_cast<int>(n)};
     look(rt::monotonic_ns(), n);
     if (went_round_)
         return {io_kind::xrun, 0, -EPIPE};
@@ -189,7 +189,7 @@ io_result pcm_sink::write(std::span<const std::byte> frames) noexcept
     const std::byte* const data = widen(frames.first(count * setup_.frame_bytes()));
     const long n = paced_ ? write_paced(data, count) : snd_pcm_writei(handle_.get(), data, count);
     if (n < 0)
-        return {of_error(n, state()), 0, static_cast<int>(n)};
+        return {classify_error(n, state()), 0, static_cast<int>(n)};
     const auto taken = static_cast<std::size_t>(n);
     written_ += taken;
     if (paced_)
@@ -231,7 +231,7 @@ void pcm_sink::drop() noexcept
     snd_pcm_drop(handle_.get());
 }
 
-io_kind of_state(int state) noexcept
+io_kind classify_state(int state) noexcept
 {
     if (state < 0)
         return io_kind::lost;
@@ -248,7 +248,7 @@ io_kind of_state(int state) noexcept
     }
 }
 
-io_kind of_error(long code, int state) noexcept
+io_kind classify_error(long code, int state) noexcept
 {
     switch (-code) {
     case EAGAIN:
@@ -256,7 +256,7 @@ io_kind of_error(long code, int state) noexcept
         return io_kind::again;
     case EPIPE:
         // An ioplug turns each failure into EPIPE, also that of a device that is gone.
-        return of_state(state) == io_kind::lost ? io_kind::lost : io_kind::xrun;
+        return classify_state(state) == io_kind::lost ? io_kind::lost : io_kind::xrun;
     case ESTRPIPE:
         return io_kind::suspended;
     case ENODEV:
@@ -264,7 +264,7 @@ io_kind of_error(long code, int state) noexcept
     case ENXIO:
         return io_kind::lost;
     case EBADFD: {
-        const io_kind s = of_state(state);
+        const io_kind s = classify_state(state);
         return s == io_kind::ok ? io_kind::failed : s;
     }
     default:

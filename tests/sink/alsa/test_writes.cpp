@@ -116,23 +116,23 @@ bool within(const std::string& text, const std::string& part)
 
 TEST_CASE("every result of a write has its meaning")
 {
-    using alsa::of_error;
-    CHECK(of_error(-EAGAIN, SND_PCM_STATE_RUNNING) == io_kind::again);
-    CHECK(of_error(-EINTR, SND_PCM_STATE_RUNNING) == io_kind::again);
-    CHECK(of_error(-EPIPE, SND_PCM_STATE_XRUN) == io_kind::xrun);
-    CHECK(of_error(-EPIPE, SND_PCM_STATE_RUNNING) == io_kind::xrun);
-    CHECK(of_error(-EPIPE, SND_PCM_STATE_DISCONNECTED) == io_kind::lost);
-    CHECK(of_error(-EPIPE, -ENODEV) == io_kind::lost);
-    CHECK(of_error(-ESTRPIPE, SND_PCM_STATE_SUSPENDED) == io_kind::suspended);
-    CHECK(of_error(-ENODEV, SND_PCM_STATE_RUNNING) == io_kind::lost);
-    CHECK(of_error(-ENOTTY, SND_PCM_STATE_RUNNING) == io_kind::lost);
-    CHECK(of_error(-EBADFD, SND_PCM_STATE_XRUN) == io_kind::xrun);
-    CHECK(of_error(-EBADFD, SND_PCM_STATE_SETUP) == io_kind::xrun);
-    CHECK(of_error(-EBADFD, SND_PCM_STATE_SUSPENDED) == io_kind::suspended);
-    CHECK(of_error(-EBADFD, SND_PCM_STATE_DISCONNECTED) == io_kind::lost);
-    CHECK(of_error(-EBADFD, SND_PCM_STATE_RUNNING) == io_kind::failed);
-    CHECK(of_error(-EIO, SND_PCM_STATE_RUNNING) == io_kind::failed);
-    CHECK(of_error(-ENOSPC, SND_PCM_STATE_RUNNING) == io_kind::failed);
+    using alsa::classify_error;
+    CHECK(classify_error(-EAGAIN, SND_PCM_STATE_RUNNING) == io_kind::again);
+    CHECK(classify_error(-EINTR, SND_PCM_STATE_RUNNING) == io_kind::again);
+    CHECK(classify_error(-EPIPE, SND_PCM_STATE_XRUN) == io_kind::xrun);
+    CHECK(classify_error(-EPIPE, SND_PCM_STATE_RUNNING) == io_kind::xrun);
+    CHECK(classify_error(-EPIPE, SND_PCM_STATE_DISCONNECTED) == io_kind::lost);
+    CHECK(classify_error(-EPIPE, -ENODEV) == io_kind::lost);
+    CHECK(classify_error(-ESTRPIPE, SND_PCM_STATE_SUSPENDED) == io_kind::suspended);
+    CHECK(classify_error(-ENODEV, SND_PCM_STATE_RUNNING) == io_kind::lost);
+    CHECK(classify_error(-ENOTTY, SND_PCM_STATE_RUNNING) == io_kind::lost);
+    CHECK(classify_error(-EBADFD, SND_PCM_STATE_XRUN) == io_kind::xrun);
+    CHECK(classify_error(-EBADFD, SND_PCM_STATE_SETUP) == io_kind::xrun);
+    CHECK(classify_error(-EBADFD, SND_PCM_STATE_SUSPENDED) == io_kind::suspended);
+    CHECK(classify_error(-EBADFD, SND_PCM_STATE_DISCONNECTED) == io_kind::lost);
+    CHECK(classify_error(-EBADFD, SND_PCM_STATE_RUNNING) == io_kind::failed);
+    CHECK(classify_error(-EIO, SND_PCM_STATE_RUNNING) == io_kind::failed);
+    CHECK(classify_error(-ENOSPC, SND_PCM_STATE_RUNNING) == io_kind::failed);
 }
 
 TEST_CASE("a full device that has not been started takes nothing and says so")

@@ -50,9 +50,9 @@ std::string program_name(const fs::path& process)
 bool holds_playback(const fs::path& process, const which_device& wanted)
 {
     for (const fs::path& fd : entries(process / "fd")) {
-        std::error_code gone;
-        const fs::path target = fs::read_symlink(fd, gone);
-        if (gone || target.parent_path() != "/dev/snd")
+        std::error_code failed;
+        const fs::path target = fs::read_symlink(fd, failed);
+        if (failed || target.parent_path() != "/dev/snd")
             continue;
         const auto of = playback_node(target.filename().string());
         if (of && meets(wanted, *of->card, *of->device))

@@ -71,11 +71,11 @@ private:
         if (type == "asym")
             return slave(member(definition, "playback"), channels, depth);
         if (type == "multi")
-            return of_multi(definition, channels, depth);
+            return multi_outputs(definition, channels, depth);
         if (type == "route" || (type == "plug" && member(definition, "ttable") != nullptr))
-            return of_table(definition, channels, depth);
+            return table_outputs(definition, channels, depth);
         if (contains(binding, type) && member(definition, "bindings") != nullptr)
-            return of_bindings(definition, channels, depth);
+            return bound_outputs(definition, channels, depth);
         if (type == "softvol")
             level_by_ = "type softvol";
         if (contains(straight, type) || contains(binding, type))
@@ -119,7 +119,7 @@ private:
             from[output] += gain * further;
     }
 
-    outputs of_table(snd_config_t* definition, unsigned channels, int depth)
+    outputs table_outputs(snd_config_t* definition, unsigned channels, int depth)
     {
         outputs inner = slave(member(definition, "slave"), channels, depth);
         for (std::map<unsigned, double>& one : inner)
@@ -141,7 +141,7 @@ private:
         return all;
     }
 
-    outputs of_bindings(snd_config_t* definition, unsigned channels, int depth)
+    outputs bound_outputs(snd_config_t* definition, unsigned channels, int depth)
     {
         const outputs inner = slave(member(definition, "slave"), most_channels, depth);
         outputs all(channels);
@@ -153,7 +153,7 @@ private:
         return all;
     }
 
-    outputs of_multi(snd_config_t* definition, unsigned channels, int depth)
+    outputs multi_outputs(snd_config_t* definition, unsigned channels, int depth)
     {
         std::map<std::string, outputs> slaves;
         outputs all(channels);
