@@ -66,7 +66,6 @@ public:
 
     bool set(bool on) noexcept override;
     bool beat() noexcept override;
-    /// Returns the holder's pid.
     pid_t pid() const noexcept { return pid_; }
 
 private:

@@ -37,7 +37,6 @@ public:
     /// Detaches the thread, for a thread that destroys its owner.
     void detach() noexcept;
 
-    /// Returns true if this is the calling thread.
     bool is_current() const noexcept;
     /// Returns 0 if SCHED_FIFO was granted, errno if it was refused, -1 if it was not requested.
     int fifo_error() const noexcept { return fifo_error_; }

@@ -14,7 +14,7 @@ constexpr std::uint64_t second = 1'000'000'000;
 } // namespace
 
 pacer::pacer(unsigned rate, unsigned buffer_frames, unsigned period_frames)
-    : queue_(rate, buffer_frames),
+    : virtual_queue(rate, buffer_frames),
       period_(period_frames),
       fd_(::timerfd_create(CLOCK_MONOTONIC, TFD_NONBLOCK | TFD_CLOEXEC))
 {
@@ -24,12 +24,12 @@ pacer::pacer(unsigned rate, unsigned buffer_frames, unsigned period_frames)
 
 void pacer::start(std::uint64_t written) noexcept
 {
-    queue_.start(rt::monotonic_ns(), written);
+    virtual_queue::start(rt::monotonic_ns(), written);
 }
 
 void pacer::arm() noexcept
 {
-    const std::int64_t t = queue_.time_of_room(period_);
+    const std::int64_t t = time_of_room(period_);
     itimerspec when{};
     when.it_value = rt::to_timespec(t);
     // This also clears expirations, so nobody needs to read them.

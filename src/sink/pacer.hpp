@@ -21,7 +21,6 @@ public:
     void start(std::int64_t now, std::uint64_t written) noexcept;
     void wrote(std::uint64_t frames) noexcept { written_ += frames; }
 
-    std::uint64_t written() const noexcept { return written_; }
     /// Returns the number of frames that have left.
     std::uint64_t played(std::int64_t now) noexcept;
     /// Returns the number of frames that fit.
@@ -39,7 +38,7 @@ private:
 };
 
 /// A virtual queue and a timerfd that is readable when a period fits into it.
-class pacer {
+class pacer : public virtual_queue {
 public:
     /// \throws std::system_error when no timer can be created.
     pacer(unsigned rate, unsigned buffer_frames, unsigned period_frames);
@@ -47,9 +46,7 @@ public:
     int fd() const noexcept { return fd_.get(); }
 
     void start(std::uint64_t written) noexcept;
-    void wrote(std::uint64_t frames) noexcept { queue_.wrote(frames); }
-    std::uint64_t played(std::int64_t now) noexcept { return queue_.played(now); }
-    std::uint64_t available() noexcept { return queue_.available(rt::monotonic_ns()); }
+    std::uint64_t available() noexcept { return virtual_queue::available(rt::monotonic_ns()); }
 
     /// Sets the timer to the time when a period fits; a past time makes it readable at once. It stays
     /// readable until it is set again.
@@ -58,7 +55,6 @@ public:
     bool due() noexcept { return available() >= period_; }
 
 private:
-    virtual_queue queue_;
     unsigned period_;
     owned_fd fd_;
 };

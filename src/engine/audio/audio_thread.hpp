@@ -20,7 +20,6 @@ public:
     /// \throws std::system_error when no thread can be started.
     audio_thread(audio_loop& loop, sink& s, link& l, const rt::thread_options& o);
 
-    /// Returns the result of starting the stream.
     const io_result& started() const noexcept { return started_; }
     int fifo_error() const noexcept { return thread_->fifo_error(); }
     void join() noexcept { thread_->join(); }

@@ -60,16 +60,14 @@ public:
     /// last call. Drives of strokes that sound are in time with the next period.
     bool take_urgent() noexcept { return std::exchange(urgent_, false); }
 
-    /// Handles a report of the audio thread.
     void handle(const report& r);
 
     /// Returns the reports of strokes that ended, in order of their ends. The caller removes them.
     std::list<stroke_report>& reports() noexcept { return reports_; }
 
     /// A stroke that began, and the CLOCK_MONOTONIC time, ns, of its first frame at the DAC, if the clock is
-    /// known.
+    /// known. The caller removes them from the list.
     using stroke_start = std::pair<stroke_id, std::optional<std::int64_t>>;
-    /// Returns the beginnings in order. The caller removes them.
     std::list<stroke_start>& beginnings() noexcept { return beginnings_; }
 
     using live_map = std::map<stroke_id, std::shared_ptr<live_voice>>;

@@ -53,7 +53,6 @@ struct player::impl : std::enable_shared_from_this<player::impl> {
     using report_handler = std::function<void(const stroke_report&)>;
     using begin_handler = std::function<void(stroke_id, std::optional<std::int64_t>)>;
 
-    /// Starts the stream.
     impl(std::unique_ptr<sink> s, const array& a, const player_options& o, player_lines l);
     /// Starts the other threads. If it throws, none of them is left.
     void start(const player_options& o);

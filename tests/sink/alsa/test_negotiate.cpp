@@ -433,19 +433,6 @@ TEST_CASE("definitions that lead to themselves, or to more than anyone has, end"
     CHECK(defined("round", 9).hidden_by == "more definitions than anyone has");
     CHECK(defined("wide", 9).hidden_by == "more definitions than anyone has");
     CHECK(defined("huge", 2).outputs == channels{{1}, {}});
-    // Each of 64 channels reaches 64 of the device's, and each of 130 reaches all of these.
-    std::string inner;
-    std::string outer;
-    for (unsigned c = 0; c < 130; ++c)
-        for (unsigned s = 0; s < 64; ++s) {
-            const std::string line = fmt::format("ttable.{}.{} 1\n", c, s);
-            outer += line;
-            inner += c < 64 ? line : "";
-        }
-    CHECK(wired("pcm.n { type null } pcm.h { type route slave { pcm n channels 64 } " + inner + "}" +
-                    "pcm.t { type route slave { pcm h channels 64 } " + outer + "}",
-                "t", 130)
-              .hidden_by == "a larger table than anyone has");
 }
 
 TEST_CASE("the largest factor after a table counts, not only the one at the device")

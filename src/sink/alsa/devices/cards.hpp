@@ -22,7 +22,6 @@ using system_root = std::filesystem::path;
 /// Returns the cards by index; none without a sound driver.
 std::vector<card_info> sound_cards(const system_root& root);
 
-/// A playback device of a card.
 struct playback_device {
     unsigned number = 0;
     std::string name = {}; ///< by the driver; may be empty
