@@ -136,12 +136,6 @@ class Sockets(ServeTest):
         self.assertFalse((self.dir / "s.sock").exists())
         self.assertEqual(self.run_tool("serve", "-D", "null", env={"XDG_RUNTIME_DIR": "", "RUNTIME_DIRECTORY": ""}).returncode, 2)
 
-    def test_a_port_in_use_is_reported_with_its_holder(self):
-        s = self.serve("--tcp", "0", "--http", "0")
-        me = f"by tactor, process {s.process.pid} (choose another port, or end it)"
-        for option, port in (("--tcp", s.where["tcp"]), ("--http", s.where["http"][7:-1])):
-            self.refuses_to_start(3, "--socket", self.dir / "b.sock", option, port, says=me)
-
     def test_too_few_descriptors_are_reported(self):
         hard = resource.getrlimit(resource.RLIMIT_NOFILE)[1]
         for most, is_few in ((60, True), (hard, False)):
