@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "cli/check/check_system.hpp"
+#include "cli/check/finding.hpp"
 
 #include <algorithm>
 #include <array>

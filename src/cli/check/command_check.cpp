@@ -8,7 +8,6 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "cli/check/check_system.hpp"
 #include "cli/check/finding.hpp"
 #include "cli/check/walk_session.hpp"
 #include "cli/commands.hpp"
