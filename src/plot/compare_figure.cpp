@@ -261,7 +261,6 @@ double draw_speeds(canvas& c, const std::string& phantom, std::vector<series> li
     for (const chart_band& b : bands)
         for (const spot& v : b.high)
             ch.y_to = std::max(ch.y_to, 1.05 * v.y);
-    ch.x_title = "time (s)";
     ch.y_title = "speed (mm/s)";
     ch.lines = std::move(lines);
     ch.bands = std::move(bands);

@@ -260,7 +260,7 @@ box draw_chart(canvas& c, const chart& ch)
     const box inside{ch.where.x + left_column, ch.where.y + top, ch.where.width - left_column - 5.0,
                      ch.where.height - top - axis_height};
     const scale x{0.0, ch.x_to, inside.x, inside.right()};
-    const scale y{ch.y_from, ch.y_to, inside.bottom(), inside.y};
+    const scale y{0.0, ch.y_to, inside.bottom(), inside.y};
     const group g(c, {.id = ch.id,
                       .kind = "chart",
                       .data = {{"x0", fmt::format("{:.9g}", x(0.0))},
@@ -270,7 +270,7 @@ box draw_chart(canvas& c, const chart& ch)
     const auto most = static_cast<std::size_t>(std::max(2.0, inside.height / 12.0));
     draw_vertical_axis(c, y, nice_ticks(y.from, y.to, most), inside, ch.y_title,
                        ch.where.x + cap_height(label_text));
-    draw_horizontal_axis(c, x, inside.bottom(), inside.y, ch.x_title);
+    draw_horizontal_axis(c, x, inside.bottom(), inside.y, "time (s)");
     for (const chart_band& b : ch.bands) {
         std::array<std::vector<spot>, 2> edge;
         for (const spot& v : b.low)

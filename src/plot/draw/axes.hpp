@@ -52,7 +52,7 @@ void draw_horizontal_axis(canvas& c, const scale& x, double y, double grid_top, 
 void draw_vertical_axis(canvas& c, const scale& y, const ticks& t, box inside, const std::string& title,
                         double title_x);
 
-/// A line of a chart; a value that is not finite interrupts it.
+/// A line of a chart over time; a value that is not finite interrupts it.
 struct series {
     std::string name = {};
     std::vector<spot> values = {}; ///< in units of the axes
@@ -70,10 +70,8 @@ struct chart_band {
 struct chart {
     std::string id = {};
     box where = {};    ///< of the whole chart, its labels and legend included
-    double x_to = 1.0; ///< from 0
-    double y_from = 0.0;
-    double y_to = 1.0;
-    std::string x_title = {};
+    double x_to = 1.0; ///< from 0, s
+    double y_to = 1.0; ///< from 0
     std::string y_title = {};
     std::vector<series> lines = {};
     std::vector<chart_band> bands = {}; ///< behind the lines, within the axes

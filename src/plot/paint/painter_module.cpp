@@ -22,18 +22,10 @@ painting painted(F paint) noexcept
     }
 }
 
-painting png(const canvas& c, unsigned dpi) noexcept
-{
-    return painted([&] { return to_png(c, dpi); });
-}
-
-painting pdf(const canvas& c) noexcept
-{
-    return painted([&] { return to_pdf(c); });
-}
-
 } // namespace
-} // namespace tactor::plot
 
-extern "C" __attribute__((visibility("default")))
-const tactor::plot::painter_module tactor_painter{tactor::plot::png, tactor::plot::pdf};
+extern "C" __attribute__((visibility("default"))) const painter_module tactor_painter{
+    [](const canvas& c, unsigned dpi) noexcept { return painted([&] { return to_png(c, dpi); }); },
+    [](const canvas& c) noexcept { return painted([&] { return to_pdf(c); }); }};
+
+} // namespace tactor::plot

@@ -19,10 +19,7 @@
 namespace tactor::plot {
 namespace {
 
-struct surface_closer {
-    void operator()(cairo_surface_t* s) const noexcept { cairo_surface_destroy(s); }
-};
-using surface_ptr = std::unique_ptr<cairo_surface_t, surface_closer>;
+using surface_ptr = std::unique_ptr<cairo_surface_t, decltype(&cairo_surface_destroy)>;
 
 constexpr double halo_width = 1.6; // the same in SVG
 
@@ -202,8 +199,10 @@ std::string to_png(const canvas& c, unsigned dpi)
         throw error(error_kind::bad_input, "--dpi",
                     fmt::format("{} dpi make {:.0f} x {:.0f} pixels", dpi, width, height),
                     "ask for fewer dpi or a smaller --width, or for SVG or PDF");
-    const surface_ptr surface(cairo_image_surface_create(
-        CAIRO_FORMAT_RGB24, std::max(1, static_cast<int>(width)), std::max(1, static_cast<int>(height))));
+    const surface_ptr surface(cairo_image_surface_create(CAIRO_FORMAT_RGB24,
+                                                         std::max(1, static_cast<int>(width)),
+                                                         std::max(1, static_cast<int>(height))),
+                              &cairo_surface_destroy);
     paint(c, surface.get(), scale);
     std::string png;
     check(cairo_surface_write_to_png_stream(surface.get(), append, &png));
@@ -214,7 +213,8 @@ std::string to_png(const canvas& c, unsigned dpi)
 std::string to_pdf(const canvas& c)
 {
     std::string pdf;
-    const surface_ptr surface(cairo_pdf_surface_create_for_stream(append, &pdf, c.width, c.height));
+    const surface_ptr surface(cairo_pdf_surface_create_for_stream(append, &pdf, c.width, c.height),
+                              &cairo_surface_destroy);
     check(cairo_surface_status(surface.get()));
     cairo_pdf_surface_restrict_to_version(surface.get(), CAIRO_PDF_VERSION_1_5);
     cairo_pdf_surface_set_metadata(surface.get(), CAIRO_PDF_METADATA_TITLE, clean(c.title).c_str());
