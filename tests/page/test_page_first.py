@@ -42,7 +42,8 @@ class Simulated(StudioTest):
         p.until("heard.length === 9 && tactor.state.dbfs[4] > -13")
         p.until("document.querySelector('#loudest').textContent.startsWith('loudest: tactor 4')")
         p.click("#stop")
-        p.until("!tactor.state.drawing && tactor.state.dbfs.every(v => v === null)")
+        p.until("!tactor.state.drawing && tactor.state.dbfs.every(v => v === null) && document.querySelector('#hint').hidden")
+        p.frames()  # the array moves to where the hint was
         p.tap(*self.at(p, [0, 0])[0])
         p.until("heard.length === 18 && tactor.state.dbfs[0] !== null")
         p.until("tactor.state.dbfs.length === 0")

@@ -276,7 +276,7 @@ class Kept(TakesTest):
         p, _ = self.ready(self.serve())
         for y in (5, 20):
             self.draw(p, *self.way([5, y], [35, y]))
-        self.toast(p, "Kept as")
+        self.toast(p, "Kept as “Take 2”")
         p.value("new Promise((done, failed) => Object.assign(indexedDB.deleteDatabase('tactor'), {onsuccess: done, onerror: failed})).then(() => 1)")
         self.toast(p, "Kept again, all 2")
         p.reload()
