@@ -25,7 +25,6 @@ export const state = {
   drawing: null,         // {began, tracks}
   plan: null, plan_fault: null, plan_of: null, predicted: new Map(), observer: null,
   outside: [],           // places of strokes that are farthest from the array
-  shape: "park2016",     // of the bars: the take's algorithm
   playing: null,         // {began_ms, total_s, numbers, felt, loop}
   at_s: 0, loop: false, speaker: false, scrub: true, snap: true, hot: -1, tapped: -1,
   marks: {},             // on the time axis: {take, start_s, range: [from, until] or null}

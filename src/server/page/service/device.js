@@ -89,21 +89,23 @@ listen("token", "submit", e => {
 });
 addEventListener("hashchange", () => { if (state.link !== "connected") connect(); });
 
-const fact = (name, v) => v === null || v === undefined || v === "" ? [] : [make("dt", {}, name), make("dd", {}, String(v))];
-listen("p-device", "beforetoggle", show_facts);
-function show_facts() {
-  const h = state.hello, s = state.status;
-  by_id("facts").replaceChildren(...!h ? fact("State", "no connection") : [
-    ...fact("Array", `${array_name(h.array)}, ${h.array.tactors.length} tactors`), ...fact("Where", h.array.site),
-      ...fact("Card", h.stream.pcm),
-    ...fact("Stream", `${h.stream.rate} Hz, ${h.stream.channels} channels${h.stream.format ? `, ${h.stream.format}` : ""}`),
-    ...fact("Period", `${h.stream.period_frames} frames (${number_text(1000 * h.stream.period_frames / h.stream.rate)} ms), buffer ${number_text(1000 * h.stream.latency_s)} ms`),
-    ...fact("State", `${state.stream.state}${state.stream.reason ? `: ${state.stream.reason}` : ""}`),
-      ...fact("Amplifier", s?.amplifier), ...fact("Xruns", s?.stream.xruns),
-    ...fact("Real time", s ? s.stream.realtime ? "yes" : "no" : null), ...fact("Ceiling",
-      `${number_text(ceiling_dbfs(), 0)} dBFS`), ...fact("Version", h.version),
-    ...fact("Takes", state.storage_fault ? `not kept: ${state.storage_fault}` : "kept in this browser")]);
+// Shows a list of facts, without those that are not known.
+function list_facts(id, facts) {
+  by_id(id).replaceChildren(...Object.entries(facts).flatMap(([name, v]) => (v ?? "") === "" ? [] : [make("dt", {}, name), make("dd", {}, String(v))]));
 }
+listen("p-device", "beforetoggle", () => {
+  const {hello, status, stream} = state;
+  if (!hello) return list_facts("facts", {State: "no connection"});
+  const {array, stream: {pcm, rate, channels, format, period_frames, latency_s}} = hello;
+  list_facts("facts", {
+    Array: `${array_name(array)}, ${array.tactors.length} tactors`, Where: array.site, Card: pcm,
+    Stream: `${rate} Hz, ${channels} channels${format ? `, ${format}` : ""}`,
+    Period: `${period_frames} frames (${number_text(1000 * period_frames / rate)} ms), buffer ${number_text(1000 * latency_s)} ms`,
+    State: `${stream.state}${stream.reason ? `: ${stream.reason}` : ""}`, Amplifier: status?.amplifier, Xruns: status?.stream.xruns,
+    "Real time": status && (status.stream.realtime ? "yes" : "no"), Ceiling: `${number_text(ceiling_dbfs(), 0)} dBFS`, Version: hello.version,
+    Takes: state.storage_fault ? `not kept: ${state.storage_fault}` : "kept in this browser",
+  });
+});
 on_change(() => {
   if (!state.hello) return;
   by_id("try").replaceChildren(...state.hello.array.tactors.map((t, i) => make("button",
@@ -126,11 +128,11 @@ export function show_tactor(i, at) {
   const t = state.hello?.array.tactors[i];
   if (!t) return;
   set_text("tactor-title", `Tactor ${t.tactor ?? i}`);
-  by_id("tactor-facts").replaceChildren(...fact("Place", `${t.x_mm}, ${t.y_mm} mm`), ...fact("Channel", t.channel),
-    ...fact("Gain", t.gain_db === undefined ? null : `${number_text(t.gain_db)} dB`),
-    ...fact("Limit", `${number_text(t.max_dbfs ?? 0)} dBFS`), ...fact("Threshold", typeof t.threshold_dbfs === "number"
-      ? `${number_text(t.threshold_dbfs)} dBFS` : "not measured"),
-    ...fact("Polarity", t.polarity < 0 ? "reversed" : "as wired"));
+  list_facts("tactor-facts", {
+    Place: `${t.x_mm}, ${t.y_mm} mm`, Channel: t.channel, Gain: t.gain_db === undefined ? null : `${number_text(t.gain_db)} dB`,
+    Limit: `${number_text(t.max_dbfs ?? 0)} dBFS`, Threshold: typeof t.threshold_dbfs === "number" ? `${number_text(t.threshold_dbfs)} dBFS` : "not measured",
+    Polarity: t.polarity < 0 ? "reversed" : "as wired",
+  });
   const p = by_id("p-tactor");
   p.showPopover();
   p.style.inset = `${Math.max(8, Math.min(innerHeight - 220, at[1] + 60))}px auto auto ${Math.max(8, Math.min(innerWidth - 352, at[0]))}px`;

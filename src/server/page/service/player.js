@@ -58,19 +58,19 @@ on_change(() => speaker?.set_gain(take_gain()), "level");
 // follows, too.
 // Strokes of both sides of a comparison begin silent; those of one are raised after all were lowered. All ramps take 20 ms, so that
 // the sum is never above the level. `anew`: there are new strokes.
-let told = null; // as the service knows it
+let sent_level = null; // as the service knows it
 const side_of = new Map(); // by number of a stroke
 export function tell_level(anew = false) {
   const on = state.compare?.on, now = `${on} ${state.level_db}`;
-  if (!is_connected() || !anew && told === now) return;
-  if (!state.compare || !told?.startsWith(`${on} `)) tell("level", {db: state.compare ? SILENT_DB : state.level_db});
-  told = now;
+  if (!is_connected() || !anew && sent_level === now) return;
+  if (!state.compare || !sent_level?.startsWith(`${on} `)) tell("level", {db: state.compare ? SILENT_DB : state.level_db});
+  sent_level = now;
   if (state.compare) for (const n of state.playing?.numbers ?? []) if (side_of.get(n) === on) tell("level", {db: state.level_db, stroke: n});
 }
 on_change(() => tell_level());
-on_lost(() => { told = null; });
+on_lost(() => { sent_level = null; });
 
-let told_silent = false;
+let warned = false;
 async function ask_to_play() {
   const own = state.playing, take = take_by_id(own.take);
   try {
@@ -83,8 +83,8 @@ async function ask_to_play() {
     ended.clear();
     tell_level(state.compare);
     hear_starts(strokes);
-    if (plays_to_nobody() && !state.speaker && !told_silent) say("No array is connected, so nobody feels it. Listen makes it heard here.");
-    told_silent = true;
+    if (plays_to_nobody() && !state.speaker && !warned) say("No array is connected, so nobody feels it. Listen makes it heard here.");
+    warned = true;
   } catch (e) {
     if (state.playing !== own) return;
     // Strokes of several fingers add up: the take is played as strong as it may be.

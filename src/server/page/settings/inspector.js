@@ -13,7 +13,7 @@ import {duration_s, length_mm, with_duration, rebuild, find_speeds, editable, tr
 import {set_strength, strengths, set_speed} from "../time/curves.js";
 import {toggle_compare} from "./compare.js";
 import {LEAST_S, MOST_S} from "../time/time_axis.js";
-import {starting_at} from "../time/clips.js";
+import {starting_at, choose_clip} from "../time/clips.js";
 
 // Tabs of the headings of the table.
 const TABS = {Place: "method", Timing: "timing", Sound: "vibration", Level: "vibration", Stroke: "timing"};
@@ -30,19 +30,24 @@ const tabs = [...all_of("[data-tab]")];
 
 let controls = [], structure = "";
 
+// Joins controls and other elements into one control.
+function join(tag, attributes, ...parts) {
+  const joined = parts.filter(part => part?.update);
+  return {element: make(tag, attributes, ...parts.map(part => part?.element ?? part)), update: () => joined.forEach(c => c.update())};
+}
+const more = (title, open, ...parts) => join("details", {class: "more", open}, make("summary", {}, title), ...parts);
+
 // The panes.
 const algorithm_choice = () => cards("Algorithm", "algorithm", ALGORITHMS, algorithm_picture, true);
 const phantom_choice = () => cards("Phantom: how tactors share a point", "phantom", PHANTOMS, phantom_picture, false);
 function cards(label, name, words, picture, large) {
-  const c = choice({label, visible_label: false, shape: large ? "cards large" : "cards", get: () => value(name), set: v => set_option(name, v),
-    values: (row(name)?.choices ?? Object.keys(words)).map(id => {
-      const error = make("span", {class: "error"});
-      return {value: id, content: [picture(id), make("b", {}, words[id]?.[0] ?? plain_name(id)), error,
-        make("p", {}, words[id]?.[1] ?? "")],
-        update: () => { error.textContent = predicted_text(name, id); }};
-    })});
-  return {element: make("section", {}, make("h2", {}, label, large && make("span", {}, "predicted error")), c.element),
-    update: c.update};
+  const values = (row(name)?.choices ?? Object.keys(words)).map(id => {
+    const error = make("span", {class: "error"}), [title, text] = words[id] ?? [plain_name(id), ""];
+    return {value: id, content: [picture(id), make("b", {}, title), error, make("p", {}, text)],
+      update: () => { error.textContent = predicted_text(name, id); }};
+  });
+  return join("section", {}, make("h2", {}, label, large && make("span", {}, "predicted error")),
+    choice({label, visible_label: false, shape: large ? "cards large" : "cards", get: () => value(name), set: v => set_option(name, v), values}));
 }
 function predicted_text(name, id) {
   const take = current_take();
@@ -51,88 +56,70 @@ function predicted_text(name, id) {
   return !e ? "" : e.refused ? "not possible" : typeof e.rms_error_mm === "number" ? `${number_text(e.rms_error_mm)} mm` : "";
 }
 
+// Controls of the stroke that is edited; they are there while there is one.
+const stroke = () => editable(current_stroke());
 function pace_controls() {
   const kinds = [["even", "Even"], ["soft", "Soft ends"], ["reach", "Like a reach"], ["drawn", "As drawn"]];
-  const duration = slider({label: "Duration", least: LEAST_S, most: MOST_S, log: true,
-    get: () => current_stroke() ? duration_s(current_stroke()) : 1,
+  const parts = ["at the start", "a quarter on", "half-way", "three quarters on", "at the end"];
+  const duration = slider({label: "Duration", least: LEAST_S, most: MOST_S, log: true, get: () => duration_s(stroke()),
     set: v => edit_stroke(s => with_duration(s, Math.min(MOST_S, +v.toPrecision(3))), "duration"), done: end_edit,
     text: v => v < 1 ? ms(v) : seconds_text(v)});
-  const along = make("p", {class: "hint-text"});
-  const movement = choice({label: "Movement", get: () => current_stroke() ? editable(current_stroke()).pace.kind : "even",
+  const along = {element: make("p", {class: "hint-text"}), update() {
+    const s = stroke(), mm = length_mm(s.timed);
+    this.element.textContent = `${Math.round(mm / duration_s(s))} mm/s along ${Math.round(mm)} mm`;
+  }};
+  const movement = choice({label: "Movement", get: () => stroke().pace.kind,
     set: kind => edit_stroke(s => rebuild({...s, drawn: s.drawn ?? (s.pace.kind === "drawn" ? s.pace : null),
       pace: kind === "drawn" ? s.drawn ?? s.pace : {kind}})),
-    values: kinds.map(([v, name]) => ({value: v, name, update: b => { b.hidden = v === "drawn" && !can_be_drawn(); }}))});
-  const parts = ["at the start", "a quarter on", "half-way", "three quarters on", "at the end"];
-  const speeds = make("details", {class: "more"}, make("summary", {}, "Speed and strength along the path"));
-  const rows = parts.map((word, i) => slider({label: `Speed ${word}`, least: 0.1, most: 5, log: true,
-    get: () => current_stroke() ? find_speeds(editable(current_stroke()).pace)[i]?.[1] ?? 1 : 1, set: v => set_speed(i, v, `speed ${i}`),
-      done: end_edit, text: percent}));
-  const strong = make("div"), made = {count: 0, list: []};
-  function update() {
-    const s = current_stroke();
-    duration.update(); movement.update(); rows.forEach(r => r.update());
-    along.textContent = s ? `${Math.round(length_mm(s.timed) / duration_s(s))} mm/s along ${Math.round(length_mm(s.timed))} mm` : "";
-    const n = strengths().length;
-    if (n !== made.count) {
-      made.count = n;
-      made.list = strengths().map((_, i) => slider({label: `Strength, point ${i + 1}`, least: 0, most: 1,
-        get: () => strengths()[i]?.[1] ?? 1,
+    values: kinds.map(([kind, name]) => ({value: kind, name,
+      update: b => { b.hidden = kind === "drawn" && !stroke().drawn && stroke().pace.kind !== "drawn"; }}))});
+  const speeds = parts.map((word, i) => slider({label: `Speed ${word}`, least: 0.1, most: 5, log: true, get: () => find_speeds(stroke().pace)[i][1],
+    set: v => set_speed(i, v, `speed ${i}`), done: end_edit, text: percent}));
+  let strong = [];
+  const strong_controls = {element: make("div"), update() {
+    if (strengths().length !== strong.length) {
+      strong = strengths().map((_, i) => slider({label: `Strength, point ${i + 1}`, least: 0, most: 1, get: () => strengths()[i][1],
         set: v => set_strength(i, v, `strength ${i}`), done: end_edit, text: percent}));
-      strong.replaceChildren(...made.list.map(c => c.element));
+      this.element.replaceChildren(...strong.map(c => c.element));
     }
-    made.list.forEach(c => c.update());
-  }
-  speeds.append(...rows.map(r => r.element), strong);
-  update();
-  return {element: make("section", {}, make("h2", {}, "Stroke"), duration.element, along, movement.element, speeds), update};
+    strong.forEach(c => c.update());
+  }};
+  return join("section", {}, make("h2", {}, "Stroke"), duration, along, movement,
+    more("Speed and strength along the path", false, ...speeds, strong_controls));
 }
 // The strokes of the take: which one is edited, when it starts, and what of it is left.
 function stroke_controls() {
-  const take = current_take(), many = take.strokes.length > 1;
-  const which = many && choice({label: "Stroke", shape: "segments", get: () => state.stroke,
-    set: i => { Object.assign(state, {stroke: i, knot: -1}); changed("take"); },
-    values: take.strokes.map((s, i) => ({value: i, name: s.name}))});
-  const text = v => v === null ? "" : +v.toFixed(3);
-  const own = f => current_stroke() ? text(f(current_stroke())) : "";
-  const list = [
-    entry({label: "Starts at", unit: "s", numeric: true, get: () => own(s => s.start_s),
-      set: v => put_stroke(s => starting_at(s, v ?? 0))}),
-    entry({label: "Cut off its start", unit: "s", numeric: true, get: () => "", hint: "0", set: v => v > 0
-      && put_stroke(s => trimmed(s, Math.min(v, duration_s(s) - LEAST_S), duration_s(s)))}),
-    entry({label: "Cut off its end", unit: "s", numeric: true, get: () => "", hint: "0", set: v => v > 0
-      && put_stroke(s => trimmed(s, 0, Math.max(LEAST_S, duration_s(s) - v)))})];
-  const bin = many && button("Delete this stroke", "bin",
-    () => edit_take(t => ({strokes: t.strokes.filter((_, i) => i !== state.stroke)})));
-  const parts = [which?.element, ...list.map(c => c.element), bin].filter(Boolean);
-  return {element: make("details", {class: "more", open: many}, make("summary", {}, "Place in time"), ...parts),
-    update: () => { if (which) which.update(); list.forEach(c => c.update()); }};
+  const take = current_take(), many = take.strokes.length > 1, number = {unit: "s", numeric: true};
+  const which = many && choice({label: "Stroke", get: () => state.stroke, set: choose_clip, values: take.strokes.map((s, i) => ({value: i, name: s.name}))});
+  const cut = (label, change) => entry({...number, label, get: () => "", hint: "0", set: v => v > 0 && put_stroke(s => change(s, v, duration_s(s)))});
+  return more("Place in time", many, which,
+    entry({...number, label: "Starts at", get: () => +stroke().start_s.toFixed(3), set: v => put_stroke(s => starting_at(s, v ?? 0))}),
+    cut("Cut off its start", (s, v, long) => trimmed(s, Math.min(v, long - LEAST_S), long)),
+    cut("Cut off its end", (s, v, long) => trimmed(s, 0, Math.max(LEAST_S, long - v))),
+    many && button("Delete this stroke", "bin", () => edit_take(t => ({strokes: t.strokes.filter((_, i) => i !== state.stroke)}))));
 }
-const can_be_drawn = () => { const s = current_stroke(); return s && (s.drawn || editable(s).pace.kind === "drawn"); };
 
 // The timing law, with the take's own values.
 const slope = () => value("slope") ?? 0.32, intercept = () => value("intercept") ?? 0.0473;
 const soa = () => value("soa") ?? 0.07, burst = () => value("burst") ?? (soa() - intercept()) / slope();
 const option_slider = (name, more) => slider({label: OPTION_NAMES[name], set: v => set_option(name, v), done: end_edit, ...more});
 function burst_controls() {
-  const picture = make("div", {class: "picture"}), law = make("div", {class: "law"});
   const bursts = option_slider("burst", {least: 0.005, most: 0.4, step: 0.001, get: burst, text: v => ms(v)});
   const interval = option_slider("soa", {least: 0.02, most: 0.4, step: 0.001, get: soa, text: v => ms(v), set: v => {
     if (value("burst") === null && v > 0.07) set_option("burst", +burst().toFixed(4), "option soa");
     set_option("soa", v);
   }});
-  function update() {
-    bursts.update(); interval.update();
-    picture.replaceChildren(timing_picture(Math.max(0.001, burst()), soa()));
-    const wanted = slope() * burst() + intercept(), off = Math.round((soa() - wanted) * 1000);
-    law.classList.toggle("off", off !== 0);
-    const sum = `${+slope().toFixed(3)} × ${Math.round(burst() * 1000)} + ${Math.round(intercept() * 1000)} = ${Math.round(wanted * 1000)} ms`;
-    law.replaceChildren(icon(off === 0 ? "check" : "warn"), off === 0 ? make("span", {}, "On the law: ", make("b", {}, sum))
-      : make("span", {}, `${Math.abs(off)} ms ${off < 0 ? "shorter than the law: may blur" : "longer than the law: may be felt as taps"}`),
-      ...off === 0 ? [] : [make("button", {class: "button", onclick: () => set_option("soa",
-        +wanted.toFixed(4))}, `Use ${Math.round(wanted * 1000)} ms`)]);
-  }
-  update();
-  return {element: make("section", {}, make("h2", {}, "Bursts"), picture, bursts.element, interval.element, law), update};
+  const picture = {element: make("div", {class: "picture"}), update() { this.element.replaceChildren(timing_picture(Math.max(0.001, burst()), soa())); }};
+  const law = {element: make("div", {class: "law"}), update() {
+    const wanted = slope() * burst() + intercept(), wanted_ms = Math.round(wanted * 1000), off = Math.round((soa() - wanted) * 1000);
+    const sum = `${+slope().toFixed(3)} × ${Math.round(burst() * 1000)} + ${Math.round(intercept() * 1000)} = ${wanted_ms} ms`;
+    this.element.classList.toggle("off", off !== 0);
+    if (off === 0) return this.element.replaceChildren(icon("check"), make("span", {}, "On the law: ", make("b", {}, sum)));
+    this.element.replaceChildren(icon("warn"),
+      make("span", {}, `${Math.abs(off)} ms ${off < 0 ? "shorter than the law: may blur" : "longer than the law: may be felt as taps"}`),
+      button(`Use ${wanted_ms} ms`, null, () => set_option("soa", +wanted.toFixed(4))));
+  }};
+  return join("section", {}, make("h2", {}, "Bursts"), picture, bursts, interval, law);
 }
 
 const WAVE_NAMES = [["sine", "Sine"], ["square", "Square"], ["triangle", "Triangle"], ["sawtooth", "Saw"], ["noise", "Noise"]];
@@ -144,23 +131,19 @@ function vibration_controls() {
   const noise = entry({label: "Noise from – to, Hz", get: () => String(value("waveform")).split(":")[1] ?? "",
     set: v => set_option("waveform", v ? `noise:${v}` : null), hint: "100-400"});
   const carrier = option_slider("carrier", {least: 20, most: 1000, log: true, step: 1, get: () => value("carrier") ?? 250, text: v => `${Math.round(v)} Hz`});
-  const near = make("p", {class: "hint-text"}, "Skin is most sensitive near 250 Hz.");
-  const picture = make("div", {class: "picture"});
   const attack = () => value("attack") ?? value("ramp") ?? 0.002, release = () => value("release") ?? attack();
   const envelope = {least: 0, most: 0.05, step: 0.0005, text: v => ms(v, 1)};
-  const rise = option_slider("attack", {...envelope, get: attack}), fall = option_slider("release", {...envelope, get: release});
   const phase_row = row("phase"), through = phase_row?.choices?.[0];
   const phase = toggle({label: "One carrier through the stroke", hint: "Off: it starts again with each burst",
     get: () => (value("phase") ?? through) === through, set: on => set_option("phase", on ? null : phase_row?.choices?.[1])});
-  function update() {
-    [wave, noise, carrier, rise, fall, phase].forEach(c => c.update());
+  const picture = {element: make("div", {class: "picture"}), update() {
     noise.element.hidden = kind() !== "noise";
-    picture.replaceChildren(envelope_picture(algorithm() === "park2016" ? Math.max(0.01, burst()) : 0.07, attack(), release(), value("carrier")
-      ?? 250, value("envelope")));
-  }
-  update();
-  return {element: make("section", {}, wave.element, noise.element, carrier.element, near,
-    make("h2", {class: "apart"}, "Envelope of a burst"), picture, rise.element, fall.element, phase.element), update};
+    this.element.replaceChildren(envelope_picture(algorithm() === "park2016" ? Math.max(0.01, burst()) : 0.07, attack(), release(),
+      value("carrier") ?? 250, value("envelope")));
+  }};
+  return join("section", {}, wave, noise, carrier, make("p", {class: "hint-text"}, "Skin is most sensitive near 250 Hz."),
+    make("h2", {class: "apart"}, "Envelope of a burst"), picture, option_slider("attack", {...envelope, get: attack}),
+    option_slider("release", {...envelope, get: release}), phase);
 }
 
 // A control made from a row of the table.
@@ -175,14 +158,9 @@ function from_row(o) {
   return c;
 }
 function others(tab) {
-  const list = state.options.filter(o => !OWN.has(o.name) && (IN_METHOD.has(o.name) ? "method" : TABS[o.group]
-    ?? "method") === tab
+  const list = state.options.filter(o => !OWN.has(o.name) && (IN_METHOD.has(o.name) ? "method" : TABS[o.group] ?? "method") === tab
     && (!ONLY[o.name] || ONLY[o.name] === algorithm()));
-  if (!list.length) return null;
-  const made = list.map(from_row);
-  const set = list.filter(o => current_take()?.options[o.name] !== undefined).length;
-  return {element: make("details", {class: "more", open: set > 0}, make("summary", {}, "More settings"),
-    ...made.map(c => c.element)), update: () => made.forEach(c => c.update())};
+  return list.length > 0 && more("More settings", list.some(o => current_take()?.options[o.name] !== undefined), ...list.map(from_row));
 }
 
 function observer_choice() {
@@ -193,18 +171,19 @@ function observer_choice() {
 }
 
 function build() {
-  const now = [state.tab, state.options.length, algorithm(), current_take()?.strokes.length ?? -1,
-    current_take()?.strokes.map(s => s.name).join() ?? "", document.documentElement.dataset.theme].join();
+  const names = current_take()?.strokes.map(s => s.name) ?? [];
+  const now = JSON.stringify([state.tab, state.options.length, algorithm(), names, document.documentElement.dataset.theme]);
   if (now === structure) return;
   structure = now;
-  const section = {
-    method: () => [algorithm_choice(), phantom_choice(), {element: button("Compare two by feeling", null, toggle_compare, {class: "button outlined"}), update() {}}, observer_choice(), others("method")],
-    timing: () => [current_stroke() && pace_controls(), current_stroke() && stroke_controls(), algorithm() === "park2016"
-      && burst_controls(), others("timing")],
+  const parts = {
+    method: () => [algorithm_choice(), phantom_choice(), button("Compare two by feeling", null, toggle_compare, {class: "button outlined"}),
+      observer_choice(), others("method")],
+    timing: () => [current_stroke() && pace_controls(), current_stroke() && stroke_controls(), algorithm() === "park2016" && burst_controls(),
+      others("timing")],
     vibration: () => [vibration_controls(), others("vibration")],
-  }[state.tab]();
-  controls = section.filter(Boolean);
-  by_id("pane").replaceChildren(...controls.map(c => c.element));
+  }[state.tab]().filter(Boolean);
+  controls = parts.filter(part => part.update);
+  by_id("pane").replaceChildren(...parts.map(part => part.element ?? part));
   by_id("pane").setAttribute("aria-labelledby", `tab-${state.tab}`);
   for (const b of tabs) {
     b.setAttribute("aria-selected", b.dataset.tab === state.tab);
@@ -216,7 +195,6 @@ choose_by_arrows(by_id("tabs"), tabs);
 
 on_change(what => {
   if (state.drawing && !what.has("drawing")) return;
-  state.shape = algorithm();
   build();
   controls.forEach(c => c.update());
 }, "take", "plan", "predicted", "tab", "array", "options", "theme", "level", "observer", "drawing");

@@ -22,8 +22,7 @@ const KEYS = [["Space", "stop everything"], ["P, Shift P", "play, play from here
     ["Esc", "close; where nothing is open, stop"]];
 by_id("keys").replaceChildren(...KEYS.flatMap(([k, what]) => [make("dt", {}, k), make("dd", {}, what)]));
 
-const is_text = e => e instanceof HTMLInputElement && ["text", "password", "search"].includes(e.type)
-  && e.inputMode !== "decimal" || e instanceof HTMLTextAreaElement || e?.isContentEditable;
+const is_text = e => e instanceof HTMLInputElement && ["text", "password"].includes(e.type) && e.inputMode !== "decimal";
 const press = id => () => by_id(id).click();
 export function new_take() {
   state.append = false;
@@ -67,17 +66,13 @@ export function choose_tool(tool) {
   Object.assign(state, {tool, knot: -1});
   changed("tool");
 }
-// Space is taken before any control sees it: it stops.
-addEventListener("keydown", e => {
-  if (e.code === "Space" || e.key === " ") {
-    if (is_text(e.target)) return;
-    e.preventDefault();
-    e.stopImmediatePropagation();
-    if (!e.repeat) stop();
-  }
+// Space stops, before any control sees it.
+for (const event of ["keydown", "keyup"]) addEventListener(event, e => {
+  if (e.code !== "Space" && e.key !== " " || is_text(e.target)) return;
+  e.preventDefault();
+  e.stopImmediatePropagation();
+  if (event === "keydown" && !e.repeat) stop();
 }, {capture: true});
-addEventListener("keyup", e => { if ((e.code === "Space" || e.key === " ") && !is_text(e.target)) { e.preventDefault();
-  e.stopImmediatePropagation(); } }, {capture: true});
 addEventListener("keydown", e => {
   if (is_text(e.target)) return;
   if (e.ctrlKey || e.metaKey) {
@@ -87,8 +82,10 @@ addEventListener("keydown", e => {
   }
   if (e.altKey) return;
   if (e.shiftKey && e.key === "Home") return clear_marks();
-  if ((e.key === "Delete" || e.key === "Backspace") && state.tool === "points" && state.knot >= 0) {
-    e.preventDefault(); return remove_point(); }
+  if (["Delete", "Backspace"].includes(e.key) && state.tool === "points" && state.knot >= 0) {
+    e.preventDefault();
+    return remove_point();
+  }
   if (e.key === "Escape") return leave(e);
   const f = ACTIONS[e.key.toLowerCase()];
   if (!f) return;

@@ -3,7 +3,7 @@
 import {state, changed, current_take, say} from "../state.js";
 import {by_id, make, show_only_if, on_click, all_of, listen, set_text} from "../../../net/page/dom.js";
 import {call, is_connected, page_link} from "../service/connection.js";
-import {add_take, make_request, imported_strokes} from "./takes.js";
+import {add_take, make_request} from "./takes.js";
 import {strokes_toml, stroke_csv} from "./stroke.js";
 import {is_own_host} from "./address.js";
 
@@ -24,7 +24,8 @@ async function open_files(files) {
   for (const file of files) {
     try {
       const r = await call("import", await what_to_import(file));
-      add_take(imported_strokes(r), {name: file.name.replace(/\.[^.]*$/, "").slice(0, 60), origin: "file"});
+      const strokes = r.points.map((timed, i) => ({name: r.strokes[i].name, start_s: r.strokes[i].start_s, timed}));
+      add_take(strokes, {name: file.name.replace(/\.[^.]*$/, "").slice(0, 60), origin: "file"});
       said = r.warnings[0] ?? `Opened “${file.name}”`;
     } catch (e) { faults.push(`“${file.name}” was not opened: ${fault_text(e)}.`); }
   }
@@ -54,8 +55,12 @@ let over = 0;
 addEventListener("dragenter", e => { if (e.dataTransfer?.types.includes("Files")) { ++over; by_id("drop").hidden = false; } });
 addEventListener("dragleave", () => { over = Math.max(0, over - 1); if (!over) by_id("drop").hidden = true; });
 addEventListener("dragover", e => e.preventDefault());
-addEventListener("drop", e => { e.preventDefault(); over = 0; by_id("drop").hidden = true;
-  open_files([...e.dataTransfer?.files ?? []]); });
+addEventListener("drop", e => {
+  e.preventDefault();
+  over = 0;
+  by_id("drop").hidden = true;
+  open_files([...e.dataTransfer?.files ?? []]);
+});
 
 // Letters and digits of all languages, at most 100 bytes: what the service takes as a name.
 export function file_name(take) {
@@ -63,11 +68,12 @@ export function file_name(take) {
   while (new TextEncoder().encode(name).length > 90) name = [...name].slice(0, -1).join("");
   return name || "take";
 }
-export function give(name, blob) {
-  const a = make("a", {download: name, href: URL.createObjectURL(blob)});
+export function give(name, type, ...parts) {
+  const a = make("a", {download: name, href: URL.createObjectURL(new Blob(parts, {type}))});
   a.click();
   setTimeout(() => URL.revokeObjectURL(a.href), 10000);
 }
+export const give_toml = (name, text) => give(`${name}.toml`, "application/toml", text);
 const decoded = text => Uint8Array.from(atob(text), c => c.charCodeAt(0));
 
 async function save_as(kind) {
@@ -78,11 +84,9 @@ async function save_as(kind) {
     if (is_connected()) {
       const ask = as => call("export", {...make_request(take), as, name: file_name(take)});
       const r = await ask(kind), stroke = kind === "svg" ? `<!-- stroke of this figure: ${(await ask("toml")).base64} -->\n` : "";
-      give(r.name, new Blob([decoded(r.base64), stroke], {type: r.mime}));
-    } else if (kind === "toml") give(`${file_name(take)}.toml`, new Blob([strokes_toml(take.strokes)],
-      {type: "application/toml"}));
-    else if (kind === "csv" && take.strokes.length === 1) give(`${file_name(take)}.csv`,
-      new Blob([stroke_csv(take.strokes[0])], {type: "text/csv"}));
+      give(r.name, r.mime, decoded(r.base64), stroke);
+    } else if (kind === "toml") give_toml(file_name(take), strokes_toml(take.strokes));
+    else if (kind === "csv" && take.strokes.length === 1) give(`${file_name(take)}.csv`, "text/csv", stroke_csv(take.strokes[0]));
     else throw new Error("without a connection only a stroke, as TOML or CSV, can be saved");
     say(`Saved “${take.name}” as ${file_name(take)}.${kind}`);
   } catch (e) { say(e.message); }
@@ -90,7 +94,7 @@ async function save_as(kind) {
 // A browser may ask first whether the page may give several files.
 on_click("save-all", () => {
   const takes = state.takes.filter(t => t.strokes.length);
-  for (const t of takes) give(`${file_name(t)}.toml`, new Blob([strokes_toml(t.strokes)], {type: "application/toml"}));
+  for (const t of takes) give_toml(file_name(t), strokes_toml(t.strokes));
   say(`Saved ${takes.length} takes`);
 });
 by_id("save-list").replaceChildren(...KINDS.map(([kind, name, why]) => make("button",

@@ -2,6 +2,7 @@
 // Takes in the browser's storage and in other tabs: each change is written, and what is not written is said.
 import {state, changed, say, remember, remembered, take_by_id} from "../state.js";
 import {open_storage} from "./storage.js";
+import {listen} from "../../../net/page/dom.js";
 
 const AGAIN_MS = 3000;   // after a write that failed
 const HISTORY_MS = 1000; // after an edit, until the steps of undo are written
@@ -121,7 +122,7 @@ async function write_all() {
       removed.forEach(id => known.delete(id));
       for (const [id, take] of batch) if (unwritten.get(id) === take) unwritten.delete(id);
       others.forEach(keep_both);
-      if (batch.size) channel?.postMessage({takes: own, removed});
+      if (batch.size) channel.postMessage({takes: own, removed});
       if (takes.length && !remembered("asked-to-persist")) {
         remember("asked-to-persist", 1);
         navigator.storage?.persist?.();
@@ -156,8 +157,8 @@ export function write_at_once() {
 }
 
 // Other tabs.
-const channel = globalThis.BroadcastChannel && new BroadcastChannel("tactor-takes");
-channel?.addEventListener("message", ({data}) => {
+const channel = new BroadcastChannel("tactor-takes");
+listen(channel, "message", ({data}) => {
   const takes = by_ids();
   for (const t of data.takes) {
     if (unwritten.has(t.id)) continue; // this tab's own change finds the other one when it is written

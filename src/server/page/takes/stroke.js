@@ -180,8 +180,8 @@ function corners(rows) {
 }
 function turn(rows, at, look) {
   const [, ax, ay] = interpolate(rows, at - look), [, bx, by] = interpolate(rows, at), [, cx, cy] = interpolate(rows, at + look);
-  const a = Math.atan2(by - ay, bx - ax), b = Math.atan2(cy - by, cx - bx);
-  return Math.abs(Math.atan2(Math.sin(b - a), Math.cos(b - a)));
+  const change = Math.atan2(cy - by, cx - bx) - Math.atan2(by - ay, bx - ax);
+  return Math.abs(Math.atan2(Math.sin(change), Math.cos(change)));
 }
 
 // Returns when which part of the path is reached, both from 0 to 1: "even", "soft" (in and out), "reach" (minimum jerk),
@@ -197,8 +197,8 @@ export function pace_table(pace, n = 200) {
     }
     return table.map(([part, v]) => [part, v / t]);
   }
-  const easing = {even: v => v, soft: v => v * v * (3 - 2 * v), reach: v => v ** 3 * (10 - 15 * v + 6 * v * v)}[pace.kind];
   if (pace.kind === "even") return [[0, 0], [1, 1]];
+  const easing = {soft: v => v * v * (3 - 2 * v), reach: v => v ** 3 * (10 - 15 * v + 6 * v * v)}[pace.kind];
   return Array.from({length: n + 1}, (_, i) => [easing(i / n), i / n]);
 }
 
@@ -289,8 +289,7 @@ export const editable = kept_for(s => {
   if (s.base) return s;
   const base = s.timed, table = [];
   for (const [part, time] of parts_reached(base)) {
-    if (!table.length || part > table.at(-1)[0]) table.push([part, time]);
-    else table.at(-1)[1] = Math.max(table.at(-1)[1], time);
+    if (!table.length || part > table.at(-1)[0]) table.push([part, time]); else table.at(-1)[1] = time;
   }
   table[0][1] = 0; table.at(-1)[0] = 1; table.at(-1)[1] = 1;
   const even = !s.ink && table.every(([part, t]) => Math.abs(part - t) < 0.01);
@@ -354,10 +353,9 @@ export function straight(from, to, speed_mm_s, name, start_s, strength = 1) {
   return editable({name, start_s, timed: [[0, ...from, strength], [+seconds.toFixed(4), ...to, strength]]});
 }
 
-export const with_duration = (s, seconds) => ({...s, timed: scaled(s.timed, seconds / duration_s(s))});
-function scaled(timed, by) {
-  const out = timed.map(p => [+(p[0] * by).toFixed(5), ...p.slice(1)]);
-  return out.filter((p, i) => i === 0 || p[0] > out[i - 1][0]);
+export function with_duration(s, seconds) {
+  const timed = s.timed.map(p => [+(p[0] * seconds / duration_s(s)).toFixed(5), ...p.slice(1)]);
+  return {...s, timed: timed.filter((p, i) => i === 0 || p[0] > timed[i - 1][0])};
 }
 
 // Cuts a stroke to a part of its time. Times from its own start.
@@ -433,20 +431,17 @@ export function fitted(strokes, edge) {
   const all = strokes.flatMap(s => s.timed.map(p => [p[1], p[2]]));
   const from = box(all), to = box(edge);
   const room = k => to.size[k] > 1e-9 ? to.size[k] / Math.max(from.size[k], 1e-9) : Infinity;
-  const by = Math.min(1e3, ...[room(0), room(1)].filter(v => Number.isFinite(v)));
+  const by = Math.min(1e3, room(0), room(1));
   const move = (x, y) => [(x - from.middle[0]) * by + to.middle[0], (y - from.middle[1]) * by + to.middle[1]];
   const moved = timed => timed.map(([t, x, y, v]) => [t, ...move(x, y).map(c => +c.toFixed(3)), v]);
   return strokes.map(s => ({...s, timed: moved(s.timed), ...s.base && {base: moved(s.base)}, ...s.ink && {placed: true},
     ...s.knots && {knots: s.knots.map(k => { const [x, y] = move(k.x, k.y); return {...k, x, y}; })}}));
 }
 export function box(places) {
-  const xs = places.map(p => p[0]), ys = places.map(p => p[1]);
-  const least = [min(xs), min(ys)], most = [max(xs), max(ys)];
-  return {least, most, size: [most[0] - least[0], most[1] - least[1]], middle: [(least[0] + most[0]) / 2,
-    (least[1] + most[1]) / 2]};
+  const ends = (f, start) => [0, 1].map(k => places.reduce((v, p) => f(v, p[k]), start));
+  const least = ends(Math.min, Infinity), most = ends(Math.max, -Infinity);
+  return {least, most, size: most.map((v, k) => v - least[k]), middle: most.map((v, k) => (v + least[k]) / 2)};
 }
-const min = list => list.reduce((a, b) => Math.min(a, b), Infinity);
-const max = list => list.reduce((a, b) => Math.max(a, b), -Infinity);
 
 // TOML and CSV of strokes.
 export const quoted = text => `"${String(text).replace(/[\u0000-\u001f\u007f]/g, " ").replace(/[\\"]/g, "\\$&")}"`;

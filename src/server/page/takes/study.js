@@ -4,7 +4,7 @@ import {state, current_take, current_stroke, level_dbfs} from "../state.js";
 import {by_id, listen, set_text} from "../../../net/page/dom.js";
 import {with_side, request_options} from "./takes.js";
 import {quoted, strokes_toml} from "./stroke.js";
-import {file_name, give} from "./files.js";
+import {file_name, give_toml} from "./files.js";
 
 // Options of a method, see tactor-experiment(5).
 const OF_METHOD = "algorithm phantom faces soa burst slope intercept timing min_duration outside snap drop_points overlap carrier".split(" ");
@@ -29,6 +29,6 @@ listen(form, "input", show_command);
 listen(form, "submit", e => {
   e.preventDefault();
   const name = study_name();
-  for (const [file, text] of [[`${name}-stroke`, strokes_toml([current_stroke()])], [name, definition(name)]])
-    give(`${file}.toml`, new Blob([text], {type: "application/toml"}));
+  give_toml(`${name}-stroke`, strokes_toml([current_stroke()]));
+  give_toml(name, definition(name));
 });

@@ -141,5 +141,3 @@ export function request_options(take, dbfs) {
   if (o.sl === undefined) o.level_dbfs = dbfs + gain_db; else o.sl += gain_db;
   return o;
 }
-// Returns the strokes of an answer to import.
-export const imported_strokes = r => r.points.map((timed, i) => ({name: r.strokes[i].name, start_s: r.strokes[i].start_s, timed}));

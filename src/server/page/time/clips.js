@@ -54,10 +54,10 @@ export function place_clips(l) {
   while (clips_box.childElementCount - 1 < strokes.length) add_button.before(clip_button(clips_box.childElementCount - 1));
   const put = (b, x, width) => Object.assign(b.style, {left: `${x}px`, top: `${l.ruler}px`, width: `${width}px`, height: `${CLIP - 4}px`});
   strokes.forEach((s, i) => {
-    const [a, b] = clip_box(l, s), button = clips_box.children[i];
+    const [a, b] = clip_box(l, s), button = clips_box.children[i], name = strokes[1] ? s.name : take.name;
     put(button, a, Math.max(6, b - a));
-    button.textContent = strokes[1] ? s.name : take.name;
-    button.setAttribute("aria-label", `${s.name}, starts at ${seconds_text(s.start_s)}, lasts ${seconds_text(duration_s(s))}; arrows move it`);
+    button.textContent = name;
+    button.setAttribute("aria-label", `${name}, starts at ${seconds_text(s.start_s)}, lasts ${seconds_text(duration_s(s))}; arrows move it`);
     show_pressed(button, i === state.stroke);
   });
   put(add_button, to_x(l, total()) + 8, 28);

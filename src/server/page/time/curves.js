@@ -95,10 +95,7 @@ function draw_handles(p, l) {
 export function set_strength(index, v, key) {
   edit_stroke(s => rebuild({...s, strength: strength_points(s).map((q, i) => i === index ? [q[0], +v.toFixed(3)] : q)}), key);
 }
-export function strengths() {
-  const s = current_stroke();
-  return s ? strength_points(editable(s)) : [];
-}
+export const strengths = () => strength_points(editable(current_stroke()));
 export function set_speed(index, v, key) {
   edit_stroke(s => rebuild({...s, pace: {kind: "points", speeds: find_speeds(s.pace).map((q, i) => i === index ? [q[0], v] : q)}}), key);
 }

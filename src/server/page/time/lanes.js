@@ -13,6 +13,7 @@ import {draw_time_marks} from "./marks.js";
 import {end_s} from "../takes/stroke.js";
 import {look_at} from "../service/player.js";
 import {seconds_text} from "../words.js";
+import {algorithm} from "../takes/takes.js";
 
 const STEPS_S = [0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 30, 60, 120]; // of the ruler
 
@@ -67,7 +68,7 @@ function draw_ruler(p, l, bottom) {
 }
 function draw_bars(p, l, h, top, lanes) {
   const plan = state.plan, t = plan.tactors, n = plan.onsets.length, row = new Map(lanes.map((k, i) => [k, i]));
-  const from = l.from, to = l.from + shown(l), all = plan.total_s || 1;
+  const from = l.from, to = l.from + shown(l), all = plan.total_s || 1, is_brush = algorithm() === "tactile-brush";
   // Draws the largest burst of each pixel where they are narrower than that.
   const rows = !plan.continuous && l.width / n < 1.5 && merged_rows(l, plan, t);
   const one = (onset, seconds, k, a) => {
@@ -77,8 +78,10 @@ function draw_bars(p, l, h, top, lanes) {
     if (l.thin) { p.globalAlpha = 0.25 + 0.75 * Math.min(1, a);
       p.fillRect(x, y - h * 0.8, w - (w > 3 ? 0.5 : 0), Math.max(1, h * 0.6)); p.globalAlpha = 1; return; }
     const tall = Math.min(1, a) * (h - 3), ramp = Math.min(w * 0.2, 6);
-    if (state.shape === "tactile-brush")
-      return plot(p, [x, y - 1], [x + ramp, y - 1 - tall], [x + w - ramp, y - 1 - tall], [x + w, y - 1]), p.fill();
+    if (is_brush) {
+      plot(p, [x, y - 1], [x + ramp, y - 1 - tall], [x + w - ramp, y - 1 - tall], [x + w, y - 1]);
+      return p.fill();
+    }
     p.fillRect(x, y - 1 - tall, w - (w > 3 && !plan.continuous ? 0.75 : -0.3), tall);
     if (w > 4 && tall > 5 && !plan.continuous) {
       plot(p, [x, y - 0.5 - tall], [x + w - 0.75, y - 0.5 - tall]);
