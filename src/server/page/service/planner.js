@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Plans for the picture: one question at a time, always about what is newest.
-import {state, ceiling_dbfs, changed, on_change, current_take, say, now_ms} from "../state.js";
+import {state, ceiling_dbfs, changed, on_change, current_take, say, now_ms, take_by_id} from "../state.js";
 import {call, is_connected} from "./connection.js";
 import {make_request, put_take, take_s, with_side, row, value} from "../takes/takes.js";
 import {number_text} from "../words.js";
@@ -66,10 +66,11 @@ export const excess_db = plan => plan?.warnings.find(w => w.kind === "level")?.o
 // Gives a take the gain with which it can be played; the level of all others stays. Returns false if it is not too strong.
 export async function weaken_take(take) {
   const over_db = excess_db(await call("plan", {...make_request(take, ceiling_dbfs()), view: "peaks", bins: 1}));
-  if (!over_db) return false;
-  const gain_db = (take.gain_db ?? 0) - Math.ceil(2 * over_db) / 2;
-  put_take({...take, gain_db});
-  say(`“${take.name}” ${number_text(gain_db)} dB: it would be too strong`);
+  const now = take_by_id(take.id); // it may have been edited meanwhile
+  if (!over_db || !now) return false;
+  const gain_db = (now.gain_db ?? 0) - Math.ceil(2 * over_db) / 2;
+  put_take({...now, gain_db});
+  say(`“${now.name}” ${number_text(gain_db)} dB: it would be too strong`);
   return true;
 }
 
