@@ -15,6 +15,10 @@ SIZES = (DESKTOP, TABLET, PHONE, LYING)
 DARK = [{"name": "prefers-color-scheme", "value": "dark"}]
 LIVE = {"algorithm": "continuous"}  # options of a live stroke
 MISSING = ("-D", "hw:CARD=NotThere")
+LONG = "[[stroke]]\npath = 'M 0 0 L 40 40'\nduration_s = 60.0\n"
+# Keeps the toasts of a page: one may cover another at once.
+TOASTS = """globalThis.toasts = []; addEventListener("DOMContentLoaded", () => new MutationObserver(all => toasts.push(
+    ...all.map(change => [...change.addedNodes].map(n => n.textContent).join("")))).observe(document.querySelector("#toast"), {childList: true}))"""
 TAKE = "(tactor.state.takes.find(t => t.id === tactor.state.current) ?? tactor.state.trial)"
 
 
@@ -53,6 +57,7 @@ class StudioTest(BrowserTest, ToolTest):
         p = self.page("about:blank", **({"size": DESKTOP} | more))
         if fingers:
             p.call("Emulation.setTouchEmulationEnabled", enabled=True, maxTouchPoints=5)
+        p.call("Page.addScriptToEvaluateOnNewDocument", source=TOASTS)
         p.call("Page.navigate", url=s.where["http"] + fragment)
         p.call("Page.bringToFront")  # a tab behind another has no frames
         p.until("tactor.state")
@@ -79,7 +84,8 @@ class StudioTest(BrowserTest, ToolTest):
 
     @staticmethod
     def toast(p, text):
-        p.until(f"document.querySelector('#toast').textContent.includes({quoted(text)})")
+        """Waits for a toast; those before it are done with."""
+        p.until(f"(i => i >= 0 && toasts.splice(0, i + 1))(toasts.findIndex(t => t.includes({quoted(text)})))")
 
     @staticmethod
     def banner(p, text):
@@ -113,6 +119,12 @@ class StudioTest(BrowserTest, ToolTest):
     def fingers(self, p, kind, *places):
         p.touch(kind, *((i, *q) for i, q in enumerate(self.at(p, *places))))
 
+    def draw_rows(self, p, rows):
+        """Draws a row with each finger, from left to right; all stay down."""
+        self.fingers(p, "touchStart", *([5, y] for y in rows))
+        for x in range(8, 36, 3):
+            self.fingers(p, "touchMove", *([x, y] for y in rows))
+
     def planned(self, p):
         """Waits for the plan of the current take as it is now."""
         p.until(f"tactor.state.plan && tactor.state.plan_of === {TAKE}")
@@ -130,6 +142,12 @@ class StudioTest(BrowserTest, ToolTest):
         p.value("""(files => { const d = new DataTransfer(), e = document.querySelector("#file");
             for (const [name, v] of Object.entries(files)) d.items.add(new File([Uint8Array.from(atob(v), c => c.charCodeAt(0))], name));
             e.files = d.files; e.dispatchEvent(new Event("change")); })(%s)""" % json.dumps(data))
+
+    @staticmethod
+    def watch_sent(p):
+        """Keeps what the page sends from now on in `sent`: method, ms, the moment of the take, and the parameters."""
+        p.value("""globalThis.sent = []; (send => { WebSocket.prototype.send = function (text) { const {method, params} = JSON.parse(text);
+            sent.push({method, ms: performance.now(), at_s: tactor.state.at_s, ...params}); return send.call(this, text); }; })(WebSocket.prototype.send)""")
 
     @staticmethod
     def add_example(p):

@@ -4,10 +4,9 @@ Usage: test_page.py TOOL SOURCE_ROOT"""
 import sys
 
 del sys.argv[3:]
-from studio import PHONE, StudioTest  # noqa: E402
+from studio import LONG, PHONE, StudioTest  # noqa: E402
 from harness import main  # noqa: E402
 
-LONG = "[[stroke]]\npath = 'M 0 0 L 40 40'\nduration_s = 60.0\n"
 # Fields in which space is a character, and does not stop.
 TEXTS = "input:is([type=text], [type=password], :not([type])):not([inputmode=decimal])"
 
@@ -41,9 +40,7 @@ class Drawing(StudioTest):
     def test_each_finger_is_a_stroke_of_one_take(self):
         p, watcher = self.ready(self.serve(), size=PHONE, fingers=True)
         rows = (5, 20, 35)
-        self.fingers(p, "touchStart", *([5, y] for y in rows))
-        for x in range(8, 36, 3):
-            self.fingers(p, "touchMove", *([x, y] for y in rows))
+        self.draw_rows(p, rows)
         all_three = {self.next_stroke(watcher, "started") for _ in rows}
         self.assertEqual(len(all_three), 3)
         p.touch("touchEnd")
@@ -79,9 +76,7 @@ class Drawing(StudioTest):
         p, watcher = self.ready(s, size=PHONE, fingers=True)
         most = s.client().ok("status")["limits"]["max_live_strokes"]
         rows = [4 + 32 * i / most for i in range(most + 1)]
-        self.fingers(p, "touchStart", *([5, y] for y in rows))
-        for x in range(8, 36, 3):
-            self.fingers(p, "touchMove", *([x, y] for y in rows))
+        self.draw_rows(p, rows)
         felt = {self.next_stroke(watcher, "started") for _ in range(most)}
         p.until("document.querySelector('#toast').textContent")
         p.touch("touchEnd")

@@ -8,12 +8,6 @@ del sys.argv[3:]
 from studio import TAKE, StudioTest, quoted  # noqa: E402
 from harness import main  # noqa: E402
 
-# Levels that the page tells the service, when, ms, and at which moment of the take.
-SPY = """globalThis.sent_levels = []; globalThis.plain_send = WebSocket.prototype.send; WebSocket.prototype.send = function (text) {
-  const m = JSON.parse(text);
-  if (m.method === 'level') sent_levels.push({at: performance.now(), at_s: tactor.state.at_s, ...m.params});
-  return plain_send.call(this, text);
-}"""
 TEXT = "document.querySelector('{}').textContent"
 
 
@@ -23,7 +17,7 @@ class Compare(StudioTest):
         p, watcher = self.ready(s)
         self.add_example(p)
         p.until(f"tactor.state.plan_of && tactor.state.plan_of === {TAKE}")
-        p.value(SPY)
+        self.watch_sent(p)
         p.key("KeyB", "b")
         p.until("tactor.state.playing?.numbers.size === 2 && !tactor.state.playing.waits && tactor.state.compare.rest")
         return p, watcher
@@ -32,7 +26,7 @@ class Compare(StudioTest):
         s = self.serve()
         p, watcher = self.compare(s)
         p.value("tactor.state.level_db = -6; tactor.changed('level')")
-        p.until("sent_levels.some(m => m.db === -6 && m.stroke)")
+        p.until("sent.some(m => m.db === -6 && m.stroke)")
         asker = s.client()
         # The sides of a round have numbers that follow each other; so have those of the round after it.
         a, b = p.value("tactor.state.playing.firsts")
@@ -40,12 +34,12 @@ class Compare(StudioTest):
         loudest, since = -100, asker.notification(lambda m: m["method"] == "levels")["params"]["t_s"]
         for key, stroke in ("2", b), ("1", a), ("2", b):
             # The moment stands still until a round sounds, and a round that ends begins anew.
-            at_s = p.until(f"""(t => t > 0.1 && t < 1.2 && (sent_levels.length = 0, globalThis.pressed = performance.now(),
+            at_s = p.until(f"""(t => t > 0.1 && t < 1.2 && (sent.length = 0, globalThis.pressed = performance.now(),
                 dispatchEvent(new KeyboardEvent('keydown', {{key: '{key}'}})), t))(tactor.state.at_s)""")
             # The page lowers all before it raises the other one. A round that begins meanwhile says its level, too.
-            low, high = p.until("(i => i >= 0 && sent_levels[i + 1] && sent_levels.slice(i, i + 2))(sent_levels.findIndex(m => m.db === -60))")
+            low, high = p.until("(all => (i => i >= 0 && all[i + 1] && all.slice(i, i + 2))(all.findIndex(m => m.db === -60)))(sent.filter(m => m.method === 'level'))")
             self.assertEqual((low["db"], low.get("stroke"), high["db"], high["stroke"] % 2), (-60, None, -6, stroke % 2))
-            self.assertLess(high["at"] - p.value("pressed"), 500)  # 70 ms at most, and what a busy machine adds
+            self.assertLess(high["ms"] - p.value("pressed"), 500)  # 70 ms at most, and what a busy machine adds
             self.assertGreaterEqual(high["at_s"], at_s)  # it goes on where it was
             p.until(f"document.querySelector('.side[aria-pressed=true] kbd').textContent === {quoted(key)}")
         # It loops, and the sum is never above the level, 6 dB below the ceiling of -12 dBFS.
@@ -63,7 +57,7 @@ class Compare(StudioTest):
         self.assertIsNone(p.value("tactor.state.playing"))
         p.key("Escape", "Escape")
         p.until("!tactor.state.compare && !tactor.state.playing && document.querySelector('#compare').hidden")
-        self.assertEqual(p.value("sent_levels.at(-1)")["db"], -6)
+        self.assertEqual(p.value("sent.findLast(m => m.method === 'level')")["db"], -6)
 
     def test_both_ribbons_are_drawn_and_settings_are_those_of_the_side_that_sounds(self):
         p, _ = self.compare(self.serve())

@@ -5,15 +5,11 @@ import signal
 import sys
 
 del sys.argv[3:]
-from studio import TAKE, StudioTest  # noqa: E402
+from studio import LONG, TAKE, StudioTest  # noqa: E402
 from harness import main  # noqa: E402
 
-LONG = "[[stroke]]\npath = 'M 0 0 L 40 40'\nduration_s = 60.0\n"
 MOST_MS = 20.0  # from the touch, once the page has it, to the message
-WATCH = """globalThis.sent = []; globalThis.touched = 0;
-    (send => { WebSocket.prototype.send = function (text) { sent.push([JSON.parse(text).method, performance.now()]); return send.call(this, text); }; })
-        (WebSocket.prototype.send);
-    addEventListener("pointerdown", () => { touched = performance.now(); }, {capture: true});"""
+STOPS = "sent.filter(m => m.method === 'stop').length"
 SOUNDING = "(tactor.state.status?.strokes ?? []).filter(s => s.state === 'started').length"
 
 
@@ -24,12 +20,13 @@ class Stop(StudioTest):
         p, watcher = self.ready(s, fingers=fingers)
         number = s.client().ok("play", toml=LONG)["stroke"]
         watcher.stroke(number, "started")
-        p.value(WATCH)
+        self.watch_sent(p)
+        p.value('addEventListener("pointerdown", () => { globalThis.touched = performance.now(); }, {capture: true})')
         return p, watcher, number
 
     def stopped(self, p, watcher, number):
         self.assertEqual(watcher.await_end(number)["state"], "cancelled")
-        self.assertLess(p.value("sent.find(([m]) => m === 'stop')[1] - touched"), MOST_MS)
+        self.assertLess(p.value("sent.find(m => m.method === 'stop').ms - touched"), MOST_MS)
 
     def test_it_stops_while_a_finger_rests_on_the_array(self):
         p, watcher, number = self.begin()
@@ -46,7 +43,7 @@ class Stop(StudioTest):
             p.touch("touchMove", (0, x - 20 * step, y + 30 * step))
         p.touch("touchEnd")
         self.stopped(p, watcher, number)
-        self.assertEqual(p.value("sent.filter(([m]) => m === 'stop').length"), 1)
+        self.assertEqual(p.value(STOPS), 1)
 
     def test_it_stops_before_the_finger_is_lifted(self):
         p, watcher, number = self.begin()
@@ -55,7 +52,7 @@ class Stop(StudioTest):
         p.until("document.querySelector('#stop').dataset.state === 'done'")
         p.touch("touchEnd")
         p.until("document.querySelector('#stop').textContent.startsWith('Stop') && !document.querySelector('#stop').dataset.state")
-        self.assertEqual(p.value("sent.filter(([m]) => m === 'stop').length"), 1)
+        self.assertEqual(p.value(STOPS), 1)
 
     def test_media_keys_stop(self):
         s = self.serve()
@@ -76,7 +73,7 @@ class Stop(StudioTest):
         p.open_popover("#device", "#p-device")
         p.key("Escape")
         p.until("!document.querySelector(':popover-open')")
-        self.assertEqual(p.value("sent.filter(([m]) => m === 'stop').length"), 0)
+        self.assertEqual(p.value(STOPS), 0)
         p.key("Escape")
         self.assertEqual(watcher.await_end(number)["state"], "cancelled")
 
@@ -85,12 +82,12 @@ class Stop(StudioTest):
         p, watcher = self.ready(s)
         number = s.client().ok("play", toml=LONG)["stroke"]
         watcher.stroke(number, "started")
-        p.value(WATCH)
+        self.watch_sent(p)
         os.kill(s.process.pid, signal.SIGSTOP)
         p.click("#stop")
         self.banner(p, "Switch the amplifier off")
         p.until("document.querySelector('#stop').textContent.startsWith('Stop again')")
-        p.until("sent.filter(([m]) => m === 'stop').length > 2")
+        p.until(STOPS + " > 2")
         self.says(p, "No answer")
         self.assertNotEqual(p.value("document.querySelector('#toast').textContent"), "Stopped, everybody's strokes")
         os.kill(s.process.pid, signal.SIGCONT)
@@ -128,9 +125,7 @@ class Play(StudioTest):
 
     def test_strokes_that_add_up_lower_their_take_and_not_the_level(self):
         p, watcher = self.ready(self.serve(), fingers=True)
-        p.touch("touchStart", *((i, *q) for i, q in enumerate(self.at(p, [10, 10], [12, 10], [14, 10]))))
-        for k in range(1, 10):
-            p.touch("touchMove", *((i, *q) for i, q in enumerate(self.at(p, [10 + k, 10 + k], [12 + k, 10 + k], [14 + k, 10 + k]))))
+        self.draw_rows(p, (5, 7, 9))
         p.touch("touchEnd")
         p.until(f"({TAKE})?.strokes.length === 3 && !tactor.state.drawing")
         p.click("#play")

@@ -4,7 +4,7 @@ import math
 import sys
 
 del sys.argv[3:]
-from studio import DESKTOP, PHONE, TAKE, StudioTest, quoted  # noqa: E402
+from studio import DESKTOP, PHONE, TAKE, TOASTS, StudioTest, quoted  # noqa: E402
 from harness import main  # noqa: E402
 
 # Takes put where the browser keeps them.
@@ -285,7 +285,7 @@ class Kept(TakesTest):
 
     def test_where_the_browser_keeps_nothing_the_page_says_so(self):
         p = self.page("about:blank", size=DESKTOP)
-        p.call("Page.addScriptToEvaluateOnNewDocument", source="IDBFactory.prototype.open = () => { throw new DOMException('no', 'SecurityError'); }")
+        p.call("Page.addScriptToEvaluateOnNewDocument", source=TOASTS + "; IDBFactory.prototype.open = () => { throw new DOMException('no', 'SecurityError'); }")
         p.call("Page.navigate", url=self.serve().where["http"])
         p.until("globalThis.tactor?.state")
         self.await_service(p)

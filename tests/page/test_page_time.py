@@ -9,8 +9,6 @@ from harness import main  # noqa: E402
 
 ALT, CONTROL, SHIFT = 1, 2, 8
 RULER, CLIPS, LANES = 10, 43, 90  # px below the top of the timeline
-WATCH = """globalThis.sent = []; (send => { WebSocket.prototype.send = function (text) { const m = JSON.parse(text);
-    sent.push({method: m.method, ms: performance.now(), ...m.params}); return send.call(this, text); }; })(WebSocket.prototype.send);"""
 
 
 class Time(StudioTest):
@@ -23,7 +21,7 @@ class Time(StudioTest):
         p.value("document.querySelector('#tab-timing').click()")
         self.set_slider(p, "Duration", 1000 * math.log(1 / 0.06) / math.log(599.9 / 0.06))
         self.planned(p)
-        p.value(WATCH)
+        self.watch_sent(p)
         return p, watcher
 
     def at_time(self, p, t, y):
