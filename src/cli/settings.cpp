@@ -31,7 +31,7 @@ void add_one(CLI::App& command, settings& into, const options::option& o)
                     [&into, &o](const std::string& t) { options::give(into, o, options::read_text(o, t)); },
                     help)
                 ->type_name_fn([&o] { return options::type_text(o); });
-    added->group(std::string(to_string(o.in)));
+    added->group(std::string(o.in));
 }
 
 } // namespace

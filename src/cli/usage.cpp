@@ -493,7 +493,7 @@ std::string describe_options(const CLI::App& app, std::string_view given)
     std::string text = row != nullptr ? describe_row(*row) : "";
     for (const CLI::App* command : app.get_subcommands({})) {
         const CLI::Option* o = command->get_option_no_throw(fmt::format("--{}", name));
-        if (o != nullptr && (row == nullptr || o->get_group() != to_string(row->in)))
+        if (o != nullptr && (row == nullptr || o->get_group() != row->in))
             text += fmt::format("tactor {}: {}\n  {}\n", command->get_name(),
                                 with_type(fmt::format("--{}", name), o->get_type_name()),
                                 spelled(o->get_description()));

@@ -51,13 +51,6 @@ value check_number(const option& o, const value& v)
 
 } // namespace
 
-std::string_view to_string(group g) noexcept
-{
-    constexpr std::array names{"Stroke", "Place",  "Timing",    "Sound",
-                               "Level",  "Device", "Real time", "Output"};
-    return names[static_cast<std::size_t>(g)];
-}
-
 std::span<const place_name> command_names() noexcept
 {
     static constexpr std::array names{
@@ -72,25 +65,10 @@ std::span<const place_name> command_names() noexcept
 
 const option* find(std::string_view name) noexcept
 {
-    const auto found = std::find_if(all().begin(), all().end(), [&](const option& o) {
-        return same_name(o.name, name) || o.field_name() == name;
-    });
-    return found == all().end() ? nullptr : &*found;
-}
-
-std::size_t index(const option& o) noexcept
-{
-    return static_cast<std::size_t>(&o - all().data());
-}
-
-bool wishes::gives(std::string_view name) const
-{
-    return gives(*find(name));
-}
-
-bool wishes::gives(const option& o) const
-{
-    return given[index(o)];
+    for (const option& o : all())
+        if (same_name(o.name, name) || o.field_name() == name)
+            return &o;
+    return nullptr;
 }
 
 std::string dashed(const option& o)

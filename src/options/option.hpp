@@ -16,9 +16,17 @@
 
 namespace tactor::options {
 
-/// Heading under which help and manual list an option.
-enum class group : std::uint8_t { stroke, place, timing, sound, level, device, real_time, output };
-[[nodiscard]] std::string_view to_string(group g) noexcept;
+/// Headings under which help and manual list options.
+namespace group {
+inline constexpr std::string_view stroke = "Stroke";
+inline constexpr std::string_view place = "Place";
+inline constexpr std::string_view timing = "Timing";
+inline constexpr std::string_view sound = "Sound";
+inline constexpr std::string_view level = "Level";
+inline constexpr std::string_view device = "Device";
+inline constexpr std::string_view real_time = "Real time";
+inline constexpr std::string_view output = "Output";
+} // namespace group
 
 enum class kind : std::uint8_t { number, whole, choice, flag, text };
 
@@ -81,7 +89,7 @@ struct option {
     std::vector<std::string_view> (*choices)() = nullptr;
     std::string_view shown = {};  ///< type of the value in help, else by unit or choices: "HZ[:DEPTH]"
     std::string_view letter = {}; ///< the command line's short name
-    group in = group::stroke;
+    std::string_view in = group::stroke;
     std::string_view help = {}; ///< one line, with the default
     std::uint64_t where = 0;
     std::string_view rival = {};           ///< name of the option that cannot stand beside it
@@ -103,7 +111,20 @@ struct option {
 /// Returns the row of that name, with _ or - between its words, or of that field; null for none.
 [[nodiscard]] const option* find(std::string_view name) noexcept;
 /// Returns the place of a row in the table.
-[[nodiscard]] std::size_t index(const option& o) noexcept;
+[[nodiscard]] inline std::size_t index(const option& o) noexcept
+{
+    return static_cast<std::size_t>(&o - all().data());
+}
+
+inline bool wishes::gives(const option& o) const
+{
+    return given[index(o)];
+}
+
+inline bool wishes::gives(std::string_view name) const
+{
+    return gives(*find(name));
+}
 
 /// Returns the name with - between its words.
 [[nodiscard]] std::string dashed(const option& o);

@@ -73,7 +73,7 @@ struct wishes {
     std::bitset<most_options> given = {};             ///< rows that the user gave
     std::map<std::size_t, source_place> in_file = {}; ///< rows that [defaults] gave, and where
 
-    /// Returns whether the user gave the option of that name. \pre There is one.
+    /// Returns true if the user gave the option, which option.hpp defines. \pre There is one of that name.
     bool gives(std::string_view name) const;
     bool gives(const option& o) const;
 };

@@ -243,7 +243,7 @@ py::dict manual_entry(const option& o)
     for (const options::place_name& c : options::command_names())
         if ((o.where & c.bit) != 0)
             takers.append(c.name);
-    return py::dict("group"_a = options::to_string(o.in), "letter"_a = o.letter, "commands"_a = takers,
+    return py::dict("group"_a = o.in, "letter"_a = o.letter, "commands"_a = takers,
                     "type"_a = o.what == options::kind::flag ? "" : options::type_text(o),
                     "range"_a = options::range_text(o), "default"_a = o.to.get(options::wishes{}),
                     "help"_a = o.help, "rival"_a = o.rival, "needs"_a = o.needs);

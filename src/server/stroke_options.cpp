@@ -96,7 +96,7 @@ reply_json row_json(const option& o, const options::wishes& owner)
         choices = o.choices();
     return {{"name", o.name},
             {"key", in_file ? reply_json(o.field_name()) : reply_json(nullptr)},
-            {"group", to_string(o.in)},
+            {"group", o.in},
             {"kind", kinds.at(static_cast<std::size_t>(o.what))},
             {"unit", o.unit},
             {"least", bound(o.allowed.low)},
