@@ -65,7 +65,9 @@ bool takes_default(const wishes& w, const option& o)
 error at_place(const source_place& at, const option& o, const error& e)
 {
     const std::string about = e.subject() == e.field() ? "" : detail::plain(e.subject()) + ": ";
-    return e.reworded(at.text(), fmt::format("{}: {}{}", dashed(o), about, e.why()), e.hint()).with_place(at);
+    return e.reworded(at.text(), fmt::format("{}: {}{}", dashed(o), about, e.why()), e.hint())
+        .with_place(at)
+        .with_field(o.name);
 }
 
 } // namespace
@@ -82,9 +84,9 @@ void give(wishes& w, const option& o, const value& v)
     w.in_file.erase(index(o));
 }
 
-std::vector<said_default> read_defaults(const setup& says)
+std::vector<default_value> read_defaults(const setup& says)
 {
-    std::vector<said_default> all;
+    std::vector<default_value> all;
     for (const written_value& d : says.defaults) {
         const option& o = find_default(d);
         refuse_both(says, d, find(o.rival));
@@ -94,7 +96,7 @@ std::vector<said_default> read_defaults(const setup& says)
             all.push_back({&o, text != nullptr ? read_text(o, *text) : read_value(o, d.said), d.at});
             wishes tried;
             if (text == nullptr || o.name != "waveform" || !waveform_names_file(*text))
-                o.to.set(tried, all.back().said); // a file is looked for where it is used
+                o.to.set(tried, all.back().content); // a file is looked for where it is used
         } catch (const error& e) {
             throw at_place(d.at, o, e);
         }
@@ -104,14 +106,14 @@ std::vector<said_default> read_defaults(const setup& says)
 
 void apply_defaults(wishes& w, const setup& says)
 {
-    for (const said_default& d : read_defaults(says)) {
+    for (const default_value& d : read_defaults(says)) {
         const option& o = *d.row;
         if (!takes_default(w, o))
             continue;
         if (const option* rival = find(o.rival))
             forget(w, *rival);
         try {
-            o.to.set(w, d.said);
+            o.to.set(w, d.content);
         } catch (const error& e) {
             throw at_place(d.at, o, e);
         }
@@ -153,10 +155,10 @@ void refuse_planning(const wishes& w, const std::string& what)
 error at_default(const wishes& w, const error& e)
 {
     const option* o = find(e.field());
-    const auto said = o == nullptr || e.place().line != 0 ? w.in_file.end() : w.in_file.find(index(*o));
-    if (said == w.in_file.end())
+    const auto found = o == nullptr || e.place().line != 0 ? w.in_file.end() : w.in_file.find(index(*o));
+    if (found == w.in_file.end())
         return e;
-    return at_place(said->second, *o, e);
+    return at_place(found->second, *o, e);
 }
 
 } // namespace tactor::options

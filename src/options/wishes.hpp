@@ -45,7 +45,7 @@ struct stream_options {
 /// Most rows that the table may have.
 inline constexpr std::size_t most_options = 128;
 
-/// Values of the options. Those that nobody gave hold the built-in default.
+/// Values of the options; without one of the user or of [defaults] the built-in default.
 struct wishes {
     std::optional<std::string> path_data = {};   ///< SVG path data in place of a stroke
     std::optional<std::string> shape = {};       ///< the same, by the name of a shape
@@ -69,9 +69,9 @@ struct wishes {
     render_options render = {};
     stream_options stream = {};
 
-    std::uint64_t place = 0;                          ///< who is asked: bits of `place` in option.hpp
-    std::bitset<most_options> given = {};             ///< rows that the user gave
-    std::map<std::size_t, source_place> in_file = {}; ///< rows that [defaults] gave, and where
+    std::uint64_t place = 0;                          ///< front end: bits of `place` in option.hpp
+    std::bitset<most_options> given = {};             ///< rows of the user
+    std::map<std::size_t, source_place> in_file = {}; ///< rows of [defaults], with their places
 
     /// Returns true if the user gave the option, which option.hpp defines. \pre There is one of that name.
     bool gives(std::string_view name) const;

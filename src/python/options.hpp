@@ -10,10 +10,10 @@ namespace tactor::python {
 
 using options::wishes;
 
-/// Takes the options `given`; None sets nothing. For those that are not given the [defaults] of `file` count,
-/// and its rate, channels and marker where a score has them. `into.place`: who is asked; rows that
-/// `into.given` has already keep their values. `tactors` is how many an own phantom model may name.
-/// \throws error (bad_input) for values that cannot be, and for options that nothing uses.
+/// Sets the options `given`; None sets nothing. For others the [defaults] of `file` count, and in a score its
+/// rate, channels and marker; options that `into.given` has already keep their values. `tactors`: number of
+/// tactors that a phantom model in Python may name. \throws error (bad_input) for impossible values, and for
+/// options that nothing uses.
 void take_options(wishes& into, const py::dict& given, std::size_t tactors, const setup* file = nullptr);
 
 /// Takes the options of a player among `given`. \throws error (bad_input).

@@ -37,7 +37,7 @@ void check_setup(const setup& s)
     }
     HOLDS(parse_setup(detail::besides_text({.defaults = s.defaults}), "again").defaults == s.defaults);
     try {
-        for (const options::said_default& d : options::read_defaults(s))
+        for (const options::default_value& d : options::read_defaults(s))
             HOLDS((d.row->where & options::in_defaults) != 0);
     } catch (const error& e) {
         HOLDS(e.place().line != 0);
