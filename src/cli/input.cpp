@@ -101,13 +101,13 @@ error about_own(const error& x, const stroke& s)
     return carrier || wave ? x.reworded("stroke", why, x.hint()).with_field("") : x;
 }
 
-// Calls f(i) for each stroke, and says of which it is that it throws.
+// Calls f(i) for each i below `count`. Its errors are about stroke i.
 template <class F>
-void for_each_stroke(const piece& p, F f)
+void for_each_stroke(const piece& p, std::size_t count, F f)
 {
     progress_line line(shown_name(p.name));
-    for (std::size_t i = 0; i < p.strokes.size(); ++i) {
-        line.update(i, p.strokes.size());
+    for (std::size_t i = 0; i < count; ++i) {
+        line.update(i, count);
         try {
             f(i);
         } catch (const error& x) {
@@ -116,19 +116,14 @@ void for_each_stroke(const piece& p, F f)
     }
 }
 
-// Each begins in the piece, whether its samples are wanted or not.
+// Refuses strokes that do not begin in the piece, also where nobody wants samples.
 void check_starts(const piece& p)
 {
     detail::start_times times;
-    for (std::size_t i = 0; i < p.plans.size(); ++i) {
-        const placed_plan& q = p.plans[i];
-        try {
-            times.start(q.start_s, q.anchor);
-        } catch (const error& x) {
-            throw of_stroke(x, p, i);
-        }
-        times.lasts(q.plan.total_s);
-    }
+    for_each_stroke(p, p.plans.size(), [&](std::size_t i) {
+        times.start(p.plans[i].start_s, p.plans[i].anchor);
+        times.lasts(p.plans[i].plan.total_s);
+    });
 }
 
 } // namespace
@@ -217,7 +212,8 @@ piece plan_one_piece(const settings& s, const environment& e)
     const layout faces(e.tactors);
     piece p = std::move(open_pieces(s, e, faces).front());
     if (p.plans.empty())
-        for_each_stroke(p, [&](std::size_t i) { session::plan_stroke(p, i, e.tactors, faces, s); });
+        for_each_stroke(p, p.strokes.size(),
+                        [&](std::size_t i) { session::plan_stroke(p, i, e.tactors, faces, s); });
     check_starts(p);
     return p;
 }
@@ -227,7 +223,7 @@ score plan_and_score(piece& p, const settings& s, const environment& e, const la
 {
     score_builder made(e.tactors, render);
     if (p.plans.empty())
-        for_each_stroke(p, [&](std::size_t i) {
+        for_each_stroke(p, p.strokes.size(), [&](std::size_t i) {
             const stroke& k = p.strokes[i];
             if (s.compensate)
                 made.add(make_compensated_plan(e.tactors, faces, k, s.plan, s.low_speed).plan, k.start_s,
@@ -243,14 +239,8 @@ score plan_and_score(piece& p, const settings& s, const environment& e, const la
 score make_score(const piece& p, const environment& e, const render_options& render)
 {
     score_builder made(e.tactors, render);
-    for (std::size_t i = 0; i < p.plans.size(); ++i) {
-        const placed_plan& q = p.plans[i];
-        try {
-            made.add(q.plan, q.start_s, q.anchor);
-        } catch (const error& x) {
-            throw of_stroke(x, p, i);
-        }
-    }
+    for_each_stroke(p, p.plans.size(),
+                    [&](std::size_t i) { made.add(p.plans[i].plan, p.plans[i].start_s, p.plans[i].anchor); });
     return made.take();
 }
 
