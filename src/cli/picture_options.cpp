@@ -5,7 +5,7 @@
 #include <fmt/format.h>
 
 #include "cli/settings.hpp"
-#include "options/parse_number.hpp"
+#include "options/option.hpp"
 #include "plot/paint/output.hpp"
 
 namespace tactor::cli {

@@ -15,7 +15,6 @@
 #include <tactor/setup.hpp>
 
 #include "options/option.hpp"
-#include "options/parse_number.hpp"
 #include "options/settle.hpp"
 #include "options/words.hpp"
 #include "session/device.hpp"

@@ -10,7 +10,6 @@
 #include "caught.hpp"
 #include "core/marks.hpp"
 #include "options/option.hpp"
-#include "options/parse_number.hpp"
 #include "options/settle.hpp"
 #include "options/words.hpp"
 

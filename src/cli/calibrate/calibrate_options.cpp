@@ -21,7 +21,7 @@
 #include "cli/session/page_options.hpp"
 #include "cli/settings.hpp"
 #include "core/split.hpp"
-#include "options/parse_number.hpp"
+#include "options/option.hpp"
 #include "session/device.hpp"
 #include "study/bids/study_folder.hpp"
 #include "study/experiment/sequence.hpp"

@@ -24,7 +24,7 @@
 #include "core/words.hpp"
 #include "files/json/json_value.hpp"
 #include "files/plan/plan_members.hpp"
-#include "options/parse_number.hpp"
+#include "options/option.hpp"
 #include "rt/clock.hpp"
 #include "rt/variable.hpp"
 #include "server/server.hpp"
