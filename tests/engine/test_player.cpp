@@ -239,6 +239,28 @@ TEST_CASE("a device that does not start and a missing sink are errors")
     CHECK_THROWS_WITH_AS(player(nullptr, palm()), doctest::Contains("no sink"), error);
 }
 
+TEST_CASE("a sink of one's own without rate, channels or periods is an error")
+{
+    class empty_sink final : public forwarding_sink {
+    public:
+        empty_sink(std::unique_ptr<sink> s, unsigned stream_setup::*member)
+            : forwarding_sink(std::move(s)), setup_(forwarding_sink::setup())
+        {
+            setup_.*member = 0;
+        }
+        const stream_setup& setup() const noexcept override { return setup_; }
+
+    private:
+        stream_setup setup_;
+    };
+    for (const auto member : {&stream_setup::rate, &stream_setup::channels, &stream_setup::period_frames,
+                              &stream_setup::buffer_frames}) {
+        fake_dac dac;
+        auto s = std::make_unique<empty_sink>(alsa::adopt(dac.pcm(), nine()), member);
+        CHECK_THROWS_WITH_AS(player(std::move(s), palm()), doctest::Contains("a sink of"), error);
+    }
+}
+
 TEST_CASE("a required real-time priority that is refused is an error; otherwise a note")
 {
     fake_dac dac;

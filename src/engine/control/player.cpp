@@ -104,10 +104,18 @@ float to_gain(double level_db)
     return static_cast<float>(std::pow(10.0, level_db / 20.0));
 }
 
-std::unique_ptr<sink> not_null(std::unique_ptr<sink> s)
+// Returns the sink. \throws error (bad_input) for none, and for one whose stream cannot be.
+std::unique_ptr<sink> checked(std::unique_ptr<sink> s)
 {
     if (s == nullptr)
         throw error(error_kind::bad_input, "player", "no sink", "open one with open_alsa()");
+    const stream_setup& setup = s->setup();
+    if (setup.rate == 0 || setup.channels == 0 || setup.period_frames == 0 ||
+        setup.buffer_frames < setup.period_frames)
+        throw error(error_kind::bad_input, "player",
+                    fmt::format("a sink of {} channels at {} Hz with {} frames a period and {} in its buffer",
+                                setup.channels, setup.rate, setup.period_frames, setup.buffer_frames),
+                    "setup() has all four above 0, and a buffer of one period or more");
     return s;
 }
 
@@ -313,7 +321,7 @@ player_stats player::stats() const
 }
 
 player::impl::impl(std::unique_ptr<sink> s, const array& a, const player_options& o, player_lines l)
-    : out(not_null(std::move(s))),
+    : out(checked(std::move(s))),
       stream(fmt::format("stream on \"{}\"", out->setup().name)),
       lines(checked(std::move(l), out->setup().rate)),
       feed(link, horizon_frames(o, out->setup())),
