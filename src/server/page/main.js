@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The page to draw on: what belongs to no part of it, and the start.
+// The studio: buttons that belong to no other module, frames, and the start.
 import {state, changed, on_change, current_take, current_stroke, is_simulated, say, remember, remembered, now_ms} from "./state.js";
 import {by_id, make, on_click, show_pressed, all_of, listen, set_text} from "../../net/page/dom.js";
 import {place_icons, forget_colours, is_dark} from "./look.js";
@@ -55,7 +55,7 @@ place_icons();
 
 // Buttons.
 on_click("play", () => play());
-// It stops when it is touched, whatever other fingers do; a click by itself comes from keys and assistive technology.
+// Stop acts on touch-down, whatever other fingers do; a click without a pointer comes from keys and assistive technology.
 listen("stop", "pointerdown", e => { if (e.button === 0) stop(); });
 on_click("stop", e => { if (e.detail === 0) stop(); });
 on_click("undo", undo);

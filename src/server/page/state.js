@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// State of the page, and who is told of changes.
+// State of the page, and the listeners to its changes.
 import {by_id, make} from "../../net/page/dom.js";
 
 const TOAST_MS = 2200, UNDO_MS = 6000;

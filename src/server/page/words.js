@@ -17,11 +17,9 @@ export const OPTION_NAMES = {
   faces: "Tactors of a point", compensate: "Move bursts to where they are felt", sigma_mm: "Uncertainty of a place",
   sigma_v_mm_s: "Spread of speeds", outside: "Beyond the array", snap: "Move ends onto the grid", drop_points: "Drop crossings",
   overlap: "Where bursts overlap", soa: "Interval, onset to onset (SOA)", burst: "Burst", slope: "Slope of the law",
-  intercept: "Intercept of the law", timing: "Interval", min_duration: "Shortest burst", carrier: "Carrier", waveform: "Waveform",
-  am: "Amplitude modulation", noise_seed: "Seed of the noise", phase: "Carrier", ramp: "Ramp", envelope: "Envelope",
-    attack: "Attack",
-  release: "Release", sl: "Level above the threshold", intensity_scale: "Scale of strength",
-    stevens_exponent: "Exponent of felt strength",
+  intercept: "Intercept of the law", timing: "Interval", min_duration: "Shortest burst", carrier: "Carrier", am: "Amplitude modulation",
+  noise_seed: "Seed of the noise", ramp: "Ramp", envelope: "Envelope", attack: "Attack", release: "Release", sl: "Level above the threshold",
+  intensity_scale: "Scale of strength", stevens_exponent: "Exponent of felt strength",
 };
 // An error as a part of the pitch.
 export const place_word = part => part < 0.06 ? "close to the path" : part < 0.15 ? "near the path" : "far from the path";

@@ -68,7 +68,7 @@ export const place_name = () => part().lines ? (part().sides ? body.right ? "rig
 // Puts the outline under a place, at a scale.
 export const body_matrix = ([x, y], scale) => new DOMMatrix().translate(x, y).rotate(body.turn).scale(scale).translate(-body.x, -body.y)
   .scale(outline_mm() * mirror(part()), outline_mm());
-// Returns the corners of the part, mm, around an array whose middle is given.
+// Returns the corners of the part, mm, around the middle of an array.
 export const body_corners = (middle, [x, y, w, h] = part().box, m = body_matrix(middle, 1)) =>
   [x, x + w].flatMap(u => [y, y + h].map(v => m.transformPoint({x: u, y: v}))).map(q => [q.x, q.y]);
 on_change(() => {

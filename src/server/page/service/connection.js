@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The WebSocket to the service: calls, answers, and what comes by itself.
+// The WebSocket to the service: calls, answers and notifications.
 import {state, changed, now_ms} from "../state.js";
 
 export const SLOW_MS = 300; // without an answer
@@ -149,7 +149,7 @@ async function poll() {
 setInterval(() => {
   if (is_connected() && ![...calls.values()].some(c => c.method === "status")) poll().catch(() => {});
 }, POLL_MS);
-// No answer for a while is told while it lasts.
+// Shows that there is no answer, while that lasts.
 setInterval(() => {
   const now = now_ms();
   const slow = [...calls.values()].some(c => (c.method === "status" || c.method === "stop") && now - c.at > SLOW_MS);

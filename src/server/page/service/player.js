@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Plays takes, tests tactors, stops; and says where the moment is.
+// Plays takes, tests tactors, stops, and moves the moment on.
 import {state, changed, on_change, current_take, take_by_id, is_simulated, plays_to_nobody, ceiling_dbfs, take_gain, marks, say, now_ms} from "../state.js";
 import {call, tell, is_connected, server_now_s, from_server_ms, on_notification, on_lost, SLOW_MS} from "./connection.js";
 import {make_request, take_s, take_part, with_side} from "../takes/takes.js";
@@ -25,13 +25,13 @@ async function ask_for(p, round, start) {
   return answers.flatMap(r => r.strokes);
 }
 
-// Plays the take, from a moment on if it is said.
+// Plays the take, or a part of it.
 export async function play(part = part_to_play()) {
   const take = current_take();
   if (!take?.strokes.length) return;
   const round = make_round(take, part);
   if (round.lead_s === Infinity) return say("Nothing plays in this part of the time");
-  // It begins anew: copies of it never add up.
+  // Ends the round that plays: copies never add up.
   end_round(state.playing);
   silence_speaker();
   const felt = is_connected() && !["lost", "muted", "closing"].includes(state.stream.state);
@@ -131,7 +131,7 @@ export function tick() {
     return hear_it();
   }
   if (p.next) return;
-  if (p.felt && p.numbers.size && t < p.total_s + 1) return; // its end is told
+  if (p.felt && p.numbers.size && t < p.total_s + 1) return; // the service reports its end
   end_playing();
 }
 const cancel_strokes = numbers => numbers.forEach(n => tell("cancel", {stroke: n}));
@@ -167,7 +167,7 @@ function hear_stroke(s) {
   if (s.state === "started") {
     if (p && !p.numbers.has(s.stroke)) begun.set(s.stroke, s);
     if (p?.numbers.has(s.stroke) && s.started_s !== null) {
-      // It is told before it is heard: the round before goes on until its end.
+      // The service reports a start before it is heard: the round before goes on until its end.
       const round = p.waits ? p : p.next?.firsts?.includes(s.stroke) && p.next;
       if (round) round.began_ms = from_server_ms(s.started_s) - round.lead_s * 1000;
       if (p.waits) { p.waits = false; tick(); hear_it(); }
@@ -211,7 +211,7 @@ on_notification("touches", t => {
   if (t.down) state.touches.set(t.stroke, {...t, at: now_ms()}); else state.touches.delete(t.stroke);
 });
 
-// Sends a stop before anything else is done: nothing of this page's own may keep it back. It is sent again until it is answered.
+// Sends a stop before all else: nothing in this page may hold it up. Sends it again until the service answers.
 export function stop() {
   const sent = call("stop"), own = state.stopping ??= {since_ms: now_ms()};
   own.sent_ms = now_ms();
@@ -253,7 +253,7 @@ function tap_tactor(i) {
   if (i >= 0) setTimeout(tap_tactor, 1000 * TEST_S, -1);
   changed("playing");
 }
-// Plays on this computer's loudspeakers where that is asked for.
+// Plays on this computer's loudspeakers if Listen is on.
 export function hear_it() {
   silence_speaker();
   if (!state.speaker || !state.plan || !state.hello) return;

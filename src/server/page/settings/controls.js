@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Controls that stand for a value: each has an element, and an update that shows the value again.
+// Controls of a value: each has an element, and an update() that shows the value again.
 import {make, listen} from "../../../net/page/dom.js";
 import {icon} from "../look.js";
 
@@ -21,8 +21,8 @@ export function slider({label, get, set, least, most, text, done, step = 0, log 
     const v = get(), p = Math.min(1000, Math.max(0, to(v)));
     if (document.activeElement !== input || Math.abs(Number(input.value) - p) > 2) input.value = p;
     input.style.setProperty("--part", `${p / 10}%`);
-    const said = text(v);
-    output.replaceChildren(...Array.isArray(said) ? [said[0], make("small", {}, ` ${said[1]}`)] : [said]);
+    const words = text(v);
+    output.replaceChildren(...Array.isArray(words) ? [words[0], make("small", {}, ` ${words[1]}`)] : [words]);
     input.setAttribute("aria-valuetext", output.textContent);
   }
   update();
@@ -66,7 +66,7 @@ export function toggle({label, hint, get, set}) {
   return {element: b, update};
 }
 
-// A text or a number that is typed; a wrong one is told by the service.
+// Makes a field for a text or a number; the service says what is wrong with it.
 export function entry({label, get, set, hint, unit, numeric}) {
   const id = new_id(), input = make("input", {id, type: "text", inputmode: numeric ? "decimal" : null, autocomplete: "off",
     spellcheck: "false", placeholder: hint});

@@ -21,8 +21,7 @@ const IN_METHOD = new Set(["algorithm", "phantom", "faces", "snap", "drop_points
   "sigma_v_mm_s", "observer"]);
 const OWN = new Set(["algorithm", "phantom", "soa", "burst", "waveform", "carrier", "attack", "release", "phase", "level_dbfs",
   "duration", "speed", "intensity_max"]); // the last is of recordings: what is drawn here is 0 to 1
-// Options that only one algorithm knows.
-const ONLY = {snap: "tactile-brush", drop_points: "tactile-brush", overlap: "tactile-brush", soa: "park2016", burst: "park2016"};
+const OF_BRUSH = new Set(["snap", "drop_points", "overlap"]); // no other algorithm knows them
 
 const ms = (v, digits = 0) => `${number_text(v * 1000, digits)} ms`;
 const percent = v => `${Math.round(100 * v)} %`;
@@ -159,7 +158,7 @@ function from_row(o) {
 }
 function others(tab) {
   const list = state.options.filter(o => !OWN.has(o.name) && (IN_METHOD.has(o.name) ? "method" : TABS[o.group] ?? "method") === tab
-    && (!ONLY[o.name] || ONLY[o.name] === algorithm()));
+    && (!OF_BRUSH.has(o.name) || algorithm() === "tactile-brush"));
   return list.length > 0 && more("More settings", list.some(o => current_take()?.options[o.name] !== undefined), ...list.map(from_row));
 }
 

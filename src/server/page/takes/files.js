@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Files that come in, and files that go out: read and written by the service, so that they are the tool's.
+// Files that are opened and saved; the service reads and writes them as the tool does.
 import {state, changed, current_take, say} from "../state.js";
 import {by_id, make, show_only_if, on_click, all_of, listen, set_text} from "../../../net/page/dom.js";
 import {call, is_connected, page_link} from "../service/connection.js";
@@ -20,16 +20,16 @@ const FIGURE = "it is a figure; open the stroke from which it was drawn (.toml)"
 
 async function open_files(files) {
   const faults = [];
-  let said = "";
+  let message = "";
   for (const file of files) {
     try {
       const r = await call("import", await what_to_import(file));
       const strokes = r.points.map((timed, i) => ({name: r.strokes[i].name, start_s: r.strokes[i].start_s, timed}));
       add_take(strokes, {name: file.name.replace(/\.[^.]*$/, "").slice(0, 60), origin: "file"});
-      said = r.warnings[0] ?? `Opened “${file.name}”`;
+      message = r.warnings[0] ?? `Opened “${file.name}”`;
     } catch (e) { faults.push(`“${file.name}” was not opened: ${fault_text(e)}.`); }
   }
-  if (said) say(said);
+  if (message) say(message);
   if (!faults.length) return;
   // After the changes of the takes, which end the faults of former ones.
   requestAnimationFrame(() => { state.fault = faults.join(" "); changed("link"); });

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Takes in the browser's storage and in other tabs: each change is written, and what is not written is said.
+// Takes in the browser's storage and in other tabs: writes each change, and says what is not written.
 import {state, changed, say, remember, remembered, take_by_id} from "../state.js";
 import {open_storage} from "./storage.js";
 import {listen} from "../../../net/page/dom.js";
@@ -59,10 +59,10 @@ async function open() {
   const kept = await opened.load(), current = await opened.get("current");
   tabs = await opened.get("tabs") ?? {};
   const steps = await opened.get(`history ${tab}`);
-  // From here on nothing is waited for: what is drawn meanwhile would be lost.
+  // No await from here on: a drawing made meanwhile would be lost.
   const takes = by_ids();
   let late = null;
-  // Takes in what a page could not write while it went away.
+  // Adds what a page could not write before it was closed.
   for (const [id, take, version] of JSON.parse(remembered("unwritten") || "[]")) {
     if (kept.find(t => t.id === id)?.version === take?.version) continue;
     known.set(id, version ?? undefined);
@@ -94,7 +94,7 @@ function history_values() {
   return {tabs, [`history ${tab}`]: undo_steps.history()};
 }
 
-// Somebody deleted what was kept: all takes are written again.
+// The storage was deleted: writes all takes again.
 function storage_lost() {
   storage = null;
   known.clear();
@@ -143,7 +143,7 @@ function set_fault(text) {
   if (before && !state.unkept.size) say(before === 1 ? "Kept again" : `Kept again, all ${before}`);
   if (text || before) changed("takes", "link");
 }
-// Says whether a take is kept, once that is known.
+// Says that a take is kept, or why not, once the write has ended.
 export async function say_if_kept(take) {
   await write_owed();
   if (!find_take(take.id)?.deleted) say(state.unkept.has(take.id) ? `Not kept: ${state.storage_fault}` : `Kept as “${take.name}”`);

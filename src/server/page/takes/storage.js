@@ -11,10 +11,10 @@
 // Calls on_gone when the browser or another page takes the storage away.
 export async function open_storage(name, on_gone = () => {}) {
   const database = await open_database(name);
-  // A page that wants to change or delete the database is not held up.
+  // Lets another page change or delete the database.
   database.onversionchange = () => { database.close(); on_gone(); };
   database.onclose = on_gone;
-  // Resolves to what `ask` returns, once all that it asks for is done. A page that goes away at once has done it nevertheless.
+  // Resolves to what `ask` returns, once its requests are done; they are done even if the page closes at once.
   const transact = (mode, ask) => new Promise((done, failed) => {
     const transaction = database.transaction(["takes", "values"], mode);
     const asked = ask(transaction.objectStore("takes"), transaction.objectStore("values"));

@@ -64,7 +64,7 @@ export function add_take(strokes, {name, origin, options} = {}) {
   edit([take], {current: take.id, stroke: 0});
   return take;
 }
-// Takes over a take that has changed, whether it is the one that is shown or not.
+// Replaces a take, whether it is shown or not.
 export const put_take = (take, same) => edit([take], {same});
 export function edit_take(change, same) {
   const take = current_take();
@@ -134,7 +134,7 @@ export const take_s = t => t ? total_s(t.strokes) : 0;
 
 // Makes what the service plays, plans and writes: the same for all three.
 export const make_request = (take, dbfs = level_dbfs()) => ({toml: strokes_toml(take.strokes, take.options), options: request_options(take, dbfs)});
-// A take's gain is there so that strokes that add up are not too strong.
+// A take's gain keeps strokes that add up within the level.
 export function request_options(take, dbfs) {
   const o = {outside: "clamp", ...take?.options};
   const gain_db = take?.gain_db ?? 0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The strokes in time: buttons below the canvas of the lanes, which takes pointers and draws the moment over them.
+// The strokes in time: buttons below the canvas of the lanes, which takes pointers and draws marks over them.
 import {state, changed, current_take, say} from "../state.js";
 import {by_id, make, show_pressed} from "../../../net/page/dom.js";
 import {put_stroke, edit_take, end_edit} from "../takes/takes.js";
