@@ -409,6 +409,21 @@ TEST_CASE("a mute that is refused once is retried, and the stream goes on")
     CHECK(r.end(next).state == state_kind::finished);
 }
 
+TEST_CASE("a mute that stays refused ends the stream")
+{
+    playing r;
+    r.line.refusals = always;
+    r.dac.suspend();
+    r.step();
+    r.wait(500 * ms);
+    CHECK_FALSE(r.link.amplifier.stuck);
+    r.wait(600 * ms);
+    CHECK(r.link.amplifier.stuck);
+    r.dac.wake(true);
+    end(r);
+    CHECK(r.feed.end().why == may_be_on);
+}
+
 TEST_CASE("a device lost while the line refuses: the reason names the line that may be on")
 {
     playing r;
