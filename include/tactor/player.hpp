@@ -203,9 +203,9 @@ class TACTOR_API player {
 public:
     /// Starts the stream with silence. `a` gives the limit of each channel.
     /// \throws error: not_available or runtime if the stream does not start; runtime if descriptors (it takes
-    ///         3 or 4) or threads run out; bad_input for options out of range, no sink or one whose setup()
-    ///         is empty, a tactor on a channel that the stream does not have, and a trigger whose descriptor
-    ///         is not open.
+    ///         3 or 4) or threads run out; bad_input for options out of range, no sink, a sink whose setup()
+    ///         has no rate, no channels, no period or a buffer below one period, a tactor on a channel that
+    ///         the stream does not have, and a trigger whose descriptor is not open.
     player(std::unique_ptr<sink> s, const array& a, const player_options& o = {}, player_lines lines = {});
     /// Calls stop() and closes the sink. When it returns, all strokes have been reported. This also holds in
     /// a handler: the destructor then calls the handlers for the remaining strokes itself.

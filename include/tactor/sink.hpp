@@ -92,6 +92,8 @@ public:
     sink& operator=(const sink&) = delete;
     virtual ~sink();
 
+    /// Returns the negotiated stream. Rate, channels and period are above 0, and the buffer has one period or
+    /// more.
     [[nodiscard]] virtual const stream_setup& setup() const noexcept = 0;
 
     /// Makes the stream ready to be filled: first, and after each xrun. Begins a new epoch.

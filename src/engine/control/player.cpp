@@ -66,7 +66,7 @@ engine::loop_options loop_options(const player_options& o, const engine::drive_b
     return l;
 }
 
-// Returns the options of a thread whose SCHED_FIFO priority differs so much from the audio thread's.
+// Returns the options of a thread. `higher`: difference from the audio thread's SCHED_FIFO priority.
 rt::thread_options thread_options(const player_options& o, const char* name, int higher, bool audio)
 {
     return {.name = name,
@@ -104,7 +104,7 @@ float to_gain(double level_db)
     return static_cast<float>(std::pow(10.0, level_db / 20.0));
 }
 
-// Returns the sink. \throws error (bad_input) for none, and for one whose stream cannot be.
+// Returns the sink. \throws error (bad_input) for null, and for a setup() without frames.
 std::unique_ptr<sink> checked(std::unique_ptr<sink> s)
 {
     if (s == nullptr)
@@ -113,9 +113,10 @@ std::unique_ptr<sink> checked(std::unique_ptr<sink> s)
     if (setup.rate == 0 || setup.channels == 0 || setup.period_frames == 0 ||
         setup.buffer_frames < setup.period_frames)
         throw error(error_kind::bad_input, "player",
-                    fmt::format("a sink of {} channels at {} Hz with {} frames a period and {} in its buffer",
-                                setup.channels, setup.rate, setup.period_frames, setup.buffer_frames),
-                    "setup() has all four above 0, and a buffer of one period or more");
+                    fmt::format("a sink of {} at {} Hz with {} a period and {} in its buffer",
+                                counted(setup.channels, "channel"), setup.rate,
+                                counted(setup.period_frames, "frame"), setup.buffer_frames),
+                    "let setup() give numbers above 0, and a buffer of one period or more");
     return s;
 }
 
