@@ -451,9 +451,14 @@ void feeder::begun(active& a, std::uint64_t frame)
     a.begun = true;
     a.base = frame;
     const clock_line clock = link_.clock.load();
+    // Needs its memory before a pulse is planned and is passed on last: without memory the report is handled
+    // again, and neither the line nor a handler must get a beginning twice.
+    const bool known = clock.valid() && frame >= clock.first;
+    std::list<stroke_start> start;
+    start.emplace_back(a.id, known ? std::optional(clock.time_at(frame)) : std::nullopt);
     if (pulses_ != nullptr && a.score)
-        for (const std::uint64_t start : a.score->starts())
-            pulses_->add(a.id, frame + start, clock);
+        for (const std::uint64_t offset : a.score->starts())
+            pulses_->add(a.id, frame + offset, clock);
     else if (pulses_ != nullptr)
         pulses_->add(a.id, frame, clock);
     if (a.due_ns && clock_.valid() && frame >= clock_.first)
@@ -462,9 +467,7 @@ void feeder::begun(active& a, std::uint64_t frame)
         a.late_s = static_cast<double>(frame - a.at) / a.score->rate();
     else if (!a.due_ns)
         a.late_s = 0.0;
-    // Comes last: without memory the report is handled again, and no handler must hear it twice.
-    const bool known = clock.valid() && frame >= clock.first;
-    beginnings_.emplace_back(a.id, known ? std::optional(clock.time_at(frame)) : std::nullopt);
+    beginnings_.splice(beginnings_.end(), start);
 }
 
 void feeder::over(const active& a, const report& r)
