@@ -57,6 +57,7 @@ void periods(benchmark::State& state, algorithm_kind method, double power_dbfs)
         while (link.reports.pop(r))
             feed.handle(r);
         ended += std::exchange(feed.reports(), {}).size();
+        feed.beginnings().clear();
         if (ended >= 64) {
             ended = 0;
             submit(feed, link, id, strokes);
