@@ -148,8 +148,8 @@ struct tap_summary {
 };
 
 /// Predicts where the observer feels a plan's bursts. Bursts without drives are not felt. `p` must be a plan
-/// of `s` on `a`. `who` is another person than the one for whom it was made. O(n log m) in n bursts and the m
-/// points of the stroke.
+/// of `s` on `a`. `who`: the person who feels them, if not the one for whom the plan was made. O(n log m) in
+/// n bursts and the m points of the stroke.
 /// \throws error (bad_input) as felt_places() does, for a continuous plan, for which the observer has no
 ///         prediction, for a plan that names a tactor that the array does not have, and as predict_percept()
 ///         does for a person.

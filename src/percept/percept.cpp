@@ -329,7 +329,7 @@ private:
     double largest_ = 0.0;
 };
 
-/// Sums of a plan while time passes.
+/// Sums of what is felt of a plan, sample by sample.
 struct followed_plan {
     detail::sounding now;
     running_speed speed = {};

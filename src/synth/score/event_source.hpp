@@ -13,8 +13,8 @@
 
 namespace tactor::synth {
 
-/// Walk through the events of a score in order of start frame. Memory does not grow with the length of the
-/// score. Control side, one thread at a time.
+/// Events of a score in order of start frame. Memory does not grow with the length of the score. Control
+/// side, one thread at a time.
 class event_source {
 public:
     explicit event_source(const score& s);

@@ -12,8 +12,7 @@
 
 namespace tactor::synth {
 
-/// Follows a score and keeps only the drives that sound. Control side, one thread at a
-/// time.
+/// Levels of the tactors along a score. Keeps only the drives that sound. Control side, one thread at a time.
 class sounding_now {
 public:
     explicit sounding_now(const score& s);

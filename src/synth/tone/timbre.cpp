@@ -12,8 +12,8 @@ namespace tactor::synth {
 
 namespace {
 
-/// Computes the turns of a carrier in n frames from the stroke's frame `first` on. Copies the part, which
-/// `out` then cannot change.
+/// Computes the turns of a carrier in n frames from the stroke's frame `first` on. Gets the part by value, so
+/// that the compiler knows that no write to `out` changes it.
 void turn(course_part p, double first, unsigned n, double* out) noexcept
 {
     const double from = first - p.start;
