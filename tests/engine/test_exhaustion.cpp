@@ -233,6 +233,30 @@ COUNTING_TEST_CASE("every call without memory reports it at any of its allocatio
     });
 }
 
+COUNTING_TEST_CASE("a stroke that finds no memory for its level or itself is not played")
+{
+    const score s = tone(0.1);
+    for (const start_at when : {start_at::frame(0), start_at::time(0), start_at::trigger()}) {
+        engine::link link;
+        engine::feeder feed(link, 24'000);
+        bool fits = false;
+        for (std::uint32_t granted = 0; !fits; ++granted) {
+            CAPTURE(granted);
+            REQUIRE(granted < 100);
+            const stroke_id id{granted + 1};
+            refuse_allocations(granted, UINT64_MAX);
+            try {
+                feed.submit(id, s, when, 0.5F);
+                fits = true;
+            } catch (const std::bad_alloc&) {
+                fits = false;
+            }
+            refuse_allocations(0, 0);
+            CHECK(feed.knows(id) == fits);
+        }
+    }
+}
+
 COUNTING_TEST_CASE("the player's thread waits for memory: every stroke ends and is reported once")
 {
     std::map<stroke_id, int> told;

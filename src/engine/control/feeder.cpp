@@ -340,19 +340,23 @@ bool feeder::knows(stroke_id id) const
            std::any_of(reports_.begin(), reports_.end(), [id](const auto& r) { return r.id == id; });
 }
 
-void feeder::submit(stroke_id id, const score& s, start_at start)
+void feeder::submit(stroke_id id, const score& s, start_at start, float gain)
 {
+    std::map<stroke_id, float> own; // takes its memory before the stroke can play
+    if (gain != 1.0F)
+        own.emplace(id, gain);
     switch (start.what()) {
     case start_kind::frame:
         waiting_.emplace(start.stream_frame(), task{id, s});
-        return;
+        break;
     case start_kind::time:
         timed_.emplace(start.time_ns(), task{id, s, start.time_ns()});
-        return;
+        break;
     case start_kind::trigger:
         armed_.emplace(id, task{id, s});
-        return;
+        break;
     }
+    gains_.merge(own);
 }
 
 void feeder::submit(stroke_id id, std::shared_ptr<live_voice> voice)

@@ -32,7 +32,8 @@ class feeder {
 public:
     feeder(link& l, std::uint64_t horizon_frames);
 
-    void submit(stroke_id id, const score& s, start_at start);
+    /// Submits a stroke. `gain`: factor of its amplitudes, as set_gain() sets it.
+    void submit(stroke_id id, const score& s, start_at start, float gain = 1.0F);
     /// Submits a live stroke, which begins with its first point. Keeps `voice` until it has ended.
     void submit(stroke_id id, std::shared_ptr<live_voice> voice);
 

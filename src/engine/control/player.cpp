@@ -155,9 +155,7 @@ stroke_id player::submit(const score& s, start_at start, double level_db)
     const std::lock_guard lock(impl_->mutex);
     impl_->check_open();
     const stroke_id id = impl_->next_id();
-    impl_->feed.submit(id, s, start);
-    if (level_db != 0.0)
-        impl_->feed.set_gain(id, gain);
+    impl_->feed.submit(id, s, start, gain);
     impl_->pump(); // if memory runs out here, the control thread does it later
     return id;
 }
