@@ -364,7 +364,7 @@ void player::impl::listen()
         detail::throw_caused(
             error(error_kind::bad_input, "trigger",
                   fmt::format("its descriptor {}: {}", fd, std::generic_category().message(code)),
-                  "edge_input::descriptor() is one that can be polled, and open as long as the input"),
+                  "keep edge_input::descriptor() open as long as the input lives"),
             code);
     control->watch(fd, [this] { return edges(); });
 }
