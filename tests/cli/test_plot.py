@@ -147,6 +147,15 @@ class Timing(PlotTest):
         self.check_bars("park2016-3")
         self.check_bars("park2016-3", "--duration", "0.3", "--array", ROOT / "examples/arrays/palm-measured.toml")
 
+    def test_no_line_strikes_through_a_number(self):
+        for speed in ("60", "400"):
+            svg = self.svg("park2016-1", "--speed", speed)
+            for name in ("soa", "duration"):
+                (text,) = svg.id(name).findall(NS + "text")
+                for line in svg.id(name).findall(NS + "line"):
+                    (x0, x1), (y0, y1) = (sorted((number(line, c + "1"), number(line, c + "2"))) for c in "xy")
+                    self.assertFalse(overlap(box(text), (x0, y0 - 0.1, x1, y1 + 0.1)), (speed, name))
+
     def test_an_all_silent_plan_is_drawn_too(self):
         self.write("s.toml", '[stroke]\npath = "M 0 20 H 40"\nintensity = 0\n')
         for view in ("both", "array", "wave"):
