@@ -109,7 +109,7 @@ class Tables(ExperimentTest):
             name = path.relative_to(self.dir)
             self.assertIn(f"tactor: warning: {name}: its last line was cut off: what is left of it is in {name}.cut-1\n", said)
             self.assertEqual(path.with_name(path.name + ".cut-1").read_bytes(), kept)
-        whole[str(practice.relative_to(self.dir / "study"))] = b"".join(lines[:-1])  # trials of that run have begun: no more practice
+        whole[str(practice.relative_to(self.dir / "study"))] = b"".join(lines[:-1])  # that run is over: no more practice
         self.assertEqual(self.without_cut(), whole)
         self.assertEqual((self.dir / "study/.bidsignore").read_text(), "*.cut-*\n")
         self.ok("analyze", "study")
