@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """tactor serve for other programs: its sockets, their permissions, the protocol, its limits, and its end."""
 import array
+import contextlib
 import json
 import math
 import os
@@ -172,6 +173,18 @@ class Sockets(ServeTest):
             self.check_error(c.error("hello", token="guess"), -32003)
         self.assertIsNone(c.next())
         s.client().ok("status")
+
+    def test_a_token_that_does_not_come_ends_the_connection(self):
+        token = self.write("token", "secret\n")
+        token.chmod(0o600)
+        s = self.serve("--tcp", "0", config=f'[serve]\ntoken_file = "{token}"\nmax_message_s = 0.2\n')
+        for said in (b"\n", b'{"jsonrpc":"2.0","id":1,"method":"hello"}\n'):
+            c = s.client(tcp=True)
+            with contextlib.suppress(BrokenPipeError, ConnectionResetError):
+                c.raw(said)
+            *_, last = iter(c.next, None)
+            self.check_error(last["error"], -32001, "max_message_s")
+            self.assertIn("token", last["error"]["data"]["why"])
 
 
 class Protocol(ServeTest):
@@ -360,6 +373,28 @@ class Limits(ServeTest):
         c = self.serve("--socket", self.dir / "slow.sock", config="[serve]\nmax_message_s = 0.2\n").client()
         self.check_error(c.next()["error"], -32001, "max_message_s")
         self.assertIsNone(c.next())
+
+    def test_places_are_limited_and_freed(self):
+        s = self.serve("--tcp", "0", config="[serve]\nmax_clients = 4\nkept_clients = 2\n")
+        for _ in range(2):  # a place that leaks shows in the second round
+            network = [s.client(tcp=True) for _ in range(2)]
+            for c in network:
+                c.ok("hello")
+            third = s.client(tcp=True)
+            refused = third.next()["error"]
+            self.check_error(refused, -32001, "max_clients")
+            self.assertIn("4 clients are the most, 2 of them on this machine's socket", refused["message"])
+            self.assertIsNone(third.next())
+            local = [s.client() for _ in range(2)]
+            for c in local:
+                self.assertEqual(c.ok("hello")["protocol"], "tactor/1")
+            self.check_error(s.client().next()["error"], -32001, "max_clients")
+            for c in network + local[1:]:
+                c.socket.shutdown(socket.SHUT_WR)
+                self.assertIsNone(c.next())
+            self.assertEqual(local[0].ok("status")["clients"], 1)
+            local[0].socket.shutdown(socket.SHUT_WR)
+            self.assertIsNone(local[0].next())
 
     def test_exhausted_descriptors_refuse_new_clients(self):
         s = self.serve("--http", "0")
