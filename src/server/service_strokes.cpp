@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <new>
+#include <string>
 #include <utility>
 
 #include <fmt/format.h>
@@ -377,6 +379,8 @@ void service::start_followers(stroke_record& first, std::int64_t at_ns)
             } catch (const error& e) {
                 if (!out->ended())
                     why = e.what();
+            } catch (const std::bad_alloc&) {
+                why = "there is not enough memory for it";
             }
         finish(r, {.state = state_kind::interrupted, .reason = reason_kind::failed, .why = why});
     }
