@@ -267,8 +267,12 @@ std::string file_bytes(const service_options& o, const file_kind& kind, const pl
         const plot::scene shown{o.plans.tactors, title, p.strokes, p.plans, nullptr, p.moved};
         return plot::to_bytes(plot::draw_figure(shown, {}), *kind.picture, plot::usual_dpi);
     }
-    if (kind.extension == "json")
-        return o.plan_text(p, most_file_bytes);
+    try {
+        if (kind.extension == "json")
+            return o.plan_text(p, most_file_bytes);
+    } catch (const std::bad_alloc&) {
+        too_large();
+    }
     const format_kind format = s.format.value_or(format_kind::float32);
     const double frames = p.total_s() * s.render.rate;
     if (frames * static_cast<double>(s.render.channels * sample_bytes(format)) > most_file_bytes)
@@ -346,8 +350,6 @@ std::string export_strokes(const service_options& o, const layout& faces, const 
         const std::string name = choose_name(params, strokes);
         return result_text(o, kind, name, s,
                            make_bytes(o, faces, kind, source, name, std::move(strokes), s, go_on));
-    } catch (const std::bad_alloc&) {
-        too_large();
     } catch (...) {
         throw fault_error(current_fault(source));
     }
