@@ -322,7 +322,8 @@ std::string make_bytes(const service_options& o, const layout& faces, const file
     return file_bytes(o, kind, p, s);
 }
 
-// Checks the parameters as far as no text must be read. \throws fault_error.
+// Checks the parameters as far as no text must be read. \throws fault_error, and what settle_options()
+// throws.
 void check_export(const planning& with, const json& params)
 {
     allow_only(params, {"stroke", "path", "points", "toml", "csv", "svg", "options", "fit", "as", "name"});
@@ -335,7 +336,7 @@ void check_export(const planning& with, const json& params)
 }
 
 // Returns the result as JSON on one line. Runs off the thread of the sockets. \throws fault_error, and what
-// `go_on` throws.
+// settle_options() and `go_on` throw.
 std::string export_strokes(const service_options& o, const layout& faces, const json& params,
                            const go_on_check& go_on)
 {

@@ -80,7 +80,7 @@ using go_on_check = std::function<void()>;
 void plan_strokes(const planning& with, const layout& faces, planned& p, const options::wishes& s,
                   const std::string& source, const go_on_check& go_on, bool picture = false);
 
-/// Reads and plans. \throws fault_error, and what `go_on` throws.
+/// Reads and plans. \throws fault_error, and what settle_options() and `go_on` throw.
 planned make_planned(
     const planning& with, const layout& faces, const net::json& params, const go_on_check& go_on = [] {});
 

@@ -15,7 +15,6 @@
 #include <string_view>
 
 #include <boost/asio/io_context.hpp>
-#include <boost/asio/ip/address.hpp>
 #include <boost/asio/ip/udp.hpp>
 
 #include "net/osc.hpp"
@@ -41,7 +40,7 @@ public:
     static constexpr std::size_t most_held = 64;
     /// Most messages that wait for the number of a stroke that is being planned or begun.
     static constexpr std::size_t most_waiting = 256;
-    /// Most errors that are sent in any second: who forges an address cannot bury it in them.
+    /// Most errors sent in any second: forged packets cannot flood the address that they name.
     static constexpr std::size_t most_errors = 10;
     static constexpr double farthest_s = 60.0;     ///< most that a time tag may be ahead
     static constexpr double subscription_s = 10.0; ///< a subscription must be renewed after it
