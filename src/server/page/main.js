@@ -65,7 +65,7 @@ on_click("zoom-in", () => zoom(1.3));
 on_click("zoom-out", () => zoom(1 / 1.3));
 on_click("zoom-all", look_at_all);
 // The keys of a headset and of a screen that is locked.
-for (const key of ["pause", "stop"]) navigator.mediaSession.setActionHandler(key, stop);
+for (const key of ["pause", "stop"]) navigator.mediaSession?.setActionHandler(key, stop);
 for (const name of SWITCHES) on_click(name, () => { state[name] = !state[name]; changed("playing", "curves"); });
 on_click("speaker", () => {
   if (!state.speaker) return silence_speaker();

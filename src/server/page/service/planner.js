@@ -25,7 +25,7 @@ function draw_so_far({before, tracks}) {
 }
 
 // Returns the plan of a request, with what is predicted to be felt: rows for each stroke.
-export async function predict(what, more = {}) {
+async function predict(what, more = {}) {
   const plan = await call("plan", {...what, view: "percept", ...more, ...state.observer && {observer: state.observer}});
   plan.felt_rows = plan.strokes.map(s => plan.felt.slice(s.felt_first, s.felt_first + s.felt_count));
   return plan;
