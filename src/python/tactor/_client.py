@@ -126,11 +126,11 @@ class RemoteStroke(Reply):
     def _take_event(self, event: dict[str, _t.Any]) -> None:
         if event["state"] == "started":
             return
-        self._client.strokes.pop(event["stroke"], None)
         self._open.discard(event["stroke"])
         if not self._open:
             self._end(Report(event["state"], event["reason"], event["frames"], event["started_s"], event["late_s"],
                              held_points=event["held_points"], outside_points=event["outside_points"]))
+        self._client.strokes.pop(event["stroke"], None)
 
 
 class RemoteLive(RemoteStroke):
@@ -237,9 +237,10 @@ class _Connection:
                     self._received(json.loads(line))
         except (OSError, ValueError):
             pass
-        self.gone = True
-        for reply in [*self.waiting.values(), *self.strokes.values()]:
-            reply._end(None, self._gone())
+        finally:  # also where a message lacks a part
+            self.gone = True
+            for reply in [*self.waiting.values(), *self.strokes.values()]:
+                reply._end(None, self._gone())
 
     def _received(self, message: dict[str, _t.Any]) -> None:
         if message.get("method") == "stroke":
@@ -247,13 +248,15 @@ class _Connection:
             if stroke is not None:
                 stroke._take_event(message["params"])
             return
-        reply = self.waiting.pop(message.get("id") or 0, None)
+        number = message.get("id") or 0
+        reply = self.waiting.get(number)
         if reply is None:
             return
         if "error" in message:
             reply._end(None, _refused(message["error"]))
         else:
             reply._take(message["result"])
+        self.waiting.pop(number, None)
 
     def close(self) -> None:
         if os.getpid() != self.owner:
