@@ -26,19 +26,33 @@ bool is_control(char32_t c)
     return false;
 }
 
+// Returns the character at i, and sets i behind it.
+char32_t next_character(std::string_view utf8, std::size_t& i)
+{
+    const auto lead = static_cast<unsigned char>(utf8[i++]);
+    char32_t c = lead < 0x80 ? lead : lead < 0xe0 ? lead & 0x1fU : lead < 0xf0 ? lead & 0x0fU : lead & 7U;
+    for (; i < utf8.size() && (static_cast<unsigned char>(utf8[i]) & 0xc0U) == 0x80U; ++i)
+        c = c << 6U | (static_cast<unsigned char>(utf8[i]) & 0x3fU);
+    return c;
+}
+
 } // namespace
+
+bool has_controls(std::string_view utf8)
+{
+    for (std::size_t i = 0; i < utf8.size();)
+        if (is_control(next_character(utf8, i)))
+            return true;
+    return false;
+}
 
 std::string label_fault(std::string_view utf8)
 {
+    if (has_controls(utf8))
+        return "has control characters";
     std::size_t count = 0;
-    for (std::size_t i = 0; i < utf8.size(); ++count) {
-        const auto lead = static_cast<unsigned char>(utf8[i++]);
-        char32_t c = lead < 0x80 ? lead : lead < 0xe0 ? lead & 0x1fU : lead < 0xf0 ? lead & 0x0fU : lead & 7U;
-        for (; i < utf8.size() && (static_cast<unsigned char>(utf8[i]) & 0xc0U) == 0x80U; ++i)
-            c = c << 6U | (static_cast<unsigned char>(utf8[i]) & 0x3fU);
-        if (is_control(c))
-            return "has control characters";
-    }
+    for (std::size_t i = 0; i < utf8.size(); ++count)
+        next_character(utf8, i);
     if (count == 0)
         return "is empty";
     return count > longest ? "has " + counted(count, "character") : "";

@@ -11,8 +11,12 @@ namespace tactor {
 /// Hint for a text that is no label.
 inline constexpr const char* label_hint = "1 to 40 characters, no control characters";
 
+/// Returns true for a text with control characters, or with characters that turn the direction of a line.
+/// `utf8` is valid.
+[[nodiscard]] bool has_controls(std::string_view utf8);
+
 /// Returns what is wrong with a label: "is empty", "has 41 characters", "has control characters"; empty:
-/// nothing. Characters that turn the direction of a line count as control characters. `utf8` is valid.
+/// nothing. `utf8` is valid.
 [[nodiscard]] std::string label_fault(std::string_view utf8);
 
 } // namespace tactor

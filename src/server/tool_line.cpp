@@ -9,6 +9,8 @@
 
 #include <fmt/format.h>
 
+#include "core/label.hpp"
+
 namespace tactor::server {
 namespace {
 
@@ -120,10 +122,10 @@ std::string quote_word(std::string_view word)
     return quoted + "'";
 }
 
-bool is_file_name(std::string_view name) noexcept
+bool is_file_name(std::string_view name)
 {
     return !name.empty() && name.size() <= longest && name.front() != '-' && name.front() != ' ' &&
-           name.back() != ' ' && std::all_of(name.begin(), name.end(), is_allowed);
+           name.back() != ' ' && std::all_of(name.begin(), name.end(), is_allowed) && !has_controls(name);
 }
 
 std::string make_file_name(std::string_view name)
@@ -134,6 +136,9 @@ std::string make_file_name(std::string_view name)
     std::string made(name.substr(0, end));
     std::replace_if(
         made.begin(), made.end(), [](char c) { return !is_allowed(c); }, '_');
+    if (has_controls(made)) // escapes and turned lines in a terminal
+        std::replace_if(
+            made.begin(), made.end(), [](char c) { return static_cast<unsigned char>(c) >= 0x80; }, '_');
     if (made.starts_with('-') || made.starts_with(' '))
         made.front() = '_';
     while (made.ends_with(' '))

@@ -33,8 +33,9 @@ std::string option_words(const options::wishes& s, options::place command, const
 std::string quote_word(std::string_view word);
 
 /// Returns true for 1 to 100 bytes of letters, digits, blanks, - and _, of which the first is no - and
-/// neither the first nor the last is a blank. Characters beyond ASCII are letters. `name` is valid UTF-8.
-bool is_file_name(std::string_view name) noexcept;
+/// neither the first nor the last is a blank. Characters beyond ASCII are letters, but for those that
+/// has_controls() finds. `name` is valid UTF-8.
+bool is_file_name(std::string_view name);
 
 /// Returns the name with _ for each character that is_file_name() does not allow; "stroke" for an empty one.
 std::string make_file_name(std::string_view name);

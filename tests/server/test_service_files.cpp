@@ -108,7 +108,8 @@ TEST_CASE("names of files are letters, digits, blanks, - and _")
         CHECK(is_file_name(name));
         CHECK(make_file_name(name) == name);
     }
-    for (const char* name : {"", "-a", " a", "a ", "a/b", "..", "a.b", "a\nb", "a\x7f"}) {
+    for (const char* name :
+         {"", "-a", " a", "a ", "a/b", "..", "a.b", "a\nb", "a\x7f", "a\u0085", "a\u202egpj"}) {
         CAPTURE(name);
         CHECK_FALSE(is_file_name(name));
         CHECK(is_file_name(make_file_name(name)));
