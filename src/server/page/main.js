@@ -3,7 +3,7 @@
 import {state, changed, on_change, current_take, current_stroke, is_simulated, say, remember, remembered, now_ms} from "./state.js";
 import {by_id, make, on_click, show_pressed, all_of, listen, set_text} from "../../net/page/dom.js";
 import {place_icons, forget_colours, is_dark} from "./look.js";
-import {connect, call, on_hello} from "./service/connection.js";
+import {connect, call, on_hello, page_link} from "./service/connection.js";
 import {undo, redo, can_undo, can_redo, steps_of_undo, restore_undo, rename_take} from "./takes/takes.js";
 import {open_takes, write_at_once} from "./takes/keeping.js";
 import {draw_frame, moves} from "./drawing/canvas.js";
@@ -167,6 +167,12 @@ on_hello(async h => {
 open_takes(steps_of_undo, restore_undo);
 connect(own_name());
 changed("takes", "take", "theme", "tool");
+
+// Browsers install the page from a secure address, as of this computer. The key of the link stays in it.
+document.head.append(make("link", {rel: "manifest", href: URL.createObjectURL(new Blob([JSON.stringify({
+  name: "tactor", short_name: "tactor", start_url: page_link(), display: "standalone", background_color: "#efeeea",
+  theme_color: "#f8f7f4", icons: [{src: document.querySelector('link[rel="icon"]').href, sizes: "any", type: "image/svg+xml"}],
+})], {type: "application/manifest+json"}))}));
 
 // For the console, and for tests.
 globalThis.tactor = {state, changed, place_in_page, rename: rename_take, view, lanes: full, label_boxes, lane_tactors, lane_height, felt_points};
