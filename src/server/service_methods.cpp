@@ -295,10 +295,13 @@ reply_json service::people() const
 // Notifies the subscribers of an event, except for one client. Those that are behind get nothing.
 void service::tell_subscribers(const std::string& event, reply_json params, client_number except)
 {
-    const std::string line = net::json_line(net::notification(event, std::move(params)));
+    std::string line;
     for (const auto& [number, c] : clients_)
-        if (number != except && c->events.contains(event) && c->link->waiting() < enough_waiting)
+        if (number != except && c->events.contains(event) && c->link->waiting() < enough_waiting) {
+            if (line.empty())
+                line = net::json_line(net::notification(event, std::move(params)));
             c->link->send(line);
+        }
 }
 
 // Shows the last point of a live stroke to others, as often as touch_step allows: now or later.
