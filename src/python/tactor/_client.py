@@ -27,6 +27,8 @@ class Reply(_Awaited[_t.Any]):
     Both give the result, or raise what the service refused it with: `InputError`, `DeviceError` or `StreamError` with its words.
     """
 
+    _what = "the request"
+
     def __init__(self, client: _Connection, convert: _t.Callable[[_t.Any], _t.Any] = lambda result: result) -> None:
         super().__init__()
         self._client = client
@@ -55,7 +57,7 @@ class Reply(_Awaited[_t.Any]):
         Error
             What the service answered, or that it has gone.
         """
-        return self._wait("the request", timeout, self._client.thread)
+        return self._wait(self._what, timeout, self._client.thread)
 
     def add_done_callback(self, callback: _t.Callable[[_t.Any], object]) -> None:
         """Calls `callback(reply)` once the answer is there: in the client's thread, or at once and here when it is already."""
@@ -78,6 +80,8 @@ _R = _t.TypeVar("_R", bound=Reply)
 
 class RemoteStroke(Reply):
     """A stroke that a service plays. Awaiting it, or `wait`, gives its `Report`; who cancels the awaiting cancels the stroke."""
+
+    _what = "the stroke"
 
     def __init__(self, client: _Connection) -> None:
         super().__init__(client)
