@@ -78,7 +78,7 @@ void note_input(const fs::path& file, owner_kind owner)
     const auto old = i.all.find(whole);
     if (old != i.all.end())
         owner = std::min(owner, old->second.owner); // once the user's, always the user's
-    // A process may live long: forgets what is gone whenever the number of files has doubled.
+    // A process may live long: forgets what is gone where the number of files reaches a power of two.
     else if (i.all.size() >= least_forgotten && std::has_single_bit(i.all.size()))
         std::erase_if(i.all, [](const auto& e) { return !e.second.is_still(e.first); });
     i.all[std::move(whole)] = {s.st_dev, s.st_ino, owner};

@@ -230,7 +230,7 @@ private:
             is_one(tag, {"defs", "symbol", "clipPath", "mask", "marker", "pattern", "filter",
                          "linearGradient", "radialGradient", "style", "script", "title", "desc", "metadata"});
         if (n.type() == pugi::node_element && tag.find(':') == std::string_view::npos && !silent &&
-            svg_tag(n.parent()) != "switch" && !is_hidden(n, svg_style(n)))
+            (tag == "svg" || svg_tag(n.parent()) != "switch") && !is_hidden(n, svg_style(n)))
             doc_.note(doc_.offset(n), tag, fmt::format("{} does not play", doc_.called(n)), ", nor",
                       ": only shapes do, and text made into paths");
     }
