@@ -97,9 +97,9 @@ void complete_command_line(lines& out, const CLI::App& command, const std::vecto
     } else if (typed.starts_with('-'))
         offer_options(out, command, typed);
     else
-        for (const CLI::Option* o :
+        for (const CLI::Option* argument :
              command.get_options([](const CLI::Option* x) { return x->get_positional(); }))
-            offer_values(out, o->get_single_name(), typed, "");
+            offer_values(out, argument->get_single_name(), typed, "");
 }
 
 } // namespace
