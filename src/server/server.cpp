@@ -256,7 +256,6 @@ public:
 private:
     void take(socket_type s, client_kind kind)
     {
-        boost::system::error_code ignored;
         const int yes = 1;
         if (kind == client_kind::network)
             ::setsockopt(s.native_handle(), IPPROTO_TCP, 1 /* TCP_NODELAY */, &yes, sizeof yes);

@@ -180,7 +180,7 @@ public:
     template <class... T>
     void put(const std::variant<T...>& v)
     {
-        std::visit([this](const auto& one) { put(one); }, v);
+        std::visit([this](const auto& one) { this->put(one); }, v);
     }
     template <class T>
     void put(const std::vector<T>& all)
