@@ -150,6 +150,7 @@ std::string task_text(const run_definition& r, bool simulated)
 
 constexpr std::int64_t second_ns = 1000000000;
 constexpr std::int64_t microsecond_ns = 1000;
+constexpr std::size_t fraction_from = 20; // in 2026-11-21T14:03:00.000000Z
 constexpr std::size_t fraction_digits = 6;
 
 } // namespace
@@ -354,12 +355,11 @@ std::string acq_time_text(std::int64_t utc_ns)
 std::optional<std::int64_t> acq_time_ns(const std::string& text)
 {
     std::tm utc{};
-    const char* point = ::strptime(text.c_str(), "%Y-%m-%dT%H:%M:%S.", &utc);
-    if (point == nullptr)
+    if (::strptime(text.c_str(), "%Y-%m-%dT%H:%M:%S.", &utc) != text.c_str() + fraction_from)
         return {};
-    const std::string_view digits(point, text.ends_with('Z') ? std::strlen(point) - 1 : std::strlen(point));
-    const auto microseconds = detail::number_in<std::uint32_t>(digits);
-    if (!microseconds || digits.size() != fraction_digits)
+    const std::string_view fraction = std::string_view(text).substr(fraction_from);
+    const auto microseconds = detail::number_in<std::uint32_t>(fraction.substr(0, fraction_digits));
+    if (!microseconds || fraction.size() != fraction_digits + (text.ends_with('Z') ? 1 : 0))
         return {};
     return ::timegm(&utc) * second_ns + *microseconds * microsecond_ns;
 }
