@@ -15,7 +15,8 @@
 namespace tactor::alsa {
 namespace {
 
-constexpr int most_definitions = 64; // of one PCM; also stops definitions that double at each step
+constexpr int most_definitions = 64;         // of one PCM; also stops definitions that double at each step
+constexpr std::size_t most_links = 1U << 19; // a table may connect each channel to each
 
 // These pass each channel on unchanged.
 constexpr std::array straight{"plug",  "linear", "lfloat", "copy",  "rate",    "mulaw", "alaw",
@@ -112,6 +113,8 @@ private:
     {
         if (!to || *to >= inner.size())
             return;
+        if ((links_ += inner[*to].size()) > most_links)
+            throw hidden{"a larger table than anyone has"};
         for (const auto& [output, further] : inner[*to])
             from[output] += gain * further;
     }
@@ -172,6 +175,7 @@ private:
 
     snd_config_t* top_;
     int definitions_ = 0;
+    std::size_t links_ = 0;
     unsigned next_end_ = first_end;
     std::string level_by_ = {};
     std::map<std::string, unsigned> devices_ = {}; ///< with the number of the first output of each
