@@ -272,6 +272,7 @@ private:
     client_number stopped_by_ = 0; ///< client of the last stop
     boost::asio::steady_timer touch_timer_;
     std::set<std::uint32_t> touches_due_ = {}; ///< live strokes whose last place others were not told
+    allowance touches_ = {};
     std::map<std::string, double> wrong_token_wait_s_ = {}; ///< by address; the last answer's
     std::list<boost::asio::steady_timer> late_answers_ = {};
     std::size_t jobs_ = 0;            ///< that wait to be planned or are

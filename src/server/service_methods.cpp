@@ -53,6 +53,7 @@ bool is_taken_name(std::string_view name)
 }
 
 constexpr std::chrono::nanoseconds touch_step{1'000'000'000 / 30}; // for each stroke
+constexpr double most_touches_per_s = 10'000.0;                    // to all clients together
 
 } // namespace
 
@@ -309,6 +310,10 @@ void service::touch(stroke_record& r)
 {
     const std::int64_t now = options_.now_ns();
     if (r.touch_told_ns && now - *r.touch_told_ns < touch_step.count())
+        return touch_later(r.number);
+    const auto listeners = std::count_if(clients_.begin(), clients_.end(),
+                                         [](const auto& c) { return c.second->events.contains("touches"); });
+    if (!touches_.take(static_cast<double>(listeners), most_touches_per_s, now))
         return touch_later(r.number);
     touches_due_.erase(r.number);
     r.touch_told_ns = now;

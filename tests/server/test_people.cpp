@@ -182,6 +182,24 @@ TEST_CASE("a client that is behind sees no touches and no stops until it has cau
     CHECK(messages(rig.looks, "stops").size() == 1);
 }
 
+TEST_CASE("many who draw before many share 10000 touches a second")
+{
+    touch_rig rig;
+    std::vector<service_rig::connected> crowd;
+    for (int i = 0; i < 99; ++i) {
+        crowd.push_back(rig.client());
+        rig.ok(crowd.back(), "subscribe", {{"events", {"touches"}}});
+    }
+    std::vector<json> strokes;
+    for (const auto& c : crowd)
+        for (int i = 0; i < 4; ++i)
+            strokes.push_back(rig.ok(c, "begin", {{"timeout_s", 86400}})["stroke"]);
+    const std::size_t before = rig.seen().size();
+    for (std::size_t i = 0; i < strokes.size(); ++i)
+        rig.ok(crowd[i / 4], "to", {{"stroke", strokes[i]}, {"x_mm", 20}, {"y_mm", 20}});
+    CHECK(rig.seen().size() - before == 100); // of 396, to 100 clients each
+}
+
 TEST_CASE("everybody who asks learns who stopped everything")
 {
     running_rig rig;
