@@ -113,6 +113,10 @@ void refuse_rivals(const py::dict& given)
     for (const option& o : options::all())
         if (!o.rival.empty() && o.name < o.rival && says(o.name) && says(o.rival))
             throw refusal(o, fmt::format("there is also {{{}}}", o.rival), "give one of them");
+    if (says("tukey_part") && says("envelope") &&
+        py::str(given["envelope"]).cast<std::string>().find(':') != std::string::npos)
+        throw refusal(*options::find("envelope"), "it has a part, and there is also {tukey_part}",
+                      "give the part once");
 }
 
 /// A phantom model that is a Python object: name, and weights(x_mm, y_mm, intensity).

@@ -104,7 +104,7 @@ def test_an_unknown_option_is_a_type_error(palm, stroke):
     (dict(sigma_mm=3), "sigma_mm"), (dict(sigma_v_mm_s=80, compensate="none"), "sigma_v_mm_s"),
     (dict(noise_seed=3), "noise_seed"), (dict(noise_seed=3, waveform="square"), "noise_seed"), (dict(texture="time"), "texture"),
     (dict(texture_mm=3), "texture_mm"), (dict(stevens_exponent=0.6), "stevens_exponent"), (dict(tukey_part=0.3), "tukey_part"),
-    (dict(envelope="tukey:x"), "envelope"), (dict(envelope="linear:0.3"), "envelope"),
+    (dict(envelope="tukey:x"), "envelope"), (dict(envelope="linear:0.3"), "envelope"), (dict(envelope="tukey:0.3", tukey_part=0.3), "envelope"),
     (dict(envelope="tukey:2"), "envelope"), (dict(envelope="tukey", attack=0.01), "attack"), (dict(envelope="tukey", ramp=0.01), "ramp"),
 ])
 def test_impossible_options_are_refused_by_their_name(palm, stroke, options, what):
