@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "core/label.hpp"
 
-#include <cstddef>
+#include <algorithm>
 
 #include "core/words.hpp"
 
@@ -37,6 +37,14 @@ char32_t next_character(std::string_view utf8, std::size_t& i)
 }
 
 } // namespace
+
+std::string_view first_characters(std::string_view utf8, std::size_t most_bytes)
+{
+    std::size_t end = std::min(utf8.size(), most_bytes);
+    while (end > 0 && end < utf8.size() && (static_cast<unsigned char>(utf8[end]) & 0xc0U) == 0x80U)
+        --end; // within a character
+    return utf8.substr(0, end);
+}
 
 bool has_controls(std::string_view utf8)
 {

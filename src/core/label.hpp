@@ -3,6 +3,7 @@
 /// Short texts by which somebody names a thing for others to read: a client, the place of an array.
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <string_view>
 
@@ -10,6 +11,9 @@ namespace tactor {
 
 /// Hint for a text that is no label.
 inline constexpr const char* label_hint = "1 to 40 characters, no control characters";
+
+/// Returns the first bytes of a text, at most so many and no part of a character.
+[[nodiscard]] std::string_view first_characters(std::string_view utf8, std::size_t most_bytes);
 
 /// Returns true for a text with control characters, or with characters that turn the direction of a line.
 /// `utf8` is valid.

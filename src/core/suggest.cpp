@@ -8,6 +8,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "core/label.hpp"
+
 namespace tactor::detail {
 namespace {
 
@@ -141,13 +143,10 @@ std::string preset_hint(std::string_view name, const std::vector<std::string>& p
 std::string quoted(std::string_view name)
 {
     constexpr std::size_t shown = 40;
-    std::size_t end = std::min(name.size(), shown);
-    while (end > 0 && end < name.size() && (static_cast<unsigned char>(name[end]) & 0xc0U) == 0x80)
-        --end; // within a character of UTF-8
-    std::string t(name.substr(0, end));
+    std::string t(first_characters(name, shown));
     std::replace_if(
         t.begin(), t.end(), [](unsigned char c) { return c < 0x20 || c == 0x7f; }, '?');
-    return fmt::format("'{}{}'", t, end < name.size() ? "..." : "");
+    return fmt::format("'{}{}'", t, t.size() < name.size() ? "..." : "");
 }
 
 } // namespace tactor::detail

@@ -124,16 +124,12 @@ std::string quote_word(std::string_view word)
 
 bool is_file_name(std::string_view name)
 {
-    return !name.empty() && name.size() <= longest && name.front() != '-' && name.front() != ' ' &&
-           name.back() != ' ' && std::all_of(name.begin(), name.end(), is_allowed) && !has_controls(name);
+    return make_file_name(name) == name;
 }
 
 std::string make_file_name(std::string_view name)
 {
-    std::size_t end = std::min(name.size(), longest);
-    while (end > 0 && end < name.size() && (static_cast<unsigned char>(name[end]) & 0xC0U) == 0x80)
-        --end; // within a character of UTF-8
-    std::string made(name.substr(0, end));
+    std::string made(first_characters(name, longest));
     std::replace_if(
         made.begin(), made.end(), [](char c) { return !is_allowed(c); }, '_');
     if (has_controls(made)) // escapes and turned lines in a terminal
