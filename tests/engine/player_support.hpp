@@ -4,12 +4,14 @@
 #pragma once
 
 #include <cstddef>
+#include <string>
 #include <utility>
 #include <vector>
 
 #include <doctest/doctest.h>
 
 #include <tactor/alsa.hpp>
+#include <tactor/error.hpp>
 #include <tactor/player.hpp>
 
 #include "clock_runner.hpp"
@@ -48,6 +50,20 @@ struct clocked_player : clock_holder, player {
     {
     }
 };
+
+/// Plays a score on a stream that fails before or after it begins. Returns the reason.
+inline std::string play_to_failure(player& p, const score& s)
+{
+    try {
+        const auto report = p.wait(p.submit(s));
+        REQUIRE(report);
+        CHECK(report->state == state_kind::interrupted);
+        return report->why;
+    } catch (const error& e) {
+        CHECK(e.kind() == error_kind::runtime);
+        return e.what();
+    }
+}
 
 /// Returns n bytes from `from` on.
 inline std::vector<std::byte> part(const std::vector<std::byte>& all, std::size_t from, std::size_t n)
