@@ -27,7 +27,7 @@ function show(takes, current = state.current) {
   const at = Math.max(0, state.takes.findIndex(t => t.id === current));
   state.takes = all.filter(t => !t.deleted);
   state.bin = all.filter(t => t.deleted);
-  // Where the take is gone, the one at its place in the list follows.
+  // Shows the take that stood behind one that is gone.
   const found = current && (take_by_id(current) ?? state.takes[Math.min(at, state.takes.length - 1)]);
   Object.assign(state, {current: found?.id ?? null, stroke: Math.min(state.stroke, Math.max(0, (found?.strokes.length ?? 1) - 1))});
   changed("takes", "take");
