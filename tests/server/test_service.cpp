@@ -241,6 +241,7 @@ TEST_CASE("stop holds for what is being planned, too")
     const json end = rig.find_end(c, n);
     CHECK(end["state"] == "cancelled");
     CHECK(end["frames"] == 0);
+    CHECK(rig.ok(c, "play", stroke)["stroke"] == n.get<unsigned>() + 1);
 }
 
 TEST_CASE("stop ends all strokes of an armed file, also when the first has begun unseen")
