@@ -15,6 +15,7 @@ from websocket import TEXT, Peer
 
 PROGRAM = shutil.which("chromium")
 AXE = os.environ.get("TACTOR_AXE")  # axe.min.js
+MIDDLE = "(r => [r.x + r.width / 2, r.y + r.height / 2])(document.querySelector(%s).getBoundingClientRect())"
 
 
 class Browser:
@@ -38,12 +39,17 @@ class Browser:
         self.last = 0
         self.events = []
 
-    def call(self, method, session=None, **params):
+    def send(self, method, session=None, **params):
+        """Sends a command, and waits for nothing."""
         self.last += 1
         self.channel.frame(TEXT, json.dumps({"id": self.last, "method": method, "params": params}
                                      | ({"sessionId": session} if session else {})).encode())
+
+    def call(self, method, session=None, **params):
+        self.send(method, session, **params)
         while (m := json.loads(self.channel.text())).get("id") != self.last:
-            self.events.append(m)
+            if "method" in m:
+                self.events.append(m)
         assert "error" not in m, (method, m)
         return m["result"]
 
@@ -119,19 +125,21 @@ class Page:
             e for e in entries if e["level"] == "error" and e["source"] != "network"]
 
     def middle(self, selector):
-        return self.value(f"""(() => {{ const r = document.querySelector({json.dumps(selector)}).getBoundingClientRect();
-            return [r.x + r.width / 2, r.y + r.height / 2]; }})()""")
+        return self.value(MIDDLE % json.dumps(selector))
 
-    def mouse(self, kind, x, y):
-        self.call("Input.dispatchMouseEvent", type=kind, x=x, y=y, button="left", buttons=0 if kind == "mouseReleased" else 1,
-                  clickCount=1)
+    def mouse(self, kind, x, y, send=None):
+        (send or self.browser.call)("Input.dispatchMouseEvent", self.session, type=kind, x=x, y=y, button="left",
+                                    buttons=0 if kind == "mouseReleased" else 1, clickCount=1)
 
     def tap(self, x, y):
-        self.mouse("mousePressed", x, y)
+        """Presses and releases at once: what is held for half a second is no tap."""
+        self.mouse("mousePressed", x, y, self.browser.send)
         self.mouse("mouseReleased", x, y)
 
     def click(self, selector):
-        self.tap(*self.middle(selector))
+        """Clicks an element, once it is enabled."""
+        element = json.dumps(selector)
+        self.tap(*self.until(f"!document.querySelector({element}).disabled && {MIDDLE % element}"))
 
     def open_popover(self, button, popover):
         self.click(button)

@@ -97,7 +97,7 @@ class Compare(StudioTest):
         since = len(p.browser.events)
         p.value("document.querySelector('#study [name=question]').value = 'Which \"one\"?'")
         p.click("#study button")
-        while sum(e["method"] == "Browser.downloadProgress" and e["params"]["state"] == "completed" for e in p.browser.events[since:]) < 2:
+        while sum(e.get("method") == "Browser.downloadProgress" and e["params"]["state"] == "completed" for e in p.browser.events[since:]) < 2:
             p.browser.events.append(json.loads(p.browser.channel.text()))
         self.assertEqual(p.value(TEXT.format("#study-command")), "tactor experiment two-methods.toml --participant P01 -o results")
         r = self.run_tool("experiment", folder / "two-methods.toml", "--dry-run", "--format", "json")
