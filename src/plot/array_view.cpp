@@ -15,7 +15,7 @@
 #include "plot/draw/array_frame.hpp"
 #include "plot/draw/axes.hpp"
 #include "plot/draw/timeline.hpp"
-#include "plot/paint/text.hpp"
+#include "plot/paint/canvas.hpp"
 
 namespace tactor::plot {
 namespace {

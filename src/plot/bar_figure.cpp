@@ -8,7 +8,7 @@
 
 #include "plot/draw/axes.hpp"
 #include "plot/figure.hpp"
-#include "plot/paint/text.hpp"
+#include "plot/paint/canvas.hpp"
 
 namespace tactor::plot {
 namespace {

@@ -12,7 +12,7 @@
 #include "core/words.hpp"
 #include "plot/draw/array_frame.hpp"
 #include "plot/draw/axes.hpp"
-#include "plot/paint/text.hpp"
+#include "plot/paint/canvas.hpp"
 
 namespace tactor::plot {
 namespace {

@@ -14,7 +14,7 @@
 #include "plot/draw/axes.hpp"
 #include "plot/draw/lanes.hpp"
 #include "plot/draw/timeline.hpp"
-#include "plot/paint/text.hpp"
+#include "plot/paint/canvas.hpp"
 
 namespace tactor::plot {
 namespace {

@@ -17,7 +17,7 @@
 
 #include "plot/draw/axes.hpp"
 #include "plot/draw/lanes.hpp"
-#include "plot/paint/text.hpp"
+#include "plot/paint/canvas.hpp"
 #include "synth/mix/sample_ranges.hpp"
 
 namespace tactor::plot {

@@ -7,7 +7,7 @@
 #include <doctest/doctest.h>
 
 #include "plot/draw/array_frame.hpp"
-#include "plot/paint/text.hpp"
+#include "plot/paint/canvas.hpp"
 
 namespace labels_test {
 

@@ -11,7 +11,7 @@
 #include <tactor/phantom.hpp>
 
 #include "plot/draw/axes.hpp"
-#include "plot/paint/text.hpp"
+#include "plot/paint/canvas.hpp"
 
 namespace tactor::plot {
 namespace {

@@ -2,7 +2,6 @@
 #include "plot/draw/axes.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <optional>
 #include <string>
@@ -10,13 +9,12 @@
 
 #include <fmt/format.h>
 
-#include "plot/paint/text.hpp"
+#include "plot/paint/canvas.hpp"
 
 namespace tactor::plot {
 namespace {
 
 constexpr double tick_length = 2.5;
-
 constexpr double legend_row = 9.0;
 constexpr double sample_length = 14.0;
 constexpr double left_column = 30.0; // for the labels of y, pt
@@ -56,8 +54,6 @@ double draw_line_legend(canvas* c, const std::vector<series>& lines, double x, d
     double at = x;
     double row = y;
     for (const series& s : lines) {
-        if (s.name.empty())
-            continue;
         const double need = sample_length + 3.0 + text_width(s.name, small_text);
         if (at > x && at + need > x + width) {
             at = x;
@@ -101,11 +97,6 @@ std::optional<segment> clip_segment(spot a, spot b, box w)
         !cut(dy, w.bottom() - a.y))
         return {};
     return segment{{a.x + enter * dx, a.y + enter * dy}, {a.x + leave * dx, a.y + leave * dy}};
-}
-
-bool finite(spot s) noexcept
-{
-    return std::isfinite(s.x) && std::isfinite(s.y);
 }
 
 // Returns ticks whose labels do not touch along a horizontal axis.
@@ -193,7 +184,7 @@ void draw_vertical_axis(canvas& c, const scale& y, const ticks& t, box inside, c
     for (const double v : t.at) {
         c.line({inside.x, y(v)}, {inside.right(), y(v)}, {.stroke = light_grey, .width = 0.4},
                {.kind = "grid"});
-        c.line({inside.x - 2.5, y(v)}, {inside.x, y(v)}, thin, {.kind = "tick"});
+        c.line({inside.x - tick_length, y(v)}, {inside.x, y(v)}, thin, {.kind = "tick"});
         c.text({inside.x - 4.0, y(v) + cap_height(small_text) / 2.0}, t.label(v),
                {.size = small_text, .anchor = align::end}, {.kind = "tick-label"});
     }
@@ -207,8 +198,9 @@ std::vector<std::vector<spot>> clip(const std::vector<spot>& line, box b)
     std::vector<std::vector<spot>> parts;
     bool joined = false;
     for (std::size_t i = 1; i < line.size(); ++i) {
-        const auto inside =
-            finite(line[i - 1]) && finite(line[i]) ? clip_segment(line[i - 1], line[i], b) : std::nullopt;
+        const auto inside = std::isfinite(line[i - 1].y) && std::isfinite(line[i].y)
+                                ? clip_segment(line[i - 1], line[i], b)
+                                : std::nullopt;
         if (!inside) {
             joined = false;
             continue;
@@ -271,24 +263,20 @@ box draw_chart(canvas& c, const chart& ch)
     draw_vertical_axis(c, y, nice_ticks(y.from, y.to, most), inside, ch.y_title,
                        ch.where.x + cap_height(label_text));
     draw_horizontal_axis(c, x, inside.bottom(), inside.y, "time (s)");
+    const auto on_page = [&](std::vector<spot> line) {
+        for (spot& v : line)
+            v = {x(v.x), y(v.y)};
+        return thin_out(line);
+    };
     for (const chart_band& b : ch.bands) {
-        std::array<std::vector<spot>, 2> edge;
-        for (const spot& v : b.low)
-            edge[0].push_back({x(v.x), y(v.y)});
-        for (const spot& v : b.high)
-            edge[1].push_back({x(v.x), y(v.y)});
-        std::vector<spot> round = simplify(thin_out(edge[0]), 0.05);
-        const std::vector<spot> back = simplify(thin_out(edge[1]), 0.05);
+        std::vector<spot> round = simplify(on_page(b.low), 0.05);
+        const std::vector<spot> back = simplify(on_page(b.high), 0.05);
         round.insert(round.end(), back.rbegin(), back.rend());
         c.poly(std::move(round), true, b.look, {.kind = "band", .data = {{"name", b.name}}});
     }
     for (const series& s : ch.lines) {
         const group one(c, {.kind = "series", .data = {{"name", s.name}}});
-        std::vector<spot> line;
-        line.reserve(s.values.size());
-        for (const spot& v : s.values)
-            line.push_back({x(v.x), y(v.y)});
-        for (std::vector<spot>& part : clip(thin_out(line), inside))
+        for (const std::vector<spot>& part : clip(on_page(s.values), inside))
             c.poly(simplify(part, 0.02), false, s.look, {.kind = "curve"});
     }
     draw_line_legend(&c, ch.lines, inside.x, ch.where.y, inside.width);
@@ -322,11 +310,11 @@ double draw_notes(canvas& c, const std::vector<std::string>& notes, box where, s
 
 double draw_heading(canvas& c, const std::string& title, std::string_view text, box where)
 {
-    const double title_height = cap_height(title_size);
-    c.text({where.x, where.y + title_height}, shorten(title, title_size, where.width, true),
-           {.size = title_size, .bold = true});
-    where.y += title_height + 2.5;
-    return title_height + draw_words(c, text, where, 3, "facts");
+    constexpr double size = 8.0;
+    c.text({where.x, where.y + cap_height(size)}, shorten(title, size, where.width, true),
+           {.size = size, .bold = true});
+    where.y += cap_height(size) + 2.5;
+    return cap_height(size) + draw_words(c, text, where, 3, "facts");
 }
 
 } // namespace tactor::plot

@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// A picture as a list of elements, in points (1/72 inch), y down. to_svg(), to_png() and to_pdf()
-/// (output.hpp) write the same picture.
+/// A picture as a list of elements, in points (1/72 inch), y down; its colours, and the width of its texts.
+/// to_svg(), to_png() and to_pdf() (output.hpp) write the same picture.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <variant>
 #include <vector>
@@ -72,7 +73,7 @@ struct box {
 };
 
 inline constexpr double pt_per_mm = 72.0 / 25.4;
-
+inline constexpr double margin = 5.0;       ///< of every figure, pt
 inline constexpr double loop_pause_s = 0.8; ///< of an animated picture, before it begins again
 
 struct style {
@@ -193,5 +194,30 @@ public:
 private:
     canvas& canvas_;
 };
+
+/// The typeface of all pictures, in every format.
+inline constexpr const char* typeface = "DejaVu Sans";
+
+/// Returns the width in pt, from a table of that typeface: layout must not depend on the fonts of a machine.
+double text_width(std::string_view utf8, double size, bool bold = false) noexcept;
+
+/// Returns the height of digits and capitals, pt.
+constexpr double cap_height(double size) noexcept
+{
+    return 0.73 * size;
+}
+
+/// Returns valid UTF-8 without control characters: U+FFFD replaces bytes that XML or Cairo refuse.
+std::string clean(std::string_view text);
+
+/// Returns the text, or its beginning and an ellipsis if it is wider than `width` pt.
+std::string shorten(std::string_view text, double size, double width, bool bold = false);
+
+/// Returns lines of at most `width` pt, broken between words. Shortens the last of `most_lines`, and words
+/// that are wider.
+std::vector<std::string> wrap(std::string_view text, double size, double width, std::size_t most_lines);
+
+/// Formats a number with at most `digits` significant digits and no trailing zeros, the same in every locale.
+std::string number(double v, int digits = 4);
 
 } // namespace tactor::plot

@@ -12,7 +12,6 @@
 
 #include "core/words.hpp"
 #include "files/output_file.hpp"
-#include "plot/paint/text.hpp"
 
 namespace tactor::plot {
 namespace {

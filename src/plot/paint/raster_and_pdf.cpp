@@ -14,7 +14,6 @@
 #include <tactor/error.hpp>
 
 #include "plot/paint/output.hpp"
-#include "plot/paint/text.hpp"
 
 namespace tactor::plot {
 namespace {

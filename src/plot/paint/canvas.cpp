@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-#include "plot/paint/text.hpp"
+#include "plot/paint/canvas.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -12,6 +13,16 @@
 
 namespace tactor::plot {
 namespace {
+
+constexpr std::array anchors{colour{68, 1, 84},    colour{71, 44, 122},  colour{59, 81, 139},
+                             colour{44, 113, 142}, colour{33, 144, 141}, colour{39, 173, 129},
+                             colour{92, 200, 99},  colour{170, 220, 50}, colour{253, 231, 37}};
+constexpr double lightest = 0.92;
+
+std::uint8_t mixed(std::uint8_t a, std::uint8_t b, double part) noexcept
+{
+    return static_cast<std::uint8_t>(std::lround(a + (b - a) * part));
+}
 
 // Advances of ' ' ... '~' in 1/1000 of the size.
 constexpr std::array<std::uint16_t, 95> advances{
@@ -35,6 +46,25 @@ bool printable(std::uint32_t v) noexcept
 }
 
 } // namespace
+
+colour ordered(double u) noexcept
+{
+    const double at = (std::isfinite(u) ? std::clamp(u, 0.0, 1.0) : 0.0) * lightest * (anchors.size() - 1);
+    const auto i = std::min(static_cast<std::size_t>(at), anchors.size() - 2);
+    const double part = at - static_cast<double>(i);
+    const colour a = anchors[i];
+    const colour b = anchors[i + 1];
+    return {mixed(a.r, b.r, part), mixed(a.g, b.g, part), mixed(a.b, b.b, part)};
+}
+
+colour stroke_colour(std::size_t n) noexcept
+{
+    constexpr std::array<colour, stroke_colours> all{
+        colour{26, 133, 255}, colour{230, 159, 0},   colour{51, 34, 136}, colour{34, 136, 51},
+        colour{170, 68, 153}, colour{102, 204, 238}, colour{102, 51, 51}, colour{119, 119, 119},
+        colour{0, 0, 0},      colour{187, 187, 187}};
+    return all[n % all.size()];
+}
 
 double text_width(std::string_view utf8, double size, bool bold) noexcept
 {
@@ -67,8 +97,8 @@ std::string clean(std::string_view text)
 
 std::string shorten(std::string_view text, double size, double width, bool bold)
 {
-    std::string all = clean(text.substr(0, 4096));
-    if (text.size() <= 4096 && text_width(all, size, bold) <= width)
+    std::string all = clean(text);
+    if (text_width(all, size, bold) <= width)
         return all;
     const double space = width - text_width(ellipsis, size, bold);
     std::string out;
@@ -103,9 +133,7 @@ std::vector<std::string> wrap(std::string_view text, double size, double width, 
 
 std::string number(double v, int digits)
 {
-    if (v == 0.0 || !std::isfinite(v))
-        return v == 0.0 ? "0" : "-";
-    return fmt::format("{:.{}g}", v, digits);
+    return fmt::format("{:.{}g}", v + 0.0, digits); // -0 becomes 0
 }
 
 } // namespace tactor::plot
