@@ -12,7 +12,6 @@
 #include "core/words.hpp"
 #include "plot/draw/array_frame.hpp"
 #include "plot/draw/axes.hpp"
-#include "plot/draw/lanes.hpp"
 #include "plot/draw/timeline.hpp"
 #include "plot/paint/canvas.hpp"
 #include "plot/sound_text.hpp"

@@ -16,7 +16,7 @@
 #include <tactor/render.hpp>
 
 #include "plot/draw/axes.hpp"
-#include "plot/draw/lanes.hpp"
+#include "plot/draw/timeline.hpp"
 #include "plot/paint/canvas.hpp"
 #include "synth/mix/sample_ranges.hpp"
 

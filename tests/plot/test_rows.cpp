@@ -7,7 +7,7 @@
 
 #include <tactor/array.hpp>
 
-#include "plot/draw/lanes.hpp"
+#include "plot/draw/timeline.hpp"
 
 namespace rows_test {
 
@@ -23,7 +23,9 @@ lanes make_rows(unsigned n, double space)
         a.tactors.push_back({.position = {10.0 * i, 0.0}, .channel = i});
     std::vector<unsigned> playing(n);
     std::iota(playing.begin(), playing.end(), 0U);
-    return make_lanes(a, playing, space);
+    lanes l = make_lanes(a, playing, space);
+    l.fit(space);
+    return l;
 }
 
 std::size_t labels(const lanes& l, std::string& said)

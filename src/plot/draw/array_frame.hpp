@@ -11,7 +11,6 @@
 #include <tactor/array.hpp>
 #include <tactor/stroke.hpp>
 
-#include "plot/draw/timeline.hpp"
 #include "plot/paint/canvas.hpp"
 
 namespace tactor::plot {
