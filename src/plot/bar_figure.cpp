@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "plot/bar_figure.hpp"
+#include "plot/figure.hpp"
 
 #include <algorithm>
 #include <array>
@@ -7,7 +7,6 @@
 #include <fmt/format.h>
 
 #include "plot/draw/axes.hpp"
-#include "plot/figure.hpp"
 #include "plot/paint/canvas.hpp"
 
 namespace tactor::plot {
@@ -31,8 +30,8 @@ colour fill_colour(std::size_t i, std::size_t count)
 
 void draw_error(canvas& c, const bar& b, const scale& y, double x, double cap)
 {
-    const double top = y(*b.height + *b.error);
-    const double low = y(*b.height - *b.error);
+    const double top = y(b.height + *b.error);
+    const double low = y(b.height - *b.error);
     const style s{.stroke = ink, .width = 0.7};
     c.line({x, low}, {x, top}, s, {.kind = "error"});
     c.line({x - cap, top}, {x + cap, top}, s);
@@ -58,15 +57,14 @@ void for_each_bar(const bar_panel& p, box inside, Draw&& draw)
     for (std::size_t g = 0; g < p.groups.size(); ++g)
         for (std::size_t i = 0; i < p.series.size(); ++i) {
             const double left = inside.x + width * (static_cast<double>(g) + (1.0 - bars_share) / 2.0);
-            if (p.series[i].bars[g].height)
-                draw(g, i, left + each * static_cast<double>(i), each);
+            draw(g, i, left + each * static_cast<double>(i), each);
         }
 }
 
 void draw_bars(canvas& c, const bar_panel& p, const scale& y, box inside)
 {
     for_each_bar(p, inside, [&](std::size_t g, std::size_t i, double x, double width) {
-        const double height = *p.series[i].bars[g].height;
+        const double height = p.series[i].bars[g].height;
         const double top = y(std::clamp(height, p.y_from, p.y_to));
         c.rect({x, top, width, y(p.y_from) - top},
                {.fill = fill_colour(i, p.series.size()), .stroke = ink, .width = 0.5},

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// Whole pictures: of strokes with their views, and of predicted percepts.
+/// Whole pictures: of strokes with their views, of predicted percepts, and of bars; what they say of a plan.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
 #include <tactor/array.hpp>
+#include <tactor/plan.hpp>
 
 #include "percept/compare.hpp"
 #include "plot/draw/timeline.hpp"
@@ -46,6 +48,49 @@ canvas draw_figure(const scene& s, const figure_options& o);
 /// for a width out of bounds.
 canvas draw_comparison(const array& a, const detail::comparison& all, const std::string& title,
                        double width_mm);
+
+struct bar {
+    double height = 0.0;
+    std::optional<double> error = {}; ///< half the length of the error bar
+    std::vector<double> values = {};  ///< values with the height as their mean: a dot each
+};
+
+/// Bars of one look: a bar in each group.
+struct bar_series {
+    std::string name = {}; ///< empty: not in the legend
+    std::vector<bar> bars = {};
+};
+
+struct bar_panel {
+    std::string title = {};
+    std::string y_title = {};
+    double y_from = 0.0;
+    double y_to = 1.0;                ///< above y_from; bars end here
+    std::optional<double> level = {}; ///< a dashed line, such as chance
+    std::vector<std::string> groups = {};
+    std::vector<bar_series> series = {}; ///< each has as many bars as there are groups
+};
+
+struct bar_figure {
+    std::string title = {};
+    bool heading = true; ///< true: the title is above the picture
+    double width_mm = 170.0;
+    std::string note = {};   ///< under the picture
+    std::string across = {}; ///< text across each panel, such as "simulated"
+    std::vector<bar_panel> panels = {};
+};
+
+/// Draws the panels, two beside each other from 120 mm width on. Each panel is an SVG group of kind "bars"
+/// with data-title, data-y0 and data-y-scale: page = y0 + scale * value; each bar is of kind "bar", its error
+/// bar of kind "error", a dot of kind "value".
+canvas draw_bar_figure(const bar_figure& f);
+
+/// Returns the vibration, for captions and listings: "250 Hz" (a sine), "square of 60 to 120 Hz", "noise of
+/// 60 to 400 Hz", "brush.wav along the path"; with ", AM of 30 Hz" if it is modulated.
+std::string describe_sound(const plan& p);
+
+/// Returns the phantom model, and its faces if they are not Delaunay's: "inverse-distance (faces nearest)".
+std::string describe_phantom(const plan& p);
 
 /// Most bursts that are drawn; if there are more, or they would overlap, every n-th is drawn.
 inline constexpr std::size_t most_shown_bursts = 120;

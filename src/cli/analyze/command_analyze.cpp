@@ -13,7 +13,7 @@
 #include "cli/commands.hpp"
 #include "cli/picture_options.hpp"
 #include "cli/settings.hpp"
-#include "plot/bar_figure.hpp"
+#include "plot/figure.hpp"
 #include "plot/paint/output.hpp"
 #include "session/pipes.hpp"
 
@@ -31,8 +31,8 @@ plot::bar_series make_bars(const std::string& name, const study::by_motion& b)
 {
     plot::bar_series s{name};
     for (std::size_t m = 0; m < b.motion.size(); ++m)
-        s.bars.push_back({b.motion[m].mean, b.motion[m].se, b.motion_values[m]});
-    s.bars.push_back({b.all.mean, b.all.se, b.all_values});
+        s.bars.push_back({*b.motion[m].mean, b.motion[m].se, b.motion_values[m]});
+    s.bars.push_back({*b.all.mean, b.all.se, b.all_values});
     return s;
 }
 

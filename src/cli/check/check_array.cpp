@@ -11,7 +11,7 @@
 #include <fmt/ranges.h>
 
 #include "core/words.hpp"
-#include "plot/sound_text.hpp"
+#include "plot/figure.hpp"
 #include "session/device.hpp"
 #include "session/environment.hpp"
 #include "session/walk.hpp"

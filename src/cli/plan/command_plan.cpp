@@ -16,7 +16,7 @@
 #include "cli/warnings.hpp"
 #include "core/words.hpp"
 #include "files/plan/plan_json.hpp"
-#include "plot/sound_text.hpp"
+#include "plot/figure.hpp"
 #include "session/environment.hpp"
 
 namespace tactor::cli {
