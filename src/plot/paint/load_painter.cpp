@@ -3,8 +3,10 @@
 // module, which is loaded for the first picture that needs it.
 #include <array>
 #include <filesystem>
+#include <new>
 #include <string>
 #include <system_error>
+#include <utility>
 
 #include <dlfcn.h>
 #include <fmt/format.h>
@@ -67,16 +69,26 @@ const painter_module& painter()
     return loaded;
 }
 
+// Returns the bytes. \throws error, std::bad_alloc.
+std::string take_bytes(painting p)
+{
+    if (p.no_memory)
+        throw std::bad_alloc();
+    if (p.failed)
+        throw error(*p.failed, p.what, p.why, p.hint);
+    return std::move(p.bytes);
+}
+
 } // namespace
 
 std::string to_png(const canvas& c, unsigned dpi)
 {
-    return painted_bytes(painter().to_png(c, dpi));
+    return take_bytes(painter().to_png(c, dpi));
 }
 
 std::string to_pdf(const canvas& c)
 {
-    return painted_bytes(painter().to_pdf(c));
+    return take_bytes(painter().to_pdf(c));
 }
 
 } // namespace tactor::plot

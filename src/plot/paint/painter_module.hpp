@@ -4,7 +4,6 @@
 /// of the tool. Tool and module are of one build: the version is in the module's name.
 #pragma once
 
-#include <new>
 #include <optional>
 #include <string>
 
@@ -28,15 +27,5 @@ struct painter_module {
     painting (*to_png)(const canvas&, unsigned dpi) noexcept;
     painting (*to_pdf)(const canvas&) noexcept;
 };
-
-/// Returns the bytes. \throws error, std::bad_alloc.
-inline std::string painted_bytes(painting p)
-{
-    if (p.no_memory)
-        throw std::bad_alloc();
-    if (p.failed)
-        throw error(*p.failed, p.what, p.why, p.hint);
-    return std::move(p.bytes);
-}
 
 } // namespace tactor::plot

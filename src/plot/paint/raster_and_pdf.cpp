@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
-#include <algorithm>
+// The module that paints with Cairo.
 #include <bit>
 #include <cmath>
 #include <cstdint>
 #include <memory>
+#include <new>
 #include <numbers>
 
 #include <boost/crc.hpp>
@@ -14,6 +15,7 @@
 #include <tactor/error.hpp>
 
 #include "plot/paint/output.hpp"
+#include "plot/paint/painter_module.hpp"
 
 namespace tactor::plot {
 namespace {
@@ -107,14 +109,14 @@ private:
     cairo_t* cr_;
 };
 
-/// Throws error (runtime) unless the status is success.
+// Throws error (runtime) unless the status is success.
 void check(cairo_status_t status)
 {
     if (status != CAIRO_STATUS_SUCCESS)
         throw error(error_kind::runtime, "picture", cairo_status_to_string(status));
 }
 
-/// Paints on white; `scale` is units of the surface to the point. \throws error (runtime).
+// Paints on white; `scale` is units of the surface to the point. \throws error (runtime).
 void paint(const canvas& c, cairo_surface_t* surface, double scale)
 {
     check(cairo_surface_status(surface));
@@ -187,6 +189,21 @@ void add_mark(std::string& pdf)
         pdf.replace(at, std::string_view("\nstartxref").size(), pdf_mark);
 }
 
+template <typename F>
+painting painted(F bytes) noexcept
+{
+    try {
+        return {.bytes = bytes()};
+    } catch (const error& e) {
+        return {.failed = e.kind(),
+                .what = std::string(e.subject()),
+                .why = std::string(e.why()),
+                .hint = std::string(e.hint())};
+    } catch (const std::bad_alloc&) {
+        return {.no_memory = true};
+    }
+}
+
 } // namespace
 
 std::string to_png(const canvas& c, unsigned dpi)
@@ -198,10 +215,9 @@ std::string to_png(const canvas& c, unsigned dpi)
         throw error(error_kind::bad_input, "--dpi",
                     fmt::format("{} dpi make {:.0f} x {:.0f} pixels", dpi, width, height),
                     "ask for fewer dpi or a smaller --width, or for SVG or PDF");
-    const surface_ptr surface(cairo_image_surface_create(CAIRO_FORMAT_RGB24,
-                                                         std::max(1, static_cast<int>(width)),
-                                                         std::max(1, static_cast<int>(height))),
-                              &cairo_surface_destroy);
+    const surface_ptr surface(
+        cairo_image_surface_create(CAIRO_FORMAT_RGB24, static_cast<int>(width), static_cast<int>(height)),
+        &cairo_surface_destroy);
     paint(c, surface.get(), scale);
     std::string png;
     check(cairo_surface_write_to_png_stream(surface.get(), append, &png));
@@ -214,7 +230,6 @@ std::string to_pdf(const canvas& c)
     std::string pdf;
     const surface_ptr surface(cairo_pdf_surface_create_for_stream(append, &pdf, c.width, c.height),
                               &cairo_surface_destroy);
-    check(cairo_surface_status(surface.get()));
     cairo_pdf_surface_restrict_to_version(surface.get(), CAIRO_PDF_VERSION_1_5);
     cairo_pdf_surface_set_metadata(surface.get(), CAIRO_PDF_METADATA_TITLE, clean(c.title).c_str());
     cairo_pdf_surface_set_metadata(surface.get(), CAIRO_PDF_METADATA_SUBJECT, clean(c.description).c_str());
@@ -226,5 +241,9 @@ std::string to_pdf(const canvas& c)
     add_mark(pdf);
     return pdf;
 }
+
+extern "C" __attribute__((visibility("default"))) const painter_module tactor_painter{
+    [](const canvas& c, unsigned dpi) noexcept { return painted([&] { return to_png(c, dpi); }); },
+    [](const canvas& c) noexcept { return painted([&] { return to_pdf(c); }); }};
 
 } // namespace tactor::plot
