@@ -86,13 +86,6 @@ void draw_tactors(canvas& c, const array_frame& f, const array& a, const tactor_
     }
 }
 
-std::string note_missing(std::size_t n, const array& a)
-{
-    return n == 0                  ? ""
-           : n == a.tactors.size() ? "no space for the numbers of the tactors"
-                                   : "no space for the number of " + counted(n, "tactor");
-}
-
 // Draws numbers that are not in their circles, and channels that differ from numbers, each next to its tactor
 // and on nothing else. Returns a note on labels without space; empty: all have space.
 std::string draw_tactor_labels(canvas& c, const array_frame& f, const array& a, const tactor_looks& looks,
@@ -118,7 +111,9 @@ std::string draw_tactor_labels(canvas& c, const array_frame& f, const array& a, 
         else
             ++missing;
     }
-    return note_missing(missing, a);
+    return missing == 0                  ? ""
+           : missing == a.tactors.size() ? "no space for the numbers of the tactors"
+                                         : "no space for the number of " + counted(missing, "tactor");
 }
 
 class array_drawing {
@@ -155,17 +150,24 @@ public:
         draw_felt();
         if (canvas_.loop_s > 0.0)
             draw_playing();
-        draw_path_marks();
-        add_note(draw_tactor_labels(canvas_, frame_, scene_.tactors, looks, taken_));
+        const std::size_t marked = std::min(scene_.strokes.size(), most_marked);
+        for (std::size_t i = 0; i < marked; ++i)
+            draw_ends(i);
+        for (std::size_t i = 0; i < marked; ++i)
+            draw_arrows(scene_.strokes[i].motion, marked);
+        notes_.push_back(draw_tactor_labels(canvas_, frame_, scene_.tactors, looks, taken_));
         if (time_.several())
-            add_note("rings with coloured numbers: starts; squares: ends");
+            notes_.push_back("rings with coloured numbers: starts; squares: ends");
         if (!scene_.moved.empty())
             add_notes_of_observer(scene_.moved.front().observer);
-        add_note(label_strokes());
+        notes_.push_back(label_strokes());
         const double y = frame_.area.bottom() + legend_height / 2.0;
         draw_scale_bar(canvas_, frame_, {where_.x, y});
         draw_amplitude_legend(y);
-        note_what_is_not_drawn();
+        if (time_.sampled)
+            notes_.push_back("positions each " + seconds_text(time_.sample_s * static_cast<double>(stride_)));
+        else if (stride_ > 1)
+            notes_.push_back(fmt::format("one burst in {} is drawn on the array", stride_));
         return frame_.area.height + legend_height +
                draw_notes(canvas_, notes_, {where_.x, y + legend_height / 2.0, where_.width, 0.0},
                           most_array_notes);
@@ -197,14 +199,6 @@ private:
         return static_cast<std::size_t>(std::ceil(static_cast<double>(n) / fitting));
     }
 
-    std::vector<bool> find_playing() const
-    {
-        std::vector<bool> plays(scene_.tactors.tactors.size(), false);
-        for (const unsigned i : time_.playing)
-            plays[i] = true;
-        return plays;
-    }
-
     // Finds the numbers that stand in their circles: a circle has space, and nothing lies on it.
     tactor_looks find_looks() const
     {
@@ -221,7 +215,9 @@ private:
         for_each_shown([&](const shown_burst&, spot at, colour) {
             marks.push_back({at, number_half + fine_.dot});
         });
-        tactor_looks looks{find_playing(), {}};
+        tactor_looks looks{std::vector<bool>(scene_.tactors.tactors.size(), false), {}};
+        for (const unsigned i : time_.playing)
+            looks.plays[i] = true;
         for (const tactor_spec& t : scene_.tactors.tactors) {
             const spot at = frame_(t.position);
             looks.inside.push_back(frame_.number > 0.0 &&
@@ -230,21 +226,6 @@ private:
                                    }));
         }
         return looks;
-    }
-
-    void add_note(const std::string& text)
-    {
-        if (!text.empty())
-            notes_.push_back(text);
-    }
-
-    void note_what_is_not_drawn()
-    {
-        if (time_.sampled)
-            add_note(fmt::format("positions each {}",
-                                 seconds_text(time_.sample_s * static_cast<double>(stride_))));
-        else if (stride_ > 1)
-            add_note(fmt::format("one burst in {} is drawn on the array", stride_));
     }
 
     double join_width(double amplitude) const { return std::max(0.15, fine_.join * amplitude / time_.peak); }
@@ -339,11 +320,11 @@ private:
 
     void add_notes_of_observer(const low_speed_observer& o)
     {
-        add_note("line: target, dots: played");
-        add_note("dashes and small rings: predicted to be felt");
-        add_note("low-speed observer, built for taps");
-        add_note(fmt::format("sigma {} mm, sigma_v {} mm/s", plain_number(o.sigma_mm),
-                             plain_number(o.sigma_v_mm_s)));
+        notes_.push_back("line: target, dots: played");
+        notes_.push_back("dashes and small rings: predicted to be felt");
+        notes_.push_back("low-speed observer, built for taps");
+        notes_.push_back(fmt::format("sigma {} mm, sigma_v {} mm/s", plain_number(o.sigma_mm),
+                                     plain_number(o.sigma_v_mm_s)));
     }
 
     // Draws the predicted places of bursts that were moved for an observer.
@@ -392,16 +373,6 @@ private:
             add(time_.starts_s[i], time_.starts_s[i] + duration, first, 1.3 * fine_.dot,
                 {.fill = white, .stroke = ink, .width = 0.9}, "target", std::move(places));
         }
-    }
-
-    // Draws arrowheads on the paths where they cover least, a ring at each start and a square at each end.
-    void draw_path_marks()
-    {
-        const std::size_t n = std::min(scene_.strokes.size(), most_marked);
-        for (std::size_t i = 0; i < n; ++i)
-            draw_ends(i);
-        for (std::size_t i = 0; i < n; ++i)
-            draw_arrows(scene_.strokes[i].motion, n);
     }
 
     // Writes start and end next to those marks; for several strokes, the number of each at its start. Returns
@@ -513,6 +484,7 @@ private:
                      true, {.fill = ink, .stroke = white, .width = 0.4}, {.kind = "direction"});
     }
 
+    // Draws arrowheads on a path of so many, where they cover least.
     void draw_arrows(const trajectory& motion, std::size_t strokes)
     {
         const auto wanted = std::max(1L, std::lround(motion.length_mm() * frame_.scale / arrow_every));
@@ -526,6 +498,7 @@ private:
     // Returns the radius of the ring at a start, and half a side of the square at an end, pt.
     double end_radius() const { return fine_.dot + 1.7; }
 
+    // Draws a ring at the start and a square at the end.
     void draw_ends(std::size_t stroke)
     {
         const trajectory& motion = scene_.strokes[stroke].motion;

@@ -230,13 +230,17 @@ void add_speeds(std::vector<series>& lines, const comparison_row& p, const style
                             : felt_speed(p, look));
 }
 
-double largest(const std::vector<series>& lines)
+// Returns the end of the axis of a chart's values.
+double axis_end(const chart& ch)
 {
-    double v = 0.0;
-    for (const series& s : lines)
-        for (const spot& x : s.values)
-            v = std::isfinite(x.y) ? std::max(v, x.y) : v;
-    return v > 0.0 ? 1.05 * v : 1.0;
+    double largest = 0.0;
+    for (const series& s : ch.lines)
+        for (const spot& v : s.values)
+            largest = std::isfinite(v.y) ? std::max(largest, v.y) : largest;
+    for (const chart_band& b : ch.bands)
+        for (const spot& v : b.high)
+            largest = std::max(largest, v.y);
+    return largest > 0.0 ? 1.05 * largest : 1.0;
 }
 
 chart_band make_band(const comparison_row& p, const style& look)
@@ -250,24 +254,6 @@ chart_band make_band(const comparison_row& p, const style& look)
     return b;
 }
 
-double draw_speeds(canvas& c, const std::string& phantom, std::vector<series> lines,
-                   std::vector<chart_band> bands, double end_s, box where)
-{
-    chart ch;
-    ch.id = "speed-" + phantom;
-    ch.where = {where.x, where.y, where.width, chart_height};
-    ch.x_to = end_s;
-    ch.y_to = largest(lines);
-    for (const chart_band& b : bands)
-        for (const spot& v : b.high)
-            ch.y_to = std::max(ch.y_to, 1.05 * v.y);
-    ch.y_title = "speed (mm/s)";
-    ch.lines = std::move(lines);
-    ch.bands = std::move(bands);
-    draw_chart(c, ch);
-    return chart_height;
-}
-
 // Draws the panels of a phantom model and their speeds.
 double draw_row(canvas& c, const panel_ground& g, const std::vector<comparison_row>& all,
                 const std::vector<algorithm_kind>& algorithms, phantom_kind phantom, bool first, box where)
@@ -277,8 +263,9 @@ double draw_row(canvas& c, const panel_ground& g, const std::vector<comparison_r
     y += 5.0;
     const double width = where.width / static_cast<double>(algorithms.size());
     double tallest = 0.0;
-    std::vector<series> lines;
-    std::vector<chart_band> bands;
+    chart speeds{.id = fmt::format("speed-{}", to_string(phantom)),
+                 .x_to = g.target.motion.duration_s(),
+                 .y_title = "speed (mm/s)"};
     for (const comparison_row& p : all) {
         if (p.phantom != phantom)
             continue;
@@ -287,9 +274,9 @@ double draw_row(canvas& c, const panel_ground& g, const std::vector<comparison_r
         const style& look = looks[column % looks.size()];
         const box cell{where.x + width * static_cast<double>(column), y, width, std::min(width, 260.0)};
         tallest = std::max(tallest, draw_panel(c, g, p, look, cell));
-        add_speeds(lines, p, look);
+        add_speeds(speeds.lines, p, look);
         if (p.spread && !p.spread->speeds.empty())
-            bands.push_back(make_band(p, look));
+            speeds.bands.push_back(make_band(p, look));
     }
     y += tallest;
     if (first) { // the scale is the same in all panels
@@ -297,9 +284,12 @@ double draw_row(canvas& c, const panel_ground& g, const std::vector<comparison_r
                        {where.x, y + scale_height / 2.0});
         y += scale_height;
     }
-    if (!lines.empty())
-        y += draw_speeds(c, std::string(to_string(phantom)), std::move(lines), std::move(bands),
-                         g.target.motion.duration_s(), {where.x, y + 2.0, where.width, 0.0});
+    if (!speeds.lines.empty()) {
+        speeds.where = {where.x, y + 2.0, where.width, chart_height};
+        speeds.y_to = axis_end(speeds);
+        draw_chart(c, speeds);
+        y += chart_height;
+    }
     return y + 8.0 - where.y;
 }
 

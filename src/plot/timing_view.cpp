@@ -134,6 +134,7 @@ bool too_dense(const timeline& t, const timing_frame& f)
 // Draws a bar for each tactor of each burst; bars are translucent if some overlap in a row.
 void draw_bars(canvas& c, const timeline& t, const timing_frame& f)
 {
+    const group all(c, {.id = "sound"});
     const double alpha = rows_overlap(t, f) ? seen_through : 1.0;
     for (const shown_burst& b : t.bursts) {
         const colour fill = with_alpha(burst_colour(t, b), alpha);
@@ -153,6 +154,7 @@ void draw_bars(canvas& c, const timeline& t, const timing_frame& f)
 // Draws the largest amplitude of each row over time: for `continuous`, and for too many bars.
 void draw_columns(canvas& c, const scene& s, const timeline& t, const timing_frame& f)
 {
+    const group all(c, {.id = "sound"});
     // Draws each stroke separately if it has a colour; else all together.
     const bool by_stroke = !f.levels.empty();
     const double count = std::ceil((f.x.page_to - f.x.page_from) / column_width);
@@ -290,7 +292,10 @@ public:
                              colours_ ? where_.y + strip_height : frame_.top, "time (s)");
         if (colours_)
             draw_strip();
-        draw_sound();
+        if (dense_)
+            draw_columns(canvas_, scene_, time_, frame_);
+        else
+            draw_bars(canvas_, time_, frame_);
         conflicts_ = draw_conflicts(canvas_, scene_, time_, frame_);
         draw_dimensions();
         notes_.push_back(draw_stroke_starts(canvas_, time_, frame_.x, frame_.top, bottom));
@@ -339,15 +344,6 @@ private:
                      {.kind = "row-heading"});
         draw_time_strip(canvas_,
                         {frame_.x(0.0), where_.y, frame_.x(time_.total_s) - frame_.x(0.0), strip_height});
-    }
-
-    void draw_sound()
-    {
-        const group g(canvas_, {.id = "sound"});
-        if (dense_)
-            draw_columns(canvas_, scene_, time_, frame_);
-        else
-            draw_bars(canvas_, time_, frame_);
     }
 
     double top_row_y(const burst& b) const

@@ -87,7 +87,6 @@ class wave_drawing {
 public:
     wave_drawing(canvas& c, const scene& s, const timeline& t, box where)
         : canvas_(c),
-          scene_(s),
           time_(t),
           where_(where),
           lanes_(make_lanes(s.tactors, t.playing, where.height - most_around_waves))
@@ -110,7 +109,10 @@ public:
         const bool carrier = x_.per_unit() / highest >= least_cycle;
         const double columns =
             carrier ? width / carrier_column : std::min(width / column_width, total * lowest);
-        wave_ = measure(*s.sound, channels(t), static_cast<std::size_t>(std::max(1.0, columns)));
+        std::vector<unsigned> channels; // in the order of the rows
+        for (const unsigned i : t.playing)
+            channels.push_back(s.tactors.tactors[i].channel);
+        wave_ = measure(*s.sound, channels, static_cast<std::size_t>(std::max(1.0, columns)));
     }
 
     double draw()
@@ -137,15 +139,6 @@ public:
     }
 
 private:
-    // Returns the channels of tactors, in the order of the rows.
-    std::vector<unsigned> channels(const timeline& t) const
-    {
-        std::vector<unsigned> c;
-        for (const unsigned i : t.playing)
-            c.push_back(scene_.tactors.tactors[i].channel);
-        return c;
-    }
-
     void draw_headings()
     {
         notes_ = {draw_lane_labels(canvas_, lanes_, x_.page_from - 3.0, top_)};
@@ -187,7 +180,6 @@ private:
     }
 
     canvas& canvas_;
-    const scene& scene_;
     const timeline& time_;
     box where_;
     lanes lanes_;

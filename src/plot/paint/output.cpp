@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: MIT
 #include "plot/paint/output.hpp"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <iterator>
 #include <string>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -23,24 +26,15 @@ constexpr std::string_view other_fonts = "Verdana, sans-serif";
 
 std::string escaped(std::string_view text)
 {
+    constexpr std::array<std::pair<char, std::string_view>, 4> names{
+        {{'&', "&amp;"}, {'<', "&lt;"}, {'>', "&gt;"}, {'"', "&quot;"}}};
     std::string out;
     for (const char c : clean(text)) {
-        switch (c) {
-        case '&':
-            out += "&amp;";
-            break;
-        case '<':
-            out += "&lt;";
-            break;
-        case '>':
-            out += "&gt;";
-            break;
-        case '"':
-            out += "&quot;";
-            break;
-        default:
+        const auto known = std::ranges::find(names, c, &std::pair<char, std::string_view>::first);
+        if (known == names.end())
             out += c;
-        }
+        else
+            out += known->second;
     }
     return out;
 }
