@@ -16,7 +16,7 @@ import {LEAST_LEVEL_DB} from "./service/planner.js";
 import {play, stop, tick, silence_speaker, unanswered_s} from "./service/player.js";
 import {change_point, remove_point, finish_early} from "./drawing/pointer.js";
 import "./takes/takes_panel.js";
-import {open_tour} from "./takes/tour.js";
+import {open_tour} from "./takes/gallery.js";
 import "./service/simulated.js";
 import {own_name} from "./service/device.js";
 import {choose_tool, new_take, open_sheet, fold_time} from "./settings/keys.js";
@@ -24,7 +24,6 @@ import {full, lane_tactors, lane_height, show_all_time, zoom_time} from "./time/
 import "./takes/files.js";
 import "./takes/shape_switch.js";
 import "./settings/inspector.js";
-import "./takes/study.js";
 import {draw_meter} from "./settings/level.js";
 import "./settings/prediction.js";
 import {seconds_text} from "./words.js";

@@ -2,7 +2,7 @@
 // The picture of the array at one moment: over ground and strokes, what is driven and felt.
 import {state, current_take, ceiling_dbfs, take_gain, is_simulated, now_ms} from "../state.js";
 import {by_id} from "../../../net/page/dom.js";
-import {paint, write, disc} from "./pen.js";
+import {paint, write, disc} from "../look.js";
 import {interpolate} from "../takes/stroke.js";
 import {array, view, layers, stale, start_layer, trace, trace_rows, to_px} from "./view.js";
 import {draw_ground} from "./ground.js";

@@ -2,7 +2,7 @@
 // Moves what is felt: a diamond for each point of the stroke, where it is felt. The point moves until it is felt where the diamond
 // was put, or as near as can be.
 import {state, changed, on_change, current_take, current_stroke, say, now_ms} from "../state.js";
-import {plot, paint, disc} from "./pen.js";
+import {plot, paint, disc} from "../look.js";
 import {array, trace_rows, to_px, view} from "./view.js";
 import {edit_stroke} from "../takes/takes.js";
 import {editable, changed_knot, nearest_knot, knot_times, interpolate, within} from "../takes/stroke.js";

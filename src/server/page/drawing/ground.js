@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Ground of the strokes: the body part, the skin between the tactors with its grid, the scale.
 import {state} from "../state.js";
-import {colour} from "../look.js";
-import {paint, write, plot, disc} from "./pen.js";
+import {colour, paint, write, plot, disc} from "../look.js";
 import {array, view, layers, start_layer, trace, to_px, handle_px} from "./view.js";
 import {body, part, body_matrix, place_name, up_word} from "./body.js";
 

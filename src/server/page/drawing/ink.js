@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Strokes, their bursts, and where they are predicted to be felt.
 import {state, current_take} from "../state.js";
-import {colour, is_dark} from "../look.js";
-import {font, paint, disc} from "./pen.js";
+import {colour, is_dark, font, paint, disc} from "../look.js";
 import {array, view, layers, start_layer, trace_rows, to_px} from "./view.js";
 import {editable, shape} from "../takes/stroke.js";
 import {place_labels, number_place, draw_labels} from "./labels.js";

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Places of the labels on the canvas: no label lies on another, on a disc or on a stroke. Where no place is free it stays away.
 import {state} from "../state.js";
-import {colour} from "../look.js";
-import {font} from "./pen.js";
+import {colour, font} from "../look.js";
 import {array, view, to_px} from "./view.js";
 
 const HIGH_PX = 15, SHARE_PX = 40; // "100 %"

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: MIT
 // Comparison of two methods on one stroke: side 0 is the take as it is, side 1 has other options. Both loop in step, and one is silent.
-import {state, changed, on_change, current_take, say} from "../state.js";
+import {state, changed, on_change, current_take, current_stroke, level_dbfs, say} from "../state.js";
 import {by_id, on_click, show_pressed, all_of, listen, set_text} from "../../../net/page/dom.js";
-import {row, value, with_side} from "../takes/takes.js";
+import {row, value, with_side, request_options} from "../takes/takes.js";
+import {quoted, strokes_toml} from "../takes/stroke.js";
+import {file_name, give_toml} from "../takes/files.js";
 import {play, quit_playing, tell_level, hear_it} from "../service/player.js";
 import {ALGORITHMS, PHANTOMS, number_text} from "../words.js";
 
@@ -95,4 +97,32 @@ on_change(() => {
   by_id("study-open").hidden = blind;
   set_text("blind", blind ? "Reveal" : "Blind");
   set_text("tally", tally_text(c));
+});
+
+// The definition of a study of both, for `tactor experiment`.
+// Options of a method, see tactor-experiment(5).
+const OF_METHOD = "algorithm phantom faces soa burst slope intercept timing min_duration outside snap drop_points overlap carrier".split(" ");
+const form = by_id("study"), study_name = () => file_name({name: form.elements.name.value});
+
+const table = (head, values) => `${head}\n${Object.entries(values).map(([k, v]) => `${k} = ${typeof v === "string" ? quoted(v) : v}\n`).join("")}`;
+function definition(name) {
+  const {question, trials} = form.elements, preset = /^palm-/.test(state.hello.array.name) && {array: state.hello.array.name};
+  const methods = [0, 1].map(side => {
+    const o = Object.entries(request_options(with_side(current_take(), side))).filter(([k, v]) => OF_METHOD.includes(k) && v !== undefined);
+    return table("[[method]]", {name: `method ${side + 1}`, ...Object.fromEntries(o)});
+  });
+  return [`${table("[experiment]", {name, ...preset})}level = { dbfs = ${level_dbfs()} }\n`,
+    table("[[motion]]", {name: current_stroke().name, file: `${name}-stroke.toml`}), ...methods,
+    table("[[run]]", {name: "choice", task: "choose", attribute: "preference", simulate_as: "uniformity", question: question.value,
+      trials: Math.round(trials.value) || 20})].join("\n");
+}
+const show_command = () => { set_text("study-command", `tactor experiment ${study_name()}.toml --participant P01 -o results`); };
+listen("p-study", "beforetoggle", show_command);
+listen(form, "input", show_command);
+// The definition names the file of the stroke, which lies beside it.
+listen(form, "submit", e => {
+  e.preventDefault();
+  const name = study_name();
+  give_toml(`${name}-stroke`, strokes_toml([current_stroke()]));
+  give_toml(name, definition(name));
 });

@@ -1,34 +1,35 @@
 // SPDX-License-Identifier: MIT
-// The gallery: strokes to try, made for the array. A tap plays one; the first change makes it a take.
-import {on_change} from "../state.js";
-import {by_id, make} from "../../../net/page/dom.js";
+// The gallery: strokes to try, made for the array. A tap plays one; the first change makes it a take. The tour: six steps on a card beside
+// the array, each with something to try.
+import {state, changed, on_change, is_simulated} from "../state.js";
+import {by_id, make, listen} from "../../../net/page/dom.js";
 import {array} from "../drawing/view.js";
 import {play} from "../service/player.js";
-import {add_take, try_take} from "./takes.js";
+import {add_take, choose_take, try_take} from "./takes.js";
 import {thumb, facts} from "./takes_panel.js";
 import {box, outside_mm, parts_reached, trimmed} from "./stroke.js";
 
 const BURST_S = 0.07; // by Park's law its interval is as long
 
 // Rows of a stroke, [t_s, u, v, strength], where u and v go from 0 to 1: along places at one speed, or at one place.
-export function path(seconds, places) {
+function path(seconds, places) {
   const rows = places.map((p, i) => [i, ...p, 1]);
   return rows.map(([i, ...q]) => [seconds * parts_reached(rows)[i][0], ...q]);
 }
-export const resting = (u, seconds, v = 0.5, strength = 1) => [[0, u, v, strength], [seconds, u, v, strength]];
+const resting = (u, seconds, v = 0.5, strength = 1) => [[0, u, v, strength], [seconds, u, v, strength]];
 const curve = (f, n = 60) => Array.from({length: n + 1}, (_, i) => f(i / n));
 const wave = turns => Math.sin(2 * Math.PI * turns);
 const ring = (turn, radius = 0.5) => [0.5 + radius * wave(turn), 0.5 - radius * wave(turn + 0.25)]; // clockwise from the top
 // Strokes, [start_s, rows, keys].
 const one = (...of) => [[0, path(...of)]];
 const in_turn = (step_s, list) => list.map((rows, i) => [step_s * i, rows]);
-export const taps = soa_s => ({soa_s, burst_s: BURST_S});
+const taps = soa_s => ({soa_s, burst_s: BURST_S});
 // Bursts at a part of the law's interval. Those that overlap are two strokes, whose bursts come in turn.
-export function at_law(rows, part, start_s = 0) {
+function at_law(rows, part, start_s = 0) {
   const step_s = part * BURST_S, keys = taps(part < 1 ? 2 * step_s : step_s), own = [start_s, rows, keys];
   return part < 1 ? [own, [start_s + step_s, trimmed({timed: rows}, step_s, rows.at(-1)[0]).timed, keys]] : [own];
 }
-export const ROW = [[0, 0.5], [1, 0.5]];
+const ROW = [[0, 0.5], [1, 0.5]];
 const BACK = [...ROW, ROW[0]], PARTS = [0, 0.5, 1], CONTINUOUS = {algorithm: "continuous"}, SHORT = {soa: 0.05, burst: 0.03};
 
 // Name, what it shows, what u and v go over (0: two neighbours; the array, 1: of two tactors, 2: of three, 3: of two rows, or more;
@@ -61,7 +62,7 @@ const GALLERY = [
     [1, -1].map(sign => [0, path(2.4, curve(p => [p, 0.5 + sign * wave(p / 2) ** 2 / 2]))]), {}, -6]];
 
 // Returns two neighbours near the middle of the array; the second one is nearer, and a level pair wins over an upright one.
-export function middle_pair() {
+function middle_pair() {
   const {places, box: {middle}} = array, apart = (p, q) => Math.hypot(p[0] - q[0], p[1] - q[1]);
   return places.flatMap((p, i) => places.map((q, k) => [i, k, i === k ? Infinity : apart(p, q) + apart(p, middle) + 1.01 * apart(q, middle)
     + 0.001 * Math.abs(p[1] - q[1])])).sort((a, b) => a[2] - b[2])[0].slice(0, 2);
@@ -96,3 +97,42 @@ on_change(() => {
   by_id("strokes").replaceChildren(...GALLERY.map(g => entry(g, "card", () => try_entry(g))));
   by_id("examples").replaceChildren(entry(example, "", open_example));
 }, "array");
+
+// Title, text, what its strokes go over (see the gallery), and [name, strokes] of what is tried, with the neighbours a and b.
+const tour = ([a, b], feel) => [
+  ["One tactor", `Tactor ${b} buzzes where it is.`, 0, ["Tap it", [[0, resting(1, 0.5)]]]],
+  ["A point where nothing is", `Now ${a} and ${b} play together, equally strong. You ${feel} one point between them: a phantom.`, 0,
+    ...[["Again", 0.5], [`Only ${a}`, 0], [`Only ${b}`, 1]].map(([name, u]) => [name, [[0, resting(u, 1)]]])],
+  ["It moves", `The strength goes over from ${a} to ${b} while both play, and the point wanders along.`, 0,
+    ...[["Again", 1.2], ["Slower", 3.6]].map(([name, s]) => [name, [[0, path(s, ROW)]]])],
+  ["From taps to a stroke", "Ten short bursts along a line. Make the interval shorter until they become a stroke.", 1,
+    ...[400, 200, 70].map(ms => [`${ms} ms`, [[0, path(0.009 * ms + 0.001, ROW), taps(ms / 1000)]]])],
+  ["Park’s law", "A burst of 70 ms wants 0.32 × 70 + 47 = 69 ms until the next. Shorter blurs; longer breaks into taps.", 1,
+    ...[["0.6 of it", 0.6], ["The law", 1], ["1.6 of it", 1.6]].map(([name, part]) => [name, at_law(path(1.6, ROW), part)])],
+  ["Your turn", `Draw on the array. You ${feel} it while you draw, and it is kept as a take.`]];
+
+const card = by_id("p-tour"), gallery = by_id("p-gallery");
+// Shows a step. One that can be tried again begins by itself.
+function show_step(n) {
+  const steps = tour(middle_pair().map(i => array.tactors[i].tactor ?? i), is_simulated() ? "hear" : "feel");
+  const [title, text, over, ...tried] = steps[n], next = steps[n + 1];
+  const button = (name, onclick, disabled) => make("button", {class: "button outlined", onclick, disabled}, name);
+  const actions = tried.map(([name, strokes]) => [name,
+    () => try_entry([title, "", over, strokes, over ? {} : {algorithm: "continuous"}, -6 * over])]);
+  if (!next) actions.push(["Draw", leave_tour], ["See the gallery", () => { leave_tour(); gallery.showPopover(); }]);
+  card.replaceChildren(make("h2", {}, title), make("p", {}, text), make("div", {class: "row"}, ...actions.map(a => button(...a))),
+    make("div", {class: "row"}, button("Leave", leave_tour), make("small", {class: "space"}, `${n + 1} of 6`),
+      button("Back", () => show_step(n - 1), !n), button("Next", () => show_step(n + 1), !next)));
+  card.lastChild.lastChild.focus();
+  if (actions[0][0] === "Again") actions[0][1]();
+}
+listen(card, "toggle", () => changed("layout"));
+export function open_tour() {
+  gallery.hidePopover();
+  card.showPopover();
+  show_step(0);
+}
+function leave_tour() {
+  card.hidePopover();
+  if (state.trial?.id === state.current) choose_take(state.takes[0]?.id ?? null);
+}

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Speed and strength along the strokes: as asked for, as felt, and the points by which they are changed.
 import {state, current_take, current_stroke} from "../state.js";
-import {paint, write, plot} from "../drawing/pen.js";
+import {paint, write, plot} from "../look.js";
 import {left, right, to_x} from "./time_axis.js";
 import {edit_stroke} from "../takes/takes.js";
 import {editable, rebuild, interpolate, duration_s, find_speeds, length_mm, parts_reached, kept_for} from "../takes/stroke.js";

@@ -2,14 +2,13 @@
 // Lanes that show who plays when: a ruler, the strokes, a lane for each tactor. They are drawn only when something has changed; the moment
 // is an element above them.
 import {state, current_take, marks} from "../state.js";
-import {colour, is_dark} from "../look.js";
-import {paint, write, plot} from "../drawing/pen.js";
+import {colour, is_dark, paint, write, plot} from "../look.js";
 import {array} from "../drawing/view.js";
 import {viridis} from "../../../net/page/viridis.js";
-import {full, mini, total, shown, left, right, to_x, lane_tactors, silent_count, lane_height, most_scroll, LEAST_AMPLITUDE, CLIP} from "./time_axis.js";
+import {full, mini, total, shown, left, right, to_x, lane_tactors, silent_count} from "./time_axis.js";
+import {lane_height, most_scroll, draw_time_marks, LEAST_AMPLITUDE, CLIP} from "./time_axis.js";
 import {draw_curves} from "./curves.js";
 import {place_clips} from "./clips.js";
-import {draw_time_marks} from "./marks.js";
 import {end_s} from "../takes/stroke.js";
 import {look_at} from "../service/player.js";
 import {seconds_text} from "../words.js";

@@ -7,9 +7,9 @@ import {trimmed, duration_s, end_s} from "../takes/stroke.js";
 import {look_at} from "../service/player.js";
 import {PAUSE_S, begin_live, send} from "../drawing/pointer.js";
 import {full, mini, total, shown, left, to_x, to_time, clip_box, most_scroll, scroll_to, show_time, zoom_time, CLIP, LEAST_S} from "./time_axis.js";
+import {set_marks, set_range, clear_marks, snapped} from "./time_axis.js";
 import {handles, set_strength, set_speed} from "./curves.js";
 import {choose_clip, toggle_append, copy_clip, with_copies, starting_at} from "./clips.js";
-import {set_marks, set_range, clear_marks, snapped} from "./marks.js";
 import {tell} from "../service/connection.js";
 
 const REACH = 14;
