@@ -19,47 +19,33 @@
 namespace tactor::plot {
 namespace {
 
-std::string describe_range(double low_hz, double high_hz)
-{
-    return low_hz == high_hz ? plain_number(low_hz) + " Hz"
-                             : fmt::format("{} to {} Hz", plain_number(low_hz), plain_number(high_hz));
-}
-
-std::string describe_frequency(const plan& p)
-{
-    if (p.course.empty())
-        return describe_range(p.carrier_hz, p.carrier_hz);
-    const auto [low, high] =
-        std::minmax_element(p.course.begin(), p.course.end(),
-                            [](const carrier_point& a, const carrier_point& b) { return a.hz < b.hz; });
-    return describe_range(low->hz, high->hz);
-}
-
-std::string describe_recording(const plan& p)
+std::string describe_recording(const plan& p, const std::string& frequency)
 {
     const std::string file = std::filesystem::path(waveform_text(p.wave)).filename().string();
-    switch (p.wave.texture) {
-    case texture_kind::time:
-        return file + " in its own time";
-    case texture_kind::length:
-        return file + " along the path";
-    case texture_kind::cycle:
-        break;
-    }
-    return fmt::format("{} at {}", file, describe_frequency(p));
+    return p.wave.texture == texture_kind::time     ? file + " in its own time"
+           : p.wave.texture == texture_kind::length ? file + " along the path"
+                                                    : file + " at " + frequency;
 }
 
 std::string describe_waveform(const plan& p)
 {
+    const bool noise = p.wave.kind == waveform_kind::noise;
+    double low = noise ? p.wave.low_hz : p.carrier_hz;
+    double high = noise ? p.wave.high_hz : p.carrier_hz;
+    if (!noise && !p.course.empty()) {
+        const auto [least, most] = std::ranges::minmax_element(p.course, {}, &carrier_point::hz);
+        low = least->hz;
+        high = most->hz;
+    }
+    const std::string frequency =
+        plain_number(low) + (low == high ? "" : " to " + plain_number(high)) + " Hz";
     switch (p.wave.kind) {
     case waveform_kind::sine:
-        return describe_frequency(p);
-    case waveform_kind::noise:
-        return "noise of " + describe_range(p.wave.low_hz, p.wave.high_hz);
+        return frequency;
     case waveform_kind::recording:
-        return describe_recording(p);
+        return describe_recording(p, frequency);
     default:
-        return fmt::format("{} of {}", to_string(p.wave.kind), describe_frequency(p));
+        return fmt::format("{} of {}", to_string(p.wave.kind), frequency);
     }
 }
 
