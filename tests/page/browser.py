@@ -53,10 +53,11 @@ class Browser:
         assert "error" not in m, (method, m)
         return m["result"]
 
-    def await_event(self, method, session, since):
-        """Returns one of the events from number `since` on."""
-        while not any(e.get("method") == method and e.get("sessionId") == session for e in self.events[since:]):
+    def await_event(self, since, matches):
+        """Returns the first event that matches, from number `since` on, of those that came and those to come."""
+        while not (found := next(filter(matches, self.events[since:]), None)):
             self.events.append(json.loads(self.channel.text()))
+        return found
 
     def open(self, address, size=(1280, 800)):
         return Page(self, address, size)
@@ -85,7 +86,7 @@ class Page:
         """Waits until nothing of the document before is left."""
         since = len(self.browser.events)
         self.call("Page.reload")
-        self.browser.await_event("Page.frameNavigated", self.session, since)
+        self.browser.await_event(since, lambda e: (e.get("method"), e.get("sessionId")) == ("Page.frameNavigated", self.session))
 
     def value(self, expression):
         r = self.call("Runtime.evaluate", expression=expression, awaitPromise=True, returnByValue=True)

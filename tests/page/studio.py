@@ -175,16 +175,10 @@ class StudioTest(BrowserTest, ToolTest):
         since = len(p.browser.events)
         p.open_popover("#save", "#p-save")
         p.click(f"#p-save [data-kind={kind}]")
-        while True:
-            done = next((e["params"] for e in p.browser.events[since:] if e.get("method") == "Browser.downloadProgress"
-                         and e["params"]["state"] != "inProgress"), None)
-            if done:
-                break
-            p.browser.events.append(json.loads(p.browser.channel.text()))
+        done = p.browser.await_event(since, lambda e: e.get("method") == "Browser.downloadProgress" and e["params"]["state"] != "inProgress")["params"]
         self.assertEqual(done["state"], "completed")
-        name = next(e["params"]["suggestedFilename"] for e in p.browser.events[since:] if e.get("method") == "Browser.downloadWillBegin"
-                    and e["params"]["guid"] == done["guid"])
-        return folder / name
+        begun = p.browser.await_event(since, lambda e: e.get("method") == "Browser.downloadWillBegin" and e["params"]["guid"] == done["guid"])
+        return folder / begun["params"]["suggestedFilename"]
 
     def names(self, p):
         return p.value("[...document.querySelectorAll('#takes .take b')].map(b => b.textContent)")

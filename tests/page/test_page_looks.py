@@ -10,7 +10,17 @@ from browser import AXE  # noqa: E402
 from harness import ROOT, main  # noqa: E402
 
 
-class Looks(StudioTest):
+class Drawn(StudioTest):
+    def drawn(self, s):
+        """Returns a page with a take that leaves the array, and a client that watches what plays."""
+        p, watcher = self.ready(s)
+        self.draw(p, *self.way([5, 5], [35, 12]), *self.way([35, 12], [8, 30]), *self.way([8, 30], [48, 36]))
+        p.until("document.querySelector('#warnings').textContent.includes('outside')")
+        p.until("[...document.querySelectorAll('#pane .error')].every(e => e.textContent)")
+        return p, watcher
+
+
+class Looks(Drawn):
     """Each state in each size, light and dark: within the screen, Stop to be seen, nothing that axe-core finds."""
 
     @unittest.skipUnless(AXE, "axe-core is not there (tests/lanes/page gets it)")
@@ -42,14 +52,6 @@ class Looks(StudioTest):
         """Lets the state say what no test can bring about with a device that is none."""
         for name, v in values.items():
             p.value(f"Object.defineProperty(tactor.state, '{name}', {{get: () => ({v}), set() {{}}}}), tactor.changed('link', 'stream')")
-
-    def drawn(self, s):
-        """Returns a page with a take that leaves the array, and one of two strokes."""
-        p, watcher = self.ready(s)
-        self.draw(p, *self.way([5, 5], [35, 12]), *self.way([35, 12], [8, 30]), *self.way([8, 30], [48, 36]))
-        p.until("document.querySelector('#warnings').textContent.includes('outside')")
-        p.until("[...document.querySelectorAll('#pane .error')].every(e => e.textContent)")
-        return p, watcher
 
     def test_running(self):
         p, _ = self.ready(self.serve())
@@ -169,7 +171,7 @@ class Looks(StudioTest):
         self.look(p, "locked")
 
 
-class Shapes(StudioTest):
+class Shapes(Drawn):
     """In each shape of window the canvas keeps half of the height, and nothing lies on the transport."""
     SHAPES = ((1440, 900), (1366, 768), (1280, 600), (1100, 700), (1093, 614), (1024, 768), (960, 540), (899, 900), (820, 1180),
               (768, 1024), (600, 960), (600, 501), (390, 844), (844, 390), (360, 640))
@@ -186,16 +188,8 @@ class Shapes(StudioTest):
                 " && (f => f.clientHeight === f.parentElement.clientHeight)(document.querySelector('#field'))")
         p.frames()
 
-    def warned(self, s):
-        """Returns a page with a take that leaves the array."""
-        p, _ = self.ready(s)
-        self.draw(p, *self.way([5, 5], [35, 12]), *self.way([35, 12], [8, 30]), *self.way([8, 30], [48, 36]))
-        self.planned(p)
-        p.until("document.querySelector('#warnings').textContent.includes('outside')")
-        return p
-
     def test_the_canvas_keeps_half_of_the_height(self):
-        p = self.warned(self.serve())
+        p, _ = self.drawn(self.serve())
         for touch in (False, True):
             for size in self.SHAPES:
                 self.resize(p, size, touch)
@@ -218,7 +212,7 @@ class Shapes(StudioTest):
                         p.until("!('timeOpen' in document.body.dataset)")
 
     def test_settings_with_a_warning_show_the_settings(self):
-        p = self.warned(self.serve())
+        p, _ = self.drawn(self.serve())
         for size, touch in (((1024, 768), True), ((960, 540), False), ((1093, 614), False), ((820, 1180), True), ((600, 501), False),
                             ((390, 844), True), ((360, 640), True), ((844, 390), True)):
             self.resize(p, size, touch)
