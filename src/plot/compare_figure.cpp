@@ -53,18 +53,16 @@ track follow(const array_frame& f, const std::vector<percept_sample>& samples)
     for (const percept_sample& x : samples) {
         if (!x.felt)
             continue;
-        if (last == x.felt) {
-            if (!rested)
-                t.rests.push_back(f(*x.felt));
-            rested = true;
-            continue;
-        }
-        rested = false;
+        const bool rests = last == x.felt;
+        if (!rests)
+            t.line.push_back(f(*x.felt));
+        else if (!rested)
+            t.rests.push_back(f(*x.felt));
+        rested = rests;
         last = x.felt;
-        t.line.push_back(f(*x.felt));
     }
     // A burst at the very end has only one sample.
-    if (!t.rests.empty() && !rested && !t.line.empty())
+    if (!t.rests.empty() && !rested)
         t.rests.push_back(t.line.back());
     const std::size_t stride = t.line.size() / most_points + 1;
     std::vector<spot> fewer;
