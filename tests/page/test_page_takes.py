@@ -201,18 +201,6 @@ class Takes(TakesTest):
         p.click("#hint-example")
         p.until("[...document.querySelectorAll('#pane .error')].length > 5 && [...document.querySelectorAll('#pane .error')].every(e => /mm|not possible/.test(e.textContent))")
 
-    def test_a_loop_plays_round_after_round(self):
-        p, watcher = self.ready(self.serve())
-        self.draw(p, *self.way([5, 5], [35, 35]))
-        self.planned(p)
-        p.click("#loop")
-        p.click("#play")
-        rounds = [self.next_stroke(watcher, "started") for _ in range(3)]
-        self.assertEqual(len(set(rounds)), 3)
-        self.assertTrue(p.value("tactor.state.playing !== null"))
-        p.click("#stop")
-        p.until("!tactor.state.playing")
-
     def test_strokes_of_the_same_time_are_chosen_in_turn(self):
         p, _ = self.ready(self.serve(), fingers=True)
         self.fingers(p, "touchStart", [5, 5], [5, 20], [5, 35])
