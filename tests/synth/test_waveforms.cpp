@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Waveforms, computed and recorded.
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <string>
 #include <vector>
@@ -277,6 +278,36 @@ TEST_CASE("the phase of a carrier that changes is its integral, to 1e-9 cycles a
         double off = std::atan2(x, y) / (2 * pi) - part;
         off -= std::round(off);
         worst = std::max(worst, std::abs(off));
+    }
+    CHECK(worst < 1e-9);
+}
+
+TEST_CASE("the phase of a carrier whose frequency is bent is its integral, and goes on behind the bend")
+{
+    const std::array<double, 4> bend{120.0, -340.0, 90.0, 260.0};
+    plan p = tone(shape(waveform_kind::sine), 250.0, 1.0);
+    p.course = {{0.0, 100.0, bend}, {0.4, 300.0}, {1.0, 150.0}};
+    render_options o{.ramp_s = 0.0, .level_dbfs = 0.0};
+    const score s(row(1), p, o);
+    const synth::timbre& t = *detail::access::of(s).sounds.front();
+    const auto hz = [&](double at_s) {
+        if (at_s >= 0.4)
+            return 300.0 - 150.0 * (at_s - 0.4) / 0.6;
+        const double u = at_s / 0.4;
+        return 100.0 + 200.0 * u + u * (1.0 - u) * (bend[0] + u * (bend[1] + u * (bend[2] + u * bend[3])));
+    };
+    const double step = 1.0 / rate;
+    double cycles = 0.0;
+    double worst = 0.0;
+    for (unsigned k = 0; k < rate; ++k) {
+        double x = 0.0;
+        double y = 0.0;
+        t.fill(k, 0, 1, &x, synth::wave::sine);
+        t.fill(k, 0, 1, &y, synth::wave::cosine);
+        const double off = std::atan2(x, y) / (2 * pi) - cycles;
+        worst = std::max(worst, std::abs(off - std::round(off)));
+        const double at_s = k * step;
+        cycles += step / 6.0 * (hz(at_s) + 4.0 * hz(at_s + 0.5 * step) + hz(at_s + step)); // Simpson
     }
     CHECK(worst < 1e-9);
 }
