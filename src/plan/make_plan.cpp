@@ -13,7 +13,6 @@
 #include "core/words.hpp"
 #include "plan/job.hpp"
 #include "plan/options.hpp"
-#include "plan/phantom/phantom_models.hpp"
 #include "plan/rounded.hpp"
 
 namespace tactor {
@@ -235,24 +234,6 @@ void pass_on(const job& j, plan& p)
     }
 }
 
-std::shared_ptr<const phantom_model> choose_model(const layout& l, const plan_options& o)
-{
-    if (!o.custom_phantom) {
-        check_faces(o.phantom, o.faces); // where the algorithm does not use them, too
-        return make_phantom(o.phantom, l, faces_used(o));
-    }
-    if (o.faces != faces_kind::delaunay)
-        throw bad_field("faces",
-                        "nearest goes with inverse-distance only, not with a phantom model of your own",
-                        "use {faces=delaunay} or {phantom=inverse-distance}");
-    return o.custom_phantom;
-}
-
-faces_kind faces_used(const plan_options& o)
-{
-    return o.algorithm == algorithm_kind::tactile_brush ? faces_kind::delaunay : o.faces;
-}
-
 std::string job::name() const
 {
     return motion.name.empty() ? "stroke" : fmt::format("stroke \"{}\"", motion.name);
@@ -263,23 +244,6 @@ void check_burst_count(const job& j, double bursts)
     if (bursts > most_bursts)
         throw error(error_kind::bad_input, j.name(), fmt::format("would need {:.3g} bursts", bursts),
                     fmt::format("at most {:.0f}; make it shorter or the SOA longer", most_bursts));
-}
-
-void drives_at(const phantom_model& m, const layout& l, point p, double a_v, std::vector<drive>& out)
-{
-    out.clear();
-    check_intensity(a_v);
-    if (a_v == 0.0)
-        return;
-    m.weights(p, a_v, out);
-    for (std::size_t i = 0; i < out.size(); ++i) {
-        const drive& d = out[i];
-        const bool in_order = i == 0 || out[i - 1].tactor < d.tactor;
-        if (!in_order || d.tactor >= l.places().size() || !(d.amplitude > 0.0 && std::isfinite(d.amplitude)))
-            throw error(error_kind::bad_input, fmt::format("phantom model \"{}\"", m.name()),
-                        fmt::format("gave tactor {} amplitude {}", d.tactor, d.amplitude),
-                        "drives go in order of tactor, with finite amplitudes above 0");
-    }
 }
 
 burst make_burst(const job& j, double onset_s, double duration_s, point p, double t_s)

@@ -1,44 +1,28 @@
 // SPDX-License-Identifier: MIT
+// The phantom models, and their choice for a plan.
 #include <tactor/phantom.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <memory>
+#include <numeric>
 #include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 
 #include "core/access.hpp"
+#include "core/distance.hpp"
 #include "core/refused.hpp"
+#include "plan/faces/face_rules.hpp"
 #include "plan/faces/layout_impl.hpp"
-#include "plan/phantom/phantom_models.hpp"
-
-namespace tactor {
-inline namespace v0 {
-
-phantom_model::~phantom_model() = default;
-
-std::shared_ptr<const phantom_model> make_phantom(phantom_kind k, const layout& l, faces_kind f)
-{
-    detail::check_faces(k, f);
-    if (f == faces_kind::nearest)
-        return detail::make_nearest_three(l);
-    switch (k) {
-    case phantom_kind::inverse_distance:
-        return detail::make_inverse_distance(l);
-    case phantom_kind::barycentric:
-    case phantom_kind::linear:
-    case phantom_kind::log:
-        return detail::make_on_triangle(k, l);
-    case phantom_kind::gaussian:
-        return detail::make_gaussian(l);
-    }
-    throw detail::bad_field("phantom", fmt::format("no model has number {}", static_cast<int>(k)));
-}
-
-} // namespace v0
-} // namespace tactor
+#include "plan/faces/plane.hpp"
+#include "plan/job.hpp"
+#include "plan/phantom/same_tactors.hpp"
 
 namespace tactor::detail {
+namespace {
 
 void check_faces(phantom_kind k, faces_kind f)
 {
@@ -54,32 +38,434 @@ void check_intensity(double a_v)
         throw bad_field("intensity", fmt::format("{} is not a number from 0 up", a_v));
 }
 
+/// Checks the arguments of a model, and brings p into the hull.
+/// \throws error (bad_input) for a point that is not finite, and as check_intensity() does.
 point check_request(const layout& l, point p, double a_v)
 {
     check_intensity(a_v);
     return l.contains(p) ? p : l.nearest(p);
 }
 
+/// Adds a drive of the tactor of that rank if its amplitude is above 0. Drives stay in order of tactor.
 void add_drive(const layout& l, unsigned rank, double amplitude, std::vector<drive>& out)
 {
-    if (amplitude > 0.0)
-        out.push_back({detail::access::of(l).index_of[rank], amplitude});
+    if (!(amplitude > 0.0))
+        return;
+    out.push_back({access::of(l).index_of[rank], amplitude});
+    for (auto d = out.end() - 1; d != out.begin() && d->tactor < (d - 1)->tactor; --d)
+        std::iter_swap(d, d - 1);
 }
 
-void sort_drives(std::vector<drive>& out)
+// Segments of so few tactors are looked at one by one.
+constexpr std::size_t few = 8;
+
+double distance(const layout& l, unsigned rank, point p)
 {
-    // A sort is a call; there are three of them nearly always.
-    const auto by_tactor = [](const drive& a, const drive& b) { return a.tactor < b.tactor; };
-    if (out.size() == 3) {
-        if (by_tactor(out[1], out[0]))
-            std::swap(out[0], out[1]);
-        if (by_tactor(out[2], out[1]))
-            std::swap(out[1], out[2]);
-        if (by_tactor(out[1], out[0]))
-            std::swap(out[0], out[1]);
-        return;
+    return length_mm(p, access::of(l).points[rank]);
+}
+
+/// Computes Eq. (2).
+std::array<double, 2> share_of_two(const layout& l, const rank_pair& two, point p, double a_v)
+{
+    const double d1 = distance(l, two.first, p);
+    const double d2 = distance(l, two.second, p);
+    return {std::sqrt(d2 / (d1 + d2)) * a_v, std::sqrt(d1 / (d1 + d2)) * a_v};
+}
+
+/// Computes Eq. (10).
+std::array<double, 3> share_of_three(const std::array<double, 3>& distances_mm, double a_v)
+{
+    std::array<double, 3> parts{};
+    double sum = 0.0;
+    for (std::size_t i = 0; i < 3; ++i)
+        sum += parts[i] = 1.0 / distances_mm[i];
+    for (double& part : parts)
+        part = std::sqrt(part / sum) * a_v;
+    return parts;
+}
+
+/// Adds the drives of two tactors for a point between them: Eq. (2).
+void add_two(const layout& l, const rank_pair& two, point p, double a_v, std::vector<drive>& out)
+{
+    const std::array<double, 2> a = share_of_two(l, two, p, a_v);
+    add_drive(l, two.first, a[0], out);
+    add_drive(l, two.second, a[1], out);
+}
+
+/// Adds the drives of three tactors: Eq. (10).
+void add_three(const layout& l, const near_triple& three, double a_v, std::vector<drive>& out)
+{
+    const std::array<double, 3> a = share_of_three(three.distances, a_v);
+    for (std::size_t i = 0; i < 3; ++i)
+        add_drive(l, three.tactors[i], a[i], out);
+}
+
+/// Park et al. 2016: Eq. (2) on a segment, Eq. (10) in a triangle.
+class inverse_distance final : public model_of_three {
+public:
+    explicit inverse_distance(const layout& l) : layout_(l) {}
+
+    std::string_view name() const noexcept override { return to_string(phantom_kind::inverse_distance); }
+
+    void weights(point target, double a_v, std::vector<drive>& out) const override
+    {
+        out.clear();
+        const point p = check_request(layout_, target, a_v);
+        const layout::impl& l = detail::access::of(layout_);
+        const auto clear = l.clear_face(p);
+        if (clear && l.faces[*clear].size() <= few && l.clear_of_diagonals(*clear, p) &&
+            in_face(*clear, p, a_v, out))
+            return;
+        std::vector<unsigned> faces;
+        l.faces_at(p, faces);
+        if (const auto on = tactor_at(l, faces, p))
+            add_drive(layout_, *on, a_v, out);
+        else if (const auto segment = segment_at(l, faces, p))
+            add_two(layout_, *segment, p, a_v, out);
+        else
+            in_faces(faces, p, a_v, out);
     }
-    std::sort(out.begin(), out.end(), by_tactor);
+
+    double three_around(point p, rank_triple& three) const override
+    {
+        const layout::impl& l = detail::access::of(layout_);
+        const auto face = l.clear_face(p);
+        if (!face || l.faces[*face].size() > few || !l.clear_of_diagonals(*face, p))
+            return 0.0;
+        const auto found = triangle_at(l, *face, p);
+        if (!found)
+            return 0.0;
+        three = found->tactors;
+        return free_mm(l, *face, p, true);
+    }
+
+    std::array<double, 3> amplitudes(const rank_triple& three, unsigned count, point p,
+                                     double a_v) const override
+    {
+        if (count == 2) {
+            const std::array<double, 2> two = share_of_two(layout_, {three[0], three[1]}, p, a_v);
+            return {two[0], two[1], 0.0};
+        }
+        return share_of_three(
+            {distance(layout_, three[0], p), distance(layout_, three[1], p), distance(layout_, three[2], p)},
+            a_v);
+    }
+
+    unsigned taken_along(const std::vector<unsigned>& faces, rank_pair on, point,
+                         rank_triple& taken) const override
+    {
+        const layout::impl& l = detail::access::of(layout_);
+        const auto is_large = [&](unsigned f) { return l.faces[f].size() > few; };
+        if (std::any_of(faces.begin(), faces.end(), is_large))
+            return 0;
+        taken = {on.first, on.second, 0};
+        return 2;
+    }
+
+private:
+    bool in_face(unsigned face, point p, double a_v, std::vector<drive>& out) const
+    {
+        const auto three = triangle_at(detail::access::of(layout_), face, p);
+        if (!three)
+            return false;
+        add_three(layout_, *three, a_v, out);
+        return true;
+    }
+
+    void in_faces(const std::vector<unsigned>& faces, point p, double a_v, std::vector<drive>& out) const
+    {
+        for (const unsigned f : faces)
+            if (in_face(f, p, a_v, out))
+                return;
+        // Rounding can leave a gap between two faces; p may lie in it.
+        add_two(layout_, nearest_edge(detail::access::of(layout_), faces.front(), p), p, a_v, out);
+    }
+
+    layout layout_;
+};
+
+/// The literal rule of Park et al. 2016: the three closest of all tactors, even if their triangle misses p.
+class nearest_three final : public phantom_model {
+public:
+    explicit nearest_three(const layout& l) : layout_(l), ranks_(l.places().size())
+    {
+        std::iota(ranks_.begin(), ranks_.end(), 0U);
+    }
+
+    std::string_view name() const noexcept override { return to_string(phantom_kind::inverse_distance); }
+
+    void weights(point target, double a_v, std::vector<drive>& out) const override
+    {
+        out.clear();
+        const point p = check_request(layout_, target, a_v);
+        const layout::impl& l = access::of(layout_);
+        const unsigned first = l.nearest_tactor(p);
+        if (length_mm(p, l.points[first]) <= same_place_mm) {
+            add_drive(layout_, first, a_v, out);
+            return;
+        }
+        const near_triple three = closest_three(l, ranks_, p);
+        if (const auto segment = segment_at(l, three.tactors, p))
+            add_two(layout_, *segment, p, a_v, out);
+        else
+            add_three(layout_, three, a_v, out);
+    }
+
+private:
+    layout layout_;
+    std::vector<unsigned> ranks_; ///< of all tactors
+};
+
+constexpr double least_weight = 1e-9;
+
+struct weight {
+    unsigned rank = 0;
+    double b = 0.0;
+};
+
+using weights_of_three = std::array<weight, 3>;
+
+weights_of_three on_segment(const layout::impl& l, unsigned i, unsigned j, point p)
+{
+    const point a = l.points[i];
+    const point b = l.points[j];
+    const double u = length_mm(a, nearest_on_segment(a, b, p)) / length_mm(a, b);
+    return {{{i, 1.0 - u}, {j, u}, {j, 0.0}}};
+}
+
+weights_of_three in_triangle(const layout::impl& l, const rank_triple& t, point p)
+{
+    const auto at = [&](std::size_t i) { return l.points[t[i % 3]]; };
+    weights_of_three w;
+    for (std::size_t i = 0; i < 3; ++i)
+        w[i] = {t[i], turn(at(i + 1), at(i + 2), p)};
+    if (std::all_of(w.begin(), w.end(), [](const weight& x) { return x.b >= 0.0; }) &&
+        turn(at(0), at(1), at(2)) > 0.0)
+        return w;
+    // Beside the triangle within the tolerance: on its nearest edge.
+    const auto off = [&](std::size_t i) { return segment_distance_mm(at(i), at(i + 1), p); };
+    std::size_t best = 0;
+    for (std::size_t i = 1; i < 3; ++i)
+        if (off(i) < off(best))
+            best = i;
+    return on_segment(l, t[best], t[(best + 1) % 3], p);
+}
+
+bool is_edge(const std::vector<unsigned>& ring, rank_pair ends)
+{
+    for (std::size_t i = 0; i < ring.size(); ++i)
+        if (rank_pair(std::minmax(ring[i], ring[(i + 1) % ring.size()])) == ends)
+            return true;
+    return false;
+}
+
+/// Models of the barycentric coordinates in the Delaunay triangle of p.
+class on_triangle final : public model_of_three {
+public:
+    on_triangle(phantom_kind k, const layout& l) : kind_(k), layout_(l) {}
+
+    std::string_view name() const noexcept override { return to_string(kind_); }
+
+    void weights(point target, double a_v, std::vector<drive>& out) const override
+    {
+        out.clear();
+        const point p = check_request(layout_, target, a_v);
+        const layout::impl& l = detail::access::of(layout_);
+        auto face = l.clear_face(p);
+        if (!face) {
+            std::vector<unsigned> faces;
+            l.faces_at(p, faces);
+            if (const auto on = tactor_at(l, faces, p)) {
+                add_drive(layout_, *on, a_v, out);
+                return;
+            }
+            face = faces.front();
+        }
+        for (const weight& w : coordinates(*face, p))
+            add_drive(layout_, w.rank, amplitude(w.b) * a_v, out);
+    }
+
+    double three_around(point p, rank_triple& three) const override
+    {
+        const layout::impl& l = detail::access::of(layout_);
+        const auto face = l.clear_face(p);
+        if (!face || !l.clear_of_diagonals(*face, p))
+            return 0.0;
+        three = fan_triangle(l, *face, p);
+        const bool wound = turn(l.points[three[0]], l.points[three[1]], l.points[three[2]]) > 0.0;
+        return wound ? free_mm(l, *face, p, false) : 0.0;
+    }
+
+    // Only along an edge of the face: of the fan's other sides, the side of them decides.
+    unsigned taken_along(const std::vector<unsigned>& faces, rank_pair on, point p,
+                         rank_triple& taken) const override
+    {
+        const layout::impl& l = detail::access::of(layout_);
+        const unsigned face = faces.front();
+        if (l.faces[face].size() < 3 || !is_edge(l.faces[face], on))
+            return 0;
+        taken = fan_triangle(l, face, p);
+        return 3;
+    }
+
+    std::array<double, 3> amplitudes(const rank_triple& three, unsigned, point p, double a_v) const override
+    {
+        // Beside the triangle they come in an order of their own.
+        std::array<double, 3> out{};
+        for (const weight& w : drop_least(in_triangle(detail::access::of(layout_), three, p)))
+            if (const double a = amplitude(w.b) * a_v; a > 0.0)
+                out[w.rank == three[0] ? 0 : w.rank == three[1] ? 1 : 2] = a;
+        return out;
+    }
+
+private:
+    /// Sum 1, the least ones zero.
+    weights_of_three coordinates(unsigned face, point p) const
+    {
+        const layout::impl& l = detail::access::of(layout_);
+        const std::vector<unsigned>& ring = l.faces[face];
+        return drop_least(ring.size() < 3 ? on_segment(l, ring.front(), ring.back(), p)
+                                          : in_triangle(l, fan_triangle(l, face, p), p));
+    }
+
+    static weights_of_three drop_least(weights_of_three w)
+    {
+        normalise(w);
+        for (weight& x : w)
+            x.b = x.b < least_weight ? 0.0 : x.b;
+        normalise(w);
+        return w;
+    }
+
+    static void normalise(weights_of_three& w)
+    {
+        double sum = 0.0;
+        for (weight& x : w)
+            sum += x.b;
+        for (weight& x : w)
+            x.b /= sum;
+    }
+
+    double amplitude(double b) const
+    {
+        switch (kind_) {
+        case phantom_kind::linear:
+            return b;
+        case phantom_kind::log:
+            return std::log2(1.0 + b);
+        default:
+            return std::sqrt(b);
+        }
+    }
+
+    phantom_kind kind_;
+    layout layout_;
+};
+
+constexpr double sigma_in_pitches = 0.6;
+constexpr double least_share = 0.01; // of the largest weight
+
+/// After Yun, Oh and Choi, WHC 2019: all tactors near the point, by distance.
+class gaussian final : public phantom_model {
+public:
+    explicit gaussian(const layout& l) : layout_(l), variance_(square(sigma_in_pitches * l.pitch_mm())) {}
+
+    std::string_view name() const noexcept override { return to_string(phantom_kind::gaussian); }
+
+    void weights(point target, double a_v, std::vector<drive>& out) const override
+    {
+        out.clear();
+        const point p = check_request(layout_, target, a_v);
+        const layout::impl& l = detail::access::of(layout_);
+        const unsigned first = l.nearest_tactor(p);
+        if (!(variance_ > 0.0)) {
+            add_drive(layout_, first, a_v, out);
+            return;
+        }
+        // Relative to the nearest tactor's weight, so that none underflows.
+        const double nearest = square(length_mm(p, l.points[first]));
+        double sum = 0.0;
+        for (unsigned v = 0; v < l.points.size(); ++v) {
+            const double g = std::exp((nearest - square(length_mm(p, l.points[v]))) / (2.0 * variance_));
+            if (g < least_share)
+                continue;
+            sum += g * g;
+            add_drive(layout_, v, g, out);
+        }
+        for (drive& d : out)
+            d.amplitude *= a_v / std::sqrt(sum);
+        std::erase_if(out, [](const drive& d) { return !(d.amplitude > 0.0); });
+    }
+
+private:
+    static double square(double x) { return x * x; }
+
+    layout layout_;
+    double variance_;
+};
+
+} // namespace
+
+std::shared_ptr<const phantom_model> choose_model(const layout& l, const plan_options& o)
+{
+    if (!o.custom_phantom) {
+        check_faces(o.phantom, o.faces); // where the algorithm does not use them, too
+        return make_phantom(o.phantom, l, faces_used(o));
+    }
+    if (o.faces != faces_kind::delaunay)
+        throw bad_field("faces",
+                        "nearest goes with inverse-distance only, not with a phantom model of your own",
+                        "use {faces=delaunay} or {phantom=inverse-distance}");
+    return o.custom_phantom;
+}
+
+faces_kind faces_used(const plan_options& o)
+{
+    return o.algorithm == algorithm_kind::tactile_brush ? faces_kind::delaunay : o.faces;
+}
+
+void drives_at(const phantom_model& m, const layout& l, point p, double a_v, std::vector<drive>& out)
+{
+    out.clear();
+    check_intensity(a_v);
+    if (a_v == 0.0)
+        return;
+    m.weights(p, a_v, out);
+    for (std::size_t i = 0; i < out.size(); ++i) {
+        const drive& d = out[i];
+        const bool in_order = i == 0 || out[i - 1].tactor < d.tactor;
+        if (!in_order || d.tactor >= l.places().size() || !(d.amplitude > 0.0 && std::isfinite(d.amplitude)))
+            throw error(error_kind::bad_input, fmt::format("phantom model \"{}\"", m.name()),
+                        fmt::format("gave tactor {} amplitude {}", d.tactor, d.amplitude),
+                        "drives go in order of tactor, with finite amplitudes above 0");
+    }
 }
 
 } // namespace tactor::detail
+
+namespace tactor {
+inline namespace v0 {
+
+phantom_model::~phantom_model() = default;
+
+std::shared_ptr<const phantom_model> make_phantom(phantom_kind k, const layout& l, faces_kind f)
+{
+    detail::check_faces(k, f);
+    switch (k) {
+    case phantom_kind::inverse_distance:
+        // In one line there are segments, and no three.
+        if (f == faces_kind::nearest && !l.faces().empty())
+            return std::make_shared<detail::nearest_three>(l);
+        return std::make_shared<detail::inverse_distance>(l);
+    case phantom_kind::barycentric:
+    case phantom_kind::linear:
+    case phantom_kind::log:
+        return std::make_shared<detail::on_triangle>(k, l);
+    case phantom_kind::gaussian:
+        return std::make_shared<detail::gaussian>(l);
+    }
+    throw detail::bad_field("phantom", fmt::format("no model has number {}", static_cast<int>(k)));
+}
+
+} // namespace v0
+} // namespace tactor
