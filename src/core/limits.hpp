@@ -22,6 +22,9 @@ inline constexpr double min_db = -200.0; ///< below the noise of any converter
 inline constexpr double max_gain_db = 60.0;
 inline constexpr double max_displacement_um = 10000.0;
 
+/// Times nearer than this are one time, s.
+inline constexpr double same_time_s = 1e-9;
+
 inline constexpr double longest_stroke_s = 86400.0;
 
 /// Least speed of a profile. It bounds the time at its slowest place.

@@ -18,8 +18,6 @@
 #include "plan/faces/layout_impl.hpp"
 #include "plan/faces/sides.hpp"
 #include "plan/job.hpp"
-#include "plan/missed_places.hpp"
-#include "plan/options.hpp"
 
 namespace tactor {
 inline namespace v0 {

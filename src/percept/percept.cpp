@@ -13,10 +13,10 @@
 #include <fmt/format.h>
 
 #include "core/distance.hpp"
+#include "core/limits.hpp"
 #include "core/words.hpp"
 #include "percept/compare.hpp"
 #include "percept/person.hpp"
-#include "plan/rounded.hpp"
 
 namespace tactor::detail {
 namespace {

@@ -12,9 +12,7 @@
 #include "core/limits.hpp"
 #include "core/trajectory/impl.hpp"
 #include "core/words.hpp"
-#include "plan/brush.hpp"
 #include "plan/job.hpp"
-#include "plan/rounded.hpp"
 
 namespace tactor::detail {
 namespace {

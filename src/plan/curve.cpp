@@ -15,7 +15,6 @@
 #include "core/trajectory/impl.hpp"
 #include "core/words.hpp"
 #include "plan/curve_impl.hpp"
-#include "plan/rounded.hpp"
 
 namespace tactor::detail {
 namespace {

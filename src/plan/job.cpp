@@ -2,16 +2,101 @@
 #include "plan/job.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <cstddef>
 #include <optional>
 #include <tuple>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
 
+#include <tactor/error.hpp>
+
+#include "core/limits.hpp"
 #include "core/words.hpp"
-#include "plan/rounded.hpp"
+#include "plan/faces/plane.hpp"
 
 namespace tactor::detail {
+namespace {
+
+bool in_one_line(point a, point b, point c)
+{
+    const double longest = std::max({length_mm(a, b), length_mm(b, c), length_mm(c, a)});
+    return std::abs(turn(a, b, c)) <= same_place_mm * longest;
+}
+
+// Its edge included, which rounding may make either side.
+bool holds(point a, point b, point c, point p)
+{
+    if (turn(a, b, c) < 0.0)
+        std::swap(b, c);
+    return triangle_distance_mm(a, b, c, p) <= 2.0 * same_place_mm;
+}
+
+// Distance from a whole number of nanoseconds that is rounding in the last digits.
+constexpr double slack = 1e-4;
+
+std::string seconds(double nanoseconds)
+{
+    std::string s = fmt::format("{:.9f}", nanoseconds * 1e-9);
+    s.erase(s.find_last_not_of('0') + 1);
+    if (s.back() == '.')
+        s.pop_back();
+    return s;
+}
+
+} // namespace
+
+void missed_places::add(const layout& l, const burst& b)
+{
+    ++all_;
+    if (b.drives.size() != 3)
+        return;
+    const auto at = [&](std::size_t i) { return l.places()[b.drives[i].tactor]; };
+    const bool line = in_one_line(at(0), at(1), at(2));
+    if (!line && holds(at(0), at(1), at(2), b.position))
+        return;
+    if (missed_ == 0)
+        first_ = b.position;
+    ++missed_;
+    in_line_ += line ? 1 : 0;
+}
+
+std::string missed_places::warning(std::string_view what) const
+{
+    if (missed_ == 0)
+        return {};
+    const std::string line =
+        in_line_ == 0 ? "" : fmt::format("; for {} of them the three are in one line", in_line_);
+    return fmt::format("{} of {} {} outside the triangle of the three closest tactors, first at {}{}: felt "
+                       "elsewhere (faces = delaunay)",
+                       missed_, counted(all_, what), missed_ == 1 ? "lies" : "lie", place(first_), line);
+}
+
+std::string job::name() const
+{
+    return motion.name.empty() ? "stroke" : fmt::format("stroke \"{}\"", motion.name);
+}
+
+void check_burst_count(const job& j, double bursts)
+{
+    if (bursts > most_bursts)
+        throw error(error_kind::bad_input, j.name(), fmt::format("would need {:.3g} bursts", bursts),
+                    fmt::format("at most {:.0f}; make it shorter or the SOA longer", most_bursts));
+}
+
+burst make_burst(const job& j, double onset_s, double duration_s, point p, double t_s)
+{
+    burst b;
+    b.onset_s = onset_s;
+    b.duration_s = duration_s;
+    b.position = p;
+    b.intensity = j.options.scale.amplitude(j.motion.motion.intensity(t_s));
+    drives_at(*j.model, j.faces, p, b.intensity, j.scratch);
+    b.drives.assign(j.scratch.begin(), j.scratch.end());
+    return b;
+}
 
 point follower::at(double t_s)
 {
@@ -97,6 +182,23 @@ std::vector<conflict> find_conflicts(const std::vector<burst>& bursts)
         return std::tie(a.from_s, a.tactor) < std::tie(b.from_s, b.tactor);
     });
     return found;
+}
+
+std::string seconds_up(double t_s)
+{
+    return seconds(std::ceil(t_s * 1e9 - slack));
+}
+
+std::string seconds_down(double t_s)
+{
+    return seconds(std::floor(t_s * 1e9 + slack));
+}
+
+std::string place(point p)
+{
+    // Adding 0 turns -0 into 0.
+    const auto micrometres = [](double v) { return std::round(v * 1e3) / 1e3 + 0.0; };
+    return fmt::format("({:.3f}, {:.3f}) mm", micrometres(p.x_mm), micrometres(p.y_mm));
 }
 
 } // namespace tactor::detail

@@ -3,18 +3,34 @@
 /// The stroke that is being planned, and the parts that all algorithms share.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <functional>
 #include <memory>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <tactor/plan.hpp>
 
-#include "plan/missed_places.hpp"
-
 namespace tactor::detail {
+
+/// Count of the places in a plan that lie outside the triangle of their three tactors, as faces_kind::nearest
+/// may choose them.
+class missed_places {
+public:
+    /// Counts a burst, or a sample of a curve.
+    void add(const layout& l, const burst& b);
+    /// Returns the plan's warning; empty if there are none. `what` names a place: burst, sample.
+    std::string warning(std::string_view what) const;
+
+private:
+    std::size_t all_ = 0;
+    std::size_t missed_ = 0;
+    std::size_t in_line_ = 0; ///< of these, with the three tactors in one line
+    point first_ = {};
+};
 
 /// Counts over all bursts of a plan, for its warnings.
 struct burst_count {
@@ -56,10 +72,27 @@ plan plan_in_pieces(const array& a, const layout& l, const stroke& s, const plan
 /// Counts the plan's bursts, and passes them to job::take if there is one.
 void pass_on(const job& j, plan& p);
 
+/// Returns the common options with the choices of a stroke.
+plan_options apply_choices(plan_options common, const stroke_choices& c);
+
+/// Solves Eq. (1) for the duration, with Eq. (11): a burst never outlasts its SOA. No check of bounds.
+inline double law_duration_s(const timing_profile& p, double soa_s)
+{
+    return std::min((soa_s - p.intercept_s) / p.slope, soa_s);
+}
+
 /// Plan by an algorithm; each fills in its own part of the plan.
 void plan_park(const job& j, plan& out);
 void plan_brush(const job& j, plan& out);
 void plan_continuous(const job& j, plan& out);
+
+/// Returns the parts before tau of all bursts of the Tactile Brush (Israr and Poupyrev 2011; rendering model,
+/// section 5), or nothing where the schedule is not possible. tau from 0, ascending.
+std::vector<double> parts_s(const timing_profile& p, const std::vector<double>& tau_s);
+
+/// Leaves its virtual tactors out, the one with the smallest gap first, until the schedule is possible or
+/// only both ends are left. Returns the places of those that are left, ascending. O(n log n).
+std::vector<std::size_t> thin_out(const timing_profile& p, const std::vector<double>& tau_s);
 
 /// More bursts than this are a mistake in the input.
 inline constexpr double most_bursts = 10e6;
@@ -109,5 +142,13 @@ double hz_between(const carrier_point& from, const carrier_point& to, double u);
 
 /// Returns the carrier at a part of the path; the profile has points. O(log n).
 double hz_at(const std::vector<carrier_part>& profile, double part);
+
+/// Returns a time in seconds for a message, rounded up to a nanosecond: "1.2345".
+std::string seconds_up(double t_s);
+/// Returns a time in seconds, rounded down.
+std::string seconds_down(double t_s);
+
+/// Returns "(40.000, 0.000) mm".
+std::string place(point p);
 
 } // namespace tactor::detail

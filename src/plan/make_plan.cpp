@@ -2,23 +2,28 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
 
+#include <tactor/error.hpp>
 #include <tactor/phantom.hpp>
 
+#include "core/limits.hpp"
 #include "core/recording_name.hpp"
 #include "core/refused.hpp"
 #include "core/words.hpp"
 #include "plan/job.hpp"
-#include "plan/options.hpp"
-#include "plan/rounded.hpp"
 
 namespace tactor {
 inline namespace v0 {
 namespace {
 
+constexpr double shortest_burst_s = 0.0001; // under a frame at 8 kHz there would be nothing to hear
+constexpr double longest_free_soa_s = 10.0;
 // Durations beyond this are outside the data from which Eq. (1) was fitted (Israr and Poupyrev 2011).
 constexpr double longest_fitted_s = 0.160;
 // Part of the distance between two tactors. People hardly feel a movement over less (Remache-Vinueza,
@@ -29,6 +34,7 @@ constexpr double least_travel = 0.2;
 constexpr double widest_face = 1.15;
 // Messages show durations in milliseconds: a difference of less than half a millisecond does not count.
 constexpr double law_tolerance_s = 0.0005;
+constexpr std::uint64_t most_samples = 4000;
 
 void count(const layout& l, const plan& p, detail::burst_count& c)
 {
@@ -98,6 +104,25 @@ void warn_of_wide_faces(const layout& l, const phantom_model& m, plan& p)
             l.pitch_mm(), *middle));
 }
 
+/// Warns of faces that the algorithm does not use, and of those that miss their places. `missed` has counted
+/// the bursts; of a curve, some 4000 samples are looked at.
+void warn_of_faces(const layout& l, const plan_options& o, detail::missed_places& missed, plan& p)
+{
+    if (o.faces != p.faces)
+        p.warnings.push_back(fmt::format(
+            "faces = {} is not used: tactile-brush plays on the lines of the grid", to_string(o.faces)));
+    if (p.faces != faces_kind::nearest)
+        return;
+    const std::uint64_t samples = p.curve ? p.curve->size() : 0;
+    burst b;
+    for (std::uint64_t k = 0; k < samples; k += 1 + samples / most_samples) {
+        p.curve->sample(k, b);
+        missed.add(l, b);
+    }
+    if (std::string text = missed.warning(p.curve ? "sample" : "burst"); !text.empty())
+        p.warnings.push_back(std::move(text));
+}
+
 /// A recorder that was switched off leaves a file that is shorter than its header says.
 void warn_of_missing_samples(plan& p)
 {
@@ -138,6 +163,42 @@ double check_carrier(double hz)
     return hz;
 }
 
+/// \throws error (bad_input) for a law that no SOA can follow.
+void check_profile(const timing_profile& p)
+{
+    const auto refuse = [](std::string_view what, double value, std::string_view hint) {
+        throw error(error_kind::bad_input, "timing profile", fmt::format("{} {} cannot be", what, value),
+                    hint)
+            .with_field("profile");
+    };
+    if (!(p.slope > 0.0 && p.slope < 1.0))
+        refuse("a slope of", p.slope, "between 0 and 1; 0.32 on palm and forearm");
+    if (!(p.intercept_s >= 0.0 && std::isfinite(p.intercept_s)))
+        refuse("an intercept in seconds of", p.intercept_s, "0 or more; 0.0473 on palm and forearm");
+    if (!(p.max_soa_s > p.intercept_s && std::isfinite(p.max_soa_s)))
+        refuse("a longest SOA in seconds of", p.max_soa_s,
+               fmt::format("more than the intercept, {}", p.intercept_s));
+}
+
+/// \throws error (bad_input) for options that the algorithm cannot use.
+void check_options(const plan_options& o)
+{
+    if (o.algorithm == algorithm_kind::tactile_brush)
+        check_profile(o.profile);
+    if (o.algorithm != algorithm_kind::park2016)
+        return;
+    static_cast<void>(burst_duration_s(o)); // checks SOA and burst
+    if (o.timing != timing_kind::fit || o.burst_s)
+        return;
+    const double longest = detail::law_duration_s(o.profile, o.soa_s);
+    if (!(o.min_duration_s > 0.0 && o.min_duration_s <= longest))
+        throw error(error_kind::bad_input, "{timing=fit}",
+                    fmt::format("bursts of at least {} cannot be had: an SOA of {} gives {}",
+                                seconds_text(o.min_duration_s), seconds_text(o.soa_s), seconds_text(longest)),
+                    "lower {min_duration_s}, or take a longer SOA")
+            .with_field("min_duration_s");
+}
+
 /// Returns true if the stroke itself sets the impossible SOA or burst.
 bool is_own(const error& e, const stroke_choices& c)
 {
@@ -147,7 +208,7 @@ bool is_own(const error& e, const stroke_choices& c)
 void check_chosen(const plan_options& o, const stroke& s)
 {
     try {
-        detail::check_options(o);
+        check_options(o);
     } catch (const error& e) {
         if (s.places.choices.line == 0 || !is_own(e, s.choices))
             throw;
@@ -157,6 +218,70 @@ void check_chosen(const plan_options& o, const stroke& s)
 }
 
 } // namespace
+
+double burst_duration_s(const timing_profile& p, double soa_s)
+{
+    check_profile(p);
+    if (!(soa_s > p.intercept_s && soa_s <= p.max_soa_s))
+        throw detail::bad_field(
+            "soa_s",
+            fmt::format("{} s is out of bounds: an SOA is longer than {} s and at most {} s", soa_s,
+                        p.intercept_s, p.max_soa_s),
+            fmt::format("use {}", p.max_soa_s));
+    return detail::law_duration_s(p, soa_s);
+}
+
+double burst_duration_s(const plan_options& o)
+{
+    if (!o.burst_s)
+        return burst_duration_s(o.profile, o.soa_s);
+    check_profile(o.profile);
+    if (!(o.soa_s >= shortest_burst_s && o.soa_s <= longest_free_soa_s))
+        throw detail::bad_field(
+            "soa_s",
+            fmt::format("{} s is out of bounds: with a duration of its own for the burst an SOA is {} to "
+                        "{} s",
+                        o.soa_s, shortest_burst_s, longest_free_soa_s),
+            fmt::format("use {}", o.profile.max_soa_s));
+    if (!(*o.burst_s >= shortest_burst_s && std::isfinite(*o.burst_s)))
+        throw detail::bad_field(
+            "burst_s", fmt::format("{} s is no duration, {} s is the shortest", *o.burst_s, shortest_burst_s),
+            fmt::format("use {} to {} s", shortest_burst_s, o.soa_s));
+    if (*o.burst_s > o.soa_s)
+        throw detail::bad_field(
+            "burst_s",
+            fmt::format("{} s is longer than the SOA of {} s, and bursts must not overlap", *o.burst_s,
+                        o.soa_s),
+            fmt::format("use at most {} s, or a longer SOA", o.soa_s));
+    return *o.burst_s;
+}
+
+double intensity_scale::amplitude(double intensity) const
+{
+    // Callers refuse intensities that are negative or not numbers.
+    if (!(intensity > 0.0))
+        return intensity;
+    if (level_db != 0.0) {
+        if (!std::isfinite(level_db))
+            throw detail::bad_field("level_db", fmt::format("{} is no level", level_db), "give decibels");
+        return intensity_scale{kind, exponent, sl_db}.amplitude(intensity) * std::pow(10.0, level_db / 20.0);
+    }
+    if (kind == scale_kind::linear)
+        return intensity;
+    if (kind == scale_kind::stevens) {
+        if (!(exponent >= 0.1 && exponent <= 3.0))
+            throw detail::bad_field(
+                "stevens_exponent", fmt::format("{} is not one", exponent),
+                "give 0.1 to 3; 0.95 at 60 Hz and 0.6 at 250 Hz on the finger (Stevens 1968)");
+        return std::pow(intensity, 1.0 / exponent);
+    }
+    if (!(sl_db > 0.0 && sl_db <= 100.0))
+        throw error(error_kind::bad_input, "{intensity_scale}",
+                    fmt::format("sl needs the sensation level of intensity 1, not {} dB", sl_db),
+                    "give {sl_db} above 0 dB, such as 7")
+            .with_field("intensity_scale");
+    return std::pow(10.0, sl_db * (intensity - 1.0) / 20.0);
+}
 
 plan make_plan(const array& a, const layout& l, const stroke& s, const plan_options& o)
 {
@@ -172,6 +297,20 @@ plan make_plan(const array& a, const stroke& s, const plan_options& o)
 } // namespace tactor
 
 namespace tactor::detail {
+
+plan_options apply_choices(plan_options common, const stroke_choices& c)
+{
+    common.algorithm = c.algorithm.value_or(common.algorithm);
+    common.soa_s = c.soa_s.value_or(common.soa_s);
+    common.burst_s = c.burst_s ? c.burst_s : common.burst_s;
+    common.scale.level_db += c.level_db;
+    common.faces = c.faces.value_or(common.faces);
+    if (c.phantom) {
+        common.phantom = *c.phantom;
+        common.custom_phantom.reset();
+    }
+    return common;
+}
 
 plan plan_in_pieces(const array& a, const layout& l, const stroke& s, const plan_options& common,
                     const burst_taker& take)
@@ -232,30 +371,6 @@ void pass_on(const job& j, plan& p)
         j.take(p, p.bursts);
         p.bursts.clear();
     }
-}
-
-std::string job::name() const
-{
-    return motion.name.empty() ? "stroke" : fmt::format("stroke \"{}\"", motion.name);
-}
-
-void check_burst_count(const job& j, double bursts)
-{
-    if (bursts > most_bursts)
-        throw error(error_kind::bad_input, j.name(), fmt::format("would need {:.3g} bursts", bursts),
-                    fmt::format("at most {:.0f}; make it shorter or the SOA longer", most_bursts));
-}
-
-burst make_burst(const job& j, double onset_s, double duration_s, point p, double t_s)
-{
-    burst b;
-    b.onset_s = onset_s;
-    b.duration_s = duration_s;
-    b.position = p;
-    b.intensity = j.options.scale.amplitude(j.motion.motion.intensity(t_s));
-    drives_at(*j.model, j.faces, p, b.intensity, j.scratch);
-    b.drives.assign(j.scratch.begin(), j.scratch.end());
-    return b;
 }
 
 } // namespace tactor::detail

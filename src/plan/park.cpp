@@ -4,9 +4,8 @@
 
 #include <fmt/format.h>
 
+#include "core/limits.hpp"
 #include "plan/job.hpp"
-#include "plan/options.hpp"
-#include "plan/rounded.hpp"
 
 namespace tactor::detail {
 namespace {

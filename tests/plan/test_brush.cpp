@@ -10,7 +10,6 @@
 
 #include "arrays.hpp"
 #include "has.hpp"
-#include "plan/brush.hpp"
 #include "plan/job.hpp"
 #include "strokes.hpp"
 
