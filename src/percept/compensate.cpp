@@ -12,11 +12,11 @@
 #include <tactor/phantom.hpp>
 
 #include "core/access.hpp"
+#include "core/path/shape.hpp"
 #include "core/refused.hpp"
 #include "core/words.hpp"
 #include "percept/low_speed.hpp"
 #include "plan/faces/layout_impl.hpp"
-#include "plan/faces/sides.hpp"
 #include "plan/job.hpp"
 
 namespace tactor {
@@ -164,14 +164,15 @@ std::vector<point> fit_on_array(const layout& l, std::span<const double> give, s
 
 std::size_t count_on_edge(const layout::impl& l, std::span<const point> taps)
 {
-    const std::vector<detail::beyond> sides =
-        l.hull.empty() ? std::vector<detail::beyond>() : detail::hull_sides(l);
+    const std::vector<detail::hull_side> sides =
+        l.hull.empty() ? std::vector<detail::hull_side>() : detail::hull_sides(l);
     const auto ends = detail::find_ends(l.points);
     return static_cast<std::size_t>(std::count_if(taps.begin(), taps.end(), [&](point p) {
         const bool at_end = std::min(distance_mm(p, ends.first), distance_mm(p, ends.second)) < on_edge_mm;
-        return sides.empty() ? at_end : std::any_of(sides.begin(), sides.end(), [p](const detail::beyond& e) {
-            return detail::dot(e.out, p) > e.reach - on_edge_mm;
-        });
+        return sides.empty() ? at_end
+                             : std::any_of(sides.begin(), sides.end(), [p](const detail::hull_side& e) {
+                                   return detail::dot(e.out, p) > e.reach - on_edge_mm;
+                               });
     }));
 }
 

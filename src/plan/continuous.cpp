@@ -16,7 +16,6 @@
 #include "core/trajectory/spans.hpp"
 #include "plan/curve_impl.hpp"
 #include "plan/faces/layout_impl.hpp"
-#include "plan/faces/sides.hpp"
 #include "plan/job.hpp"
 #include "plan/phantom/same_tactors.hpp"
 
@@ -24,11 +23,11 @@ namespace tactor::detail {
 namespace {
 
 /// Parameters, ascending, at which a curve turns round as seen from the sides that it may cross.
-void turns_seen(const shape& form, const std::vector<beyond>& sides, std::vector<double>& turns_at)
+void turns_seen(const shape& form, const std::vector<hull_side>& sides, std::vector<double>& turns_at)
 {
     turns_at.clear();
     const std::array<point, 4> frame = control_frame(form);
-    for (const beyond& s : sides) {
+    for (const hull_side& s : sides) {
         const bool within =
             std::all_of(frame.begin(), frame.end(), [&](point p) { return dot(s.out, p) <= s.reach; });
         if (within)
@@ -45,7 +44,7 @@ void turns_seen(const shape& form, const std::vector<beyond>& sides, std::vector
 /// that says where the path leaves the array first.
 void check_inside(const job& j)
 {
-    const std::vector<beyond> sides = hull_sides(detail::access::of(j.faces));
+    const std::vector<hull_side> sides = hull_sides(detail::access::of(j.faces));
     std::vector<double> turns_at;
     follower target(j);
     target.at(0.0);

@@ -19,7 +19,6 @@
 #include "core/refused.hpp"
 #include "plan/faces/layout_impl.hpp"
 #include "plan/faces/plane.hpp"
-#include "plan/faces/sides.hpp"
 
 namespace tactor {
 inline namespace v0 {
@@ -162,7 +161,7 @@ fitting fit_to_hull(const picture& drawn, const layout::impl& l, double margin_m
               {}};
     const bool rests = drawn.rests();
     double narrowest = std::numeric_limits<double>::infinity();
-    for (const detail::beyond& side : detail::hull_sides(l)) {
+    for (const detail::hull_side& side : detail::hull_sides(l)) {
         const double space = side.reach - dot(side.out, f.to);
         narrowest = std::min(narrowest, space);
         const double reach = rests ? 0.0 : drawn.reach(side.out) - dot(side.out, f.from);

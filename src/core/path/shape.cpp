@@ -19,11 +19,6 @@
 namespace tactor::detail {
 namespace {
 
-double dot(point a, point b) noexcept
-{
-    return a.x_mm * b.x_mm + a.y_mm * b.y_mm;
-}
-
 double length(point p) noexcept
 {
     return portable_hypot(p.x_mm, p.y_mm);
@@ -209,6 +204,20 @@ bool is_even(const shape& c) noexcept
 std::vector<double> turns(const shape& c, axis a)
 {
     return inside(std::visit([a](const auto& s) { return find_turns(s, a); }, c));
+}
+
+std::array<point, 4> control_frame(const shape& form)
+{
+    if (const auto* b = std::get_if<cubic>(&form))
+        return b->p;
+    const auto& e = *std::get_if<elliptic>(&form);
+    return {e.centre - e.u - e.v, e.centre - e.u + e.v, e.centre + e.u - e.v, e.centre + e.u + e.v};
+}
+
+std::vector<double> turns_towards(const shape& form, point out)
+{
+    const affine outwards_is_x{out.x_mm, -out.y_mm, out.y_mm, out.x_mm, 0.0, 0.0};
+    return turns(mapped(form, outwards_is_x), axis::x);
 }
 
 std::vector<double> speed_turns(const shape& c)

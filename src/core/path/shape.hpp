@@ -32,6 +32,11 @@ inline point operator*(double k, point a) noexcept
     return {k * a.x_mm, k * a.y_mm};
 }
 
+inline double dot(point a, point b) noexcept
+{
+    return a.x_mm * b.x_mm + a.y_mm * b.y_mm;
+}
+
 /// Interpolates from a to b. Exact at both ends and, for a whole binary fraction u, in between.
 inline point between(point a, point b, double u) noexcept
 {
@@ -74,6 +79,12 @@ bool is_even(const shape& c) noexcept;
 
 /// Returns the parameters inside (0, 1) at which a coordinate turns; ascending. Between them it is monotone.
 std::vector<double> turns(const shape& c, axis a);
+
+/// Returns the corners of a convex figure round a curve.
+std::array<point, 4> control_frame(const shape& form);
+
+/// Returns the parameters inside (0, 1) at which a curve turns round as seen in a direction; ascending.
+std::vector<double> turns_towards(const shape& form, point out);
 
 /// Returns the parameters inside (0, 1) at which the speed is least or greatest, cusps included; ascending.
 std::vector<double> speed_turns(const shape& c);

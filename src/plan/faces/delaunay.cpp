@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "plan/faces/delaunay.hpp"
+#include "plan/faces/plane.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -16,8 +16,6 @@
 #include <fmt/format.h>
 
 #include <tactor/error.hpp>
-
-#include "plan/faces/plane.hpp"
 
 namespace tactor::detail {
 namespace {

@@ -5,10 +5,72 @@
 #include <numeric>
 #include <tuple>
 
-#include "plan/faces/delaunay.hpp"
+#include "core/path/shape.hpp"
 #include "plan/faces/layout_impl.hpp"
 #include "plan/faces/plane.hpp"
-#include "plan/faces/sides.hpp"
+
+namespace tactor::detail {
+namespace {
+
+hull_side make_side(point a, point b)
+{
+    const double length = distance_mm(a, b);
+    const point out{(b.y_mm - a.y_mm) / length, (a.x_mm - b.x_mm) / length};
+    return {out, dot(out, a)};
+}
+
+point farthest_from(point p, const std::vector<point>& points)
+{
+    return *std::max_element(points.begin(), points.end(),
+                             [p](point a, point b) { return distance_mm(p, a) < distance_mm(p, b); });
+}
+
+} // namespace
+
+std::pair<point, point> find_ends(const std::vector<point>& points)
+{
+    const point first = farthest_from(points.front(), points);
+    return {first, farthest_from(first, points)};
+}
+
+std::vector<hull_side> hull_sides(const layout::impl& l)
+{
+    std::vector<hull_side> sides;
+    if (!l.hull.empty()) {
+        for (const auto& [a, b] : l.rim)
+            sides.push_back(make_side(a, b));
+        return sides;
+    }
+    const auto [first, last] = find_ends(l.points);
+    const point along = first == last ? point{1.0, 0.0} : 1.0 / distance_mm(first, last) * (last - first);
+    const point across{along.y_mm, -along.x_mm};
+    for (const point out : {along, across})
+        for (const double sign : {1.0, -1.0})
+            sides.push_back({sign * out, std::max(sign * dot(out, first), sign * dot(out, last))});
+    return sides;
+}
+
+// Uses Andrew's monotone chain.
+std::vector<point> convex_hull(std::vector<point> points)
+{
+    std::sort(points.begin(), points.end(),
+              [](point a, point b) { return std::tie(a.x_mm, a.y_mm) < std::tie(b.x_mm, b.y_mm); });
+    std::vector<point> hull;
+    const auto half = [&hull](auto first, auto last) {
+        const std::size_t start = hull.size();
+        for (auto it = first; it != last; ++it) {
+            while (hull.size() >= start + 2 && turn(hull[hull.size() - 2], hull.back(), *it) <= 0.0)
+                hull.pop_back();
+            hull.push_back(*it);
+        }
+        hull.pop_back();
+    };
+    half(points.begin(), points.end());
+    half(points.rbegin(), points.rend());
+    return hull;
+}
+
+} // namespace tactor::detail
 
 namespace tactor {
 inline namespace v0 {
@@ -24,14 +86,17 @@ std::vector<unsigned> rank_places(const std::vector<point>& places)
 {
     std::vector<unsigned> order(places.size());
     std::iota(order.begin(), order.end(), 0U);
-    const auto by_row = [&](unsigned i) { return std::tuple(places[i].y_mm, places[i].x_mm); };
-    const auto by_column = [&](unsigned i) { return std::tuple(places[i].x_mm, places[i].y_mm); };
-    std::sort(order.begin(), order.end(), [&](unsigned a, unsigned b) { return by_row(a) < by_row(b); });
+    const auto by = [&places](double point::*first, double point::*then) {
+        return [&places, first, then](unsigned a, unsigned b) {
+            return std::tie(places[a].*first, places[a].*then) < std::tie(places[b].*first, places[b].*then);
+        };
+    };
+    std::sort(order.begin(), order.end(), by(&point::y_mm, &point::x_mm));
     for (auto row = order.begin(); row != order.end();) {
         auto end = row + 1;
         while (end != order.end() && places[*end].y_mm - places[*(end - 1)].y_mm <= same_place_mm)
             ++end;
-        std::sort(row, end, [&](unsigned a, unsigned b) { return by_column(a) < by_column(b); });
+        std::sort(row, end, by(&point::x_mm, &point::y_mm));
         row = end;
     }
     return order;

@@ -52,3 +52,17 @@ struct layout::impl {
 
 } // namespace v0
 } // namespace tactor
+
+namespace tactor::detail {
+
+/// The region beyond an edge of the hull: more than `reach` in the direction `out`, which has length 1.
+struct hull_side {
+    point out;
+    double reach = 0.0;
+};
+
+/// Returns the sides of the hull. If all tactors are in one line, the hull is that line: its two sides and
+/// two ends.
+std::vector<hull_side> hull_sides(const layout::impl& l);
+
+} // namespace tactor::detail

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// Small plane geometry on points in millimetres.
+/// Plane geometry on points in millimetres.
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <utility>
 #include <vector>
 
 #include <tactor/path.hpp>
@@ -76,5 +78,24 @@ inline bool finite(point p) noexcept
 {
     return std::isfinite(p.x_mm) && std::isfinite(p.y_mm);
 }
+
+/// Returns two points that are as far apart as any, in a line; elsewhere nearly so.
+std::pair<point, point> find_ends(const std::vector<point>& points);
+
+/// Returns the corners of the convex hull, with positive turn; two for points in one line, none for a single
+/// one.
+std::vector<point> convex_hull(std::vector<point> points);
+
+using triangle = std::array<unsigned, 3>;
+
+/// Returns Delaunay triangles of points that are not all in one line, each with positive turn(). Slivers on
+/// the hull that are thinner than same_place_mm are left out: the points are in line there.
+/// \throws error (bad_input) where two points are too near to each other for the extent of them all.
+std::vector<triangle> delaunay(const std::vector<point>& points);
+
+/// Joins neighbouring triangles whose points lie on one circle (each point within same_place_mm of
+/// it). Faces are rings with positive turn that begin with their lowest point, in ascending order.
+std::vector<std::vector<unsigned>> join_cocircular(const std::vector<point>& points,
+                                                   const std::vector<triangle>& triangles);
 
 } // namespace tactor::detail
