@@ -7,7 +7,6 @@
 #include <variant>
 
 #include "core/path/impl.hpp"
-#include "core/path/outline.hpp"
 #include "core/trajectory/impl.hpp"
 
 namespace tactor::detail {

@@ -10,7 +10,7 @@
 #include <fmt/format.h>
 
 #include "core/access.hpp"
-#include "core/path/curve_places.hpp"
+#include "core/path/impl.hpp"
 #include "core/path/shape.hpp"
 #include "core/trajectory/impl.hpp"
 #include "core/trajectory/spans.hpp"

@@ -12,7 +12,6 @@
 
 #include "core/access.hpp"
 #include "core/path/impl.hpp"
-#include "core/path/outline.hpp"
 #include "core/trajectory/impl.hpp"
 #include "python/binding.hpp"
 

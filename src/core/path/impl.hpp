@@ -6,13 +6,12 @@
 #include <cmath>
 #include <cstddef>
 #include <memory>
+#include <optional>
 #include <string_view>
 #include <vector>
 
 #include <tactor/path.hpp>
 
-#include "core/path/curve_places.hpp"
-#include "core/path/outline.hpp"
 #include "core/path/shape.hpp"
 
 namespace tactor::detail {
@@ -66,25 +65,6 @@ std::vector<double> find_meetings(const N& nodes)
     return found;
 }
 
-/// A table of (parameter, arc length). It is so fine that Gauss quadrature from one entry towards the next is
-/// accurate to about a nanometre, even at cusps.
-class arc_length {
-public:
-    explicit arc_length(const shape& c);
-
-    double total() const noexcept { return s_.back(); }
-    /// Returns the arc length at a parameter from 0 to 1. `c` is the shape from which the table was made.
-    double at(const shape& c, double t) const noexcept;
-    /// Returns the parameter at an arc length, clamped to 0 ... 1.
-    double parameter(const shape& c, double s_mm) const noexcept;
-
-private:
-    bool even_; ///< the parameter is proportional to the length
-    std::vector<double> t_;
-    std::vector<double> s_;
-    std::vector<double> speed_; ///< speed at each entry; empty if the parameter is proportional to the length
-};
-
 } // namespace tactor::detail
 
 namespace tactor {
@@ -111,8 +91,44 @@ struct path::impl {
 
 namespace tactor::detail {
 
+/// A path before it is measured. Segment i goes from vertex i to vertex i + 1. It is straight unless `curves`
+/// contains it, so a million straight ones need little memory.
+struct outline {
+    struct curve {
+        std::size_t segment = 0;
+        shape form;
+    };
+
+    std::vector<point> vertices;
+    std::vector<curve> curves; ///< by ascending segment
+
+    // Add a segment. Skip segments without length.
+    void line(point to);
+    void bezier(point c1, point c2, point to);
+    void quadratic(point c, point to);
+    void arc(const elliptic& a, point to);
+};
+
+outline mapped(outline o, const affine& m);
+
+/// Returns a coordinate that is not finite or beyond max_mm, if any.
+std::optional<double> absurd_coordinate(const outline& o);
+
 /// Measures an outline. `what` is its name in messages.
 /// \throws error (bad_input) for coordinates that are not finite or beyond max_mm.
 path make_path(outline o, std::string_view what);
+
+/// Returns the path with curve_places for the curves on which a target that does about `step_mm` at a time
+/// stays for long. Its places differ by less than 1e-9 mm.
+path with_places(const path& p, double step_mm);
+
+/// Allowed subpaths of SVG path data (https://www.w3.org/TR/SVG2/paths.html): with `one`, a second is a
+/// fault.
+enum class subpaths { one, any };
+
+/// Returns the subpaths that draw something, in user units. Skips moves that nothing follows. A number beyond
+/// `limit` is a fault.
+/// \throws value_fault at the first place that is not path data.
+std::vector<outline> parse_path_data(std::string_view data, double limit, subpaths wanted);
 
 } // namespace tactor::detail

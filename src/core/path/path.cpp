@@ -5,7 +5,9 @@
 #include <cmath>
 #include <cstdint>
 #include <iterator>
+#include <memory>
 #include <numbers>
+#include <optional>
 #include <utility>
 
 #include <boost/math/special_functions/cos_pi.hpp>
@@ -40,14 +42,6 @@ private:
     double sum_ = 0.0;
     double lost_ = 0.0;
 };
-
-[[noreturn]] void refuse_absurd(std::string_view what, double value)
-{
-    throw error(error_kind::bad_input, what,
-                std::isfinite(value) ? fmt::format("goes to {:.6g} mm, beyond {:g} mm", value, detail::max_mm)
-                                     : "has a coordinate that is not finite",
-                "coordinates are in millimetres");
-}
 
 // Returns a point of a circle, exact at multiples of 90 degrees.
 point on_circle(point centre, double radius_mm, double degrees)
@@ -184,11 +178,103 @@ void write(out o, const detail::elliptic& e, point to)
 }
 
 } // namespace
-
 } // namespace v0
 } // namespace tactor
 
 namespace tactor::detail {
+namespace {
+
+[[noreturn]] void refuse_absurd(std::string_view what, double value)
+{
+    throw error(error_kind::bad_input, what,
+                std::isfinite(value) ? fmt::format("goes to {:.6g} mm, beyond {:g} mm", value, max_mm)
+                                     : "has a coordinate that is not finite",
+                "coordinates are in millimetres");
+}
+
+std::optional<double> absurd(point p)
+{
+    for (const double v : {p.x_mm, p.y_mm})
+        if (!(std::abs(v) <= max_mm))
+            return v;
+    return std::nullopt;
+}
+
+std::optional<double> absurd(const shape& c)
+{
+    if (const auto* b = std::get_if<cubic>(&c)) {
+        for (const point p : b->p)
+            if (const auto bad = absurd(p))
+                return bad;
+        return std::nullopt;
+    }
+    const auto& e = std::get<elliptic>(c);
+    for (const double v : {e.centre.x_mm, e.centre.y_mm, e.u.x_mm, e.u.y_mm, e.v.x_mm, e.v.y_mm, e.sweep})
+        if (!std::isfinite(v))
+            return v;
+    for (const axis a : {axis::x, axis::y})
+        for (const double t : turns(c, a))
+            if (const auto bad = absurd(position(c, t)))
+                return bad;
+    return std::nullopt;
+}
+
+/// Least steps on a curve for which its polynomials pay: they cost as much as some hundred places.
+constexpr double least_steps = 256.0;
+/// Most pieces of a curve, and of a path (6 MB).
+constexpr std::size_t most_pieces_of_curve = 1024;
+constexpr std::size_t most_pieces = 32768;
+
+} // namespace
+
+void outline::line(point to)
+{
+    if (to != vertices.back())
+        vertices.push_back(to);
+}
+
+void outline::bezier(point c1, point c2, point to)
+{
+    const point from = vertices.back();
+    if (c1 == from && c2 == from && to == from)
+        return;
+    curves.push_back({vertices.size() - 1, cubic{{from, c1, c2, to}}});
+    vertices.push_back(to);
+}
+
+void outline::quadratic(point c, point to)
+{
+    const point from = vertices.back();
+    bezier(between(from, c, 2.0 / 3.0), between(to, c, 2.0 / 3.0), to);
+}
+
+void outline::arc(const elliptic& a, point to)
+{
+    if (a.sweep == 0.0)
+        return line(to);
+    curves.push_back({vertices.size() - 1, a});
+    vertices.push_back(to);
+}
+
+outline mapped(outline o, const affine& m)
+{
+    for (point& p : o.vertices)
+        p = m(p);
+    for (outline::curve& c : o.curves)
+        c.form = mapped(c.form, m);
+    return o;
+}
+
+std::optional<double> absurd_coordinate(const outline& o)
+{
+    for (const point p : o.vertices)
+        if (const auto bad = absurd(p))
+            return bad;
+    for (const outline::curve& c : o.curves)
+        if (const auto bad = absurd(c.form))
+            return bad;
+    return std::nullopt;
+}
 
 path make_path(outline o, std::string_view what)
 {
@@ -215,6 +301,26 @@ path make_path(outline o, std::string_view what)
         made->curves.clear();
     }
     return detail::access::make<path>(std::shared_ptr<const path::impl>(std::move(made)));
+}
+
+path with_places(const path& p, double step_mm)
+{
+    std::shared_ptr<path::impl> out;
+    std::size_t left = most_pieces;
+    const std::vector<path::impl::measured_curve>& curves = access::of(p).curves;
+    for (std::size_t i = 0; i < curves.size() && left >= most_pieces_of_curve; ++i) {
+        const arc_length& measure = curves[i].measure;
+        if (measure.total() < least_steps * step_mm)
+            continue;
+        auto places = std::make_shared<const curve_places>(curves[i].form, measure, most_pieces_of_curve);
+        left -= std::min(left, places->pieces());
+        if (places->pieces() > most_pieces_of_curve)
+            continue;
+        if (out == nullptr)
+            out = std::make_shared<path::impl>(access::of(p));
+        out->curves[i].places = std::move(places);
+    }
+    return out == nullptr ? p : access::make<path>(std::shared_ptr<const path::impl>(std::move(out)));
 }
 
 } // namespace tactor::detail

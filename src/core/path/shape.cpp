@@ -7,6 +7,8 @@
 #include <cstddef>
 #include <cstdint>
 #include <numbers>
+#include <optional>
+#include <utility>
 
 #include <boost/math/quadrature/gauss.hpp>
 #include <boost/math/special_functions/cos_pi.hpp>
@@ -160,47 +162,6 @@ point position(const shape& c, double t) noexcept
     return e != nullptr ? position_on(*e, t) : position_on(*std::get_if<cubic>(&c), t);
 }
 
-double speed(const shape& c, double t) noexcept
-{
-    return length(std::visit([t](const auto& s) { return derivative(s, t); }, c));
-}
-
-speed_change speed_and_rate(const shape& c, double t) noexcept
-{
-    return std::visit(
-        [t](const auto& s) {
-            const point first = derivative(s, t);
-            const double v = length(first);
-            return speed_change{v, dot(first, second_derivative(s, t)) / v};
-        },
-        c);
-}
-
-double length_between(const shape& c, double from, double to) noexcept
-{
-    return std::visit(
-        [from, to](const auto& s) {
-            return boost::math::quadrature::gauss<double, 15>::integrate(
-                [&s](double t) {
-                    // Not hypot: these lengths are far from overflow, and this line runs most often.
-                    const point d = derivative(s, t);
-                    return std::sqrt(dot(d, d));
-                },
-                from, to);
-        },
-        c);
-}
-
-bool is_even(const shape& c) noexcept
-{
-    const auto* e = std::get_if<elliptic>(&c);
-    if (e == nullptr)
-        return false;
-    constexpr double rounding = 1e-14;
-    const double u = dot(e->u, e->u);
-    return std::abs(dot(e->v, e->v) - u) <= rounding * u && std::abs(dot(e->u, e->v)) <= rounding * u;
-}
-
 std::vector<double> turns(const shape& c, axis a)
 {
     return inside(std::visit([a](const auto& s) { return find_turns(s, a); }, c));
@@ -218,19 +179,6 @@ std::vector<double> turns_towards(const shape& form, point out)
 {
     const affine outwards_is_x{out.x_mm, -out.y_mm, out.y_mm, out.x_mm, 0.0, 0.0};
     return turns(mapped(form, outwards_is_x), axis::x);
-}
-
-std::vector<double> speed_turns(const shape& c)
-{
-    return inside(std::visit([](const auto& s) { return find_speed_turns(s); }, c));
-}
-
-double rough_length(const shape& c) noexcept
-{
-    if (const auto* b = std::get_if<cubic>(&c))
-        return distance_mm(b->p[0], b->p[1]) + distance_mm(b->p[1], b->p[2]) + distance_mm(b->p[2], b->p[3]);
-    const auto& e = *std::get_if<elliptic>(&c);
-    return std::abs(e.sweep) * (distance_mm({}, e.u) + distance_mm({}, e.v));
 }
 
 affine rotation(double degrees)
@@ -254,6 +202,264 @@ affine operator*(const affine& outer, const affine& inner) noexcept
 shape mapped(const shape& c, const affine& m) noexcept
 {
     return std::visit([&m](const auto& s) { return shape(mapped_shape(s, m)); }, c);
+}
+
+namespace {
+
+/// Returns the length of the derivative, mm per unit of t.
+double speed(const shape& c, double t) noexcept
+{
+    return length(std::visit([t](const auto& s) { return derivative(s, t); }, c));
+}
+
+/// Speed at t, and its derivative there.
+struct speed_change {
+    double speed = 0.0;
+    double rate = 0.0; ///< NaN if the speed is 0
+};
+
+speed_change speed_and_rate(const shape& c, double t) noexcept
+{
+    return std::visit(
+        [t](const auto& s) {
+            const point first = derivative(s, t);
+            const double v = length(first);
+            return speed_change{v, dot(first, second_derivative(s, t)) / v};
+        },
+        c);
+}
+
+/// Returns the length from one parameter to another, by Gauss-Legendre quadrature on fifteen nodes.
+double length_between(const shape& c, double from, double to) noexcept
+{
+    return std::visit(
+        [from, to](const auto& s) {
+            return boost::math::quadrature::gauss<double, 15>::integrate(
+                [&s](double t) {
+                    // Not hypot: these lengths are far from overflow, and this line runs most often.
+                    const point d = derivative(s, t);
+                    return std::sqrt(dot(d, d));
+                },
+                from, to);
+        },
+        c);
+}
+
+/// Returns true if the speed is constant but for rounding, as on an arc of a circle.
+bool is_even(const shape& c) noexcept
+{
+    const auto* e = std::get_if<elliptic>(&c);
+    if (e == nullptr)
+        return false;
+    constexpr double rounding = 1e-14;
+    const double u = dot(e->u, e->u);
+    return std::abs(dot(e->v, e->v) - u) <= rounding * u && std::abs(dot(e->u, e->v)) <= rounding * u;
+}
+
+/// Returns the parameters inside (0, 1) at which the speed is least or greatest, cusps included; ascending.
+std::vector<double> speed_turns(const shape& c)
+{
+    return inside(std::visit([](const auto& s) { return find_speed_turns(s); }, c));
+}
+
+/// Returns an upper bound of the length, for tolerances.
+double rough_length(const shape& c) noexcept
+{
+    if (const auto* b = std::get_if<cubic>(&c))
+        return distance_mm(b->p[0], b->p[1]) + distance_mm(b->p[1], b->p[2]) + distance_mm(b->p[2], b->p[3]);
+    const auto& e = *std::get_if<elliptic>(&c);
+    return std::abs(e.sweep) * (distance_mm({}, e.u) + distance_mm({}, e.v));
+}
+
+constexpr unsigned deepest = 48;
+
+struct interval {
+    double from;
+    double to;
+    double length;
+    unsigned depth = 0;
+};
+
+// Returns true if the speed has a kink at an end of the interval. Near a cusp the kink, or near-kink, may be
+// narrower than the gaps between the nodes, so comparing lengths does not find it. Cusps are ends of
+// intervals: there, the speed must be even before the interval may be large enough to matter.
+bool kink_at_end(const shape& c, const interval& i)
+{
+    constexpr double harmless_mm = 1e-6;
+    const double mean = i.length / (i.to - i.from);
+    return i.length > harmless_mm && std::min(speed(c, i.from), speed(c, i.to)) < 0.1 * mean;
+}
+
+/// Two entries of the table around the wanted length, and the distances of their lengths from it.
+struct bracket {
+    double from;
+    double to;
+    double below;
+    double above;
+    double first_speed;
+    double last_speed;
+};
+
+/// Returns a first guess between two entries: the cubic in s with the right slopes at both ends, or the chord
+/// if the cubic leaves the interval.
+double guess(const bracket& b)
+{
+    const auto& [from, to, below, above, first_speed, last_speed] = b;
+    const double all = above - below;
+    const double u = -below / all;
+    const double chord = from + u * (to - from);
+    const double first = all / first_speed - (to - from);
+    const double last = all / last_speed - (to - from);
+    const double t = chord + u * (1.0 - u) * ((1.0 - u) * first - u * last);
+    return t > from && t < to ? t : chord;
+}
+
+/// Finds the parameter at which the length from `from` equals -below. Takes two or three of Halley's steps.
+/// Returns nothing if they do not converge, as near cusps.
+std::optional<double> newton(const shape& c, const bracket& b)
+{
+    const double from = b.from;
+    const double to = b.to;
+    constexpr int most_steps = 5;
+    // Halley's method is cubic: the next step would be below the last digit.
+    constexpr double settled = 1e-6;
+    double t = guess(b);
+    for (int i = 0; i < most_steps; ++i) {
+        const double off = b.below + length_between(c, from, t);
+        const speed_change v = speed_and_rate(c, t);
+        const double straight = off / v.speed;
+        const double step = straight / (1.0 - 0.5 * straight * v.rate / v.speed);
+        t -= step;
+        if (!(t >= from && t <= to && std::abs(step) <= to - from))
+            return {};
+        if (std::abs(step) <= settled * (to - from) && std::abs(straight * v.rate) <= 1e-3 * v.speed)
+            return t;
+    }
+    return {};
+}
+
+/// Places of the nodes in a piece, by parameter: (1 - cos(k pi / 6)) / 2.
+constexpr std::array<double, 7> node_at{0.0, 0.0669872981077807, 0.25, 0.5, 0.75, 0.9330127018922193, 1.0};
+
+/// Places between the nodes, where polynomials are farthest off.
+constexpr std::array<double, 4> tried_at{0.03, 0.37, 0.63, 0.97};
+
+/// Length of a piece that counts as one place, as at a cusp.
+constexpr double short_mm = 2e-10;
+
+} // namespace
+
+// Halves intervals until the two halves of each give the same length as the whole.
+arc_length::arc_length(const shape& c) : even_(is_even(c)), t_{0.0}, s_{0.0}
+{
+    const double tolerance = std::max(1e-10, 1e-14 * rough_length(c));
+    std::vector<double> ends = speed_turns(c);
+    ends.push_back(1.0);
+    for (const double end : ends) {
+        if (end <= t_.back())
+            continue;
+        std::vector<interval> open{{t_.back(), end, length_between(c, t_.back(), end)}};
+        while (!open.empty()) {
+            const interval i = open.back();
+            open.pop_back();
+            const double middle = 0.5 * (i.from + i.to);
+            const double left = length_between(c, i.from, middle);
+            const double right = length_between(c, middle, i.to);
+            const bool same = std::abs(left + right - i.length) <= tolerance;
+            if (i.depth == deepest || (same && !kink_at_end(c, i))) {
+                t_.push_back(i.to);
+                s_.push_back(s_.back() + i.length);
+            } else {
+                open.push_back({middle, i.to, right, i.depth + 1});
+                open.push_back({i.from, middle, left, i.depth + 1});
+            }
+        }
+    }
+    if (even_)
+        return;
+    speed_.reserve(t_.size());
+    for (const double t : t_)
+        speed_.push_back(speed(c, t));
+}
+
+double arc_length::at(const shape& c, double t) const noexcept
+{
+    if (!(t > 0.0))
+        return 0.0;
+    if (t >= 1.0)
+        return total();
+    if (even_)
+        return t * total();
+    const auto k = static_cast<std::size_t>(std::upper_bound(t_.begin(), t_.end(), t) - t_.begin()) - 1;
+    return std::min(s_[k] + length_between(c, t_[k], t), s_[k + 1]);
+}
+
+double arc_length::parameter(const shape& c, double s_mm) const noexcept
+{
+    if (!(s_mm > 0.0))
+        return 0.0;
+    if (s_mm >= total())
+        return 1.0;
+    if (even_)
+        return s_mm / total();
+    const auto k = static_cast<std::size_t>(std::upper_bound(s_.begin(), s_.end(), s_mm) - s_.begin()) - 1;
+    const auto excess = [&](double t) { return s_[k] + length_between(c, t_[k], t) - s_mm; };
+    const double below = s_[k] - s_mm;
+    const double above = s_[k + 1] - s_mm;
+    if (!(below < 0.0))
+        return t_[k];
+    if (const auto t = newton(c, {t_[k], t_[k + 1], below, above, speed_[k], speed_[k + 1]}))
+        return *t;
+    std::uintmax_t steps = 64;
+    const auto [low, high] = boost::math::tools::toms748_solve(
+        excess, t_[k], t_[k + 1], below, above, boost::math::tools::eps_tolerance<double>(51), steps);
+    return 0.5 * (low + high);
+}
+
+point curve_places::piece::at(double s_mm) const noexcept
+{
+    point p = c[nodes - 1];
+    for (std::size_t i = nodes - 1; i-- > 0;)
+        p = c[i] + (s_mm - s[i]) * p;
+    return p;
+}
+
+// Halves the curve until each piece is near enough to it.
+curve_places::curve_places(const shape& c, const arc_length& measure, std::size_t most)
+{
+    const double near_mm = std::max(2e-10, 1e-13 * rough_length(c)); // the measure's own error is a tenth
+    std::vector<std::pair<double, double>> open{{0.0, 1.0}};
+    while (!open.empty() && pieces_.size() <= most) {
+        const auto [from, to] = open.back();
+        open.pop_back();
+        const auto parameter = [from = from, to = to](double part) { return from + part * (to - from); };
+        piece p;
+        for (std::size_t i = 0; i < nodes; ++i) {
+            p.s[i] = measure.at(c, parameter(node_at[i]));
+            p.c[i] = position(c, parameter(node_at[i]));
+        }
+        const bool is_short = p.s.back() - p.s.front() <= short_mm;
+        for (std::size_t order = 1; order < nodes; ++order)
+            for (std::size_t i = nodes - 1; i >= order; --i)
+                p.c[i] = is_short ? point{} : 1.0 / (p.s[i] - p.s[i - order]) * (p.c[i] - p.c[i - 1]);
+        const auto is_near = [&](double part) {
+            const double t = parameter(part);
+            return distance_mm(p.at(measure.at(c, t)), position(c, t)) <= near_mm;
+        };
+        if (is_short || std::all_of(tried_at.begin(), tried_at.end(), is_near)) {
+            ends_mm_.push_back(p.s.back());
+            pieces_.push_back(p);
+        } else {
+            open.emplace_back(parameter(0.5), to);
+            open.emplace_back(from, parameter(0.5));
+        }
+    }
+}
+
+point curve_places::at(double s_mm) const noexcept
+{
+    const auto end = std::lower_bound(ends_mm_.begin(), ends_mm_.end() - 1, s_mm);
+    return pieces_[static_cast<std::size_t>(end - ends_mm_.begin())].at(s_mm);
 }
 
 } // namespace tactor::detail

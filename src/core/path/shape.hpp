@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: MIT
-// Curved pieces of a path: cubic Bezier curves and arcs of ellipses, by a parameter from 0 to 1.
+// Curved pieces of a path: cubic Bezier curves and arcs of ellipses, by a parameter from 0 to 1 and by their
+// length.
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <variant>
 #include <vector>
 
@@ -61,22 +63,6 @@ using shape = std::variant<cubic, elliptic>;
 
 point position(const shape& c, double t) noexcept;
 
-/// Returns the length of the derivative, mm per unit of t.
-double speed(const shape& c, double t) noexcept;
-
-/// Speed at t, and its derivative there.
-struct speed_change {
-    double speed = 0.0;
-    double rate = 0.0; ///< NaN if the speed is 0
-};
-speed_change speed_and_rate(const shape& c, double t) noexcept;
-
-/// Returns the length from one parameter to another, by Gauss-Legendre quadrature on fifteen nodes.
-double length_between(const shape& c, double from, double to) noexcept;
-
-/// Returns true if the speed is constant but for rounding, as on an arc of a circle.
-bool is_even(const shape& c) noexcept;
-
 /// Returns the parameters inside (0, 1) at which a coordinate turns; ascending. Between them it is monotone.
 std::vector<double> turns(const shape& c, axis a);
 
@@ -85,12 +71,6 @@ std::array<point, 4> control_frame(const shape& form);
 
 /// Returns the parameters inside (0, 1) at which a curve turns round as seen in a direction; ascending.
 std::vector<double> turns_towards(const shape& form, point out);
-
-/// Returns the parameters inside (0, 1) at which the speed is least or greatest, cusps included; ascending.
-std::vector<double> speed_turns(const shape& c);
-
-/// Returns an upper bound of the length, for tolerances.
-double rough_length(const shape& c) noexcept;
 
 /// The map x' = a x + c y + e, y' = b x + d y + f: the six numbers of SVG's matrix().
 struct affine {
@@ -120,5 +100,50 @@ affine rotation(double degrees);
 affine operator*(const affine& outer, const affine& inner) noexcept;
 
 shape mapped(const shape& c, const affine& m) noexcept;
+
+/// A table of (parameter, arc length). It is so fine that Gauss quadrature from one entry towards the next is
+/// accurate to about a nanometre, even at cusps.
+class arc_length {
+public:
+    explicit arc_length(const shape& c);
+
+    double total() const noexcept { return s_.back(); }
+    /// Returns the arc length at a parameter from 0 to 1. `c` is the shape from which the table was made.
+    double at(const shape& c, double t) const noexcept;
+    /// Returns the parameter at an arc length, clamped to 0 ... 1.
+    double parameter(const shape& c, double s_mm) const noexcept;
+
+private:
+    bool even_; ///< the parameter is proportional to the length
+    std::vector<double> t_;
+    std::vector<double> s_;
+    std::vector<double> speed_; ///< speed at each entry; empty if the parameter is proportional to the length
+};
+
+/// Places on a curve by arc length without inverting it, for strokes that ask for one each millisecond:
+/// polynomials in the arc length, off by less than 1e-9 mm, or by the last digits of a curve of kilometres.
+class curve_places {
+public:
+    /// Gives up with more than `most` pieces.
+    curve_places(const shape& c, const arc_length& measure, std::size_t most);
+
+    /// Returns the place at an arc length from 0 to the curve's.
+    point at(double s_mm) const noexcept;
+    std::size_t pieces() const noexcept { return pieces_.size(); }
+
+private:
+    static constexpr std::size_t nodes = 7;
+
+    /// In Newton's form: c[0] + (s - s[0]) (c[1] + (s - s[1]) (c[2] + ...)).
+    struct piece {
+        std::array<double, nodes> s;
+        std::array<point, nodes> c;
+
+        point at(double s_mm) const noexcept;
+    };
+
+    std::vector<double> ends_mm_;
+    std::vector<piece> pieces_;
+};
 
 } // namespace tactor::detail

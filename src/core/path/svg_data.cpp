@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "core/path/svg_data.hpp"
+#include "core/path/impl.hpp"
 
 #include <algorithm>
 #include <array>
@@ -18,7 +18,6 @@
 #include <tactor/error.hpp>
 
 #include "core/limits.hpp"
-#include "core/path/impl.hpp"
 #include "core/path/number.hpp"
 #include "core/suggest.hpp"
 #include "core/words.hpp"

@@ -13,7 +13,6 @@
 #include "core/access.hpp"
 #include "core/limits.hpp"
 #include "core/path/impl.hpp"
-#include "core/path/outline.hpp"
 #include "core/profile.hpp"
 #include "core/refused.hpp"
 #include "core/trajectory/impl.hpp"

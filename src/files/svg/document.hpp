@@ -18,8 +18,8 @@
 
 #include <tactor/error.hpp>
 
+#include "core/path/impl.hpp"
 #include "core/path/number.hpp"
-#include "core/path/outline.hpp"
 #include "core/path/shape.hpp"
 
 namespace tactor::detail {

@@ -8,7 +8,7 @@
 
 #include <fmt/format.h>
 
-#include "core/path/svg_data.hpp"
+#include "core/path/impl.hpp"
 
 namespace tactor::detail {
 namespace {

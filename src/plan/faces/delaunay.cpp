@@ -214,7 +214,7 @@ unsigned apex(const triangle& t, const bordering& edge)
 }
 
 /// Returns the border of a group of triangles; empty if that is not a single ring.
-std::vector<unsigned> outline(const std::vector<triangle>& group)
+std::vector<unsigned> find_border(const std::vector<triangle>& group)
 {
     std::map<std::pair<unsigned, unsigned>, bool> inner;
     for (const triangle& t : group)
@@ -319,7 +319,7 @@ std::vector<std::vector<unsigned>> join_cocircular(const std::vector<point>& poi
         members[g.find(t)].push_back(triangles[t]);
     std::vector<std::vector<unsigned>> faces;
     for (const auto& [unused, group] : members) {
-        std::vector<unsigned> ring = outline(group);
+        std::vector<unsigned> ring = find_border(group);
         if (ring.size() == group.size() + 2 && (group.size() == 1 || on_one_circle(points, ring)))
             faces.push_back(std::move(ring));
         else
