@@ -16,7 +16,7 @@
 #include <tactor/plan.hpp>
 #include <tactor/render.hpp>
 
-#include "percept/spread.hpp"
+#include "percept/compare.hpp"
 
 namespace tactor::options {
 

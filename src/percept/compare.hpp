@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// Comparison of one stroke by several algorithms and phantom models: the prediction of how each feels.
+/// Comparison of one stroke by several algorithms and phantom models: the prediction of how each feels, also
+/// to many people who differ.
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <optional>
-#include <span>
 #include <string>
 #include <vector>
 
@@ -15,9 +16,44 @@
 #include <tactor/plan.hpp>
 #include <tactor/stroke.hpp>
 
-#include "percept/spread.hpp"
-
 namespace tactor::detail {
+
+/// Number of drawn people, and ranges of their differences, which are evenly distributed.
+struct spread_choice {
+    unsigned people = 0; ///< 0: none
+    std::uint64_t seed = 1;
+    double sigma_factor = 2.0; ///< factor on sigma of low_speed, from 1 / this to this, evenly by ratio
+    double threshold_db = 6.0; ///< each tactor's threshold, plus or minus
+    double place_mm = 2.0;     ///< each tactor's place, anywhere within this distance
+};
+
+/// Returns a sentence about the ranges.
+std::string spread_note(const spread_choice& c, bool by_taps);
+
+/// Range between 5 and 95 % of the people.
+struct interval {
+    double low = 0.0;
+    double high = 0.0;
+};
+
+/// Band of a speed chart at one time.
+struct speed_range {
+    double t_s = 0.0;
+    double low = 0.0;
+    double high = 0.0;
+};
+
+/// Intervals of a row's figures; none for figures that its observer does not give.
+struct row_spread {
+    std::optional<interval> rms_error_mm = {};
+    std::optional<interval> largest_error_mm = {};
+    std::optional<interval> speed_cv = {};
+    std::optional<interval> intensity_cv = {};
+    std::optional<interval> felt_length_mm = {};
+    std::optional<interval> length_ratio = {};
+    std::vector<speed_range> speeds = {};        ///< only for a picture
+    std::vector<std::vector<point>> tracks = {}; ///< of the first people, only for a picture
+};
 
 /// Observer who feels the plans.
 struct observer_choice {
@@ -35,13 +71,6 @@ struct prediction {
     std::vector<tap> taps = {};   ///< by low_speed
     std::string unpredicted = {}; ///< reason why low_speed has no prediction; empty: it has one
 };
-
-/// Returns summarise() of predict_percept() for each plan, equal to the last bit. Stores no samples, and
-/// looks the target up once for all plans. Passes the samples of each plan to `each`, without their speeds.
-/// \throws error (bad_input) as predict_percept().
-std::vector<percept_summary> predict_summaries(const array& a, const stroke& s,
-                                               std::span<const plan* const> plans,
-                                               const std::function<void(const percept_sample&)>& each = {});
 
 /// Predicts how a plan of a stroke feels. For the centroid, passes each sample to `each`, without its speed.
 /// \throws error (bad_input) as predict_percept() and predict_taps().

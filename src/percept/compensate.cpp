@@ -15,7 +15,7 @@
 #include "core/path/shape.hpp"
 #include "core/refused.hpp"
 #include "core/words.hpp"
-#include "percept/low_speed.hpp"
+#include "percept/observer.hpp"
 #include "plan/faces/layout_impl.hpp"
 #include "plan/job.hpp"
 
@@ -36,7 +36,7 @@ constexpr std::size_t most_taps = 1'000'000;
 /// factor: in row r the elements in columns r, r - 1 and r - 2.
 class chain_factor {
 public:
-    /// Factors I + weight A A, where A = I + K is the chain's matrix (low_speed.hpp).
+    /// Factors I + weight A A, where A = I + K is the chain's matrix (observer.hpp).
     chain_factor(std::span<const double> give, double weight) : rows_(give.size() + 1)
     {
         const auto link = [&](std::size_t i) { return i < give.size() ? 1.0 / give[i] : 0.0; };

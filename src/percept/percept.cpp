@@ -15,8 +15,7 @@
 #include "core/distance.hpp"
 #include "core/limits.hpp"
 #include "core/words.hpp"
-#include "percept/compare.hpp"
-#include "percept/person.hpp"
+#include "percept/observer.hpp"
 
 namespace tactor::detail {
 namespace {

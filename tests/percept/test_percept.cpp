@@ -10,7 +10,7 @@
 
 #include "../plan/arrays.hpp"
 #include "../plan/strokes.hpp"
-#include "percept/compare.hpp"
+#include "percept/observer.hpp"
 
 namespace percept_test {
 
