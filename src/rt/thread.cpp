@@ -2,20 +2,27 @@
 #include "rt/thread.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <csignal>
 #include <latch>
+#include <optional>
 #include <system_error>
 #include <utility>
 
+#include <linux/capability.h>
 #include <sched.h>
 #include <sys/prctl.h>
 #include <sys/resource.h>
+#include <sys/syscall.h>
 #include <unistd.h>
 
 #if defined(__SSE2__)
 #include <xmmintrin.h>
 #endif
+
+#include "rt/clock.hpp"
+#include "rt/nonblocking.hpp"
 
 namespace tactor::rt {
 namespace {
@@ -79,6 +86,19 @@ void* enter(void* argument) noexcept
     return nullptr;
 }
 
+std::int64_t to_ns(const timeval& t) noexcept
+{
+    return std::int64_t{t.tv_sec} * ns_per_s + std::int64_t{t.tv_usec} * 1000;
+}
+
+bool is_realtime() noexcept
+{
+    const permitted_call here{};
+    const int policy = sched_getscheduler(0);
+    return policy >= 0 &&
+           ((policy & ~SCHED_RESET_ON_FORK) == SCHED_FIFO || (policy & ~SCHED_RESET_ON_FORK) == SCHED_RR);
+}
+
 } // namespace
 
 thread::thread(const thread_options& o, std::function<void()> body)
@@ -126,6 +146,26 @@ bool thread::is_current() const noexcept
     return joinable_ && pthread_equal(handle_, pthread_self()) != 0;
 }
 
+busy_watch::busy_watch() noexcept : on_(is_realtime())
+{
+}
+
+bool busy_watch::look(std::int64_t now_ns) noexcept
+{
+    if (!on_ || now_ns < next_ns_)
+        return false;
+    next_ns_ = now_ns + pause_ns;
+    const permitted_call here{};
+    rusage u{};
+    if (::getrusage(RUSAGE_THREAD, &u) != 0 ||
+        !busy_.too_long(to_ns(u.ru_utime) + to_ns(u.ru_stime), u.ru_nvcsw))
+        return false;
+    on_ = false;
+    const sched_param none{};
+    // The thread may lack the right to clear this flag.
+    return sched_setscheduler(0, SCHED_OTHER | SCHED_RESET_ON_FORK, &none) == 0;
+}
+
 std::string realtime_advice(const realtime_rights& r, int priority)
 {
     if (r.priority >= priority && !r.lockable_bytes)
@@ -140,3 +180,41 @@ std::string realtime_advice(const realtime_rights& r, int priority)
 }
 
 } // namespace tactor::rt
+
+namespace tactor {
+inline namespace v0 {
+namespace {
+
+std::uint64_t effective_capabilities() noexcept
+{
+    // Does not read /proc/self/status, because there may be no descriptor left.
+    __user_cap_header_struct version{.version = _LINUX_CAPABILITY_VERSION_3, .pid = 0};
+    std::array<__user_cap_data_struct, _LINUX_CAPABILITY_U32S_3> sets{};
+    if (::syscall(SYS_capget, &version, sets.data()) != 0)
+        return 0;
+    return std::uint64_t{sets[1].effective} << 32U | sets[0].effective;
+}
+
+} // namespace
+
+realtime_rights probe_realtime_rights() noexcept
+{
+    const std::uint64_t capabilities = effective_capabilities();
+    const auto has = [capabilities](unsigned bit) { return (capabilities >> bit & 1U) != 0; };
+    realtime_rights r;
+    rlimit limit{};
+    if (has(CAP_SYS_NICE))
+        r.priority = sched_get_priority_max(SCHED_FIFO);
+    else if (getrlimit(RLIMIT_RTPRIO, &limit) == 0)
+        r.priority = static_cast<int>(
+            std::min<rlim_t>(limit.rlim_cur, static_cast<rlim_t>(sched_get_priority_max(SCHED_FIFO))));
+    if (has(CAP_IPC_LOCK))
+        r.lockable_bytes.reset();
+    else if (getrlimit(RLIMIT_MEMLOCK, &limit) == 0)
+        r.lockable_bytes =
+            limit.rlim_cur == RLIM_INFINITY ? std::nullopt : std::optional<std::uint64_t>(limit.rlim_cur);
+    return r;
+}
+
+} // namespace v0
+} // namespace tactor

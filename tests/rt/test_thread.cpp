@@ -1,22 +1,33 @@
 // SPDX-License-Identifier: MIT
 #include "rt/thread.hpp"
 
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <cerrno>
 #include <csignal>
-#include <cstring>
+#include <cstdint>
 #include <limits>
 #include <string>
 
 #include <sched.h>
 #include <sys/prctl.h>
+#include <unistd.h>
 
 #include <doctest/doctest.h>
 
+#include "rt/clock.hpp"
+
 namespace thread_test {
 
-using tactor::rt::thread;
+using namespace tactor;
+using rt::thread;
+
+namespace {
+
+constexpr std::int64_t ms = 1'000'000;
+
+} // namespace
 
 TEST_CASE("a thread has its name, its stack and no signals")
 {
@@ -101,6 +112,106 @@ TEST_CASE("a thread knows itself")
     }
     CHECK(inside);
     CHECK_FALSE(outside);
+}
+
+TEST_CASE("60 ms of work without a pause are too long, after any history")
+{
+    rt::busy_time t;
+    CHECK_FALSE(t.too_long(5000 * ms, 7)); // set-up counts for nothing
+    CHECK_FALSE(t.too_long(5059 * ms, 7));
+    CHECK(t.too_long(5060 * ms, 7));
+}
+
+TEST_CASE("a thread that waits now and then may work for ever")
+{
+    rt::busy_time t;
+    for (long waits = 0; waits < 1000; ++waits) {
+        REQUIRE_FALSE(t.too_long(waits * 100 * ms, waits));
+        REQUIRE_FALSE(t.too_long(waits * 100 * ms + 59 * ms, waits));
+    }
+    CHECK(t.too_long(1000 * 100 * ms, 999));
+}
+
+TEST_CASE("for pieces of work of any length, a thread is warned before the kernel would end it")
+{
+    for (std::int64_t piece = 1; piece <= 95; ++piece) {
+        CAPTURE(piece);
+        for (std::int64_t late = 1; late <= std::max<std::int64_t>(20, piece); ++late) {
+            rt::busy_time t;
+            std::int64_t worked = late; // by the first check since it waited
+            std::int64_t looked = worked;
+            REQUIRE_FALSE(t.too_long(worked * ms, 0));
+            for (bool told = false; !told;) {
+                worked += piece;
+                if (worked - looked < 20)
+                    continue;
+                looked = worked;
+                told = t.too_long(worked * ms, 0);
+            }
+            CHECK(worked < 200);
+        }
+    }
+}
+
+TEST_CASE("a spinning thread with real-time priority loses it, and is warned once")
+{
+    int policy = -1;
+    bool again = true;
+    thread spinning({.name = "t", .fifo = true}, [&] {
+        rt::busy_watch w;
+        const bool fifo = (sched_getscheduler(0) & ~SCHED_RESET_ON_FORK) == SCHED_FIFO;
+        const std::int64_t hangs_ns = rt::monotonic_ns() + 300'000 * ms;
+        while (fifo && !w.look(rt::monotonic_ns()) && rt::monotonic_ns() < hangs_ns) {
+        }
+        policy = sched_getscheduler(0) & ~SCHED_RESET_ON_FORK;
+        again = w.look(rt::monotonic_ns() + 1000 * ms);
+    });
+    spinning.join();
+    CHECK(policy == SCHED_OTHER);
+    CHECK_FALSE(again);
+    // Else only checks that the watch leaves other threads alone.
+    WARN(spinning.fifo_error() == 0);
+}
+
+TEST_CASE("reported rights are granted, and others are not")
+{
+    const realtime_rights r = probe_realtime_rights();
+    CHECK(r.priority >= 0);
+    CHECK(r.priority <= sched_get_priority_max(SCHED_FIFO));
+    // A lower limit than asked for still gives a thread of that priority.
+    int granted = 0;
+    thread t({.name = "t", .fifo = true, .priority = 65}, [&granted] {
+        sched_param p{};
+        if (sched_getscheduler(0) != SCHED_OTHER && sched_getparam(0, &p) == 0)
+            granted = p.sched_priority;
+    });
+    t.join();
+    CHECK((t.fifo_error() == 0) == (granted > 0));
+    if (r.priority == 0)
+        CHECK(granted == 0);
+    if (granted > 0)
+        CHECK(granted == std::min(65, r.priority));
+}
+
+TEST_CASE("the hint is one line with the limits, the group and the unit")
+{
+    const std::string text = rt::realtime_advice({.priority = 0, .lockable_bytes = 8U << 20}, 65);
+    CHECK(text.find('\n') == std::string::npos);
+    if (geteuid() == 0) {
+        CHECK(text.find("SYS_NICE") != std::string::npos);
+        return;
+    }
+    for (const char* part : {"rtprio", "memlock", "limits.d", "group audio", "LimitRTPRIO"}) {
+        INFO(part);
+        CHECK(text.find(part) != std::string::npos);
+    }
+}
+
+TEST_CASE("where all limits allow it, the hint is another")
+{
+    const std::string text = rt::realtime_advice({.priority = 99, .lockable_bytes = {}}, 65);
+    CHECK(text.find("rtprio") == std::string::npos);
+    CHECK(text.find("sched_rt_runtime_us") != std::string::npos);
 }
 
 } // namespace thread_test

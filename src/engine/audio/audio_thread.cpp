@@ -5,7 +5,6 @@
 
 #include <sys/resource.h>
 
-#include "rt/busy_watch.hpp"
 #include "rt/clock.hpp"
 
 namespace tactor::engine {
