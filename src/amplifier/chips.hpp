@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// The GPIO chips of this machine, and the search for the line that a user named.
+/// The GPIO chips of this machine, the search for the line that a user named, and messages about both.
 #pragma once
 
 #include <cstddef>
@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include <tactor/error.hpp>
 #include <tactor/lines.hpp>
 
 #include "amplifier/line.hpp"
@@ -46,5 +47,14 @@ std::vector<chip> read_chips();
 
 /// Returns the holder of a line now; empty if there is none or it is not known.
 std::string find_holder(const gpio_line_place& l);
+
+/// Returns the name of the line that failed: "setup.toml:3:1: GPIO line 17 of pinctrl-rp1".
+std::string thing(const gpio_line_name& l);
+
+/// Returns why a chip cannot be opened and what to do, for a list of chips.
+std::string advice(const chip& c);
+
+/// Returns the error of a line that the kernel refused. `holder`: the consumer that the kernel names.
+error request_error(const gpio_line_name& l, int code, const std::string& holder);
 
 } // namespace tactor::amplifier

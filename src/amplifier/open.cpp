@@ -8,7 +8,6 @@
 #include <fmt/format.h>
 
 #include "amplifier/chips.hpp"
-#include "amplifier/errors.hpp"
 #include "amplifier/holder.hpp"
 #include "amplifier/line.hpp"
 #include "core/refused.hpp"

@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: MIT
-// Chips and lines: the list, the search for the user's line, and messages for what the kernel refuses.
+// Chips and lines: the list, the search for the user's line, messages for what the kernel refuses, and
+// bounce.
 #include <cerrno>
+#include <cstdint>
 #include <filesystem>
 #include <limits>
+#include <random>
 #include <string>
 #include <vector>
 
@@ -16,7 +19,6 @@
 #include <tactor/lines.hpp>
 
 #include "amplifier/chips.hpp"
-#include "amplifier/errors.hpp"
 #include "amplifier/line.hpp"
 #include "folder.hpp"
 #include "has.hpp"
@@ -89,6 +91,15 @@ std::string refusal(int code, const std::string& holder)
     const error e = amplifier::request_error(l, code, holder);
     CHECK(e.kind() == error_kind::not_available);
     return e.what();
+}
+
+std::vector<bool> filter(std::int64_t window, const std::vector<std::int64_t>& times)
+{
+    amplifier::debounce d(window);
+    std::vector<bool> out;
+    for (const std::int64_t t : times)
+        out.push_back(d.accepts(t));
+    return out;
 }
 
 } // namespace
@@ -308,6 +319,20 @@ TEST_CASE("a path that is no GPIO chip is an error that says so")
     const std::string text = complaint([&] { return open_output(l); });
     CHECK(text.starts_with("GPIO line 3 of /dev/null: /dev/null is not a GPIO chip"));
     CHECK(text.ends_with("(tactor devices lists the chips)"));
+}
+
+TEST_CASE("an edge passes where no other came before it within the window")
+{
+    std::mt19937_64 random(20240607);
+    for (int round = 0; round < 2000; ++round) {
+        const auto window = static_cast<std::int64_t>(random() % 6); // ns, so that some edges end it exactly
+        std::vector<std::int64_t> times{0};
+        for (int i = 0; i < 50; ++i)
+            times.push_back(times.back() + static_cast<std::int64_t>(random() % 9));
+        const std::vector<bool> passed = filter(window, times);
+        for (std::size_t i = 0; i < times.size(); ++i)
+            CHECK(passed[i] == (i == 0 || times[i] - times[i - 1] >= window));
+    }
 }
 
 } // namespace lines_test
