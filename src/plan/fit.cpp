@@ -15,8 +15,8 @@
 #include <tactor/error.hpp>
 
 #include "core/access.hpp"
-#include "core/moved.hpp"
 #include "core/refused.hpp"
+#include "core/trajectory/impl.hpp"
 #include "plan/faces/layout_impl.hpp"
 #include "plan/faces/plane.hpp"
 

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/profile.hpp"
+#include "core/trajectory/impl.hpp"
 #include "core/trajectory/recorded_points.hpp"
 #include "files/output_file.hpp"
 #include "files/setup_text.hpp"

@@ -15,7 +15,7 @@
 #include <fmt/format.h>
 
 #include "core/bounds.hpp"
-#include "core/trajectory/sample_points.hpp"
+#include "core/trajectory/spans.hpp"
 #include "core/words.hpp"
 #include "files/plan/plan_file.hpp"
 #include "files/setup_text.hpp"

@@ -16,7 +16,7 @@
 #include "caught.hpp"
 #include "core/access.hpp"
 #include "core/path/impl.hpp"
-#include "core/trajectory/sample_points.hpp"
+#include "core/trajectory/spans.hpp"
 #include "has.hpp"
 #include "path_samples.hpp"
 #include "rounds.hpp"

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <memory>
+#include <optional>
 #include <string_view>
 #include <variant>
 #include <vector>
@@ -37,6 +38,27 @@ void check_intensity(std::string_view what, double intensity);
 trajectory scaled(const trajectory& t, double factor);
 /// Throws error (bad_input) that requests a duration, because the path is a single place.
 [[noreturn]] void refuse_one_place();
+
+/// Adds all corners of a movement, its ends included, and its curves.
+void add_outline(const trajectory& t, std::vector<point>& corners, std::vector<shape>& curves);
+
+/// Returns the movement mapped by `m` after `from` became the origin, which keeps the digits of a small
+/// picture that is far away. If `m` flattens everything to a line, `line` gives its direction, and curves
+/// become straight pieces between their turns. Time and intensity stay. `what` names the movement in
+/// messages.
+/// \throws error (bad_input) for coordinates beyond the limit of a path.
+trajectory moved(const trajectory& t, point from, const affine& m, std::optional<point> line,
+                 std::string_view what);
+
+/// Returns points by part of the path, in the order from its other end.
+template <class Point>
+std::vector<Point> from_the_end(std::vector<Point> points)
+{
+    std::reverse(points.begin(), points.end());
+    for (Point& p : points)
+        p.part = 1.0 - p.part;
+    return points;
+}
 
 } // namespace tactor::detail
 

@@ -16,9 +16,9 @@
 #include <tactor/error.hpp>
 #include <tactor/version.hpp>
 
-#include "core/moved.hpp"
 #include "core/path/shape.hpp"
 #include "core/sha256.hpp"
+#include "core/trajectory/impl.hpp"
 #include "files/json/json_value.hpp"
 #include "files/plan/plan_members.hpp"
 #include "session/device.hpp"
