@@ -44,7 +44,7 @@ INSIDE = {
     "cli": {"core/kind_names.hpp", "core/members.hpp", "core/owned.hpp", "core/sha256.hpp", "core/split.hpp", "core/start_times.hpp", "core/suggest.hpp", "core/words.hpp", "files/setup_text.hpp", "files/text_file.hpp", "percept/compare.hpp", "rt/clock.hpp", "rt/thread.hpp", "rt/variable.hpp", "synth/score/sounding_now.hpp"},
     "study": {"core/marks.hpp", "core/owned.hpp", "core/path/shape.hpp", "core/sha256.hpp", "core/split.hpp", "core/suggest.hpp", "core/trajectory/impl.hpp", "core/words.hpp", "files/output_file.hpp", "files/setup_text.hpp", "files/text_file.hpp", "files/toml_reader.hpp", "rt/clock.hpp", "rt/event_fd.hpp", "rt/thread.hpp", "synth/mix/converter.hpp", "synth/mix/limits_met.hpp", "synth/score/drive_room.hpp"},
     "plot": {"core/split.hpp", "core/words.hpp", "files/output_file.hpp", "percept/compare.hpp", "synth/mix/sample_ranges.hpp"},
-    "server": {"core/bounds.hpp", "core/label.hpp", "core/start_times.hpp", "core/trajectory/recorded_points.hpp", "core/trajectory/spans.hpp", "core/words.hpp", "files/setup_text.hpp", "files/text_file.hpp", "percept/compare.hpp", "rt/clock.hpp", "sink/wav/wav.hpp"},
+    "server": {"core/bounds.hpp", "core/start_times.hpp", "core/trajectory/recorded_points.hpp", "core/trajectory/spans.hpp", "core/words.hpp", "files/setup_text.hpp", "files/text_file.hpp", "percept/compare.hpp", "rt/clock.hpp", "sink/wav/wav.hpp"},
     "python": {"core/access.hpp", "core/path/impl.hpp", "core/trajectory/impl.hpp", "core/trajectory/recorded_points.hpp", "core/words.hpp", "files/output_file.hpp", "files/setup_text.hpp", "files/text_file.hpp", "percept/compare.hpp", "plan/curve_impl.hpp"},
 }
 # Header prefix: the only places that may include it.

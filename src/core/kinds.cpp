@@ -10,7 +10,7 @@
 #include <tactor/sink.hpp>
 #include <tactor/stroke.hpp>
 
-#include "core/kind_table.hpp"
+#include "core/kind_names.hpp"
 
 namespace tactor {
 inline namespace v0 {

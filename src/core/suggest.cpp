@@ -8,7 +8,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "core/label.hpp"
+#include "core/words.hpp"
 
 namespace tactor::detail {
 namespace {

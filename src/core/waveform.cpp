@@ -10,9 +10,8 @@
 #include <tactor/error.hpp>
 
 #include "core/bounds.hpp"
-#include "core/kind_table.hpp"
+#include "core/kind_names.hpp"
 #include "core/path/number.hpp"
-#include "core/recording_name.hpp"
 #include "core/refused.hpp"
 #include "core/words.hpp"
 
@@ -34,7 +33,7 @@ void check_noise(const waveform& w)
 void check_samples(const recording& r)
 {
     const auto refuse = [&r](std::string_view why, std::string_view hint) {
-        throw error(error_kind::bad_input, detail::recording_name(r), why, hint).with_field("recorded");
+        throw error(error_kind::bad_input, recording_name(r), why, hint).with_field("recorded");
     };
     if (r.samples.size() < 2 || r.samples.size() > most_recording_samples)
         refuse(fmt::format("it has {}", counted(r.samples.size(), "sample")),
@@ -55,7 +54,7 @@ void check_recording(const waveform& w)
             .with_field("waveform");
     check_samples(*w.recorded);
     if (w.texture != texture_kind::time && w.recorded->samples.size() > most_cycle_samples)
-        throw error(error_kind::bad_input, detail::recording_name(*w.recorded),
+        throw error(error_kind::bad_input, recording_name(*w.recorded),
                     fmt::format("{} are too many for texture {}",
                                 counted(w.recorded->samples.size(), "sample"), to_string(w.texture)),
                     fmt::format("at most {}, which is 8 s at 8 kHz; or texture time", most_cycle_samples))

@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// Numbers for people, in messages and captions. Records (JSON, CSV) keep every digit instead. Any thread;
-/// the same in every locale.
+/// Texts for people: numbers in messages and captions (records in JSON and CSV keep every digit instead),
+/// names and labels. Any thread; the same in every locale.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <string_view>
+
+#include <tactor/waveform.hpp>
 
 namespace tactor {
 
@@ -23,5 +26,23 @@ namespace tactor {
 
 /// Returns the text with A to Z in lower case, for names that ignore case.
 [[nodiscard]] std::string in_small_letters(std::string text);
+
+/// Returns the recording's file, or "recording" if it has none.
+[[nodiscard]] std::string recording_name(const recording& r);
+
+/// Hint for a text that is no label: a short text by which somebody names a thing for others to read, such as
+/// a client or the place of an array.
+inline constexpr const char* label_hint = "1 to 40 characters, no control characters";
+
+/// Returns the first bytes of a text, at most so many and no part of a character.
+[[nodiscard]] std::string_view first_characters(std::string_view utf8, std::size_t most_bytes);
+
+/// Returns true for a text with control characters, or with characters that turn the direction of a line.
+/// `utf8` is valid.
+[[nodiscard]] bool has_controls(std::string_view utf8);
+
+/// Returns what is wrong with a label: "is empty", "has 41 characters", "has control characters"; empty:
+/// nothing. `utf8` is valid.
+[[nodiscard]] std::string label_fault(std::string_view utf8);
 
 } // namespace tactor

@@ -7,7 +7,7 @@
 
 #include <fmt/format.h>
 
-#include "core/kind_table.hpp"
+#include "core/kind_names.hpp"
 #include "engine/control/feeder.hpp"
 
 namespace tactor {

@@ -14,7 +14,6 @@
 
 #include "core/bounds.hpp"
 #include "core/kind_names.hpp"
-#include "core/label.hpp"
 #include "core/words.hpp"
 #include "files/stroke/toml.hpp"
 #include "files/text_file.hpp"

@@ -13,7 +13,6 @@
 #include <tactor/phantom.hpp>
 
 #include "core/limits.hpp"
-#include "core/recording_name.hpp"
 #include "core/refused.hpp"
 #include "core/words.hpp"
 #include "plan/job.hpp"
@@ -129,7 +128,7 @@ void warn_of_missing_samples(plan& p)
     const std::shared_ptr<const recording>& r = p.wave.recorded;
     if (p.wave.kind == waveform_kind::recording && r->missing > 0)
         p.warnings.push_back(fmt::format("{}: the recording is cut short: it has {} of {}",
-                                         detail::recording_name(*r), r->samples.size(),
+                                         recording_name(*r), r->samples.size(),
                                          counted(r->samples.size() + r->missing, "sample")));
 }
 

@@ -15,7 +15,7 @@
 
 #include <tactor/stroke.hpp>
 
-#include "core/label.hpp"
+#include "core/words.hpp"
 #include "server/service_impl.hpp"
 #include "server/stroke_options.hpp"
 

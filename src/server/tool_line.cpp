@@ -9,7 +9,7 @@
 
 #include <fmt/format.h>
 
-#include "core/label.hpp"
+#include "core/words.hpp"
 
 namespace tactor::server {
 namespace {

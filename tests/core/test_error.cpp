@@ -20,7 +20,6 @@
 #include <tactor/stroke.hpp>
 #include <tactor/waveform.hpp>
 
-#include "core/label.hpp"
 #include "core/refused.hpp"
 #include "core/words.hpp"
 

@@ -13,8 +13,8 @@
 
 #include <tactor/error.hpp>
 
-#include "core/recording_name.hpp"
 #include "core/refused.hpp"
+#include "core/words.hpp"
 #include "synth/tone/waves.hpp"
 
 namespace tactor::synth {
@@ -119,7 +119,7 @@ void check_length(const recording& r, unsigned rate)
     const double frames = static_cast<double>(r.samples.size()) * rate / r.rate_hz;
     if (frames > most_loop_frames) {
         throw error(
-            error_kind::bad_input, detail::recording_name(r),
+            error_kind::bad_input, recording_name(r),
             fmt::format("it lasts {:.6g} s, which is too long at a rate of {} Hz", frames / rate, rate),
             fmt::format("give at most {:.6g} s", most_loop_frames / rate));
     }

@@ -10,7 +10,7 @@
 
 #include <tactor/error.hpp>
 
-#include "core/recording_name.hpp"
+#include "core/words.hpp"
 #include "synth/mix/sincos.hpp"
 
 namespace tactor::synth {
@@ -68,7 +68,7 @@ constexpr double least_peak = 1e-5;
 void require_left(double peak, const recording& r)
 {
     if (!(peak >= least_peak)) {
-        throw error(error_kind::bad_input, detail::recording_name(r),
+        throw error(error_kind::bad_input, recording_name(r),
                     "nothing of it is left below half its own rate and the stream's",
                     "give a slower vibration, a lower {carrier_hz} or a higher rate");
     }
