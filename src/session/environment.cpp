@@ -91,27 +91,22 @@ void read_standard_input(const settings& s, environment& e)
     e.plans.emplace("-", files::read_plans(text, name));
 }
 
-// Reads the plans among the STROKE arguments, and standard input.
-void read_given(const settings& s, environment& e)
+// Reads the plans among the STROKE arguments, and standard input. Returns the first plan; null for none.
+const files::plan_file* read_plans(const settings& s, environment& e)
 {
     if (std::find(s.strokes.begin(), s.strokes.end(), "-") != s.strokes.end())
         read_standard_input(s, e);
+    const files::plan_file* first = nullptr;
     for (const std::string& argument : s.strokes) {
-        if (!files::is_plan_file(argument) || e.plans.contains(argument))
-            continue;
-        options::refuse_planning(s, argument);
-        check_readable(argument);
-        e.plans.emplace(argument, files::load_plans(argument));
+        if (files::is_plan_file(argument) && !e.plans.contains(argument)) {
+            options::refuse_planning(s, argument);
+            check_readable(argument);
+            e.plans.emplace(argument, files::load_plans(argument));
+        }
+        if (const auto plan = e.plans.find(argument); first == nullptr && plan != e.plans.end())
+            first = &plan->second;
     }
-}
-
-// Returns the first plan among the STROKE arguments; null for none.
-const files::plan_file* first_plan(const settings& s, const environment& e)
-{
-    const auto planned = std::find_if(s.strokes.begin(), s.strokes.end(), [&](const std::string& argument) {
-        return e.plans.contains(argument);
-    });
-    return planned == s.strokes.end() ? nullptr : &e.plans.at(*planned);
+    return first;
 }
 
 // Renders a plan as it was rendered before, unless an option differs; [defaults] do not count.
@@ -137,14 +132,15 @@ array named_array(const std::string& name)
     }
 }
 
-array find_array(settings& s, environment& e)
+array find_array(settings& s, environment& e, const files::plan_file* planned)
 {
     setup& config = e.config;
     if (!s.array_name) {
         e.array_file = config.array ? e.config_name : "";
-        const files::plan_file* planned = first_plan(s, e);
-        if (config.array || planned == nullptr)
-            return config.array.value_or(preset_array("palm-3x3"));
+        if (config.array)
+            return *config.array;
+        if (planned == nullptr)
+            return preset_array("palm-3x3");
         e.plan_channels = planned->render.channels;
         return planned->tactors; // with the settings that its array file had when the plan was made
     }
@@ -209,10 +205,10 @@ environment read_environment(settings& s)
         options::apply_defaults(s, e.config);
         e.serve = options::read_serve(e.config.serve);
     }
-    read_given(s, e);
-    e.tactors = find_array(s, e);
-    if (const files::plan_file* f = first_plan(s, e))
-        use_plan_sound(*f, s);
+    const files::plan_file* const planned = read_plans(s, e);
+    e.tactors = find_array(s, e, planned);
+    if (planned != nullptr)
+        use_plan_sound(*planned, s);
     options::settle(s);
     check_sync_channel(e);
     return e;
