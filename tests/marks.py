@@ -2,7 +2,7 @@
 """Holds the library's texts to its own names, and marks to names that front ends know.
 
 Usage: marks.py SOURCE_ROOT. No text of the library has an option or a command of the tool. Each mark ({soa_s}, {timing=fit}, {command:devices})
-names a row of the table of options, a command, or an argument for which front ends have words (core/marks.hpp, options/words.hpp).
+names a row of the table of options, a command, or an argument for which front ends have words (core/marks.hpp, options/option.hpp).
 """
 import pathlib
 import re

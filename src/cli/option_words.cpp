@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-#include "options/words.hpp"
+#include "options/option.hpp"
 
 namespace tactor::cli {
 namespace {

@@ -1,20 +1,93 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// The table of options: one row for each thing that a user may set, from which all front ends are made.
+/// The table of options: one row for each thing that a user may set, from which all front ends are made; the
+/// values of all options; and how errors about them become messages of a front end.
+///
+/// An error has a field ("soa_s"), a place in a file, and marks in its texts (core/marks.hpp). Each front end
+/// has a spelling that writes field and marks: cli/option_words.cpp ("--soa"), server/faults.cpp
+/// ("options.soa"), python/options.cpp ("soa"), study/experiment/definition.cpp. at_default() puts the place
+/// in [defaults] before an option's error. None of them looks into the words.
 #pragma once
 
+#include <bitset>
 #include <cstddef>
 #include <cstdint>
+#include <map>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
 #include <variant>
 #include <vector>
 
+#include <tactor/choices.hpp>
+#include <tactor/error.hpp>
+#include <tactor/percept.hpp>
+#include <tactor/plan.hpp>
+#include <tactor/render.hpp>
+
 #include "core/bounds.hpp"
-#include "options/wishes.hpp"
+#include "percept/compare.hpp"
 
 namespace tactor::options {
+
+struct option;
+
+/// Opening, driving and recording of a stream.
+struct stream_options {
+    std::optional<double> latency_ms = {};
+    std::optional<unsigned> period_frames = {};
+    std::optional<unsigned> periods = {};
+    bool require_realtime = false;
+    double reopen_s = 0.0; ///< time that a lost device is waited for
+    bool void_on_xrun = false;
+    bool arm = false; ///< strokes wait for an edge on the [sync] in line
+    double sync_delay_ms = 50.0;
+    bool live = false;                   ///< points come from standard input
+    std::optional<double> smooth_s = {}; ///< of those
+    bool no_gpio = false;
+    bool verbose = false; ///< log on standard error
+    std::string log = {}; ///< file that log lines are appended to; empty: none
+    std::optional<double> power_dbfs = {};
+    std::optional<double> max_drive_s = {};
+    std::optional<double> drive_window_s = {};
+};
+
+/// Most rows that the table may have.
+inline constexpr std::size_t most_options = 128;
+
+/// Values of the options; without one of the user or of [defaults] the built-in default.
+struct wishes {
+    std::optional<std::string> path_data = {};   ///< SVG path data in place of a stroke
+    std::optional<std::string> shape = {};       ///< the same, by the name of a shape
+    std::optional<std::string> array_name = {};  ///< preset or file
+    std::optional<std::string> config_file = {}; ///< of the configuration
+    std::optional<std::string> pcm = {};
+    std::optional<double> duration_s = {};
+    std::optional<double> speed_mm_s = {};
+    std::optional<double> usual_speed_mm_s = {}; ///< of strokes that say neither a time nor a speed
+    std::optional<double> intensity_max = {};    ///< value in a recording that means intensity 1
+    bool fit = false;
+    double fit_margin_mm = 0.0;
+    std::optional<unsigned> rate = {};
+    std::optional<unsigned> channels = {};
+    std::optional<format_kind> format = {};
+    bool compensate = false; ///< for low_speed
+    observer_kind observer = observer_kind::centroid;
+    low_speed_observer low_speed = {};
+    detail::spread_choice spread = {};
+    plan_options plan = {};
+    render_options render = {};
+    stream_options stream = {};
+
+    std::uint64_t place = 0;                          ///< front end: bits of `place`
+    std::bitset<most_options> given = {};             ///< rows of the user
+    std::map<std::size_t, source_place> in_file = {}; ///< rows of [defaults], with their places
+
+    /// Returns true if the user gave the option. \pre There is one of that name.
+    bool gives(std::string_view name) const;
+    bool gives(const option& o) const;
+};
 
 /// Headings under which help and manual list options.
 namespace group {
@@ -166,5 +239,29 @@ double parse_whole(std::string_view what, const std::string& text, detail::bound
 
 /// Returns "did you mean -12? " for a number that is out of bounds without its minus sign, else nothing.
 std::string sign_hint(detail::bounds b, double v);
+
+/// A front end's own word for a mark, or for a field that is no row: {"command:devices", "devices()"}. The
+/// mark "array" stands for {array=palm}, too, and {} for its value. An empty word leaves it out, with its
+/// clause.
+struct own_word {
+    std::string_view mark;
+    std::string_view here;
+};
+
+/// A front end's way to write options.
+struct spelling {
+    /// The option, or with a value what sets it: "--timing", "--timing fit". The value of a flag is "true".
+    std::string (*write)(const option& o, std::string_view value) = nullptr;
+    std::uint64_t where = ~std::uint64_t{0}; ///< bits of its options; others are written as fields
+    std::span<const own_word> own = {};
+};
+
+/// Writes the marks of a text. Braces that name nothing known stay. `in_file`: keys of stroke files are
+/// written as fields.
+std::string spell(std::string_view text, const spelling& by, bool in_file = false);
+/// Writes the name of a field.
+std::string spell_field(std::string_view field, const spelling& by);
+/// Writes what an error is about, and its marks.
+error spell(const error& e, const spelling& by);
 
 } // namespace tactor::options

@@ -16,7 +16,6 @@
 
 #include "options/option.hpp"
 #include "options/settle.hpp"
-#include "options/words.hpp"
 #include "session/device.hpp"
 
 namespace tactor::python {

@@ -10,7 +10,7 @@
 #include <fmt/ranges.h>
 
 #include "core/words.hpp"
-#include "options/words.hpp"
+#include "options/option.hpp"
 
 namespace tactor::server {
 namespace {

@@ -9,7 +9,7 @@
 #include <optional>
 
 #include "net/rpc.hpp"
-#include "options/wishes.hpp"
+#include "options/option.hpp"
 
 namespace tactor::server {
 

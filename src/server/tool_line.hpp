@@ -10,7 +10,6 @@
 #include <tactor/stroke.hpp>
 
 #include "options/option.hpp"
-#include "options/wishes.hpp"
 
 namespace tactor::server {
 

@@ -14,8 +14,8 @@
 #include <tactor/tactor.hpp>
 
 #include "files/plan/plan_file.hpp"
+#include "options/option.hpp"
 #include "options/serve.hpp"
-#include "options/wishes.hpp"
 
 namespace tactor::session {
 

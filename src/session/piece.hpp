@@ -11,7 +11,7 @@
 #include <tactor/tactor.hpp>
 
 #include "files/plan/plan_json.hpp"
-#include "options/wishes.hpp"
+#include "options/option.hpp"
 
 namespace tactor::session {
 

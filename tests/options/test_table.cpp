@@ -11,7 +11,6 @@
 #include "core/marks.hpp"
 #include "options/option.hpp"
 #include "options/settle.hpp"
-#include "options/words.hpp"
 
 namespace table_test {
 

@@ -16,7 +16,6 @@
 #include "files/toml_reader.hpp"
 #include "options/option.hpp"
 #include "options/settle.hpp"
-#include "options/words.hpp"
 
 namespace tactor::study {
 namespace {
