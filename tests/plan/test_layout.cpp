@@ -10,7 +10,6 @@
 
 #include "arrays.hpp"
 #include "core/access.hpp"
-#include "oracle.hpp"
 #include "plan/faces/layout_impl.hpp"
 #include "rounds.hpp"
 

@@ -16,7 +16,6 @@
 #include "arrays.hpp"
 #include "caught.hpp"
 #include "has.hpp"
-#include "oracle.hpp"
 #include "plan/phantom/same_tactors.hpp"
 #include "rounds.hpp"
 

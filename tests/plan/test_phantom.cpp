@@ -9,7 +9,6 @@
 #include <tactor/phantom.hpp>
 
 #include "arrays.hpp"
-#include "oracle.hpp"
 #include "rounds.hpp"
 
 namespace phantom_test {

@@ -1,14 +1,20 @@
 // SPDX-License-Identifier: MIT
-// Decisions of a stream's policy, without a device and without a clock.
+// Streams one after the other: decisions of their policy, without a device and without a clock; lines that
+// outlive the players that they are lent to; counters.
 #include "session/device_stream.hpp"
 
+#include <chrono>
+#include <memory>
 #include <optional>
 #include <vector>
 
 #include <doctest/doctest.h>
 
-namespace stream_policy_test {
+#include "session/lines.hpp"
 
+namespace device_stream_test {
+
+using namespace tactor;
 using namespace tactor::session;
 using act = stream_policy::act;
 
@@ -56,6 +62,47 @@ struct owner {
         close();
     }
 };
+
+class line final : public enable_line {
+public:
+    line(bool& on, const bool& stuck) : on_(on), stuck_(stuck) {}
+    bool set(bool on) noexcept override
+    {
+        if (stuck_)
+            return false;
+        on_ = on;
+        return true;
+    }
+
+private:
+    bool& on_;
+    const bool& stuck_;
+};
+
+struct lent {
+    bool on = false;
+    bool stuck = false;
+    int switched = 0;
+    lent_lines lines{{.amplifier = std::make_unique<line>(on, stuck)}};
+
+    lent()
+    {
+        lines.on_switch([this] { ++switched; });
+    }
+};
+
+player_stats one_of_each(double scale)
+{
+    const auto n = static_cast<std::uint64_t>(scale);
+    player_stats s;
+    s.periods = s.frames = s.xruns = s.limited_frames = s.power_limited_frames = s.drives_cut = s.stalls = n;
+    s.off_failures = s.sync_pulses = s.sync_missed = s.minor_faults = s.major_faults = n;
+    s.ring_low_water = n;
+    s.sync_mean_late_s = s.sync_worst_late_s = s.latest_wakeup_s = scale;
+    s.realtime = true;
+    s.xrun_s = {scale};
+    return s;
+}
 
 } // namespace
 
@@ -317,4 +364,90 @@ TEST_CASE("after the end nothing is opened, whatever happens")
     }
 }
 
-} // namespace stream_policy_test
+TEST_CASE("without an amplifier there is none to be on")
+{
+    const lent_lines none;
+    CHECK(none.lend().amplifier == nullptr);
+    CHECK(none.amplifier() == amplifier_state::none);
+    CHECK(to_string(none.amplifier()) == "none");
+}
+
+TEST_CASE("an amplifier is muted once the player that has it had switched it on")
+{
+    lent l;
+    const player_lines first = l.lines.lend(0.5);
+    CHECK(first.proof_s == 0.5);
+    CHECK(l.lines.amplifier() == amplifier_state::off);
+    CHECK(first.amplifier->set(true));
+    CHECK(l.on);
+    CHECK(l.lines.amplifier() == amplifier_state::on);
+    CHECK(first.amplifier->set(false));
+    CHECK(first.amplifier->set(false));
+    CHECK(l.lines.amplifier() == amplifier_state::muted);
+    CHECK(to_string(l.lines.amplifier()) == "off");
+    CHECK(l.switched == 2);
+    const player_lines next = l.lines.lend();
+    CHECK(l.lines.amplifier() == amplifier_state::off);
+}
+
+TEST_CASE("a player that is gone leaves the amplifier off")
+{
+    lent l;
+    CHECK(l.lines.lend().amplifier->set(true));
+    CHECK_FALSE(l.on);
+    CHECK(l.lines.amplifier() == amplifier_state::muted);
+}
+
+TEST_CASE("an amplifier that refuses to go off counts as on, also for the next player")
+{
+    lent l;
+    {
+        const player_lines lost = l.lines.lend();
+        CHECK(lost.amplifier->set(true));
+        l.stuck = true;
+        CHECK_FALSE(lost.amplifier->set(false));
+    }
+    CHECK(l.lines.amplifier() == amplifier_state::on);
+    const player_lines next = l.lines.lend();
+    CHECK(l.lines.amplifier() == amplifier_state::on);
+}
+
+TEST_CASE("counters add up, and the worst value stays the worst")
+{
+    player_stats sum;
+    add_stats(sum, one_of_each(3));
+    add_stats(sum, one_of_each(1));
+    for (const std::uint64_t n :
+         {sum.periods, sum.frames, sum.xruns, sum.limited_frames, sum.power_limited_frames, sum.drives_cut,
+          sum.stalls, sum.off_failures, sum.sync_pulses, sum.sync_missed, sum.minor_faults, sum.major_faults})
+        CHECK(n == 4);
+    CHECK(sum.ring_low_water == 1);
+    CHECK(sum.sync_worst_late_s == 3.0);
+    CHECK(sum.latest_wakeup_s == 3.0);
+    CHECK(sum.sync_mean_late_s == doctest::Approx(2.5)); // of three pulses 3 s, of one 1 s
+    CHECK(sum.xrun_s == std::vector<double>{3.0, 1.0});
+}
+
+TEST_CASE("one stream without real time makes the sum one without")
+{
+    player_stats sum;
+    add_stats(sum, one_of_each(1));
+    CHECK(sum.realtime);
+    player_stats without = one_of_each(1);
+    without.realtime = false;
+    add_stats(sum, without);
+    add_stats(sum, one_of_each(1));
+    CHECK_FALSE(sum.realtime);
+}
+
+TEST_CASE("the newest 64 xruns keep their lengths")
+{
+    player_stats sum;
+    for (int i = 0; i < 100; ++i)
+        add_stats(sum, one_of_each(i + 1.0));
+    REQUIRE(sum.xrun_s.size() == 64);
+    CHECK(sum.xrun_s.front() == 37.0);
+    CHECK(sum.xrun_s.back() == 100.0);
+}
+
+} // namespace device_stream_test
