@@ -6,6 +6,8 @@
 #include <cstddef>
 #include <limits>
 
+#include <boost/container/small_vector.hpp>
+
 #include "plan/faces/plane.hpp"
 
 namespace tactor::detail {
@@ -68,47 +70,38 @@ void segments_through(const layout::impl& l, const std::vector<unsigned>& ring, 
     }
 }
 
-/// A tactor of a ring as seen from p.
+/// A tactor as seen from p.
 struct seen_tactor {
     unsigned rank;
     double far_mm;
     double side = 0.0; ///< of the line from the closest one through p; > 0: left
 };
 
-/// Tactors of a ring, or others, as seen from p, without an allocation where they are few.
-class seen_ring {
-public:
-    seen_ring(const layout::impl& l, const std::vector<unsigned>& ring, point p) : size_(ring.size())
-    {
-        if (size_ > few_.size())
-            many_.resize(size_);
-        for (std::size_t i = 0; i < size_; ++i)
-            begin()[i] = {ring[i], length_mm(p, l.points[ring[i]])};
-    }
+/// Mostly the tactors of a face, which are few.
+using seen_tactors = boost::container::small_vector<seen_tactor, 8>;
 
-    seen_tactor* begin() noexcept { return many_.empty() ? few_.data() : many_.data(); }
-    seen_tactor* end() noexcept { return begin() + size_; }
+seen_tactors see(const layout::impl& l, const std::vector<unsigned>& ranks, point p)
+{
+    seen_tactors all;
+    for (const unsigned rank : ranks)
+        all.push_back({rank, length_mm(p, l.points[rank])});
+    return all;
+}
 
-    /// Returns the closest tactor for which `allowed` holds, of ties the lowest; null if there is none.
-    template <class Allowed>
-    const seen_tactor* closest(const Allowed& allowed)
-    {
-        double least = std::numeric_limits<double>::infinity();
-        for (const seen_tactor& v : *this)
-            if (allowed(v))
-                least = std::min(least, v.far_mm);
-        const seen_tactor* best = nullptr;
-        for (const seen_tactor& v : *this)
-            if (allowed(v) && v.far_mm <= least + same_place_mm && (best == nullptr || v.rank < best->rank))
-                best = &v;
-        return best;
-    }
-
-private:
-    std::array<seen_tactor, 8> few_{};
-    std::vector<seen_tactor> many_;
-    std::size_t size_;
-};
+/// Returns the closest tactor for which `allowed` holds, of ties the lowest; null if there is none.
+template <class Allowed>
+const seen_tactor* closest(const seen_tactors& all, const Allowed& allowed)
+{
+    double least = std::numeric_limits<double>::infinity();
+    for (const seen_tactor& v : all)
+        if (allowed(v))
+            least = std::min(least, v.far_mm);
+    const seen_tactor* best = nullptr;
+    for (const seen_tactor& v : all)
+        if (allowed(v) && v.far_mm <= least + same_place_mm && (best == nullptr || v.rank < best->rank))
+            best = &v;
+    return best;
+}
 
 } // namespace
 
@@ -146,8 +139,8 @@ std::optional<rank_pair> segment_at(const layout::impl& l, const rank_triple& th
 
 std::optional<near_triple> triangle_at(const layout::impl& l, unsigned face, point p)
 {
-    seen_ring ring(l, l.faces[face], p);
-    const seen_tactor* first = ring.closest([](const seen_tactor&) { return true; });
+    seen_tactors ring = see(l, l.faces[face], p);
+    const seen_tactor* first = closest(ring, [](const seen_tactor&) { return true; });
     const auto place = [&](const seen_tactor* v) { return l.points[v->rank]; };
     for (seen_tactor& v : ring)
         v.side = turn(place(first), p, place(&v));
@@ -169,12 +162,12 @@ std::optional<near_triple> triangle_at(const layout::impl& l, unsigned face, poi
     const auto holds = [&](const seen_tactor* l_side, const seen_tactor* r_side) {
         return turn(p, place(r_side), place(l_side)) >= 0.0;
     };
-    const seen_tactor* second = ring.closest([&](const seen_tactor& v) {
+    const seen_tactor* second = closest(ring, [&](const seen_tactor& v) {
         return &v != first && ((v.side > 0.0 && holds(&v, right)) || (v.side < 0.0 && holds(left, &v)));
     });
     if (second == nullptr)
         return std::nullopt;
-    const seen_tactor* third = ring.closest([&](const seen_tactor& v) {
+    const seen_tactor* third = closest(ring, [&](const seen_tactor& v) {
         return second->side > 0.0 ? v.side < 0.0 && holds(second, &v) : v.side > 0.0 && holds(&v, second);
     });
     if (third == nullptr)
@@ -185,10 +178,11 @@ std::optional<near_triple> triangle_at(const layout::impl& l, unsigned face, poi
 
 near_triple closest_three(const layout::impl& l, const std::vector<unsigned>& ranks, point p)
 {
-    seen_ring all(l, ranks, p);
-    const seen_tactor* first = all.closest([](const seen_tactor&) { return true; });
-    const seen_tactor* second = all.closest([&](const seen_tactor& v) { return &v != first; });
-    const seen_tactor* third = all.closest([&](const seen_tactor& v) { return &v != first && &v != second; });
+    const seen_tactors all = see(l, ranks, p);
+    const seen_tactor* first = closest(all, [](const seen_tactor&) { return true; });
+    const seen_tactor* second = closest(all, [&](const seen_tactor& v) { return &v != first; });
+    const seen_tactor* third =
+        closest(all, [&](const seen_tactor& v) { return &v != first && &v != second; });
     return {{first->rank, second->rank, third->rank}, {first->far_mm, second->far_mm, third->far_mm}};
 }
 
