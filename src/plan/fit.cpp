@@ -221,19 +221,11 @@ fitted_strokes fit_strokes(const std::vector<stroke>& strokes, const layout& l, 
 
 std::vector<stroke> apply_fits(std::vector<stroke> strokes, const layout& l)
 {
-    std::vector<std::vector<std::size_t>> pictures;
-    std::map<unsigned, std::size_t> groups;
-    for (std::size_t i = 0; i < strokes.size(); ++i) {
-        const stroke& s = strokes[i];
-        if (!s.fit)
-            continue;
-        const auto [group, is_new] = groups.try_emplace(s.fit->group, pictures.size());
-        if (is_new || s.fit->group == 0)
-            pictures.push_back({i});
-        else
-            pictures[group->second].push_back(i);
-    }
-    for (const std::vector<std::size_t>& members : pictures) {
+    std::map<std::pair<unsigned, std::size_t>, std::vector<std::size_t>> pictures; // each of group 0 alone
+    for (std::size_t i = 0; i < strokes.size(); ++i)
+        if (const auto& fit = strokes[i].fit)
+            pictures[{fit->group, fit->group == 0 ? i : 0}].push_back(i);
+    for (const auto& [group, members] : pictures) {
         std::vector<stroke> together;
         for (const std::size_t i : members)
             together.push_back(strokes[i]);
