@@ -51,6 +51,15 @@ chip read_with_group(const std::string& path)
     return c;
 }
 
+/// Opens every chip, and no other file with such a name.
+std::vector<chip> read_chips()
+{
+    std::vector<chip> chips;
+    for (const std::string& path : chip_paths())
+        chips.push_back(read_with_group(path));
+    return chips;
+}
+
 /// Returns the file behind a path's links: a name made by udev is as good as the kernel's.
 std::string real_path(const std::string& path)
 {
@@ -274,14 +283,6 @@ std::string find_group(const std::string& path)
         ::getgrgid_r(status.st_gid, &entry, names.data(), names.size(), &found) == 0 && found)
         return found->gr_name;
     return "gpio";
-}
-
-std::vector<chip> read_chips()
-{
-    std::vector<chip> chips;
-    for (const std::string& path : chip_paths())
-        chips.push_back(read_with_group(path));
-    return chips;
 }
 
 gpio_line_place look_up(const gpio_line_name& wanted)

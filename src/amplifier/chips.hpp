@@ -42,9 +42,6 @@ std::string find_group(const std::string& path);
 /// Finds a line among the chips of this machine. Throws as find_line() does.
 gpio_line_place look_up(const gpio_line_name& wanted);
 
-/// Opens every chip, and no other file with such a name.
-std::vector<chip> read_chips();
-
 /// Returns the holder of a line now; empty if there is none or it is not known.
 std::string find_holder(const gpio_line_place& l);
 

@@ -132,7 +132,7 @@ void settle(wishes& w)
         for (const char* ramp : {"attack", "release", "ramp"})
             if (w.gives(ramp))
                 throw refusal(*find(ramp), "{envelope=tukey} has its own ramps", "leave one of them out");
-    const auto is_set = [&w](const option& o) { return w.gives(o) || w.in_file.contains(index(o)); };
+    const auto is_set = [&w](const option& o) { return w.given[index(o)] || w.in_file.contains(index(o)); };
     timing_profile& law = w.plan.profile;
     if (is_set(*find("slope")) || is_set(*find("intercept")))
         law.max_soa_s = law.intercept_s / (1.0 - law.slope);

@@ -20,16 +20,49 @@
 namespace tactor::detail {
 namespace {
 
+constexpr double never_s = std::numeric_limits<double>::infinity();
+
+double burst_end_s(const burst& b)
+{
+    return b.onset_s + b.duration_s;
+}
+
 // State of a plan that is followed through time. Computes only when a burst begins or ends.
 class sounding {
 public:
     // Starts before the plan. Array and plan must live as long; `end_s` is the end of the movement. `gains`:
     // of each tactor, or empty.
-    sounding(const array& a, const plan& p, double end_s, std::vector<double> gains);
+    sounding(const array& a, const plan& p, double end_s, std::vector<double> gains)
+        : tactors_(a),
+          plan_(p),
+          end_s_(end_s),
+          gains_(std::move(gains)),
+          first_end_s_(never_s),
+          parts_(a.tactors.size())
+    {
+    }
 
     // Fills in felt, intensity and shared. Times must ascend.
     // \throws error (bad_input) if the plan names a tactor that the array does not have.
-    void at(double t_s, percept_sample& out);
+    void at(double t_s, percept_sample& out)
+    {
+        if (plan_.curve) {
+            plan_.curve->at(t_s, sampled_);
+            add(sampled_);
+            sum_up();
+        } else {
+            const bool begun = begin_bursts(t_s);
+            const bool ended = end_bursts(t_s);
+            if (begun || ended) {
+                for (const std::size_t i : active_)
+                    add(plan_.bursts[i]);
+                sum_up();
+            }
+        }
+        out.felt = now_.felt;
+        out.intensity = now_.intensity;
+        out.shared = now_.shared;
+    }
 
 private:
     // Bursts on one tactor.
@@ -46,11 +79,74 @@ private:
         bool shared = false;
     };
 
-    bool begin_bursts(double t_s);
-    bool end_bursts(double t_s);
-    void add(const burst& b);
-    double amplitude(const part& x) const;
-    void sum_up();
+    bool begin_bursts(double t_s)
+    {
+        const std::size_t before = next_;
+        for (; next_ < plan_.bursts.size() && plan_.bursts[next_].onset_s <= t_s + same_time_s; ++next_) {
+            active_.push_back(next_);
+            first_end_s_ = std::min(first_end_s_, burst_end_s(plan_.bursts[next_]));
+        }
+        return next_ != before;
+    }
+
+    bool end_bursts(double t_s)
+    {
+        if (first_end_s_ > t_s + same_time_s)
+            return false;
+        // The Tactile Brush's last burst ends with the movement, and the one before often later. Both still
+        // count at the last sample.
+        const bool begun = next_ > 0 && plan_.bursts[next_ - 1].onset_s >= t_s - same_time_s;
+        const bool closing = t_s > end_s_ - same_time_s && !begun;
+        const double limit_s = closing ? t_s - same_time_s : t_s + same_time_s;
+        std::erase_if(active_, [&](std::size_t i) { return burst_end_s(plan_.bursts[i]) <= limit_s; });
+        first_end_s_ = never_s;
+        for (const std::size_t i : active_)
+            first_end_s_ = std::min(first_end_s_, burst_end_s(plan_.bursts[i]));
+        return true;
+    }
+
+    void add(const burst& b)
+    {
+        for (const drive& d : b.drives) {
+            if (d.tactor >= parts_.size())
+                throw error(error_kind::bad_input, "plan", fmt::format("drives tactor {}", d.tactor),
+                            fmt::format("\"{}\" has {}", tactors_.name, counted(parts_.size(), "tactor")));
+            part& x = parts_[d.tactor];
+            if (x.bursts == 0)
+                touched_.push_back(d.tactor);
+            ++x.bursts;
+            x.energy += d.amplitude * d.amplitude;
+            x.sum += d.amplitude;
+            x.largest = std::max(x.largest, d.amplitude);
+            x.intensity = std::max(x.intensity, b.intensity);
+        }
+    }
+
+    double amplitude(const part& x) const
+    {
+        if (x.bursts == 1 || plan_.overlap == overlap_kind::sum)
+            return x.sum;
+        return plan_.overlap == overlap_kind::max ? x.largest : std::min(x.intensity, std::sqrt(x.energy));
+    }
+
+    void sum_up()
+    {
+        now_ = {};
+        double energy = 0.0;
+        point moment;
+        for (const unsigned i : touched_) {
+            const double a = amplitude(parts_[i]) * (gains_.empty() ? 1.0 : gains_[i]);
+            energy += a * a;
+            moment.x_mm += a * a * tactors_.tactors[i].position.x_mm;
+            moment.y_mm += a * a * tactors_.tactors[i].position.y_mm;
+            now_.shared = now_.shared || parts_[i].bursts > 1;
+            parts_[i] = {};
+        }
+        touched_.clear();
+        now_.intensity = std::sqrt(energy);
+        if (energy > 0.0)
+            now_.felt = point{moment.x_mm / energy, moment.y_mm / energy};
+    }
 
     const array& tactors_;
     const plan& plan_;
@@ -64,112 +160,6 @@ private:
     burst sampled_; // `continuous`
     state now_;
 };
-
-constexpr double never_s = std::numeric_limits<double>::infinity();
-
-double burst_end_s(const burst& b)
-{
-    return b.onset_s + b.duration_s;
-}
-
-sounding::sounding(const array& a, const plan& p, double end_s, std::vector<double> gains)
-    : tactors_(a),
-      plan_(p),
-      end_s_(end_s),
-      gains_(std::move(gains)),
-      first_end_s_(never_s),
-      parts_(a.tactors.size())
-{
-}
-
-void sounding::at(double t_s, percept_sample& out)
-{
-    if (plan_.curve) {
-        plan_.curve->at(t_s, sampled_);
-        add(sampled_);
-        sum_up();
-    } else {
-        const bool begun = begin_bursts(t_s);
-        const bool ended = end_bursts(t_s);
-        if (begun || ended) {
-            for (const std::size_t i : active_)
-                add(plan_.bursts[i]);
-            sum_up();
-        }
-    }
-    out.felt = now_.felt;
-    out.intensity = now_.intensity;
-    out.shared = now_.shared;
-}
-
-bool sounding::begin_bursts(double t_s)
-{
-    const std::size_t before = next_;
-    for (; next_ < plan_.bursts.size() && plan_.bursts[next_].onset_s <= t_s + same_time_s; ++next_) {
-        active_.push_back(next_);
-        first_end_s_ = std::min(first_end_s_, burst_end_s(plan_.bursts[next_]));
-    }
-    return next_ != before;
-}
-
-bool sounding::end_bursts(double t_s)
-{
-    if (first_end_s_ > t_s + same_time_s)
-        return false;
-    // The Tactile Brush's last burst ends with the movement, and the one before often later. Both still count
-    // at the last sample.
-    const bool begun = next_ > 0 && plan_.bursts[next_ - 1].onset_s >= t_s - same_time_s;
-    const bool closing = t_s > end_s_ - same_time_s && !begun;
-    const double limit_s = closing ? t_s - same_time_s : t_s + same_time_s;
-    std::erase_if(active_, [&](std::size_t i) { return burst_end_s(plan_.bursts[i]) <= limit_s; });
-    first_end_s_ = never_s;
-    for (const std::size_t i : active_)
-        first_end_s_ = std::min(first_end_s_, burst_end_s(plan_.bursts[i]));
-    return true;
-}
-
-void sounding::add(const burst& b)
-{
-    for (const drive& d : b.drives) {
-        if (d.tactor >= parts_.size())
-            throw error(error_kind::bad_input, "plan", fmt::format("drives tactor {}", d.tactor),
-                        fmt::format("\"{}\" has {}", tactors_.name, counted(parts_.size(), "tactor")));
-        part& x = parts_[d.tactor];
-        if (x.bursts == 0)
-            touched_.push_back(d.tactor);
-        ++x.bursts;
-        x.energy += d.amplitude * d.amplitude;
-        x.sum += d.amplitude;
-        x.largest = std::max(x.largest, d.amplitude);
-        x.intensity = std::max(x.intensity, b.intensity);
-    }
-}
-
-double sounding::amplitude(const part& x) const
-{
-    if (x.bursts == 1 || plan_.overlap == overlap_kind::sum)
-        return x.sum;
-    return plan_.overlap == overlap_kind::max ? x.largest : std::min(x.intensity, std::sqrt(x.energy));
-}
-
-void sounding::sum_up()
-{
-    now_ = {};
-    double energy = 0.0;
-    point moment;
-    for (const unsigned i : touched_) {
-        const double a = amplitude(parts_[i]) * (gains_.empty() ? 1.0 : gains_[i]);
-        energy += a * a;
-        moment.x_mm += a * a * tactors_.tactors[i].position.x_mm;
-        moment.y_mm += a * a * tactors_.tactors[i].position.y_mm;
-        now_.shared = now_.shared || parts_[i].bursts > 1;
-        parts_[i] = {};
-    }
-    touched_.clear();
-    now_.intensity = std::sqrt(energy);
-    if (energy > 0.0)
-        now_.felt = point{moment.x_mm / energy, moment.y_mm / energy};
-}
 
 } // namespace
 } // namespace tactor::detail

@@ -47,9 +47,6 @@ struct burst_count {
 /// such as carrier and phantom.
 using burst_taker = std::function<void(const plan& so_far, std::span<const burst> next)>;
 
-/// Most bursts that a burst_taker gets at once.
-inline constexpr std::size_t bursts_at_once = 1024;
-
 /// Input of the algorithms; lives as long as make_plan().
 struct job {
     const array& tactors;

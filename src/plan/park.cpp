@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 
 #include <fmt/format.h>
 
@@ -9,6 +10,8 @@
 
 namespace tactor::detail {
 namespace {
+
+constexpr std::size_t bursts_at_once = 1024; // most that a burst_taker gets
 
 /// Returns the SOA of the fewest intervals that are not longer than the requested one.
 /// \throws error (bad_input) if their bursts are too short.

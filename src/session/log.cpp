@@ -27,7 +27,7 @@ std::int64_t unix_ns()
 {
     timespec now{};
     clock_gettime(CLOCK_REALTIME, &now);
-    return std::int64_t{now.tv_sec} * rt::ns_per_s + now.tv_nsec;
+    return rt::to_ns(now);
 }
 
 std::string time_text(std::int64_t at_ns)

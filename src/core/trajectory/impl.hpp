@@ -36,8 +36,6 @@ void check_intensity(std::string_view what, double intensity);
 /// Returns the same movement with every intensity multiplied by a factor. Unlike with_intensity() it has no
 /// ceiling: a stroke's own level_db may be above 0.
 trajectory scaled(const trajectory& t, double factor);
-/// Throws error (bad_input) that requests a duration, because the path is a single place.
-[[noreturn]] void refuse_one_place();
 
 /// Adds all corners of a movement, its ends included, and its curves.
 void add_outline(const trajectory& t, std::vector<point>& corners, std::vector<shape>& curves);

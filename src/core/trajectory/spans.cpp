@@ -185,6 +185,7 @@ std::vector<progress_point> find_linear_progress(const trajectory& t, std::span<
 constexpr double tolerance_mm = 0.005;
 constexpr double tolerance_intensity = 0.002;
 constexpr double shortest_s = 1e-4;
+constexpr std::size_t most_sampled_points = 1'000'000;
 
 // Returns points at the times and between them, halving each stretch that is not straight.
 std::vector<timed_point> sample_between(const trajectory& t, const std::vector<double>& times)

@@ -49,12 +49,9 @@ struct smooth_progress {
 /// Returns the covered part with a point where the target reaches each of `at`: parts of the path, ascending.
 smooth_progress find_smooth_progress(const trajectory& t, std::span<const double> at);
 
-/// Most points of a sampled trajectory.
-inline constexpr std::size_t most_sampled_points = 1'000'000;
-
 /// Returns points between which the target moves linearly: its own, if it has timed points; else so many that
 /// no place is off by more than 0.01 mm and no time by more than 0.1 ms.
-/// \throws error (bad_input) for more than most_sampled_points.
+/// \throws error (bad_input) for more than a million points.
 std::vector<timed_point> sample_points(const trajectory& t);
 
 } // namespace tactor::detail

@@ -57,12 +57,6 @@ void check_duration(double duration_s)
                         fmt::format("it is more than 0 and at most {:g} s", longest_stroke_s));
 }
 
-void refuse_one_place()
-{
-    throw error(error_kind::bad_input, "path", "has no length", "{duration_s} makes it a tap")
-        .with_field("duration_s");
-}
-
 void check_intensity(std::string_view what, double intensity)
 {
     if (!(intensity >= 0.0 && intensity <= max_intensity))
@@ -122,6 +116,13 @@ using detail::check_intensity;
 using detail::drawn_path;
 using detail::pace;
 using detail::timed_points;
+
+/// Throws error (bad_input) that requests a duration, because the path is a single place.
+[[noreturn]] void refuse_one_place()
+{
+    throw error(error_kind::bad_input, "path", "has no length", "{duration_s} makes it a tap")
+        .with_field("duration_s");
+}
 
 void check_point(const std::vector<timed_point>& points, std::size_t i)
 {
@@ -310,7 +311,7 @@ trajectory trajectory::along(path p, double duration_s, double intensity)
 {
     const bool rests = p.length_mm() == 0.0;
     if (rests && duration_s == 0.0)
-        detail::refuse_one_place();
+        refuse_one_place();
     check_duration(duration_s);
     check_intensity("stroke", intensity);
     if (rests)
@@ -324,7 +325,7 @@ trajectory trajectory::along(path p, const movement& m, double intensity)
     check_intensity("stroke", intensity);
     const bool one_place = p.length_mm() == 0.0;
     if (one_place && (m.duration_s.value_or(0.0) == 0.0 || !m.intensity.empty() || !m.rests.empty()))
-        detail::refuse_one_place();
+        refuse_one_place();
     const double moving = moving_time_s(m, p.length_mm());
     if (one_place || is_even(m))
         return along(p, moving, intensity);

@@ -14,6 +14,25 @@ namespace {
 // On a border without a disc, the neighbours mostly have none either.
 constexpr unsigned most_skips = 16;
 
+/// Returns the distance, mm, that p may move along its segment before it comes near another one. p is on a
+/// segment between two tactors and on no other segment of the faces that hold it. 0 or less: it may not move.
+double free_along_mm(const layout::impl& l, const std::vector<unsigned>& faces, rank_pair on, point p)
+{
+    double least = std::numeric_limits<double>::infinity();
+    for (const unsigned face : faces) {
+        const std::vector<unsigned>& ring = l.faces[face];
+        for (std::size_t i = 0; i < ring.size(); ++i) {
+            const point a = l.points[ring[i]];
+            least = std::min(least, length_mm(p, a));
+            for (std::size_t k = 0; k < i; ++k)
+                if (rank_pair(std::minmax(ring[i], ring[k])) != on)
+                    least = std::min(least, segment_distance_mm(a, l.points[ring[k]], p));
+        }
+    }
+    // Less the reach of the other segments' tolerance, and of this one's.
+    return (least - 3.0 * same_place_mm - l.clear_mm) * (1.0 - 1e-9);
+}
+
 // The three or two that the model takes from p on.
 void take_around(const model_of_three& m, const layout::impl& l, point p, same_tactors& seen)
 {
@@ -83,22 +102,4 @@ double free_mm(const layout::impl& l, unsigned face, point p, bool by_distance)
     }
     return least * (1.0 - 1e-9); // for the rounding of these distances
 }
-
-double free_along_mm(const layout::impl& l, const std::vector<unsigned>& faces, rank_pair on, point p)
-{
-    double least = std::numeric_limits<double>::infinity();
-    for (const unsigned face : faces) {
-        const std::vector<unsigned>& ring = l.faces[face];
-        for (std::size_t i = 0; i < ring.size(); ++i) {
-            const point a = l.points[ring[i]];
-            least = std::min(least, length_mm(p, a));
-            for (std::size_t k = 0; k < i; ++k)
-                if (rank_pair(std::minmax(ring[i], ring[k])) != on)
-                    least = std::min(least, segment_distance_mm(a, l.points[ring[k]], p));
-        }
-    }
-    // Less the reach of the other segments' tolerance, and of this one's.
-    return (least - 3.0 * same_place_mm - l.clear_mm) * (1.0 - 1e-9);
-}
-
 } // namespace tactor::detail

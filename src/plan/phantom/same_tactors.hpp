@@ -69,8 +69,4 @@ void look_around(const model_of_three& m, const layout& l, point p, same_tactors
 /// its tactors' distances changes. 0 or less: it may not move.
 double free_mm(const layout::impl& l, unsigned face, point p, bool by_distance);
 
-/// Returns the distance, mm, that p may move along its segment before it comes near another one. p is on a
-/// segment between two tactors and on no other segment of the faces that hold it. 0 or less: it may not move.
-double free_along_mm(const layout::impl& l, const std::vector<unsigned>& faces, rank_pair on, point p);
-
 } // namespace tactor::detail
