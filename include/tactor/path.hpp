@@ -8,6 +8,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include <tactor/api.hpp>
@@ -74,7 +75,7 @@ public:
 
 private:
     friend struct detail::access;
-    explicit path(std::shared_ptr<const impl> p) noexcept;
+    explicit path(std::shared_ptr<const impl> p) noexcept : impl_(std::move(p)) {}
 
     std::shared_ptr<const impl> impl_;
 };

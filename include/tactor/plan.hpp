@@ -11,6 +11,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include <tactor/api.hpp>
@@ -156,7 +157,7 @@ public:
 
 private:
     friend struct curve_access;
-    explicit curve(std::shared_ptr<const impl> p) noexcept;
+    explicit curve(std::shared_ptr<const impl> p) noexcept : impl_(std::move(p)) {}
 
     std::shared_ptr<const impl> impl_;
 };

@@ -10,6 +10,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include <tactor/api.hpp>
@@ -138,7 +139,7 @@ public:
 
 private:
     friend struct detail::access;
-    explicit trajectory(std::shared_ptr<const impl> p) noexcept;
+    explicit trajectory(std::shared_ptr<const impl> p) noexcept : impl_(std::move(p)) {}
 
     std::shared_ptr<const impl> impl_;
 };

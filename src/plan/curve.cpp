@@ -190,10 +190,6 @@ curve::curve(double duration_s, curve_samples samples) : impl_(make_samples(dura
 {
 }
 
-curve::curve(std::shared_ptr<const impl> p) noexcept : impl_(std::move(p))
-{
-}
-
 double curve::duration_s() const noexcept
 {
     return impl_->duration_s;

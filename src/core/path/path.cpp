@@ -366,10 +366,6 @@ path path::arc(point centre, double radius_mm, double from_deg, double sweep_deg
     return detail::make_path(std::move(o), "arc");
 }
 
-path::path(std::shared_ptr<const impl> p) noexcept : impl_(std::move(p))
-{
-}
-
 const path::impl::measured_curve* path::impl::find_curve(std::size_t segment) const noexcept
 {
     const auto c = std::lower_bound(

@@ -303,10 +303,6 @@ trajectory::trajectory() : trajectory(timed({{.t_s = 0.0}, {.t_s = 1.0}}))
 {
 }
 
-trajectory::trajectory(std::shared_ptr<const impl> p) noexcept : impl_(std::move(p))
-{
-}
-
 trajectory trajectory::along(path p, double duration_s, double intensity)
 {
     const bool rests = p.length_mm() == 0.0;
