@@ -127,20 +127,6 @@ TEST_CASE("edges and diagonals play two tactors, the shortest segment first and 
     CHECK(d[1].amplitude == doctest::Approx(2.0 * std::sqrt(0.25)).epsilon(1e-14));
 }
 
-TEST_CASE("Eq. (10), worked by hand")
-{
-    const layout l(preset_array("palm-3x3"));
-    const auto d = weights(l, phantom_kind::inverse_distance, {8.0, 6.0});
-    REQUIRE(list_tactors(d) == std::vector<unsigned>{0, 1, 3});
-    const double d0 = 10.0;
-    const double d1 = std::sqrt(180.0);
-    const double d3 = std::sqrt(260.0);
-    const double sum = 1.0 / d0 + 1.0 / d1 + 1.0 / d3;
-    CHECK(d[0].amplitude == doctest::Approx(std::sqrt(1.0 / d0 / sum)).epsilon(1e-14));
-    CHECK(d[1].amplitude == doctest::Approx(std::sqrt(1.0 / d1 / sum)).epsilon(1e-14));
-    CHECK(d[2].amplitude == doctest::Approx(std::sqrt(1.0 / d3 / sum)).epsilon(1e-14));
-}
-
 TEST_CASE("the energy centroid of inverse distance misses the point by up to 4.7 mm on the paper's array")
 {
     const layout l(preset_array("palm-3x3"));
