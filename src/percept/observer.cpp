@@ -2,15 +2,27 @@
 #include "percept/observer.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 
 #include <tactor/error.hpp>
+#include <tactor/phantom.hpp>
 
+#include "core/access.hpp"
+#include "core/path/shape.hpp"
 #include "core/refused.hpp"
 #include "core/words.hpp"
+#include "plan/faces/layout_impl.hpp"
+#include "plan/job.hpp"
 
 namespace tactor::detail {
 namespace {
@@ -30,6 +42,89 @@ void check_count(const array& a, const char* what, std::size_t n)
     if (n != 0 && n != a.tactors.size())
         throw bad_field(what, fmt::format("there are {} for {}", n, counted(a.tactors.size(), "tactor")),
                         "one for each, or none");
+}
+
+// The low-speed observer pulls taps together as a chain: (I + K) x = m, K the Laplacian whose link i has the
+// weight k_i = (sigma / (sigma_v (t_(i+1) - t_i)))^2.
+
+// Returns 1 / k of each link: 0 if two taps begin together.
+// \throws error (bad_input) as felt_places() does.
+std::vector<double> link_give(const low_speed_observer& o, std::span<const double> onsets_s)
+{
+    check("sigma_mm", o.sigma_mm, least_sigma_mm, most_sigma_mm);
+    check("sigma_v_mm_s", o.sigma_v_mm_s, least_sigma_v_mm_s, most_sigma_v_mm_s);
+    std::vector<double> give;
+    give.reserve(onsets_s.size());
+    for (std::size_t i = 0; i < onsets_s.size(); ++i) {
+        if (!std::isfinite(onsets_s[i]) || (i > 0 && onsets_s[i] < onsets_s[i - 1]))
+            throw bad_field(
+                "onsets_s",
+                fmt::format("number {}, {} s, is before the one before it or no time", i + 1, onsets_s[i]),
+                "give them in order");
+        if (i > 0) {
+            const double way = o.sigma_v_mm_s * (onsets_s[i] - onsets_s[i - 1]) / o.sigma_mm;
+            give.push_back(std::min(way * way, freest));
+        }
+    }
+    return give;
+}
+
+// Solves for x, in O(n), by Thomas's elimination. Pivot i is k_i + q_i, and k / (k + q) is computed as 1 / (1
+// + q / k), so only positive numbers are added. Nothing cancels, however strong a link is; a rigid one has
+// give 0.
+std::vector<point> pulled(std::span<const double> give, std::span<const point> alone)
+{
+    std::vector<point> x(alone.begin(), alone.end());
+    const std::size_t n = x.size();
+    if (n == 0)
+        return x;
+    std::vector<double> q(n, 1.0);
+    for (std::size_t i = 1; i < n; ++i) {
+        const double part = 1.0 / (1.0 + q[i - 1] * give[i - 1]);
+        q[i] += q[i - 1] * part;
+        x[i].x_mm += x[i - 1].x_mm * part;
+        x[i].y_mm += x[i - 1].y_mm * part;
+    }
+    x[n - 1] = {x[n - 1].x_mm / q[n - 1], x[n - 1].y_mm / q[n - 1]};
+    for (std::size_t i = n - 1; i-- > 0;) {
+        const double pivot = 1.0 + q[i] * give[i];
+        x[i] = {(x[i].x_mm * give[i] + x[i + 1].x_mm) / pivot, (x[i].y_mm * give[i] + x[i + 1].y_mm) / pivot};
+    }
+    return x;
+}
+
+// Returns (I + K) x. No `give` may be 0.
+std::vector<point> pushed(std::span<const double> give, std::span<const point> felt)
+{
+    std::vector<point> m(felt.begin(), felt.end());
+    for (std::size_t i = 0; i + 1 < felt.size(); ++i) {
+        const point pull{(felt[i + 1].x_mm - felt[i].x_mm) / give[i],
+                         (felt[i + 1].y_mm - felt[i].y_mm) / give[i]};
+        m[i] = {m[i].x_mm - pull.x_mm, m[i].y_mm - pull.y_mm};
+        m[i + 1] = {m[i + 1].x_mm + pull.x_mm, m[i + 1].y_mm + pull.y_mm};
+    }
+    return m;
+}
+
+// Returns the centre of energy of a burst's drives, multiplied by the gains of their tactors, if any; nothing
+// for a silent burst. \throws error (bad_input) for a tactor that the array does not have.
+std::optional<point> find_centre(const array& a, const burst& b, std::span<const double> gains = {})
+{
+    double energy = 0.0;
+    point moment;
+    for (const drive& d : b.drives) {
+        if (d.tactor >= a.tactors.size())
+            throw error(error_kind::bad_input, "plan", fmt::format("drives tactor {}", d.tactor),
+                        fmt::format("\"{}\" has {}", a.name, counted(a.tactors.size(), "tactor")));
+        const point& at = a.tactors[d.tactor].position;
+        const double felt = d.amplitude * (gains.empty() ? 1.0 : gains[d.tactor]);
+        const double e = felt * felt;
+        energy += e;
+        moment = {moment.x_mm + e * at.x_mm, moment.y_mm + e * at.y_mm};
+    }
+    if (!(energy > 0.0))
+        return {};
+    return point{moment.x_mm / energy, moment.y_mm / energy};
 }
 
 } // namespace
@@ -57,80 +152,6 @@ std::vector<double> person_gains(const array& a, const person& who)
             throw bad_field("sensitivity_db", fmt::format("{} dB is not one", db));
     }
     return gains;
-}
-
-std::vector<double> link_give(const low_speed_observer& o, std::span<const double> onsets_s)
-{
-    check("sigma_mm", o.sigma_mm, least_sigma_mm, most_sigma_mm);
-    check("sigma_v_mm_s", o.sigma_v_mm_s, least_sigma_v_mm_s, most_sigma_v_mm_s);
-    std::vector<double> give;
-    give.reserve(onsets_s.size());
-    for (std::size_t i = 0; i < onsets_s.size(); ++i) {
-        if (!std::isfinite(onsets_s[i]) || (i > 0 && onsets_s[i] < onsets_s[i - 1]))
-            throw bad_field(
-                "onsets_s",
-                fmt::format("number {}, {} s, is before the one before it or no time", i + 1, onsets_s[i]),
-                "give them in order");
-        if (i > 0) {
-            const double way = o.sigma_v_mm_s * (onsets_s[i] - onsets_s[i - 1]) / o.sigma_mm;
-            give.push_back(std::min(way * way, freest));
-        }
-    }
-    return give;
-}
-
-// Solves by Thomas's elimination. Pivot i is k_i + q_i, and k / (k + q) is computed as 1 / (1 + q / k), so
-// only positive numbers are added. Nothing cancels, however strong a link is; a rigid one has give 0.
-std::vector<point> pulled(std::span<const double> give, std::span<const point> alone)
-{
-    std::vector<point> x(alone.begin(), alone.end());
-    const std::size_t n = x.size();
-    if (n == 0)
-        return x;
-    std::vector<double> q(n, 1.0);
-    for (std::size_t i = 1; i < n; ++i) {
-        const double part = 1.0 / (1.0 + q[i - 1] * give[i - 1]);
-        q[i] += q[i - 1] * part;
-        x[i].x_mm += x[i - 1].x_mm * part;
-        x[i].y_mm += x[i - 1].y_mm * part;
-    }
-    x[n - 1] = {x[n - 1].x_mm / q[n - 1], x[n - 1].y_mm / q[n - 1]};
-    for (std::size_t i = n - 1; i-- > 0;) {
-        const double pivot = 1.0 + q[i] * give[i];
-        x[i] = {(x[i].x_mm * give[i] + x[i + 1].x_mm) / pivot, (x[i].y_mm * give[i] + x[i + 1].y_mm) / pivot};
-    }
-    return x;
-}
-
-std::vector<point> pushed(std::span<const double> give, std::span<const point> felt)
-{
-    std::vector<point> m(felt.begin(), felt.end());
-    for (std::size_t i = 0; i + 1 < felt.size(); ++i) {
-        const point pull{(felt[i + 1].x_mm - felt[i].x_mm) / give[i],
-                         (felt[i + 1].y_mm - felt[i].y_mm) / give[i]};
-        m[i] = {m[i].x_mm - pull.x_mm, m[i].y_mm - pull.y_mm};
-        m[i + 1] = {m[i + 1].x_mm + pull.x_mm, m[i + 1].y_mm + pull.y_mm};
-    }
-    return m;
-}
-
-std::optional<point> find_centre(const array& a, const burst& b, std::span<const double> gains)
-{
-    double energy = 0.0;
-    point moment;
-    for (const drive& d : b.drives) {
-        if (d.tactor >= a.tactors.size())
-            throw error(error_kind::bad_input, "plan", fmt::format("drives tactor {}", d.tactor),
-                        fmt::format("\"{}\" has {}", a.name, counted(a.tactors.size(), "tactor")));
-        const point& at = a.tactors[d.tactor].position;
-        const double felt = d.amplitude * (gains.empty() ? 1.0 : gains[d.tactor]);
-        const double e = felt * felt;
-        energy += e;
-        moment = {moment.x_mm + e * at.x_mm, moment.y_mm + e * at.y_mm};
-    }
-    if (!(energy > 0.0))
-        return {};
-    return point{moment.x_mm / energy, moment.y_mm / energy};
 }
 
 } // namespace tactor::detail
@@ -203,6 +224,266 @@ tap_summary summarise(const std::vector<tap>& taps)
         r.rms_error_mm = std::sqrt(squares / static_cast<double>(taps.size()));
     if (r.target_length_mm > 0.0)
         r.length_ratio = r.felt_length_mm / r.target_length_mm;
+    return r;
+}
+
+namespace {
+
+using detail::operator+;
+using detail::operator-;
+using detail::operator*;
+
+constexpr double on_edge_mm = 1e-6;
+// Least give: below it, sixteen digits do not distinguish a place from its neighbours'.
+constexpr double least_give = 1e-7;
+constexpr std::size_t most_taps = 1'000'000;
+
+/// A symmetric positive definite matrix whose elements beyond two from the diagonal are 0, as its Cholesky
+/// factor: in row r the elements in columns r, r - 1 and r - 2.
+class chain_factor {
+public:
+    /// Factors I + weight A A, where A = I + K is the matrix of the chain.
+    chain_factor(std::span<const double> give, double weight) : rows_(give.size() + 1)
+    {
+        const auto link = [&](std::size_t i) { return i < give.size() ? 1.0 / give[i] : 0.0; };
+        double before = 0.0; // of A: the elements beside and on the diagonal in the row before
+        double on_before = 0.0;
+        for (std::size_t r = 0; r < rows_.size(); ++r) {
+            const double after = link(r);
+            const double on = 1.0 + before + after;
+            row& l = rows_[r];
+            if (r > 1)
+                l[2] = weight * before * link(r - 2) / rows_[r - 2][0];
+            if (r > 0)
+                l[1] = (-weight * before * (on_before + on) - l[2] * rows_[r - 1][1]) / rows_[r - 1][0];
+            l[0] = std::sqrt(1.0 + weight * (before * before + on * on + after * after) - l[1] * l[1] -
+                             l[2] * l[2]);
+            before = after;
+            on_before = on;
+        }
+    }
+
+    /// Replaces b by the solution.
+    void solve(std::vector<point>& b) const
+    {
+        const std::size_t n = rows_.size();
+        for (std::size_t r = 0; r < n; ++r) {
+            if (r > 0)
+                b[r] = b[r] - rows_[r][1] * b[r - 1];
+            if (r > 1)
+                b[r] = b[r] - rows_[r][2] * b[r - 2];
+            b[r] = {b[r].x_mm / rows_[r][0], b[r].y_mm / rows_[r][0]};
+        }
+        for (std::size_t r = n; r-- > 0;) {
+            if (r + 1 < n)
+                b[r] = b[r] - rows_[r + 1][1] * b[r + 1];
+            if (r + 2 < n)
+                b[r] = b[r] - rows_[r + 2][2] * b[r + 2];
+            b[r] = {b[r].x_mm / rows_[r][0], b[r].y_mm / rows_[r][0]};
+        }
+    }
+
+private:
+    using row = std::array<double, 3>;
+
+    std::vector<row> rows_;
+};
+
+double squares(std::span<const point> a, std::span<const point> b)
+{
+    double sum = 0.0;
+    for (std::size_t i = 0; i < a.size(); ++i)
+        sum += std::pow(distance_mm(a[i], b[i]), 2.0);
+    return sum;
+}
+
+// Returns the places on the array at which taps must be played to be felt as near to their targets as it
+// allows: with m the places played and y the places felt, m = A y, it minimises |y - targets|^2. By the
+// alternating direction method of multipliers (Boyd et al. 2011): y fits targets and what is allowed, z is
+// the nearest place on the array, u sums up by how much the two differ. The weight of u changes where one of
+// both lags behind. Each step is O(n); the best z counts.
+std::vector<point> fit_on_array(const layout& l, std::span<const double> give, std::span<const point> targets)
+{
+    constexpr int look = 10; // steps
+    constexpr int weigh = 50;
+    constexpr int last_weighing = 1000;
+    constexpr double most_work = 1e7; // steps of a tap
+    constexpr double relaxation = 1.6;
+    constexpr double small = 1e-12; // change of the cost between two looks, of the cost
+    constexpr double apart = 1e-9;  // RMS of m - z, of the array's size
+    const std::size_t n = targets.size();
+    const auto [first, last] = detail::find_ends(l.places());
+    const double apart_mm = apart * distance_mm(first, last);
+    if (apart_mm == 0.0)
+        return std::vector<point>(n, first);
+    double weight = 1.0;
+    for (const double g : give)
+        weight = std::min(weight, 1.0 / (1.0 + 4.0 / g));
+    chain_factor factor(give, weight);
+    std::vector<point> z = detail::pushed(give, targets);
+    std::transform(z.begin(), z.end(), z.begin(), [&](point p) { return l.nearest(p); });
+    std::vector<point> u(n);
+    std::vector<point> difference(n);
+    std::vector<point> best = z;
+    double best_cost = squares(detail::pulled(give, z), targets);
+    double cost = best_cost;
+    const int most_steps = static_cast<int>(std::clamp(most_work / static_cast<double>(n), 50.0, 5000.0));
+    int calm = 0;
+    for (int step = 1; step <= most_steps && calm < 2; ++step) {
+        std::transform(z.begin(), z.end(), u.begin(), difference.begin(),
+                       [](point p, point q) { return p - q; });
+        std::vector<point> y = detail::pushed(give, difference);
+        std::transform(targets.begin(), targets.end(), y.begin(), y.begin(),
+                       [&](point t, point p) { return t + weight * p; });
+        factor.solve(y);
+        const std::vector<point> m = detail::pushed(give, y);
+        double moved = 0.0;
+        for (std::size_t i = 0; i < n; ++i) {
+            const point wanted = z[i] + relaxation * m[i] - relaxation * z[i] + u[i];
+            const point nearest = l.nearest(wanted);
+            moved += std::pow(distance_mm(nearest, z[i]), 2.0);
+            u[i] = wanted - nearest;
+            z[i] = nearest;
+        }
+        const double off = squares(m, z);
+        if (step % look == 0) {
+            const double now = squares(detail::pulled(give, z), targets);
+            const bool still =
+                std::abs(now - cost) <= small * now && off <= apart_mm * apart_mm * static_cast<double>(n);
+            calm = still ? calm + 1 : 0;
+            cost = now;
+            if (now < best_cost) {
+                best_cost = now;
+                best = z;
+            }
+        }
+        const double factor_of_weight = off > 100.0 * moved ? 2.0 : moved > 100.0 * off ? 0.5 : 1.0;
+        if (step % weigh == 0 && step < last_weighing && factor_of_weight != 1.0) {
+            weight *= factor_of_weight;
+            std::transform(u.begin(), u.end(), u.begin(),
+                           [&](point p) { return 1.0 / factor_of_weight * p; });
+            factor = chain_factor(give, weight);
+        }
+    }
+    return best;
+}
+
+std::size_t count_on_edge(const layout::impl& l, std::span<const point> taps)
+{
+    const std::vector<detail::hull_side> sides =
+        l.hull.empty() ? std::vector<detail::hull_side>() : detail::hull_sides(l);
+    const auto ends = detail::find_ends(l.points);
+    return static_cast<std::size_t>(std::count_if(taps.begin(), taps.end(), [&](point p) {
+        const bool at_end = std::min(distance_mm(p, ends.first), distance_mm(p, ends.second)) < on_edge_mm;
+        return sides.empty() ? at_end
+                             : std::any_of(sides.begin(), sides.end(), [p](const detail::hull_side& e) {
+                                   return detail::dot(e.out, p) > e.reach - on_edge_mm;
+                               });
+    }));
+}
+
+// Returns the notice that every command prints about a compensated plan.
+std::string notice(const compensated_plan& p)
+{
+    if (p.taps.empty())
+        return fmt::format("no burst sounds that could be moved for {}", describe(p.observer));
+    const tap_summary felt = summarise(p.taps);
+    std::string text = fmt::format("bursts are moved for {}; it is predicted to feel them {:.3f} mm RMS and "
+                                   "at most {:.3f} mm from the target",
+                                   describe(p.observer), felt.rms_error_mm.value_or(0.0),
+                                   felt.largest_error_mm.value_or(0.0));
+    if (p.at_edge != 0)
+        text += fmt::format(
+            "; {} of {} cannot be moved far enough on this array, which alone leaves {:.3f} mm RMS "
+            "and at most {:.3f} mm",
+            p.at_edge, counted(p.taps.size(), "burst"), p.residual_rms_mm, p.residual_largest_mm);
+    if (p.plan.algorithm == to_string(algorithm_kind::tactile_brush))
+        text += "; off the lines of the grid they are no longer the Tactile Brush's";
+    return text;
+}
+
+// Returns the plan's warning about bursts outside the triangle of their three tactors; empty if there is
+// none.
+std::string missed_warning(const layout& l, const plan& p)
+{
+    detail::missed_places missed;
+    if (p.faces == faces_kind::nearest)
+        for (const burst& b : p.bursts)
+            missed.add(l, b);
+    return missed.warning("burst");
+}
+
+} // namespace
+
+compensated_places compensate(const layout& l, const low_speed_observer& o, std::span<const double> onsets_s,
+                              std::span<const point> targets)
+{
+    compensated_places r;
+    static_cast<void>(felt_places(o, onsets_s, targets)); // checks the arguments
+    const std::vector<double> give = detail::link_give(o, onsets_s);
+    if (std::any_of(give.begin(), give.end(), [](double g) { return g < least_give; }))
+        throw error(error_kind::bad_input, "compensation",
+                    "bursts that begin together, or nearly so for this observer, cannot be felt apart",
+                    "a smaller {sigma_mm}, a larger {sigma_v_mm_s} or a longer SOA")
+            .with_field("compensate");
+    r.played = detail::pushed(give, targets);
+    if (!std::all_of(r.played.begin(), r.played.end(), [&](point p) { return l.contains(p); })) {
+        if (targets.size() > most_taps)
+            throw error(error_kind::bad_input, "compensation",
+                        fmt::format("{} bursts are too many", targets.size()),
+                        fmt::format("at most {}; make the stroke shorter", most_taps))
+                .with_field("compensate");
+        r.played = fit_on_array(l, give, targets);
+        r.at_edge = count_on_edge(detail::access::of(l), r.played);
+    }
+    r.felt = detail::pulled(give, r.played);
+    return r;
+}
+
+compensated_plan make_compensated_plan(const array& a, const layout& l, const stroke& s,
+                                       const plan_options& o, const low_speed_observer& m)
+{
+    if (s.fit)
+        return make_compensated_plan(a, l, apply_fits({s}, l).front(), o, m);
+    const plan_options own = detail::apply_choices(o, s.choices);
+    if (own.algorithm == algorithm_kind::continuous)
+        throw detail::bad_field("algorithm",
+                                "continuous has no bursts that could be moved for the low-speed observer",
+                                "{algorithm=park2016}, or no compensation");
+    compensated_plan r;
+    r.plan = make_plan(a, l, s, o);
+    r.observer = m;
+    std::vector<burst*> felt;
+    std::vector<double> onsets_s;
+    std::vector<point> targets;
+    for (burst& b : r.plan.bursts)
+        if (detail::find_centre(a, b)) {
+            felt.push_back(&b);
+            onsets_s.push_back(b.onset_s);
+            targets.push_back(s.motion.position(b.onset_s));
+        }
+    const compensated_places places = compensate(l, m, onsets_s, targets);
+    std::erase(r.plan.warnings, missed_warning(l, r.plan)); // counted again for the moved bursts
+    const std::shared_ptr<const phantom_model> model = detail::choose_model(l, own);
+    for (std::size_t i = 0; i < felt.size(); ++i) {
+        burst& b = *felt[i];
+        b.position = places.played[i];
+        detail::drives_at(*model, l, b.position, b.intensity, b.drives);
+    }
+    if (std::string text = missed_warning(l, r.plan); !text.empty())
+        r.plan.warnings.push_back(std::move(text));
+    r.plan.conflicts = detail::find_conflicts(r.plan.bursts);
+    r.taps = predict_taps(a, s, r.plan, m);
+    r.at_edge = places.at_edge;
+    double squares = 0.0;
+    for (std::size_t i = 0; i < targets.size(); ++i) {
+        const double e = distance_mm(places.felt[i], targets[i]);
+        squares += e * e;
+        r.residual_largest_mm = std::max(r.residual_largest_mm, e);
+    }
+    if (!targets.empty())
+        r.residual_rms_mm = std::sqrt(squares / static_cast<double>(targets.size()));
+    r.plan.warnings.push_back(notice(r));
     return r;
 }
 

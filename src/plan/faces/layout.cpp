@@ -183,6 +183,20 @@ bool is_clear(point a, point b, point p, double clear_mm) noexcept
     return area > 0.0 && area * area > clear_mm * clear_mm * (dx * dx + dy * dy);
 }
 
+bool face_holds(const layout::impl& l, unsigned face, point p, double margin_mm)
+{
+    const std::vector<unsigned>& ring = l.faces[face];
+    bool within = ring.size() >= 3;
+    for (std::size_t i = 0; i < ring.size(); ++i) {
+        const point a = l.points[ring[i]];
+        const point b = l.points[ring[(i + 1) % ring.size()]];
+        within = within && turn(a, b, p) >= 0.0;
+        if (detail::segment_distance_mm(a, b, p) <= margin_mm)
+            return true;
+    }
+    return within;
+}
+
 } // namespace
 
 layout::impl::impl(const array& a)
@@ -303,20 +317,6 @@ unsigned layout::impl::nearest_tactor(point p) const
     return best;
 }
 
-bool layout::impl::face_holds(unsigned face, point p, double margin_mm) const
-{
-    const std::vector<unsigned>& ring = faces[face];
-    bool within = ring.size() >= 3;
-    for (std::size_t i = 0; i < ring.size(); ++i) {
-        const point a = points[ring[i]];
-        const point b = points[ring[(i + 1) % ring.size()]];
-        within = within && turn(a, b, p) >= 0.0;
-        if (detail::segment_distance_mm(a, b, p) <= margin_mm)
-            return true;
-    }
-    return within;
-}
-
 void layout::impl::faces_at(point p, std::vector<unsigned>& out) const
 {
     if (const auto face = clear_face(p)) {
@@ -328,7 +328,7 @@ void layout::impl::faces_at(point p, std::vector<unsigned>& out) const
     for (double margin = same_place_mm; margin < 1e7; margin *= 10.0) {
         out.clear();
         for (unsigned f = 0; f < faces.size(); ++f)
-            if (face_boxes[f].holds(p, margin) && face_holds(f, p, margin))
+            if (face_boxes[f].holds(p, margin) && face_holds(*this, f, p, margin))
                 out.push_back(f);
         if (!out.empty()) {
             latest.store(out.front(), std::memory_order_relaxed);

@@ -44,7 +44,6 @@ struct layout::impl {
     std::optional<unsigned> clear_face(point p) const noexcept;
     /// Returns true if p also keeps clear of all segments between the tactors of a face.
     bool clear_of_diagonals(unsigned face, point p) const noexcept;
-    bool face_holds(unsigned face, point p, double margin_mm) const;
 
     /// Returns the rank of the tactor nearest to p.
     unsigned nearest_tactor(point p) const;
