@@ -10,7 +10,7 @@
 #include "engine/control/feeder.hpp"
 #include "nowhere.hpp"
 #include "pieces.hpp"
-#include "synth/guard/guard.hpp"
+#include "synth/guard.hpp"
 
 using namespace tactor;
 

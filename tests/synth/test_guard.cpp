@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Limits on the power of the array and on the time that a tactor is driven.
-#include "synth/guard/guard.hpp"
+#include "synth/guard.hpp"
 
 #include <algorithm>
 #include <cmath>

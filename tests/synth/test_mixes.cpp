@@ -21,7 +21,7 @@
 #include "own_curve.hpp"
 #include "pieces.hpp"
 #include "rounds.hpp"
-#include "synth/guard/guard.hpp"
+#include "synth/guard.hpp"
 #include "synth/mix/mixer.hpp"
 #include "synth/score/event_source.hpp"
 #include "synth/score/levels.hpp"

@@ -14,7 +14,7 @@
 
 #include "pieces.hpp"
 #include "rounds.hpp"
-#include "synth/guard/guard.hpp"
+#include "synth/guard.hpp"
 #include "synth/mix/converter.hpp"
 #include "synth/mix/mixer.hpp"
 #include "synth/mix/oscillator.hpp"

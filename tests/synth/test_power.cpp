@@ -8,7 +8,7 @@
 
 #include "pieces.hpp"
 #include "rounds.hpp"
-#include "synth/guard/guard.hpp"
+#include "synth/guard.hpp"
 #include "synth/mix/mixer.hpp"
 #include "synth/tone/waves.hpp"
 

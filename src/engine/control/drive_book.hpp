@@ -10,7 +10,7 @@
 #include <string_view>
 #include <vector>
 
-#include "synth/guard/guard.hpp"
+#include "synth/guard.hpp"
 
 namespace tactor::engine {
 

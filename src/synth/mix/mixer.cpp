@@ -14,9 +14,7 @@
 #include <vector>
 
 #include "core/clones.hpp"
-#include "synth/guard/drive_guard.hpp"
-#include "synth/guard/guard.hpp"
-#include "synth/guard/power_guard.hpp"
+#include "synth/guard.hpp"
 #include "synth/mix/carrier.hpp"
 #include "synth/mix/converter.hpp"
 #include "synth/mix/score_gains.hpp"

@@ -7,12 +7,10 @@
 #include <cstdint>
 #include <memory>
 #include <span>
-#include <vector>
 
-#include <tactor/array.hpp>
 #include <tactor/choices.hpp>
 
-#include "synth/guard/guard.hpp"
+#include "synth/guard.hpp"
 #include "synth/score/event.hpp"
 
 namespace tactor::synth {
@@ -80,9 +78,5 @@ private:
     struct impl;
     std::unique_ptr<impl> impl_;
 };
-
-/// Returns the limits of an array's channels (10^(max_dbfs / 20)) for `channels` channels; 0 for channels
-/// without a tactor.
-std::vector<double> channel_limits(const array& a, unsigned channels);
 
 } // namespace tactor::synth

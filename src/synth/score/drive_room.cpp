@@ -4,8 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "synth/guard/drive_guard.hpp"
-#include "synth/guard/guard.hpp"
+#include "synth/guard.hpp"
 #include "synth/score/event_source.hpp"
 
 namespace tactor::synth {

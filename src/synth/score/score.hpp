@@ -13,7 +13,7 @@
 
 #include <tactor/render.hpp>
 
-#include "synth/guard/guard.hpp"
+#include "synth/guard.hpp"
 #include "synth/tone/timbre.hpp"
 
 namespace tactor::synth {
