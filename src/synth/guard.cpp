@@ -11,7 +11,6 @@
 #include "core/bounds.hpp"
 #include "core/refused.hpp"
 #include "synth/mix/oscillator.hpp"
-#include "synth/mix/sincos.hpp"
 
 namespace tactor::synth {
 namespace {

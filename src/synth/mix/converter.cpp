@@ -9,7 +9,6 @@
 
 #include "core/clones.hpp"
 #include "synth/mix/oscillator.hpp"
-#include "synth/mix/sincos.hpp"
 
 namespace tactor::synth {
 namespace {

@@ -15,9 +15,7 @@
 
 #include "core/clones.hpp"
 #include "synth/guard.hpp"
-#include "synth/mix/carrier.hpp"
 #include "synth/mix/converter.hpp"
-#include "synth/mix/score_gains.hpp"
 #include "synth/mix/voice.hpp"
 #include "synth/tone/timbre.hpp"
 

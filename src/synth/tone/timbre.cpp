@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "core/clones.hpp"
-#include "synth/mix/sincos.hpp"
+#include "synth/mix/oscillator.hpp"
 
 namespace tactor::synth {
 

@@ -11,7 +11,7 @@
 #include <tactor/error.hpp>
 
 #include "core/words.hpp"
-#include "synth/mix/sincos.hpp"
+#include "synth/mix/oscillator.hpp"
 
 namespace tactor::synth {
 namespace {
