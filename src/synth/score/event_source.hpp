@@ -1,17 +1,75 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// The drives of a score, one after the other.
+/// The drives of a score, one after the other: an expander gives those of an item.
 #pragma once
 
+#include <array>
 #include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <vector>
 
 #include <tactor/render.hpp>
 
-#include "synth/score/expander.hpp"
+#include "plan/curve_impl.hpp"
+#include "synth/score/event.hpp"
+#include "synth/score/score.hpp"
 
 namespace tactor::synth {
+
+/// A continuous stroke at a few control points.
+struct control_points {
+    void reserve(std::size_t tactors);
+    /// Takes the drives of `now` as those of point number i.
+    void add(std::size_t i) noexcept;
+
+    struct row {
+        std::uint32_t tactor;
+        std::array<double, points_per_line> amplitude; ///< by point
+    };
+    std::vector<row> rows; ///< by tactor
+    std::array<std::uint16_t, points_per_line> frame{};
+    std::size_t count = 0;
+    burst now;         ///< the latest of them
+    bool open = false; ///< more of them are to come
+    detail::same_tactors seen;
+};
+
+/// Events of one item in order of start. Allocates only for samples of continuous plans: begin() and
+/// advance() may throw std::bad_alloc, and continue when they are called again.
+class expander {
+public:
+    /// Begins an item. `points` is for a continuous one; not to be shared while this expander is in use.
+    void begin(const score::impl& s, std::size_t item_number, control_points* points);
+
+    bool done() const noexcept { return done_; }
+    const drive_event& event() const noexcept { return event_; }
+    std::size_t item_number() const noexcept { return number_; }
+    control_points* points() const noexcept { return points_; }
+    void advance();
+
+private:
+    void stretch(std::uint64_t start, std::uint64_t length) noexcept;
+    void add(std::uint32_t tactor, double from, double to) noexcept;
+    void draw(const control_points::row& r) noexcept;
+    void burst_event() noexcept;
+    void joined_event() noexcept;
+    void continuous_event();
+    void marker_event() noexcept;
+    void take_sample(std::uint64_t step);
+    bool next_points();
+
+    const score::impl* score_ = nullptr;
+    const item* item_ = nullptr;
+    control_points* points_ = nullptr;
+    std::size_t number_ = 0;
+    std::uint64_t position_ = 0; ///< first frame of the stretch whose events come next
+    std::uint64_t step_end_ = 0; ///< continuous: frame of the latest control point
+    std::uint64_t step_ = 0;     ///< continuous: number of the latest control point
+    std::size_t next_ = 0;       ///< drive, member or row that is next
+    bool done_ = true;
+    drive_event event_;
+};
 
 /// Events of a score in order of start frame. Memory does not grow with the length of the score. Control
 /// side, one thread at a time.

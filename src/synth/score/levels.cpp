@@ -3,17 +3,40 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <functional>
+#include <iterator>
 #include <string>
+#include <string_view>
+#include <tuple>
+#include <vector>
 
 #include <fmt/format.h>
 
 #include <tactor/error.hpp>
 
 #include "core/refused.hpp"
+#include "core/trajectory/spans.hpp"
+#include "core/words.hpp"
+#include "plan/curve_impl.hpp"
+#include "synth/mix/window.hpp"
+#include "synth/score/event_source.hpp"
+#include "synth/score/frames.hpp"
 
 namespace tactor::synth {
 
 namespace {
+
+/// Throws error (bad_input) with the tactor's line in the array file and number, why and hint.
+[[noreturn]] void refuse_tactor(const array& a, std::size_t i, const render_options& o, std::string_view why,
+                                std::string_view hint)
+{
+    const source_place& at = a.tactors[i].where;
+    const std::string name = fmt::format("tactor {}", i);
+    if (at.text().empty())
+        throw error(error_kind::bad_input, name, why, hint).with_field(o.sl_db ? "sl_db" : "level_dbfs");
+    throw error(error_kind::bad_input, at, fmt::format("{} {}", name, why), hint);
+}
 
 // Returns a tactor's level, dBFS. Without a threshold it is full scale, so that check_peaks() finds its
 // drives.
@@ -38,16 +61,6 @@ double level_db(const array& a, std::size_t i, const render_options& o)
 
 } // namespace
 
-void refuse_tactor(const array& a, std::size_t i, const render_options& o, std::string_view why,
-                   std::string_view hint)
-{
-    const source_place& at = a.tactors[i].where;
-    const std::string name = fmt::format("tactor {}", i);
-    if (at.text().empty())
-        throw error(error_kind::bad_input, name, why, hint).with_field(o.sl_db ? "sl_db" : "level_dbfs");
-    throw error(error_kind::bad_input, at, fmt::format("{} {}", name, why), hint);
-}
-
 void refuse_unmeasured(const array& a, std::size_t i, const render_options& o)
 {
     refuse_tactor(a, i, o,
@@ -63,6 +76,14 @@ std::vector<std::size_t> unmeasured_tactors(const array& a, const render_options
         if (!threshold_at(a.tactors[i], reference_hz))
             all.push_back(i);
     return all;
+}
+
+double threshold_factor(const tactor_spec& t, double hz)
+{
+    if (t.thresholds.empty())
+        return 1.0;
+    const double db = *threshold_at(t, hz) - *threshold_at(t, reference_hz);
+    return std::pow(10.0, db / 20.0);
 }
 
 double tactor_limit(const array& a, std::size_t i)
@@ -89,6 +110,415 @@ std::vector<tactor_level> tactor_levels(const array& a, const render_options& o)
         levels.push_back({t.channel, t.polarity < 0 ? -gain : gain});
     }
     return levels;
+}
+
+namespace {
+
+/// At a frame, a tactor's possible amplitude changes.
+struct change {
+    std::uint64_t frame;
+    double by;
+    std::size_t tactor;
+
+    /// Orders by frame. At the same frame, changes downwards come first.
+    bool operator>(const change& c) const { return std::tie(frame, by) > std::tie(c.frame, c.by); }
+};
+
+/// The greatest amplitude of each tactor, summed over the items that may sound at once. Items arrive by
+/// start, so the heap holds only the changes of those that sound.
+class sweep {
+public:
+    explicit sweep(std::size_t tactors)
+        : sums_(tactors), peaks_(tactors), loudest_(tactors), factors_(tactors, 1.0)
+    {
+    }
+
+    /// `from`: as heard_from(). `factor` is in the peak, for the threshold at the carrier.
+    void note(std::size_t tactor, const item& it, std::uint64_t from, double peak, double factor)
+    {
+        if (!(peak > 0.0 && from < it.end()))
+            return;
+        if (peak > loudest_[tactor]) {
+            loudest_[tactor] = peak;
+            factors_[tactor] = factor;
+        }
+        pass(it.start);
+        add({from, peak, tactor});
+        add({it.end(), -peak, tactor});
+    }
+
+    const std::vector<double>& peaks()
+    {
+        pass(UINT64_MAX);
+        return peaks_;
+    }
+
+    /// Returns the factor of each tactor's loudest item.
+    const std::vector<double>& factors() const noexcept { return factors_; }
+
+private:
+    void add(const change& c)
+    {
+        heap_.push_back(c);
+        std::push_heap(heap_.begin(), heap_.end(), std::greater<>{});
+    }
+
+    /// Applies the changes before a frame.
+    void pass(std::uint64_t frame)
+    {
+        while (!heap_.empty() && heap_.front().frame < frame) {
+            const change c = heap_.front();
+            std::pop_heap(heap_.begin(), heap_.end(), std::greater<>{});
+            heap_.pop_back();
+            sums_[c.tactor] += c.by;
+            peaks_[c.tactor] = std::max(peaks_[c.tactor], sums_[c.tactor]);
+        }
+    }
+
+    std::vector<change> heap_;
+    std::vector<double> sums_;  // by tactor
+    std::vector<double> peaks_; // by tactor
+    std::vector<double> loudest_;
+    std::vector<double> factors_;
+};
+
+// Returns the first frame in which an item may be heard: a ramp begins with a zero, and so do most carriers.
+// Rounding may put that frame into the end of another burst or stroke, which it touches.
+std::uint64_t heard_from(const score::impl& s, const item& it)
+{
+    const bool joined = it.kind == item_kind::joined;
+    const std::uint32_t ramp = joined ? s.list.members[it.first].ramp : it.ramp;
+    const waveform_kind wave = s.plans[it.plan].plan.wave.kind;
+    const bool at_zero = (s.phase == phase_kind::burst || it.start == s.starts[it.plan]) &&
+                         wave != waveform_kind::noise && wave != waveform_kind::recording;
+    return it.start + (it.length > 1 && (ramp > 0 || at_zero) ? 1 : 0);
+}
+
+double joined_peak(const score::impl& s, std::size_t number)
+{
+    double peak = 0.0;
+    expander e;
+    for (e.begin(s, number, nullptr); !e.done(); e.advance()) {
+        const channel_drive& d = e.event().drive[0];
+        peak = std::max({peak, std::abs(d.from), std::abs(d.to)});
+    }
+    return peak;
+}
+
+/// Sums what the items may reach; `exact`: also where the intensity of a continuous stroke is a bound.
+sweep sweep_items(const score::impl& s, bool exact)
+{
+    sweep all(s.tactors.size());
+    const item_list& list = s.list;
+    for (std::size_t i = 0; i < list.items.size(); ++i) {
+        const item& it = list.items[i];
+        const std::uint64_t from = heard_from(s, it);
+        switch (it.kind) {
+        case item_kind::joined:
+            all.note(it.tactor, it, from, joined_peak(s, i), s.equalised(it.tactor, it.plan, it.start));
+            break;
+        case item_kind::continuous: {
+            const plan& p = s.plans[it.plan].plan;
+            std::vector<double> peaks =
+                exact ? std::vector<double>{} : continuous_bounds(p, s.tactors.size());
+            if (peaks.empty())
+                peaks = continuous_peaks(p, s.tactors.size());
+            for (std::size_t k = 0; k < peaks.size(); ++k) {
+                const double factor = s.most_equalised(k, it.plan); // at the carrier that needs most
+                all.note(k, it, from, peaks[k] * (std::abs(s.tactors[k].gain) * factor), factor);
+            }
+            break;
+        }
+        case item_kind::marker:
+            break;
+        case item_kind::burst:
+            for (std::size_t k = it.first; k < it.first + it.count; ++k) {
+                const std::size_t tactor = list.drive_tactors[k];
+                const double factor = s.equalised(tactor, it.plan, it.start);
+                const double gain = s.tactors[tactor].gain * factor;
+                all.note(tactor, it, from, std::abs(list.drive_amplitudes[k] * gain), factor);
+            }
+            break;
+        }
+    }
+    return all;
+}
+
+/// `factor`: as sweep::factors().
+void check(const array& a, std::size_t i, double peak, double factor, const render_options& o)
+{
+    const double limit_db = std::min(0.0, a.tactors[i].max_dbfs);
+    if (peak <= tactor_limit(a, i))
+        return;
+    const double excess_db = std::max(0.01, std::ceil((in_db(peak) - limit_db) * 100.0) / 100.0);
+    const bool limited = limit_db < 0.0;
+    const std::string limit =
+        limited ? fmt::format("its limit of {:.4g} dBFS (max_dbfs)", limit_db) : "full scale (0 dBFS)";
+    const std::string driven = fmt::format("would be driven at {:.4g} dBFS, above {}", in_db(peak), limit);
+    const char* raise = limited ? ", or raise max_dbfs" : "";
+    if (o.sl_db)
+        refuse_tactor(a, i, o,
+                      fmt::format("{}: with its threshold of {:.4g} dBFS {:.2f} dB are missing", driven,
+                                  threshold_at(a.tactors[i], reference_hz).value_or(0.0) + in_db(factor),
+                                  excess_db),
+                      fmt::format("lower {{sl_db}} by {:.2f} dB or more{}", excess_db, raise));
+    refuse_tactor(
+        a, i, o, driven,
+        fmt::format("lower {{level_dbfs}} or the tactor's gain_db by {:.2f} dB or more{}", excess_db, raise));
+}
+
+/// Refuses drives that cannot be rendered. A curve has them in order of tactor.
+void check_drives(const burst& b, std::size_t tactors)
+{
+    for (const drive& d : b.drives)
+        if (d.tactor >= tactors || !std::isfinite(d.amplitude))
+            throw error(error_kind::bad_input, "stroke at " + seconds_text(b.onset_s),
+                        fmt::format("tactor {} at amplitude {} cannot be rendered", d.tactor, d.amplitude));
+}
+
+} // namespace
+
+double in_db(double amplitude)
+{
+    return 20.0 * std::log10(amplitude);
+}
+
+std::vector<double> continuous_bounds(const plan& p, std::size_t tactors)
+{
+    const trajectory* motion = curve_access::of(*p.curve).bounds(tactors);
+    if (motion == nullptr)
+        return {};
+    double greatest = 0.0;
+    detail::for_each_span(*motion, [&](const detail::trajectory_span& s) {
+        greatest = s.intensity <= greatest ? greatest : s.intensity;
+        return std::isfinite(greatest);
+    });
+    return std::isfinite(greatest) ? std::vector<double>(tactors, greatest) : std::vector<double>{};
+}
+
+std::vector<double> continuous_peaks(const plan& p, std::size_t tactors)
+{
+    std::vector<double> peaks(tactors, 0.0);
+    burst now;
+    detail::same_tactors seen;
+    for (std::uint64_t k = 0; k < p.curve->size(); ++k) {
+        curve_access::of(*p.curve).sample(k, seen, now);
+        check_drives(now, tactors);
+        for (const drive& d : now.drives)
+            peaks[d.tactor] = std::max(peaks[d.tactor], std::abs(d.amplitude));
+    }
+    return peaks;
+}
+
+std::vector<double> check_peaks(score::impl& s, const array& a, const render_options& o)
+{
+    const auto within = [&](const std::vector<double>& peaks) {
+        for (std::size_t i = 0; i < peaks.size(); ++i)
+            if (!(peaks[i] <= tactor_limit(a, i)))
+                return false;
+        return std::none_of(s.unmeasured.begin(), s.unmeasured.end(),
+                            [&](std::size_t i) { return peaks[i] > 0.0; });
+    };
+    // Nearly always the intensities say that all is well, and hours need not be looked through.
+    sweep all = sweep_items(s, false);
+    if (!within(all.peaks()))
+        all = sweep_items(s, true);
+    const std::vector<double>& peaks = all.peaks();
+    for (const std::size_t i : s.unmeasured)
+        if (peaks[i] > 0.0)
+            refuse_unmeasured(a, i, o);
+    for (std::size_t i = 0; i < peaks.size(); ++i)
+        check(a, i, peaks[i], all.factors()[i], o);
+    for (const std::size_t i : s.unmeasured)
+        s.tactors[i].gain = 0.0; // nothing may sound there at full scale
+    return peaks;
+}
+
+namespace {
+
+/// Time constants after which an actuator has its strength, but for 0.7 %.
+constexpr double enough_rises = 5.0;
+/// Least amplitude of an added burst, of full scale (-100 dB).
+constexpr double least_boost = 1e-5;
+
+/// Returns what a window adds to a lag in frames from ... to - 1, at frame `to`.
+double window_share(const burst_window& w, std::uint64_t from, std::uint64_t to, double rise)
+{
+    const double decay = std::exp(-1.0 / rise);
+    double y = 0.0;
+    for (std::uint64_t k = from; k < to; ++k)
+        y = decay * y + (1.0 - decay) * window_at(static_cast<std::int64_t>(k), w);
+    return y;
+}
+
+/// Strength that an actuator reaches in a burst, by the model of a first-order lag: 1 - e^(-t / rise_s) of a
+/// steady vibration after t.
+class lag {
+public:
+    /// Prepares for bursts that rise in `attack` frames and fall in `release`; `rise` in frames, above 0.
+    lag(double rise, std::uint32_t attack, std::uint32_t release, envelope_kind shape)
+        : rise_(rise), attack_(attack), release_(release)
+    {
+        const burst_window w{std::uint64_t{attack} + release, attack, release, shape};
+        after_attack_ = window_share(w, 0, attack, rise);
+        of_release_ = window_share(w, attack, w.length, rise);
+    }
+
+    /// Returns the part of a strength that is left after so many frames.
+    double decay(double frames) const noexcept { return std::exp(-frames / rise_); }
+    /// Returns the strength reached `frames` after the burst's begin, if strength 1 is asked for; not for
+    /// times before the end of its attack.
+    double risen(double frames) const noexcept
+    {
+        return 1.0 - (1.0 - after_attack_) * decay(frames - attack_);
+    }
+    /// Returns the same at the end of a burst of so many frames, after its release.
+    double fallen(double frames) const noexcept
+    {
+        return risen(frames - release_) * decay(release_) + of_release_;
+    }
+
+private:
+    double rise_;
+    double attack_;
+    double release_;
+    double after_attack_;
+    double of_release_; ///< what the release itself adds
+};
+
+/// State of a tactor after its latest drive.
+struct motion {
+    std::uint64_t until = 0; ///< end of the drive
+    double strength = 0.0;   ///< of the actuator at that time, as an amplitude of drives
+};
+
+/// A boost: how long and how strong, in amplitudes of drives.
+struct boost {
+    std::uint64_t length = 0;
+    double amplitude = 0.0;
+};
+
+class booster {
+public:
+    booster(score::impl& s, const array& a, const std::vector<double>& peaks)
+        : s_(s), a_(a), peaks_(peaks), motions_(a.tactors.size())
+    {
+    }
+
+    void run()
+    {
+        std::vector<item> more;
+        for (const item& it : s_.list.items) {
+            switch (it.kind) {
+            case item_kind::burst:
+                for (std::uint64_t k = it.first; k < it.first + it.count; ++k)
+                    take_burst(it, s_.list.drive_tactors[k], s_.list.drive_amplitudes[k], more);
+                break;
+            case item_kind::joined:
+                note(motions_[it.tactor], it.end(), s_.list.members[it.first].intensity);
+                break;
+            case item_kind::continuous:
+                for (motion& m : motions_)
+                    note(m, it.end(), 1.0);
+                break;
+            case item_kind::marker:
+                break;
+            }
+        }
+        std::copy(more.begin(), more.end(), std::back_inserter(s_.list.items));
+    }
+
+private:
+    static void note(motion& m, std::uint64_t end, double strength)
+    {
+        m.strength = strength;
+        m.until = std::max(m.until, end);
+    }
+
+    void take_burst(const item& it, std::size_t tactor, double amplitude, std::vector<item>& more)
+    {
+        motion& m = motions_[tactor];
+        const auto rise_s = a_.tactors[tactor].rise_s;
+        // Rounding may put the end of a burst into the first frame of the next, which it touches.
+        if (!rise_s || it.start + 1 < m.until) {
+            note(m, it.end(), amplitude);
+            return;
+        }
+        const std::uint32_t release = release_frames(s_.envelope, s_.rate, it.length, it.ramp);
+        const lag l(*rise_s * s_.rate, it.ramp, release, s_.envelope.kind);
+        const std::uint64_t pause = it.start - std::min(m.until, it.start);
+        const double before = m.strength * l.decay(static_cast<double>(pause));
+        const double unit = std::abs(s_.tactors[tactor].gain) * s_.equalised(tactor, it.plan, it.start);
+        const double headroom = (tactor_limit(a_, tactor) * (1.0 - 2e-9) - peaks_[tactor]) / unit;
+        const boost b = find_boost(it, l, release, amplitude, before, headroom, *rise_s);
+        if (b.amplitude * unit > least_boost)
+            add(it, tactor, b, more);
+        const auto length = static_cast<double>(it.length);
+        m.strength = before * l.decay(length) + amplitude * l.fallen(length) +
+                     b.amplitude * l.fallen(static_cast<double>(b.length)) *
+                         l.decay(length - static_cast<double>(b.length));
+        m.until = it.end();
+    }
+
+    /// Returns the shortest burst of whole half cycles that is enough, or the longest that fits.
+    boost find_boost(const item& it, const lag& l, std::uint32_t release, double amplitude, double before,
+                     double headroom, double rise_s) const
+    {
+        if (!(headroom > 0.0 && amplitude > before))
+            return {};
+        const double half_cycle = 0.5 * s_.rate / s_.plans[it.plan].plan.carrier_hz;
+        const double longest = std::min(static_cast<double>(it.length), enough_rises * rise_s * s_.rate);
+        const double shortest = std::max(1.0, static_cast<double>(it.ramp) + release);
+        const auto first = static_cast<std::uint64_t>(std::ceil(shortest / half_cycle));
+        const auto last = static_cast<std::uint64_t>(longest / half_cycle);
+        if (last < std::max<std::uint64_t>(first, 1))
+            return {};
+        const auto needed = [&](std::uint64_t half_cycles) -> boost {
+            const std::uint64_t frames = frame_at(static_cast<double>(half_cycles) * half_cycle, 1.0);
+            const auto t = static_cast<double>(frames);
+            const double missing = amplitude * (1.0 - l.risen(t)) - before * l.decay(t);
+            return {frames, std::max(missing, 0.0) / l.fallen(t)};
+        };
+        std::uint64_t low = std::max<std::uint64_t>(first, 1);
+        for (std::uint64_t high = last; low < high;) {
+            const std::uint64_t middle = low + (high - low) / 2;
+            if (needed(middle).amplitude <= headroom)
+                high = middle;
+            else
+                low = middle + 1;
+        }
+        boost b = needed(low);
+        b.amplitude = std::min(b.amplitude, headroom);
+        return b;
+    }
+
+    void add(const item& it, std::size_t tactor, const boost& b, std::vector<item>& more)
+    {
+        item over = it;
+        over.length = std::min(b.length, it.length);
+        over.first = s_.list.drive_tactors.size();
+        over.count = 1;
+        s_.list.drive_tactors.push_back(static_cast<std::uint16_t>(tactor));
+        s_.list.drive_amplitudes.push_back(b.amplitude);
+        more.push_back(over);
+    }
+
+    score::impl& s_;
+    const array& a_;
+    const std::vector<double>& peaks_;
+    std::vector<motion> motions_; ///< by tactor
+};
+
+} // namespace
+
+bool boost_rises(score::impl& s, const array& a, const std::vector<double>& peaks)
+{
+    const auto rises = [](const tactor_spec& t) { return t.rise_s.has_value(); };
+    if (std::none_of(a.tactors.begin(), a.tactors.end(), rises))
+        return false;
+    const std::size_t before = s.list.items.size();
+    booster(s, a, peaks).run();
+    return s.list.items.size() > before;
 }
 
 } // namespace tactor::synth

@@ -3,7 +3,7 @@
 /// Levels of the tactors, and their limits.
 #pragma once
 
-#include <string_view>
+#include <cstddef>
 #include <vector>
 
 #include "synth/score/score.hpp"
@@ -33,10 +33,6 @@ double threshold_factor(const tactor_spec& t, double hz);
 /// Returns the greatest peak that a tactor may have, linear: its max_dbfs or full scale, plus the noise of
 /// last digits.
 double tactor_limit(const array& a, std::size_t i);
-
-/// \throws error (bad_input): the tactor's line in the array file and number, why and hint.
-[[noreturn]] void refuse_tactor(const array& a, std::size_t i, const render_options& o, std::string_view why,
-                                std::string_view hint);
 
 /// Returns the greatest amplitude of each of so many tactors over all samples of a continuous plan; between
 /// them it is linear.

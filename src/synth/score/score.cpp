@@ -2,7 +2,6 @@
 #include "synth/score/score.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <deque>
 #include <functional>
 #include <span>
@@ -394,15 +393,3 @@ double score::impl::most_equalised(std::size_t tactor, std::uint32_t plan) const
 
 } // namespace v0
 } // namespace tactor
-
-namespace tactor::synth {
-
-double threshold_factor(const tactor_spec& t, double hz)
-{
-    if (t.thresholds.empty())
-        return 1.0;
-    const double db = *threshold_at(t, hz) - *threshold_at(t, reference_hz);
-    return std::pow(10.0, db / 20.0);
-}
-
-} // namespace tactor::synth

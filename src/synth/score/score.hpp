@@ -95,9 +95,6 @@ struct score::impl {
     std::size_t open_continuous = 0; ///< of these, continuous ones
     std::size_t open_events = 0;     ///< most events that sound in one frame
 
-    /// Returns the first frame in which an item may be heard: a ramp begins with a zero, and so do most
-    /// carriers. Of two bursts or strokes that touch, rounding may put that frame into the end of the other.
-    std::uint64_t heard_from(const synth::item& it) const noexcept;
     /// Returns the factor on a tactor's gain in a frame of the score, for its threshold at the carrier there.
     double equalised(std::size_t tactor, std::uint32_t plan, std::uint64_t frame) const;
     /// Returns the greatest such factor in a plan.
