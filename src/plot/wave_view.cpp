@@ -18,7 +18,7 @@
 #include "plot/draw/axes.hpp"
 #include "plot/draw/timeline.hpp"
 #include "plot/paint/canvas.hpp"
-#include "synth/mix/sample_ranges.hpp"
+#include "synth/score/score_view.hpp"
 
 namespace tactor::plot {
 namespace {

@@ -10,9 +10,9 @@
 #include <tactor/render.hpp>
 
 #include "core/access.hpp"
-#include "synth/mix/limits_met.hpp"
 #include "synth/mix/mixer.hpp"
 #include "synth/mix/oscillator.hpp"
+#include "synth/score/drive_room.hpp"
 #include "synth/score/event_source.hpp"
 #include "synth/score/frames.hpp"
 #include "synth/score/score.hpp"

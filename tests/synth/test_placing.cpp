@@ -16,10 +16,9 @@
 #include "pieces.hpp"
 #include "rounds.hpp"
 #include "synth/mix/mixer.hpp"
-#include "synth/mix/sample_ranges.hpp"
 #include "synth/score/event_source.hpp"
 #include "synth/score/frames.hpp"
-#include "synth/score/sounding_now.hpp"
+#include "synth/score/score_view.hpp"
 
 namespace placing_test {
 

@@ -10,7 +10,7 @@
 #include "rounds.hpp"
 #include "synth/guard.hpp"
 #include "synth/mix/mixer.hpp"
-#include "synth/tone/waves.hpp"
+#include "synth/tone/make_timbre.hpp"
 
 namespace power_test {
 

@@ -12,7 +12,7 @@
 
 #include "pieces.hpp"
 #include "synth/score/score.hpp"
-#include "synth/tone/waves.hpp"
+#include "synth/tone/make_timbre.hpp"
 
 namespace tones {
 

@@ -23,7 +23,7 @@
 #include "core/words.hpp"
 #include "rt/variable.hpp"
 #include "session/walk.hpp"
-#include "synth/score/sounding_now.hpp"
+#include "synth/score/score_view.hpp"
 
 namespace tactor::cli {
 namespace {

@@ -25,7 +25,6 @@
 #include "session/environment.hpp"
 #include "session/walk.hpp"
 #include "study/experiment/definition.hpp"
-#include "synth/mix/limits_met.hpp"
 #include "synth/score/drive_room.hpp"
 
 namespace tactor::study {

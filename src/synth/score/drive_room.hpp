@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// Time that a piece must wait so that the limit on drive time does not cut it.
+/// Limits on drive time and power as they concern a whole score: the time that it must wait so that no drive
+/// is cut, and which limits act on it.
 #pragma once
 
 #include <cstddef>
@@ -44,5 +45,14 @@ private:
     double leak_ = 1.0;
     unsigned rate_;
 };
+
+/// Limits that change the samples of a score on an array that has rested.
+struct limits_met {
+    bool power = false;
+    bool time = false; ///< of a drive
+};
+
+/// Renders a score and returns which of its own limits act; none if the score has none.
+limits_met find_limits_met(const score& s);
 
 } // namespace tactor::synth

@@ -3,8 +3,11 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
+#include <numeric>
 #include <span>
 #include <string>
 #include <utility>
@@ -15,11 +18,330 @@
 
 #include "core/refused.hpp"
 #include "core/words.hpp"
-#include "synth/tone/waves.hpp"
+#include "synth/mix/oscillator.hpp"
 
 namespace tactor::synth {
-
 namespace {
+
+/// Points in a period of the highest harmonic. Interpolation between them is off by -89 dB of that harmonic,
+/// and far less for lower ones.
+constexpr std::size_t points_a_period = 32;
+
+/// Margin for a peak between two points, and for rounding.
+constexpr double above_peak = 1.0 + 2e-5;
+
+double find_peak(const wave_samples& x)
+{
+    return static_cast<double>(std::accumulate(
+        x.begin(), x.end(), 0.0F, [](float most, float v) { return std::max(most, std::abs(v)); }));
+}
+
+void scale(wave_samples& x, double peak)
+{
+    const double gain = peak > 0.0 ? 1.0 / (peak * above_peak) : 0.0;
+    for (float& v : x)
+        v = static_cast<float>(gain * static_cast<double>(v));
+}
+
+/// Returns the peak, also between the points.
+double cycle_peak(const wave_samples& cycle)
+{
+    constexpr std::size_t between = 8;
+    const double points = static_cast<double>(cycle.size() - cycle_margin);
+    double peak = 0.0;
+    block turns;
+    block x;
+    const std::size_t all = between * (cycle.size() - cycle_margin);
+    for (std::size_t at = 0; at < all; at += block_frames) {
+        const auto n = static_cast<unsigned>(std::min<std::size_t>(block_frames, all - at));
+        for (unsigned j = 0; j < n; ++j)
+            turns[j] = static_cast<double>(at + j) / (between * points);
+        read_cycle(cycle, turns.data(), n, x.data());
+        for (unsigned j = 0; j < n; ++j)
+            peak = std::max(peak, std::abs(x[j]));
+    }
+    return peak;
+}
+
+std::size_t points_for(std::size_t harmonics)
+{
+    return std::bit_ceil(points_a_period * std::max<std::size_t>(harmonics, 2));
+}
+
+/// Least peak after filtering, relative to 1 to 2: less is rounding, and would become as loud as a real
+/// signal.
+constexpr double least_peak = 1e-5;
+
+void require_left(double peak, const recording& r)
+{
+    if (!(peak >= least_peak)) {
+        throw error(error_kind::bad_input, recording_name(r),
+                    "nothing of it is left below half its own rate and the stream's",
+                    "give a slower vibration, a lower {carrier_hz} or a higher rate");
+    }
+}
+
+/// Returns the samples around their mean, scaled by a power of 2 to a peak of 1 to 2. In any unit, sums of
+/// them are then finite and as exact as the samples.
+std::vector<float> unit_samples(const recording& r)
+{
+    std::vector<double> x(r.samples.begin(), r.samples.end());
+    const auto to_unit = [&x] {
+        const double peak = std::accumulate(
+            x.begin(), x.end(), 0.0, [](double most, double v) { return std::max(most, std::abs(v)); });
+        const double gain = peak > 0.0 ? std::ldexp(1.0, -std::ilogb(peak)) : 0.0;
+        std::transform(x.begin(), x.end(), x.begin(), [gain](double v) { return gain * v; });
+    };
+    to_unit();
+    const double mean = std::accumulate(x.begin(), x.end(), 0.0) / static_cast<double>(x.size());
+    std::transform(x.begin(), x.end(), x.begin(), [mean](double v) { return v - mean; });
+    to_unit();
+    std::vector<float> samples(x.size());
+    std::transform(x.begin(), x.end(), samples.begin(), [](double v) { return static_cast<float>(v); });
+    return samples;
+}
+
+/// Returns the real part of the sum of harmonics, from half a cycle before the start on.
+wave_samples make_cycle(spectrum harmonics)
+{
+    const std::size_t points = harmonics.size();
+    for (std::size_t h = 1; h < points; h += 2)
+        harmonics[h] = -harmonics[h]; // half a cycle
+    fourier_sum(harmonics);
+    wave_samples x(points + cycle_margin);
+    for (std::size_t i = 0; i < x.size(); ++i)
+        x[i] = static_cast<float>(harmonics[(i + points - 1) % points].real());
+    return x;
+}
+
+double harmonic_amplitude(waveform_kind shape, std::size_t h)
+{
+    const auto n = static_cast<double>(h);
+    const bool odd = h % 2 == 1;
+    switch (shape) {
+    case waveform_kind::square:
+        return odd ? 1.0 / n : 0.0;
+    case waveform_kind::triangle:
+        return odd ? (h % 4 == 1 ? 1.0 : -1.0) / (n * n) : 0.0;
+    case waveform_kind::sawtooth:
+        return (odd ? 1.0 : -1.0) / n;
+    case waveform_kind::sine:
+    case waveform_kind::noise:
+    case waveform_kind::recording:
+        break;
+    }
+    return h == 1 ? 1.0 : 0.0;
+}
+
+/// Steele's SplitMix64 (OOPSLA 2014).
+std::uint64_t next_random(std::uint64_t& state) noexcept
+{
+    std::uint64_t z = state += 0x9E3779B97F4A7C15U;
+    z = (z ^ (z >> 30U)) * 0xBF58476D1CE4E5B9U;
+    z = (z ^ (z >> 27U)) * 0x94D049BB133111EBU;
+    return z ^ (z >> 31U);
+}
+
+/// A sinc in a window of Blackman and Harris, as a table: zero beyond `width` samples.
+class kernel {
+public:
+    /// Makes the table. `cutoff`: in cycles per sample of the input.
+    explicit kernel(double cutoff) : width_(crossings / (2.0 * cutoff)), table_(size + 2)
+    {
+        for (std::size_t i = 0; i <= size; ++i) {
+            const double u = static_cast<double>(i) / size; // 0: the middle, 1: the end
+            const double t = u * crossings;
+            const double sinc = i == 0 ? 1.0 : sincos_turns(0.5 * t).sin / (3.14159265358979323846 * t);
+            const double a = 0.5 * u;
+            const double window = 0.35875 + 0.48829 * sincos_turns(a).cos +
+                                  0.14128 * sincos_turns(2 * a).cos + 0.01168 * sincos_turns(3 * a).cos;
+            table_[i] = 2.0 * cutoff * sinc * window;
+        }
+    }
+
+    double width() const noexcept { return width_; }
+    double at(double d) const noexcept
+    {
+        const double place = std::min(std::abs(d) / width_, 1.0) * size;
+        const auto i = static_cast<std::size_t>(place);
+        return table_[i] + (place - static_cast<double>(i)) * (table_[i + 1] - table_[i]);
+    }
+
+private:
+    static constexpr double crossings = 160.0;
+    static constexpr std::size_t size = 327680; // 2048 for each crossing: off by 1e-7
+    double width_;
+    std::vector<double> table_;
+};
+
+wave_samples resampled(const std::vector<float>& in, std::size_t size)
+{
+    wave_samples out(size);
+    const auto m = static_cast<std::int64_t>(in.size());
+    const double step = static_cast<double>(in.size()) / static_cast<double>(out.size());
+    // The window's transition, a twentieth of the band, ends at half of the lower rate.
+    const kernel k(0.5 * (1.0 - 0.025) * std::min(1.0, 1.0 / step));
+    const auto reach = static_cast<std::int64_t>(std::ceil(k.width()));
+    // around[j] is sample j - reach of the loop.
+    std::vector<float> around(in.size() + 2 * static_cast<std::size_t>(reach) + 2);
+    for (std::size_t j = 0; j < around.size(); ++j)
+        around[j] = in[static_cast<std::size_t>(((static_cast<std::int64_t>(j) - reach) % m + m) % m)];
+    for (std::size_t n = 0; n < out.size(); ++n) {
+        const double place = static_cast<double>(n) * step;
+        const auto middle = static_cast<std::int64_t>(place);
+        const float* x = around.data() + middle;
+        const double first = place - static_cast<double>(middle - reach);
+        double sum = 0.0;
+        for (std::int64_t i = 0; i <= 2 * reach + 1; ++i)
+            sum += static_cast<double>(x[i]) * k.at(first - static_cast<double>(i));
+        out[n] = static_cast<float>(sum);
+    }
+    return out;
+}
+
+using complex = std::complex<double>;
+
+complex unit(double turns)
+{
+    const sine_cosine v = sincos_turns(turns);
+    return {v.cos, v.sin};
+}
+
+// Multiplies. The library's multiplication checks for infinities.
+complex times(complex a, complex b)
+{
+    return {a.real() * b.real() - a.imag() * b.imag(), a.real() * b.imag() + a.imag() * b.real()};
+}
+
+/// Writes the Fourier sum of n elements, `step` apart from `from` on, to `to`; n is a power of 2. Adds the
+/// sums of the even and of the odd elements (Cooley and Tukey 1965). `units[k]` is exp(2 pi i k / size).
+void add_up(const complex* from, std::size_t step, std::size_t n, const spectrum& units, complex* to)
+{
+    if (n == 1) {
+        *to = *from;
+        return;
+    }
+    const std::size_t half = n / 2;
+    add_up(from, 2 * step, half, units, to);
+    add_up(from + step, 2 * step, half, units, to + half);
+    for (std::size_t k = 0; k < half; ++k) {
+        const complex odd = times(units[k * step], to[half + k]);
+        to[half + k] = to[k] - odd;
+        to[k] += odd;
+    }
+}
+
+/// Returns exp(sign pi i n^2 / m), with n^2 reduced as an integer.
+complex chirp(std::uint64_t n, std::uint64_t m, double sign)
+{
+    return unit(sign * static_cast<double>(n * n % (2 * m)) / static_cast<double>(2 * m));
+}
+
+/// Returns the first `count` coefficients c[k] = sum over n of x[n] exp(-2 pi i k n / size) / size of any
+/// number of samples: a convolution, whose length may be a power of 2 (Bluestein 1970).
+spectrum fourier_coefficients(std::span<const float> x, std::size_t count)
+{
+    const std::size_t m = x.size();
+    const std::size_t n = std::bit_ceil(2 * m);
+    spectrum a(n);
+    spectrum b(n);
+    for (std::size_t i = 0; i < m; ++i) {
+        a[i] = static_cast<double>(x[i]) * chirp(i, m, -1.0);
+        b[i] = chirp(i, m, 1.0);
+        b[(n - i) % n] = b[i];
+    }
+    fourier_sum(a);
+    fourier_sum(b);
+    for (std::size_t i = 0; i < n; ++i)
+        a[i] = times(a[i], b[i]);
+    // The same sum gives the convolution backwards.
+    fourier_sum(a);
+    spectrum c(count);
+    const double scale = 1.0 / (static_cast<double>(n) * static_cast<double>(m));
+    for (std::size_t k = 0; k < count; ++k)
+        c[k] = scale * times(a[(n - k) % n], chirp(k, m, -1.0));
+    return c;
+}
+
+/// Returns a square, triangle or sawtooth of harmonics 1 to `harmonics`, with a peak of 1, as read_cycle()
+/// needs it.
+wave_samples shape_cycle(waveform_kind shape, std::size_t harmonics)
+{
+    spectrum x(points_for(harmonics));
+    for (std::size_t h = 1; h <= harmonics; ++h)
+        x[h] = {0.0, -harmonic_amplitude(shape, h)}; // -i exp(i a) has the sine of a
+    wave_samples cycle = make_cycle(std::move(x));
+    scale(cycle, cycle_peak(cycle));
+    return cycle;
+}
+
+/// Returns one cycle of recorded samples, with at most `harmonics` harmonics, without its mean, and with a
+/// peak of 1. Throws error (bad_input) if nothing is left.
+wave_samples recorded_cycle(const recording& r, std::size_t harmonics)
+{
+    // The highest harmonic of an even number of samples has no phase.
+    const std::size_t own = std::max<std::size_t>((r.samples.size() - 1) / 2, 1);
+    harmonics = std::min(harmonics, own);
+    const spectrum c = fourier_coefficients(unit_samples(r), harmonics + 1);
+    spectrum x(points_for(harmonics));
+    std::copy(c.begin() + 1, c.end(), x.begin() + 1);
+    wave_samples cycle = make_cycle(std::move(x));
+    const double peak = cycle_peak(cycle);
+    require_left(peak, r);
+    scale(cycle, peak);
+    return cycle;
+}
+
+/// Returns noise that repeats after some 5 s, only between low_hz and high_hz; its peak is 1.
+wave_samples noise_loop(double low_hz, double high_hz, std::uint64_t seed, unsigned rate)
+{
+    const std::size_t frames = std::min(std::bit_ceil(std::size_t{4} * rate), std::size_t{1} << 20U);
+    const double line = static_cast<double>(rate) / static_cast<double>(frames);
+    const auto first = static_cast<std::size_t>(std::ceil(low_hz / line));
+    const auto last = std::min(static_cast<std::size_t>(high_hz / line), frames / 2 - 1);
+    spectrum x(frames);
+    // Lines of equal height and random phase: with so many, they are as good as Gaussian noise.
+    for (std::size_t k = first; k <= last; ++k) {
+        const sine_cosine v = sincos_turns(static_cast<double>(next_random(seed) >> 11U) * 0x1p-53);
+        x[k] = {v.cos, v.sin};
+    }
+    fourier_sum(x);
+    wave_samples loop(frames);
+    std::transform(x.begin(), x.end(), loop.begin(),
+                   [](const std::complex<double>& v) { return static_cast<float>(v.real()); });
+    scale(loop, find_peak(loop));
+    return loop;
+}
+
+/// Returns a recording in its own time at another rate; its peak is 1, and its mean 0. Throws error
+/// (bad_input) if nothing is left.
+wave_samples recorded_loop(const recording& r, unsigned rate)
+{
+    const double frames = static_cast<double>(r.samples.size()) * rate / r.rate_hz;
+    wave_samples x = unit_samples(r);
+    const std::size_t size = std::max<std::size_t>(static_cast<std::size_t>(std::llround(frames)), 2);
+    if (x.size() != size)
+        x = resampled(x, size);
+    const double mean = std::accumulate(x.begin(), x.end(), 0.0) / static_cast<double>(x.size());
+    for (float& v : x)
+        v = static_cast<float>(static_cast<double>(v) - mean);
+    const double peak = find_peak(x);
+    require_left(peak, r);
+    scale(x, peak);
+    return x;
+}
+
+/// Returns twice the mean square, but at least 1.
+double wave_power(const wave_samples& x) noexcept
+{
+    const double sum = std::accumulate(x.begin(), x.end(), 0.0, [](double s, float v) {
+        return s + static_cast<double>(v) * static_cast<double>(v);
+    });
+    return std::max(1.0, 2.0 * sum / static_cast<double>(x.size()));
+}
+
+/// Most harmonics of a cycle: in a slow cycle nothing above them is felt.
+constexpr std::size_t most_harmonics = 4096;
 
 /// Most timbres that strokes of one score share. Strokes beyond it have their own.
 constexpr std::size_t most_places = 64;
@@ -176,6 +498,15 @@ bool sound_alike(const plan& a, const plan& b)
 }
 
 } // namespace
+
+void fourier_sum(spectrum& x)
+{
+    spectrum units(x.size() / 2);
+    for (std::size_t k = 0; k < units.size(); ++k)
+        units[k] = unit(static_cast<double>(k) / static_cast<double>(x.size()));
+    const spectrum from = x;
+    add_up(from.data(), 1, from.size(), units, x.data());
+}
 
 std::shared_ptr<const timbre> make_timbre(const plan& p, unsigned rate)
 {

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// Timbre of a plan.
+/// Timbre of a plan. It is computed when a score is made, never in the audio thread.
 #pragma once
 
+#include <complex>
 #include <memory>
 #include <vector>
 
@@ -36,5 +37,11 @@ private:
     };
     std::vector<place> places_;
 };
+
+using spectrum = std::vector<std::complex<double>>;
+
+/// Computes x[n] = sum over k of x[k] exp(2 pi i k n / size), in place; the size is a power of 2. Equal bits
+/// on every machine.
+void fourier_sum(spectrum& x);
 
 } // namespace tactor::synth

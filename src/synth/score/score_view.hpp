@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// Drive of each tactor at one time, for pictures of what plays.
+/// Figures for pictures of a score: drive of each tactor at one time, and range of each channel's samples.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -29,6 +30,31 @@ private:
     std::vector<drive_event> open_; ///< begun and not over
     std::vector<double> energy_;    ///< by channel, at full level
     std::vector<double> levels_;
+};
+
+/// Least and greatest sample of each channel, found as fast as samples are made: ranges over all interleaved
+/// frames that are added.
+class sample_ranges {
+public:
+    explicit sample_ranges(std::size_t channels);
+
+    void add(const float* samples, std::size_t frames) noexcept;
+
+    struct range {
+        float low = 0.0F;
+        float high = 0.0F;
+    };
+    /// Returns the range of a channel. \pre there was a frame.
+    range range_at(std::size_t channel) const noexcept;
+
+    /// Begins anew.
+    void clear() noexcept;
+
+private:
+    std::size_t channels_;
+    std::size_t abreast_; ///< frames that are compared next to each other, in whole vectors
+    std::vector<float> low_;
+    std::vector<float> high_;
 };
 
 } // namespace tactor::synth
