@@ -9,7 +9,7 @@
 
 #include "engine/audio/audio_loop.hpp"
 #include "engine/control/feeder.hpp"
-#include "engine/live/live_stroke.hpp"
+#include "engine/live.hpp"
 #include "nowhere.hpp"
 #include "pieces.hpp"
 

@@ -12,7 +12,7 @@
 #include <doctest/doctest.h>
 
 #include "count_allocations.hpp"
-#include "engine/live/live_stroke.hpp"
+#include "engine/live.hpp"
 #include "rig.hpp"
 #include "rounds.hpp"
 

@@ -16,7 +16,7 @@
 
 #include <doctest/doctest.h>
 
-#include "engine/live/live_stroke.hpp"
+#include "engine/live.hpp"
 #include "rig.hpp"
 #include "rounds.hpp"
 

@@ -12,7 +12,7 @@
 #include <tactor/error.hpp>
 
 #include "caught.hpp"
-#include "engine/live/live_stroke.hpp"
+#include "engine/live.hpp"
 #include "live_rig.hpp"
 
 namespace live_test {

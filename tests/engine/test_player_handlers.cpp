@@ -35,7 +35,7 @@
 #include <tactor/stroke.hpp>
 
 #include "clock_runner.hpp"
-#include "engine/live/live_voice.hpp"
+#include "engine/live.hpp"
 #include "has.hpp"
 #include "player_support.hpp"
 #include "scores.hpp"

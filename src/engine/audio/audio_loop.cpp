@@ -3,10 +3,14 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <latch>
 #include <span>
 #include <utility>
 
+#include <sys/resource.h>
+
 #include "rt/clock.hpp"
+#include "rt/thread.hpp"
 
 namespace tactor::engine {
 namespace {
@@ -14,12 +18,6 @@ namespace {
 // Number of idle wake-ups after which the loop sleeps instead of trusting the descriptors, so that it cannot
 // spin.
 constexpr unsigned many_idle_steps = 16;
-
-// Returns the drives of the mixer that are reserved for live strokes.
-std::size_t live_reserve(const stream_setup& s) noexcept
-{
-    return live_voices * live_drives(s.channels, s.period_frames, s.rate);
-}
 
 // A level changes within 20 ms.
 constexpr unsigned ramps_per_s = 50;
@@ -29,16 +27,7 @@ constexpr std::int64_t longest_resume = 10 * rt::ns_per_s;
 
 reason_kind to_reason(io_kind s) noexcept
 {
-    switch (s) {
-    case io_kind::xrun:
-        return reason_kind::xrun;
-    case io_kind::suspended:
-        return reason_kind::suspended;
-    case io_kind::lost:
-        return reason_kind::lost;
-    default:
-        return reason_kind::failed;
-    }
+    return s == io_kind::lost ? reason_kind::lost : reason_kind::failed;
 }
 
 } // namespace
@@ -113,8 +102,7 @@ bool audio_loop::polls_sink() const noexcept
 
 std::int64_t audio_loop::timeout_ns() const noexcept
 {
-    const std::int64_t period =
-        std::int64_t{setup_.period_frames} * 1'000'000'000 / std::max<std::int64_t>(setup_.rate, 1);
+    const std::int64_t period = std::int64_t{setup_.period_frames} * rt::ns_per_s / setup_.rate;
     const std::int64_t normal = polls_sink() ? 4 * period : period;
     if (phase_ == phase::running && stop_requested_)
         return std::min(normal, std::max<std::int64_t>(stop_requested_ns_ + longest_stop_ns - now_ns_, 0));
@@ -263,7 +251,7 @@ void audio_loop::note_starts(std::uint64_t played) noexcept
         // An xrun came before the first reading: only the start time of the DAC is known.
         line.frame = offset_;
         line.time_ns = epoch_ns_;
-        line.ns_per_frame = 1e9 / std::max(setup_.rate, 1U);
+        line.ns_per_frame = 1e9 / setup_.rate;
     }
     scores_.note_starts(played, offset_, line);
 }
@@ -519,6 +507,92 @@ void audio_loop::obey_amplifier() noexcept
         stop_why_ = reason_kind::amplifier;
         scores_.stop(state_kind::interrupted, reason_kind::amplifier);
     }
+}
+
+namespace {
+
+// Counter of this thread's page faults after its first wake-ups, which touch its memory. Reads once a second.
+class fault_watch {
+public:
+    explicit fault_watch(counters& c) noexcept : count_(c) {}
+
+    void step(std::int64_t now) noexcept
+    {
+        constexpr unsigned warm_up = 16;
+        if (steps_ < warm_up) {
+            if (++steps_ == warm_up && getrusage(RUSAGE_THREAD, &before_) == 0)
+                looked_ns_ = now;
+        } else if (now - looked_ns_ >= rt::ns_per_s) {
+            look();
+            looked_ns_ = now;
+        }
+    }
+
+    void look() noexcept
+    {
+        rusage u{};
+        if (looked_ns_ == 0 || getrusage(RUSAGE_THREAD, &u) != 0)
+            return;
+        count_.minor_faults = static_cast<std::uint64_t>(u.ru_minflt - before_.ru_minflt);
+        count_.major_faults = static_cast<std::uint64_t>(u.ru_majflt - before_.ru_majflt);
+    }
+
+private:
+    counters& count_;
+    rusage before_{};
+    std::int64_t looked_ns_ = 0;
+    unsigned steps_ = 0;
+};
+
+} // namespace
+
+audio_thread::audio_thread(audio_loop& loop, sink& s, link& l, const rt::thread_options& o)
+    : loop_(loop), sink_(s), link_(l), fds_(s.max_descriptors() + 1)
+{
+    std::latch begun(1);
+    // The thread itself starts the stream: ALSA's handle belongs to one thread, and nothing may delay the
+    // first period after the start.
+    thread_ = std::make_unique<rt::thread>(o, [this, &begun] {
+        started_ = loop_.start(rt::monotonic_ns());
+        begun.count_down();
+        if (started_.status == io_kind::ok)
+            run();
+    });
+    begun.wait();
+}
+
+void audio_thread::run() noexcept TACTOR_NONBLOCKING
+{
+    fault_watch faults(link_.count);
+    rt::busy_watch busy;
+    while (!loop_.over()) {
+        const io_kind ready = wait();
+        const std::int64_t now = rt::monotonic_ns();
+        loop_.step(ready, now);
+        faults.step(now);
+        if (busy.look(now)) {
+            link_.count.realtime_given_up.store(true, std::memory_order_relaxed);
+            link_.to_control.signal();
+        }
+    }
+    faults.look();
+    link_.to_control.signal();
+}
+
+io_kind audio_thread::wait() noexcept
+{
+    const rt::permitted_call here{};
+    const bool asks_sink = loop_.polls_sink();
+    const std::size_t n =
+        asks_sink ? sink_.descriptors(std::span(fds_).first(fds_.size() - 1)) : std::size_t{0};
+    fds_[n] = {.fd = link_.to_audio.fd(), .events = POLLIN, .revents = 0};
+
+    const timespec timeout = rt::to_timespec(loop_.timeout_ns());
+    if (::ppoll(fds_.data(), n + 1, &timeout, nullptr) < 0)
+        return io_kind::again;
+    if (fds_[n].revents != 0)
+        link_.to_audio.consume();
+    return asks_sink ? sink_.ready(std::span(fds_).first(n)) : io_kind::again;
 }
 
 } // namespace tactor::engine

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "engine/audio/score_table.hpp"
+#include "engine/audio/audio_loop.hpp"
 
 #include <algorithm>
 #include <tuple>

@@ -17,8 +17,7 @@
 #include <tactor/render.hpp>
 
 #include "engine/link.hpp"
-#include "engine/live/live_voice.hpp"
-#include "engine/messages.hpp"
+#include "engine/live.hpp"
 #include "synth/score/event_source.hpp"
 
 namespace tactor::engine {

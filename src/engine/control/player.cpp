@@ -21,7 +21,7 @@
 #include "core/refused.hpp"
 #include "core/words.hpp"
 #include "engine/control/player_impl.hpp"
-#include "engine/live/live_stroke.hpp"
+#include "engine/live.hpp"
 #include "rt/clock.hpp"
 #include "rt/thread.hpp"
 

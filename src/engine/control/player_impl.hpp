@@ -20,7 +20,6 @@
 #include <tactor/player.hpp>
 
 #include "engine/audio/audio_loop.hpp"
-#include "engine/audio/audio_thread.hpp"
 #include "engine/control/amplifier_driver.hpp"
 #include "engine/control/control_thread.hpp"
 #include "engine/control/drive_book.hpp"
