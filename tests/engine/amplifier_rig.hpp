@@ -12,7 +12,7 @@
 
 #include <tactor/lines.hpp>
 
-#include "engine/control/amplifier_driver.hpp"
+#include "engine/control/line_threads.hpp"
 #include "rig.hpp"
 
 namespace tactor::test {

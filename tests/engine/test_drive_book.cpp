@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Drive time of a device: it outlives players and processes.
-#include "engine/control/drive_book.hpp"
+#include "engine/control/records.hpp"
 
 #include <cstdint>
 #include <cstdlib>

@@ -22,7 +22,7 @@
 
 #include "amplifier_rig.hpp"
 #include "clock_runner.hpp"
-#include "engine/control/stream_log.hpp"
+#include "engine/control/records.hpp"
 #include "has.hpp"
 #include "player_support.hpp"
 #include "rig.hpp"

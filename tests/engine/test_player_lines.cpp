@@ -20,7 +20,7 @@
 
 #include "clock_runner.hpp"
 #include "count_allocations.hpp"
-#include "engine/control/trigger_thread.hpp"
+#include "engine/control/line_threads.hpp"
 #include "player_support.hpp"
 #include "rt/clock.hpp"
 #include "scores.hpp"

@@ -10,7 +10,6 @@
 #include <sys/resource.h>
 
 #include "rt/clock.hpp"
-#include "rt/thread.hpp"
 
 namespace tactor::engine {
 namespace {

@@ -17,6 +17,7 @@
 #include <tactor/version.hpp>
 
 #include "core/access.hpp"
+#include "core/kind_names.hpp"
 #include "core/log.hpp"
 #include "core/refused.hpp"
 #include "core/words.hpp"
@@ -27,6 +28,17 @@
 
 namespace tactor {
 inline namespace v0 {
+
+TACTOR_KIND_NAMES(start_kind, "start", {frame, "frame"}, {time, "time"}, {trigger, "trigger"});
+TACTOR_KIND_NAMES(state_kind, "state", {finished, "finished"}, {cancelled, "cancelled"},
+                  {interrupted, "interrupted"});
+TACTOR_KIND_NAMES(reason_kind, "reason", {none, "none"}, {xrun, "xrun"}, {suspended, "suspended"},
+                  {lost, "lost"}, {failed, "failed"}, {late, "late"}, {crowded, "crowded"},
+                  {closed, "closed"}, {starved, "starved"}, {too_long, "too-long"}, {muted, "muted"},
+                  {amplifier, "amplifier"}, {left_on, "left-on"}, {plan, "plan"}, {handler, "handler"});
+TACTOR_KIND_NAMES(wait_kind, "wait", {ended, "ended"}, {timeout, "timeout"}, {taken, "taken"},
+                  {unknown, "unknown"});
+
 namespace {
 
 // Returns the frames of a time, 0 to ten minutes. Refuses NaN, too.

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: MIT
-#include "engine/control/amplifier_driver.hpp"
+#include "engine/control/line_threads.hpp"
 
 #include <algorithm>
+#include <cerrno>
+#include <ctime>
+#include <optional>
 #include <utility>
 
 #include <poll.h>
@@ -226,6 +229,254 @@ void amplifier_thread::sleep() noexcept
     pollfd fd{.fd = link_.amplifier.wake.fd(), .events = POLLIN, .revents = 0};
     if (::ppoll(&fd, 1, &timeout, nullptr) > 0)
         link_.amplifier.wake.consume();
+}
+
+namespace {
+
+constexpr bool is_taken(std::uint32_t turn) noexcept
+{
+    return turn % 2 == 1;
+}
+
+constexpr std::int64_t idle_ns = 60 * rt::ns_per_s;
+// Longest wait on one line of the clock: the line improves with time, and an xrun ends it.
+constexpr std::int64_t longest_wait_ns = 100'000'000;
+constexpr std::int64_t no_clock_ns = 2'000'000;
+
+class system_time final : public pulse_time {
+public:
+    std::int64_t now() noexcept override { return rt::monotonic_ns(); }
+    void sleep_until(std::int64_t time_ns) noexcept override
+    {
+        const timespec t = rt::to_timespec(time_ns);
+        while (clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &t, nullptr) == EINTR) {
+        }
+    }
+};
+
+system_time& real_time() noexcept
+{
+    static system_time t;
+    return t;
+}
+
+} // namespace
+
+// Acquire and release: a reader that sees one word of a newer pulse also sees the newer turn.
+pulse pulse_board::read(const place& p) noexcept
+{
+    return {.epoch = p.epoch.load(std::memory_order_acquire),
+            .frame = p.frame.load(std::memory_order_acquire),
+            .id = p.id.load(std::memory_order_acquire)};
+}
+
+void pulse_board::fill(place& p, const pulse& what, std::uint32_t turn) noexcept
+{
+    p.epoch.store(what.epoch, std::memory_order_release);
+    p.frame.store(what.frame, std::memory_order_release);
+    p.id.store(what.id, std::memory_order_release);
+    p.turn.store(turn + 1, std::memory_order_release);
+}
+
+bool pulse_board::end_turn(std::size_t n, std::uint32_t turn) noexcept
+{
+    return places_[n].turn.compare_exchange_strong(turn, turn + 1, std::memory_order_acq_rel);
+}
+
+std::optional<pulse> pulse_board::offer(const pulse& p) noexcept
+{
+    std::size_t last = places;
+    pulse latest = p;
+    std::uint32_t latest_turn = 0;
+    for (std::size_t n = 0; n < places; ++n) {
+        const std::uint32_t turn = places_[n].turn.load(std::memory_order_acquire);
+        if (!is_taken(turn)) {
+            fill(places_[n], p, turn);
+            return std::nullopt;
+        }
+        if (const pulse here = read(places_[n]); here > latest) {
+            last = n;
+            latest = here;
+            latest_turn = turn;
+        }
+    }
+    if (last == places)
+        return p;
+    const bool made_way = end_turn(last, latest_turn);
+    // The place is free in either case: otherwise its pulse has just been sent.
+    fill(places_[last], p, latest_turn + 1);
+    return made_way ? std::optional(latest) : std::nullopt;
+}
+
+template <typename Unwanted>
+std::size_t pulse_board::remove(Unwanted unwanted) noexcept
+{
+    std::size_t removed = 0;
+    for (std::size_t n = 0; n < places; ++n) {
+        const std::uint32_t turn = places_[n].turn.load(std::memory_order_acquire);
+        if (is_taken(turn) && unwanted(read(places_[n])) && end_turn(n, turn))
+            ++removed;
+    }
+    return removed;
+}
+
+std::size_t pulse_board::forget(stroke_id id) noexcept
+{
+    return remove([id](const pulse& p) { return p.id == id; });
+}
+
+void pulse_board::forget_other_epochs(std::uint64_t epoch) noexcept
+{
+    remove([epoch](const pulse& p) { return p.epoch != epoch; });
+}
+
+std::optional<pulse_board::seen> pulse_board::next(const clock_line& line) const noexcept
+{
+    std::optional<seen> first;
+    for (std::size_t n = 0; n < places; ++n) {
+        const std::uint32_t turn = places_[n].turn.load(std::memory_order_acquire);
+        if (!is_taken(turn))
+            continue;
+        const seen here{.what = read(places_[n]), .place = n, .turn = turn};
+        if (here.what.epoch == line.epoch && (!first || here.what < first->what) &&
+            places_[n].turn.load(std::memory_order_acquire) == turn)
+            first = here;
+    }
+    return first;
+}
+
+trigger_thread::trigger_thread(link& l, enable_line& line, std::int64_t pulse_ns, const rt::thread_options& t)
+    : link_(l), line_(line), emitter_(line, pulse_ns, real_time()), thread_(t, [this] { run(); })
+{
+}
+
+trigger_thread::~trigger_thread()
+{
+    over_.store(true, std::memory_order_release);
+    wake_.signal();
+    thread_.join();
+}
+
+void trigger_thread::add(stroke_id id, std::uint64_t frame, const clock_line& clock)
+{
+    if (plan_.add(id, frame, clock))
+        wake_.signal();
+}
+
+void trigger_thread::hand_over()
+{
+    if (plan_.hand_over())
+        wake_.signal();
+}
+
+pulse_stats trigger_thread::stats() noexcept
+{
+    pulse_stats s = stats_.load();
+    s.missed += plan_.missed();
+    return s;
+}
+
+void trigger_thread::run() noexcept
+{
+    while (!over_.load(std::memory_order_acquire))
+        wait(step());
+    line_.set(false);
+}
+
+// Handles the next pulse. Returns the time without work, ns.
+std::int64_t trigger_thread::step() noexcept
+{
+    const clock_line line = link_.sync_clock.load();
+    const std::optional<pulse_board::seen> p = line.epoch != 0 ? board_.next(line) : std::nullopt;
+    if (!p)
+        return line.epoch != 0 ? idle_ns : longest_wait_ns;
+    if (!line.valid())
+        return no_clock_ns;
+    const std::int64_t due = line.time_at(p->what.frame);
+    const std::int64_t wait_ns = due - real_time().now() - pulse_lead_ns;
+    if (wait_ns > 0)
+        return std::min(wait_ns, longest_wait_ns);
+    const bool in_time = emitter_.await(due);
+    // The pulse may have been withdrawn meanwhile, and an xrun may have ended its epoch.
+    if (board_.take(*p)) {
+        if (!in_time)
+            emitter_.miss();
+        else if (link_.sync_clock.load().epoch == p->what.epoch)
+            emitter_.send(due);
+    }
+    stats_.store(emitter_.stats());
+    link_.to_control.signal();
+    return 0;
+}
+
+void trigger_thread::wait(std::int64_t ns) noexcept
+{
+    const timespec timeout = rt::to_timespec(ns);
+    pollfd fd{.fd = wake_.fd(), .events = POLLIN, .revents = 0};
+    if (::ppoll(&fd, 1, &timeout, nullptr) > 0)
+        wake_.consume();
+}
+
+void pulse_plan::forget(stroke_id id, bool was_played)
+{
+    const std::size_t unsent =
+        std::erase_if(waiting_, [id](const pulse& p) { return p.id == id; }) + board_.forget(id);
+    missed_ += was_played ? unsent : 0;
+    hand_over();
+}
+
+bool pulse_plan::add(stroke_id id, std::uint64_t frame, const clock_line& line)
+{
+    board_.forget_other_epochs(line.epoch);
+    std::erase_if(waiting_, [&line](const pulse& p) { return p.epoch != line.epoch; });
+    if (line.epoch == 0 || frame < line.first)
+        return false;
+    waiting_.insert({.epoch = line.epoch, .frame = frame, .id = id});
+    hand_over();
+    return true;
+}
+
+bool pulse_plan::hand_over()
+{
+    bool any = false;
+    while (!waiting_.empty()) {
+        const pulse first = *waiting_.begin();
+        const std::optional<pulse> displaced = board_.offer(first);
+        if (displaced == first)
+            break;
+        any = true;
+        waiting_.erase(waiting_.begin());
+        if (displaced)
+            waiting_.insert(*displaced);
+    }
+    return any;
+}
+
+bool pulse_emitter::await(std::int64_t due_ns) noexcept
+{
+    if (time_.now() - due_ns > latest_pulse_ns)
+        return false;
+    time_.sleep_until(due_ns - cost_ns_);
+    return true;
+}
+
+void pulse_emitter::send(std::int64_t due_ns) noexcept
+{
+    const std::int64_t before = time_.now();
+    if (!line_.set(true)) {
+        ++stats_.missed;
+        line_.set(false);
+        return;
+    }
+    const std::int64_t on = time_.now();
+    // The first call may include page faults.
+    cost_ns_ = stats_.sent < 2 ? on - before : cost_ns_ + (on - before - cost_ns_) / 8;
+    const double late = static_cast<double>(on - due_ns) * 1e-9;
+    ++stats_.sent;
+    stats_.mean_late_s += (late - stats_.mean_late_s) / static_cast<double>(stats_.sent);
+    stats_.worst_late_s = std::max(stats_.worst_late_s, late);
+    time_.sleep_until(on + pulse_ns_);
+    line_.set(false);
 }
 
 } // namespace tactor::engine
