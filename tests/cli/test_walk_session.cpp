@@ -14,7 +14,7 @@
 #include "fake_dac.hpp"
 #include "has.hpp"
 #include "player_support.hpp"
-#include "sink/alsa/adopt.hpp"
+#include "sink/alsa/pcm_sink.hpp"
 
 namespace walk_session_test {
 

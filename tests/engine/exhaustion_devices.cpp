@@ -26,7 +26,7 @@
 #include "core/owned.hpp"
 #include "exhaustion_calls.hpp"
 #include "player_support.hpp"
-#include "sink/alsa/adopt.hpp"
+#include "sink/alsa/pcm_sink.hpp"
 
 namespace tactor::test {
 namespace {

@@ -17,7 +17,7 @@
 #include "clock_runner.hpp"
 #include "fake_dac.hpp"
 #include "scores.hpp"
-#include "sink/alsa/adopt.hpp"
+#include "sink/alsa/pcm_sink.hpp"
 
 namespace tactor::test {
 

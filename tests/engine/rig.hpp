@@ -26,7 +26,7 @@
 #include "engine/control/feeder.hpp"
 #include "fake_dac.hpp"
 #include "scores.hpp"
-#include "sink/alsa/adopt.hpp"
+#include "sink/alsa/pcm_sink.hpp"
 
 namespace tactor::test {
 

@@ -32,7 +32,7 @@
 #include "rig.hpp"
 #include "rounds.hpp"
 #include "scores.hpp"
-#include "sink/alsa/adopt.hpp"
+#include "sink/alsa/pcm_sink.hpp"
 
 namespace exhaustion_test {
 

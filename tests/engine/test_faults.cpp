@@ -13,7 +13,7 @@
 #include "live_rig.hpp"
 #include "player_support.hpp"
 #include "rig.hpp"
-#include "sink/alsa/adopt.hpp"
+#include "sink/alsa/pcm_sink.hpp"
 
 namespace faults_test {
 

@@ -27,7 +27,7 @@
 #include "player_support.hpp"
 #include "rig.hpp"
 #include "scores.hpp"
-#include "sink/alsa/adopt.hpp"
+#include "sink/alsa/pcm_sink.hpp"
 
 namespace player_test {
 

@@ -28,7 +28,7 @@
 #include "player_support.hpp"
 #include "rig.hpp"
 #include "scores.hpp"
-#include "sink/alsa/adopt.hpp"
+#include "sink/alsa/pcm_sink.hpp"
 
 namespace values_test {
 

@@ -9,8 +9,8 @@
 #include "holds.hpp"
 #include "sink/alsa/devices/plain_name.hpp"
 #include "sink/alsa/devices/route.hpp"
+#include "sink/alsa/error_text.hpp"
 #include "sink/alsa/handle.hpp"
-#include "sink/alsa/library_messages.hpp"
 
 using namespace tactor;
 

@@ -23,7 +23,7 @@
 #include "clock_runner.hpp"
 #include "fake_dac.hpp"
 #include "server/service.hpp"
-#include "sink/alsa/adopt.hpp"
+#include "sink/alsa/pcm_sink.hpp"
 
 namespace tactor::test {
 

@@ -19,7 +19,7 @@
 #include "fake_dac.hpp"
 #include "player_support.hpp"
 #include "scores.hpp"
-#include "sink/alsa/adopt.hpp"
+#include "sink/alsa/pcm_sink.hpp"
 
 namespace play_session_test {
 

@@ -13,7 +13,7 @@
 #include "fake_dac.hpp"
 #include "player_support.hpp"
 #include "scores.hpp"
-#include "sink/alsa/adopt.hpp"
+#include "sink/alsa/pcm_sink.hpp"
 #include "study/experiment/definition.hpp"
 #include "study/experiment/stimuli.hpp"
 

@@ -1,16 +1,69 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// Explanations and hints for ALSA's error numbers.
+/// Explanations and hints for ALSA's error numbers, and libasound's own messages, which stand in errors
+/// instead of on the user's standard error.
+///
+/// libasound has one message handler for the process, which belongs to the host program. The default one
+/// passes messages to a handler of each thread. That one is replaced during the calls, and then restored.
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <string>
 #include <vector>
 
+#include <alsa/asoundlib.h>
+
 #include <tactor/error.hpp>
 
-#include "sink/alsa/devices/cards.hpp"
+#include "sink/alsa/devices/devices.hpp"
 
 namespace tactor::alsa {
+
+/// Calls snd_lib_error_set_local(), which alsa-lib 1.2.8 declares without extern "C".
+snd_local_error_handler_t set_local_handler(snd_local_error_handler_t h) __asm__("snd_lib_error_set_local");
+
+/// Silences libasound on this thread while an object lives, unless the host has its own handler. The audio
+/// thread uses it: no lock and no allocation.
+class quiet {
+public:
+    quiet() noexcept : quiet(&ignore) {}
+    ~quiet() { set_local_handler(before_); }
+    quiet(const quiet&) = delete;
+    quiet& operator=(const quiet&) = delete;
+
+protected:
+    explicit quiet(snd_local_error_handler_t h) noexcept : before_(set_local_handler(h)) {}
+
+private:
+    static void ignore(const char*, int, const char*, int, const char*, va_list) noexcept {}
+
+    snd_local_error_handler_t before_;
+};
+
+/// Collects libasound's messages on this thread while an object lives. A second object takes the
+/// messages while it lives.
+class library_messages : quiet {
+public:
+    library_messages() noexcept;
+    ~library_messages();
+    library_messages(const library_messages&) = delete;
+    library_messages& operator=(const library_messages&) = delete;
+
+    /// Returns the first message since construction, or nothing. Always nothing if the host has its own
+    /// handler.
+    std::string first() const;
+    /// Returns the messages, a line each, as far as they fit in 1000 bytes.
+    std::string all() const;
+
+private:
+    [[gnu::format(printf, 5, 0)]] static void collect(const char*, int, const char*, int, const char* format,
+                                                      va_list arguments) noexcept;
+
+    std::array<char, 1000> text_{};
+    std::size_t length_ = 0;
+    library_messages* outer_;
+};
 
 /// Returns "text (detail)", or "text" without a detail.
 std::string with_detail(const std::string& text, const std::string& detail);

@@ -2,22 +2,24 @@
 #include "sink/alsa/handle.hpp"
 
 #include <cerrno>
-#include <new>
+#include <memory>
+#include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 
-#include <sys/eventfd.h>
-
 #include <fmt/format.h>
+#include <sys/eventfd.h>
 
 #include <tactor/error.hpp>
 
+#include "core/limits.hpp"
 #include "core/owned.hpp"
 #include "core/refused.hpp"
 #include "core/split.hpp"
+#include "core/words.hpp"
 #include "sink/alsa/devices/route.hpp"
 #include "sink/alsa/error_text.hpp"
-#include "sink/alsa/library_messages.hpp"
 
 namespace tactor::alsa {
 namespace {
@@ -72,15 +74,6 @@ configuration parse(const std::string& text)
 constexpr int mode =
     SND_PCM_NONBLOCK | SND_PCM_NO_AUTO_RESAMPLE | SND_PCM_NO_AUTO_CHANNELS | SND_PCM_NO_AUTO_FORMAT;
 
-template <typename T, typename Make>
-T* made(Make make)
-{
-    T* p = nullptr;
-    if (make(&p) < 0)
-        throw std::bad_alloc();
-    return p;
-}
-
 surroundings around(snd_config_t* top, const std::string& name, const std::string& messages)
 {
     const auto has = [&messages](const std::string& text) { return messages.find(text) != messages.npos; };
@@ -111,28 +104,6 @@ configuration read_configuration(const std::string& text)
     return c;
 }
 
-hw_params make_hw_params()
-{
-    return hw_params(made<snd_pcm_hw_params_t>(snd_pcm_hw_params_malloc));
-}
-
-hw_params copy(const hw_params& p)
-{
-    hw_params q = make_hw_params();
-    snd_pcm_hw_params_copy(q.get(), p.get());
-    return q;
-}
-
-sw_params make_sw_params()
-{
-    return sw_params(made<snd_pcm_sw_params_t>(snd_pcm_sw_params_malloc));
-}
-
-status make_status()
-{
-    return status(made<snd_pcm_status_t>(snd_pcm_status_malloc));
-}
-
 handle open(const alsa_options& o, snd_config_t* top)
 {
     if (const std::string fault = find_fault(top, o.pcm); !fault.empty())
@@ -150,6 +121,267 @@ handle open(const alsa_options& o, snd_config_t* top)
     if (code = snd_pcm_nonblock(h.get(), 1); code < 0)
         tactor::detail::throw_caused(open_error(o.pcm, code, messages.first()), -code);
     return h;
+}
+
+namespace {
+
+hw_params copy(const hw_params& p)
+{
+    hw_params q = allocate<hw_params>(snd_pcm_hw_params_malloc);
+    snd_pcm_hw_params_copy(q.get(), p.get());
+    return q;
+}
+
+void must(int code, const std::string& name, const char* call)
+{
+    if (code < 0)
+        tactor::detail::throw_caused(call_error(name, call, code), -code);
+}
+
+// Formats a range. Software PCMs report 1073741823 channels or 4294967295 Hz, which means no limit.
+std::string range(unsigned least, unsigned most, unsigned beyond)
+{
+    if (least == most)
+        return fmt::format("{}", least);
+    if (most >= beyond)
+        return least <= 1 ? "any" : fmt::format("{} or more", least);
+    return fmt::format("{} to {}", least, most);
+}
+
+std::string formats(const hw_params& p)
+{
+    const auto mask = allocate<std::unique_ptr<snd_pcm_format_mask_t, deleter<snd_pcm_format_mask_free>>>(
+        snd_pcm_format_mask_malloc);
+    snd_pcm_hw_params_get_format_mask(p.get(), mask.get());
+    std::string names;
+    for (const format_kind f : format_preference)
+        if (snd_pcm_format_mask_test(mask.get(), to_alsa(f)) != 0)
+            names += fmt::format(" {}", to_string(f));
+    return names.empty() ? " none that tactor plays" : names;
+}
+
+/// Returns "channels 1 to 8, rates 44100 to 192000 Hz, formats s32 s16" of a configuration space.
+std::string describe(const hw_params& p)
+{
+    unsigned first_channels = 0;
+    unsigned last_channels = 0;
+    snd_pcm_hw_params_get_channels_min(p.get(), &first_channels);
+    snd_pcm_hw_params_get_channels_max(p.get(), &last_channels);
+    unsigned least_hz = 0;
+    unsigned most_hz = 0;
+    int direction = 0;
+    snd_pcm_hw_params_get_rate_min(p.get(), &least_hz, &direction);
+    snd_pcm_hw_params_get_rate_max(p.get(), &most_hz, &direction);
+    if (direction < 0)
+        --most_hz; // the bound itself is outside the range
+    return fmt::format("channels {}, rates {} Hz, formats{}", range(first_channels, last_channels, 10000),
+                       range(least_hz, most_hz, 10'000'000), formats(p));
+}
+
+// Greatest numbers of a sensible request: alsa-lib computes with 32 bits.
+constexpr unsigned most_rate = 768'000;
+constexpr unsigned most_period_frames = 1U << 20;
+constexpr unsigned most_periods = 1024;
+
+std::string request_text(const alsa_options& o)
+{
+    std::string formats;
+    if (o.format)
+        formats = to_string(*o.format);
+    else
+        for (const format_kind f : format_preference)
+            formats += fmt::format("{}{}", formats.empty() ? "" : " or ", to_string(f));
+    return fmt::format("{} channel{} at {} Hz in {}", o.channels, o.channels == 1 ? "" : "s", o.rate,
+                       formats);
+}
+
+std::span<const format_kind> wanted_formats(const alsa_options& o)
+{
+    return o.format ? std::span<const format_kind>(&*o.format, 1) : std::span(format_preference);
+}
+
+// Returns true if the device can do one of the formats, whatever the other settings.
+bool takes_format(snd_pcm_t* p, const hw_params& space, std::span<const format_kind> formats)
+{
+    for (const format_kind f : formats)
+        if (snd_pcm_hw_params_test_format(p, space.get(), to_alsa(f)) == 0)
+            return true;
+    return false;
+}
+
+// Restricts to the requested channels, or else, if more are allowed, to the fewest that hold them. Returns
+// their number; 0 if neither works.
+unsigned set_channels(snd_pcm_t* p, const hw_params& h, const alsa_options& o)
+{
+    if (snd_pcm_hw_params_set_channels(p, h.get(), o.channels) == 0)
+        return o.channels;
+    unsigned n = o.channels;
+    const bool fits = o.wider && snd_pcm_hw_params_set_channels_min(p, h.get(), &n) == 0 &&
+                      snd_pcm_hw_params_set_channels_first(p, h.get(), &n) == 0;
+    return fits && n <= most_channels ? n : 0;
+}
+
+// Names each setting that the device cannot do. If it can do each alone, only the combination fails.
+error refused(snd_pcm_t* p, const hw_params& space, const alsa_options& o)
+{
+    std::string s;
+    const auto add = [&s](std::string_view word) { s += fmt::format("{}{}", s.empty() ? "" : ", ", word); };
+    const bool has_channels = set_channels(p, copy(space), o) != 0;
+    if (!has_channels)
+        add("channels");
+    if (snd_pcm_hw_params_test_rate(p, space.get(), o.rate, 0) != 0)
+        add("rate");
+    if (!takes_format(p, space, wanted_formats(o)))
+        add("format");
+    alsa_options wider = o;
+    wider.wider = true;
+    const bool holds = !has_channels && set_channels(p, copy(space), wider) != 0;
+    const std::string why =
+        s.empty() ? "each alone would do, but not together" : fmt::format("refused: {}", s);
+    return error(error_kind::not_available, fmt::format("PCM \"{}\"", o.pcm),
+                 fmt::format("cannot play {}; {}", request_text(o), why),
+                 fmt::format("it can do {}{}", describe(space),
+                             holds ? "; {wider=true} leaves the other channels silent" : ""))
+        .with_field(has_channels ? "" : "channels");
+}
+
+struct fixed {
+    hw_params params;
+    format_kind format;
+    unsigned channels;
+};
+
+// Fixes format, rate and channels. Each format starts anew, because some devices tie the three together.
+std::optional<fixed> fix(snd_pcm_t* p, const hw_params& space, const alsa_options& o, format_kind f)
+{
+    hw_params h = copy(space);
+    if (snd_pcm_hw_params_set_format(p, h.get(), to_alsa(f)) < 0)
+        return std::nullopt;
+    // Exactly this rate: a stroke at another rate is another stimulus.
+    if (snd_pcm_hw_params_set_rate(p, h.get(), o.rate, 0) < 0)
+        return std::nullopt;
+    const unsigned n = set_channels(p, h, o);
+    return n == 0 ? std::nullopt : std::optional(fixed{std::move(h), f, n});
+}
+
+// Returns the first format that fits with the fewest channels.
+std::optional<fixed> find_fit(snd_pcm_t* p, const hw_params& space, const alsa_options& o)
+{
+    std::optional<fixed> best;
+    for (const format_kind f : wanted_formats(o))
+        if (std::optional<fixed> one = fix(p, space, o, f); one && (!best || one->channels < best->channels))
+            best = std::move(one);
+    return best;
+}
+
+void set_sizes(snd_pcm_t* p, const hw_params& h, const alsa_options& o)
+{
+    snd_pcm_hw_params_set_periods_integer(p, h.get()); // some devices refuse this, and work without it
+    int direction = 0;
+    snd_pcm_uframes_t period = o.period_frames;
+    must(snd_pcm_hw_params_set_period_size_near(p, h.get(), &period, &direction), o.pcm,
+         "snd_pcm_hw_params_set_period_size_near");
+    // Sets the buffer as well: otherwise a software PCM chooses hours of frames.
+    unsigned periods = o.periods;
+    direction = 0;
+    if (snd_pcm_hw_params_set_periods_near(p, h.get(), &periods, &direction) == 0)
+        return;
+    snd_pcm_uframes_t buffer = period * o.periods;
+    must(snd_pcm_hw_params_set_buffer_size_near(p, h.get(), &buffer), o.pcm,
+         "snd_pcm_hw_params_set_buffer_size_near");
+}
+
+stream_setup read_back(const hw_params& h, const alsa_options& o, const fixed& asked_for)
+{
+    stream_setup s{.name = o.pcm, .channels = o.channels, .format = asked_for.format};
+    int direction = 0;
+    snd_pcm_uframes_t period = 0;
+    snd_pcm_uframes_t buffer = 0;
+    snd_pcm_hw_params_get_channels(h.get(), &s.device_channels);
+    snd_pcm_hw_params_get_rate(h.get(), &s.rate, &direction);
+    snd_pcm_hw_params_get_period_size(h.get(), &period, &direction);
+    snd_pcm_hw_params_get_buffer_size(h.get(), &buffer);
+    s.period_frames = static_cast<unsigned>(period);
+    s.buffer_frames = static_cast<unsigned>(buffer);
+    s.batch = snd_pcm_hw_params_is_batch(h.get()) != 0;
+    if (s.device_channels != asked_for.channels || s.rate != o.rate || period == 0 || buffer < period)
+        throw error(error_kind::not_available, fmt::format("PCM \"{}\"", o.pcm),
+                    fmt::format("asked for {}, it made {} at {} Hz with {} of {} frames of it",
+                                request_text(o), counted(s.device_channels, "channel"), s.rate,
+                                s.period_frames, s.buffer_frames),
+                    "use the PCM without plugins, e.g. hw:CARD=NAME");
+    return s;
+}
+
+} // namespace
+
+void check(const alsa_options& o)
+{
+    const auto within = [&o](const char* field, const char* thing, unsigned value, unsigned least,
+                             unsigned most) {
+        if (value < least || value > most)
+            throw error(error_kind::bad_input, fmt::format("PCM \"{}\"", o.pcm),
+                        fmt::format("{} {} out of range", value, thing),
+                        fmt::format("give {} to {}", least, most))
+                .with_field(field);
+    };
+    within("channels", "channels", o.channels, 1, most_channels);
+    within("rate", "Hz", o.rate, 1, most_rate);
+    within("period_frames", "frames a period", o.period_frames, detail::least_period_frames(o.rate),
+           most_period_frames);
+    within("periods", "periods", o.periods, 2, most_periods);
+}
+
+hw_params configuration_space(snd_pcm_t* p, const std::string& name)
+{
+    hw_params h = allocate<hw_params>(snd_pcm_hw_params_malloc);
+    must(snd_pcm_hw_params_any(p, h.get()), name, "snd_pcm_hw_params_any");
+    // Forbids resampling. Not every plugin knows the setting, but open() forbids it as well.
+    snd_pcm_hw_params_set_rate_resample(p, h.get(), 0);
+    must(snd_pcm_hw_params_set_access(p, h.get(), SND_PCM_ACCESS_RW_INTERLEAVED), name,
+         "snd_pcm_hw_params_set_access (interleaved)");
+    return h;
+}
+
+std::string misfit(snd_pcm_t* p, const hw_params& space, const alsa_options& o)
+{
+    return find_fit(p, space, o) ? std::string() : std::string(refused(p, space, o).why());
+}
+
+stream_setup negotiate(snd_pcm_t* p, const alsa_options& o)
+{
+    const hw_params space = configuration_space(p, o.pcm);
+    const std::optional<fixed> best = find_fit(p, space, o);
+    if (!best)
+        throw error(refused(p, space, o));
+    set_sizes(p, best->params, o);
+    must(snd_pcm_hw_params(p, best->params.get()), o.pcm, "snd_pcm_hw_params");
+    return read_back(best->params, o, *best);
+}
+
+void set_software(snd_pcm_t* p, const stream_setup& s)
+{
+    const sw_params w = allocate<sw_params>(snd_pcm_sw_params_malloc);
+    const auto call = [&s](int code, const char* name) { must(code, s.name, name); };
+    call(snd_pcm_sw_params_current(p, w.get()), "snd_pcm_sw_params_current");
+    snd_pcm_uframes_t boundary = 0;
+    call(snd_pcm_sw_params_get_boundary(w.get(), &boundary), "snd_pcm_sw_params_get_boundary");
+
+    // Only snd_pcm_start() starts the DAC, so the instant is known, and the amplifier can follow it.
+    call(snd_pcm_sw_params_set_start_threshold(p, w.get(), boundary),
+         "snd_pcm_sw_params_set_start_threshold");
+    // An underrun stops the DAC. A threshold beyond the buffer would replay old frames for ever.
+    call(snd_pcm_sw_params_set_stop_threshold(p, w.get(), s.buffer_frames),
+         "snd_pcm_sw_params_set_stop_threshold");
+    call(snd_pcm_sw_params_set_avail_min(p, w.get(), s.period_frames), "snd_pcm_sw_params_set_avail_min");
+    call(snd_pcm_sw_params_set_tstamp_mode(p, w.get(), SND_PCM_TSTAMP_ENABLE),
+         "snd_pcm_sw_params_set_tstamp_mode");
+    call(snd_pcm_sw_params_set_tstamp_type(p, w.get(), SND_PCM_TSTAMP_TYPE_MONOTONIC),
+         "snd_pcm_sw_params_set_tstamp_type");
+    // Overwrites played frames with silence, for a device that runs on past the last frame.
+    call(snd_pcm_sw_params_set_silence_threshold(p, w.get(), 0), "snd_pcm_sw_params_set_silence_threshold");
+    call(snd_pcm_sw_params_set_silence_size(p, w.get(), boundary), "snd_pcm_sw_params_set_silence_size");
+    call(snd_pcm_sw_params(p, w.get()), "snd_pcm_sw_params");
 }
 
 } // namespace tactor::alsa

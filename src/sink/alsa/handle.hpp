@@ -1,17 +1,20 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// Owners of ALSA's objects, its configuration, and opening a PCM by name.
+/// Owners of ALSA's objects, its configuration, opening a PCM by name, and its parameters.
 #pragma once
 
+#include <array>
 #include <memory>
+#include <new>
 #include <string>
 
 #include <alsa/asoundlib.h>
 
 #include <tactor/alsa.hpp>
+#include <tactor/choices.hpp>
 
 #include "core/owned.hpp"
-#include "sink/alsa/library_messages.hpp"
+#include "sink/alsa/error_text.hpp"
 
 namespace tactor::alsa {
 
@@ -42,13 +45,61 @@ using hw_params = std::unique_ptr<snd_pcm_hw_params_t, deleter<snd_pcm_hw_params
 using sw_params = std::unique_ptr<snd_pcm_sw_params_t, deleter<snd_pcm_sw_params_free>>;
 using status = std::unique_ptr<snd_pcm_status_t, deleter<snd_pcm_status_free>>;
 
-hw_params make_hw_params();
-hw_params copy(const hw_params& p);
-sw_params make_sw_params();
-status make_status();
+/// Allocates an object of ALSA's by its function. \throws std::bad_alloc.
+template <typename Owner>
+Owner allocate(int (*make)(typename Owner::pointer*))
+{
+    typename Owner::pointer p = nullptr;
+    if (make(&p) < 0)
+        throw std::bad_alloc();
+    return Owner(p);
+}
 
 /// Opens a PCM of this configuration for playback: non-blocking, without hidden conversion.
 /// \throws error as open_alsa() does.
 handle open(const alsa_options& o, snd_config_t* top);
+
+/// Checks the options.
+/// \throws error (bad_input) for numbers that no PCM can have.
+void check(const alsa_options& o);
+
+/// Returns the whole configuration space of the PCM with interleaved samples and without resampling. `name`
+/// is for errors.
+/// \throws error (not_available).
+hw_params configuration_space(snd_pcm_t* p, const std::string& name);
+
+/// Returns why the requested channels, rate and format are not possible together; empty if they are.
+std::string misfit(snd_pcm_t* p, const hw_params& space, const alsa_options& o);
+
+/// Sets the requested channels and rate, the first format that fits, and the nearest period and buffer.
+/// Returns the set-up of the device.
+/// \throws error (not_available) with the request and what the device can do. It has the field "channels" if
+///         the device does not have as many.
+stream_setup negotiate(snd_pcm_t* p, const alsa_options& o);
+
+/// Sets an explicit start, a stop on the first missing frame, and silence where nothing was written.
+/// \throws error (not_available).
+void set_software(snd_pcm_t* p, const stream_setup& s);
+
+/// In the order in which they are tried: first those that I2S and USB devices carry without loss.
+inline constexpr std::array format_preference{format_kind::s32, format_kind::float32, format_kind::s24_3,
+                                              format_kind::s24_4, format_kind::s16};
+
+constexpr snd_pcm_format_t to_alsa(format_kind f) noexcept
+{
+    switch (f) {
+    case format_kind::float32:
+        return SND_PCM_FORMAT_FLOAT_LE;
+    case format_kind::s16:
+        return SND_PCM_FORMAT_S16_LE;
+    case format_kind::s24_3:
+        return SND_PCM_FORMAT_S24_3LE;
+    case format_kind::s24_4:
+        return SND_PCM_FORMAT_S24_LE;
+    case format_kind::s32:
+        return SND_PCM_FORMAT_S32_LE;
+    }
+    return SND_PCM_FORMAT_UNKNOWN;
+}
 
 } // namespace tactor::alsa

@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// A configured PCM as a sink.
+/// A configured PCM as a sink, and sinks of PCMs that are already open, for devices that live in the test
+/// itself.
 #pragma once
 
 #include <cstddef>
+#include <memory>
 #include <span>
+#include <string_view>
 #include <vector>
 
 #include <alsa/asoundlib.h>
@@ -72,5 +75,11 @@ io_kind classify_state(int state) noexcept;
 
 /// Returns the outcome that a negative return value means in a state.
 io_kind classify_error(long code, int state) noexcept;
+
+/// Configures `p` and owns it; closes it on failure, too. Throws as open_alsa() does; `o.pcm` is only a name.
+/// `as_card`: treats its clock as a card's, which never stops for this process. `device`: as
+/// stream_setup::device.
+std::unique_ptr<sink> adopt(snd_pcm_t* p, const alsa_options& o, bool as_card = false,
+                            std::string_view device = {});
 
 } // namespace tactor::alsa

@@ -15,9 +15,8 @@
 #include "caught.hpp"
 #include "fake_system.hpp"
 #include "has.hpp"
-#include "sink/alsa/devices/cards.hpp"
+#include "sink/alsa/devices/devices.hpp"
 #include "sink/alsa/error_text.hpp"
-#include "sink/alsa/library_messages.hpp"
 
 namespace alsa_errors_test {
 

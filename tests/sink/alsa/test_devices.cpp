@@ -17,7 +17,7 @@
 #include "fake_system.hpp"
 #include "folder.hpp"
 #include "has.hpp"
-#include "sink/alsa/devices/cards.hpp"
+#include "sink/alsa/devices/devices.hpp"
 #include "sink/alsa/devices/plain_name.hpp"
 #include "sink/alsa/devices/route.hpp"
 #include "sink/alsa/handle.hpp"

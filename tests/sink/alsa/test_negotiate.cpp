@@ -20,11 +20,10 @@
 
 #include "fake_dac.hpp"
 #include "folder.hpp"
-#include "sink/alsa/adopt.hpp"
 #include "sink/alsa/devices/route.hpp"
 #include "sink/alsa/error_text.hpp"
 #include "sink/alsa/handle.hpp"
-#include "sink/alsa/negotiate.hpp"
+#include "sink/alsa/pcm_sink.hpp"
 
 namespace negotiate_test {
 

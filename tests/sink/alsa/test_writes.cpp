@@ -20,7 +20,6 @@
 #include "fake_dac.hpp"
 #include "has.hpp"
 #include "rt/clock.hpp"
-#include "sink/alsa/adopt.hpp"
 #include "sink/alsa/handle.hpp"
 #include "sink/alsa/pcm_sink.hpp"
 #include "sink/pacer.hpp"
@@ -323,7 +322,7 @@ TEST_CASE("a stream starts on request, ends with its last frame, and is silent b
 {
     fake_dac dac;
     const auto s = alsa::adopt(dac.pcm(), eight);
-    const alsa::sw_params w = alsa::make_sw_params();
+    const alsa::sw_params w = alsa::allocate<alsa::sw_params>(snd_pcm_sw_params_malloc);
     REQUIRE(snd_pcm_sw_params_current(dac.pcm(), w.get()) == 0);
     snd_pcm_uframes_t boundary = 0;
     REQUIRE(snd_pcm_sw_params_get_boundary(w.get(), &boundary) == 0);

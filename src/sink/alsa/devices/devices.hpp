@@ -57,17 +57,4 @@ std::vector<pcm_info> list(const system_root& root, const std::optional<alsa_opt
 /// Fills in the abilities of an open PCM, and the reason why it does not fit.
 void look_at(snd_pcm_t* p, const std::optional<alsa_options>& wanted, pcm_info& into);
 
-/// Returns a text without the blanks at both ends.
-std::string trimmed(std::string_view s);
-
-/// Returns the lines of a file; none if it cannot be read. \throws error (runtime), here and below, without a
-/// descriptor.
-std::vector<std::string> read_lines(const std::filesystem::path& file);
-
-/// Returns the value after "key:" in a file of such lines.
-std::string field(const std::filesystem::path& file, std::string_view key);
-
-/// Returns the entries of a folder, in no order.
-std::vector<std::filesystem::path> entries(const std::filesystem::path& folder);
-
 } // namespace tactor::alsa
