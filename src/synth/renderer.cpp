@@ -73,11 +73,14 @@ limits_met find_limits_met(const score& s)
     constexpr std::uint64_t most_frames = 4096;
     score_mixer m(s, format_kind::float32);
     std::vector<std::byte> unused(most_frames * m.frame_bytes);
-    const auto acts = [&] { return m.mix.power_limited() != 0 || m.mix.drives_cut() != 0; };
-    while (m.mix.position() < s.frames() && !acts())
+    const auto acting = [&] {
+        const mixer_counts c = m.mix.counts();
+        return limits_met{c.power_limited != 0, c.drives_cut != 0};
+    };
+    while (m.mix.position() < s.frames() && !acting().power && !acting().time)
         m.process(static_cast<std::size_t>(std::min(most_frames, s.frames() - m.mix.position())),
                   unused.data());
-    return {m.mix.power_limited() != 0, m.mix.drives_cut() != 0};
+    return acting();
 }
 
 } // namespace tactor::synth

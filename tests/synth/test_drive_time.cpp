@@ -69,7 +69,7 @@ played play(const std::vector<synth::drive_event>& events, double total_s, const
     p.x.resize(static_cast<std::size_t>(total_s * rate));
     for (std::size_t done = 0; done < p.x.size(); done += block)
         m.process(std::min(block, p.x.size() - done), reinterpret_cast<std::byte*>(p.x.data() + done));
-    p.cuts = m.drives_cut();
+    p.cuts = m.counts().drives_cut;
     return p;
 }
 
@@ -353,7 +353,7 @@ TEST_CASE("without a limit drive time is counted where it is asked for, and noth
         m->resume(std::vector<double>{5.0});
         m->add(voice(0.0, 20.0, 0.5));
         m->process(x.size(), reinterpret_cast<std::byte*>(x.data()));
-        CHECK(m->drives_cut() == 0);
+        CHECK(m->counts().drives_cut == 0);
     }
     CHECK(counts.driven(0) == x.size());
     CHECK(none.driven(0) == 0);
@@ -419,7 +419,7 @@ TEST_CASE("the mixer's guard never changes a piece that has waited as long as co
             r.played(s, m.position());
             play(m, s);
             rest(m, static_cast<std::uint64_t>(uniform(0.0, 1.0) * rate));
-            REQUIRE(m.drives_cut() == 0);
+            REQUIRE(m.counts().drives_cut == 0);
         }
         CHECK(waited < std::uint64_t{20} * 10 * rate);
     }

@@ -115,7 +115,7 @@ TEST_CASE("an epoch's end does not give a tactor its time back")
         m.process(rate / 2 - 100, reinterpret_cast<std::byte*>(x.data()));
         m.reset();
     }
-    CHECK(m.drives_cut() == 1);
+    CHECK(m.counts().drives_cut == 1);
 }
 
 TEST_CASE("weak drives do not count, and impossible limits are named")

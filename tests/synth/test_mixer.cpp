@@ -200,7 +200,7 @@ TEST_CASE("each channel is held to its limit, and cuts are counted")
         cut += std::abs(x[2 * k]) == 8192 ? 1 : 0;
     }
     CHECK(cut > 400);
-    CHECK(m.limited() >= cut);
+    CHECK(m.counts().limited >= cut);
 }
 
 TEST_CASE("no sample is above the limit for any begins and ends within a block")
@@ -228,11 +228,11 @@ TEST_CASE("one stroke at full scale passes the limiter untouched")
     mixer m = make_mixer();
     m.add(make_event(0, 48000, 1.0));
     take(m, 48000);
-    CHECK(m.limited() == 0);
+    CHECK(m.counts().limited == 0);
     m.add(make_event(48000, 480, 0.75));
     m.add(make_event(48000, 480, 0.75));
     take(m, 480);
-    CHECK(m.limited() > 100);
+    CHECK(m.counts().limited > 100);
 }
 
 TEST_CASE("a faded score goes to zero without a step and is forgotten")

@@ -185,7 +185,7 @@ std::vector<float> mix_samples(const score& s, const render_options& o)
         REQUIRE(mixer.add(e));
     std::vector<float> samples(s.frames() * s.channels());
     mixer.process(s.frames(), reinterpret_cast<std::byte*>(samples.data()));
-    CHECK(mixer.limited() == 0);
+    CHECK(mixer.counts().limited == 0);
     return samples;
 }
 

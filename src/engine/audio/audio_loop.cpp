@@ -181,9 +181,10 @@ void audio_loop::mix_period() noexcept
     pending_ = setup_.period_frames;
     pending_from_ = 0;
     link_.count.periods.fetch_add(1, std::memory_order_relaxed);
-    link_.count.limited.store(mixer_.limited(), std::memory_order_relaxed);
-    link_.count.power_limited.store(mixer_.power_limited(), std::memory_order_relaxed);
-    link_.count.drives_cut.store(mixer_.drives_cut(), std::memory_order_relaxed);
+    const synth::mixer_counts counts = mixer_.counts();
+    link_.count.limited.store(counts.limited, std::memory_order_relaxed);
+    link_.count.power_limited.store(counts.power_limited, std::memory_order_relaxed);
+    link_.count.drives_cut.store(counts.drives_cut, std::memory_order_relaxed);
     for (std::size_t i = 0; i < link_.driven.size(); ++i)
         link_.driven[i].store(mixer_.driven(i), std::memory_order_relaxed);
 }

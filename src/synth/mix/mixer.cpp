@@ -123,10 +123,10 @@ TACTOR_CLONES void add_length(unsigned n, double* x, double* y, double* reach, d
     }
 }
 
-} // namespace
-
-struct mixer::impl {
-    impl(std::span<const double> limits, format_kind f, std::size_t capacity, const guard_settings& g)
+// The mixer's state and work. It is local to this file, so that the compiler joins what is called once.
+struct channel_mixer {
+    channel_mixer(std::span<const double> limits, format_kind f, std::size_t capacity,
+                  const guard_settings& g)
         : format(f),
           strips(limits.size()),
           voices(capacity),
@@ -217,6 +217,12 @@ struct mixer::impl {
     std::uint64_t power_limited = 0;
 };
 
+} // namespace
+
+struct mixer::impl : channel_mixer {
+    using channel_mixer::channel_mixer;
+};
+
 mixer::mixer(std::span<const double> limits, format_kind format, std::size_t capacity,
              const guard_settings& guards)
     : impl_(std::make_unique<impl>(limits, format, capacity, guards))
@@ -247,19 +253,9 @@ std::uint64_t mixer::position() const noexcept
     return impl_->position;
 }
 
-std::uint64_t mixer::limited() const noexcept
+mixer_counts mixer::counts() const noexcept
 {
-    return impl_->limited;
-}
-
-std::uint64_t mixer::power_limited() const noexcept
-{
-    return impl_->power_limited;
-}
-
-std::uint64_t mixer::drives_cut() const noexcept
-{
-    return impl_->duty.cuts();
+    return {impl_->limited, impl_->power_limited, impl_->duty.cuts()};
 }
 
 bool mixer::add(const drive_event& e) noexcept
@@ -309,7 +305,7 @@ void mixer::forget_gain(std::uint32_t score) noexcept
 }
 
 // Removes all scores that leave in one pass over the voices: a stop may end hundreds.
-void mixer::impl::let_go() noexcept
+void channel_mixer::let_go() noexcept
 {
     if (leaving.empty())
         return;
@@ -383,7 +379,7 @@ void mixer::process(std::size_t frames, std::byte* out) noexcept
     }
 }
 
-void mixer::impl::end_fades() noexcept
+void channel_mixer::end_fades() noexcept
 {
     if (!fading.any_ended(position))
         return;
@@ -392,7 +388,7 @@ void mixer::impl::end_fades() noexcept
     fading.end_all(position);
 }
 
-void mixer::impl::segment(unsigned n, std::byte* out) noexcept
+void channel_mixer::segment(unsigned n, std::byte* out) noexcept
 {
     voices.activate(position + n);
     const std::span<const std::uint32_t> active = voices.active();
@@ -406,7 +402,7 @@ void mixer::impl::segment(unsigned n, std::byte* out) noexcept
 
 // Mixes a voice. Its carrier is valid until another voice requests one: after the last voice, until the block
 // is written.
-void mixer::impl::mix(const voice& v, bool last, unsigned n) noexcept
+void channel_mixer::mix(const voice& v, bool last, unsigned n) noexcept
 {
     const auto from = static_cast<unsigned>(std::max(v.start, position) - position);
     const auto to = static_cast<unsigned>(std::min(v.end, position + n) - position);
@@ -439,7 +435,7 @@ void mixer::impl::mix(const voice& v, bool last, unsigned n) noexcept
     }
 }
 
-void mixer::impl::begin_strip(std::uint32_t channel, const voice& v, unsigned from) noexcept
+void channel_mixer::begin_strip(std::uint32_t channel, const voice& v, unsigned from) noexcept
 {
     strip& t = strips[channel];
     t.sounding = true;
@@ -455,7 +451,7 @@ void mixer::impl::begin_strip(std::uint32_t channel, const voice& v, unsigned fr
 
 // Mixes a line. Its part in the block counts with its greatest amplitude, from the voice's own start on, even
 // if it is silent at first, because voices come in order of their start.
-void mixer::impl::mix_line(const voice& v, const double* s, unsigned n) noexcept
+void channel_mixer::mix_line(const voice& v, const double* s, unsigned n) noexcept
 {
     strip& t = strips[v.line.channel];
     const bool alone = !t.sounding;
@@ -481,7 +477,7 @@ void mixer::impl::mix_line(const voice& v, const double* s, unsigned n) noexcept
     t.reach(static_cast<unsigned>(std::max(v.start, position) - position), end, peak);
 }
 
-void mixer::impl::limit(unsigned n) noexcept
+void channel_mixer::limit(unsigned n) noexcept
 {
     for (const std::uint32_t c : sounding) {
         strip& t = strips[c];
@@ -492,7 +488,7 @@ void mixer::impl::limit(unsigned n) noexcept
     }
 }
 
-void mixer::impl::write(unsigned n, std::byte* out) noexcept
+void channel_mixer::write(unsigned n, std::byte* out) noexcept
 {
     std::sort(sounding.begin(), sounding.end());
     samples.clear();
@@ -509,7 +505,7 @@ void mixer::impl::write(unsigned n, std::byte* out) noexcept
 
 // Limits the power of all channels and the drive time of each. Both use envelopes: the length of the vector
 // of the samples and the same samples a quarter of a cycle later.
-void mixer::impl::guard(unsigned n) noexcept
+void channel_mixer::guard(unsigned n) noexcept
 {
     double most = 0.0; // sum of squares
     for (const std::uint32_t c : sounding) {
@@ -531,7 +527,7 @@ void mixer::impl::guard(unsigned n) noexcept
 }
 
 // Finds the first frame whose envelope is needed, because an envelope takes as long as the samples.
-void mixer::impl::look_from(bool together, unsigned n) noexcept
+void channel_mixer::look_from(bool together, unsigned n) noexcept
 {
     for (const std::uint32_t c : sounding) {
         strip& t = strips[c];
@@ -544,7 +540,7 @@ void mixer::impl::look_from(bool together, unsigned n) noexcept
     }
 }
 
-void mixer::impl::find_envelopes(unsigned n) noexcept
+void channel_mixer::find_envelopes(unsigned n) noexcept
 {
     for (const std::uint32_t slot : voices.active()) {
         const voice& v = voices[slot];
@@ -568,7 +564,7 @@ void mixer::impl::find_envelopes(unsigned n) noexcept
     }
 }
 
-void mixer::impl::count_drive(unsigned n) noexcept
+void channel_mixer::count_drive(unsigned n) noexcept
 {
     for (const std::uint32_t c : sounding) {
         const strip& t = strips[c];
@@ -581,7 +577,7 @@ void mixer::impl::count_drive(unsigned n) noexcept
     }
 }
 
-void mixer::impl::cut(unsigned n) noexcept
+void channel_mixer::cut(unsigned n) noexcept
 {
     for (const std::uint32_t c : sounding) {
         strip& t = strips[c];
@@ -590,7 +586,7 @@ void mixer::impl::cut(unsigned n) noexcept
     }
 }
 
-void mixer::impl::guard_power(bool together, unsigned n) noexcept
+void channel_mixer::guard_power(bool together, unsigned n) noexcept
 {
     powered.clear();
     for (const std::uint32_t c : sounding)
@@ -607,7 +603,7 @@ void mixer::impl::guard_power(bool together, unsigned n) noexcept
 
 // Replaces the envelope of channels on which carriers beat by that at the crests: a gain that followed the
 // beat would be audible. Carriers of one frequency add up with their phases.
-void mixer::impl::find_beats(unsigned from, unsigned n) noexcept
+void channel_mixer::find_beats(unsigned from, unsigned n) noexcept
 {
     list_carriers();
     if (carriers.empty())
@@ -625,7 +621,7 @@ void mixer::impl::find_beats(unsigned from, unsigned n) noexcept
 }
 
 // Lists the voices on channels that beat, by frequency.
-void mixer::impl::list_carriers() noexcept
+void channel_mixer::list_carriers() noexcept
 {
     carriers.clear();
     const std::span<const std::uint32_t> active = voices.active();
@@ -639,7 +635,7 @@ void mixer::impl::list_carriers() noexcept
     std::sort(carriers.begin(), carriers.end());
 }
 
-void mixer::impl::find_crests(unsigned from, unsigned to) noexcept
+void channel_mixer::find_crests(unsigned from, unsigned to) noexcept
 {
     for (const std::uint32_t c : sounding)
         if (strips[c].beats)
@@ -667,7 +663,7 @@ void mixer::impl::find_crests(unsigned from, unsigned to) noexcept
     }
 }
 
-void mixer::impl::add_carrier(unsigned from, unsigned to) noexcept
+void channel_mixer::add_carrier(unsigned from, unsigned to) noexcept
 {
     for (const std::uint32_t c : sounding) {
         crest& r = crests[c];

@@ -15,6 +15,13 @@
 
 namespace tactor::synth {
 
+/// Work of a mixer's limits.
+struct mixer_counts {
+    std::uint64_t limited = 0;       ///< samples that the limit of their channel changed
+    std::uint64_t power_limited = 0; ///< frames in which the limit on the summed power acted
+    std::uint64_t drives_cut = 0; ///< drives cut short or silenced, because a channel was driven for too long
+};
+
 /// Sums drives, limits each channel, converts and interleaves. Frames count from 0 or from the last reset().
 /// After construction nothing allocates, throws or blocks. The cost of a block is bounded by the channels and
 /// the drives that sound in it.
@@ -67,12 +74,8 @@ public:
     std::uint64_t position() const noexcept;
     /// Returns the number of drives that wait or sound.
     std::size_t size() const noexcept;
-    /// Returns the number of samples that the limiter changed so far.
-    std::uint64_t limited() const noexcept;
-    /// Returns the number of frames in which the limit on the summed power acted.
-    std::uint64_t power_limited() const noexcept;
-    /// Returns the number of drives cut short or silenced because their channel was driven for too long.
-    std::uint64_t drives_cut() const noexcept;
+    /// Returns what the limits changed so far.
+    mixer_counts counts() const noexcept;
 
 private:
     struct impl;

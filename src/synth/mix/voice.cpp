@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <functional>
 
 #include "core/clones.hpp"
 #include "synth/tone/timbre.hpp"
@@ -107,13 +108,13 @@ void voice_list::add(voice v) noexcept
     v.order = arrivals_++;
     voices_[slot] = v;
     heap_.push_back({v.start, v.order, slot});
-    std::push_heap(heap_.begin(), heap_.end(), later);
+    std::push_heap(heap_.begin(), heap_.end(), std::greater<>{});
 }
 
 void voice_list::activate(std::uint64_t before) noexcept
 {
     while (!heap_.empty() && heap_.front().start < before) {
-        std::pop_heap(heap_.begin(), heap_.end(), later);
+        std::pop_heap(heap_.begin(), heap_.end(), std::greater<>{});
         insert(heap_.back().slot);
         heap_.pop_back();
     }

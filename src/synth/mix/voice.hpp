@@ -7,8 +7,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <compare>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <utility>
 #include <vector>
@@ -139,18 +141,15 @@ private:
         std::uint64_t start;
         std::uint64_t order;
         std::uint32_t slot;
+        auto operator<=>(const waiting&) const = default;
     };
-    static bool later(const waiting& a, const waiting& b) noexcept
-    {
-        return a.start != b.start ? a.start > b.start : a.order > b.order;
-    }
     void insert(std::uint32_t slot) noexcept;
     template <class Test>
     void forget_active(Test test) noexcept;
 
     std::vector<voice> voices_;
     std::vector<std::uint32_t> free_;
-    std::vector<waiting> heap_;
+    std::vector<waiting> heap_; ///< the earliest first
     std::vector<std::uint32_t> active_;
     std::uint64_t arrivals_ = 0;
     std::uint64_t earliest_end_ = ~std::uint64_t{0};
@@ -183,7 +182,7 @@ void voice_list::forget_if(Test test) noexcept
         else
             heap_[rest++] = w;
     heap_.resize(rest);
-    std::make_heap(heap_.begin(), heap_.end(), later);
+    std::make_heap(heap_.begin(), heap_.end(), std::greater<>{});
 }
 
 /// Factor of a score: `from` until frame `start`, then linear to `to`, which it reaches `length` frames

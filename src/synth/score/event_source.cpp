@@ -99,6 +99,12 @@ std::uint64_t control_frame(std::uint64_t k, unsigned rate, std::uint64_t length
     return std::min(length, frame_at(static_cast<double>(k) * continuous_step_s, rate));
 }
 
+/// Order of the heap of a source: by start, then by item.
+constexpr auto later = [](const expander* a, const expander* b) noexcept {
+    return a->event().start != b->event().start ? a->event().start > b->event().start
+                                                : a->item_number() > b->item_number();
+};
+
 } // namespace
 
 void expander::begin(const score::impl& s, std::size_t item_number, control_points* points)
@@ -325,12 +331,6 @@ event_source::event_source(const score& s)
         free_points_.push_back(&p);
     }
     heap_.reserve(expanders_.size());
-}
-
-bool event_source::later(const expander* a, const expander* b) noexcept
-{
-    return a->event().start != b->event().start ? a->event().start > b->event().start
-                                                : a->item_number() > b->item_number();
 }
 
 /// Lets every item begin that may have the next event.

@@ -87,7 +87,6 @@ public:
     void pop() noexcept;
 
 private:
-    static bool later(const expander* a, const expander* b) noexcept;
     void move_on();
     void begin_items();
     void release(expander* e) noexcept;
