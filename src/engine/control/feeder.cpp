@@ -145,8 +145,10 @@ void feeder::pump(std::uint64_t written, const clock_line& clock)
         return;
     end_cancelled();
     find_due(written);
-    look_at_waiting_live(written);
-    admit_live();
+    if (!waiting_live_.empty()) {
+        look_at_waiting_live(written);
+        admit_live();
+    }
     // While a score waits for space, the others must not use up the space that becomes free.
     feed(written, admit(written) ? horizon_ : horizon_ / 2);
     link_.feeding.store(has_strokes(), std::memory_order_relaxed);

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <chrono>
 #include <cmath>
 #include <limits>
 #include <mutex>
@@ -114,6 +115,34 @@ float to_gain(double level_db)
         throw error(error_kind::bad_input, "level_db", fmt::format("it is {}", level_db),
                     fmt::format("{} to 0 dB", player::least_level_db));
     return static_cast<float>(std::pow(10.0, level_db / 20.0));
+}
+
+// Returns the time of a time-out, at most a century from now, so that the clock cannot overflow.
+std::chrono::steady_clock::time_point deadline(double timeout_s)
+{
+    constexpr double century_s = 100.0 * 365.0 * 86400.0;
+    const double wait_s = timeout_s > 0.0 ? std::min(timeout_s, century_s) : 0.0;
+    return std::chrono::steady_clock::now() + std::chrono::nanoseconds(std::llround(wait_s * 1e9));
+}
+
+// Throws error if the stream does not start, or lacks a real-time priority that is required.
+void check_start(const engine::audio_thread& audio, const std::string& stream, const player_options& o)
+{
+    const io_result& r = audio.started();
+    if (r.status == io_kind::lost)
+        detail::throw_caused(
+            error(error_kind::not_available, stream, "the device is gone", "plug it in again"), -r.code);
+    if (r.status != io_kind::ok)
+        detail::throw_caused(
+            error(error_kind::runtime, stream,
+                  fmt::format("it does not start ({})", engine::text(reason_kind::failed, r.code)),
+                  "try another PCM, or a longer period"),
+            -r.code);
+    if (o.require_realtime && audio.fifo_error() != 0)
+        detail::throw_caused(error(error_kind::not_available, "real-time priority",
+                                   std::error_code(audio.fifo_error(), std::generic_category()).message(),
+                                   rt::realtime_advice(probe_realtime_rights(), o.priority)),
+                             audio.fifo_error());
 }
 
 // Returns the sink. \throws error (bad_input) for null, and for a setup() without frames.
@@ -253,7 +282,25 @@ bool player::cancel_all()
 
 wait_result player::wait(stroke_id id, std::optional<double> timeout_s)
 {
-    return impl_->wait(id, timeout_s);
+    impl& p = *impl_;
+    std::unique_lock lock(p.mutex);
+    const auto settled = [&] { return p.find_report(id) != p.ended.end() || !p.feed.knows(id); };
+    // In the control thread it would wait for itself.
+    if (!p.control->is_current()) {
+        if (timeout_s)
+            p.news.wait_until(lock, deadline(*timeout_s), settled);
+        else
+            p.news.wait(lock, settled);
+    }
+    const auto found = p.find_report(id);
+    if (found != p.ended.end()) {
+        wait_result r(std::move(*found));
+        p.ended.erase(found);
+        return r;
+    }
+    if (p.feed.knows(id))
+        return wait_kind::timeout;
+    return id != stroke_id{} && id <= p.last_id ? wait_kind::taken : wait_kind::unknown;
 }
 
 void player::on_report(std::function<void(const stroke_report&)> handler)
@@ -349,14 +396,11 @@ player::impl::impl(std::unique_ptr<sink> s, const array& a, const player_options
 void player::impl::start(const player_options& o)
 {
     try {
-        check_start(o);
+        check_start(audio, stream, o);
         made = out->setup();
         log_start(o);
         start_lines(o);
-        control = std::make_unique<engine::control_thread>(link.to_control, [weak = weak_from_this()] {
-            if (const auto alive = weak.lock())
-                alive->woken();
-        });
+        control = std::make_unique<control_thread>(*this);
         if (lines.trigger != nullptr)
             listen();
     } catch (...) {
@@ -378,7 +422,7 @@ void player::impl::listen()
                   fmt::format("its descriptor {}: {}", fd, std::generic_category().message(code)),
                   "keep edge_input::descriptor() open as long as the input lives"),
             code);
-    control->watch(fd, [this] { return edges(); });
+    control->watch(fd);
 }
 
 void player::impl::start_lines(const player_options& o)
@@ -394,25 +438,6 @@ void player::impl::start_lines(const player_options& o)
     pulses = std::make_unique<engine::trigger_thread>(link, *lines.sync_out, to_ns(lines.pulse_s, "pulse_s"),
                                                       thread_options(o, "tactor-sync", 1, true));
     feed.set_pulses(*pulses);
-}
-
-void player::impl::check_start(const player_options& o)
-{
-    const io_result& r = audio.started();
-    if (r.status == io_kind::lost)
-        detail::throw_caused(
-            error(error_kind::not_available, stream, "the device is gone", "plug it in again"), -r.code);
-    if (r.status != io_kind::ok)
-        detail::throw_caused(
-            error(error_kind::runtime, stream,
-                  fmt::format("it does not start ({})", engine::text(reason_kind::failed, r.code)),
-                  "try another PCM, or a longer period"),
-            -r.code);
-    if (o.require_realtime && audio.fifo_error() != 0)
-        detail::throw_caused(error(error_kind::not_available, "real-time priority",
-                                   std::error_code(audio.fifo_error(), std::generic_category()).message(),
-                                   rt::realtime_advice(probe_realtime_rights(), o.priority)),
-                             audio.fifo_error());
 }
 
 void player::impl::log_start(const player_options& o) const

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
-#include <chrono>
 #include <cmath>
 #include <cstddef>
 #include <ctime>
@@ -31,10 +30,20 @@
 #include "synth/score/levels.hpp"
 #include "synth/score/score.hpp"
 
-namespace tactor::engine {
+namespace tactor {
+inline namespace v0 {
+namespace {
 
-struct control_thread::state {
-    state(rt::event_fd& e, std::function<void()> w) : event(e), woken(std::move(w)) {}
+// Number of unread reports that are kept. A program that only uses the handler must not grow.
+constexpr std::size_t most_unread_reports = 4096;
+
+// Number of reads without an edge after which a readable descriptor counts as broken.
+constexpr int most_empty_reads = 100;
+
+} // namespace
+
+struct player::impl::control_thread::state {
+    explicit state(impl& p) : player(p.weak_from_this()), event(p.link.to_control) {}
 
     void run()
     {
@@ -42,30 +51,30 @@ struct control_thread::state {
             std::array<pollfd, 2> fds{{{event.fd(), POLLIN, 0}, {watched, POLLIN, 0}}};
             if (::poll(fds.data(), fds.size(), -1) < 0)
                 continue;
-            if (fds[0].revents != 0) {
+            const auto p = player.lock(); // a handler may destroy the player
+            if (p != nullptr && fds[0].revents != 0) {
                 event.consume();
-                woken();
+                p->woken();
             }
-            if (!over && fds[1].revents != 0 && !readable())
+            if (!over && p != nullptr && fds[1].revents != 0 && !p->edges())
                 watched = -1;
         }
     }
 
+    std::weak_ptr<impl> player;
     rt::event_fd& event;
-    std::function<void()> woken;
-    std::function<bool()> readable;
     std::atomic<int> watched{-1}; ///< poll() skips a negative descriptor
     std::atomic<bool> over{false};
 };
 
-control_thread::control_thread(rt::event_fd& e, std::function<void()> woken)
-    : state_(std::make_shared<state>(e, std::move(woken))),
+player::impl::control_thread::control_thread(impl& p)
+    : state_(std::make_shared<state>(p)),
       // The program's handlers run here, so the stack is larger.
       thread_({.name = "tactor-control", .stack_bytes = std::size_t{512} * 1024}, [s = state_] { s->run(); })
 {
 }
 
-control_thread::~control_thread()
+player::impl::control_thread::~control_thread()
 {
     state_->over = true;
     if (thread_.is_current()) {
@@ -76,34 +85,11 @@ control_thread::~control_thread()
     thread_.join();
 }
 
-void control_thread::watch(int fd, std::function<bool()> readable)
+void player::impl::control_thread::watch(int fd)
 {
-    state_->readable = std::move(readable);
     state_->watched = fd;
     state_->event.signal();
 }
-
-} // namespace tactor::engine
-
-namespace tactor {
-inline namespace v0 {
-namespace {
-
-// Number of unread reports that are kept. A program that only uses the handler must not grow.
-constexpr std::size_t most_unread_reports = 4096;
-
-// Returns the time of a time-out, at most a century from now, so that the clock cannot overflow.
-std::chrono::steady_clock::time_point deadline(double timeout_s)
-{
-    constexpr double century_s = 100.0 * 365.0 * 86400.0;
-    const double wait_s = timeout_s > 0.0 ? std::min(timeout_s, century_s) : 0.0;
-    return std::chrono::steady_clock::now() + std::chrono::nanoseconds(std::llround(wait_s * 1e9));
-}
-
-// Number of reads without an edge after which a readable descriptor counts as broken.
-constexpr int most_empty_reads = 100;
-
-} // namespace
 
 void player::impl::close()
 {
@@ -168,28 +154,6 @@ bool player::impl::pump()
     if (feed.take_urgent())
         link.to_audio.signal();
     return done;
-}
-
-wait_result player::impl::wait(stroke_id id, std::optional<double> timeout_s)
-{
-    std::unique_lock lock(mutex);
-    const auto settled = [&] { return find_report(id) != ended.end() || !feed.knows(id); };
-    // In the control thread it would wait for itself.
-    if (!control->is_current()) {
-        if (timeout_s)
-            news.wait_until(lock, deadline(*timeout_s), settled);
-        else
-            news.wait(lock, settled);
-    }
-    const auto found = find_report(id);
-    if (found != ended.end()) {
-        wait_result r(std::move(*found));
-        ended.erase(found);
-        return r;
-    }
-    if (feed.knows(id))
-        return wait_kind::timeout;
-    return id != stroke_id{} && id <= last_id ? wait_kind::taken : wait_kind::unknown;
 }
 
 void player::impl::stop(bool closing)
@@ -310,22 +274,9 @@ void player::impl::call(Call&& callee) noexcept
 }
 
 // Calls the handlers, in the control thread and without the mutex. A handler may call the player, and may
-// destroy it; then close() makes the remaining calls before it returns.
+// destroy it; then close() makes the remaining calls before it returns. Reports beginnings before ends,
+// because a stroke may have begun and ended since the last call.
 void player::impl::call_handlers()
-{
-    report_beginnings();
-    std::unique_lock lock(mutex);
-    while (!unreported.empty()) {
-        std::list<stroke_report> one;
-        one.splice(one.end(), unreported, unreported.begin());
-        lock.unlock();
-        call_handlers(one.front());
-        lock.lock();
-    }
-}
-
-// Reports beginnings before ends, because a stroke may have begun and ended since the last call.
-void player::impl::report_beginnings()
 {
     std::unique_lock lock(mutex);
     while (!begun.empty()) {
@@ -338,18 +289,19 @@ void player::impl::report_beginnings()
         f.reset(); // the last reference, if it was replaced: its contents may call the player
         lock.lock();
     }
-}
-
-void player::impl::call_handlers(const stroke_report& r)
-{
-    std::unique_lock lock(mutex);
-    const auto common = handler;
-    lock.unlock();
-    const stroke_report* const before = std::exchange(reporting, &r);
-    if (common != nullptr)
-        call([&] { (*common)(r); });
-    call_watchers(r);
-    reporting = before;
+    while (!unreported.empty()) {
+        std::list<stroke_report> one;
+        one.splice(one.end(), unreported, unreported.begin());
+        auto common = handler;
+        lock.unlock();
+        const stroke_report* const before = std::exchange(reporting, &one.front());
+        if (common != nullptr)
+            call([&] { (*common)(one.front()); });
+        common.reset();
+        call_watchers(one.front());
+        reporting = before;
+        lock.lock();
+    }
 }
 
 void player::impl::call_watchers(const stroke_report& r)

@@ -29,32 +29,6 @@
 
 namespace tactor::engine {
 
-/// A thread that calls `woken` for each signal of an eventfd, and watches one more descriptor.
-class control_thread {
-public:
-    /// Starts the thread.
-    /// \throws std::system_error when the system refuses threads.
-    control_thread(rt::event_fd& e, std::function<void()> woken);
-    /// Ends the thread; it does not call `woken` and `readable` any more. If one of these destroys this
-    /// object in the thread itself, the destructor returns at once, and the thread ends when they have
-    /// returned. The event and the descriptor may be gone by then.
-    ~control_thread();
-    control_thread(const control_thread&) = delete;
-    control_thread& operator=(const control_thread&) = delete;
-
-    /// Calls `readable` in the control thread whenever a descriptor is readable, until it returns false. The
-    /// caller keeps the descriptor, which must live as long as this object. Call it once.
-    void watch(int fd, std::function<bool()> readable);
-
-    bool is_current() const noexcept { return thread_.is_current(); }
-
-private:
-    struct state;
-
-    std::shared_ptr<state> state_; ///< shared with the thread, which may outlive this object for a moment
-    rt::thread thread_;
-};
-
 /// Returns the array if it fits the stream; otherwise some drives would reach no tactor.
 /// \throws error: bad_input for a tactor on a channel that the stream does not have, not_available for a
 ///         tactor that shares its channel of the device.
@@ -76,6 +50,31 @@ struct player::impl : std::enable_shared_from_this<player::impl> {
     using report_handler = std::function<void(const stroke_report&)>;
     using begin_handler = std::function<void(stroke_id, std::optional<std::int64_t>)>;
 
+    /// The control thread, which the audio thread wakes. It calls woken() for each signal of link.to_control,
+    /// and edges() while the trigger line is readable.
+    class control_thread {
+    public:
+        /// Starts the thread.
+        /// \throws std::system_error when the system refuses threads.
+        explicit control_thread(impl& p);
+        /// Ends the thread; it does not call the player any more. If the player's own handler destroys this
+        /// object in the thread itself, the destructor returns at once, and the thread ends when the handler
+        /// has returned.
+        ~control_thread();
+        control_thread(const control_thread&) = delete;
+        control_thread& operator=(const control_thread&) = delete;
+
+        /// Watches the trigger line's descriptor, until edges() returns false. Call it once.
+        void watch(int fd);
+        bool is_current() const noexcept { return thread_.is_current(); }
+
+    private:
+        struct state;
+
+        std::shared_ptr<state> state_; ///< shared with the thread, which may outlive this object for a moment
+        rt::thread thread_;
+    };
+
     impl(std::unique_ptr<sink> s, const array& a, const player_options& o, player_lines l);
     /// Starts the other threads. If it throws, none of them is left.
     void start(const player_options& o);
@@ -83,7 +82,6 @@ struct player::impl : std::enable_shared_from_this<player::impl> {
     void close();
 
     std::size_t fire(std::int64_t time_ns);
-    wait_result wait(stroke_id id, std::optional<double> timeout_s);
     void stop(bool closing);
 
     // Under the mutex.
@@ -132,21 +130,18 @@ struct player::impl : std::enable_shared_from_this<player::impl> {
 
     engine::audio_loop loop;
     engine::audio_thread audio;
-    std::unique_ptr<engine::control_thread> control;
+    std::unique_ptr<control_thread> control;
     std::unique_ptr<engine::amplifier_thread> amplifier; ///< null without an amplifier
     std::unique_ptr<engine::trigger_thread> pulses;      ///< null without a line for pulses
 
 private:
     void start_lines(const player_options& o);
-    void check_start(const player_options& o);
     void log_start(const player_options& o) const;
     void listen();
     void woken();
     bool take_reports();
     bool edges();
     void call_handlers();
-    void report_beginnings();
-    void call_handlers(const stroke_report& r);
     void call_watchers(const stroke_report& r);
     template <typename Call>
     void call(Call&& callee) noexcept;

@@ -299,7 +299,6 @@ void stream_log::look(const stream_status& s, std::int64_t now_ns) noexcept
         return;
     try {
         look_at_stream(s);
-        look_at_amplifier(s);
         // Limits act in each period: one line a second is enough.
         if (now_ns - limits_logged_ns_ < rt::ns_per_s && limits_logged_ns_ != 0)
             return;
@@ -333,10 +332,6 @@ void stream_log::look_at_stream(const stream_status& s)
         epoch_ = s.epoch;
         add(log_kind::info, fmt::format("the stream runs again, started {} times by now", s.epoch));
     }
-}
-
-void stream_log::look_at_amplifier(const stream_status& s)
-{
     const amplifier_link& a = link_.amplifier;
     if (grown(link_.count.stalls, stalls_) != 0)
         add(log_kind::warning, "the audio thread, or the whole process, stood still: the amplifier goes off");

@@ -103,7 +103,6 @@ public:
 private:
     void add(log_kind k, std::string text);
     void look_at_stream(const stream_status& s);
-    void look_at_amplifier(const stream_status& s);
     void look_at_limits();
 
     log_function to_;
